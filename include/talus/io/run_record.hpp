@@ -1,0 +1,39 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "talus/io/loaded.hpp"
+#include "talus/simulate/simulate.hpp"
+
+namespace talus::io {
+
+/// Largest share of trajectories that may end at a limit; above it a run counts as failed.
+inline constexpr double kAllowedLimitShare = 0.001;
+
+/// Seconds of the three stages of a run.
+struct StageSeconds {
+  double read = 0.0, simulate = 0.0, write = 0.0;
+};
+
+/// What happened in a run.
+struct RunRecord {
+  std::vector<std::string> command;     ///< as it was called
+  Totals totals;
+  std::vector<std::string> warnings;    ///< those of the input and those of the result
+  std::vector<std::string> files;       ///< written beside run.json
+  std::uint64_t touched_cells = 0;
+  StageSeconds cpu, wall;
+  int threads = 0;
+};
+
+/// Whether too many trajectories ended at a limit (`kAllowedLimitShare`).
+bool too_many_limits(const Totals& totals);
+
+/// The text of run.json. Equal runs differ only in command, threads, cpu_seconds, wall_seconds and peak_memory_mb.
+std::string run_json(const RunRecord& record, const LoadedScenario& loaded);
+
+/// The most memory that this process has held so far [MB]; 0 where the system does not tell.
+double peak_memory_mb();
+
+}  // namespace talus::io

@@ -1,0 +1,46 @@
+#pragma once
+#include <cmath>
+#include <limits>
+
+#include "talus/physics/path.hpp"
+#include "talus/terrain/surface.hpp"
+
+namespace talus {
+
+/// How a flight or a slide over the surface came to its end.
+enum class Outcome {
+  Landed,   ///< on the surface, in patch `at`
+  Left      ///< over the edge of the terrain or above missing data
+};
+
+/// Time of the first contact with the ground of a block whose clearance over a patch is f0 + f1 t + f2 t^2.
+///
+/// @param f0    clearance now [m], >= 0
+/// @param f1    rate [m/s];  f2: half the acceleration [m/s^2]
+/// @param until end of the time in the patch [s], may be infinite
+/// @return      time in [0, until] [s], or infinity where there is none
+///
+/// Closed form, the smaller root of the quadratic that leads downwards. Error: 4 eps relative. NaN gives infinity.
+inline double first_contact(double f0, double f1, double f2, double until) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  const double last = f0 + until * (f1 + until * f2);
+  if (f2 <= 0.0 && last > 0.0) return kNever;  // concave: lowest at the ends
+  const double discriminant = f1 * f1 - 4.0 * f2 * f0;
+  if (!(discriminant >= 0.0)) return kNever;
+  const double root = std::sqrt(discriminant);
+  const double contact = f1 < 0.0 ? 2.0 * f0 / (root - f1) : f2 < 0.0 ? (f1 + root) / (-2.0 * f2) : kNever;
+  if (contact <= until) return contact;
+  return f2 <= 0.0 && last < 0.0 ? until : kNever;  // below the ground at the end: only rounding puts it later
+}
+
+/// Walks a free parabola over the patches under it until it meets the ground, by one quadratic per patch.
+///
+/// @param motion     state at the start; at the end: where it landed (exactly on the surface) or left
+/// @param at         patch of the start; at the end: of the landing
+/// @param grounded   the block starts on the surface of `at`, moving away from it
+/// @param path       gets one `Span` per patch crossed
+///
+/// Exact but for rounding; no time step. At most columns + rows patches. docs/physics.md, "Flight".
+Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path);
+
+}  // namespace talus

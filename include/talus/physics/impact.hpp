@@ -1,0 +1,104 @@
+#pragma once
+#include "talus/base/random.hpp"
+#include "talus/physics/block.hpp"
+#include "talus/physics/ground.hpp"
+
+namespace talus {
+
+/// docs/physics.md, "Impact", steps 1-6, in this order. Source: Mitchell & Hungr, PIERRE 2, Eqs. 1-6.
+
+/// What to do with a negative roughness angle, which the paper does not allow.
+enum class Roughness {
+  Clamp,    ///< set it to zero (default)
+  Resample  ///< draw again: the true truncated normal distribution
+};
+
+/// The settings of the impact law that hold for the whole run.
+struct ImpactModel {
+  double deformation_coefficient = 0.25;  ///< c in E_d = c D v_n^2 [-]
+  Roughness roughness = Roughness::Clamp;
+};
+
+/// The random part of one impact.
+struct Asperity {
+  double tan_theta = 0.0;  ///< rises against the motion, >= 0 [-]
+  double tan_psi = 0.0;    ///< sideways [-]
+  double shape = 1.0;      ///< R_eff / R [-]
+  double heading = 0.0;    ///< a direction in plan, in turns [0, 1): used where neither velocity nor slope gives one
+};
+
+/// Step 1 and the draw of step 4: what a block meets at each of its impacts, a pure function of the impact's number.
+/// Kept eight impacts ahead, because the normal numbers of several impacts cost little more than those of one.
+class Asperities {
+ public:
+  Asperities(const Random& random, Roughness rule) : random_(random), rule_(rule) {}
+
+  /// What the block meets at impact number `event`, on this ground.
+  Asperity at(std::uint32_t event, const Ground& ground);
+
+ private:
+  static constexpr std::uint32_t kAhead = 8;
+  void draw(std::uint32_t first_event);
+
+  struct Draw {
+    double longitudinal, transverse, shape, heading;  // two standard normals, two uniforms
+  };
+  Random random_;
+  Roughness rule_;
+  std::uint32_t first_ = 0x80000000U;  // event of draws_[0], a multiple of kAhead; beyond all events: none drawn yet
+  std::array<Draw, kAhead> draws_;
+};
+
+/// The plane that a block meets instead of the smooth surface.
+struct RoughPlane {
+  Vec3 normal;            ///< n', unit
+  bool psi_dropped;       ///< the sideways tilt turned the plane out of the way, so it was left out
+};
+
+/// Step 2: tilts the smooth normal by theta against the motion, then by psi about the plane's longitudinal tangent.
+///
+/// @param normal    of the smooth surface, unit, upwards
+/// @param velocity  of the block [m/s], not away from the smooth surface
+RoughPlane rough_plane(const Vec3& normal, const Vec3& velocity, const Asperity& asperity);
+
+/// Share of the momentum that is kept: E_50 / (E_d + E_50), in (0, 1].
+struct Restitution {
+  double normal, tangential;  // k_n, k_t
+};
+
+/// Step 3, Eq. 3, with the deformation energy E_d = c D v_n^2 [m^3/s^2].
+Restitution restitution(const Ground& ground, double deformation_energy);
+
+/// Impulse of friction on a sphere at an impact: it stops the slip, or reaches the Coulomb limit (step 5, Eqs. 4-6).
+///
+///   J = min(2/7 |u|, tan(phi) P)
+///
+/// @param slip     |u|, speed of the contact point over the ground [m/s], >= 0
+/// @param impulse  P = (1 + k_n) v_n, normal impulse per mass [m/s], >= 0
+/// @param tan_phi  tangent of the friction angle [-], >= 0
+/// @return         J per mass [m/s]: the centre loses J against the slip, the rim speed 5/2 J
+///
+/// Error: 2 eps J. NaN slip gives NaN. Never throws.
+double friction_impulse(double slip, double impulse, double tan_phi);
+
+/// Velocity and spin after an impact.
+struct Rebound {
+  Vec3 velocity, spin;
+};
+
+/// Step 5 on a plane of normal `n`: the restitution factors, friction, and the spin it makes.
+///
+/// @param arm  R_eff, distance of the contact point from the centre [m], > 0
+Rebound rebound(const Vec3& velocity, const Vec3& spin, const Vec3& n, const Restitution& k, double arm, double tan_phi);
+
+/// What happened at an impact, beside the new motion.
+struct Contact {
+  Vec3 velocity, spin;  ///< after it; the velocity is never into the smooth surface (step 6)
+  bool psi_dropped;
+};
+
+/// The whole law: steps 2-6 on a surface of normal `normal`.
+Contact impact(const ImpactModel& model, const Ground& ground, const Block& block, const Motion& before,
+               const Vec3& normal, const Asperity& asperity);
+
+}  // namespace talus

@@ -1,0 +1,59 @@
+#pragma once
+#include <vector>
+
+#include "talus/physics/block.hpp"
+#include "talus/terrain/surface.hpp"
+
+namespace talus {
+
+/// How a trajectory ended: exactly one of these each. docs/physics.md, "End of a trajectory".
+enum class End : std::uint8_t { Stopped, Left, Caught, Limit };
+inline constexpr int kEnds = 4;
+
+/// What begins at a vertex of a path.
+enum class Event : std::uint8_t {
+  Release,  ///< the first flight
+  Impact,   ///< a rebound; a flight or a slide follows
+  Slide,    ///< a piece of sliding
+  Takeoff,  ///< a flight after sliding, without an impact
+  End       ///< nothing: the last vertex
+};
+
+/// A point of the path with the motion that leaves it. A flight follows its parabola to the next vertex with
+/// constant spin; a piece of sliding is short enough to be taken as straight in plan.
+struct Vertex {
+  Motion motion;
+  Event event;
+};
+
+/// The way across one patch, from `from` to `to` in its own coordinates, over a clearance that is quadratic in the
+/// share s of the way: height(s) = height_from + s ((height_to - height_from) - bend (1 - s)). A slide has no height.
+struct Span {
+  PatchIndex patch;
+  float p_from, q_from, p_to, q_to;       ///< patch coordinates [-]
+  float height_from, height_to, bend;     ///< clearance above the ground [m]; bend is f2 dt^2
+  float plan_speed_squared;               ///< [m^2/s^2]; for a slide 0
+  float rise_from, rise_to;               ///< vertical speed at the ends [m/s]; for a slide the speed itself
+  bool impact;                            ///< an impact ends the span
+};
+
+/// One trajectory: plain data between the engine and its readers (tallies, screens, recordings). Reused as a buffer.
+struct Path {
+  std::vector<Vertex> vertices;
+  std::vector<Span> spans;
+  End end = End::Limit;
+  std::uint32_t impacts = 0;
+  std::uint32_t psi_dropped = 0;   ///< impacts whose sideways tilt was left out
+  double length = 0.0;             ///< in space [m]
+  double plan_length = 0.0;        ///< in plan [m]
+
+  void clear() {
+    vertices.clear();
+    spans.clear();
+    end = End::Limit;
+    impacts = psi_dropped = 0;
+    length = plan_length = 0.0;
+  }
+};
+
+}  // namespace talus

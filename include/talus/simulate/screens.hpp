@@ -1,0 +1,37 @@
+#pragma once
+#include "talus/simulate/scenario.hpp"
+
+namespace talus {
+
+/// A block that crossed a screen.
+struct Crossing {
+  std::uint32_t source, block, screen;  ///< index of the screen in the scenario
+  double x, y;                          // [m, local]
+  double speed, height, spin;           // [m/s], vertical above the terrain [m], [rad/s]
+  double mass, diameter;                // [kg], [m]
+  double along;                         ///< distance along the line from its start [m]
+  double time;                          // [s]
+};
+
+/// Finds where paths cross the screens.
+class ScreenFinder {
+ public:
+  explicit ScreenFinder(const Scenario& scenario);
+
+  /// Appends every crossing of the path, in the order of time.
+  void find(const Release& release, const Path& path, std::vector<Crossing>& crossings) const;
+
+ private:
+  struct Segment {
+    std::uint32_t screen;
+    Eigen::Vector2d from, to;
+    double along;  // of `from` [m]
+  };
+  void cross(const Release& release, const Vertex& from, const Vertex& to, std::vector<Crossing>& crossings) const;
+
+  const Surface& surface_;
+  std::vector<Segment> segments_;
+  Eigen::Vector2d low_, high_;  // box around all segments
+};
+
+}  // namespace talus

@@ -1,0 +1,62 @@
+#pragma once
+#include <array>
+#include <functional>
+#include <span>
+
+#include "talus/simulate/screens.hpp"
+#include "talus/simulate/tally.hpp"
+
+namespace talus {
+
+/// The end of one trajectory.
+struct StopRow {
+  std::uint32_t source, block;
+  End end;
+  float diameter, mass;          // [m], [kg]
+  float x_release, y_release;    // [m, local]
+  double x, y, z;                // where it ended [m, local]
+  float seconds, max_speed, length, plan_length;  // [s], [m/s], [m], [m]
+  std::uint32_t impacts;
+};
+
+/// A point of a recorded path, dense enough to draw.
+struct PathPoint {
+  double x, y, z, time;          // [m, local], [s]
+};
+
+/// A path written as a vector.
+struct RecordedPath {
+  StopRow stop;
+  std::vector<PathPoint> points;
+};
+
+/// A path as points: its vertices, and points of the parabolas between them at most `spacing` apart in plan [m].
+std::vector<PathPoint> points_of(const Path& path, double spacing);
+
+/// What `simulate` hands out while it runs, always in the order (source, block) and from one thread at a time.
+/// A sink may throw: the run ends and the exception reaches the caller of `simulate`.
+struct Sinks {
+  std::function<void(std::span<const StopRow>)> stops;
+  std::function<void(std::span<const Crossing>)> crossings;
+  std::function<void(const RecordedPath&)> paths;
+  /// Called with the share done, 0..1, after every unit of work; false interrupts the run. From any thread, one at a time.
+  std::function<bool(double)> progress;
+};
+
+/// Totals of a run: integers, so that they are equal for any number of threads.
+struct Totals {
+  std::array<std::uint64_t, kEnds> ends{};  ///< by End
+  std::uint64_t released = 0, impacts = 0, psi_dropped = 0, cells_scored = 0;
+  std::int64_t length_mm = 0, plan_length_mm = 0;
+  std::array<std::uint32_t, 2> first_limit{};  ///< smallest (source, block) that ended at a limit; see ends
+  bool interrupted = false;
+  double sink_cpu_seconds = 0.0;             ///< of `cpu_seconds`, spent in the sinks
+  double cpu_seconds = 0.0;                  ///< of all threads
+};
+
+/// Traces every trajectory of the scenario and scores it.
+///
+/// @param threads  0: as many as the machine has
+Totals simulate(const Scenario& scenario, Tally& tally, const Sinks& sinks, int threads);
+
+}  // namespace talus

@@ -1,0 +1,31 @@
+#pragma once
+#include <bitset>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+
+namespace talus {
+
+/// The grid is scored in square regions of this many cells on a side.
+inline constexpr int kRegionSide = 64;
+inline constexpr int kRegionCells = kRegionSide * kRegionSide;
+
+/// Which cells the trajectories of one source cell have reached so far, by region. Needed only where several batches
+/// share a source; the cells of a region are guarded by the region's own lock in the tally.
+class SourceReach {
+ public:
+  using Cells = std::bitset<kRegionCells>;
+
+  Cells& cells(std::size_t region) {
+    const std::lock_guard guard(mutex_);
+    std::unique_ptr<Cells>& cells = regions_[region];
+    if (!cells) cells = std::make_unique<Cells>();
+    return *cells;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::unordered_map<std::size_t, std::unique_ptr<Cells>> regions_;
+};
+
+}  // namespace talus

@@ -1,0 +1,75 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "talus/simulate/histogram.hpp"
+#include "talus/simulate/source_reach.hpp"
+#include "talus/simulate/visits.hpp"
+
+namespace talus {
+
+/// The three quantities that are kept per cell: of each trajectory its largest value in the cell.
+enum class Quantity { Energy, Speed, Height };  // translational kinetic [kJ], [m/s], vertical above the terrain [m]
+inline constexpr int kQuantities = 3;
+
+/// What is known of one cell. Only integer sums, maxima and histograms: equal bits in any order of the trajectories.
+struct CellRecord {
+  std::uint64_t impacts = 0;
+  std::uint32_t passages = 0, deposits = 0, sources = 0;
+  std::array<float, kQuantities> maximum{};
+  std::array<std::int64_t, kQuantities> sum{};   ///< fixed point, in units of kFixedPoint
+  std::array<LogHistogram, kQuantities> histogram;
+
+  double mean(Quantity q) const;
+};
+
+/// Units of the sums: 2^-10 kJ, 2^-16 m/s, 2^-16 m.
+inline constexpr std::array<double, kQuantities> kFixedPoint{0x1p-10, 0x1p-16, 0x1p-16};
+
+/// Sums over trajectories, per cell, in memory bounded by the cells that any trajectory touched.
+///
+/// The grid is cut into regions of 64 x 64 cells. A region is allocated when it is first touched, and a record in it
+/// when its cell is. Workers share the one tally: each locks the region it scores.
+class Tally {
+ public:
+  /// By quantity: one value of each trajectory.
+  using Values = std::array<std::vector<float>, kQuantities>;
+
+  Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vector<double> height_thresholds);
+  ~Tally();
+  Tally(Tally&&) noexcept;
+
+  /// Scores a batch: each trajectory once in each cell it visits, with its largest values there. Safe to call from
+  /// several threads. Returns the number of (trajectory, cell) pairs scored.
+  std::uint64_t add(const VisitBatch& batch);
+
+  const Grid& grid() const { return grid_; }
+  const std::vector<double>& energy_thresholds() const { return energy_thresholds_; }
+  const std::vector<double>& height_thresholds() const { return height_thresholds_; }
+
+  /// The record of a cell; nullptr where no trajectory was.
+  const CellRecord* find(int column, int row) const;
+  /// Trajectories whose largest value in the cell exceeds each threshold: energies first, then heights. For cells that
+  /// `find` finds.
+  const std::uint32_t* exceedances(int column, int row) const;
+  std::uint64_t touched_cells() const;
+
+ private:
+  struct Region;
+
+  const Region& region_of(int column, int row) const;
+  std::size_t thresholds() const { return energy_thresholds_.size() + height_thresholds_.size(); }
+  std::uint64_t score(std::size_t index, const std::vector<Visit>& visits, const VisitBatch& batch);
+  void add(CellRecord& record, std::uint32_t* over, const Values& values) const;
+
+  Grid grid_;
+  std::vector<double> energy_thresholds_, height_thresholds_;
+  int regions_across_ = 0;
+  std::size_t region_count_ = 0;
+  std::unique_ptr<Region[]> regions_;
+};
+
+}  // namespace talus

@@ -1,0 +1,64 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "talus/physics/path.hpp"
+#include "talus/simulate/source_reach.hpp"
+
+namespace talus {
+
+/// A trajectory on its way through a cell: the largest values on that way. A trajectory that comes back has several
+/// visits to a cell; they are made one when they are scored.
+struct Visit {
+  std::uint16_t cell;         ///< within its region: row * kRegionSide + column
+  std::uint16_t trajectory;   ///< within its batch
+  float speed_squared;        ///< [m^2/s^2]
+  float height;               ///< vertical, above the terrain [m]
+  std::uint32_t impacts : 31;
+  std::uint32_t deposited : 1;
+};
+
+/// The visits of a batch of trajectories, sorted by region of the grid while they come, so that the tally is
+/// written region by region and cell by cell instead of along each path.
+class VisitBatch {
+ public:
+  struct Trajectory {
+    double mass;                         // [kg]
+    std::uint32_t source;
+    std::shared_ptr<SourceReach> reach;  // of a source that several batches share; else empty
+  };
+
+  explicit VisitBatch(const Grid& grid);
+
+  /// Reads a path. Within a cell the largest speed and clearance are exact, at no output step: both are closed forms
+  /// on each patch (the speed is largest at an end, the clearance at an end or at the apex).
+  void add(const Path& path, double mass, std::uint32_t source, std::shared_ptr<SourceReach> reach);
+
+  bool full() const { return size_ >= kVisits || trajectories_.size() >= kTrajectories; }
+  void clear();
+
+  const std::vector<Trajectory>& trajectories() const { return trajectories_; }
+  const std::unordered_map<std::size_t, std::vector<Visit>>& regions() const { return regions_; }
+
+ private:
+  static constexpr std::size_t kVisits = std::size_t{1} << 20U;  // 16 MB
+  static constexpr std::size_t kTrajectories = 60'000;
+
+  void cross(const Span& span, bool p_turns, bool q_turns);
+  Visit& visit(int column, int row) {
+    return column == column_ && row == row_ ? region_->back() : new_visit(column, row);
+  }
+  Visit& new_visit(int column, int row);
+
+  int regions_across_;
+  std::unordered_map<std::size_t, std::vector<Visit>> regions_;
+  std::vector<Trajectory> trajectories_;
+  std::size_t size_ = 0;
+  int column_ = -1, row_ = -1;             // cell of the current visit
+  std::vector<Visit>* region_ = nullptr;   // whose last element is the current visit
+  std::size_t region_index_ = 0;
+};
+
+}  // namespace talus

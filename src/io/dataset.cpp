@@ -1,0 +1,121 @@
+#include "dataset.hpp"
+
+#include <algorithm>
+#include <mutex>
+#include <stdexcept>
+
+#include "talus/base/error.hpp"
+
+namespace talus::io {
+
+namespace {
+
+// Handlers that are pushed hold for one thread only: what GDAL's own threads say comes to the global one.
+std::mutex thread_mutex;
+std::vector<std::string> thread_errors;
+
+std::string one_line(const char* message) {
+  std::string line(message);
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  return line;
+}
+
+void collect_of_threads(CPLErr level, CPLErrorNum, const char* message) {
+  if (level < CE_Failure) return;
+  const std::scoped_lock lock(thread_mutex);
+  if (thread_errors.size() < 20) thread_errors.push_back(one_line(message));
+}
+
+bool ends_with(const std::string& path, const std::string& end) {
+  return path.size() >= end.size() && EQUAL(path.c_str() + path.size() - end.size(), end.c_str());
+}
+
+}  // namespace
+
+void start_gdal() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    if (CPLGetConfigOption("GDAL_CACHEMAX", nullptr) == nullptr) GDALSetCacheMax64(64LL << 20);
+    CPLSetErrorHandler(collect_of_threads);
+    GDALAllRegister();
+  });
+}
+
+GdalMessages::GdalMessages() {
+  start_gdal();
+  {
+    const std::scoped_lock lock(thread_mutex);
+    thread_errors.clear();
+  }
+  CPLPushErrorHandlerEx(
+      [](CPLErr level, CPLErrorNum, const char* message) {
+        auto* self = static_cast<GdalMessages*>(CPLGetErrorHandlerUserData());
+        auto& list = level >= CE_Failure ? self->errors_ : self->warnings_;
+        if (list.size() < 20) list.push_back(one_line(message));
+      },
+      this);
+}
+
+GdalMessages::~GdalMessages() { CPLPopErrorHandler(); }
+
+std::string GdalMessages::take(const std::string& otherwise) {
+  {
+    const std::scoped_lock lock(thread_mutex);
+    errors_.insert(errors_.end(), thread_errors.begin(), thread_errors.end());
+    thread_errors.clear();
+  }
+  const auto& list = errors_.empty() ? warnings_ : errors_;
+  std::string line;
+  for (const std::string& message : list) line += (line.empty() ? "" : "; ") + message;
+  errors_.clear();
+  warnings_.clear();
+  return line.empty() ? otherwise : line;
+}
+
+bool GdalMessages::failed() const {
+  const std::scoped_lock lock(thread_mutex);
+  return !errors_.empty() || !thread_errors.empty();
+}
+
+Dataset open_dataset(const std::string& path, unsigned kinds) {
+  GdalMessages messages;
+  // A text table says nothing of its types and geometry: let GDAL guess them.
+  const char* const csv[] = {"AUTODETECT_TYPE=YES",  "GEOM_POSSIBLE_NAMES=wkt,geometry,geom",
+                             "X_POSSIBLE_NAMES=x",   "Y_POSSIBLE_NAMES=y",
+                             "KEEP_GEOM_COLUMNS=NO", nullptr};
+  const char* const* options = ends_with(path, ".csv") ? csv : nullptr;
+  Dataset dataset(
+      GDALDataset::Open(path.c_str(), kinds | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr, options, nullptr));
+  if (!dataset) {
+    const char* kind = (kinds & GDAL_OF_RASTER) == 0   ? "vector layer"
+                       : (kinds & GDAL_OF_VECTOR) == 0 ? "raster"
+                                                       : "raster or vector layer";
+    throw InputError(path + ": cannot be opened as a " + kind + ": " + messages.take());
+  }
+  return dataset;
+}
+
+Dataset memory_dataset(int columns, int rows, GDALDataType type) {
+  GdalMessages messages;
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("MEM");
+  Dataset dataset(driver == nullptr ? nullptr : driver->Create("", columns, rows, 1, type, nullptr));
+  if (!dataset) throw std::runtime_error("no memory for a raster: " + messages.take());
+  return dataset;
+}
+
+std::string edit_command(const std::string& path, const std::string& option) {
+  const bool tiff = ends_with(path, ".tif") || ends_with(path, ".tiff");
+  return tiff ? "gdal_edit.py " + option + " " + path : "gdal_translate " + option + " " + path + " mended.tif";
+}
+
+std::string wkt_of(const OGRSpatialReference* system) {
+  if (system == nullptr || system->IsEmpty()) return {};
+  const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
+  char* text = nullptr;
+  std::string wkt;
+  if (system->exportToWkt(&text, options) == OGRERR_NONE && text != nullptr) wkt = text;
+  CPLFree(text);
+  return wkt;
+}
+
+}  // namespace talus::io

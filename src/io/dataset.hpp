@@ -1,0 +1,57 @@
+#pragma once
+#include <gdal_priv.h>
+#include <ogrsf_frmts.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace talus::io {
+
+/// Registers GDAL's drivers once, bounds its block cache to 64 MB (unless the environment sets GDAL_CACHEMAX), and
+/// keeps its messages off the screen. Every function of `io` that uses GDAL calls it first.
+void start_gdal();
+
+/// Collects what GDAL complains about, in this thread while the object lives, and in GDAL's own threads.
+class GdalMessages {
+ public:
+  GdalMessages();
+  ~GdalMessages();
+  GdalMessages(const GdalMessages&) = delete;
+  GdalMessages& operator=(const GdalMessages&) = delete;
+
+  /// All complaints in one line, "; " between them, and forgets them; `otherwise` where there was none.
+  std::string take(const std::string& otherwise = "GDAL gives no reason");
+
+  /// Whether an error (not a mere warning) is among them.
+  bool failed() const;
+
+ private:
+  std::vector<std::string> errors_, warnings_;
+};
+
+struct CloseDataset {
+  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
+};
+using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
+
+struct DropFeature {
+  void operator()(OGRFeature* feature) const { OGRFeature::DestroyFeature(feature); }
+};
+using Feature = std::unique_ptr<OGRFeature, DropFeature>;
+
+/// Opens a file for reading. `kinds`: GDAL_OF_RASTER, GDAL_OF_VECTOR or both.
+/// Throws InputError where GDAL cannot.
+Dataset open_dataset(const std::string& path, unsigned kinds);
+
+/// A dataset in memory, of zeros. Throws std::runtime_error where there is no memory for it.
+Dataset memory_dataset(int columns, int rows, GDALDataType type);
+
+/// The command that mends what a raster says of itself: "gdal_edit.py -a_nodata 0 dem.tif"; for formats that cannot be
+/// edited a copy by gdal_translate.
+std::string edit_command(const std::string& path, const std::string& option);
+
+/// Coordinate system as WKT; empty where there is none.
+std::string wkt_of(const OGRSpatialReference* system);
+
+}  // namespace talus::io

@@ -1,0 +1,214 @@
+#include "layer.hpp"
+
+#include <gdal_alg.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+
+namespace talus::io {
+
+OGREnvelope Parts::envelope() const {
+  OGREnvelope all, one;
+  for (const OGRPolygon& polygon : polygons) polygon.getEnvelope(&one), all.Merge(one);
+  for (const OGRLineString& line : lines) line.getEnvelope(&one), all.Merge(one);
+  for (const Eigen::Vector2d& point : points) all.Merge(point.x(), point.y());
+  return all;
+}
+
+Layer::Layer(std::string role, const std::string& path, const Terrain& terrain)
+    : path_(path), terrain_(terrain), dataset_(open_dataset(path, GDAL_OF_VECTOR)) {
+  choose_layer();
+  const OGRSpatialReference* system = layer_->GetSpatialRef();
+  crs_wkt_ = wkt_of(system);
+  if (crs_wkt_.empty()) {
+    crs_wkt_ = terrain.geo.crs_wkt;
+    if (!EQUAL(dataset_->GetDriverName(), "CSV"))
+      warnings_.push_back(path + ": says no coordinate system: taken as the one of the DEM, " + crs_name(crs_wkt_));
+  } else {
+    const std::vector<int>& order = system->GetDataAxisToSRSAxisMapping();
+    north_first_ = !order.empty() && order[0] == 1 &&
+                   (system->EPSGTreatsAsLatLong() != 0 || system->EPSGTreatsAsNorthingEasting() != 0);
+  }
+  transformer_.emplace(LayerName{std::move(role), path}, crs_wkt_, terrain.geo.crs_wkt, terrain.map());
+}
+
+void Layer::choose_layer() {
+  std::string others;
+  for (int i = 0; i < dataset_->GetLayerCount(); ++i) {
+    OGRLayer* layer = dataset_->GetLayer(i);
+    if (layer->GetGeomType() == wkbNone) continue;
+    if (layer_ == nullptr)
+      layer_ = layer;
+    else
+      others += (others.empty() ? "" : ", ") + std::string(layer->GetName());
+  }
+  if (layer_ == nullptr) throw InputError(path_ + ": has no layer with geometry, must have polygons, lines or points");
+  if (!others.empty())
+    warnings_.push_back(path_ + ": has several layers: the first, " + layer_->GetName() +
+                        ", is used; not used: " + others);
+  layer_->ResetReading();
+}
+
+Feature Layer::next() {
+  GdalMessages messages;
+  CPLErrorReset();
+  Feature feature(layer_->GetNextFeature());
+  if (!feature && CPLGetLastErrorType() == CE_Failure)
+    throw InputError(path_ + ": its features cannot be read: " + messages.take(CPLGetLastErrorMsg()));
+  return feature;
+}
+
+int Layer::field(const char* name) const { return fields().GetFieldIndex(name); }
+
+std::string Layer::label(const OGRFeature& feature) const {
+  return path_ + ": feature " + std::to_string(feature.GetFID());
+}
+
+std::optional<double> Layer::number(const OGRFeature& feature, const char* name, const Bounds& bounds) const {
+  const int index = field(name);
+  if (index < 0 || feature.IsFieldSetAndNotNull(index) == 0) return std::nullopt;
+  const OGRFieldType type = fields().GetFieldDefn(index)->GetType();
+  if (type == OFTString && *feature.GetFieldAsString(index) == '\0') return std::nullopt;  // an empty field of a CSV
+  const std::string where = label(feature) + ": field " + name + " = ";
+  if (type != OFTInteger && type != OFTInteger64 && type != OFTReal)
+    throw InputError(where + "'" + feature.GetFieldAsString(index) + "' is of the type " +
+                     OGRFieldDefn::GetFieldTypeName(type) + ", must be a number field" +
+                     (bounds.unit == "1" ? "" : " in " + std::string(bounds.unit)));
+  const double value = feature.GetFieldAsDouble(index);
+  if (std::isnan(value)) return std::nullopt;
+  if (const auto fault = fault_of(bounds, value))
+    throw InputError(where + text_of(value) + ": " + *fault + ", or NULL where it is not known");
+  return value;
+}
+
+std::string Layer::code(const OGRFeature& feature, int index) const {
+  if (feature.IsFieldSetAndNotNull(index) == 0) return {};
+  const OGRFieldType type = fields().GetFieldDefn(index)->GetType();
+  if (type == OFTString) return feature.GetFieldAsString(index);
+  if (type == OFTInteger || type == OFTInteger64) return std::to_string(feature.GetFieldAsInteger64(index));
+  throw InputError(label(feature) + ": field " + fields().GetFieldDefn(index)->GetNameRef() + " = " +
+                   feature.GetFieldAsString(index) + " is of the type " + OGRFieldDefn::GetFieldTypeName(type) +
+                   ", must be text or a whole number");
+}
+
+std::vector<std::string> Layer::warnings() const {
+  std::vector<std::string> all = warnings_;
+  if (mended_ > 5) all.push_back(path_ + ": " + std::to_string(mended_ - 5) + " more invalid polygons were mended");
+  const Grid& grid = terrain_.heights.grid;
+  for (std::string& line : transformer_->warnings(std::min(grid.cell_x, grid.cell_y))) all.push_back(std::move(line));
+  return all;
+}
+
+Parts Layer::parts(const OGRFeature& feature) {
+  Parts parts;
+  const OGRGeometry* stored = feature.GetGeometryRef();
+  if (stored == nullptr || stored->IsEmpty()) return parts;
+  GdalMessages messages;
+  const std::unique_ptr<OGRGeometry> geometry(stored->getLinearGeometry());
+  if (!geometry) throw InputError(label(feature) + ": its geometry cannot be read: " + messages.take());
+  geometry->flattenTo2D();
+  geometry->closeRings();
+  collect(*geometry, parts, label(feature));
+  return parts;
+}
+
+void Layer::collect(OGRGeometry& geometry, Parts& parts, const std::string& where) {
+  if (geometry.IsEmpty()) return;
+  const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
+  if (type == wkbPolygon || type == wkbTriangle) {
+    OGRPolygon polygon(*geometry.toPolygon());
+    for (OGRLinearRing* ring : polygon) move(*ring, where);
+    add_valid(polygon, parts, where);
+  } else if (type == wkbLineString) {
+    OGRLineString line(*geometry.toLineString());
+    move(line, where);
+    parts.lines.push_back(std::move(line));
+  } else if (type == wkbPoint) {
+    OGRLineString one;
+    one.addPoint(geometry.toPoint());
+    move(one, where);
+    parts.points.emplace_back(one.getX(0), one.getY(0));
+  } else if (OGR_GT_IsSubClassOf(type, wkbGeometryCollection) != 0) {
+    for (OGRGeometry* part : *geometry.toGeometryCollection()) collect(*part, parts, where);
+  } else if (type == wkbPolyhedralSurface || type == wkbTIN) {
+    for (OGRPolygon* part : *geometry.toPolyhedralSurface()) collect(*part, parts, where);
+  } else {
+    throw InputError(where + ": geometry of the type " + OGRGeometryTypeToName(type) +
+                     ", must be polygons, lines or points");
+  }
+}
+
+void Layer::move(OGRSimpleCurve& line, const std::string& where) {
+  if (north_first_) line.swapXY();
+  const Grid& grid = terrain_.heights.grid;
+  for (int i = 0; i < line.getNumPoints(); ++i) {
+    double x = line.getX(i), y = line.getY(i);
+    if (!std::isfinite(x) || !std::isfinite(y)) throw InputError(where + ": a coordinate is not a number");
+    transformer_->apply(x, y, where);
+    line.setPoint(i, x - grid.west, y - grid.south);
+  }
+}
+
+void Layer::add_valid(const OGRPolygon& polygon, Parts& parts, const std::string& where) {
+  GdalMessages messages;
+  if (!OGRGeometryFactory::haveGEOS() || polygon.IsValid() != 0) {
+    parts.polygons.push_back(polygon);
+    return;
+  }
+  const std::string reason = messages.take("invalid");
+  const std::unique_ptr<OGRGeometry> mended(polygon.MakeValid());
+  const std::size_t before = parts.polygons.size();
+  const auto keep = [&](const auto& self, const OGRGeometry& geometry) -> void {
+    const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
+    if (type == wkbPolygon && !geometry.IsEmpty()) parts.polygons.push_back(*geometry.toPolygon());
+    if (OGR_GT_IsSubClassOf(type, wkbGeometryCollection) != 0)
+      for (const OGRGeometry* part : *geometry.toGeometryCollection()) self(self, *part);
+  };
+  if (mended) keep(keep, *mended);
+  if (parts.polygons.size() == before)
+    throw InputError(where + ": polygon is invalid (" + reason +
+                     ") and cannot be mended: repair it, for example with ogr2ogr -makevalid");
+  if (++mended_ <= 5) warnings_.push_back(where + ": polygon was invalid (" + reason + ") and was mended");
+}
+
+CellMask mask_of(const OGRGeometry& geometry, const Grid& grid, bool touched) {
+  OGREnvelope box;
+  geometry.getEnvelope(&box);
+  const auto clamped = [](double value, int low, int high) {
+    return static_cast<int>(std::clamp(std::floor(value), double(low), double(high)));
+  };
+  const int west = clamped(box.MinX / grid.cell_x - 1.0, 0, grid.columns),
+            east = clamped(box.MaxX / grid.cell_x + 2.0, 0, grid.columns);
+  const int south = clamped(box.MinY / grid.cell_y - 1.0, 0, grid.rows),
+            north = clamped(box.MaxY / grid.cell_y + 2.0, 0, grid.rows);
+  CellMask mask{west, north - 1, east - west, north - south, {}};
+  if (mask.columns <= 0 || mask.rows <= 0) return {};
+  const Dataset window = memory_dataset(mask.columns, mask.rows, GDT_Byte);
+  std::array<double, 6> place{west * grid.cell_x, grid.cell_x, 0.0, north * grid.cell_y, 0.0, -grid.cell_y};
+  window->SetGeoTransform(place.data());
+  GdalMessages messages;
+  int band = 1;
+  double burn = 1.0;
+  auto handle = OGRGeometry::ToHandle(const_cast<OGRGeometry*>(&geometry));
+  const char* const options[] = {"ALL_TOUCHED=TRUE", nullptr};
+  mask.marks.resize(static_cast<std::size_t>(mask.columns) * static_cast<std::size_t>(mask.rows));
+  if (GDALRasterizeGeometries(window.get(), 1, &band, 1, &handle, nullptr, nullptr, &burn,
+                              touched ? const_cast<char**>(options) : nullptr, nullptr, nullptr) != CE_None ||
+      window->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, mask.columns, mask.rows, mask.marks.data(), mask.columns,
+                                         mask.rows, GDT_Byte, 0, 0, nullptr) != CE_None)
+    throw std::runtime_error("rasterizing failed: " + messages.take());
+  return mask;
+}
+
+std::string list_of(const std::vector<std::int64_t>& ids) {
+  std::string text;
+  for (std::size_t i = 0; i < ids.size() && i < 8; ++i) text += (i == 0 ? "" : ", ") + std::to_string(ids[i]);
+  return ids.size() > 8 ? text + " and " + std::to_string(ids.size() - 8) + " more" : text;
+}
+
+}  // namespace talus::io

@@ -1,0 +1,145 @@
+#include "talus/io/output_folder.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <stdexcept>
+#include <system_error>
+
+#include "talus/base/error.hpp"
+
+namespace talus::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Absolute, through symbolic links, without a slash at its end.
+fs::path full_name(const fs::path& path) {
+  if (path.empty()) throw InputError("--out: the name of the folder is empty; give a new folder, for example -o result");
+  std::error_code error;
+  fs::path full = fs::weakly_canonical(fs::absolute(path), error);
+  if (error) full = fs::absolute(path).lexically_normal();
+  if (full.filename().empty()) full = full.parent_path();
+  if (full.filename().empty()) throw InputError(path.string() + ": cannot be a folder of results; give a new folder");
+  return full;
+}
+
+/// A mount point can neither be renamed nor replaced: better said before the run than after it.
+bool is_mount_point(const fs::path& folder) {
+  struct stat self {}, parent {};
+  return stat(folder.c_str(), &self) == 0 && stat(folder.parent_path().c_str(), &parent) == 0 &&
+         self.st_dev != parent.st_dev;
+}
+
+void refuse_taken_name(const fs::path& folder, bool overwrite) {
+  const std::string name = folder.string();
+  if (!fs::exists(folder)) return;
+  if (!fs::is_directory(folder)) throw InputError(name + ": is a file; give the name of a new folder");
+  if (is_mount_point(folder))
+    throw InputError(name + ": is a mount point, which cannot be replaced; give a new folder in it, for example " +
+                     (folder / "result").string());
+  if (fs::is_empty(folder)) return;
+  if (!overwrite)
+    throw InputError(name + ": the folder is there and not empty; give a new name, or --overwrite to replace it");
+  if (!fs::exists(folder / "run.json"))
+    throw InputError(name + ": --overwrite replaces only results of talus, and there is no run.json in this folder; "
+                            "give a new name, or remove the folder yourself");
+}
+
+fs::path make_temporary(const fs::path& folder) {
+  const fs::path parent = folder.parent_path();
+  if (!fs::is_directory(parent))
+    throw InputError(parent.string() + ": there is no such folder for the results to go into; create it first");
+  const std::string stem = "." + folder.filename().string() + ".talus-" + std::to_string(getpid());
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    const fs::path path = parent / (attempt == 0 ? stem : stem + "-" + std::to_string(attempt));
+    std::error_code error;
+    if (fs::create_directory(path, error)) return path;
+    if (error == std::errc::no_space_on_device) throw std::runtime_error(parent.string() + ": " + error.message());
+    if (error)
+      throw InputError(parent.string() + ": no folder can be made there (" + error.message() +
+                       "); give an output folder where you may write");
+  }
+  throw std::runtime_error(parent.string() + ": too many temporary folders of talus; remove " + stem + "*");
+}
+
+/// Waits until a file, or the entries of a folder, are on the disk: some file systems tell only now that it is full.
+void synchronise(const fs::path& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return;
+  const int result = fsync(file);
+  const int cause = errno;
+  close(file);
+  if (result != 0 && cause != EINVAL && cause != ENOTSUP)
+    throw std::runtime_error(path.filename().string() + ": cannot be written: " + std::system_category().message(cause));
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const fs::path& path, bool overwrite) : final_(full_name(path)) {
+  try {
+    refuse_taken_name(final_, overwrite);
+  } catch (const fs::filesystem_error& error) {
+    throw InputError(final_.string() + ": cannot be looked at (" + error.code().message() + "); give another folder");
+  }
+  temporary_ = make_temporary(final_);
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;
+  if (!committed_) fs::remove_all(temporary_, ignored);
+}
+
+void OutputFolder::protect(const fs::path& file) const {
+  std::error_code error;
+  const fs::path full = fs::weakly_canonical(file, error);
+  if (error) return;
+  const fs::path inside = full.lexically_relative(final_);
+  if (!inside.empty() && *inside.begin() != "..")
+    throw InputError(file.string() + ": lies in the folder that --overwrite would replace; give another folder");
+}
+
+void OutputFolder::commit() {
+  for (const auto& entry : fs::recursive_directory_iterator(temporary_)) synchronise(entry.path());
+  synchronise(temporary_);
+  std::error_code error;
+  const fs::path aside = temporary_.string() + "-old";
+  const bool replace = fs::exists(final_) && !fs::is_empty(final_);
+  if (replace) fs::rename(final_, aside, error);
+  if (!error) {
+    fs::rename(temporary_, final_, error);
+    std::error_code ignored;
+    if (error && replace) fs::rename(aside, final_, ignored);
+  }
+  if (error)
+    throw std::runtime_error(final_.string() + ": the results cannot be given this name: " + error.message());
+  committed_ = true;
+  synchronise(final_.parent_path());
+  if (replace) fs::remove_all(aside, error);
+}
+
+void write_text(const fs::path& file, std::string_view text) {
+  std::FILE* stream = std::fopen(file.c_str(), "wb");
+  bool good = stream != nullptr && std::fwrite(text.data(), 1, text.size(), stream) == text.size();
+  int cause = good ? 0 : errno;
+  if (stream != nullptr && std::fclose(stream) != 0 && good) {
+    good = false;
+    cause = errno;
+  }
+  if (good) return;
+  std::error_code ignored;
+  fs::remove(file, ignored);
+  throw std::runtime_error(file.filename().string() + ": cannot be written: " + std::system_category().message(cause));
+}
+
+std::string disk_state(const fs::path& folder) {
+  std::error_code error;
+  const fs::space_info space = fs::space(folder, error);
+  return !error && space.available < (std::uintmax_t{1} << 20) ? "the disk is full" : "";
+}
+
+}  // namespace talus::io

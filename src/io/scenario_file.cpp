@@ -1,0 +1,116 @@
+#include <algorithm>
+#include <filesystem>
+
+#include "dataset.hpp"
+#include "scenario_spec.hpp"
+#include "sha256.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/io/vectors.hpp"
+
+namespace talus::io {
+
+namespace {
+
+// Files that are not there, before any is opened.
+void check_files(const ScenarioSpec& spec, std::vector<std::string>& faults) {
+  start_gdal();
+  for (const NamedFile* file : {&spec.dem, &spec.sources, &spec.ground, &spec.screens}) {
+    if (file->path.empty()) continue;
+    VSIStatBufL status;
+    std::error_code none;
+    const bool local = std::filesystem::path(file->path).is_absolute() && file->path.rfind("/vsi", 0) != 0;
+    if (local && !std::filesystem::exists(file->path, none))
+      faults.push_back(file->where + ": no such file (" + file->path + ")");
+    if (file->path.rfind("/vsi", 0) == 0 && VSIStatL(file->path.c_str(), &status) != 0)
+      faults.push_back(file->where + ": no such file");
+  }
+}
+
+void stop_at_faults(const std::vector<std::string>& faults, std::vector<std::string>* all) {
+  if (all != nullptr) *all = faults;
+  if (faults.empty()) return;
+  const std::size_t more = faults.size() - 1;
+  throw InputError(more == 0 ? faults.front()
+                             : faults.front() + " (and " + std::to_string(more) +
+                                   (more == 1 ? " more fault" : " more faults") + ": talus check lists all)");
+}
+
+template <class Part>
+void take(LoadedScenario& out, const Part& part) {
+  out.reprojections.insert(out.reprojections.end(), part.reprojections.begin(), part.reprojections.end());
+  out.warnings.insert(out.warnings.end(), part.warnings.begin(), part.warnings.end());
+}
+
+void load_ground(ScenarioSpec& spec, const Terrain& terrain, Scenario& parts, LoadedScenario& out) {
+  parts.cover.grounds = {spec.default_ground.ground};
+  parts.zone_names = {"default"};
+  for (const ZoneSpec& zone : spec.zones) {
+    parts.cover.grounds.push_back(zone.ground);
+    parts.zone_names.push_back(zone.name);
+  }
+  if (spec.ground.path.empty()) return;
+  ZoneRequest request{spec.ground.path, spec.ground_field, {parts.zone_names.begin() + 1, parts.zone_names.end()}};
+  ZoneLayer layer = read_zones(request, terrain);
+  parts.cover.zones = std::move(layer.zones);
+  spec.ground_field = layer.field;
+  take(out, layer);
+}
+
+// A run without any diameter is the most frequent fault of a first scenario: say all ways to give one.
+void check_diameters(const Scenario& parts, const SourceLayer& layer, const std::string& path) {
+  if (!parts.blocks.classes.empty() || parts.blocks.power_law.volume.high != 0.0) return;
+  for (const SourceCell& cell : layer.cells) {
+    if (!std::isnan(layer.features[cell.feature].diameter.low)) continue;
+    throw InputError(path + ": feature " + std::to_string(layer.ids[cell.feature]) +
+                     " has no block diameter, must have one (there is no default block): give [blocks] diameter in the "
+                     "scenario, --diameter M, or a field diameter "
+                     "(or diameter_min and diameter_max) of the sources, in m");
+  }
+}
+
+void record_inputs(const ScenarioSpec& spec, LoadedScenario& out) {
+  const std::pair<const char*, const NamedFile*> files[] = {{"scenario", &spec.scenario},
+                                                            {"dem", &spec.dem},
+                                                            {"sources", &spec.sources},
+                                                            {"ground", &spec.ground},
+                                                            {"screens", &spec.screens}};
+  for (const auto& [role, file] : files)
+    if (!file->path.empty()) out.inputs.push_back({role, file->path, sha256_of_file(file->path)});
+}
+
+}  // namespace
+
+LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* all_faults) {
+  std::vector<std::string> faults;
+  ScenarioSpec spec = read_spec(flags, faults);
+  check_files(spec, faults);
+  stop_at_faults(faults, all_faults);
+
+  LoadedScenario out;
+  Terrain terrain = read_terrain(spec.dem.path);
+  out.warnings = terrain.warnings;
+  out.geo = terrain.geo;
+  Scenario parts = spec.values;
+  SourceLayer sources = read_sources(spec.sources.path, terrain, spec.release_height);
+  check_diameters(parts, sources, spec.sources.path);
+  take(out, sources);
+  load_ground(spec, terrain, parts, out);
+  if (!spec.screens.path.empty()) {
+    ScreenLayer screens = read_screens(spec.screens.path, terrain);
+    parts.screens = std::move(screens.screens);
+    take(out, screens);
+  }
+  parts.features = std::move(sources.features);
+  parts.sources = std::move(sources.cells);
+  parts.surface = Surface(std::move(terrain.heights));
+  out.scenario = make_scenario(std::move(parts));
+
+  out.complete_toml = toml_of(spec);
+  out.settings = settings_of(spec);
+  out.settings.insert(out.settings.end(), sources.attributes.begin(), sources.attributes.end());
+  record_inputs(spec, out);
+  return out;
+}
+
+}  // namespace talus::io

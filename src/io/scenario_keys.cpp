@@ -1,0 +1,278 @@
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+
+#include "scenario_spec.hpp"
+#include "table_reader.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/simulate/presets.hpp"
+
+namespace talus::io {
+
+namespace {
+
+using Kind = TomlValue::Kind;
+
+constexpr std::array<const char*, 9> kEffects{"vegetation-drag",    "forest-stems", "block-shape",
+                                              "block-mass",         "wet-ground",   "soft-ground",
+                                              "rolling-resistance", "air-drag",     "fragmentation"};
+
+class SpecReader {
+ public:
+  SpecReader(ScenarioSpec& spec, const std::string& file, std::vector<std::string>& faults)
+      : spec_(spec), file_(file), base_(std::filesystem::absolute(file).parent_path()), faults_(faults) {}
+
+  void read(const TomlValue& root) {
+    TableReader top(&root, "", file_, faults_);
+    named_file(top, "dem", spec_.dem);
+    scalar(top, "seed");
+    scalar(top, "trajectories");
+    read_sources(top.table("sources"));
+    read_blocks(top.table("blocks"));
+    read_ground(top.table("ground"));
+    read_model(top.table("model"));
+    read_output(top.table("output"));
+    TableReader screens = top.table("screens");
+    named_file(screens, "file", spec_.screens);
+    screens.finish();
+    refuse_later_parts(top);
+    top.finish();
+  }
+
+ private:
+  void given(const std::string& key) { spec_.origins[key] = "scenario"; }
+
+  void named_file(TableReader& table, const std::string& key, NamedFile& file) {
+    const auto text = table.text(key);
+    if (!text) return;
+    file = {absolute_path(*text, base_), table.where(key, *table.value()->find(key))};
+    given(table.full(key));
+  }
+
+  void scalar(TableReader& table, const std::string& key) {
+    const std::string full = table.full(key);
+    for (const auto& field : scenario_fields())
+      if (field.key == full)
+        if (const auto value = table.number(key, field)) {
+          field.set(spec_.values, *value);
+          given(full);
+        }
+  }
+
+  void read_sources(TableReader table) {
+    named_file(table, "file", spec_.sources);
+    if (const auto range = table.range("release_height", bounds_of("sources.release_height"))) {
+      spec_.release_height = *range;
+      given("sources.release_height");
+    }
+    table.finish();
+  }
+
+  void read_blocks(TableReader table) {
+    scalar(table, "density");
+    read_diameter(table);
+    if (const auto axes = table.numbers("axes", bounds_of("blocks.axes"))) {
+      const std::vector<double>& a = *axes;
+      if (a.size() == 3 && a[0] >= a[1] && a[1] >= a[2]) {
+        spec_.values.blocks.axes = Vec3(a[0], a[1], a[2]);
+        given("blocks.axes");
+      } else {
+        table.fault("axes", *table.value()->find("axes"), "must be three numbers, L1 >= L2 >= L3");
+      }
+    }
+    table.finish();
+  }
+
+  void read_diameter(TableReader& table) {
+    const TomlValue* value = table.find("diameter");
+    if (value == nullptr) return;
+    given("blocks.diameter");
+    const auto is_table = [](const TomlValue& item) { return item.kind == Kind::Table; };
+    if (value->kind == Kind::Table) {
+      read_power_law(*value);
+    } else if (value->kind == Kind::List && !value->items.empty() &&
+               std::any_of(value->items.begin(), value->items.end(), is_table)) {
+      for (const TomlValue& item : value->items) read_class(table, item);
+    } else if (const auto range = table.range("diameter", bounds_of("blocks.diameter"))) {
+      spec_.values.blocks.classes = {BlockClass{*range}};
+    }
+  }
+
+  void read_class(TableReader& table, const TomlValue& item) {
+    if (item.kind != Kind::Table) {
+      table.fault("diameter", item, "must be a table like { diameter = 1.2, weight = 1 }, as the others of the list");
+      return;
+    }
+    TableReader entry(&item, "blocks.diameter", file_, faults_);
+    BlockClass block;
+    if (const auto range = entry.range("diameter", bounds_of("blocks.diameter")))
+      block.diameter = *range;
+    else if (item.find("diameter") == nullptr)
+      faults_.push_back(file_ + ":" + std::to_string(item.line) +
+                        ": a class of blocks.diameter has no diameter, must have one");
+    block.weight = entry.number("weight", bounds_of("blocks.weight")).value_or(1.0);
+    block.frequency = entry.number("frequency", bounds_of("blocks.frequency")).value_or(kNotGiven);
+    entry.finish();
+    spec_.values.blocks.classes.push_back(block);
+  }
+
+  void read_power_law(const TomlValue& value) {
+    TableReader law(&value, "blocks.diameter", file_, faults_);
+    VolumePowerLaw& out = spec_.values.blocks.power_law;
+    const auto low = law.number("volume_min", bounds_of("blocks.volume_min")),
+               high = law.number("volume_max", bounds_of("blocks.volume_max"));
+    const auto exponent = law.number("exponent", bounds_of("blocks.exponent"));
+    for (const char* key : {"volume_min", "volume_max", "exponent"})
+      if (value.find(key) == nullptr)
+        faults_.push_back(file_ + ":" + std::to_string(value.line) + ": blocks.diameter: the power law has no " + key +
+                          ", must be { volume_min, volume_max, exponent }");
+    law.finish();
+    if (!low || !high || !exponent) return;
+    if (*low > *high)
+      law.fault("volume_min", *value.find("volume_min"), "must not be above volume_max = " + text_of(*high));
+    out = {{*low, *high}, *exponent};
+  }
+
+  void read_ground(TableReader table) {
+    named_file(table, "file", spec_.ground);
+    if (const auto field = table.text("field")) {
+      spec_.ground_field = *field;
+      given("ground.field");
+      if (spec_.ground.path.empty()) table.fault("field", *table.value()->find("field"), "must come with file");
+    }
+    if (const auto name = table.text("default")) {
+      ZoneSpec asked = spec_.default_ground;
+      if (set_preset(table, "default", *name, asked) && !spec_.origins.contains("ground.default")) {  // the flag wins
+        spec_.default_ground = asked;
+        given("ground.default");
+      }
+    }
+    TableReader zones = table.table("zones");
+    table.finish();
+    if (zones.value() == nullptr) return;
+    if (spec_.ground.path.empty())
+      faults_.push_back(file_ + ":" + std::to_string(zones.value()->line) +
+                        ": [ground.zones] without file in [ground], must say where the zones are");
+    if (zones.value()->members.size() > 255)
+      faults_.push_back(file_ + ": [ground.zones] has " + std::to_string(zones.value()->members.size()) +
+                        " zones, must be at most 255");
+    for (const auto& [name, value] : zones.value()->members) read_zone(zones.table(name), name);
+  }
+
+  bool set_preset(TableReader& table, const std::string& key, const std::string& name, ZoneSpec& zone) {
+    try {
+      zone.ground = find_preset(name).ground;
+      zone.preset = name;
+      return true;
+    } catch (const InputError& error) {
+      table.fault(key, *table.value()->find(key), error.what());
+      return false;
+    }
+  }
+
+  void read_zone(TableReader table, const std::string& name) {
+    ZoneSpec zone = spec_.default_ground;
+    zone.name = name;
+    if (const auto preset = table.text("preset"))
+      if (set_preset(table, "preset", *preset, zone)) given(table.full("preset"));
+    for (const auto& field : ground_fields()) {
+      const std::string key(field.key);
+      if (key == "shape_min" || key == "shape_max") continue;
+      if (const auto value = table.number(key, field)) {
+        field.set(zone.ground, *value);
+        zone.own.insert(key);
+      }
+    }
+    if (const auto shape = table.range("shape", ground_fields().back())) {
+      zone.ground.shape_min = shape->low;
+      zone.ground.shape_max = shape->high;
+      zone.own.insert("shape");
+    }
+    table.finish();
+    spec_.zones.push_back(std::move(zone));
+  }
+
+  void read_model(TableReader table) {
+    for (const char* key : {"deformation_coefficient", "stop_speed", "trap_time", "time_limit", "impact_limit"})
+      scalar(table, key);
+    if (const auto rule = table.text("roughness")) {
+      if (*rule == "clamp" || *rule == "resample") {
+        spec_.values.impact.roughness = *rule == "clamp" ? Roughness::Clamp : Roughness::Resample;
+        given("model.roughness");
+      } else {
+        table.fault("roughness", *table.value()->find("roughness"), "must be 'clamp' or 'resample'");
+      }
+    }
+    table.finish();
+  }
+
+  void read_output(TableReader table) {
+    scalar(table, "trajectories");
+    thresholds(table, "energy_thresholds", spec_.values.output.energy_thresholds);
+    thresholds(table, "height_thresholds", spec_.values.output.height_thresholds);
+    table.finish();
+  }
+
+  void thresholds(TableReader& table, const std::string& key, std::vector<double>& out) {
+    const auto values = table.numbers(key, bounds_of("output." + key));
+    if (!values) return;
+    if (values->empty() || values->size() > 32 ||
+        std::adjacent_find(values->begin(), values->end(), std::greater_equal<>()) != values->end()) {
+      table.fault(key, *table.value()->find(key), "must be 1 to 32 numbers that ascend, each once");
+      return;
+    }
+    out = *values;
+    given("output." + key);
+  }
+
+  void refuse_later_parts(TableReader& top) {
+    if (const TomlValue* barriers = top.find("barriers"))
+      faults_.push_back(file_ + ":" + std::to_string(barriers->line) +
+                        ": [barriers] is not in this version of Talus, must be left out");
+    const TomlValue* effects = top.find("effects");
+    if (effects == nullptr) return;
+    TableReader table(effects, "effects", file_, faults_);
+    for (const char* name : kEffects)
+      if (const TomlValue* effect = table.find(name))
+        faults_.push_back(file_ + ":" + std::to_string(effect->line) + ": [effects." + name +
+                          "] is not in this version of Talus, must be left out");
+    table.finish();
+  }
+
+  ScenarioSpec& spec_;
+  std::string file_;
+  std::filesystem::path base_;
+  std::vector<std::string>& faults_;
+};
+
+// In the order of the file: the number that follows its name.
+void sort_by_line(std::vector<std::string>& faults, const std::string& file) {
+  const auto line = [&](const std::string& fault) {
+    return fault.rfind(file + ":", 0) == 0 ? std::atoi(fault.c_str() + file.size() + 1) : 0;
+  };
+  std::stable_sort(faults.begin(), faults.end(),
+                   [&](const std::string& a, const std::string& b) { return line(a) < line(b); });
+}
+
+}  // namespace
+
+ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) {
+  ScenarioSpec spec;
+  start_with_preset(spec, flags, faults);
+  if (!flags.scenario.empty()) {
+    spec.scenario = {std::filesystem::absolute(flags.scenario).lexically_normal().string(), flags.scenario};
+    SpecReader(spec, flags.scenario, faults).read(read_toml(flags.scenario, flags.scenario));
+  }
+  lay_flags(spec, flags, faults);
+  sort_by_line(faults, flags.scenario);
+  const std::string in = flags.scenario.empty() ? "" : flags.scenario + ": ";
+  if (spec.dem.path.empty() && !spec.origins.contains("dem"))
+    faults.push_back(in + "no terrain: give dem = \"FILE\" in a scenario, or --dem FILE");
+  if (spec.sources.path.empty())
+    faults.push_back(in + "no sources: give [sources] file = \"FILE\" in a scenario, or --sources FILE");
+  return spec;
+}
+
+}  // namespace talus::io

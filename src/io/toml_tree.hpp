@@ -1,0 +1,29 @@
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace talus::io {
+
+/// A value of a TOML file with its line: what the reader needs of toml++, which is slow to compile.
+struct TomlValue {
+  enum class Kind { Boolean, Number, Text, List, Table, Date };
+
+  Kind kind = Kind::Table;
+  int line = 0;  ///< from 1
+  bool boolean = false;
+  double number = 0.0;  ///< whole numbers too; beyond 2^53 rounded
+  std::string text;
+  std::vector<TomlValue> items;                            ///< of a list
+  std::vector<std::pair<std::string, TomlValue>> members;  ///< of a table, in the order of the file
+
+  const TomlValue* find(const std::string& key) const;
+  /// The value in short, for messages: "'abc'", "3.5", "a table".
+  std::string shown() const;
+};
+
+/// Reads a TOML file. `name` stands for it in messages.
+/// Throws InputError "name:12: ..." where it cannot be read or is no TOML.
+TomlValue read_toml(const std::string& path, const std::string& name);
+
+}  // namespace talus::io

@@ -1,0 +1,26 @@
+#pragma once
+#include "talus/physics/block.hpp"
+
+namespace talus {
+
+/// Tells a trapped block. An anchor is set at the first contact with the ground, and anew at every contact farther
+/// than `reach` from it in plan; `patience` after the last setting the block is trapped.
+class Anchor {
+ public:
+  Anchor(double reach, double patience) : reach_(reach), patience_(patience) {}
+
+  void set(const Motion& m) { place_ = m.position.head<2>(), time_ = m.time; }
+
+  /// Looks at a block that is on the ground. Returns whether it is trapped.
+  bool traps(const Motion& m) {
+    if ((m.position.head<2>() - place_).squaredNorm() > reach_ * reach_) set(m);
+    return m.time - time_ > patience_;
+  }
+
+ private:
+  double reach_, patience_;  // [m], [s]
+  Eigen::Vector2d place_ = Eigen::Vector2d::Zero();
+  double time_ = 0.0;
+};
+
+}  // namespace talus

@@ -1,0 +1,60 @@
+#include <algorithm>
+
+#include "slope.hpp"
+
+namespace talus {
+namespace {
+
+constexpr double kLargestShare = 0.25;  // of a cell, in one piece: the twist of the patches may open the crease
+
+/// The edge between two patches: a straight line in space.
+struct Edge {
+  Vec3 direction;     // unit, towards north or east
+  double length;      // of a whole cell side along it, in space [m]
+  double share;       // of the block's place along it, 0..1
+};
+
+Edge edge_between(const Slope& slope, const Slope& beyond, const Eigen::Vector2d& place) {
+  const Grid& grid = slope.surface.grid();
+  const bool northward = slope.at.row == beyond.at.row;
+  const bool far_side = northward ? beyond.at.column > slope.at.column : beyond.at.row > slope.at.row;
+  const double twist = far_side ? slope.patch.twist : 0.0;
+  const double plan = northward ? grid.cell_y : grid.cell_x;
+  const double rise = (northward ? slope.patch.north : slope.patch.east) + twist;
+  const double length = std::sqrt(plan * plan + rise * rise);
+  const Vec3 direction = northward ? Vec3(0.0, plan, rise) : Vec3(plan, 0.0, rise);
+  return {direction / length, length, northward ? slope.q_of(place) : slope.p_of(place)};
+}
+
+double cosine_of_slope(const Slope& slope, const Eigen::Vector2d& place) {
+  return 1.0 / std::sqrt(1.0 + slope.gradient(place).squaredNorm());
+}
+
+}  // namespace
+
+CreaseEnd slide_along_crease(const Slope& slope, const Slope& beyond, Motion& motion, double farthest, Path& path) {
+  const Eigen::Vector2d place = motion.position.head<2>();
+  const Edge edge = edge_between(slope, beyond, place);
+  const double speed = motion.velocity.norm(), ahead = motion.velocity.dot(edge.direction);
+  double sign = ahead < 0.0 ? -1.0 : 1.0;
+  if (!(std::abs(ahead) > 1e-9 * speed)) sign = edge.direction.z() > 0.0 ? -1.0 : 1.0;  // none along it: downwards
+  const double friction =
+      slope.tan_phi * kGravity * 0.5 * (cosine_of_slope(slope, place) + cosine_of_slope(beyond, place));
+  const double pull = -sign * kGravity * edge.direction.z() - friction;
+  if (!(speed > 0.0) && !(pull > 0.0)) return CreaseEnd::Held;
+
+  const double to_corner = edge.length * (sign > 0.0 ? 1.0 - edge.share : edge.share);
+  const double way = std::min({to_corner, farthest, kLargestShare * edge.length});
+  double duration = time_to_cover(way, speed, pull, 1.0);
+  if (pull < 0.0) duration = std::min(duration, speed / -pull);  // comes to rest before
+  Motion next = motion;
+  const double distance = std::clamp(duration * (speed + 0.5 * pull * duration), 0.0, to_corner);
+  next.time += duration;
+  next.position += sign * distance * edge.direction;
+  next.velocity = sign * std::max(0.0, speed + pull * duration) * edge.direction;
+  record_piece(path, slope, motion, next);
+  motion = next;
+  return CreaseEnd::Moved;
+}
+
+}  // namespace talus

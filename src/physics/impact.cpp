@@ -1,0 +1,106 @@
+#include "talus/physics/impact.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "talus/base/elementary.hpp"
+
+namespace talus {
+namespace {
+
+constexpr std::uint32_t kMaxRedraws = 200;  // P(N1 < -1) = 0.16 each: 200 in a row happen once in 1e160 impacts
+
+/// Direction of the motion in plan; straight down, the dip of the slope; on flat ground, drawn at random.
+Eigen::Vector2d heading_of(const Vec3& velocity, const Vec3& normal, double turn) {
+  const double plan = std::sqrt(velocity.x() * velocity.x() + velocity.y() * velocity.y());
+  if (plan > 1e-9 * std::abs(velocity.z())) return {velocity.x() / plan, velocity.y() / plan};
+  const double dip = std::sqrt(normal.x() * normal.x() + normal.y() * normal.y());
+  if (dip > 1e-9) return {normal.x() / dip, normal.y() / dip};
+  const SineCosine direction = sine_cosine_of_turn(turn);
+  return {direction.cosine, direction.sine};
+}
+
+}  // namespace
+
+void Asperities::draw(std::uint32_t first_event) {
+  std::array<Words, kAhead> words;
+  for (std::uint32_t i = 0; i < kAhead; ++i) words[i] = random_.words(first_event + i);
+  for (std::uint32_t i = 0; i < kAhead; ++i) {
+    const auto [longitudinal, transverse] = normal_pair(words[i][0], words[i][1]);
+    draws_[i] = {longitudinal, transverse, uniform(words[i][2]), uniform(words[i][3])};
+  }
+  first_ = first_event;
+}
+
+Asperity Asperities::at(std::uint32_t event, const Ground& ground) {
+  if (event - first_ >= kAhead) draw(event - event % kAhead);
+  const Draw& draw = draws_[event - first_];
+  double longitudinal = draw.longitudinal;
+  if (rule_ == Roughness::Resample)
+    for (std::uint32_t part = 1; longitudinal < -1.0 && part < kMaxRedraws; ++part) {
+      const Words words = random_.words(event, part);
+      longitudinal = normal_pair(words[0], words[1])[0];
+    }
+  return {ground.theta_scale * std::max(0.0, 0.5 + 0.5 * longitudinal), ground.psi_scale * (0.5 * draw.transverse),
+          ground.shape_min + (ground.shape_max - ground.shape_min) * draw.shape, draw.heading};
+}
+
+RoughPlane rough_plane(const Vec3& normal, const Vec3& velocity, const Asperity& asperity) {
+  const Eigen::Vector2d h = heading_of(velocity, normal, asperity.heading);
+  const auto to_world = [&h](double along, double left, double up) {
+    return Vec3(along * h.x() - left * h.y(), along * h.y() + left * h.x(), up);
+  };
+  const double left = normal.y() * h.x() - normal.x() * h.y();
+  const double cos_theta = 1.0 / std::sqrt(1.0 + asperity.tan_theta * asperity.tan_theta);
+  const double sin_theta = asperity.tan_theta * cos_theta;
+  const double level = normal.x() * h.x() + normal.y() * h.y();
+  const double along = cos_theta * level - sin_theta * normal.z();
+  const double up = cos_theta * normal.z() + sin_theta * level;
+  const Vec3 n1 = to_world(along, left, up);
+
+  if (asperity.tan_psi != 0.0) {  // side = n1 x heading, scaled to unit length
+    const Vec3 side = to_world(0.0, up, -left) / std::sqrt(left * left + up * up);
+    const double cos_psi = 1.0 / std::sqrt(1.0 + asperity.tan_psi * asperity.tan_psi);
+    const Vec3 n2 = cos_psi * (n1 + asperity.tan_psi * side);
+    if (velocity.dot(n2) < 0.0) return {n2, false};
+  }
+  const bool psi_dropped = asperity.tan_psi != 0.0;
+  if (velocity.dot(n1) <= 0.0) return {n1, psi_dropped};
+  return {normal, psi_dropped};  // a steep counter-slope: theta alone turns the plane out of the way
+}
+
+Restitution restitution(const Ground& ground, double deformation_energy) {
+  return {ground.En50 / (deformation_energy + ground.En50), ground.Et50 / (deformation_energy + ground.Et50)};
+}
+
+double friction_impulse(double slip, double impulse, double tan_phi) {
+  return std::min(2.0 / 7.0 * slip, tan_phi * impulse);
+}
+
+Rebound rebound(const Vec3& velocity, const Vec3& spin, const Vec3& n, const Restitution& k, double arm,
+                double tan_phi) {
+  const double v_n = std::max(0.0, -velocity.dot(n));
+  const Vec3 v_tan = velocity - velocity.dot(n) * n;
+  const Vec3 w_normal = spin.dot(n) * n;
+  const Vec3 w_tan = spin - w_normal;
+  const Vec3 u = k.tangential * (v_tan - arm * w_tan.cross(n));
+  const double slip = u.norm();
+  const double impulse = (1.0 + k.normal) * v_n;
+  const Vec3 friction = slip > 0.0 ? Vec3(friction_impulse(slip, impulse, tan_phi) / slip * u) : Vec3(Vec3::Zero());
+  return {k.tangential * v_tan - friction + k.normal * v_n * n,
+          k.tangential * w_tan + 2.5 / arm * n.cross(friction) + w_normal};
+}
+
+Contact impact(const ImpactModel& model, const Ground& ground, const Block& block, const Motion& before,
+               const Vec3& normal, const Asperity& asperity) {
+  const RoughPlane plane = rough_plane(normal, before.velocity, asperity);
+  const double v_n = std::max(0.0, -before.velocity.dot(plane.normal));
+  const Restitution k = restitution(ground, model.deformation_coefficient * block.diameter * v_n * v_n);
+  const Rebound after =
+      rebound(before.velocity, before.spin, plane.normal, k, asperity.shape * block.radius(), ground.tan_phi);
+  const double into_slope = std::min(0.0, after.velocity.dot(normal));
+  return {after.velocity - into_slope * normal, after.spin, plane.psi_dropped};
+}
+
+}  // namespace talus

@@ -1,0 +1,173 @@
+#include "talus/physics/slide.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slope.hpp"
+#include "talus/physics/flight.hpp"
+
+namespace talus {
+namespace {
+
+using Vec2 = Eigen::Vector2d;
+
+constexpr int kMaxPieces = 1000;
+constexpr int kMaxHalvings = 20;
+constexpr int kMaxShort = 12;           // crossings of edges with hardly a way between them: the block is in a pit
+constexpr double kLongestPiece = 1.0;   // [s]
+constexpr double kErrorShare = 1e-3;    // of the diameter, per piece
+constexpr double kRounding = 1e-9;      // of the speed: below it an edge does not fall away
+
+/// A piece of constant acceleration.
+struct Piece {
+  Vec2 acceleration;
+  double duration;
+};
+
+/// The longest piece from `place` that errs by less than `tolerance` and lasts at most `duration`.
+Piece make_piece(const Slope& slope, const Vec2& place, const Vec2& v, double duration, double tolerance) {
+  const Vec2 first = slope.acceleration(place, v);
+  Piece piece{first, duration};
+  for (int halving = 0; halving < kMaxHalvings; ++halving) {
+    const double half = 0.5 * piece.duration;
+    piece.acceleration = slope.acceleration(place + half * v + 0.5 * half * half * first, v + half * first);
+    const double error = 0.5 * (piece.acceleration - first).norm() * piece.duration * piece.duration;
+    if (!(error > tolerance)) break;
+    piece.duration *= std::clamp(0.9 * std::sqrt(tolerance / error), 0.1, 0.9);
+  }
+  return piece;
+}
+
+/// The edge at which a piece leaves its patch: its time, and the step to the next patch.
+struct Edge {
+  double time;
+  int columns = 0, rows = 0;
+};
+
+Edge edge_of(const Slope& slope, const Vec2& place, const Vec2& v, const Piece& piece) {
+  const Eigen::Array2d per_cell(slope.surface.per_cell_x(), slope.surface.per_cell_y());
+  const Vec2 rate = v.array() * per_cell, bend = 0.5 * piece.acceleration.array() * per_cell;
+  const double p = slope.p_of(place), q = slope.q_of(place);
+  Edge edge{std::numeric_limits<double>::infinity()};
+  const auto meet = [&](double clearance, double f1, double f2, int columns, int rows) {
+    const double time = first_contact(std::max(0.0, clearance), f1, f2, piece.duration);
+    if (time < edge.time) edge = {time, columns, rows};
+  };
+  meet(p, rate.x(), bend.x(), -1, 0);
+  meet(1.0 - p, -rate.x(), -bend.x(), 1, 0);
+  meet(q, rate.y(), bend.y(), 0, -1);
+  meet(1.0 - q, -rate.y(), -bend.y(), 0, 1);
+  return edge;
+}
+
+/// Where the surface turns up the block turns with it and keeps its speed; where it falls away the velocity stays.
+/// Returns whether it falls away.
+bool turn(Vec3& velocity, const Vec3& normal) {
+  const double speed = velocity.norm();
+  const double away = velocity.dot(normal);
+  if (away > kRounding * speed) return true;
+  const Vec3 tangent = velocity - away * normal;
+  const double length = tangent.norm();
+  velocity = length > 0.0 ? Vec3(tangent * (speed / length)) : Vec3(Vec3::Zero());
+  return false;
+}
+
+/// One piece of sliding, to the end of the piece or of the patch: where it leads, and over which edge if it meets one.
+struct Step {
+  Motion motion;
+  Edge edge;
+  bool crossed;
+};
+
+Step next_step(const Slope& slope, const Motion& motion, double farthest, double tolerance, double stop_speed) {
+  const Vec2 place = motion.position.head<2>(), v = motion.velocity.head<2>(), gradient = slope.gradient(place);
+  const double speed = motion.velocity.norm();
+  const Vec3 force = along(slope.acceleration(place, v), gradient);
+  const double pull = speed > 0.0 ? motion.velocity.dot(force) / speed : force.norm();
+  double longest = time_to_cover(farthest, speed, pull, kLongestPiece);
+  if (pull < 0.0 && gradient.norm() <= slope.tan_phi)  // until friction holds it
+    longest = std::min(longest, std::max(0.0, speed - stop_speed) / -pull + 1e-9);
+  const Piece piece = make_piece(slope, place, v, longest, tolerance);
+  const Edge edge = edge_of(slope, place, v, piece);
+  const double dt = std::min(edge.time, piece.duration);
+  const Vec2 there = place + dt * v + 0.5 * dt * dt * piece.acceleration;
+  Motion next = motion;
+  next.time += dt;
+  next.position = {there.x(), there.y(), slope.height(there)};
+  next.velocity = along(v + dt * piece.acceleration, slope.gradient(there));
+  return {next, edge, edge.time <= piece.duration};
+}
+
+}  // namespace
+
+double time_to_cover(double distance, double s, double a, double longest) {
+  return std::min(longest, first_contact(distance, -s, -0.5 * a, longest));
+}
+
+void record_piece(Path& path, const Slope& slope, const Motion& before, const Motion& after) {
+  if (!(after.time > before.time)) return;
+  path.vertices.push_back({before, Event::Slide});
+  const Vec2 from = before.position.head<2>(), to = after.position.head<2>();
+  path.spans.push_back({slope.at, static_cast<float>(slope.p_of(from)), static_cast<float>(slope.q_of(from)),
+                        static_cast<float>(slope.p_of(to)), static_cast<float>(slope.q_of(to)), 0.0F, 0.0F, 0.0F, 0.0F,
+                        static_cast<float>(before.velocity.norm()), static_cast<float>(after.velocity.norm()), false});
+  path.length += (after.position - before.position).norm();
+  path.plan_length += (to - from).norm();
+}
+
+Eigen::Vector2d sliding_acceleration(const Eigen::Vector2d& slope, double twist, const Eigen::Vector2d& v,
+                                     double tan_phi) {
+  const double w2 = 1.0 + slope.squaredNorm();
+  const double rise = slope.dot(v);
+  const double speed = std::sqrt(v.squaredNorm() + rise * rise);
+  const double press = kGravity + 2.0 * twist * v.x() * v.y();
+  const double friction = tan_phi * kGravity / std::sqrt(w2);
+  if (speed > 1e-9) return -press / w2 * slope - friction / speed * v;
+  const double steepness = slope.norm();
+  if (!(steepness > tan_phi)) return Eigen::Vector2d::Zero();
+  return -(kGravity / w2) * (1.0 - tan_phi / steepness) * slope;
+}
+
+SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, PatchIndex& at, double diameter,
+               double stop_speed, Path& path) {
+  double slid = 0.0;
+  const double tolerance = kErrorShare * diameter;
+  int short_crossings = 0;  // in succession, each less than the tolerance after the last
+  PatchIndex came_from = at;
+  for (int pieces = 0; pieces < kMaxPieces; ++pieces) {
+    const double tan_phi = cover.grounds[cover.zone_at(motion.position.x(), motion.position.y())].tan_phi;
+    Slope slope{surface, at, tan_phi};
+    if (!slope.read()) return SlideEnd::Left;
+    const double speed = motion.velocity.norm();
+    if (speed <= stop_speed && slope.gradient(motion.position.head<2>()).norm() <= tan_phi) return SlideEnd::Stopped;
+    if (!(slope.press(motion.velocity.head<2>()) >= 0.0)) return SlideEnd::Takeoff;
+
+    const Step step = next_step(slope, motion, diameter - slid, tolerance, stop_speed);
+    double way = 0.5 * (step.motion.time - motion.time) * (speed + step.motion.velocity.norm());
+    record_piece(path, slope, motion, step.motion);
+    motion = step.motion;
+    if (step.crossed) {
+      Slope beyond{surface, {at.column + step.edge.columns, at.row + step.edge.rows}, tan_phi};
+      if (!beyond.read()) return SlideEnd::Left;
+      if (way < tolerance && beyond.at == came_from) {  // pressed back at once: along the crease
+        const Motion before = motion;
+        if (slide_along_crease(slope, beyond, motion, diameter - slid, path) == CreaseEnd::Held) return SlideEnd::Stopped;
+        way += (motion.position - before.position).norm();
+      } else {
+        came_from = at;
+        at = beyond.at;
+        if (turn(motion.velocity, normal_of(beyond.gradient(motion.position.head<2>())))) return SlideEnd::Takeoff;
+      }
+    }
+    slid += way;
+    if (slid >= diameter * (1.0 - 1e-6)) return SlideEnd::Asperity;
+    if (way >= tolerance) short_crossings = 0;
+    if (step.crossed && way < tolerance && ++short_crossings > kMaxShort) {  // a pit: nowhere to slide to; it rubs there for one diameter
+      motion.time += (diameter - slid) / std::max(stop_speed, motion.velocity.norm());
+      return motion.velocity.norm() <= stop_speed ? SlideEnd::Stopped : SlideEnd::Asperity;
+    }
+  }
+  return SlideEnd::Asperity;
+}
+
+}  // namespace talus

@@ -1,0 +1,100 @@
+#include "talus/physics/trace.hpp"
+
+#include <optional>
+
+#include "anchor.hpp"
+#include "talus/physics/flight.hpp"
+#include "talus/physics/slide.hpp"
+
+namespace talus {
+namespace {
+
+/// One block on its way: the state that its steps share. A step returns how the trajectory ended, or nothing.
+class Walk {
+ public:
+  Walk(const World& world, const Release& release, Path& path)
+      : world_(world),
+        body_(release.body),
+        asperities_(Random(release.seed, release.source, release.block, Purpose::Impact), world.impact.roughness),
+        path_(path),
+        motion_(release.motion),
+        at_(world.surface.patch_at(motion_.position.x(), motion_.position.y())),
+        anchor_(body_.diameter, world.rules.trap_time) {}
+
+  End run() {
+    path_.vertices.push_back({motion_, Event::Release});
+    if (fly(world_.surface, motion_, at_, false, path_) == Outcome::Left) return End::Left;
+    anchor_.set(motion_);
+    while (path_.impacts < world_.rules.impact_limit && motion_.time < world_.rules.time_limit) {
+      if (const auto end = meet_the_ground()) return *end;
+      if (motion_.velocity.dot(normal_) < kSlideSpeed) {
+        const SlideEnd how = slide_on();
+        if (how == SlideEnd::Left) return End::Left;
+        if (how == SlideEnd::Stopped) return End::Stopped;
+        if (how == SlideEnd::Asperity) continue;
+        path_.vertices.push_back({motion_, Event::Takeoff});
+      }
+      if (const auto end = fly_on()) return *end;
+    }
+    return End::Limit;
+  }
+
+  const Motion& motion() const { return motion_; }
+
+ private:
+  /// An impact where the block is. It stops there if it comes out slowly on ground no steeper than phi.
+  std::optional<End> meet_the_ground() {
+    const Ground& ground = world_.cover.grounds[world_.cover.zone_at(motion_.position.x(), motion_.position.y())];
+    Patch patch;
+    world_.surface.read(at_, patch);  // a block on the ground is on a patch that exists
+    const double p = world_.surface.u_of(motion_.position.x()) - at_.column;
+    const double q = world_.surface.v_of(motion_.position.y()) - at_.row;
+    normal_ = normal_of(world_.surface.gradient(patch, p, q));
+    const Asperity asperity = asperities_.at(path_.impacts, ground);
+    const Contact contact = impact(world_.impact, ground, body_, motion_, normal_, asperity);
+    motion_.velocity = contact.velocity;
+    motion_.spin = contact.spin;
+    path_.vertices.push_back({motion_, Event::Impact});
+    path_.spans.back().impact = true;
+    path_.impacts += 1;
+    path_.psi_dropped += contact.psi_dropped ? 1U : 0U;
+    const bool fast = motion_.velocity.squaredNorm() >= world_.rules.stop_speed * world_.rules.stop_speed;
+    if (!fast && normal_.head<2>().norm() <= ground.tan_phi * normal_.z()) return End::Stopped;
+    return std::nullopt;
+  }
+
+  /// Slides from where the block is; the part of its velocity across the surface is lost.
+  SlideEnd slide_on() {
+    motion_.velocity -= motion_.velocity.dot(normal_) * normal_;
+    const SlideEnd end =
+        slide(world_.surface, world_.cover, motion_, at_, body_.diameter, world_.rules.stop_speed, path_);
+    return end != SlideEnd::Left && anchor_.traps(motion_) ? SlideEnd::Stopped : end;
+  }
+
+  /// Flies from the surface to the next contact.
+  std::optional<End> fly_on() {
+    if (fly(world_.surface, motion_, at_, true, path_) == Outcome::Left) return End::Left;
+    if (anchor_.traps(motion_)) return End::Stopped;
+    return std::nullopt;
+  }
+
+  const World& world_;
+  Block body_;
+  Asperities asperities_;
+  Path& path_;
+  Motion motion_;
+  PatchIndex at_;
+  Vec3 normal_;  // of the smooth surface at the last impact
+  Anchor anchor_;
+};
+
+}  // namespace
+
+void trace(const World& world, const Release& release, Path& path) {
+  path.clear();
+  Walk walk(world, release, path);
+  path.end = walk.run();
+  path.vertices.push_back({walk.motion(), Event::End});
+}
+
+}  // namespace talus

@@ -1,0 +1,14 @@
+#include <boost/math/special_functions/beta.hpp>
+
+#include "talus/products/maps.hpp"
+
+namespace talus {
+
+Interval probability_bounds(std::uint64_t hits, std::uint64_t trials, double confidence) {
+  const double tail = 0.5 * (1.0 - confidence);
+  const double k = static_cast<double>(hits), n = static_cast<double>(trials);
+  return {hits == 0 ? 0.0 : boost::math::ibeta_inv(k, n - k + 1.0, tail),
+          hits == trials ? 1.0 : boost::math::ibeta_inv(k + 1.0, n - k, 1.0 - tail)};
+}
+
+}  // namespace talus

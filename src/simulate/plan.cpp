@@ -1,0 +1,57 @@
+#include "talus/simulate/plan.hpp"
+
+#include <cmath>
+
+namespace talus {
+namespace {
+
+/// Volume of a share of the power law N(>= V) = A V^-b between two bounds, by its inverse. Equal bounds give that volume.
+double volume_at(const VolumePowerLaw& law, double share) {
+  const double low = std::pow(law.volume.low, -law.exponent), high = std::pow(law.volume.high, -law.exponent);
+  return std::pow(low - share * (low - high), -1.0 / law.exponent);
+}
+
+double diameter_at(const Blocks& blocks, double share_of_class, double share) {
+  if (blocks.power_law.volume.high > 0.0) return std::cbrt(6.0 / kPi * volume_at(blocks.power_law, share));
+  double total = 0.0;
+  for (const BlockClass& c : blocks.classes) total += c.weight;
+  double below = 0.0;
+  for (const BlockClass& c : blocks.classes) {
+    below += c.weight;
+    if (share_of_class * total < below) return c.diameter.at(share);
+  }
+  return blocks.classes.back().diameter.at(share);
+}
+
+}  // namespace
+
+Release make_release(const Scenario& scenario, std::uint32_t source, std::uint32_t block) {
+  const SourceCell& cell = scenario.sources[source];
+  const SourceFeature& feature = scenario.features[cell.feature];
+  const Grid& grid = scenario.surface.grid();
+  const Random random(scenario.seed, source, block, Purpose::Release);
+  const auto place = random.words(0), size = random.words(1);
+  const double x = cell.point ? cell.x : cell.x + (uniform(place[0]) - 0.5) * grid.cell_x;
+  const double y = cell.point ? cell.y : cell.y + (uniform(place[1]) - 0.5) * grid.cell_y;
+  const double height = feature.release_height.at(uniform(place[2]));
+  const double diameter = std::isnan(feature.diameter.low)
+                              ? diameter_at(scenario.blocks, uniform(size[0]), uniform(size[1]))
+                              : feature.diameter.at(uniform(size[1]));
+  Release release;
+  release.seed = scenario.seed;
+  release.source = source;
+  release.block = block;
+  release.body = block_of(diameter, scenario.blocks.density);
+  release.motion.position = {x, y, scenario.surface.height(x, y).value_or(kNotGiven) + height};
+  release.motion.velocity = feature.velocity;
+  return release;
+}
+
+bool is_recorded(const Scenario& scenario, std::uint32_t source, std::uint32_t block) {
+  // The paths are the releases g at which floor(g K / N) steps up: K of N, evenly spread.
+  const std::uint64_t wanted = scenario.output.paths, all = scenario.released();
+  const std::uint64_t g = std::uint64_t{source} * scenario.trajectories + block;
+  return (g + 1) * wanted / all > g * wanted / all;
+}
+
+}  // namespace talus

@@ -1,0 +1,81 @@
+#include "talus/simulate/screens.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+namespace {
+
+double cross_product(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// The motion a share of the way from one vertex to the next: a parabola with constant spin, or a piece of sliding.
+Motion between(const Vertex& from, const Vertex& to, double share) {
+  const double t = share * (to.motion.time - from.motion.time);
+  Motion m = from.motion;
+  m.time += t;
+  if (from.event == Event::Slide) {
+    const double duration = to.motion.time - from.motion.time;
+    const Vec3 way = to.motion.position - from.motion.position;
+    m.position += share * way;
+    if (duration > 0.0) m.velocity += 2.0 * share * (way / duration - from.motion.velocity);  // constant acceleration
+    return m;
+  }
+  m.position += t * from.motion.velocity;
+  m.position.z() -= 0.5 * kGravity * t * t;
+  m.velocity.z() -= kGravity * t;
+  return m;
+}
+
+}  // namespace
+
+ScreenFinder::ScreenFinder(const Scenario& scenario) : surface_(scenario.surface) {
+  low_.setConstant(std::numeric_limits<double>::infinity());
+  high_ = -low_;
+  for (std::uint32_t s = 0; s < scenario.screens.size(); ++s) {
+    double along = 0.0;
+    for (const auto& line : scenario.screens[s].lines) {
+      for (std::size_t i = 1; i < line.size(); ++i) {
+        segments_.push_back({s, line[i - 1], line[i], along});
+        along += (line[i] - line[i - 1]).norm();
+        low_ = low_.cwiseMin(line[i - 1]).cwiseMin(line[i]);
+        high_ = high_.cwiseMax(line[i - 1]).cwiseMax(line[i]);
+      }
+    }
+  }
+}
+
+void ScreenFinder::find(const Release& release, const Path& path, std::vector<Crossing>& crossings) const {
+  if (segments_.empty()) return;
+  for (std::size_t i = 1; i < path.vertices.size(); ++i) {
+    const Vertex &from = path.vertices[i - 1], &to = path.vertices[i];
+    const Eigen::Vector2d a = from.motion.position.head<2>(), b = to.motion.position.head<2>();
+    if ((a.cwiseMax(b).array() < low_.array()).any() || (a.cwiseMin(b).array() > high_.array()).any()) continue;
+    cross(release, from, to, crossings);
+  }
+}
+
+/// A segment is crossed where its ends lie on different sides of it, its own end points belonging to one side only,
+/// so that a path through a vertex of the path or of the screen is counted once.
+void ScreenFinder::cross(const Release& release, const Vertex& from, const Vertex& to,
+                         std::vector<Crossing>& crossings) const {
+  const Eigen::Vector2d a = from.motion.position.head<2>(), b = to.motion.position.head<2>(), way = b - a;
+  const std::size_t first = crossings.size();
+  for (const Segment& s : segments_) {
+    const Eigen::Vector2d line = s.to - s.from;
+    const double side_from = cross_product(line, a - s.from), side_to = cross_product(line, b - s.from);
+    if ((side_from < 0.0) == (side_to < 0.0)) continue;
+    const double low = cross_product(way, s.from - a), high = cross_product(way, s.to - a);
+    if ((low < 0.0) == (high < 0.0)) continue;
+    const double share = side_from / (side_from - side_to);
+    const Motion m = between(from, to, share);
+    const double ground = surface_.height(m.position.x(), m.position.y()).value_or(m.position.z());
+    crossings.push_back({release.source, release.block, s.screen, m.position.x(), m.position.y(), m.velocity.norm(),
+                         from.event == Event::Slide ? 0.0 : std::max(0.0, m.position.z() - ground), m.spin.norm(),
+                         release.body.mass, release.body.diameter,
+                         s.along + line.norm() * (low / (low - high)), m.time});
+  }
+  std::sort(crossings.begin() + static_cast<std::ptrdiff_t>(first), crossings.end(),
+            [](const Crossing& l, const Crossing& r) { return l.time < r.time; });
+}
+
+}  // namespace talus

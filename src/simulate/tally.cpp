@@ -1,0 +1,213 @@
+#include "talus/simulate/tally.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+namespace talus {
+namespace {
+
+std::int64_t fixed_point(float value, double units) {
+  return static_cast<std::int64_t>(static_cast<double>(value) * units + 0.5);
+}
+
+std::size_t cell_in_region(int column, int row) {
+  return static_cast<std::size_t>(row % kRegionSide * kRegionSide + column % kRegionSide);
+}
+
+/// Counting sort: visits by cell, those of one cell in their order before.
+std::vector<Visit> sorted_by_cell(const std::vector<Visit>& visits) {
+  std::array<std::uint32_t, kRegionCells + 1> start{};
+  for (const Visit& visit : visits) ++start[visit.cell + 1U];
+  for (std::size_t cell = 0; cell < kRegionCells; ++cell) start[cell + 1] += start[cell];
+  std::vector<Visit> sorted(visits.size());
+  for (const Visit& visit : visits) sorted[start[visit.cell]++] = visit;
+  return sorted;
+}
+
+/// The visits of a batch to one cell.
+struct Group {
+  const Visit *begin, *end;
+  std::size_t record;
+};
+
+/// Asks the processor for memory that is needed soon: records lie anywhere, and waiting for them would rule the cost.
+void fetch(const void* memory, std::size_t bytes) {
+  for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(static_cast<const char*>(memory) + i, 1);
+}
+
+/// The cells of a region that the source of a trajectory has reached in other batches too.
+class ReachOf {
+ public:
+  ReachOf(const VisitBatch& batch, std::size_t region) : batch_(batch), region_(region) {}
+
+  /// Whether the source reaches the cell for the first time; it counts as reached from then on. Trajectories of one
+  /// source follow each other, so that within a group a source's first trajectory decides.
+  bool first(std::uint16_t trajectory, std::size_t cell) {
+    const VisitBatch::Trajectory& t = batch_.trajectories()[trajectory];
+    if (!t.reach) return true;
+    if (t.reach.get() != reach_) {
+      reach_ = t.reach.get();
+      cells_ = &reach_->cells(region_);
+    }
+    if ((*cells_)[cell]) return false;
+    return (*cells_)[cell] = true;
+  }
+
+ private:
+  const VisitBatch& batch_;
+  std::size_t region_;
+  SourceReach* reach_ = nullptr;
+  SourceReach::Cells* cells_ = nullptr;
+};
+
+/// Makes one value of each trajectory's visits, its largest, and adds the counts of the group to the record.
+void gather(const Group& group, const VisitBatch& batch, Tally::Values& values, CellRecord& record, ReachOf& reach) {
+  for (std::vector<float>& list : values) list.clear();
+  std::uint32_t source = 0;
+  for (const Visit* visit = group.begin; visit != group.end;) {
+    const std::uint16_t trajectory = visit->trajectory;
+    float speed_squared = 0.0F, height = 0.0F;
+    for (; visit != group.end && visit->trajectory == trajectory; ++visit) {
+      speed_squared = std::max(speed_squared, visit->speed_squared);
+      height = std::max(height, visit->height);
+      record.impacts += visit->impacts;
+      record.deposits += visit->deposited;
+    }
+    const VisitBatch::Trajectory& of = batch.trajectories()[trajectory];
+    if (values[0].empty() || of.source != source) {
+      source = of.source;
+      record.sources += reach.first(trajectory, group.begin->cell) ? 1U : 0U;
+    }
+    values[0].push_back(static_cast<float>(0.5e-3 * of.mass * speed_squared));
+    values[1].push_back(std::sqrt(speed_squared));
+    values[2].push_back(height);
+  }
+}
+
+}  // namespace
+
+double CellRecord::mean(Quantity q) const {
+  const auto i = static_cast<std::size_t>(q);
+  return passages == 0 ? 0.0 : static_cast<double>(sum[i]) * kFixedPoint[i] / passages;
+}
+
+/// The records of 64 x 64 cells. `slot` of a cell is its record's number plus one; 0 where there is none yet.
+struct Tally::Region {
+  std::mutex mutex;
+  std::unique_ptr<std::array<std::uint16_t, kRegionCells>> slot;
+  std::deque<CellRecord> records;
+  std::vector<std::uint32_t> exceedances;
+
+  /// Number of the record of a cell, made where there is none.
+  std::size_t record_of(std::size_t cell, std::size_t thresholds) {
+    if (!slot) slot = std::make_unique<std::array<std::uint16_t, kRegionCells>>();
+    std::uint16_t& number = (*slot)[cell];
+    if (number == 0) {
+      records.emplace_back();
+      exceedances.resize(exceedances.size() + thresholds);
+      number = static_cast<std::uint16_t>(records.size());
+    }
+    return number - 1U;
+  }
+};
+
+Tally::Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vector<double> height_thresholds)
+    : grid_(grid),
+      energy_thresholds_(std::move(energy_thresholds)),
+      height_thresholds_(std::move(height_thresholds)),
+      regions_across_((grid.columns + kRegionSide - 1) / kRegionSide),
+      region_count_(static_cast<std::size_t>(regions_across_) *
+                    static_cast<std::size_t>((grid.rows + kRegionSide - 1) / kRegionSide)),
+      regions_(std::make_unique<Region[]>(region_count_)) {}
+
+Tally::~Tally() = default;
+Tally::Tally(Tally&&) noexcept = default;
+
+std::uint64_t Tally::add(const VisitBatch& batch) {
+  std::uint64_t scored = 0;
+  std::vector<std::size_t> busy;  // regions that another worker holds: taken last
+  for (const auto& [index, visits] : batch.regions()) {
+    const std::unique_lock lock(regions_[index].mutex, std::try_to_lock);
+    if (lock.owns_lock())
+      scored += score(index, visits, batch);
+    else
+      busy.push_back(index);
+  }
+  for (const std::size_t index : busy) {
+    const std::unique_lock lock(regions_[index].mutex);
+    scored += score(index, batch.regions().at(index), batch);
+  }
+  return scored;
+}
+
+std::uint64_t Tally::score(std::size_t index, const std::vector<Visit>& visits, const VisitBatch& batch) {
+  Region& region = regions_[index];
+  const std::vector<Visit> sorted = sorted_by_cell(visits);
+  std::vector<Group> groups;
+  for (std::size_t i = 0; i < sorted.size();) {
+    const std::size_t first = i, cell = sorted[i].cell;
+    while (i < sorted.size() && sorted[i].cell == cell) ++i;
+    groups.push_back({&sorted[first], &sorted[first] + (i - first), region.record_of(cell, thresholds())});
+  }
+  std::uint64_t scored = 0;
+  ReachOf reach(batch, index);
+  Values values;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (i + 16 < groups.size()) fetch(&region.records[groups[i + 16].record], sizeof(CellRecord));
+    if (i + 8 < groups.size())
+      for (const LogHistogram& h : region.records[groups[i + 8].record].histogram) fetch(h.counts(), 128);
+    CellRecord& record = region.records[groups[i].record];
+    gather(groups[i], batch, values, record, reach);
+    add(record, region.exceedances.data() + groups[i].record * thresholds(), values);
+    scored += values[0].size();
+  }
+  return scored;
+}
+
+void Tally::add(CellRecord& record, std::uint32_t* over, const Values& values) const {
+  record.passages += static_cast<std::uint32_t>(values[0].size());
+  std::array<float, kQuantities> largest{};
+  for (std::size_t q = 0; q < kQuantities; ++q) {
+    for (const float value : values[q]) {
+      largest[q] = std::max(largest[q], value);
+      record.sum[q] += fixed_point(value, 1.0 / kFixedPoint[q]);
+    }
+    record.maximum[q] = std::max(record.maximum[q], largest[q]);
+    record.histogram[q].add(values[q]);
+  }
+  const auto count_over = [&](const std::vector<double>& limits, Quantity of) {
+    const auto q = static_cast<std::size_t>(of);
+    for (std::size_t i = 0; i < limits.size() && largest[q] > limits[i]; ++i)  // ascending: the rest is not exceeded
+      over[i] += static_cast<std::uint32_t>(
+          std::count_if(values[q].begin(), values[q].end(), [limit = limits[i]](float v) { return v > limit; }));
+    over += limits.size();
+  };
+  count_over(energy_thresholds_, Quantity::Energy);
+  count_over(height_thresholds_, Quantity::Height);
+}
+
+const Tally::Region& Tally::region_of(int column, int row) const {
+  return regions_[static_cast<std::size_t>(row / kRegionSide) * static_cast<std::size_t>(regions_across_) +
+                  static_cast<std::size_t>(column / kRegionSide)];
+}
+
+const CellRecord* Tally::find(int column, int row) const {
+  const Region& region = region_of(column, row);
+  if (!region.slot) return nullptr;
+  const std::uint16_t slot = (*region.slot)[cell_in_region(column, row)];
+  return slot == 0 ? nullptr : &region.records[slot - 1U];
+}
+
+const std::uint32_t* Tally::exceedances(int column, int row) const {
+  const Region& region = region_of(column, row);
+  return region.exceedances.data() + ((*region.slot)[cell_in_region(column, row)] - 1U) * thresholds();
+}
+
+std::uint64_t Tally::touched_cells() const {
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < region_count_; ++i) sum += regions_[i].records.size();
+  return sum;
+}
+
+}  // namespace talus

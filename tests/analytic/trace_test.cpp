@@ -1,0 +1,262 @@
+#include "talus/physics/trace.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <limits>
+
+#include "../support/scenes.hpp"
+
+namespace talus {
+namespace {
+
+using test::Numbers;
+
+constexpr Ground kUpperTalus{.theta_scale = 1.0, .psi_scale = 0.9, .shape_max = 1.5};
+
+struct Scene {
+  Surface surface;
+  Cover cover;
+  ImpactModel impact = {};
+  EndRules rules = {};
+
+  Path run(const Vec3& position, const Vec3& velocity, double diameter = 1.0, std::uint32_t block = 0) const {
+    Release release;
+    release.block = block;
+    release.body = block_of(diameter, 2700.0);
+    release.motion.position = position;
+    release.motion.velocity = velocity;
+    Path path;
+    trace({surface, cover, impact, rules}, release, path);
+    return path;
+  }
+};
+
+Surface flat(double cell = 2.0, int n = 101) {
+  return Surface(test::terrain(test::grid_of(n, n, cell, cell), [](double, double) { return 8.0; }));
+}
+
+TEST(BounceSeries, VerticalDropOnFlatGround) {  // v -> v E/(E + c D v^2), 2 v/g in the air, until it leaves below 0.5 m/s
+  for (const double height : {2.0, 50.0})
+    for (const double En50 : {5.0, 15.0}) {
+      Scene scene{flat(), {{Ground{.En50 = En50}}, {}}};
+      scene.rules.trap_time = 1e3;
+      const Path path = scene.run({100.3, 99.1, 8.0 + height}, Vec3::Zero(), 1.2);
+      double v = std::sqrt(2 * kGravity * height), t = v / kGravity, length = height;
+      std::uint32_t impacts = 0;
+      for (std::size_t i = 1; i + 1 < path.vertices.size(); ++i) {
+        const Motion& m = path.vertices[i].motion;
+        v *= En50 / (En50 + 0.25 * 1.2 * v * v);
+        ++impacts;
+        ASSERT_EQ(path.vertices[i].event, Event::Impact);
+        ASSERT_NEAR(m.time, t, 1e-11);
+        ASSERT_NEAR(m.velocity.z(), v, 1e-11);
+        ASSERT_LT((m.position - Vec3(100.3, 99.1, 8.0)).norm(), 1e-12);
+        t += 2 * v / kGravity;
+        length += v * v / kGravity;
+      }
+      EXPECT_EQ(path.end, End::Stopped);
+      EXPECT_LT(v, 0.5);
+      EXPECT_EQ(path.impacts, impacts);
+      EXPECT_EQ(path.plan_length, 0.0);
+      EXPECT_NEAR(path.length, length - v * v / kGravity, 0.2 * length);  // arc length by three Gauss points
+    }
+}
+
+TEST(BounceSeries, ThrownAlongFlatGroundWithSpin) {  // independent recursion of Eqs. 3-6 in the plane of the motion
+  const double tan_phi = 1.0 / std::sqrt(3.0), diameter = 1.2;
+  const Scene scene{flat(2.0, 401), {{Ground{}}, {}}};
+  for (const double turn : {0.0, 0.11, 0.77}) {
+    const double c = std::cos(2 * kPi * turn), s = std::sin(2 * kPi * turn);
+    const Path path = scene.run({400.3, 399.1, 11.0}, {12 * c, 12 * s, 0}, diameter);
+    double v_t = 12.0, rim = 0.0, v_n = std::sqrt(6 * kGravity), x = v_t * v_n / kGravity, t = v_n / kGravity;
+    int compared = 0;
+    for (std::size_t i = 1; i < path.vertices.size() && path.vertices[i].event == Event::Impact; ++i) {
+      const double energy = 0.25 * diameter * v_n * v_n, k_n = 15 / (15 + energy), k_t = 50 / (50 + energy);
+      const double u = k_t * (v_t + rim), gamma = 2.0 / 7.0 * std::abs(u), limit = tan_phi * (1 + k_n) * v_n;
+      const double j = std::copysign(std::min(gamma, limit), u);
+      v_t = k_t * v_t - j, rim = k_t * rim - 2.5 * j, v_n = k_n * v_n;
+      const Motion& m = path.vertices[i].motion;
+      ASSERT_NEAR(m.time, t, 1e-10);
+      ASSERT_LT((m.position - Vec3(400.3 + c * x, 399.1 + s * x, 8.0)).norm(), 1e-9);
+      ASSERT_LT((m.velocity - Vec3(c * v_t, s * v_t, v_n)).norm(), 1e-11);
+      ASSERT_LT((m.spin - rim / (0.5 * diameter) * Vec3(s, -c, 0)).norm(), 1e-11);  // axis t x n
+      ++compared;
+      if (v_n < kSlideSpeed) break;
+      x += v_t * 2 * v_n / kGravity, t += 2 * v_n / kGravity;
+    }
+    EXPECT_GT(compared, 100);
+    EXPECT_EQ(path.end, End::Stopped);
+  }
+}
+
+TEST(Trap, APitWithWallsSteeperThanPhiHoldsItsBlockAndTellsSo) {
+  const Surface pit(test::terrain(test::grid_of(61, 61, 2.0, 2.0), [](double x, double y) { return 0.75 * std::max(std::abs(x - 61), std::abs(y - 61)); }));
+  const Scene scene{pit, {{kUpperTalus}, {}}, {}, {.impact_limit = 2000}};
+  int stopped = 0;
+  for (std::uint32_t block = 0; block < 200; ++block) {
+    const Path path = scene.run({70.0, 75.0, 20.0}, Vec3::Zero(), 0.8, block);
+    stopped += path.end == End::Stopped ? 1 : 0;
+    EXPECT_LT(path.vertices.back().motion.time, 120.0);
+    EXPECT_LT(path.vertices.back().motion.position.z(), 20.0);  // lower than the release
+    EXPECT_LT(path.vertices.size(), 5000U);
+  }
+  EXPECT_EQ(stopped, 200);
+}
+
+TEST(Trap, ABlockThatHopsOnOnePlaceIsTrappedAtTheFirstContactAfterThePatience) {  // k_n = 1: every hop takes 2 sqrt(2 h/g)
+  Scene scene{flat(), {{Ground{.En50 = 1e300}}, {}}};
+  for (const double patience : {2.0, 5.0, 11.0}) {
+    scene.rules.trap_time = patience;
+    const Path path = scene.run({100.3, 99.1, 9.0}, Vec3::Zero());
+    const double fall = std::sqrt(2.0 / kGravity), hops = std::ceil(patience / (2 * fall));
+    EXPECT_EQ(path.end, End::Stopped);
+    EXPECT_NEAR(path.vertices.back().motion.time, fall + hops * 2 * fall, 1e-9);
+  }
+}
+
+TEST(Trap, AFoldSteeperThanPhiEndsSoon) {  // crossings of the bottom of a gully or a pit shrink without end (Zeno)
+  for (const double along : {0.0, 0.25, 1.0})
+    for (const Ground& ground : {Ground{}, kUpperTalus}) {
+      const Surface gully(test::terrain(test::grid_of(61, 61, 2.0, 2.0), [&](double x, double y) { return 2.0 * std::abs(y - 61) - along * x; }));
+      const Surface pit(test::terrain(test::grid_of(61, 61, 2.0, 2.0), [](double x, double y) { return 2.0 * (std::abs(x - 61) + std::abs(y - 61)); }));
+      for (const Surface& surface : {gully, pit}) {
+        const Scene scene{surface, {{ground}, {}}, {}, {.impact_limit = 300}};
+        for (std::uint32_t block = 0; block < 20; ++block) {
+          const double x = 60.3 + 0.1 * block, y = 61.4 - 0.05 * block;
+          const Path path = scene.run({x, y, *surface.height(x, y) + 3.0}, Vec3::Zero(), 1.0, block);
+          ASSERT_LT(path.vertices.size(), 3000U) << "along " << along << " block " << block;
+          ASSERT_NE(path.end, End::Limit) << "along " << along << " block " << block;
+        }
+      }
+    }
+}
+
+TEST(Trap, AFoldThatFallsSteeperThanPhiHoldsNoBlock) {  // walls 2:1, the bottom itself at 45 degrees
+  const Surface gully(test::terrain(test::grid_of(61, 61, 2.0, 2.0), [&](double x, double y) { return 200.0 + 2.0 * std::abs(y - 61) - x; }));
+  const Scene scene{gully, {{Ground{}}, {}}, {}, {.impact_limit = 3000}};
+  for (std::uint32_t block = 0; block < 20; ++block) {
+    const double y = 61.4 - 0.05 * block;
+    EXPECT_EQ(scene.run({30.3, y, *gully.height(30.3, y) + 3.0}, Vec3::Zero(), 1.0, block).end, End::Left) << block;
+  }
+}
+
+TEST(Limits, AreReachedAndSaid) {
+  const Surface slope(test::terrain(test::grid_of(400, 41, 5.0, 5.0), [](double x, double) { return 3000.0 - x; }));
+  Scene scene{slope, {{Ground{}}, {}}};
+  scene.rules.impact_limit = 7;
+  const Path path = scene.run({100.0, 100.0, 2950.0}, Vec3::Zero());
+  EXPECT_EQ(path.end, End::Limit);
+  EXPECT_EQ(path.impacts, 7U);
+  scene.rules = {};
+  scene.rules.time_limit = 9.0;
+  const Path timed = scene.run({100.0, 100.0, 2950.0}, Vec3::Zero());
+  EXPECT_EQ(timed.end, End::Limit);
+  EXPECT_GE(timed.vertices.back().motion.time, 9.0);
+}
+
+TEST(Start, AtRestOnTheGround) {
+  EXPECT_EQ((Scene{flat(), {{kUpperTalus}, {}}}.run({100.3, 99.1, 8.0}, Vec3::Zero()).end), End::Stopped);
+  EXPECT_EQ((Scene{flat(), {{kUpperTalus}, {}}}.run({101.0, 101.0, 7.0}, Vec3::Zero()).end), End::Stopped);  // a little below it
+  EXPECT_EQ((Scene{flat(), {{kUpperTalus}, {}}}.run({-5.0, 99.1, 8.0}, Vec3::Zero()).end), End::Left);
+}
+
+TEST(Start, NaNEndsAtOnce) {
+  const double nan = std::nan("");
+  const Scene scene{flat(), {{kUpperTalus}, {}}};
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 velocity = Vec3::Zero();
+    velocity[axis] = nan;
+    EXPECT_LT(scene.run({100.3, 99.1, 10.0}, velocity).vertices.size(), 10U) << axis;
+  }
+  EXPECT_LT(scene.run({100.3, 99.1, nan}, Vec3::Zero()).vertices.size(), 10U);
+}
+
+/// Odd scenes: everything is finite, ends, and hangs together.
+void expect_sound(const Scene& scene, const Path& path) {
+  ASSERT_GE(path.vertices.size(), 2U);
+  ASSERT_EQ(path.vertices.front().event, Event::Release);
+  ASSERT_EQ(path.vertices.back().event, Event::End);
+  std::uint32_t impacts = 0, span_impacts = 0;
+  for (std::size_t i = 0; i < path.vertices.size(); ++i) {
+    const Motion& m = path.vertices[i].motion;
+    ASSERT_TRUE(m.position.allFinite() && m.velocity.allFinite() && m.spin.allFinite() && std::isfinite(m.time));
+    if (i > 0) {
+      ASSERT_GE(m.time, path.vertices[i - 1].motion.time - 1e-12);
+    }
+    impacts += path.vertices[i].event == Event::Impact ? 1U : 0U;
+    if (i > 0 && i + 1 < path.vertices.size()) {  // all but the release and the end are on the ground
+      const double z = test::height_between_centres(scene.surface.heights(), m.position.x(), m.position.y());
+      if (std::isfinite(z)) {
+        ASSERT_NEAR(m.position.z(), z, 1e-6 * (1 + std::abs(z)));
+      }
+    }
+  }
+  for (const Span& s : path.spans) {
+    span_impacts += s.impact ? 1U : 0U;
+    for (const float x : {s.p_from, s.q_from, s.p_to, s.q_to}) ASSERT_TRUE(x > -1e-3F && x < 1.001F);
+    for (const float x : {s.height_from, s.height_to, s.bend, s.rise_from, s.rise_to}) ASSERT_TRUE(std::isfinite(x));
+    ASSERT_TRUE(s.height_from >= 0.0F && s.height_to >= 0.0F);
+  }
+  ASSERT_EQ(impacts, path.impacts);
+  ASSERT_EQ(span_impacts, path.impacts);
+  ASSERT_LE(path.plan_length, path.length * (1 + 1e-9) + 1e-12);
+}
+
+TEST(OddScenes, EveryPathEndsAndTheEndsAddUp) {
+  Numbers numbers(5);
+  std::array<int, kEnds> ends{};
+  int released = 0;
+  for (const double cell : {0.5, 2.0, 25.0})
+    for (int kind = 0; kind < 5; ++kind) {
+      Raster<float> heights = test::terrain(test::grid_of(60, 50, cell, cell * (kind == 4 ? 2.0 : 1.0)), [&](double x, double y) {
+        const double u = x / cell, v = y / cell;
+        switch (kind) {
+          case 0: return 8.0;                                                                   // flat
+          case 1: return cell * numbers.uniform(0, 3);                                          // a field of spikes
+          case 2: return std::floor(u / 10.0) * 500.0;                                          // walls of 500 m
+          case 3: return cell * 2.0 * std::abs(v - 25.2) - cell * 0.2 * u;                      // a gully
+          default: return -0.8 * x + cell * numbers.uniform(0, 1);                              // a rough slope
+        }
+      });
+      if (kind == 4) heights.at(40, 20) = std::numeric_limits<float>::quiet_NaN();
+      const Scene scene{Surface(heights), {{kUpperTalus}, {}}, {}, {.impact_limit = 1000}};
+      for (std::uint32_t block = 0; block < 60; ++block) {
+        const bool centre = block % 3 == 0;  // exactly at a cell centre, as sources are
+        const int column = static_cast<int>(numbers.uniform(5, 55)), row = static_cast<int>(numbers.uniform(5, 45));
+        const double x = centre ? heights.grid.centre_x(column) : numbers.uniform(0.1, 0.9) * heights.grid.width();
+        const double y = centre ? heights.grid.centre_y(row) : numbers.uniform(0.1, 0.9) * heights.grid.height();
+        const double z = test::height_between_centres(heights, x, y);
+        if (!std::isfinite(z)) continue;
+        const Vec3 velocity = block % 4 == 0 ? Vec3(Vec3::Zero()) : numbers.vector(5.0);
+        const Path path = scene.run({x, y, z + (block % 5 == 0 ? 0.0 : 2.0)}, velocity, numbers.uniform(0.2, 3.0), block);
+        expect_sound(scene, path);
+        if (HasFatalFailure()) FAIL() << "cell " << cell << " kind " << kind << " block " << block;
+        ++ends[static_cast<std::size_t>(path.end)];
+        ++released;
+      }
+    }
+  EXPECT_EQ(ends[0] + ends[1] + ends[2] + ends[3], released);
+  EXPECT_GT(ends[0], 200);
+  EXPECT_GT(ends[1], 50);
+  EXPECT_EQ(ends[static_cast<std::size_t>(End::Limit)], 0);
+}
+
+TEST(Trace, ClearsTheBufferAndGivesTheSameBits) {
+  const Surface slope(test::terrain(test::grid_of(200, 60, 2.0, 2.0), [](double x, double) { return 300.0 - 0.75 * x; }));
+  const Scene scene{slope, {{kUpperTalus}, {}}};
+  const Path one = scene.run({20.3, 60.1, 290.0}, Vec3::Zero(), 1.0, 3);
+  Path two = scene.run({20.3, 60.1, 290.0}, Vec3::Zero(), 1.0, 4);
+  Release release;
+  release.block = 3;
+  release.body = block_of(1.0, 2700.0);
+  release.motion.position = {20.3, 60.1, 290.0};
+  trace({scene.surface, scene.cover, scene.impact, scene.rules}, release, two);
+  ASSERT_EQ(one.vertices.size(), two.vertices.size());
+  for (std::size_t i = 0; i < one.vertices.size(); ++i) EXPECT_EQ(one.vertices[i].motion.position, two.vertices[i].motion.position);
+  EXPECT_EQ(one.length, two.length);
+  EXPECT_EQ(one.impacts, two.impacts);
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,123 @@
+"""A small mountain side to try the program on, and ways to call it. TALUS is the path of the program."""
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import numpy as np
+from osgeo import gdal, ogr, osr
+
+gdal.UseExceptions()
+ogr.UseExceptions()
+
+TALUS = os.environ.get("TALUS", "talus")
+WEST, NORTH = 2600000.0, 1200300.0  # EPSG:2056
+
+
+def system(code):
+    srs = osr.SpatialReference()
+    srs.ImportFromEPSG(code)
+    srs.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+    return srs
+
+
+def heights(columns=60, rows=60, cell=5.0):
+    """A slope of 35 degrees that faces south, above a flat floor, with small bumps."""
+    y = (rows - 0.5 - np.arange(rows))[:, None] * cell
+    x = (np.arange(columns) + 0.5)[None, :] * cell
+    z = 1000.0 + np.maximum(0.0, y - 100.0) * 0.7 + 0.3 * np.sin(x / 7.0) * np.cos(y / 5.0)
+    return z.astype(np.float32)
+
+
+def write_dem(path, z, cell=5.0, code=2056, transform=None, nodata=None):
+    dem = gdal.GetDriverByName("GTiff").Create(path, z.shape[1], z.shape[0], 1, gdal.GDT_Float32)
+    dem.SetGeoTransform(transform or (WEST, cell, 0.0, NORTH, 0.0, -cell))
+    if code:
+        dem.SetProjection(system(code).ExportToWkt())
+    if nodata is not None:
+        dem.GetRasterBand(1).SetNoDataValue(nodata)
+    dem.GetRasterBand(1).WriteArray(z)
+    dem.FlushCache()
+
+
+def write_features(path, layer_name, shapes, fields=()):
+    """shapes: (WKT, values of the fields)."""
+    file = ogr.GetDriverByName("GPKG").CreateDataSource(path)
+    layer = file.CreateLayer(layer_name, system(2056), ogr.wkbUnknown)
+    for name, kind in fields:
+        layer.CreateField(ogr.FieldDefn(name, kind))
+    for wkt, values in shapes:
+        feature = ogr.Feature(layer.GetLayerDefn())
+        feature.SetGeometry(ogr.CreateGeometryFromWkt(wkt))
+        for i, value in enumerate(values):
+            feature.SetField(i, value)
+        layer.CreateFeature(feature)
+    file = None
+
+
+def box(x, y, width, height):
+    """A rectangle as WKT, metres from the lower left corner of the standard DEM."""
+    left, low = WEST + x, NORTH - 300.0 + y
+    right, high = left + width, low + height
+    return f"POLYGON (({left} {low},{right} {low},{right} {high},{left} {high},{left} {low}))"
+
+
+def rows_of(path, layer_name):
+    file = ogr.Open(path)
+    layer = file.GetLayerByName(layer_name)
+    return [(f.items(), f.GetGeometryRef().Clone()) for f in layer]
+
+
+def bands_of(path):
+    return gdal.Open(path).ReadAsArray()
+
+
+class Case(unittest.TestCase):
+    """A fresh folder with dem.tif and sources.gpkg for every test."""
+
+    def setUp(self):
+        self.folder = tempfile.mkdtemp(prefix="talus-test-")
+        self.addCleanup(shutil.rmtree, self.folder, True)
+        write_dem(self.path("dem.tif"), heights())
+        write_features(self.path("sources.gpkg"), "sources", [(box(140, 230, 20, 10), ["cliff, east"])],
+                       [("name", ogr.OFTString)])
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def record(self, out="out"):
+        with open(self.path(out + "/run.json"), encoding="utf-8") as file:
+            return json.load(file)
+
+    def write(self, name, text):
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text)
+        return self.path(name)
+
+    def arguments(self, out="out", diameter="0.8", trajectories="50"):
+        return ["run", "--dem", self.path("dem.tif"), "--sources", self.path("sources.gpkg"), "--diameter", diameter,
+                "--trajectories", trajectories, "-o", self.path(out)]
+
+    def call(self, *arguments, **options):
+        return subprocess.run([TALUS, *arguments], capture_output=True, text=True, timeout=120, check=False, **options)
+
+    def run_well(self, *arguments):
+        done = self.call(*arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def fails(self, code, *words, arguments, **options):
+        """The program ends with `code` and one line on stderr that holds the words; nothing on stdout."""
+        done = self.call(*arguments, **options)
+        self.assertEqual(done.returncode, code, done.stderr)
+        errors = [line for line in done.stderr.splitlines() if not line.startswith("talus: warning: ")]
+        self.assertEqual(len(errors), 1, done.stderr)
+        self.assertTrue(errors[0].startswith("talus: error: "), errors)
+        for word in words:
+            self.assertIn(word, errors[0])
+        self.assertEqual(done.stdout, "")
+
+    def assert_nothing_left(self, before):
+        self.assertEqual(sorted(os.listdir(self.folder)), sorted(before))

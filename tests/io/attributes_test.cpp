@@ -1,0 +1,119 @@
+#include <cmath>
+
+#include "files.hpp"
+#include "talus/io/vectors.hpp"
+
+namespace talus::io::test {
+
+using Fields = std::vector<std::pair<std::string, OGRFieldType>>;
+
+class Attributes : public Files {
+ protected:
+  Attributes() : terrain_(read_terrain(RasterFile{}.write(path("dem.tif")))) {}
+
+  SourceLayer read(const Fields& fields, const std::vector<std::vector<std::string>>& values) {
+    std::vector<Row> rows;
+    for (const auto& row : values) rows.push_back({"POINT(5 5)", row});
+    return read_sources(write_vector(path("s.gpkg"), "EPSG:32632", fields, rows), terrain_, Range{0.5, 2.0});
+  }
+
+  Terrain terrain_;
+};
+
+TEST_F(Attributes, AreReadWhateverTheirCase) {
+  const SourceLayer layer = read({{"Name", OFTString},
+                                  {"FREQUENCY", OFTReal},
+                                  {"Diameter", OFTInteger},
+                                  {"height", OFTReal},
+                                  {"vx", OFTReal},
+                                  {"VY", OFTReal},
+                                  {"vz", OFTInteger64}},
+                                 {{"north face", "0.25", "2", "12.5", "1.5", "-2.5", "3"}});
+  const SourceFeature& f = layer.features[0];
+  EXPECT_EQ(f.name, "north face");
+  EXPECT_DOUBLE_EQ(f.frequency, 0.25);
+  EXPECT_EQ(f.diameter, (Range{2.0, 2.0}));
+  EXPECT_EQ(f.release_height, (Range{12.5, 12.5}));
+  EXPECT_EQ(f.velocity, Vec3(1.5, -2.5, 3.0));
+}
+
+TEST_F(Attributes, NullIsNotGiven) {
+  const SourceLayer layer =
+      read({{"frequency", OFTReal},
+            {"diameter", OFTReal},
+            {"diameter_min", OFTReal},
+            {"diameter_max", OFTReal},
+            {"height", OFTReal},
+            {"vx", OFTReal}},
+           {{"NULL", "NULL", "NULL", "NULL", "NULL", "NULL"}, {"NULL", "NULL", "0.5", "1.5", "NULL", "NULL"}});
+  EXPECT_TRUE(std::isnan(layer.features[0].frequency));
+  EXPECT_TRUE(std::isnan(layer.features[0].diameter.low));
+  EXPECT_EQ(layer.features[0].release_height, (Range{0.5, 2.0}));
+  EXPECT_EQ(layer.features[0].velocity, Vec3(0, 0, 0));
+  EXPECT_EQ(layer.features[1].diameter, (Range{0.5, 1.5}));
+}
+
+TEST_F(Attributes, AreRecorded) {
+  const SourceLayer layer = read({{"diameter", OFTReal}}, {{"0.5"}, {"NULL"}, {"2"}});
+  ASSERT_EQ(layer.attributes.size(), 1U);
+  EXPECT_EQ(layer.attributes[0].key, "sources.attributes.diameter");
+  EXPECT_EQ(layer.attributes[0].value, "0.5 to 2 (2 of 3 features)");
+  EXPECT_EQ(layer.attributes[0].unit, "m");
+  EXPECT_EQ(layer.attributes[0].source, "attribute diameter of s.gpkg");
+}
+
+TEST_F(Attributes, OutOfBoundsNamesFeatureFieldValueAndBounds) {
+  expect_input_error(
+      [&] {
+        read({{"diameter", OFTReal}}, {{"1"}, {"0"}});
+      },
+      {"s.gpkg: feature 2", "diameter = 0", "0.01 to 50 m", "NULL"});
+  expect_input_error(
+      [&] {
+        read({{"frequency", OFTReal}}, {{"-1"}});
+      },
+      {"feature 1", "frequency = -1", "0 to 1000000 1/year"});
+  expect_input_error([&] { read({{"height", OFTReal}}, {{"600"}}); }, {"feature 1", "height = 600", "0 to 500 m"});
+  expect_input_error([&] { read({{"vz", OFTReal}}, {{"-201"}}); }, {"feature 1", "vz = -201", "-200 to 200 m/s"});
+  expect_input_error(
+      [&] {
+        read({{"vx", OFTReal}, {"vy", OFTReal}}, {{"150", "150"}});
+      },
+      {"feature 1", "212.", "at most 200 m/s"});
+}
+
+TEST_F(Attributes, DiametersMustAgree) {
+  const Fields fields{{"diameter", OFTReal}, {"diameter_min", OFTReal}, {"diameter_max", OFTReal}};
+  expect_input_error([&] { read(fields, {{"1", "0.5", "1.5"}}); }, {"feature 1", "diameter = 1", "must be either"});
+  expect_input_error([&] { read(fields, {{"NULL", "0.5", "NULL"}}); }, {"diameter_min = 0.5 without diameter_max"});
+  expect_input_error([&] { read(fields, {{"NULL", "NULL", "0.5"}}); }, {"diameter_max = 0.5 without diameter_min"});
+  expect_input_error([&] { read(fields, {{"NULL", "2", "1"}}); }, {"diameter_min = 2 is larger than diameter_max = 1"});
+}
+
+TEST_F(Attributes, AShapefileWithATextForANumberIsRefused) {
+  const std::string file =
+      write_vector(path("s.shp"), "EPSG:32632", {{"diameter", OFTString}}, {{"POINT(5 5)", {"1,2"}}}, wkbPoint);
+  expect_input_error(
+      [&] {
+        read_sources(file, terrain_, {1, 1});
+      },
+      {"s.shp: feature 0", "diameter = '1,2'", "String", "must be a number field in m"});
+}
+
+TEST_F(Attributes, ATextFieldWithoutTextIsNotGiven) {
+  EXPECT_TRUE(std::isnan(read({{"diameter", OFTString}}, {{"NULL"}, {""}}).features[0].diameter.low));
+}
+
+TEST_F(Attributes, ACsvHasItsTypesGuessed) {
+  const std::string file = write_text("s.csv",
+                                      "id,wkt,diameter,vx,height\n1,POINT (600005 5200005),1.5,,3\n2,\"LINESTRING "
+                                      "(600001 5200001, 600012 5200001)\",,,\n");
+  const SourceLayer layer = read_sources(file, terrain_, {1, 1});
+  EXPECT_EQ(layer.cells.size(), 3U);
+  EXPECT_EQ(layer.features[0].diameter, (Range{1.5, 1.5}));
+  EXPECT_EQ(layer.features[0].release_height, (Range{3, 3}));
+  EXPECT_TRUE(std::isnan(layer.features[1].diameter.low));
+  EXPECT_TRUE(layer.warnings.empty());
+}
+
+}  // namespace talus::io::test

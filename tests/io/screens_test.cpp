@@ -1,0 +1,70 @@
+#include "files.hpp"
+#include "talus/io/vectors.hpp"
+
+namespace talus::io::test {
+
+class Screens : public Files {
+ protected:
+  Screens() : terrain_(read_terrain(RasterFile{}.write(path("dem.tif")))) {}
+  ScreenLayer read(const std::vector<std::pair<std::string, OGRFieldType>>& fields, const std::vector<Row>& rows) {
+    return read_screens(write_vector(path("s.gpkg"), "EPSG:32632", fields, rows), terrain_);
+  }
+  Terrain terrain_;
+};
+
+TEST_F(Screens, LinesWithTheirIds) {
+  const ScreenLayer layer = read({{"ID", OFTString}}, {{"LINESTRING(10 20,30 40,50 40)", {"road"}},
+                                                       {"MULTILINESTRING((1 1,2 2),(3 3,4 5))", {"net"}}});
+  ASSERT_EQ(layer.screens.size(), 2U);
+  EXPECT_EQ(layer.screens[0].id, "road");
+  ASSERT_EQ(layer.screens[0].lines.size(), 1U);
+  ASSERT_EQ(layer.screens[0].lines[0].size(), 3U);
+  EXPECT_NEAR(layer.screens[0].lines[0][1].x(), 30.0, 1e-9);
+  EXPECT_NEAR(layer.screens[0].lines[0][1].y(), 40.0, 1e-9);
+  EXPECT_EQ(layer.screens[1].lines.size(), 2U);
+  EXPECT_TRUE(layer.warnings.empty());
+}
+
+TEST_F(Screens, WithoutIdTheNumberOfTheFeature) {
+  EXPECT_EQ(read({}, {{"LINESTRING(1 1,2 2)"}}).screens[0].id, "1");
+  EXPECT_EQ(
+      read({{"id", OFTInteger}}, {{"LINESTRING(1 1,2 2)", {"7"}}, {"LINESTRING(1 1,2 2)", {"NULL"}}}).screens[1].id,
+      "2");
+}
+
+TEST_F(Screens, FeaturesOfTheSameIdAreOneScreen) {
+  const ScreenLayer layer =
+      read({{"id", OFTInteger}},
+           {{"LINESTRING(1 1,2 2)", {"7"}}, {"LINESTRING(1 1,2 2)", {"8"}}, {"LINESTRING(3 3,2 2)", {"7"}}});
+  ASSERT_EQ(layer.screens.size(), 2U);
+  EXPECT_EQ(layer.screens[0].lines.size(), 2U);
+}
+
+TEST_F(Screens, ACsvIsInTheSystemOfTheDem) {
+  const std::string file =
+      write_text("s.csv", "id,wkt\nS1,\"LINESTRING (600004.00 5200010.00, 600096.00 5200012.50)\"\n");
+  const ScreenLayer layer = read_screens(file, terrain_);
+  ASSERT_EQ(layer.screens.size(), 1U);
+  EXPECT_EQ(layer.screens[0].id, "S1");
+  EXPECT_NEAR(layer.screens[0].lines[0][1].x(), 96.0, 1e-9);
+  EXPECT_NEAR(layer.screens[0].lines[0][1].y(), 12.5, 1e-9);
+  EXPECT_TRUE(layer.warnings.empty());
+}
+
+TEST_F(Screens, OtherGeometriesAreRefused) {
+  expect_input_error([&] { read({}, {{"POLYGON((0 0,1 0,1 1,0 0))"}}); }, {"s.gpkg: feature 1", "is no line"});
+  expect_input_error([&] { read({}, {{""}}); }, {"s.gpkg: feature 1", "has no geometry"});
+  expect_input_error([&] { read({}, {{"LINESTRING(1 1,1 1)"}}); }, {"s.gpkg: feature 1", "no length"});
+  expect_input_error([&] { read({}, {}); }, {"s.gpkg", "no features"});
+  expect_input_error(
+      [&] {
+        read({{"id", OFTReal}}, {{"LINESTRING(1 1,2 2)", {"7.5"}}});
+      },
+      {"s.gpkg: feature 1", "field id = 7.5", "text or a whole number"});
+}
+
+TEST_F(Screens, OffTheMapIsWarnedOf) {
+  EXPECT_TRUE(said(read({}, {{"LINESTRING(500 1,500 2)"}}).warnings, "which nothing will cross: features 1"));
+}
+
+}  // namespace talus::io::test

@@ -1,0 +1,40 @@
+#include "sha256.hpp"
+
+#include "files.hpp"
+
+namespace talus::io::test {
+
+std::string sum(const std::string& text) {
+  Sha256 s;
+  s.add(text);
+  return s.digits();
+}
+
+// FIPS 180-4 examples (NIST CSRC, "SHA256.pdf" and "SHA2_Additional.pdf").
+TEST(Sha256Sum, KnownAnswers) {
+  EXPECT_EQ(sum(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sum("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sum("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(sum(std::string(1000000, 'a')), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST(Sha256Sum, DoesNotDependOnThePieces) {
+  for (const std::size_t length : {55U, 56U, 63U, 64U, 65U, 119U, 120U, 128U}) {
+    const std::string text(length, 'x');
+    Sha256 s;
+    for (const char c : text) s.add({&c, 1});
+    EXPECT_EQ(s.digits(), sum(text)) << length;
+  }
+}
+
+using Sha256Files = Files;
+
+TEST_F(Sha256Files, AShapefileIsItsPartsOneAfterTheOther) {
+  for (const char* part : {"shp", "dbf", "shx", "prj"}) write_text(std::string("a.") + part, part);
+  EXPECT_EQ(sha256_of_file(path("a.shp")), sum("shpdbfshxprj"));
+  EXPECT_EQ(sha256_of_file(write_text("b.csv", "abc")), sum("abc"));
+  EXPECT_EQ(sha256_of_file(path("nothing")), "");
+}
+
+}  // namespace talus::io::test

@@ -1,0 +1,275 @@
+// What the writers leave in files: read back with GDAL, compared with what was given.
+#include <cpl_minixml.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "dataset.hpp"
+#include "point_index.hpp"
+#include "talus/base/error.hpp"
+#include "talus/io/output_folder.hpp"
+#include "talus/io/run_record.hpp"
+#include "talus/io/style.hpp"
+#include "talus/io/write_crossings.hpp"
+#include "talus/io/write_rasters.hpp"
+
+namespace talus::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of its own for each test.
+class Write : public testing::Test {
+ protected:
+  void SetUp() override {
+    const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / ("talus-" + std::string(test->name()) + "-" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string text_of_file(const fs::path& path) const {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+
+  static OGRSpatialReference system() {
+    OGRSpatialReference lv95;
+    lv95.importFromEPSG(2056);
+    return lv95;
+  }
+
+  MapTarget target(int columns, int rows) const {
+    const OGRSpatialReference lv95 = system();
+    return {folder_, {wkt_of(&lv95), 2600000.0, 1200000.0, 2.0, 3.0}, columns, rows, {}};
+  }
+
+  fs::path folder_;
+};
+
+constexpr int kColumns = 1101, kRows = 703;  // two overviews, and edges that are not whole blocks
+
+/// A value that tells where it is, from the south-west; nothing in a corner.
+double value_at(int column, int row, std::size_t band) {
+  if (column < 40 && row < 40) return std::nan("");
+  return (column * 31 + row * 17) % 1009 + 2000.0 * static_cast<double>(band);
+}
+
+Map map_of(Map::Kind kind, std::vector<Map::Band> bands) {
+  const std::size_t count = bands.size();
+  return {"energy", "A test", kind, std::move(bands), [count](int row, std::span<double> values) {
+            for (std::size_t b = 0; b < count; ++b)
+              for (int c = 0; c < kColumns; ++c)
+                values[b * kColumns + static_cast<std::size_t>(c)] = value_at(c, row, b);
+          }};
+}
+
+std::vector<float> read(GDALRasterBand* band) {
+  std::vector<float> values(static_cast<std::size_t>(band->GetXSize()) * static_cast<std::size_t>(band->GetYSize()));
+  EXPECT_EQ(band->RasterIO(GF_Read, 0, 0, band->GetXSize(), band->GetYSize(), values.data(), band->GetXSize(),
+                           band->GetYSize(), GDT_Float32, 0, 0, nullptr),
+            CE_None);
+  return values;
+}
+
+TEST_F(Write, RasterIsACogOfTheRightPlaceAndValues) {
+  const Map map = map_of(Map::Kind::Quantity, {{"mean", "kJ"}, {"P95", "kJ"}});
+  ASSERT_TRUE(write_map(map, target(kColumns, kRows)));
+  const Dataset file = open_dataset((folder_ / "energy.tif").string(), GDAL_OF_RASTER);
+  EXPECT_STREQ(file->GetMetadataItem("LAYOUT", "IMAGE_STRUCTURE"), "COG");
+  EXPECT_STREQ(file->GetMetadataItem("COMPRESSION", "IMAGE_STRUCTURE"), "DEFLATE");
+  EXPECT_STREQ(file->GetMetadataItem("AREA_OR_POINT"), "Area");
+  EXPECT_STREQ(file->GetMetadataItem("TITLE"), "A test");
+  double transform[6];
+  ASSERT_EQ(file->GetGeoTransform(transform), CE_None);
+  EXPECT_EQ(std::vector<double>(transform, transform + 6), (std::vector<double>{2600000.0, 2.0, 0.0, 1200000.0, 0.0, -3.0}));
+  const OGRSpatialReference lv95 = system();
+  EXPECT_TRUE(file->GetSpatialRef()->IsSame(&lv95));
+  ASSERT_EQ(file->GetRasterCount(), 2);
+  for (int b = 0; b < 2; ++b) {
+    GDALRasterBand* band = file->GetRasterBand(b + 1);
+    EXPECT_EQ(band->GetRasterDataType(), GDT_Float32);
+    EXPECT_EQ(band->GetNoDataValue(), -9999.0);
+    EXPECT_STREQ(band->GetDescription(), b == 0 ? "mean" : "P95");
+    EXPECT_STREQ(band->GetUnitType(), "kJ");
+    const std::vector<float> values = read(band);
+    for (int row = 0; row < kRows; ++row)
+      for (int c = 0; c < kColumns; ++c) {
+        const double given = value_at(c, kRows - 1 - row, static_cast<std::size_t>(b));  // the file begins in the north
+        ASSERT_EQ(values[static_cast<std::size_t>(row * kColumns + c)], std::isnan(given) ? -9999.0 : given) << c << ' ' << row;
+      }
+  }
+}
+
+TEST_F(Write, OverviewsKeepTheLargestValue) {
+  for (const Map::Kind kind : {Map::Kind::Quantity, Map::Kind::Count}) {
+    ASSERT_TRUE(write_map(map_of(kind, {{"a", "1"}, {"b", "1"}}), target(kColumns, kRows)));
+    const Dataset file = open_dataset((folder_ / "energy.tif").string(), GDAL_OF_RASTER);
+    GDALRasterBand* band = file->GetRasterBand(2);
+    const auto nodata = static_cast<float>(band->GetNoDataValue());
+    ASSERT_EQ(band->GetOverviewCount(), 2);
+    for (int level = 0; level < 2; ++level) {
+      GDALRasterBand* overview = band->GetOverview(level);
+      const int factor = 2 << level, width = (kColumns + factor - 1) / factor, height = (kRows + factor - 1) / factor;
+      ASSERT_EQ(overview->GetXSize(), width);
+      ASSERT_EQ(overview->GetYSize(), height);
+      std::vector<float> expected(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), -1.0F);
+      for (int row = 0; row < kRows; ++row)
+        for (int c = 0; c < kColumns; ++c) {
+          float& largest = expected[static_cast<std::size_t>(row / factor * width + c / factor)];
+          const double value = value_at(c, kRows - 1 - row, 1);
+          if (value > largest) largest = static_cast<float>(value);
+        }
+      std::replace(expected.begin(), expected.end(), -1.0F, nodata);
+      EXPECT_EQ(read(overview), expected) << level;
+    }
+  }
+}
+
+TEST_F(Write, CountsAreUInt32) {
+  Map map = map_of(Map::Kind::Count, {{"passages", "count"}});
+  map.fill_row = [](int, std::span<double> values) {
+    std::fill(values.begin(), values.end(), std::nan(""));
+    values[0] = 0.0;
+    values[1] = 4e9;
+    values[2] = 1e15;  // more than the type holds
+  };
+  ASSERT_TRUE(write_map(map, target(5, 1)));
+  const Dataset file = open_dataset((folder_ / "energy.tif").string(), GDAL_OF_RASTER);
+  GDALRasterBand* band = file->GetRasterBand(1);
+  EXPECT_EQ(band->GetRasterDataType(), GDT_UInt32);
+  EXPECT_EQ(band->GetNoDataValue(), 4294967295.0);
+  std::vector<std::uint32_t> values(5);
+  ASSERT_EQ(band->RasterIO(GF_Read, 0, 0, 5, 1, values.data(), 5, 1, GDT_UInt32, 0, 0, nullptr), CE_None);
+  EXPECT_EQ(values, (std::vector<std::uint32_t>{0, 4000000000, 4294967294, 4294967295, 4294967295}));
+}
+
+TEST_F(Write, EqualMapsGiveEqualBytesAndNothingElse) {
+  const Map map = map_of(Map::Kind::Probability, {{"probability", "1"}});
+  ASSERT_TRUE(write_map(map, target(kColumns, kRows)));
+  const std::string first = text_of_file(folder_ / "energy.tif");
+  ASSERT_TRUE(write_map(map, target(kColumns, kRows)));
+  EXPECT_EQ(text_of_file(folder_ / "energy.tif"), first);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(Write, AnEndedMapLeavesNothing) {
+  for (const int allowed : {0, 3, 12}) {
+    MapTarget ended = target(kColumns, kRows);
+    int asked = 0;
+    ended.proceed = [&asked, allowed] { return asked++ < allowed; };
+    EXPECT_FALSE(write_map(map_of(Map::Kind::Quantity, {{"mean", "kJ"}}), ended)) << allowed;
+    EXPECT_TRUE(fs::is_empty(folder_));
+  }
+}
+
+TEST_F(Write, AFolderThatIsGoneIsAnError) {
+  MapTarget gone = target(kColumns, kRows);
+  gone.folder /= "none";
+  try {
+    write_map(map_of(Map::Kind::Quantity, {{"mean", "kJ"}}), gone);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("energy.tif: cannot be created"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(Write, StylesAreXmlWithRisingClasses) {
+  const std::vector<Map> maps{
+      {"energy", "", Map::Kind::Quantity, {{"mean", "kJ"}, {"P50", "kJ"}, {"P95", "kJ"}}, {}},
+      {"jump_height", "", Map::Kind::Quantity, {{"mean", "m"}, {"P95", "m"}}, {}},
+      {"velocity", "", Map::Kind::Quantity, {{"mean", "m/s"}}, {}},
+      {"height_exceedance", "", Map::Kind::Probability, {{"P(h > 1 m)", "1"}}, {}},
+      {"passages", "", Map::Kind::Count, {{"passages", "count"}}, {}}};
+  const std::vector<const char*> bands{"3", "2", "1", "1", "1"};
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    write_style(folder_, maps[i]);
+    CPLXMLNode* root = CPLParseXMLFile((folder_ / (maps[i].name + ".qml")).c_str());
+    ASSERT_NE(root, nullptr);
+    const CPLXMLNode* renderer = CPLGetXMLNode(root, "=qgis.pipe.rasterrenderer");
+    ASSERT_NE(renderer, nullptr);
+    EXPECT_STREQ(CPLGetXMLValue(renderer, "band", ""), bands[i]) << maps[i].name;
+    const CPLXMLNode* shader = CPLGetXMLNode(renderer, "rastershader.colorrampshader");
+    ASSERT_NE(shader, nullptr);
+    double last = -1.0;
+    for (const CPLXMLNode* item = shader->psChild; item != nullptr; item = item->psNext) {
+      if (item->eType != CXT_Element) continue;
+      const double value = std::atof(CPLGetXMLValue(item, "value", ""));
+      EXPECT_GT(value, last);
+      EXPECT_STREQ(CPLGetXMLValue(item, "alpha", ""), value == 0.0 ? "0" : "255");
+      last = value;
+    }
+    EXPECT_TRUE(std::isinf(last)) << "every value has a class";
+    CPLDestroyXMLNode(root);
+  }
+}
+
+TEST_F(Write, FolderAppearsOnlyWhenCommitted) {
+  const fs::path out = folder_ / "out";
+  {
+    const OutputFolder folder(out, false);
+    write_text(folder.temporary() / "run.json", "{}");
+  }
+  EXPECT_TRUE(fs::is_empty(folder_));
+  {
+    OutputFolder folder(out.string() + "/", false);
+    write_text(folder.temporary() / "run.json", "first");
+    EXPECT_FALSE(fs::exists(out));
+    folder.commit();
+  }
+  EXPECT_EQ(text_of_file(out / "run.json"), "first");
+  EXPECT_THROW(OutputFolder(out, false), InputError);
+  {
+    OutputFolder folder(out, true);
+    write_text(folder.temporary() / "run.json", "second");
+    EXPECT_EQ(text_of_file(out / "run.json"), "first");
+    EXPECT_THROW(folder.protect(out / "dem.tif"), InputError);
+    EXPECT_NO_THROW(folder.protect(folder_ / "dem.tif"));
+    EXPECT_NO_THROW(folder.protect(folder_ / "outer" / "dem.tif"));
+    folder.commit();
+  }
+  EXPECT_EQ(text_of_file(out / "run.json"), "second");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(Write, OnlyResultsAreReplaced) {
+  write_text(folder_ / "file", "");
+  fs::create_directory(folder_ / "mine");
+  write_text(folder_ / "mine" / "diary.txt", "");
+  EXPECT_THROW(OutputFolder(folder_ / "file", true), InputError);
+  EXPECT_THROW(OutputFolder(folder_ / "mine", true), InputError);
+  EXPECT_THROW(OutputFolder(folder_ / "none" / "out", true), InputError);
+  EXPECT_THROW(OutputFolder("", true), InputError);
+  EXPECT_THROW(OutputFolder("/", true), InputError);
+}
+
+TEST_F(Write, TextOnAFullDiskIsAnError) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP();
+  fs::create_symlink("/dev/full", folder_ / "run.json");
+  EXPECT_THROW(write_text(folder_ / "run.json", "{}"), std::runtime_error);
+  EXPECT_FALSE(fs::exists(fs::symlink_status(folder_ / "run.json")));
+}
+
+TEST(CsvField, QuotesWhereItMust) {
+  EXPECT_EQ(csv_field("road 3"), "road 3");
+  EXPECT_EQ(csv_field("a,b"), "\"a,b\"");
+  EXPECT_EQ(csv_field("a \"b\""), "\"a \"\"b\"\"\"");
+}
+
+TEST(RunRecord, LimitsAreJudgedByTheirShare) {
+  Totals totals;
+  totals.released = 10'000;
+  totals.ends[static_cast<std::size_t>(End::Limit)] = 10;  // exactly the allowed 0.1 %
+  EXPECT_FALSE(too_many_limits(totals));
+  totals.ends[static_cast<std::size_t>(End::Limit)] = 11;
+  EXPECT_TRUE(too_many_limits(totals));
+}
+
+}  // namespace
+}  // namespace talus::io

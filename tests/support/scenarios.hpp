@@ -1,0 +1,78 @@
+#pragma once
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <initializer_list>
+
+#include "scenes.hpp"
+#include "talus/simulate/scenario.hpp"
+#include "talus/simulate/tally.hpp"
+
+/// Scenarios, paths and tallies by hand for the tests of `simulate` and `products`.
+namespace talus::test {
+
+/// A scenario on a terrain: blocks of 1 m, one feature, one kind of ground, no source yet.
+inline Scenario scenario_on(Raster<float> heights) {
+  Scenario s;
+  s.surface = Surface(std::move(heights));
+  s.cover.grounds = {Ground{}};
+  s.zone_names = {"default"};
+  s.features = {SourceFeature{}};
+  s.blocks.classes = {{{1.0, 1.0}, 1.0, kNotGiven}};
+  return s;
+}
+
+/// A slope of 42 degrees with bumps that runs out on a rough plain; `sources` cells near its top. The paths bounce,
+/// slide, come back to cells, stop, and some leave the terrain.
+inline Scenario rough_slope(std::uint32_t sources, std::uint32_t trajectories) {
+  Numbers numbers(11);
+  Scenario s = scenario_on(terrain(grid_of(100, 70, 2.0, 2.0), [&](double x, double) {
+    return 200.0 - 0.9 * std::min(x, 120.0) - 0.2 * std::max(0.0, x - 120.0) + numbers.uniform(-0.3, 0.3);
+  }));
+  s.cover.grounds[0].theta_scale = 0.3;
+  s.cover.grounds[0].psi_scale = 0.3;
+  s.cover.grounds[0].En50 = 3.0;
+  s.blocks.classes = {{{0.4, 1.2}, 1.0, kNotGiven}};
+  s.features[0].release_height = {0.5, 3.0};
+  for (std::uint32_t i = 0; i < sources; ++i) s.sources.push_back({0, 7.0 + 2.0 * (i % 3), 21.0 + 6.0 * i, false});
+  s.trajectories = trajectories;
+  return s;
+}
+
+/// A stay in one cell with known values there: what `fly` would leave of a short flight at constant speed and height.
+inline Span stay(int column, int row, float speed_squared, float height, bool impact = false) {
+  return {{column, row}, 0.125F, 0.125F, 0.25F, 0.25F, height, height, 0.0F, speed_squared, 0.0F, 0.0F, impact};
+}
+
+inline Path path_of(std::initializer_list<Span> spans, End end) {
+  Path path;
+  path.spans = spans;
+  path.end = end;
+  return path;
+}
+
+/// All that is known of every cell is equal, bit for bit.
+inline void expect_same_records(const Tally& a, const Tally& b) {
+  ASSERT_EQ(a.grid(), b.grid());
+  EXPECT_EQ(a.touched_cells(), b.touched_cells());
+  const std::size_t thresholds = a.energy_thresholds().size() + a.height_thresholds().size();
+  for (int row = 0; row < a.grid().rows; ++row)
+    for (int column = 0; column < a.grid().columns; ++column) {
+      const CellRecord *left = a.find(column, row), *right = b.find(column, row);
+      ASSERT_EQ(left == nullptr, right == nullptr) << column << ' ' << row;
+      if (left == nullptr) continue;
+      ASSERT_EQ(left->passages, right->passages) << column << ' ' << row;
+      ASSERT_EQ(left->impacts, right->impacts) << column << ' ' << row;
+      ASSERT_EQ(left->deposits, right->deposits) << column << ' ' << row;
+      ASSERT_EQ(left->sources, right->sources) << column << ' ' << row;
+      ASSERT_EQ(left->sum, right->sum) << column << ' ' << row;
+      ASSERT_EQ(left->maximum, right->maximum) << column << ' ' << row;
+      for (std::size_t q = 0; q < kQuantities; ++q)
+        for (const double share : {0.0, 0.1, 0.5, 0.9, 0.95, 0.99, 1.0})
+          ASSERT_EQ(left->histogram[q].percentile(share), right->histogram[q].percentile(share));
+      for (std::size_t i = 0; i < thresholds; ++i)
+        ASSERT_EQ(a.exceedances(column, row)[i], b.exceedances(column, row)[i]) << column << ' ' << row;
+    }
+}
+
+}  // namespace talus::test

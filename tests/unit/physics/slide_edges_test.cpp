@@ -1,0 +1,157 @@
+#include <gtest/gtest.h>
+
+#include "../../support/scenes.hpp"
+#include "talus/physics/slide.hpp"
+
+namespace talus {
+namespace {
+
+using test::Numbers;
+using Vec2 = Eigen::Vector2d;
+
+const double kTan30 = 1.0 / std::sqrt(3.0);
+
+struct Result {
+  Motion motion;
+  PatchIndex at;
+  Path path;
+  SlideEnd end;
+};
+
+Result slide_from(const Surface& surface, double tan_phi, const Vec2& place, const Vec2& v, double diameter) {
+  Result o;
+  o.at = surface.patch_at(place.x(), place.y());
+  Patch patch;
+  EXPECT_TRUE(surface.read(o.at, patch));
+  const Vec2 slope = surface.gradient(patch, surface.u_of(place.x()) - o.at.column, surface.v_of(place.y()) - o.at.row);
+  o.motion.position = {place.x(), place.y(), *surface.height(place.x(), place.y())};
+  o.motion.velocity = {v.x(), v.y(), v.dot(slope)};
+  const Cover cover{{Ground{.tan_phi = tan_phi}}, {}};
+  o.end = slide(surface, cover, o.motion, o.at, diameter, 0.5, o.path);
+  return o;
+}
+
+/// z(x) with a kink at the centre of column 20 (x = 41): slope `before` west of it and `after` east of it.
+Surface kinked(double before, double after) {
+  return Surface(test::terrain(test::grid_of(60, 9, 2.0, 2.0),
+                               [&](double x, double) { return 300.0 + (x < 41.0 ? before : after) * (x - 41.0); }));
+}
+
+double pull(double tan_b, double tan_phi) {  // g (sin b - tan(phi) cos b)
+  return kGravity * (tan_b - tan_phi) / std::hypot(1.0, tan_b);
+}
+
+TEST(SlideAcrossAnEdge, TakesOffWhereTheGroundFallsAway) {
+  for (const double after : {-0.76, -1.5, -60.0}) {
+    const auto o = slide_from(kinked(-0.75, after), kTan30, {38.6, 9.3}, {3.2, 0.0}, 10.0);
+    ASSERT_EQ(o.end, SlideEnd::Takeoff);
+    EXPECT_NEAR(o.motion.position.x(), 41.0, 1e-9);
+    EXPECT_EQ(o.at, (PatchIndex{20, 4}));
+    const double speed = std::sqrt(16.0 + 2 * pull(0.75, kTan30) * 3.0);  // 2.4 m in plan are 3 m of slope
+    EXPECT_NEAR(o.motion.velocity.norm(), speed, 1e-9);
+    EXPECT_NEAR(o.motion.velocity.z(), -0.6 * speed, 1e-9);  // along the slope it comes from
+  }
+}
+
+TEST(SlideAcrossAnEdge, KeepsItsSpeedWhereTheGroundTurnsUp) {
+  for (const double after : {-0.6875, 0.0, 0.5}) {
+    const auto o = slide_from(kinked(-0.75, after), kTan30, {38.6, 9.3}, {8.0, 0.0}, 5.0);
+    ASSERT_EQ(o.end, SlideEnd::Asperity) << after;
+    const double at_edge2 = 100.0 + 2 * pull(0.75, kTan30) * 3.0;
+    EXPECT_NEAR(o.motion.velocity.norm(), std::sqrt(at_edge2 + 2 * pull(-after, kTan30) * 2.0), 1e-5);
+    EXPECT_NEAR((o.motion.position.x() - 41.0) * std::hypot(1.0, after), 2.0, 1e-4);
+    EXPECT_NEAR(o.motion.velocity.z(), after * o.motion.velocity.x(), 1e-9);
+  }
+}
+
+TEST(SlideAcrossAnEdge, OnAPlaneEdgesDoNothing) {
+  const auto o = slide_from(kinked(-0.75, -0.75), kTan30, {38.6, 9.3}, {0.0, 4.0}, 12.0);
+  EXPECT_EQ(o.end, SlideEnd::Asperity);
+  const Surface large(test::terrain(test::grid_of(4, 4, 128.0, 128.0), [](double x, double) { return 300.0 - 0.75 * x; }));
+  const auto one = slide_from(large, kTan30, {168.6, 150.3}, {0.0, 4.0}, 12.0);
+  EXPECT_LT((Vec2(o.motion.position.x() - 38.6, o.motion.position.y() - 9.3) - Vec2(one.motion.position.x() - 168.6, one.motion.position.y() - 150.3)).norm(), 0.02);
+}
+
+TEST(SlideOnATwist, TakesOffWhereTheSurfaceCurvesAwayFasterThanTheParabola) {
+  // z = 300 + k x y about (21, 21): along the direction (1, -1) it curves down by 2 k vx vy = -k v^2: beyond g it flies.
+  const double k = 0.125;
+  const Surface surface(test::terrain(test::grid_of(3, 3, 16.0, 16.0), [&](double x, double y) { return 300.0 + k * (x - 16.0) * (y - 16.0); }));
+  const double limit = std::sqrt(kGravity / (2 * k));  // of |vx| = |vy|
+  EXPECT_EQ(slide_from(surface, 0.0, {16.0, 16.0}, {1.01 * limit, -1.01 * limit}, 0.2).end, SlideEnd::Takeoff);
+  EXPECT_EQ(slide_from(surface, 0.0, {16.0, 16.0}, {0.9 * limit, -0.9 * limit}, 0.2).end, SlideEnd::Asperity);
+  EXPECT_EQ(slide_from(surface, 0.0, {16.0, 16.0}, {1.5 * limit, 1.5 * limit}, 0.2).end, SlideEnd::Asperity);  // curves up
+}
+
+TEST(SlideWithoutFriction, KeepsItsEnergyOnAnySurface) {  // v^2/2 + g z, in patches and across concave edges
+  Numbers numbers(2);
+  const Surface surface(test::terrain(test::grid_of(40, 40, 4.0, 4.0), [&](double, double) { return numbers.uniform(0, 4); }));
+  test::Moments drift;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec2 place(numbers.uniform(60, 100), numbers.uniform(60, 100)), v(numbers.uniform(-4, 4), numbers.uniform(-4, 4));
+    const auto o = slide_from(surface, 0.0, place, v, 1.0);
+    if (o.path.vertices.empty()) continue;  // flies at once
+    const Motion& start = o.path.vertices.front().motion;
+    const auto energy = [](const Motion& m) { return 0.5 * m.velocity.squaredNorm() + kGravity * m.position.z(); };
+    drift.add((energy(o.motion) - energy(start)) / (0.5 * start.velocity.squaredNorm() + kGravity));
+    ASSERT_LT(std::abs(energy(o.motion) - energy(start)), 0.02 * (0.5 * start.velocity.squaredNorm() + kGravity)) << i;
+  }
+  EXPECT_NEAR(drift.mean(), 0.0, 1e-3);
+}
+
+TEST(SlidePath, PiecesFollowEachOtherOnTheSurface) {
+  Numbers numbers(3);
+  const Surface surface(test::terrain(test::grid_of(40, 40, 4.0, 4.0), [&](double x, double) { return -0.8 * x + numbers.uniform(0, 2); }));
+  for (int i = 0; i < 500; ++i) {
+    const auto o = slide_from(surface, kTan30, {numbers.uniform(60, 100), numbers.uniform(60, 100)}, {numbers.uniform(0, 4), numbers.uniform(-3, 3)}, 2.0);
+    ASSERT_EQ(o.path.vertices.size(), o.path.spans.size());
+    for (std::size_t k = 0; k < o.path.spans.size(); ++k) {
+      const Motion& from = o.path.vertices[k].motion;
+      const Motion& to = k + 1 < o.path.spans.size() ? o.path.vertices[k + 1].motion : o.motion;
+      const Span& s = o.path.spans[k];
+      ASSERT_NEAR(from.position.z(), test::height_between_centres(surface.heights(), from.position.x(), from.position.y()), 1e-8);
+      ASSERT_GE(to.time, from.time);
+      ASSERT_NEAR(surface.x_of(s.patch.column + s.p_from), from.position.x(), 1e-4);
+      ASSERT_NEAR(surface.y_of(s.patch.row + s.q_to), to.position.y(), 1e-4);
+      ASSERT_NEAR(s.rise_from, from.velocity.norm(), 1e-4);
+      ASSERT_EQ(s.height_from + s.height_to, 0.0F);
+    }
+    ASSERT_LE(o.path.length, 2.0 * 1.01);
+  }
+}
+
+TEST(SlideInAGully, IsBounded) {  // between walls steeper than phi: from wall to wall, without end but for the bounds
+  const Surface surface(test::terrain(test::grid_of(60, 61, 2.0, 2.0), [](double x, double y) { return 300.0 - 0.125 * x + 2.0 * std::abs(y - 61.0); }));
+  for (const double start : {60.0, 61.0, 61.3, 64.0})
+    for (const Vec2& v : {Vec2(0, 0), Vec2(3, 0), Vec2(1, 4), Vec2(-2, 0.01)}) {
+      const auto o = slide_from(surface, kTan30, {50.3, start}, v, 1.0);
+      EXPECT_LE(o.path.spans.size(), 1000U);
+      EXPECT_TRUE(o.motion.position.allFinite() && o.motion.velocity.allFinite());
+      EXPECT_LE(o.path.length, 1.05);
+      EXPECT_LE(o.motion.velocity.norm(), std::hypot(v.norm() * std::sqrt(5.0), std::sqrt(2 * kGravity * 1.0)) + 0.1);
+    }
+}
+
+TEST(SlideOffTheTerrain, IsLeft) {
+  const Surface edge = kinked(-0.75, -0.75);
+  EXPECT_EQ(slide_from(edge, kTan30, {117.5, 9.3}, {8.0, 0.0}, 50.0).end, SlideEnd::Left);
+  Raster<float> heights = kinked(-0.75, -0.75).heights();
+  heights.at(22, 4) = std::numeric_limits<float>::quiet_NaN();
+  const auto o = slide_from(Surface(heights), kTan30, {38.6, 9.3}, {8.0, 0.0}, 50.0);
+  EXPECT_EQ(o.end, SlideEnd::Left);
+  EXPECT_NEAR(o.motion.position.x(), 43.0, 1e-9);
+}
+
+TEST(SlideNaN, Ends) {
+  const Surface surface = kinked(-0.75, -0.75);
+  Motion motion;
+  motion.position = {38.6, 9.3, *surface.height(38.6, 9.3)};
+  motion.velocity = {std::nan(""), 1.0, 0.0};
+  PatchIndex at = surface.patch_at(38.6, 9.3);
+  Path path;
+  const Cover cover{{Ground{}}, {}};
+  slide(surface, cover, motion, at, 1.0, 0.5, path);
+  EXPECT_LE(path.spans.size(), 1000U);
+}
+
+}  // namespace
+}  // namespace talus

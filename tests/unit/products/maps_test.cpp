@@ -1,0 +1,261 @@
+#include "talus/products/maps.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "../../support/scenarios.hpp"
+#include "talus/simulate/simulate.hpp"
+
+namespace talus {
+namespace {
+
+using test::path_of;
+using test::stay;
+
+constexpr int kColumns = 6, kRows = 4;
+
+/// Two source cells of 10 trajectories on a terrain of 6 x 4 cells; there is none at (5, 3).
+Scenario small() {
+  Scenario s = test::scenario_on(test::terrain(test::grid_of(kColumns, kRows, 1.0, 1.0), [](double, double) { return 0.0; }));
+  Raster<float> heights = s.surface.heights();
+  heights.at(5, 3) = std::numeric_limits<float>::quiet_NaN();
+  s.surface = Surface(heights);
+  s.sources.assign(2, {0, 1.5, 1.5, false});
+  s.trajectories = 10;
+  s.output.energy_thresholds = {10.0, 50.0};
+  s.output.height_thresholds = {1.5};
+  return s;
+}
+
+/// By hand, 1000 kg: source 0 sends 3 through (1, 1), one of them on to (2, 1); source 1 sends 2 through (2, 1).
+Tally by_hand(const Scenario& s) {
+  Tally tally(s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds);
+  VisitBatch batch(tally.grid());
+  batch.add(path_of({stay(1, 1, 4, 1, true)}, End::Stopped), 1000.0, 0, nullptr);                     // 2 kJ
+  batch.add(path_of({stay(1, 1, 36, 2, true)}, End::Left), 1000.0, 0, nullptr);                       // 18 kJ
+  batch.add(path_of({stay(1, 1, 64, 1.5F), stay(2, 1, 144, 3)}, End::Stopped), 1000.0, 0, nullptr);   // 32, 72 kJ
+  batch.add(path_of({stay(2, 1, 16, 0, true), stay(2, 1, 4, 1, true)}, End::Caught), 1000.0, 1, nullptr);  // 8 kJ
+  batch.add(path_of({stay(2, 1, 100, 0)}, End::Left), 1000.0, 1, nullptr);                            // 50 kJ
+  tally.add(batch);
+  return tally;
+}
+
+using Bands = std::vector<std::vector<double>>;  // [band][cell]
+
+/// A map as full bands, filled row by row.
+Bands filled(const Map& map, int columns, int rows) {
+  const auto across = static_cast<std::size_t>(columns);
+  Bands bands(map.bands.size());
+  std::vector<double> row_values(map.bands.size() * across);
+  for (int row = 0; row < rows; ++row) {
+    map.fill_row(row, row_values);
+    for (std::size_t band = 0; band < bands.size(); ++band)
+      bands[band].insert(bands[band].end(), row_values.begin() + static_cast<std::ptrdiff_t>(band * across),
+                         row_values.begin() + static_cast<std::ptrdiff_t>((band + 1) * across));
+  }
+  return bands;
+}
+
+std::map<std::string, Bands> all_maps(const Scenario& s, const Tally& tally) {
+  std::map<std::string, Bands> maps;
+  for (const Map& map : make_maps(s, tally)) maps[map.name] = filled(map, tally.grid().columns, tally.grid().rows);
+  return maps;
+}
+
+std::size_t at(int column, int row) { return static_cast<std::size_t>(row * kColumns + column); }
+
+TEST(Maps, NamesAndBandsOfTheInterface) {
+  const Scenario s = small();
+  const Tally tally = by_hand(s);
+  const std::map<std::string, std::size_t> expected{
+      {"impact_probability", 3}, {"reach_probability", 1}, {"energy_exceedance", 2}, {"height_exceedance", 1},
+      {"energy", 5}, {"velocity", 5}, {"jump_height", 5}, {"passages", 1}, {"impacts", 1}, {"deposits", 1}, {"sources", 1}};
+  std::map<std::string, std::size_t> found;
+  for (const Map& map : make_maps(s, tally)) {
+    found[map.name] = map.bands.size();
+    for (const Map::Band& band : map.bands) EXPECT_FALSE(band.name.empty() || band.unit.empty()) << map.name;
+    if (map.name == "energy") {
+      EXPECT_EQ(map.bands[2].unit, "kJ");
+    }
+    if (map.name == "energy_exceedance") {
+      EXPECT_EQ(map.bands[1].name, "P(E > 50 kJ)");
+    }
+  }
+  EXPECT_EQ(found, expected);
+}
+
+TEST(Maps, ProbabilitiesByHand) {
+  const Scenario s = small();
+  const Tally tally = by_hand(s);
+  auto maps = all_maps(s, tally);
+  EXPECT_EQ(maps["impact_probability"][0][at(1, 1)], 3.0 / 20.0);
+  EXPECT_EQ(maps["impact_probability"][0][at(2, 1)], 3.0 / 20.0);
+  EXPECT_NEAR(maps["impact_probability"][1][at(1, 1)], 0.0321, 5e-5);  // 3 of 20: 3.21 % to 37.89 % (tables)
+  EXPECT_NEAR(maps["impact_probability"][2][at(1, 1)], 0.3789, 5e-5);
+  EXPECT_EQ(maps["reach_probability"][0][at(1, 1)], 3.0 / 10.0);       // source 0 alone reaches it
+  EXPECT_EQ(maps["reach_probability"][0][at(2, 1)], 3.0 / 20.0);
+  EXPECT_EQ(maps["energy_exceedance"][0][at(1, 1)], 2.0 / 20.0);       // 18 and 32 above 10 kJ
+  EXPECT_EQ(maps["energy_exceedance"][1][at(1, 1)], 0.0);
+  EXPECT_EQ(maps["energy_exceedance"][0][at(2, 1)], 2.0 / 20.0);       // 72 and 50
+  EXPECT_EQ(maps["energy_exceedance"][1][at(2, 1)], 1.0 / 20.0);       // 50 itself is not above 50
+  EXPECT_EQ(maps["height_exceedance"][0][at(1, 1)], 1.0 / 20.0);
+  EXPECT_EQ(maps["height_exceedance"][0][at(2, 1)], 1.0 / 20.0);
+}
+
+TEST(Maps, CountsByHand) {
+  const Scenario s = small();
+  const Tally tally = by_hand(s);
+  auto maps = all_maps(s, tally);
+  EXPECT_EQ(maps["passages"][0][at(1, 1)], 3.0);
+  EXPECT_EQ(maps["passages"][0][at(2, 1)], 3.0);
+  EXPECT_EQ(maps["impacts"][0][at(1, 1)], 2.0);
+  EXPECT_EQ(maps["impacts"][0][at(2, 1)], 2.0);
+  EXPECT_EQ(maps["deposits"][0][at(1, 1)], 1.0);
+  EXPECT_EQ(maps["deposits"][0][at(2, 1)], 2.0);
+  EXPECT_EQ(maps["sources"][0][at(1, 1)], 1.0);
+  EXPECT_EQ(maps["sources"][0][at(2, 1)], 2.0);
+}
+
+TEST(Maps, QuantitiesByHand) {
+  const Scenario s = small();
+  const Tally tally = by_hand(s);
+  auto maps = all_maps(s, tally);
+  const Bands &energy = maps["energy"], &speed = maps["velocity"], &height = maps["jump_height"];
+  EXPECT_NEAR(energy[0][at(1, 1)], (2.0 + 18.0 + 32.0) / 3.0, 0x1p-11);
+  EXPECT_NEAR(energy[1][at(1, 1)], 18.0, 0.0625 * 18.0);
+  EXPECT_NEAR(energy[2][at(1, 1)], 32.0, 0.0625 * 32.0);
+  EXPECT_EQ(energy[4][at(1, 1)], 32.0);
+  EXPECT_NEAR(speed[0][at(2, 1)], (12.0 + 4.0 + 10.0) / 3.0, 0x1p-17);
+  EXPECT_EQ(speed[4][at(2, 1)], 12.0);
+  EXPECT_NEAR(height[0][at(2, 1)], (3.0 + 1.0 + 0.0) / 3.0, 0x1p-17);
+  EXPECT_EQ(height[4][at(2, 1)], 3.0);
+}
+
+TEST(Maps, NothingCrossedAndNoTerrain) {
+  const Scenario s = small();
+  const Tally tally = by_hand(s);
+  const std::set<std::string> quantities{"energy", "velocity", "jump_height"};
+  for (const auto& [name, bands] : all_maps(s, tally))
+    for (std::size_t band = 0; band < bands.size(); ++band) {
+      EXPECT_TRUE(std::isnan(bands[band][at(5, 3)])) << name << ' ' << band;
+      const double untouched = bands[band][at(4, 0)];
+      if (quantities.contains(name))
+        EXPECT_TRUE(std::isnan(untouched)) << name << ' ' << band;
+      else if (name == "impact_probability" && band == 2)
+        EXPECT_NEAR(untouched, 0.1684, 5e-5);  // 0 of 20 (tables)
+      else
+        EXPECT_EQ(untouched, 0.0) << name << ' ' << band;
+    }
+}
+
+TEST(Maps, ARowDoesNotDependOnTheOrderOfTheCalls) {
+  const Scenario s = small();
+  const Tally tally = by_hand(s);
+  for (const Map& map : make_maps(s, tally)) {
+    std::vector<double> first(map.bands.size() * kColumns), again(first.size());
+    map.fill_row(1, first);
+    map.fill_row(3, again);
+    map.fill_row(1, again);
+    for (std::size_t i = 0; i < first.size(); ++i)
+      EXPECT_TRUE(first[i] == again[i] || (std::isnan(first[i]) && std::isnan(again[i]))) << map.name << ' ' << i;
+  }
+}
+
+TEST(Maps, LawsOfASimulatedRun) {
+  const Scenario s = test::rough_slope(5, 200);
+  Tally tally(s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds);
+  const Totals totals = simulate(s, tally, {}, 2);
+  auto maps = all_maps(s, tally);
+  const Bands &probability = maps["impact_probability"], &reach = maps["reach_probability"];
+  std::size_t touched = 0;
+  for (std::size_t cell = 0; cell < probability[0].size(); ++cell) {
+    const double p = probability[0][cell];
+    ASSERT_LE(probability[1][cell], p);
+    ASSERT_GE(probability[2][cell], p);
+    ASSERT_GE(reach[0][cell], p);
+    ASSERT_LE(reach[0][cell], 1.0);
+    for (const char* name : {"energy_exceedance", "height_exceedance"}) {
+      double above = p;
+      for (const auto& band : maps[name]) {
+        ASSERT_LE(band[cell], above) << name;
+        above = band[cell];
+      }
+    }
+    if (p == 0.0) continue;
+    ++touched;
+    for (const char* name : {"energy", "velocity", "jump_height"}) {
+      const Bands& b = maps[name];
+      ASSERT_GE(b[0][cell], 0.0) << name;
+      ASSERT_LE(b[0][cell], b[4][cell]) << name;  // mean <= maximum
+      for (std::size_t band = 1; band < 4; ++band) ASSERT_LE(b[band][cell], b[band + 1][cell]) << name << ' ' << band;
+    }
+  }
+  EXPECT_EQ(touched, tally.touched_cells());
+  double deposits = 0.0;
+  for (const double d : maps["deposits"][0]) deposits += d;
+  EXPECT_EQ(deposits, static_cast<double>(totals.ends[static_cast<std::size_t>(End::Stopped)]));
+}
+
+TEST(ProbabilityBounds, PublishedTable) {  // two-sided 95 %, e.g. Geigy Scientific Tables
+  struct Row {
+    std::uint64_t hits, trials;
+    double low, high;
+  };
+  for (const Row& row : {Row{0, 10, 0.0, 0.3085}, Row{1, 10, 0.0025, 0.4450}, Row{5, 10, 0.1871, 0.8129},
+                         Row{9, 10, 0.5550, 0.9975}, Row{10, 10, 0.6915, 1.0}, Row{0, 1, 0.0, 0.975}, Row{1, 1, 0.025, 1.0}}) {
+    const Interval bounds = probability_bounds(row.hits, row.trials, 0.95);
+    EXPECT_NEAR(bounds.low, row.low, 5e-5) << row.hits << " of " << row.trials;
+    EXPECT_NEAR(bounds.high, row.high, 5e-5) << row.hits << " of " << row.trials;
+  }
+  EXPECT_EQ(probability_bounds(0, 10, 0.95).low, 0.0);
+  EXPECT_EQ(probability_bounds(10, 10, 0.95).high, 1.0);
+}
+
+double log_choose(double n, double k) { return std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0); }
+
+/// P(K = k) of n trials of probability p in (0, 1).
+double binomial(std::uint64_t k, std::uint64_t n, double p) {
+  const auto hits = static_cast<double>(k), trials = static_cast<double>(n);
+  return std::exp(log_choose(trials, hits) + hits * std::log(p) + (trials - hits) * std::log1p(-p));
+}
+
+TEST(ProbabilityBounds, TailsAreExact) {  // the definition: P(K >= k | low) = P(K <= k | high) = 2.5 %
+  for (const std::uint64_t n : {1U, 7U, 50U, 1000U})
+    for (const double share : {0.0, 0.1, 0.5, 0.8, 1.0}) {
+      const auto k = static_cast<std::uint64_t>(share * static_cast<double>(n));
+      const Interval bounds = probability_bounds(k, n, 0.95);
+      double upper = 0.0, lower = 0.0;
+      for (std::uint64_t i = k; k > 0 && i <= n; ++i) upper += binomial(i, n, bounds.low);
+      for (std::uint64_t i = 0; k < n && i <= k; ++i) lower += binomial(i, n, bounds.high);
+      EXPECT_NEAR(upper, k > 0 ? 0.025 : 0.0, 1e-9) << k << " of " << n;
+      EXPECT_NEAR(lower, k < n ? 0.025 : 0.0, 1e-9) << k << " of " << n;
+    }
+}
+
+TEST(ProbabilityBounds, CoverAtLeastAsOftenAsTheySay) {
+  for (const double confidence : {0.8, 0.95, 0.99})
+    for (const std::uint64_t n : {1U, 5U, 10U, 50U, 200U})
+      for (const double p : {0.0005, 0.01, 0.1, 0.23, 0.5, 0.77, 0.95, 0.999}) {
+        double covered = 0.0;
+        for (std::uint64_t k = 0; k <= n; ++k) {
+          const Interval bounds = probability_bounds(k, n, confidence);
+          if (bounds.low <= p && p <= bounds.high) covered += binomial(k, n, p);
+        }
+        EXPECT_GE(covered, confidence - 1e-12) << n << ' ' << p;
+      }
+}
+
+TEST(ProbabilityBounds, LargeNumbersOfTrials) {  // against the normal approximation, and the rule of three without a hit
+  const double n = 1e9, p = 1e-3, error = std::sqrt(p * (1.0 - p) / n);
+  const Interval bounds = probability_bounds(1'000'000, 1'000'000'000, 0.95);
+  EXPECT_NEAR(bounds.low, p - 1.959964 * error, 0.01 * error);
+  EXPECT_NEAR(bounds.high, p + 1.959964 * error, 0.01 * error);
+  EXPECT_NEAR(probability_bounds(0, 1'000'000'000, 0.95).high, -std::log(0.025) / n, 1e-6 * 3.69 / n);
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,175 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+#include "commands.hpp"
+#include "progress.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/io/crs.hpp"
+#include "talus/io/loaded.hpp"
+#include "talus/io/run_record.hpp"
+#include "talus/simulate/plan.hpp"
+#include "talus/simulate/tally.hpp"
+#include "talus/simulate/visits.hpp"
+
+namespace {
+
+using talus::Scenario;
+using talus::io::LoadedScenario;
+using Clock = std::chrono::steady_clock;
+
+constexpr double kSampleSeconds = 1.5;
+
+/// What a sample of the trajectories tells of all of them.
+struct Sample {
+  std::uint64_t traced = 0, touched_cells = 0;
+  double seconds = 0.0, length = 0.0;  // of one processor; in space [m]
+  std::uint64_t left = 0, limits = 0;
+};
+
+/// Traces and scores trajectories that are spread evenly over all releases (multiples of the golden ratio, modulo 1).
+Sample trace_sample(const Scenario& scenario) {
+  const talus::World world = scenario.world();
+  talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
+  talus::VisitBatch batch(scenario.surface.grid());
+  talus::Path path;
+  Sample sample;
+  const Clock::time_point start = Clock::now();
+  const std::uint64_t all = scenario.released();
+  while (sample.traced < std::min<std::uint64_t>(all, 20'000) && sample.seconds < kSampleSeconds) {
+    const double share = std::fmod(0.6180339887498949 * static_cast<double>(sample.traced), 1.0);
+    const auto release_number = std::min(all - 1, static_cast<std::uint64_t>(share * static_cast<double>(all)));
+    const talus::Release release =
+        talus::make_release(scenario, static_cast<std::uint32_t>(release_number / scenario.trajectories),
+                            static_cast<std::uint32_t>(release_number % scenario.trajectories));
+    talus::trace(world, release, path);
+    batch.add(path, release.body.mass, release.source, nullptr);
+    ++sample.traced;
+    sample.length += path.length;
+    sample.left += path.end == talus::End::Left ? 1U : 0U;
+    sample.limits += path.end == talus::End::Limit ? 1U : 0U;
+    sample.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  }
+  tally.add(batch);
+  sample.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  sample.touched_cells = tally.touched_cells();
+  return sample;
+}
+
+void line(const char* what, const std::string& text) { std::printf("%-14s%s\n", what, text.c_str()); }
+
+std::string number(double value, const char* format = "%.4g") {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string range_text(const talus::Range& range, const char* unit) {
+  const std::string low = talus::text_of(range.low);
+  return (range.low == range.high ? low : low + " to " + talus::text_of(range.high)) + " " + unit;
+}
+
+std::string list_text(const std::vector<double>& values, const char* unit) {
+  std::vector<std::string> words;
+  for (const double value : values) words.push_back(talus::text_of(value));
+  return words.empty() ? "none" : talus::joined(words) + " " + unit;
+}
+
+void print_terrain(const LoadedScenario& loaded) {
+  const talus::Raster<float>& heights = loaded.scenario.surface.heights();
+  const talus::Grid& grid = heights.grid;
+  const auto missing = static_cast<std::uint64_t>(std::ranges::count_if(heights.values, [](float z) { return std::isnan(z); }));
+  const talus::io::GeoReference& geo = loaded.geo;
+  line("terrain", count_text(static_cast<std::uint64_t>(grid.columns)) + " x " + count_text(static_cast<std::uint64_t>(grid.rows)) +
+                      " cells of " + talus::text_of(geo.cell_x) + " m x " + talus::text_of(geo.cell_y) + " m" +
+                      (missing > 0 ? ", " + count_text(missing) + " of them without a height" : ""));
+  line("extent", number(geo.west, "%.3f") + " to " + number(geo.west + grid.columns * geo.cell_x, "%.3f") + " east, " +
+                     number(geo.north - grid.rows * geo.cell_y, "%.3f") + " to " + number(geo.north, "%.3f") + " north");
+  line("system", talus::io::crs_name(geo.crs_wkt));
+}
+
+void print_zones(const Scenario& scenario) {
+  const auto& zones = scenario.cover.zones.values;
+  std::vector<std::uint64_t> cells(scenario.cover.grounds.size());
+  if (zones.empty()) cells[0] = scenario.surface.grid().cells();
+  for (const std::uint8_t zone : zones) ++cells[zone];
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::string name = i < scenario.zone_names.size() && !scenario.zone_names[i].empty() ? scenario.zone_names[i] : "default";
+    const talus::Ground& g = scenario.cover.grounds[i];
+    line(i == 0 ? "ground" : "", name + ": " + count_text(cells[i]) + " cells; theta_scale " + number(g.theta_scale) +
+                                     ", psi_scale " + number(g.psi_scale) + ", En50 " + number(g.En50) + ", Et50 " +
+                                     number(g.Et50) + ", phi " + number(std::atan(g.tan_phi) * 180.0 / talus::kPi) +
+                                     " deg, shape " + range_text({g.shape_min, g.shape_max}, ""));
+  }
+}
+
+void print_blocks(const Scenario& scenario) {
+  line("sources", count_text(scenario.features.size()) + " features, " + count_text(scenario.sources.size()) + " source cells");
+  const talus::Blocks& blocks = scenario.blocks;
+  if (blocks.power_law.volume.high > 0.0)
+    line("diameters", "power law of volume, " + range_text(blocks.power_law.volume, "m3") + ", exponent " +
+                          talus::text_of(blocks.power_law.exponent));
+  for (const talus::BlockClass& c : blocks.classes)
+    line("diameters", range_text(c.diameter, "m") + (blocks.classes.size() > 1 ? ", weight " + talus::text_of(c.weight) : ""));
+  const auto own = std::ranges::count_if(scenario.features, [](const auto& f) { return !std::isnan(f.diameter.low); });
+  if (own > 0) line("", std::to_string(own) + " features have a diameter of their own");
+  line("releases", count_text(scenario.sources.size()) + " x " + count_text(scenario.trajectories) + " = " +
+                       count_text(scenario.released()) + " trajectories, seed " + std::to_string(scenario.seed));
+  line("thresholds", "energy " + list_text(scenario.output.energy_thresholds, "kJ") + "; height " +
+                         list_text(scenario.output.height_thresholds, "m"));
+  if (!scenario.screens.empty()) line("screens", count_text(scenario.screens.size()));
+}
+
+void print_estimate(const Scenario& scenario) {
+  const double so_far = talus::io::peak_memory_mb();
+  const Sample sample = trace_sample(scenario);
+  const auto all = static_cast<double>(scenario.released()), traced = static_cast<double>(sample.traced);
+  const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
+  const double seconds = sample.seconds * all / traced;
+  // Of a touched cell: its record, a histogram of 40 bins for each quantity, its thresholds and its place in a list.
+  const double per_cell = sizeof(talus::CellRecord) + 3 * 40.0 + 16.0 +
+                          4.0 * static_cast<double>(scenario.output.energy_thresholds.size() + scenario.output.height_thresholds.size());
+  const auto megabytes = [&](double cells) { return number(std::ceil(so_far + 64.0 + cells * per_cell * 1e-6), "%.0f"); };
+  line("time", "about " + duration_text(seconds / processors) + " on " + std::to_string(processors) + " processors (" +
+                   number(sample.length / traced, "%.0f") + " m a trajectory; from a sample of " + count_text(sample.traced) + ")");
+  line("memory", "from " + megabytes(static_cast<double>(sample.touched_cells)) + " MB, if no more than the " +
+                     count_text(sample.touched_cells) + " cells of the sample are reached, to " +
+                     megabytes(static_cast<double>(scenario.surface.grid().cells())) + " MB, if all are");
+  if (sample.left * 100 > sample.traced)
+    line("warning", number(100.0 * static_cast<double>(sample.left) / traced) + " % of the sample left the DEM");
+  if (static_cast<double>(sample.limits) > talus::io::kAllowedLimitShare * traced)
+    line("warning", count_text(sample.limits) + " of the sample ended at the limit of impacts or time");
+}
+
+int check(const talus::io::RunFlags& flags) {
+  std::vector<std::string> faults;
+  try {
+    const LoadedScenario loaded = talus::io::load_scenario(flags, &faults);
+    if (faults.empty()) {
+      print_terrain(loaded);
+      print_zones(loaded.scenario);
+      print_blocks(loaded.scenario);
+      print_estimate(loaded.scenario);
+      for (const std::string& warning : loaded.warnings) line("warning", warning);
+      return 0;
+    }
+  } catch (const talus::InputError& error) {
+    if (faults.empty()) faults.emplace_back(error.what());
+  }
+  for (const std::string& fault : faults) say("error", fault);
+  return 2;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Action& action) {
+  const auto flags = std::make_shared<talus::io::RunFlags>();
+  CLI::App* command = app.add_subcommand("check", "Check a scenario and print the plan; writes nothing");
+  add_scenario_options(*command, *flags);
+  command->footer("Example:\n  talus check scenario.toml\n\nLists every fault. Traces for at most two seconds to estimate the time.");
+  command->callback([&action, flags] { action = [flags] { return check(*flags); }; });
+}

@@ -1,0 +1,35 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "talus/io/loaded.hpp"
+
+/// What the program does once the command line is understood; returns its exit code.
+using Action = std::function<int()>;
+
+/// One subcommand each: adds its options to the program and sets `action` when it is called.
+void add_run(CLI::App& app, Action& action);
+void add_check(CLI::App& app, Action& action);
+void add_presets(CLI::App& app, Action& action);
+void add_trace(CLI::App& app, Action& action);
+
+/// The options that say which scenario is meant: those of `run` and `check`.
+void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags);
+
+/// The user has ended the program (Ctrl-C, SIGTERM): exit code 130.
+struct Interrupted : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// From here on signals that end a program only set the flag that `interrupted` reads, so that no half result is left.
+void catch_signals();
+bool interrupted();
+
+/// The words that the program was called with.
+const std::vector<std::string>& command_line();
+
+/// "talus: KIND: TEXT" on stderr, in one line.
+void say(const std::string& kind, const std::string& text);

@@ -1,0 +1,78 @@
+#include "progress.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+Progress::Mode Progress::mode_of(bool quiet, bool machine) {
+  if (machine) return Mode::Machine;
+  if (quiet) return Mode::Silent;
+  return isatty(STDERR_FILENO) != 0 ? Mode::Terminal : Mode::Lines;
+}
+
+Progress::Progress(Mode mode, std::uint64_t trajectories)
+    : mode_(mode), trajectories_(static_cast<double>(trajectories)) {
+  if (mode_ == Mode::Machine) percent(0);
+}
+
+Progress::~Progress() { erase(); }
+
+bool Progress::update(double share) {
+  if (mode_ == Mode::Silent) return true;
+  if (mode_ == Mode::Machine) return percent(std::clamp(static_cast<int>(99.0 * share), 0, 99));
+  const Clock::time_point now = Clock::now();
+  const double interval = mode_ == Mode::Terminal ? 0.2 : 10.0;
+  if (std::chrono::duration<double>(now - shown_).count() < interval || !(share > 0.0)) return true;
+  shown_ = now;
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  const auto rate = static_cast<std::uint64_t>(share * trajectories_ / elapsed);
+  show(std::to_string(static_cast<int>(100.0 * share)) + " %, " + count_text(rate) + " trajectories/s, " +
+       duration_text(elapsed * (1.0 - share) / share) + " left");
+  return true;
+}
+
+void Progress::stage(const std::string& text) {
+  if (mode_ == Mode::Terminal) show(text);
+}
+
+void Progress::finish() {
+  erase();
+  if (mode_ == Mode::Machine) percent(100);
+}
+
+void Progress::show(const std::string& text) {
+  if (mode_ == Mode::Terminal) {
+    std::fprintf(stderr, "\r\033[K%s", text.c_str());
+    on_line_ = true;
+  } else {
+    std::fprintf(stderr, "talus: %s\n", text.c_str());
+  }
+  std::fflush(stderr);
+}
+
+void Progress::erase() {
+  if (on_line_) std::fputs("\r\033[K", stderr);
+  on_line_ = false;
+}
+
+bool Progress::percent(int value) {
+  if (value <= percent_) return true;
+  percent_ = value;
+  return std::fprintf(stderr, "progress %d\n", value) > 0 && std::fflush(stderr) == 0;
+}
+
+std::string duration_text(double seconds) {
+  const auto total = static_cast<std::uint64_t>(std::ceil(std::clamp(seconds, 0.0, 1e9)));
+  const std::uint64_t h = total / 3600, min = total / 60 % 60, s = total % 60;
+  if (h > 0) return std::to_string(h) + " h " + std::to_string(min) + " min";
+  if (min > 0) return std::to_string(min) + " min " + std::to_string(s) + " s";
+  return std::to_string(s) + " s";
+}
+
+std::string count_text(std::uint64_t count) {
+  std::string text = std::to_string(count);
+  for (std::size_t i = text.size(); i > 3; i -= 3) text.insert(i - 3, " ");
+  return text;
+}

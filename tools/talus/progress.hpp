@@ -1,0 +1,46 @@
+#pragma once
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+/// Tells on stderr how far a run is: one rewritten line on a terminal, else a line every ten seconds; or, for programs,
+/// `progress 42` with every whole percent.
+class Progress {
+ public:
+  enum class Mode { Silent, Terminal, Lines, Machine };
+
+  /// Of the options; otherwise what suits stderr.
+  static Mode mode_of(bool quiet, bool machine);
+
+  /// @param trajectories  of the whole run
+  Progress(Mode mode, std::uint64_t trajectories);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// @param share  done, 0..1. Returns false where nobody reads any more what was asked for (a closed pipe).
+  bool update(double share);
+
+  /// What follows the trajectories: "writing the results".
+  void stage(const std::string& text);
+
+  /// The whole run is done.
+  void finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void show(const std::string& text);
+  void erase();
+  bool percent(int value);
+
+  Mode mode_;
+  double trajectories_;
+  Clock::time_point start_ = Clock::now(), shown_ = start_;
+  int percent_ = -1;
+  bool on_line_ = false;  // something stands on the current line of the terminal
+};
+
+/// "1 h 20 min", "3 min 10 s", "12 s".
+std::string duration_text(double seconds);
+/// 1234567 as "1 234 567".
+std::string count_text(std::uint64_t count);

@@ -1,0 +1,244 @@
+#include <omp.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <exception>
+#include <memory>
+#include <optional>
+
+#include "commands.hpp"
+#include "progress.hpp"
+#include "talus/base/error.hpp"
+#include "talus/io/output_folder.hpp"
+#include "talus/io/run_record.hpp"
+#include "talus/io/style.hpp"
+#include "talus/io/write_crossings.hpp"
+#include "talus/io/write_rasters.hpp"
+#include "talus/io/write_vectors.hpp"
+#include "talus/products/maps.hpp"
+
+namespace {
+
+using talus::io::LoadedScenario;
+
+constexpr int kMapsAtOnce = 4;  // each needs room on the disk for its draft
+
+struct Options {
+  talus::io::RunFlags flags;
+  std::string out, progress;
+  int threads = 0;
+  bool overwrite = false, quiet = false;
+};
+
+/// Measures the stages of a run.
+class Stopwatch {
+ public:
+  struct Lap {
+    double cpu, wall;
+  };
+  /// Seconds since the last call.
+  Lap lap() {
+    const Lap now = read(), lap{now.cpu - last_.cpu, now.wall - last_.wall};
+    last_ = now;
+    return lap;
+  }
+
+ private:
+  static Lap read() {
+    timespec cpu{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+    return {static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec),
+            std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count()};
+  }
+  Lap last_ = read();
+};
+
+[[noreturn]] void stop_interrupted() { throw Interrupted("interrupted; nothing was written"); }
+
+/// The files that are written while the trajectories are traced.
+class Vectors {
+ public:
+  Vectors(const LoadedScenario& loaded, const std::filesystem::path& folder) : stops_(folder / "stops.gpkg", loaded) {
+    if (loaded.scenario.output.paths > 0)
+      paths_.emplace(folder / "trajectories.gpkg", loaded.geo, loaded.scenario.surface.grid());
+    if (!loaded.scenario.screens.empty()) crossings_.emplace(folder / "screens.csv", loaded.scenario, loaded.geo);
+  }
+
+  talus::Sinks sinks() {
+    talus::Sinks sinks;
+    sinks.stops = [this](std::span<const talus::StopRow> rows) { stops_.write(rows); };
+    if (paths_) sinks.paths = [this](const talus::RecordedPath& path) { paths_->write(path); };
+    if (crossings_) sinks.crossings = [this](std::span<const talus::Crossing> rows) { crossings_->write(rows); };
+    return sinks;
+  }
+
+  void finish() {
+    stops_.finish();
+    if (paths_) paths_->finish();
+    if (crossings_) crossings_->finish();
+  }
+
+ private:
+  talus::io::StopsWriter stops_;
+  std::optional<talus::io::TrajectoriesWriter> paths_;
+  std::optional<talus::io::CrossingsWriter> crossings_;
+};
+
+/// Writes all maps, several at a time. What is thrown may not leave the parallel region: the first failure is kept.
+void write_maps(const LoadedScenario& loaded, const talus::Tally& tally, const std::filesystem::path& folder, int threads) {
+  const talus::Grid& grid = loaded.scenario.surface.grid();
+  const talus::io::MapTarget target{folder, loaded.geo, grid.columns, grid.rows, [] { return !interrupted(); }};
+  const std::vector<talus::Map> maps = talus::make_maps(loaded.scenario, tally);
+  std::exception_ptr failure;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(std::min(threads, kMapsAtOnce)) default(none) \
+    shared(maps, target, folder, failure)
+  for (const talus::Map& map : maps) {
+    try {
+      if (talus::io::write_map(map, target)) talus::io::write_style(folder, map);
+    } catch (...) {
+#pragma omp critical
+      if (!failure) failure = std::current_exception();
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+  if (interrupted()) stop_interrupted();
+}
+
+/// Names of the files in a folder, in the order of the alphabet.
+std::vector<std::string> files_in(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  std::ranges::sort(names);
+  return names;
+}
+
+std::uint64_t count_of(const talus::Totals& totals, talus::End end) { return totals.ends[static_cast<std::size_t>(end)]; }
+
+std::string share_text(std::uint64_t part, std::uint64_t whole) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g %%", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
+  return text;
+}
+
+/// What a user should know of the result.
+std::vector<std::string> warnings_of(const talus::Totals& totals) {
+  const std::uint64_t left = count_of(totals, talus::End::Left);
+  if (static_cast<double>(left) <= 0.01 * static_cast<double>(totals.released)) return {};
+  return {share_text(left, totals.released) + " of the trajectories (" + count_text(left) +
+          ") left the DEM or met missing data: the maps do not show how far they go; a larger DEM would"};
+}
+
+void summarise(const talus::io::RunRecord& record, const LoadedScenario& loaded, const std::string& folder) {
+  const talus::Totals& t = record.totals;
+  say("", count_text(t.released) + " trajectories from " + count_text(loaded.scenario.sources.size()) +
+              " source cells: " + count_text(count_of(t, talus::End::Stopped)) + " stopped, " +
+              count_text(count_of(t, talus::End::Left)) + " left the map, " +
+              count_text(count_of(t, talus::End::Caught)) + " caught, " +
+              count_text(count_of(t, talus::End::Limit)) + " at a limit");
+  char seconds[96];
+  std::snprintf(seconds, sizeof seconds, "read %.1f s, simulated %.1f s, wrote %.1f s", record.wall.read,
+                record.wall.simulate, record.wall.write);
+  say("", count_text(record.touched_cells) + " cells reached; " + seconds);
+  say("", "results are in " + folder);
+}
+
+/// Traces, scores and writes everything into `folder`; fills the record.
+void simulate_and_write(const Options& options, const LoadedScenario& loaded, const std::filesystem::path& folder,
+                        Stopwatch& watch, talus::io::RunRecord& record) {
+  const talus::Scenario& scenario = loaded.scenario;
+  Progress progress(Progress::mode_of(options.quiet, options.progress == "machine"), scenario.released());
+  talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
+  Vectors vectors(loaded, folder);
+  talus::Sinks sinks = vectors.sinks();
+  sinks.progress = [&progress](double share) { return progress.update(share) && !interrupted(); };
+  record.totals = talus::simulate(scenario, tally, sinks, record.threads);
+  if (record.totals.interrupted || interrupted()) stop_interrupted();
+  const Stopwatch::Lap simulated = watch.lap();
+  record.touched_cells = tally.touched_cells();
+
+  progress.stage("writing the results");
+  vectors.finish();
+  write_maps(loaded, tally, folder, record.threads);
+  talus::io::write_text(folder / "scenario.toml", loaded.complete_toml);
+  record.files = files_in(folder);
+  const Stopwatch::Lap written = watch.lap();
+  record.cpu.simulate = simulated.cpu - record.totals.sink_cpu_seconds;
+  record.cpu.write = written.cpu + record.totals.sink_cpu_seconds;
+  record.wall.simulate = simulated.wall;
+  record.wall.write = written.wall;
+  for (const std::string& warning : warnings_of(record.totals)) record.warnings.push_back(warning);
+  talus::io::write_text(folder / "run.json", talus::io::run_json(record, loaded));
+  progress.finish();
+}
+
+/// Says what went wrong where too many trajectories ended at a limit, and how to look into it.
+int judge_limits(const talus::Totals& totals, const std::filesystem::path& folder) {
+  if (!talus::io::too_many_limits(totals)) return 0;
+  const std::uint64_t limits = count_of(totals, talus::End::Limit);
+  say("error", count_text(limits) + " of " + count_text(totals.released) + " trajectories (" +
+                   share_text(limits, totals.released) + ", allowed are 0.1 %) ended at the limit of impacts or time; " +
+                   "look at the first: talus trace " + (folder / "scenario.toml").string() + " --source " +
+                   std::to_string(totals.first_limit[0]) + " --block " + std::to_string(totals.first_limit[1]));
+  return 1;
+}
+
+int run(const Options& options) {
+  Stopwatch watch;
+  catch_signals();
+  const LoadedScenario loaded = talus::io::load_scenario(options.flags);
+  if (interrupted()) stop_interrupted();
+  talus::io::OutputFolder folder(options.out, options.overwrite);
+  for (const talus::io::InputFile& input : loaded.inputs)
+    if (input.role != "scenario") folder.protect(input.path);
+  if (!options.quiet)
+    for (const std::string& warning : loaded.warnings) say("warning", warning);
+
+  talus::io::RunRecord record;
+  record.command = command_line();
+  record.warnings = loaded.warnings;
+  record.threads = options.threads > 0 ? options.threads : omp_get_num_procs();
+  const Stopwatch::Lap read = watch.lap();
+  record.cpu.read = read.cpu;
+  record.wall.read = read.wall;
+  simulate_and_write(options, loaded, folder.temporary(), watch, record);
+  if (interrupted()) stop_interrupted();
+  folder.commit();
+
+  if (!options.quiet) {
+    for (const std::string& warning : warnings_of(record.totals)) say("warning", warning);
+    summarise(record, loaded, folder.final_path().string());
+  }
+  return judge_limits(record.totals, folder.final_path());
+}
+
+}  // namespace
+
+void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags) {
+  command.add_option("scenario", flags.scenario, "scenario file (TOML)");
+  command.add_option("--dem", flags.dem, "terrain: a raster in a projected system in metres");
+  command.add_option("--sources", flags.sources, "where blocks start: polygons, lines or points");
+  command.add_option("--preset", flags.preset, "parameter set of the ground; talus presets lists them");
+  command.add_option("--diameter", flags.diameter, "of the blocks [m]");
+  command.add_option("--trajectories", flags.trajectories, "per source cell");
+  command.add_option("--seed", flags.seed, "of the random numbers");
+}
+
+void add_run(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("run", "Simulate a scenario and write its hazard maps");
+  add_scenario_options(*command, options->flags);
+  command->add_option("-o,--out", options->out, "new folder for the results")->required();
+  command->add_flag("--overwrite", options->overwrite, "replace the folder if it holds an earlier result");
+  command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
+      ->check(CLI::Range(1, 4096));
+  command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
+  command->add_option("--progress", options->progress, "machine: lines `progress 42` for other programs")
+      ->check(CLI::IsMember({"machine"}));
+  command->footer("Examples:\n"
+                  "  talus run scenario.toml -o result\n"
+                  "  talus run --dem dem.tif --sources cliffs.gpkg --diameter 1.2 --trajectories 100 -o result\n\n"
+                  "An option given here counts more than the scenario file. OUT/scenario.toml holds all settings.");
+  command->callback([&action, options] { action = [options] { return run(*options); }; });
+}

@@ -1,0 +1,127 @@
+#include <unistd.h>
+
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "commands.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/io/loaded.hpp"
+#include "talus/io/write_vectors.hpp"
+#include "talus/simulate/plan.hpp"
+#include "talus/simulate/simulate.hpp"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Options {
+  std::string scenario, out;
+  std::uint64_t source = 0, block = 0;
+};
+
+void check_range(const char* option, std::uint64_t value, std::uint64_t count, const char* what) {
+  if (value >= count)
+    throw talus::InputError(std::string(option) + ": " + std::to_string(value) + " is not there; this scenario has " + what +
+                            " 0 to " + std::to_string(count - 1));
+}
+
+/// The end of a path as a row of stops.gpkg has it.
+talus::StopRow stop_row(const talus::Release& release, const talus::Path& path) {
+  double speed = 0.0;
+  for (const talus::Vertex& vertex : path.vertices) speed = std::max(speed, vertex.motion.velocity.norm());
+  const talus::Motion& last = path.vertices.back().motion;
+  talus::StopRow row{};
+  row.source = release.source;
+  row.block = release.block;
+  row.end = path.end;
+  row.diameter = static_cast<float>(release.body.diameter);
+  row.mass = static_cast<float>(release.body.mass);
+  row.x = last.position.x();
+  row.y = last.position.y();
+  row.z = last.position.z();
+  row.seconds = static_cast<float>(last.time);
+  row.max_speed = static_cast<float>(speed);
+  row.length = static_cast<float>(path.length);
+  row.impacts = path.impacts;
+  return row;
+}
+
+/// Every vertex in full precision: the shortest decimals that read back as the same numbers.
+void print_csv(const talus::io::LoadedScenario& loaded, const talus::Path& path) {
+  const double south = loaded.geo.north - loaded.scenario.surface.grid().rows * loaded.geo.cell_y;
+  std::puts("time,x,y,z,vx,vy,vz,wx,wy,wz,event");
+  for (const talus::Vertex& vertex : path.vertices) {
+    const talus::Motion& m = vertex.motion;
+    const std::array<double, 10> values{m.time,         loaded.geo.west + m.position.x(), south + m.position.y(), m.position.z(),
+                                        m.velocity.x(), m.velocity.y(), m.velocity.z(),   m.spin.x(), m.spin.y(), m.spin.z()};
+    std::string line;
+    for (const double value : values) line += talus::text_of(value) + ",";
+    line += vertex.event == talus::Event::End ? talus::io::name_of(path.end) : talus::io::name_of(vertex.event);
+    std::puts(line.c_str());
+  }
+}
+
+/// Removes the half-written file where something goes wrong.
+struct Temporary {
+  fs::path path;
+  ~Temporary() {
+    std::error_code ignored;
+    fs::remove(path, ignored);
+  }
+};
+
+void write_geopackage(const fs::path& out, const talus::io::LoadedScenario& loaded, const talus::Release& release,
+                      const talus::Path& path) {
+  const fs::path folder = fs::absolute(out).parent_path();
+  const Temporary temporary{folder / ("." + out.stem().string() + ".talus-" + std::to_string(getpid()) + ".gpkg")};
+  const talus::Grid& grid = loaded.scenario.surface.grid();
+  talus::io::TrajectoriesWriter writer(temporary.path, loaded.geo, grid);
+  writer.write({stop_row(release, path), talus::points_of(path, grid.cell_x)});
+  writer.write_vertices(path);
+  writer.finish();
+  fs::rename(temporary.path, out);
+}
+
+void check_out(const std::string& out) {
+  const fs::path path(out);
+  if (path.extension() != ".gpkg") throw talus::InputError(out + ": the file must end in .gpkg, for example path.gpkg");
+  if (fs::exists(path)) throw talus::InputError(out + ": the file is there already; give a new name, or remove it first");
+  if (!fs::is_directory(fs::absolute(path).parent_path()))
+    throw talus::InputError(out + ": there is no such folder for the file to go into; create it first");
+}
+
+int trace_one(const Options& options) {
+  if (!options.out.empty()) check_out(options.out);
+  talus::io::RunFlags flags;
+  flags.scenario = options.scenario;
+  const talus::io::LoadedScenario loaded = talus::io::load_scenario(flags);
+  const talus::Scenario& scenario = loaded.scenario;
+  check_range("--source", options.source, scenario.sources.size(), "sources");
+  check_range("--block", options.block, scenario.trajectories, "blocks");
+  const talus::Release release = talus::make_release(scenario, static_cast<std::uint32_t>(options.source),
+                                                     static_cast<std::uint32_t>(options.block));
+  talus::Path path;
+  talus::trace(scenario.world(), release, path);
+  if (options.out.empty())
+    print_csv(loaded, path);
+  else
+    write_geopackage(options.out, loaded, release, path);
+  return 0;
+}
+
+}  // namespace
+
+void add_trace(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("trace", "Replay one trajectory of a run, bit for bit");
+  command->add_option("scenario", options->scenario, "scenario file; every run leaves its own in OUT/scenario.toml")->required();
+  command->add_option("--source", options->source, "number of the source cell, as in stops.gpkg")->required();
+  command->add_option("--block", options->block, "number of the block, as in stops.gpkg")->required();
+  command->add_option("-o,--out", options->out, "GeoPackage to write: the path and its vertices; without it CSV is printed");
+  command->footer("Example:\n  talus trace result/scenario.toml --source 17 --block 4 -o path.gpkg");
+  command->callback([&action, options] { action = [options] { return trace_one(*options); }; });
+}
