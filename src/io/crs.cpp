@@ -163,10 +163,10 @@ std::optional<std::string> check_metric(const std::string& path, const std::stri
                      "), must be metres of a projected coordinate system" + way_out);
   if (type != PJ_TYPE_PROJECTED_CRS && type != PJ_TYPE_ENGINEERING_CRS && type != PJ_TYPE_OTHER_CRS)
     throw InputError(path + ": " + crs_name(wkt) + " is not a projected coordinate system" + way_out);
-  for (const int index : {0, 1})
-    if (const Axis axis = axis_of(context.get(), system.get(), index); !is_metre(axis))
-      throw InputError(path + ": coordinates are in '" + axis.name + "' (" + crs_name(wkt) + "), must be metres" +
-                       way_out);
+  const Axis east = axis_of(context.get(), system.get(), 0), north = axis_of(context.get(), system.get(), 1);
+  if (!is_metre(east) || !is_metre(north))
+    throw InputError(path + ": coordinates are in '" + (is_metre(east) ? north : east).name + "' (" + crs_name(wkt) +
+                     "), must be metres" + way_out);
   check_heights(context.get(), path, wkt);
 
   const double ratio = stretch(context.get(), system.get(), extent);

@@ -111,9 +111,8 @@ void GeoPackage::create_index(const std::string& layer) {
 }
 
 void GeoPackage::fail(const std::string& cause) const {
-  const std::string state = disk_state(file_.parent_path());
-  throw std::runtime_error(file_.filename().string() + ": cannot be written: " + (state.empty() ? "" : state + ": ") +
-                           cause);
+  throw std::runtime_error(file_.filename().string() + ": cannot be written: " +
+                           cause_of_failure(file_.parent_path(), cause));
 }
 
 void GeoPackage::require(bool good, GdalMessages& messages) const {

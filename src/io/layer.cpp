@@ -65,6 +65,12 @@ Feature Layer::next() {
 
 int Layer::field(const char* name) const { return fields().GetFieldIndex(name); }
 
+std::vector<std::string> Layer::field_names() const {
+  std::vector<std::string> names(fields().GetFieldCount());
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = fields().GetFieldDefn(static_cast<int>(i))->GetNameRef();
+  return names;
+}
+
 std::string Layer::label(const OGRFeature& feature) const {
   return path_ + ": feature " + std::to_string(feature.GetFID());
 }

@@ -32,6 +32,7 @@ class Layer {
 
   /// Index of a field, whatever its case; -1 where there is none.
   int field(const char* name) const;
+  std::vector<std::string> field_names() const;
   const OGRFeatureDefn& fields() const { return *layer_->GetLayerDefn(); }
   /// "cliffs.shp: feature 12", for messages.
   std::string label(const OGRFeature& feature) const;

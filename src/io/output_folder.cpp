@@ -136,10 +136,11 @@ void write_text(const fs::path& file, std::string_view text) {
   throw std::runtime_error(file.filename().string() + ": cannot be written: " + std::system_category().message(cause));
 }
 
-std::string disk_state(const fs::path& folder) {
+std::string cause_of_failure(const fs::path& folder, const std::string& messages) {
   std::error_code error;
   const fs::space_info space = fs::space(folder, error);
-  return !error && space.available < (std::uintmax_t{1} << 20) ? "the disk is full" : "";
+  if (!error && space.available < (std::uintmax_t{1} << 20U)) return "the disk is full";
+  return messages.substr(0, messages.find("; "));
 }
 
 }  // namespace talus::io

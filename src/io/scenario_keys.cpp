@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
@@ -46,9 +47,9 @@ class SpecReader {
 
   void named_file(TableReader& table, const std::string& key, NamedFile& file) {
     const auto text = table.text(key);
+    if (table.value() != nullptr && table.value()->find(key) != nullptr) given(table.full(key));
     if (!text) return;
     file = {absolute_path(*text, base_), table.where(key, *table.value()->find(key))};
-    given(table.full(key));
   }
 
   void scalar(TableReader& table, const std::string& key) {
@@ -95,6 +96,13 @@ class SpecReader {
     } else if (value->kind == Kind::List && !value->items.empty() &&
                std::any_of(value->items.begin(), value->items.end(), is_table)) {
       for (const TomlValue& item : value->items) read_class(table, item);
+      const auto& classes = spec_.values.blocks.classes;
+      const auto known =
+          std::count_if(classes.begin(), classes.end(), [](const auto& c) { return !std::isnan(c.frequency); });
+      if (known != 0 && known != std::ssize(classes))
+        table.fault("diameter", *value,
+                    "has a frequency for " + std::to_string(known) + " of " + std::to_string(classes.size()) +
+                        " classes, must have it for all or none");
     } else if (const auto range = table.range("diameter", bounds_of("blocks.diameter"))) {
       spec_.values.blocks.classes = {BlockClass{*range}};
     }
@@ -270,7 +278,7 @@ ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) 
   const std::string in = flags.scenario.empty() ? "" : flags.scenario + ": ";
   if (spec.dem.path.empty() && !spec.origins.contains("dem"))
     faults.push_back(in + "no terrain: give dem = \"FILE\" in a scenario, or --dem FILE");
-  if (spec.sources.path.empty())
+  if (spec.sources.path.empty() && !spec.origins.contains("sources.file"))
     faults.push_back(in + "no sources: give [sources] file = \"FILE\" in a scenario, or --sources FILE");
   return spec;
 }

@@ -32,8 +32,9 @@ std::string key_of(const std::string& name) {
 
 std::string list_text(const std::vector<double>& values) {
   std::vector<std::string> words;
+  words.reserve(values.size());
   for (const double value : values) words.push_back(text_of(value));
-  return "[" + joined(words) + "]";
+  return std::string("[") + joined(words) + "]";
 }
 
 std::string range_text(const Range& range) {

@@ -3,6 +3,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -24,7 +25,7 @@ void convert_table(const toml::table& table, TomlValue& value) {
   for (const auto& [key, node] : entries) {
     TomlValue member = converted(*node);
     member.line = static_cast<int>(key->source().begin.line);  // of a table reopened by another header: of its first
-    value.members.emplace_back(std::string(key->str()), std::move(member));
+    value.members.push_back({std::string(key->str()), std::move(member)});
   }
 }
 
@@ -71,7 +72,7 @@ std::string TomlValue::shown() const {
       std::vector<std::string> shown;
       for (std::size_t i = 0; i < items.size() && i < 6; ++i) shown.push_back(items[i].shown());
       if (items.size() > 6) shown.emplace_back("...");
-      return "[" + joined(shown) + "]";
+      return std::string("[") + joined(shown) + "]";
     }
     case Kind::Table:
       return "a table";
@@ -81,9 +82,11 @@ std::string TomlValue::shown() const {
 }
 
 TomlValue read_toml(const std::string& path, const std::string& name) {
+  std::error_code none;
   std::ifstream file(path, std::ios::binary);
+  if (!file.is_open() || std::filesystem::is_directory(path, none))
+    throw InputError(name + ": cannot be read, must be a scenario file (TOML)");
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file.is_open() || file.bad()) throw InputError(name + ": cannot be read, must be a scenario file (TOML)");
   try {
     return converted(toml::parse(text));
   } catch (const toml::parse_error& error) {

@@ -1,9 +1,10 @@
 #pragma once
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace talus::io {
+
+struct TomlMember;
 
 /// A value of a TOML file with its line: what the reader needs of toml++, which is slow to compile.
 struct TomlValue {
@@ -14,12 +15,17 @@ struct TomlValue {
   bool boolean = false;
   double number = 0.0;  ///< whole numbers too; beyond 2^53 rounded
   std::string text;
-  std::vector<TomlValue> items;                            ///< of a list
-  std::vector<std::pair<std::string, TomlValue>> members;  ///< of a table, in the order of the file
+  std::vector<TomlValue> items;     ///< of a list
+  std::vector<TomlMember> members;  ///< of a table, in the order of the file
 
   const TomlValue* find(const std::string& key) const;
   /// The value in short, for messages: "'abc'", "3.5", "a table".
   std::string shown() const;
+};
+
+struct TomlMember {
+  std::string key;
+  TomlValue value;
 };
 
 /// Reads a TOML file. `name` stands for it in messages.

@@ -54,10 +54,7 @@ void read_polygons(const ZoneRequest& request, const Terrain& terrain, ZoneLayer
   const int field = layer.field(name.c_str());
   out.field = name;
   if (field < 0) {
-    std::vector<std::string> known;
-    for (int i = 0; i < layer.fields().GetFieldCount(); ++i)
-      known.emplace_back(layer.fields().GetFieldDefn(i)->GetNameRef());
-    throw InputError(request.path + ": has no field '" + name + "'" + known_names(name, known) +
+    throw InputError(request.path + ": has no field '" + name + "'" + known_names(name, layer.field_names()) +
                      ": say which holds the zone by field in [ground]");
   }
   const Grid& grid = terrain.heights.grid;

@@ -14,7 +14,7 @@ constexpr std::uint32_t kMaxRedraws = 200;  // P(N1 < -1) = 0.16 each: 200 in a 
 /// Direction of the motion in plan; straight down, the dip of the slope; on flat ground, drawn at random.
 Eigen::Vector2d heading_of(const Vec3& velocity, const Vec3& normal, double turn) {
   const double plan = std::sqrt(velocity.x() * velocity.x() + velocity.y() * velocity.y());
-  if (plan > 1e-9 * std::abs(velocity.z())) return {velocity.x() / plan, velocity.y() / plan};
+  if (plan > 1e-9 * std::abs(velocity.z())) return velocity.head<2>() * (1.0 / plan);
   const double dip = std::sqrt(normal.x() * normal.x() + normal.y() * normal.y());
   if (dip > 1e-9) return {normal.x() / dip, normal.y() / dip};
   const SineCosine direction = sine_cosine_of_turn(turn);
@@ -60,7 +60,7 @@ RoughPlane rough_plane(const Vec3& normal, const Vec3& velocity, const Asperity&
   const Vec3 n1 = to_world(along, left, up);
 
   if (asperity.tan_psi != 0.0) {  // side = n1 x heading, scaled to unit length
-    const Vec3 side = to_world(0.0, up, -left) / std::sqrt(left * left + up * up);
+    const Vec3 side = to_world(0.0, up, -left) * (1.0 / std::sqrt(left * left + up * up));
     const double cos_psi = 1.0 / std::sqrt(1.0 + asperity.tan_psi * asperity.tan_psi);
     const Vec3 n2 = cos_psi * (n1 + asperity.tan_psi * side);
     if (velocity.dot(n2) < 0.0) return {n2, false};
@@ -80,8 +80,8 @@ double friction_impulse(double slip, double impulse, double tan_phi) {
 
 Rebound rebound(const Vec3& velocity, const Vec3& spin, const Vec3& n, const Restitution& k, double arm,
                 double tan_phi) {
-  const double v_n = std::max(0.0, -velocity.dot(n));
-  const Vec3 v_tan = velocity - velocity.dot(n) * n;
+  const double along_normal = velocity.dot(n), v_n = std::max(0.0, -along_normal);
+  const Vec3 v_tan = velocity - along_normal * n;
   const Vec3 w_normal = spin.dot(n) * n;
   const Vec3 w_tan = spin - w_normal;
   const Vec3 u = k.tangential * (v_tan - arm * w_tan.cross(n));

@@ -110,7 +110,7 @@ void record_piece(Path& path, const Slope& slope, const Motion& before, const Mo
   const Vec2 from = before.position.head<2>(), to = after.position.head<2>();
   path.spans.push_back({slope.at, static_cast<float>(slope.p_of(from)), static_cast<float>(slope.q_of(from)),
                         static_cast<float>(slope.p_of(to)), static_cast<float>(slope.q_of(to)), 0.0F, 0.0F, 0.0F, 0.0F,
-                        static_cast<float>(before.velocity.norm()), static_cast<float>(after.velocity.norm()), false});
+                        static_cast<float>(before.velocity.norm()), static_cast<float>(after.velocity.norm()), 0});
   path.length += (after.position - before.position).norm();
   path.plan_length += (to - from).norm();
 }

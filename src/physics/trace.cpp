@@ -55,7 +55,7 @@ class Walk {
     motion_.velocity = contact.velocity;
     motion_.spin = contact.spin;
     path_.vertices.push_back({motion_, Event::Impact});
-    path_.spans.back().impact = true;
+    path_.spans.back().impacts += 1;
     path_.impacts += 1;
     path_.psi_dropped += contact.psi_dropped ? 1U : 0U;
     const bool fast = motion_.velocity.squaredNorm() >= world_.rules.stop_speed * world_.rules.stop_speed;

@@ -43,7 +43,7 @@ constexpr void set_ground(Ground& g, double value) {
 
 constexpr auto kAbove = Bounds::AboveMin;
 
-const std::array<Field<Ground>, 7> kGround{{
+constexpr std::array<Field<Ground>, 7> kGround{{
     {{"theta_scale", "1", "longitudinal roughness", 0.0, 5.0},
      get_ground<&Ground::theta_scale>,
      set_ground<&Ground::theta_scale>},
@@ -67,7 +67,7 @@ const std::array<Field<Ground>, 7> kGround{{
      set_ground<&Ground::shape_max>},
 }};
 
-const std::array<Field<Scenario>, 9> kScenario{{
+constexpr std::array<Field<Scenario>, 9> kScenario{{
     {{"seed", "1", "of the random numbers", 0.0, 9007199254740991.0, Bounds::Closed, true},
      [](const Scenario& s) { return static_cast<double>(s.seed); },
      [](Scenario& s, double v) { s.seed = static_cast<std::uint64_t>(v); }},
@@ -135,7 +135,7 @@ std::optional<std::string> fault_of(const Bounds& b, double value) {
   if (b.ends == Bounds::Closed) text += text_of(b.min) + " to " + text_of(b.max);
   if (b.ends == Bounds::AboveMin) text += "above " + text_of(b.min) + " and at most " + text_of(b.max);
   if (b.ends == Bounds::Between) text += "above " + text_of(b.min) + " and below " + text_of(b.max);
-  if (b.unit != "1") text += " " + std::string(b.unit);
+  if (b.unit != "1") text.append(" ").append(b.unit);
   return text + " (" + std::string(b.meaning) + ")";
 }
 

@@ -92,7 +92,10 @@ void LogHistogram::cover(int low_key, int high_key) {
 
 void LogHistogram::add_key(int key) {
   const int bin = std::max(0, key - first_);
-  put(bin, get(bin) + 1);
+  if (width_ == 1 && counts_[bin] < 0xFFU)
+    ++counts_[bin];
+  else
+    put(bin, get(bin) + 1);
 }
 
 /// Turns the few values kept so far into counts, with room for the keys of a range.
@@ -119,7 +122,7 @@ void LogHistogram::add(std::span<const float> values) {
     low = std::min(low, key_of(value));
     high = std::max(high, key_of(value));
   }
-  spill(low, high);
+  if (few_count_ > 0 || low < first_ || high >= first_ + size_) spill(low, high);
   for (const float value : values) add_key(key_of(value));
 }
 

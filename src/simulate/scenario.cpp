@@ -18,9 +18,14 @@ void check(const Bounds& bounds, double value, const std::string& key) {
   if (const auto fault = fault_of(bounds, value)) refuse(key, text_of(value), *fault);
 }
 
-std::string text_of(const Range& range) {
-  return "[" + talus::text_of(range.low) + ", " + talus::text_of(range.high) + "]";
+std::string list_text(std::initializer_list<double> values) {
+  std::vector<std::string> words;
+  words.reserve(values.size());
+  for (const double value : values) words.push_back(talus::text_of(value));
+  return std::string("[") + joined(words) + "]";
 }
+
+std::string text_of(const Range& range) { return list_text({range.low, range.high}); }
 
 void check(const Bounds& bounds, const Range& range, const std::string& key) {
   check(bounds, range.low, key);
@@ -75,10 +80,7 @@ void check_blocks(const Blocks& blocks) {
                      std::to_string(blocks.classes.size()) + " classes have a frequency, must be all or none");
   for (int i = 0; i < 3; ++i) check(bounds_of("blocks.axes"), blocks.axes[i], "blocks.axes");
   if (blocks.axes[0] < blocks.axes[1] || blocks.axes[1] < blocks.axes[2])
-    refuse("blocks.axes",
-           "[" + talus::text_of(blocks.axes[0]) + ", " + talus::text_of(blocks.axes[1]) + ", " +
-               talus::text_of(blocks.axes[2]) + "]",
-           "must be L1 >= L2 >= L3");
+    refuse("blocks.axes", list_text({blocks.axes[0], blocks.axes[1], blocks.axes[2]}), "must be L1 >= L2 >= L3");
 }
 
 void check_feature(const SourceFeature& f, const std::string& where) {

@@ -63,7 +63,9 @@ class ReachOf {
 
 /// Makes one value of each trajectory's visits, its largest, and adds the counts of the group to the record.
 void gather(const Group& group, const VisitBatch& batch, Tally::Values& values, CellRecord& record, ReachOf& reach) {
-  for (std::vector<float>& list : values) list.clear();
+  const auto most = static_cast<std::size_t>(group.end - group.begin);
+  for (std::vector<float>& list : values) list.resize(most);
+  std::size_t n = 0;
   std::uint32_t source = 0;
   for (const Visit* visit = group.begin; visit != group.end;) {
     const std::uint16_t trajectory = visit->trajectory;
@@ -75,14 +77,15 @@ void gather(const Group& group, const VisitBatch& batch, Tally::Values& values, 
       record.deposits += visit->deposited;
     }
     const VisitBatch::Trajectory& of = batch.trajectories()[trajectory];
-    if (values[0].empty() || of.source != source) {
+    if (n == 0 || of.source != source) {
       source = of.source;
       record.sources += reach.first(trajectory, group.begin->cell) ? 1U : 0U;
     }
-    values[0].push_back(static_cast<float>(0.5e-3 * of.mass * speed_squared));
-    values[1].push_back(std::sqrt(speed_squared));
-    values[2].push_back(height);
+    values[0][n] = static_cast<float>(0.5e-3 * of.mass * speed_squared);
+    values[1][n] = std::sqrt(speed_squared);
+    values[2][n++] = height;
   }
+  for (std::vector<float>& list : values) list.resize(n);
 }
 
 }  // namespace
@@ -128,6 +131,7 @@ std::uint64_t Tally::add(const VisitBatch& batch) {
   std::uint64_t scored = 0;
   std::vector<std::size_t> busy;  // regions that another worker holds: taken last
   for (const auto& [index, visits] : batch.regions()) {
+    if (visits.empty()) continue;
     const std::unique_lock lock(regions_[index].mutex, std::try_to_lock);
     if (lock.owns_lock())
       scored += score(index, visits, batch);

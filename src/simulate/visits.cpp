@@ -10,6 +10,11 @@ struct Moment {
   float share, height, rise;
 };
 
+Moment moment_of(const Span& span, float share) {
+  return {share, span.height_from + share * (span.height_to - span.height_from - span.bend * (1.0F - share)),
+          span.rise_from + (span.rise_to - span.rise_from) * share};
+}
+
 /// Raises the maxima of a visit to those of a part of a span: the speed is largest at an end, the height at an end or,
 /// where it rises from the first and falls to the second, at the apex between.
 inline void raise(Visit& visit, const Span& span, const Moment& from, const Moment& to) {
@@ -27,7 +32,14 @@ inline void raise(Visit& visit, const Span& span, const Moment& from, const Mome
 VisitBatch::VisitBatch(const Grid& grid) : regions_across_((grid.columns + kRegionSide - 1) / kRegionSide) {}
 
 void VisitBatch::clear() {
-  regions_.clear();
+  for (auto region = regions_.begin(); region != regions_.end();) {
+    if (region->second.empty()) {
+      region = regions_.erase(region);  // not visited by this batch: the work has moved on
+    } else {
+      region->second.clear();  // keeps its memory for the next batch
+      ++region;
+    }
+  }
   trajectories_.clear();
   size_ = 0;
 }
@@ -38,37 +50,30 @@ void VisitBatch::add(const Path& path, double mass, std::uint32_t source, std::s
   region_ = nullptr;
   region_index_ = static_cast<std::size_t>(-1);
   for (const Span& span : path.spans) {
-    const bool east_from = span.p_from >= 0.5F, east_to = span.p_to >= 0.5F;
-    const bool north_from = span.q_from >= 0.5F, north_to = span.q_to >= 0.5F;
-    if (east_from == east_to && north_from == north_to) {  // most spans lie in one cell
-      raise(visit(span.patch.column + (east_from ? 1 : 0), span.patch.row + (north_from ? 1 : 0)), span,
-            {0.0F, span.height_from, span.rise_from}, {1.0F, span.height_to, span.rise_to});
-    } else {
-      cross(span, east_from != east_to, north_from != north_to);
+    const int east_from = span.p_from >= 0.5F, east_to = span.p_to >= 0.5F;
+    const int north_from = span.q_from >= 0.5F, north_to = span.q_to >= 0.5F;
+    const Moment start{0.0F, span.height_from, span.rise_from}, end{1.0F, span.height_to, span.rise_to};
+    Visit& first = visit(span.patch.column + east_from, span.patch.row + north_from);
+    if (east_from == east_to && north_from == north_to) {
+      raise(first, span, start, end);
+    } else {  // the way leads through the middle of the patch into another cell; across a corner, through two
+      const float p_turn = east_from == east_to ? 2.0F : (0.5F - span.p_from) / (span.p_to - span.p_from);
+      const float q_turn = north_from == north_to ? 2.0F : (0.5F - span.q_from) / (span.q_to - span.q_from);
+      Moment turn = moment_of(span, std::min(p_turn, q_turn));
+      raise(first, span, start, turn);
+      if (east_from != east_to && north_from != north_to) {
+        const bool east_first = p_turn < q_turn;
+        const Moment next = moment_of(span, std::max(p_turn, q_turn));
+        raise(visit(span.patch.column + (east_first ? east_to : east_from),
+                    span.patch.row + (east_first ? north_from : north_to)),
+              span, turn, next);
+        turn = next;
+      }
+      raise(visit(span.patch.column + east_to, span.patch.row + north_to), span, turn, end);
     }
-    if (span.impact) region_->back().impacts = (region_->back().impacts + 1U) & 0x7FFFFFFFU;
+    region_->back().impacts = (region_->back().impacts + span.impacts) & 0x7FFFFFFFU;
   }
   if (region_ != nullptr) region_->back().deposited = path.end == End::Stopped || path.end == End::Caught;
-}
-
-/// Cuts a span where it changes its cell and scores the two or three parts.
-void VisitBatch::cross(const Span& span, bool p_turns, bool q_turns) {
-  float first = 1.0F, second = 1.0F;  // shares of the way
-  if (p_turns) first = (0.5F - span.p_from) / (span.p_to - span.p_from);
-  if (q_turns) second = (0.5F - span.q_from) / (span.q_to - span.q_from);
-  if (second < first) std::swap(first, second);
-  Moment from{0.0F, span.height_from, span.rise_from};
-  for (const float share : {first, second, 1.0F}) {
-    if (share <= from.share && from.share > 0.0F) continue;
-    const float middle = 0.5F * (from.share + share);
-    const float p = span.p_from + (span.p_to - span.p_from) * middle;
-    const float q = span.q_from + (span.q_to - span.q_from) * middle;
-    const Moment to{share,
-                    span.height_from + share * (span.height_to - span.height_from - span.bend * (1.0F - share)),
-                    span.rise_from + (span.rise_to - span.rise_from) * share};
-    raise(visit(span.patch.column + (p >= 0.5F ? 1 : 0), span.patch.row + (q >= 0.5F ? 1 : 0)), span, from, to);
-    from = to;
-  }
 }
 
 Visit& VisitBatch::new_visit(int column, int row) {

@@ -9,7 +9,8 @@ namespace talus {
 namespace {
 
 // In a vertical plane (psi_scale = 0, release down the dip) 3D is 2D. This is the model of PHYSICS.md 3-5 in (x, z) on
-// z = height - tan_b x, written anew with angles; it draws the engine's asperities, so that paths can be compared point by point.
+// z = height - tan_b x, written anew with angles; it draws the engine's asperities, so that paths can be compared point
+// by point.
 
 constexpr double kTanB = 0.78125;  // 38 degrees, exact in floats
 const Ground kFirmTalus{.theta_scale = 0.7, .shape_max = 1.5};
@@ -24,7 +25,9 @@ class Recursion {
       : draws_(Random(1, 0, block, Purpose::Impact), rule), diameter_(diameter), c_(c) {}
 
   /// From a start `height` above the plane at x to the first contact.
-  State drop(double x, double height) { return {std::sqrt(2 * height / kGravity), x, 0.0, -std::sqrt(2 * height * kGravity), 0.0}; }
+  State drop(double x, double height) {
+    return {std::sqrt(2 * height / kGravity), x, 0.0, -std::sqrt(2 * height * kGravity), 0.0};
+  }
 
   State impact(State s) {
     const Asperity a = draws_.at(event_++, kFirmTalus);
@@ -84,7 +87,8 @@ int compare(double c, Roughness rule, std::uint32_t block, double turn) {
   release.block = block;
   release.body = block_of(diameter, 2700.0);
   const double start = 100.7;
-  release.motion.position = east ? Vec3(start, 3000.3, 4096.0 - kTanB * start + 2.0) : Vec3(3000.3, 8192.0 - start, 4096.0 - kTanB * start + 2.0);
+  release.motion.position = east ? Vec3(start, 3000.3, 4096.0 - kTanB * start + 2.0)
+                                 : Vec3(3000.3, 8192.0 - start, 4096.0 - kTanB * start + 2.0);
   Path path;
   trace({surface, cover, {c, rule}, {}}, release, path);
 

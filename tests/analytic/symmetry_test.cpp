@@ -34,13 +34,14 @@ struct Placement {
 
 constexpr int kCells = 121;
 constexpr double kCell = 5.0;
-const Eigen::Vector2d kMiddle(kCells * kCell / 2, kCells * kCell / 2);
+const Eigen::Vector2d kMiddle(kCells* kCell / 2, kCells* kCell / 2);
 
 /// A rough valley side of 5 m cells, and the same turned.
 Raster<float> valley() {
   Numbers numbers(21);
   return test::terrain(test::grid_of(kCells, kCells, kCell, kCell), [&](double x, double y) {
-    return 900.0 - 0.85 * x + 25.0 * std::sin(0.03 * y) + numbers.uniform(0.0, 3.0) + (x > 380.0 ? 0.6 * (x - 380.0) : 0.0);
+    return 900.0 - 0.85 * x + 25.0 * std::sin(0.03 * y) + numbers.uniform(0.0, 3.0) +
+           (x > 380.0 ? 0.6 * (x - 380.0) : 0.0);
   });
 }
 Raster<float> placed(const Raster<float>& heights, const Placement& placement) {
@@ -56,13 +57,15 @@ struct Statistics {
 };
 
 /// Places of the scene are turned into the map, and what comes out is turned back.
-std::vector<Path> trajectories(const Raster<float>& scene, const Placement& placement, std::uint64_t seed, std::uint32_t count) {
+std::vector<Path> trajectories(const Raster<float>& scene, const Placement& placement, std::uint64_t seed,
+                               std::uint32_t count) {
   const Surface surface(placed(scene, placement));
   const Cover cover{{kUpperTalus}, {}};
   std::vector<Path> paths(count);
   for (std::uint32_t block = 0; block < count; ++block) {
     // Cell centres, as sources are, unless shifted: there the patch in the north-east is the one that counts.
-    const Eigen::Vector2d source = Eigen::Vector2d(12.5 + 5.0 * (block % 8), 252.5 + 5.0 * (block / 8 % 20)) + placement.shift;
+    const Eigen::Vector2d source =
+        Eigen::Vector2d(12.5 + 5.0 * (block % 8), 252.5 + 5.0 * (block / 8 % 20)) + placement.shift;
     const Eigen::Vector2d there = kMiddle + placement.turn(source - kMiddle);
     Release release;
     release.seed = seed;
@@ -120,7 +123,8 @@ TEST(SceneSymmetry, QuarterTurnsAndMirroringChangeNoStatistic) {
   for (const bool mirrored : {false, true})
     for (int quarters = 0; quarters < 4; ++quarters) {
       const Placement placement{quarters, mirrored};
-      expect_equal(reference, statistics(trajectories(scene, placement, 2 + quarters, kBlocks), placement), mirrored ? "mirrored" : "turned");
+      expect_equal(reference, statistics(trajectories(scene, placement, 2 + quarters, kBlocks), placement),
+                   mirrored ? "mirrored" : "turned");
     }
 }
 
@@ -141,7 +145,8 @@ TEST(SceneSymmetry, AQuarterTurnTurnsEveryPath) {  // the same draws: the same p
           break;
         }
         const Motion &a = reference[block].vertices[i].motion, &b = turned[block].vertices[i].motion;
-        close = (placement.back(b.velocity.head<2>()) - a.velocity.head<2>()).norm() < 1e-6 && std::abs(a.time - b.time) < 1e-6;
+        close = (placement.back(b.velocity.head<2>()) - a.velocity.head<2>()).norm() < 1e-6 &&
+                std::abs(a.time - b.time) < 1e-6;
       }
       same += close ? 1 : 0;
     }

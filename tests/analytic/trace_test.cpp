@@ -36,7 +36,8 @@ Surface flat(double cell = 2.0, int n = 101) {
   return Surface(test::terrain(test::grid_of(n, n, cell, cell), [](double, double) { return 8.0; }));
 }
 
-TEST(BounceSeries, VerticalDropOnFlatGround) {  // v -> v E/(E + c D v^2), 2 v/g in the air, until it leaves below 0.5 m/s
+TEST(BounceSeries,
+     VerticalDropOnFlatGround) {  // v -> v E/(E + c D v^2), 2 v/g in the air, until it leaves below 0.5 m/s
   for (const double height : {2.0, 50.0})
     for (const double En50 : {5.0, 15.0}) {
       Scene scene{flat(), {{Ground{.En50 = En50}}, {}}};
@@ -46,6 +47,9 @@ TEST(BounceSeries, VerticalDropOnFlatGround) {  // v -> v E/(E + c D v^2), 2 v/g
       std::uint32_t impacts = 0;
       for (std::size_t i = 1; i + 1 < path.vertices.size(); ++i) {
         const Motion& m = path.vertices[i].motion;
+        if (impacts > 0) {
+          ASSERT_GE(v, 0.5);  // only the last one is slower
+        }
         v *= En50 / (En50 + 0.25 * 1.2 * v * v);
         ++impacts;
         ASSERT_EQ(path.vertices[i].event, Event::Impact);
@@ -91,7 +95,9 @@ TEST(BounceSeries, ThrownAlongFlatGroundWithSpin) {  // independent recursion of
 }
 
 TEST(Trap, APitWithWallsSteeperThanPhiHoldsItsBlockAndTellsSo) {
-  const Surface pit(test::terrain(test::grid_of(61, 61, 2.0, 2.0), [](double x, double y) { return 0.75 * std::max(std::abs(x - 61), std::abs(y - 61)); }));
+  const Surface pit(test::terrain(test::grid_of(61, 61, 2.0, 2.0), [](double x, double y) {
+    return 0.75 * std::max(std::abs(x - 61), std::abs(y - 61));
+  }));
   const Scene scene{pit, {{kUpperTalus}, {}}, {}, {.impact_limit = 2000}};
   int stopped = 0;
   for (std::uint32_t block = 0; block < 200; ++block) {
@@ -104,7 +110,8 @@ TEST(Trap, APitWithWallsSteeperThanPhiHoldsItsBlockAndTellsSo) {
   EXPECT_EQ(stopped, 200);
 }
 
-TEST(Trap, ABlockThatHopsOnOnePlaceIsTrappedAtTheFirstContactAfterThePatience) {  // k_n = 1: every hop takes 2 sqrt(2 h/g)
+TEST(Trap,
+     ABlockThatHopsOnOnePlaceIsTrappedAtTheFirstContactAfterThePatience) {  // k_n = 1: every hop takes 2 sqrt(2 h/g)
   Scene scene{flat(), {{Ground{.En50 = 1e300}}, {}}};
   for (const double patience : {2.0, 5.0, 11.0}) {
     scene.rules.trap_time = patience;
@@ -118,14 +125,16 @@ TEST(Trap, ABlockThatHopsOnOnePlaceIsTrappedAtTheFirstContactAfterThePatience) {
 TEST(Trap, AFoldSteeperThanPhiEndsSoon) {  // crossings of the bottom of a gully or a pit shrink without end (Zeno)
   for (const double along : {0.0, 0.25, 1.0})
     for (const Ground& ground : {Ground{}, kUpperTalus}) {
-      const Surface gully(test::terrain(test::grid_of(61, 61, 2.0, 2.0), [&](double x, double y) { return 2.0 * std::abs(y - 61) - along * x; }));
-      const Surface pit(test::terrain(test::grid_of(61, 61, 2.0, 2.0), [](double x, double y) { return 2.0 * (std::abs(x - 61) + std::abs(y - 61)); }));
+      const Surface gully(test::terrain(test::grid_of(61, 61, 2.0, 2.0),
+                                        [&](double x, double y) { return 2.0 * std::abs(y - 61) - along * x; }));
+      const Surface pit(test::terrain(test::grid_of(61, 61, 2.0, 2.0),
+                                      [](double x, double y) { return 2.0 * (std::abs(x - 61) + std::abs(y - 61)); }));
       for (const Surface& surface : {gully, pit}) {
-        const Scene scene{surface, {{ground}, {}}, {}, {.impact_limit = 300}};
+        const Scene scene{surface, {{ground}, {}}, {}, {.impact_limit = 3000}};
         for (std::uint32_t block = 0; block < 20; ++block) {
           const double x = 60.3 + 0.1 * block, y = 61.4 - 0.05 * block;
           const Path path = scene.run({x, y, *surface.height(x, y) + 3.0}, Vec3::Zero(), 1.0, block);
-          ASSERT_LT(path.vertices.size(), 3000U) << "along " << along << " block " << block;
+          ASSERT_LT(path.vertices.size(), 20'000U) << "along " << along << " block " << block;
           ASSERT_NE(path.end, End::Limit) << "along " << along << " block " << block;
         }
       }
@@ -133,7 +142,8 @@ TEST(Trap, AFoldSteeperThanPhiEndsSoon) {  // crossings of the bottom of a gully
 }
 
 TEST(Trap, AFoldThatFallsSteeperThanPhiHoldsNoBlock) {  // walls 2:1, the bottom itself at 45 degrees
-  const Surface gully(test::terrain(test::grid_of(61, 61, 2.0, 2.0), [&](double x, double y) { return 200.0 + 2.0 * std::abs(y - 61) - x; }));
+  const Surface gully(test::terrain(test::grid_of(61, 61, 2.0, 2.0),
+                                    [&](double x, double y) { return 200.0 + 2.0 * std::abs(y - 61) - x; }));
   const Scene scene{gully, {{Ground{}}, {}}, {}, {.impact_limit = 3000}};
   for (std::uint32_t block = 0; block < 20; ++block) {
     const double y = 61.4 - 0.05 * block;
@@ -157,7 +167,8 @@ TEST(Limits, AreReachedAndSaid) {
 
 TEST(Start, AtRestOnTheGround) {
   EXPECT_EQ((Scene{flat(), {{kUpperTalus}, {}}}.run({100.3, 99.1, 8.0}, Vec3::Zero()).end), End::Stopped);
-  EXPECT_EQ((Scene{flat(), {{kUpperTalus}, {}}}.run({101.0, 101.0, 7.0}, Vec3::Zero()).end), End::Stopped);  // a little below it
+  EXPECT_EQ((Scene{flat(), {{kUpperTalus}, {}}}.run({101.0, 101.0, 7.0}, Vec3::Zero()).end),
+            End::Stopped);  // a little below it
   EXPECT_EQ((Scene{flat(), {{kUpperTalus}, {}}}.run({-5.0, 99.1, 8.0}, Vec3::Zero()).end), End::Left);
 }
 
@@ -193,7 +204,7 @@ void expect_sound(const Scene& scene, const Path& path) {
     }
   }
   for (const Span& s : path.spans) {
-    span_impacts += s.impact ? 1U : 0U;
+    span_impacts += s.impacts;
     for (const float x : {s.p_from, s.q_from, s.p_to, s.q_to}) ASSERT_TRUE(x > -1e-3F && x < 1.001F);
     for (const float x : {s.height_from, s.height_to, s.bend, s.rise_from, s.rise_to}) ASSERT_TRUE(std::isfinite(x));
     ASSERT_TRUE(s.height_from >= 0.0F && s.height_to >= 0.0F);
@@ -209,16 +220,22 @@ TEST(OddScenes, EveryPathEndsAndTheEndsAddUp) {
   int released = 0;
   for (const double cell : {0.5, 2.0, 25.0})
     for (int kind = 0; kind < 5; ++kind) {
-      Raster<float> heights = test::terrain(test::grid_of(60, 50, cell, cell * (kind == 4 ? 2.0 : 1.0)), [&](double x, double y) {
-        const double u = x / cell, v = y / cell;
-        switch (kind) {
-          case 0: return 8.0;                                                                   // flat
-          case 1: return cell * numbers.uniform(0, 3);                                          // a field of spikes
-          case 2: return std::floor(u / 10.0) * 500.0;                                          // walls of 500 m
-          case 3: return cell * 2.0 * std::abs(v - 25.2) - cell * 0.2 * u;                      // a gully
-          default: return -0.8 * x + cell * numbers.uniform(0, 1);                              // a rough slope
-        }
-      });
+      Raster<float> heights =
+          test::terrain(test::grid_of(60, 50, cell, cell * (kind == 4 ? 2.0 : 1.0)), [&](double x, double y) {
+            const double u = x / cell, v = y / cell;
+            switch (kind) {
+              case 0:
+                return 8.0;  // flat
+              case 1:
+                return cell * numbers.uniform(0, 3);  // a field of spikes
+              case 2:
+                return std::floor(u / 10.0) * 500.0;  // walls of 500 m
+              case 3:
+                return cell * 2.0 * std::abs(v - 25.2) - cell * 0.2 * u;  // a gully
+              default:
+                return -0.8 * x + cell * numbers.uniform(0, 1);  // a rough slope
+            }
+          });
       if (kind == 4) heights.at(40, 20) = std::numeric_limits<float>::quiet_NaN();
       const Scene scene{Surface(heights), {{kUpperTalus}, {}}, {}, {.impact_limit = 1000}};
       for (std::uint32_t block = 0; block < 60; ++block) {
@@ -229,7 +246,8 @@ TEST(OddScenes, EveryPathEndsAndTheEndsAddUp) {
         const double z = test::height_between_centres(heights, x, y);
         if (!std::isfinite(z)) continue;
         const Vec3 velocity = block % 4 == 0 ? Vec3(Vec3::Zero()) : numbers.vector(5.0);
-        const Path path = scene.run({x, y, z + (block % 5 == 0 ? 0.0 : 2.0)}, velocity, numbers.uniform(0.2, 3.0), block);
+        const Path path =
+            scene.run({x, y, z + (block % 5 == 0 ? 0.0 : 2.0)}, velocity, numbers.uniform(0.2, 3.0), block);
         expect_sound(scene, path);
         if (HasFatalFailure()) FAIL() << "cell " << cell << " kind " << kind << " block " << block;
         ++ends[static_cast<std::size_t>(path.end)];
@@ -243,7 +261,8 @@ TEST(OddScenes, EveryPathEndsAndTheEndsAddUp) {
 }
 
 TEST(Trace, ClearsTheBufferAndGivesTheSameBits) {
-  const Surface slope(test::terrain(test::grid_of(200, 60, 2.0, 2.0), [](double x, double) { return 300.0 - 0.75 * x; }));
+  const Surface slope(
+      test::terrain(test::grid_of(200, 60, 2.0, 2.0), [](double x, double) { return 300.0 - 0.75 * x; }));
   const Scene scene{slope, {{kUpperTalus}, {}}};
   const Path one = scene.run({20.3, 60.1, 290.0}, Vec3::Zero(), 1.0, 3);
   Path two = scene.run({20.3, 60.1, 290.0}, Vec3::Zero(), 1.0, 4);
@@ -253,7 +272,8 @@ TEST(Trace, ClearsTheBufferAndGivesTheSameBits) {
   release.motion.position = {20.3, 60.1, 290.0};
   trace({scene.surface, scene.cover, scene.impact, scene.rules}, release, two);
   ASSERT_EQ(one.vertices.size(), two.vertices.size());
-  for (std::size_t i = 0; i < one.vertices.size(); ++i) EXPECT_EQ(one.vertices[i].motion.position, two.vertices[i].motion.position);
+  for (std::size_t i = 0; i < one.vertices.size(); ++i)
+    EXPECT_EQ(one.vertices[i].motion.position, two.vertices[i].motion.position);
   EXPECT_EQ(one.length, two.length);
   EXPECT_EQ(one.impacts, two.impacts);
 }

@@ -9,6 +9,7 @@ import unittest
 
 import numpy as np
 from osgeo import ogr
+from osgeo_utils.samples.validate_cloud_optimized_geotiff import validate
 
 from support import NORTH, TALUS, WEST, Case, bands_of, box, rows_of, write_features
 
@@ -89,6 +90,14 @@ class Results(Case):
             layer.SetSpatialFilterRect(low[0], low[1], low[0] + size, low[1] + size)
             inside = [p for p in stops if 0 <= p.GetX() - low[0] <= size and 0 <= p.GetY() - low[1] <= size]
             self.assertEqual(sum(1 for _ in layer), len(inside))
+
+    def test_rasters_are_cloud_optimized_and_have_styles(self):
+        self.run_well(*self.arguments())
+        names = [name for name in os.listdir(self.path("out")) if name.endswith(".tif")]
+        for name in names:
+            _, errors, _ = validate(self.path("out/" + name), full_check=True)
+            self.assertEqual(errors, [])
+            self.assertTrue(os.path.exists(self.path("out/" + name.replace(".tif", ".qml"))))
 
     def test_record(self):
         self.run_well(*self.arguments())

@@ -168,6 +168,8 @@ TEST_F(ScenarioFile, WrongTypesAndBounds) {
   refused(files + "[ground]\ndefault = \"talus-3d\"\n",
           {"ground.default = 'talus-3d': unknown preset 'talus-3d'", "upper-talus-3d"});
   refused(files + "[ground.zones.1]\n", {"[ground.zones] without file"});
+  refused(files + "[blocks]\ndiameter = [{ diameter = 1, frequency = 1 }, { diameter = 2 }]\n",
+          {"scenario.toml:5: blocks.diameter", "a frequency for 1 of 2 classes, must have it for all or none"});
   refused("sources = 5\ndem = \"dem.tif\"\n", {"sources = 5: must be a table, [sources]"});
 }
 
@@ -187,6 +189,8 @@ TEST_F(ScenarioFile, WhatIsNoTomlIsRefusedWithItsLine) {
   refused("dem = \"dem.tif\"\nseed = = 1\n", {"scenario.toml:2: is no valid TOML"});
   refused("seed = 1\nseed = 2\n", {"scenario.toml:2: is no valid TOML"});
   RunFlags flags;
+  flags.scenario = path("");
+  expect_input_error([&] { load_scenario(flags); }, {"cannot be read"});
   flags.scenario = path("nothing.toml");
   expect_input_error([&] { load_scenario(flags); }, {"nothing.toml", "cannot be read"});
 }

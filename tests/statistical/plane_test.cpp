@@ -9,16 +9,18 @@
 namespace talus {
 namespace {
 
-// PHYSICS.md 9: a plane of 38 degrees, psi 0, Table 1 preset, D ~ U(1.0, 1.4) m, released at rest 2 m above the ground; the state "where the
-// flight crosses the level 140 m below the release point's ground". Read as: over the contour line of the plane on which
-// the GROUND is 140 m lower than under the release; the jump is the vertical clearance there. (Reading it as the block itself
-// at that height moves the line by the clearance and the numbers by less than 1 %.)
+// PHYSICS.md 9: a plane of 38 degrees, psi 0, Table 1 preset, D ~ U(1.0, 1.4) m, released at rest 2 m above the ground;
+// the state "where the flight crosses the level 140 m below the release point's ground". Read as: over the contour line
+// of the plane on which the GROUND is 140 m lower than under the release; the jump is the vertical clearance there.
+// (Reading it as the block itself at that height moves the line by the clearance and the numbers by less than 1 %.)
 
 constexpr std::uint32_t kBlocks = 20'000;
 constexpr double kStart = 60.0, kDrop = 140.0;
 const double kTanB = std::tan(radians(38.0));
 
-Ground table1() { return {.theta_scale = 0.7, .En50 = 15.0, .Et50 = 50.0, .shape_min = 1.0, .shape_max = 1.5}; }
+Ground table1() {
+  return {.theta_scale = 0.7, .En50 = 15.0, .Et50 = 50.0, .shape_min = 1.0, .shape_max = 1.5};
+}
 
 struct Sample {
   std::vector<double> speed, jump, spin;
@@ -86,12 +88,14 @@ struct Row {
 };
 
 TEST(PlaneTable, WithinThreePercent) {
-  for (const Row& row : {Row{0.25, Roughness::Clamp, 10.2, 17.3, 1.31, 2.80}, {0.25, Roughness::Resample, 8.6, 14.5, 1.29, 2.40},
+  for (const Row& row : {Row{0.25, Roughness::Clamp, 10.2, 17.3, 1.31, 2.80},
+                         {0.25, Roughness::Resample, 8.6, 14.5, 1.29, 2.40},
                          {1.0, Roughness::Clamp, 5.1, 8.6, 0.32, 0.70}}) {
     const Sample s = run(table1(), {row.c, row.rule});
-    const double v = Sample::mean(s.speed), v95 = Sample::p95(s.speed), j = Sample::mean(s.jump), j95 = Sample::p95(s.jump);
-    std::printf("c %.2f %-8s %zu crossings: speed %.3f P95 %.3f jump %.4f P95 %.4f\n", row.c, row.rule == Roughness::Clamp ? "clamp" : "resample",
-                s.speed.size(), v, v95, j, j95);
+    const double v = Sample::mean(s.speed), v95 = Sample::p95(s.speed), j = Sample::mean(s.jump),
+                 j95 = Sample::p95(s.jump);
+    std::printf("c %.2f %-8s %zu crossings: speed %.3f P95 %.3f jump %.4f P95 %.4f\n", row.c,
+                row.rule == Roughness::Clamp ? "clamp" : "resample", s.speed.size(), v, v95, j, j95);
     EXPECT_NEAR(v, row.speed, 0.03 * row.speed);
     EXPECT_NEAR(v95, row.speed95, 0.03 * row.speed95);
     EXPECT_NEAR(j, row.jump, 0.03 * row.jump + 0.005);  // the table has two decimals
@@ -100,14 +104,18 @@ TEST(PlaneTable, WithinThreePercent) {
 }
 
 TEST(PlaneScaling, SpeedGoesAsTheRootOfCAndJumpAsC) {  // PHYSICS.md 9: once the start is forgotten
-  const Sample quarter = run(table1(), {0.25, Roughness::Clamp}, 6000), one = run(table1(), {1.0, Roughness::Clamp}, 6000);
-  EXPECT_NEAR(Sample::mean(quarter.speed) / Sample::mean(one.speed), 2.0, 0.05);  // slow blocks feel the 0.1 m/s of sliding
+  const Sample quarter = run(table1(), {0.25, Roughness::Clamp}, 6000),
+               one = run(table1(), {1.0, Roughness::Clamp}, 6000);
+  EXPECT_NEAR(Sample::mean(quarter.speed) / Sample::mean(one.speed), 2.0,
+              0.05);  // slow blocks feel the 0.1 m/s of sliding
   EXPECT_NEAR(Sample::mean(quarter.jump) / Sample::mean(one.jump), 4.0, 0.24);
 }
 
-TEST(PlaneScaling, IsExactForAScaledStart) {  // x -> 4 x, t -> 2 t, v -> 2 v, w -> 2 w for c -> c/4: powers of two, to rounding
+TEST(PlaneScaling,
+     IsExactForAScaledStart) {  // x -> 4 x, t -> 2 t, v -> 2 v, w -> 2 w for c -> c/4: powers of two, to rounding
   const auto trajectory = [](double c, double scale, std::uint32_t block) {
-    const Surface surface(test::terrain(test::grid_of(8, 8, 4096.0, 4096.0), [](double x, double) { return -0.78125 * (x - 8192.0); }));
+    const Surface surface(
+        test::terrain(test::grid_of(8, 8, 4096.0, 4096.0), [](double x, double) { return -0.78125 * (x - 8192.0); }));
     const Cover cover{{table1()}, {}};
     Release release;
     release.block = block;

@@ -40,8 +40,8 @@ inline Scenario rough_slope(std::uint32_t sources, std::uint32_t trajectories) {
 }
 
 /// A stay in one cell with known values there: what `fly` would leave of a short flight at constant speed and height.
-inline Span stay(int column, int row, float speed_squared, float height, bool impact = false) {
-  return {{column, row}, 0.125F, 0.125F, 0.25F, 0.25F, height, height, 0.0F, speed_squared, 0.0F, 0.0F, impact};
+inline Span stay(int column, int row, float speed_squared, float height, std::uint32_t impacts = 0) {
+  return {{column, row}, 0.125F, 0.125F, 0.25F, 0.25F, height, height, 0.0F, speed_squared, 0.0F, 0.0F, impacts};
 }
 
 inline Path path_of(std::initializer_list<Span> spans, End end) {

@@ -17,8 +17,12 @@ class Numbers {
  public:
   explicit Numbers(std::uint64_t seed) : engine_(seed) {}
   std::uint64_t bits() { return engine_(); }
-  double uniform(double from, double to) { return from + (to - from) * (static_cast<double>(engine_() >> 11) * 0x1p-53); }
-  double normal() { return std::sqrt(-2.0 * std::log(1.0 - uniform(0.0, 1.0))) * std::cos(2.0 * kPi * uniform(0.0, 1.0)); }
+  double uniform(double from, double to) {
+    return from + (to - from) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
+  }
+  double normal() {
+    return std::sqrt(-2.0 * std::log(1.0 - uniform(0.0, 1.0))) * std::cos(2.0 * kPi * uniform(0.0, 1.0));
+  }
   Vec3 vector(double scale) {
     const double x = normal(), y = normal(), z = normal();
     return scale * Vec3(x, y, z);

@@ -23,6 +23,8 @@ using talus::io::LoadedScenario;
 using Clock = std::chrono::steady_clock;
 
 constexpr double kSampleSeconds = 1.5;
+constexpr double kWriteCell = 1e-6;        // all maps, per cell of the grid [s], measured
+constexpr double kWriteTrajectory = 5e-6;  // a row of stops.gpkg [s], measured
 
 /// What a sample of the trajectories tells of all of them.
 struct Sample {
@@ -129,12 +131,13 @@ void print_estimate(const Scenario& scenario) {
   const Sample sample = trace_sample(scenario);
   const auto all = static_cast<double>(scenario.released()), traced = static_cast<double>(sample.traced);
   const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
-  const double seconds = sample.seconds * all / traced;
+  const double seconds = sample.seconds * all / traced / processors + kWriteTrajectory * all +
+                         kWriteCell * static_cast<double>(scenario.surface.grid().cells()) / std::min(processors, 4U);
   // Of a touched cell: its record, a histogram of 40 bins for each quantity, its thresholds and its place in a list.
   const double per_cell = sizeof(talus::CellRecord) + 3 * 40.0 + 16.0 +
                           4.0 * static_cast<double>(scenario.output.energy_thresholds.size() + scenario.output.height_thresholds.size());
   const auto megabytes = [&](double cells) { return number(std::ceil(so_far + 64.0 + cells * per_cell * 1e-6), "%.0f"); };
-  line("time", "about " + duration_text(seconds / processors) + " on " + std::to_string(processors) + " processors (" +
+  line("time", "about " + duration_text(seconds) + " on " + std::to_string(processors) + " processors (" +
                    number(sample.length / traced, "%.0f") + " m a trajectory; from a sample of " + count_text(sample.traced) + ")");
   line("memory", "from " + megabytes(static_cast<double>(sample.touched_cells)) + " MB, if no more than the " +
                      count_text(sample.touched_cells) + " cells of the sample are reached, to " +

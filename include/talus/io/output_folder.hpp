@@ -38,7 +38,7 @@ class OutputFolder {
 /// Writes a text file. Throws std::runtime_error, one line with the file and the cause; no half file is left.
 void write_text(const std::filesystem::path& file, std::string_view text);
 
-/// "the disk is full" where hardly anything is free in a folder, else empty: libraries often do not say why.
-std::string disk_state(const std::filesystem::path& folder);
+/// Why a library could not write into a folder: that the disk is full, where it is; else the first of its messages.
+std::string cause_of_failure(const std::filesystem::path& folder, const std::string& messages);
 
 }  // namespace talus::io

@@ -16,7 +16,7 @@ namespace talus::io {
 ///
 /// Fields: source, block, end (stopped, left, caught, limit), feature (name of the source's feature, else its number
 /// from 0), diameter_m, mass_kg, x_release, y_release (map coordinates), z, seconds, max_speed_ms, length_m, impacts.
-/// Positions in full precision, other numbers to three decimals (the diameter to four).
+/// The point and z in full precision, other numbers to three decimals (the diameter to four).
 class StopsWriter {
  public:
   StopsWriter(const std::filesystem::path& file, const LoadedScenario& loaded);

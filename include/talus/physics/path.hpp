@@ -34,7 +34,7 @@ struct Span {
   float height_from, height_to, bend;     ///< clearance above the ground [m]; bend is f2 dt^2
   float plan_speed_squared;               ///< [m^2/s^2]; for a slide 0
   float rise_from, rise_to;               ///< vertical speed at the ends [m/s]; for a slide the speed itself
-  bool impact;                            ///< an impact ends the span
+  std::uint32_t impacts;                  ///< at its end; more than one where the block could not move between them
 };
 
 /// One trajectory: plain data between the engine and its readers (tallies, screens, recordings). Reused as a buffer.

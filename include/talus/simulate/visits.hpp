@@ -46,7 +46,6 @@ class VisitBatch {
   static constexpr std::size_t kVisits = std::size_t{1} << 20U;  // 16 MB
   static constexpr std::size_t kTrajectories = 60'000;
 
-  void cross(const Span& span, bool p_turns, bool q_turns);
   Visit& visit(int column, int row) {
     return column == column_ && row == row_ ? region_->back() : new_visit(column, row);
   }

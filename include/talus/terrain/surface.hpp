@@ -74,7 +74,7 @@ class Surface {
 
 /// Outward unit normal of a surface of the given gradient.
 inline Vec3 normal_of(const Eigen::Vector2d& gradient) {
-  return Vec3(-gradient.x(), -gradient.y(), 1.0) / std::sqrt(1.0 + gradient.squaredNorm());
+  return Vec3(-gradient.x(), -gradient.y(), 1.0) * (1.0 / std::sqrt(1.0 + gradient.squaredNorm()));
 }
 
 }  // namespace talus

@@ -61,7 +61,8 @@ TEST_F(NaturalLog, NearOne) {
     worst = std::max(worst, ulps(natural_log(x), exact));
     absolute = std::max(absolute, std::abs(static_cast<double>(natural_log(x) - exact)));
   };
-  for (int i = 0; i < 1'000'000; ++i) look(1.0 + std::copysign(std::exp2(numbers.uniform(-52.0, -2.0)), numbers.uniform(-1, 1)));
+  for (int i = 0; i < 1'000'000; ++i)
+    look(1.0 + std::copysign(std::exp2(numbers.uniform(-52.0, -2.0)), numbers.uniform(-1, 1)));
   double x = 1.0;
   for (int i = 0; i < 1000; ++i) look(x = std::nextafter(x, 2.0));
   EXPECT_LT(worst, 2.0);

@@ -40,7 +40,7 @@ TEST(Random, UniformMeanAndVarianceOfEveryWord) {
       sum += u;
       squares += u * u;
     }
-    EXPECT_NEAR(sum / kDraws, 0.0, 5.0 * std::sqrt(1.0 / 12.0 / kDraws));  // a bias of 0.2 % fails
+    EXPECT_NEAR(sum / kDraws, 0.0, 5.0 * std::sqrt(1.0 / 12.0 / kDraws));              // a bias of 0.2 % fails
     EXPECT_NEAR(squares / kDraws, 1.0 / 12.0, 5.0 * std::sqrt(1.0 / 180.0 / kDraws));  // var u^2 = 1/80 - 1/144
   }
 }
@@ -92,14 +92,22 @@ void expect_uncorrelated(A first, B second, const char* what) {
 
 TEST(Random, NeighboursAreIndependent) {
   const auto base = [](std::uint32_t i) { return Random(1, 0, i, Purpose::Impact).words(0)[0]; };
-  expect_uncorrelated(base, [](auto i) { return Random(1, 0, i, Purpose::Release).words(0)[0]; }, "purpose");
-  expect_uncorrelated(base, [](auto i) { return Random(2, 0, i, Purpose::Impact).words(0)[0]; }, "seed");
-  expect_uncorrelated(base, [](auto i) { return Random(1ULL + (1ULL << 32), 0, i, Purpose::Impact).words(0)[0]; }, "seed high");
-  expect_uncorrelated(base, [](auto i) { return Random(1, 1, i, Purpose::Impact).words(0)[0]; }, "source");
-  expect_uncorrelated(base, [](auto i) { return Random(1, 0, i + 1, Purpose::Impact).words(0)[0]; }, "block");
-  expect_uncorrelated(base, [](auto i) { return Random(1, 0, i, Purpose::Impact).words(1)[0]; }, "event");
-  expect_uncorrelated(base, [](auto i) { return Random(1, 0, i, Purpose::Impact).words(0, 1)[0]; }, "part");
-  expect_uncorrelated(base, [](auto i) { return Random(1, 0, i, Purpose::Impact).words(0)[1]; }, "word");
+  expect_uncorrelated(
+      base, [](auto i) { return Random(1, 0, i, Purpose::Release).words(0)[0]; }, "purpose");
+  expect_uncorrelated(
+      base, [](auto i) { return Random(2, 0, i, Purpose::Impact).words(0)[0]; }, "seed");
+  expect_uncorrelated(
+      base, [](auto i) { return Random(1ULL + (1ULL << 32), 0, i, Purpose::Impact).words(0)[0]; }, "seed high");
+  expect_uncorrelated(
+      base, [](auto i) { return Random(1, 1, i, Purpose::Impact).words(0)[0]; }, "source");
+  expect_uncorrelated(
+      base, [](auto i) { return Random(1, 0, i + 1, Purpose::Impact).words(0)[0]; }, "block");
+  expect_uncorrelated(
+      base, [](auto i) { return Random(1, 0, i, Purpose::Impact).words(1)[0]; }, "event");
+  expect_uncorrelated(
+      base, [](auto i) { return Random(1, 0, i, Purpose::Impact).words(0, 1)[0]; }, "part");
+  expect_uncorrelated(
+      base, [](auto i) { return Random(1, 0, i, Purpose::Impact).words(0)[1]; }, "word");
 }
 
 TEST(Random, NoTwoKeysShareTheirWords) {  // the trap: stream i of seed s is stream i - 1 of seed s + 1

@@ -44,6 +44,13 @@ TEST(Anchor, IsSetAnewAtAContactOutsideTheCircleAndNowhereElse) {
   EXPECT_TRUE(anchor.traps(at(9.91, 0.61, 1.8)));
 }
 
+TEST(Anchor, TheReachIsAPlainDistance) {
+  Anchor anchor(2.0, 5.0);
+  anchor.set(at(0.0, 0, 0));
+  EXPECT_TRUE(anchor.traps(at(5.1, 1.1, 1.6)));   // 1.94 m away
+  EXPECT_FALSE(anchor.traps(at(5.2, 1.2, 1.7)));  // 2.08 m away: anew
+}
+
 TEST(Anchor, AFarJumpIsNeverATrap) {  // whatever the time in the air
   Anchor anchor(1.0, 5.0);
   anchor.set(at(0.0, 0, 0));

@@ -33,10 +33,14 @@ double mean(const std::vector<double>& x) {
   for (const double value : x) sum += value;
   return sum / static_cast<double>(x.size());
 }
-double quantile(const std::vector<double>& sorted, double p) { return sorted[static_cast<std::size_t>(p * kDraws)]; }
+double quantile(const std::vector<double>& sorted, double p) {
+  return sorted[static_cast<std::size_t>(p * kDraws)];
+}
 
 /// 5 standard errors of a quantile p of a variable whose density there is f.
-double bound(double p, double f) { return 5.0 * std::sqrt(p * (1.0 - p) / kDraws) / f; }
+double bound(double p, double f) {
+  return 5.0 * std::sqrt(p * (1.0 - p) / kDraws) / f;
+}
 
 TEST(Asperity, ClampedBracket) {  // max(0, 0.5 + 0.5 N): mean (Phi(1) + phi(1)) / 2 = 0.542, P95 1.322 (PHYSICS.md 4.1)
   const auto x = tan_thetas(Roughness::Clamp);
@@ -93,7 +97,8 @@ TEST(Asperity, TheRuleChangesNothingButTheNegativeAngles) {  // a redraw must no
   int redrawn = 0;
   for (std::uint32_t block = 0; block < 200; ++block)
     for (std::uint32_t event = 0; event < 20; ++event) {
-      const Asperity clamp = draw(block, event, ground, Roughness::Clamp), other = draw(block, event, ground, Roughness::Resample);
+      const Asperity clamp = draw(block, event, ground, Roughness::Clamp),
+                     other = draw(block, event, ground, Roughness::Resample);
       EXPECT_EQ(clamp.tan_psi, other.tan_psi);
       EXPECT_EQ(clamp.shape, other.shape);
       EXPECT_EQ(clamp.heading, other.heading);
@@ -111,7 +116,8 @@ TEST(Asperity, DependsOnTheNumberOfTheImpactOnlyNotOnTheOrder) {
   const Ground ground{.theta_scale = 1.0, .psi_scale = 1.0, .shape_min = 1.0, .shape_max = 1.5};
   Asperities one(Random(8, 1, 3, Purpose::Impact), Roughness::Resample);
   for (const std::uint32_t event : {0U, 1U, 7U, 8U, 9U, 3U, 100U, 99'999U, 15U, 16U, 0U}) {
-    const Asperity kept = one.at(event, ground), fresh = Asperities(Random(8, 1, 3, Purpose::Impact), Roughness::Resample).at(event, ground);
+    const Asperity kept = one.at(event, ground),
+                   fresh = Asperities(Random(8, 1, 3, Purpose::Impact), Roughness::Resample).at(event, ground);
     EXPECT_EQ(kept.tan_theta, fresh.tan_theta) << event;
     EXPECT_EQ(kept.tan_psi, fresh.tan_psi) << event;
     EXPECT_EQ(kept.shape, fresh.shape) << event;

@@ -12,10 +12,10 @@ using test::Numbers;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 TEST(FirstContact, HandSolvedParabolas) {
-  EXPECT_NEAR(first_contact(6.0, 1.0, -1.0, kNever), 3.0, 1e-15);   // (3 - t)(2 + t)
-  EXPECT_NEAR(first_contact(6.0, -5.0, 1.0, kNever), 2.0, 1e-15);   // (t - 2)(t - 3): the first of two
-  EXPECT_NEAR(first_contact(6.0, -2.0, 0.0, kNever), 3.0, 1e-15);   // straight down
-  EXPECT_EQ(first_contact(6.0, -5.0, 1.0, 1.99), kNever);           // not yet
+  EXPECT_NEAR(first_contact(6.0, 1.0, -1.0, kNever), 3.0, 1e-15);  // (3 - t)(2 + t)
+  EXPECT_NEAR(first_contact(6.0, -5.0, 1.0, kNever), 2.0, 1e-15);  // (t - 2)(t - 3): the first of two
+  EXPECT_NEAR(first_contact(6.0, -2.0, 0.0, kNever), 3.0, 1e-15);  // straight down
+  EXPECT_EQ(first_contact(6.0, -5.0, 1.0, 1.99), kNever);          // not yet
   EXPECT_NEAR(first_contact(6.0, -5.0, 1.0, 2.01), 2.0, 1e-15);
   EXPECT_EQ(first_contact(6.0, 1.0, -1.0, 2.99), kNever);
 }
@@ -31,11 +31,14 @@ TEST(FirstContact, AgainstLongDoubleRoots) {
   int met = 0;
   double worst = 0.0;
   for (int i = 0; i < 300'000; ++i) {
-    const double f0 = std::pow(10.0, numbers.uniform(-6, 3)), f1 = numbers.uniform(-30, 30), f2 = numbers.uniform(-8, 3);
+    const double f0 = std::pow(10.0, numbers.uniform(-6, 3)), f1 = numbers.uniform(-30, 30),
+                 f2 = numbers.uniform(-8, 3);
     const long double disc = static_cast<long double>(f1) * f1 - 4.0L * f2 * f0;
     if (disc < 0.1L * f1 * f1) continue;  // nearly touching: rounding of the discriminant counts
-    const long double sum = -0.5L * (f1 + std::copysign(std::sqrt(disc), static_cast<long double>(f1))), a = sum / f2, b = f0 / sum;
-    const long double low = std::min(a, b), high = std::max(a, b), exact = low > 0.0L ? low : high;  // smallest positive
+    const long double sum = -0.5L * (f1 + std::copysign(std::sqrt(disc), static_cast<long double>(f1))), a = sum / f2,
+                      b = f0 / sum;
+    const long double low = std::min(a, b), high = std::max(a, b),
+                      exact = low > 0.0L ? low : high;  // smallest positive
     const double got = first_contact(f0, f1, f2, kNever);
     if (!(exact > 0.0L)) {
       ASSERT_EQ(got, kNever) << f0 << ' ' << f1 << ' ' << f2;
@@ -51,20 +54,21 @@ TEST(FirstContact, AgainstLongDoubleRoots) {
 }
 
 TEST(FirstContact, FromTheGround) {
-  EXPECT_EQ(first_contact(0.0, -1.0, -1.0, 5.0), 0.0);               // pressed into it
-  EXPECT_NEAR(first_contact(0.0, 4.0, -2.0, kNever), 2.0, 1e-15);    // thrown up
+  EXPECT_EQ(first_contact(0.0, -1.0, -1.0, 5.0), 0.0);             // pressed into it
+  EXPECT_NEAR(first_contact(0.0, 4.0, -2.0, kNever), 2.0, 1e-15);  // thrown up
   EXPECT_EQ(first_contact(0.0, 4.0, -2.0, 1.0), kNever);
-  EXPECT_EQ(first_contact(0.0, 4.0, -2.0, 0.0), kNever);             // rises: on an edge it must not land at once
+  EXPECT_EQ(first_contact(0.0, 4.0, -2.0, 0.0), kNever);  // rises: on an edge it must not land at once
   EXPECT_EQ(first_contact(0.0, 4.0, 0.0, kNever), kNever);
   EXPECT_EQ(first_contact(0.0, 4.0, 3.0, kNever), kNever);
-  EXPECT_EQ(first_contact(0.0, 0.0, 3.0, kNever), kNever);           // the ground falls away faster than the parabola
+  EXPECT_EQ(first_contact(0.0, 0.0, 3.0, kNever), kNever);  // the ground falls away faster than the parabola
   EXPECT_EQ(first_contact(0.0, 0.0, -3.0, kNever), 0.0);
 }
 
 TEST(FirstContact, DoesNotTunnelWhereTheEndIsBelowTheGround) {
   Numbers numbers(2);
   for (int i = 0; i < 200'000; ++i) {
-    const double f0 = numbers.uniform(0, 2), f1 = numbers.uniform(-5, 5), f2 = numbers.uniform(-6, 0), until = numbers.uniform(0, 3);
+    const double f0 = numbers.uniform(0, 2), f1 = numbers.uniform(-5, 5), f2 = numbers.uniform(-6, 0),
+                 until = numbers.uniform(0, 3);
     const double contact = first_contact(f0, f1, f2, until);
     const double last = f0 + until * (f1 + until * f2);
     if (last < 0.0) {
@@ -117,10 +121,12 @@ TEST(Fly, LandsOnAPlaneWhereTheClosedFormSaysInEveryDirection) {
         const double h = 5.0, y = 202.0;
         const Flight f(surface, {start, y, plane(start, y) + h}, {vx, vy, up});
         // h + (up - slope . v) t - g/2 t^2 = 0
-        const double rate = up - east * vx - north * vy, t = (rate + std::sqrt(rate * rate + 2 * kGravity * h)) / kGravity;
+        const double rate = up - east * vx - north * vy,
+                     t = (rate + std::sqrt(rate * rate + 2 * kGravity * h)) / kGravity;
         ASSERT_EQ(f.outcome, Outcome::Landed);
         EXPECT_NEAR(f.motion.time, t, 1e-12);
-        EXPECT_LT((f.motion.position - Vec3(start + vx * t, y + vy * t, plane(start + vx * t, y + vy * t))).norm(), 1e-10);
+        EXPECT_LT((f.motion.position - Vec3(start + vx * t, y + vy * t, plane(start + vx * t, y + vy * t))).norm(),
+                  1e-10);
         EXPECT_LT((f.motion.velocity - Vec3(vx, vy, up - kGravity * t)).norm(), 1e-12);
         EXPECT_NEAR(f.path.plan_length, 11.0 * t, 1e-11);
       }
@@ -139,7 +145,8 @@ TEST(Fly, AlongGridLinesAndThroughCornersInAllEightDirections) {
       }
 }
 
-TEST(Fly, ABlockOnAnEdgeThatRisesDoesNotLandAtOnce) {  // released above a cell centre, it rebounds across p = 0 or q = 0
+TEST(Fly,
+     ABlockOnAnEdgeThatRisesDoesNotLandAtOnce) {  // released above a cell centre, it rebounds across p = 0 or q = 0
   for (const double dip : {-0.75, 0.75})
     for (const bool along_x : {true, false}) {
       const Surface surface(test::terrain(test::grid_of(60, 60, 2.0, 2.0),
@@ -154,9 +161,11 @@ TEST(Fly, ABlockOnAnEdgeThatRisesDoesNotLandAtOnce) {  // released above a cell 
 
 TEST(Fly, VerticalDropOnARoughSurface) {
   Numbers numbers(3);
-  const Surface surface(test::terrain(test::grid_of(30, 30, 2.0, 5.0), [&](double, double) { return numbers.uniform(0, 20); }));
+  const Surface surface(
+      test::terrain(test::grid_of(30, 30, 2.0, 5.0), [&](double, double) { return numbers.uniform(0, 20); }));
   for (int i = 0; i < 1000; ++i) {
-    const double x = numbers.uniform(1.0, 59.0), y = numbers.uniform(2.5, 147.5), z = test::height_between_centres(surface.heights(), x, y);
+    const double x = numbers.uniform(1.0, 59.0), y = numbers.uniform(2.5, 147.5),
+                 z = test::height_between_centres(surface.heights(), x, y);
     const Flight f(surface, {x, y, z + 7.0}, {0, 0, 0});
     ASSERT_EQ(f.outcome, Outcome::Landed);
     ASSERT_NEAR(f.motion.time, std::sqrt(14.0 / kGravity), 1e-13);
@@ -170,13 +179,14 @@ TEST(Fly, IntoAndOverAWallOf500MetresOfOneCell) {
   for (const double cell : {0.5, 2.0}) {
     const int n = 200;
     const double foot = 100.0 * cell + 0.5 * cell;  // the wall rises from here to the next centre
-    const Surface surface(
-        test::terrain(test::grid_of(n, 5, cell, cell), [&](double x, double) { return x > foot + 0.1 * cell ? 500.0 : 0.0; }));
+    const Surface surface(test::terrain(test::grid_of(n, 5, cell, cell),
+                                        [&](double x, double) { return x > foot + 0.1 * cell ? 500.0 : 0.0; }));
     const double y = 2.3 * cell, start = foot - 10.0 * cell, v = 10.0;
     // Against the wall: while over it, z = h - g t^2/2 = 500 (x - foot)/cell.
     const Flight into(surface, {start, y, 300.0}, {v, 0, 0});
     ASSERT_EQ(into.outcome, Outcome::Landed);
-    const double b = 500.0 * v / cell, c = 300.0 + 500.0 * 10.0, t = (-b + std::sqrt(b * b + 2 * kGravity * c)) / kGravity;
+    const double b = 500.0 * v / cell, c = 300.0 + 500.0 * 10.0,
+                 t = (-b + std::sqrt(b * b + 2 * kGravity * c)) / kGravity;
     EXPECT_NEAR(into.motion.time, t, 1e-12);
     EXPECT_NEAR(into.motion.position.x(), start + v * t, 1e-11);
     // Off its top: over the edge after 0.05 cells, then free fall to the floor.

@@ -24,10 +24,11 @@ using test::slope_normal;
 //
 //   true energy after / before <= (10 s^4 + 29 s^2 + 10) / (49 s^2) = 1.1417 at s = 1.5, for any k_n, k_t, phi.
 //
-// With phi = 30 degrees a contained slip needs v_n >= 2/7 u / (tan(phi) (1 + k_n)), whose energy is kept at best: the worst
-// case falls to 1.1352 (s = 1.5, v_t : W : v_n = 0.960 : -2.094 : 0.281, backspin at twice the speed), reached only as
-// speeds go to 0 (k_n, k_t -> 1). With E_n50 = 15, c = 0.25, D = 1 m it is 1.116 at 5 m/s and 1.085 at 10 m/s (numerical
-// search over all states). A block that leaves an impact has W = -v or more friction to come, so no path can pump it.
+// With phi = 30 degrees a contained slip needs v_n >= 2/7 u / (tan(phi) (1 + k_n)), whose energy is kept at best: the
+// worst case falls to 1.1352 (s = 1.5, v_t : W : v_n = 0.960 : -2.094 : 0.281, backspin at twice the speed), reached
+// only as speeds go to 0 (k_n, k_t -> 1). With E_n50 = 15, c = 0.25, D = 1 m it is 1.116 at 5 m/s and 1.085 at 10 m/s
+// (numerical search over all states). A block that leaves an impact has W = -v or more friction to come, so no path can
+// pump it.
 
 constexpr double kWorstTrue = 1.1352;  // by a search over 1e7 states, phi 30 degrees, s = 1.5
 
@@ -52,7 +53,8 @@ struct Worst {
 };
 
 /// One impact of a state on a slope, law energy before and after.
-void hit(Worst& worst, const Ground& ground, const Block& block, const Motion& before, const Vec3& n, const Asperity& asperity) {
+void hit(Worst& worst, const Ground& ground, const Block& block, const Motion& before, const Vec3& n,
+         const Asperity& asperity) {
   const Contact after = impact({}, ground, block, before, n, asperity);
   worst.add(energies(before.velocity, before.spin, block.radius(), asperity.shape),
             energies(after.velocity, after.spin, block.radius(), asperity.shape));
@@ -69,8 +71,10 @@ Worst any_impacts(int count, double shape_max, std::uint64_t seed) {
     before.velocity = numbers.vector(std::pow(10.0, numbers.uniform(-2, 1.5)));
     if (before.velocity.dot(n) > 0.0) before.velocity = -before.velocity;
     before.spin = numbers.vector(2.0 * before.velocity.norm() / block.radius());
-    if (i % 4 == 0) before.spin = -before.velocity.norm() / block.radius() * numbers.uniform(-4, 4) * n.unitOrthogonal();
-    const Asperity a{std::abs(numbers.normal()), numbers.normal(), numbers.uniform(1.0, shape_max), numbers.uniform(0, 1)};
+    if (i % 4 == 0)
+      before.spin = -before.velocity.norm() / block.radius() * numbers.uniform(-4, 4) * n.unitOrthogonal();
+    const Asperity a{std::abs(numbers.normal()), numbers.normal(), numbers.uniform(1.0, shape_max),
+                     numbers.uniform(0, 1)};
     hit(worst, {}, block, before, n, a);
   }
   return worst;
@@ -95,12 +99,14 @@ TEST(ImpactEnergy, TheWorstCaseOfTheTrueEnergyIsAsDerived) {  // slowly: k_n, k_
   before.velocity = v;
   before.spin = Vec3(0, speed * 2.0943 / (shape * radius), 0);  // +y rolls towards +x: W = -2.0943
   const Contact after = impact({}, {}, {2 * radius, 1.0}, before, {0, 0, 1}, {0, 0, shape, 0});
-  const double ratio = energies(after.velocity, after.spin, radius, shape).real / energies(v, before.spin, radius, shape).real;
+  const double ratio =
+      energies(after.velocity, after.spin, radius, shape).real / energies(v, before.spin, radius, shape).real;
   EXPECT_NEAR(ratio, 1.135193, 3e-5);  // four digits of the state
   EXPECT_LT(ratio, (10 * std::pow(shape, 4) + 29 * shape * shape + 10) / (49 * shape * shape));
 }
 
-/// A block that falls along a 75 degree wall with the roughness of upper-talus-3d, its spin anywhere between none and rolling.
+/// A block that falls along a 75 degree wall with the roughness of upper-talus-3d, its spin anywhere between none and
+/// rolling.
 Worst wall_impacts(double shape_max) {
   const Ground upper_talus{.theta_scale = 1.0, .psi_scale = 0.9, .En50 = 15.0, .Et50 = 50.0, .shape_max = shape_max};
   const Vec3 n = slope_normal(75.0, 0.3);
@@ -113,7 +119,8 @@ Worst wall_impacts(double shape_max) {
     before.velocity = speed * Vec3(numbers.uniform(-0.3, 0.6), numbers.uniform(-0.4, 0.4), -1.0);
     if (before.velocity.dot(n) >= 0.0) continue;
     before.spin = numbers.uniform(0, 1) * n.cross(before.velocity) / block.radius();
-    hit(worst, upper_talus, block, before, n, Asperities(Random(4, 0, i, Purpose::Impact), Roughness::Clamp).at(0, upper_talus));
+    hit(worst, upper_talus, block, before, n,
+        Asperities(Random(4, 0, i, Purpose::Impact), Roughness::Clamp).at(0, upper_talus));
   }
   return worst;
 }

@@ -29,8 +29,10 @@ struct Flat {
   double v_t, rim;
 };
 
-/// The 2D convention is u = v_t + R w; in space u = v - R w x n. With w = (rim / R) a, u along t wants -a x n = t: a = t x n.
-Flat rebound_2d(double v_t, double rim, double v_n, const Restitution& k, double tan_phi, const Vec3& t, const Vec3& n) {
+/// The 2D convention is u = v_t + R w; in space u = v - R w x n. With w = (rim / R) a, u along t wants -a x n = t: a =
+/// t x n.
+Flat rebound_2d(double v_t, double rim, double v_n, const Restitution& k, double tan_phi, const Vec3& t,
+                const Vec3& n) {
   const double arm = 0.37;
   const Vec3 axis = t.cross(n);
   const Rebound after = rebound(v_t * t - v_n * n, rim / arm * axis, n, k, arm, tan_phi);
@@ -95,7 +97,8 @@ TEST(Rebound, SpinAboutTheNormalIsKeptAndActsOnNothing) {
   for (int i = 0; i < 10'000; ++i) {
     const Vec3 n = numbers.vector(1.0).normalized(), v = numbers.vector(10.0), w = numbers.vector(10.0);
     const double extra = numbers.uniform(-50, 50);
-    const Rebound one = rebound(v, w, n, {0.4, 0.7}, 0.6, kTan30), two = rebound(v, w + extra * n, n, {0.4, 0.7}, 0.6, kTan30);
+    const Rebound one = rebound(v, w, n, {0.4, 0.7}, 0.6, kTan30),
+                  two = rebound(v, w + extra * n, n, {0.4, 0.7}, 0.6, kTan30);
     ASSERT_NEAR(one.spin.dot(n), w.dot(n), 1e-13 * w.norm());
     ASSERT_LT((two.velocity - one.velocity).norm(), 1e-12);
     ASSERT_LT((two.spin - one.spin - extra * n).norm(), 1e-12);
@@ -144,7 +147,9 @@ TEST(FrictionImpulse, ContainedSlipLeavesTheContactAtRest) {
   }
 }
 
-TEST(FrictionImpulse, CoulombLimit) { EXPECT_NEAR(friction_impulse(15.0, 2.6, kTan30), 1.501110700, 1e-9); }
+TEST(FrictionImpulse, CoulombLimit) {
+  EXPECT_NEAR(friction_impulse(15.0, 2.6, kTan30), 1.501110700, 1e-9);
+}
 
 TEST(FrictionImpulse, NoFrictionNoImpulseNoSlip) {
   EXPECT_EQ(friction_impulse(10.0, 5.0, 0.0), 0.0);
@@ -152,7 +157,9 @@ TEST(FrictionImpulse, NoFrictionNoImpulseNoSlip) {
   EXPECT_EQ(friction_impulse(0.0, 5.0, kTan30), 0.0);
 }
 
-TEST(FrictionImpulse, NaNSlipGivesNaN) { EXPECT_TRUE(std::isnan(friction_impulse(std::nan(""), 5.0, kTan30))); }
+TEST(FrictionImpulse, NaNSlipGivesNaN) {
+  EXPECT_TRUE(std::isnan(friction_impulse(std::nan(""), 5.0, kTan30)));
+}
 
 TEST(FrictionImpulse, NeverGainsEnergy) {
   const auto energy = [](double v, double rim) { return v * v + 0.4 * rim * rim; };  // twice, per mass
@@ -204,7 +211,8 @@ TEST(Impact, NeverIntoTheSmoothSlope) {
     before.velocity = numbers.vector(10.0);
     if (before.velocity.dot(n) > 0.0) before.velocity = -before.velocity;
     before.spin = numbers.vector(10.0);
-    const Contact out = impact({}, {.En50 = 5.0}, {1.0, 1.0}, before, n, {numbers.uniform(0, 3), numbers.uniform(-2, 2), 1.0, 0.1});
+    const Contact out =
+        impact({}, {.En50 = 5.0}, {1.0, 1.0}, before, n, {numbers.uniform(0, 3), numbers.uniform(-2, 2), 1.0, 0.1});
     ASSERT_GE(out.velocity.dot(n), -1e-13 * before.velocity.norm());
     removed += std::abs(out.velocity.dot(n)) < 1e-13 * before.velocity.norm() ? 1 : 0;
   }

@@ -11,7 +11,9 @@ namespace {
 using test::Numbers;
 using test::slope_normal;
 
-double angle(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+double angle(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
 
 /// A velocity in the vertical plane of a heading, `descent` degrees below the horizontal.
 Vec3 heading_down(double azimuth, double descent, double speed = 7.0) {
@@ -23,8 +25,8 @@ TEST(RoughPlane, DownTheSlopeTheLocalAngleMinusTheta) {  // Mitchell & Hungr, 2.
   for (const double azimuth : {0.0, 0.7, 2.0, -1.5, kPi})
     for (const double slope : {0.0, 20.0, 38.0, 75.0})
       for (const double theta : {0.0, 5.0, 30.0, 60.0}) {
-        const RoughPlane plane =
-            rough_plane(slope_normal(slope, azimuth), heading_down(azimuth, slope + 10.0), {std::tan(radians(theta)), 0.0, 1.0, 0.3});
+        const RoughPlane plane = rough_plane(slope_normal(slope, azimuth), heading_down(azimuth, slope + 10.0),
+                                             {std::tan(radians(theta)), 0.0, 1.0, 0.3});
         EXPECT_LT((plane.normal - slope_normal(slope - theta, azimuth)).norm(), 1e-14);
         EXPECT_FALSE(plane.psi_dropped);
       }
@@ -32,8 +34,8 @@ TEST(RoughPlane, DownTheSlopeTheLocalAngleMinusTheta) {  // Mitchell & Hungr, 2.
 
 TEST(RoughPlane, UpTheSlopeTheLocalAnglePlusTheta) {
   for (const double slope : {0.0, 20.0, 38.0}) {
-    const RoughPlane plane =
-        rough_plane(slope_normal(slope, 0.4), heading_down(0.4 + kPi, -0.5 * slope + 1.0), {std::tan(radians(25.0)), 0.0, 1.0, 0.3});
+    const RoughPlane plane = rough_plane(slope_normal(slope, 0.4), heading_down(0.4 + kPi, -0.5 * slope + 1.0),
+                                         {std::tan(radians(25.0)), 0.0, 1.0, 0.3});
     EXPECT_LT((plane.normal - slope_normal(slope + 25.0, 0.4)).norm(), 1e-14);
   }
 }
@@ -60,7 +62,8 @@ TEST(RoughPlane, PsiTiltsSidewaysByPsiAndKeepsTheLongitudinalLine) {
     for (const double slope : {0.0, 30.0, 50.0}) {
       const double azimuth = 1.1, theta = 20.0;
       const Vec3 n1 = slope_normal(slope - theta, azimuth), v = heading_down(azimuth, slope + 30.0);
-      const RoughPlane plane = rough_plane(slope_normal(slope, azimuth), v, {std::tan(radians(theta)), std::tan(radians(psi)), 1.0, 0.0});
+      const RoughPlane plane =
+          rough_plane(slope_normal(slope, azimuth), v, {std::tan(radians(theta)), std::tan(radians(psi)), 1.0, 0.0});
       ASSERT_FALSE(plane.psi_dropped);
       EXPECT_NEAR(angle(plane.normal, n1), radians(std::abs(psi)), 1e-14);
       EXPECT_NEAR(plane.normal.norm(), 1.0, 1e-15);
@@ -93,8 +96,8 @@ TEST(RoughPlane, TiltAngleIsPsiOnAnySlopeAndHeading) {
 }
 
 TEST(RoughPlane, PsiIsDroppedWhereItWouldTurnTheWallOutOfTheWay) {
-  // A wall of 80 degrees that dips east; a block grazing it northwards. Tilting it by psi about the longitudinal tangent
-  // (here north) by more than the angle of incidence turns it away on one side only.
+  // A wall of 80 degrees that dips east; a block grazing it northwards. Tilting it by psi about the longitudinal
+  // tangent (here north) by more than the angle of incidence turns it away on one side only.
   const Vec3 n = slope_normal(80.0, 0.0), v(-0.1, 8.0, -0.2);  // v . n = -0.133: 1 degree into the wall
   int dropped = 0;
   for (const double tan_psi : {-0.5, 0.5}) {
@@ -140,7 +143,9 @@ struct Sample {
   Asperity asperity;
 };
 Sample sample(Numbers& numbers) {
-  Sample s{slope_normal(numbers.uniform(0, 85), numbers.uniform(0, 2 * kPi)), numbers.vector(8.0), numbers.vector(8.0),
+  Sample s{slope_normal(numbers.uniform(0, 85), numbers.uniform(0, 2 * kPi)),
+           numbers.vector(8.0),
+           numbers.vector(8.0),
            {numbers.uniform(0, 1.5), numbers.uniform(-1.5, 1.5), numbers.uniform(1, 1.5), 0.2}};
   if (s.v.dot(s.n) > 0.0) s.v = -s.v;
   return s;
@@ -155,15 +160,18 @@ TEST(ImpactSymmetry, AnyTurnOfTheSceneTurnsTheResult) {
     Motion before, turned;
     before.velocity = s.v, before.spin = s.w;
     turned.velocity = m * s.v, turned.spin = m * s.w;
-    const Contact a = impact({}, {}, {1.1, 1.0}, before, s.n, s.asperity), b = impact({}, {}, {1.1, 1.0}, turned, m * s.n, s.asperity);
-    ASSERT_LT((rough_plane(m * s.n, m * s.v, s.asperity).normal - m * rough_plane(s.n, s.v, s.asperity).normal).norm(), 1e-12);
+    const Contact a = impact({}, {}, {1.1, 1.0}, before, s.n, s.asperity),
+                  b = impact({}, {}, {1.1, 1.0}, turned, m * s.n, s.asperity);
+    ASSERT_LT((rough_plane(m * s.n, m * s.v, s.asperity).normal - m * rough_plane(s.n, s.v, s.asperity).normal).norm(),
+              1e-12);
     ASSERT_LT((b.velocity - m * a.velocity).norm(), 1e-12 * s.v.norm());
     ASSERT_LT((b.spin - m * a.spin).norm(), 1e-12 * (s.v.norm() + s.w.norm()));
     ASSERT_EQ(a.psi_dropped, b.psi_dropped);
   }
 }
 
-TEST(ImpactSymmetry, TheMirrorImageWithPsiReversedIsTheMirrorImage) {  // spin is an axial vector: it mirrors with a minus
+TEST(ImpactSymmetry,
+     TheMirrorImageWithPsiReversedIsTheMirrorImage) {  // spin is an axial vector: it mirrors with a minus
   Numbers numbers(5);
   const Vec3 flip(-1, 1, 1);
   for (int i = 0; i < 20'000; ++i) {

@@ -67,27 +67,36 @@ TEST(SlideAcrossAnEdge, KeepsItsSpeedWhereTheGroundTurnsUp) {
 TEST(SlideAcrossAnEdge, OnAPlaneEdgesDoNothing) {
   const auto o = slide_from(kinked(-0.75, -0.75), kTan30, {38.6, 9.3}, {0.0, 4.0}, 12.0);
   EXPECT_EQ(o.end, SlideEnd::Asperity);
-  const Surface large(test::terrain(test::grid_of(4, 4, 128.0, 128.0), [](double x, double) { return 300.0 - 0.75 * x; }));
+  const Surface large(
+      test::terrain(test::grid_of(4, 4, 128.0, 128.0), [](double x, double) { return 300.0 - 0.75 * x; }));
   const auto one = slide_from(large, kTan30, {168.6, 150.3}, {0.0, 4.0}, 12.0);
-  EXPECT_LT((Vec2(o.motion.position.x() - 38.6, o.motion.position.y() - 9.3) - Vec2(one.motion.position.x() - 168.6, one.motion.position.y() - 150.3)).norm(), 0.02);
+  EXPECT_LT((Vec2(o.motion.position.x() - 38.6, o.motion.position.y() - 9.3) -
+             Vec2(one.motion.position.x() - 168.6, one.motion.position.y() - 150.3))
+                .norm(),
+            0.02);
 }
 
 TEST(SlideOnATwist, TakesOffWhereTheSurfaceCurvesAwayFasterThanTheParabola) {
-  // z = 300 + k x y about (21, 21): along the direction (1, -1) it curves down by 2 k vx vy = -k v^2: beyond g it flies.
+  // z = 300 + k x y about (21, 21): along the direction (1, -1) it curves down by 2 k vx vy = -k v^2: beyond g it
+  // flies.
   const double k = 0.125;
-  const Surface surface(test::terrain(test::grid_of(3, 3, 16.0, 16.0), [&](double x, double y) { return 300.0 + k * (x - 16.0) * (y - 16.0); }));
+  const Surface surface(test::terrain(test::grid_of(3, 3, 16.0, 16.0),
+                                      [&](double x, double y) { return 300.0 + k * (x - 16.0) * (y - 16.0); }));
   const double limit = std::sqrt(kGravity / (2 * k));  // of |vx| = |vy|
   EXPECT_EQ(slide_from(surface, 0.0, {16.0, 16.0}, {1.01 * limit, -1.01 * limit}, 0.2).end, SlideEnd::Takeoff);
   EXPECT_EQ(slide_from(surface, 0.0, {16.0, 16.0}, {0.9 * limit, -0.9 * limit}, 0.2).end, SlideEnd::Asperity);
-  EXPECT_EQ(slide_from(surface, 0.0, {16.0, 16.0}, {1.5 * limit, 1.5 * limit}, 0.2).end, SlideEnd::Asperity);  // curves up
+  EXPECT_EQ(slide_from(surface, 0.0, {16.0, 16.0}, {1.5 * limit, 1.5 * limit}, 0.2).end,
+            SlideEnd::Asperity);  // curves up
 }
 
 TEST(SlideWithoutFriction, KeepsItsEnergyOnAnySurface) {  // v^2/2 + g z, in patches and across concave edges
   Numbers numbers(2);
-  const Surface surface(test::terrain(test::grid_of(40, 40, 4.0, 4.0), [&](double, double) { return numbers.uniform(0, 4); }));
+  const Surface surface(
+      test::terrain(test::grid_of(40, 40, 4.0, 4.0), [&](double, double) { return numbers.uniform(0, 4); }));
   test::Moments drift;
   for (int i = 0; i < 2000; ++i) {
-    const Vec2 place(numbers.uniform(60, 100), numbers.uniform(60, 100)), v(numbers.uniform(-4, 4), numbers.uniform(-4, 4));
+    const Vec2 place(numbers.uniform(60, 100), numbers.uniform(60, 100)),
+        v(numbers.uniform(-4, 4), numbers.uniform(-4, 4));
     const auto o = slide_from(surface, 0.0, place, v, 1.0);
     if (o.path.vertices.empty()) continue;  // flies at once
     const Motion& start = o.path.vertices.front().motion;
@@ -100,18 +109,21 @@ TEST(SlideWithoutFriction, KeepsItsEnergyOnAnySurface) {  // v^2/2 + g z, in pat
 
 TEST(SlidePath, PiecesFollowEachOtherOnTheSurface) {
   Numbers numbers(3);
-  const Surface surface(test::terrain(test::grid_of(40, 40, 4.0, 4.0), [&](double x, double) { return -0.8 * x + numbers.uniform(0, 2); }));
+  const Surface surface(test::terrain(test::grid_of(40, 40, 4.0, 4.0),
+                                      [&](double x, double) { return -0.8 * x + numbers.uniform(0, 2); }));
   for (int i = 0; i < 500; ++i) {
-    const auto o = slide_from(surface, kTan30, {numbers.uniform(60, 100), numbers.uniform(60, 100)}, {numbers.uniform(0, 4), numbers.uniform(-3, 3)}, 2.0);
+    const auto o = slide_from(surface, kTan30, {numbers.uniform(60, 100), numbers.uniform(60, 100)},
+                              {numbers.uniform(0, 4), numbers.uniform(-3, 3)}, 2.0);
     ASSERT_EQ(o.path.vertices.size(), o.path.spans.size());
     for (std::size_t k = 0; k < o.path.spans.size(); ++k) {
       const Motion& from = o.path.vertices[k].motion;
       const Motion& to = k + 1 < o.path.spans.size() ? o.path.vertices[k + 1].motion : o.motion;
       const Span& s = o.path.spans[k];
-      ASSERT_NEAR(from.position.z(), test::height_between_centres(surface.heights(), from.position.x(), from.position.y()), 1e-8);
+      ASSERT_NEAR(from.position.z(),
+                  test::height_between_centres(surface.heights(), from.position.x(), from.position.y()), 1e-8);
       ASSERT_GE(to.time, from.time);
-      ASSERT_NEAR(surface.x_of(s.patch.column + s.p_from), from.position.x(), 1e-4);
-      ASSERT_NEAR(surface.y_of(s.patch.row + s.q_to), to.position.y(), 1e-4);
+      ASSERT_NEAR(surface.x_of(1.0 * s.patch.column + s.p_from), from.position.x(), 1e-4);
+      ASSERT_NEAR(surface.y_of(1.0 * s.patch.row + s.q_to), to.position.y(), 1e-4);
       ASSERT_NEAR(s.rise_from, from.velocity.norm(), 1e-4);
       ASSERT_EQ(s.height_from + s.height_to, 0.0F);
     }
@@ -120,7 +132,8 @@ TEST(SlidePath, PiecesFollowEachOtherOnTheSurface) {
 }
 
 TEST(SlideInAGully, IsBounded) {  // between walls steeper than phi: from wall to wall, without end but for the bounds
-  const Surface surface(test::terrain(test::grid_of(60, 61, 2.0, 2.0), [](double x, double y) { return 300.0 - 0.125 * x + 2.0 * std::abs(y - 61.0); }));
+  const Surface surface(test::terrain(test::grid_of(60, 61, 2.0, 2.0),
+                                      [](double x, double y) { return 300.0 - 0.125 * x + 2.0 * std::abs(y - 61.0); }));
   for (const double start : {60.0, 61.0, 61.3, 64.0})
     for (const Vec2& v : {Vec2(0, 0), Vec2(3, 0), Vec2(1, 4), Vec2(-2, 0.01)}) {
       const auto o = slide_from(surface, kTan30, {50.3, start}, v, 1.0);
@@ -129,6 +142,25 @@ TEST(SlideInAGully, IsBounded) {  // between walls steeper than phi: from wall t
       EXPECT_LE(o.path.length, 1.05);
       EXPECT_LE(o.motion.velocity.norm(), std::hypot(v.norm() * std::sqrt(5.0), std::sqrt(2 * kGravity * 1.0)) + 0.1);
     }
+}
+
+// The bottom of a V is a straight line: gravity along it, tan(phi) g cos(beta) of the walls (gradient (-a, +-2))
+// against the motion.
+TEST(SlideInAGully, RunsAlongTheBottomInClosedForm) {
+  for (const double fall : {0.0, 1.0}) {
+    const Surface surface(test::terrain(test::grid_of(90, 61, 2.0, 2.0), [&](double x, double y) {
+      return 300.0 - fall * x + 2.0 * std::abs(y - 61.0);
+    }));
+    const double a = kGravity * (fall / std::hypot(1.0, fall) - kTan30 / std::sqrt(5.0 + fall * fall));
+    for (const double v0 : {2.0, 5.0}) {
+      const auto o = slide_from(surface, kTan30, {50.3, 61.0}, {v0 / std::hypot(1.0, fall), 0.0}, 9.0);
+      const double way = std::min(9.0, a < 0.0 ? v0 * v0 / (-2 * a) : 9.0), v2 = v0 * v0 + 2 * a * way;
+      EXPECT_NEAR((o.motion.position.x() - 50.3) * std::hypot(1.0, fall), way, 0.01) << fall << ' ' << v0;
+      EXPECT_NEAR(o.motion.velocity.norm(), std::sqrt(std::max(0.0, v2)), 0.01);
+      EXPECT_NEAR(o.motion.position.y(), 61.0, 1e-6);
+      EXPECT_EQ(o.end, v2 > 1e-9 ? SlideEnd::Asperity : SlideEnd::Stopped);
+    }
+  }
 }
 
 TEST(SlideOffTheTerrain, IsLeft) {

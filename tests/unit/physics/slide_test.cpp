@@ -12,7 +12,9 @@ using Vec2 = Eigen::Vector2d;
 
 const double kTan30 = 1.0 / std::sqrt(3.0);
 
-Cover cover_of(double tan_phi) { return {{Ground{.tan_phi = tan_phi}}, {}}; }
+Cover cover_of(double tan_phi) {
+  return {{Ground{.tan_phi = tan_phi}}, {}};
+}
 
 /// A block put on the surface with a velocity in plan, and its slide.
 struct Slide {
@@ -36,7 +38,8 @@ struct Slide {
 };
 
 Surface plane(double east, double north, double cell = 2.0) {
-  return Surface(test::terrain(test::grid_of(200, 200, cell, cell), [&](double x, double y) { return 2000.0 + east * x + north * y; }));
+  return Surface(test::terrain(test::grid_of(200, 200, cell, cell),
+                               [&](double x, double y) { return 2000.0 + east * x + north * y; }));
 }
 
 TEST(SlideOnAPlane, SpeedAfterOneDiameterDownTheSlope) {  // v^2 = v0^2 + 2 g (sin b - tan(phi) cos b) D
@@ -68,7 +71,8 @@ TEST(SlideOnAPlane, StoppingDistance) {  // v^2 / (2 g (tan(phi) cos b - sin b))
 }
 
 TEST(SlideOnAPlane, UphillItStopsOrTurnsRoundWhereTheSlopeIsSteeper) {
-  const double b = std::atan(1.0), up = kGravity * (std::sin(b) + kTan30 * std::cos(b)), down = kGravity * (std::sin(b) - kTan30 * std::cos(b));
+  const double b = std::atan(1.0), up = kGravity * (std::sin(b) + kTan30 * std::cos(b)),
+               down = kGravity * (std::sin(b) - kTan30 * std::cos(b));
   const Slide s(plane(-1.0, 0.0), kTan30, {200.3, 150.7}, {-5.0 * std::cos(b), 0.0}, 2.0);
   const double climb = 25.0 / (2 * up);  // 1.616 m, then 2 - 1.616 m down again
   ASSERT_EQ(s.end, SlideEnd::Asperity);
@@ -134,13 +138,15 @@ TEST(SlideOnAPlane, BendsDownASideSlopeAsRungeKuttaSays) {
 }
 
 TEST(SlidingAcceleration, IsNewtonsLawOnTheSurface) {
-  // In space: A = g_tangential - tan(phi) g cos(b) V/|V| + n (v.H.v)/w, because A.n w = d2z/dt2 - slope.a = v.H.v on z = f(x, y).
+  // In space: A = g_tangential - tan(phi) g cos(b) V/|V| + n (v.H.v)/w, because A.n w = d2z/dt2 - slope.a = v.H.v on z
+  // = f(x, y).
   Numbers numbers(1);
   for (int i = 0; i < 10'000; ++i) {
     const Vec2 slope(numbers.uniform(-3, 3), numbers.uniform(-3, 3)), v(numbers.uniform(-9, 9), numbers.uniform(-9, 9));
     const double twist = numbers.uniform(-0.1, 0.1), tan_phi = numbers.uniform(0, 1);
     const Vec3 n = normal_of(slope), speed(v.x(), v.y(), slope.dot(v)), gravity(0, 0, -kGravity);
-    const Vec3 a = gravity - gravity.dot(n) * n - tan_phi * kGravity * n.z() * speed.normalized() + 2 * twist * v.x() * v.y() * n.z() * n;
+    const Vec3 a = gravity - gravity.dot(n) * n - tan_phi * kGravity * n.z() * speed.normalized() +
+                   2 * twist * v.x() * v.y() * n.z() * n;
     ASSERT_LT((sliding_acceleration(slope, twist, v, tan_phi) - a.head<2>()).norm(), 1e-12 * (1 + a.norm()));
   }
 }

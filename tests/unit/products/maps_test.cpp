@@ -35,10 +35,10 @@ Scenario small() {
 Tally by_hand(const Scenario& s) {
   Tally tally(s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds);
   VisitBatch batch(tally.grid());
-  batch.add(path_of({stay(1, 1, 4, 1, true)}, End::Stopped), 1000.0, 0, nullptr);                     // 2 kJ
-  batch.add(path_of({stay(1, 1, 36, 2, true)}, End::Left), 1000.0, 0, nullptr);                       // 18 kJ
+  batch.add(path_of({stay(1, 1, 4, 1, 1)}, End::Stopped), 1000.0, 0, nullptr);                     // 2 kJ
+  batch.add(path_of({stay(1, 1, 36, 2, 1)}, End::Left), 1000.0, 0, nullptr);                       // 18 kJ
   batch.add(path_of({stay(1, 1, 64, 1.5F), stay(2, 1, 144, 3)}, End::Stopped), 1000.0, 0, nullptr);   // 32, 72 kJ
-  batch.add(path_of({stay(2, 1, 16, 0, true), stay(2, 1, 4, 1, true)}, End::Caught), 1000.0, 1, nullptr);  // 8 kJ
+  batch.add(path_of({stay(2, 1, 16, 0, 1), stay(2, 1, 4, 1, 1)}, End::Caught), 1000.0, 1, nullptr);  // 8 kJ
   batch.add(path_of({stay(2, 1, 100, 0)}, End::Left), 1000.0, 1, nullptr);                            // 50 kJ
   tally.add(batch);
   return tally;
@@ -133,6 +133,23 @@ TEST(Maps, QuantitiesByHand) {
   EXPECT_EQ(speed[4][at(2, 1)], 12.0);
   EXPECT_NEAR(height[0][at(2, 1)], (3.0 + 1.0 + 0.0) / 3.0, 0x1p-17);
   EXPECT_EQ(height[4][at(2, 1)], 3.0);
+}
+
+TEST(Maps, PercentilesOfAHundredTrajectories) {  // 2000 kg: energies 1.06^0 to 1.06^99 kJ
+  Scenario s = small();
+  s.trajectories = 50;
+  Tally tally(s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds);
+  VisitBatch batch(tally.grid());
+  const auto value = [](int i) { return static_cast<float>(std::pow(1.06, i)); };
+  for (int i = 0; i < 100; ++i) batch.add(path_of({stay(1, 1, value(i), value(i))}, End::Left), 2000.0, 0, nullptr);
+  tally.add(batch);
+  auto maps = all_maps(s, tally);
+  for (const char* name : {"energy", "jump_height"}) {
+    EXPECT_NEAR(maps[name][1][at(1, 1)], value(49), 0.0625 * value(49));
+    EXPECT_NEAR(maps[name][2][at(1, 1)], value(94), 0.0625 * value(94));
+    EXPECT_NEAR(maps[name][3][at(1, 1)], value(98), 0.0625 * value(98));
+  }
+  EXPECT_NEAR(maps["velocity"][2][at(1, 1)], std::sqrt(value(94)), 0.0625 * std::sqrt(value(94)));
 }
 
 TEST(Maps, NothingCrossedAndNoTerrain) {

@@ -2,10 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <map>
-#include <mutex>
 #include <stdexcept>
+#include <thread>
 
 #include "../../support/scenarios.hpp"
 #include "talus/simulate/plan.hpp"
@@ -210,6 +211,7 @@ TEST(Simulate, ASinkThatThrowsEndsTheRun) {
         after += thrown ? 1 : 0;
         if (++calls < 3) return;
         thrown = true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));  // the others get in line behind it
         throw std::runtime_error("disk full");
       };
       Sinks sinks;

@@ -46,7 +46,7 @@ std::vector<Sample> random_walks(std::size_t count, std::uint32_t per_source, st
     int column = 55 + static_cast<int>(numbers.bits() % 20), row = 55 + static_cast<int>(numbers.bits() % 20);
     for (int step = 0; step < 30; ++step) {
       path.spans.push_back(stay(column, row, static_cast<float>(numbers.uniform(0, 900)),
-                                static_cast<float>(std::max(0.0, numbers.uniform(-1, 4))), numbers.bits() % 3 == 0));
+                                static_cast<float>(std::max(0.0, numbers.uniform(-1, 4))), numbers.bits() % 3 == 0 ? 1U : 0U));
       column = std::clamp(column + static_cast<int>(numbers.bits() % 3) - 1, 0, 129);
       row = std::clamp(row + static_cast<int>(numbers.bits() % 3) - 1, 0, 99);
     }
@@ -65,7 +65,7 @@ Cells brute_force(const std::vector<Sample>& samples) {
       auto& [speed_squared, height] = largest[at];
       speed_squared = std::max(speed_squared, span.plan_speed_squared);
       height = std::max(height, span.height_from);
-      cells[at].impacts += span.impact ? 1U : 0U;
+      cells[at].impacts += span.impacts;
     }
     for (const auto& [at, values] : largest) {
       Expected& cell = cells[at];
@@ -186,7 +186,7 @@ TEST(Tally, ThreadsGiveTheSameRecords) {
 
 TEST(Tally, ARevisitIsOneValue) {  // by hand: 1000 kg; 20 m/s = 200 kJ is its largest, and height 3 of another visit
   VisitBatch batch(test::grid_of(130, 100, 2.0, 2.0));
-  batch.add(path_of({stay(3, 4, 400, 1, true), stay(4, 4, 100, 2), stay(3, 4, 25, 3, true)}, End::Stopped), 1000.0, 0, nullptr);
+  batch.add(path_of({stay(3, 4, 400, 1, 1), stay(4, 4, 100, 2), stay(3, 4, 25, 3, 1)}, End::Stopped), 1000.0, 0, nullptr);
   Tally tally = new_tally();
   EXPECT_EQ(tally.add(batch), 2U);
   const CellRecord& cell = *tally.find(3, 4);

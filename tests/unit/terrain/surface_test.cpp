@@ -15,7 +15,8 @@ constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 
 Raster<float> rough(int columns, int rows, double cell_x, double cell_y, std::uint64_t seed) {
   Numbers numbers(seed);
-  return test::terrain(test::grid_of(columns, rows, cell_x, cell_y), [&](double, double) { return numbers.uniform(900, 1000); });
+  return test::terrain(test::grid_of(columns, rows, cell_x, cell_y),
+                       [&](double, double) { return numbers.uniform(900, 1000); });
 }
 
 TEST(Surface, IsTheDemAtTheCellCentres) {
@@ -102,7 +103,8 @@ TEST(Surface, PlacesAndPatchCoordinatesAreInverse) {
 
 TEST(Surface, OutsideTheCentresThereIsNone) {
   const Surface surface(rough(5, 4, 2.0, 3.0, 11));  // centres from (1, 1.5) to (9, 10.5)
-  for (const auto& [x, y] : {std::pair{0.99, 5.0}, {9.01, 5.0}, {5.0, 1.49}, {5.0, 10.51}, {-50.0, 5.0}, {5.0, 1e6}, {-0.5, -0.5}})
+  for (const auto& [x, y] :
+       {std::pair{0.99, 5.0}, {9.01, 5.0}, {5.0, 1.49}, {5.0, 10.51}, {-50.0, 5.0}, {5.0, 1e6}, {-0.5, -0.5}})
     EXPECT_FALSE(surface.height(x, y)) << x << ' ' << y;
   EXPECT_TRUE(surface.height(1.0, 1.5));
   EXPECT_TRUE(surface.height(8.99, 10.49));

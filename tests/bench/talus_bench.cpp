@@ -1,0 +1,185 @@
+// Speed of the engine on one slope: talus-bench DEM SOURCES [Google Benchmark's options].
+// tools/benchmark.py makes the slope that all figures are measured on, and compares with the sketch and the floor.
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <optional>
+
+#include "talus/io/loaded.hpp"
+#include "talus/physics/flight.hpp"
+#include "talus/simulate/plan.hpp"
+#include "talus/simulate/simulate.hpp"
+
+namespace {
+
+using namespace talus;
+
+std::optional<Scenario> g_scenario;  // read once, before the benchmarks
+
+Scenario& scenario_with(std::int64_t trajectories) {
+  g_scenario->trajectories = static_cast<std::uint32_t>(trajectories);
+  return *g_scenario;
+}
+
+/// Trace, tally and merge with every raster on. Arguments: trajectories per source, threads.
+void run(benchmark::State& state) {
+  const Scenario& scenario = scenario_with(state.range(0));
+  for (auto _ : state) {
+    Tally tally(scenario.surface.grid(), {30.0, 300.0, 500.0}, {1.0, 2.0, 4.0});
+    const Totals totals = simulate(scenario, tally, {}, static_cast<int>(state.range(1)));
+    const double n = static_cast<double>(totals.released), cpu = totals.cpu_seconds;
+    state.SetIterationTime(cpu);
+    state.counters["plan_Mm_per_cpu_s"] = 1e-9 * static_cast<double>(totals.plan_length_mm) / cpu;
+    state.counters["Mm_per_cpu_s"] = 1e-9 * static_cast<double>(totals.length_mm) / cpu;
+    state.counters["us_per_trajectory"] = 1e6 * cpu / n;
+    state.counters["cells_per_trajectory"] = static_cast<double>(totals.cells_scored) / n;
+    state.counters["touched_cells"] = static_cast<double>(tally.touched_cells());
+  }
+}
+
+/// A sample of trajectories for the parts below.
+struct Sample {
+  std::vector<Release> releases;
+  std::vector<Path> paths;
+  std::uint64_t spans = 0, impacts = 0;
+  double plan_length = 0.0;
+};
+
+const Sample& sample() {
+  static const Sample made = [] {
+    Sample s;
+    const Scenario& scenario = scenario_with(1);
+    const World world = scenario.world();
+    for (std::uint32_t source = 0; source < scenario.sources.size(); ++source) {
+      s.releases.push_back(make_release(scenario, source, 0));
+      trace(world, s.releases.back(), s.paths.emplace_back());
+      s.spans += s.paths.back().spans.size();
+      s.impacts += s.paths.back().impacts;
+      s.plan_length += s.paths.back().plan_length;
+    }
+    return s;
+  }();
+  return made;
+}
+
+void per(benchmark::State& state, const char* unit, std::uint64_t count) {
+  state.counters[unit] = benchmark::Counter(1e-9 * static_cast<double>(count) * static_cast<double>(state.iterations()),
+                                            benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+/// The engine without tallies.
+void trace_only(benchmark::State& state) {
+  const Sample& s = sample();
+  const World world = g_scenario->world();
+  Path path;
+  for (auto _ : state)
+    for (const Release& release : s.releases) {
+      trace(world, release, path);
+      benchmark::DoNotOptimize(path.length);
+    }
+  per(state, "ns_per_patch", s.spans);
+  per(state, "ns_per_plan_m", static_cast<std::uint64_t>(s.plan_length));
+}
+
+/// Crosses the patches between two vertices along a straight line and reads each: no ground to meet, nothing kept.
+double walk(const Surface& surface, const Vertex& from, const Vertex& to) {
+  const double u = surface.u_of(from.motion.position.x()), v = surface.v_of(from.motion.position.y());
+  const double du = surface.u_of(to.motion.position.x()) - u, dv = surface.v_of(to.motion.position.y()) - v;
+  PatchIndex at = surface.patch_at(from.motion.position.x(), from.motion.position.y());
+  const double every_u = du != 0.0 ? 1.0 / std::abs(du) : 2.0, every_v = dv != 0.0 ? 1.0 / std::abs(dv) : 2.0;
+  double next_u = du > 0.0 ? (at.column + 1 - u) * every_u : (u - at.column) * every_u;
+  double next_v = dv > 0.0 ? (at.row + 1 - v) * every_v : (v - at.row) * every_v;
+  double t = 0.0, sum = 0.0;
+  Patch patch;
+  while (surface.read(at, patch)) {
+    sum += patch.height(u + du * t - at.column, v + dv * t - at.row);
+    t = std::min(next_u, next_v);
+    if (t >= 1.0) break;
+    if (next_u <= next_v)
+      at.column += du > 0.0 ? 1 : -1, next_u += every_u;
+    else
+      at.row += dv > 0.0 ? 1 : -1, next_v += every_v;
+  }
+  return sum;
+}
+
+/// The floor: a bare walk over the same patches, without impacts and tallies.
+void floor_walk(benchmark::State& state) {
+  const Sample& s = sample();
+  for (auto _ : state)
+    for (const Path& path : s.paths)
+      for (std::size_t i = 1; i < path.vertices.size(); ++i)
+        benchmark::DoNotOptimize(walk(g_scenario->surface, path.vertices[i - 1], path.vertices[i]));
+  per(state, "ns_per_patch", s.spans);
+  per(state, "ns_per_plan_m", static_cast<std::uint64_t>(s.plan_length));
+}
+
+/// The impact law alone, with its random numbers, on the impacts of the sample.
+void impact_law(benchmark::State& state) {
+  const Sample& s = sample();
+  const World world = g_scenario->world();
+  const Ground& ground = world.cover.grounds.front();
+  const Vec3 normal = normal_of({0.3, -0.6});
+  for (auto _ : state)
+    for (std::size_t k = 0; k < s.paths.size(); ++k) {
+      const Release& release = s.releases[k];
+      Asperities asperities(Random(release.seed, release.source, release.block, Purpose::Impact), Roughness::Clamp);
+      std::uint32_t event = 0;
+      for (const Vertex& vertex : s.paths[k].vertices) {
+        if (vertex.event != Event::Impact) continue;
+        Motion before = vertex.motion;
+        before.velocity -= 2.0 * std::max(0.0, before.velocity.dot(normal)) * normal;
+        benchmark::DoNotOptimize(
+            impact(world.impact, ground, release.body, before, normal, asperities.at(event++, ground)));
+      }
+    }
+  per(state, "ns_per_impact", s.impacts);
+}
+
+/// Scoring alone: paths into the tally.
+void score(benchmark::State& state) {
+  const Sample& s = sample();
+  std::uint64_t scored = 0;
+  for (auto _ : state) {
+    Tally tally(g_scenario->surface.grid(), {30.0, 300.0, 500.0}, {1.0, 2.0, 4.0});
+    VisitBatch batch(g_scenario->surface.grid());
+    for (int repeat = 0; repeat < 10; ++repeat)
+      for (std::size_t k = 0; k < s.paths.size(); ++k) {
+        batch.add(s.paths[k], 2400.0, s.releases[k].source, nullptr);
+        if (!batch.full() && !(repeat == 9 && k + 1 == s.paths.size())) continue;
+        scored += tally.add(batch);
+        batch.clear();
+      }
+  }
+  state.counters["ns_per_cell"] =
+      benchmark::Counter(1e-9 * static_cast<double>(scored), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+BENCHMARK(run)->Args({10, 1})->Args({100, 1})->Args({10, 2})->Args({100, 2})->UseManualTime()->Iterations(1)->Unit(
+    benchmark::kSecond);
+BENCHMARK(trace_only)->Unit(benchmark::kMillisecond);
+BENCHMARK(floor_walk)->Unit(benchmark::kMillisecond);
+BENCHMARK(impact_law)->Unit(benchmark::kMillisecond);
+BENCHMARK(score)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (argc < 3) {
+    std::fputs("usage: talus-bench DEM SOURCES [--benchmark_...]\n", stderr);
+    return 2;
+  }
+  try {
+    io::RunFlags flags;
+    flags.dem = argv[1];
+    flags.sources = argv[2];
+    flags.diameter = 1.2;
+    g_scenario = io::load_scenario(flags).scenario;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "talus-bench: %s\n", error.what());
+    return 2;
+  }
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
