@@ -35,7 +35,7 @@ bool ends_with(const std::string& path, const std::string& end) {
 void start_gdal() {
   static std::once_flag once;
   std::call_once(once, [] {
-    if (CPLGetConfigOption("GDAL_CACHEMAX", nullptr) == nullptr) GDALSetCacheMax64(64LL << 20);
+    if (CPLGetConfigOption("GDAL_CACHEMAX", nullptr) == nullptr) GDALSetCacheMax64(32LL << 20);
     CPLSetErrorHandler(collect_of_threads);
     GDALAllRegister();
   });

@@ -8,7 +8,7 @@
 
 namespace talus::io {
 
-/// Registers GDAL's drivers once, bounds its block cache to 64 MB (unless the environment sets GDAL_CACHEMAX), and
+/// Registers GDAL's drivers once, bounds its block cache to 32 MB (unless the environment sets GDAL_CACHEMAX), and
 /// keeps its messages off the screen. Every function of `io` that uses GDAL calls it first.
 void start_gdal();
 

@@ -65,9 +65,9 @@ void LogHistogram::widen(std::uint8_t width) {
   swap(wide);
 }
 
-/// Makes room for the keys of a range. It grows by whole doublings, so that it rarely does.
+/// Makes room for the keys of a range. It grows by half doublings, so that it rarely does.
 void LogHistogram::cover(int low_key, int high_key) {
-  int low = low_key & ~15, high = high_key | 15;
+  int low = low_key & ~7, high = high_key | 7;
   if (size_ > 0) {
     low = std::min<int>(low, first_);
     high = std::max<int>(high, first_ + size_ - 1);

@@ -108,6 +108,8 @@ struct Tally::Region {
     std::uint16_t& number = (*slot)[cell];
     if (number == 0) {
       records.emplace_back();
+      if (exceedances.size() == exceedances.capacity())  // in small steps: doubling would waste what it holds ready
+        exceedances.reserve(exceedances.size() + 128 * thresholds);
       exceedances.resize(exceedances.size() + thresholds);
       number = static_cast<std::uint16_t>(records.size());
     }

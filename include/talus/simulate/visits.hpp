@@ -43,7 +43,7 @@ class VisitBatch {
   const std::unordered_map<std::size_t, std::vector<Visit>>& regions() const { return regions_; }
 
  private:
-  static constexpr std::size_t kVisits = std::size_t{1} << 20U;  // 16 MB
+  static constexpr std::size_t kVisits = 3U << 18U;  // 12 MB
   static constexpr std::size_t kTrajectories = 60'000;
 
   Visit& visit(int column, int row) {

@@ -122,7 +122,7 @@ TEST(FlightLength, IsTheArcLengthOfTheParabola) {
     const auto primitive = [&](double w) {
       return 0.5 * (w * std::hypot(plan, w) + plan * plan * std::asinh(w / plan));
     };
-    EXPECT_NEAR(path.length, 2.0 * primitive(up) / kGravity, 2e-3 * path.length);  // a screen's worth of precision
+    EXPECT_NEAR(path.length, 2.0 * primitive(up) / kGravity, 2e-3 * path.length);  // three Gauss points
     EXPECT_NEAR(path.plan_length, plan * 2.0 * up / kGravity, 1e-12 * path.plan_length);
   }
 }

@@ -268,7 +268,7 @@ TEST(VisitBatch, FillsUpAndClears) {
   EXPECT_LE(batch.trajectories().size(), 65'536U - 128U);  // numbers of 16 bits, one unit of work on top
   batch.clear();
   EXPECT_FALSE(batch.full());
-  EXPECT_TRUE(batch.regions().empty());
+  for (const auto& [index, visits] : batch.regions()) EXPECT_TRUE(visits.empty()) << index;
   Path back_and_forth;
   for (int i = 0; i < 1000; ++i) back_and_forth.spans.push_back(test::stay(i % 2, 1, 4, 1));
   std::size_t visits = 0;
