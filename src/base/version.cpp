@@ -2,6 +2,8 @@
 
 namespace talus {
 
-std::string_view version() { return TALUS_VERSION; }  // defined by CMakeLists.txt
+std::string_view version() {
+  return TALUS_VERSION;
+}  // defined by CMakeLists.txt
 
 }  // namespace talus

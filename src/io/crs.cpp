@@ -87,7 +87,9 @@ Axis axis_of(PJ_CONTEXT* context, const PJ* system, int index) {
   return axis;
 }
 
-bool is_metre(const Axis& axis) { return std::abs(axis.unit - 1.0) < 1e-9; }
+bool is_metre(const Axis& axis) {
+  return std::abs(axis.unit - 1.0) < 1e-9;
+}
 
 // "EPSG:32632" of the UTM zone of a place, as an example in messages.
 std::string example_system(PJ_CONTEXT* context, const PJ* system, const Extent& e) {
@@ -118,7 +120,9 @@ double stretch(PJ_CONTEXT* context, const PJ* system, const Extent& e) {
   return worst;
 }
 
-std::string percent(double share) { return text_of(std::round(share * 1000.0) / 10.0) + " %"; }
+std::string percent(double share) {
+  return text_of(std::round(share * 1000.0) / 10.0) + " %";
+}
 
 void check_heights(PJ_CONTEXT* context, const std::string& path, const std::string& wkt) {
   const Object whole(proj_create(context, wkt.c_str()));
@@ -242,7 +246,9 @@ Transformer::Transformer(LayerName layer, const std::string& from_wkt, const std
 Transformer::~Transformer() = default;
 Transformer::Transformer(Transformer&&) noexcept = default;
 
-bool Transformer::is_identity() const { return !projection_->operation; }
+bool Transformer::is_identity() const {
+  return !projection_->operation;
+}
 
 void Transformer::apply(double& x, double& y, const std::string& where) {
   Projection& p = *projection_;
@@ -256,7 +262,9 @@ void Transformer::apply(double& x, double& y, const std::string& where) {
   y = out.xy.y;
 }
 
-const std::vector<Reprojection>& Transformer::used() const { return projection_->used; }
+const std::vector<Reprojection>& Transformer::used() const {
+  return projection_->used;
+}
 
 std::vector<std::string> Transformer::warnings(double cell) const {
   std::vector<std::string> lines;

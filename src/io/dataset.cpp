@@ -56,7 +56,9 @@ GdalMessages::GdalMessages() {
       this);
 }
 
-GdalMessages::~GdalMessages() { CPLPopErrorHandler(); }
+GdalMessages::~GdalMessages() {
+  CPLPopErrorHandler();
+}
 
 std::string GdalMessages::take(const std::string& otherwise) {
   {

@@ -111,8 +111,8 @@ void GeoPackage::create_index(const std::string& layer) {
 }
 
 void GeoPackage::fail(const std::string& cause) const {
-  throw std::runtime_error(file_.filename().string() + ": cannot be written: " +
-                           cause_of_failure(file_.parent_path(), cause));
+  throw std::runtime_error(file_.filename().string() +
+                           ": cannot be written: " + cause_of_failure(file_.parent_path(), cause));
 }
 
 void GeoPackage::require(bool good, GdalMessages& messages) const {

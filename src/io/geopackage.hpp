@@ -43,10 +43,10 @@ class GeoPackage {
 
   std::filesystem::path file_;
   OGRSpatialReference system_;
-  std::vector<std::string> layers_;            // still without an index
+  std::vector<std::string> layers_;  // still without an index
   OGRLayer* points_ = nullptr;
-  std::optional<PointIndex> index_;            // of points_
-  std::vector<std::string> triggers_;          // of points_, to be set again
+  std::optional<PointIndex> index_;    // of points_
+  std::vector<std::string> triggers_;  // of points_, to be set again
   Dataset dataset_;
 };
 

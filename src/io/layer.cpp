@@ -63,7 +63,14 @@ Feature Layer::next() {
   return feature;
 }
 
-int Layer::field(const char* name) const { return fields().GetFieldIndex(name); }
+int Layer::field(const char* name) const {
+  const int index = fields().GetFieldIndex(name);
+  if (index >= 0 || !EQUAL(dataset_->GetDriverName(), "ESRI Shapefile")) return index;
+  // A Shapefile cuts names to ten characters: GDAL and QGIS write the pair diameter_min, diameter_max as these.
+  const int low = fields().GetFieldIndex("diameter_m"), high = fields().GetFieldIndex("diameter_1");
+  if (low < 0 || high < 0) return index;
+  return EQUAL(name, "diameter_min") ? low : EQUAL(name, "diameter_max") ? high : index;
+}
 
 std::vector<std::string> Layer::field_names() const {
   std::vector<std::string> names(fields().GetFieldCount());

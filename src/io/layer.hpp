@@ -30,7 +30,7 @@ class Layer {
   /// Its geometries. Empty where it has none.
   Parts parts(const OGRFeature& feature);
 
-  /// Index of a field, whatever its case; -1 where there is none.
+  /// Index of a field, whatever its case, also as a Shapefile cuts it; -1 where there is none.
   int field(const char* name) const;
   std::vector<std::string> field_names() const;
   const OGRFeatureDefn& fields() const { return *layer_->GetLayerDefn(); }

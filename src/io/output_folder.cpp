@@ -19,7 +19,8 @@ namespace {
 
 /// Absolute, through symbolic links, without a slash at its end.
 fs::path full_name(const fs::path& path) {
-  if (path.empty()) throw InputError("--out: the name of the folder is empty; give a new folder, for example -o result");
+  if (path.empty())
+    throw InputError("--out: the name of the folder is empty; give a new folder, for example -o result");
   std::error_code error;
   fs::path full = fs::weakly_canonical(fs::absolute(path), error);
   if (error) full = fs::absolute(path).lexically_normal();
@@ -30,7 +31,8 @@ fs::path full_name(const fs::path& path) {
 
 /// A mount point can neither be renamed nor replaced: better said before the run than after it.
 bool is_mount_point(const fs::path& folder) {
-  struct stat self {}, parent {};
+  struct stat self {
+  }, parent{};
   return stat(folder.c_str(), &self) == 0 && stat(folder.parent_path().c_str(), &parent) == 0 &&
          self.st_dev != parent.st_dev;
 }
@@ -46,8 +48,9 @@ void refuse_taken_name(const fs::path& folder, bool overwrite) {
   if (!overwrite)
     throw InputError(name + ": the folder is there and not empty; give a new name, or --overwrite to replace it");
   if (!fs::exists(folder / "run.json"))
-    throw InputError(name + ": --overwrite replaces only results of talus, and there is no run.json in this folder; "
-                            "give a new name, or remove the folder yourself");
+    throw InputError(name +
+                     ": --overwrite replaces only results of talus, and there is no run.json in this folder; "
+                     "give a new name, or remove the folder yourself");
 }
 
 fs::path make_temporary(const fs::path& folder) {
@@ -75,7 +78,8 @@ void synchronise(const fs::path& path) {
   const int cause = errno;
   close(file);
   if (result != 0 && cause != EINVAL && cause != ENOTSUP)
-    throw std::runtime_error(path.filename().string() + ": cannot be written: " + std::system_category().message(cause));
+    throw std::runtime_error(path.filename().string() +
+                             ": cannot be written: " + std::system_category().message(cause));
 }
 
 }  // namespace
@@ -115,8 +119,7 @@ void OutputFolder::commit() {
     std::error_code ignored;
     if (error && replace) fs::rename(aside, final_, ignored);
   }
-  if (error)
-    throw std::runtime_error(final_.string() + ": the results cannot be given this name: " + error.message());
+  if (error) throw std::runtime_error(final_.string() + ": the results cannot be given this name: " + error.message());
   committed_ = true;
   synchronise(final_.parent_path());
   if (replace) fs::remove_all(aside, error);

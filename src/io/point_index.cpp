@@ -40,7 +40,8 @@ std::uint32_t hilbert(std::uint32_t x, std::uint32_t y) {
 /// Hexadecimal digits of a number, the highest byte first.
 void put(std::string& text, std::uint64_t value, int bytes) {
   constexpr const char* kDigits = "0123456789abcdef";
-  for (int shift = 8 * bytes - 4; shift >= 0; shift -= 4) text += kDigits[(value >> static_cast<unsigned>(shift)) & 15U];
+  for (int shift = 8 * bytes - 4; shift >= 0; shift -= 4)
+    text += kDigits[(value >> static_cast<unsigned>(shift)) & 15U];
 }
 
 }  // namespace
@@ -85,7 +86,8 @@ void PointIndex::pack_points() {
     }
     leaves_.push_back(write_node(next_node_++, 0, cells.data(), cells.data() + cells.size()));
   }
-  for (const std::int64_t node : node_of) row(rowids_, "_rowid", std::to_string(first_id_++) + "," + std::to_string(node));
+  for (const std::int64_t node : node_of)
+    row(rowids_, "_rowid", std::to_string(first_id_++) + "," + std::to_string(node));
   points_.clear();
 }
 

@@ -7,12 +7,12 @@
 
 namespace talus::io {
 
-/// Builds the spatial index of a layer of points, SQLite's R*Tree with the columns id, minx, maxx, miny, maxy, by packing:
-/// points sorted along a Hilbert curve, 51 to a node. Ten times as fast as inserting them one by one, as GDAL 3.6 does
-/// (GDAL 3.7 packs too).
+/// Builds the spatial index of a layer of points, SQLite's R*Tree with the columns id, minx, maxx, miny, maxy, by
+/// packing: points sorted along a Hilbert curve, 51 to a node. Ten times as fast as inserting them one by one, as
+/// GDAL 3.6 does (GDAL 3.7 packs too).
 ///
-/// Points are sorted in runs of kRun, which bounds the memory; the trees of the runs lie over each other. The tables are
-/// those of https://www.sqlite.org/rtree.html, "Shadow tables", and src/ext/rtree/rtree.c of SQLite.
+/// Points are sorted in runs of kRun, which bounds the memory; the trees of the runs lie over each other. The tables
+/// are those of https://www.sqlite.org/rtree.html, "Shadow tables", and src/ext/rtree/rtree.c of SQLite.
 class PointIndex {
  public:
   using Execute = std::function<void(const std::string& sql)>;
@@ -48,9 +48,9 @@ class PointIndex {
 
   std::string table_;
   Execute execute_;
-  std::vector<Point> points_;        // of the current run
-  std::int64_t first_id_ = 1;        // of the run
-  std::int64_t next_node_ = 2;       // 1 is the root
+  std::vector<Point> points_;   // of the current run
+  std::int64_t first_id_ = 1;   // of the run
+  std::int64_t next_node_ = 2;  // 1 is the root
   std::vector<Cell> leaves_;
   std::string nodes_, parents_, rowids_;  // statements under way
 };

@@ -37,20 +37,23 @@ Json inputs_of(const LoadedScenario& loaded) {
 Json reprojections_of(const LoadedScenario& loaded) {
   Json list = Json::array();
   for (const Reprojection& r : loaded.reprojections)
-    list.push_back({{"role", r.role}, {"operation", r.operation}, {"accuracy_m", r.accuracy_m ? Json(*r.accuracy_m) : Json()}});
+    list.push_back(
+        {{"role", r.role}, {"operation", r.operation}, {"accuracy_m", r.accuracy_m ? Json(*r.accuracy_m) : Json()}});
   return list;
 }
 
 Json grid_of(const LoadedScenario& loaded) {
   const Grid& grid = loaded.scenario.surface.grid();
   const GeoReference& geo = loaded.geo;
-  return {{"columns", grid.columns}, {"rows", grid.rows},     {"cell_x_m", geo.cell_x}, {"cell_y_m", geo.cell_y},
+  return {{"columns", grid.columns}, {"rows", grid.rows},  {"cell_x_m", geo.cell_x}, {"cell_y_m", geo.cell_y},
           {"west", geo.west},        {"north", geo.north}, {"crs_wkt", geo.crs_wkt}};
 }
 
 Json ends_of(const Totals& totals) {
   const auto count = [&totals](End end) { return totals.ends[static_cast<std::size_t>(end)]; };
-  return {{"stopped", count(End::Stopped)}, {"left", count(End::Left)}, {"caught", count(End::Caught)},
+  return {{"stopped", count(End::Stopped)},
+          {"left", count(End::Left)},
+          {"caught", count(End::Caught)},
           {"limit", count(End::Limit)}};
 }
 

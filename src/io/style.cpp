@@ -43,18 +43,24 @@ Legend legend_of(const Map& map) {
 }
 
 std::size_t band_of(const Map& map, std::string_view name) {
-  const auto found = std::find_if(map.bands.begin(), map.bands.end(), [name](const Map::Band& b) { return b.name == name; });
+  const auto found =
+      std::find_if(map.bands.begin(), map.bands.end(), [name](const Map::Band& b) { return b.name == name; });
   return found == map.bands.end() ? 0 : static_cast<std::size_t>(found - map.bands.begin());
 }
 
 std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
-    if (c == '&') result += "&amp;";
-    else if (c == '<') result += "&lt;";
-    else if (c == '>') result += "&gt;";
-    else if (c == '"') result += "&quot;";
-    else result += c;
+    if (c == '&')
+      result += "&amp;";
+    else if (c == '<')
+      result += "&lt;";
+    else if (c == '>')
+      result += "&gt;";
+    else if (c == '"')
+      result += "&quot;";
+    else
+      result += c;
   }
   return result;
 }
@@ -94,8 +100,12 @@ std::string style_of(const Map& map) {
   return "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n"
          "<qgis version=\"3.22.0\" styleCategories=\"Symbology\">\n"
          "  <pipe>\n"
-         "    <rasterrenderer type=\"singlebandpseudocolor\" band=\"" + band + "\" opacity=\"0.8\" alphaBand=\"-1\" "
-         "nodataColor=\"\" classificationMin=\"0\" classificationMax=\"" + maximum + "\">\n"
+         "    <rasterrenderer type=\"singlebandpseudocolor\" band=\"" +
+         band +
+         "\" opacity=\"0.8\" alphaBand=\"-1\" "
+         "nodataColor=\"\" classificationMin=\"0\" classificationMax=\"" +
+         maximum +
+         "\">\n"
          "      <rasterTransparency/>\n"
          "      <minMaxOrigin>\n"
          "        <limits>None</limits>\n"
@@ -104,8 +114,8 @@ std::string style_of(const Map& map) {
          "      </minMaxOrigin>\n"
          "      <rastershader>\n"
          "        <colorrampshader colorRampType=\"DISCRETE\" classificationMode=\"1\" clip=\"0\" minimumValue=\"0\" "
-         "maximumValue=\"" + maximum + "\">\n" +
-         items_of(map, legend) +
+         "maximumValue=\"" +
+         maximum + "\">\n" + items_of(map, legend) +
          "        </colorrampshader>\n"
          "      </rastershader>\n"
          "    </rasterrenderer>\n"

@@ -13,7 +13,9 @@ namespace talus::io {
 
 namespace {
 
-std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+std::string file_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
 
 std::string extent_text(const Extent& e) {
   const auto metres = [](double value) { return text_of(std::round(value * 10.0) / 10.0); };

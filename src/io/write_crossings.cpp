@@ -17,7 +17,9 @@ void add(std::string& line, double value, std::chars_format format, int precisio
   line.append(text.data(), end);
 }
 
-void add(std::string& line, double value) { add(line, value, std::chars_format::general, 6); }
+void add(std::string& line, double value) {
+  add(line, value, std::chars_format::general, 6);
+}
 
 }  // namespace
 

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kStripe = 64;     // rows in memory
+constexpr int kStripe = 64;  // rows in memory
 
 /// Side of the blocks of the finished file; overviews go down to one block.
 int block_size(const MapTarget& target) {
@@ -63,8 +63,12 @@ std::uint32_t stored<std::uint32_t>(double value) {
 }
 
 /// The larger of two stored values; nodata is less than any other.
-float larger(float a, float b) { return std::max(a, b); }
-std::uint32_t larger(std::uint32_t a, std::uint32_t b) { return std::max(a + 1U, b + 1U) - 1U; }  // kCountNodata + 1 is 0
+float larger(float a, float b) {
+  return std::max(a, b);
+}
+std::uint32_t larger(std::uint32_t a, std::uint32_t b) {
+  return std::max(a + 1U, b + 1U) - 1U;
+}  // kCountNodata + 1 is 0
 
 template <class T>
 constexpr GDALDataType kType = std::is_same_v<T, float> ? GDT_Float32 : GDT_UInt32;
@@ -172,8 +176,8 @@ int CPL_STDCALL still_going(double, const char*, void* target) {
 /// Writes the map and its overviews uncompressed into `draft`, and from there the finished file.
 template <class T>
 bool write_as(const Map& map, const MapTarget& target, const fs::path& draft, const fs::path& file) {
-  const char* const draft_options[] = {"TILED=YES", "BLOCKXSIZE=512", "BLOCKYSIZE=64", "INTERLEAVE=BAND",
-                                       "BIGTIFF=IF_SAFER", nullptr};
+  const char* const draft_options[] = {"TILED=YES",       "BLOCKXSIZE=512",   "BLOCKYSIZE=64",
+                                       "INTERLEAVE=BAND", "BIGTIFF=IF_SAFER", nullptr};
   const Dataset dataset(driver("GTiff")->Create(draft.c_str(), target.columns, target.rows,
                                                 static_cast<int>(map.bands.size()), kType<T>, draft_options));
   require(dataset != nullptr, "cannot be created");
@@ -184,8 +188,15 @@ bool write_as(const Map& map, const MapTarget& target, const fs::path& draft, co
   dataset->FlushCache(false);
   const std::string size = "BLOCKSIZE=" + std::to_string(block);
   // Level 6 would be a third slower and 3 % smaller. Blocks of nodata alone are left out: most of a large map.
-  const char* const options[] = {"COMPRESS=DEFLATE", "LEVEL=3", "PREDICTOR=YES", size.c_str(), "NUM_THREADS=1",
-                                 "BIGTIFF=IF_SAFER", "SPARSE_OK=TRUE", "OVERVIEWS=FORCE_USE_EXISTING", nullptr};
+  const char* const options[] = {"COMPRESS=DEFLATE",
+                                 "LEVEL=3",
+                                 "PREDICTOR=YES",
+                                 size.c_str(),
+                                 "NUM_THREADS=1",
+                                 "BIGTIFF=IF_SAFER",
+                                 "SPARSE_OK=TRUE",
+                                 "OVERVIEWS=FORCE_USE_EXISTING",
+                                 nullptr};
   MapTarget asked = target;
   const Dataset finished(driver("COG")->CreateCopy(file.c_str(), dataset.get(), FALSE, options, still_going, &asked));
   if (target.proceed && !target.proceed()) return false;

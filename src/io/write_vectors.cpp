@@ -7,7 +7,9 @@
 namespace talus::io {
 namespace {
 
-double decimals(double value, double scale) { return std::round(value * scale) / scale; }
+double decimals(double value, double scale) {
+  return std::round(value * scale) / scale;
+}
 
 /// Sets the attributes of a row one after the other, in the order of the columns.
 class Fields {
@@ -34,21 +36,30 @@ struct Place {
 
 const char* name_of(End end) {
   switch (end) {
-    case End::Stopped: return "stopped";
-    case End::Left: return "left";
-    case End::Caught: return "caught";
-    case End::Limit: return "limit";
+    case End::Stopped:
+      return "stopped";
+    case End::Left:
+      return "left";
+    case End::Caught:
+      return "caught";
+    case End::Limit:
+      return "limit";
   }
   return "";
 }
 
 const char* name_of(Event event) {
   switch (event) {
-    case Event::Release: return "release";
-    case Event::Impact: return "impact";
-    case Event::Slide: return "slide";
-    case Event::Takeoff: return "takeoff";
-    case Event::End: return "end";
+    case Event::Release:
+      return "release";
+    case Event::Impact:
+      return "impact";
+    case Event::Slide:
+      return "slide";
+    case Event::Takeoff:
+      return "takeoff";
+    case Event::End:
+      return "end";
   }
   return "";
 }
@@ -56,11 +67,19 @@ const char* name_of(Event event) {
 struct StopsWriter::State {
   State(const std::filesystem::path& name, const LoadedScenario& loaded)
       : file(name, loaded.geo), scenario(loaded.scenario), place(loaded.geo, loaded.scenario.surface.grid()) {
-    layer = file.add_point_layer("stops",
-                                 {{"source", OFTInteger64}, {"block", OFTInteger64}, {"end", OFTString},
-                                  {"feature", OFTString}, {"diameter_m", OFTReal}, {"mass_kg", OFTReal},
-                                  {"x_release", OFTReal}, {"y_release", OFTReal}, {"z", OFTReal}, {"seconds", OFTReal},
-                                  {"max_speed_ms", OFTReal}, {"length_m", OFTReal}, {"impacts", OFTInteger64}});
+    layer = file.add_point_layer("stops", {{"source", OFTInteger64},
+                                           {"block", OFTInteger64},
+                                           {"end", OFTString},
+                                           {"feature", OFTString},
+                                           {"diameter_m", OFTReal},
+                                           {"mass_kg", OFTReal},
+                                           {"x_release", OFTReal},
+                                           {"y_release", OFTReal},
+                                           {"z", OFTReal},
+                                           {"seconds", OFTReal},
+                                           {"max_speed_ms", OFTReal},
+                                           {"length_m", OFTReal},
+                                           {"impacts", OFTInteger64}});
     feature.reset(OGRFeature::CreateFeature(layer->GetLayerDefn()));
     point = new OGRPoint(0.0, 0.0);
     feature->SetGeometryDirectly(point);
@@ -106,14 +125,20 @@ void StopsWriter::write(std::span<const StopRow> rows) {
   for (const StopRow& row : rows) state_->append(row);
 }
 
-void StopsWriter::finish() { state_->file.finish(); }
+void StopsWriter::finish() {
+  state_->file.finish();
+}
 
 struct TrajectoriesWriter::State {
   State(const std::filesystem::path& name, const GeoReference& geo, const Grid& grid)
       : file(name, geo), place(geo, grid) {
     layer = file.add_layer("trajectories", wkbLineStringZM,
-                           {{"source", OFTInteger64}, {"block", OFTInteger64}, {"end", OFTString},
-                            {"diameter_m", OFTReal}, {"max_speed_ms", OFTReal}, {"length_m", OFTReal},
+                           {{"source", OFTInteger64},
+                            {"block", OFTInteger64},
+                            {"end", OFTString},
+                            {"diameter_m", OFTReal},
+                            {"max_speed_ms", OFTReal},
+                            {"length_m", OFTReal},
                             {"impacts", OFTInteger64}});
   }
 
@@ -156,8 +181,14 @@ void TrajectoriesWriter::write_vertices(const Path& path) {
   const GdalMessages messages;
   State& s = *state_;
   OGRLayer* layer = s.file.add_layer("vertices", wkbPointZM,
-                                     {{"time_s", OFTReal}, {"speed_ms", OFTReal}, {"vx", OFTReal}, {"vy", OFTReal},
-                                      {"vz", OFTReal}, {"wx", OFTReal}, {"wy", OFTReal}, {"wz", OFTReal},
+                                     {{"time_s", OFTReal},
+                                      {"speed_ms", OFTReal},
+                                      {"vx", OFTReal},
+                                      {"vy", OFTReal},
+                                      {"vz", OFTReal},
+                                      {"wx", OFTReal},
+                                      {"wy", OFTReal},
+                                      {"wz", OFTReal},
                                       {"event", OFTString}});
   const Feature feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
   for (const Vertex& vertex : path.vertices) {
@@ -168,12 +199,15 @@ void TrajectoriesWriter::write_vertices(const Path& path) {
     for (const double value : motion.velocity) fields.add(value);
     for (const double value : motion.spin) fields.add(value);
     fields.add(vertex.event == Event::End ? name_of(path.end) : name_of(vertex.event));
-    const OGRPoint point(s.place.x(motion.position.x()), s.place.y(motion.position.y()), motion.position.z(), motion.time);
+    const OGRPoint point(s.place.x(motion.position.x()), s.place.y(motion.position.y()), motion.position.z(),
+                         motion.time);
     feature->SetGeometry(&point);
     s.file.append(layer, *feature);
   }
 }
 
-void TrajectoriesWriter::finish() { state_->file.finish(); }
+void TrajectoriesWriter::finish() {
+  state_->file.finish();
+}
 
 }  // namespace talus::io

@@ -9,9 +9,9 @@ constexpr double kLargestShare = 0.25;  // of a cell, in one piece: the twist of
 
 /// The edge between two patches: a straight line in space.
 struct Edge {
-  Vec3 direction;     // unit, towards north or east
-  double length;      // of a whole cell side along it, in space [m]
-  double share;       // of the block's place along it, 0..1
+  Vec3 direction;  // unit, towards north or east
+  double length;   // of a whole cell side along it, in space [m]
+  double share;    // of the block's place along it, 0..1
 };
 
 Edge edge_between(const Slope& slope, const Slope& beyond, const Eigen::Vector2d& place) {

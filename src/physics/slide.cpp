@@ -13,10 +13,10 @@ using Vec2 = Eigen::Vector2d;
 
 constexpr int kMaxPieces = 1000;
 constexpr int kMaxHalvings = 20;
-constexpr int kMaxShort = 12;           // crossings of edges with hardly a way between them: the block is in a pit
-constexpr double kLongestPiece = 1.0;   // [s]
-constexpr double kErrorShare = 1e-3;    // of the diameter, per piece
-constexpr double kRounding = 1e-9;      // of the speed: below it an edge does not fall away
+constexpr int kMaxShort = 12;          // crossings of edges with hardly a way between them: the block is in a pit
+constexpr double kLongestPiece = 1.0;  // [s]
+constexpr double kErrorShare = 1e-3;   // of the diameter, per piece
+constexpr double kRounding = 1e-9;     // of the speed: below it an edge does not fall away
 
 /// A piece of constant acceleration.
 struct Piece {
@@ -151,7 +151,8 @@ SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, Patch
       if (!beyond.read()) return SlideEnd::Left;
       if (way < tolerance && beyond.at == came_from) {  // pressed back at once: along the crease
         const Motion before = motion;
-        if (slide_along_crease(slope, beyond, motion, diameter - slid, path) == CreaseEnd::Held) return SlideEnd::Stopped;
+        if (slide_along_crease(slope, beyond, motion, diameter - slid, path) == CreaseEnd::Held)
+          return SlideEnd::Stopped;
         way += (motion.position - before.position).norm();
       } else {
         came_from = at;
@@ -162,7 +163,8 @@ SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, Patch
     slid += way;
     if (slid >= diameter * (1.0 - 1e-6)) return SlideEnd::Asperity;
     if (way >= tolerance) short_crossings = 0;
-    if (step.crossed && way < tolerance && ++short_crossings > kMaxShort) {  // a pit: nowhere to slide to; it rubs there for one diameter
+    if (step.crossed && way < tolerance &&
+        ++short_crossings > kMaxShort) {  // a pit: nowhere to slide to; it rubs there for one diameter
       motion.time += (diameter - slid) / std::max(stop_speed, motion.velocity.norm());
       return motion.velocity.norm() <= stop_speed ? SlideEnd::Stopped : SlideEnd::Asperity;
     }

@@ -46,8 +46,8 @@ double time_to_cover(double distance, double s, double a, double longest);
 enum class CreaseEnd { Moved, Held };
 
 /// Slides a block along the concave edge between two patches that both press it back onto the edge: the limit of
-/// crossing it to and fro. The block turns along the edge and keeps its speed; gravity acts along the edge, friction with
-/// the mean of the two slopes; on its way it goes at most to the end of the edge, and at most a quarter of a cell.
+/// crossing it to and fro. The block turns along the edge and keeps its speed; gravity acts along the edge, friction
+/// with the mean of the two slopes; on its way it goes at most to the end of the edge, and at most a quarter of a cell.
 ///
 /// @param slope   the patch the block is in;  beyond: the patch on the other side of the edge
 /// @return        Held where the block rests and friction exceeds gravity along the edge

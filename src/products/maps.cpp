@@ -39,7 +39,10 @@ std::string number(double value) {
 
 Map count_map(const Scenario& scenario, const Tally& tally, const std::string& name, const std::string& title,
               std::function<double(const CellRecord&)> count) {
-  return {name, title, Map::Kind::Count, {{name, "count"}},
+  return {name,
+          title,
+          Map::Kind::Count,
+          {{name, "count"}},
           rows_of(scenario, tally, 1, 0.0,
                   [count = std::move(count)](const CellRecord& cell, const std::uint32_t*, std::span<double> values) {
                     values[0] = count(cell);
@@ -57,7 +60,9 @@ Map quantity_map(const Scenario& scenario, const Tally& tally, Quantity quantity
     values[3] = std::min(maximum, cell.histogram[q].percentile(0.99));
     values[4] = maximum;
   };
-  return {name, title, Map::Kind::Quantity,
+  return {name,
+          title,
+          Map::Kind::Quantity,
           {{"mean", unit}, {"P50", unit}, {"P95", unit}, {"P99", unit}, {"maximum", unit}},
           rows_of(scenario, tally, 5, kNotGiven, rule)};
 }
@@ -81,15 +86,19 @@ Map impact_probability(const Scenario& scenario, const Tally& tally) {
     for (std::size_t c = 0; c < columns; ++c)
       if (values[c] == 0.0) values[2 * columns + c] = none;
   };
-  return {"impact_probability", "Fraction of all released trajectories whose path crosses the cell",
-          Map::Kind::Probability, {{"probability", "1"}, {"lower 95 % bound", "1"}, {"upper 95 % bound", "1"}}, fill};
+  return {"impact_probability",
+          "Fraction of all released trajectories whose path crosses the cell",
+          Map::Kind::Probability,
+          {{"probability", "1"}, {"lower 95 % bound", "1"}, {"upper 95 % bound", "1"}},
+          fill};
 }
 
 Map reach_probability(const Scenario& scenario, const Tally& tally) {
   const double per_source = scenario.trajectories;
   return {"reach_probability",
           "Fraction of the trajectories of those source cells of which at least one trajectory reaches the cell",
-          Map::Kind::Probability, {{"reach probability", "1"}},
+          Map::Kind::Probability,
+          {{"reach probability", "1"}},
           rows_of(scenario, tally, 1, 0.0,
                   [per_source](const CellRecord& cell, const std::uint32_t*, std::span<double> values) {
                     values[0] = cell.passages / (cell.sources * per_source);

@@ -116,9 +116,15 @@ constexpr std::array<Bounds, 13> kLists{{
 
 }  // namespace
 
-std::span<const Field<Ground>> ground_fields() { return kGround; }
-std::span<const Field<Scenario>> scenario_fields() { return kScenario; }
-std::span<const Bounds> list_bounds() { return kLists; }
+std::span<const Field<Ground>> ground_fields() {
+  return kGround;
+}
+std::span<const Field<Scenario>> scenario_fields() {
+  return kScenario;
+}
+std::span<const Bounds> list_bounds() {
+  return kLists;
+}
 
 const Bounds& bounds_of(std::string_view key) {
   for (const Bounds& bounds : kLists)

@@ -18,11 +18,15 @@ int key_of(float value) {
                           kShift);
 }
 
-double edge_of(int key) { return std::bit_cast<float>(static_cast<std::uint32_t>(key) << kShift); }
+double edge_of(int key) {
+  return std::bit_cast<float>(static_cast<std::uint32_t>(key) << kShift);
+}
 
 }  // namespace
 
-LogHistogram::~LogHistogram() { std::free(counts_); }
+LogHistogram::~LogHistogram() {
+  std::free(counts_);
+}
 
 std::uint32_t LogHistogram::get(int bin) const {
   switch (width_) {

@@ -5,7 +5,8 @@
 namespace talus {
 namespace {
 
-/// Volume of a share of the power law N(>= V) = A V^-b between two bounds, by its inverse. Equal bounds give that volume.
+/// Volume of a share of the power law N(>= V) = A V^-b between two bounds, by its inverse. Equal bounds give that
+/// volume.
 double volume_at(const VolumePowerLaw& law, double share) {
   const double low = std::pow(law.volume.low, -law.exponent), high = std::pow(law.volume.high, -law.exponent);
   return std::pow(low - share * (low - high), -1.0 / law.exponent);

@@ -36,7 +36,9 @@ const std::array<Preset, 7>& all() {
 
 }  // namespace
 
-std::span<const Preset> presets() { return all(); }
+std::span<const Preset> presets() {
+  return all();
+}
 
 const Preset& find_preset(std::string_view name) {
   std::vector<std::string> names;

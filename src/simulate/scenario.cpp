@@ -25,7 +25,9 @@ std::string list_text(std::initializer_list<double> values) {
   return std::string("[") + joined(words) + "]";
 }
 
-std::string text_of(const Range& range) { return list_text({range.low, range.high}); }
+std::string text_of(const Range& range) {
+  return list_text({range.low, range.high});
+}
 
 void check(const Bounds& bounds, const Range& range, const std::string& key) {
   check(bounds, range.low, key);

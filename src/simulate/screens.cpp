@@ -6,7 +6,9 @@
 namespace talus {
 namespace {
 
-double cross_product(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross_product(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
 /// The motion a share of the way from one vertex to the next: a parabola with constant spin, or a piece of sliding.
 Motion between(const Vertex& from, const Vertex& to, double share) {
@@ -71,8 +73,8 @@ void ScreenFinder::cross(const Release& release, const Vertex& from, const Verte
     const double ground = surface_.height(m.position.x(), m.position.y()).value_or(m.position.z());
     crossings.push_back({release.source, release.block, s.screen, m.position.x(), m.position.y(), m.velocity.norm(),
                          from.event == Event::Slide ? 0.0 : std::max(0.0, m.position.z() - ground), m.spin.norm(),
-                         release.body.mass, release.body.diameter,
-                         s.along + line.norm() * (low / (low - high)), m.time});
+                         release.body.mass, release.body.diameter, s.along + line.norm() * (low / (low - high)),
+                         m.time});
   }
   std::sort(crossings.begin() + static_cast<std::ptrdiff_t>(first), crossings.end(),
             [](const Crossing& l, const Crossing& r) { return l.time < r.time; });

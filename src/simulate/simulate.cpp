@@ -34,8 +34,8 @@ StopRow stop_row(const Release& release, const Path& path) {
   const Motion& end = path.vertices.back().motion;
   double fastest = 0.0;
   for (const Span& span : path.spans)
-    fastest = std::max<double>(fastest, span.plan_speed_squared + std::max(span.rise_from * span.rise_from,
-                                                                           span.rise_to * span.rise_to));
+    fastest = std::max<double>(
+        fastest, span.plan_speed_squared + std::max(span.rise_from * span.rise_from, span.rise_to * span.rise_to));
   StopRow row{};
   row.source = release.source;
   row.block = release.block;
@@ -210,10 +210,15 @@ class Run {
   void report() {
     const std::lock_guard guard(mutex_);
     ++done_;
-    if (sinks_.progress && !stop_ && !sinks_.progress(static_cast<double>(done_) / static_cast<double>(units_))) {
-      interrupted_ = done_ < units_;
-      stop_ = true;
+    if (!sinks_.progress || stop_) return;
+    try {
+      if (sinks_.progress(static_cast<double>(done_) / static_cast<double>(units_))) return;
+    } catch (...) {
+      stop_ = true;  // before the lock is released: it is not called again
+      throw;
     }
+    interrupted_ = done_ < units_;
+    stop_ = true;
   }
 
   const Scenario& scenario_;

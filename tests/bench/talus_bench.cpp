@@ -2,6 +2,7 @@
 // tools/benchmark.py makes the slope that all figures are measured on, and compares with the sketch and the floor.
 #include <benchmark/benchmark.h>
 
+#include <chrono>
 #include <cstdio>
 #include <optional>
 
@@ -26,7 +27,9 @@ void run(benchmark::State& state) {
   const Scenario& scenario = scenario_with(state.range(0));
   for (auto _ : state) {
     Tally tally(scenario.surface.grid(), {30.0, 300.0, 500.0}, {1.0, 2.0, 4.0});
+    const auto start = std::chrono::steady_clock::now();
     const Totals totals = simulate(scenario, tally, {}, static_cast<int>(state.range(1)));
+    state.counters["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const double n = static_cast<double>(totals.released), cpu = totals.cpu_seconds;
     state.SetIterationTime(cpu);
     state.counters["plan_Mm_per_cpu_s"] = 1e-9 * static_cast<double>(totals.plan_length_mm) / cpu;

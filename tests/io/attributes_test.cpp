@@ -100,6 +100,15 @@ TEST_F(Attributes, AShapefileWithATextForANumberIsRefused) {
       {"s.shp: feature 0", "diameter = '1,2'", "String", "must be a number field in m"});
 }
 
+TEST_F(Attributes, AShapefileCutsThePairOfDiameters) {  // GDAL writes diameter_m and diameter_1
+  const std::string file =
+      write_vector(path("s.shp"), "EPSG:32632", {{"diameter_min", OFTReal}, {"diameter_max", OFTReal}},
+                   {{"POINT(5 5)", {"0.5", "1.8"}}}, wkbPoint);
+  const Range diameter = read_sources(file, terrain_, {1, 1}).features[0].diameter;
+  EXPECT_EQ(diameter.low, 0.5);
+  EXPECT_EQ(diameter.high, 1.8);
+}
+
 TEST_F(Attributes, ATextFieldWithoutTextIsNotGiven) {
   EXPECT_TRUE(std::isnan(read({{"diameter", OFTString}}, {{"NULL"}, {""}}).features[0].diameter.low));
 }

@@ -17,7 +17,9 @@ struct Place {
   double x, y;
 };
 
-double share(std::mt19937& random) { return static_cast<double>(random()) * 0x1p-32; }
+double share(std::mt19937& random) {
+  return static_cast<double>(random()) * 0x1p-32;
+}
 
 std::vector<Place> places(int count) {
   std::vector<Place> result;
@@ -60,7 +62,8 @@ TEST(PointIndex, FindsWhatAScanFinds) {
     ASSERT_TRUE(file);
     EXPECT_EQ(first_text(*file, "SELECT rtreecheck('rtree_points_geom')"), "ok") << count;
     EXPECT_EQ(first_text(*file, "SELECT count(*) FROM rtree_points_geom"), std::to_string(count));
-    EXPECT_EQ(first_text(*file, "SELECT count(*) FROM sqlite_master WHERE type = 'trigger' AND tbl_name = 'points'"), "6");
+    EXPECT_EQ(first_text(*file, "SELECT count(*) FROM sqlite_master WHERE type = 'trigger' AND tbl_name = 'points'"),
+              "6");
     OGRLayer* layer = file->GetLayer(0);
     for (const double size : {3.0, 40.0, 2000.0}) {
       const Place low{2600400.0, 1200100.0};

@@ -63,7 +63,9 @@ class RoundTrip : public Files {
   }
 };
 
-TEST_F(RoundTrip, OfDefaults) { check("", "\n"); }
+TEST_F(RoundTrip, OfDefaults) {
+  check("", "\n");
+}
 
 TEST_F(RoundTrip, OfOddNumbers) {
   check("density = 2700.0000000000005\naxes = [1, 0.1, 1e-5]\n",

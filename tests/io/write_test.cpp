@@ -88,7 +88,8 @@ TEST_F(Write, RasterIsACogOfTheRightPlaceAndValues) {
   EXPECT_STREQ(file->GetMetadataItem("TITLE"), "A test");
   double transform[6];
   ASSERT_EQ(file->GetGeoTransform(transform), CE_None);
-  EXPECT_EQ(std::vector<double>(transform, transform + 6), (std::vector<double>{2600000.0, 2.0, 0.0, 1200000.0, 0.0, -3.0}));
+  EXPECT_EQ(std::vector<double>(transform, transform + 6),
+            (std::vector<double>{2600000.0, 2.0, 0.0, 1200000.0, 0.0, -3.0}));
   const OGRSpatialReference lv95 = system();
   EXPECT_TRUE(file->GetSpatialRef()->IsSame(&lv95));
   ASSERT_EQ(file->GetRasterCount(), 2);
@@ -102,7 +103,8 @@ TEST_F(Write, RasterIsACogOfTheRightPlaceAndValues) {
     for (int row = 0; row < kRows; ++row)
       for (int c = 0; c < kColumns; ++c) {
         const double given = value_at(c, kRows - 1 - row, static_cast<std::size_t>(b));  // the file begins in the north
-        ASSERT_EQ(values[static_cast<std::size_t>(row * kColumns + c)], std::isnan(given) ? -9999.0 : given) << c << ' ' << row;
+        ASSERT_EQ(values[static_cast<std::size_t>(row * kColumns + c)], std::isnan(given) ? -9999.0 : given)
+            << c << ' ' << row;
       }
   }
 }
@@ -181,12 +183,11 @@ TEST_F(Write, AFolderThatIsGoneIsAnError) {
 }
 
 TEST_F(Write, StylesAreXmlWithRisingClasses) {
-  const std::vector<Map> maps{
-      {"energy", "", Map::Kind::Quantity, {{"mean", "kJ"}, {"P50", "kJ"}, {"P95", "kJ"}}, {}},
-      {"jump_height", "", Map::Kind::Quantity, {{"mean", "m"}, {"P95", "m"}}, {}},
-      {"velocity", "", Map::Kind::Quantity, {{"mean", "m/s"}}, {}},
-      {"height_exceedance", "", Map::Kind::Probability, {{"P(h > 1 m)", "1"}}, {}},
-      {"passages", "", Map::Kind::Count, {{"passages", "count"}}, {}}};
+  const std::vector<Map> maps{{"energy", "", Map::Kind::Quantity, {{"mean", "kJ"}, {"P50", "kJ"}, {"P95", "kJ"}}, {}},
+                              {"jump_height", "", Map::Kind::Quantity, {{"mean", "m"}, {"P95", "m"}}, {}},
+                              {"velocity", "", Map::Kind::Quantity, {{"mean", "m/s"}}, {}},
+                              {"height_exceedance", "", Map::Kind::Probability, {{"P(h > 1 m)", "1"}}, {}},
+                              {"passages", "", Map::Kind::Count, {{"passages", "count"}}, {}}};
   const std::vector<const char*> bands{"3", "2", "1", "1", "1"};
   for (std::size_t i = 0; i < maps.size(); ++i) {
     write_style(folder_, maps[i]);

@@ -62,7 +62,9 @@ Sample trace_sample(const Scenario& scenario) {
   return sample;
 }
 
-void line(const char* what, const std::string& text) { std::printf("%-14s%s\n", what, text.c_str()); }
+void line(const char* what, const std::string& text) {
+  std::printf("%-14s%s\n", what, text.c_str());
+}
 
 std::string number(double value, const char* format = "%.4g") {
   char text[64];
@@ -84,13 +86,16 @@ std::string list_text(const std::vector<double>& values, const char* unit) {
 void print_terrain(const LoadedScenario& loaded) {
   const talus::Raster<float>& heights = loaded.scenario.surface.heights();
   const talus::Grid& grid = heights.grid;
-  const auto missing = static_cast<std::uint64_t>(std::ranges::count_if(heights.values, [](float z) { return std::isnan(z); }));
+  const auto missing =
+      static_cast<std::uint64_t>(std::ranges::count_if(heights.values, [](float z) { return std::isnan(z); }));
   const talus::io::GeoReference& geo = loaded.geo;
-  line("terrain", count_text(static_cast<std::uint64_t>(grid.columns)) + " x " + count_text(static_cast<std::uint64_t>(grid.rows)) +
-                      " cells of " + talus::text_of(geo.cell_x) + " m x " + talus::text_of(geo.cell_y) + " m" +
+  line("terrain", count_text(static_cast<std::uint64_t>(grid.columns)) + " x " +
+                      count_text(static_cast<std::uint64_t>(grid.rows)) + " cells of " + talus::text_of(geo.cell_x) +
+                      " m x " + talus::text_of(geo.cell_y) + " m" +
                       (missing > 0 ? ", " + count_text(missing) + " of them without a height" : ""));
   line("extent", number(geo.west, "%.3f") + " to " + number(geo.west + grid.columns * geo.cell_x, "%.3f") + " east, " +
-                     number(geo.north - grid.rows * geo.cell_y, "%.3f") + " to " + number(geo.north, "%.3f") + " north");
+                     number(geo.north - grid.rows * geo.cell_y, "%.3f") + " to " + number(geo.north, "%.3f") +
+                     " north");
   line("system", talus::io::crs_name(geo.crs_wkt));
 }
 
@@ -100,7 +105,8 @@ void print_zones(const Scenario& scenario) {
   if (zones.empty()) cells[0] = scenario.surface.grid().cells();
   for (const std::uint8_t zone : zones) ++cells[zone];
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const std::string name = i < scenario.zone_names.size() && !scenario.zone_names[i].empty() ? scenario.zone_names[i] : "default";
+    const std::string name =
+        i < scenario.zone_names.size() && !scenario.zone_names[i].empty() ? scenario.zone_names[i] : "default";
     const talus::Ground& g = scenario.cover.grounds[i];
     line(i == 0 ? "ground" : "", name + ": " + count_text(cells[i]) + " cells; theta_scale " + number(g.theta_scale) +
                                      ", psi_scale " + number(g.psi_scale) + ", En50 " + number(g.En50) + ", Et50 " +
@@ -110,13 +116,15 @@ void print_zones(const Scenario& scenario) {
 }
 
 void print_blocks(const Scenario& scenario) {
-  line("sources", count_text(scenario.features.size()) + " features, " + count_text(scenario.sources.size()) + " source cells");
+  line("sources",
+       count_text(scenario.features.size()) + " features, " + count_text(scenario.sources.size()) + " source cells");
   const talus::Blocks& blocks = scenario.blocks;
   if (blocks.power_law.volume.high > 0.0)
     line("diameters", "power law of volume, " + range_text(blocks.power_law.volume, "m3") + ", exponent " +
                           talus::text_of(blocks.power_law.exponent));
   for (const talus::BlockClass& c : blocks.classes)
-    line("diameters", range_text(c.diameter, "m") + (blocks.classes.size() > 1 ? ", weight " + talus::text_of(c.weight) : ""));
+    line("diameters",
+         range_text(c.diameter, "m") + (blocks.classes.size() > 1 ? ", weight " + talus::text_of(c.weight) : ""));
   const auto own = std::ranges::count_if(scenario.features, [](const auto& f) { return !std::isnan(f.diameter.low); });
   if (own > 0) line("", std::to_string(own) + " features have a diameter of their own");
   line("releases", count_text(scenario.sources.size()) + " x " + count_text(scenario.trajectories) + " = " +
@@ -134,11 +142,15 @@ void print_estimate(const Scenario& scenario) {
   const double seconds = sample.seconds * all / traced / processors + kWriteTrajectory * all +
                          kWriteCell * static_cast<double>(scenario.surface.grid().cells()) / std::min(processors, 4U);
   // Of a touched cell: its record, a histogram of 40 bins for each quantity, its thresholds and its place in a list.
-  const double per_cell = sizeof(talus::CellRecord) + 3 * 40.0 + 16.0 +
-                          4.0 * static_cast<double>(scenario.output.energy_thresholds.size() + scenario.output.height_thresholds.size());
-  const auto megabytes = [&](double cells) { return number(std::ceil(so_far + 64.0 + cells * per_cell * 1e-6), "%.0f"); };
+  const double per_cell =
+      sizeof(talus::CellRecord) + 3 * 40.0 + 16.0 +
+      4.0 * static_cast<double>(scenario.output.energy_thresholds.size() + scenario.output.height_thresholds.size());
+  const auto megabytes = [&](double cells) {
+    return number(std::ceil(so_far + 64.0 + cells * per_cell * 1e-6), "%.0f");
+  };
   line("time", "about " + duration_text(seconds) + " on " + std::to_string(processors) + " processors (" +
-                   number(sample.length / traced, "%.0f") + " m a trajectory; from a sample of " + count_text(sample.traced) + ")");
+                   number(sample.length / traced, "%.0f") + " m a trajectory; from a sample of " +
+                   count_text(sample.traced) + ")");
   line("memory", "from " + megabytes(static_cast<double>(sample.touched_cells)) + " MB, if no more than the " +
                      count_text(sample.touched_cells) + " cells of the sample are reached, to " +
                      megabytes(static_cast<double>(scenario.surface.grid().cells())) + " MB, if all are");
@@ -173,6 +185,8 @@ void add_check(CLI::App& app, Action& action) {
   const auto flags = std::make_shared<talus::io::RunFlags>();
   CLI::App* command = app.add_subcommand("check", "Check a scenario and print the plan; writes nothing");
   add_scenario_options(*command, *flags);
-  command->footer("Example:\n  talus check scenario.toml\n\nLists every fault. Traces for at most two seconds to estimate the time.");
+  command->footer(
+      "Example:\n  talus check scenario.toml\n\nLists every fault. Traces for at most two seconds to estimate the "
+      "time.");
   command->callback([&action, flags] { action = [flags] { return check(*flags); }; });
 }

@@ -56,11 +56,13 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   const std::string see_help = "; see " + (called.empty() ? "talus" : "talus " + command.get_name()) + " --help";
   const std::string text = error.what();
   const auto is = [&error](CLI::ExitCodes code) { return error.get_exit_code() == static_cast<int>(code); };
-  if (is(CLI::ExitCodes::ConversionError)) return text.substr(text.find(": ") + 2) + ": is not a number that can stand there" + see_help;
+  if (is(CLI::ExitCodes::ConversionError))
+    return text.substr(text.find(": ") + 2) + ": is not a number that can stand there" + see_help;
   if (!is(CLI::ExitCodes::ExtrasError) && !called.empty()) return text + see_help;
   const std::vector<std::string> given(words.begin() + 1, words.end());
   for (const std::string& word : called.empty() ? given : command.remaining(true)) {
-    if (word.starts_with("-")) return "unknown option '" + word + "'" + talus::known_names(word, option_names(command)) + see_help;
+    if (word.starts_with("-"))
+      return "unknown option '" + word + "'" + talus::known_names(word, option_names(command)) + see_help;
     if (called.empty()) return "unknown command '" + word + "'" + talus::known_names(word, commands) + see_help;
     return "'" + word + "' was not expected there" + see_help;
   }
@@ -71,10 +73,11 @@ void describe(CLI::App& app) {
   app.name("talus");
   app.set_version_flag("--version", "talus " + std::string(talus::version()));
   app.require_subcommand(1);
-  app.footer("Example:\n"
-             "  talus run --dem dem.tif --sources cliffs.gpkg --diameter 1.2 -o result\n\n"
-             "talus COMMAND --help tells more of each command. Exit codes: 0 done, 2 the input is wrong,\n"
-             "130 interrupted, 1 anything else.");
+  app.footer(
+      "Example:\n"
+      "  talus run --dem dem.tif --sources cliffs.gpkg --diameter 1.2 -o result\n\n"
+      "talus COMMAND --help tells more of each command. Exit codes: 0 done, 2 the input is wrong,\n"
+      "130 interrupted, 1 anything else.");
 }
 
 int run_program(int argc, char** argv) {
@@ -89,7 +92,8 @@ int run_program(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);  // --help, --version
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
+      return app.exit(error);  // --help, --version
     throw talus::InputError(explain(app, error));
   }
   const int code = action();
@@ -106,13 +110,18 @@ void catch_signals() {
   }
 }
 
-const std::vector<std::string>& command_line() { return words; }
+const std::vector<std::string>& command_line() {
+  return words;
+}
 
-bool interrupted() { return asked_to_end; }
+bool interrupted() {
+  return asked_to_end;
+}
 
 void say(const std::string& kind, const std::string& text) {
   std::string line = "talus: " + (kind.empty() ? "" : kind + ": ") + text;
-  std::ranges::replace_if(line, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  std::ranges::replace_if(
+      line, [](char c) { return c == '\n' || c == '\r'; }, ' ');
   std::fprintf(stderr, "%s\n", line.c_str());
 }
 

@@ -1,16 +1,18 @@
+#include "talus/simulate/presets.hpp"
+
 #include <cstdio>
 
 #include "commands.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/fields.hpp"
-#include "talus/simulate/presets.hpp"
 
 namespace {
 
 /// One column per parameter of a ground, as `fields` names it; then where the set comes from.
 int print_presets() {
   std::printf("%-18s", "preset");
-  for (const auto& field : talus::ground_fields()) std::printf("%*s", static_cast<int>(field.key.size()) + 2, field.key.data());
+  for (const auto& field : talus::ground_fields())
+    std::printf("%*s", static_cast<int>(field.key.size()) + 2, field.key.data());
   std::printf("  source\n");
   for (const talus::Preset& preset : talus::presets()) {
     std::printf("%-18s", std::string(preset.name).c_str());
@@ -21,8 +23,11 @@ int print_presets() {
     }
     std::printf("  %s: %s\n", std::string(preset.source).c_str(), std::string(preset.where).c_str());
   }
-  std::printf("\nTables of Mitchell and Hungr's paper on PIERRE 2. Units: En50, Et50 m3/s2, phi degrees; the others have none.\n"
-              "Where no preset is named, %s holds.\n", std::string(talus::kDefaultPreset).c_str());
+  std::printf(
+      "\nTables of Mitchell and Hungr's paper on PIERRE 2. Units: En50, Et50 m3/s2, phi degrees; the others have "
+      "none.\n"
+      "Where no preset is named, %s holds.\n",
+      std::string(talus::kDefaultPreset).c_str());
   return 0;
 }
 

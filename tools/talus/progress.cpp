@@ -17,7 +17,9 @@ Progress::Progress(Mode mode, std::uint64_t trajectories)
   if (mode_ == Mode::Machine) percent(0);
 }
 
-Progress::~Progress() { erase(); }
+Progress::~Progress() {
+  erase();
+}
 
 bool Progress::update(double share) {
   if (mode_ == Mode::Silent) return true;

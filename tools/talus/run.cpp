@@ -55,7 +55,9 @@ class Stopwatch {
   Lap last_ = read();
 };
 
-[[noreturn]] void stop_interrupted() { throw Interrupted("interrupted; nothing was written"); }
+[[noreturn]] void stop_interrupted() {
+  throw Interrupted("interrupted; nothing was written");
+}
 
 /// The files that are written while the trajectories are traced.
 class Vectors {
@@ -87,7 +89,8 @@ class Vectors {
 };
 
 /// Writes all maps, several at a time. What is thrown may not leave the parallel region: the first failure is kept.
-void write_maps(const LoadedScenario& loaded, const talus::Tally& tally, const std::filesystem::path& folder, int threads) {
+void write_maps(const LoadedScenario& loaded, const talus::Tally& tally, const std::filesystem::path& folder,
+                int threads) {
   const talus::Grid& grid = loaded.scenario.surface.grid();
   const talus::io::MapTarget target{folder, loaded.geo, grid.columns, grid.rows, [] { return !interrupted(); }};
   const std::vector<talus::Map> maps = talus::make_maps(loaded.scenario, tally);
@@ -109,12 +112,15 @@ void write_maps(const LoadedScenario& loaded, const talus::Tally& tally, const s
 /// Names of the files in a folder, in the order of the alphabet.
 std::vector<std::string> files_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    names.push_back(entry.path().filename().string());
   std::ranges::sort(names);
   return names;
 }
 
-std::uint64_t count_of(const talus::Totals& totals, talus::End end) { return totals.ends[static_cast<std::size_t>(end)]; }
+std::uint64_t count_of(const talus::Totals& totals, talus::End end) {
+  return totals.ends[static_cast<std::size_t>(end)];
+}
 
 std::string share_text(std::uint64_t part, std::uint64_t whole) {
   char text[32];
@@ -135,8 +141,8 @@ void summarise(const talus::io::RunRecord& record, const LoadedScenario& loaded,
   say("", count_text(t.released) + " trajectories from " + count_text(loaded.scenario.sources.size()) +
               " source cells: " + count_text(count_of(t, talus::End::Stopped)) + " stopped, " +
               count_text(count_of(t, talus::End::Left)) + " left the map, " +
-              count_text(count_of(t, talus::End::Caught)) + " caught, " +
-              count_text(count_of(t, talus::End::Limit)) + " at a limit");
+              count_text(count_of(t, talus::End::Caught)) + " caught, " + count_text(count_of(t, talus::End::Limit)) +
+              " at a limit");
   char seconds[96];
   std::snprintf(seconds, sizeof seconds, "read %.1f s, simulated %.1f s, wrote %.1f s", record.wall.read,
                 record.wall.simulate, record.wall.write);
@@ -178,9 +184,10 @@ int judge_limits(const talus::Totals& totals, const std::filesystem::path& folde
   if (!talus::io::too_many_limits(totals)) return 0;
   const std::uint64_t limits = count_of(totals, talus::End::Limit);
   say("error", count_text(limits) + " of " + count_text(totals.released) + " trajectories (" +
-                   share_text(limits, totals.released) + ", allowed are 0.1 %) ended at the limit of impacts or time; " +
-                   "look at the first: talus trace " + (folder / "scenario.toml").string() + " --source " +
-                   std::to_string(totals.first_limit[0]) + " --block " + std::to_string(totals.first_limit[1]));
+                   share_text(limits, totals.released) +
+                   ", allowed are 0.1 %) ended at the limit of impacts or time; " + "look at the first: talus trace " +
+                   (folder / "scenario.toml").string() + " --source " + std::to_string(totals.first_limit[0]) +
+                   " --block " + std::to_string(totals.first_limit[1]));
   return 1;
 }
 
@@ -236,9 +243,10 @@ void add_run(CLI::App& app, Action& action) {
   command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
   command->add_option("--progress", options->progress, "machine: lines `progress 42` for other programs")
       ->check(CLI::IsMember({"machine"}));
-  command->footer("Examples:\n"
-                  "  talus run scenario.toml -o result\n"
-                  "  talus run --dem dem.tif --sources cliffs.gpkg --diameter 1.2 --trajectories 100 -o result\n\n"
-                  "An option given here counts more than the scenario file. OUT/scenario.toml holds all settings.");
+  command->footer(
+      "Examples:\n"
+      "  talus run scenario.toml -o result\n"
+      "  talus run --dem dem.tif --sources cliffs.gpkg --diameter 1.2 --trajectories 100 -o result\n\n"
+      "An option given here counts more than the scenario file. OUT/scenario.toml holds all settings.");
   command->callback([&action, options] { action = [options] { return run(*options); }; });
 }

@@ -25,8 +25,8 @@ struct Options {
 
 void check_range(const char* option, std::uint64_t value, std::uint64_t count, const char* what) {
   if (value >= count)
-    throw talus::InputError(std::string(option) + ": " + std::to_string(value) + " is not there; this scenario has " + what +
-                            " 0 to " + std::to_string(count - 1));
+    throw talus::InputError(std::string(option) + ": " + std::to_string(value) + " is not there; this scenario has " +
+                            what + " 0 to " + std::to_string(count - 1));
 }
 
 /// The end of a path as a row of stops.gpkg has it.
@@ -56,8 +56,16 @@ void print_csv(const talus::io::LoadedScenario& loaded, const talus::Path& path)
   std::puts("time,x,y,z,vx,vy,vz,wx,wy,wz,event");
   for (const talus::Vertex& vertex : path.vertices) {
     const talus::Motion& m = vertex.motion;
-    const std::array<double, 10> values{m.time,         loaded.geo.west + m.position.x(), south + m.position.y(), m.position.z(),
-                                        m.velocity.x(), m.velocity.y(), m.velocity.z(),   m.spin.x(), m.spin.y(), m.spin.z()};
+    const std::array<double, 10> values{m.time,
+                                        loaded.geo.west + m.position.x(),
+                                        south + m.position.y(),
+                                        m.position.z(),
+                                        m.velocity.x(),
+                                        m.velocity.y(),
+                                        m.velocity.z(),
+                                        m.spin.x(),
+                                        m.spin.y(),
+                                        m.spin.z()};
     std::string line;
     for (const double value : values) line += talus::text_of(value) + ",";
     line += vertex.event == talus::Event::End ? talus::io::name_of(path.end) : talus::io::name_of(vertex.event);
@@ -89,7 +97,8 @@ void write_geopackage(const fs::path& out, const talus::io::LoadedScenario& load
 void check_out(const std::string& out) {
   const fs::path path(out);
   if (path.extension() != ".gpkg") throw talus::InputError(out + ": the file must end in .gpkg, for example path.gpkg");
-  if (fs::exists(path)) throw talus::InputError(out + ": the file is there already; give a new name, or remove it first");
+  if (fs::exists(path))
+    throw talus::InputError(out + ": the file is there already; give a new name, or remove it first");
   if (!fs::is_directory(fs::absolute(path).parent_path()))
     throw talus::InputError(out + ": there is no such folder for the file to go into; create it first");
 }
@@ -118,10 +127,12 @@ int trace_one(const Options& options) {
 void add_trace(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("trace", "Replay one trajectory of a run, bit for bit");
-  command->add_option("scenario", options->scenario, "scenario file; every run leaves its own in OUT/scenario.toml")->required();
+  command->add_option("scenario", options->scenario, "scenario file; every run leaves its own in OUT/scenario.toml")
+      ->required();
   command->add_option("--source", options->source, "number of the source cell, as in stops.gpkg")->required();
   command->add_option("--block", options->block, "number of the block, as in stops.gpkg")->required();
-  command->add_option("-o,--out", options->out, "GeoPackage to write: the path and its vertices; without it CSV is printed");
+  command->add_option("-o,--out", options->out,
+                      "GeoPackage to write: the path and its vertices; without it CSV is printed");
   command->footer("Example:\n  talus trace result/scenario.toml --source 17 --block 4 -o path.gpkg");
   command->callback([&action, options] { action = [options] { return trace_one(*options); }; });
 }

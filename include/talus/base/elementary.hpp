@@ -14,12 +14,14 @@ namespace talus {
 ///
 /// @param x  (0, inf), a normal number; anything else is undefined
 ///
-/// Error: below 2 ulp, and below 1e-16 absolute near x = 1. Source: atanh series on the mantissa in [sqrt(1/2), sqrt(2)).
+/// Error: below 2 ulp, and below 1e-16 absolute near x = 1. Source: atanh series on the mantissa in [sqrt(1/2),
+/// sqrt(2)).
 inline double natural_log(double x) {
   constexpr std::uint64_t kRootHalf = 0x3FE6A09E00000000ULL;  // sqrt(1/2), its upper half
   const auto bits = std::bit_cast<std::uint64_t>(x);
   const auto exponent = static_cast<std::int32_t>((bits - kRootHalf) >> 32U) >> 20;
-  const double m = std::bit_cast<double>(bits - (static_cast<std::uint64_t>(static_cast<std::int64_t>(exponent)) << 52U));
+  const double m =
+      std::bit_cast<double>(bits - (static_cast<std::uint64_t>(static_cast<std::int64_t>(exponent)) << 52U));
   const double s = (m - 1.0) / (m + 1.0);  // ln m = 2 atanh s, |s| < 0.1716
   const double q = s * s, q2 = q * q, q4 = q2 * q2;
   const double series = q * ((1.0 / 3 + q * (1.0 / 5)) + q2 * (1.0 / 7 + q * (1.0 / 9)) +
@@ -47,11 +49,11 @@ inline SineCosine sine_cosine_of_turn(double turn) {
                            q4 * ((1.0 / 362880 - q * (1.0 / 39916800)) +
                                  q2 * (1.0 / 6227020800 - q * (1.0 / 1307674368000)) + q4 * (1.0 / 355687428096000)));
   const double cosine = (1.0 - q * 0.5) + q2 * (1.0 / 24 - q * (1.0 / 720)) +
-                        q4 * ((1.0 / 40320 - q * (1.0 / 3628800)) +
-                              q2 * (1.0 / 479001600 - q * (1.0 / 87178291200)) + q4 * (1.0 / 20922789888000));
+                        q4 * ((1.0 / 40320 - q * (1.0 / 3628800)) + q2 * (1.0 / 479001600 - q * (1.0 / 87178291200)) +
+                              q4 * (1.0 / 20922789888000));
   const bool swap = (quarter & 1) != 0;
-  const double sine_sign = (quarter & 2) != 0 ? -1.0 : 1.0;             // quarters 2 and 3
-  const double cosine_sign = ((quarter + 1) & 2) != 0 ? -1.0 : 1.0;     // quarters 1 and 2
+  const double sine_sign = (quarter & 2) != 0 ? -1.0 : 1.0;          // quarters 2 and 3
+  const double cosine_sign = ((quarter + 1) & 2) != 0 ? -1.0 : 1.0;  // quarters 1 and 2
   return {sine_sign * (swap ? cosine : sine), cosine_sign * (swap ? sine : cosine)};
 }
 

@@ -31,7 +31,9 @@ inline Words philox4x32(Words counter, std::array<std::uint32_t, 2> key) {
 enum class Purpose : std::uint32_t { Release = 0, Impact = 1 };
 
 /// A number in the open interval (0, 1), evenly spaced by 2^-32: its logarithm is finite.
-inline double uniform(std::uint32_t word) { return (static_cast<double>(word) + 0.5) * 0x1p-32; }
+inline double uniform(std::uint32_t word) {
+  return (static_cast<double>(word) + 0.5) * 0x1p-32;
+}
 
 /// Two independent standard normal numbers from two words (Box-Muller). |z| <= 6.8.
 inline std::array<double, 2> normal_pair(std::uint32_t first, std::uint32_t second) {

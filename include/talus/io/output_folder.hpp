@@ -7,8 +7,8 @@ namespace talus::io {
 
 /// A folder of results that appears under its name complete, or not at all.
 ///
-/// Everything is written into a hidden folder beside it, `.NAME.talus-PID`, so that a rename is all that `commit` has to
-/// do. Without `commit` (an exception, an interruption, a full disk) the hidden folder is removed.
+/// Everything is written into a hidden folder beside it, `.NAME.talus-PID`, so that a rename is all that `commit` has
+/// to do. Without `commit` (an exception, an interruption, a full disk) the hidden folder is removed.
 class OutputFolder {
  public:
   /// @param overwrite  an earlier result of talus (it holds a run.json) may be replaced

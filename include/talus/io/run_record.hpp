@@ -18,10 +18,10 @@ struct StageSeconds {
 
 /// What happened in a run.
 struct RunRecord {
-  std::vector<std::string> command;     ///< as it was called
+  std::vector<std::string> command;  ///< as it was called
   Totals totals;
-  std::vector<std::string> warnings;    ///< those of the input and those of the result
-  std::vector<std::string> files;       ///< written beside run.json
+  std::vector<std::string> warnings;  ///< those of the input and those of the result
+  std::vector<std::string> files;     ///< written beside run.json
   std::uint64_t touched_cells = 0;
   StageSeconds cpu, wall;
   int threads = 0;

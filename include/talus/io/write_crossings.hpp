@@ -30,10 +30,10 @@ class CrossingsWriter {
   [[noreturn]] void fail() const;
   void put(const std::string& text);
 
-  std::string name_;                    // of the file
+  std::string name_;  // of the file
   std::unique_ptr<std::FILE, Close> file_;
-  std::vector<std::string> screens_;    // their ids as they stand in the file
-  double west_, south_;                 // lower-left corner of the grid [m]
+  std::vector<std::string> screens_;  // their ids as they stand in the file
+  double west_, south_;               // lower-left corner of the grid [m]
 };
 
 /// A text as a field of a CSV file: in quotes where it needs them.

@@ -8,9 +8,9 @@
 
 namespace talus::io {
 
-/// Writers of what `simulate` hands out while it runs: rows go to the file as they come, memory does not grow with them.
-/// Called from one thread at a time, whichever. `finish` completes the file; without it what was written is worthless.
-/// All throw std::runtime_error, one line with the file and the cause (a full disk).
+/// Writers of what `simulate` hands out while it runs: rows go to the file as they come, memory does not grow with
+/// them. Called from one thread at a time, whichever. `finish` completes the file; without it what was written is
+/// worthless. All throw std::runtime_error, one line with the file and the cause (a full disk).
 
 /// Where every block ended: the layer `stops` of a GeoPackage, points in the system of the DEM.
 ///
@@ -29,7 +29,8 @@ class StopsWriter {
   std::unique_ptr<State> state_;
 };
 
-/// Paths of recorded blocks: the layer `trajectories` of a GeoPackage, LineString ZM with M = time since the release [s].
+/// Paths of recorded blocks: the layer `trajectories` of a GeoPackage, LineString ZM with M = time since the release
+/// [s].
 class TrajectoriesWriter {
  public:
   TrajectoriesWriter(const std::filesystem::path& file, const GeoReference& geo, const Grid& grid);

@@ -19,10 +19,10 @@ inline Block block_of(double diameter, double density) {
 
 /// Where a block is and how it moves.
 struct Motion {
-  double time = 0.0;                  ///< since the release [s]
-  Vec3 position = Vec3::Zero();       ///< of the centre, treated as a point on or above the terrain [m]
-  Vec3 velocity = Vec3::Zero();       ///< [m/s]
-  Vec3 spin = Vec3::Zero();           ///< angular velocity [rad/s]
+  double time = 0.0;             ///< since the release [s]
+  Vec3 position = Vec3::Zero();  ///< of the centre, treated as a point on or above the terrain [m]
+  Vec3 velocity = Vec3::Zero();  ///< [m/s]
+  Vec3 spin = Vec3::Zero();      ///< angular velocity [rad/s]
 };
 
 /// A block about to go: all that decides its path, beside the world.
@@ -30,7 +30,7 @@ struct Release {
   std::uint64_t seed = 1;
   std::uint32_t source = 0, block = 0;  ///< with the seed, the key of every random number on the path
   Block body;
-  Motion motion;                        ///< at time 0
+  Motion motion;  ///< at time 0
 };
 
 }  // namespace talus

@@ -9,8 +9,8 @@ namespace talus {
 
 /// How a flight or a slide over the surface came to its end.
 enum class Outcome {
-  Landed,   ///< on the surface, in patch `at`
-  Left      ///< over the edge of the terrain or above missing data
+  Landed,  ///< on the surface, in patch `at`
+  Left     ///< over the edge of the terrain or above missing data
 };
 
 /// Time of the first contact with the ground of a block whose clearance over a patch is f0 + f1 t + f2 t^2.

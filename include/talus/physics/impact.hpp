@@ -51,8 +51,8 @@ class Asperities {
 
 /// The plane that a block meets instead of the smooth surface.
 struct RoughPlane {
-  Vec3 normal;            ///< n', unit
-  bool psi_dropped;       ///< the sideways tilt turned the plane out of the way, so it was left out
+  Vec3 normal;       ///< n', unit
+  bool psi_dropped;  ///< the sideways tilt turned the plane out of the way, so it was left out
 };
 
 /// Step 2: tilts the smooth normal by theta against the motion, then by psi about the plane's longitudinal tangent.
@@ -89,7 +89,8 @@ struct Rebound {
 /// Step 5 on a plane of normal `n`: the restitution factors, friction, and the spin it makes.
 ///
 /// @param arm  R_eff, distance of the contact point from the centre [m], > 0
-Rebound rebound(const Vec3& velocity, const Vec3& spin, const Vec3& n, const Restitution& k, double arm, double tan_phi);
+Rebound rebound(const Vec3& velocity, const Vec3& spin, const Vec3& n, const Restitution& k, double arm,
+                double tan_phi);
 
 /// What happened at an impact, beside the new motion.
 struct Contact {

@@ -30,11 +30,11 @@ struct Vertex {
 /// share s of the way: height(s) = height_from + s ((height_to - height_from) - bend (1 - s)). A slide has no height.
 struct Span {
   PatchIndex patch;
-  float p_from, q_from, p_to, q_to;       ///< patch coordinates [-]
-  float height_from, height_to, bend;     ///< clearance above the ground [m]; bend is f2 dt^2
-  float plan_speed_squared;               ///< [m^2/s^2]; for a slide 0
-  float rise_from, rise_to;               ///< vertical speed at the ends [m/s]; for a slide the speed itself
-  std::uint32_t impacts;                  ///< at its end; more than one where the block could not move between them
+  float p_from, q_from, p_to, q_to;    ///< patch coordinates [-]
+  float height_from, height_to, bend;  ///< clearance above the ground [m]; bend is f2 dt^2
+  float plan_speed_squared;            ///< [m^2/s^2]; for a slide 0
+  float rise_from, rise_to;            ///< vertical speed at the ends [m/s]; for a slide the speed itself
+  std::uint32_t impacts;               ///< at its end; more than one where the block could not move between them
 };
 
 /// One trajectory: plain data between the engine and its readers (tallies, screens, recordings). Reused as a buffer.
@@ -43,9 +43,9 @@ struct Path {
   std::vector<Span> spans;
   End end = End::Limit;
   std::uint32_t impacts = 0;
-  std::uint32_t psi_dropped = 0;   ///< impacts whose sideways tilt was left out
-  double length = 0.0;             ///< in space [m]
-  double plan_length = 0.0;        ///< in plan [m]
+  std::uint32_t psi_dropped = 0;  ///< impacts whose sideways tilt was left out
+  double length = 0.0;            ///< in space [m]
+  double plan_length = 0.0;       ///< in plan [m]
 
   void clear() {
     vertices.clear();

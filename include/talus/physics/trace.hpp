@@ -6,9 +6,9 @@ namespace talus {
 
 /// When a block counts as stopped, and the bounds of a trajectory. docs/physics.md, "End of a trajectory".
 struct EndRules {
-  double stop_speed = 0.5;                ///< [m/s]
-  double trap_time = 5.0;                 ///< within one diameter of a place for so long: trapped [s]
-  double time_limit = 600.0;              ///< [s]
+  double stop_speed = 0.5;    ///< [m/s]
+  double trap_time = 5.0;     ///< within one diameter of a place for so long: trapped [s]
+  double time_limit = 600.0;  ///< [s]
   std::uint32_t impact_limit = 100'000;
 };
 

@@ -8,8 +8,8 @@ namespace talus {
 
 /// Counts of positive values in bins of equal relative width: 16 to each doubling, so that a bin is 3.2 to 6.25 % wide.
 ///
-/// The first few values are kept as they come (their bins), without memory of their own: most cells at the edge of a map
-/// see no more. Then only the bins from the smallest to the largest value are stored, as 8-bit counts that widen to
+/// The first few values are kept as they come (their bins), without memory of their own: most cells at the edge of a
+/// map see no more. Then only the bins from the smallest to the largest value are stored, as 8-bit counts that widen to
 /// 16 and 32 bits when one is full; at most the kSpan bins below the largest value are kept apart, what is smaller is
 /// counted in the lowest of them. The state depends on the values only, not on their order: merging is exact.
 class LogHistogram {
@@ -34,8 +34,9 @@ class LogHistogram {
 
   /// The value below which `share` of the counted values lie, interpolated within its bin.
   ///
-  /// Against the k-th smallest value, k = ceil(share n): in the same bin, so off by less than 6.25 %. Where that value is
-  /// below m = max(kFloor, largest / 128), only known to be so: the answer is below 1.0625 m. 0 where nothing was counted.
+  /// Against the k-th smallest value, k = ceil(share n): in the same bin, so off by less than 6.25 %. Where that value
+  /// is below m = max(kFloor, largest / 128), only known to be so: the answer is below 1.0625 m. 0 where nothing was
+  /// counted.
   double percentile(double share) const;
 
  private:
@@ -56,12 +57,12 @@ class LogHistogram {
   void spill(int low_key, int high_key);
   void widen(std::uint8_t width);
 
-  unsigned char* counts_ = nullptr;         // null while there are few values
-  std::uint16_t first_ = 0;                 // key of the lowest stored bin
-  std::uint16_t size_ = 0;                  // bins stored
-  std::uint8_t width_ = 1;                  // bytes per count
+  unsigned char* counts_ = nullptr;  // null while there are few values
+  std::uint16_t first_ = 0;          // key of the lowest stored bin
+  std::uint16_t size_ = 0;           // bins stored
+  std::uint8_t width_ = 1;           // bytes per count
   std::uint8_t few_count_ = 0;
-  std::array<std::uint16_t, kFew> few_{};   // keys of the first values
+  std::array<std::uint16_t, kFew> few_{};  // keys of the first values
 };
 
 }  // namespace talus

@@ -20,29 +20,29 @@ struct Range {
 /// What the features of the source layer say of their blocks. NaN: the scenario's own value holds.
 struct SourceFeature {
   std::string name;
-  double frequency = kNotGiven;                ///< events per year of the whole feature
-  Range diameter{kNotGiven, kNotGiven};        ///< [m]
-  Range release_height{1.0, 1.0};              ///< above the terrain [m]
-  Vec3 velocity = Vec3::Zero();                ///< at the release [m/s]
+  double frequency = kNotGiven;          ///< events per year of the whole feature
+  Range diameter{kNotGiven, kNotGiven};  ///< [m]
+  Range release_height{1.0, 1.0};        ///< above the terrain [m]
+  Vec3 velocity = Vec3::Zero();          ///< at the release [m/s]
 };
 
 /// One place of release: a cell of the grid, or a point of its own.
 struct SourceCell {
-  std::uint32_t feature = 0;                   ///< index into Scenario::features
-  double x = 0.0, y = 0.0;                     ///< centre of the cell, or the point [m, local]
-  bool point = false;                          ///< released exactly there, not uniformly in the cell
+  std::uint32_t feature = 0;  ///< index into Scenario::features
+  double x = 0.0, y = 0.0;    ///< centre of the cell, or the point [m, local]
+  bool point = false;         ///< released exactly there, not uniformly in the cell
 };
 
 /// A class of block sizes, with its share of the blocks.
 struct BlockClass {
-  Range diameter;                              ///< [m]
-  double weight = 1.0;                         ///< relative, > 0
-  double frequency = kNotGiven;                ///< events per year
+  Range diameter;                ///< [m]
+  double weight = 1.0;           ///< relative, > 0
+  double frequency = kNotGiven;  ///< events per year
 };
 
 /// Volumes with N(>= V) proportional to V^-exponent between two bounds.
 struct VolumePowerLaw {
-  Range volume{0.0, 0.0};                      ///< [m^3]; high = 0: no power law
+  Range volume{0.0, 0.0};  ///< [m^3]; high = 0: no power law
   double exponent = 1.0;
 };
 
@@ -50,8 +50,8 @@ struct VolumePowerLaw {
 struct Blocks {
   std::vector<BlockClass> classes;
   VolumePowerLaw power_law;
-  double density = 2700.0;                     ///< [kg/m^3]
-  Vec3 axes = Vec3::Ones();                    ///< L1 >= L2 >= L3 relative to each other, for effects that need a shape
+  double density = 2700.0;   ///< [kg/m^3]
+  Vec3 axes = Vec3::Ones();  ///< L1 >= L2 >= L3 relative to each other, for effects that need a shape
 };
 
 /// A line whose crossings are recorded.
@@ -62,7 +62,7 @@ struct Screen {
 
 /// What is kept of the trajectories.
 struct OutputSettings {
-  std::vector<double> energy_thresholds{30.0, 300.0};  ///< translational [kJ], ascending
+  std::vector<double> energy_thresholds{30.0, 300.0};    ///< translational [kJ], ascending
   std::vector<double> height_thresholds{1.0, 2.0, 4.0};  ///< vertical, above the terrain [m], ascending
   std::uint32_t paths = 500;                             ///< trajectories written as vectors
 };
@@ -71,7 +71,7 @@ struct OutputSettings {
 struct Scenario {
   Surface surface{Raster<float>{}};
   Cover cover;
-  std::vector<std::string> zone_names;         ///< of cover.grounds
+  std::vector<std::string> zone_names;  ///< of cover.grounds
   std::vector<SourceFeature> features;
   std::vector<SourceCell> sources;
   Blocks blocks;
@@ -80,7 +80,7 @@ struct Scenario {
   EndRules rules;
   OutputSettings output;
   std::uint64_t seed = 1;
-  std::uint32_t trajectories = 100;            ///< per source cell
+  std::uint32_t trajectories = 100;  ///< per source cell
 
   World world() const { return {surface, cover, impact, rules}; }
   std::uint64_t released() const { return std::uint64_t{trajectories} * sources.size(); }

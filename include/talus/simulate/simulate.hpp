@@ -12,16 +12,16 @@ namespace talus {
 struct StopRow {
   std::uint32_t source, block;
   End end;
-  float diameter, mass;          // [m], [kg]
-  float x_release, y_release;    // [m, local]
-  double x, y, z;                // where it ended [m, local]
+  float diameter, mass;                           // [m], [kg]
+  float x_release, y_release;                     // [m, local]
+  double x, y, z;                                 // where it ended [m, local]
   float seconds, max_speed, length, plan_length;  // [s], [m/s], [m], [m]
   std::uint32_t impacts;
 };
 
 /// A point of a recorded path, dense enough to draw.
 struct PathPoint {
-  double x, y, z, time;          // [m, local], [s]
+  double x, y, z, time;  // [m, local], [s]
 };
 
 /// A path written as a vector.
@@ -39,7 +39,8 @@ struct Sinks {
   std::function<void(std::span<const StopRow>)> stops;
   std::function<void(std::span<const Crossing>)> crossings;
   std::function<void(const RecordedPath&)> paths;
-  /// Called with the share done, 0..1, after every unit of work; false interrupts the run. From any thread, one at a time.
+  /// Called with the share done, 0..1, after every unit of work; false interrupts the run. From any thread, one at a
+  /// time.
   std::function<bool(double)> progress;
 };
 
@@ -50,8 +51,8 @@ struct Totals {
   std::int64_t length_mm = 0, plan_length_mm = 0;
   std::array<std::uint32_t, 2> first_limit{};  ///< smallest (source, block) that ended at a limit; see ends
   bool interrupted = false;
-  double sink_cpu_seconds = 0.0;             ///< of `cpu_seconds`, spent in the sinks
-  double cpu_seconds = 0.0;                  ///< of all threads
+  double sink_cpu_seconds = 0.0;  ///< of `cpu_seconds`, spent in the sinks
+  double cpu_seconds = 0.0;       ///< of all threads
 };
 
 /// Traces every trajectory of the scenario and scores it.

@@ -20,7 +20,7 @@ struct CellRecord {
   std::uint64_t impacts = 0;
   std::uint32_t passages = 0, deposits = 0, sources = 0;
   std::array<float, kQuantities> maximum{};
-  std::array<std::int64_t, kQuantities> sum{};   ///< fixed point, in units of kFixedPoint
+  std::array<std::int64_t, kQuantities> sum{};  ///< fixed point, in units of kFixedPoint
   std::array<LogHistogram, kQuantities> histogram;
 
   double mean(Quantity q) const;

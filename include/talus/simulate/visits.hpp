@@ -12,10 +12,10 @@ namespace talus {
 /// A trajectory on its way through a cell: the largest values on that way. A trajectory that comes back has several
 /// visits to a cell; they are made one when they are scored.
 struct Visit {
-  std::uint16_t cell;         ///< within its region: row * kRegionSide + column
-  std::uint16_t trajectory;   ///< within its batch
-  float speed_squared;        ///< [m^2/s^2]
-  float height;               ///< vertical, above the terrain [m]
+  std::uint16_t cell;        ///< within its region: row * kRegionSide + column
+  std::uint16_t trajectory;  ///< within its batch
+  float speed_squared;       ///< [m^2/s^2]
+  float height;              ///< vertical, above the terrain [m]
   std::uint32_t impacts : 31;
   std::uint32_t deposited : 1;
 };
@@ -25,7 +25,7 @@ struct Visit {
 class VisitBatch {
  public:
   struct Trajectory {
-    double mass;                         // [kg]
+    double mass;  // [kg]
     std::uint32_t source;
     std::shared_ptr<SourceReach> reach;  // of a source that several batches share; else empty
   };
@@ -43,7 +43,7 @@ class VisitBatch {
   const std::unordered_map<std::size_t, std::vector<Visit>>& regions() const { return regions_; }
 
  private:
-  static constexpr std::size_t kVisits = 3U << 18U;  // 12 MB
+  static constexpr std::size_t kVisits = 7U << 17U;  // 14 MB
   static constexpr std::size_t kTrajectories = 60'000;
 
   Visit& visit(int column, int row) {
@@ -55,8 +55,8 @@ class VisitBatch {
   std::unordered_map<std::size_t, std::vector<Visit>> regions_;
   std::vector<Trajectory> trajectories_;
   std::size_t size_ = 0;
-  int column_ = -1, row_ = -1;             // cell of the current visit
-  std::vector<Visit>* region_ = nullptr;   // whose last element is the current visit
+  int column_ = -1, row_ = -1;            // cell of the current visit
+  std::vector<Visit>* region_ = nullptr;  // whose last element is the current visit
   std::size_t region_index_ = 0;
 };
 

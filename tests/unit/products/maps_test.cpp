@@ -20,7 +20,8 @@ constexpr int kColumns = 6, kRows = 4;
 
 /// Two source cells of 10 trajectories on a terrain of 6 x 4 cells; there is none at (5, 3).
 Scenario small() {
-  Scenario s = test::scenario_on(test::terrain(test::grid_of(kColumns, kRows, 1.0, 1.0), [](double, double) { return 0.0; }));
+  Scenario s =
+      test::scenario_on(test::terrain(test::grid_of(kColumns, kRows, 1.0, 1.0), [](double, double) { return 0.0; }));
   Raster<float> heights = s.surface.heights();
   heights.at(5, 3) = std::numeric_limits<float>::quiet_NaN();
   s.surface = Surface(heights);
@@ -35,11 +36,11 @@ Scenario small() {
 Tally by_hand(const Scenario& s) {
   Tally tally(s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds);
   VisitBatch batch(tally.grid());
-  batch.add(path_of({stay(1, 1, 4, 1, 1)}, End::Stopped), 1000.0, 0, nullptr);                     // 2 kJ
-  batch.add(path_of({stay(1, 1, 36, 2, 1)}, End::Left), 1000.0, 0, nullptr);                       // 18 kJ
-  batch.add(path_of({stay(1, 1, 64, 1.5F), stay(2, 1, 144, 3)}, End::Stopped), 1000.0, 0, nullptr);   // 32, 72 kJ
+  batch.add(path_of({stay(1, 1, 4, 1, 1)}, End::Stopped), 1000.0, 0, nullptr);                       // 2 kJ
+  batch.add(path_of({stay(1, 1, 36, 2, 1)}, End::Left), 1000.0, 0, nullptr);                         // 18 kJ
+  batch.add(path_of({stay(1, 1, 64, 1.5F), stay(2, 1, 144, 3)}, End::Stopped), 1000.0, 0, nullptr);  // 32, 72 kJ
   batch.add(path_of({stay(2, 1, 16, 0, 1), stay(2, 1, 4, 1, 1)}, End::Caught), 1000.0, 1, nullptr);  // 8 kJ
-  batch.add(path_of({stay(2, 1, 100, 0)}, End::Left), 1000.0, 1, nullptr);                            // 50 kJ
+  batch.add(path_of({stay(2, 1, 100, 0)}, End::Left), 1000.0, 1, nullptr);                           // 50 kJ
   tally.add(batch);
   return tally;
 }
@@ -66,14 +67,24 @@ std::map<std::string, Bands> all_maps(const Scenario& s, const Tally& tally) {
   return maps;
 }
 
-std::size_t at(int column, int row) { return static_cast<std::size_t>(row * kColumns + column); }
+std::size_t at(int column, int row) {
+  return static_cast<std::size_t>(row * kColumns + column);
+}
 
 TEST(Maps, NamesAndBandsOfTheInterface) {
   const Scenario s = small();
   const Tally tally = by_hand(s);
-  const std::map<std::string, std::size_t> expected{
-      {"impact_probability", 3}, {"reach_probability", 1}, {"energy_exceedance", 2}, {"height_exceedance", 1},
-      {"energy", 5}, {"velocity", 5}, {"jump_height", 5}, {"passages", 1}, {"impacts", 1}, {"deposits", 1}, {"sources", 1}};
+  const std::map<std::string, std::size_t> expected{{"impact_probability", 3},
+                                                    {"reach_probability", 1},
+                                                    {"energy_exceedance", 2},
+                                                    {"height_exceedance", 1},
+                                                    {"energy", 5},
+                                                    {"velocity", 5},
+                                                    {"jump_height", 5},
+                                                    {"passages", 1},
+                                                    {"impacts", 1},
+                                                    {"deposits", 1},
+                                                    {"sources", 1}};
   std::map<std::string, std::size_t> found;
   for (const Map& map : make_maps(s, tally)) {
     found[map.name] = map.bands.size();
@@ -96,12 +107,12 @@ TEST(Maps, ProbabilitiesByHand) {
   EXPECT_EQ(maps["impact_probability"][0][at(2, 1)], 3.0 / 20.0);
   EXPECT_NEAR(maps["impact_probability"][1][at(1, 1)], 0.0321, 5e-5);  // 3 of 20: 3.21 % to 37.89 % (tables)
   EXPECT_NEAR(maps["impact_probability"][2][at(1, 1)], 0.3789, 5e-5);
-  EXPECT_EQ(maps["reach_probability"][0][at(1, 1)], 3.0 / 10.0);       // source 0 alone reaches it
+  EXPECT_EQ(maps["reach_probability"][0][at(1, 1)], 3.0 / 10.0);  // source 0 alone reaches it
   EXPECT_EQ(maps["reach_probability"][0][at(2, 1)], 3.0 / 20.0);
-  EXPECT_EQ(maps["energy_exceedance"][0][at(1, 1)], 2.0 / 20.0);       // 18 and 32 above 10 kJ
+  EXPECT_EQ(maps["energy_exceedance"][0][at(1, 1)], 2.0 / 20.0);  // 18 and 32 above 10 kJ
   EXPECT_EQ(maps["energy_exceedance"][1][at(1, 1)], 0.0);
-  EXPECT_EQ(maps["energy_exceedance"][0][at(2, 1)], 2.0 / 20.0);       // 72 and 50
-  EXPECT_EQ(maps["energy_exceedance"][1][at(2, 1)], 1.0 / 20.0);       // 50 itself is not above 50
+  EXPECT_EQ(maps["energy_exceedance"][0][at(2, 1)], 2.0 / 20.0);  // 72 and 50
+  EXPECT_EQ(maps["energy_exceedance"][1][at(2, 1)], 1.0 / 20.0);  // 50 itself is not above 50
   EXPECT_EQ(maps["height_exceedance"][0][at(1, 1)], 1.0 / 20.0);
   EXPECT_EQ(maps["height_exceedance"][0][at(2, 1)], 1.0 / 20.0);
 }
@@ -222,8 +233,9 @@ TEST(ProbabilityBounds, PublishedTable) {  // two-sided 95 %, e.g. Geigy Scienti
     std::uint64_t hits, trials;
     double low, high;
   };
-  for (const Row& row : {Row{0, 10, 0.0, 0.3085}, Row{1, 10, 0.0025, 0.4450}, Row{5, 10, 0.1871, 0.8129},
-                         Row{9, 10, 0.5550, 0.9975}, Row{10, 10, 0.6915, 1.0}, Row{0, 1, 0.0, 0.975}, Row{1, 1, 0.025, 1.0}}) {
+  for (const Row& row :
+       {Row{0, 10, 0.0, 0.3085}, Row{1, 10, 0.0025, 0.4450}, Row{5, 10, 0.1871, 0.8129}, Row{9, 10, 0.5550, 0.9975},
+        Row{10, 10, 0.6915, 1.0}, Row{0, 1, 0.0, 0.975}, Row{1, 1, 0.025, 1.0}}) {
     const Interval bounds = probability_bounds(row.hits, row.trials, 0.95);
     EXPECT_NEAR(bounds.low, row.low, 5e-5) << row.hits << " of " << row.trials;
     EXPECT_NEAR(bounds.high, row.high, 5e-5) << row.hits << " of " << row.trials;
@@ -232,7 +244,9 @@ TEST(ProbabilityBounds, PublishedTable) {  // two-sided 95 %, e.g. Geigy Scienti
   EXPECT_EQ(probability_bounds(10, 10, 0.95).high, 1.0);
 }
 
-double log_choose(double n, double k) { return std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0); }
+double log_choose(double n, double k) {
+  return std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0);
+}
 
 /// P(K = k) of n trials of probability p in (0, 1).
 double binomial(std::uint64_t k, std::uint64_t n, double p) {
@@ -266,7 +280,8 @@ TEST(ProbabilityBounds, CoverAtLeastAsOftenAsTheySay) {
       }
 }
 
-TEST(ProbabilityBounds, LargeNumbersOfTrials) {  // against the normal approximation, and the rule of three without a hit
+TEST(ProbabilityBounds,
+     LargeNumbersOfTrials) {  // against the normal approximation, and the rule of three without a hit
   const double n = 1e9, p = 1e-3, error = std::sqrt(p * (1.0 - p) / n);
   const Interval bounds = probability_bounds(1'000'000, 1'000'000'000, 0.95);
   EXPECT_NEAR(bounds.low, p - 1.959964 * error, 0.01 * error);

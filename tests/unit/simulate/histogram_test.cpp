@@ -61,10 +61,14 @@ std::vector<Distribution> distributions() {
           {"exponential", [](Numbers& r) { return -3.0 * std::log(1.0 - r.uniform(0.0, 1.0)); }},
           {"nine decades", [](Numbers& r) { return std::pow(10.0, r.uniform(-3.0, 6.0)); }},
           {"log-normal", [](Numbers& r) { return std::exp(2.0 * r.normal()); }},
-          {"two clusters", [](Numbers& r) { return r.uniform(0.0, 1.0) < 0.7 ? r.uniform(1.0, 1.1) : r.uniform(50.0, 60.0); }},
+          {"two clusters",
+           [](Numbers& r) { return r.uniform(0.0, 1.0) < 0.7 ? r.uniform(1.0, 1.1) : r.uniform(50.0, 60.0); }},
           {"half zero", [](Numbers& r) { return r.uniform(0.0, 1.0) < 0.5 ? 0.0 : r.uniform(0.0, 3.0); }},
           {"zero", [](Numbers&) { return 0.0; }},
-          {"edges of bins", [](Numbers& r) { return std::ldexp(16.0 + static_cast<double>(r.bits() % 16), static_cast<int>(r.bits() % 6)); }},
+          {"edges of bins",
+           [](Numbers& r) {
+             return std::ldexp(16.0 + static_cast<double>(r.bits() % 16), static_cast<int>(r.bits() % 6));
+           }},
           {"one large", [](Numbers& r) { return r.uniform(0.0, 1.0) < 0.001 ? 9e6 : r.uniform(1.0, 2.0); }},
           {"denormal to huge", [](Numbers& r) { return std::pow(10.0, r.uniform(-42.0, 37.0)); }}};
 }
@@ -107,7 +111,7 @@ TEST(LogHistogram, NoCountIsLostWhenABinIsFull) {
     histogram.add(other);
     ASSERT_EQ(histogram.count(), n + 6);
     const auto all = static_cast<double>(n + 6), count = static_cast<double>(n);
-    EXPECT_NEAR(histogram.percentile((count - 0.5) / all), 3.0, 3.0 * 0.0625) << n;   // the last 3
+    EXPECT_NEAR(histogram.percentile((count - 0.5) / all), 3.0, 3.0 * 0.0625) << n;  // the last 3
     EXPECT_NEAR(histogram.percentile((count + 0.5) / all), 10.0, 10.0 * 0.0625) << n;
     EXPECT_NEAR(histogram.percentile((count + 2.5) / all), 20.0, 20.0 * 0.0625) << n;
   }
@@ -115,7 +119,8 @@ TEST(LogHistogram, NoCountIsLostWhenABinIsFull) {
 
 TEST(LogHistogram, InterpolatesWithinABin) {  // 1000 values evenly in the bin [1, 1.0625): exact but for rounding
   Values values(1000);
-  for (std::size_t i = 0; i < 1000; ++i) values[i] = static_cast<float>(1.0 + 0.0625 * (static_cast<double>(i) + 0.5) / 1000.0);
+  for (std::size_t i = 0; i < 1000; ++i)
+    values[i] = static_cast<float>(1.0 + 0.0625 * (static_cast<double>(i) + 0.5) / 1000.0);
   LogHistogram histogram;
   histogram.add(values);
   for (int k = 1; k <= 1000; ++k)
@@ -141,7 +146,8 @@ void expect_same(const LogHistogram& a, const LogHistogram& b, const char* what)
   ASSERT_EQ(a.count(), b.count()) << what;
   for (int i = 0; i <= 200; ++i) {
     const double left = a.percentile(i / 200.0), right = b.percentile(i / 200.0);
-    ASSERT_TRUE(left == right || (std::isnan(left) && std::isnan(right))) << what << ' ' << i << ' ' << left << ' ' << right;
+    ASSERT_TRUE(left == right || (std::isnan(left) && std::isnan(right)))
+        << what << ' ' << i << ' ' << left << ' ' << right;
   }
 }
 

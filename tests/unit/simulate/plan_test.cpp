@@ -24,7 +24,9 @@ Scenario plain() {
   return s;
 }
 
-double plane_at(const Release& r) { return 100.0 - 0.5 * r.motion.position.x() + 0.25 * r.motion.position.y(); }
+double plane_at(const Release& r) {
+  return 100.0 - 0.5 * r.motion.position.x() + 0.25 * r.motion.position.y();
+}
 
 /// Pearson's statistic of counts that are expected to be equal, in standard deviations from its mean.
 double chi_square_deviations(const std::vector<double>& counts) {
@@ -85,9 +87,12 @@ TEST(MakeRelease, ClassesByWeightAndUniformWithin) {
   for (std::uint32_t block = 0; block < kDraws; ++block) {
     const Release r = make_release(s, 0, block);
     const double d = r.body.diameter;
-    if (d < 0.4) small += 1.0;
-    else if (d == 0.5) middle += 1.0;
-    else large[static_cast<std::size_t>(std::min(9.0, (d - 1.0) * 10.0))] += 1.0;
+    if (d < 0.4)
+      small += 1.0;
+    else if (d == 0.5)
+      middle += 1.0;
+    else
+      large[static_cast<std::size_t>(std::min(9.0, (d - 1.0) * 10.0))] += 1.0;
     ASSERT_TRUE((d >= 0.2 && d <= 0.4) || d == 0.5 || (d >= 1.0 && d <= 2.0)) << d;
   }
   EXPECT_NEAR(small / kDraws, 1.0 / 8.0, 5.0 * std::sqrt(1.0 / 8.0 * 7.0 / 8.0 / kDraws));
@@ -207,13 +212,15 @@ TEST(IsRecorded, ExactlyAsManyAsWantedAndEvenlySpread) {
         s.sources.assign(sources, s.sources[0]);
         s.trajectories = trajectories;
         s.output.paths = wanted;
-        const std::uint64_t all = std::uint64_t{sources} * trajectories, expected = std::min<std::uint64_t>(wanted, all);
+        const std::uint64_t all = std::uint64_t{sources} * trajectories,
+                            expected = std::min<std::uint64_t>(wanted, all);
         std::uint64_t recorded = 0, g = 0;
         for (std::uint32_t source = 0; source < sources; ++source)
           for (std::uint32_t block = 0; block < trajectories; ++block) {
             recorded += is_recorded(s, source, block) ? 1U : 0U;
             const double even = static_cast<double>(++g) * static_cast<double>(expected) / static_cast<double>(all);
-            ASSERT_LE(std::abs(static_cast<double>(recorded) - even), 1.0) << trajectories << ' ' << sources << ' ' << wanted;
+            ASSERT_LE(std::abs(static_cast<double>(recorded) - even), 1.0)
+                << trajectories << ' ' << sources << ' ' << wanted;
           }
         ASSERT_EQ(recorded, expected) << trajectories << ' ' << sources << ' ' << wanted;
       }

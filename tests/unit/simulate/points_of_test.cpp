@@ -9,7 +9,9 @@
 namespace talus {
 namespace {
 
-double plan_distance(const PathPoint& a, const PathPoint& b) { return std::hypot(b.x - a.x, b.y - a.y); }
+double plan_distance(const PathPoint& a, const PathPoint& b) {
+  return std::hypot(b.x - a.x, b.y - a.y);
+}
 
 TEST(PointsOf, EveryVertexAndTheParabolaBetween) {  // 4 s at (5, 0, 10): 20 m in plan
   Path path;

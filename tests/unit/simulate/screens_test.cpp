@@ -15,7 +15,8 @@ using Line = std::vector<Eigen::Vector2d>;
 
 /// A plane z = 50 - x / 2 of 200 m x 200 m with these screens.
 Scenario plane_with(std::vector<Screen> screens) {
-  Scenario s = test::scenario_on(test::terrain(test::grid_of(200, 200, 1.0, 1.0), [](double x, double) { return 50.0 - 0.5 * x; }));
+  Scenario s = test::scenario_on(
+      test::terrain(test::grid_of(200, 200, 1.0, 1.0), [](double x, double) { return 50.0 - 0.5 * x; }));
   s.screens = std::move(screens);
   return s;
 }
@@ -40,9 +41,11 @@ std::vector<Crossing> crossings_of(const Scenario& scenario, std::vector<Vertex>
 std::vector<Vertex> through(const Line& places) {
   std::vector<Vertex> vertices;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const Eigen::Vector2d way = i + 1 < places.size() ? Eigen::Vector2d(places[i + 1] - places[i]) : Eigen::Vector2d(0, 0);
+    const Eigen::Vector2d way =
+        i + 1 < places.size() ? Eigen::Vector2d(places[i + 1] - places[i]) : Eigen::Vector2d(0, 0);
     const Event event = i == 0 ? Event::Release : i + 1 < places.size() ? Event::Impact : Event::End;
-    vertices.push_back(vertex(event, static_cast<double>(i), {places[i].x(), places[i].y(), 60.0}, {way.x(), way.y(), 0.0}));
+    vertices.push_back(
+        vertex(event, static_cast<double>(i), {places[i].x(), places[i].y(), 60.0}, {way.x(), way.y(), 0.0}));
   }
   return vertices;
 }
@@ -106,7 +109,8 @@ TEST(ScreenFinder, ScreensInTheOrderOfTime) {
 }
 
 TEST(ScreenFinder, BackAndForthAreThreeCrossings) {
-  const auto crossings = crossings_of(plane_with({{"a", {{{50, 0}, {50, 100}}}}}), through({{20, 20}, {60, 30}, {40, 40}, {90, 50}}));
+  const auto crossings =
+      crossings_of(plane_with({{"a", {{{50, 0}, {50, 100}}}}}), through({{20, 20}, {60, 30}, {40, 40}, {90, 50}}));
   ASSERT_EQ(crossings.size(), 3U);
   EXPECT_NEAR(crossings[0].y, 27.5, 1e-12);
   EXPECT_NEAR(crossings[1].y, 35.0, 1e-12);
@@ -117,9 +121,9 @@ TEST(ScreenFinder, BackAndForthAreThreeCrossings) {
 
 TEST(ScreenFinder, MissesWhatItDoesNotMeet) {
   const Line screen{{50, 20}, {50, 60}};
-  EXPECT_EQ(count(screen, {{10, 10}, {90, 10}}), 0U);       // beside its end
-  EXPECT_EQ(count(screen, {{10, 30}, {49.999, 30}}), 0U);   // short of it
-  EXPECT_EQ(count(screen, {{50.001, 30}, {90, 30}}), 0U);   // beyond it
+  EXPECT_EQ(count(screen, {{10, 10}, {90, 10}}), 0U);      // beside its end
+  EXPECT_EQ(count(screen, {{10, 30}, {49.999, 30}}), 0U);  // short of it
+  EXPECT_EQ(count(screen, {{50.001, 30}, {90, 30}}), 0U);  // beyond it
   EXPECT_EQ(count(screen, {{50.001, 10}, {50.001, 90}}), 0U);
   EXPECT_EQ(count(screen, {{10, 150}, {90, 150}}), 0U);
   EXPECT_EQ(count(screen, {{10, 30}, {10, 30}, {20, 30}}), 0U);  // a step of no length
@@ -146,7 +150,8 @@ TEST(ScreenFinder, APathVertexOnTheScreenIsCountedOnceWhateverRoundingSays) {
   Numbers numbers(1);
   for (int i = 0; i < 2000; ++i) {
     const double x = numbers.uniform(10, 90);
-    ASSERT_EQ(count({{x, 0}, {x, 200}}, {{numbers.uniform(2, x), 50}, {x, 51}, {numbers.uniform(x, 190), 52}}), 1U) << x;
+    ASSERT_EQ(count({{x, 0}, {x, 200}}, {{numbers.uniform(2, x), 50}, {x, 51}, {numbers.uniform(x, 190), 52}}), 1U)
+        << x;
   }
 }
 
@@ -178,7 +183,8 @@ TEST(ScreenFinder, ARingIsCrossedAnEvenNumberOfTimesUnlessThePathEndsInside) {
   for (int trial = 0; trial < 500; ++trial) {
     Line path;
     for (int i = 0; i < 12; ++i) path.emplace_back(numbers.uniform(30, 170), numbers.uniform(30, 170));
-    ASSERT_EQ(crossings_of(scenario, through(path)).size() % 2 == 1, inside(path.front()) != inside(path.back())) << trial;
+    ASSERT_EQ(crossings_of(scenario, through(path)).size() % 2 == 1, inside(path.front()) != inside(path.back()))
+        << trial;
   }
 }
 
@@ -196,10 +202,10 @@ TEST(ScreenFinder, SlidesHaveNoHeight) {  // in plan from 6 m/s at -1 m/s^2 for 
 }
 
 TEST(ScreenFinder, ASlideIntoAnImpactHasTheSpeedBeforeIt) {  // the impact leaves 1 m/s only, of 4 m/s
-  const auto crossings = crossings_of(plane_with({{"a", {{{49, 0}, {49, 100}}}}}),
-                                      {vertex(Event::Slide, 1.0, {40, 40, 30.0}, {6, 0, 0}),
-                                       vertex(Event::Impact, 3.0, {50, 40, 30.0}, {0.8, 0, 0.6}),
-                                       vertex(Event::End, 4.0, {50.8, 40, 25.0}, {0.8, 0, -3})});
+  const auto crossings = crossings_of(
+      plane_with({{"a", {{{49, 0}, {49, 100}}}}}),
+      {vertex(Event::Slide, 1.0, {40, 40, 30.0}, {6, 0, 0}), vertex(Event::Impact, 3.0, {50, 40, 30.0}, {0.8, 0, 0.6}),
+       vertex(Event::End, 4.0, {50.8, 40, 25.0}, {0.8, 0, -3})});
   ASSERT_EQ(crossings.size(), 1U);
   EXPECT_NEAR(crossings[0].speed, std::sqrt(36.0 - 2.0 * 9.0), 0.03 * 6.0);
 }

@@ -39,13 +39,17 @@ struct Collected {
 Sinks sinks_into(Collected& all) {
   Sinks sinks;
   sinks.stops = [&](std::span<const StopRow> rows) { all.stops.insert(all.stops.end(), rows.begin(), rows.end()); };
-  sinks.crossings = [&](std::span<const Crossing> rows) { all.crossings.insert(all.crossings.end(), rows.begin(), rows.end()); };
+  sinks.crossings = [&](std::span<const Crossing> rows) {
+    all.crossings.insert(all.crossings.end(), rows.begin(), rows.end());
+  };
   sinks.paths = [&](const RecordedPath& path) { all.paths.push_back(path); };
   sinks.progress = [&](double share) { return all.progress.push_back(share), true; };
   return sinks;
 }
 
-constexpr auto index_of(End end) { return static_cast<std::size_t>(end); }
+constexpr auto index_of(End end) {
+  return static_cast<std::size_t>(end);
+}
 
 /// Calls `f` with every release and its path, one after the other.
 template <class F>
@@ -140,7 +144,8 @@ TEST(Simulate, EqualBitsForAnyNumberOfThreads) {
       ASSERT_EQ(all.stops[i].block, first.stops[i].block) << i;
     }
     ASSERT_EQ(all.crossings.size(), first.crossings.size());
-    for (std::size_t i = 0; i < all.crossings.size(); ++i) ASSERT_EQ(all.crossings[i].speed, first.crossings[i].speed) << i;
+    for (std::size_t i = 0; i < all.crossings.size(); ++i)
+      ASSERT_EQ(all.crossings[i].speed, first.crossings[i].speed) << i;
     ASSERT_EQ(all.paths.size(), first.paths.size());
   }
 }

@@ -46,7 +46,8 @@ std::vector<Sample> random_walks(std::size_t count, std::uint32_t per_source, st
     int column = 55 + static_cast<int>(numbers.bits() % 20), row = 55 + static_cast<int>(numbers.bits() % 20);
     for (int step = 0; step < 30; ++step) {
       path.spans.push_back(stay(column, row, static_cast<float>(numbers.uniform(0, 900)),
-                                static_cast<float>(std::max(0.0, numbers.uniform(-1, 4))), numbers.bits() % 3 == 0 ? 1U : 0U));
+                                static_cast<float>(std::max(0.0, numbers.uniform(-1, 4))),
+                                numbers.bits() % 3 == 0 ? 1U : 0U));
       column = std::clamp(column + static_cast<int>(numbers.bits() % 3) - 1, 0, 129);
       row = std::clamp(row + static_cast<int>(numbers.bits() % 3) - 1, 0, 99);
     }
@@ -97,7 +98,8 @@ void expect_values(const CellRecord& record, Quantity quantity, const std::vecto
 }
 
 std::uint32_t above(const std::vector<float>& values, double threshold) {
-  return static_cast<std::uint32_t>(std::count_if(values.begin(), values.end(), [&](float v) { return v > threshold; }));
+  return static_cast<std::uint32_t>(
+      std::count_if(values.begin(), values.end(), [&](float v) { return v > threshold; }));
 }
 
 void expect_equals(const Tally& tally, const Cells& cells) {
@@ -122,7 +124,9 @@ void expect_equals(const Tally& tally, const Cells& cells) {
     }
 }
 
-Tally new_tally() { return {test::grid_of(130, 100, 2.0, 2.0), kEnergies, kHeights}; }
+Tally new_tally() {
+  return {test::grid_of(130, 100, 2.0, 2.0), kEnergies, kHeights};
+}
 
 /// The samples in batches of `per_batch`; sources that several batches share get a reach of their own.
 std::vector<VisitBatch> batches_of(const std::vector<Sample>& samples, std::size_t per_batch) {
@@ -179,14 +183,17 @@ TEST(Tally, ThreadsGiveTheSameRecords) {
   const auto batches = batches_of(samples, 25);
   std::vector<std::thread> threads;
   for (std::size_t t = 0; t < 5; ++t)
-    threads.emplace_back([&, t] { for (std::size_t i = t; i < batches.size(); i += 5) shared.add(batches[i]); });
+    threads.emplace_back([&, t] {
+      for (std::size_t i = t; i < batches.size(); i += 5) shared.add(batches[i]);
+    });
   for (std::thread& thread : threads) thread.join();
   test::expect_same_records(shared, alone);
 }
 
 TEST(Tally, ARevisitIsOneValue) {  // by hand: 1000 kg; 20 m/s = 200 kJ is its largest, and height 3 of another visit
   VisitBatch batch(test::grid_of(130, 100, 2.0, 2.0));
-  batch.add(path_of({stay(3, 4, 400, 1, 1), stay(4, 4, 100, 2), stay(3, 4, 25, 3, 1)}, End::Stopped), 1000.0, 0, nullptr);
+  batch.add(path_of({stay(3, 4, 400, 1, 1), stay(4, 4, 100, 2), stay(3, 4, 25, 3, 1)}, End::Stopped), 1000.0, 0,
+            nullptr);
   Tally tally = new_tally();
   EXPECT_EQ(tally.add(batch), 2U);
   const CellRecord& cell = *tally.find(3, 4);
@@ -216,8 +223,10 @@ TEST(Tally, AThresholdItselfIsNotExceeded) {
 TEST(Tally, CornersOfTheGridAndOfRegions) {
   Tally tally = new_tally();
   VisitBatch batch(tally.grid());
-  const std::pair<int, int> corners[] = {{0, 0}, {63, 63}, {64, 63}, {63, 64}, {64, 64}, {127, 99}, {128, 64}, {129, 99}};
-  for (const auto& [column, row] : corners) batch.add(path_of({stay(column, row, 1, 1)}, End::Stopped), 1.0, 0, nullptr);
+  const std::pair<int, int> corners[] = {{0, 0},   {63, 63},  {64, 63},  {63, 64},
+                                         {64, 64}, {127, 99}, {128, 64}, {129, 99}};
+  for (const auto& [column, row] : corners)
+    batch.add(path_of({stay(column, row, 1, 1)}, End::Stopped), 1.0, 0, nullptr);
   tally.add(batch);
   EXPECT_EQ(tally.touched_cells(), std::size(corners));
   for (const auto& [column, row] : corners) {

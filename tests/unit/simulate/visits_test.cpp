@@ -102,7 +102,8 @@ std::map<Cell, Seen> sampled(const Surface& surface, const Vec3& start, const Ve
 TEST(VisitBatch, FlightsOverRoughTerrainAgainstDenseSampling) {
   Numbers numbers(1);
   const Grid grid = test::grid_of(150, 90, 2.0, 3.0);  // 3 x 2 regions
-  const Surface surface(test::terrain(grid, [&](double x, double y) { return 300.0 - 0.5 * x - 0.25 * y + numbers.uniform(-1, 1); }));
+  const Surface surface(
+      test::terrain(grid, [&](double x, double y) { return 300.0 - 0.5 * x - 0.25 * y + numbers.uniform(-1, 1); }));
   for (int trial = 0; trial < 60; ++trial) {
     const Vec3 start(numbers.uniform(20, 280), numbers.uniform(20, 250), 400.0 - 0.5 * 20 + numbers.uniform(0, 5));
     const Vec3 v(numbers.uniform(-30, 30), numbers.uniform(-30, 30), numbers.uniform(-20, 20));
@@ -171,9 +172,9 @@ TEST(VisitBatch, ASpanByHand) {  // over the middles of both directions: three c
   const auto found = seen(test::path_of({span}, End::Stopped), grid);
   ASSERT_TRUE(found.contains({2, 3}) && found.contains({3, 4}));
   EXPECT_EQ(found.at({2, 3}).speed_squared, 16.0 + 36.0);
-  EXPECT_EQ(found.at({2, 3}).height, 3.0);            // at s = 1/2
+  EXPECT_EQ(found.at({2, 3}).height, 3.0);  // at s = 1/2
   EXPECT_EQ(found.at({3, 4}).speed_squared, 16.0 + 4.0);
-  EXPECT_EQ(found.at({3, 4}).height, 3.25);           // the apex at s = 3/4
+  EXPECT_EQ(found.at({3, 4}).height, 3.25);  // the apex at s = 3/4
   EXPECT_EQ(found.at({3, 4}).impacts, 3);
   EXPECT_EQ(found.at({3, 4}).deposits, 1);
   EXPECT_EQ(found.at({2, 3}).impacts + found.at({2, 3}).deposits, 0);
@@ -207,7 +208,7 @@ TEST(VisitBatch, SlidesHaveTheirSpeedAndNoHeight) {
   EXPECT_EQ(found.at({2, 3}).speed_squared, 36.0);
   EXPECT_EQ(found.at({3, 3}).speed_squared, 25.0);  // 5 m/s half way
   EXPECT_EQ(found.at({3, 3}).height, 0.0);
-  EXPECT_EQ(found.at({3, 3}).deposits, 1);          // caught is a deposit too
+  EXPECT_EQ(found.at({3, 3}).deposits, 1);  // caught is a deposit too
 }
 
 TEST(VisitBatch, ImpactsAndDepositsAreWhereTheyHappen) {
@@ -237,8 +238,10 @@ TEST(VisitBatch, ImpactsAndDepositsAreWhereTheyHappen) {
 
 TEST(VisitBatch, ComingBackIsANewVisit) {
   const Grid grid = test::grid_of(8, 8, 1.0, 1.0);
-  const auto found = seen(test::path_of({test::stay(1, 1, 4, 1), test::stay(1, 1, 9, 0), test::stay(2, 1, 1, 1),
-                                         test::stay(1, 1, 1, 2)}, End::Stopped), grid);
+  const auto found = seen(
+      test::path_of({test::stay(1, 1, 4, 1), test::stay(1, 1, 9, 0), test::stay(2, 1, 1, 1), test::stay(1, 1, 1, 2)},
+                    End::Stopped),
+      grid);
   EXPECT_EQ(found.at({1, 1}).visits, 2);
   EXPECT_EQ(found.at({1, 1}).speed_squared, 9.0);
   EXPECT_EQ(found.at({1, 1}).height, 2.0);

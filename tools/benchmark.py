@@ -1,0 +1,76 @@
+#!/usr/bin/python3
+"""Measures the speed of the engine on the common test slope, next to the sketch and the floor, in one run.
+
+  tools/benchmark.py [--bench build/release/tests/bench/talus-bench] [--shared ../shared] [--work DIR] [--repeats 3]
+
+Makes the slope (2 000 x 2 000 cells of 2 m, 1 000 sources) with shared/bench/make_slope.py, compiles shared/bench/sketch.cpp
+(an unoptimised sketch of the loop with counts and one maximum), runs it and talus-bench in turn and prints the medians.
+Figures of one machine; the ratios within one run are what can be compared. Needs g++, python3-numpy, python3-gdal.
+"""
+import argparse
+import json
+import os
+import re
+import statistics
+import subprocess
+import tempfile
+
+
+def sketch_speed(folder):
+    """Plan metres per second of the sketch, in millions."""
+    out = subprocess.run([f"{folder}/sketch", f"{folder}/dem.asc", f"{folder}/sources.csv", "10"], check=True,
+                         capture_output=True, text=True).stdout
+    return float(re.search(r"Mm/s ([0-9.]+)", out).group(1))
+
+
+def bench(program, folder):
+    out = subprocess.run([program, f"{folder}/dem.tif", f"{folder}/sources.shp", "--benchmark_format=json"], check=True,
+                         capture_output=True, text=True).stdout
+    return {b["name"].split("/iterations")[0]: b for b in json.loads(out)["benchmarks"]}
+
+
+def table(runs, sketches):
+    def median(name, key):
+        return statistics.median(run[name][key] for run in runs)
+
+    sketch = statistics.median(sketches)
+    print(f"sketch: {sketch:.2f} million plan metres per CPU-second")
+    print("| trajectories per source, threads | million plan m per CPU-s | x sketch | us per trajectory | wall s |")
+    print("| --- | --- | --- | --- | --- |")
+    for name in ("run/10/1", "run/100/1", "run/10/2", "run/100/2"):
+        speed = median(name, "plan_Mm_per_cpu_s")
+        print(f"| {name[4:].replace('/', ', ')} | {speed:.2f} | {speed / sketch:.2f} | "
+              f"{median(name, 'us_per_trajectory'):.0f} | {median(name, 'wall_s'):.2f} |")
+    for n in (10, 100):
+        print(f"two threads against one, {n} trajectories: {median(f'run/{n}/1', 'wall_s') / median(f'run/{n}/2', 'wall_s'):.2f}x")
+    floor = median("floor_walk", "ns_per_plan_m")
+    print("| part | figure | per plan metre | x floor |\n| --- | --- | --- | --- |")
+    print(f"| floor: bare walk over the same patches | {median('floor_walk', 'ns_per_patch') * 1e9:.1f} ns per patch | {floor * 1e9:.1f} ns | 1 |")
+    traced = median("trace_only", "ns_per_plan_m")
+    print(f"| trace: flight, impacts, slides | {median('trace_only', 'ns_per_patch') * 1e9:.1f} ns per patch | {traced * 1e9:.1f} ns | {traced / floor:.1f} |")
+    print(f"| the impact law alone | {median('impact_law', 'ns_per_impact') * 1e9:.1f} ns per impact | | |")
+    print(f"| scoring alone | {median('score', 'ns_per_cell') * 1e9:.1f} ns per cell and trajectory | | |")
+
+
+def main():
+    here = os.path.dirname(os.path.abspath(__file__))
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--bench", default=f"{here}/../build/release/tests/bench/talus-bench")
+    parser.add_argument("--shared", default=f"{here}/../../shared")
+    parser.add_argument("--work")
+    parser.add_argument("--repeats", type=int, default=3)
+    o = parser.parse_args()
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = o.work or temporary
+        os.makedirs(folder, exist_ok=True)
+        if not os.path.exists(f"{folder}/sources.shp"):
+            subprocess.run(["/usr/bin/python3", f"{o.shared}/bench/make_slope.py", folder], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run(["g++", "-O2", "-std=c++17", f"{o.shared}/bench/sketch.cpp", "-o", f"{folder}/sketch"], check=True)
+        runs, sketches = [], []
+        for _ in range(o.repeats):
+            sketches.append(sketch_speed(folder))
+            runs.append(bench(o.bench, folder))
+        table(runs, sketches)
+
+
+main()
