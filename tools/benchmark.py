@@ -45,11 +45,11 @@ def table(runs, sketches):
         print(f"two threads against one, {n} trajectories: {median(f'run/{n}/1', 'wall_s') / median(f'run/{n}/2', 'wall_s'):.2f}x")
     floor = median("floor_walk", "ns_per_plan_m")
     print("| part | figure | per plan metre | x floor |\n| --- | --- | --- | --- |")
-    print(f"| floor: bare walk over the same patches | {median('floor_walk', 'ns_per_patch') * 1e9:.1f} ns per patch | {floor * 1e9:.1f} ns | 1 |")
+    print(f"| floor: bare walk over the same patches | {median('floor_walk', 'ns_per_patch'):.1f} ns per patch | {floor:.1f} ns | 1 |")
     traced = median("trace_only", "ns_per_plan_m")
-    print(f"| trace: flight, impacts, slides | {median('trace_only', 'ns_per_patch') * 1e9:.1f} ns per patch | {traced * 1e9:.1f} ns | {traced / floor:.1f} |")
-    print(f"| the impact law alone | {median('impact_law', 'ns_per_impact') * 1e9:.1f} ns per impact | | |")
-    print(f"| scoring alone | {median('score', 'ns_per_cell') * 1e9:.1f} ns per cell and trajectory | | |")
+    print(f"| trace: flight, impacts, slides | {median('trace_only', 'ns_per_patch'):.1f} ns per patch | {traced:.1f} ns | {traced / floor:.1f} |")
+    print(f"| the impact law alone | {median('impact_law', 'ns_per_impact'):.1f} ns per impact | | |")
+    print(f"| scoring alone | {median('score', 'ns_per_cell'):.1f} ns per cell and trajectory | | |")
 
 
 def main():

@@ -1,3 +1,4 @@
+#include <malloc.h>
 #include <omp.h>
 
 #include <algorithm>
@@ -163,6 +164,7 @@ void simulate_and_write(const Options& options, const LoadedScenario& loaded, co
   if (record.totals.interrupted || interrupted()) stop_interrupted();
   const Stopwatch::Lap simulated = watch.lap();
   record.touched_cells = tally.touched_cells();
+  malloc_trim(0);  // gives back what the workers' batches took, before the maps need room
 
   progress.stage("writing the results");
   vectors.finish();
