@@ -5,8 +5,9 @@ namespace talus {
 
 /// A sphere of constant mass. docs/physics.md, "Block".
 struct Block {
-  double diameter = 1.0;  ///< equivalent diameter D = (6 m / (pi rho))^(1/3) [m]
-  double mass = 1.0;      ///< [kg]
+  double diameter = 1.0;     ///< equivalent diameter D = (6 m / (pi rho))^(1/3) [m]
+  double mass = 1.0;         ///< [kg]
+  Vec3 axes = Vec3::Ones();  ///< L1 >= L2 >= L3, in any unit: for effects that need a shape
 
   double radius() const { return 0.5 * diameter; }
   double inertia() const { return 0.4 * mass * radius() * radius(); }  ///< [kg m^2]
@@ -14,7 +15,7 @@ struct Block {
 
 /// The block of an equivalent diameter [m] and a density [kg/m^3].
 inline Block block_of(double diameter, double density) {
-  return {diameter, density * (kPi / 6.0) * diameter * diameter * diameter};
+  return {diameter, density * (kPi / 6.0) * diameter * diameter * diameter, Vec3::Ones()};
 }
 
 /// Where a block is and how it moves.
@@ -31,6 +32,7 @@ struct Release {
   std::uint32_t source = 0, block = 0;  ///< with the seed, the key of every random number on the path
   Block body;
   Motion motion;  ///< at time 0
+  int day = 0;    ///< of the release, for effects that change with it
 };
 
 }  // namespace talus

@@ -1,4 +1,5 @@
 #pragma once
+#include "talus/physics/effects.hpp"
 #include "talus/physics/impact.hpp"
 #include "talus/physics/path.hpp"
 
@@ -21,6 +22,7 @@ struct World {
   const Cover& cover;
   ImpactModel impact;
   EndRules rules;
+  const Effects* effects = nullptr;  ///< null: none
 };
 
 /// Walks one block from its release to its end: flights, impacts and slides in turn.

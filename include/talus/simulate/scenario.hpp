@@ -77,12 +77,13 @@ struct Scenario {
   Blocks blocks;
   std::vector<Screen> screens;
   ImpactModel impact;
+  Effects effects;
   EndRules rules;
   OutputSettings output;
   std::uint64_t seed = 1;
   std::uint32_t trajectories = 100;  ///< per source cell
 
-  World world() const { return {surface, cover, impact, rules}; }
+  World world() const { return {surface, cover, impact, rules, effects.any() ? &effects : nullptr}; }
   std::uint64_t released() const { return std::uint64_t{trajectories} * sources.size(); }
 };
 
