@@ -10,8 +10,9 @@ double cross_product(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// The motion a share of the way from one vertex to the next: a parabola with constant spin, or a piece of sliding.
-Motion between(const Vertex& from, const Vertex& to, double share) {
+}  // namespace
+
+Motion motion_between(const Vertex& from, const Vertex& to, double share) {
   const double t = share * (to.motion.time - from.motion.time);
   Motion m = from.motion;
   m.time += t;
@@ -28,14 +29,12 @@ Motion between(const Vertex& from, const Vertex& to, double share) {
   return m;
 }
 
-}  // namespace
-
-ScreenFinder::ScreenFinder(const Scenario& scenario) : surface_(scenario.surface) {
+ScreenFinder::ScreenFinder(const Surface& surface, std::span<const Screen> screens) : surface_(surface) {
   low_.setConstant(std::numeric_limits<double>::infinity());
   high_ = -low_;
-  for (std::uint32_t s = 0; s < scenario.screens.size(); ++s) {
+  for (std::uint32_t s = 0; s < screens.size(); ++s) {
     double along = 0.0;
-    for (const auto& line : scenario.screens[s].lines) {
+    for (const auto& line : screens[s].lines) {
       for (std::size_t i = 1; i < line.size(); ++i) {
         segments_.push_back({s, line[i - 1], line[i], along});
         along += (line[i] - line[i - 1]).norm();
@@ -69,7 +68,7 @@ void ScreenFinder::cross(const Release& release, const Vertex& from, const Verte
     const double low = cross_product(way, s.from - a), high = cross_product(way, s.to - a);
     if ((low < 0.0) == (high < 0.0)) continue;
     const double share = side_from / (side_from - side_to);
-    const Motion m = between(from, to, share);
+    const Motion m = motion_between(from, to, share);
     const double ground = surface_.height(m.position.x(), m.position.y()).value_or(m.position.z());
     crossings.push_back({release.source, release.block, s.screen, m.position.x(), m.position.y(), m.velocity.norm(),
                          from.event == Event::Slide ? 0.0 : std::max(0.0, m.position.z() - ground), m.spin.norm(),

@@ -28,7 +28,7 @@ inline Words philox4x32(Words counter, std::array<std::uint32_t, 2> key) {
 }
 
 /// What a draw is for. A stream per purpose: an effect that is switched on never shifts the draws of the others.
-enum class Purpose : std::uint32_t { Release = 0, Impact = 1 };
+enum class Purpose : std::uint32_t { Release = 0, Impact = 1, Measurement = 100, Bootstrap = 101 };
 
 /// A number in the open interval (0, 1), evenly spaced by 2^-32: its logarithm is finite.
 inline double uniform(std::uint32_t word) {

@@ -1,4 +1,6 @@
 #pragma once
+#include <span>
+
 #include "talus/simulate/scenario.hpp"
 
 namespace talus {
@@ -13,10 +15,16 @@ struct Crossing {
   double time;                          // [s]
 };
 
+/// The motion a share of the way from one vertex of a path to the next: a parabola with constant spin, or a piece of
+/// sliding with constant acceleration.
+Motion motion_between(const Vertex& from, const Vertex& to, double share);
+
 /// Finds where paths cross the screens.
 class ScreenFinder {
  public:
-  explicit ScreenFinder(const Scenario& scenario);
+  explicit ScreenFinder(const Scenario& scenario) : ScreenFinder(scenario.surface, scenario.screens) {}
+  /// The surface must outlive the finder.
+  ScreenFinder(const Surface& surface, std::span<const Screen> screens);
 
   /// Appends every crossing of the path, in the order of time.
   void find(const Release& release, const Path& path, std::vector<Crossing>& crossings) const;
