@@ -21,9 +21,10 @@ class ZoneIndex {
   std::uint8_t at(const std::string& zone, const std::string& where) {
     const auto found = std::find(request_.names.begin(), request_.names.end(), zone);
     if (found == request_.names.end())
-      throw InputError(where + ": zone '" + zone + "' is not described, must be one of [ground.zones]: " +
-                       (request_.names.empty() ? "none is there" : joined(request_.names)) + ": add [ground.zones." +
-                       quoted(zone) + "] with a preset");
+      throw InputError(where + ": zone '" + zone + "' is not described, must be one of [" + request_.table +
+                       "]: " + (request_.names.empty() ? "none is there" : joined(request_.names)) + ": " +
+                       (request_.table == "ground.zones" ? "add [ground.zones." + quoted(zone) + "] with a preset"
+                                                         : "add " + quoted(zone) + " = \"NAME\" there"));
     const auto index = static_cast<std::size_t>(found - request_.names.begin());
     seen_[index] = true;
     return static_cast<std::uint8_t>(index + 1);
@@ -32,8 +33,8 @@ class ZoneIndex {
   void warn_unseen(std::vector<std::string>& warnings) const {
     for (std::size_t i = 0; i < seen_.size(); ++i)
       if (!seen_[i])
-        warnings.push_back(request_.path + ": no zone '" + request_.names[i] + "' on the map: [ground.zones." +
-                           quoted(request_.names[i]) + "] is not used");
+        warnings.push_back(request_.path + ": no zone '" + request_.names[i] + "' on the map: [" + request_.table +
+                           "." + quoted(request_.names[i]) + "] is not used");
   }
 
  private:

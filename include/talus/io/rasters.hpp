@@ -36,8 +36,9 @@ struct ZoneLayer {
 /// What is asked of the file.
 struct ZoneRequest {
   std::string path;
-  std::string field;               ///< of polygons; empty: "zone". Not for rasters
-  std::vector<std::string> names;  ///< the zones that are described: [ground.zones.NAME]; at most 255
+  std::string field;                   ///< of polygons; empty: "zone". Not for rasters
+  std::vector<std::string> names;      ///< the zones that are described, as the file calls them; at most 255
+  std::string table = "ground.zones";  ///< of the scenario or campaign that describes them, for messages
 };
 
 /// Reads the kinds of ground onto the grid of the DEM: the ground of a cell is the one at its centre.

@@ -1,0 +1,142 @@
+#include "csv_table.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+
+namespace talus::io {
+namespace {
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
+  return first == std::string::npos ? std::string() : text.substr(first, last - first + 1);
+}
+
+std::string content_of(const std::string& path) {
+  std::error_code none;
+  std::ifstream file(path, std::ios::binary);
+  if (!file.is_open() || std::filesystem::is_directory(path, none))
+    throw InputError(path + ": cannot be read, must be a table (CSV)");
+  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // byte order mark
+  return text;
+}
+
+/// Cuts a text into rows and cells. A cell in quotation marks may hold commas, line ends and doubled marks.
+std::vector<CsvTable::Row> split(const std::string& text, const std::string& path) {
+  std::vector<CsvTable::Row> rows;
+  std::vector<std::string> cells;
+  std::string cell;
+  int line = 1, start = 1;
+  bool quoted = false, was_quoted = false;
+  const auto end_cell = [&] {
+    cells.push_back(was_quoted ? cell : trimmed(cell));
+    cell.clear();
+    was_quoted = false;
+  };
+  const auto end_row = [&] {
+    end_cell();
+    if (cells.size() > 1 || !cells[0].empty()) rows.push_back({start, cells});
+    cells.clear();
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\n') ++line;
+    if (quoted) {
+      if (c != '"')
+        cell += c;
+      else if (i + 1 < text.size() && text[i + 1] == '"')
+        cell += text[++i];
+      else
+        quoted = false;
+    } else if (c == '"' && trimmed(cell).empty()) {
+      cell.clear();
+      quoted = was_quoted = true;
+    } else if (c == ',') {
+      end_cell();
+    } else if (c == '\n') {
+      end_row();
+      start = line;
+    } else if (!was_quoted || (c != '\r' && c != ' ')) {
+      cell += c;
+    }
+  }
+  if (quoted)
+    throw InputError(path + ":" + std::to_string(start) + ": a quotation mark is open to the end, must be closed");
+  if (!cell.empty() || !cells.empty()) end_row();
+  return rows;
+}
+
+}  // namespace
+
+CsvTable::CsvTable(std::string path, const std::vector<std::string>& known, const std::vector<std::string>& required)
+    : path_(std::move(path)) {
+  rows_ = split(content_of(path_), path_);
+  read_header(known, required);
+  for (const Row& row : rows_)
+    if (row.cells.size() != columns_.size())
+      throw InputError(path_ + ":" + std::to_string(row.line) + ": has " + std::to_string(row.cells.size()) +
+                       " cells, must have " + std::to_string(columns_.size()) + " as the header");
+}
+
+void CsvTable::read_header(const std::vector<std::string>& known, const std::vector<std::string>& required) {
+  if (rows_.empty()) throw InputError(path_ + ": is empty, must have a header with " + joined(required));
+  columns_ = rows_.front().cells;
+  rows_.erase(rows_.begin());
+  for (auto column = columns_.begin(); column != columns_.end(); ++column) {
+    if (std::find(known.begin(), known.end(), *column) == known.end())
+      throw InputError(path_ + ":1: unknown column '" + *column + "'" + known_names(*column, known));
+    if (std::find(columns_.begin(), column, *column) != column)
+      throw InputError(path_ + ":1: column '" + *column + "' is there twice, must be there once");
+  }
+  for (const std::string& column : required)
+    if (!has(column)) throw InputError(path_ + ":1: has no column '" + column + "', must have " + joined(required));
+}
+
+int CsvTable::column_of(const std::string& name) const {
+  const auto found = std::find(columns_.begin(), columns_.end(), name);
+  return found == columns_.end() ? -1 : static_cast<int>(found - columns_.begin());
+}
+
+const std::string& CsvTable::text(const Row& row, const std::string& column) const {
+  static const std::string none;
+  const int index = column_of(column);
+  return index < 0 ? none : row.cells[static_cast<std::size_t>(index)];
+}
+
+const std::string& CsvTable::name(const Row& row, const std::string& column) const {
+  const std::string& value = text(row, column);
+  if (value.empty()) refuse(row, column, "must not be empty");
+  return value;
+}
+
+std::optional<double> CsvTable::number(const Row& row, const std::string& column, const Bounds& bounds) const {
+  const std::string& value = text(row, column);
+  if (value.empty()) return std::nullopt;
+  double number = 0.0;
+  const char *first = value.data() + (value.front() == '+' ? 1 : 0), *last = value.data() + value.size();
+  const auto [end, error] = std::from_chars(first, last, number);
+  if (error != std::errc{} || end != last)
+    refuse(row, column,
+           "must be a number" + (bounds.unit == "1" ? "" : " in " + std::string(bounds.unit)) +
+               ", with a point for decimals, or empty where it was not measured");
+  if (const auto rule = fault_of(bounds, number)) refuse(row, column, *rule);
+  return number;
+}
+
+double CsvTable::required(const Row& row, const std::string& column, const Bounds& bounds) const {
+  const auto value = number(row, column, bounds);
+  if (!value) refuse(row, column, "must be given");
+  return *value;
+}
+
+void CsvTable::refuse(const Row& row, const std::string& column, const std::string& rule) const {
+  throw InputError(path_ + ":" + std::to_string(row.line) + ": " + column + " = '" + text(row, column) + "': " + rule);
+}
+
+}  // namespace talus::io
