@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <exception>
+#include <limits>
 
 #include "talus/simulate/presets.hpp"
 #include "talus/simulate/screens.hpp"
@@ -40,40 +41,48 @@ class Errors {
 /// Measures the paths of one block; its buffers are reused.
 class Instrument {
  public:
-  Instrument(const Campaign& campaign, const Cover& cover, const ScreenFinder& screens)
-      : campaign_(campaign), cover_(cover), screens_(screens), hit_(campaign.zone_names.size()) {}
+  Instrument(const Campaign& campaign, const Model& model, const Cover& cover, const ScreenFinder& screens)
+      : campaign_(campaign), model_(model), cover_(cover), screens_(screens), hit_(cover.grounds.size()) {}
 
   void measure(const Release& release, const Path& path, std::uint32_t trial, BlockRuns& runs) {
     const Errors errors(release.seed, release.source, release.block);
     const MeasuredBlock& block = campaign_.blocks[release.source];
-    stop(errors, path, trial, runs);
-    passages(errors, release, path, trial, runs);
+    crossings_.clear();
+    screens_.find(release, path, crossings_);
+    const Crossing* caught = first_catch();
+    until_ = caught ? caught->time : std::numeric_limits<double>::infinity();
+    stop(errors, path, caught, trial, runs);
+    passages(errors, trial, runs);
     samples(errors, block, path, trial, runs);
     runs.impacts[trial] = path.impacts;
-    runs.end[trial] = path.end;
+    runs.end[trial] = caught ? End::Caught : path.end;
+    std::atomic_ref(runs.ends[static_cast<std::size_t>(runs.end[trial])]).fetch_add(1, std::memory_order_relaxed);
     count_zones(path, runs);
   }
 
  private:
-  void stop(const Errors& errors, const Path& path, std::uint32_t trial, BlockRuns& runs) const {
+  void stop(const Errors& errors, const Path& path, const Crossing* caught, std::uint32_t trial,
+            BlockRuns& runs) const {
     runs.mass_share[trial] = 1.0;  // no block breaks in this version
-    if (path.end != End::Stopped && path.end != End::Caught) return;
+    if (!caught && path.end != End::Stopped && path.end != End::Caught) return;
     const auto error = errors.of_stop();
-    const Vec3& place = path.vertices.back().motion.position;
-    runs.x[trial] = place.x() + campaign_.error.position_m * error[0];
-    runs.y[trial] = place.y() + campaign_.error.position_m * error[1];
+    const Vec3& end = path.vertices.back().motion.position;
+    runs.x[trial] = (caught ? caught->x : end.x()) + campaign_.error.position_m * error[0];
+    runs.y[trial] = (caught ? caught->y : end.y()) + campaign_.error.position_m * error[1];
   }
 
-  void passages(const Errors& errors, const Release& release, const Path& path, std::uint32_t trial, BlockRuns& runs) {
-    crossings_.clear();
-    screens_.find(release, path, crossings_);
+  void passages(const Errors& errors, std::uint32_t trial, BlockRuns& runs) const {
     for (const Crossing& crossing : crossings_) {
+      if (crossing.screen >= campaign_.screens.size() || crossing.time > until_) continue;
+      const Bias bias = bias_of(crossing.screen);
       BlockRuns::AtScreen& screen = runs.screens[crossing.screen];
       if (!std::isnan(screen.speed[trial])) continue;  // only the first crossing counts
       const auto error = errors.of_screen(crossing.screen);
-      screen.speed[trial] = crossing.speed * (1.0 + campaign_.error.speed_fraction * error[0]);
-      screen.jump[trial] = std::max(0.0, crossing.height + campaign_.error.jump_height_m * error[1]);
-      screen.spin[trial] = crossing.spin * (1.0 + campaign_.error.angular_velocity_fraction * error[2]);
+      screen.speed[trial] = crossing.speed * (1.0 + bias.speed) * (1.0 + campaign_.error.speed_fraction * error[0]);
+      screen.jump[trial] =
+          std::max(0.0, crossing.height * (1.0 + bias.jump) + campaign_.error.jump_height_m * error[1]);
+      screen.spin[trial] =
+          crossing.spin * (1.0 + bias.spin) * (1.0 + campaign_.error.angular_velocity_fraction * error[2]);
     }
   }
 
@@ -88,7 +97,7 @@ class Instrument {
               [&](std::size_t a, std::size_t b) { return block.samples[a].distance < block.samples[b].distance; });
     const Eigen::Vector2d origin(block.x, block.y);
     auto next = order_.begin();
-    for (std::size_t i = 1; i < path.vertices.size(); ++i) {
+    for (std::size_t i = 1; i < path.vertices.size() && path.vertices[i].motion.time <= until_; ++i) {
       const Vertex &from = path.vertices[i - 1], &to = path.vertices[i];
       const Eigen::Vector2d a = from.motion.position.head<2>() - origin, b = to.motion.position.head<2>() - origin;
       for (; next != order_.end() && b.norm() >= block.samples[*next].distance; ++next) {
@@ -105,8 +114,10 @@ class Instrument {
   void record(const Errors& errors, std::size_t sample, const Motion& motion, BlockRuns::AtSample& out,
               std::uint32_t trial) const {
     const auto error = errors.of_sample(sample);
-    out.speed[trial] = motion.velocity.norm() * (1.0 + campaign_.error.speed_fraction * error[0]);
-    out.spin[trial] = motion.spin.norm() * (1.0 + campaign_.error.angular_velocity_fraction * error[1]);
+    const Bias bias = bias_of(campaign_.screens.size());
+    out.speed[trial] = motion.velocity.norm() * (1.0 + bias.speed) * (1.0 + campaign_.error.speed_fraction * error[0]);
+    out.spin[trial] =
+        motion.spin.norm() * (1.0 + bias.spin) * (1.0 + campaign_.error.angular_velocity_fraction * error[1]);
   }
 
   void count_zones(const Path& path, BlockRuns& runs) {
@@ -116,18 +127,32 @@ class Instrument {
         hit_[cover_.zone_at(vertex.motion.position.x(), vertex.motion.position.y())] = true;
     for (std::size_t zone = 0; zone < hit_.size(); ++zone)
       if (hit_[zone]) std::atomic_ref(runs.zone_hits[zone]).fetch_add(1, std::memory_order_relaxed);
-    std::atomic_ref(runs.ends[static_cast<std::size_t>(path.end)]).fetch_add(1, std::memory_order_relaxed);
   }
 
+  /// The net that ends the path, if one does: it is crossed below its top and within its capacity.
+  const Crossing* first_catch() const {
+    for (const Crossing& c : crossings_) {
+      if (c.screen < campaign_.screens.size()) continue;
+      const Net& net = model_.nets[c.screen - campaign_.screens.size()];
+      if (c.height < net.height && 0.5e-3 * c.mass * c.speed * c.speed <= net.capacity) return &c;
+    }
+    return nullptr;
+  }
+
+  Bias bias_of(std::size_t instrument) const { return model_.bias.empty() ? Bias{} : model_.bias[instrument]; }
+
   const Campaign& campaign_;
+  const Model& model_;
   const Cover& cover_;
   const ScreenFinder& screens_;
   std::vector<Crossing> crossings_;
   std::vector<std::size_t> order_;
   std::vector<char> hit_;  // by zone, of the path
+  double until_ = 0.0;     // when a net ends the path [s]
 };
 
-void prepare(const Campaign& campaign, const MeasuredBlock& block, std::uint32_t trials, BlockRuns& runs) {
+void prepare(const Campaign& campaign, const MeasuredBlock& block, std::size_t zones, std::uint32_t trials,
+             BlockRuns& runs) {
   const std::vector<double> none(trials, kNotGiven);
   runs.trials = trials;
   runs.x = runs.y = runs.mass_share = none;
@@ -135,7 +160,7 @@ void prepare(const Campaign& campaign, const MeasuredBlock& block, std::uint32_t
   runs.samples.assign(block.samples.size(), {none, none});
   runs.impacts.assign(trials, 0);
   runs.end.assign(trials, End::Limit);
-  runs.zone_hits.assign(campaign.zone_names.size(), 0);
+  runs.zone_hits.assign(zones, 0);
 }
 
 /// Some trials of one block.
@@ -143,15 +168,23 @@ struct Unit {
   std::uint32_t block, first, end;
 };
 
-std::vector<Unit> units_of(const Campaign& campaign, const ObserveOptions& options, std::vector<BlockRuns>& runs) {
+std::vector<Unit> units_of(const Campaign& campaign, std::size_t zones, const ObserveOptions& options,
+                           std::vector<BlockRuns>& runs) {
   std::vector<Unit> units;
   for (std::uint32_t block = 0; block < campaign.blocks.size(); ++block) {
     if (!options.blocks.empty() && !options.blocks[block]) continue;
-    prepare(campaign, campaign.blocks[block], options.trials, runs[block]);
+    prepare(campaign, campaign.blocks[block], zones, options.trials, runs[block]);
     for (std::uint32_t first = 0; first < options.trials; first += kTrialsPerUnit)
       units.push_back({block, first, std::min(options.trials, first + kTrialsPerUnit)});
   }
   return units;
+}
+
+/// The screens of the campaign, then the nets.
+std::vector<Screen> lines_of(const Campaign& campaign, const Model& model) {
+  std::vector<Screen> lines = campaign.screens;
+  for (const Net& net : model.nets) lines.push_back({"net", {net.line}});
+  return lines;
 }
 
 }  // namespace
@@ -181,16 +214,17 @@ Release release_of(const Campaign& campaign, std::uint32_t block, std::uint64_t 
 
 std::vector<BlockRuns> observe(const Campaign& campaign, const Model& model, const ObserveOptions& options) {
   std::vector<BlockRuns> runs(campaign.blocks.size());
-  const std::vector<Unit> units = units_of(campaign, options, runs);
-  const Cover cover{model.grounds, campaign.zones};
+  const std::vector<Unit> units = units_of(campaign, model.grounds.size(), options, runs);
+  const Cover cover{model.grounds, model.zones.values.empty() ? campaign.zones : model.zones};
   const World world{campaign.surface, cover, model.impact, EndRules{}, model.effects.any() ? &model.effects : nullptr};
-  const ScreenFinder screens(campaign.surface, campaign.screens);
+  const std::vector<Screen> lines = lines_of(campaign, model);
+  const ScreenFinder screens(campaign.surface, lines);
   std::exception_ptr failure;
   std::atomic<bool> stop{false};
 #pragma omp parallel num_threads(options.threads > 0 ? options.threads : omp_get_num_procs()) default(none) \
-    shared(campaign, options, runs, units, cover, world, screens, failure, stop)
+    shared(campaign, model, options, runs, units, cover, world, screens, failure, stop)
   {
-    Instrument instrument(campaign, cover, screens);
+    Instrument instrument(campaign, model, cover, screens);
     Path path;
 #pragma omp for schedule(dynamic, 1)
     for (const Unit& unit : units) {

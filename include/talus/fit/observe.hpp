@@ -7,11 +7,27 @@
 
 namespace talus {
 
-/// What is fitted and compared: the ground of each zone, the impact law and the effects on top of it.
+/// A net that catches what crosses it low and slowly enough: a candidate of the diagnosis.
+struct Net {
+  std::vector<Eigen::Vector2d> line;  ///< in plan [m, local]
+  double height = 0.0;                ///< above the terrain [m]; 0: catches nothing
+  double capacity = 1e9;              ///< translational energy it holds [kJ]
+};
+
+/// How much an instrument reads too high, as a share of the true value.
+struct Bias {
+  double speed = 0.0, jump = 0.0, spin = 0.0;
+};
+
+/// What is fitted and compared: the ground of each zone, the impact law and the effects on top of it; then what the
+/// campaign's files do not say of the place and of its instruments.
 struct Model {
-  std::vector<Ground> grounds;  ///< by zone, as Campaign::zone_names
+  std::vector<Ground> grounds;  ///< by zone: as Campaign::zone_names, or of `zones`
   ImpactModel impact;
   Effects effects;
+  Raster<std::uint8_t> zones;  ///< instead of the campaign's; empty: the campaign's
+  std::vector<Net> nets;
+  std::vector<Bias> bias;  ///< by screen, then that of the samples; empty: none
 };
 
 /// A model with the same ground in all zones of a campaign: the preset of this name, no effect.

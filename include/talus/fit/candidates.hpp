@@ -1,0 +1,48 @@
+#pragma once
+#include "talus/fit/calibrate.hpp"
+
+namespace talus {
+
+/// Something that may be missing in a model: where it acts and the numbers that it adds. Off, at z = 0 of all its
+/// parameters, it changes nothing; z = 1 is a size that one would notice. docs/closing-the-loop.md, "Candidates".
+struct Candidate {
+  std::string effect;                  ///< as in diagnosis.json: "vegetation-drag", ..., "instrument-bias"
+  std::string where;                   ///< "everywhere", "zone meadow", "day 2", "screen S1 speed", "92 to 110 m"
+  std::vector<Parameter> parameters;   ///< one or two; those that need no test of their own come last
+  std::size_t tested = 1;              ///< how many of them the score test moves
+  std::function<void(Model&)> prepare; ///< before the parameters are set: places and lines
+};
+
+/// Positions along the slope: the direction in plan in which the blocks of a campaign go, and how far.
+struct Axis {
+  Eigen::Vector2d origin, direction;  ///< [m, local], unit
+  double from = 0.0, to = 0.0;        ///< of the paths, along the direction from the origin [m]
+
+  double along(const Eigen::Vector2d& place) const { return (place - origin).dot(direction); }
+};
+
+/// From the mean release to the mean simulated stop.
+Axis axis_of(const Campaign& campaign, std::span<const BlockRuns> runs);
+
+/// The effects of the library and the anomalies that are not physics, with every place where they may act.
+///
+/// @param runs     of the base model: says which zones are met and where the blocks go
+/// @param without  names of effects that the base model has already
+///
+/// Bands (undeclared-zone) are given as the cells of a ladder of `kBands` along the axis, in order and one after the
+/// other: the diagnosis joins neighbours.
+std::vector<Candidate> candidates_of(const Campaign& campaign, const Model& base, std::span<const BlockRuns> runs,
+                                     std::span<const std::string> without);
+
+inline constexpr int kBands = 12;  ///< of the ladder for undeclared zones
+inline constexpr int kLines = 16;  ///< places of an undeclared barrier
+
+/// A band of other ground across the axis, from one distance along it to another [m].
+Candidate band(const Campaign& campaign, const Axis& axis, double from, double to);
+/// A net across the axis.
+Candidate barrier(const Axis& axis, double width, double at);
+
+/// The model with a candidate in place, at z of its parameters.
+Model with(const Model& base, const Candidate& candidate, const Eigen::VectorXd& z);
+
+}  // namespace talus

@@ -1,0 +1,66 @@
+#pragma once
+#include <Eigen/Dense>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "talus/fit/observe.hpp"
+
+namespace talus {
+
+/// What is compared of a block, one number each. docs/closing-the-loop.md, "The residual".
+struct Observable {
+  enum class Kind { Runout, Lateral, Mass, Crossed, Speed, Jump, Spin, SampleSpeed, SampleSpin } kind;
+  std::size_t screen = 0;  ///< of Crossed, Speed, Jump, Spin
+  bool late = false;       ///< of the samples: the farther half of a block's
+  std::string name;        ///< "runout", "speed S1", "sample spin late", ...
+};
+
+/// A block's residual: standard normal numbers, each zero on average and of variance one if the model is right.
+///
+/// Per observable its place, z = Phi^-1(rank of the measured value among the simulated ones), and its spread,
+/// (z^2 - 1) / sqrt(2); for a crossing (c - p) / sqrt(p (1 - p)). NaN where nothing was measured.
+using Residual = Eigen::VectorXd;
+
+/// The distributions that a model gives for every block of a campaign, and residuals against them.
+class ResidualSpace {
+ public:
+  /// @param runs  of the model, all blocks simulated; at least 20 trials. The campaign must outlive this.
+  ResidualSpace(const Campaign& campaign, const std::vector<BlockRuns>& runs);
+
+  const std::vector<Observable>& observables() const { return observables_; }
+  /// Number of components of a residual: places first, then spreads.
+  Eigen::Index size() const { return 2 * static_cast<Eigen::Index>(observables_.size()); }
+
+  Residual of_measured(std::size_t block) const;
+  /// Of a trial of any runs, as if it had been measured.
+  Residual of_trial(std::size_t block, const BlockRuns& runs, std::size_t trial) const;
+
+  /// `residual` divided by the correlation of its components, pooled over all blocks: what is NaN stays out and
+  /// becomes zero.
+  Eigen::VectorXd whitened(const Residual& residual) const;
+
+ private:
+  struct Distribution {
+    std::vector<double> sorted;  // of the trials that were observed; fewer than ten: of no use
+  };
+  Residual residual(std::size_t block, const std::vector<double>& values) const;
+  std::vector<double> measured_values(std::size_t block) const;
+  std::vector<double> trial_values(std::size_t block, const BlockRuns& runs, std::size_t trial) const;
+  double sample_score(std::size_t block, const Observable& o, const std::vector<double>& values) const;
+  void correlate(const std::vector<BlockRuns>& runs);
+
+  const Campaign& campaign_;
+  std::vector<Observable> observables_;
+  std::vector<Eigen::Vector2d> forward_;                   // by block: towards its mean simulated stop, unit
+  std::vector<std::vector<Distribution>> distributions_;   // by block and observable
+  std::vector<std::vector<std::array<Distribution, 2>>> samples_;  // by block and sample: speed, spin
+  std::vector<double> crossing_share_;                     // by block and observable
+  Eigen::MatrixXd correlation_;
+  mutable std::map<std::vector<bool>, Eigen::MatrixXd> inverses_;  // by what is observed
+};
+
+/// Quantile of the standard normal distribution; share in (0, 1). Source: boost::math.
+double normal_quantile(double share);
+
+}  // namespace talus
