@@ -4,7 +4,6 @@
 #include <cmath>
 #include <set>
 
-#include "talus/base/text.hpp"
 
 namespace talus {
 namespace {
@@ -188,7 +187,7 @@ Candidate band(const Campaign& campaign, const Axis& axis, double from, double t
       return std::log(m.grounds[n].*member / (m.grounds[0].*member));
     };
   };
-  return {"undeclared-zone", fixed(from, 0) + " to " + fixed(to, 0) + " m",
+  return {"undeclared-zone", std::to_string(std::lround(from)) + " to " + std::to_string(std::lround(to)) + " m",
           {amount("undeclared-zone.damping", "1", 0.0, 1.0, -3.0, 3.0,
                   [=](const Model& m) { return -ratio(&Ground::En50)(m); },
                   [](Model& m, double v) {
@@ -212,7 +211,7 @@ Candidate barrier(const Axis& axis, double width, double at) {
   const Eigen::Vector2d middle = axis.origin + at * axis.direction;
   const Eigen::Vector2d across(-axis.direction.y(), axis.direction.x());
   const std::vector<Eigen::Vector2d> line{middle - width * across, middle + width * across};
-  return {"undeclared-barrier", "at " + fixed(at, 0) + " m",
+  return {"undeclared-barrier", "at " + std::to_string(std::lround(at)) + " m",
           {amount("undeclared-barrier.height", "m", 0.0, 1.0, 0.0, 10.0,
                   [](const Model& m) { return m.nets.back().height; },
                   [](Model& m, double v) { m.nets.back().height = v; })},

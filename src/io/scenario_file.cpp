@@ -15,7 +15,7 @@ namespace {
 // Files that are not there, before any is opened.
 void check_files(const ScenarioSpec& spec, std::vector<std::string>& faults) {
   start_gdal();
-  for (const NamedFile* file : {&spec.dem, &spec.sources, &spec.ground, &spec.screens}) {
+  for (const NamedFile* file : {&spec.include, &spec.dem, &spec.sources, &spec.ground, &spec.screens}) {
     if (file->path.empty()) continue;
     VSIStatBufL status;
     std::error_code none;
@@ -51,6 +51,7 @@ void load_ground(ScenarioSpec& spec, const Terrain& terrain, Scenario& parts, Lo
   }
   if (spec.ground.path.empty()) return;
   ZoneRequest request{spec.ground.path, spec.ground_field, {parts.zone_names.begin() + 1, parts.zone_names.end()}};
+  for (const ZoneSpec& zone : spec.zones) request.codes.push_back(zone.code);
   ZoneLayer layer = read_zones(request, terrain);
   parts.cover.zones = std::move(layer.zones);
   spec.ground_field = layer.field;
@@ -70,11 +71,9 @@ void check_diameters(const Scenario& parts, const SourceLayer& layer, const std:
 }
 
 void record_inputs(const ScenarioSpec& spec, LoadedScenario& out) {
-  const std::pair<const char*, const NamedFile*> files[] = {{"scenario", &spec.scenario},
-                                                            {"dem", &spec.dem},
-                                                            {"sources", &spec.sources},
-                                                            {"ground", &spec.ground},
-                                                            {"screens", &spec.screens}};
+  const std::pair<const char*, const NamedFile*> files[] = {{"scenario", &spec.scenario}, {"include", &spec.include},
+                                                            {"dem", &spec.dem},           {"sources", &spec.sources},
+                                                            {"ground", &spec.ground},     {"screens", &spec.screens}};
   for (const auto& [role, file] : files)
     if (!file->path.empty()) out.inputs.push_back({role, file->path, sha256_of_file(file->path)});
 }

@@ -33,7 +33,7 @@ std::string absolute_path(const std::string& given, const std::filesystem::path&
 }
 
 void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults) {
-  spec.default_ground = {"default", std::string(kDefaultPreset), find_preset(kDefaultPreset).ground, {}};
+  spec.default_ground = {"default", std::string(kDefaultPreset), find_preset(kDefaultPreset).ground, {}, {}};
   if (!flags.preset) return;
   try {
     spec.default_ground.ground = find_preset(*flags.preset).ground;

@@ -4,11 +4,11 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "ground_keys.hpp"
 #include "scenario_spec.hpp"
 #include "table_reader.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
-#include "talus/simulate/presets.hpp"
 
 namespace talus::io {
 
@@ -22,11 +22,16 @@ constexpr std::array<const char*, 9> kEffects{"vegetation-drag",    "forest-stem
 
 class SpecReader {
  public:
-  SpecReader(ScenarioSpec& spec, const std::string& file, std::vector<std::string>& faults)
-      : spec_(spec), file_(file), base_(std::filesystem::absolute(file).parent_path()), faults_(faults) {}
+  SpecReader(ScenarioSpec& spec, const std::string& file, std::string origin, std::vector<std::string>& faults)
+      : spec_(spec),
+        file_(file),
+        origin_(std::move(origin)),
+        base_(std::filesystem::absolute(file).parent_path()),
+        faults_(faults) {}
 
   void read(const TomlValue& root) {
     TableReader top(&root, "", file_, faults_);
+    read_include(top);
     named_file(top, "dem", spec_.dem);
     scalar(top, "seed");
     scalar(top, "trajectories");
@@ -38,12 +43,36 @@ class SpecReader {
     TableReader screens = top.table("screens");
     named_file(screens, "file", spec_.screens);
     screens.finish();
+    read_effects(top);
     refuse_later_parts(top);
     top.finish();
   }
 
+  /// The keys of a model alone.
+  void read_model_keys(const TomlValue& root) {
+    TableReader top(&root, "", file_, faults_);
+    TableReader ground = top.table("ground");
+    GroundReader(spec_, origin_, faults_).read(ground);
+    ground.finish();
+    TableReader model = top.table("model");
+    read_impact(model);
+    model.finish();
+    read_effects(top);
+    top.finish();
+  }
+
  private:
-  void given(const std::string& key) { spec_.origins[key] = "scenario"; }
+  void given(const std::string& key) { spec_.origins[key] = origin_; }
+
+  /// What is included comes first: the scenario's own keys win.
+  void read_include(TableReader& top) {
+    const auto text = top.text("include");
+    if (!text) return;
+    named_file(top, "include", spec_.include);
+    std::error_code none;
+    if (!std::filesystem::exists(spec_.include.path, none)) return;  // said later, with the other files
+    talus::io::read_model_keys(spec_, spec_.include.path, *text, "include " + *text, faults_);
+  }
 
   void named_file(TableReader& table, const std::string& key, NamedFile& file) {
     const auto text = table.text(key);
@@ -150,61 +179,15 @@ class SpecReader {
       given("ground.field");
       if (spec_.ground.path.empty()) table.fault("field", *table.value()->find("field"), "must come with file");
     }
-    if (const auto name = table.text("default")) {
-      ZoneSpec asked = spec_.default_ground;
-      if (set_preset(table, "default", *name, asked) && !spec_.origins.contains("ground.default")) {  // the flag wins
-        spec_.default_ground = asked;
-        given("ground.default");
-      }
-    }
-    TableReader zones = table.table("zones");
+    GroundReader ground(spec_, origin_, faults_);
+    ground.read(table);
     table.finish();
-    if (zones.value() == nullptr) return;
-    if (spec_.ground.path.empty())
-      faults_.push_back(file_ + ":" + std::to_string(zones.value()->line) +
-                        ": [ground.zones] without file in [ground], must say where the zones are");
-    if (zones.value()->members.size() > 255)
-      faults_.push_back(file_ + ": [ground.zones] has " + std::to_string(zones.value()->members.size()) +
-                        " zones, must be at most 255");
-    for (const auto& [name, value] : zones.value()->members) read_zone(zones.table(name), name);
+    ground.check_file(table, spec_.include.where);
   }
 
-  bool set_preset(TableReader& table, const std::string& key, const std::string& name, ZoneSpec& zone) {
-    try {
-      zone.ground = find_preset(name).ground;
-      zone.preset = name;
-      return true;
-    } catch (const InputError& error) {
-      table.fault(key, *table.value()->find(key), error.what());
-      return false;
-    }
-  }
-
-  void read_zone(TableReader table, const std::string& name) {
-    ZoneSpec zone = spec_.default_ground;
-    zone.name = name;
-    if (const auto preset = table.text("preset"))
-      if (set_preset(table, "preset", *preset, zone)) given(table.full("preset"));
-    for (const auto& field : ground_fields()) {
-      const std::string key(field.key);
-      if (key == "shape_min" || key == "shape_max") continue;
-      if (const auto value = table.number(key, field)) {
-        field.set(zone.ground, *value);
-        zone.own.insert(key);
-      }
-    }
-    if (const auto shape = table.range("shape", ground_fields().back())) {
-      zone.ground.shape_min = shape->low;
-      zone.ground.shape_max = shape->high;
-      zone.own.insert("shape");
-    }
-    table.finish();
-    spec_.zones.push_back(std::move(zone));
-  }
-
-  void read_model(TableReader table) {
-    for (const char* key : {"deformation_coefficient", "stop_speed", "trap_time", "time_limit", "impact_limit"})
-      scalar(table, key);
+  /// The parts of [model] that are the impact law.
+  void read_impact(TableReader& table) {
+    scalar(table, "deformation_coefficient");
     if (const auto rule = table.text("roughness")) {
       if (*rule == "clamp" || *rule == "resample") {
         spec_.values.impact.roughness = *rule == "clamp" ? Roughness::Clamp : Roughness::Resample;
@@ -213,6 +196,11 @@ class SpecReader {
         table.fault("roughness", *table.value()->find("roughness"), "must be 'clamp' or 'resample'");
       }
     }
+  }
+
+  void read_model(TableReader table) {
+    read_impact(table);
+    for (const char* key : {"stop_speed", "trap_time", "time_limit", "impact_limit"}) scalar(table, key);
     table.finish();
   }
 
@@ -239,6 +227,10 @@ class SpecReader {
     if (const TomlValue* barriers = top.find("barriers"))
       faults_.push_back(file_ + ":" + std::to_string(barriers->line) +
                         ": [barriers] is not in this version of Talus, must be left out");
+  }
+
+  /// [effects.*], of a scenario, of what it includes, and of a model for a campaign: into spec_.values.effects.
+  void read_effects(TableReader& top) {
     const TomlValue* effects = top.find("effects");
     if (effects == nullptr) return;
     TableReader table(effects, "effects", file_, faults_);
@@ -250,7 +242,7 @@ class SpecReader {
   }
 
   ScenarioSpec& spec_;
-  std::string file_;
+  std::string file_, origin_;
   std::filesystem::path base_;
   std::vector<std::string>& faults_;
 };
@@ -266,12 +258,17 @@ void sort_by_line(std::vector<std::string>& faults, const std::string& file) {
 
 }  // namespace
 
+void read_model_keys(ScenarioSpec& spec, const std::string& path, const std::string& name, const std::string& origin,
+                     std::vector<std::string>& faults) {
+  SpecReader(spec, name, origin, faults).read_model_keys(read_toml(path, name));
+}
+
 ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) {
   ScenarioSpec spec;
   start_with_preset(spec, flags, faults);
   if (!flags.scenario.empty()) {
     spec.scenario = {std::filesystem::absolute(flags.scenario).lexically_normal().string(), flags.scenario};
-    SpecReader(spec, flags.scenario, faults).read(read_toml(flags.scenario, flags.scenario));
+    SpecReader(spec, flags.scenario, "scenario", faults).read(read_toml(flags.scenario, flags.scenario));
   }
   lay_flags(spec, flags, faults);
   sort_by_line(faults, flags.scenario);

@@ -1,7 +1,6 @@
 #pragma once
 #include <filesystem>
 #include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -20,12 +19,13 @@ struct ZoneSpec {
   std::string name;
   std::string preset;
   Ground ground;
-  std::set<std::string> own;  ///< the parameters that are not the preset's
+  std::map<std::string, std::string> own;  ///< origin of each parameter that is not the preset's
+  std::string code;                        ///< what stands for the zone in a raster; empty: its name
 };
 
 /// All that a scenario file and the flags say, before any other file is opened.
 struct ScenarioSpec {
-  NamedFile scenario, dem, sources, ground, screens;
+  NamedFile scenario, include, dem, sources, ground, screens;
   std::string ground_field;
   ZoneSpec default_ground;
   std::vector<ZoneSpec> zones;  ///< in the order of the file
@@ -43,6 +43,14 @@ struct ScenarioSpec {
 /// what makes reading on senseless (no such file, no TOML) is thrown as InputError.
 ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults);
 
+/// Reads what a scenario may include, and a model for a campaign: [ground] default, [ground.zones.*], the impact law in
+/// [model], [effects.*]. Any other key is a fault.
+///
+/// @param name    of the file in messages
+/// @param origin  for the record: "include fitted.toml"
+void read_model_keys(ScenarioSpec& spec, const std::string& path, const std::string& name, const std::string& origin,
+                     std::vector<std::string>& faults);
+
 /// A path as it is given in the folder `base`; what is no file for the system (PG:..., WFS:...) is left to GDAL.
 std::string absolute_path(const std::string& given, const std::filesystem::path& base);
 
@@ -50,6 +58,10 @@ std::string absolute_path(const std::string& given, const std::filesystem::path&
 void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults);
 /// Lays the other flags over what the scenario file says.
 void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults);
+
+/// A key or text as TOML writes it.
+std::string toml_key(const std::string& name);
+std::string toml_text(const std::string& text);
 
 /// A scenario file that gives exactly this again, with every setting written out and absolute paths.
 std::string toml_of(const ScenarioSpec& spec);

@@ -6,9 +6,7 @@
 
 namespace talus::io {
 
-namespace {
-
-std::string quoted(const std::string& text) {
+std::string toml_text(const std::string& text) {
   constexpr const char* kHex = "0123456789ABCDEF";
   std::string out = "\"";
   for (const char c : text) {
@@ -23,12 +21,14 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-std::string key_of(const std::string& name) {
+std::string toml_key(const std::string& name) {
   const bool bare = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   });
-  return bare ? name : quoted(name);
+  return bare ? name : toml_text(name);
 }
+
+namespace {
 
 std::string list_text(const std::vector<double>& values) {
   std::vector<std::string> words;
@@ -78,7 +78,7 @@ class Lines {
     add("blocks", "axes", list_text({blocks.axes[0], blocks.axes[1], blocks.axes[2]}), "");
     ground();
     fields("model");
-    add("model", "roughness", quoted(spec.values.impact.roughness == Roughness::Clamp ? "clamp" : "resample"), "");
+    add("model", "roughness", toml_text(spec.values.impact.roughness == Roughness::Clamp ? "clamp" : "resample"), "");
     fields("output");
     add("output", "energy_thresholds", list_text(spec.values.output.energy_thresholds), "kJ");
     add("output", "height_thresholds", list_text(spec.values.output.height_thresholds), "m");
@@ -93,7 +93,7 @@ class Lines {
   }
 
   void file(const std::string& table, const std::string& key, const NamedFile& file) {
-    if (!file.path.empty()) add(table, key, quoted(file.path), "");
+    if (!file.path.empty()) add(table, key, toml_text(file.path), "");
   }
 
   void fields(const std::string& table) {
@@ -108,21 +108,23 @@ class Lines {
 
   void ground() {
     file("ground", "file", spec_.ground);
-    if (!spec_.ground_field.empty()) add("ground", "field", quoted(spec_.ground_field), "");
-    add("ground", "default", quoted(spec_.default_ground.preset), "");
-    parameters(spec_.default_ground, "ground", "ground.default.", false);
+    if (!spec_.ground_field.empty()) add("ground", "field", toml_text(spec_.ground_field), "");
+    add("ground", "default", toml_text(spec_.default_ground.preset), "");
+    parameters(spec_.default_ground, "ground.zones.default", "ground.default.", !spec_.default_ground.own.empty());
     for (const ZoneSpec& zone : spec_.zones) {
-      const std::string table = "ground.zones." + key_of(zone.name), full = "ground.zones." + zone.name + ".";
+      const std::string table = "ground.zones." + toml_key(zone.name), full = "ground.zones." + zone.name + ".";
       const std::string origin = spec_.origin(full + "preset");
-      lines_.push_back({table, "preset", quoted(zone.preset), "",
+      lines_.push_back({table, "preset", toml_text(zone.preset), "",
                         origin == "default" ? "preset of [ground] default" : origin, full + "preset"});
+      if (!zone.code.empty()) lines_.push_back({table, "code", zone.code, "", "scenario", full + "code"});
       parameters(zone, table, full, true);
     }
   }
 
   void parameters(const ZoneSpec& zone, const std::string& table, const std::string& full, bool written) {
     const auto source = [&](const std::string& key) {
-      return zone.own.contains(key) ? std::string("scenario") : "preset " + zone.preset;
+      const auto own = zone.own.find(key);
+      return own == zone.own.end() ? "preset " + zone.preset : own->second;
     };
     for (const auto& field : ground_fields()) {
       const std::string key(field.key);

@@ -16,16 +16,20 @@ namespace {
 // Gives each zone of the file its index, and keeps in mind which ones were seen.
 class ZoneIndex {
  public:
-  explicit ZoneIndex(const ZoneRequest& request) : request_(request), seen_(request.names.size(), false) {}
+  ZoneIndex(const ZoneRequest& request, bool raster)
+      : request_(request), names_(request.names), seen_(request.names.size(), false) {
+    for (std::size_t i = 0; raster && i < request.codes.size(); ++i)
+      if (!request.codes[i].empty()) names_[i] = request.codes[i];
+  }
 
   std::uint8_t at(const std::string& zone, const std::string& where) {
-    const auto found = std::find(request_.names.begin(), request_.names.end(), zone);
-    if (found == request_.names.end())
+    const auto found = std::find(names_.begin(), names_.end(), zone);
+    if (found == names_.end())
       throw InputError(where + ": zone '" + zone + "' is not described, must be one of [" + request_.table +
-                       "]: " + (request_.names.empty() ? "none is there" : joined(request_.names)) + ": " +
+                       "]: " + (names_.empty() ? "none is there" : joined(names_)) + ": " +
                        (request_.table == "ground.zones" ? "add [ground.zones." + quoted(zone) + "] with a preset"
                                                          : "add " + quoted(zone) + " = \"NAME\" there"));
-    const auto index = static_cast<std::size_t>(found - request_.names.begin());
+    const auto index = static_cast<std::size_t>(found - names_.begin());
     seen_[index] = true;
     return static_cast<std::uint8_t>(index + 1);
   }
@@ -33,8 +37,8 @@ class ZoneIndex {
   void warn_unseen(std::vector<std::string>& warnings) const {
     for (std::size_t i = 0; i < seen_.size(); ++i)
       if (!seen_[i])
-        warnings.push_back(request_.path + ": no zone '" + request_.names[i] + "' on the map: [" + request_.table +
-                           "." + quoted(request_.names[i]) + "] is not used");
+        warnings.push_back(request_.path + ": no zone '" + names_[i] + "' on the map: [" + request_.table + "." +
+                           quoted(names_[i]) + "] is not used");
   }
 
  private:
@@ -45,12 +49,13 @@ class ZoneIndex {
   }
 
   const ZoneRequest& request_;
+  std::vector<std::string> names_;  // as the file has them
   std::vector<bool> seen_;
 };
 
 void read_polygons(const ZoneRequest& request, const Terrain& terrain, ZoneLayer& out) {
   Layer layer("ground", request.path, terrain);
-  ZoneIndex index(request);
+  ZoneIndex index(request, false);
   const std::string name = request.field.empty() ? "zone" : request.field;
   const int field = layer.field(name.c_str());
   out.field = name;
@@ -170,7 +175,7 @@ void read_codes(GDALDataset& dataset, const ZoneRequest& request, const Terrain&
   Transformer transformer({"ground", request.path}, terrain.geo.crs_wkt, wkt, terrain.map());
   const PixelFinder pixel(dataset, request.path);
   PixelReader reader(dataset, request.path);
-  ZoneIndex index(request);
+  ZoneIndex index(request, true);
   const Grid& grid = terrain.heights.grid;
   double last = std::numeric_limits<double>::quiet_NaN();
   std::uint8_t zone = 0;

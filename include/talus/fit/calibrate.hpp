@@ -1,0 +1,88 @@
+#pragma once
+#include <functional>
+#include <string>
+
+#include "talus/fit/score.hpp"
+
+namespace talus {
+
+/// A number of a model that is fitted. The search moves in z, its distance from `centre` in units of `sd`:
+///
+///   log scale:    value = centre exp(sd z)          linear scale:  value = centre + sd z
+///
+/// and takes z as standard normal beforehand: the weak prior.
+struct Parameter {
+  enum class Scale { Log, Linear };
+
+  std::string key;                  ///< "ground.zones.talus.En50"
+  std::string unit;                 ///< "m3/s2"; empty where there is none
+  double lower = 0.0, upper = 0.0;  ///< bounds, in the units of the files; log scale: above 0
+  Scale scale = Scale::Log;
+  double centre = 1.0;  ///< of the prior, within the bounds
+  double sd = 1.0;      ///< of the prior: of the logarithm, or in the unit of the value
+  std::function<double(const Model&)> get;
+  std::function<void(Model&, double)> set;
+
+  double value(double z) const;
+  double z(double value) const;
+};
+
+/// The parameters `keys` of ground_fields() in the given zones, with the start as centre of the prior. theta_scale,
+/// psi_scale, En50 and Et50 on the log scale with sd 1 (a factor of e), phi on the linear one with sd 8 degrees; bounds
+/// 2.5 sd from the start, and those of the field. Throws InputError for a key that cannot be fitted.
+std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& start,
+                                         std::span<const std::string> keys, const std::vector<bool>& zones);
+
+/// The zones that enough simulated paths of the asked blocks touch: at least `share` of them. Size: zones.
+std::vector<bool> touched_zones(const Campaign& campaign, std::span<const BlockRuns> runs, double share = 0.05);
+
+struct FitOptions {
+  std::uint32_t trials = 30;          ///< per block while it searches
+  std::uint32_t polish_trials = 100;  ///< per block in the last part of the search
+  int starts = 3;                     ///< 1: from the start alone, as when a few parameters are added to a fit
+  std::uint64_t seed = 1;
+  int threads = 0;
+  double prior_weight = 0.1;            ///< see Fit::objective; 0: no prior
+  std::function<bool(double)> proceed;  ///< told the share done, 0..1; false ends the fit. May be empty
+};
+
+/// What one model scored, row by row.
+struct Evaluation {
+  Eigen::VectorXd z;     ///< size: free parameters
+  Eigen::VectorXd rows;  ///< as Score::rows of the fit
+  std::uint32_t trials;
+  double objective;
+};
+
+/// The model that was found.
+struct Fit {
+  Model model;
+  Eigen::VectorXd z;                    ///< of the free parameters
+  double objective = kNotGiven;         ///< total score + prior_weight / (blocks asked for) * sum of z^2
+  Score score;                          ///< of the asked rows, with polish_trials trials, those of the search
+  std::vector<Evaluation> evaluations;  ///< all that was tried: what an emulator learns from
+  bool interrupted = false;
+};
+
+/// Fits the free parameters to the asked rows of a campaign.
+///
+/// @param start  what is not free stays as it is there
+/// @param free   at least one
+/// @param rows   which blocks are used; size: blocks. Spreads come from all fitting rows
+///
+/// Minimises the mean normalised score plus the prior with NLopt's LN_BOBYQA (Powell 2009; quadratic models, no
+/// derivatives) from the start and from the best of a low-discrepancy set, with few trials and then, from the best
+/// result, with more. Common random numbers throughout. The same result for any number of threads.
+/// The score at the optimum is a little too good, because the search has seen these trials: score it again with others.
+Fit fit_parameters(const Campaign& campaign, const Model& start, std::span<const Parameter> free,
+                   const std::vector<bool>& rows, const FitOptions& options);
+
+/// The objective of one point again, for more trials or others. `first_trial`: ObserveOptions.
+Evaluation evaluate(const Campaign& campaign, const Model& start, std::span<const Parameter> free,
+                    const std::vector<bool>& rows, const FitOptions& options, const Eigen::VectorXd& z,
+                    std::uint32_t trials, std::uint32_t first_trial = 0);
+
+/// A model with the free parameters at z.
+Model model_at(const Model& start, std::span<const Parameter> free, const Eigen::VectorXd& z);
+
+}  // namespace talus

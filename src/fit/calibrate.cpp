@@ -1,0 +1,226 @@
+#include "talus/fit/calibrate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlopt.hpp>
+
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/simulate/fields.hpp"
+
+namespace talus {
+namespace {
+
+constexpr double kReach = 2.5;  // bounds of a ground parameter, in sd from its start
+
+/// The search of one fit: keeps all that was tried.
+class Search {
+ public:
+  Search(const Campaign& campaign, const Model& start, std::span<const Parameter> free, const std::vector<bool>& rows,
+         const FitOptions& options)
+      : campaign_(campaign), start_(start), free_(free), rows_(rows), options_(options) {
+    const auto n = static_cast<Eigen::Index>(free.size());
+    lower_.resize(n);
+    upper_.resize(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      lower_[i] = free[i].z(free[i].lower);
+      upper_[i] = free[i].z(free[i].upper);
+    }
+    const int screened = options.starts > 1 ? kScreened * static_cast<int>(n) : 0;
+    planned_ = screened + 1 + std::max(1, options.starts) * search_length() + 2 * polish_length();
+  }
+
+  Fit run() {
+    Fit fit;
+    try {
+      const std::vector<Eigen::VectorXd> starts = choose_starts();
+      for (const Eigen::VectorXd& z : starts) descend(z, 0.5, options_.trials, search_length());
+      const Eigen::VectorXd best = evaluations_[best_index(options_.trials)].z;
+      descend(best, 0.15, options_.polish_trials, polish_length());
+    } catch (const nlopt::forced_stop&) {  // `proceed` said no
+      fit.interrupted = true;
+    }
+    if (!evaluations_.empty()) {
+      const Evaluation& best = evaluations_[best_index(evaluations_.back().trials)];
+      fit.z = best.z;
+      fit.objective = best.objective;
+      fit.model = model_at(start_, free_, best.z);
+      if (!fit.interrupted) fit.score = score_of(fit.model);
+    }
+    fit.evaluations = std::move(evaluations_);
+    return fit;
+  }
+
+ private:
+  static constexpr int kScreened = 6;  // points to choose the starts from, per parameter
+  int search_length() const { return 12 * static_cast<int>(free_.size()) + 10; }
+  int polish_length() const { return 5 * static_cast<int>(free_.size()) + 5; }
+
+  /// The objective at z.
+  double operator()(const Eigen::VectorXd& z, std::uint32_t trials) {
+    ++done_;
+    if (options_.proceed && !options_.proceed(std::min(1.0, static_cast<double>(done_) / planned_)))
+      throw nlopt::forced_stop();
+    Evaluation evaluation = evaluate(campaign_, start_, free_, rows_, options_, z, trials);
+    evaluations_.push_back(std::move(evaluation));
+    return evaluations_.back().objective;
+  }
+
+  Score score_of(const Model& model) const {
+    ObserveOptions how{options_.polish_trials, options_.seed, 0, options_.threads, rows_, {}};
+    return score(campaign_, observe(campaign_, model, how), rows_);
+  }
+
+  /// The best of those with so many trials: others are on other luck.
+  std::size_t best_index(std::uint32_t trials) const {
+    std::size_t best = evaluations_.size() - 1;
+    for (std::size_t i = 0; i < evaluations_.size(); ++i)
+      if (evaluations_[i].trials == trials &&
+          (evaluations_[best].trials != trials || evaluations_[i].objective < evaluations_[best].objective))
+        best = i;
+    return best;
+  }
+
+  /// The start itself, and the best of an additive recurrence in the middle of the box, well apart from each other.
+  std::vector<Eigen::VectorXd> choose_starts() {
+    const auto n = static_cast<Eigen::Index>(free_.size());
+    Eigen::VectorXd origin(n);
+    for (Eigen::Index i = 0; i < n; ++i) origin[i] = std::clamp(free_[i].z(free_[i].get(start_)), lower_[i], upper_[i]);
+    std::vector<Eigen::VectorXd> starts{origin};
+    (*this)(origin, options_.trials);
+    if (options_.starts <= 1) return starts;
+    double root = 2.0;  // of x^(n + 1) = x + 1: the generalised golden ratio (Roberts 2018)
+    for (int k = 0; k < 40; ++k) root = std::pow(1.0 + root, 1.0 / static_cast<double>(n + 1));
+    std::vector<std::pair<double, Eigen::VectorXd>> tried;
+    for (int k = 1; k <= kScreened * static_cast<int>(n); ++k) {
+      Eigen::VectorXd z(n);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const double u = std::fmod(0.5 + k * std::pow(root, -static_cast<double>(i + 1)), 1.0);
+        z[i] = std::clamp(3.0 * u - 1.5, lower_[i], upper_[i]);
+      }
+      const double objective = (*this)(z, options_.trials);
+      tried.emplace_back(objective, z);
+    }
+    std::stable_sort(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [objective, z] : tried) {
+      const bool apart = std::all_of(starts.begin(), starts.end(),
+                                     [&place = z](const auto& other) { return (place - other).norm() > 1.0; });
+      if (apart && static_cast<int>(starts.size()) < options_.starts) starts.push_back(z);
+    }
+    return starts;
+  }
+
+  /// NLopt's BOBYQA from z. What it finds is in `evaluations_`.
+  void descend(const Eigen::VectorXd& z, double step, std::uint32_t trials, int most) {
+    const auto n = static_cast<unsigned>(free_.size());
+    trials_ = trials;
+    // BOBYQA needs two parameters.
+    nlopt::opt search(n > 1 ? nlopt::LN_BOBYQA : nlopt::LN_SBPLX, n);
+    search.set_lower_bounds({lower_.begin(), lower_.end()});
+    search.set_upper_bounds({upper_.begin(), upper_.end()});
+    search.set_min_objective(
+        [](const std::vector<double>& x, std::vector<double>&, void* self) {
+          auto& me = *static_cast<Search*>(self);
+          return me(Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x)), me.trials_);
+        },
+        this);
+    search.set_initial_step(step);
+    search.set_xtol_abs(0.02);
+    search.set_maxeval(most);
+    std::vector<double> x(z.begin(), z.end());
+    double objective = 0.0;
+    try {
+      search.optimize(x, objective);
+    } catch (const nlopt::roundoff_limited&) {  // the noise of the trials: the best point so far stands
+    }
+  }
+
+  const Campaign& campaign_;
+  const Model& start_;
+  std::span<const Parameter> free_;
+  const std::vector<bool>& rows_;
+  const FitOptions& options_;
+  Eigen::VectorXd lower_, upper_;
+  std::vector<Evaluation> evaluations_;
+  std::uint32_t trials_ = 0;
+  int done_ = 0, planned_ = 1;
+};
+
+}  // namespace
+
+double Parameter::value(double z) const {
+  const double free = scale == Scale::Log ? centre * std::exp(sd * z) : centre + sd * z;
+  return std::clamp(free, lower, upper);
+}
+
+double Parameter::z(double value) const {
+  return scale == Scale::Log ? std::log(value / centre) / sd : (value - centre) / sd;
+}
+
+std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& start,
+                                         std::span<const std::string> keys, const std::vector<bool>& zones) {
+  static const std::vector<std::string> known{"theta_scale", "psi_scale", "En50", "Et50", "phi"};
+  std::vector<Parameter> parameters;
+  for (std::size_t zone = 0; zone < start.grounds.size(); ++zone)
+    for (const std::string& key : keys) {
+      const auto fields = ground_fields();
+      const auto field = std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.key == key; });
+      if (field == fields.end() || std::find(known.begin(), known.end(), key) == known.end())
+        throw InputError("'" + key + "' is no parameter that can be fitted" + known_names(key, known));
+      if (!zones[zone]) continue;
+      Parameter p;
+      p.key = "ground.zones." + campaign.zone_names[zone] + "." + key;
+      p.unit = field->unit == "1" ? "" : std::string(field->unit);
+      p.scale = key == "phi" ? Parameter::Scale::Linear : Parameter::Scale::Log;
+      p.sd = key == "phi" ? 8.0 : 1.0;
+      p.centre = field->get(start.grounds[zone]);
+      if (p.scale == Parameter::Scale::Log) p.centre = std::max(p.centre, 0.01);
+      p.lower = field->min;
+      p.upper = field->max;
+      const double low = p.scale == Parameter::Scale::Log ? p.centre * std::exp(-kReach) : p.centre - kReach * p.sd;
+      const double high = p.scale == Parameter::Scale::Log ? p.centre * std::exp(kReach) : p.centre + kReach * p.sd;
+      p.lower = std::max(p.lower, low);
+      p.upper = std::min(p.upper, high);
+      p.get = [get = field->get, zone](const Model& model) { return get(model.grounds[zone]); };
+      p.set = [set = field->set, zone](Model& model, double value) { set(model.grounds[zone], value); };
+      parameters.push_back(std::move(p));
+    }
+  return parameters;
+}
+
+std::vector<bool> touched_zones(const Campaign& campaign, std::span<const BlockRuns> runs, double share) {
+  std::vector<double> hits(campaign.zone_names.size(), 0.0);
+  double trials = 0.0;
+  for (const BlockRuns& block : runs) {
+    trials += block.trials;
+    for (std::size_t zone = 0; zone < block.zone_hits.size(); ++zone) hits[zone] += block.zone_hits[zone];
+  }
+  std::vector<bool> touched;
+  for (const double count : hits) touched.push_back(count > 0.0 && count >= share * trials);
+  return touched;
+}
+
+Model model_at(const Model& start, std::span<const Parameter> free, const Eigen::VectorXd& z) {
+  Model model = start;
+  for (std::size_t i = 0; i < free.size(); ++i) free[i].set(model, free[i].value(z[static_cast<Eigen::Index>(i)]));
+  return model;
+}
+
+Evaluation evaluate(const Campaign& campaign, const Model& start, std::span<const Parameter> free,
+                    const std::vector<bool>& rows, const FitOptions& options, const Eigen::VectorXd& z,
+                    std::uint32_t trials, std::uint32_t first_trial) {
+  ObserveOptions how{trials, options.seed, first_trial, options.threads, rows, {}};
+  const Score s = score(campaign, observe(campaign, model_at(start, free, z), how), rows);
+  Evaluation evaluation{z, Eigen::VectorXd(std::ssize(s.rows)), trials, s.total};
+  for (std::size_t r = 0; r < s.rows.size(); ++r) evaluation.rows[static_cast<Eigen::Index>(r)] = s.rows[r].score;
+  const auto blocks = static_cast<double>(std::count(rows.begin(), rows.end(), true));
+  evaluation.objective += options.prior_weight / blocks * z.squaredNorm();
+  return evaluation;
+}
+
+Fit fit_parameters(const Campaign& campaign, const Model& start, std::span<const Parameter> free,
+                   const std::vector<bool>& rows, const FitOptions& options) {
+  return Search(campaign, start, free, rows, options).run();
+}
+
+}  // namespace talus

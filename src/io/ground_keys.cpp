@@ -1,0 +1,104 @@
+#include "ground_keys.hpp"
+
+#include <algorithm>
+
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/simulate/presets.hpp"
+
+namespace talus::io {
+namespace {
+
+constexpr Bounds kCode{"code", "1", "what stands for the zone in a raster", 0.0, 1e15, Bounds::Closed, true};
+constexpr const char* kDefaultZone = "default";  // the ground outside all zones
+
+}  // namespace
+
+void GroundReader::read(TableReader& ground) {
+  const bool flag = spec_.origin("ground.default").rfind("flag", 0) == 0;  // the flag wins
+  if (const auto name = ground.text("default")) {
+    ZoneSpec asked = spec_.default_ground;
+    if (set_preset(ground, "default", *name, asked) && !flag) {
+      spec_.default_ground = asked;
+      spec_.origins["ground.default"] = origin_;
+    }
+  }
+  TableReader zones = ground.table("zones");
+  if (zones.value() == nullptr) return;
+  if (zones.value()->find(kDefaultZone) != nullptr) {
+    const ZoneSpec before = spec_.default_ground;
+    read_zone(zones.table(kDefaultZone), spec_.default_ground);
+    if (flag) spec_.default_ground = before;
+  }
+  for (const auto& [name, value] : zones.value()->members) {
+    if (name == kDefaultZone) continue;
+    const auto known = std::find_if(spec_.zones.begin(), spec_.zones.end(),
+                                    [&zone = name](const ZoneSpec& z) { return z.name == zone; });
+    ZoneSpec start = known == spec_.zones.end() ? spec_.default_ground : *known;
+    start.name = name;
+    read_zone(zones.table(name), std::move(start));
+  }
+  if (spec_.zones.size() > 255)
+    faults_.push_back(ground.file() + ": [ground.zones] has " + std::to_string(spec_.zones.size()) +
+                      " zones, must be at most 255");
+}
+
+void GroundReader::check_file(const TableReader& ground, const std::string& include) {
+  if (spec_.zones.empty() || !spec_.ground.path.empty()) return;
+  const TomlValue* zones = ground.value() == nullptr ? nullptr : ground.value()->find("zones");
+  faults_.push_back(zones != nullptr
+                        ? ground.file() + ":" + std::to_string(zones->line) +
+                              ": [ground.zones] without file in [ground], must say where the zones are"
+                        : include +
+                              ": describes zones of ground: must come with file in [ground] of the scenario, "
+                              "which says where they are");
+}
+
+bool GroundReader::set_preset(TableReader& table, const std::string& key, const std::string& name, ZoneSpec& zone) {
+  try {
+    zone.ground = find_preset(name).ground;
+    zone.preset = name;
+    zone.own.clear();
+    return true;
+  } catch (const InputError& error) {
+    table.fault(key, *table.value()->find(key), error.what());
+    return false;
+  }
+}
+
+void GroundReader::read_zone(TableReader table, ZoneSpec zone) {
+  if (const auto preset = table.text("preset"))
+    if (set_preset(table, "preset", *preset, zone))
+      spec_.origins[zone.name == kDefaultZone ? "ground.default" : table.full("preset")] = origin_;
+  if (const auto code = table.number("code", kCode)) zone.code = text_of(*code);
+  for (const auto& field : ground_fields()) {
+    const std::string key(field.key);
+    if (key == "shape_min" || key == "shape_max") continue;
+    if (const auto value = table.number(key, field)) {
+      field.set(zone.ground, *value);
+      zone.own[key] = origin_;
+    }
+  }
+  if (const auto shape = table.range("shape", ground_fields().back())) {
+    zone.ground.shape_min = shape->low;
+    zone.ground.shape_max = shape->high;
+    zone.own["shape"] = origin_;
+  }
+  table.finish();
+  store(std::move(zone));
+}
+
+void GroundReader::store(ZoneSpec zone) {
+  if (zone.name == kDefaultZone) {
+    spec_.default_ground = std::move(zone);
+    return;
+  }
+  const auto known =
+      std::find_if(spec_.zones.begin(), spec_.zones.end(), [&](const ZoneSpec& z) { return z.name == zone.name; });
+  if (known == spec_.zones.end())
+    spec_.zones.push_back(std::move(zone));
+  else
+    *known = std::move(zone);
+}
+
+}  // namespace talus::io

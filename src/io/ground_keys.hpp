@@ -1,0 +1,34 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenario_spec.hpp"
+#include "table_reader.hpp"
+
+namespace talus::io {
+
+/// Reads the kinds of ground of a scenario, or of a file that it includes: [ground], [ground.zones.NAME].
+class GroundReader {
+ public:
+  /// @param origin  of what is read, for the record: "scenario", "include fitted.toml"
+  GroundReader(ScenarioSpec& spec, std::string origin, std::vector<std::string>& faults)
+      : spec_(spec), origin_(std::move(origin)), faults_(faults) {}
+
+  /// `default` and `zones`; a zone that is there already keeps what is not said again, unless a preset is named.
+  void read(TableReader& ground);
+
+  /// A fault where zones are described and no file says where they are.
+  void check_file(const TableReader& ground, const std::string& include);
+
+ private:
+  bool set_preset(TableReader& table, const std::string& key, const std::string& name, ZoneSpec& zone);
+  void read_zone(TableReader table, ZoneSpec zone);
+  void store(ZoneSpec zone);
+
+  ScenarioSpec& spec_;
+  std::string origin_;
+  std::vector<std::string>& faults_;
+};
+
+}  // namespace talus::io

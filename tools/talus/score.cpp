@@ -1,0 +1,81 @@
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "commands.hpp"
+#include "talus/base/error.hpp"
+#include "talus/io/model_file.hpp"
+#include "talus/io/output_folder.hpp"
+#include "talus/io/score_report.hpp"
+
+namespace {
+
+struct Options {
+  std::string campaign, parameters, rows = "all", dump;
+  std::uint32_t trials = 100;
+  std::uint64_t seed = 1;
+  int threads = 0;
+  bool json = false, quiet = false;
+};
+
+int score_model(const Options& options) {
+  catch_signals();
+  if (options.parameters.empty())
+    throw talus::InputError(
+        "score: no model is given: name it by --parameters fitted.toml (talus calibrate writes one)");
+  const talus::io::LoadedCampaign loaded = talus::io::read_campaign(options.campaign);
+  const talus::Campaign& campaign = loaded.campaign;
+  const talus::Model model = talus::io::read_model(options.parameters, campaign);
+  if (!options.quiet)
+    for (const std::string& warning : loaded.warnings) say("warning", warning);
+  std::optional<talus::io::OutputFolder> dump;
+  if (!options.dump.empty()) dump.emplace(options.dump, false);
+
+  talus::ObserveOptions how;
+  how.trials = options.trials;
+  how.seed = options.seed;
+  how.threads = options.threads;
+  how.proceed = [] { return !interrupted(); };
+  if (options.rows != "all")
+    how.blocks = options.rows == "fit" ? talus::fitting_rows(campaign) : talus::holdout_rows(campaign);
+  const std::vector<talus::BlockRuns> runs = talus::observe(campaign, model, how);
+  if (interrupted()) throw Interrupted("interrupted; nothing was written");
+
+  std::vector<talus::io::ScoredRows> scores;
+  if (options.rows != "holdout")
+    scores.push_back(talus::io::scored("fit", campaign, runs, talus::fitting_rows(campaign)));
+  if (options.rows != "fit")
+    scores.push_back(talus::io::scored("holdout", campaign, runs, talus::holdout_rows(campaign)));
+  const talus::io::ScoreSettings settings{campaign.name, options.trials, options.seed};
+  const std::string text =
+      options.json ? talus::io::score_json(settings, scores) : talus::io::score_table(settings, scores);
+  if (dump) {
+    talus::io::write_runs(dump->temporary(), loaded, runs);
+    dump->commit();
+  }
+  std::fputs(text.c_str(), stdout);
+  return 0;
+}
+
+}  // namespace
+
+void add_score(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("score", "Say how far a model is from measured data, group by group");
+  command->add_option("campaign", options->campaign, "measured data: campaign.toml")->required();
+  command->add_option("--parameters", options->parameters, "the model: fitted.toml, as talus calibrate writes it");
+  command->add_option("--trials", options->trials, "simulated trajectories per block (100)")
+      ->check(CLI::Range(10, 100000));
+  command->add_option("--seed", options->seed, "of the random numbers (1)");
+  command->add_option("--rows", options->rows, "fit, holdout or all (all)")
+      ->check(CLI::IsMember({"fit", "holdout", "all"}));
+  command->add_flag("--json", options->json, "print JSON");
+  command->add_option("--dump", options->dump, "new folder for what was simulated, by block and trial (CSV)");
+  command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
+      ->check(CLI::Range(1, 4096));
+  command->add_flag("-q,--quiet", options->quiet, "say nothing but errors and the result");
+  command->footer(
+      "Example:\n  talus score campaign.toml --parameters result/fitted.toml\n\n"
+      "0 is a model that says the very value; about 0.56 one that knows no more than the spread of the measurements.");
+  command->callback([&action, options] { action = [options] { return score_model(*options); }; });
+}
