@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
+#include "effect_spec.hpp"
 #include "scenario_spec.hpp"
 #include "table_reader.hpp"
 #include "talus/base/error.hpp"
@@ -16,10 +16,6 @@ namespace {
 
 using Kind = TomlValue::Kind;
 
-constexpr std::array<const char*, 9> kEffects{"vegetation-drag",    "forest-stems", "block-shape",
-                                              "block-mass",         "wet-ground",   "soft-ground",
-                                              "rolling-resistance", "air-drag",     "fragmentation"};
-
 class SpecReader {
  public:
   SpecReader(ScenarioSpec& spec, const std::string& file, std::vector<std::string>& faults)
@@ -30,6 +26,7 @@ class SpecReader {
     named_file(top, "dem", spec_.dem);
     scalar(top, "seed");
     scalar(top, "trajectories");
+    scalar(top, "day");
     read_sources(top.table("sources"));
     read_blocks(top.table("blocks"));
     read_ground(top.table("ground"));
@@ -38,7 +35,10 @@ class SpecReader {
     TableReader screens = top.table("screens");
     named_file(screens, "file", spec_.screens);
     screens.finish();
-    refuse_later_parts(top);
+    if (const TomlValue* barriers = top.find("barriers"))
+      faults_.push_back(file_ + ":" + std::to_string(barriers->line) +
+                        ": [barriers] is not in this version of Talus, must be left out");
+    read_effects(spec_, top.table("effects"), base_);
     top.finish();
   }
 
@@ -235,20 +235,6 @@ class SpecReader {
     given("output." + key);
   }
 
-  void refuse_later_parts(TableReader& top) {
-    if (const TomlValue* barriers = top.find("barriers"))
-      faults_.push_back(file_ + ":" + std::to_string(barriers->line) +
-                        ": [barriers] is not in this version of Talus, must be left out");
-    const TomlValue* effects = top.find("effects");
-    if (effects == nullptr) return;
-    TableReader table(effects, "effects", file_, faults_);
-    for (const char* name : kEffects)
-      if (const TomlValue* effect = table.find(name))
-        faults_.push_back(file_ + ":" + std::to_string(effect->line) + ": [effects." + name +
-                          "] is not in this version of Talus, must be left out");
-    table.finish();
-  }
-
   ScenarioSpec& spec_;
   std::string file_;
   std::filesystem::path base_;
@@ -274,6 +260,7 @@ ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) 
     SpecReader(spec, flags.scenario, faults).read(read_toml(flags.scenario, flags.scenario));
   }
   lay_flags(spec, flags, faults);
+  check_effect_zones(spec, faults);
   sort_by_line(faults, flags.scenario);
   const std::string in = flags.scenario.empty() ? "" : flags.scenario + ": ";
   if (spec.dem.path.empty() && !spec.origins.contains("dem"))
