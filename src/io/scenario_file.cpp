@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "dataset.hpp"
+#include "effect_spec.hpp"
 #include "scenario_spec.hpp"
 #include "sha256.hpp"
 #include "talus/base/error.hpp"
@@ -15,7 +16,9 @@ namespace {
 // Files that are not there, before any is opened.
 void check_files(const ScenarioSpec& spec, std::vector<std::string>& faults) {
   start_gdal();
-  for (const NamedFile* file : {&spec.include, &spec.dem, &spec.sources, &spec.ground, &spec.screens}) {
+  std::vector<const NamedFile*> files{&spec.include, &spec.dem, &spec.sources, &spec.ground, &spec.screens};
+  for (const auto& [name, effect] : spec.effects) files.push_back(&effect.file);
+  for (const NamedFile* file : files) {
     if (file->path.empty()) continue;
     VSIStatBufL status;
     std::error_code none;
@@ -71,9 +74,13 @@ void check_diameters(const Scenario& parts, const SourceLayer& layer, const std:
 }
 
 void record_inputs(const ScenarioSpec& spec, LoadedScenario& out) {
-  const std::pair<const char*, const NamedFile*> files[] = {{"scenario", &spec.scenario}, {"include", &spec.include},
-                                                            {"dem", &spec.dem},           {"sources", &spec.sources},
-                                                            {"ground", &spec.ground},     {"screens", &spec.screens}};
+  std::vector<std::pair<std::string, const NamedFile*>> files{{"scenario", &spec.scenario},
+                                                              {"include", &spec.include},
+                                                              {"dem", &spec.dem},
+                                                              {"sources", &spec.sources},
+                                                              {"ground", &spec.ground},
+                                                              {"screens", &spec.screens}};
+  for (const auto& [name, effect] : spec.effects) files.emplace_back("effects." + name, &effect.file);
   for (const auto& [role, file] : files)
     if (!file->path.empty()) out.inputs.push_back({role, file->path, sha256_of_file(file->path)});
 }
@@ -95,6 +102,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
   check_diameters(parts, sources, spec.sources.path);
   take(out, sources);
   load_ground(spec, terrain, parts, out);
+  load_effect_places(spec, terrain, parts, out);
   if (!spec.screens.path.empty()) {
     ScreenLayer screens = read_screens(spec.screens.path, terrain);
     parts.screens = std::move(screens.screens);

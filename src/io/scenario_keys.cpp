@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
+#include "effect_spec.hpp"
 #include "ground_keys.hpp"
 #include "scenario_spec.hpp"
 #include "table_reader.hpp"
@@ -15,10 +15,6 @@ namespace talus::io {
 namespace {
 
 using Kind = TomlValue::Kind;
-
-constexpr std::array<const char*, 9> kEffects{"vegetation-drag",    "forest-stems", "block-shape",
-                                              "block-mass",         "wet-ground",   "soft-ground",
-                                              "rolling-resistance", "air-drag",     "fragmentation"};
 
 class SpecReader {
  public:
@@ -35,6 +31,7 @@ class SpecReader {
     named_file(top, "dem", spec_.dem);
     scalar(top, "seed");
     scalar(top, "trajectories");
+    scalar(top, "day");
     read_sources(top.table("sources"));
     read_blocks(top.table("blocks"));
     read_ground(top.table("ground"));
@@ -43,7 +40,7 @@ class SpecReader {
     TableReader screens = top.table("screens");
     named_file(screens, "file", spec_.screens);
     screens.finish();
-    read_effects(top);
+    read_effects(spec_, top.table("effects"), base_);
     refuse_later_parts(top);
     top.finish();
   }
@@ -57,7 +54,7 @@ class SpecReader {
     TableReader model = top.table("model");
     read_impact(model);
     model.finish();
-    read_effects(top);
+    read_effects(spec_, top.table("effects"), base_);
     top.finish();
   }
 
@@ -229,18 +226,6 @@ class SpecReader {
                         ": [barriers] is not in this version of Talus, must be left out");
   }
 
-  /// [effects.*], of a scenario, of what it includes, and of a model for a campaign: into spec_.values.effects.
-  void read_effects(TableReader& top) {
-    const TomlValue* effects = top.find("effects");
-    if (effects == nullptr) return;
-    TableReader table(effects, "effects", file_, faults_);
-    for (const char* name : kEffects)
-      if (const TomlValue* effect = table.find(name))
-        faults_.push_back(file_ + ":" + std::to_string(effect->line) + ": [effects." + name +
-                          "] is not in this version of Talus, must be left out");
-    table.finish();
-  }
-
   ScenarioSpec& spec_;
   std::string file_, origin_;
   std::filesystem::path base_;
@@ -271,6 +256,7 @@ ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) 
     SpecReader(spec, flags.scenario, "scenario", faults).read(read_toml(flags.scenario, flags.scenario));
   }
   lay_flags(spec, flags, faults);
+  check_effect_zones(spec, faults);
   sort_by_line(faults, flags.scenario);
   const std::string in = flags.scenario.empty() ? "" : flags.scenario + ": ";
   if (spec.dem.path.empty() && !spec.origins.contains("dem"))

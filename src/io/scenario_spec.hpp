@@ -23,12 +23,21 @@ struct ZoneSpec {
   std::string code;                        ///< what stands for the zone in a raster; empty: its name
 };
 
+/// An effect that the input names: where it acts. Its numbers are in `values`.
+struct EffectSpec {
+  std::string where;               ///< "scenario.toml:12: [effects.vegetation-drag]", for messages
+  std::vector<std::string> zones;  ///< empty: in all
+  std::string zones_where;
+  NamedFile file;
+};
+
 /// All that a scenario file and the flags say, before any other file is opened.
 struct ScenarioSpec {
   NamedFile scenario, include, dem, sources, ground, screens;
   std::string ground_field;
   ZoneSpec default_ground;
-  std::vector<ZoneSpec> zones;  ///< in the order of the file
+  std::vector<ZoneSpec> zones;                ///< in the order of the file
+  std::map<std::string, EffectSpec> effects;  ///< by name
   Range release_height = SourceFeature{}.release_height;
   Scenario values;                             ///< its settings; without terrain, sources and screens
   std::map<std::string, std::string> origins;  ///< of the keys that are given: "scenario", "flag --seed"

@@ -83,6 +83,7 @@ class Lines {
     add("output", "energy_thresholds", list_text(spec.values.output.energy_thresholds), "kJ");
     add("output", "height_thresholds", list_text(spec.values.output.height_thresholds), "m");
     file("screens", "file", spec.screens);
+    effects();
   }
   const std::vector<Line>& lines() const { return lines_; }
 
@@ -103,6 +104,28 @@ class Lines {
       if ((dot == std::string::npos ? "" : full.substr(0, dot)) == table)
         add(table, full.substr(dot == std::string::npos ? 0 : dot + 1), text_of(field.get(spec_.values)),
             field.unit == "1" ? "" : std::string(field.unit));
+    }
+  }
+
+  void effects() {
+    if (spec_.effects.empty()) return;
+    add("effects", "allow_both", spec_.values.drag_and_stems ? "true" : "false", "");
+    for (const std::string_view name : effect_names()) {
+      const auto found = spec_.effects.find(std::string(name));
+      if (found == spec_.effects.end()) continue;
+      const std::string table = "effects." + found->first;
+      for (const auto& field : effect_fields())
+        if (field.key.starts_with(found->first + "."))
+          add(table, std::string(field.key.substr(name.size() + 1)), text_of(field.get(spec_.values.effects)),
+              field.unit == "1" ? "" : std::string(field.unit));
+      if (name == "wet-ground") {
+        const std::vector<int>& days = spec_.values.effects.wet_ground.days;
+        add(table, "days", list_text({days.begin(), days.end()}), "");
+      }
+      std::vector<std::string> zones;
+      for (const std::string& zone : found->second.zones) zones.push_back(quoted(zone));
+      if (!zones.empty()) add(table, "zones", std::string("[") + joined(zones) + "]", "");
+      file(table, "file", found->second.file);
     }
   }
 

@@ -58,6 +58,10 @@ const char* name_of(Event event) {
       return "slide";
     case Event::Takeoff:
       return "takeoff";
+    case Event::Air:
+      return "air";
+    case Event::Stem:
+      return "stem";
     case Event::End:
       return "end";
   }

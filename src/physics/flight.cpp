@@ -32,9 +32,10 @@ double arc_length(const Vec3& v, double duration) {
   return duration / 18.0 * (5.0 * speed(0.5 - 0.5 * kNode) + 8.0 * speed(0.5) + 5.0 * speed(0.5 + 0.5 * kNode));
 }
 
-}  // namespace
-
-Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path) {
+/// @tparam kBounded  ends after `longest`; else there is no trace of it in the code
+template <bool kBounded>
+Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path,
+             [[maybe_unused]] double longest) {
   const Grid& grid = surface.grid();
   const Vec3 start = motion.position, v = motion.velocity;
   const double rate_u = v.x() * surface.per_cell_x(), rate_v = v.y() * surface.per_cell_y();
@@ -47,7 +48,8 @@ Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounde
   for (int crossed = 0; crossed <= grid.columns + grid.rows + 2; ++crossed) {
     Patch patch;
     if (!surface.read(at, patch)) break;
-    const double until = std::min(columns.next, rows.next) - t;
+    const double edge = std::min(columns.next, rows.next) - t;
+    const double until = kBounded ? std::min(edge, longest - t) : edge;
     const double rise = v.z() - kGravity * t;
     const bool leaving = grounded && crossed == 0;  // on the surface and away from it, whatever rounding says
     const double f0 = leaving ? 0.0 : std::max(z - patch.height(p, q), 0.0);
@@ -79,6 +81,10 @@ Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounde
       outcome = Outcome::Landed;
       break;
     }
+    if (kBounded && until < edge) {
+      outcome = Outcome::Aloft;
+      break;
+    }
     z = start.z() + t * (v.z() - 0.5 * kGravity * t);
     if (columns.next <= rows.next) {
       at.column += columns.step;
@@ -97,6 +103,16 @@ Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounde
                      outcome == Outcome::Landed ? z : start.z() + t * (v.z() - 0.5 * kGravity * t)};
   motion.velocity.z() = v.z() - kGravity * t;
   return outcome;
+}
+
+}  // namespace
+
+Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path) {
+  return walk<false>(surface, motion, at, grounded, path, kNever);
+}
+
+Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path, double longest) {
+  return walk<true>(surface, motion, at, grounded, path, longest);
 }
 
 }  // namespace talus

@@ -129,13 +129,16 @@ Eigen::Vector2d sliding_acceleration(const Eigen::Vector2d& slope, double twist,
 }
 
 SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, PatchIndex& at, double diameter,
-               double stop_speed, Path& path) {
+               double stop_speed, Path& path, const RollingResistance* resistance) {
   double slid = 0.0;
   const double tolerance = kErrorShare * diameter;
   int short_crossings = 0;  // in succession, each less than the tolerance after the last
   PatchIndex came_from = at;
   for (int pieces = 0; pieces < kMaxPieces; ++pieces) {
-    const double tan_phi = cover.grounds[cover.zone_at(motion.position.x(), motion.position.y())].tan_phi;
+    const std::uint8_t zone = cover.zone_at(motion.position.x(), motion.position.y());
+    const bool resists =
+        resistance != nullptr && resistance->where.covers(zone, motion.position.x(), motion.position.y());
+    const double tan_phi = cover.grounds[zone].tan_phi + (resists ? resistance->coefficient : 0.0);
     Slope slope{surface, at, tan_phi};
     if (!slope.read()) return SlideEnd::Left;
     const double speed = motion.velocity.norm();

@@ -1,21 +1,26 @@
 #include "talus/physics/trace.hpp"
 
+#include <algorithm>
 #include <optional>
 
+#include "acting.hpp"
 #include "anchor.hpp"
-#include "talus/physics/flight.hpp"
-#include "talus/physics/slide.hpp"
 
 namespace talus {
 namespace {
 
 /// One block on its way: the state that its steps share. A step returns how the trajectory ended, or nothing.
+///
+/// @tparam Acting  the effects that act: Effectless, which leaves nothing of them in the code, or ActingEffects
+template <class Acting>
 class Walk {
  public:
   Walk(const World& world, const Release& release, Path& path)
       : world_(world),
         body_(release.body),
-        asperities_(Random(release.seed, release.source, release.block, Purpose::Impact), world.impact.roughness),
+        effects_(world, release),
+        asperities_(Random(release.seed, release.source, release.block, Purpose::Impact, release.piece),
+                    world.impact.roughness),
         path_(path),
         motion_(release.motion),
         at_(world.surface.patch_at(motion_.position.x(), motion_.position.y())),
@@ -23,7 +28,7 @@ class Walk {
 
   End run() {
     path_.vertices.push_back({motion_, Event::Release});
-    if (fly(world_.surface, motion_, at_, false, path_) == Outcome::Left) return End::Left;
+    if (const auto end = end_of(effects_.fly(motion_, at_, false, body_, path_))) return *end;
     anchor_.set(motion_);
     while (path_.impacts < world_.rules.impact_limit && motion_.time < world_.rules.time_limit) {
       if (const auto end = meet_the_ground()) return *end;
@@ -40,20 +45,28 @@ class Walk {
   }
 
   const Motion& motion() const { return motion_; }
+  const Block& body() const { return body_; }
 
  private:
+  static std::optional<End> end_of(Outcome outcome) {
+    if (outcome == Outcome::Left) return End::Left;
+    if (outcome == Outcome::Aloft) return End::Limit;
+    return std::nullopt;
+  }
+
   /// An impact where the block is. It stops there if it comes out slowly on ground no steeper than phi.
   std::optional<End> meet_the_ground() {
-    const Ground& ground = world_.cover.grounds[world_.cover.zone_at(motion_.position.x(), motion_.position.y())];
+    decltype(auto) ground = effects_.ground(motion_.position, body_);
     Patch patch;
     world_.surface.read(at_, patch);  // a block on the ground is on a patch that exists
     const double p = world_.surface.u_of(motion_.position.x()) - at_.column;
     const double q = world_.surface.v_of(motion_.position.y()) - at_.row;
     normal_ = normal_of(world_.surface.gradient(patch, p, q));
     const Asperity asperity = asperities_.at(path_.impacts, ground);
-    const Contact contact = impact(world_.impact, ground, body_, motion_, normal_, asperity);
+    const Contact contact = effects_.impact(ground, body_, motion_, normal_, asperity);
     motion_.velocity = contact.velocity;
     motion_.spin = contact.spin;
+    effects_.after_impact(normal_, body_, motion_, path_);
     path_.vertices.push_back({motion_, Event::Impact});
     path_.spans.back().impacts += 1;
     path_.impacts += 1;
@@ -66,20 +79,20 @@ class Walk {
   /// Slides from where the block is; the part of its velocity across the surface is lost.
   SlideEnd slide_on() {
     motion_.velocity -= motion_.velocity.dot(normal_) * normal_;
-    const SlideEnd end =
-        slide(world_.surface, world_.cover, motion_, at_, body_.diameter, world_.rules.stop_speed, path_);
+    const SlideEnd end = effects_.slide(motion_, at_, body_, path_);
     return end != SlideEnd::Left && anchor_.traps(motion_) ? SlideEnd::Stopped : end;
   }
 
   /// Flies from the surface to the next contact.
   std::optional<End> fly_on() {
-    if (fly(world_.surface, motion_, at_, true, path_) == Outcome::Left) return End::Left;
+    if (const auto end = end_of(effects_.fly(motion_, at_, true, body_, path_))) return *end;
     if (anchor_.traps(motion_)) return End::Stopped;
     return std::nullopt;
   }
 
   const World& world_;
   Block body_;
+  Acting effects_;
   Asperities asperities_;
   Path& path_;
   Motion motion_;
@@ -88,13 +101,36 @@ class Walk {
   Anchor anchor_;
 };
 
+template <class Acting>
+void walk(const World& world, const Release& release, Path& path) {
+  Walk<Acting> block(world, release, path);
+  path.end = block.run();
+  path.mass = block.body().mass;
+  path.vertices.push_back({block.motion(), Event::End});
+}
+
 }  // namespace
 
 void trace(const World& world, const Release& release, Path& path) {
   path.clear();
-  Walk walk(world, release, path);
-  path.end = walk.run();
-  path.vertices.push_back({walk.motion(), Event::End});
+  if (world.effects == nullptr)
+    walk<Effectless>(world, release, path);
+  else
+    walk<ActingEffects>(world, release, path);
+}
+
+void trace_pieces(const World& world, const Path& whole,
+                  const std::function<void(const Release&, const Path&)>& visit) {
+  std::vector<Release> pieces = whole.pieces;
+  Path path;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    Release piece = pieces[i];
+    piece.piece = static_cast<std::uint32_t>(i + 1);
+    piece.pieces_left = kMostPieces - std::min(kMostPieces, static_cast<std::uint32_t>(pieces.size()));
+    trace(world, piece, path);
+    pieces.insert(pieces.end(), path.pieces.begin(), path.pieces.end());
+    visit(piece, path);
+  }
 }
 
 }  // namespace talus

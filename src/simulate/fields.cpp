@@ -67,13 +67,16 @@ constexpr std::array<Field<Ground>, 7> kGround{{
      set_ground<&Ground::shape_max>},
 }};
 
-constexpr std::array<Field<Scenario>, 9> kScenario{{
+constexpr std::array<Field<Scenario>, 10> kScenario{{
     {{"seed", "1", "of the random numbers", 0.0, 9007199254740991.0, Bounds::Closed, true},
      [](const Scenario& s) { return static_cast<double>(s.seed); },
      [](Scenario& s, double v) { s.seed = static_cast<std::uint64_t>(v); }},
     {{"trajectories", "1", "blocks released per source cell", 1.0, 1e9, Bounds::Closed, true},
      [](const Scenario& s) { return static_cast<double>(s.trajectories); },
      [](Scenario& s, double v) { s.trajectories = static_cast<std::uint32_t>(v); }},
+    {{"day", "1", "of the run, for wet-ground", 0.0, 1e6, Bounds::Closed, true},
+     [](const Scenario& s) { return static_cast<double>(s.day); },
+     [](Scenario& s, double v) { s.day = static_cast<int>(v); }},
     {{"blocks.density", "kg/m3", "mass per volume of the rock", 500.0, 8000.0},
      [](const Scenario& s) { return s.blocks.density; },
      [](Scenario& s, double v) { s.blocks.density = v; }},

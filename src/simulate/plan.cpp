@@ -43,6 +43,8 @@ Release make_release(const Scenario& scenario, std::uint32_t source, std::uint32
   release.source = source;
   release.block = block;
   release.body = block_of(diameter, scenario.blocks.density);
+  release.body.axes = scenario.blocks.axes;
+  release.day = scenario.day;
   release.motion.position = {x, y, scenario.surface.height(x, y).value_or(kNotGiven) + height};
   release.motion.velocity = feature.velocity;
   return release;

@@ -133,6 +133,40 @@ void check_screens(const std::vector<Screen>& screens) {
         throw InputError("screens: '" + screen.id + "' has a line without length, must have two places at least");
 }
 
+void check_extent(const Scenario& s, const Extent& where, const std::string& effect) {
+  if (!where.zones.empty() && where.zones.size() != s.cover.grounds.size())
+    throw InputError(effect + ": says of " + std::to_string(where.zones.size()) +
+                     " zones whether it acts there, must be " + std::to_string(s.cover.grounds.size()));
+  const Raster<std::uint8_t>& mask = where.mask;
+  if (!mask.values.empty() && (!(mask.grid == s.surface.grid()) || mask.values.size() != mask.grid.cells()))
+    throw InputError(effect + ": its mask is not on the grid of the DEM");
+}
+
+/// The energy that a stand takes must not be counted twice.
+void check_stands(const Scenario& s) {
+  const Effects& e = s.effects;
+  if (s.drag_and_stems || !(e.vegetation_drag.coefficient > 0.0) || !(e.forest_stems.density > 0.0)) return;
+  const Grid& grid = s.surface.grid();
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const double x = grid.centre_x(column), y = grid.centre_y(row);
+      const std::uint8_t zone = s.cover.zone_at(x, y);
+      if (e.vegetation_drag.where.covers(zone, x, y) && e.forest_stems.where.covers(zone, x, y))
+        throw InputError(
+            "effects: vegetation-drag and forest-stems act at the same place (the cell at " + talus::text_of(x) +
+            " m, " + talus::text_of(y) +
+            " m from the south-western corner), where the stand would take its energy twice: give them zones or files "
+            "apart from each other, or set allow_both = true in [effects]");
+    }
+}
+
+void check_effects(Scenario& s) {
+  for (const auto& field : effect_fields()) check(field, field.get(s.effects), "effects." + std::string(field.key));
+  for (const std::string_view name : effect_names())
+    if (const Extent* where = extent_of(s.effects, name)) check_extent(s, *where, "effects." + std::string(name));
+  check_stands(s);
+}
+
 }  // namespace
 
 Scenario make_scenario(Scenario parts) {
@@ -144,6 +178,7 @@ Scenario make_scenario(Scenario parts) {
   check(bounds_of("dem.cell"), grid.cell_y, "dem.cell");
   for (const auto& field : scenario_fields()) check(field, field.get(parts), std::string(field.key));
   check_grounds(parts);
+  check_effects(parts);
   check_blocks(parts.blocks);
   check_sources(parts);
   check_thresholds(parts.output.energy_thresholds, "output.energy_thresholds");

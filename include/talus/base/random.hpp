@@ -28,7 +28,7 @@ inline Words philox4x32(Words counter, std::array<std::uint32_t, 2> key) {
 }
 
 /// What a draw is for. A stream per purpose: an effect that is switched on never shifts the draws of the others.
-enum class Purpose : std::uint32_t { Release = 0, Impact = 1, Measurement = 100, Bootstrap = 101 };
+enum class Purpose : std::uint32_t { Release = 0, Impact = 1, Stem = 2, Break = 3, Measurement = 100, Bootstrap = 101 };
 
 /// A number in the open interval (0, 1), evenly spaced by 2^-32: its logarithm is finite.
 inline double uniform(std::uint32_t word) {
@@ -44,13 +44,14 @@ inline std::array<double, 2> normal_pair(std::uint32_t first, std::uint32_t seco
 
 /// The random numbers of one block: a pure function of (seed, source, block, purpose, draw), with no state.
 /// Results are therefore independent of threads, order and parts, and more blocks never change earlier ones.
+/// A piece that broke off a block (below 2^24; 0 is the block itself) has streams of its own.
 class Random {
  public:
-  Random(std::uint64_t seed, std::uint32_t source, std::uint32_t block, Purpose purpose)
+  Random(std::uint64_t seed, std::uint32_t source, std::uint32_t block, Purpose purpose, std::uint32_t piece = 0)
       : key_{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U)},
         source_(source),
         block_(block),
-        purpose_(static_cast<std::uint32_t>(purpose)) {}
+        purpose_(piece << 8U | static_cast<std::uint32_t>(purpose)) {}
 
   /// Four words of draw `part` of event number `event` (below 2^24), for instance of the block's 17th impact.
   /// A rejection loop takes further parts (below 256) of its own event and cannot shift the next event.

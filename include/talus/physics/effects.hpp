@@ -83,7 +83,7 @@ struct RollingResistance {
 /// A block that breaks at a hard impact.
 struct Fragmentation {
   double threshold = 0.0;  ///< energy lost across the plane, per mass, above which it breaks [J/kg]; 0: never
-  double largest = 0.5;    ///< share of the mass that the largest piece keeps, in (0, 1)
+  double largest = 0.5;    ///< share of the mass that the largest piece keeps, in [1/2, 1)
   Extent where;
 };
 

@@ -10,7 +10,8 @@ namespace talus {
 /// How a flight or a slide over the surface came to its end.
 enum class Outcome {
   Landed,  ///< on the surface, in patch `at`
-  Left     ///< over the edge of the terrain or above missing data
+  Left,    ///< over the edge of the terrain or above missing data
+  Aloft    ///< still in the air: the longest time, or the time limit, was reached
 };
 
 /// Time of the first contact with the ground of a block whose clearance over a patch is f0 + f1 t + f2 t^2.
@@ -42,5 +43,8 @@ inline double first_contact(double f0, double f1, double f2, double until) {
 ///
 /// Exact but for rounding; no time step. At most columns + rows patches. docs/physics.md, "Flight".
 Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path);
+
+/// The same for a piece of a flight: after at most `longest` [s], >= 0, it is `Aloft`.
+Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path, double longest);
 
 }  // namespace talus

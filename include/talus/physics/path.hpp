@@ -16,6 +16,8 @@ enum class Event : std::uint8_t {
   Impact,   ///< a rebound; a flight or a slide follows
   Slide,    ///< a piece of sliding
   Takeoff,  ///< a flight after sliding, without an impact
+  Air,      ///< a further parabola of a flight that air or vegetation brakes
+  Stem,     ///< a flight after a stem was met
   End       ///< nothing: the last vertex
 };
 
@@ -37,6 +39,12 @@ struct Span {
   std::uint32_t impacts;               ///< at its end; more than one where the block could not move between them
 };
 
+/// What is left of a block that broke, and from where on.
+struct Broken {
+  std::size_t vertex, span;  ///< the first of each that is its
+  Block body;
+};
+
 /// One trajectory: plain data between the engine and its readers (tallies, screens, recordings). Reused as a buffer.
 struct Path {
   std::vector<Vertex> vertices;
@@ -46,13 +54,18 @@ struct Path {
   std::uint32_t psi_dropped = 0;  ///< impacts whose sideways tilt was left out
   double length = 0.0;            ///< in space [m]
   double plan_length = 0.0;       ///< in plan [m]
+  double mass = 0.0;              ///< of the block at its end [kg]
+  std::vector<Broken> breaks;     ///< in the order of time
+  std::vector<Release> pieces;    ///< what broke off; `trace_pieces` follows them
 
   void clear() {
     vertices.clear();
     spans.clear();
     end = End::Limit;
     impacts = psi_dropped = 0;
-    length = plan_length = 0.0;
+    length = plan_length = mass = 0.0;
+    breaks.clear();
+    pieces.clear();
   }
 };
 

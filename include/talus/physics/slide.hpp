@@ -1,4 +1,5 @@
 #pragma once
+#include "talus/physics/effects.hpp"
 #include "talus/physics/ground.hpp"
 #include "talus/physics/path.hpp"
 
@@ -27,10 +28,11 @@ Eigen::Vector2d sliding_acceleration(const Eigen::Vector2d& slope, double twist,
 /// @param diameter D: how far it slides before the next asperity [m]
 /// @param stop_speed  at most this fast, friction holds the block where it exceeds gravity [m/s]
 /// @param path     gets one vertex and one span per piece
+/// @param resistance  to rolling, adds to tan(phi) where it acts; null: none
 ///
 /// Pieces of constant acceleration taken at their middle, each ending at the latest at the edge of its patch; the
 /// length of a piece is chosen so that the position errs by less than D/1000 in it. At most 1 000 pieces.
 SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, PatchIndex& at, double diameter,
-               double stop_speed, Path& path);
+               double stop_speed, Path& path, const RollingResistance* resistance = nullptr);
 
 }  // namespace talus

@@ -1,4 +1,6 @@
 #pragma once
+#include <functional>
+
 #include "talus/physics/effects.hpp"
 #include "talus/physics/impact.hpp"
 #include "talus/physics/path.hpp"
@@ -31,5 +33,11 @@ struct World {
 ///
 /// A pure function of the world and the release: the same bits whoever calls it. Never throws; every loop is bounded.
 void trace(const World& world, const Release& release, Path& path);
+
+/// Walks the pieces that broke off a block, and those that break off them, in the order in which they broke off.
+///
+/// @param whole  the path of the block, traced as piece 0; not the buffer that `visit` gets
+/// Together at most kMostPieces, each with its number as `Release::piece`.
+void trace_pieces(const World& world, const Path& whole, const std::function<void(const Release&, const Path&)>& visit);
 
 }  // namespace talus

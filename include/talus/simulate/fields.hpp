@@ -24,6 +24,7 @@ template <class Owner>
 struct Field : Bounds {
   double (*get)(const Owner&);
   void (*set)(Owner&, double);
+  double off = kNotGiven;  ///< the value at which it does nothing; NaN: it is no strength
 };
 
 /// The parameters of a ground: theta_scale, psi_scale, En50, Et50, phi, shape_min, shape_max.
@@ -31,6 +32,15 @@ std::span<const Field<Ground>> ground_fields();
 
 /// The scalars of a run: seed, trajectories, blocks.density, model.*, output.trajectories.
 std::span<const Field<Scenario>> scenario_fields();
+
+/// The numbers of the effects, by name: "vegetation-drag.coefficient". In the scenario below "effects.".
+std::span<const Field<Effects>> effect_fields();
+
+/// The names of the effects, in the order of `effect_fields`.
+std::span<const std::string_view> effect_names();
+
+/// Where an effect acts, by its name; null for air-drag, which acts everywhere.
+Extent* extent_of(Effects& effects, std::string_view name);
 
 /// The numbers that are lists, ranges or attributes of features: blocks.diameter, sources.release_height and so on.
 std::span<const Bounds> list_bounds();

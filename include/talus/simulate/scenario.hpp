@@ -78,6 +78,8 @@ struct Scenario {
   std::vector<Screen> screens;
   ImpactModel impact;
   Effects effects;
+  bool drag_and_stems = false;  ///< vegetation-drag and forest-stems may act at one place
+  int day = 0;                  ///< of the run, for effects that change with it
   EndRules rules;
   OutputSettings output;
   std::uint64_t seed = 1;

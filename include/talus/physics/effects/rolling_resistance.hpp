@@ -1,0 +1,28 @@
+#pragma once
+#include <algorithm>
+
+#include "talus/physics/effects.hpp"
+
+namespace talus {
+
+/// Whether a block that leaves the ground is as good as rolling: its hop, v^2/(2 g cos beta), is a share of its radius.
+///
+/// @param away  speed away from the smooth surface after the impact [m/s]
+inline bool is_rolling(const RollingResistance& effect, double away, double cos_beta, double radius) {
+  return away * away < 2.0 * kGravity * cos_beta * effect.hop * radius;
+}
+
+/// rolling-resistance: share of the tangential speed and of the spin about the tangent that an impact leaves.
+///
+///   1 - min(1, 5/7 mu_r P / v_t)
+///
+/// @param v_t      tangential speed after the impact [m/s]
+/// @param impulse  P, normal impulse per mass [m/s]
+/// A resisting moment mu_r R P takes so much of both where the block rolls: a block of inertia 2/5 m R^2 slows down by
+/// 5/7 mu_r g cos(beta). Source: Azzoni et al. (1995); docs/effects.md, "rolling-resistance".
+inline double rolling_keeps(const RollingResistance& effect, double v_t, double impulse) {
+  const double loss = 5.0 / 7.0 * effect.coefficient * impulse;
+  return loss < v_t ? 1.0 - loss / v_t : 0.0;
+}
+
+}  // namespace talus

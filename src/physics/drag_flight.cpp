@@ -1,0 +1,112 @@
+#include "drag_flight.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+namespace {
+
+constexpr double kLargestLoss = 0.04;    // of the speed to drag, in one piece
+constexpr double kShortestPiece = 0.01;  // [s]
+constexpr int kMostSteps = 1'000'000;    // of one flight; the time limit comes first
+
+double plan_squared(const Vec3& velocity) {
+  return velocity.x() * velocity.x() + velocity.y() * velocity.y();
+}
+
+/// Speed in the middle of a piece, to first order: of the rate there, the error of a piece is of third order.
+double speed_in_the_middle(const Vec3& v, const DragRate& drag, double time) {
+  return (v - 0.5 * time * (drag.at(v.norm()) * v + Vec3(0.0, 0.0, kGravity))).norm();
+}
+
+}  // namespace
+
+DragFlight::DragFlight(const World& world, const Release& release) : world_(world), effects_(*world.effects) {
+  if (effects_.forest_stems.density > 0.0)
+    stems_.emplace(effects_.forest_stems,
+                   Random(release.seed, release.source, release.block, Purpose::Stem, release.piece));
+}
+
+DragFlight::Site DragFlight::site_of(const Motion& motion, const Block& body) const {
+  Site site{{0.0, air_drag_rate(effects_.air_drag, body)}, false};
+  const double x = motion.position.x(), y = motion.position.y();
+  const std::optional<double> ground = world_.surface.height(x, y);
+  if (!ground) return site;
+  const double clearance = motion.position.z() - *ground;
+  const std::uint8_t zone = world_.cover.zone_at(x, y);
+  if (effects_.vegetation_drag.where.covers(zone, x, y))
+    site.drag.linear = vegetation_drag_rate(effects_.vegetation_drag, body.mass, clearance);
+  site.stems = stems_ && clearance < effects_.forest_stems.height && effects_.forest_stems.where.covers(zone, x, y);
+  return site;
+}
+
+double DragFlight::longest_piece(const Site& site, const Motion& motion) const {
+  const Grid& grid = world_.surface.grid();
+  const double cell = std::min(grid.cell_x, grid.cell_y), speed = motion.velocity.norm();
+  const double over_a_cell = 2.0 * cell / (speed + std::sqrt(speed * speed + 2.0 * kGravity * cell));  // falling too
+  const double rate = site.drag.at(speed + kGravity * over_a_cell);
+  return std::max(kShortestPiece, std::min(over_a_cell, kLargestLoss / rate));
+}
+
+/// Where the block lands within the piece, the parabola was that of a longer one: it flies again with the time that it
+/// took, and what the time still differs by is of second order in the drag.
+Outcome DragFlight::fly_piece(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path) {
+  const Motion start = motion;
+  const PatchIndex start_at = at;
+  const std::size_t first_span = path.spans.size();
+  const double length = path.length, plan_length = path.plan_length;
+  const Site site = site_of(motion, body);
+  double time = longest_piece(site, motion);
+  if (site.stems) time = std::min(time, stems_->way_left(body.diameter) / std::sqrt(plan_squared(motion.velocity)));
+  const double rate = site.drag.any() ? site.drag.at(speed_in_the_middle(start.velocity, site.drag, time)) : 0.0;
+
+  Vec3 began = DampedFall(rate, time).parabola(start.velocity);
+  motion.velocity = began;
+  Outcome outcome = talus::fly(world_.surface, motion, at, grounded, path, time);
+  if (rate > 0.0 && outcome == Outcome::Landed) {
+    const double landed = motion.time - start.time;
+    motion = start, at = start_at;
+    path.spans.resize(first_span), path.length = length, path.plan_length = plan_length;
+    began = DampedFall(rate, landed).parabola(start.velocity);
+    motion.velocity = began;
+    outcome = talus::fly(world_.surface, motion, at, grounded, path, time);
+  }
+  if (began != start.velocity || path.vertices.back().motion.time != start.time) {
+    path.vertices.push_back({start, Event::Air});
+    path.vertices.back().motion.velocity = began;
+  }
+  if (rate > 0.0) {
+    motion.velocity = DampedFall(rate, motion.time - start.time).velocity_after(start.velocity);
+    if (path.spans.size() > first_span) {  // the largest speed is that of the block, not of its parabola
+      path.spans[first_span].plan_speed_squared = static_cast<float>(plan_squared(start.velocity));
+      path.spans[first_span].rise_from = static_cast<float>(start.velocity.z());
+      path.spans.back().rise_to = static_cast<float>(motion.velocity.z());
+    }
+  }
+  if (!site.stems) return outcome;
+  const double way = (motion.position - start.position).head<2>().norm();
+  if (stems_->go(way, body.diameter) && outcome == Outcome::Aloft) {
+    motion.velocity = stems_->hit(motion.velocity, body.mass);
+    path.vertices.push_back({motion, Event::Stem});
+  }
+  return outcome;
+}
+
+Outcome DragFlight::fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path) {
+  for (int pieces = 0; pieces < kMostSteps && motion.time < world_.rules.time_limit; ++pieces) {
+    const Outcome outcome = fly_piece(motion, at, grounded, body, path);
+    if (outcome != Outcome::Aloft) return outcome;
+    grounded = false;
+  }
+  return Outcome::Aloft;
+}
+
+void DragFlight::after_slide(const Motion& before, Motion& motion, const Block& body) {
+  const Site site = site_of(before, body);
+  if (site.drag.any())
+    motion.velocity *= exponential(-site.drag.at(motion.velocity.norm()) * (motion.time - before.time));
+  if (site.stems && stems_->go((motion.position - before.position).head<2>().norm(), body.diameter))
+    motion.velocity = stems_->hit(motion.velocity, body.mass);
+}
+
+}  // namespace talus

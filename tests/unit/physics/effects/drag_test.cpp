@@ -1,0 +1,128 @@
+#include "talus/physics/effects/drag.hpp"
+
+#include <gtest/gtest.h>
+
+#include "../../../support/slopes.hpp"
+
+namespace talus {
+namespace {
+
+using test::block_at;
+using test::Hillside;
+
+TEST(DampedFall, SolvesItsEquation) {  // by 20 000 steps of the midpoint rule
+  for (const double rate : {0.0, 1e-9, 0.02, 0.6, 5.0}) {
+    Vec3 v(25.0, -3.0, 8.0), x = Vec3::Zero();
+    constexpr int kSteps = 20'000;
+    constexpr double kTime = 0.7, kStep = kTime / kSteps;
+    const Vec3 start = v;
+    const auto slope = [&](const Vec3& u) -> Vec3 { return -rate * u - Vec3(0.0, 0.0, kGravity); };
+    for (int i = 0; i < kSteps; ++i) {
+      const Vec3 middle = v + 0.5 * kStep * slope(v);
+      x += kStep * middle;
+      v += kStep * slope(middle);
+    }
+    const DampedFall fall(rate, kTime);
+    EXPECT_LT((fall.velocity_after(start) - v).norm(), 1e-7) << rate;
+    const Vec3 end = kTime * fall.parabola(start) - Vec3(0.0, 0.0, 0.5 * kGravity * kTime * kTime);
+    EXPECT_LT((end - x).norm(), 1e-7) << rate;
+  }
+  EXPECT_EQ(DampedFall(0.0, 0.7).parabola(Vec3(3.0, 4.0, 5.0)), Vec3(3.0, 4.0, 5.0));
+}
+
+TEST(AirDrag, DecelerationsOfTheDragEquation) {  // a/g at 30 m/s, C_d 0.47, 2700 kg/m^3: 14 % at 0.1 m, 1.4 % at 1 m
+  const AirDrag drag{.coefficient = 0.47};
+  EXPECT_NEAR(air_drag_rate(drag, block_of(0.1, 2700.0)) * 900.0 / kGravity, 0.1437, 1e-4);
+  EXPECT_NEAR(air_drag_rate(drag, block_of(1.0, 2700.0)) * 900.0 / kGravity, 0.01437, 1e-5);
+}
+
+TEST(AirDrag, FallsAtItsTerminalSpeed) {  // v = sqrt(4 D rho_r g / (3 rho_a C_d))
+  Hillside hill(0.0, 4.0, 20);
+  hill.effects.air_drag.coefficient = 1.0;
+  const double terminal = std::sqrt(4.0 * 0.05 * 2700.0 * kGravity / (3.0 * 1.2 * 1.0));
+  const Path path = hill.run(block_at({40.0, 40.0, 3000.0}, Vec3::Zero(), 0.05));
+  // From rest: z = u^2/g ln cosh(g t/u).
+  const double u = terminal;
+  std::size_t i = 1;
+  for (; i + 1 < path.vertices.size() && path.vertices[i].event == Event::Air; ++i) {
+    const Motion& m = path.vertices[i].motion;
+    const double fallen = u * u / kGravity * std::log(std::cosh(kGravity * m.time / u));
+    ASSERT_NEAR(3000.0 - m.position.z(), fallen, 1e-3 * fallen);
+  }
+  const Motion &last = path.vertices[i - 1].motion, &before = path.vertices[i - 2].motion;
+  EXPECT_NEAR((before.position.z() - last.position.z()) / (last.time - before.time), terminal, 1e-4 * terminal);
+}
+
+TEST(VegetationDrag, SpeedFallsLinearlyWithThePath) {  // dv/ds = -c/m: level way until the block has fallen 1 000 m
+  Hillside hill(0.0);
+  hill.effects.vegetation_drag = {.coefficient = 500.0, .height = 1e9, .where = {}};
+  const Release release = block_at({10.0, 400.0, 9000.0}, {40.0, 0.0, 0.0}, 0.82);
+  const double rate = 500.0 / release.body.mass;
+  const Path path = hill.run(release);
+  int checked = 0;
+  for (std::size_t i = 2; i + 1 < path.vertices.size() && path.vertices[i].event == Event::Air; ++i, ++checked) {
+    const Motion& m = path.vertices[i].motion;
+    const double t = m.time;  // closed form of both components: e^-at, and the terminal speed g/a
+    const double x = 10.0 + 40.0 / rate * (1.0 - std::exp(-rate * t));
+    const double z = 9000.0 - kGravity / rate * (t - (1.0 - std::exp(-rate * t)) / rate);
+    ASSERT_NEAR(m.position.x(), x, 1e-9);
+    ASSERT_NEAR(m.position.z(), z, 1e-9);
+  }
+  EXPECT_GT(checked, 100);
+}
+
+TEST(VegetationDrag, LandsWhereTheClosedFormSays) {  // hops shorter than a piece are the rule in a stand
+  Hillside hill(0.0);
+  hill.effects.vegetation_drag = {.coefficient = 500.0, .height = 100.0, .where = {}};
+  for (const double drop : {0.05, 0.4, 3.0, 20.0}) {
+    const Release release = block_at({10.0, 400.0, 1000.0 + drop}, {20.0, 0.0, 0.0}, 0.82);
+    const double a = 500.0 / release.body.mass;
+    double t = std::sqrt(2.0 * drop / kGravity);  // Newton on drop = g/a (t - (1 - e^-at)/a)
+    for (int i = 0; i < 50; ++i) {
+      const double e = std::exp(-a * t);
+      t -= (kGravity / a * (t - (1.0 - e) / a) - drop) / (kGravity / a * (1.0 - e));
+    }
+    const Path path = hill.run(release);
+    const auto landed = std::find_if(path.vertices.begin(), path.vertices.end(),
+                                     [](const Vertex& v) { return v.event == Event::Impact; });
+    ASSERT_NE(landed, path.vertices.end());
+    EXPECT_NEAR(landed->motion.time, t, 1e-4 * t) << drop;
+    EXPECT_NEAR(landed->motion.position.x() - 10.0, 20.0 / a * (1.0 - std::exp(-a * t)), 1e-5 * 20.0 * t) << drop;
+  }
+}
+
+TEST(VegetationDrag, ActsInItsZoneAndBelowItsTopOnly) {
+  Hillside hill(0.0, 4.0, 60);
+  hill.cover.grounds = {Ground{}, Ground{}};
+  hill.cover.zones = Raster<std::uint8_t>(hill.surface.grid(), 0);
+  for (int row = 0; row < 60; ++row)
+    for (int column = 20; column < 30; ++column) hill.cover.zones.at(column, row) = 1;  // x 80 to 120
+  hill.effects.vegetation_drag = {.coefficient = 200.0, .height = 1e4, .where = {.zones = {0, 1}, .mask = {}}};
+  const Release release = block_at({40.0, 120.0, 1100.0}, {50.0, 0.0, 20.0}, 1.0);
+  const double rate = 200.0 / release.body.mass;
+  const Path path = hill.run(release);
+  for (const Vertex& v : path.vertices) {
+    if (v.motion.position.x() < 80.0) {
+      ASSERT_EQ(v.motion.velocity.x(), 50.0);
+    }
+    if (v.motion.position.x() > 124.0 && v.event == Event::Air) {  // 40 m at c/m per metre, to half a cell at the ends
+      ASSERT_NEAR(v.motion.velocity.x(), 50.0 - 40.0 * rate, 4.0 * rate);
+    }
+  }
+  hill.effects.vegetation_drag.height = 5.0;  // it flies over
+  const Path above = hill.run(release);
+  const auto landed = std::find_if(above.vertices.begin(), above.vertices.end(),
+                                   [](const Vertex& v) { return v.event == Event::Impact; });
+  EXPECT_EQ((landed - 1)->motion.velocity.x(), 50.0);
+}
+
+TEST(VegetationDrag, ABlockStuckInItEndsInTime) {
+  Hillside hill(0.5);
+  hill.effects.vegetation_drag = {.coefficient = 5000.0, .height = 1000.0, .where = {}};
+  hill.rules.time_limit = 60.0;
+  const Path path = hill.run(block_at({40.0, 400.0, 1010.0}, {10.0, 0.0, 0.0}, 0.1));
+  EXPECT_LT(path.vertices.size(), 20'000U);
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,108 @@
+#include "talus/physics/effects/forest_stems.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "../../../support/slopes.hpp"
+
+namespace talus {
+namespace {
+
+using test::block_at;
+using test::Hillside;
+using test::Moments;
+
+TEST(ForestStems, CapacityShareAndRateOfTheLiterature) {
+  const double table[][2] = {{20, 39e3}, {30, 100e3}, {40, 194e3}, {50, 325e3}, {60, 496e3}};  // Dorren & Berger
+  for (const auto& [dbh, energy] : table)
+    EXPECT_NEAR(stem_capacity({.diameter = dbh / 100.0, .where = {}}), energy, 0.005 * energy) << dbh;
+  EXPECT_NEAR(stem_capacity({.diameter = 0.3, .species_factor = 1.6, .where = {}}), 1.6 * 99.9e3, 500.0);
+  EXPECT_NEAR(stem_share(0.0), 0.98, 1e-3);
+  EXPECT_NEAR(stem_share(0.58), -0.046 + 1.026 / 2.0, 1e-12);
+  EXPECT_EQ(stem_share(1.0), 0.0);
+  for (double e = -1.0; e < 0.0; e += 0.01) {
+    EXPECT_EQ(stem_share(e), stem_share(-e));
+    EXPECT_LE(stem_share(e), stem_share(e + 0.01));
+  }
+  EXPECT_NEAR(mean_way_between_stems({.density = 400.0, .diameter = 0.35, .where = {}}, 1.0), 18.5, 0.05);
+}
+
+TEST(ForestStems, TheSpeedLosesTheEnergyAndTheWayTurnsAway) {
+  const Vec3 v(12.0, 9.0, -5.0);
+  for (double e = -0.95; e < 1.0; e += 0.1)
+    for (const double share : {0.0, 0.1, 0.5, 0.9}) {
+      const double taken = 0.5 * share * v.squaredNorm();
+      const Vec3 after = velocity_after_stem(v, taken, e);
+      EXPECT_NEAR(after.squaredNorm(), v.squaredNorm() - 2.0 * taken, 1e-10);
+      EXPECT_NEAR(after.z() / v.z(), std::sqrt(1.0 - share), 1e-12);
+      const double left = v.x() * after.y() - v.y() * after.x();  // > 0: turned to the left
+      if (share > 0.0) {
+        EXPECT_LT(left * e, 0.0) << e << ' ' << share;  // the axis on the left turns it to the right
+      }
+      EXPECT_GE(v.head<2>().dot(after.head<2>()), 0.0);  // never back
+    }
+  EXPECT_EQ(velocity_after_stem(v, 0.5 * v.squaredNorm(), 0.0), Vec3(Vec3::Zero()));
+  // The impulse goes through the axis: what lies across it does not change. 30 degrees off, a tenth of the energy:
+  const Vec3 after = velocity_after_stem({10.0, 0.0, 0.0}, 5.0, 0.5);
+  const Vec3 across(0.5, -std::sqrt(0.75), 0.0);
+  EXPECT_NEAR(after.dot(across), 10.0 * 0.5, 1e-12);
+}
+
+/// Ways in plan between the stems that blocks meet in the air, high above flat ground.
+TEST(ForestStems, FreePathsAreExponential) {
+  Hillside hill(0.0, 8.0, 400);
+  hill.effects.forest_stems = {.density = 300.0, .diameter = 0.3, .height = 1e9, .species_factor = 1e-9, .where = {}};
+  const double mean = 1e4 / (300.0 * (0.3 + 1.2));
+  Moments first, all;
+  int beyond = 0;
+  for (std::uint32_t block = 0; block < 4000; ++block) {
+    const Path path = hill.run(block_at({20.0, 1600.0, 1400.0}, {80.0, 0.0, 0.0}, 1.2, block));
+    double from = 20.0;
+    for (const Vertex& v : path.vertices) {
+      if (v.event == Event::Impact) break;
+      if (v.event != Event::Stem) continue;
+      const double x = v.motion.position.x();
+      if (from == 20.0) first.add(x - from);
+      if (from == 20.0 && x - from > 2.0 * mean) ++beyond;
+      if (from < 220.0) all.add(x - from);  // the flight is 720 m long: the next stem is always seen
+      from = x;
+    }
+  }
+  EXPECT_EQ(first.count, 4000.0);
+  EXPECT_NEAR(first.mean(), mean, 5.0 * mean / std::sqrt(4000.0));
+  EXPECT_NEAR(all.mean(), mean, 5.0 * mean / std::sqrt(all.count));
+  EXPECT_GT(all.count, 30'000.0);
+  const double p = std::exp(-2.0);
+  EXPECT_NEAR(beyond / 4000.0, p, 5.0 * std::sqrt(p * (1.0 - p) / 4000.0));
+}
+
+TEST(ForestStems, AStrongStemStopsABlockAndItDrops) {
+  Hillside hill(0.0);
+  hill.effects.forest_stems = {.density = 400.0, .diameter = 0.6, .height = 1e3, .species_factor = 1e6, .where = {}};
+  int stopped = 0;
+  for (std::uint32_t block = 0; block < 1000; ++block) {
+    const Path path = hill.run(block_at({20.0, 400.0, 1500.0}, {20.0, 0.0, 0.0}, 0.5, block));
+    const auto stem = std::find_if(path.vertices.begin(), path.vertices.end(),
+                                   [](const Vertex& v) { return v.event == Event::Stem; });
+    ASSERT_NE(stem, path.vertices.end());
+    if (stem->motion.velocity.norm() > 0.0) continue;
+    ++stopped;
+    ASSERT_EQ((stem + 1)->motion.position.head<2>(), stem->motion.position.head<2>());  // it falls along the stem
+  }
+  const double p = 0.58 + std::log10(1.026 / 0.046 - 1.0) / 8.007;  // the share is above 0 for |e| below
+  EXPECT_NEAR(stopped / 1000.0, p, 5.0 * std::sqrt(p * (1.0 - p) / 1000.0));
+}
+
+TEST(ForestStems, AboveTheTreesNoneIsMet) {
+  Hillside hill(0.0);
+  hill.effects.forest_stems = {.density = 2000.0, .diameter = 0.6, .height = 20.0, .where = {}};
+  const Path path = hill.run(block_at({20.0, 400.0, 1100.0}, {40.0, 0.0, 0.0}));
+  for (const Vertex& v : path.vertices)
+    if (v.event == Event::Stem) {
+      ASSERT_LT(v.motion.position.z(), 1020.0 + 1e-9);
+    }
+}
+
+}  // namespace
+}  // namespace talus
