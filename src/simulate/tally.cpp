@@ -63,8 +63,7 @@ class ReachOf {
 
 /// Makes one value of each trajectory's visits, its largest, and adds the counts of the group to the record.
 void gather(const Group& group, const VisitBatch& batch, Tally::Values& values, CellRecord& record, ReachOf& reach) {
-  const auto most = static_cast<std::size_t>(group.end - group.begin);
-  for (std::vector<float>& list : values) list.resize(most);
+  values.make_room(static_cast<std::size_t>(group.end - group.begin));
   std::size_t n = 0;
   std::uint32_t source = 0;
   for (const Visit* visit = group.begin; visit != group.end;) {
@@ -81,11 +80,11 @@ void gather(const Group& group, const VisitBatch& batch, Tally::Values& values, 
       source = of.source;
       record.sources += reach.first(trajectory, group.begin->cell) ? 1U : 0U;
     }
-    values[0][n] = static_cast<float>(0.5e-3 * of.mass * speed_squared);
-    values[1][n] = std::sqrt(speed_squared);
-    values[2][n++] = height;
+    values.lists[0][n] = static_cast<float>(0.5e-3 * of.mass * speed_squared);
+    values.lists[1][n] = std::sqrt(speed_squared);
+    values.lists[2][n++] = height;
   }
-  for (std::vector<float>& list : values) list.resize(n);
+  values.count = n;
 }
 
 }  // namespace
@@ -166,27 +165,27 @@ std::uint64_t Tally::score(std::size_t index, const std::vector<Visit>& visits, 
     CellRecord& record = region.records[groups[i].record];
     gather(groups[i], batch, values, record, reach);
     add(record, region.exceedances.data() + groups[i].record * thresholds(), values);
-    scored += values[0].size();
+    scored += values.count;
   }
   return scored;
 }
 
 void Tally::add(CellRecord& record, std::uint32_t* over, const Values& values) const {
-  record.passages += static_cast<std::uint32_t>(values[0].size());
+  record.passages += static_cast<std::uint32_t>(values.count);
   std::array<float, kQuantities> largest{};
   for (std::size_t q = 0; q < kQuantities; ++q) {
-    for (const float value : values[q]) {
+    for (const float value : values.of(q)) {
       largest[q] = std::max(largest[q], value);
       record.sum[q] += fixed_point(value, 1.0 / kFixedPoint[q]);
     }
     record.maximum[q] = std::max(record.maximum[q], largest[q]);
-    record.histogram[q].add(values[q]);
+    record.histogram[q].add(values.of(q));
   }
   const auto count_over = [&](const std::vector<double>& limits, Quantity of) {
     const auto q = static_cast<std::size_t>(of);
     for (std::size_t i = 0; i < limits.size() && largest[q] > limits[i]; ++i)  // ascending: the rest is not exceeded
       over[i] += static_cast<std::uint32_t>(
-          std::count_if(values[q].begin(), values[q].end(), [limit = limits[i]](float v) { return v > limit; }));
+          std::ranges::count_if(values.of(q), [limit = limits[i]](float v) { return v > limit; }));
     over += limits.size();
   };
   count_over(energy_thresholds_, Quantity::Energy);

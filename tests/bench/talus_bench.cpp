@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "talus/base/memory.hpp"
 #include "talus/io/loaded.hpp"
 #include "talus/physics/flight.hpp"
 #include "talus/simulate/plan.hpp"
@@ -168,6 +169,7 @@ BENCHMARK(score)->Unit(benchmark::kMillisecond);
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_freed_memory();
   benchmark::Initialize(&argc, argv);
   if (argc < 3) {
     std::fputs("usage: talus-bench DEM SOURCES [--benchmark_...]\n", stderr);

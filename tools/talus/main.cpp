@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/memory.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
 
@@ -127,6 +128,7 @@ void say(const std::string& kind, const std::string& text) {
 }
 
 int main(int argc, char** argv) {
+  talus::keep_freed_memory();
   std::signal(SIGPIPE, SIG_IGN);  // whoever reads the output may go: a write then fails, and results are tidied up
   std::signal(SIGXFSZ, SIG_IGN);  // the same of a file that gets larger than is allowed
   words.assign(argv, argv + argc);

@@ -35,8 +35,17 @@ inline constexpr std::array<double, kQuantities> kFixedPoint{0x1p-10, 0x1p-16, 0
 /// when its cell is. Workers share the one tally: each locks the region it scores.
 class Tally {
  public:
-  /// By quantity: one value of each trajectory.
-  using Values = std::array<std::vector<float>, kQuantities>;
+  /// By quantity: one value of each trajectory. A buffer that keeps its memory.
+  struct Values {
+    std::array<std::vector<float>, kQuantities> lists;
+    std::size_t count = 0;
+
+    void make_room(std::size_t n) {
+      if (lists[0].size() < n)
+        for (std::vector<float>& list : lists) list.resize(n);
+    }
+    std::span<const float> of(std::size_t quantity) const { return {lists[quantity].data(), count}; }
+  };
 
   Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vector<double> height_thresholds);
   ~Tally();

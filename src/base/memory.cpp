@@ -1,0 +1,18 @@
+#include "talus/base/memory.hpp"
+
+#include <cstdlib>  // defines __GLIBC__ where it is the C library
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+namespace talus {
+
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_TOP_PAD, 16 << 20);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+#endif
+}
+
+}  // namespace talus
