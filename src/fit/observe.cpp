@@ -51,7 +51,7 @@ class Instrument {
     screens_.find(release, path, crossings_);
     const Crossing* caught = first_catch();
     until_ = caught ? caught->time : std::numeric_limits<double>::infinity();
-    stop(errors, path, caught, trial, runs);
+    stop(errors, path, release.body.mass, caught, trial, runs);
     passages(errors, trial, runs);
     samples(errors, block, path, trial, runs);
     runs.impacts[trial] = path.impacts;
@@ -61,9 +61,9 @@ class Instrument {
   }
 
  private:
-  void stop(const Errors& errors, const Path& path, const Crossing* caught, std::uint32_t trial,
+  void stop(const Errors& errors, const Path& path, double mass, const Crossing* caught, std::uint32_t trial,
             BlockRuns& runs) const {
-    runs.mass_share[trial] = 1.0;  // no block breaks in this version
+    runs.mass_share[trial] = path.mass / mass;
     if (!caught && path.end != End::Stopped && path.end != End::Caught) return;
     const auto error = errors.of_stop();
     const Vec3& end = path.vertices.back().motion.position;

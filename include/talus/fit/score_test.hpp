@@ -1,0 +1,50 @@
+#pragma once
+#include "talus/fit/candidates.hpp"
+#include "talus/fit/residual.hpp"
+
+namespace talus {
+
+/// Whether a candidate, at one place, explains what a model leaves. docs/closing-the-loop.md, "The score test".
+struct Verdict {
+  std::size_t candidate;     ///< index into the candidates; of joined bands the first
+  std::size_t joined = 1;    ///< bands that were joined
+  Eigen::VectorXd estimate;  ///< of its tested parameters, one step from zero [z]
+  double statistic = 0.0;    ///< s' V^-1 s: chi-squared with as many degrees of freedom as tested parameters
+  double p_value = 1.0;      ///< of this place alone
+};
+
+/// What the test says of an effect, at the best of its places.
+struct EffectVerdict {
+  std::string effect;
+  Verdict best;
+  double p_value = 1.0;              ///< corrected for the number of its places, from simulated data sets
+  std::vector<Verdict> places;       ///< all, most significant first
+};
+
+struct ScoreTest {
+  std::vector<EffectVerdict> effects;  ///< most significant first
+  double p_value = 1.0;                ///< of the most significant one, corrected for all effects and places
+};
+
+struct ScoreTestOptions {
+  std::uint32_t trials = 200;
+  std::uint64_t seed = 1;
+  int threads = 0;
+  int replicates = 2000;  ///< simulated data sets without an effect
+  double prior_sd = 1.0;  ///< of a parameter of the ground, in z: keeps what the data do not constrain from moving
+};
+
+/// Tests every candidate against the residual of a model, with the model's own parameters free to move along.
+///
+/// The residual of each block is compared with the one that a small amount of the candidate would leave (simulated: its
+/// signature). What a change of the model's free parameters could imitate is taken out of it. The same is done with
+/// data sets drawn from the model itself, which gives the p-values: one trial per block stands in for the measurement.
+///
+/// @param base  fitted; `free` are its parameters, at `z`
+/// @param rows  the blocks that are used; size: blocks
+ScoreTest score_test(const Campaign& campaign, const Model& base, std::span<const Parameter> free,
+                     const Eigen::VectorXd& z, const std::vector<BlockRuns>& base_runs,
+                     std::span<const Candidate> candidates, const std::vector<bool>& rows,
+                     const ScoreTestOptions& options);
+
+}  // namespace talus

@@ -1,0 +1,288 @@
+#include "talus/fit/score_test.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+
+#include "talus/base/random.hpp"
+
+namespace talus {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kMostJoined = 4;  // neighbouring bands
+
+/// Of one block, what moving one parameter by one step does: to its mean residual, and to the whitened one.
+struct Shift {
+  VectorXd signature, response;  // size: components
+};
+
+/// Means over the trials of one block.
+struct Means {
+  VectorXd place, whitened;
+};
+
+/// @param half  0: the even trials, 1: the odd ones. Signature and response come from different ones, so that their
+///              noise does not look like a reaction
+Means means_of(const ResidualSpace& space, std::size_t block, const BlockRuns& runs, std::size_t half) {
+  Means m{VectorXd::Zero(space.size()), VectorXd::Zero(space.size())};
+  VectorXd seen = VectorXd::Zero(space.size());
+  double count = 0.0;
+  for (std::size_t t = half; t < runs.trials; t += 2) {
+    const Residual r = space.of_trial(block, runs, t);
+    m.whitened += space.whitened(r);
+    count += 1.0;
+    for (Index i = 0; i < r.size(); ++i)
+      if (!std::isnan(r[i])) m.place[i] += r[i], seen[i] += 1.0;
+  }
+  m.whitened /= count;
+  for (Index i = 0; i < seen.size(); ++i) m.place[i] = seen[i] >= 5.0 ? m.place[i] / seen[i] : 0.0;
+  return m;
+}
+
+/// What a signature may depend on, from block to block: a constant, mass, shape, place of release, day.
+MatrixXd covariates_of(const Campaign& campaign, const std::vector<std::size_t>& blocks) {
+  const auto n = static_cast<Index>(blocks.size());
+  MatrixXd x(n, 7);
+  for (Index i = 0; i < n; ++i) {
+    const MeasuredBlock& b = campaign.blocks[blocks[static_cast<std::size_t>(i)]];
+    x.row(i) << 1.0, std::log(b.mass), std::log(b.axes.x() / b.axes.z()), b.x, b.y, b.release_height,
+        static_cast<double>(b.day);
+  }
+  for (Index j = 1; j < x.cols(); ++j) {
+    x.col(j).array() -= x.col(j).mean();
+    const double norm = x.col(j).norm() / std::sqrt(static_cast<double>(n));
+    x.col(j) = norm > 1e-9 ? VectorXd(x.col(j) / norm) : VectorXd(VectorXd::Zero(n));
+  }
+  return x;
+}
+
+/// All directions in which the model could move, seen through the residuals of the blocks.
+class Directions {
+ public:
+  Directions(const Campaign& campaign, const ResidualSpace& space, const std::vector<BlockRuns>& base,
+             const std::vector<bool>& rows)
+      : space_(space), base_(base) {
+    for (std::size_t b = 0; b < rows.size(); ++b)
+      if (rows[b] && base[b].trials > 0) blocks_.push_back(b);
+    const MatrixXd x = covariates_of(campaign, blocks_);
+    smoother_ = x * (x.transpose() * x + 1e-6 * MatrixXd::Identity(x.cols(), x.cols())).ldlt().solve(x.transpose());
+    for (const std::size_t b : blocks_)
+      for (const std::size_t half : {0U, 1U}) rest_[half].push_back(means_of(space, b, base[b], half));
+  }
+
+  void add(const std::vector<BlockRuns>& moved) {
+    const auto n = static_cast<Index>(blocks_.size());
+    MatrixXd signature(n, space_.size()), response(n, space_.size());
+    for (Index i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const Means first = means_of(space_, blocks_[k], moved[blocks_[k]], 0);
+      const Means second = means_of(space_, blocks_[k], moved[blocks_[k]], 1);
+      signature.row(i) = first.place - rest_[0][k].place;
+      response.row(i) = second.whitened - rest_[1][k].whitened;
+    }
+    signatures_.push_back(smoother_ * signature);
+    responses_.push_back(std::move(response));
+  }
+
+  Index size() const { return static_cast<Index>(signatures_.size()); }
+
+  /// H(k, l): how much the score of direction k grows when direction l is moved by one step.
+  MatrixXd sensitivity() const {
+    MatrixXd h(size(), size());
+    for (Index k = 0; k < size(); ++k)
+      for (Index l = 0; l < size(); ++l)
+        h(k, l) = signatures_[static_cast<std::size_t>(k)].cwiseProduct(responses_[static_cast<std::size_t>(l)]).sum();
+    return h;
+  }
+
+  /// Scores of a residual of block number i, by direction.
+  VectorXd scores(std::size_t i, const VectorXd& whitened) const {
+    VectorXd s(size());
+    for (Index k = 0; k < size(); ++k)
+      s[k] = signatures_[static_cast<std::size_t>(k)].row(static_cast<Index>(i)).dot(whitened);
+    return s;
+  }
+
+  /// By block: the scores of its base trials, one column each, and of what was measured.
+  void score_all(std::vector<MatrixXd>& trials, VectorXd& measured) const {
+    measured = VectorXd::Zero(size());
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      const BlockRuns& runs = base_[blocks_[i]];
+      MatrixXd u(size(), runs.trials);
+      for (std::size_t t = 0; t < runs.trials; ++t)
+        u.col(static_cast<Index>(t)) = scores(i, space_.whitened(space_.of_trial(blocks_[i], runs, t)));
+      const VectorXd mean = u.rowwise().mean();
+      u.colwise() -= mean;
+      measured += scores(i, space_.whitened(space_.of_measured(blocks_[i]))) - mean;
+      trials.push_back(std::move(u));
+    }
+  }
+
+ private:
+  const ResidualSpace& space_;
+  const std::vector<BlockRuns>& base_;
+  std::vector<std::size_t> blocks_;
+  MatrixXd smoother_;
+  std::array<std::vector<Means>, 2> rest_;         // by half and block
+  std::vector<MatrixXd> signatures_, responses_;   // by direction: blocks x components
+};
+
+/// A place where an effect is tested: which directions, summed up to its parameters.
+struct Place {
+  std::size_t candidate, joined;
+  MatrixXd pick;  // directions x tested parameters
+};
+
+std::vector<Place> places_of(std::span<const Candidate> candidates, Index base, Index directions) {
+  std::vector<Place> places;
+  std::vector<Index> first(candidates.size());
+  Index next = base;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    first[c] = next;
+    next += static_cast<Index>(candidates[c].tested);
+  }
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    const int most = candidates[c].effect == "undeclared-zone" ? kMostJoined : 1;
+    for (int joined = 1; joined <= most; ++joined) {
+      const std::size_t last = c + static_cast<std::size_t>(joined) - 1;
+      if (last >= candidates.size() || candidates[last].effect != candidates[c].effect) break;
+      MatrixXd pick = MatrixXd::Zero(directions, static_cast<Index>(candidates[c].tested));
+      for (std::size_t j = c; j <= last; ++j)
+        for (Index p = 0; p < pick.cols(); ++p) pick(first[j] + p, p) = 1.0;
+      places.push_back({c, static_cast<std::size_t>(joined), std::move(pick)});
+    }
+  }
+  return places;
+}
+
+double chi_squared_tail(double statistic, Index freedom) {
+  const boost::math::chi_squared distribution(static_cast<double>(freedom));
+  return boost::math::cdf(boost::math::complement(distribution, std::max(0.0, statistic)));
+}
+
+/// The linear map from scores to one place's effective score, its variance and its reaction.
+struct Projection {
+  MatrixXd map;       // tested parameters x directions
+  MatrixXd variance, reaction;
+  bool one_sided = false;
+
+  Verdict verdict(const VectorXd& scores) const {
+    Verdict v;
+    const VectorXd s = map * scores;
+    v.estimate = reaction.colPivHouseholderQr().solve(s);
+    v.statistic = s.dot(variance.ldlt().solve(s));
+    v.p_value = chi_squared_tail(v.statistic, s.size());
+    if (one_sided) v.p_value = s[0] > 0.0 ? 0.5 * v.p_value : 1.0;
+    return v;
+  }
+};
+
+Projection project(const Place& place, const MatrixXd& h, const MatrixXd& covariance, Index base, double prior_sd,
+                   bool one_sided) {
+  const MatrixXd prior = MatrixXd::Identity(base, base) / (prior_sd * prior_sd);
+  const MatrixXd h_pb = place.pick.transpose() * h.leftCols(base);
+  MatrixXd eliminate = MatrixXd::Zero(place.pick.cols(), h.rows());
+  eliminate.leftCols(base) = h_pb * (h.topLeftCorner(base, base) + prior).colPivHouseholderQr().solve(
+                                        MatrixXd::Identity(base, base));
+  Projection p;
+  p.map = place.pick.transpose() - eliminate;
+  p.variance = p.map * covariance * p.map.transpose();
+  p.reaction = p.map * h * place.pick;
+  p.one_sided = one_sided;
+  return p;
+}
+
+/// Corrects p-values for the number of places and effects by data sets drawn from the model.
+void correct(ScoreTest& test, const std::vector<Projection>& projections, const std::vector<std::size_t>& effect_of,
+             const std::vector<MatrixXd>& trials, const ScoreTestOptions& options) {
+  std::vector<int> more_extreme(test.effects.size(), 0);
+  int any = 0;
+  double best = 1.0;
+  for (const EffectVerdict& e : test.effects) best = std::min(best, e.best.p_value);
+  for (int replicate = 0; replicate < options.replicates; ++replicate) {
+    VectorXd scores = VectorXd::Zero(trials.front().rows());
+    for (std::size_t b = 0; b < trials.size(); ++b) {
+      const Words words =
+          Random(options.seed, static_cast<std::uint32_t>(replicate), static_cast<std::uint32_t>(b), Purpose::Bootstrap)
+              .words(0);
+      scores += trials[b].col(static_cast<Index>(uniform(words[0]) * static_cast<double>(trials[b].cols())));
+    }
+    std::vector<double> smallest(test.effects.size(), 1.0);
+    for (std::size_t i = 0; i < projections.size(); ++i)
+      smallest[effect_of[i]] = std::min(smallest[effect_of[i]], projections[i].verdict(scores).p_value);
+    for (std::size_t e = 0; e < smallest.size(); ++e) more_extreme[e] += smallest[e] <= test.effects[e].best.p_value;
+    any += *std::min_element(smallest.begin(), smallest.end()) <= best;
+  }
+  for (std::size_t e = 0; e < test.effects.size(); ++e)
+    test.effects[e].p_value = (more_extreme[e] + 1.0) / (options.replicates + 1.0);
+  test.p_value = (any + 1.0) / (options.replicates + 1.0);
+}
+
+Directions directions_of(const Campaign& campaign, const ResidualSpace& space, const Model& base,
+                         std::span<const Parameter> free, const VectorXd& z, const std::vector<BlockRuns>& base_runs,
+                         std::span<const Candidate> candidates, const std::vector<bool>& rows,
+                         const ScoreTestOptions& options) {
+  Directions directions(campaign, space, base_runs, rows);
+  const ObserveOptions observing{options.trials, options.seed, 0, options.threads, rows, {}};
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    VectorXd moved = z;
+    const double step = 0.5;
+    moved[static_cast<Index>(i)] += free[i].value(moved[static_cast<Index>(i)] + step) < free[i].upper ? step : -step;
+    directions.add(observe(campaign, model_at(base, free, moved), observing));
+  }
+  for (const Candidate& candidate : candidates)
+    for (std::size_t p = 0; p < candidate.tested; ++p) {
+      VectorXd moved = VectorXd::Zero(static_cast<Index>(candidate.parameters.size()));
+      moved[static_cast<Index>(p)] = 1.0;
+      directions.add(observe(campaign, with(base, candidate, moved), observing));
+    }
+  return directions;
+}
+
+}  // namespace
+
+ScoreTest score_test(const Campaign& campaign, const Model& base, std::span<const Parameter> free, const VectorXd& z,
+                     const std::vector<BlockRuns>& base_runs, std::span<const Candidate> candidates,
+                     const std::vector<bool>& rows, const ScoreTestOptions& options) {
+  const ResidualSpace space(campaign, base_runs);
+  const Directions directions = directions_of(campaign, space, base, free, z, base_runs, candidates, rows, options);
+  std::vector<MatrixXd> trials;
+  VectorXd measured;
+  directions.score_all(trials, measured);
+  MatrixXd covariance = MatrixXd::Zero(directions.size(), directions.size());
+  for (const MatrixXd& u : trials) covariance += u * u.transpose() / static_cast<double>(u.cols());
+
+  const MatrixXd h = directions.sensitivity();
+  const auto n_base = static_cast<Index>(free.size());
+  ScoreTest test;
+  std::vector<Projection> projections;
+  std::vector<std::size_t> effect_of;
+  for (const Place& place : places_of(candidates, n_base, directions.size())) {
+    const Candidate& candidate = candidates[place.candidate];
+    const bool one_sided = candidate.tested == 1 && candidate.parameters[0].lower >= 0.0;
+    projections.push_back(project(place, h, covariance, n_base, options.prior_sd / 0.5, one_sided));
+    Verdict verdict = projections.back().verdict(measured);
+    verdict.candidate = place.candidate;
+    verdict.joined = place.joined;
+    auto effect = std::find_if(test.effects.begin(), test.effects.end(),
+                               [&](const EffectVerdict& e) { return e.effect == candidate.effect; });
+    if (effect == test.effects.end()) effect = test.effects.insert(effect, {candidate.effect, verdict, 1.0, {}});
+    if (verdict.p_value < effect->best.p_value) effect->best = verdict;
+    effect->places.push_back(verdict);
+    effect_of.push_back(static_cast<std::size_t>(effect - test.effects.begin()));
+  }
+  correct(test, projections, effect_of, trials, options);
+  for (EffectVerdict& effect : test.effects)
+    std::sort(effect.places.begin(), effect.places.end(),
+              [](const Verdict& a, const Verdict& b) { return a.p_value < b.p_value; });
+  std::sort(test.effects.begin(), test.effects.end(), [](const EffectVerdict& a, const EffectVerdict& b) {
+    return a.p_value != b.p_value ? a.p_value < b.p_value : a.best.p_value < b.best.p_value;
+  });
+  return test;
+}
+
+}  // namespace talus
