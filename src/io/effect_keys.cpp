@@ -32,16 +32,20 @@ class EffectReader {
     if (table_.value() == nullptr) return;
     EffectSpec& effect = spec_.effects[name_];
     effect.where = table_.file() + ":" + std::to_string(table_.value()->line) + ": [effects." + name_ + "]";
-    numbers(effect);
+    const bool acts = numbers();
     if (name_ == "wet-ground") days(effect);
     if (extent_of(spec_.values.effects, name_) != nullptr) place(effect);
+    const std::size_t faults = table_.faults().size();
     table_.finish();
+    if (!acts && table_.faults().size() == faults)  // else the unknown key was meant for it
+      table_.faults().push_back(effect.where + " does nothing, must give " + strengths_of(name_) + ", or be left out");
   }
 
  private:
   void given(const std::string& key) { spec_.origins["effects." + name_ + "." + key] = "scenario"; }
 
-  void numbers(const EffectSpec& effect) {
+  /// Returns whether a strength is among them.
+  bool numbers() {
     bool strength = false;
     for (const auto& field : effect_fields()) {
       if (!field.key.starts_with(name_ + ".")) continue;
@@ -52,8 +56,7 @@ class EffectReader {
         given(key);
       }
     }
-    if (!strength)
-      table_.faults().push_back(effect.where + " does nothing, must give " + strengths_of(name_) + ", or be left out");
+    return strength;
   }
 
   void days(const EffectSpec& effect) {

@@ -40,7 +40,7 @@ void load_effect_places(const ScenarioSpec& spec, const Terrain& terrain, Scenar
   for (const std::string_view effect_name : effect_names()) {
     const std::string name(effect_name);
     const auto found = spec.effects.find(name);
-    Extent* extent = extent_of(parts.effects, name);
+    talus::Extent* extent = extent_of(parts.effects, name);
     if (found == spec.effects.end() || extent == nullptr) continue;
     const EffectSpec& effect = found->second;
     if (!effect.zones.empty()) {

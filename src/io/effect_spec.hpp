@@ -1,6 +1,7 @@
 #pragma once
 #include "scenario_spec.hpp"
 #include "table_reader.hpp"
+#include "talus/io/rasters.hpp"
 
 namespace talus::io {
 

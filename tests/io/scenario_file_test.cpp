@@ -140,7 +140,7 @@ TEST_F(ScenarioFile, WhatIsNotInThisVersionIsSaidByName) {
   refused(std::string(kFiles) + "[barriers]\nfile = \"n.gpkg\"\n",
           {"scenario.toml:4: [barriers] is not in this version"});
   refused(std::string(kFiles) + "[effects.vegetation-drag]\nheight = 8\n",
-          {"scenario.toml:4: [effects.vegetation-drag] is not in this version"});
+          {"scenario.toml:4: [effects.vegetation-drag] does nothing, must give coefficient"});
   refused(std::string(kFiles) + "[effects.vegetation-darg]\nheight = 8\n",
           {"unknown key 'vegetation-darg' in [effects]; did you mean 'vegetation-drag'?"});
 }

@@ -1,0 +1,114 @@
+"""Effects through `talus run`: where they act, what they change, that a run can be replayed."""
+import unittest
+
+import numpy as np
+from osgeo import ogr
+
+from results_test import digests
+from support import Case, bands_of, box, write_features
+
+HEAD = """dem = "dem.tif"
+trajectories = 60
+[sources]
+file = "sources.gpkg"
+[blocks]
+diameter = 0.8
+axes = [1.5, 1.2, 1.0]
+"""
+
+
+class Effects(Case):
+    def run_scenario(self, name, text):
+        self.write(name + ".toml", HEAD + text)
+        self.run_well("run", self.path(name + ".toml"), "-o", self.path(name))
+        return self.record(name)
+
+    def setting(self, record, key):
+        return [s["value"] for s in record["settings"] if s["key"] == key]
+
+    def assert_replays(self, name):
+        self.run_well("run", self.path(name + "/scenario.toml"), "-o", self.path(name + "-again"))
+        self.assertEqual(digests(self.path(name + "-again")), digests(self.path(name)))
+
+    def test_vegetation_drag_in_a_zone(self):
+        write_features(self.path("zones.gpkg"), "zones", [(box(0, 100, 300, 60), ["meadow"])],
+                       [("zone", ogr.OFTString)])
+        ground = '[ground]\nfile = "zones.gpkg"\n[ground.zones.meadow]\n'
+        self.run_scenario("plain", ground)
+        record = self.run_scenario("drag", ground + '[effects.vegetation-drag]\ncoefficient = 800\nheight = 30\n'
+                                   'zones = ["meadow"]\n')
+        self.assertEqual(self.setting(record, "effects.vegetation-drag.coefficient"), [800])
+        self.assertEqual(self.setting(record, "effects.vegetation-drag.zones"), ['["meadow"]'])
+        plain, drag = (bands_of(self.path(name + "/velocity.tif"))[0] for name in ("plain", "drag"))
+        above = slice(13, 27)  # rows from the north: y 165 to 235, above the meadow
+        below = slice(38, 41)  # y 95 to 110: the lower part of it
+        both = (plain[above] > 0) & (drag[above] > 0)
+        np.testing.assert_allclose(drag[above][both], plain[above][both], rtol=0.02)
+        mean = [np.mean(v[below][v[below] > 0]) for v in (plain, drag)]
+        self.assertLess(mean[1], 0.8 * mean[0])
+        self.assert_replays("drag")
+
+    def test_forest_stems_in_polygons(self):
+        write_features(self.path("stand.gpkg"), "stand", [(box(0, 150, 300, 50), [])])
+        self.run_scenario("plain", "")
+        record = self.run_scenario("forest", '[effects.forest-stems]\ndensity = 800\ndiameter = 0.5\nfile = "stand.gpkg"\n')
+        self.assertIn("effects.forest-stems", [i["role"] for i in record["inputs"]])
+
+        plain, forest = (bands_of(self.path(name + "/velocity.tif"))[0] for name in ("plain", "forest"))
+        above, inside = slice(13, 19), slice(26, 30)  # y 205 to 235; y 150 to 170, the lower part of the stand
+        both = (plain[above] > 0) & (forest[above] > 0)
+        np.testing.assert_allclose(forest[above][both], plain[above][both], rtol=0.02)
+        # Blocks of 724 kg at 10 m/s have 36 kJ, a stem of 0.5 m takes up to 325 kJ: three of four hits stop them.
+        # One is met every 1e4 / (800 1.3) = 10 m. The slope is steeper than phi: they start anew.
+        mean = [np.mean(v[inside][v[inside] > 0]) for v in (plain, forest)]
+        self.assertLess(mean[1], 0.75 * mean[0])
+        self.assert_replays("forest")
+        csv = self.run_well("trace", self.path("forest/scenario.toml"), "--source", "0", "--block", "1").stdout
+        self.assertIn(",stem", csv)
+
+    def test_all_others_change_the_run_and_replay(self):
+        self.run_scenario("plain", "")
+        first = digests(self.path("plain"))["velocity.tif"]
+        for name, text in {"shape": "[effects.block-shape]\nlateral = 0.5\nloss = 0.1\n",
+                           "mass": "[effects.block-mass]\nroughness = 0.5\n",
+                           "wet": "[effects.wet-ground]\nsoftening = 0.8\ndays = [2, 9]\n",
+                           "soft": "[effects.soft-ground]\ndrag = 2\n",
+                           "rolling": "[effects.rolling-resistance]\ncoefficient = 0.4\n",
+                           "air": "[effects.air-drag]\ncoefficient = 1\n"}.items():
+            with self.subTest(name):
+                self.run_scenario(name, text)
+                changed = digests(self.path(name))["velocity.tif"] != first
+                self.assertEqual(changed, name != "wet")  # the run has no day
+        self.write("day.toml", "day = 9\n" + HEAD + "[effects.wet-ground]\nsoftening = 0.8\ndays = [2, 9]\n")
+        self.run_well("run", self.path("day.toml"), "-o", self.path("day"))
+        self.assertNotEqual(digests(self.path("day"))["velocity.tif"], first)
+        self.assert_replays("day")
+
+    def test_a_stand_is_counted_once(self):
+        both = ("[effects.vegetation-drag]\ncoefficient = 100\n[effects.forest-stems]\ndensity = 100\n"
+                'file = "stand.gpkg"\n')
+        write_features(self.path("stand.gpkg"), "stand", [(box(0, 150, 300, 50), [])])
+        self.write("both.toml", HEAD + both)
+        self.fails(2, "vegetation-drag and forest-stems act at the same place", "allow_both = true",
+                   arguments=["run", self.path("both.toml"), "-o", self.path("both")])
+        self.run_scenario("allowed", "[effects]\nallow_both = true\n" + both)
+        self.assert_replays("allowed")
+
+    def test_faults_name_what_is_meant(self):
+        for text, words in {
+                "[effects.soft-grund]\ndrag = 1\n": ["unknown key 'soft-grund' in [effects]", "'soft-ground'"],
+                "[effects.soft-ground]\ndrags = 1\n": ["unknown key 'drags'", "'drag'"],
+                "[effects.soft-ground]\ndrag = -1\n": ["effects.soft-ground.drag = -1: must be 0 to 50"],
+                "[effects.soft-ground]\nstiffness = 9\n": ["does nothing, must give drag"],
+                "[effects.wet-ground]\ndrag = 1\n": ["has no days"],
+                '[effects.soft-ground]\ndrag = 1\nzones = ["moor"]\n': ["there is no zone 'moor'", "default"],
+                '[effects.soft-ground]\ndrag = 1\nfile = "no.gpkg"\n': ["effects.soft-ground.file", "no such file"],
+                '[effects.air-drag]\ncoefficient = 1\nzones = ["default"]\n': ["unknown key 'zones'"],
+        }.items():
+            with self.subTest(text):
+                self.write("s.toml", HEAD + text)
+                self.fails(2, "s.toml:", *words, arguments=["run", self.path("s.toml"), "-o", self.path("out")])
+
+
+if __name__ == "__main__":
+    unittest.main()
