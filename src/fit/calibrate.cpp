@@ -53,8 +53,14 @@ class Search {
 
  private:
   static constexpr int kScreened = 6;  // points to choose the starts from, per parameter
-  int search_length() const { return 12 * static_cast<int>(free_.size()) + 10; }
-  int polish_length() const { return 5 * static_cast<int>(free_.size()) + 5; }
+  int search_length() const {
+    if (options_.evaluations > 0) return options_.evaluations;
+    return 12 * static_cast<int>(free_.size()) + 10;
+  }
+  int polish_length() const {
+    if (options_.evaluations > 0) return options_.evaluations / 4;
+    return 5 * static_cast<int>(free_.size()) + 5;
+  }
 
   /// The objective at z.
   double operator()(const Eigen::VectorXd& z, std::uint32_t trials) {

@@ -44,7 +44,7 @@ std::vector<Place> places_of(const Campaign& campaign, const Model& base, const 
   for (std::size_t zone = 0; zone < touched.size(); ++zone) {
     if (!touched[zone]) continue;
     Place place{"zone " + campaign.zone_names[zone], std::vector<std::uint8_t>(base.grounds.size(), 0)};
-    place.zones[zone] = 1;
+    for (std::size_t i = zone; i < place.zones.size(); i += campaign.zone_names.size()) place.zones[i] = 1;  // and bands
     places.push_back(std::move(place));
   }
   return places;
@@ -204,7 +204,7 @@ Candidate band(const Campaign& campaign, const Axis& axis, double from, double t
                     for (std::size_t zone = 0; zone < n; ++zone)
                       m.grounds[n + zone].theta_scale = m.grounds[zone].theta_scale * std::exp(v);
                   })},
-          2, [&campaign, axis, from, to](Model& m) { lay_band(m, campaign, axis, from, to); }};
+          2, [&campaign, axis, from, to](Model& m) { lay_band(m, campaign, axis, from, to); }, from, to};
 }
 
 Candidate barrier(const Axis& axis, double width, double at) {

@@ -13,34 +13,19 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kMostJoined = 4;  // neighbouring bands
+constexpr int kMostJoined = 4;   // neighbouring bands
+constexpr double kStep = 0.5;    // by which a parameter of the base is moved [z]
 
-/// Of one block, what moving one parameter by one step does: to its mean residual, and to the whitened one.
-struct Shift {
-  VectorXd signature, response;  // size: components
-};
-
-/// Means over the trials of one block.
-struct Means {
-  VectorXd place, whitened;
-};
-
-/// @param half  0: the even trials, 1: the odd ones. Signature and response come from different ones, so that their
-///              noise does not look like a reaction
-Means means_of(const ResidualSpace& space, std::size_t block, const BlockRuns& runs, std::size_t half) {
-  Means m{VectorXd::Zero(space.size()), VectorXd::Zero(space.size())};
-  VectorXd seen = VectorXd::Zero(space.size());
-  double count = 0.0;
-  for (std::size_t t = half; t < runs.trials; t += 2) {
+/// Mean residual of the trials of one block; zero where fewer than five were seen.
+VectorXd mean_residual(const ResidualSpace& space, std::size_t block, const BlockRuns& runs) {
+  VectorXd sum = VectorXd::Zero(space.size()), seen = sum;
+  for (std::size_t t = 0; t < runs.trials; ++t) {
     const Residual r = space.of_trial(block, runs, t);
-    m.whitened += space.whitened(r);
-    count += 1.0;
     for (Index i = 0; i < r.size(); ++i)
-      if (!std::isnan(r[i])) m.place[i] += r[i], seen[i] += 1.0;
+      if (!std::isnan(r[i])) sum[i] += r[i], seen[i] += 1.0;
   }
-  m.whitened /= count;
-  for (Index i = 0; i < seen.size(); ++i) m.place[i] = seen[i] >= 5.0 ? m.place[i] / seen[i] : 0.0;
-  return m;
+  for (Index i = 0; i < seen.size(); ++i) sum[i] = seen[i] >= 5.0 ? sum[i] / seen[i] : 0.0;
+  return sum;
 }
 
 /// What a signature may depend on, from block to block: a constant, mass, shape, place of release, day.
@@ -70,34 +55,17 @@ class Directions {
       if (rows[b] && base[b].trials > 0) blocks_.push_back(b);
     const MatrixXd x = covariates_of(campaign, blocks_);
     smoother_ = x * (x.transpose() * x + 1e-6 * MatrixXd::Identity(x.cols(), x.cols())).ldlt().solve(x.transpose());
-    for (const std::size_t b : blocks_)
-      for (const std::size_t half : {0U, 1U}) rest_[half].push_back(means_of(space, b, base[b], half));
+    for (const std::size_t b : blocks_) rest_.push_back(mean_residual(space, b, base[b]));
   }
 
   void add(const std::vector<BlockRuns>& moved) {
-    const auto n = static_cast<Index>(blocks_.size());
-    MatrixXd signature(n, space_.size()), response(n, space_.size());
-    for (Index i = 0; i < n; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      const Means first = means_of(space_, blocks_[k], moved[blocks_[k]], 0);
-      const Means second = means_of(space_, blocks_[k], moved[blocks_[k]], 1);
-      signature.row(i) = first.place - rest_[0][k].place;
-      response.row(i) = second.whitened - rest_[1][k].whitened;
-    }
+    MatrixXd signature(static_cast<Index>(blocks_.size()), space_.size());
+    for (std::size_t i = 0; i < blocks_.size(); ++i)
+      signature.row(static_cast<Index>(i)) = mean_residual(space_, blocks_[i], moved[blocks_[i]]) - rest_[i];
     signatures_.push_back(smoother_ * signature);
-    responses_.push_back(std::move(response));
   }
 
   Index size() const { return static_cast<Index>(signatures_.size()); }
-
-  /// H(k, l): how much the score of direction k grows when direction l is moved by one step.
-  MatrixXd sensitivity() const {
-    MatrixXd h(size(), size());
-    for (Index k = 0; k < size(); ++k)
-      for (Index l = 0; l < size(); ++l)
-        h(k, l) = signatures_[static_cast<std::size_t>(k)].cwiseProduct(responses_[static_cast<std::size_t>(l)]).sum();
-    return h;
-  }
 
   /// Scores of a residual of block number i, by direction.
   VectorXd scores(std::size_t i, const VectorXd& whitened) const {
@@ -127,8 +95,8 @@ class Directions {
   const std::vector<BlockRuns>& base_;
   std::vector<std::size_t> blocks_;
   MatrixXd smoother_;
-  std::array<std::vector<Means>, 2> rest_;         // by half and block
-  std::vector<MatrixXd> signatures_, responses_;   // by direction: blocks x components
+  std::vector<VectorXd> rest_;        // by block: mean residual of the base itself, nearly zero
+  std::vector<MatrixXd> signatures_;  // by direction: blocks x components
 };
 
 /// A place where an effect is tested: which directions, summed up to its parameters.
@@ -164,34 +132,34 @@ double chi_squared_tail(double statistic, Index freedom) {
   return boost::math::cdf(boost::math::complement(distribution, std::max(0.0, statistic)));
 }
 
-/// The linear map from scores to one place's effective score, its variance and its reaction.
+/// The linear map from scores to one place's effective score, and its variance.
 struct Projection {
-  MatrixXd map;       // tested parameters x directions
-  MatrixXd variance, reaction;
+  MatrixXd map;  // tested parameters x directions
+  MatrixXd variance;
   bool one_sided = false;
 
   Verdict verdict(const VectorXd& scores) const {
     Verdict v;
     const VectorXd s = map * scores;
-    v.estimate = reaction.colPivHouseholderQr().solve(s);
-    v.statistic = s.dot(variance.ldlt().solve(s));
+    v.estimate = variance.ldlt().solve(s);
+    v.statistic = s.dot(v.estimate);
     v.p_value = chi_squared_tail(v.statistic, s.size());
     if (one_sided) v.p_value = s[0] > 0.0 ? 0.5 * v.p_value : 1.0;
     return v;
   }
 };
 
-Projection project(const Place& place, const MatrixXd& h, const MatrixXd& covariance, Index base, double prior_sd,
-                   bool one_sided) {
-  const MatrixXd prior = MatrixXd::Identity(base, base) / (prior_sd * prior_sd);
-  const MatrixXd h_pb = place.pick.transpose() * h.leftCols(base);
-  MatrixXd eliminate = MatrixXd::Zero(place.pick.cols(), h.rows());
-  eliminate.leftCols(base) = h_pb * (h.topLeftCorner(base, base) + prior).colPivHouseholderQr().solve(
-                                        MatrixXd::Identity(base, base));
+/// Takes out of a place's score what the free parameters of the base explain: a regression on their scores.
+Projection project(const Place& place, const MatrixXd& covariance, Index base, double prior, bool one_sided) {
+  MatrixXd information = covariance.topLeftCorner(base, base);
+  information.diagonal().array() += prior;
+  MatrixXd imitated = MatrixXd::Zero(place.pick.cols(), covariance.rows());
+  imitated.leftCols(base) =
+      information.ldlt().solve(covariance.topRows(base) * place.pick).transpose();
   Projection p;
-  p.map = place.pick.transpose() - eliminate;
+  p.map = place.pick.transpose() - imitated;
   p.variance = p.map * covariance * p.map.transpose();
-  p.reaction = p.map * h * place.pick;
+  p.variance.diagonal().array() += 1e-9;
   p.one_sided = one_sided;
   return p;
 }
@@ -230,8 +198,7 @@ Directions directions_of(const Campaign& campaign, const ResidualSpace& space, c
   const ObserveOptions observing{options.trials, options.seed, 0, options.threads, rows, {}};
   for (std::size_t i = 0; i < free.size(); ++i) {
     VectorXd moved = z;
-    const double step = 0.5;
-    moved[static_cast<Index>(i)] += free[i].value(moved[static_cast<Index>(i)] + step) < free[i].upper ? step : -step;
+    moved[static_cast<Index>(i)] += free[i].value(moved[static_cast<Index>(i)] + kStep) < free[i].upper ? kStep : -kStep;
     directions.add(observe(campaign, model_at(base, free, moved), observing));
   }
   for (const Candidate& candidate : candidates)
@@ -256,7 +223,6 @@ ScoreTest score_test(const Campaign& campaign, const Model& base, std::span<cons
   MatrixXd covariance = MatrixXd::Zero(directions.size(), directions.size());
   for (const MatrixXd& u : trials) covariance += u * u.transpose() / static_cast<double>(u.cols());
 
-  const MatrixXd h = directions.sensitivity();
   const auto n_base = static_cast<Index>(free.size());
   ScoreTest test;
   std::vector<Projection> projections;
@@ -264,7 +230,7 @@ ScoreTest score_test(const Campaign& campaign, const Model& base, std::span<cons
   for (const Place& place : places_of(candidates, n_base, directions.size())) {
     const Candidate& candidate = candidates[place.candidate];
     const bool one_sided = candidate.tested == 1 && candidate.parameters[0].lower >= 0.0;
-    projections.push_back(project(place, h, covariance, n_base, options.prior_sd / 0.5, one_sided));
+    projections.push_back(project(place, covariance, n_base, kStep * kStep / (options.prior_sd * options.prior_sd), one_sided));
     Verdict verdict = projections.back().verdict(measured);
     verdict.candidate = place.candidate;
     verdict.joined = place.joined;

@@ -123,7 +123,7 @@ class Lines {
         add(table, "days", list_text({days.begin(), days.end()}), "");
       }
       std::vector<std::string> zones;
-      for (const std::string& zone : found->second.zones) zones.push_back(quoted(zone));
+      for (const std::string& zone : found->second.zones) zones.push_back(toml_text(zone));
       if (!zones.empty()) add(table, "zones", std::string("[") + joined(zones) + "]", "");
       file(table, "file", found->second.file);
     }

@@ -11,6 +11,7 @@ struct Candidate {
   std::vector<Parameter> parameters;   ///< one or two; those that need no test of their own come last
   std::size_t tested = 1;              ///< how many of them the score test moves
   std::function<void(Model&)> prepare; ///< before the parameters are set: places and lines
+  double from = 0.0, to = 0.0;         ///< of a band: along the axis [m]
 };
 
 /// Positions along the slope: the direction in plan in which the blocks of a campaign go, and how far.

@@ -1,0 +1,78 @@
+#pragma once
+#include "talus/fit/residual_table.hpp"
+#include "talus/fit/score_test.hpp"
+
+namespace talus {
+
+/// A model that has been fitted, with what is free in it.
+struct Fitted {
+  Model model;
+  std::vector<Parameter> free;
+  Eigen::VectorXd z;               ///< of the free parameters
+  std::vector<BlockRuns> fitting;  ///< of the fitting rows, on luck that the search has not seen
+  Score score;                     ///< of those
+};
+
+/// A candidate fitted together with the base parameters.
+struct Trial {
+  std::string effect, where;
+  std::vector<Parameter> parameters;  ///< its own
+  std::vector<double> values;         ///< of them, fitted
+  double p_value = 1.0;               ///< of the score test, corrected for its places
+  double gain = 0.0;                  ///< by which it lowers the error of the fitting rows
+  Interval gain_interval;             ///< 95 %, paired bootstrap over blocks
+  double cross_validated = kNotGiven; ///< the same in cross-validation; NaN where it was not needed
+  double chosen_share = 0.0;          ///< of the bootstraps in which it has the lowest error of all
+  Fitted fitted;
+};
+
+/// One turn of the loop.
+struct Round {
+  std::string effect = "none";            ///< what was found; "none", "unexplained"
+  std::string where;
+  std::vector<Trial> trials;              ///< every effect at its best place, best first
+  std::vector<std::string> alike;         ///< what cannot be told apart from it on these data
+  std::vector<ResidualRow> residual;      ///< before, on the fitting rows
+  double p_value = 1.0;                   ///< that the residual is noise: score test over all effects and places
+};
+
+struct Diagnosis {
+  Fitted base;                 ///< recalibrated, without an effect
+  std::vector<Round> rounds;   ///< the last one found "none" or "unexplained"
+  Fitted with_effects;         ///< the last model; the base where nothing was found
+  std::vector<ResidualRow> residual_after;
+};
+
+struct DiagnoseOptions {
+  std::vector<std::string> keys{"theta_scale", "psi_scale", "En50", "Et50"};  ///< of the ground, fitted per zone
+  std::uint32_t search_trials = 30, test_trials = 120, final_trials = 200;   ///< per block
+  std::uint64_t seed = 1;
+  int threads = 0;
+  int most_effects = 3;
+  double first_level = 0.05;  ///< of the score test, over all effects: the false alarms that are accepted
+  double later_level = 0.01;  ///< once an effect is in: its form is itself a guess, which leaves a residual
+  std::function<bool(double, const std::string&)> proceed;  ///< share done and what is being done; false ends it
+};
+
+/// Finds what a model of the ground alone leaves of a campaign's fitting rows, and which effect explains it.
+///
+/// (1) Fits the ground. (2) Score test of all candidates. (3) Fits every effect at its best place together with the
+/// ground. (4) Chooses: significant in the test, better in a cross-validation over blocks, then the lowest error.
+/// (5) Puts it in and goes round again. The held-out rows are never looked at. docs/closing-the-loop.md, "Diagnosis".
+///
+/// Throws Interrupted, declared below, when `proceed` says no.
+Diagnosis diagnose(const Campaign& campaign, const Model& start, const DiagnoseOptions& options);
+
+/// `proceed` said no.
+struct DiagnosisInterrupted {};
+
+/// 95 % interval of the difference of two errors over which blocks happened to be released; negative where `after` is
+/// the better one. Paired: rows that only one of them has do not count.
+struct Difference {
+  double mean = 0.0;
+  Interval interval;
+  std::vector<double> draws;
+};
+Difference difference_of(const Score& before, const Score& after, std::size_t blocks, std::uint32_t draws = 1000);
+
+}  // namespace talus

@@ -1,0 +1,38 @@
+#pragma once
+#include <map>
+
+#include "talus/fit/diagnose.hpp"
+#include "talus/io/loaded.hpp"
+
+namespace talus::io {
+
+/// The error on the held-out rows before and after an effect, on the same luck.
+struct HoldoutError {
+  double before = kNotGiven, after = kNotGiven;
+  Interval reduction;  ///< 95 %, of (before - after) / before, over blocks
+};
+
+/// All that `talus diagnose` found, with the held-out rows opened.
+struct DiagnosisRecord {
+  std::vector<std::string> command;
+  std::vector<InputFile> inputs;
+  std::vector<std::string> warnings;
+  std::string campaign;
+  DiagnoseOptions options;
+  Diagnosis diagnosis;
+  HoldoutError whole;                                 ///< base against the last model
+  std::vector<HoldoutError> rounds;                   ///< each effect found, against the model before it
+  std::vector<std::vector<HoldoutError>> candidates;  ///< as Round::trials
+  double seconds = 0.0;
+};
+
+/// Simulates the held-out rows with every model of a diagnosis. `proceed` as in ObserveOptions.
+void open_holdout(const Campaign& campaign, DiagnosisRecord& record);
+
+/// The text of diagnosis.json. INTERFACE.md names its keys.
+std::string diagnosis_json(const DiagnosisRecord& record);
+
+/// One self-contained page: what was found, the error before and after, the candidates, the residuals drawn.
+std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& record);
+
+}  // namespace talus::io

@@ -1,0 +1,160 @@
+#include "talus/io/diagnosis_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "talus/base/version.hpp"
+
+namespace talus::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint32_t kHoldoutTrials = 200;
+constexpr std::size_t kResidualRows = 20;
+
+double rounded(double value) {
+  if (value == 0.0 || !std::isfinite(value)) return value;
+  const double scale = std::pow(10.0, 5.0 - std::floor(std::log10(std::abs(value))));
+  return std::round(value * scale) / scale;
+}
+
+Json number(double value) {
+  return std::isnan(value) ? Json() : Json(rounded(value));
+}
+
+Json parameters_of(const Trial& trial) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < trial.parameters.size(); ++i) json[trial.parameters[i].key] = number(trial.values[i]);
+  return json;
+}
+
+Json residual_of(const std::vector<ResidualRow>& rows) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < std::min(kResidualRows, rows.size()); ++i)
+    list.push_back({{"observable", rows[i].observable},
+                    {"covariate", rows[i].covariate},
+                    {"statistic", number(rows[i].statistic)},
+                    {"p_value", number(rows[i].p_value)},
+                    {"p_corrected", number(rows[i].corrected)},
+                    {"blocks", rows[i].blocks}});
+  return list;
+}
+
+Json candidates_of(const Round& round, const std::vector<HoldoutError>& holdout) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < round.trials.size(); ++i) {
+    const Trial& t = round.trials[i];
+    list.push_back({{"effect", t.effect},
+                    {"where", t.where},
+                    {"parameters", parameters_of(t)},
+                    {"fit", number(t.fitted.score.total)},
+                    {"fit_gain_ci95", {number(t.gain_interval.low), number(t.gain_interval.high)}},
+                    {"cross_validated_gain", number(t.cross_validated)},
+                    {"holdout", number(holdout[i].after)},
+                    {"holdout_reduction_ci95", {number(holdout[i].reduction.low), number(holdout[i].reduction.high)}},
+                    {"chosen_share", number(t.chosen_share)},
+                    {"p_value", number(t.p_value)}});
+  }
+  return list;
+}
+
+Score holdout_score(const Campaign& campaign, const Model& model, const DiagnosisRecord& record) {
+  ObserveOptions how;
+  how.trials = kHoldoutTrials;
+  how.seed = record.options.seed + 1;
+  how.threads = record.options.threads;
+  how.blocks = holdout_rows(campaign);
+  return score(campaign, observe(campaign, model, how), how.blocks);
+}
+
+HoldoutError error_of(const Score& before, const Score& after, std::size_t blocks) {
+  HoldoutError e{before.total, after.total, {}};
+  if (before.rows.empty() || std::isnan(before.total) || std::isnan(after.total)) return e;
+  std::vector<double> shares;
+  for (std::uint32_t draw = 0; draw < 2000; ++draw) {
+    const std::vector<double> weights = bootstrap_weights(before, blocks, draw, 2);
+    const double b = weighted_total(before, weights);
+    shares.push_back((b - weighted_total(after, weights)) / b);
+  }
+  std::sort(shares.begin(), shares.end());
+  e.reduction = {quantile(shares, 0.025), quantile(shares, 0.975)};
+  return e;
+}
+
+bool found(const Round& round) {
+  return round.effect != "none" && round.effect != "unexplained";
+}
+
+}  // namespace
+
+void open_holdout(const Campaign& campaign, DiagnosisRecord& record) {
+  const std::size_t blocks = campaign.blocks.size();
+  const Score base = holdout_score(campaign, record.diagnosis.base.model, record);
+  Score before = base;
+  for (const Round& round : record.diagnosis.rounds) {
+    record.candidates.emplace_back();
+    Score chosen = before;
+    for (std::size_t i = 0; i < round.trials.size(); ++i) {
+      const Score after = holdout_score(campaign, round.trials[i].fitted.model, record);
+      record.candidates.back().push_back(error_of(before, after, blocks));
+      if (i == 0 && found(round)) chosen = after;
+    }
+    record.rounds.push_back(error_of(before, chosen, blocks));
+    before = chosen;
+  }
+  record.whole = error_of(base, before, blocks);
+}
+
+std::string diagnosis_json(const DiagnosisRecord& record) {
+  const Diagnosis& d = record.diagnosis;
+  const Round& first = d.rounds.front();
+  Json effects = Json::array(), rounds = Json::array();
+  for (std::size_t i = 0; i < d.rounds.size(); ++i) {
+    const Round& round = d.rounds[i];
+    Json turn{{"effect", round.effect}};
+    if (found(round)) {
+      effects.push_back(round.effect);
+      turn["where"] = round.where;
+      turn["indistinguishable_from"] = round.alike;
+      turn["holdout"] = {{"before", number(record.rounds[i].before)}, {"after", number(record.rounds[i].after)}};
+    }
+    turn["p_value"] = number(round.p_value);
+    rounds.push_back(turn);
+  }
+  if (effects.empty()) effects.push_back(first.effect);
+  const HoldoutError& e = record.whole;
+  Json json{{"effect", first.effect},
+            {"effects", effects},
+            {"where", first.where},
+            {"probability", found(first) ? number(first.trials.front().chosen_share) : number(1.0 - first.p_value)},
+            {"indistinguishable_from", first.alike},
+            {"rounds", rounds},
+            {"error",
+             {{"metric", "mean normalised score"},
+              {"fit", {{"before", number(d.base.score.total)}, {"after", number(d.with_effects.score.total)}}},
+              {"holdout",
+               {{"before", number(e.before)},
+                {"after", number(e.after)},
+                {"reduction", number((e.before - e.after) / e.before)},
+                {"ci95", {number(e.reduction.low), number(e.reduction.high)}}}}}},
+            {"candidates", candidates_of(first, record.candidates.front())},
+            {"residual", residual_of(first.residual)},
+            {"residual_after", residual_of(d.residual_after)},
+            {"campaign", record.campaign},
+            {"seed", record.options.seed},
+            {"seconds", number(record.seconds)},
+            {"talus", version()},
+            {"command", record.command}};
+  Json ground = Json::object();
+  for (const Parameter& p : d.base.free) ground[p.key] = number(p.get(d.base.model));
+  json["base_parameters"] = ground;
+  Json inputs = Json::array();
+  for (const InputFile& input : record.inputs)
+    inputs.push_back({{"role", input.role}, {"path", input.path}, {"sha256", input.sha256}});
+  json["inputs"] = inputs;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace talus::io
