@@ -82,6 +82,7 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   json["source_cells"] = scenario.sources.size();
   json["trajectories_per_source"] = scenario.trajectories;
   json["released"] = totals.released;
+  if (scenario.effects.fragmentation.threshold > 0.0) json["pieces"] = totals.pieces;
   json["ends"] = ends_of(totals);
   if (totals.ends[static_cast<std::size_t>(End::Limit)] > 0)
     json["first_limit"] = {{"source", totals.first_limit[0]}, {"block", totals.first_limit[1]}};

@@ -47,17 +47,20 @@ ScreenFinder::ScreenFinder(const Surface& surface, std::span<const Screen> scree
 
 void ScreenFinder::find(const Release& release, const Path& path, std::vector<Crossing>& crossings) const {
   if (segments_.empty()) return;
+  Block body = release.body;
+  auto broken = path.breaks.begin();
   for (std::size_t i = 1; i < path.vertices.size(); ++i) {
+    for (; broken != path.breaks.end() && broken->vertex < i; ++broken) body = broken->body;
     const Vertex &from = path.vertices[i - 1], &to = path.vertices[i];
     const Eigen::Vector2d a = from.motion.position.head<2>(), b = to.motion.position.head<2>();
     if ((a.cwiseMax(b).array() < low_.array()).any() || (a.cwiseMin(b).array() > high_.array()).any()) continue;
-    cross(release, from, to, crossings);
+    cross(release, body, from, to, crossings);
   }
 }
 
 /// A segment is crossed where its ends lie on different sides of it, its own end points belonging to one side only,
 /// so that a path through a vertex of the path or of the screen is counted once.
-void ScreenFinder::cross(const Release& release, const Vertex& from, const Vertex& to,
+void ScreenFinder::cross(const Release& release, const Block& body, const Vertex& from, const Vertex& to,
                          std::vector<Crossing>& crossings) const {
   const Eigen::Vector2d a = from.motion.position.head<2>(), b = to.motion.position.head<2>(), way = b - a;
   const std::size_t first = crossings.size();
@@ -72,8 +75,7 @@ void ScreenFinder::cross(const Release& release, const Vertex& from, const Verte
     const double ground = surface_.height(m.position.x(), m.position.y()).value_or(m.position.z());
     crossings.push_back({release.source, release.block, s.screen, m.position.x(), m.position.y(), m.velocity.norm(),
                          from.event == Event::Slide ? 0.0 : std::max(0.0, m.position.z() - ground), m.spin.norm(),
-                         release.body.mass, release.body.diameter, s.along + line.norm() * (low / (low - high)),
-                         m.time});
+                         body.mass, body.diameter, s.along + line.norm() * (low / (low - high)), m.time});
   }
   std::sort(crossings.begin() + static_cast<std::ptrdiff_t>(first), crossings.end(),
             [](const Crossing& l, const Crossing& r) { return l.time < r.time; });

@@ -40,8 +40,8 @@ StopRow stop_row(const Release& release, const Path& path) {
   row.source = release.source;
   row.block = release.block;
   row.end = path.end;
-  row.diameter = static_cast<float>(release.body.diameter);
-  row.mass = static_cast<float>(release.body.mass);
+  row.diameter = static_cast<float>(path.breaks.empty() ? release.body.diameter : path.breaks.back().body.diameter);
+  row.mass = static_cast<float>(path.mass);
   row.x_release = static_cast<float>(release.motion.position.x());
   row.y_release = static_cast<float>(release.motion.position.y());
   row.x = end.position.x();
@@ -108,6 +108,13 @@ class Reaches {
   std::map<std::uint32_t, Entry> open_;
 };
 
+void add_way(Totals& totals, const Path& path) {
+  totals.impacts += path.impacts;
+  totals.psi_dropped += path.psi_dropped;
+  totals.length_mm += std::llround(1e3 * path.length);
+  totals.plan_length_mm += std::llround(1e3 * path.plan_length);
+}
+
 void add(Totals& totals, const Release& release, const Path& path) {
   if (path.end == End::Limit) {
     const std::array<std::uint32_t, 2> id{release.source, release.block};
@@ -115,10 +122,7 @@ void add(Totals& totals, const Release& release, const Path& path) {
   }
   totals.ends[static_cast<std::size_t>(path.end)] += 1;
   totals.released += 1;
-  totals.impacts += path.impacts;
-  totals.psi_dropped += path.psi_dropped;
-  totals.length_mm += std::llround(1e3 * path.length);
-  totals.plan_length_mm += std::llround(1e3 * path.plan_length);
+  add_way(totals, path);
 }
 
 void add(Totals& totals, const Totals& part) {
@@ -127,6 +131,7 @@ void add(Totals& totals, const Totals& part) {
     totals.first_limit = part.first_limit;
   for (std::size_t e = 0; e < kEnds; ++e) totals.ends[e] += part.ends[e];
   totals.released += part.released;
+  totals.pieces += part.pieces;
   totals.impacts += part.impacts;
   totals.psi_dropped += part.psi_dropped;
   totals.cells_scored += part.cells_scored;
@@ -203,6 +208,13 @@ class Run {
       if (sinks_.crossings) screens_.find(release, path, rows.crossings);
       if (sinks_.paths && is_recorded(scenario_, source, block))
         rows.paths.push_back({stop_row(release, path), points_of(path, scenario_.surface.grid().cell_x)});
+      if (!path.pieces.empty())
+        trace_pieces(world, path, [&](const Release& piece, const Path& way) {
+          batch.add(way, piece.body.mass, source, reach, true);
+          totals.pieces += 1;
+          add_way(totals, way);
+          if (sinks_.crossings) screens_.find(piece, way, rows.crossings);
+        });
     }
     return rows;
   }

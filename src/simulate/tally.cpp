@@ -61,26 +61,47 @@ class ReachOf {
   SourceReach::Cells* cells_ = nullptr;
 };
 
+/// Whether two trajectories of a batch, `first` before `second`, are what one block became.
+bool of_one_block(const VisitBatch& batch, std::uint16_t first, std::uint16_t second) {
+  const auto& all = batch.trajectories();
+  return std::all_of(&all[first] + 1, &all[second] + 1, [](const VisitBatch::Trajectory& t) { return t.piece; });
+}
+
 /// Makes one value of each trajectory's visits, its largest, and adds the counts of the group to the record.
 void gather(const Group& group, const VisitBatch& batch, Tally::Values& values, CellRecord& record, ReachOf& reach) {
   values.make_room(static_cast<std::size_t>(group.end - group.begin));
   std::size_t n = 0;
   std::uint32_t source = 0;
+  std::uint16_t previous = 0;  // the trajectory of the last value
+  bool rests = false;          // it, or a piece of it, has come to rest here
   for (const Visit* visit = group.begin; visit != group.end;) {
     const std::uint16_t trajectory = visit->trajectory;
     float speed_squared = 0.0F, height = 0.0F;
+    std::uint32_t deposits = 0;
     for (; visit != group.end && visit->trajectory == trajectory; ++visit) {
       speed_squared = std::max(speed_squared, visit->speed_squared);
       height = std::max(height, visit->height);
       record.impacts += visit->impacts;
-      record.deposits += visit->deposited;
+      deposits += visit->deposited;
     }
     const VisitBatch::Trajectory& of = batch.trajectories()[trajectory];
+    const auto energy = static_cast<float>(0.5e-3 * of.mass * speed_squared);
+    if (of.piece && n > 0 && of_one_block(batch, previous, trajectory)) {  // one value of all that a block became
+      record.deposits += rests ? 0U : deposits;
+      rests = rests || deposits > 0;
+      values.lists[0][n - 1] = std::max(values.lists[0][n - 1], energy);
+      values.lists[1][n - 1] = std::max(values.lists[1][n - 1], std::sqrt(speed_squared));
+      values.lists[2][n - 1] = std::max(values.lists[2][n - 1], height);
+      continue;
+    }
+    previous = trajectory;
+    record.deposits += deposits;
+    rests = deposits > 0;
     if (n == 0 || of.source != source) {
       source = of.source;
       record.sources += reach.first(trajectory, group.begin->cell) ? 1U : 0U;
     }
-    values.lists[0][n] = static_cast<float>(0.5e-3 * of.mass * speed_squared);
+    values.lists[0][n] = energy;
     values.lists[1][n] = std::sqrt(speed_squared);
     values.lists[2][n++] = height;
   }

@@ -44,12 +44,31 @@ void VisitBatch::clear() {
   size_ = 0;
 }
 
-void VisitBatch::add(const Path& path, double mass, std::uint32_t source, std::shared_ptr<SourceReach> reach) {
-  trajectories_.push_back({mass, source, std::move(reach)});
+void VisitBatch::begin(Trajectory trajectory) {
+  trajectories_.push_back(std::move(trajectory));
   column_ = row_ = -1;
   region_ = nullptr;
   region_index_ = static_cast<std::size_t>(-1);
-  for (const Span& span : path.spans) {
+}
+
+void VisitBatch::add(const Path& path, double mass, std::uint32_t source, std::shared_ptr<SourceReach> reach,
+                     bool piece) {
+  const std::span<const Span> spans(path.spans);
+  std::size_t from = 0;
+  for (const Broken& broken : path.breaks) {
+    begin({mass, source, reach, piece});
+    add(spans.subspan(from, broken.span - from));
+    from = broken.span;
+    mass = broken.body.mass;
+    piece = true;
+  }
+  begin({mass, source, std::move(reach), piece});
+  add(spans.subspan(from));
+  if (region_ != nullptr) region_->back().deposited = path.end == End::Stopped || path.end == End::Caught;
+}
+
+void VisitBatch::add(std::span<const Span> spans) {
+  for (const Span& span : spans) {
     const int east_from = span.p_from >= 0.5F, east_to = span.p_to >= 0.5F;
     const int north_from = span.q_from >= 0.5F, north_to = span.q_to >= 0.5F;
     const Moment start{0.0F, span.height_from, span.rise_from}, end{1.0F, span.height_to, span.rise_to};
@@ -73,7 +92,6 @@ void VisitBatch::add(const Path& path, double mass, std::uint32_t source, std::s
     }
     region_->back().impacts = (region_->back().impacts + span.impacts) & 0x7FFFFFFFU;
   }
-  if (region_ != nullptr) region_->back().deposited = path.end == End::Stopped || path.end == End::Caught;
 }
 
 Visit& VisitBatch::new_visit(int column, int row) {

@@ -5,7 +5,7 @@ import numpy as np
 from osgeo import ogr
 
 from results_test import digests
-from support import Case, bands_of, box, write_features
+from support import Case, bands_of, box, rows_of, write_features
 
 HEAD = """dem = "dem.tif"
 trajectories = 60
@@ -83,6 +83,17 @@ class Effects(Case):
         self.run_well("run", self.path("day.toml"), "-o", self.path("day"))
         self.assertNotEqual(digests(self.path("day"))["velocity.tif"], first)
         self.assert_replays("day")
+
+    def test_broken_blocks_count_once_and_stops_hold_the_largest_piece(self):
+        self.run_scenario("plain", "")
+        record = self.run_scenario("broken", "[effects.fragmentation]\nthreshold = 20\nlargest = 0.7\n")
+        self.assertGreater(record["pieces"], 100)
+        self.assertEqual(bands_of(self.path("broken/impacts.tif")).sum(), record["impacts"])
+        self.assertLessEqual(bands_of(self.path("broken/impact_probability.tif"))[0].max(), 1.0)
+        mass = [sum(s["mass_kg"] for s, _ in rows_of(self.path(name + "/stops.gpkg"), "stops"))
+                for name in ("plain", "broken")]
+        self.assertLess(mass[1], 0.9 * mass[0])
+        self.assert_replays("broken")
 
     def test_a_stand_is_counted_once(self):
         both = ("[effects.vegetation-drag]\ncoefficient = 100\n[effects.forest-stems]\ndensity = 100\n"

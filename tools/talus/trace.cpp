@@ -38,8 +38,8 @@ talus::StopRow stop_row(const talus::Release& release, const talus::Path& path) 
   row.source = release.source;
   row.block = release.block;
   row.end = path.end;
-  row.diameter = static_cast<float>(release.body.diameter);
-  row.mass = static_cast<float>(release.body.mass);
+  row.diameter = static_cast<float>(path.breaks.empty() ? release.body.diameter : path.breaks.back().body.diameter);
+  row.mass = static_cast<float>(path.mass);
   row.x = last.position.x();
   row.y = last.position.y();
   row.z = last.position.z();

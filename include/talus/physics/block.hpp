@@ -34,9 +34,9 @@ struct Release {
   std::uint64_t seed = 1;
   std::uint32_t source = 0, block = 0;  ///< with the seed, the key of every random number on the path
   Block body;
-  Motion motion;                           ///< at time 0
-  int day = 0;                             ///< of the release, for effects that change with it
-  std::uint32_t piece = 0;                 ///< 0: the block itself; else which of its pieces, part of the key
+  Motion motion;                            ///< at time 0
+  int day = 0;                              ///< of the release, for effects that change with it
+  std::uint32_t piece = 0;                  ///< 0: the block itself; else which of its pieces, part of the key
   std::uint32_t pieces_left = kMostPieces;  ///< how many more may break off; with none left it breaks no more
 };
 

@@ -35,7 +35,8 @@ class ScreenFinder {
     Eigen::Vector2d from, to;
     double along;  // of `from` [m]
   };
-  void cross(const Release& release, const Vertex& from, const Vertex& to, std::vector<Crossing>& crossings) const;
+  void cross(const Release& release, const Block& body, const Vertex& from, const Vertex& to,
+             std::vector<Crossing>& crossings) const;
 
   const Surface& surface_;
   std::vector<Segment> segments_;

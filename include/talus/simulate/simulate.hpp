@@ -12,7 +12,7 @@ namespace talus {
 struct StopRow {
   std::uint32_t source, block;
   End end;
-  float diameter, mass;                           // [m], [kg]
+  float diameter, mass;                           // of what came to rest: the largest piece where it broke [m], [kg]
   float x_release, y_release;                     // [m, local]
   double x, y, z;                                 // where it ended [m, local]
   float seconds, max_speed, length, plan_length;  // [s], [m/s], [m], [m]
@@ -47,7 +47,7 @@ struct Sinks {
 /// Totals of a run: integers, so that they are equal for any number of threads.
 struct Totals {
   std::array<std::uint64_t, kEnds> ends{};  ///< by End
-  std::uint64_t released = 0, impacts = 0, psi_dropped = 0, cells_scored = 0;
+  std::uint64_t released = 0, pieces = 0, impacts = 0, psi_dropped = 0, cells_scored = 0;
   std::int64_t length_mm = 0, plan_length_mm = 0;
   std::array<std::uint32_t, 2> first_limit{};  ///< smallest (source, block) that ended at a limit; see ends
   bool interrupted = false;

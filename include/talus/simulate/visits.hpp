@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -28,13 +29,15 @@ class VisitBatch {
     double mass;  // [kg]
     std::uint32_t source;
     std::shared_ptr<SourceReach> reach;  // of a source that several batches share; else empty
+    bool piece = false;                  // of the trajectory before it: they count as one
   };
 
   explicit VisitBatch(const Grid& grid);
 
   /// Reads a path. Within a cell the largest speed and clearance are exact, at no output step: both are closed forms
   /// on each patch (the speed is largest at an end, the clearance at an end or at the apex).
-  void add(const Path& path, double mass, std::uint32_t source, std::shared_ptr<SourceReach> reach);
+  /// What is left of a block that broke, and a path with `piece`, belong to the trajectory before: one in the tally.
+  void add(const Path& path, double mass, std::uint32_t source, std::shared_ptr<SourceReach> reach, bool piece = false);
 
   bool full() const { return size_ >= kVisits || trajectories_.size() >= kTrajectories; }
   void clear();
@@ -50,6 +53,8 @@ class VisitBatch {
     return column == column_ && row == row_ ? region_->back() : new_visit(column, row);
   }
   Visit& new_visit(int column, int row);
+  void begin(Trajectory trajectory);
+  void add(std::span<const Span> spans);
 
   int regions_across_;
   std::unordered_map<std::size_t, std::vector<Visit>> regions_;
