@@ -42,7 +42,7 @@ struct FitOptions {
   int starts = 3;                     ///< 1: from the start alone, as when a few parameters are added to a fit
   std::uint64_t seed = 1;
   int threads = 0;
-  double prior_weight = 0.1;            ///< see Fit::objective; 0: no prior
+  double prior_weight = 0.28;           ///< see Fit::objective and docs/closing-the-loop.md; 0: no prior
   std::function<bool(double)> proceed;  ///< told the share done, 0..1; false ends the fit. May be empty
 };
 
