@@ -21,7 +21,7 @@ struct Options {
 };
 
 constexpr std::uint32_t kUnseen = 1'000'000;  // trials from here on: none that the search has seen
-constexpr double kSearchShare = 0.5;          // of the progress
+constexpr double kSearchShare = 0.7;          // of the progress
 
 [[noreturn]] void stop_interrupted() {
   throw Interrupted("interrupted; nothing was written");
@@ -111,7 +111,7 @@ int calibrate(const Options& options) {
   c.options.proceed = [&](double share) {
     return progress.update(kSearchShare + (1.0 - kSearchShare) * share) && !interrupted();
   };
-  c.uncertainty = talus::uncertainty_of(campaign, c.start, c.free, rows, c.options, {}, c.fit);
+  c.uncertainty = talus::uncertainty_of({campaign, c.start, c.free, rows}, c.options, {}, c.fit);
   if (c.uncertainty.interrupted) stop_interrupted();
   score_both(campaign, c);
 

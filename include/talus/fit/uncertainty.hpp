@@ -18,22 +18,21 @@ struct Uncertainty {
 inline constexpr double kMostOfThePrior = 0.5;
 
 struct UncertaintyOptions {
-  int rounds = 4;  ///< of new evaluations where the draws lie
+  int rounds = 2;  ///< of new evaluations where the draws lie
   int draws = 400;
 };
 
 /// Posterior sample by randomised minimisation (randomise, then optimise): each draw takes the blocks anew with
-/// replacement, draws the centre of the prior from the prior, adds the luck of the trials, and minimises the objective
-/// over the bounds. The objective is a quadratic model of every row score, so that a draw costs no simulation; it is
-/// learnt from all that the fit tried and from a design around the optimum, which each round spreads out as far as the
-/// draws of the round before.
+/// replacement, draws the centre of the prior from the prior, adds the luck of the trials, and moves the optimum of the
+/// fit to the new minimum within the bounds. The objective is a quadratic model of every row score around the optimum
+/// (`LocalModel`), so that a draw costs no simulation; it is learnt from what the fit tried and from rounds of designs
+/// as wide as the draws of the round before.
 ///
-/// @param fit  of the same arguments; gets the new evaluations, and moves where a round finds a better optimum
+/// @param fit  of the same problem
 ///
 /// What it holds: which blocks were released, the prior, the simulation's luck. What it does not: that the model may be
 /// wrong. docs/closing-the-loop.md, "Uncertainty".
-Uncertainty uncertainty_of(const Campaign& campaign, const Model& start, std::span<const Parameter> free,
-                           const std::vector<bool>& rows, const FitOptions& options, const UncertaintyOptions& how,
-                           Fit& fit);
+Uncertainty uncertainty_of(const FitProblem& problem, const FitOptions& options, const UncertaintyOptions& how,
+                           const Fit& fit);
 
 }  // namespace talus
