@@ -66,6 +66,16 @@ ScoreIntervals bootstrap(const Score& score, std::size_t blocks, std::uint32_t d
   return intervals;
 }
 
+Reduction reduction(const Score& before, const Score& after, std::size_t blocks, std::uint32_t draws,
+                    std::uint64_t seed) {
+  std::vector<double> shares;
+  for (std::uint32_t draw = 0; draw < draws; ++draw) {
+    const std::vector<double> weight = bootstrap_weights(before, blocks, draw, seed);
+    shares.push_back(1.0 - weighted_total(after, weight) / weighted_total(before, weight));
+  }
+  return {1.0 - after.total / before.total, middle(std::move(shares))};
+}
+
 double quantile(std::span<const double> sorted, double share) {
   const double place = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(place);

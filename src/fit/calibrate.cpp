@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlopt.hpp>
 
+#include "local_model.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/fields.hpp"
@@ -16,9 +17,8 @@ constexpr double kReach = 2.5;  // bounds of a ground parameter, in sd from its 
 /// The search of one fit: keeps all that was tried.
 class Search {
  public:
-  Search(const Campaign& campaign, const Model& start, std::span<const Parameter> free, const std::vector<bool>& rows,
-         const FitOptions& options)
-      : campaign_(campaign), start_(start), free_(free), rows_(rows), options_(options) {
+  Search(const FitProblem& problem, const FitOptions& options) : problem_(problem), options_(options) {
+    const auto& free = problem.free;
     const auto n = static_cast<Eigen::Index>(free.size());
     lower_.resize(n);
     upper_.resize(n);
@@ -27,71 +27,83 @@ class Search {
       upper_[i] = free[i].z(free[i].upper);
     }
     const int screened = options.starts > 1 ? kScreened * static_cast<int>(n) : 0;
-    planned_ = screened + 1 + std::max(1, options.starts) * search_length() + 2 * polish_length();
+    planned_ =
+        screened + 1 + std::max(1, options.starts) * search_length() + options.rounds * LocalModel::round_length(n);
   }
 
   Fit run() {
-    Fit fit;
     try {
       const std::vector<Eigen::VectorXd> starts = choose_starts();
-      for (const Eigen::VectorXd& z : starts) descend(z, 0.5, options_.trials, search_length());
-      const Eigen::VectorXd best = evaluations_[best_index(options_.trials)].z;
-      descend(best, 0.15, options_.polish_trials, polish_length());
+      for (const Eigen::VectorXd& z : starts) descend(z);
+      settle();
+      Eigen::MatrixXd spread = LocalModel::first_spread(std::ssize(problem_.free));
+      for (int round = 0; round < options_.rounds; ++round) refine(spread);
     } catch (const nlopt::forced_stop&) {  // `proceed` said no
-      fit.interrupted = true;
+      fit_.interrupted = true;
     }
-    if (!evaluations_.empty()) {
-      const Evaluation& best = evaluations_[best_index(evaluations_.back().trials)];
-      fit.z = best.z;
-      fit.objective = best.objective;
-      fit.model = model_at(start_, free_, best.z);
-      if (!fit.interrupted) fit.score = score_of(fit.model);
-    }
-    fit.evaluations = std::move(evaluations_);
-    return fit;
+    if (!fit_.interrupted) fit_.score = score_of(fit_.model);
+    return std::move(fit_);
   }
 
  private:
   static constexpr int kScreened = 6;  // points to choose the starts from, per parameter
   int search_length() const {
     if (options_.evaluations > 0) return options_.evaluations;
-    return 12 * static_cast<int>(free_.size()) + 10;
-  }
-  int polish_length() const {
-    if (options_.evaluations > 0) return options_.evaluations / 4;
-    return 5 * static_cast<int>(free_.size()) + 5;
+    return 12 * static_cast<int>(problem_.free.size()) + 10;
   }
 
-  /// The objective at z.
+  /// The objective at z, kept for the local model.
   double operator()(const Eigen::VectorXd& z, std::uint32_t trials) {
     ++done_;
     if (options_.proceed && !options_.proceed(std::min(1.0, static_cast<double>(done_) / planned_)))
       throw nlopt::forced_stop();
-    Evaluation evaluation = evaluate(campaign_, start_, free_, rows_, options_, z, trials);
-    evaluations_.push_back(std::move(evaluation));
-    return evaluations_.back().objective;
+    fit_.evaluations.push_back(evaluate(problem_, options_, z, trials));
+    return fit_.evaluations.back().objective;
+  }
+
+  /// Takes the best point of the searches as the fit, scored with more trials.
+  void settle() {
+    const auto best =
+        std::min_element(fit_.evaluations.begin(), fit_.evaluations.end(),
+                         [](const Evaluation& a, const Evaluation& b) { return a.objective < b.objective; });
+    const Eigen::VectorXd z = best->z;
+    move_to(z, (*this)(z, options_.polish_trials));
+    fit_.score = score_of(fit_.model);  // the local model needs its groups and rows
+  }
+
+  void move_to(const Eigen::VectorXd& z, double objective) {
+    fit_.z = z;
+    fit_.objective = objective;
+    fit_.model = model_at(problem_.start, problem_.free, z);
+  }
+
+  /// One round of the local model: a design, and a step where that is an improvement.
+  void refine(Eigen::MatrixXd& spread) {
+    const int length = LocalModel::round_length(std::ssize(problem_.free));
+    for (const Eigen::VectorXd& z : LocalModel::design(problem_, options_.seed, fit_.z, spread, length, designed_))
+      (*this)(z, options_.trials);
+    designed_ += static_cast<std::uint32_t>(length);
+    const LocalModel model(problem_, options_, fit_, spread);
+    const Eigen::VectorXd step = model.step(spread) - fit_.z, from = fit_.z;
+    for (const double share : {1.0, 0.5}) {
+      const Eigen::VectorXd z = from + share * step;
+      const double objective = (*this)(z, options_.polish_trials);
+      if (objective < fit_.objective) move_to(z, objective);
+    }
+    spread = model.next_spread();
   }
 
   Score score_of(const Model& model) const {
-    ObserveOptions how{options_.polish_trials, options_.seed, 0, options_.threads, rows_, {}};
-    return score(campaign_, observe(campaign_, model, how), rows_);
-  }
-
-  /// The best of those with so many trials: others are on other luck.
-  std::size_t best_index(std::uint32_t trials) const {
-    std::size_t best = evaluations_.size() - 1;
-    for (std::size_t i = 0; i < evaluations_.size(); ++i)
-      if (evaluations_[i].trials == trials &&
-          (evaluations_[best].trials != trials || evaluations_[i].objective < evaluations_[best].objective))
-        best = i;
-    return best;
+    const ObserveOptions how{options_.polish_trials, options_.seed, 0, options_.threads, problem_.rows, {}};
+    return score(problem_.campaign, observe(problem_.campaign, model, how), problem_.rows);
   }
 
   /// The start itself, and the best of an additive recurrence in the middle of the box, well apart from each other.
   std::vector<Eigen::VectorXd> choose_starts() {
-    const auto n = static_cast<Eigen::Index>(free_.size());
+    const auto n = static_cast<Eigen::Index>(problem_.free.size());
     Eigen::VectorXd origin(n);
-    for (Eigen::Index i = 0; i < n; ++i) origin[i] = std::clamp(free_[i].z(free_[i].get(start_)), lower_[i], upper_[i]);
+    for (Eigen::Index i = 0; i < n; ++i)
+      origin[i] = std::clamp(problem_.free[i].z(problem_.free[i].get(problem_.start)), lower_[i], upper_[i]);
     std::vector<Eigen::VectorXd> starts{origin};
     (*this)(origin, options_.trials);
     if (options_.starts <= 1) return starts;
@@ -116,10 +128,9 @@ class Search {
     return starts;
   }
 
-  /// NLopt's BOBYQA from z. What it finds is in `evaluations_`.
-  void descend(const Eigen::VectorXd& z, double step, std::uint32_t trials, int most) {
-    const auto n = static_cast<unsigned>(free_.size());
-    trials_ = trials;
+  /// NLopt's BOBYQA from z. What it finds is in `fit_.evaluations`.
+  void descend(const Eigen::VectorXd& z) {
+    const auto n = static_cast<unsigned>(problem_.free.size());
     // BOBYQA needs two parameters.
     nlopt::opt search(n > 1 ? nlopt::LN_BOBYQA : nlopt::LN_SBPLX, n);
     search.set_lower_bounds({lower_.begin(), lower_.end()});
@@ -127,12 +138,12 @@ class Search {
     search.set_min_objective(
         [](const std::vector<double>& x, std::vector<double>&, void* self) {
           auto& me = *static_cast<Search*>(self);
-          return me(Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x)), me.trials_);
+          return me(Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x)), me.options_.trials);
         },
         this);
-    search.set_initial_step(step);
+    search.set_initial_step(0.5);
     search.set_xtol_abs(0.02);
-    search.set_maxeval(most);
+    search.set_maxeval(search_length());
     std::vector<double> x(z.begin(), z.end());
     double objective = 0.0;
     try {
@@ -141,14 +152,11 @@ class Search {
     }
   }
 
-  const Campaign& campaign_;
-  const Model& start_;
-  std::span<const Parameter> free_;
-  const std::vector<bool>& rows_;
+  FitProblem problem_;
   const FitOptions& options_;
   Eigen::VectorXd lower_, upper_;
-  std::vector<Evaluation> evaluations_;
-  std::uint32_t trials_ = 0;
+  Fit fit_;
+  std::uint32_t designed_ = 0;
   int done_ = 0, planned_ = 1;
 };
 
@@ -212,21 +220,24 @@ Model model_at(const Model& start, std::span<const Parameter> free, const Eigen:
   return model;
 }
 
-Evaluation evaluate(const Campaign& campaign, const Model& start, std::span<const Parameter> free,
-                    const std::vector<bool>& rows, const FitOptions& options, const Eigen::VectorXd& z,
-                    std::uint32_t trials, std::uint32_t first_trial) {
-  ObserveOptions how{trials, options.seed, first_trial, options.threads, rows, {}};
-  const Score s = score(campaign, observe(campaign, model_at(start, free, z), how), rows);
+double FitProblem::prior(const FitOptions& options) const {
+  return options.prior_weight / static_cast<double>(std::count(rows.begin(), rows.end(), true));
+}
+
+Evaluation evaluate(const FitProblem& problem, const FitOptions& options, const Eigen::VectorXd& z,
+                    std::uint32_t trials) {
+  const ObserveOptions how{trials, options.seed, 0, options.threads, problem.rows, {}};
+  const Model model = model_at(problem.start, problem.free, z);
+  const Score s = score(problem.campaign, observe(problem.campaign, model, how), problem.rows);
   Evaluation evaluation{z, Eigen::VectorXd(std::ssize(s.rows)), trials, s.total};
   for (std::size_t r = 0; r < s.rows.size(); ++r) evaluation.rows[static_cast<Eigen::Index>(r)] = s.rows[r].score;
-  const auto blocks = static_cast<double>(std::count(rows.begin(), rows.end(), true));
-  evaluation.objective += options.prior_weight / blocks * z.squaredNorm();
+  evaluation.objective += problem.prior(options) * z.squaredNorm();
   return evaluation;
 }
 
 Fit fit_parameters(const Campaign& campaign, const Model& start, std::span<const Parameter> free,
                    const std::vector<bool>& rows, const FitOptions& options) {
-  return Search(campaign, start, free, rows, options).run();
+  return Search({campaign, start, free, rows}, options).run();
 }
 
 }  // namespace talus

@@ -11,8 +11,8 @@ namespace {
 /// A parameter that is off at `off`, noticed at off + size, and searched on a linear scale.
 Parameter amount(std::string key, std::string unit, double off, double size, double lower, double upper,
                  std::function<double(const Model&)> get, std::function<void(Model&, double)> set) {
-  return {std::move(key), std::move(unit), lower, upper, Parameter::Scale::Linear, off, size, std::move(get),
-          std::move(set)};
+  return {std::move(key), std::move(unit),  lower,          upper, Parameter::Scale::Linear, off, size / kNoticed,
+          std::move(get), std::move(set)};
 }
 
 template <class Effect>

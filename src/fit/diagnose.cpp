@@ -48,6 +48,7 @@ class Diagnosing {
     how.polish_trials = 2 * options_.search_trials;
     how.starts = evaluations > 0 ? 1 : 2;
     how.evaluations = evaluations;
+    how.rounds = evaluations > 0 ? 1 : 2;
     how.seed = options_.seed;
     how.threads = options_.threads;
     how.proceed = [this](double) {
@@ -100,7 +101,7 @@ class Diagnosing {
     for (Eigen::Index i = 0; i < verdict.estimate.size(); ++i) {
       const Parameter& p = candidate.parameters[static_cast<std::size_t>(i)];
       const double low = p.lower >= 0.0 ? 0.3 : -2.0;
-      z[i] = std::clamp(verdict.estimate[i], low, 3.0);
+      z[i] = kNoticed * std::clamp(verdict.estimate[i], low, 4.0);
     }
     return z;
   }

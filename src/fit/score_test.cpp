@@ -204,7 +204,7 @@ Directions directions_of(const Campaign& campaign, const ResidualSpace& space, c
   for (const Candidate& candidate : candidates)
     for (std::size_t p = 0; p < candidate.tested; ++p) {
       VectorXd moved = VectorXd::Zero(static_cast<Index>(candidate.parameters.size()));
-      moved[static_cast<Index>(p)] = 1.0;
+      moved[static_cast<Index>(p)] = kNoticed;
       directions.add(observe(campaign, with(base, candidate, moved), observing));
     }
   return directions;

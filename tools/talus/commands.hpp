@@ -15,6 +15,8 @@ void add_run(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
 void add_presets(CLI::App& app, Action& action);
 void add_trace(CLI::App& app, Action& action);
+void add_calibrate(CLI::App& app, Action& action);
+void add_diagnose(CLI::App& app, Action& action);
 void add_score(CLI::App& app, Action& action);
 
 /// The options that say which scenario is meant: those of `run` and `check`.

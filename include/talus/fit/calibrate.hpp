@@ -41,9 +41,10 @@ struct FitOptions {
   std::uint32_t polish_trials = 100;  ///< per block in the last part of the search
   int starts = 3;                     ///< 1: from the start alone, as when a few parameters are added to a fit
   int evaluations = 0;                   ///< of each search; 0: by the number of parameters
+  int rounds = 3;                     ///< of the quadratic model
   std::uint64_t seed = 1;
   int threads = 0;
-  double prior_weight = 0.1;            ///< see Fit::objective; 0: no prior
+  double prior_weight = 0.28;           ///< see Fit::objective and docs/closing-the-loop.md; 0: no prior
   std::function<bool(double)> proceed;  ///< told the share done, 0..1; false ends the fit. May be empty
 };
 
@@ -72,16 +73,26 @@ struct Fit {
 /// @param rows   which blocks are used; size: blocks. Spreads come from all fitting rows
 ///
 /// Minimises the mean normalised score plus the prior with NLopt's LN_BOBYQA (Powell 2009; quadratic models, no
-/// derivatives) from the start and from the best of a low-discrepancy set, with few trials and then, from the best
-/// result, with more. Common random numbers throughout. The same result for any number of threads.
-/// The score at the optimum is a little too good, because the search has seen these trials: score it again with others.
+/// derivatives) from the start and from the best of a low-discrepancy set, with few trials. The luck of the trials ends
+/// such a search early; rounds of a least-squares quadratic model around the best point (`LocalModel`) go on from
+/// there, each step accepted only if it is better with more trials. The same result for any number of threads. The
+/// score at the optimum is a little too good, because the search has seen these trials: score it again with others.
 Fit fit_parameters(const Campaign& campaign, const Model& start, std::span<const Parameter> free,
                    const std::vector<bool>& rows, const FitOptions& options);
 
-/// The objective of one point again, for more trials or others. `first_trial`: ObserveOptions.
-Evaluation evaluate(const Campaign& campaign, const Model& start, std::span<const Parameter> free,
-                    const std::vector<bool>& rows, const FitOptions& options, const Eigen::VectorXd& z,
-                    std::uint32_t trials, std::uint32_t first_trial = 0);
+/// What is fitted to what. The parts must outlive it.
+struct FitProblem {
+  const Campaign& campaign;
+  const Model& start;               ///< what is not free stays as it is there
+  std::span<const Parameter> free;  ///< at least one
+  const std::vector<bool>& rows;    ///< blocks that are used; size: blocks
+
+  double prior(const FitOptions& options) const;  ///< weight of z^2 in the objective
+};
+
+/// The objective at one point, with so many trials: the same ones for every point.
+Evaluation evaluate(const FitProblem& problem, const FitOptions& options, const Eigen::VectorXd& z,
+                    std::uint32_t trials);
 
 /// A model with the free parameters at z.
 Model model_at(const Model& start, std::span<const Parameter> free, const Eigen::VectorXd& z);

@@ -3,8 +3,11 @@
 
 namespace talus {
 
+/// The amount of an effect that one would notice, in z: what the score test moves. The prior is four times as wide.
+inline constexpr double kNoticed = 0.25;
+
 /// Something that may be missing in a model: where it acts and the numbers that it adds. Off, at z = 0 of all its
-/// parameters, it changes nothing; z = 1 is a size that one would notice. docs/closing-the-loop.md, "Candidates".
+/// parameters, it changes nothing. docs/closing-the-loop.md, "Candidates".
 struct Candidate {
   std::string effect;                  ///< as in diagnosis.json: "vegetation-drag", ..., "instrument-bias"
   std::string where;                   ///< "everywhere", "zone meadow", "day 2", "screen S1 speed", "92 to 110 m"

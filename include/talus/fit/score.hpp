@@ -74,6 +74,15 @@ struct ScoreIntervals {
 };
 ScoreIntervals bootstrap(const Score& score, std::size_t blocks, std::uint32_t draws = 2000, std::uint64_t seed = 1);
 
+/// By how much a model lowers the total of another, as a share of the other's, with a 95 % interval over the blocks:
+/// 1 - after/before of the same bootstrap draws. Both must be scores of the same rows.
+struct Reduction {
+  double share = kNotGiven;
+  Interval interval;
+};
+Reduction reduction(const Score& before, const Score& after, std::size_t blocks, std::uint32_t draws = 2000,
+                    std::uint64_t seed = 1);
+
 /// Number of times that each of the blocks that have a row is drawn in bootstrap number `draw`. Size: blocks.
 std::vector<double> bootstrap_weights(const Score& score, std::size_t blocks, std::uint32_t draw, std::uint64_t seed);
 

@@ -8,7 +8,7 @@ namespace talus {
 struct Verdict {
   std::size_t candidate;     ///< index into the candidates; of joined bands the first
   std::size_t joined = 1;    ///< bands that were joined
-  Eigen::VectorXd estimate;  ///< of its tested parameters, one step from zero [z]
+  Eigen::VectorXd estimate;  ///< of its tested parameters, one step from zero [kNoticed in z]
   double statistic = 0.0;    ///< s' V^-1 s: chi-squared with as many degrees of freedom as tested parameters
   double p_value = 1.0;      ///< of this place alone
 };

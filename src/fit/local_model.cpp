@@ -1,0 +1,133 @@
+#include "local_model.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "talus/base/random.hpp"
+
+namespace talus {
+namespace {
+
+constexpr double kFirstReach = 0.3;            // standard deviation of the first design, in z
+constexpr double kNarrow = 0.15, kWide = 0.5;  // of the later ones, in any direction
+constexpr double kLocal = 3.0;     // squared distance, over what is typical of the design, up to which a place counts
+constexpr double kTrust = 2.0;     // a step stays within so many standard deviations
+constexpr double kRidge = 0.0025;  // (noise of a total / largest second derivative)^2 = (0.005 / 0.1)^2
+
+/// Weight of each row in the total, for weights of the blocks: the mean over the groups of weighted means.
+Eigen::VectorXd row_weights(const Score& score, std::span<const double> block) {
+  std::vector<double> total(score.groups.size(), 0.0);
+  for (const RowScore& row : score.rows) total[row.group] += block[row.block];
+  const auto groups = static_cast<double>(std::count_if(total.begin(), total.end(), [](double t) { return t > 0.0; }));
+  Eigen::VectorXd weights(std::ssize(score.rows));
+  for (std::size_t r = 0; r < score.rows.size(); ++r) {
+    const RowScore& row = score.rows[r];
+    weights[static_cast<Eigen::Index>(r)] = total[row.group] > 0.0 ? block[row.block] / total[row.group] / groups : 0.0;
+  }
+  return weights;
+}
+
+/// Standard normal numbers of one draw.
+Eigen::VectorXd normals(std::uint64_t seed, std::uint32_t stream, std::uint32_t draw, Eigen::Index count) {
+  const Random random(seed, stream, draw, Purpose::Bootstrap);
+  Eigen::VectorXd z(count);
+  for (Eigen::Index i = 0; i < count; i += 4) {
+    const Words w = random.words(static_cast<std::uint32_t>(i / 4));
+    const auto a = normal_pair(w[0], w[1]), b = normal_pair(w[2], w[3]);
+    const double four[] = {a[0], a[1], b[0], b[1]};
+    for (Eigen::Index k = i; k < std::min(count, i + 4); ++k) z[k] = four[k - i];
+  }
+  return z;
+}
+
+/// The covariance with the standard deviation along each of its principal axes brought into a range.
+Eigen::MatrixXd within(const Eigen::MatrixXd& covariance, double narrow, double wide) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(covariance);
+  const Eigen::VectorXd variance = axes.eigenvalues().cwiseMax(narrow * narrow).cwiseMin(wide * wide);
+  return axes.eigenvectors() * variance.asDiagonal() * axes.eigenvectors().transpose();
+}
+
+}  // namespace
+
+LocalModel::LocalModel(const FitProblem& problem, const FitOptions& options, const Fit& fit,
+                       const Eigen::MatrixXd& spread)
+    : problem_(problem), options_(options), score_(fit.score), prior_(problem.prior(options)), centre_(fit.z) {
+  const Eigen::Index n = std::ssize(problem.free), count = std::ssize(fit.evaluations);
+  low_.resize(n);
+  high_.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    low_[i] = problem.free[i].z(problem.free[i].lower) - centre_[i];
+    high_[i] = problem.free[i].z(problem.free[i].upper) - centre_[i];
+  }
+  Eigen::MatrixXd places(n, count), values(count, std::ssize(score_.rows));
+  Eigen::VectorXd weights(count);
+  luck_.resize(count);
+  const Eigen::LLT<Eigen::MatrixXd> factors(spread);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Evaluation& e = fit.evaluations[static_cast<std::size_t>(i)];
+    places.col(i) = e.z;
+    values.row(i) = e.rows;
+    const Eigen::VectorXd u = e.z - centre_;
+    const double away = u.dot(factors.solve(u)) / static_cast<double>(n);  // 1 is typical of the design
+    const double precision = static_cast<double>(e.trials) / options.trials;
+    weights[i] = away <= kLocal ? precision * std::exp(-0.5 * away) : 0.0;
+    luck_[i] = 1.0 / std::sqrt(precision);
+  }
+  model_.emplace(places, weights, centre_, kRidge);
+  rows_ = model_->coefficients(values);
+  const Eigen::VectorXd ones = row_weights(score_, std::vector<double>(problem.campaign.blocks.size(), 1.0));
+  total_ = rows_ * ones;
+  curvature_ = model_->curvature(total_);
+  curvature_.diagonal().array() += 2.0 * prior_;
+  const Eigen::VectorXd rest = values * ones - model_->at_places(total_);
+  noise_ = std::sqrt(rest.cwiseAbs2().dot(weights) / weights.sum());
+}
+
+Eigen::MatrixXd LocalModel::first_spread(Eigen::Index parameters) {
+  return kFirstReach * kFirstReach * Eigen::MatrixXd::Identity(parameters, parameters);
+}
+
+std::vector<Eigen::VectorXd> LocalModel::design(const FitProblem& problem, std::uint64_t seed,
+                                                const Eigen::VectorXd& centre, const Eigen::MatrixXd& spread, int count,
+                                                std::uint32_t first) {
+  const Eigen::MatrixXd root = spread.llt().matrixL();
+  std::vector<Eigen::VectorXd> places;
+  for (int k = 0; k < count; ++k) {
+    Eigen::VectorXd z = centre + root * normals(seed, 3, first + static_cast<std::uint32_t>(k), centre.size());
+    for (Eigen::Index i = 0; i < z.size(); ++i)
+      z[i] = std::clamp(z[i], problem.free[i].z(problem.free[i].lower), problem.free[i].z(problem.free[i].upper));
+    places.push_back(std::move(z));
+  }
+  return places;
+}
+
+Eigen::VectorXd LocalModel::step(const Eigen::MatrixXd& spread) const {
+  const Eigen::VectorXd trust = kTrust * spread.diagonal().cwiseSqrt();
+  const Eigen::VectorXd slope = model_->gradient(total_) + 2.0 * prior_ * centre_;
+  return centre_ + minimum_in_box(slope, curvature_, low_.cwiseMax(-trust), high_.cwiseMin(trust));
+}
+
+Eigen::VectorXd LocalModel::draw(std::uint32_t draw) const {
+  const Eigen::VectorXd weights =
+      row_weights(score_, bootstrap_weights(score_, problem_.campaign.blocks.size(), draw, options_.seed));
+  const Eigen::VectorXd luck = noise_ * normals(options_.seed, 1, draw, luck_.size()).cwiseProduct(luck_);
+  const Eigen::VectorXd slope = model_->gradient(rows_ * weights - total_ + model_->coefficients(luck)) -
+                                2.0 * prior_ * normals(options_.seed, 2, draw, low_.size());
+  return centre_ + minimum_in_box(slope, curvature_, low_, high_);
+}
+
+Eigen::MatrixXd LocalModel::next_spread() const {
+  constexpr std::uint32_t kDraws = 200;
+  Eigen::MatrixXd draws(kDraws, centre_.size());
+  for (std::uint32_t k = 0; k < kDraws; ++k) draws.row(k) = draw(k);
+  return within(covariance_of(draws), kNarrow, kWide);
+}
+
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& draws) {
+  const Eigen::MatrixXd centred = draws.rowwise() - draws.colwise().mean();
+  return centred.transpose() * centred / static_cast<double>(draws.rows() - 1);
+}
+
+}  // namespace talus

@@ -1,0 +1,51 @@
+#pragma once
+#include <optional>
+
+#include "talus/fit/calibrate.hpp"
+#include "talus/fit/quadratic.hpp"
+
+namespace talus {
+
+/// A quadratic model of every row score around the optimum of a fit, least squares over the evaluations near it: where
+/// to step from there, and how far other blocks, another prior and other luck would move it.
+class LocalModel {
+ public:
+  /// @param spread  covariance of the places it is learnt from; those far outside do not count
+  LocalModel(const FitProblem& problem, const FitOptions& options, const Fit& fit, const Eigen::MatrixXd& spread);
+
+  /// Evaluations of one round.
+  static int round_length(Eigen::Index parameters) { return 7 * static_cast<int>(parameters) + 10; }
+  /// Covariance of the design of the first round.
+  static Eigen::MatrixXd first_spread(Eigen::Index parameters);
+  /// Places around the centre, normally distributed within the bounds. `first`: number of the first of them.
+  static std::vector<Eigen::VectorXd> design(const FitProblem& problem, std::uint64_t seed,
+                                             const Eigen::VectorXd& centre, const Eigen::MatrixXd& spread, int count,
+                                             std::uint32_t first);
+
+  /// The minimum of the model, within the bounds and two standard deviations of the spread.
+  Eigen::VectorXd step(const Eigen::MatrixXd& spread) const;
+  /// Where draw number `draw` of the posterior sample has its optimum.
+  Eigen::VectorXd draw(std::uint32_t draw) const;
+  /// That of 200 draws, kept within a range in which the model can be learnt.
+  Eigen::MatrixXd next_spread() const;
+  /// Standard deviation of a total around the model, for FitOptions::trials.
+  double noise() const { return noise_; }
+
+ private:
+  const FitProblem& problem_;
+  const FitOptions& options_;
+  const Score& score_;
+  double prior_;
+  Eigen::VectorXd centre_, low_, high_;  // low, high: bounds from the centre
+  std::optional<QuadraticFit> model_;
+  Eigen::MatrixXd rows_;       // coefficients x row scores
+  Eigen::VectorXd total_;      // coefficients of the total
+  Eigen::VectorXd luck_;       // noise of each evaluation over noise_
+  Eigen::MatrixXd curvature_;  // with the prior
+  double noise_ = 0.0;
+};
+
+/// Covariance of draws, one per row.
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& draws);
+
+}  // namespace talus

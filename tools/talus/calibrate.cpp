@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "commands.hpp"
+#include "progress.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/io/fit_report.hpp"
+#include "talus/io/model_file.hpp"
+#include "talus/io/output_folder.hpp"
+#include "talus/simulate/presets.hpp"
+
+namespace {
+
+struct Options {
+  std::string campaign, out, progress;
+  std::vector<std::string> fit{"theta_scale", "psi_scale", "En50", "Et50"};
+  talus::FitOptions how;
+  bool overwrite = false, quiet = false;
+};
+
+constexpr std::uint32_t kUnseen = 1'000'000;  // trials from here on: none that the search has seen
+constexpr double kSearchShare = 0.7;          // of the progress
+
+[[noreturn]] void stop_interrupted() {
+  throw Interrupted("interrupted; nothing was written");
+}
+
+std::vector<talus::BlockRuns> runs_of(const talus::Campaign& campaign, const talus::Model& model,
+                                      const talus::io::Calibration& c, const std::vector<bool>& blocks) {
+  talus::ObserveOptions how{c.score_trials, c.options.seed, kUnseen, c.options.threads, blocks, {}};
+  how.proceed = [] { return !interrupted(); };
+  std::vector<talus::BlockRuns> runs = talus::observe(campaign, model, how);
+  if (interrupted()) stop_interrupted();
+  return runs;
+}
+
+/// Chooses what is fitted: the asked parameters of the zones that simulated paths touch.
+void choose_parameters(const talus::Campaign& campaign, const std::vector<std::string>& keys,
+                       talus::io::Calibration& c) {
+  const auto runs = runs_of(campaign, c.start, c, talus::fitting_rows(campaign));
+  const std::vector<bool> touched = talus::touched_zones(campaign, runs);
+  for (std::size_t zone = 0; zone < touched.size(); ++zone) {
+    const auto& cells = campaign.zones.values;
+    const bool there = zone > 0 || cells.empty() || std::find(cells.begin(), cells.end(), 0) != cells.end();
+    if (!touched[zone] && there) c.untouched.push_back(campaign.zone_names[zone]);
+  }
+  c.free = talus::ground_parameters(campaign, c.start, keys, touched);
+  if (c.free.empty())
+    throw talus::InputError(
+        "calibrate: no zone is touched by 5 % of the simulated paths, so that nothing can be fitted: "
+        "are the releases on the slope?");
+}
+
+/// Scores start and fit on both kinds of rows, with trials of their own.
+void score_both(const talus::Campaign& campaign, talus::io::Calibration& c) {
+  const std::vector<bool> all(campaign.blocks.size(), true);
+  const auto before = runs_of(campaign, c.start, c, all), after = runs_of(campaign, c.fit.model, c, all);
+  for (const auto& [name, rows] :
+       {std::pair{"fit", talus::fitting_rows(campaign)}, std::pair{"holdout", talus::holdout_rows(campaign)}}) {
+    talus::io::BeforeAfter e{
+        talus::io::scored(name, campaign, before, rows), talus::io::scored(name, campaign, after, rows), {}};
+    e.reduction = talus::reduction(e.before.score, e.after.score, campaign.blocks.size());
+    c.errors.push_back(std::move(e));
+  }
+  c.comparison = talus::compare(campaign, after, all);
+}
+
+void print_summary(const talus::io::Calibration& c, const std::string& folder) {
+  for (std::size_t i = 0; i < c.free.size(); ++i) {
+    const talus::Interval& interval = c.uncertainty.intervals[i];
+    std::printf("%-44s %8.3g  95 %%: %.3g to %.3g%s\n", c.free[i].key.c_str(), c.free[i].get(c.fit.model), interval.low,
+                interval.high, c.uncertainty.identifiable[i] ? "" : "  not identifiable");
+  }
+  for (const std::string& zone : c.untouched)
+    std::printf("zone %s: too few simulated paths touch it; not fitted\n", zone.c_str());
+  for (const talus::io::BeforeAfter& e : c.errors)
+    std::printf("error, %s rows (%zu blocks): %.3f before, %.3f after (lower by %.1f %%, 95 %%: %.1f to %.1f %%)\n",
+                e.after.rows == "fit" ? "fitting" : "held-out", e.after.blocks, e.before.score.total,
+                e.after.score.total, 100.0 * e.reduction.share, 100.0 * e.reduction.interval.low,
+                100.0 * e.reduction.interval.high);
+  std::printf("written: %s\n", folder.c_str());
+}
+
+int calibrate(const Options& options) {
+  catch_signals();
+  talus::io::LoadedCampaign loaded = talus::io::read_campaign(options.campaign);
+  const talus::Campaign& campaign = loaded.campaign;
+  talus::io::OutputFolder folder(options.out, options.overwrite);
+  for (const talus::io::InputFile& input : loaded.inputs) folder.protect(input.path);
+  if (!options.quiet)
+    for (const std::string& warning : loaded.warnings) say("warning", warning);
+
+  talus::io::Calibration c;
+  c.command = command_line();
+  c.inputs = loaded.inputs;
+  c.warnings = loaded.warnings;
+  c.campaign = campaign.name;
+  c.options = options.how;
+  c.start = talus::model_of_preset(campaign, talus::kDefaultPreset);
+  choose_parameters(campaign, options.fit, c);
+  const std::vector<bool> rows = talus::fitting_rows(campaign);
+  Progress progress(Progress::mode_of(options.quiet, options.progress == "machine"), 0);
+  c.options.proceed = [&](double share) { return progress.update(kSearchShare * share) && !interrupted(); };
+  c.fit = talus::fit_parameters(campaign, c.start, c.free, rows, c.options);
+  if (c.fit.interrupted) stop_interrupted();
+  if (c.fit.score.groups.empty())
+    throw talus::InputError(options.campaign +
+                            ": no observable has five fitting rows, so that nothing can be fitted: measure more");
+  c.options.proceed = [&](double share) {
+    return progress.update(kSearchShare + (1.0 - kSearchShare) * share) && !interrupted();
+  };
+  c.uncertainty = talus::uncertainty_of({campaign, c.start, c.free, rows}, c.options, {}, c.fit);
+  if (c.uncertainty.interrupted) stop_interrupted();
+  score_both(campaign, c);
+
+  talus::io::write_text(folder.temporary() / "calibration.json", talus::io::calibration_json(c));
+  talus::io::write_text(folder.temporary() / "report.md", talus::io::calibration_report(c));
+  talus::io::write_text(folder.temporary() / "fitted.toml",
+                        talus::io::model_text(c.fit.model, loaded,
+                                              "Fitted by talus calibrate to the campaign " + campaign.name +
+                                                  ".\nUncertainty, and what is not identifiable: report.md."));
+  folder.commit();
+  progress.finish();
+  if (!options.quiet) print_summary(c, folder.final_path().string());
+  return 0;
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("calibrate", "Fit the parameters of the ground to measured data");
+  command->add_option("campaign", options->campaign, "measured data: campaign.toml")->required();
+  command->add_option("-o,--out", options->out, "new folder for the results")->required();
+  command->add_flag("--overwrite", options->overwrite, "replace the folder if it holds an earlier result");
+  command->add_option("--fit", options->fit, "parameters, in every zone: theta_scale,psi_scale,En50,Et50,phi")
+      ->delimiter(',');
+  command->add_option("--trials", options->how.trials, "trajectories per block in the search (30)")
+      ->check(CLI::Range(10, 10000));
+  command->add_option("--starts", options->how.starts, "searches from different starts (3)")->check(CLI::Range(1, 50));
+  command->add_option("--seed", options->how.seed, "of the random numbers (1)");
+  command
+      ->add_option("--threads", options->how.threads, "all processors where it is not given; the results are the same")
+      ->check(CLI::Range(1, 4096));
+  command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
+  command->add_option("--progress", options->progress, "machine: lines `progress 42` for other programs")
+      ->check(CLI::IsMember({"machine"}));
+  command->footer(
+      "Example:\n  talus calibrate campaign.toml -o result\n\n"
+      "OUT: fitted.toml (the model: for talus score, and to include in a scenario), report.md, calibration.json.");
+  command->callback([&action, options] { action = [options] { return calibrate(*options); }; });
+}
