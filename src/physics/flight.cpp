@@ -107,7 +107,7 @@ Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool ground
 
 }  // namespace
 
-Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path) {
+[[gnu::flatten]] Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path) {
   return walk<false>(surface, motion, at, grounded, path, kNever);
 }
 

@@ -55,7 +55,8 @@ class Walk {
   }
 
   /// An impact where the block is. It stops there if it comes out slowly on ground no steeper than phi.
-  std::optional<End> meet_the_ground() {
+  /// (Flattened, as the plain `fly` and `impact`, so that what effects call too is not left a call here.)
+  [[gnu::flatten]] std::optional<End> meet_the_ground() {
     decltype(auto) ground = effects_.ground(motion_.position, body_);
     Patch patch;
     world_.surface.read(at_, patch);  // a block on the ground is on a patch that exists

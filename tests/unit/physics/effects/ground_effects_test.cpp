@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include "../../../support/slopes.hpp"
 #include "talus/physics/effects/block_mass.hpp"
 #include "talus/physics/effects/block_shape.hpp"
