@@ -4,15 +4,14 @@
 #include <cmath>
 #include <set>
 
-
 namespace talus {
 namespace {
 
 /// A parameter that is off at `off`, noticed at off + size, and searched on a linear scale.
 Parameter amount(std::string key, std::string unit, double off, double size, double lower, double upper,
                  std::function<double(const Model&)> get, std::function<void(Model&, double)> set) {
-  return {std::move(key), std::move(unit),  lower,          upper, Parameter::Scale::Linear, off, size / kNoticed,
-          std::move(get), std::move(set)};
+  return {std::move(key),  std::move(unit), lower,         upper, Parameter::Scale::Linear, off,
+          size / kNoticed, std::move(get),  std::move(set)};
 }
 
 template <class Effect>
@@ -44,7 +43,8 @@ std::vector<Place> places_of(const Campaign& campaign, const Model& base, const 
   for (std::size_t zone = 0; zone < touched.size(); ++zone) {
     if (!touched[zone]) continue;
     Place place{"zone " + campaign.zone_names[zone], std::vector<std::uint8_t>(base.grounds.size(), 0)};
-    for (std::size_t i = zone; i < place.zones.size(); i += campaign.zone_names.size()) place.zones[i] = 1;  // and bands
+    for (std::size_t i = zone; i < place.zones.size(); i += campaign.zone_names.size())
+      place.zones[i] = 1;  // and bands
     places.push_back(std::move(place));
   }
   return places;
@@ -63,20 +63,22 @@ void add_shape_and_mass(std::vector<Candidate>& list, const Campaign& campaign) 
   const bool shaped = std::any_of(campaign.blocks.begin(), campaign.blocks.end(),
                                   [](const MeasuredBlock& b) { return b.axes.x() > 1.05 * b.axes.z(); });
   if (shaped)
-    list.push_back({"block-shape", "everywhere",
-                    {effect_amount("block-shape.lateral", "1", 0.0, 0.5, 0.0, 6.0, &Effects::block_shape,
-                                   &BlockShape::lateral),
-                     effect_amount("block-shape.loss", "1", 0.0, 0.1, -0.2, 2.0, &Effects::block_shape,
-                                   &BlockShape::loss)},
-                    2, [](Model&) {}});
-  const double reference = median_of(
-      campaign, [](const MeasuredBlock& b) { return equivalent_diameter(b.mass, b.density); });
-  list.push_back({"block-mass", "everywhere",
-                  {effect_amount("block-mass.roughness", "1", 0.0, 0.4, -2.0, 2.0, &Effects::block_mass,
-                                 &BlockMass::roughness),
-                   effect_amount("block-mass.stiffness", "1", 0.0, 0.8, -3.0, 3.0, &Effects::block_mass,
-                                 &BlockMass::stiffness)},
-                  2, [reference](Model& m) { m.effects.block_mass.reference_diameter = reference; }});
+    list.push_back(
+        {"block-shape",
+         "everywhere",
+         {effect_amount("block-shape.lateral", "1", 0.0, 0.5, 0.0, 6.0, &Effects::block_shape, &BlockShape::lateral),
+          effect_amount("block-shape.loss", "1", 0.0, 0.1, -0.2, 2.0, &Effects::block_shape, &BlockShape::loss)},
+         2,
+         [](Model&) {}});
+  const double reference =
+      median_of(campaign, [](const MeasuredBlock& b) { return equivalent_diameter(b.mass, b.density); });
+  list.push_back(
+      {"block-mass",
+       "everywhere",
+       {effect_amount("block-mass.roughness", "1", 0.0, 0.4, -2.0, 2.0, &Effects::block_mass, &BlockMass::roughness),
+        effect_amount("block-mass.stiffness", "1", 0.0, 0.8, -3.0, 3.0, &Effects::block_mass, &BlockMass::stiffness)},
+       2,
+       [reference](Model& m) { m.effects.block_mass.reference_diameter = reference; }});
 }
 
 void add_days(std::vector<Candidate>& list, const Campaign& campaign) {
@@ -84,15 +86,18 @@ void add_days(std::vector<Candidate>& list, const Campaign& campaign) {
   for (const MeasuredBlock& block : campaign.blocks) days.insert(block.day);
   if (days.size() < 2) return;
   for (const int day : days)
-    list.push_back({"wet-ground", "day " + std::to_string(day),
-                    {effect_amount("wet-ground.softening", "1", 0.0, 0.7, 0.0, 4.0, &Effects::wet_ground,
-                                   &WetGround::softening),
-                     effect_amount("wet-ground.drag", "1", 0.0, 0.7, 0.0, 4.0, &Effects::wet_ground, &WetGround::drag)},
-                    2, [day](Model& m) { m.effects.wet_ground.days = {day}; }});
+    list.push_back(
+        {"wet-ground",
+         "day " + std::to_string(day),
+         {effect_amount("wet-ground.softening", "1", 0.0, 0.7, 0.0, 4.0, &Effects::wet_ground, &WetGround::softening),
+          effect_amount("wet-ground.drag", "1", 0.0, 0.7, 0.0, 4.0, &Effects::wet_ground, &WetGround::drag)},
+         2,
+         [day](Model& m) { m.effects.wet_ground.days = {day}; }});
 }
 
 void add_fragmentation(std::vector<Candidate>& list) {
-  list.push_back({"fragmentation", "everywhere",
+  list.push_back({"fragmentation",
+                  "everywhere",
                   {amount(
                        "effects.fragmentation.1/threshold", "kg/J", 0.0, 0.02, 0.0, 0.5,
                        [](const Model& m) {
@@ -100,20 +105,23 @@ void add_fragmentation(std::vector<Candidate>& list) {
                          return threshold > 0.0 ? 1.0 / threshold : 0.0;
                        },
                        [](Model& m, double v) { m.effects.fragmentation.threshold = v > 0.0 ? 1.0 / v : 0.0; }),
-                   effect_amount("fragmentation.largest", "1", 0.6, 0.15, 0.2, 0.95, &Effects::fragmentation,
+                   effect_amount("fragmentation.largest", "1", 0.7, 0.15, 0.5, 0.99, &Effects::fragmentation,
                                  &Fragmentation::largest)},
-                  1, [](Model&) {}});
+                  1,
+                  [](Model&) {}});
 }
 
 void add_biases(std::vector<Candidate>& list, const Campaign& campaign) {
   const std::size_t instruments = campaign.screens.size() + 1;
   const auto add = [&](std::size_t which, const std::string& name, double Bias::*quantity, const char* what) {
-    list.push_back({"instrument-bias", name + " " + what,
+    list.push_back({"instrument-bias",
+                    name + " " + what,
                     {amount(
                         "instrument-bias." + name + "." + what, "1", 0.0, 0.15, -0.6, 1.5,
                         [=](const Model& m) { return m.bias.empty() ? 0.0 : m.bias[which].*quantity; },
                         [=](Model& m, double v) { m.bias[which].*quantity = v; })},
-                    1, [=](Model& m) { m.bias.resize(std::max(m.bias.size(), instruments)); }});
+                    1,
+                    [=](Model& m) { m.bias.resize(std::max(m.bias.size(), instruments)); }});
   };
   for (std::size_t s = 0; s < campaign.screens.size(); ++s) {
     const auto crossed = std::count_if(campaign.blocks.begin(), campaign.blocks.end(),
@@ -187,35 +195,45 @@ Candidate band(const Campaign& campaign, const Axis& axis, double from, double t
       return std::log(m.grounds[n].*member / (m.grounds[0].*member));
     };
   };
-  return {"undeclared-zone", std::to_string(std::lround(from)) + " to " + std::to_string(std::lround(to)) + " m",
-          {amount("undeclared-zone.damping", "1", 0.0, 1.0, -3.0, 3.0,
-                  [=](const Model& m) { return -ratio(&Ground::En50)(m); },
-                  [](Model& m, double v) {
-                    const std::size_t n = m.grounds.size() / 2;
-                    for (std::size_t zone = 0; zone < n; ++zone) {
-                      m.grounds[n + zone] = m.grounds[zone];
-                      m.grounds[n + zone].En50 *= std::exp(-v);
-                      m.grounds[n + zone].Et50 *= std::exp(-v);
-                    }
-                  }),
+  return {"undeclared-zone",
+          std::to_string(std::lround(from)) + " to " + std::to_string(std::lround(to)) + " m",
+          {amount(
+               "undeclared-zone.damping", "1", 0.0, 1.0, -3.0, 3.0,
+               [=](const Model& m) { return -ratio(&Ground::En50)(m); },
+               [](Model& m, double v) {
+                 const std::size_t n = m.grounds.size() / 2;
+                 for (std::size_t zone = 0; zone < n; ++zone) {
+                   m.grounds[n + zone] = m.grounds[zone];
+                   m.grounds[n + zone].En50 *= std::exp(-v);
+                   m.grounds[n + zone].Et50 *= std::exp(-v);
+                 }
+               }),
            amount("undeclared-zone.roughness", "1", 0.0, 0.7, -3.0, 3.0, ratio(&Ground::theta_scale),
                   [](Model& m, double v) {
                     const std::size_t n = m.grounds.size() / 2;
                     for (std::size_t zone = 0; zone < n; ++zone)
                       m.grounds[n + zone].theta_scale = m.grounds[zone].theta_scale * std::exp(v);
                   })},
-          2, [&campaign, axis, from, to](Model& m) { lay_band(m, campaign, axis, from, to); }, from, to};
+          2,
+          [&campaign, axis, from, to](Model& m) { lay_band(m, campaign, axis, from, to); },
+          from,
+          to};
 }
 
 Candidate barrier(const Axis& axis, double width, double at) {
   const Eigen::Vector2d middle = axis.origin + at * axis.direction;
   const Eigen::Vector2d across(-axis.direction.y(), axis.direction.x());
   const std::vector<Eigen::Vector2d> line{middle - width * across, middle + width * across};
-  return {"undeclared-barrier", "at " + std::to_string(std::lround(at)) + " m",
-          {amount("undeclared-barrier.height", "m", 0.0, 1.0, 0.0, 10.0,
-                  [](const Model& m) { return m.nets.back().height; },
-                  [](Model& m, double v) { m.nets.back().height = v; })},
-          1, [line](Model& m) { m.nets.push_back({line, 0.0, 1e9}); }};
+  return {
+      "undeclared-barrier",
+      "at " + std::to_string(std::lround(at)) + " m",
+      {amount(
+          "undeclared-barrier.height", "m", 0.0, 1.0, 0.0, 10.0, [](const Model& m) { return m.nets.back().height; },
+          [](Model& m, double v) { m.nets.back().height = v; })},
+      1,
+      [line](Model& m) {
+        m.nets.push_back({line, 0.0, 1e9});
+      }};
 }
 
 std::vector<Candidate> candidates_of(const Campaign& campaign, const Model& base, std::span<const BlockRuns> runs,
@@ -234,10 +252,12 @@ std::vector<Candidate> candidates_of(const Campaign& campaign, const Model& base
   add_placed(list, places, "rolling-resistance", &Effects::rolling_resistance,
              {effect_amount("rolling-resistance.coefficient", "1", 0.0, 0.2, 0.0, 2.0, &Effects::rolling_resistance,
                             &RollingResistance::coefficient)});
-  list.push_back({"air-drag", "everywhere",
-                  {effect_amount("air-drag.coefficient", "1", 0.0, 1.0, 0.0, 5.0, &Effects::air_drag,
-                                 &AirDrag::coefficient)},
-                  1, [](Model&) {}});
+  list.push_back(
+      {"air-drag",
+       "everywhere",
+       {effect_amount("air-drag.coefficient", "1", 0.0, 1.0, 0.0, 5.0, &Effects::air_drag, &AirDrag::coefficient)},
+       1,
+       [](Model&) {}});
   add_shape_and_mass(list, campaign);
   add_days(list, campaign);
   add_fragmentation(list);

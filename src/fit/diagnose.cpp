@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::uint32_t kUnseen = 1'000'000;  // first trial of the luck that no search has seen
 constexpr int kFolds = 2;
+constexpr double kWorthASearch = 0.1;  // p of the score test
 
 /// The work of one diagnosis.
 class Diagnosing {
@@ -113,7 +114,9 @@ class Diagnosing {
     trial.p_value = verdict.p_value;
     trial.parameters = candidate.parameters;
     std::vector<Parameter> free;
-    const int evaluations = 6 * static_cast<int>(base.free.size() + candidate.parameters.size());
+    // What the test finds nothing in is fitted for the record only, by the local model alone.
+    const int parameters = static_cast<int>(base.free.size() + candidate.parameters.size());
+    const int evaluations = verdict.p_value < kWorthASearch ? 4 * parameters : 1;
     Fit fit = fit_with(base, candidate, start_of(candidate, verdict.best), rows_, evaluations, free);
     trial.fitted = finish(std::move(fit), std::move(free));
     for (const Parameter& p : candidate.parameters) trial.values.push_back(p.get(trial.fitted.model));
@@ -135,7 +138,7 @@ class Diagnosing {
         out[b] = true;
       }
       // From the fit to all rows: only what the fold changes has to be found.
-      const int evaluations = 4 * static_cast<int>(trial.fitted.free.size());
+      const int evaluations = 2 * static_cast<int>(trial.fitted.free.size());
       const Fit with_it = fit_parameters(campaign_, trial.fitted.model, trial.fitted.free, in, fitting(evaluations));
       const Fit without = fit_parameters(campaign_, base.model, base.free, in, fitting(evaluations));
       if (with_it.interrupted || without.interrupted) throw DiagnosisInterrupted{};
@@ -159,8 +162,7 @@ class Diagnosing {
     how.trials = options_.test_trials;
     how.seed = options_.seed;
     how.threads = options_.threads;
-    const ScoreTest test =
-        score_test(campaign_, base.model, base.free, base.z, base.fitting, candidates, rows_, how);
+    const ScoreTest test = score_test(campaign_, base.model, base.free, base.z, base.fitting, candidates, rows_, how);
     round.p_value = test.p_value;
     const bool noise = test.p_value > level;
     if (!more || (noise && !found.empty())) {  // nothing left, or as much as may be added
@@ -197,9 +199,8 @@ class Diagnosing {
   void choose(const Fitted& base, Round& round, bool noise, double level) {
     count_choices(base, round.trials);
     const auto may = [level](const Trial& t) { return t.p_value < level && t.gain > 0.0; };
-    std::stable_sort(round.trials.begin(), round.trials.end(), [&](const Trial& a, const Trial& b) {
-      return may(a) != may(b) ? may(a) : a.gain > b.gain;
-    });
+    std::stable_sort(round.trials.begin(), round.trials.end(),
+                     [&](const Trial& a, const Trial& b) { return may(a) != may(b) ? may(a) : a.gain > b.gain; });
     if (noise || round.trials.empty() || !may(round.trials.front())) {
       round.effect = noise ? what_is_left(round) : "unexplained";
       return;

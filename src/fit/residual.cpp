@@ -166,7 +166,8 @@ std::vector<double> ResidualSpace::measured_values(std::size_t b) const {
 std::vector<double> ResidualSpace::trial_values(std::size_t b, const BlockRuns& runs, std::size_t t) const {
   const MeasuredBlock& block = campaign_.blocks[b];
   std::vector<double> speed, spin, values;
-  for (const BlockRuns::AtSample& sample : runs.samples) speed.push_back(sample.speed[t]), spin.push_back(sample.spin[t]);
+  for (const BlockRuns::AtSample& sample : runs.samples)
+    speed.push_back(sample.speed[t]), spin.push_back(sample.spin[t]);
   const Eigen::Vector2d way(runs.x[t] - block.x, runs.y[t] - block.y);
   for (const Observable& o : observables_) switch (o.kind) {
       case Observable::Kind::Runout:
@@ -240,7 +241,8 @@ void ResidualSpace::correlate(const std::vector<BlockRuns>& runs) {
   for (Eigen::Index i = 0; i < size(); ++i)
     for (Eigen::Index j = 0; j < size(); ++j)
       if (i != j && pooled(i, i) > 0.0 && pooled(j, j) > 0.0)
-        correlation_(i, j) = (1.0 - kShrink) * std::clamp(pooled(i, j) / std::sqrt(pooled(i, i) * pooled(j, j)), -1.0, 1.0);
+        correlation_(i, j) =
+            (1.0 - kShrink) * std::clamp(pooled(i, j) / std::sqrt(pooled(i, i) * pooled(j, j)), -1.0, 1.0);
 }
 
 Eigen::VectorXd ResidualSpace::whitened(const Residual& r) const {

@@ -13,8 +13,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kMostJoined = 4;   // neighbouring bands
-constexpr double kStep = 0.5;    // by which a parameter of the base is moved [z]
+constexpr int kMostJoined = 4;  // neighbouring bands
+constexpr double kStep = 0.5;   // by which a parameter of the base is moved [z]
 
 /// Mean residual of the trials of one block; zero where fewer than five were seen.
 VectorXd mean_residual(const ResidualSpace& space, std::size_t block, const BlockRuns& runs) {
@@ -154,8 +154,7 @@ Projection project(const Place& place, const MatrixXd& covariance, Index base, d
   MatrixXd information = covariance.topLeftCorner(base, base);
   information.diagonal().array() += prior;
   MatrixXd imitated = MatrixXd::Zero(place.pick.cols(), covariance.rows());
-  imitated.leftCols(base) =
-      information.ldlt().solve(covariance.topRows(base) * place.pick).transpose();
+  imitated.leftCols(base) = information.ldlt().solve(covariance.topRows(base) * place.pick).transpose();
   Projection p;
   p.map = place.pick.transpose() - imitated;
   p.variance = p.map * covariance * p.map.transpose();
@@ -198,7 +197,8 @@ Directions directions_of(const Campaign& campaign, const ResidualSpace& space, c
   const ObserveOptions observing{options.trials, options.seed, 0, options.threads, rows, {}};
   for (std::size_t i = 0; i < free.size(); ++i) {
     VectorXd moved = z;
-    moved[static_cast<Index>(i)] += free[i].value(moved[static_cast<Index>(i)] + kStep) < free[i].upper ? kStep : -kStep;
+    moved[static_cast<Index>(i)] +=
+        free[i].value(moved[static_cast<Index>(i)] + kStep) < free[i].upper ? kStep : -kStep;
     directions.add(observe(campaign, model_at(base, free, moved), observing));
   }
   for (const Candidate& candidate : candidates)
@@ -230,7 +230,8 @@ ScoreTest score_test(const Campaign& campaign, const Model& base, std::span<cons
   for (const Place& place : places_of(candidates, n_base, directions.size())) {
     const Candidate& candidate = candidates[place.candidate];
     const bool one_sided = candidate.tested == 1 && candidate.parameters[0].lower >= 0.0;
-    projections.push_back(project(place, covariance, n_base, kStep * kStep / (options.prior_sd * options.prior_sd), one_sided));
+    projections.push_back(
+        project(place, covariance, n_base, kStep * kStep / (options.prior_sd * options.prior_sd), one_sided));
     Verdict verdict = projections.back().verdict(measured);
     verdict.candidate = place.candidate;
     verdict.joined = place.joined;

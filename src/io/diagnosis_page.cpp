@@ -21,8 +21,7 @@ std::string print(const char* format, Values... values) {
 
 std::string escaped(const std::string& text) {
   std::string out;
-  for (const char c : text)
-    switch (c) {
+  for (const char c : text) switch (c) {
       case '<':
         out += "&lt;";
         break;
@@ -83,8 +82,8 @@ std::string plot(const Points& points, const std::string& title, const std::stri
     return kMargin + (kWidth - 2.0 * kMargin) * (high > low ? (x - low) / (high - low) : 0.5);
   };
   const auto y_of = [](double z) { return kHeight / 2.0 - std::clamp(z, -3.5, 3.5) * (kHeight / 2.0 - kMargin) / 3.5; };
-  svg += print("<rect x='%d' y='%.1f' width='%d' height='%.1f' fill='#eee'/>", kMargin, y_of(1.96), kWidth - 2 * kMargin,
-               y_of(-1.96) - y_of(1.96));
+  svg += print("<rect x='%d' y='%.1f' width='%d' height='%.1f' fill='#eee'/>", kMargin, y_of(1.96),
+               kWidth - 2 * kMargin, y_of(-1.96) - y_of(1.96));
   svg += print("<line x1='%d' x2='%d' y1='%.1f' y2='%.1f' stroke='#999'/>", kMargin, kWidth - kMargin, y_of(0.0),
                y_of(0.0));
   for (std::size_t i = 0; i < points.x.size(); ++i)
@@ -96,8 +95,8 @@ std::string plot(const Points& points, const std::string& title, const std::stri
                kHeight - 18, low, kWidth - kMargin, kHeight - 18, high);
   svg += "<text x='" + std::to_string(kWidth / 2) + "' y='14' text-anchor='middle' font-weight='bold'>" +
          escaped(title) + "</text>";
-  svg += "<text x='" + std::to_string(kWidth / 2) + "' y='" + std::to_string(kHeight - 4) +
-         "' text-anchor='middle'>" + escaped(below) + "</text></svg>\n";
+  svg += "<text x='" + std::to_string(kWidth / 2) + "' y='" + std::to_string(kHeight - 4) + "' text-anchor='middle'>" +
+         escaped(below) + "</text></svg>\n";
   return svg;
 }
 
@@ -106,8 +105,9 @@ std::string plots(const Campaign& campaign, const Diagnosis& d) {
   std::string html;
   const std::vector<ResidualRow>& rows = d.rounds.front().residual;
   for (std::size_t i = 0; i < std::min(kPlots, rows.size()); ++i) {
-    const std::string title = rows[i].observable + " against " +
-                              (rows[i].covariate == "mean" || rows[i].covariate == "spread" ? "block" : rows[i].covariate);
+    const std::string title =
+        rows[i].observable + " against " +
+        (rows[i].covariate == "mean" || rows[i].covariate == "spread" ? "block" : rows[i].covariate);
     html += "<p>" + plot(points_of(campaign, before, rows[i]), title + ", before", rows[i].covariate) +
             plot(points_of(campaign, after, rows[i]), title + ", after", rows[i].covariate) + "</p>\n";
   }
@@ -116,7 +116,8 @@ std::string plots(const Campaign& campaign, const Diagnosis& d) {
 
 std::string candidates_table(const Round& round, const std::vector<HoldoutError>& holdout) {
   std::string html =
-      "<table><tr><th>effect</th><th>where</th><th>parameters</th><th>p of the score test</th><th>error lower by (fitting "
+      "<table><tr><th>effect</th><th>where</th><th>parameters</th><th>p of the score test</th><th>error lower by "
+      "(fitting "
       "rows, 95 %)</th><th>held-out error after</th><th>reduction, 95 %</th></tr>\n";
   for (std::size_t i = 0; i < round.trials.size(); ++i) {
     const Trial& t = round.trials[i];
@@ -137,7 +138,8 @@ std::string candidates_table(const Round& round, const std::vector<HoldoutError>
 
 std::string residual_rows(const std::vector<ResidualRow>& rows) {
   std::string html =
-      "<table><tr><th>observable</th><th>against</th><th>statistic</th><th>p</th><th>corrected</th><th>blocks</th></tr>\n";
+      "<table><tr><th>observable</th><th>against</th><th>statistic</th><th>p</th><th>corrected</th><th>blocks</th></"
+      "tr>\n";
   for (std::size_t i = 0; i < std::min<std::size_t>(12, rows.size()); ++i)
     html += "<tr><td>" + escaped(rows[i].observable) + "</td><td>" + rows[i].covariate + "</td><td>" +
             print("%.2f</td><td>%.2g</td><td>%.2g</td><td>%zu", rows[i].statistic, rows[i].p_value, rows[i].corrected,
@@ -164,7 +166,8 @@ std::string sentence(const Round& round) {
 std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
   std::string html =
-      "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'><title>Talus: diagnosis of " + escaped(campaign.name) +
+      "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'><title>Talus: diagnosis of " +
+      escaped(campaign.name) +
       "</title><style>body{font:15px/1.5 sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#222}"
       "table{border-collapse:collapse;font-size:13px}td,th{border:1px solid #ccc;padding:3px 8px;text-align:left;"
       "vertical-align:top}svg text{font:11px sans-serif}</style></head><body>\n<h1>What the model of " +
@@ -173,8 +176,9 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
     html += "<p>Round " + std::to_string(i + 1) + ": " + sentence(d.rounds[i]) +
             print(" (p that the residual is noise: %.4f)</p>\n", d.rounds[i].p_value);
   const HoldoutError& e = record.whole;
-  html += "<h2>Error before and after</h2>\n<table><tr><th></th><th>ground fitted</th><th>with what was found</th>"
-          "<th>reduction, 95 %</th></tr>\n";
+  html +=
+      "<h2>Error before and after</h2>\n<table><tr><th></th><th>ground fitted</th><th>with what was found</th>"
+      "<th>reduction, 95 %</th></tr>\n";
   html += "<tr><td>fitting rows</td><td>" + value_text(d.base.score.total) + "</td><td>" +
           value_text(d.with_effects.score.total) + "</td><td></td></tr>\n";
   html += "<tr><td>held-out rows (never fitted)</td><td>" + value_text(e.before) + "</td><td>" + value_text(e.after) +
@@ -185,12 +189,14 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
           "spread of the measurements.</p>\n";
   html += "<h2>Candidates</h2>\n<p>Each at its best place, fitted together with the ground.</p>\n" +
           candidates_table(d.rounds.front(), record.candidates.front());
-  html += "<h2>Residuals</h2>\n<p>Each point is a block; z is where its measurement lies among what the model "
-          "simulates for it, as a standard normal number. Grey: 95 % of the points of a right model.</p>\n" +
-          plots(campaign, d) + "<h3>Before</h3>\n" + residual_rows(d.rounds.front().residual) + "<h3>After</h3>\n" +
-          residual_rows(d.residual_after);
-  return html + "<p>" + print("talus %s, seed %llu, %.0f s.", std::string(version()).c_str(),
-                              static_cast<unsigned long long>(record.options.seed), record.seconds) +
+  html +=
+      "<h2>Residuals</h2>\n<p>Each point is a block; z is where its measurement lies among what the model "
+      "simulates for it, as a standard normal number. Grey: 95 % of the points of a right model.</p>\n" +
+      plots(campaign, d) + "<h3>Before</h3>\n" + residual_rows(d.rounds.front().residual) + "<h3>After</h3>\n" +
+      residual_rows(d.residual_after);
+  return html + "<p>" +
+         print("talus %s, seed %llu, %.0f s.", std::string(version()).c_str(),
+               static_cast<unsigned long long>(record.options.seed), record.seconds) +
          "</p></body></html>\n";
 }
 

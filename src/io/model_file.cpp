@@ -1,6 +1,7 @@
 #include "talus/io/model_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "scenario_spec.hpp"
@@ -12,9 +13,58 @@
 namespace talus::io {
 namespace {
 
+bool is_on(const Effects& effects, std::string_view name) {
+  for (const auto& field : effect_fields())
+    if (field.key.starts_with(std::string(name) + ".") && !std::isnan(field.off) && field.get(effects) != field.off)
+      return true;
+  return false;
+}
+
+/// `zones = ["meadow"]`, where an effect does not act in all zones of the campaign.
+std::string zones_text(const Extent* extent, const Campaign& campaign) {
+  if (extent == nullptr || extent->zones.empty()) return {};
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < campaign.zone_names.size(); ++i)
+    if (extent->zones[i] != 0) names.push_back(toml_text(campaign.zone_names[i]));
+  return "zones = [" + joined(names) + "]\n";
+}
+
 /// The tables [effects.*] of a model, as the reader of [effects.*] takes them; empty where none is on.
-std::string effects_text(const Effects&) {
-  return {};  // the reader takes none in this version
+std::string effects_text(Effects effects, const Campaign& campaign) {
+  std::string text;
+  for (const std::string_view name : effect_names()) {
+    if (!is_on(effects, name)) continue;
+    text += "\n[effects." + std::string(name) + "]\n";
+    for (const auto& field : effect_fields()) {
+      if (!field.key.starts_with(std::string(name) + ".")) continue;
+      text += std::string(field.key.substr(name.size() + 1)) + " = " + text_of(field.get(effects));
+      text += field.unit == "1" ? "\n" : "  # " + std::string(field.unit) + "\n";
+    }
+    if (name == "wet-ground") {
+      std::vector<std::string> days;
+      for (const int day : effects.wet_ground.days) days.push_back(std::to_string(day));
+      text += "days = [" + joined(days) + "]\n";
+    }
+    text += zones_text(extent_of(effects, name), campaign);
+  }
+  return text;
+}
+
+/// What is no physics and no scenario can take: as comments.
+std::string anomalies_text(const Model& model) {
+  std::string text;
+  for (const Net& net : model.nets)
+    text += "\n# undeclared-barrier: " + text_of(net.height) + " m high, from (" + text_of(net.line.front().x()) +
+            ", " + text_of(net.line.front().y()) + ") to (" + text_of(net.line.back().x()) + ", " +
+            text_of(net.line.back().y()) + ") m from the lower left corner of the DEM\n";
+  for (std::size_t i = 0; i < model.bias.size(); ++i)
+    if (const Bias& b = model.bias[i]; b.speed != 0.0 || b.jump != 0.0 || b.spin != 0.0)
+      text += "\n# instrument-bias: instrument " + std::to_string(i + 1) + " reads speed " + text_of(b.speed) +
+              ", jump " + text_of(b.jump) + ", spin " + text_of(b.spin) + " too high (share of the value)\n";
+  if (!model.zones.values.empty())
+    text +=
+        "\n# undeclared-zone: a band of other ground, see diagnosis.json; the ground in it is not part of this file\n";
+  return text;
 }
 
 std::string ground_text(const Ground& ground) {
@@ -28,6 +78,18 @@ std::string ground_text(const Ground& ground) {
   return text + "shape = [" + text_of(ground.shape_min) + ", " + text_of(ground.shape_max) + "]\n";
 }
 
+/// A model for a campaign acts in the campaign's zones only.
+void check_places(const std::string& name, const EffectSpec& effect, const Campaign& campaign, const std::string& path,
+                  std::vector<std::string>& faults) {
+  if (!effect.file.path.empty())
+    faults.push_back(path + ": [effects." + name + "] file = \"" + effect.file.path +
+                     "\": a campaign knows only its own zones: name them by zones = [...]");
+  for (const std::string& zone : effect.zones)
+    if (std::find(campaign.zone_names.begin(), campaign.zone_names.end(), zone) == campaign.zone_names.end())
+      faults.push_back(path + ": [effects." + name + "] zones: the campaign has no such zone" +
+                       known_names(zone, campaign.zone_names));
+}
+
 }  // namespace
 
 Model read_model(const std::string& path, const Campaign& campaign) {
@@ -39,6 +101,7 @@ Model read_model(const std::string& path, const Campaign& campaign) {
     if (std::find(campaign.zone_names.begin(), campaign.zone_names.end(), zone.name) == campaign.zone_names.end())
       faults.push_back(path + ": [ground.zones." + toml_key(zone.name) + "]: the campaign has no such zone" +
                        known_names(zone.name, campaign.zone_names));
+  for (const auto& [name, effect] : spec.effects) check_places(name, effect, campaign, path, faults);
   if (!faults.empty()) throw InputError(faults.front());
   Model model;
   model.impact = spec.values.impact;
@@ -47,6 +110,12 @@ Model read_model(const std::string& path, const Campaign& campaign) {
   for (std::size_t i = 1; i < model.grounds.size(); ++i)
     for (const ZoneSpec& zone : spec.zones)
       if (zone.name == campaign.zone_names[i]) model.grounds[i] = zone.ground;
+  for (const auto& [name, effect] : spec.effects) {
+    Extent* extent = extent_of(model.effects, name);
+    if (extent == nullptr || effect.zones.empty()) continue;
+    for (const std::string& zone : campaign.zone_names)
+      extent->zones.push_back(std::count(effect.zones.begin(), effect.zones.end(), zone) > 0 ? 1 : 0);
+  }
   return model;
 }
 
@@ -54,7 +123,7 @@ std::string model_text(const Model& model, const LoadedCampaign& loaded, const s
   std::string text;
   std::istringstream lines(heading);
   for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
-  for (std::size_t i = 0; i < model.grounds.size(); ++i) {
+  for (std::size_t i = 0; i < loaded.campaign.zone_names.size(); ++i) {
     text += "\n[ground.zones." + toml_key(loaded.campaign.zone_names[i]) + "]\n";
     text += "preset = " + toml_text(std::string(kDefaultPreset)) + "\n";
     if (!loaded.zone_codes[i].empty()) text += "code = " + loaded.zone_codes[i] + "  # in a raster of zones\n";
@@ -62,7 +131,7 @@ std::string model_text(const Model& model, const LoadedCampaign& loaded, const s
   }
   text += "\n[model]\ndeformation_coefficient = " + text_of(model.impact.deformation_coefficient) + "\n";
   text += std::string("roughness = \"") + (model.impact.roughness == Roughness::Clamp ? "clamp" : "resample") + "\"\n";
-  return text + effects_text(model.effects);
+  return text + effects_text(model.effects, loaded.campaign) + anomalies_text(model);
 }
 
 }  // namespace talus::io

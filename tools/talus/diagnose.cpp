@@ -25,7 +25,8 @@ void print_summary(const talus::io::DiagnosisRecord& record, const std::string& 
     const talus::Round& round = d.rounds[i];
     std::printf("round %zu: %s", i + 1, round.effect.c_str());
     if (!round.where.empty()) std::printf(", %s", round.where.c_str());
-    for (const std::string& other : round.alike) std::printf("%s %s", &other == &round.alike.front() ? "; not to be told apart from" : ",", other.c_str());
+    for (const std::string& other : round.alike)
+      std::printf("%s %s", &other == &round.alike.front() ? "; not to be told apart from" : ",", other.c_str());
     std::printf(" (p of noise %.4f)\n", round.p_value);
   }
   std::printf("error, fitting rows: %.3f before, %.3f after\n", d.base.score.total, d.with_effects.score.total);

@@ -40,7 +40,7 @@ struct FitOptions {
   std::uint32_t trials = 30;          ///< per block while it searches
   std::uint32_t polish_trials = 100;  ///< per block in the last part of the search
   int starts = 3;                     ///< 1: from the start alone, as when a few parameters are added to a fit
-  int evaluations = 0;                   ///< of each search; 0: by the number of parameters
+  int evaluations = 0;                ///< of each search; 0: by the number of parameters
   int rounds = 3;                     ///< of the quadratic model
   std::uint64_t seed = 1;
   int threads = 0;

@@ -9,12 +9,12 @@ inline constexpr double kNoticed = 0.25;
 /// Something that may be missing in a model: where it acts and the numbers that it adds. Off, at z = 0 of all its
 /// parameters, it changes nothing. docs/closing-the-loop.md, "Candidates".
 struct Candidate {
-  std::string effect;                  ///< as in diagnosis.json: "vegetation-drag", ..., "instrument-bias"
-  std::string where;                   ///< "everywhere", "zone meadow", "day 2", "screen S1 speed", "92 to 110 m"
-  std::vector<Parameter> parameters;   ///< one or two; those that need no test of their own come last
-  std::size_t tested = 1;              ///< how many of them the score test moves
-  std::function<void(Model&)> prepare; ///< before the parameters are set: places and lines
-  double from = 0.0, to = 0.0;         ///< of a band: along the axis [m]
+  std::string effect;                   ///< as in diagnosis.json: "vegetation-drag", ..., "instrument-bias"
+  std::string where;                    ///< "everywhere", "zone meadow", "day 2", "screen S1 speed", "92 to 110 m"
+  std::vector<Parameter> parameters;    ///< one or two; those that need no test of their own come last
+  std::size_t tested = 1;               ///< how many of them the score test moves
+  std::function<void(Model&)> prepare;  ///< before the parameters are set: places and lines
+  double from = 0.0, to = 0.0;          ///< of a band: along the axis [m]
 };
 
 /// Positions along the slope: the direction in plan in which the blocks of a campaign go, and how far.

@@ -16,36 +16,36 @@ struct Fitted {
 /// A candidate fitted together with the base parameters.
 struct Trial {
   std::string effect, where;
-  std::vector<Parameter> parameters;  ///< its own
-  std::vector<double> values;         ///< of them, fitted
-  double p_value = 1.0;               ///< of the score test, corrected for its places
-  double gain = 0.0;                  ///< by which it lowers the error of the fitting rows
-  Interval gain_interval;             ///< 95 %, paired bootstrap over blocks
-  double cross_validated = kNotGiven; ///< the same in cross-validation; NaN where it was not needed
-  double chosen_share = 0.0;          ///< of the bootstraps in which it has the lowest error of all
+  std::vector<Parameter> parameters;   ///< its own
+  std::vector<double> values;          ///< of them, fitted
+  double p_value = 1.0;                ///< of the score test, corrected for its places
+  double gain = 0.0;                   ///< by which it lowers the error of the fitting rows
+  Interval gain_interval;              ///< 95 %, paired bootstrap over blocks
+  double cross_validated = kNotGiven;  ///< the same in cross-validation; NaN where it was not needed
+  double chosen_share = 0.0;           ///< of the bootstraps in which it has the lowest error of all
   Fitted fitted;
 };
 
 /// One turn of the loop.
 struct Round {
-  std::string effect = "none";            ///< what was found; "none", "unexplained"
+  std::string effect = "none";  ///< what was found; "none", "unexplained"
   std::string where;
-  std::vector<Trial> trials;              ///< every effect at its best place, best first
-  std::vector<std::string> alike;         ///< what cannot be told apart from it on these data
-  std::vector<ResidualRow> residual;      ///< before, on the fitting rows
-  double p_value = 1.0;                   ///< that the residual is noise: score test over all effects and places
+  std::vector<Trial> trials;          ///< every effect at its best place, best first
+  std::vector<std::string> alike;     ///< what cannot be told apart from it on these data
+  std::vector<ResidualRow> residual;  ///< before, on the fitting rows
+  double p_value = 1.0;               ///< that the residual is noise: score test over all effects and places
 };
 
 struct Diagnosis {
-  Fitted base;                 ///< recalibrated, without an effect
-  std::vector<Round> rounds;   ///< the last one found "none" or "unexplained"
-  Fitted with_effects;         ///< the last model; the base where nothing was found
+  Fitted base;                ///< recalibrated, without an effect
+  std::vector<Round> rounds;  ///< the last one found "none" or "unexplained"
+  Fitted with_effects;        ///< the last model; the base where nothing was found
   std::vector<ResidualRow> residual_after;
 };
 
 struct DiagnoseOptions {
   std::vector<std::string> keys{"theta_scale", "psi_scale", "En50", "Et50"};  ///< of the ground, fitted per zone
-  std::uint32_t search_trials = 30, test_trials = 120, final_trials = 200;   ///< per block
+  std::uint32_t search_trials = 30, test_trials = 120, final_trials = 200;    ///< per block
   std::uint64_t seed = 1;
   int threads = 0;
   int most_effects = 3;

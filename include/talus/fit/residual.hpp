@@ -52,10 +52,10 @@ class ResidualSpace {
 
   const Campaign& campaign_;
   std::vector<Observable> observables_;
-  std::vector<Eigen::Vector2d> forward_;                   // by block: towards its mean simulated stop, unit
-  std::vector<std::vector<Distribution>> distributions_;   // by block and observable
+  std::vector<Eigen::Vector2d> forward_;                           // by block: towards its mean simulated stop, unit
+  std::vector<std::vector<Distribution>> distributions_;           // by block and observable
   std::vector<std::vector<std::array<Distribution, 2>>> samples_;  // by block and sample: speed, spin
-  std::vector<double> crossing_share_;                     // by block and observable
+  std::vector<double> crossing_share_;                             // by block and observable
   Eigen::MatrixXd correlation_;
   mutable std::map<std::vector<bool>, Eigen::MatrixXd> inverses_;  // by what is observed
 };

@@ -17,8 +17,8 @@ struct Verdict {
 struct EffectVerdict {
   std::string effect;
   Verdict best;
-  double p_value = 1.0;              ///< corrected for the number of its places, from simulated data sets
-  std::vector<Verdict> places;       ///< all, most significant first
+  double p_value = 1.0;         ///< corrected for the number of its places, from simulated data sets
+  std::vector<Verdict> places;  ///< all, most significant first
 };
 
 struct ScoreTest {
