@@ -92,7 +92,39 @@ Outcome DragFlight::fly_piece(Motion& motion, PatchIndex& at, bool grounded, con
   return outcome;
 }
 
+bool DragFlight::in_a_stand(const PatchIndex& patch) const {
+  const Grid& grid = world_.surface.grid();
+  if (patch.column < 0 || patch.row < 0 || patch.column + 1 >= grid.columns || patch.row + 1 >= grid.rows) return true;
+  for (const int column : {patch.column, patch.column + 1})
+    for (const int row : {patch.row, patch.row + 1}) {
+      const double x = (column + 0.5) * grid.cell_x, y = (row + 0.5) * grid.cell_y;
+      const std::uint8_t zone = world_.cover.zone_at(x, y);
+      if (effects_.vegetation_drag.coefficient > 0.0 && effects_.vegetation_drag.where.covers(zone, x, y)) return true;
+      if (stems_ && effects_.forest_stems.where.covers(zone, x, y)) return true;
+    }
+  return false;
+}
+
+/// A flight that touches no cell of a stand is the plain one; otherwise nothing has happened.
+std::optional<Outcome> DragFlight::fly_clear(Motion& motion, PatchIndex& at, bool grounded, Path& path) const {
+  if (in_a_stand(at)) return std::nullopt;
+  Motion landed = motion;
+  PatchIndex landed_at = at;
+  const std::size_t first_span = path.spans.size();
+  const double length = path.length, plan_length = path.plan_length;
+  const Outcome outcome = talus::fly(world_.surface, landed, landed_at, grounded, path);
+  for (std::size_t i = first_span; i < path.spans.size(); ++i)
+    if (in_a_stand(path.spans[i].patch)) {
+      path.spans.resize(first_span), path.length = length, path.plan_length = plan_length;
+      return std::nullopt;
+    }
+  motion = landed, at = landed_at;
+  return outcome;
+}
+
 Outcome DragFlight::fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path) {
+  if (effects_.air_drag.coefficient == 0.0)
+    if (const auto outcome = fly_clear(motion, at, grounded, path)) return *outcome;
   for (int pieces = 0; pieces < kMostSteps && motion.time < world_.rules.time_limit; ++pieces) {
     const Outcome outcome = fly_piece(motion, at, grounded, body, path);
     if (outcome != Outcome::Aloft) return outcome;

@@ -31,6 +31,8 @@ class DragFlight {
   };
   Site site_of(const Motion& motion, const Block& body) const;
   double longest_piece(const Site& site, const Motion& motion) const;
+  bool in_a_stand(const PatchIndex& patch) const;  ///< one of its four cells
+  std::optional<Outcome> fly_clear(Motion& motion, PatchIndex& at, bool grounded, Path& path) const;
   Outcome fly_piece(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path);
 
   const World& world_;

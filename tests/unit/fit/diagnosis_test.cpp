@@ -1,0 +1,164 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "support/scenes.hpp"
+#include "talus/fit/candidates.hpp"
+#include "talus/fit/residual_table.hpp"
+#include "talus/fit/score_test.hpp"
+
+namespace talus {
+namespace {
+
+/// A slope of 40 degrees that runs out on a plain; blocks of many sizes and shapes, one screen. Nothing measured yet.
+Campaign slope_campaign(int blocks) {
+  test::Numbers numbers(5);
+  Campaign c;
+  c.name = "slope";
+  c.surface = Surface(test::terrain(test::grid_of(60, 110, 2.0, 2.0), [](double, double y) {
+    return 0.84 * std::max(0.0, y - 80.0) + 0.1 * std::min(y, 80.0);
+  }));
+  c.zone_names = {"default"};
+  c.screens = {{"S1", {{{0.0, 90.0}, {120.0, 90.0}}}}};
+  c.error = {0.3, 0.03, 0.1, 0.05};
+  for (int i = 0; i < blocks; ++i) {
+    MeasuredBlock b;
+    b.id = "b" + std::to_string(i);
+    b.x = numbers.uniform(40.0, 80.0);
+    b.y = numbers.uniform(185.0, 200.0);
+    b.velocity = {0.0, -1.0, 0.0};
+    b.mass = std::exp(numbers.uniform(std::log(60.0), std::log(4000.0)));
+    b.axes = {numbers.uniform(1.2, 2.2), 1.1, 1.0};
+    b.day = 1 + i % 3;
+    b.passages.resize(1);
+    c.blocks.push_back(b);
+  }
+  return c;
+}
+
+/// Takes one trial of the model's own as what was measured.
+void measure(Campaign& c, const Model& model, std::uint64_t seed) {
+  const auto runs = observe(c, model, {1, seed, 0, 0, {}, {}});
+  for (std::size_t b = 0; b < c.blocks.size(); ++b) {
+    c.blocks[b].stop.reset();
+    if (!std::isnan(runs[b].x[0])) c.blocks[b].stop = Eigen::Vector2d(runs[b].x[0], runs[b].y[0]);
+    c.blocks[b].passages[0].reset();
+    const BlockRuns::AtScreen& s = runs[b].screens[0];
+    if (!std::isnan(s.speed[0])) c.blocks[b].passages[0] = Passage{s.speed[0], s.jump[0], s.spin[0]};
+  }
+}
+
+ScoreTest test_of(const Campaign& c, const Model& model, std::span<const Candidate> candidates) {
+  const std::vector<bool> rows(c.blocks.size(), true);
+  const auto free = ground_parameters(c, model, std::vector<std::string>{"theta_scale", "En50"}, {true});
+  const auto runs = observe(c, model, {100, 7, 1000, 0, {}, {}});
+  ScoreTestOptions options;
+  options.trials = 60;
+  options.seed = 7;
+  options.replicates = 500;
+  return score_test(c, model, free, Eigen::VectorXd::Zero(2), runs, candidates, rows, options);
+}
+
+TEST(Residual, NormalQuantileIsTheTextbooks) {
+  EXPECT_NEAR(normal_quantile(0.5), 0.0, 1e-15);
+  EXPECT_NEAR(normal_quantile(0.975), 1.959963984540054, 1e-12);
+  EXPECT_NEAR(normal_quantile(0.001), -3.090232306167813, 1e-12);
+}
+
+TEST(Residual, OfTheModelsOwnTrialsIsStandardNormal) {
+  Campaign c = slope_campaign(20);
+  const Model model = model_of_preset(c, "upper-talus-3d");
+  measure(c, model, 3);
+  const ResidualSpace space(c, observe(c, model, {200, 1, 0, 0, {}, {}}));
+  const auto others = observe(c, model, {200, 1, 5000, 0, {}, {}});
+  double sum = 0.0, squares = 0.0, count = 0.0;
+  for (std::size_t b = 0; b < c.blocks.size(); ++b)
+    for (std::size_t t = 0; t < 200; ++t) {
+      const double z = space.of_trial(b, others[b], t)[0];  // run-out
+      if (std::isnan(z)) continue;
+      sum += z, squares += z * z, count += 1.0;
+    }
+  ASSERT_GT(count, 2000.0);
+  // 20 blocks of 200 trials against 200: the mean errs by sqrt(2 / 4000), with five standard errors.
+  EXPECT_NEAR(sum / count, 0.0, 5.0 * std::sqrt(2.0 / count));
+  EXPECT_NEAR(squares / count, 1.0, 5.0 * 2.0 * std::sqrt(2.0 / count));
+}
+
+TEST(Residual, SpearmanOfRanksByHand) {
+  const std::vector<double> a{1.0, 2.0, 3.0, 4.0, 5.0}, b{5.0, 6.0, 7.0, 8.0, 7.0};
+  EXPECT_NEAR(spearman(a, b), 0.8207826816681233, 1e-12);  // the textbook's example with a tie
+  EXPECT_NEAR(spearman(a, std::vector<double>{9.0, 7.0, 5.0, 3.0, 1.0}), -1.0, 1e-12);
+}
+
+TEST(Candidates, OffChangesNoBit) {
+  Campaign c = slope_campaign(6);
+  const Model model = model_of_preset(c, "upper-talus-3d");
+  measure(c, model, 3);
+  const auto runs = observe(c, model, {20, 1, 0, 0, {}, {}});
+  const auto list = candidates_of(c, model, runs, {});
+  ASSERT_GT(list.size(), 20U);
+  for (const Candidate& candidate : list) {
+    Model off = with(model, candidate, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(candidate.parameters.size())));
+    const auto same = observe(c, off, {20, 1, 0, 0, {}, {}});
+    for (std::size_t b = 0; b < runs.size(); ++b)
+      for (std::size_t t = 0; t < 20; ++t)
+        ASSERT_TRUE(same[b].x[t] == runs[b].x[t] || (std::isnan(same[b].x[t]) && std::isnan(runs[b].x[t])))
+            << candidate.effect << ' ' << candidate.where;
+  }
+}
+
+TEST(Candidates, ANetAboveEveryJumpLetsNothingPassAndABiasMultiplies) {
+  Campaign c = slope_campaign(6);
+  c.error = {};
+  const Model model = model_of_preset(c, "upper-talus-3d");
+  const auto runs = observe(c, model, {20, 1, 0, 0, {}, {}});
+  Model net = model;
+  net.nets.push_back({{{0.0, 100.0}, {120.0, 100.0}}, 1e9, 1e9});
+  Model high = model;
+  high.bias.assign(2, Bias{});
+  high.bias[0].speed = 0.25;
+  const auto caught = observe(c, net, {20, 1, 0, 0, {}, {}}), read = observe(c, high, {20, 1, 0, 0, {}, {}});
+  for (std::size_t b = 0; b < runs.size(); ++b)
+    for (std::size_t t = 0; t < 20; ++t) {
+      EXPECT_TRUE(std::isnan(caught[b].screens[0].speed[t]));  // the screen is behind the net
+      if (caught[b].end[t] == End::Caught) {
+        EXPECT_NEAR(caught[b].y[t], 100.0, 1e-6);
+      }
+      if (!std::isnan(runs[b].screens[0].speed[t])) {
+        EXPECT_DOUBLE_EQ(read[b].screens[0].speed[t], 1.25 * runs[b].screens[0].speed[t]);
+      }
+    }
+}
+
+TEST(ScoreTest, FindsAnEffectThatMadeTheData) {
+  Campaign c = slope_campaign(60);
+  Model model = model_of_preset(c, "upper-talus-3d");
+  Model truth = model;
+  truth.effects.block_mass.roughness = 0.8;
+  truth.effects.block_mass.reference_diameter = 0.8;
+  measure(c, truth, 11);
+  const auto list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {});
+  const ScoreTest test = test_of(c, model, list);
+  EXPECT_EQ(test.effects.front().effect, "block-mass");
+  EXPECT_LT(test.p_value, 0.01);
+  EXPECT_GT(test.effects.front().best.estimate[0], 0.0);
+}
+
+TEST(ScoreTest, IsSilentAboutTheModelsOwnDataAsOftenAsItSays) {
+  Campaign c = slope_campaign(30);
+  const Model model = model_of_preset(c, "upper-talus-3d");
+  measure(c, model, 100);
+  std::vector<Candidate> list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {});
+  std::erase_if(list, [](const Candidate& x) { return x.effect != "block-mass" && x.effect != "wet-ground"; });
+  int alarms = 0;
+  constexpr int kSets = 20;
+  for (std::uint64_t set = 0; set < kSets; ++set) {
+    measure(c, model, 100 + set);
+    alarms += test_of(c, model, list).p_value < 0.2;
+  }
+  EXPECT_LE(alarms, 9);  // binomial(20, 0.2): more than 9 in 0.26 % of the cases
+}
+
+}  // namespace
+}  // namespace talus
