@@ -34,7 +34,7 @@ class Search {
   Fit run() {
     try {
       const std::vector<Eigen::VectorXd> starts = choose_starts();
-      for (const Eigen::VectorXd& z : starts) descend(z);
+      for (const Eigen::VectorXd& z : starts) descend(z, 0.5, options_.trials, search_length());
       settle();
       Eigen::MatrixXd spread = LocalModel::first_spread(std::ssize(problem_.free));
       for (int round = 0; round < options_.rounds; ++round) refine(spread);
@@ -47,13 +47,17 @@ class Search {
 
  private:
   static constexpr int kScreened = 6;  // points to choose the starts from, per parameter
+  int polish_length() const {
+    if (options_.evaluations > 0) return 1;
+    return 5 * static_cast<int>(problem_.free.size()) + 5;
+  }
   int search_length() const {
     if (options_.evaluations > 0) return options_.evaluations;
     return 12 * static_cast<int>(problem_.free.size()) + 10;
   }
 
   /// The objective at z, kept for the local model.
-  double operator()(const Eigen::VectorXd& z, std::uint32_t trials) {
+  double operator()(const Eigen::VectorXd& z, const Trials& trials) {
     ++done_;
     if (options_.proceed && !options_.proceed(std::min(1.0, static_cast<double>(done_) / planned_)))
       throw nlopt::forced_stop();
@@ -61,13 +65,15 @@ class Search {
     return fit_.evaluations.back().objective;
   }
 
-  /// Takes the best point of the searches as the fit, scored with more trials.
+  /// Goes on from the best point of the searches with more trials, and takes the best of that as the fit.
   void settle() {
-    const auto best =
-        std::min_element(fit_.evaluations.begin(), fit_.evaluations.end(),
-                         [](const Evaluation& a, const Evaluation& b) { return a.objective < b.objective; });
-    const Eigen::VectorXd z = best->z;
-    move_to(z, (*this)(z, options_.polish_trials));
+    const auto better = [](const Evaluation& a, const Evaluation& b) { return a.objective < b.objective; };
+    const auto& all = fit_.evaluations;
+    const Eigen::VectorXd from = std::min_element(all.begin(), all.end(), better)->z;
+    const auto before = std::ssize(all);
+    descend(from, 0.15, options_.polish_trials, polish_length());
+    const auto best = std::min_element(all.begin() + before, all.end(), better);
+    move_to(best->z, best->objective);
     fit_.score = score_of(fit_.model);  // the local model needs its groups and rows
   }
 
@@ -81,13 +87,12 @@ class Search {
   void refine(Eigen::MatrixXd& spread) {
     const int length = LocalModel::round_length(std::ssize(problem_.free));
     for (const Eigen::VectorXd& z : LocalModel::design(problem_, options_.seed, fit_.z, spread, length, designed_))
-      (*this)(z, options_.trials);
-    designed_ += static_cast<std::uint32_t>(length);
+      (*this)(z, {options_.trials, LocalModel::trials_of(designed_++, options_.trials)});
     const LocalModel model(problem_, options_, fit_, spread);
     const Eigen::VectorXd step = model.step(spread) - fit_.z, from = fit_.z;
-    for (const double share : {1.0, 0.5}) {
+    for (const double share : {1.0, 0.5, 0.25}) {
       const Eigen::VectorXd z = from + share * step;
-      const double objective = (*this)(z, options_.polish_trials);
+      const double objective = (*this)(z, {options_.polish_trials});
       if (objective < fit_.objective) move_to(z, objective);
     }
     spread = model.next_spread();
@@ -105,7 +110,7 @@ class Search {
     for (Eigen::Index i = 0; i < n; ++i)
       origin[i] = std::clamp(problem_.free[i].z(problem_.free[i].get(problem_.start)), lower_[i], upper_[i]);
     std::vector<Eigen::VectorXd> starts{origin};
-    (*this)(origin, options_.trials);
+    (*this)(origin, {options_.trials});
     if (options_.starts <= 1) return starts;
     double root = 2.0;  // of x^(n + 1) = x + 1: the generalised golden ratio (Roberts 2018)
     for (int k = 0; k < 40; ++k) root = std::pow(1.0 + root, 1.0 / static_cast<double>(n + 1));
@@ -116,7 +121,7 @@ class Search {
         const double u = std::fmod(0.5 + k * std::pow(root, -static_cast<double>(i + 1)), 1.0);
         z[i] = std::clamp(3.0 * u - 1.5, lower_[i], upper_[i]);
       }
-      const double objective = (*this)(z, options_.trials);
+      const double objective = (*this)(z, {options_.trials});
       tried.emplace_back(objective, z);
     }
     std::stable_sort(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -129,8 +134,9 @@ class Search {
   }
 
   /// NLopt's BOBYQA from z. What it finds is in `fit_.evaluations`.
-  void descend(const Eigen::VectorXd& z) {
+  void descend(const Eigen::VectorXd& z, double step, std::uint32_t trials, int most) {
     const auto n = static_cast<unsigned>(problem_.free.size());
+    trials_ = trials;
     // BOBYQA needs two parameters.
     nlopt::opt search(n > 1 ? nlopt::LN_BOBYQA : nlopt::LN_SBPLX, n);
     search.set_lower_bounds({lower_.begin(), lower_.end()});
@@ -138,12 +144,12 @@ class Search {
     search.set_min_objective(
         [](const std::vector<double>& x, std::vector<double>&, void* self) {
           auto& me = *static_cast<Search*>(self);
-          return me(Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x)), me.options_.trials);
+          return me(Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x)), {me.trials_});
         },
         this);
-    search.set_initial_step(0.5);
+    search.set_initial_step(step);
     search.set_xtol_abs(0.02);
-    search.set_maxeval(search_length());
+    search.set_maxeval(most);
     std::vector<double> x(z.begin(), z.end());
     double objective = 0.0;
     try {
@@ -156,7 +162,7 @@ class Search {
   const FitOptions& options_;
   Eigen::VectorXd lower_, upper_;
   Fit fit_;
-  std::uint32_t designed_ = 0;
+  std::uint32_t designed_ = 0, trials_ = 0;
   int done_ = 0, planned_ = 1;
 };
 
@@ -225,11 +231,11 @@ double FitProblem::prior(const FitOptions& options) const {
 }
 
 Evaluation evaluate(const FitProblem& problem, const FitOptions& options, const Eigen::VectorXd& z,
-                    std::uint32_t trials) {
-  const ObserveOptions how{trials, options.seed, 0, options.threads, problem.rows, {}};
+                    const Trials& trials) {
+  const ObserveOptions how{trials.count, options.seed, trials.first, options.threads, problem.rows, {}};
   const Model model = model_at(problem.start, problem.free, z);
   const Score s = score(problem.campaign, observe(problem.campaign, model, how), problem.rows);
-  Evaluation evaluation{z, Eigen::VectorXd(std::ssize(s.rows)), trials, s.total};
+  Evaluation evaluation{z, Eigen::VectorXd(std::ssize(s.rows)), trials.count, s.total};
   for (std::size_t r = 0; r < s.rows.size(); ++r) evaluation.rows[static_cast<Eigen::Index>(r)] = s.rows[r].score;
   evaluation.objective += problem.prior(options) * z.squaredNorm();
   return evaluation;

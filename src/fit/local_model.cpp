@@ -12,9 +12,10 @@ namespace {
 
 constexpr double kFirstReach = 0.3;            // standard deviation of the first design, in z
 constexpr double kNarrow = 0.15, kWide = 0.5;  // of the later ones, in any direction
-constexpr double kLocal = 3.0;     // squared distance, over what is typical of the design, up to which a place counts
-constexpr double kTrust = 2.0;     // a step stays within so many standard deviations
-constexpr double kRidge = 0.0025;  // (noise of a total / largest second derivative)^2 = (0.005 / 0.1)^2
+constexpr double kLocal = 3.0;    // squared distance, over what is typical of the design, up to which a place counts
+constexpr double kTrust = 2.0;    // a step stays within so many standard deviations
+constexpr double kNoise = 0.007;  // typical of a total, for the ridge
+constexpr double kCurved = 0.2, kTwisted = 0.03;  // typical second derivatives, pure and mixed, for the ridge
 
 /// Weight of each row in the total, for weights of the blocks: the mean over the groups of weighted means.
 Eigen::VectorXd row_weights(const Score& score, std::span<const double> block) {
@@ -75,7 +76,9 @@ LocalModel::LocalModel(const FitProblem& problem, const FitOptions& options, con
     weights[i] = away <= kLocal ? precision * std::exp(-0.5 * away) : 0.0;
     luck_[i] = 1.0 / std::sqrt(precision);
   }
-  model_.emplace(places, weights, centre_, kRidge);
+  model_.emplace(
+      places, weights, centre_,
+      QuadraticFit::Ridge{(kNoise / kCurved) * (kNoise / kCurved), (kNoise / kTwisted) * (kNoise / kTwisted)});
   rows_ = model_->coefficients(values);
   const Eigen::VectorXd ones = row_weights(score_, std::vector<double>(problem.campaign.blocks.size(), 1.0));
   total_ = rows_ * ones;

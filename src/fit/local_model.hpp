@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <optional>
 
 #include "talus/fit/calibrate.hpp"
@@ -10,17 +11,22 @@ namespace talus {
 /// to step from there, and how far other blocks, another prior and other luck would move it.
 class LocalModel {
  public:
+  static constexpr std::uint32_t kDesigns = 2'000'000;  ///< trials from here on are those of designs
+
   /// @param spread  covariance of the places it is learnt from; those far outside do not count
   LocalModel(const FitProblem& problem, const FitOptions& options, const Fit& fit, const Eigen::MatrixXd& spread);
 
   /// Evaluations of one round.
-  static int round_length(Eigen::Index parameters) { return 7 * static_cast<int>(parameters) + 10; }
+  static int round_length(Eigen::Index parameters) { return std::max(60, 8 * static_cast<int>(parameters) + 10); }
   /// Covariance of the design of the first round.
   static Eigen::MatrixXd first_spread(Eigen::Index parameters);
   /// Places around the centre, normally distributed within the bounds. `first`: number of the first of them.
   static std::vector<Eigen::VectorXd> design(const FitProblem& problem, std::uint64_t seed,
                                              const Eigen::VectorXd& centre, const Eigen::MatrixXd& spread, int count,
                                              std::uint32_t first);
+
+  /// First trial of place number `place`: each has luck of its own, so that the model averages over it.
+  static std::uint32_t trials_of(std::uint32_t place, std::uint32_t trials) { return kDesigns + place * trials; }
 
   /// The minimum of the model, within the bounds and two standard deviations of the spread.
   Eigen::VectorXd step(const Eigen::MatrixXd& spread) const;

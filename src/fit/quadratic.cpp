@@ -8,7 +8,7 @@
 namespace talus {
 
 QuadraticFit::QuadraticFit(const Eigen::MatrixXd& places, const Eigen::VectorXd& weights, const Eigen::VectorXd& centre,
-                           double ridge)
+                           const Ridge& ridge)
     : directions_(places.rows()) {
   const Eigen::Index n = directions_, coefficients = 1 + n + n * (n + 1) / 2;
   features_.resize(places.cols(), coefficients);
@@ -16,14 +16,16 @@ QuadraticFit::QuadraticFit(const Eigen::MatrixXd& places, const Eigen::VectorXd&
     const Eigen::VectorXd u = places.col(i) - centre;
     features_(i, 0) = 1.0;
     features_.row(i).segment(1, n) = u;
-    Eigen::Index k = 1 + n;
+    Eigen::Index column = 1 + n;
     for (Eigen::Index a = 0; a < n; ++a)
-      for (Eigen::Index b = a; b < n; ++b) features_(i, k++) = (a == b ? 0.5 : 1.0) * u[a] * u[b];
+      for (Eigen::Index b = a; b < n; ++b) features_(i, column++) = (a == b ? 0.5 : 1.0) * u[a] * u[b];
   }
   const Eigen::MatrixXd weighted = weights.asDiagonal() * features_;
   Eigen::MatrixXd normal = features_.transpose() * weighted;
   normal.diagonal().head(1 + n).array() += 1e-9;
-  normal.diagonal().tail(coefficients - 1 - n).array() += ridge;
+  Eigen::Index k = 1 + n;
+  for (Eigen::Index a = 0; a < n; ++a)
+    for (Eigen::Index b = a; b < n; ++b, ++k) normal(k, k) += a == b ? ridge.pure : ridge.mixed;
   solver_ = normal.ldlt().solve(weighted.transpose());
 }
 

@@ -8,7 +8,7 @@
 namespace talus {
 namespace {
 
-constexpr std::uint32_t kOwnDesigns = 1'000'000;  // numbers of places that no search has used
+constexpr std::uint32_t kOwnDesigns = 10'000;  // numbers of places that no search has used
 
 void summarise(std::span<const Parameter> free, Uncertainty& out) {
   const Eigen::Index n = out.draws.cols();
@@ -33,17 +33,19 @@ Uncertainty uncertainty_of(const FitProblem& problem, const FitOptions& options,
   Uncertainty out;
   const Eigen::Index n = std::ssize(problem.free);
   const int length = LocalModel::round_length(n);
-  Fit around = fit;  // gets the new evaluations
-  Eigen::MatrixXd spread = LocalModel(problem, options, fit, LocalModel::first_spread(n)).next_spread();
-  int done = 0;
+  Fit around = fit;
+  around.evaluations.clear();  // the search lingers where its luck was good: what it saw would look too sharp
+  Eigen::MatrixXd spread = LocalModel::first_spread(n);
+  std::uint32_t done = 0;
   for (int round = 0; round < how.rounds; ++round) {
-    const auto first = kOwnDesigns + static_cast<std::uint32_t>(done);
+    const auto first = kOwnDesigns + done;
     for (const Eigen::VectorXd& z : LocalModel::design(problem, options.seed, fit.z, spread, length, first)) {
-      if (options.proceed && !options.proceed(static_cast<double>(done++) / (how.rounds * length))) {
+      if (options.proceed && !options.proceed(static_cast<double>(done) / (how.rounds * length))) {
         out.interrupted = true;
         return out;
       }
-      around.evaluations.push_back(evaluate(problem, options, z, options.trials));
+      const Trials own{options.trials, LocalModel::trials_of(kOwnDesigns + done++, options.trials)};
+      around.evaluations.push_back(evaluate(problem, options, z, own));
     }
     if (round + 1 < how.rounds) spread = LocalModel(problem, options, around, spread).next_spread();
   }

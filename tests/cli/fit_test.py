@@ -5,6 +5,7 @@ import json
 import math
 import os
 import unittest
+import warnings
 
 from support import NORTH, WEST, Case
 
@@ -19,6 +20,7 @@ def reference():
         return None
     spec = importlib.util.spec_from_file_location("score", path)
     module = importlib.util.module_from_spec(spec)
+    warnings.simplefilter("ignore", ResourceWarning)  # it leaves its files to be closed
     spec.loader.exec_module(module)
     return module
 
@@ -72,3 +74,93 @@ class AgainstTheReference(Case):
     def test_stops_alone(self):
         self.compare("authume", 40)
         self.compare("tschamut", 40)
+
+
+class OwnCampaign(Case):
+    """Blocks down the slope of support.py, measured by the program itself from a known model."""
+
+    TRUTH = "[ground.zones.default]\ntheta_scale = 0.3\nEn50 = 4\n"
+
+    def setUp(self):
+        super().setUp()
+        blocks = "id,x,y,release_height_m,mass_kg,holdout\n" + "".join(
+            f"b{i},{WEST + 40 + 5 * i},{NORTH - 40},1,{400 + 20 * i},{int(i % 3 == 2)}\n" for i in range(45))
+        self.write("blocks.csv", blocks)
+        self.write("screens.csv", f'id,wkt\nS1,"LINESTRING ({WEST} {NORTH - 150}, {WEST + 300} {NORTH - 150})"\n')
+        head = 'name = "own"\ndem = "dem.tif"\nblocks = "blocks.csv"\nscreens = "screens.csv"\n'
+        errors = "[measurement_error]\nposition_m = 0.3\nspeed_fraction = 0.03\njump_height_m = 0.1\n"
+        self.write("truth.toml", self.TRUTH)
+        self.write("first.toml", head + errors)
+        self.run_well("score", self.path("first.toml"), "--parameters", self.path("truth.toml"), "--trials", "10",
+                      "--seed", "99", "--dump", self.path("dump"))
+        stops = [r for r in table(self.path("dump/stops.csv")) if r["trial"] == "0" and r["x"]]
+        passages = [r for r in table(self.path("dump/passages.csv")) if r["trial"] == "0"]
+        self.write("stops.csv", "id,x,y\n" + "".join(f"{r['block']},{r['x']},{r['y']}\n" for r in stops))
+        self.write("passages.csv", "id,screen,speed_ms,jump_height_m\n" + "".join(
+            f"{r['block']},{r['screen']},{r['speed_ms']},{r['jump_height_m']}\n" for r in passages))
+        self.campaign = self.write("campaign.toml", head + 'stops = "stops.csv"\npassages = "passages.csv"\n' + errors)
+
+    def test_calibrate_lowers_the_error_and_writes_a_model_that_runs(self):
+        before = os.listdir(self.folder)
+        done = self.run_well("calibrate", self.campaign, "-o", self.path("fit"), "--fit", "theta_scale,En50", "--starts",
+                             "2", "--trials", "20")
+        self.assertIn("held-out rows (15 blocks)", done.stdout)
+        self.assertEqual(sorted(os.listdir(self.path("fit"))), ["calibration.json", "fitted.toml", "report.md"])
+        self.assertEqual(sorted(os.listdir(self.folder)), sorted(before + ["fit"]))
+        with open(self.path("fit/calibration.json"), encoding="utf-8") as file:
+            result = json.load(file)
+        error = result["error"]
+        self.assertLess(error["fit"]["after"], error["fit"]["before"])
+        self.assertLess(error["holdout"]["after"], error["holdout"]["before"])
+        keys = {p["key"]: p for p in result["parameters"]}
+        self.assertEqual(set(keys), {"ground.zones.default.theta_scale", "ground.zones.default.En50"})
+        for p in keys.values():
+            self.assertLessEqual(p["ci95"][0], p["value"])
+            self.assertGreaterEqual(p["ci95"][1], p["value"])
+        theta = keys["ground.zones.default.theta_scale"]
+        self.assertLess(abs(math.log(theta["value"] / 0.3)), 0.5)
+        self.assertEqual(len(result["correlation"]), 2)
+        with open(self.path("fit/report.md"), encoding="utf-8") as file:
+            report = file.read()
+        for word in ("95 % interval", "Held-out rows", "runout", "speed S1", "Crossed S1"):
+            self.assertIn(word, report)
+
+        scored = self.run_well("score", self.campaign, "--parameters", self.path("fit/fitted.toml"), "--json")
+        self.assertLess(json.loads(scored.stdout)["fit"]["score"], error["fit"]["before"])
+        self.write("s.toml", 'include = "fit/fitted.toml"\ndem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n'
+                   "[blocks]\ndiameter = 0.8\n")
+        self.run_well("run", self.path("s.toml"), "--trajectories", "3", "-o", self.path("out"))
+        settings = {s["key"]: s for s in self.record()["settings"]}
+        self.assertAlmostEqual(settings["ground.default.theta_scale"]["value"], theta["value"], delta=1e-5)
+        self.assertEqual(settings["ground.default.theta_scale"]["source"], "include fit/fitted.toml")
+        self.assertIn("include", [i["role"] for i in self.record()["inputs"]])
+
+    def test_same_result_for_any_number_of_threads(self):
+        texts = []
+        for threads in "1", "3":
+            out = self.path("t" + threads)
+            self.run_well("calibrate", self.campaign, "-o", out, "--fit", "En50", "--starts", "1", "--trials", "10",
+                          "--threads", threads, "-q")
+            with open(out + "/fitted.toml", encoding="utf-8") as file:
+                texts.append(file.read())
+        self.assertEqual(texts[0], texts[1])
+
+    def test_score_prints_rows_beside_the_score(self):
+        done = self.run_well("score", self.campaign, "--parameters", self.path("truth.toml"), "--rows", "fit")
+        self.assertRegex(done.stdout, r"stop +\d\.\d{3} +\d\.\d{3} to +\d\.\d{3} +30\n")
+        self.assertNotIn("held-out", done.stdout)
+
+    def test_faults(self):
+        before = os.listdir(self.folder)
+        self.fails(2, "--parameters", arguments=["score", self.campaign])
+        self.fails(2, "none.toml", arguments=["score", self.campaign, "--parameters", self.path("none.toml")])
+        self.fails(2, "nowhere.toml", arguments=["calibrate", self.path("nowhere.toml"), "-o", self.path("x")])
+        self.fails(2, "'E50'", "En50", arguments=["calibrate", self.campaign, "-o", self.path("x"), "--fit", "E50"])
+        self.write("m.toml", "[ground.zones.rock]\nEn50 = 3\n")
+        self.fails(2, "rock", "no such zone", arguments=["score", self.campaign, "--parameters", self.path("m.toml")])
+        os.remove(self.path("m.toml"))
+        self.assert_nothing_left(before)
+
+
+if __name__ == "__main__":
+    unittest.main()

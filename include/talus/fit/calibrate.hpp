@@ -90,9 +90,14 @@ struct FitProblem {
   double prior(const FitOptions& options) const;  ///< weight of z^2 in the objective
 };
 
-/// The objective at one point, with so many trials: the same ones for every point.
+/// Which trials of every block are simulated.
+struct Trials {
+  std::uint32_t count, first = 0;
+};
+
+/// The objective at one point. Equal trials: compared on the same luck.
 Evaluation evaluate(const FitProblem& problem, const FitOptions& options, const Eigen::VectorXd& z,
-                    std::uint32_t trials);
+                    const Trials& trials);
 
 /// A model with the free parameters at z.
 Model model_at(const Model& start, std::span<const Parameter> free, const Eigen::VectorXd& z);

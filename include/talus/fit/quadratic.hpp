@@ -10,11 +10,15 @@ namespace talus {
 /// Linear in the values: the coefficients of many functions at the same places cost one factorisation.
 class QuadraticFit {
  public:
+  /// Added to the normal equations, so that few places do: second derivatives that the places do not show are none.
+  struct Ridge {
+    double pure, mixed;  ///< for u_i^2 and for u_i u_j: (noise of a value / typical second derivative)^2
+  };
+
   /// @param places   one per column; size: directions x places
   /// @param weights  of the places, >= 0; size: places
-  /// @param ridge    added to the normal equations of the second-order coefficients, so that few places do
   QuadraticFit(const Eigen::MatrixXd& places, const Eigen::VectorXd& weights, const Eigen::VectorXd& centre,
-               double ridge);
+               const Ridge& ridge);
 
   /// Coefficients of functions from their values: one function per column.
   /// @param values  size: places x functions. @return size: coefficients x functions

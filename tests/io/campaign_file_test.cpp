@@ -1,0 +1,168 @@
+#include "talus/io/campaign_file.hpp"
+
+#include "files.hpp"
+#include "talus/io/model_file.hpp"
+
+namespace talus::io::test {
+namespace {
+
+constexpr const char* kBlocks =
+    "id,x,y,release_height_m,vx,vy,vz,mass_kg,density_kgm3,L1_m,L2_m,L3_m,day,group,holdout\n"
+    "a,600050,5200040,1.5,0,-1,0,1000,2650,1.1,0.9,0.7,3,g,0\n"
+    "b,600060,5200040,2,,,,500,,,,,,,1\n";
+
+class Campaigns : public Files {
+ protected:
+  Campaigns() {
+    RasterFile{}.write(path("dem.tif"));
+    write_text("blocks.csv", kBlocks);
+    write_text("screens.csv", "id,wkt\nS1,\"LINESTRING (600010 5200020, 600090 5200020)\"\n");
+  }
+
+  LoadedCampaign read(const std::string& more = "") {
+    return read_campaign(write_text("c.toml", "dem = \"dem.tif\"\nblocks = \"blocks.csv\"\n" + more));
+  }
+  void refused(const std::string& more, const std::vector<std::string>& parts) {
+    expect_input_error([&] { read(more); }, parts);
+  }
+};
+
+TEST_F(Campaigns, BlocksInLocalMetres) {
+  const Campaign c = read("crs = \"EPSG:32632\"\n").campaign;
+  ASSERT_EQ(c.blocks.size(), 2U);
+  const MeasuredBlock &a = c.blocks[0], &b = c.blocks[1];
+  EXPECT_EQ(a.x, 50.0);
+  EXPECT_EQ(a.y, 40.0);
+  EXPECT_EQ(a.velocity, Vec3(0, -1, 0));
+  EXPECT_EQ(a.axes, Vec3(1.1, 0.9, 0.7));
+  EXPECT_EQ(a.day, 3);
+  EXPECT_EQ(a.group, "g");
+  EXPECT_FALSE(a.holdout);
+  EXPECT_TRUE(b.holdout);
+  EXPECT_EQ(b.density, 2700.0);
+  EXPECT_EQ(b.velocity, Vec3::Zero());
+  EXPECT_NEAR(b.axes[0] * b.axes[1] * b.axes[2] * kPi / 6.0 * 2700.0, 500.0, 1e-9);  // a sphere of that mass
+  EXPECT_EQ(b.axes[0], b.axes[2]);
+  EXPECT_EQ(c.zone_names, std::vector<std::string>{"default"});
+}
+
+TEST_F(Campaigns, Measurements) {
+  write_text("stops.csv", "id,x,y,mass_kg\na,600052.5,5200010,\nb,,,\n");
+  write_text("passages.csv",
+             "id,screen,speed_ms,jump_height_m,angular_velocity_rads\na,S1,12.5,,3\na,S1,99,9,9\nb,S1,,,\n");
+  write_text("samples.csv", "id,x,y,z,speed_ms,angular_velocity_rads\na,600053,5200036,,7,\n");
+  const LoadedCampaign loaded = read(
+      "stops = \"stops.csv\"\npassages = \"passages.csv\"\nscreens = \"screens.csv\"\nsamples = \"samples.csv\"\n"
+      "[measurement_error]\nposition_m = 0.5\nspeed_fraction = 0.02\n");
+  const Campaign& c = loaded.campaign;
+  ASSERT_TRUE(c.blocks[0].stop.has_value());
+  EXPECT_EQ(*c.blocks[0].stop, Eigen::Vector2d(52.5, 10.0));
+  EXPECT_FALSE(c.blocks[0].stop_mass.has_value());
+  EXPECT_FALSE(c.blocks[1].stop.has_value());
+  ASSERT_TRUE(c.blocks[0].passages[0].has_value());
+  EXPECT_EQ(c.blocks[0].passages[0]->speed, 12.5);  // the first row counts
+  EXPECT_TRUE(std::isnan(c.blocks[0].passages[0]->jump));
+  EXPECT_TRUE(c.blocks[1].passages[0].has_value());  // it crossed, though nothing was measured
+  ASSERT_EQ(c.blocks[0].samples.size(), 1U);
+  EXPECT_NEAR(c.blocks[0].samples[0].distance, 5.0, 1e-9);  // 3, 4, 5
+  EXPECT_TRUE(std::isnan(c.blocks[0].samples[0].spin));
+  EXPECT_EQ(c.error.position_m, 0.5);
+  EXPECT_EQ(c.error.jump_height_m, 0.0);
+  EXPECT_EQ(loaded.inputs.size(), 7U);
+}
+
+TEST_F(Campaigns, ZonesOfARaster) {
+  RasterFile zones;
+  zones.type = GDT_Byte;
+  zones.values.assign(80, 1.0);
+  zones.values[0] = 7.0;  // the north-western cell
+  zones.write(path("zones.tif"));
+  const LoadedCampaign loaded = read("zones = \"zones.tif\"\n[zone_names]\n1 = \"talus\"\n7 = \"rock\"\n");
+  EXPECT_EQ(loaded.campaign.zone_names, (std::vector<std::string>{"default", "talus", "rock"}));
+  EXPECT_EQ(loaded.campaign.zones.at(0, 7), 2);
+  EXPECT_EQ(loaded.campaign.zones.at(5, 0), 1);
+  refused("zones = \"zones.tif\"\n[zone_names]\n1 = \"talus\"\n",
+          {"zones.tif", "zone '7'", "[zone_names]", "7 = \"NAME\""});
+  refused("zones = \"zones.tif\"\n", {"c.toml:3", "[zone_names]"});
+  refused("zones = \"zones.tif\"\n[zone_names]\n1 = \"default\"\n7 = \"rock\"\n", {"c.toml:5", "another name"});
+}
+
+TEST_F(Campaigns, FaultsNameFileLineColumnAndValue) {
+  refused("colour = 1\n", {"c.toml:3", "unknown key 'colour'"});
+  refused("stops = \"none.csv\"\n", {"c.toml:3", "none.csv", "no such file"});
+  refused("crs = \"EPSG:2056\"\n", {"c.toml", "EPSG:2056", "system of the DEM"});
+  write_text("stops.csv", "id,x,y\nc,600052,5200010\n");
+  refused("stops = \"stops.csv\"\n", {"stops.csv:2", "id = 'c'", "no block of"});
+  write_text("passages.csv", "id,screen\na,S2\n");
+  refused("passages = \"passages.csv\"\nscreens = \"screens.csv\"\n", {"passages.csv:2", "screen = 'S2'", "S1"});
+  refused("passages = \"passages.csv\"\n", {"passages.csv:2", "screens = "});
+}
+
+TEST_F(Campaigns, FaultsOfBlocks) {
+  const std::string head = "id,x,y,release_height_m,mass_kg,L1_m,L2_m,L3_m\n", good = "a,600050,5200040,1,100,,,\n";
+  const auto with = [&](const std::string& text) { write_text("blocks.csv", text); };
+  with(head + good + "a,600050,5200040,1,100,,,\n");
+  refused("", {"blocks.csv:3", "id = 'a'", "already in line 2"});
+  with(head + "a,700050,5200040,1,100,,,\n");
+  refused("", {"blocks.csv:2", "x = '700050'", "off the terrain"});
+  with(head + "a,600050,5200040,1,100,0.5,0.9,0.2\n");
+  refused("", {"blocks.csv:2", "L2_m = '0.9'", "L1_m = 0.5"});
+  with(head + "a,600050,5200040,1,100,0.5,,\n");
+  refused("", {"blocks.csv:2", "L2_m", "all three"});
+  with(head + "a,600050,5200040,1,heavy,,,\n");
+  refused("", {"blocks.csv:2", "mass_kg = 'heavy'", "number in kg"});
+  with(head + "a,600050,5200040,1,\"1,5\",,,\n");
+  refused("", {"blocks.csv:2", "mass_kg = '1,5'", "point for decimals"});
+  with(head + "a,600050,5200040,1,-3,,,\n");
+  refused("", {"blocks.csv:2", "mass_kg = '-3'", "above 0"});
+  with(head + "a,600050,5200040,1,nan,,,\n");
+  refused("", {"blocks.csv:2", "mass_kg = 'nan'"});
+  with(head + "a,600050,5200040,1,,,,\n");
+  refused("", {"blocks.csv:2", "mass_kg = ''", "must be given"});
+  with(head + "a,600050,5200040,1\n");
+  refused("", {"blocks.csv:2", "4 cells", "8"});
+  with("id,x,y,release_height_m,mass\n");
+  refused("", {"blocks.csv:1", "unknown column 'mass'", "mass_kg"});
+  with("id,x,y,release_height_m\n");
+  refused("", {"blocks.csv:1", "no column 'mass_kg'"});
+  with(head);
+  refused("", {"blocks.csv", "no blocks"});
+  with("");
+  refused("", {"blocks.csv", "empty"});
+}
+
+TEST_F(Campaigns, AModelReadsBackTheSame) {
+  RasterFile zones;
+  zones.type = GDT_Byte;
+  zones.values.assign(80, 1.0);
+  zones.write(path("zones.tif"));
+  const LoadedCampaign loaded = read("zones = \"zones.tif\"\n[zone_names]\n1 = \"steep talus\"\n");
+  Model model = model_of_preset(loaded.campaign, "upper-talus-3d");
+  model.grounds[1] = {1.0 / 3.0, 0.123456789012345, 7.7, 1e-3, std::tan(radians(33.0)), 0.9, 1.25};
+  model.grounds[0].En50 = 5.5;
+  model.impact = {0.3, Roughness::Resample};
+  const Model back =
+      read_model(write_text("m.toml", model_text(model, loaded, "two lines\nof heading")), loaded.campaign);
+  for (std::size_t z = 0; z < 2; ++z) {
+    EXPECT_EQ(back.grounds[z].theta_scale, model.grounds[z].theta_scale);
+    EXPECT_EQ(back.grounds[z].psi_scale, model.grounds[z].psi_scale);
+    EXPECT_EQ(back.grounds[z].En50, model.grounds[z].En50);
+    EXPECT_EQ(back.grounds[z].Et50, model.grounds[z].Et50);
+    EXPECT_NEAR(back.grounds[z].tan_phi, model.grounds[z].tan_phi, 1e-15);
+    EXPECT_EQ(back.grounds[z].shape_max, model.grounds[z].shape_max);
+  }
+  EXPECT_EQ(back.impact.deformation_coefficient, 0.3);
+  EXPECT_EQ(back.impact.roughness, Roughness::Resample);
+  const auto faulty = [&](const std::string& text, const std::vector<std::string>& parts) {
+    write_text("m.toml", text);
+    expect_input_error([&] { read_model(path("m.toml"), loaded.campaign); }, parts);
+  };
+  faulty("[ground.zones.tallus]\nEn50 = 3\n", {"m.toml", "tallus", "no such zone", "steep talus"});
+  faulty("[ground.zones.\"steep talus\"]\nEn5 = 3\n", {"m.toml:2", "unknown key 'En5'", "En50"});
+  faulty("dem = \"x\"\n", {"m.toml:1", "unknown key 'dem'"});
+  faulty("[model]\nstop_speed = 1\n", {"m.toml:2", "unknown key 'stop_speed'"});
+  faulty("[ground.zones.default]\nEn50 = -3\n", {"m.toml:2", "En50 = -3"});
+}
+
+}  // namespace
+}  // namespace talus::io::test

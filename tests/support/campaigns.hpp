@@ -1,0 +1,57 @@
+#pragma once
+#include "scenarios.hpp"
+#include "talus/fit/observe.hpp"
+
+/// Small campaigns by hand for the tests of `fit`.
+namespace talus::test {
+
+/// Blocks that were released side by side at the top of a slope of 42 degrees with bumps, which a screen crosses at
+/// x = 90 m and which ends in a flat floor at x = 120 m. Every third is held out. Nothing is measured yet.
+inline Campaign campaign_on_slope(std::size_t blocks) {
+  Numbers numbers(11);
+  Campaign c;
+  c.name = "slope";
+  c.surface = Surface(terrain(grid_of(160, 70, 2.0, 2.0), [&](double x, double) {
+    return 200.0 - 0.9 * std::min(x, 120.0) + numbers.uniform(-0.3, 0.3);
+  }));
+  c.zone_names = {"default"};
+  c.screens = {{"S1", {{{90.0, 0.0}, {90.0, 140.0}}}}};
+  c.error = {0.3, 0.03, 0.1, 0.05};
+  for (std::size_t i = 0; i < blocks; ++i) {
+    MeasuredBlock b;
+    b.id = "b" + std::to_string(i);
+    b.x = 8.0;
+    b.y = 30.0 + 70.0 * static_cast<double>(i) / static_cast<double>(blocks);
+    b.mass = 500.0 + 20.0 * static_cast<double>(i);
+    b.velocity = Vec3(1.0, 0.0, 0.0);
+    b.axes.setConstant(equivalent_diameter(b.mass, b.density));
+    b.holdout = i % 3 == 2;
+    b.passages.resize(1);
+    c.blocks.push_back(std::move(b));
+  }
+  return c;
+}
+
+/// The ground of the rough slope.
+inline Model model_of_slope() {
+  Model model;
+  model.grounds = rough_slope(1, 1).cover.grounds;
+  return model;
+}
+
+/// Gives every block what trial 0 of another seed would have shown: measured data of a known model.
+inline void measure(Campaign& c, const Model& model, std::uint64_t seed) {
+  ObserveOptions once;
+  once.trials = 1;
+  once.seed = seed;
+  const std::vector<BlockRuns> runs = observe(c, model, once);
+  for (std::size_t b = 0; b < c.blocks.size(); ++b) {
+    const BlockRuns& r = runs[b];
+    if (!std::isnan(r.x[0])) c.blocks[b].stop = Eigen::Vector2d(r.x[0], r.y[0]);
+    for (std::size_t s = 0; s < r.screens.size(); ++s)
+      if (!std::isnan(r.screens[s].speed[0]))
+        c.blocks[b].passages[s] = Passage{r.screens[s].speed[0], r.screens[s].jump[0], r.screens[s].spin[0]};
+  }
+}
+
+}  // namespace talus::test
