@@ -147,7 +147,9 @@ class Search {
           return me(Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x)), {me.trials_});
         },
         this);
-    search.set_initial_step(step);
+    std::vector<double> steps;  // BOBYQA wants room for two of them between the bounds
+    for (unsigned i = 0; i < n; ++i) steps.push_back(std::min(step, 0.4 * (upper_[i] - lower_[i])));
+    search.set_initial_step(steps);
     search.set_xtol_abs(0.02);
     search.set_maxeval(most);
     std::vector<double> x(z.begin(), z.end());

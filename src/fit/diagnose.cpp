@@ -87,15 +87,6 @@ class Diagnosing {
     return band(campaign_, axis, first.from, list[verdict.candidate + verdict.joined - 1].to);
   }
 
-  /// A candidate fitted together with all that is free already, on some of the rows.
-  Fit fit_with(const Fitted& base, const Candidate& candidate, const Eigen::VectorXd& start,
-               const std::vector<bool>& rows, int evaluations, std::vector<Parameter>& free) const {
-    free = base.free;
-    free.insert(free.end(), candidate.parameters.begin(), candidate.parameters.end());
-    const Model model = with(base.model, candidate, start);
-    return fit_parameters(campaign_, model, free, rows, fitting(evaluations));
-  }
-
   /// Where the search of a candidate starts: the estimate of the score test, kept within reason.
   static Eigen::VectorXd start_of(const Candidate& candidate, const Verdict& verdict) {
     Eigen::VectorXd z = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(candidate.parameters.size()));
@@ -113,11 +104,11 @@ class Diagnosing {
     trial.where = candidate.where;
     trial.p_value = verdict.p_value;
     trial.parameters = candidate.parameters;
-    std::vector<Parameter> free;
-    // What the test finds nothing in is fitted for the record only, by the local model alone.
-    const int parameters = static_cast<int>(base.free.size() + candidate.parameters.size());
-    const int evaluations = verdict.p_value < kWorthASearch ? 4 * parameters : 1;
-    Fit fit = fit_with(base, candidate, start_of(candidate, verdict.best), rows_, evaluations, free);
+    trial.joint = verdict.p_value < kWorthASearch;
+    std::vector<Parameter> free = trial.joint ? base.free : std::vector<Parameter>{};
+    free.insert(free.end(), candidate.parameters.begin(), candidate.parameters.end());
+    const Model start = with(base.model, candidate, start_of(candidate, verdict.best));
+    Fit fit = fit_parameters(campaign_, start, free, rows_, fitting(3 * static_cast<int>(free.size())));
     trial.fitted = finish(std::move(fit), std::move(free));
     for (const Parameter& p : candidate.parameters) trial.values.push_back(p.get(trial.fitted.model));
     const Difference c = difference_of(base.score, trial.fitted.score, campaign_.blocks.size());

@@ -187,8 +187,10 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
                 100.0 * e.reduction.high) +
           "</td></tr></table>\n<p>Mean normalised score: 0 says the very value, about 0.56 knows no more than the "
           "spread of the measurements.</p>\n";
-  html += "<h2>Candidates</h2>\n<p>Each at its best place, fitted together with the ground.</p>\n" +
-          candidates_table(d.rounds.front(), record.candidates.front());
+  html +=
+      "<h2>Candidates</h2>\n<p>Each at its best place, fitted together with the ground where p is below 0.1, else with "
+      "the ground held.</p>\n" +
+      candidates_table(d.rounds.front(), record.candidates.front());
   html +=
       "<h2>Residuals</h2>\n<p>Each point is a block; z is where its measurement lies among what the model "
       "simulates for it, as a standard normal number. Grey: 95 % of the points of a right model.</p>\n" +

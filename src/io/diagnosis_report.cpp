@@ -49,6 +49,7 @@ Json candidates_of(const Round& round, const std::vector<HoldoutError>& holdout)
     list.push_back({{"effect", t.effect},
                     {"where", t.where},
                     {"parameters", parameters_of(t)},
+                    {"fitted_with_ground", t.joint},
                     {"fit", number(t.fitted.score.total)},
                     {"fit_gain_ci95", {number(t.gain_interval.low), number(t.gain_interval.high)}},
                     {"cross_validated_gain", number(t.cross_validated)},

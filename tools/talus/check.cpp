@@ -116,8 +116,9 @@ void print_zones(const Scenario& scenario) {
 }
 
 void print_blocks(const Scenario& scenario) {
-  line("sources",
-       count_text(scenario.features.size()) + " features, " + count_text(scenario.sources.size()) + " source cells");
+  line("sources", count_text(scenario.features.size()) +
+                      (scenario.features.size() == 1 ? " feature, " : " features, ") +
+                      count_text(scenario.sources.size()) + " source cells");
   const talus::Blocks& blocks = scenario.blocks;
   if (blocks.power_law.volume.high > 0.0)
     line("diameters", "power law of volume, " + range_text(blocks.power_law.volume, "m3") + ", exponent " +
@@ -126,7 +127,9 @@ void print_blocks(const Scenario& scenario) {
     line("diameters",
          range_text(c.diameter, "m") + (blocks.classes.size() > 1 ? ", weight " + talus::text_of(c.weight) : ""));
   const auto own = std::ranges::count_if(scenario.features, [](const auto& f) { return !std::isnan(f.diameter.low); });
-  if (own > 0) line("", std::to_string(own) + " features have a diameter of their own");
+  if (own > 0)
+    line("", own == 1 ? "1 feature has a diameter of its own"
+                      : count_text(static_cast<std::uint64_t>(own)) + " features have a diameter of their own");
   line("releases", count_text(scenario.sources.size()) + " x " + count_text(scenario.trajectories) + " = " +
                        count_text(scenario.released()) + " trajectories, seed " + std::to_string(scenario.seed));
   line("thresholds", "energy " + list_text(scenario.output.energy_thresholds, "kJ") + "; height " +

@@ -94,9 +94,9 @@ void add_diagnose(CLI::App& app, Action& action) {
   command->add_flag("--overwrite", options->overwrite, "replace the folder if it holds an earlier result");
   command->add_option("--fit", options->how.keys, "parameters, in every zone: theta_scale,psi_scale,En50,Et50,phi")
       ->delimiter(',');
-  command->add_option("--trials", options->how.search_trials, "trajectories per block in the searches (30)")
+  command->add_option("--trials", options->how.search_trials, "trajectories per block in the searches (24)")
       ->check(CLI::Range(10, 10000));
-  command->add_option("--test-trials", options->how.test_trials, "trajectories per block in the tests (120)")
+  command->add_option("--test-trials", options->how.test_trials, "trajectories per block in the tests (100)")
       ->check(CLI::Range(20, 10000));
   command->add_option("--level", options->how.first_level, "of significance, over all effects and places (0.05)")
       ->check(CLI::Range(0.0001, 0.5));

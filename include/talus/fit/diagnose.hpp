@@ -18,6 +18,7 @@ struct Trial {
   std::string effect, where;
   std::vector<Parameter> parameters;   ///< its own
   std::vector<double> values;          ///< of them, fitted
+  bool joint = true;                   ///< false: the ground was held, because the test found nothing (p above 0.1)
   double p_value = 1.0;                ///< of the score test, corrected for its places
   double gain = 0.0;                   ///< by which it lowers the error of the fitting rows
   Interval gain_interval;              ///< 95 %, paired bootstrap over blocks
@@ -45,7 +46,7 @@ struct Diagnosis {
 
 struct DiagnoseOptions {
   std::vector<std::string> keys{"theta_scale", "psi_scale", "En50", "Et50"};  ///< of the ground, fitted per zone
-  std::uint32_t search_trials = 30, test_trials = 120, final_trials = 200;    ///< per block
+  std::uint32_t search_trials = 24, test_trials = 100, final_trials = 200;    ///< per block
   std::uint64_t seed = 1;
   int threads = 0;
   int most_effects = 3;
@@ -56,9 +57,10 @@ struct DiagnoseOptions {
 
 /// Finds what a model of the ground alone leaves of a campaign's fitting rows, and which effect explains it.
 ///
-/// (1) Fits the ground. (2) Score test of all candidates. (3) Fits every effect at its best place together with the
-/// ground. (4) Chooses: significant in the test, better in a cross-validation over blocks, then the lowest error.
-/// (5) Puts it in and goes round again. The held-out rows are never looked at. docs/closing-the-loop.md, "Diagnosis".
+/// (1) Fits the ground. (2) Score test of all candidates. (3) Fits every effect at its best place, together with the
+/// ground where the test finds anything in it. (4) Chooses: significant in the test, better in a cross-validation over
+/// blocks, then the lowest error. (5) Puts it in and goes round again. The held-out rows are never looked at.
+/// docs/closing-the-loop.md, "Diagnosis".
 ///
 /// Throws Interrupted, declared below, when `proceed` says no.
 Diagnosis diagnose(const Campaign& campaign, const Model& start, const DiagnoseOptions& options);
