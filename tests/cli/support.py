@@ -101,10 +101,11 @@ class Case(unittest.TestCase):
                 "--trajectories", trajectories, "-o", self.path(out)]
 
     def call(self, *arguments, **options):
-        return subprocess.run([TALUS, *arguments], capture_output=True, text=True, timeout=120, check=False, **options)
+        options.setdefault("timeout", 120)
+        return subprocess.run([TALUS, *arguments], capture_output=True, text=True, check=False, **options)
 
-    def run_well(self, *arguments):
-        done = self.call(*arguments)
+    def run_well(self, *arguments, **options):
+        done = self.call(*arguments, **options)
         self.assertEqual(done.returncode, 0, done.stderr)
         return done
 
