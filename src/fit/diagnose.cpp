@@ -28,7 +28,8 @@ class Diagnosing {
       const Round& last = d.rounds.back();
       if (last.effect == "none" || last.effect == "unexplained") break;
       found.push_back(last.effect);
-      d.with_effects = last.trials.front().fitted;
+      polish(d.rounds.back().trials.front());
+      d.with_effects = d.rounds.back().trials.front().fitted;
     }
     d.residual_after = residual_of(d.with_effects);
     return d;
@@ -115,6 +116,20 @@ class Diagnosing {
     trial.gain = -c.mean;
     trial.gain_interval = {-c.interval.high, -c.interval.low};
     return trial;
+  }
+
+  /// Fits what was chosen once more, longer: it is what the user gets.
+  void polish(Trial& trial) {
+    what_ = "fitting " + trial.effect + " to the end";
+    std::vector<Parameter> free = trial.fitted.free;
+    FitOptions how = fitting(8 * static_cast<int>(free.size()));
+    how.trials = how.trials * 3 / 2;
+    how.rounds = 2;
+    Fitted longer = finish(fit_parameters(campaign_, trial.fitted.model, free, rows_, how), free);
+    if (!(longer.score.total < trial.fitted.score.total)) return;
+    trial.fitted = std::move(longer);
+    for (std::size_t i = 0; i < trial.parameters.size(); ++i)
+      trial.values[i] = trial.parameters[i].get(trial.fitted.model);
   }
 
   /// By how much a candidate lowers the error of blocks that its fit has not seen.
