@@ -36,8 +36,8 @@ class Search {
       const std::vector<Eigen::VectorXd> starts = choose_starts();
       for (const Eigen::VectorXd& z : starts) descend(z, 0.5, options_.trials, search_length());
       settle();
-      Eigen::MatrixXd spread = LocalModel::first_spread(std::ssize(problem_.free));
-      for (int round = 0; round < options_.rounds; ++round) refine(spread);
+      fit_.spread = LocalModel::first_spread(std::ssize(problem_.free));
+      for (int round = 0; round < options_.rounds; ++round) refine();
     } catch (const nlopt::forced_stop&) {  // `proceed` said no
       fit_.interrupted = true;
     }
@@ -84,18 +84,18 @@ class Search {
   }
 
   /// One round of the local model: a design, and a step where that is an improvement.
-  void refine(Eigen::MatrixXd& spread) {
+  void refine() {
     const int length = LocalModel::round_length(std::ssize(problem_.free));
-    for (const Eigen::VectorXd& z : LocalModel::design(problem_, options_.seed, fit_.z, spread, length, designed_))
+    for (const Eigen::VectorXd& z : LocalModel::design(problem_, options_.seed, fit_.z, fit_.spread, length, designed_))
       (*this)(z, {options_.trials, LocalModel::trials_of(designed_++, options_.trials)});
-    const LocalModel model(problem_, options_, fit_, spread);
-    const Eigen::VectorXd step = model.step(spread) - fit_.z, from = fit_.z;
+    const LocalModel model(problem_, options_, fit_, fit_.spread);
+    const Eigen::VectorXd step = model.step(fit_.spread) - fit_.z, from = fit_.z;
     for (const double share : {1.0, 0.5, 0.25}) {
       const Eigen::VectorXd z = from + share * step;
       const double objective = (*this)(z, {options_.polish_trials});
       if (objective < fit_.objective) move_to(z, objective);
     }
-    spread = model.next_spread();
+    fit_.spread = model.next_spread();
   }
 
   Score score_of(const Model& model) const {

@@ -10,12 +10,13 @@
 namespace talus {
 namespace {
 
-constexpr double kFirstReach = 0.3;            // standard deviation of the first design, in z
-constexpr double kNarrow = 0.15, kWide = 0.5;  // of the later ones, in any direction
+constexpr double kFirstReach = 0.15;           // standard deviation of the first design, in z
+constexpr double kNarrow = 0.05, kWide = 0.5;  // of the later ones, in any direction
+constexpr double kRise = 0.005;   // of the objective over one standard deviation of a design, where kWide allows it
 constexpr double kLocal = 3.0;    // squared distance, over what is typical of the design, up to which a place counts
 constexpr double kTrust = 2.0;    // a step stays within so many standard deviations
 constexpr double kNoise = 0.007;  // typical of a total, for the ridge
-constexpr double kCurved = 0.2, kTwisted = 0.03;  // typical second derivatives, pure and mixed, for the ridge
+constexpr double kCurved = 0.03, kTwisted = 0.01;  // typical second derivatives per unit of the spread, for the ridge
 
 /// Weight of each row in the total, for weights of the blocks: the mean over the groups of weighted means.
 Eigen::VectorXd row_weights(const Score& score, std::span<const double> block) {
@@ -43,13 +44,6 @@ Eigen::VectorXd normals(std::uint64_t seed, std::uint32_t stream, std::uint32_t 
   return z;
 }
 
-/// The covariance with the standard deviation along each of its principal axes brought into a range.
-Eigen::MatrixXd within(const Eigen::MatrixXd& covariance, double narrow, double wide) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(covariance);
-  const Eigen::VectorXd variance = axes.eigenvalues().cwiseMax(narrow * narrow).cwiseMin(wide * wide);
-  return axes.eigenvectors() * variance.asDiagonal() * axes.eigenvectors().transpose();
-}
-
 }  // namespace
 
 LocalModel::LocalModel(const FitProblem& problem, const FitOptions& options, const Fit& fit,
@@ -62,16 +56,16 @@ LocalModel::LocalModel(const FitProblem& problem, const FitOptions& options, con
     low_[i] = problem.free[i].z(problem.free[i].lower) - centre_[i];
     high_[i] = problem.free[i].z(problem.free[i].upper) - centre_[i];
   }
+  const Eigen::MatrixXd root = spread.llt().matrixL();  // u = root v: the model is learnt in v, in which it is round
+  const Eigen::MatrixXd inverse = root.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(n, n));
   Eigen::MatrixXd places(n, count), values(count, std::ssize(score_.rows));
   Eigen::VectorXd weights(count);
   luck_.resize(count);
-  const Eigen::LLT<Eigen::MatrixXd> factors(spread);
   for (Eigen::Index i = 0; i < count; ++i) {
     const Evaluation& e = fit.evaluations[static_cast<std::size_t>(i)];
-    places.col(i) = e.z;
+    places.col(i) = inverse * (e.z - centre_);
     values.row(i) = e.rows;
-    const Eigen::VectorXd u = e.z - centre_;
-    const double away = u.dot(factors.solve(u)) / static_cast<double>(n);  // 1 is typical of the design
+    const double away = places.col(i).squaredNorm() / static_cast<double>(n);  // 1 is typical of the design
     const double precision = static_cast<double>(e.trials) / options.trials;
     weights[i] = away <= kLocal ? precision * std::exp(-0.5 * away) : 0.0;
     luck_[i] = 1.0 / std::sqrt(precision);
@@ -82,10 +76,12 @@ LocalModel::LocalModel(const FitProblem& problem, const FitOptions& options, con
   rows_ = model_->coefficients(values);
   const Eigen::VectorXd ones = row_weights(score_, std::vector<double>(problem.campaign.blocks.size(), 1.0));
   total_ = rows_ * ones;
-  curvature_ = model_->curvature(total_);
+  from_v_ = inverse.transpose();
+  curvature_ = from_v_ * model_->curvature(total_) * inverse;
   curvature_.diagonal().array() += 2.0 * prior_;
   const Eigen::VectorXd rest = values * ones - model_->at_places(total_);
-  noise_ = std::sqrt(rest.cwiseAbs2().dot(weights) / weights.sum());
+  const double used = static_cast<double>(total_.size()) / static_cast<double>((weights.array() > 0.0).count());
+  noise_ = std::sqrt(rest.cwiseAbs2().dot(weights) / weights.sum() / std::max(0.3, 1.0 - used));
 }
 
 Eigen::MatrixXd LocalModel::first_spread(Eigen::Index parameters) {
@@ -108,7 +104,7 @@ std::vector<Eigen::VectorXd> LocalModel::design(const FitProblem& problem, std::
 
 Eigen::VectorXd LocalModel::step(const Eigen::MatrixXd& spread) const {
   const Eigen::VectorXd trust = kTrust * spread.diagonal().cwiseSqrt();
-  const Eigen::VectorXd slope = model_->gradient(total_) + 2.0 * prior_ * centre_;
+  const Eigen::VectorXd slope = from_v_ * model_->gradient(total_) + 2.0 * prior_ * centre_;
   return centre_ + minimum_in_box(slope, curvature_, low_.cwiseMax(-trust), high_.cwiseMin(trust));
 }
 
@@ -116,21 +112,16 @@ Eigen::VectorXd LocalModel::draw(std::uint32_t draw) const {
   const Eigen::VectorXd weights =
       row_weights(score_, bootstrap_weights(score_, problem_.campaign.blocks.size(), draw, options_.seed));
   const Eigen::VectorXd luck = noise_ * normals(options_.seed, 1, draw, luck_.size()).cwiseProduct(luck_);
-  const Eigen::VectorXd slope = model_->gradient(rows_ * weights - total_ + model_->coefficients(luck)) -
+  const Eigen::VectorXd slope = from_v_ * model_->gradient(rows_ * weights - total_ + model_->coefficients(luck)) -
                                 2.0 * prior_ * normals(options_.seed, 2, draw, low_.size());
   return centre_ + minimum_in_box(slope, curvature_, low_, high_);
 }
 
 Eigen::MatrixXd LocalModel::next_spread() const {
-  constexpr std::uint32_t kDraws = 200;
-  Eigen::MatrixXd draws(kDraws, centre_.size());
-  for (std::uint32_t k = 0; k < kDraws; ++k) draws.row(k) = draw(k);
-  return within(covariance_of(draws), kNarrow, kWide);
-}
-
-Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& draws) {
-  const Eigen::MatrixXd centred = draws.rowwise() - draws.colwise().mean();
-  return centred.transpose() * centred / static_cast<double>(draws.rows() - 1);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(curvature_);
+  const Eigen::VectorXd reach = (2.0 * kRise * axes.eigenvalues().cwiseInverse()).cwiseSqrt();
+  const Eigen::VectorXd variance = reach.cwiseMax(kNarrow).cwiseMin(kWide).cwiseAbs2();
+  return axes.eigenvectors() * variance.asDiagonal() * axes.eigenvectors().transpose();
 }
 
 }  // namespace talus

@@ -32,7 +32,8 @@ class LocalModel {
   Eigen::VectorXd step(const Eigen::MatrixXd& spread) const;
   /// Where draw number `draw` of the posterior sample has its optimum.
   Eigen::VectorXd draw(std::uint32_t draw) const;
-  /// That of 200 draws, kept within a range in which the model can be learnt.
+  /// The covariance of the next design: as wide in each direction as the objective stays nearly as good, so that a
+  /// sharp direction does not drown the flat ones.
   Eigen::MatrixXd next_spread() const;
   /// Standard deviation of a total around the model, for FitOptions::trials.
   double noise() const { return noise_; }
@@ -47,11 +48,9 @@ class LocalModel {
   Eigen::MatrixXd rows_;       // coefficients x row scores
   Eigen::VectorXd total_;      // coefficients of the total
   Eigen::VectorXd luck_;       // noise of each evaluation over noise_
-  Eigen::MatrixXd curvature_;  // with the prior
+  Eigen::MatrixXd from_v_;     // gradient in z from that in the coordinates of the spread
+  Eigen::MatrixXd curvature_;  // in z, with the prior
   double noise_ = 0.0;
 };
-
-/// Covariance of draws, one per row.
-Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& draws);
 
 }  // namespace talus

@@ -21,7 +21,8 @@ void summarise(std::span<const Parameter> free, Uncertainty& out) {
     const double possible = std::min(2.0 * 1.96, p.z(p.upper) - p.z(p.lower));
     out.identifiable.push_back(high - low <= kMostOfThePrior * possible);
   }
-  const Eigen::MatrixXd covariance = covariance_of(out.draws);
+  const Eigen::MatrixXd centred = out.draws.rowwise() - out.draws.colwise().mean();
+  const Eigen::MatrixXd covariance = centred.transpose() * centred;
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseMax(1e-12).cwiseInverse();
   out.correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
 }
@@ -35,7 +36,7 @@ Uncertainty uncertainty_of(const FitProblem& problem, const FitOptions& options,
   const int length = LocalModel::round_length(n);
   Fit around = fit;
   around.evaluations.clear();  // the search lingers where its luck was good: what it saw would look too sharp
-  Eigen::MatrixXd spread = LocalModel::first_spread(n);
+  Eigen::MatrixXd spread = fit.spread;
   std::uint32_t done = 0;
   for (int round = 0; round < how.rounds; ++round) {
     const auto first = kOwnDesigns + done;

@@ -30,7 +30,8 @@ bool Progress::update(double share) {
   shown_ = now;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const auto rate = static_cast<std::uint64_t>(share * trajectories_ / elapsed);
-  show(std::to_string(static_cast<int>(100.0 * share)) + " %, " + count_text(rate) + " trajectories/s, " +
+  show(std::to_string(static_cast<int>(100.0 * share)) + " %, " +
+       (trajectories_ > 0.0 ? count_text(rate) + " trajectories/s, " : "") +
        duration_text(elapsed * (1.0 - share) / share) + " left");
   return true;
 }

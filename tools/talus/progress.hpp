@@ -12,7 +12,7 @@ class Progress {
   /// Of the options; otherwise what suits stderr.
   static Mode mode_of(bool quiet, bool machine);
 
-  /// @param trajectories  of the whole run
+  /// @param trajectories  of the whole run; 0: not known, no rate is shown
   Progress(Mode mode, std::uint64_t trajectories);
   ~Progress();
   Progress(const Progress&) = delete;

@@ -62,6 +62,7 @@ struct Fit {
   Eigen::VectorXd z;                    ///< of the free parameters
   double objective = kNotGiven;         ///< total score + prior_weight / (blocks asked for) * sum of z^2
   Score score;                          ///< of the asked rows, with polish_trials trials, those of the search
+  Eigen::MatrixXd spread;               ///< covariance of z within which the objective is nearly as good
   std::vector<Evaluation> evaluations;  ///< all that was tried: what an emulator learns from
   bool interrupted = false;
 };

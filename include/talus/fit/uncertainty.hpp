@@ -18,7 +18,7 @@ struct Uncertainty {
 inline constexpr double kMostOfThePrior = 0.5;
 
 struct UncertaintyOptions {
-  int rounds = 2;  ///< of new evaluations where the draws lie
+  int rounds = 3;  ///< of new evaluations where the draws lie
   int draws = 400;
 };
 
