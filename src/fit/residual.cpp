@@ -252,6 +252,8 @@ Eigen::VectorXd ResidualSpace::whitened(const Residual& r) const {
     seen[static_cast<std::size_t>(i)] = !std::isnan(r[i]);
     if (!std::isnan(r[i])) at.push_back(i);
   }
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(size());
+  if (at.empty()) return out;
   auto it = inverses_.find(seen);
   if (it == inverses_.end()) {
     const Eigen::MatrixXd part = correlation_(at, at);
@@ -260,8 +262,7 @@ Eigen::VectorXd ResidualSpace::whitened(const Residual& r) const {
     const Eigen::VectorXd lifted = eigen.eigenvalues().cwiseMax(0.1).cwiseInverse();
     it = inverses_.emplace(seen, eigen.eigenvectors() * lifted.asDiagonal() * eigen.eigenvectors().transpose()).first;
   }
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(size());
-  if (!at.empty()) out(at) = it->second * r(at);
+  out(at) = it->second * r(at);
   return out;
 }
 

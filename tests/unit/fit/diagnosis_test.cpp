@@ -85,6 +85,14 @@ TEST(Residual, OfTheModelsOwnTrialsIsStandardNormal) {
   EXPECT_NEAR(squares / count, 1.0, 5.0 * 2.0 * std::sqrt(2.0 / count));
 }
 
+TEST(Residual, ABlockOfWhichNothingWasSeenSaysNothing) {
+  Campaign c = slope_campaign(3);
+  const Model model = model_of_preset(c, "upper-talus-3d");
+  measure(c, model, 3);
+  const ResidualSpace space(c, observe(c, model, {40, 1, 0, 0, {}, {}}));
+  EXPECT_EQ(space.whitened(Residual::Constant(space.size(), kNotGiven)).norm(), 0.0);
+}
+
 TEST(Residual, SpearmanOfRanksByHand) {
   const std::vector<double> a{1.0, 2.0, 3.0, 4.0, 5.0}, b{5.0, 6.0, 7.0, 8.0, 7.0};
   EXPECT_NEAR(spearman(a, b), 0.8207826816681233, 1e-12);  // the textbook's example with a tie
