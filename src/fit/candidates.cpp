@@ -62,14 +62,14 @@ void add_placed(std::vector<Candidate>& list, const std::vector<Place>& places, 
 void add_shape_and_mass(std::vector<Candidate>& list, const Campaign& campaign) {
   const bool shaped = std::any_of(campaign.blocks.begin(), campaign.blocks.end(),
                                   [](const MeasuredBlock& b) { return b.axes.x() > 1.05 * b.axes.z(); });
-  if (shaped)
+  for (const double elongation : shaped ? std::vector<double>{0.0, 1.0} : std::vector<double>{})
     list.push_back(
         {"block-shape",
-         "everywhere",
+         elongation > 0.0 ? "by L1/L2" : "by L1/L3",
          {effect_amount("block-shape.lateral", "1", 0.0, 0.5, 0.0, 6.0, &Effects::block_shape, &BlockShape::lateral),
-          effect_amount("block-shape.loss", "1", 0.0, 0.1, -0.2, 2.0, &Effects::block_shape, &BlockShape::loss)},
+          effect_amount("block-shape.loss", "1", 0.0, 0.1, 0.0, 2.0, &Effects::block_shape, &BlockShape::loss)},
          2,
-         [](Model&) {}});
+         [elongation](Model& m) { m.effects.block_shape.elongation = elongation; }});
   const double reference =
       median_of(campaign, [](const MeasuredBlock& b) { return equivalent_diameter(b.mass, b.density); });
   list.push_back(

@@ -31,11 +31,11 @@ VectorXd mean_residual(const ResidualSpace& space, std::size_t block, const Bloc
 /// What a signature may depend on, from block to block: a constant, mass, shape, place of release, day.
 MatrixXd covariates_of(const Campaign& campaign, const std::vector<std::size_t>& blocks) {
   const auto n = static_cast<Index>(blocks.size());
-  MatrixXd x(n, 7);
+  MatrixXd x(n, 8);
   for (Index i = 0; i < n; ++i) {
     const MeasuredBlock& b = campaign.blocks[blocks[static_cast<std::size_t>(i)]];
-    x.row(i) << 1.0, std::log(b.mass), std::log(b.axes.x() / b.axes.z()), b.x, b.y, b.release_height,
-        static_cast<double>(b.day);
+    x.row(i) << 1.0, std::log(b.mass), std::log(b.axes.x() / b.axes.z()), std::log(b.axes.x() / b.axes.y()), b.x, b.y,
+        b.release_height, static_cast<double>(b.day);
   }
   for (Index j = 1; j < x.cols(); ++j) {
     x.col(j).array() -= x.col(j).mean();
@@ -75,9 +75,9 @@ class Directions {
     return s;
   }
 
-  /// By block: the scores of its base trials, one column each, and of what was measured.
-  void score_all(std::vector<MatrixXd>& trials, VectorXd& measured) const {
-    measured = VectorXd::Zero(size());
+  /// By block: the scores of its base trials, one column each. Of what was measured: one column per block.
+  void score_all(std::vector<MatrixXd>& trials, MatrixXd& measured) const {
+    measured = MatrixXd::Zero(size(), static_cast<Index>(blocks_.size()));
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       const BlockRuns& runs = base_[blocks_[i]];
       MatrixXd u(size(), runs.trials);
@@ -85,7 +85,7 @@ class Directions {
         u.col(static_cast<Index>(t)) = scores(i, space_.whitened(space_.of_trial(blocks_[i], runs, t)));
       const VectorXd mean = u.rowwise().mean();
       u.colwise() -= mean;
-      measured += scores(i, space_.whitened(space_.of_measured(blocks_[i]))) - mean;
+      measured.col(static_cast<Index>(i)) = scores(i, space_.whitened(space_.of_measured(blocks_[i]))) - mean;
       trials.push_back(std::move(u));
     }
   }
@@ -132,17 +132,23 @@ double chi_squared_tail(double statistic, Index freedom) {
   return boost::math::cdf(boost::math::complement(distribution, std::max(0.0, statistic)));
 }
 
-/// The linear map from scores to one place's effective score, and its variance.
+/// The linear map from scores to one place's effective score.
 struct Projection {
   MatrixXd map;  // tested parameters x directions
-  MatrixXd variance;
+  MatrixXd information;
   bool one_sided = false;
 
-  Verdict verdict(const VectorXd& scores) const {
+  /// Studentised: the variance of the score is that of the blocks' own contributions, so that a model which scatters
+  /// too much or too little does not hide or feign an effect.
+  Verdict verdict(const MatrixXd& scores) const {
     Verdict v;
-    const VectorXd s = map * scores;
-    v.estimate = variance.ldlt().solve(s);
-    v.statistic = s.dot(v.estimate);
+    MatrixXd parts = map * scores;  // tested parameters x blocks
+    const VectorXd s = parts.rowwise().sum();
+    parts.colwise() -= s / static_cast<double>(parts.cols());
+    MatrixXd variance = parts * parts.transpose();
+    variance.diagonal().array() += 1e-9;
+    v.estimate = information.ldlt().solve(s);
+    v.statistic = s.dot(variance.ldlt().solve(s));
     v.p_value = chi_squared_tail(v.statistic, s.size());
     if (one_sided) v.p_value = s[0] > 0.0 ? 0.5 * v.p_value : 1.0;
     return v;
@@ -157,8 +163,8 @@ Projection project(const Place& place, const MatrixXd& covariance, Index base, d
   imitated.leftCols(base) = information.ldlt().solve(covariance.topRows(base) * place.pick).transpose();
   Projection p;
   p.map = place.pick.transpose() - imitated;
-  p.variance = p.map * covariance * p.map.transpose();
-  p.variance.diagonal().array() += 1e-9;
+  p.information = p.map * covariance * p.map.transpose();
+  p.information.diagonal().array() += 1e-9;
   p.one_sided = one_sided;
   return p;
 }
@@ -171,12 +177,13 @@ void correct(ScoreTest& test, const std::vector<Projection>& projections, const 
   double best = 1.0;
   for (const EffectVerdict& e : test.effects) best = std::min(best, e.best.p_value);
   for (int replicate = 0; replicate < options.replicates; ++replicate) {
-    VectorXd scores = VectorXd::Zero(trials.front().rows());
+    MatrixXd scores(trials.front().rows(), static_cast<Index>(trials.size()));
     for (std::size_t b = 0; b < trials.size(); ++b) {
       const Words words =
           Random(options.seed, static_cast<std::uint32_t>(replicate), static_cast<std::uint32_t>(b), Purpose::Bootstrap)
               .words(0);
-      scores += trials[b].col(static_cast<Index>(uniform(words[0]) * static_cast<double>(trials[b].cols())));
+      scores.col(static_cast<Index>(b)) =
+          trials[b].col(static_cast<Index>(uniform(words[0]) * static_cast<double>(trials[b].cols())));
     }
     std::vector<double> smallest(test.effects.size(), 1.0);
     for (std::size_t i = 0; i < projections.size(); ++i)
@@ -218,7 +225,7 @@ ScoreTest score_test(const Campaign& campaign, const Model& base, std::span<cons
   const ResidualSpace space(campaign, base_runs);
   const Directions directions = directions_of(campaign, space, base, free, z, base_runs, candidates, rows, options);
   std::vector<MatrixXd> trials;
-  VectorXd measured;
+  MatrixXd measured;
   directions.score_all(trials, measured);
   MatrixXd covariance = MatrixXd::Zero(directions.size(), directions.size());
   for (const MatrixXd& u : trials) covariance += u * u.transpose() / static_cast<double>(u.cols());

@@ -47,12 +47,11 @@ void refuse_taken_name(const fs::path& folder, bool overwrite) {
   if (fs::is_empty(folder)) return;
   if (!overwrite)
     throw InputError(name + ": the folder is there and not empty; give a new name, or --overwrite to replace it");
-  if (!fs::exists(folder / "run.json") && !fs::exists(folder / "calibration.json"))
-    throw InputError(
-        name +
-        ": --overwrite replaces only results of talus, and there is no run.json or calibration.json in this "
-        "folder; "
-        "give a new name, or remove the folder yourself");
+  for (const char* mark : {"run.json", "calibration.json", "diagnosis.json"})
+    if (fs::exists(folder / mark)) return;
+  throw InputError(name +
+                   ": --overwrite replaces only results of talus, and there is no run.json, calibration.json or "
+                   "diagnosis.json in this folder; give a new name, or remove the folder yourself");
 }
 
 fs::path make_temporary(const fs::path& folder) {

@@ -45,6 +45,8 @@ constexpr std::array kEffects{
         {"block-shape.lateral", "1", "psi_scale is multiplied by 1 + lateral (L1/L3 - 1)", 0.0, 10.0}),
     strength<&Effects::block_shape, &BlockShape::loss>(
         {"block-shape.loss", "1", "k_t is multiplied by exp(-loss (L1/L3 - 1))", 0.0, 5.0}),
+    manner<&Effects::block_shape, &BlockShape::elongation>(
+        {"block-shape.elongation", "1", "share of L1/L2 in the index in place of L1/L3", 0.0, 1.0}),
     strength<&Effects::block_mass, &BlockMass::roughness>(
         {"block-mass.roughness", "1", "theta_scale is multiplied by (D0/D)^roughness", -3.0, 3.0}),
     strength<&Effects::block_mass, &BlockMass::stiffness>(

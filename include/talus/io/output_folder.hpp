@@ -11,8 +11,8 @@ namespace talus::io {
 /// to do. Without `commit` (an exception, an interruption, a full disk) the hidden folder is removed.
 class OutputFolder {
  public:
-  /// @param overwrite  an earlier result of talus (it holds a run.json or a calibration.json) may be replaced
-  /// Throws InputError where the name is taken or nothing can be written there.
+  /// @param overwrite  an earlier result of talus (it holds a run.json, calibration.json or diagnosis.json) may be
+  /// replaced Throws InputError where the name is taken or nothing can be written there.
   OutputFolder(const std::filesystem::path& path, bool overwrite);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;

@@ -42,10 +42,12 @@ struct AirDrag {
   double coefficient = 0.0;  ///< C_d [-]; 0: off
 };
 
-/// Blocks that are no spheres: the index L1/L3 - 1 widens the lateral scatter and takes tangential speed.
+/// Blocks that are no spheres: an index i of their axes, L1/L3 - 1 unless elongation says otherwise, widens the lateral
+/// scatter and takes tangential speed.
 struct BlockShape {
-  double lateral = 0.0;  ///< psi_scale is multiplied by 1 + lateral (L1/L3 - 1) [-]
-  double loss = 0.0;     ///< k_t is multiplied by exp(-loss (L1/L3 - 1)) [-]
+  double lateral = 0.0;     ///< psi_scale is multiplied by 1 + lateral (L1/L3 - 1) [-]
+  double loss = 0.0;        ///< k_t is multiplied by exp(-loss (L1/L3 - 1)) [-]
+  double elongation = 0.0;  ///< share of L1/L2 - 1 in the index, the rest is L1/L3 - 1 [-]
   Extent where;
 };
 

@@ -18,9 +18,9 @@ using test::Hillside;
 
 TEST(BlockShape, FactorsOfTheIndex) {
   Block block = block_of(1.0, 2700.0);
-  EXPECT_EQ(shape_index(block), 0.0);
+  EXPECT_EQ(shape_index({}, block), 0.0);
   block.axes = Vec3(1.0, 0.8, 0.5);
-  EXPECT_EQ(shape_index(block), 1.0);
+  EXPECT_EQ(shape_index({}, block), 1.0);
   EXPECT_EQ(shape_scatter({.lateral = 0.6, .loss = 0.2, .where = {}}, block), 1.6);
   EXPECT_NEAR(shape_keeps({.lateral = 0.6, .loss = 0.2, .where = {}}, block), 0.8187307530779818, 1e-15);
 }
