@@ -50,7 +50,7 @@ class Diagnosing {
     how.polish_trials = 2 * options_.search_trials;
     how.starts = evaluations > 0 ? 1 : 2;
     how.evaluations = evaluations;
-    how.rounds = evaluations > 0 ? 1 : 2;
+    how.rounds = evaluations > 0 ? 1 : 3;
     how.seed = options_.seed;
     how.threads = options_.threads;
     how.proceed = [this](double) {
