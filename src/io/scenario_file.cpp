@@ -74,12 +74,9 @@ void check_diameters(const Scenario& parts, const SourceLayer& layer, const std:
 }
 
 void record_inputs(const ScenarioSpec& spec, LoadedScenario& out) {
-  std::vector<std::pair<std::string, const NamedFile*>> files{{"scenario", &spec.scenario},
-                                                              {"include", &spec.include},
-                                                              {"dem", &spec.dem},
-                                                              {"sources", &spec.sources},
-                                                              {"ground", &spec.ground},
-                                                              {"screens", &spec.screens}};
+  std::vector<std::pair<std::string, const NamedFile*>> files{{"scenario", &spec.scenario}, {"include", &spec.include},
+                                                              {"dem", &spec.dem},           {"sources", &spec.sources},
+                                                              {"ground", &spec.ground},     {"screens", &spec.screens}};
   for (const auto& [name, effect] : spec.effects) files.emplace_back("effects." + name, &effect.file);
   for (const auto& [role, file] : files)
     if (!file->path.empty()) out.inputs.push_back({role, file->path, sha256_of_file(file->path)});
