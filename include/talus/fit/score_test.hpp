@@ -9,6 +9,7 @@ struct Verdict {
   std::size_t candidate;     ///< index into the candidates; of joined bands the first
   std::size_t joined = 1;    ///< bands that were joined
   Eigen::VectorXd estimate;  ///< of its tested parameters, one step from zero [kNoticed in z]
+  Eigen::VectorXd ground;    ///< how far the base's own parameters would move along with it [z]
   double statistic = 0.0;    ///< s' V^-1 s, the larger one of V by the model and V by the blocks
   double p_value = 1.0;      ///< of this place alone
 };
