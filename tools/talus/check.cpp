@@ -74,7 +74,8 @@ std::string number(double value, const char* format = "%.4g") {
 
 std::string range_text(const talus::Range& range, const char* unit) {
   const std::string low = talus::text_of(range.low);
-  return (range.low == range.high ? low : low + " to " + talus::text_of(range.high)) + " " + unit;
+  return (range.low == range.high ? low : low + " to " + talus::text_of(range.high)) +
+         (*unit == '\0' ? "" : std::string(" ") + unit);
 }
 
 std::string list_text(const std::vector<double>& values, const char* unit) {
