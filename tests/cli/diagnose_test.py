@@ -6,7 +6,7 @@ import unittest
 from support import Case
 
 CAMPAIGNS = os.path.join(os.environ.get("TALUS_DATA", ""), "campaigns")
-SHORT = ("--trials", "10", "--test-trials", "60", "-q")
+SHORT = ("--test-trials", "60", "-q")
 NAMES = {"none", "unexplained", "vegetation-drag", "forest-stems", "block-shape", "block-mass", "wet-ground", "soft-ground",
          "rolling-resistance", "air-drag", "fragmentation", "undeclared-barrier", "undeclared-zone", "instrument-bias"}
 
@@ -19,9 +19,9 @@ class Diagnose(Case):
 
 @unittest.skipUnless(os.path.isdir(CAMPAIGNS), "no campaigns at TALUS_DATA")
 class WholeLoop(Case):
-    def diagnose(self, name):
+    def diagnose(self, name, trials="10"):
         out = self.path(name)
-        self.run_well("diagnose", f"{CAMPAIGNS}/{name}/campaign.toml", "-o", out, *SHORT, timeout=1200)
+        self.run_well("diagnose", f"{CAMPAIGNS}/{name}/campaign.toml", "-o", out, "--trials", trials, *SHORT, timeout=1200)
         with open(f"{out}/diagnosis.json", encoding="utf-8") as file:
             found = json.load(file)
         self.assertEqual({"diagnosis.json", "report.html", "fitted.toml", "with_effect.toml"}, set(os.listdir(out)))
@@ -53,7 +53,8 @@ class WholeLoop(Case):
         self.assertEqual(self.diagnose("alder")["effect"], "none")
 
     def test_measured_blocks_of_a_quarry(self):
-        found = self.diagnose("authume")
+        # With ten trials a block that leaves once scores as the climatology, and the fit likes that.
+        found = self.diagnose("authume", "24")
         self.assertGreater(len(found["residual"]), 3)
 
 
