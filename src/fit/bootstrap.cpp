@@ -76,6 +76,17 @@ Reduction reduction(const Score& before, const Score& after, std::size_t blocks,
   return {1.0 - after.total / before.total, middle(std::move(shares))};
 }
 
+Difference difference(const Score& before, const Score& after, std::size_t blocks, std::uint32_t draws,
+                      std::uint64_t seed) {
+  Difference d{after.total - before.total, {}, {}};
+  for (std::uint32_t draw = 0; draw < draws; ++draw) {
+    const std::vector<double> weight = bootstrap_weights(before, blocks, draw, seed);
+    d.draws.push_back(weighted_total(after, weight) - weighted_total(before, weight));
+  }
+  d.interval = middle(d.draws);
+  return d;
+}
+
 double quantile(std::span<const double> sorted, double share) {
   const double place = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(place);

@@ -215,7 +215,8 @@ std::vector<bool> touched_zones(const Campaign& campaign, std::span<const BlockR
   double trials = 0.0;
   for (const BlockRuns& block : runs) {
     trials += block.trials;
-    for (std::size_t zone = 0; zone < block.zone_hits.size(); ++zone) hits[zone] += block.zone_hits[zone];
+    for (std::size_t zone = 0; zone < block.zone_hits.size(); ++zone)  // a band repeats the zones
+      hits[zone % hits.size()] += block.zone_hits[zone];
   }
   std::vector<bool> touched;
   for (const double count : hits) touched.push_back(count > 0.0 && count >= share * trials);

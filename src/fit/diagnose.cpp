@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "talus/base/random.hpp"
 
 namespace talus {
 namespace {
 
-constexpr std::uint32_t kUnseen = 1'000'000;  // first trial of the luck that no search has seen
-constexpr int kFolds = 2;
+constexpr std::size_t kFolds = 2;
 constexpr std::size_t kThorough = 3;   // of the effects that the test finds most significant
 constexpr double kWorthASearch = 0.1;  // p of the score test
+constexpr double kPrice = 0.56;        // by which one more fitted number must lower the error, times fitting blocks
 
 /// The work of one diagnosis.
 class Diagnosing {
@@ -37,33 +38,35 @@ class Diagnosing {
   }
 
  private:
-  void say(double share, const std::string& what) const {
-    if (options_.proceed && !options_.proceed(share, what)) throw DiagnosisInterrupted{};
-  }
+  bool proceeds() const { return !options_.proceed || options_.proceed(progress_); }
 
   ObserveOptions observing(std::uint32_t trials) const {
     return {trials, options_.seed, kUnseen, options_.threads, rows_, {}};
   }
 
-  FitOptions fitting(int evaluations) const {
+  /// As `calibrate` does it.
+  FitOptions fitting() const {
     FitOptions how;
     how.trials = options_.search_trials;
-    how.polish_trials = 2 * options_.search_trials;
-    how.starts = evaluations > 0 ? 1 : 2;
-    how.evaluations = evaluations;
-    how.rounds = evaluations > 0 ? 1 : 3;
     how.seed = options_.seed;
     how.threads = options_.threads;
-    how.proceed = [this](double) {
-      say(progress_, what_);
-      return true;
-    };
+    how.proceed = [this](double) { return proceeds(); };
+    return how;
+  }
+
+  /// From a start that is near, with so many evaluations.
+  FitOptions short_fit(int evaluations, int rounds) const {
+    FitOptions how = fitting();
+    how.polish_trials = 2 * options_.search_trials;
+    how.starts = 1;
+    how.evaluations = evaluations;
+    how.rounds = rounds;
     return how;
   }
 
   /// On luck that the search has not seen.
   Fitted finish(Fit&& fit, std::vector<Parameter> free) const {
-    if (fit.interrupted) throw DiagnosisInterrupted{};
+    if (fit.interrupted) throw FitInterrupted{};
     Fitted out{std::move(fit.model), std::move(free), std::move(fit.z), {}, {}};
     out.fitting = observe(campaign_, out.model, observing(options_.final_trials));
     out.score = score(campaign_, out.fitting, rows_);
@@ -71,22 +74,14 @@ class Diagnosing {
   }
 
   Fitted fit_base(const Model& start) {
-    progress_ = 0.0, what_ = "fitting the ground";
     const std::vector<BlockRuns> runs = observe(campaign_, start, observing(options_.search_trials));
     std::vector<Parameter> free = ground_parameters(campaign_, start, options_.keys, touched_zones(campaign_, runs));
-    Fit fit = fit_parameters(campaign_, start, free, rows_, fitting(0));
+    Fit fit = fit_parameters(campaign_, start, free, rows_, fitting());
     return finish(std::move(fit), std::move(free));
   }
 
   std::vector<ResidualRow> residual_of(const Fitted& fitted) const {
     return residual_table(campaign_, ResidualSpace(campaign_, fitted.fitting), rows_);
-  }
-
-  /// The candidate of a verdict: bands that were joined become one.
-  Candidate resolved(const std::vector<Candidate>& list, const Verdict& verdict, const Axis& axis) const {
-    const Candidate& first = list[verdict.candidate];
-    if (first.effect != "undeclared-zone") return first;
-    return band(campaign_, axis, first.from, list[verdict.candidate + verdict.joined - 1].to);
   }
 
   /// Where the search of a candidate starts: the estimate of the score test, kept within reason.
@@ -108,6 +103,11 @@ class Diagnosing {
     return model_at(base.model, base.free, z);
   }
 
+  /// What a candidate of so many fitted numbers gains by chance alone; docs/closing-the-loop.md, "Choice".
+  double price_of(double numbers) const {
+    return kPrice * numbers / static_cast<double>(std::count(rows_.begin(), rows_.end(), true));
+  }
+
   /// @param thorough  a longer search
   Trial try_effect(const Fitted& base, const EffectVerdict& verdict, const Candidate& candidate, bool thorough) const {
     Trial trial;
@@ -120,24 +120,22 @@ class Diagnosing {
     free.insert(free.end(), candidate.parameters.begin(), candidate.parameters.end());
     const Model start = with(trial.joint ? moved_along(base, candidate, verdict.best) : base.model, candidate,
                              start_of(candidate, verdict.best));
-    FitOptions how = fitting((thorough ? 6 : 3) * static_cast<int>(free.size()));
-    how.rounds = thorough ? 2 : 1;
+    const FitOptions how = short_fit((thorough ? 6 : 3) * static_cast<int>(free.size()), thorough ? 2 : 1);
     Fit fit = fit_parameters(campaign_, start, free, rows_, how);
     trial.fitted = finish(std::move(fit), std::move(free));
     for (const Parameter& p : candidate.parameters) trial.values.push_back(p.get(trial.fitted.model));
-    const Difference c = difference_of(base.score, trial.fitted.score, campaign_.blocks.size());
+    const Difference c = difference(base.score, trial.fitted.score, campaign_.blocks.size());
     trial.gain = -c.mean;
+    trial.price = price_of(static_cast<double>(candidate.parameters.size()) + candidate.searched);
     trial.gain_interval = {-c.interval.high, -c.interval.low};
     return trial;
   }
 
-  /// Fits what was chosen once more, longer: it is what the user gets.
-  void polish(Trial& trial) {
-    what_ = "fitting " + trial.effect + " to the end";
-    std::vector<Parameter> free = trial.fitted.free;
-    FitOptions how = fitting(8 * static_cast<int>(free.size()));
-    how.trials = how.trials * 3 / 2;
-    how.rounds = 2;
+  /// Fits what was chosen once more, as `calibrate` does: it is what the user gets.
+  void polish(Trial& trial) const {
+    const std::vector<Parameter> free = trial.fitted.free;
+    FitOptions how = fitting();
+    how.starts = 1;
     Fitted longer = finish(fit_parameters(campaign_, trial.fitted.model, free, rows_, how), free);
     if (!(longer.score.total < trial.fitted.score.total)) return;
     trial.fitted = std::move(longer);
@@ -145,27 +143,40 @@ class Diagnosing {
       trial.values[i] = trial.parameters[i].get(trial.fitted.model);
   }
 
+  /// The fitting rows in a random order: neighbours in the file are often of one day or one kind.
+  std::vector<std::size_t> shuffled_rows() const {
+    std::vector<std::pair<std::uint32_t, std::size_t>> keyed;
+    for (std::size_t b = 0; b < rows_.size(); ++b)
+      if (rows_[b])
+        keyed.emplace_back(
+            Random(options_.seed, static_cast<std::uint32_t>(b), kUnseen, Purpose::Bootstrap).words(0)[0], b);
+    std::sort(keyed.begin(), keyed.end());
+    std::vector<std::size_t> order;
+    for (const auto& [key, block] : keyed) order.push_back(block);
+    return order;
+  }
+
   /// By how much a candidate lowers the error of blocks that its fit has not seen.
   double cross_validate(const Fitted& base, const Trial& trial) const {
     double gain = 0.0;
-    for (int fold = 0; fold < kFolds; ++fold) {
+    const std::vector<std::size_t> order = shuffled_rows();
+    for (std::size_t fold = 0; fold < kFolds; ++fold) {
       std::vector<bool> in = rows_, out(rows_.size(), false);
-      int number = 0;
-      for (std::size_t b = 0; b < rows_.size(); ++b) {
-        if (!rows_[b] || number++ % kFolds != fold) continue;
-        in[b] = false;
-        out[b] = true;
+      for (std::size_t i = fold; i < order.size(); i += kFolds) {
+        in[order[i]] = false;
+        out[order[i]] = true;
       }
       // From the fit to all rows: only what the fold changes has to be found.
       const int evaluations = 2 * static_cast<int>(trial.fitted.free.size());
-      const Fit with_it = fit_parameters(campaign_, trial.fitted.model, trial.fitted.free, in, fitting(evaluations));
-      const Fit without = fit_parameters(campaign_, base.model, base.free, in, fitting(evaluations));
-      if (with_it.interrupted || without.interrupted) throw DiagnosisInterrupted{};
+      const Fit with_it =
+          fit_parameters(campaign_, trial.fitted.model, trial.fitted.free, in, short_fit(evaluations, 1));
+      const Fit without = fit_parameters(campaign_, base.model, base.free, in, short_fit(evaluations, 1));
+      if (with_it.interrupted || without.interrupted) throw FitInterrupted{};
       ObserveOptions how = observing(options_.final_trials);
       how.blocks = out;
       const Score a = score(campaign_, observe(campaign_, without.model, how), out);
       const Score b = score(campaign_, observe(campaign_, with_it.model, how), out);
-      gain += (a.total - b.total) / kFolds;
+      gain += (a.total - b.total) / static_cast<double>(kFolds);
     }
     return gain;
   }
@@ -173,14 +184,14 @@ class Diagnosing {
   Round turn(const Fitted& base, const std::vector<std::string>& found, double level, bool more) {
     Round round;
     round.residual = residual_of(base);
-    progress_ += 0.1, what_ = "testing the candidates";
-    say(progress_, what_);
+    progress_ += 0.1;
     const std::vector<Candidate> candidates = candidates_of(campaign_, base.model, base.fitting, found);
     const Axis axis = axis_of(campaign_, base.fitting);
     ScoreTestOptions how;
     how.trials = options_.test_trials;
     how.seed = options_.seed;
     how.threads = options_.threads;
+    how.proceed = [this] { return proceeds(); };
     const ScoreTest test = score_test(campaign_, base.model, base.free, base.z, base.fitting, candidates, rows_, how);
     round.p_value = test.p_value;
     const bool noise = test.p_value > level;
@@ -189,10 +200,10 @@ class Diagnosing {
       return round;
     }
     for (const EffectVerdict& verdict : test.effects) {
-      what_ = "fitting " + verdict.effect;
       progress_ = std::min(0.95, progress_ + 0.02);
       const bool thorough = round.trials.size() < kThorough && verdict.p_value < level;
-      round.trials.push_back(try_effect(base, verdict, resolved(candidates, verdict.best, axis), thorough));
+      round.trials.push_back(
+          try_effect(base, verdict, together(campaign_, axis, candidates, verdict.best.members), thorough));
     }
     choose(base, round, noise, level);
     return round;
@@ -205,7 +216,10 @@ class Diagnosing {
   /// How often each trial has the lowest error, drawing blocks with replacement.
   void count_choices(const Fitted& base, std::vector<Trial>& trials) const {
     std::vector<Difference> all;
-    for (const Trial& t : trials) all.push_back(difference_of(base.score, t.fitted.score, campaign_.blocks.size()));
+    for (const Trial& t : trials) {
+      all.push_back(difference(base.score, t.fitted.score, campaign_.blocks.size()));
+      for (double& draw : all.back().draws) draw += t.price;
+    }
     if (all.empty()) return;
     const std::size_t draws = all.front().draws.size();
     for (std::size_t draw = 0; draw < draws; ++draw) {
@@ -218,15 +232,15 @@ class Diagnosing {
 
   void choose(const Fitted& base, Round& round, bool noise, double level) {
     count_choices(base, round.trials);
-    const auto may = [level](const Trial& t) { return t.p_value < level && t.gain > 0.0; };
+    const auto net = [](const Trial& t) { return t.gain - t.price; };
+    const auto may = [&](const Trial& t) { return t.p_value < level && net(t) > 0.0; };
     std::stable_sort(round.trials.begin(), round.trials.end(),
-                     [&](const Trial& a, const Trial& b) { return may(a) != may(b) ? may(a) : a.gain > b.gain; });
+                     [&](const Trial& a, const Trial& b) { return may(a) != may(b) ? may(a) : net(a) > net(b); });
     if (noise || round.trials.empty() || !may(round.trials.front())) {
       round.effect = noise ? what_is_left(round) : "unexplained";
       return;
     }
     Trial& best = round.trials.front();
-    what_ = "cross-validating " + best.effect;
     best.cross_validated = cross_validate(base, best);
     if (!(best.cross_validated > 0.0)) {
       round.effect = "unexplained";
@@ -237,7 +251,7 @@ class Diagnosing {
     for (std::size_t i = 1; i < round.trials.size(); ++i) {
       const Trial& other = round.trials[i];
       if (!may(other)) continue;
-      const Difference c = difference_of(other.fitted.score, best.fitted.score, campaign_.blocks.size());
+      const Difference c = difference(other.fitted.score, best.fitted.score, campaign_.blocks.size());
       if (c.interval.high > 0.0) round.alike.push_back(other.effect);
     }
   }
@@ -246,23 +260,9 @@ class Diagnosing {
   const DiagnoseOptions& options_;
   std::vector<bool> rows_;
   double progress_ = 0.0;
-  std::string what_;
 };
 
 }  // namespace
-
-Difference difference_of(const Score& before, const Score& after, std::size_t blocks, std::uint32_t draws) {
-  Difference c;
-  c.mean = after.total - before.total;
-  for (std::uint32_t draw = 0; draw < draws; ++draw) {
-    const std::vector<double> weights = bootstrap_weights(before, blocks, draw, 1);
-    c.draws.push_back(weighted_total(after, weights) - weighted_total(before, weights));
-  }
-  std::vector<double> sorted = c.draws;
-  std::sort(sorted.begin(), sorted.end());
-  c.interval = {quantile(sorted, 0.025), quantile(sorted, 0.975)};
-  return c;
-}
 
 Diagnosis diagnose(const Campaign& campaign, const Model& start, const DiagnoseOptions& options) {
   return Diagnosing(campaign, options).run(start);

@@ -42,10 +42,6 @@ std::vector<Observable> observables_of(const Campaign& campaign) {
   return list;
 }
 
-bool is_sample(const Observable& o) {
-  return o.kind == Observable::Kind::SampleSpeed || o.kind == Observable::Kind::SampleSpin;
-}
-
 /// Phi^-1 of the rank of a value among sorted ones; ties count half.
 double rank_score(const std::vector<double>& sorted, double value) {
   if (sorted.size() < kFewestValues || std::isnan(value)) return kNotGiven;
@@ -88,16 +84,16 @@ double normal_quantile(double share) {
 ResidualSpace::ResidualSpace(const Campaign& campaign, const std::vector<BlockRuns>& runs)
     : campaign_(campaign), observables_(observables_of(campaign)) {
   const std::size_t blocks = campaign.blocks.size(), n = observables_.size();
-  distributions_.assign(blocks, std::vector<Distribution>(n));
+  distributions_.assign(blocks, std::vector<Sorted>(n));
   samples_.resize(blocks);
   crossing_share_.assign(blocks * n, 0.0);
   for (std::size_t b = 0; b < blocks; ++b) {
     forward_.push_back(forward_of(campaign.blocks[b], runs[b]));
     for (const BlockRuns::AtSample& sample : runs[b].samples)
-      samples_[b].push_back({Distribution{sorted_finite(sample.speed)}, Distribution{sorted_finite(sample.spin)}});
+      samples_[b].push_back({sorted_finite(sample.speed), sorted_finite(sample.spin)});
     std::vector<std::vector<double>> values(n);
     for (std::size_t t = 0; t < runs[b].trials; ++t) {
-      const std::vector<double> v = trial_values(b, runs[b], t);
+      const std::vector<double> v = values_of(b, seen_of_trial(b, runs[b], t));
       for (std::size_t o = 0; o < n; ++o) values[o].push_back(v[o]);
     }
     for (std::size_t o = 0; o < n; ++o) {
@@ -106,7 +102,7 @@ ResidualSpace::ResidualSpace(const Campaign& campaign, const std::vector<BlockRu
         for (const double v : values[o]) sum += v;
         crossing_share_[b * n + o] = sum / (static_cast<double>(runs[b].trials) + 1.0);
       }
-      distributions_[b][o].sorted = sorted_finite(std::move(values[o]));
+      distributions_[b][o] = sorted_finite(std::move(values[o]));
     }
   }
   correlate(runs);
@@ -118,86 +114,76 @@ double ResidualSpace::sample_score(std::size_t block, const Observable& o, const
   int count = 0;
   const std::size_t which = o.kind == Observable::Kind::SampleSpeed ? 0 : 1;
   for (const std::size_t i : half_of(campaign_.blocks[block], o.late)) {
-    const double score = rank_score(samples_[block][i][which].sorted, values[i]);
+    const double score = rank_score(samples_[block][i][which], values[i]);
     if (!std::isnan(score)) sum += score, ++count;
   }
   return count > 0 ? sum / count : kNotGiven;
 }
 
-std::vector<double> ResidualSpace::measured_values(std::size_t b) const {
+ResidualSpace::Seen ResidualSpace::seen_measured(std::size_t b) const {
   const MeasuredBlock& block = campaign_.blocks[b];
-  std::vector<double> speed, spin, values;
-  for (const Sample& sample : block.samples) speed.push_back(sample.speed), spin.push_back(sample.spin);
-  const Eigen::Vector2d way = block.stop ? Eigen::Vector2d(*block.stop - Eigen::Vector2d(block.x, block.y))
-                                         : Eigen::Vector2d(kNotGiven, kNotGiven);
-  const auto passage = [&block](std::size_t s) { return block.passages[s].value_or(Passage{}); };
-  for (const Observable& o : observables_) switch (o.kind) {
-      case Observable::Kind::Runout:
-        values.push_back(way.norm());
-        break;
-      case Observable::Kind::Lateral:
-        values.push_back(forward_[b].x() * way.y() - forward_[b].y() * way.x());
-        break;
-      case Observable::Kind::Mass:
-        values.push_back(block.stop_mass ? *block.stop_mass / block.mass : kNotGiven);
-        break;
-      case Observable::Kind::Crossed:
-        values.push_back(block.passages[o.screen] ? 1.0 : 0.0);
-        break;
-      case Observable::Kind::Speed:
-        values.push_back(passage(o.screen).speed);
-        break;
-      case Observable::Kind::Jump:
-        values.push_back(passage(o.screen).jump);
-        break;
-      case Observable::Kind::Spin:
-        values.push_back(passage(o.screen).spin);
-        break;
-      case Observable::Kind::SampleSpeed:
-        values.push_back(sample_score(b, o, speed));
-        break;
-      case Observable::Kind::SampleSpin:
-        values.push_back(sample_score(b, o, spin));
-        break;
-    }
-  return values;
+  Seen seen;
+  if (block.stop) seen.way = *block.stop - Eigen::Vector2d(block.x, block.y);
+  if (block.stop_mass) seen.mass_share = *block.stop_mass / block.mass;
+  seen.passages = block.passages;
+  for (const Sample& sample : block.samples)
+    seen.sample_speed.push_back(sample.speed), seen.sample_spin.push_back(sample.spin);
+  return seen;
 }
 
-std::vector<double> ResidualSpace::trial_values(std::size_t b, const BlockRuns& runs, std::size_t t) const {
+ResidualSpace::Seen ResidualSpace::seen_of_trial(std::size_t b, const BlockRuns& runs, std::size_t t) const {
   const MeasuredBlock& block = campaign_.blocks[b];
-  std::vector<double> speed, spin, values;
+  Seen seen;
+  if (!std::isnan(runs.x[t])) {
+    seen.way = {runs.x[t] - block.x, runs.y[t] - block.y};
+    seen.mass_share = runs.mass_share[t];
+  }
+  for (const BlockRuns::AtScreen& screen : runs.screens) {
+    const bool crossed = !std::isnan(screen.speed[t]);
+    seen.passages.push_back(crossed ? std::optional(Passage{screen.speed[t], screen.jump[t], screen.spin[t]})
+                                    : std::nullopt);
+  }
   for (const BlockRuns::AtSample& sample : runs.samples)
-    speed.push_back(sample.speed[t]), spin.push_back(sample.spin[t]);
-  const Eigen::Vector2d way(runs.x[t] - block.x, runs.y[t] - block.y);
-  for (const Observable& o : observables_) switch (o.kind) {
-      case Observable::Kind::Runout:
-        values.push_back(way.norm());
+    seen.sample_speed.push_back(sample.speed[t]), seen.sample_spin.push_back(sample.spin[t]);
+  return seen;
+}
+
+std::vector<double> ResidualSpace::values_of(std::size_t b, const Seen& seen) const {
+  using Kind = Observable::Kind;
+  std::vector<double> values;
+  for (const Observable& o : observables_) {
+    const bool at_screen = o.kind == Kind::Speed || o.kind == Kind::Jump || o.kind == Kind::Spin;
+    const Passage passage = at_screen ? seen.passages[o.screen].value_or(Passage{}) : Passage{};
+    switch (o.kind) {
+      case Kind::Runout:
+        values.push_back(seen.way.norm());
         break;
-      case Observable::Kind::Lateral:
-        values.push_back(forward_[b].x() * way.y() - forward_[b].y() * way.x());
+      case Kind::Lateral:
+        values.push_back(forward_[b].x() * seen.way.y() - forward_[b].y() * seen.way.x());
         break;
-      case Observable::Kind::Mass:
-        values.push_back(std::isnan(runs.x[t]) ? kNotGiven : runs.mass_share[t]);
+      case Kind::Mass:
+        values.push_back(seen.mass_share);
         break;
-      case Observable::Kind::Crossed:
-        values.push_back(std::isnan(runs.screens[o.screen].speed[t]) ? 0.0 : 1.0);
+      case Kind::Crossed:
+        values.push_back(seen.passages[o.screen] ? 1.0 : 0.0);
         break;
-      case Observable::Kind::Speed:
-        values.push_back(runs.screens[o.screen].speed[t]);
+      case Kind::Speed:
+        values.push_back(passage.speed);
         break;
-      case Observable::Kind::Jump:
-        values.push_back(runs.screens[o.screen].jump[t]);
+      case Kind::Jump:
+        values.push_back(passage.jump);
         break;
-      case Observable::Kind::Spin:
-        values.push_back(runs.screens[o.screen].spin[t]);
+      case Kind::Spin:
+        values.push_back(passage.spin);
         break;
-      case Observable::Kind::SampleSpeed:
-        values.push_back(sample_score(b, o, speed));
+      case Kind::SampleSpeed:
+        values.push_back(sample_score(b, o, seen.sample_speed));
         break;
-      case Observable::Kind::SampleSpin:
-        values.push_back(sample_score(b, o, spin));
+      case Kind::SampleSpin:
+        values.push_back(sample_score(b, o, seen.sample_spin));
         break;
     }
+  }
   return values;
 }
 
@@ -211,7 +197,7 @@ Residual ResidualSpace::residual(std::size_t b, const std::vector<double>& value
       r[place] = (values[o] - p) / std::sqrt(p * (1.0 - p));
       continue;
     }
-    const double z = rank_score(distributions_[b][o].sorted, values[o]);
+    const double z = rank_score(distributions_[b][o], values[o]);
     r[place] = z;
     r[spread] = (z * z - 1.0) / std::sqrt(2.0);
   }
@@ -219,11 +205,11 @@ Residual ResidualSpace::residual(std::size_t b, const std::vector<double>& value
 }
 
 Residual ResidualSpace::of_measured(std::size_t block) const {
-  return residual(block, measured_values(block));
+  return residual(block, values_of(block, seen_measured(block)));
 }
 
 Residual ResidualSpace::of_trial(std::size_t block, const BlockRuns& runs, std::size_t trial) const {
-  return residual(block, trial_values(block, runs, trial));
+  return residual(block, values_of(block, seen_of_trial(block, runs, trial)));
 }
 
 void ResidualSpace::correlate(const std::vector<BlockRuns>& runs) {

@@ -1,10 +1,11 @@
 #include "talus/fit/score_test.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+#include <set>
 
 #include "talus/base/random.hpp"
+#include "talus/fit/projection.hpp"
 
 namespace talus {
 namespace {
@@ -13,8 +14,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kMostJoined = 4;  // neighbouring bands
-constexpr double kStep = 0.5;   // by which a parameter of the base is moved [z]
+constexpr double kStep = 0.5;     // by which a parameter of the base is moved [z]
+constexpr double kPriorSd = 1.0;  // of a parameter of the base [z]: what the data do not constrain does not move
 
 /// Mean residual of the trials of one block; zero where fewer than five were seen.
 VectorXd mean_residual(const ResidualSpace& space, std::size_t block, const BlockRuns& runs) {
@@ -28,14 +29,19 @@ VectorXd mean_residual(const ResidualSpace& space, std::size_t block, const Bloc
   return sum;
 }
 
-/// What a signature may depend on, from block to block: a constant, mass, shape, place of release, day.
+/// What a signature may depend on, from block to block: a constant, mass, shape, place of release, and which day it is.
 MatrixXd covariates_of(const Campaign& campaign, const std::vector<std::size_t>& blocks) {
+  constexpr Index kContinuous = 7;
+  std::set<int> days;
+  for (const std::size_t b : blocks) days.insert(campaign.blocks[b].day);
   const auto n = static_cast<Index>(blocks.size());
-  MatrixXd x(n, 8);
+  MatrixXd x(n, kContinuous + std::ssize(days) - 1);
   for (Index i = 0; i < n; ++i) {
     const MeasuredBlock& b = campaign.blocks[blocks[static_cast<std::size_t>(i)]];
-    x.row(i) << 1.0, std::log(b.mass), std::log(b.axes.x() / b.axes.z()), std::log(b.axes.x() / b.axes.y()), b.x, b.y,
-        b.release_height, static_cast<double>(b.day);
+    x.row(i).head(kContinuous) << 1.0, std::log(b.mass), std::log(b.axes.x() / b.axes.z()),
+        std::log(b.axes.x() / b.axes.y()), b.x, b.y, b.release_height;
+    Index column = kContinuous;
+    for (auto day = std::next(days.begin()); day != days.end(); ++day) x(i, column++) = b.day == *day ? 1.0 : 0.0;
   }
   for (Index j = 1; j < x.cols(); ++j) {
     x.col(j).array() -= x.col(j).mean();
@@ -99,107 +105,48 @@ class Directions {
   std::vector<MatrixXd> signatures_;  // by direction: blocks x components
 };
 
-/// A place where an effect is tested: which directions, summed up to its parameters.
-struct Place {
-  std::size_t candidate, joined;
-  MatrixXd pick;  // directions x tested parameters
-};
-
-std::vector<Place> places_of(std::span<const Candidate> candidates, Index base, Index directions) {
-  std::vector<Place> places;
-  std::vector<Index> first(candidates.size());
-  Index next = base;
-  for (std::size_t c = 0; c < candidates.size(); ++c) {
-    first[c] = next;
-    next += static_cast<Index>(candidates[c].tested);
+/// The score of every direction in data set number `replicate`: one trial of each block stands in for what was
+/// measured.
+MatrixXd drawn(const std::vector<MatrixXd>& trials, std::uint64_t seed, int replicate) {
+  MatrixXd scores(trials.front().rows(), static_cast<Index>(trials.size()));
+  for (std::size_t b = 0; b < trials.size(); ++b) {
+    const Random random(seed, static_cast<std::uint32_t>(replicate), static_cast<std::uint32_t>(b), Purpose::Bootstrap);
+    const double place = uniform(random.words(0)[0]) * static_cast<double>(trials[b].cols());
+    scores.col(static_cast<Index>(b)) = trials[b].col(static_cast<Index>(place));
   }
-  for (std::size_t c = 0; c < candidates.size(); ++c) {
-    const int most = candidates[c].effect == "undeclared-zone" ? kMostJoined : 1;
-    for (int joined = 1; joined <= most; ++joined) {
-      const std::size_t last = c + static_cast<std::size_t>(joined) - 1;
-      if (last >= candidates.size() || candidates[last].effect != candidates[c].effect) break;
-      MatrixXd pick = MatrixXd::Zero(directions, static_cast<Index>(candidates[c].tested));
-      for (std::size_t j = c; j <= last; ++j)
-        for (Index p = 0; p < pick.cols(); ++p) pick(first[j] + p, p) = 1.0;
-      places.push_back({c, static_cast<std::size_t>(joined), std::move(pick)});
-    }
-  }
-  return places;
+  return scores;
 }
 
-double chi_squared_tail(double statistic, Index freedom) {
-  const boost::math::chi_squared distribution(static_cast<double>(freedom));
-  return boost::math::cdf(boost::math::complement(distribution, std::max(0.0, statistic)));
-}
-
-/// The linear map from scores to one place's effective score.
-struct Projection {
-  MatrixXd map;  // tested parameters x directions
-  MatrixXd information;
-  VectorXd steps;  // by which the base's parameters were moved [z]
-  bool one_sided = false;
-
-  /// By the larger of two statistics: with the variance that the model gives, and with that of the blocks' own
-  /// contributions, so that a model which scatters too much does not hide an effect. The simulated data sets go through
-  /// the same choice.
-  Verdict verdict(const MatrixXd& scores) const {
-    Verdict v;
-    MatrixXd parts = map * scores;  // tested parameters x blocks
-    const VectorXd s = parts.rowwise().sum();
-    parts.colwise() -= s / static_cast<double>(parts.cols());
-    MatrixXd variance = parts * parts.transpose();
-    variance.diagonal().array() += 1e-9;
-    v.estimate = information.ldlt().solve(s);
-    v.ground = steps.cwiseProduct(map.leftCols(steps.size()).transpose() * v.estimate);
-    v.statistic = std::max(s.dot(v.estimate), s.dot(variance.ldlt().solve(s)));
-    v.p_value = chi_squared_tail(v.statistic, s.size());
-    if (one_sided) v.p_value = s[0] > 0.0 ? 0.5 * v.p_value : 1.0;
-    return v;
-  }
-};
-
-/// Takes out of a place's score what the free parameters of the base explain: a regression on their scores.
-Projection project(const Place& place, const MatrixXd& covariance, const VectorXd& steps, double prior,
-                   bool one_sided) {
-  const Index base = steps.size();
-  MatrixXd information = covariance.topLeftCorner(base, base);
-  information.diagonal().array() += prior;
-  MatrixXd imitated = MatrixXd::Zero(place.pick.cols(), covariance.rows());
-  imitated.leftCols(base) = information.ldlt().solve(covariance.topRows(base) * place.pick).transpose();
-  Projection p;
-  p.map = place.pick.transpose() - imitated;
-  p.information = p.map * covariance * p.map.transpose();
-  p.information.diagonal().array() += 1e-9;
-  p.steps = steps;
-  p.one_sided = one_sided;
-  return p;
-}
-
-/// Corrects p-values for the number of places and effects by data sets drawn from the model.
+/// Corrects p-values for the number of places, and the smallest one for the number of effects, by data sets drawn from
+/// the model. Each effect counts alike, however many places it has.
 void correct(ScoreTest& test, const std::vector<Projection>& projections, const std::vector<std::size_t>& effect_of,
              const std::vector<MatrixXd>& trials, const ScoreTestOptions& options) {
-  std::vector<int> more_extreme(test.effects.size(), 0);
-  int any = 0;
-  double best = 1.0;
-  for (const EffectVerdict& e : test.effects) best = std::min(best, e.best.p_value);
-  for (int replicate = 0; replicate < options.replicates; ++replicate) {
-    MatrixXd scores(trials.front().rows(), static_cast<Index>(trials.size()));
-    for (std::size_t b = 0; b < trials.size(); ++b) {
-      const Words words =
-          Random(options.seed, static_cast<std::uint32_t>(replicate), static_cast<std::uint32_t>(b), Purpose::Bootstrap)
-              .words(0);
-      scores.col(static_cast<Index>(b)) =
-          trials[b].col(static_cast<Index>(uniform(words[0]) * static_cast<double>(trials[b].cols())));
+  const std::size_t effects = test.effects.size();
+  const auto n = static_cast<std::size_t>(options.replicates);
+  std::vector<std::vector<double>> smallest(effects, std::vector<double>(n, 1.0));  // by effect and data set
+  for (std::size_t replicate = 0; replicate < n; ++replicate) {
+    const MatrixXd scores = drawn(trials, options.seed, static_cast<int>(replicate));
+    for (std::size_t i = 0; i < projections.size(); ++i) {
+      double& best = smallest[effect_of[i]][replicate];
+      best = std::min(best, projections[i].verdict(scores).p_value);
     }
-    std::vector<double> smallest(test.effects.size(), 1.0);
-    for (std::size_t i = 0; i < projections.size(); ++i)
-      smallest[effect_of[i]] = std::min(smallest[effect_of[i]], projections[i].verdict(scores).p_value);
-    for (std::size_t e = 0; e < smallest.size(); ++e) more_extreme[e] += smallest[e] <= test.effects[e].best.p_value;
-    any += *std::min_element(smallest.begin(), smallest.end()) <= best;
   }
-  for (std::size_t e = 0; e < test.effects.size(); ++e)
-    test.effects[e].p_value = (more_extreme[e] + 1.0) / (options.replicates + 1.0);
-  test.p_value = (any + 1.0) / (options.replicates + 1.0);
+  std::vector<double> luckiest(n, 1.0);  // by data set: its smallest corrected p-value
+  test.p_value = 1.0;
+  for (std::size_t e = 0; e < effects; ++e) {
+    std::vector<double> sorted = smallest[e];
+    std::sort(sorted.begin(), sorted.end());
+    const auto up_to = [&sorted](double p) {
+      return static_cast<double>(std::upper_bound(sorted.begin(), sorted.end(), p) - sorted.begin());
+    };
+    const auto count = static_cast<double>(n);
+    for (std::size_t r = 0; r < n; ++r) luckiest[r] = std::min(luckiest[r], up_to(smallest[e][r]) / count);
+    test.effects[e].p_value = (up_to(test.effects[e].best.p_value) + 1.0) / (count + 1.0);
+    test.p_value = std::min(test.p_value, test.effects[e].p_value);
+  }
+  const double as_lucky =
+      static_cast<double>(std::count_if(luckiest.begin(), luckiest.end(), [&](double p) { return p <= test.p_value; }));
+  test.p_value = (as_lucky + 1.0) / static_cast<double>(n + 1);
 }
 
 /// By how much a parameter of the base is moved: away from its upper bound [z].
@@ -212,17 +159,20 @@ Directions directions_of(const Campaign& campaign, const ResidualSpace& space, c
                          std::span<const Candidate> candidates, const std::vector<bool>& rows,
                          const ScoreTestOptions& options) {
   Directions directions(campaign, space, base_runs, rows);
-  const ObserveOptions observing{options.trials, options.seed, 0, options.threads, rows, {}};
+  const auto observed = [&](const Model& model) {
+    if (options.proceed && !options.proceed()) throw FitInterrupted{};
+    return observe(campaign, model, {options.trials, options.seed, 0, options.threads, rows, {}});
+  };
   for (std::size_t i = 0; i < free.size(); ++i) {
     VectorXd moved = z;
     moved[static_cast<Index>(i)] += step_of(free[i], z[static_cast<Index>(i)]);
-    directions.add(observe(campaign, model_at(base, free, moved), observing));
+    directions.add(observed(model_at(base, free, moved)));
   }
   for (const Candidate& candidate : candidates)
     for (std::size_t p = 0; p < candidate.tested; ++p) {
       VectorXd moved = VectorXd::Zero(static_cast<Index>(candidate.parameters.size()));
       moved[static_cast<Index>(p)] = kNoticed;
-      directions.add(observe(campaign, with(base, candidate, moved), observing));
+      directions.add(observed(with(base, candidate, moved)));
     }
   return directions;
 }
@@ -246,25 +196,18 @@ ScoreTest score_test(const Campaign& campaign, const Model& base, std::span<cons
   ScoreTest test;
   std::vector<Projection> projections;
   std::vector<std::size_t> effect_of;
-  for (const Place& place : places_of(candidates, n_base, directions.size())) {
-    const Candidate& candidate = candidates[place.candidate];
-    const bool one_sided = candidate.tested == 1 && candidate.parameters[0].lower >= 0.0;
-    projections.push_back(
-        project(place, covariance, steps, kStep * kStep / (options.prior_sd * options.prior_sd), one_sided));
+  for (const TestedPlace& place : places_of(candidates, n_base, directions.size())) {
+    projections.emplace_back(place, covariance, steps, kStep * kStep / (kPriorSd * kPriorSd));
     Verdict verdict = projections.back().verdict(measured);
-    verdict.candidate = place.candidate;
-    verdict.joined = place.joined;
+    verdict.members = place.members;
+    const std::string& name = candidates[place.members.front()].effect;
     auto effect = std::find_if(test.effects.begin(), test.effects.end(),
-                               [&](const EffectVerdict& e) { return e.effect == candidate.effect; });
-    if (effect == test.effects.end()) effect = test.effects.insert(effect, {candidate.effect, verdict, 1.0, {}});
+                               [&](const EffectVerdict& e) { return e.effect == name; });
+    if (effect == test.effects.end()) effect = test.effects.insert(effect, {name, verdict, 1.0});
     if (verdict.p_value < effect->best.p_value) effect->best = verdict;
-    effect->places.push_back(verdict);
     effect_of.push_back(static_cast<std::size_t>(effect - test.effects.begin()));
   }
   correct(test, projections, effect_of, trials, options);
-  for (EffectVerdict& effect : test.effects)
-    std::sort(effect.places.begin(), effect.places.end(),
-              [](const Verdict& a, const Verdict& b) { return a.p_value < b.p_value; });
   std::sort(test.effects.begin(), test.effects.end(), [](const EffectVerdict& a, const EffectVerdict& b) {
     return a.p_value != b.p_value ? a.p_value < b.p_value : a.best.p_value < b.best.p_value;
   });

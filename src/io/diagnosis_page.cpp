@@ -129,8 +129,8 @@ std::string candidates_table(const Round& round, const std::vector<HoldoutError>
             print("%.4f", t.p_value) + "</td><td>" +
             print("%.3f (%.3f to %.3f)", t.gain, t.gain_interval.low, t.gain_interval.high) + "</td><td>" +
             value_text(e.after) + "</td><td>" +
-            print("%.0f %% (%.0f to %.0f)", 100.0 * (e.before - e.after) / e.before, 100.0 * e.reduction.low,
-                  100.0 * e.reduction.high) +
+            print("%.0f %% (%.0f to %.0f)", 100.0 * e.reduction.share, 100.0 * e.reduction.interval.low,
+                  100.0 * e.reduction.interval.high) +
             "</td></tr>\n";
   }
   return html + "</table>\n";
@@ -183,8 +183,8 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
           value_text(d.with_effects.score.total) + "</td><td></td></tr>\n";
   html += "<tr><td>held-out rows (never fitted)</td><td>" + value_text(e.before) + "</td><td>" + value_text(e.after) +
           "</td><td>" +
-          print("%.1f %% (%.1f to %.1f)", 100.0 * (e.before - e.after) / e.before, 100.0 * e.reduction.low,
-                100.0 * e.reduction.high) +
+          print("%.1f %% (%.1f to %.1f)", 100.0 * e.reduction.share, 100.0 * e.reduction.interval.low,
+                100.0 * e.reduction.interval.high) +
           "</td></tr></table>\n<p>Mean normalised score: 0 says the very value, about 0.56 knows no more than the "
           "spread of the measurements.</p>\n";
   html +=

@@ -13,6 +13,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint32_t kHoldoutTrials = 200;
 constexpr std::size_t kResidualRows = 20;
+constexpr double kOpening = 0.97;  // of the progress
 
 double rounded(double value) {
   if (value == 0.0 || !std::isfinite(value)) return value;
@@ -51,10 +52,12 @@ Json candidates_of(const Round& round, const std::vector<HoldoutError>& holdout)
                     {"parameters", parameters_of(t)},
                     {"fitted_with_ground", t.joint},
                     {"fit", number(t.fitted.score.total)},
+                    {"price", number(t.price)},
                     {"fit_gain_ci95", {number(t.gain_interval.low), number(t.gain_interval.high)}},
                     {"cross_validated_gain", number(t.cross_validated)},
                     {"holdout", number(holdout[i].after)},
-                    {"holdout_reduction_ci95", {number(holdout[i].reduction.low), number(holdout[i].reduction.high)}},
+                    {"holdout_reduction_ci95",
+                     {number(holdout[i].reduction.interval.low), number(holdout[i].reduction.interval.high)}},
                     {"chosen_share", number(t.chosen_share)},
                     {"p_value", number(t.p_value)}});
   }
@@ -62,6 +65,7 @@ Json candidates_of(const Round& round, const std::vector<HoldoutError>& holdout)
 }
 
 Score holdout_score(const Campaign& campaign, const Model& model, const DiagnosisRecord& record) {
+  if (record.options.proceed && !record.options.proceed(kOpening)) throw FitInterrupted{};
   ObserveOptions how;
   how.trials = kHoldoutTrials;
   how.seed = record.options.seed + 1;
@@ -71,17 +75,9 @@ Score holdout_score(const Campaign& campaign, const Model& model, const Diagnosi
 }
 
 HoldoutError error_of(const Score& before, const Score& after, std::size_t blocks) {
-  HoldoutError e{before.total, after.total, {}};
-  if (before.rows.empty() || std::isnan(before.total) || std::isnan(after.total)) return e;
-  std::vector<double> shares;
-  for (std::uint32_t draw = 0; draw < 2000; ++draw) {
-    const std::vector<double> weights = bootstrap_weights(before, blocks, draw, 2);
-    const double b = weighted_total(before, weights);
-    shares.push_back((b - weighted_total(after, weights)) / b);
-  }
-  std::sort(shares.begin(), shares.end());
-  e.reduction = {quantile(shares, 0.025), quantile(shares, 0.975)};
-  return e;
+  if (before.rows.empty() || std::isnan(before.total) || std::isnan(after.total))
+    return {before.total, after.total, {}};
+  return {before.total, after.total, reduction(before, after, blocks)};
 }
 
 bool found(const Round& round) {
@@ -138,8 +134,8 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
               {"holdout",
                {{"before", number(e.before)},
                 {"after", number(e.after)},
-                {"reduction", number((e.before - e.after) / e.before)},
-                {"ci95", {number(e.reduction.low), number(e.reduction.high)}}}}}},
+                {"reduction", number(e.reduction.share)},
+                {"ci95", {number(e.reduction.interval.low), number(e.reduction.interval.high)}}}}}},
             {"candidates", candidates_of(first, record.candidates.front())},
             {"residual", residual_of(first.residual)},
             {"residual_after", residual_of(d.residual_after)},

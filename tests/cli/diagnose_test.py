@@ -19,7 +19,7 @@ class Diagnose(Case):
 
 @unittest.skipUnless(os.path.isdir(CAMPAIGNS), "no campaigns at TALUS_DATA")
 class WholeLoop(Case):
-    def diagnose(self, name, trials="10"):
+    def diagnose(self, name, trials="20"):
         out = self.path(name)
         self.run_well("diagnose", f"{CAMPAIGNS}/{name}/campaign.toml", "-o", out, "--trials", trials, *SHORT, timeout=1200)
         with open(f"{out}/diagnosis.json", encoding="utf-8") as file:
@@ -53,8 +53,7 @@ class WholeLoop(Case):
         self.assertEqual(self.diagnose("alder")["effect"], "none")
 
     def test_measured_blocks_of_a_quarry(self):
-        # With ten trials a block that leaves once scores as the climatology, and the fit likes that.
-        found = self.diagnose("authume", "24")
+        found = self.diagnose("authume")
         self.assertGreater(len(found["residual"]), 3)
 
 

@@ -139,7 +139,7 @@ class OwnCampaign(Case):
         texts = []
         for threads in "1", "3":
             out = self.path("t" + threads)
-            self.run_well("calibrate", self.campaign, "-o", out, "--fit", "En50", "--starts", "1", "--trials", "10",
+            self.run_well("calibrate", self.campaign, "-o", out, "--fit", "En50", "--starts", "1", "--trials", "20",
                           "--threads", threads, "-q")
             with open(out + "/fitted.toml", encoding="utf-8") as file:
                 texts.append(file.read())

@@ -1,37 +1,8 @@
 #include <cmath>
 
-#include "files.hpp"
-#include "talus/io/loaded.hpp"
+#include "scenario_files.hpp"
 
 namespace talus::io::test {
-
-// A folder with dem.tif, sources.gpkg (a point without a diameter) and a scenario of the given text.
-class ScenarioFile : public Files {
- protected:
-  ScenarioFile() {
-    RasterFile{}.write(path("dem.tif"));
-    write_vector(path("sources.gpkg"), "EPSG:32632", {}, {{"POINT(55 45)"}});
-  }
-
-  static constexpr const char* kFiles = "dem = \"dem.tif\"\n[sources]\nfile = \"sources.gpkg\"\n";
-
-  LoadedScenario load(const std::string& text, RunFlags flags = {}) {
-    flags.scenario = write_text("scenario.toml", text);
-    return load_scenario(flags);
-  }
-  // The rest of a scenario after kFiles, which has a diameter.
-  LoadedScenario with(const std::string& rest) {
-    return load(std::string(kFiles) + "[blocks]\ndiameter = 1.2\n" + rest);
-  }
-  void refused(const std::string& text, const std::vector<std::string>& parts) {
-    expect_input_error([&] { load(text); }, parts);
-  }
-  static std::string origin(const LoadedScenario& loaded, const std::string& key) {
-    for (const Setting& s : loaded.settings)
-      if (s.key == key) return s.source;
-    return "no such setting";
-  }
-};
 
 TEST_F(ScenarioFile, EveryKeyArrives) {
   write_vector(path("zones.gpkg"), "EPSG:32632", {{"kind", OFTString}},
@@ -248,63 +219,6 @@ TEST_F(ScenarioFile, FlagsWinOverTheScenario) {
       std::string("seed = 4\n") + kFiles + "[blocks]\ndiameter = 1\n[ground]\ndefault = \"lower-talus-3d\"\n", flags);
   EXPECT_DOUBLE_EQ(l.scenario.cover.grounds[0].theta_scale, 0.4);
   EXPECT_EQ(l.scenario.seed, 5U);
-}
-
-TEST_F(ScenarioFile, AnIncludedModelComesFirstAndTheScenarioWins) {
-  RasterFile zones;
-  zones.type = GDT_Byte;
-  zones.values.assign(80, 3.0);
-  zones.write(path("zones.tif"));
-  write_text("fitted.toml", R"(
-[ground.zones.default]
-En50 = 7
-[ground.zones.talus]
-code = 3
-theta_scale = 0.6
-En50 = 9
-[ground.zones.meadow]
-preset = "forest-road-3d"
-[model]
-deformation_coefficient = 0.5
-)");
-  const std::string head = std::string("include = \"fitted.toml\"\n") + kFiles + "[blocks]\ndiameter = 1.2\n";
-  const LoadedScenario l = load(head + "[ground]\nfile = \"zones.tif\"\n[ground.zones.talus]\nEn50 = 11\n");
-  ASSERT_EQ(l.scenario.zone_names, (std::vector<std::string>{"default", "talus", "meadow"}));
-  EXPECT_EQ(l.scenario.cover.grounds[0].En50, 7.0);
-  EXPECT_EQ(l.scenario.cover.grounds[1].theta_scale, 0.6);
-  EXPECT_EQ(l.scenario.cover.grounds[1].En50, 11.0);
-  EXPECT_EQ(l.scenario.cover.grounds[2].theta_scale, 0.4);
-  EXPECT_EQ(l.scenario.cover.zones.at(5, 5), 1);  // the code 3 of the raster is the talus
-  EXPECT_EQ(l.scenario.impact.deformation_coefficient, 0.5);
-  EXPECT_EQ(origin(l, "ground.zones.talus.En50"), "scenario");
-  EXPECT_EQ(origin(l, "ground.zones.talus.theta_scale"), "include fitted.toml");
-  EXPECT_EQ(origin(l, "model.deformation_coefficient"), "include fitted.toml");
-  ASSERT_EQ(l.inputs[1].role, "include");
-  EXPECT_EQ(l.inputs[1].path, path("fitted.toml"));
-  EXPECT_EQ(l.inputs[1].sha256.size(), 64U);
-
-  const LoadedScenario again = load(l.complete_toml);  // needs no include
-  for (std::size_t z = 0; z < 3; ++z) {
-    EXPECT_EQ(again.scenario.cover.grounds[z].En50, l.scenario.cover.grounds[z].En50);
-    EXPECT_EQ(again.scenario.cover.grounds[z].theta_scale, l.scenario.cover.grounds[z].theta_scale);
-  }
-  EXPECT_EQ(again.scenario.cover.zones.values, l.scenario.cover.zones.values);
-  EXPECT_EQ(again.complete_toml, l.complete_toml);
-
-  const LoadedScenario preset =
-      load(head + "[ground]\nfile = \"zones.tif\"\n[ground.zones.talus]\npreset = \"lower-talus-3d\"\n");
-  EXPECT_EQ(preset.scenario.cover.grounds[1].theta_scale, 1.5);  // a preset starts the zone anew
-}
-
-TEST_F(ScenarioFile, FaultsOfAnInclude) {
-  const std::string head = std::string("include = \"fitted.toml\"\n") + kFiles + "[blocks]\ndiameter = 1.2\n";
-  refused(head, {"scenario.toml:1", "include = 'fitted.toml'", "no such file"});
-  write_text("fitted.toml", "[ground.zones.talus]\nEn50 = 9\n");
-  refused(head, {"include = 'fitted.toml'", "describes zones", "[ground]"});
-  write_text("fitted.toml", "dem = \"x\"\n");
-  refused(head, {"fitted.toml:1", "unknown key 'dem'"});
-  write_text("fitted.toml", "[ground.zones.default]\nEn50 = 9\n");
-  EXPECT_EQ(load(head).scenario.cover.grounds[0].En50, 9.0);
 }
 
 }  // namespace talus::io::test

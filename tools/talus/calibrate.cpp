@@ -2,34 +2,26 @@
 #include <cstdio>
 #include <memory>
 
-#include "commands.hpp"
+#include "campaign_command.hpp"
 #include "progress.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/fit_report.hpp"
 #include "talus/io/model_file.hpp"
-#include "talus/io/output_folder.hpp"
 #include "talus/simulate/presets.hpp"
 
 namespace {
 
-struct Options {
-  std::string campaign, out, progress;
+struct Options : CampaignCommand {
   std::vector<std::string> fit{"theta_scale", "psi_scale", "En50", "Et50"};
   talus::FitOptions how;
-  bool overwrite = false, quiet = false;
 };
 
-constexpr std::uint32_t kUnseen = 1'000'000;  // trials from here on: none that the search has seen
-constexpr double kSearchShare = 0.7;          // of the progress
-
-[[noreturn]] void stop_interrupted() {
-  throw Interrupted("interrupted; nothing was written");
-}
+constexpr double kSearchShare = 0.7;  // of the progress
 
 std::vector<talus::BlockRuns> runs_of(const talus::Campaign& campaign, const talus::Model& model,
                                       const talus::io::Calibration& c, const std::vector<bool>& blocks) {
-  talus::ObserveOptions how{c.score_trials, c.options.seed, kUnseen, c.options.threads, blocks, {}};
+  talus::ObserveOptions how{c.score_trials, c.options.seed, talus::kUnseen, c.options.threads, blocks, {}};
   how.proceed = [] { return !interrupted(); };
   std::vector<talus::BlockRuns> runs = talus::observe(campaign, model, how);
   if (interrupted()) stop_interrupted();
@@ -85,18 +77,10 @@ void print_summary(const talus::io::Calibration& c, const std::string& folder) {
 
 int calibrate(const Options& options) {
   catch_signals();
-  talus::io::LoadedCampaign loaded = talus::io::read_campaign(options.campaign);
-  const talus::Campaign& campaign = loaded.campaign;
-  talus::io::OutputFolder folder(options.out, options.overwrite);
-  for (const talus::io::InputFile& input : loaded.inputs) folder.protect(input.path);
-  if (!options.quiet)
-    for (const std::string& warning : loaded.warnings) say("warning", warning);
-
   talus::io::Calibration c;
-  c.command = command_line();
-  c.inputs = loaded.inputs;
-  c.warnings = loaded.warnings;
-  c.campaign = campaign.name;
+  OpenedCampaign opened(options, c);
+  const talus::Campaign& campaign = opened.loaded.campaign;
+  talus::io::OutputFolder& folder = opened.folder;
   c.options = options.how;
   c.start = talus::model_of_preset(campaign, talus::kDefaultPreset);
   choose_parameters(campaign, options.fit, c);
@@ -118,7 +102,7 @@ int calibrate(const Options& options) {
   talus::io::write_text(folder.temporary() / "calibration.json", talus::io::calibration_json(c));
   talus::io::write_text(folder.temporary() / "report.md", talus::io::calibration_report(c));
   talus::io::write_text(folder.temporary() / "fitted.toml",
-                        talus::io::model_text(c.fit.model, loaded,
+                        talus::io::model_text(c.fit.model, opened.loaded,
                                               "Fitted by talus calibrate to the campaign " + campaign.name +
                                                   ".\nUncertainty, and what is not identifiable: report.md."));
   folder.commit();
@@ -132,21 +116,8 @@ int calibrate(const Options& options) {
 void add_calibrate(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("calibrate", "Fit the parameters of the ground to measured data");
-  command->add_option("campaign", options->campaign, "measured data: campaign.toml")->required();
-  command->add_option("-o,--out", options->out, "new folder for the results")->required();
-  command->add_flag("--overwrite", options->overwrite, "replace the folder if it holds an earlier result");
-  command->add_option("--fit", options->fit, "parameters, in every zone: theta_scale,psi_scale,En50,Et50,phi")
-      ->delimiter(',');
-  command->add_option("--trials", options->how.trials, "trajectories per block in the search (30)")
-      ->check(CLI::Range(10, 10000));
+  options->add_to(*command, options->how.trials, options->fit, options->how.seed, options->how.threads);
   command->add_option("--starts", options->how.starts, "searches from different starts (3)")->check(CLI::Range(1, 50));
-  command->add_option("--seed", options->how.seed, "of the random numbers (1)");
-  command
-      ->add_option("--threads", options->how.threads, "all processors where it is not given; the results are the same")
-      ->check(CLI::Range(1, 4096));
-  command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
-  command->add_option("--progress", options->progress, "machine: lines `progress 42` for other programs")
-      ->check(CLI::IsMember({"machine"}));
   command->footer(
       "Example:\n  talus calibrate campaign.toml -o result\n\n"
       "OUT: fitted.toml (the model: for talus score, and to include in a scenario), report.md, calibration.json.");

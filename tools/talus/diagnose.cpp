@@ -2,21 +2,17 @@
 #include <cstdio>
 #include <memory>
 
-#include "commands.hpp"
+#include "campaign_command.hpp"
 #include "progress.hpp"
 #include "talus/base/error.hpp"
-#include "talus/io/campaign_file.hpp"
 #include "talus/io/diagnosis_report.hpp"
 #include "talus/io/model_file.hpp"
-#include "talus/io/output_folder.hpp"
 #include "talus/simulate/presets.hpp"
 
 namespace {
 
-struct Options {
-  std::string campaign, out, progress;
+struct Options : CampaignCommand {
   talus::DiagnoseOptions how;
-  bool overwrite = false, quiet = false;
 };
 
 void print_summary(const talus::io::DiagnosisRecord& record, const std::string& folder) {
@@ -32,7 +28,7 @@ void print_summary(const talus::io::DiagnosisRecord& record, const std::string& 
   std::printf("error, fitting rows: %.3f before, %.3f after\n", d.base.score.total, d.with_effects.score.total);
   const talus::io::HoldoutError& e = record.whole;
   std::printf("error, held-out rows: %.3f before, %.3f after (lower by %.1f %%, 95 %%: %.1f to %.1f %%)\n", e.before,
-              e.after, 100.0 * (e.before - e.after) / e.before, 100.0 * e.reduction.low, 100.0 * e.reduction.high);
+              e.after, 100.0 * e.reduction.share, 100.0 * e.reduction.interval.low, 100.0 * e.reduction.interval.high);
   std::printf("written: %s\n", folder.c_str());
 }
 
@@ -52,34 +48,24 @@ void write_results(const talus::io::OutputFolder& folder, const talus::io::Loade
 int diagnose(const Options& options) {
   catch_signals();
   const auto start = std::chrono::steady_clock::now();
-  talus::io::LoadedCampaign loaded = talus::io::read_campaign(options.campaign);
-  const talus::Campaign& campaign = loaded.campaign;
-  talus::io::OutputFolder folder(options.out, options.overwrite);
-  for (const talus::io::InputFile& input : loaded.inputs) folder.protect(input.path);
-  if (!options.quiet)
-    for (const std::string& warning : loaded.warnings) say("warning", warning);
   talus::io::DiagnosisRecord record;
-  record.command = command_line();
-  record.inputs = loaded.inputs;
-  record.warnings = loaded.warnings;
-  record.campaign = campaign.name;
+  OpenedCampaign opened(options, record);
+  const talus::Campaign& campaign = opened.loaded.campaign;
   record.options = options.how;
   Progress progress(Progress::mode_of(options.quiet, options.progress == "machine"), 0);
-  record.options.proceed = [&progress](double share, const std::string&) {
-    return progress.update(share) && !interrupted();
-  };
+  record.options.proceed = [&progress](double share) { return progress.update(share) && !interrupted(); };
   try {
     record.diagnosis =
         talus::diagnose(campaign, talus::model_of_preset(campaign, talus::kDefaultPreset), record.options);
     talus::io::open_holdout(campaign, record);
-  } catch (const talus::DiagnosisInterrupted&) {
-    throw Interrupted("interrupted; nothing was written");
+  } catch (const talus::FitInterrupted&) {
+    stop_interrupted();
   }
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  write_results(folder, loaded, record);
-  folder.commit();
+  write_results(opened.folder, opened.loaded, record);
+  opened.folder.commit();
   progress.finish();
-  if (!options.quiet) print_summary(record, folder.final_path().string());
+  if (!options.quiet) print_summary(record, opened.folder.final_path().string());
   return 0;
 }
 
@@ -89,24 +75,12 @@ void add_diagnose(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("diagnose", "Find what a fitted model leaves of measured data, and which effect explains it");
-  command->add_option("campaign", options->campaign, "measured data: campaign.toml")->required();
-  command->add_option("-o,--out", options->out, "new folder for the results")->required();
-  command->add_flag("--overwrite", options->overwrite, "replace the folder if it holds an earlier result");
-  command->add_option("--fit", options->how.keys, "parameters, in every zone: theta_scale,psi_scale,En50,Et50,phi")
-      ->delimiter(',');
-  command->add_option("--trials", options->how.search_trials, "trajectories per block in the searches (24)")
-      ->check(CLI::Range(10, 10000));
-  command->add_option("--test-trials", options->how.test_trials, "trajectories per block in the tests (100)")
+  talus::DiagnoseOptions& how = options->how;
+  options->add_to(*command, how.search_trials, how.keys, how.seed, how.threads);
+  command->add_option("--test-trials", how.test_trials, "trajectories per block in the tests (100)")
       ->check(CLI::Range(20, 10000));
-  command->add_option("--level", options->how.first_level, "of significance, over all effects and places (0.05)")
+  command->add_option("--level", how.first_level, "of significance, over all effects and places (0.05)")
       ->check(CLI::Range(0.0001, 0.5));
-  command->add_option("--seed", options->how.seed, "of the random numbers (1)");
-  command
-      ->add_option("--threads", options->how.threads, "all processors where it is not given; the results are the same")
-      ->check(CLI::Range(1, 4096));
-  command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
-  command->add_option("--progress", options->progress, "machine: lines `progress 42` for other programs")
-      ->check(CLI::IsMember({"machine"}));
   command->footer("Example:\n  talus diagnose campaign.toml -o diagnosis\n\nThen open diagnosis/report.html.");
   command->callback([&action, options] { action = [options] { return diagnose(*options); }; });
 }

@@ -14,7 +14,9 @@ struct Candidate {
   std::vector<Parameter> parameters;    ///< one or two; those that need no test of their own come last
   std::size_t tested = 1;               ///< how many of them the score test moves
   std::function<void(Model&)> prepare;  ///< before the parameters are set: places and lines
+  double searched = 0.0;                ///< how many numbers of its place were chosen by the data: a price of its fit
   double from = 0.0, to = 0.0;          ///< of a band: along the axis [m]
+  std::vector<int> days = {};           ///< of wet ground
 };
 
 /// Positions along the slope: the direction in plan in which the blocks of a campaign go, and how far.
@@ -33,8 +35,8 @@ Axis axis_of(const Campaign& campaign, std::span<const BlockRuns> runs);
 /// @param runs     of the base model: says which zones are met and where the blocks go
 /// @param without  names of effects that the base model has already
 ///
-/// Bands (undeclared-zone) are given as the cells of a ladder of `kBands` along the axis, in order and one after the
-/// other: the diagnosis joins neighbours.
+/// Candidates of one effect stand one after the other. Bands (undeclared-zone) are given as the cells of a ladder of
+/// `kBands` along the axis, in order, wet days one by one: the score test joins them, as their signatures add up.
 std::vector<Candidate> candidates_of(const Campaign& campaign, const Model& base, std::span<const BlockRuns> runs,
                                      std::span<const std::string> without);
 
@@ -45,6 +47,10 @@ inline constexpr int kLines = 16;  ///< places of an undeclared barrier
 Candidate band(const Campaign& campaign, const Axis& axis, double from, double to);
 /// A net across the axis.
 Candidate barrier(const Axis& axis, double width, double at);
+
+/// The one candidate that several of one effect make: a band of neighbouring ones, or all of their days.
+Candidate together(const Campaign& campaign, const Axis& axis, std::span<const Candidate> list,
+                   std::span<const std::size_t> members);
 
 /// The model with a candidate in place, at z of its parameters.
 Model with(const Model& base, const Candidate& candidate, const Eigen::VectorXd& z);

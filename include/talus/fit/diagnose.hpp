@@ -22,6 +22,7 @@ struct Trial {
   double p_value = 1.0;                ///< of the score test, corrected for its places
   double gain = 0.0;                   ///< by which it lowers the error of the fitting rows
   Interval gain_interval;              ///< 95 %, paired bootstrap over blocks
+  double price = 0.0;                  ///< that its fitted numbers, those of its place too, must gain to be worth it
   double cross_validated = kNotGiven;  ///< the same in cross-validation; NaN where it was not needed
   double chosen_share = 0.0;           ///< of the bootstraps in which it has the lowest error of all
   Fitted fitted;
@@ -50,31 +51,19 @@ struct DiagnoseOptions {
   std::uint64_t seed = 1;
   int threads = 0;
   int most_effects = 3;
-  double first_level = 0.05;  ///< of the score test, over all effects: the false alarms that are accepted
-  double later_level = 0.01;  ///< once an effect is in: its form is itself a guess, which leaves a residual
-  std::function<bool(double, const std::string&)> proceed;  ///< share done and what is being done; false ends it
+  double first_level = 0.05;            ///< of the score test, over all effects: the false alarms that are accepted
+  double later_level = 0.01;            ///< once an effect is in: its form is itself a guess, which leaves a residual
+  std::function<bool(double)> proceed;  ///< told the share done, 0..1; false ends it. May be empty
 };
 
 /// Finds what a model of the ground alone leaves of a campaign's fitting rows, and which effect explains it.
 ///
 /// (1) Fits the ground. (2) Score test of all candidates. (3) Fits every effect at its best place, together with the
 /// ground where the test finds anything in it. (4) Chooses: significant in the test, better in a cross-validation over
-/// blocks, then the lowest error. (5) Puts it in and goes round again. The held-out rows are never looked at.
-/// docs/closing-the-loop.md, "Diagnosis".
+/// blocks, then the lowest error with the price of its numbers added. (5) Puts it in and goes round again. The held-out
+/// rows are never looked at. docs/closing-the-loop.md, "Diagnosis".
 ///
-/// Throws Interrupted, declared below, when `proceed` says no.
+/// Throws FitInterrupted when `proceed` says no.
 Diagnosis diagnose(const Campaign& campaign, const Model& start, const DiagnoseOptions& options);
-
-/// `proceed` said no.
-struct DiagnosisInterrupted {};
-
-/// 95 % interval of the difference of two errors over which blocks happened to be released; negative where `after` is
-/// the better one. Paired: rows that only one of them has do not count.
-struct Difference {
-  double mean = 0.0;
-  Interval interval;
-  std::vector<double> draws;
-};
-Difference difference_of(const Score& before, const Score& after, std::size_t blocks, std::uint32_t draws = 1000);
 
 }  // namespace talus

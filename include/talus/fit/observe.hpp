@@ -56,6 +56,12 @@ struct BlockRuns {
   std::vector<std::uint32_t> zone_hits;     ///< trials with an impact in each zone
 };
 
+/// First trial of the luck that no search has seen: what a fitted model is scored with.
+inline constexpr std::uint32_t kUnseen = 1'000'000;
+
+/// The user has ended a fit: a `proceed` said no.
+struct FitInterrupted {};
+
 struct ObserveOptions {
   std::uint32_t trials = 100;  ///< per block
   std::uint64_t seed = 1;

@@ -41,21 +41,29 @@ class ResidualSpace {
   Eigen::VectorXd whitened(const Residual& residual) const;
 
  private:
-  struct Distribution {
-    std::vector<double> sorted;  // of the trials that were observed; fewer than ten: of no use
+  /// Simulated values that were observed, ascending; fewer than ten: of no use.
+  using Sorted = std::vector<double>;
+  /// What there is to see of one block, measured or of one trial. NaN: not seen.
+  struct Seen {
+    Eigen::Vector2d way{kNotGiven, kNotGiven};  // from the place of release to the stop [m]
+    double mass_share = kNotGiven;
+    std::vector<std::optional<Passage>> passages;   // by screen; nothing: not crossed
+    std::vector<double> sample_speed, sample_spin;  // by sample
   };
+
+  Seen seen_measured(std::size_t block) const;
+  Seen seen_of_trial(std::size_t block, const BlockRuns& runs, std::size_t trial) const;
+  std::vector<double> values_of(std::size_t block, const Seen& seen) const;
   Residual residual(std::size_t block, const std::vector<double>& values) const;
-  std::vector<double> measured_values(std::size_t block) const;
-  std::vector<double> trial_values(std::size_t block, const BlockRuns& runs, std::size_t trial) const;
   double sample_score(std::size_t block, const Observable& o, const std::vector<double>& values) const;
   void correlate(const std::vector<BlockRuns>& runs);
 
   const Campaign& campaign_;
   std::vector<Observable> observables_;
-  std::vector<Eigen::Vector2d> forward_;                           // by block: towards its mean simulated stop, unit
-  std::vector<std::vector<Distribution>> distributions_;           // by block and observable
-  std::vector<std::vector<std::array<Distribution, 2>>> samples_;  // by block and sample: speed, spin
-  std::vector<double> crossing_share_;                             // by block and observable
+  std::vector<Eigen::Vector2d> forward_;                     // by block: towards its mean simulated stop, unit
+  std::vector<std::vector<Sorted>> distributions_;           // by block and observable
+  std::vector<std::vector<std::array<Sorted, 2>>> samples_;  // by block and sample: speed, spin
+  std::vector<double> crossing_share_;                       // by block and observable
   Eigen::MatrixXd correlation_;
   mutable std::map<std::vector<bool>, Eigen::MatrixXd> inverses_;  // by what is observed
 };

@@ -83,6 +83,16 @@ struct Reduction {
 Reduction reduction(const Score& before, const Score& after, std::size_t blocks, std::uint32_t draws = 2000,
                     std::uint64_t seed = 1);
 
+/// The difference of two totals of the same rows, negative where `after` is the better one, over which blocks happened
+/// to be released.
+struct Difference {
+  double mean = 0.0;
+  Interval interval;          ///< 95 %
+  std::vector<double> draws;  ///< of the bootstrap
+};
+Difference difference(const Score& before, const Score& after, std::size_t blocks, std::uint32_t draws = 1000,
+                      std::uint64_t seed = 1);
+
 /// Number of times that each of the blocks that have a row is drawn in bootstrap number `draw`. Size: blocks.
 std::vector<double> bootstrap_weights(const Score& score, std::size_t blocks, std::uint32_t draw, std::uint64_t seed);
 

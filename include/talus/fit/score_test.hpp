@@ -6,20 +6,18 @@ namespace talus {
 
 /// Whether a candidate, at one place, explains what a model leaves. docs/closing-the-loop.md, "The score test".
 struct Verdict {
-  std::size_t candidate;     ///< index into the candidates; of joined bands the first
-  std::size_t joined = 1;    ///< bands that were joined
-  Eigen::VectorXd estimate;  ///< of its tested parameters, one step from zero [kNoticed in z]
-  Eigen::VectorXd ground;    ///< how far the base's own parameters would move along with it [z]
-  double statistic = 0.0;    ///< s' V^-1 s, the larger one of V by the model and V by the blocks
-  double p_value = 1.0;      ///< of this place alone
+  std::vector<std::size_t> members;  ///< indices into the candidates: one, or neighbouring bands, or days
+  Eigen::VectorXd estimate;          ///< of its tested parameters, one step from zero [kNoticed in z]
+  Eigen::VectorXd ground;            ///< how far the base's own parameters would move along with it [z]
+  double statistic = 0.0;            ///< s' V^-1 s, the larger one of V by the model and V by the blocks
+  double p_value = 1.0;              ///< of this place alone
 };
 
 /// What the test says of an effect, at the best of its places.
 struct EffectVerdict {
   std::string effect;
   Verdict best;
-  double p_value = 1.0;         ///< corrected for the number of its places, from simulated data sets
-  std::vector<Verdict> places;  ///< all, most significant first
+  double p_value = 1.0;  ///< corrected for the number of its places, from simulated data sets
 };
 
 struct ScoreTest {
@@ -31,8 +29,8 @@ struct ScoreTestOptions {
   std::uint32_t trials = 200;
   std::uint64_t seed = 1;
   int threads = 0;
-  int replicates = 2000;  ///< simulated data sets without an effect
-  double prior_sd = 1.0;  ///< of a parameter of the ground, in z: keeps what the data do not constrain from moving
+  int replicates = 2000;          ///< simulated data sets without an effect
+  std::function<bool()> proceed;  ///< asked between simulations, by one thread; false ends it. May be empty
 };
 
 /// Tests every candidate against the residual of a model, with the model's own parameters free to move along.
@@ -43,6 +41,8 @@ struct ScoreTestOptions {
 ///
 /// @param base  fitted; `free` are its parameters, at `z`
 /// @param rows  the blocks that are used; size: blocks
+///
+/// Throws FitInterrupted when `proceed` says no.
 ScoreTest score_test(const Campaign& campaign, const Model& base, std::span<const Parameter> free,
                      const Eigen::VectorXd& z, const std::vector<BlockRuns>& base_runs,
                      std::span<const Candidate> candidates, const std::vector<bool>& rows,

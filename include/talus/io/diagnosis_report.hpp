@@ -1,23 +1,17 @@
 #pragma once
-#include <map>
-
 #include "talus/fit/diagnose.hpp"
-#include "talus/io/loaded.hpp"
+#include "talus/io/fit_record.hpp"
 
 namespace talus::io {
 
 /// The error on the held-out rows before and after an effect, on the same luck.
 struct HoldoutError {
   double before = kNotGiven, after = kNotGiven;
-  Interval reduction;  ///< 95 %, of (before - after) / before, over blocks
+  Reduction reduction;  ///< of `before`
 };
 
 /// All that `talus diagnose` found, with the held-out rows opened.
-struct DiagnosisRecord {
-  std::vector<std::string> command;
-  std::vector<InputFile> inputs;
-  std::vector<std::string> warnings;
-  std::string campaign;
+struct DiagnosisRecord : FitRecord {
   DiagnoseOptions options;
   Diagnosis diagnosis;
   HoldoutError whole;                                 ///< base against the last model
@@ -26,7 +20,7 @@ struct DiagnosisRecord {
   double seconds = 0.0;
 };
 
-/// Simulates the held-out rows with every model of a diagnosis. `proceed` as in ObserveOptions.
+/// Simulates the held-out rows with every model of a diagnosis. Throws FitInterrupted when `options.proceed` says no.
 void open_holdout(const Campaign& campaign, DiagnosisRecord& record);
 
 /// The text of diagnosis.json. INTERFACE.md names its keys.

@@ -4,6 +4,7 @@
 
 #include "talus/fit/distributions.hpp"
 #include "talus/fit/uncertainty.hpp"
+#include "talus/io/fit_record.hpp"
 #include "talus/io/score_report.hpp"
 
 namespace talus::io {
@@ -15,11 +16,7 @@ struct BeforeAfter {
 };
 
 /// All that `talus calibrate` found.
-struct Calibration {
-  std::vector<std::string> command;
-  std::vector<InputFile> inputs;
-  std::vector<std::string> warnings;
-  std::string campaign;
+struct Calibration : FitRecord {
   FitOptions options;
   Model start;
   std::vector<Parameter> free;

@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "support/scenes.hpp"
 #include "talus/fit/candidates.hpp"
+#include "talus/fit/projection.hpp"
 #include "talus/fit/residual_table.hpp"
 #include "talus/fit/score_test.hpp"
 
@@ -153,19 +155,74 @@ TEST(ScoreTest, FindsAnEffectThatMadeTheData) {
   EXPECT_GT(test.effects.front().best.estimate[0], 0.0);
 }
 
+TEST(ScoreTest, FindsTheSetOfWetDays) {
+  Campaign c = slope_campaign(90);
+  const Model model = model_of_preset(c, "upper-talus-3d");
+  Model truth = model;
+  truth.effects.wet_ground.softening = 1.2;
+  truth.effects.wet_ground.drag = 1.2;
+  truth.effects.wet_ground.days = {1, 3};
+  measure(c, truth, 13);
+  const auto list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {});
+  const ScoreTest test = test_of(c, model, list);
+  EXPECT_LT(test.p_value, 0.01);
+  const auto wet = std::find_if(test.effects.begin(), test.effects.end(),
+                                [](const EffectVerdict& e) { return e.effect == "wet-ground"; });
+  ASSERT_NE(wet, test.effects.end());
+  EXPECT_LT(wet->p_value, 0.01);
+  EXPECT_EQ(together(c, Axis{}, list, wet->best.members).where, "days 1, 3");
+}
+
+/// Two independent estimates of which only the second may be negative: the bounded optimum by hand.
+TEST(Projection, TheEstimateStaysWithinItsBounds) {
+  TestedPlace place{{0}, Eigen::MatrixXd::Identity(3, 3).rightCols(2), {true, false}};
+  const Projection projection(place, Eigen::MatrixXd::Identity(3, 3), Eigen::VectorXd::Ones(1), 1.0);
+  Eigen::MatrixXd scores(3, 4);
+  scores << 0.0, 0.0, 0.0, 0.0, -1.0, -0.5, 0.0, -0.5, -2.0, 0.0, 0.5, -0.5;
+  const Verdict v = projection.verdict(scores);
+  EXPECT_EQ(v.estimate[0], 0.0);
+  EXPECT_NEAR(v.estimate[1], -2.0, 1e-6);
+  EXPECT_NEAR(v.statistic, 4.0, 1e-6);  // 2^2 under the model; the blocks scatter by 3.5
+  // Half chi squared of one freedom, half of two: 0.5 erfc(sqrt(4/2)) + 0.5 exp(-4/2).
+  EXPECT_NEAR(v.p_value, 0.5 * std::erfc(std::sqrt(2.0)) + 0.5 * std::exp(-2.0), 1e-7);
+}
+
+TEST(Projection, EverySetOfFewDaysAndRunsOfMany) {
+  const auto places = [](std::size_t days) {
+    std::vector<Candidate> list(days);
+    for (Candidate& c : list) c = {"wet-ground", "", {{}}, 1, {}};
+    return places_of(list, 0, static_cast<Eigen::Index>(days)).size();
+  };
+  EXPECT_EQ(places(3), 6U);   // 2^3 - 2
+  EXPECT_EQ(places(6), 62U);  // 2^6 - 2
+  EXPECT_EQ(places(8), 35U);  // runs of 1 to 7 of 8 days: 8 + 7 + ... + 2
+}
+
+TEST(Candidates, ABandOfOtherGroundCountsWithItsZone) {
+  const Campaign c = slope_campaign(2);
+  std::vector<BlockRuns> runs(1);
+  runs[0].trials = 10;
+  runs[0].zone_hits = {0, 10};  // the zone, and the zone in the band
+  EXPECT_EQ(touched_zones(c, runs), std::vector<bool>{true});
+}
+
 TEST(ScoreTest, IsSilentAboutTheModelsOwnDataAsOftenAsItSays) {
   Campaign c = slope_campaign(30);
   const Model model = model_of_preset(c, "upper-talus-3d");
   measure(c, model, 100);
   std::vector<Candidate> list = candidates_of(c, model, observe(c, model, {20, 1, 0, 0, {}, {}}), {});
   std::erase_if(list, [](const Candidate& x) { return x.effect != "block-mass" && x.effect != "wet-ground"; });
-  int alarms = 0;
+  int alarms = 0, halves = 0;
   constexpr int kSets = 20;
   for (std::uint64_t set = 0; set < kSets; ++set) {
     measure(c, model, 100 + set);
-    alarms += test_of(c, model, list).p_value < 0.2;
+    const double p = test_of(c, model, list).p_value;
+    alarms += p < 0.2;
+    halves += p < 0.5;
   }
   EXPECT_LE(alarms, 9);  // binomial(20, 0.2): more than 9 in 0.26 % of the cases
+  EXPECT_GE(halves, 4);  // binomial(20, 0.5): below 4, or above 16, in 0.13 % each
+  EXPECT_LE(halves, 16);
 }
 
 }  // namespace

@@ -1,0 +1,32 @@
+#include "campaign_command.hpp"
+
+void CampaignCommand::add_to(CLI::App& command, std::uint32_t& trials, std::vector<std::string>& keys,
+                             std::uint64_t& seed, int& threads) {
+  command.add_option("campaign", campaign, "measured data: campaign.toml")->required();
+  command.add_option("-o,--out", out, "new folder for the results")->required();
+  command.add_flag("--overwrite", overwrite, "replace the folder if it holds an earlier result");
+  command.add_option("--fit", keys, "parameters, in every zone: theta_scale,psi_scale,En50,Et50,phi")->delimiter(',');
+  command.add_option("--trials", trials, "trajectories per block in the searches (" + std::to_string(trials) + ")")
+      ->check(CLI::Range(kFewestSearchTrials, 10000));
+  command.add_option("--seed", seed, "of the random numbers (1)");
+  command.add_option("--threads", threads, "all processors where it is not given; the results are the same")
+      ->check(CLI::Range(1, 4096));
+  command.add_flag("-q,--quiet", quiet, "say nothing but errors");
+  command.add_option("--progress", progress, "machine: lines `progress 42` for other programs")
+      ->check(CLI::IsMember({"machine"}));
+}
+
+OpenedCampaign::OpenedCampaign(const CampaignCommand& command, talus::io::FitRecord& record)
+    : loaded(talus::io::read_campaign(command.campaign)), folder(command.out, command.overwrite) {
+  for (const talus::io::InputFile& input : loaded.inputs) folder.protect(input.path);
+  if (!command.quiet)
+    for (const std::string& warning : loaded.warnings) say("warning", warning);
+  record.command = command_line();
+  record.inputs = loaded.inputs;
+  record.warnings = loaded.warnings;
+  record.campaign = loaded.campaign.name;
+}
+
+void stop_interrupted() {
+  throw Interrupted("interrupted; nothing was written");
+}

@@ -1,0 +1,30 @@
+#pragma once
+#include "commands.hpp"
+#include "talus/io/campaign_file.hpp"
+#include "talus/io/fit_record.hpp"
+#include "talus/io/output_folder.hpp"
+
+/// What `calibrate` and `diagnose` have in common: a campaign, a new folder, and how to tell of progress.
+struct CampaignCommand {
+  std::string campaign, out, progress;
+  bool overwrite = false, quiet = false;
+
+  /// Adds the options, those of a search among them.
+  void add_to(CLI::App& command, std::uint32_t& trials, std::vector<std::string>& keys, std::uint64_t& seed,
+              int& threads);
+};
+
+/// Trials per block below which a search can hide a block behind the climatology: one that rarely stops is not scored.
+inline constexpr int kFewestSearchTrials = 20;
+
+/// A campaign that was read, and the folder that waits for its results.
+struct OpenedCampaign {
+  talus::io::LoadedCampaign loaded;
+  talus::io::OutputFolder folder;
+
+  /// Reads the campaign, guards its files from being overwritten, says its warnings and fills the head of the report.
+  OpenedCampaign(const CampaignCommand& command, talus::io::FitRecord& record);
+};
+
+/// Ends the command as Ctrl-C does.
+[[noreturn]] void stop_interrupted();
