@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "talus/base/random.hpp"
 
@@ -9,9 +10,10 @@ namespace talus {
 namespace {
 
 constexpr std::size_t kFolds = 2;
-constexpr std::size_t kThorough = 3;   // of the effects that the test finds most significant
-constexpr double kWorthASearch = 0.1;  // p of the score test
-constexpr double kPrice = 0.56;        // by which one more fitted number must lower the error, times fitting blocks
+constexpr std::size_t kThorough = 3;       // of the effects that the test finds most significant
+constexpr double kWorthASearch = 0.1;      // p of the score test
+constexpr std::uint32_t kManyBlocks = 72;  // of fewer, more trials each are tested: a signature is a mean over blocks
+constexpr double kPrice = 0.56;            // by which one more fitted number must lower the error, times fitting blocks
 
 /// The work of one diagnosis.
 class Diagnosing {
@@ -38,6 +40,8 @@ class Diagnosing {
   }
 
  private:
+  std::uint32_t asked() const { return static_cast<std::uint32_t>(std::count(rows_.begin(), rows_.end(), true)); }
+
   bool proceeds() const { return !options_.proceed || options_.proceed(progress_); }
 
   ObserveOptions observing(std::uint32_t trials) const {
@@ -95,18 +99,30 @@ class Diagnosing {
     return z;
   }
 
-  /// The base with its own parameters moved as the score test expects them to when the candidate comes in.
-  static Model moved_along(const Fitted& base, const Candidate& candidate, const Verdict& verdict) {
-    const Eigen::VectorXd start = start_of(candidate, verdict) / kNoticed;
-    const double share = std::clamp(start[0] / std::max(1e-9, std::abs(verdict.estimate[0])), 0.0, 1.0);
-    const Eigen::VectorXd z = base.z + (share * verdict.ground).cwiseMax(-1.0).cwiseMin(1.0);
-    return model_at(base.model, base.free, z);
+  /// The best of some places to start a search from: the effect in several amounts, each with the ground as it is and
+  /// moved as the score test expects it to. An amount of zero, the base itself, is one of them.
+  Eigen::VectorXd scan(const FitProblem& problem, const FitOptions& how, const Fitted& base, const Candidate& candidate,
+                       const Verdict& verdict) const {
+    const Eigen::VectorXd effect = start_of(candidate, verdict);
+    const Eigen::Index ground = std::ssize(problem.free) - effect.size();
+    const double share = std::clamp(effect[0] / std::max(1e-9, kNoticed * std::abs(verdict.estimate[0])), 0.0, 1.0);
+    Evaluation best;
+    best.objective = std::numeric_limits<double>::infinity();
+    for (const double amount : {0.0, 0.5, 1.0, 2.0, 4.0})
+      for (const bool along : {false, true}) {
+        if (along && (ground == 0 || amount == 0.0)) continue;
+        Eigen::VectorXd z(std::ssize(problem.free));
+        if (ground > 0) z.head(ground) = base.z;
+        if (along) z.head(ground) += (amount * share * verdict.ground).cwiseMax(-1.5).cwiseMin(1.5);
+        z.tail(effect.size()) = amount * effect;
+        Evaluation here = evaluate(problem, how, z, {how.trials});
+        if (here.objective < best.objective) best = std::move(here);
+      }
+    return best.z;
   }
 
   /// What a candidate of so many fitted numbers gains by chance alone; docs/closing-the-loop.md, "Choice".
-  double price_of(double numbers) const {
-    return kPrice * numbers / static_cast<double>(std::count(rows_.begin(), rows_.end(), true));
-  }
+  double price_of(double numbers) const { return kPrice * numbers / asked(); }
 
   /// @param thorough  a longer search
   Trial try_effect(const Fitted& base, const EffectVerdict& verdict, const Candidate& candidate, bool thorough) const {
@@ -118,10 +134,10 @@ class Diagnosing {
     trial.joint = verdict.p_value < kWorthASearch;
     std::vector<Parameter> free = trial.joint ? base.free : std::vector<Parameter>{};
     free.insert(free.end(), candidate.parameters.begin(), candidate.parameters.end());
-    const Model start = with(trial.joint ? moved_along(base, candidate, verdict.best) : base.model, candidate,
-                             start_of(candidate, verdict.best));
-    const FitOptions how = short_fit((thorough ? 6 : 3) * static_cast<int>(free.size()), thorough ? 2 : 1);
-    Fit fit = fit_parameters(campaign_, start, free, rows_, how);
+    const FitOptions how = short_fit((thorough ? 6 : 3) * static_cast<int>(free.size()), thorough ? 3 : 1);
+    const Model off = with(base.model, candidate, Eigen::VectorXd::Zero(std::ssize(candidate.parameters)));
+    const Eigen::VectorXd z = scan({campaign_, off, free, rows_}, how, base, candidate, verdict.best);
+    Fit fit = fit_parameters(campaign_, model_at(off, free, z), free, rows_, how);
     trial.fitted = finish(std::move(fit), std::move(free));
     for (const Parameter& p : candidate.parameters) trial.values.push_back(p.get(trial.fitted.model));
     const Difference c = difference(base.score, trial.fitted.score, campaign_.blocks.size());
@@ -188,7 +204,7 @@ class Diagnosing {
     const std::vector<Candidate> candidates = candidates_of(campaign_, base.model, base.fitting, found);
     const Axis axis = axis_of(campaign_, base.fitting);
     ScoreTestOptions how;
-    how.trials = options_.test_trials;
+    how.trials = std::max(options_.test_trials, options_.test_trials * kManyBlocks / asked());
     how.seed = options_.seed;
     how.threads = options_.threads;
     how.proceed = [this] { return proceeds(); };

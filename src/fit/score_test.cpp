@@ -54,14 +54,15 @@ MatrixXd covariates_of(const Campaign& campaign, const std::vector<std::size_t>&
 /// All directions in which the model could move, seen through the residuals of the blocks.
 class Directions {
  public:
+  /// @param unmoved  the base again, on the luck of the runs that will be added: what luck does is the same in both
   Directions(const Campaign& campaign, const ResidualSpace& space, const std::vector<BlockRuns>& base,
-             const std::vector<bool>& rows)
+             const std::vector<BlockRuns>& unmoved, const std::vector<bool>& rows)
       : space_(space), base_(base) {
     for (std::size_t b = 0; b < rows.size(); ++b)
       if (rows[b] && base[b].trials > 0) blocks_.push_back(b);
     const MatrixXd x = covariates_of(campaign, blocks_);
     smoother_ = x * (x.transpose() * x + 1e-6 * MatrixXd::Identity(x.cols(), x.cols())).ldlt().solve(x.transpose());
-    for (const std::size_t b : blocks_) rest_.push_back(mean_residual(space, b, base[b]));
+    for (const std::size_t b : blocks_) rest_.push_back(mean_residual(space, b, unmoved[b]));
   }
 
   void add(const std::vector<BlockRuns>& moved) {
@@ -101,7 +102,7 @@ class Directions {
   const std::vector<BlockRuns>& base_;
   std::vector<std::size_t> blocks_;
   MatrixXd smoother_;
-  std::vector<VectorXd> rest_;        // by block: mean residual of the base itself, nearly zero
+  std::vector<VectorXd> rest_;        // by block: mean residual of the base itself: luck
   std::vector<MatrixXd> signatures_;  // by direction: blocks x components
 };
 
@@ -158,11 +159,11 @@ Directions directions_of(const Campaign& campaign, const ResidualSpace& space, c
                          std::span<const Parameter> free, const VectorXd& z, const std::vector<BlockRuns>& base_runs,
                          std::span<const Candidate> candidates, const std::vector<bool>& rows,
                          const ScoreTestOptions& options) {
-  Directions directions(campaign, space, base_runs, rows);
   const auto observed = [&](const Model& model) {
     if (options.proceed && !options.proceed()) throw FitInterrupted{};
     return observe(campaign, model, {options.trials, options.seed, 0, options.threads, rows, {}});
   };
+  Directions directions(campaign, space, base_runs, observed(base), rows);
   for (std::size_t i = 0; i < free.size(); ++i) {
     VectorXd moved = z;
     moved[static_cast<Index>(i)] += step_of(free[i], z[static_cast<Index>(i)]);
