@@ -125,8 +125,9 @@ std::vector<Candidate> candidates_of(const Campaign& campaign, const Model& base
   add_placed(list, places, "forest-stems", &Effects::forest_stems,
              {effect_amount("forest-stems.density", "1/ha", 0.0, 100.0, 0.0, 3000.0, &Effects::forest_stems,
                             &ForestStems::density)});
+  // M_E stays at 15 MN/m2: soil of 2 MN/m2, with a deeper scar, is as a drag five times larger.
   add_placed(list, places, "soft-ground", &Effects::soft_ground,
-             {effect_amount("soft-ground.drag", "1", 0.0, 1.0, 0.0, 20.0, &Effects::soft_ground, &SoftGround::drag)});
+             {effect_amount("soft-ground.drag", "1", 0.0, 4.0, 0.0, 100.0, &Effects::soft_ground, &SoftGround::drag)});
   add_placed(list, places, "rolling-resistance", &Effects::rolling_resistance,
              {effect_amount("rolling-resistance.coefficient", "1", 0.0, 0.2, 0.0, 2.0, &Effects::rolling_resistance,
                             &RollingResistance::coefficient)});
