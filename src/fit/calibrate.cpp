@@ -219,6 +219,7 @@ std::vector<bool> touched_zones(const Campaign& campaign, std::span<const BlockR
       hits[zone % hits.size()] += block.zone_hits[zone];
   }
   std::vector<bool> touched;
+  touched.reserve(hits.size());
   for (const double count : hits) touched.push_back(count > 0.0 && count >= share * trials);
   return touched;
 }

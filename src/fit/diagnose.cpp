@@ -208,13 +208,14 @@ class Diagnosing {
     how.seed = options_.seed;
     how.threads = options_.threads;
     how.proceed = [this] { return proceeds(); };
-    const ScoreTest test = score_test(campaign_, base.model, base.free, base.z, base.fitting, candidates, rows_, how);
+    const ScoreTest test = score_test(campaign_, {base.model, base.free, base.z, base.fitting}, candidates, rows_, how);
     round.p_value = test.p_value;
     const bool noise = test.p_value > level;
     if (!more || (noise && !found.empty())) {  // nothing left, or as much as may be added
       round.effect = noise ? what_is_left(round) : "unexplained";
       return round;
     }
+    round.trials.reserve(test.effects.size());
     for (const EffectVerdict& verdict : test.effects) {
       progress_ = std::min(0.95, progress_ + 0.02);
       const bool thorough = round.trials.size() < kThorough && verdict.p_value < level;
@@ -232,6 +233,7 @@ class Diagnosing {
   /// How often each trial has the lowest error, drawing blocks with replacement.
   void count_choices(const Fitted& base, std::vector<Trial>& trials) const {
     std::vector<Difference> all;
+    all.reserve(trials.size());
     for (const Trial& t : trials) {
       all.push_back(difference(base.score, t.fitted.score, campaign_.blocks.size()));
       for (double& draw : all.back().draws) draw += t.price;

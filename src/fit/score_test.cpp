@@ -155,45 +155,42 @@ double step_of(const Parameter& parameter, double z) {
   return parameter.value(z + kStep) < parameter.upper ? kStep : -kStep;
 }
 
-Directions directions_of(const Campaign& campaign, const ResidualSpace& space, const Model& base,
-                         std::span<const Parameter> free, const VectorXd& z, const std::vector<BlockRuns>& base_runs,
-                         std::span<const Candidate> candidates, const std::vector<bool>& rows,
-                         const ScoreTestOptions& options) {
-  const auto observed = [&](const Model& model) {
-    if (options.proceed && !options.proceed()) throw FitInterrupted{};
-    return observe(campaign, model, {options.trials, options.seed, 0, options.threads, rows, {}});
-  };
-  Directions directions(campaign, space, base_runs, observed(base), rows);
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    VectorXd moved = z;
-    moved[static_cast<Index>(i)] += step_of(free[i], z[static_cast<Index>(i)]);
-    directions.add(observed(model_at(base, free, moved)));
+/// The directions of the base's parameters, then those of the candidates.
+void add_directions(Directions& directions, const TestedModel& base, std::span<const Candidate> candidates,
+                    const std::function<std::vector<BlockRuns>(const Model&)>& observed) {
+  for (std::size_t i = 0; i < base.free.size(); ++i) {
+    VectorXd moved = base.z;
+    moved[static_cast<Index>(i)] += step_of(base.free[i], base.z[static_cast<Index>(i)]);
+    directions.add(observed(model_at(base.model, base.free, moved)));
   }
   for (const Candidate& candidate : candidates)
     for (std::size_t p = 0; p < candidate.tested; ++p) {
       VectorXd moved = VectorXd::Zero(static_cast<Index>(candidate.parameters.size()));
       moved[static_cast<Index>(p)] = kNoticed;
-      directions.add(observed(with(base, candidate, moved)));
+      directions.add(observed(with(base.model, candidate, moved)));
     }
-  return directions;
 }
 
 }  // namespace
 
-ScoreTest score_test(const Campaign& campaign, const Model& base, std::span<const Parameter> free, const VectorXd& z,
-                     const std::vector<BlockRuns>& base_runs, std::span<const Candidate> candidates,
+ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::span<const Candidate> candidates,
                      const std::vector<bool>& rows, const ScoreTestOptions& options) {
-  const ResidualSpace space(campaign, base_runs);
-  const Directions directions = directions_of(campaign, space, base, free, z, base_runs, candidates, rows, options);
+  const auto observed = [&](const Model& model) {
+    if (options.proceed && !options.proceed()) throw FitInterrupted{};
+    return observe(campaign, model, {options.trials, options.seed, 0, options.threads, rows, {}});
+  };
+  const ResidualSpace space(campaign, base.runs);
+  Directions directions(campaign, space, base.runs, observed(base.model), rows);
+  add_directions(directions, base, candidates, observed);
   std::vector<MatrixXd> trials;
   MatrixXd measured;
   directions.score_all(trials, measured);
   MatrixXd covariance = MatrixXd::Zero(directions.size(), directions.size());
   for (const MatrixXd& u : trials) covariance += u * u.transpose() / static_cast<double>(u.cols());
 
-  const auto n_base = static_cast<Index>(free.size());
+  const auto n_base = static_cast<Index>(base.free.size());
   VectorXd steps(n_base);
-  for (Index i = 0; i < n_base; ++i) steps[i] = step_of(free[static_cast<std::size_t>(i)], z[i]);
+  for (Index i = 0; i < n_base; ++i) steps[i] = step_of(base.free[static_cast<std::size_t>(i)], base.z[i]);
   ScoreTest test;
   std::vector<Projection> projections;
   std::vector<std::size_t> effect_of;

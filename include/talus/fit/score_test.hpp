@@ -33,19 +33,24 @@ struct ScoreTestOptions {
   std::function<bool()> proceed;  ///< asked between simulations, by one thread; false ends it. May be empty
 };
 
+/// The model that is tested. The parts must outlive it.
+struct TestedModel {
+  const Model& model;                  ///< fitted
+  std::span<const Parameter> free;     ///< its fitted parameters
+  const Eigen::VectorXd& z;            ///< of them
+  const std::vector<BlockRuns>& runs;  ///< of the asked blocks, on luck that the search has not seen
+};
+
 /// Tests every candidate against the residual of a model, with the model's own parameters free to move along.
 ///
 /// The residual of each block is compared with the one that a small amount of the candidate would leave (simulated: its
 /// signature). What a change of the model's free parameters could imitate is taken out of it. The same is done with
 /// data sets drawn from the model itself, which gives the p-values: one trial per block stands in for the measurement.
 ///
-/// @param base  fitted; `free` are its parameters, at `z`
 /// @param rows  the blocks that are used; size: blocks
 ///
 /// Throws FitInterrupted when `proceed` says no.
-ScoreTest score_test(const Campaign& campaign, const Model& base, std::span<const Parameter> free,
-                     const Eigen::VectorXd& z, const std::vector<BlockRuns>& base_runs,
-                     std::span<const Candidate> candidates, const std::vector<bool>& rows,
-                     const ScoreTestOptions& options);
+ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::span<const Candidate> candidates,
+                     const std::vector<bool>& rows, const ScoreTestOptions& options);
 
 }  // namespace talus

@@ -59,7 +59,8 @@ ScoreTest test_of(const Campaign& c, const Model& model, std::span<const Candida
   options.trials = 60;
   options.seed = 7;
   options.replicates = 500;
-  return score_test(c, model, free, Eigen::VectorXd::Zero(2), runs, candidates, rows, options);
+  const Eigen::VectorXd z = Eigen::VectorXd::Zero(2);
+  return score_test(c, {model, free, z, runs}, candidates, rows, options);
 }
 
 TEST(Residual, NormalQuantileIsTheTextbooks) {
