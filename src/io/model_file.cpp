@@ -84,10 +84,10 @@ void check_places(const std::string& name, const EffectSpec& effect, const Campa
   if (!effect.file.path.empty())
     faults.push_back(path + ": [effects." + name + "] file = \"" + effect.file.path +
                      "\": a campaign knows only its own zones: name them by zones = [...]");
+  const std::string unknown = path + ": [effects." + name + "] zones: the campaign has no such zone";
   for (const std::string& zone : effect.zones)
     if (std::find(campaign.zone_names.begin(), campaign.zone_names.end(), zone) == campaign.zone_names.end())
-      faults.push_back(path + ": [effects." + name + "] zones: the campaign has no such zone" +
-                       known_names(zone, campaign.zone_names));
+      faults.push_back(unknown + known_names(zone, campaign.zone_names));
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ fs::path make_temporary(const fs::path& folder) {
     throw InputError(parent.string() + ": there is no such folder for the results to go into; create it first");
   const std::string stem = "." + folder.filename().string() + ".talus-" + std::to_string(getpid());
   for (int attempt = 0; attempt < 100; ++attempt) {
-    const fs::path path = parent / (attempt == 0 ? stem : stem + "-" + std::to_string(attempt));
+    fs::path path = parent / (attempt == 0 ? stem : stem + "-" + std::to_string(attempt));
     std::error_code error;
     if (fs::create_directory(path, error)) return path;
     if (error == std::errc::no_space_on_device) throw std::runtime_error(parent.string() + ": " + error.message());
