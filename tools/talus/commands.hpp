@@ -13,6 +13,7 @@ using Action = std::function<int()>;
 /// One subcommand each: adds its options to the program and sets `action` when it is called.
 void add_run(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
+void add_profile(CLI::App& app, Action& action);
 void add_presets(CLI::App& app, Action& action);
 void add_trace(CLI::App& app, Action& action);
 void add_calibrate(CLI::App& app, Action& action);
