@@ -65,6 +65,7 @@ OGRLayer* GeoPackage::add_layer(const char* name, OGRwkbGeometryType type, const
 }
 
 OGRLayer* GeoPackage::add_point_layer(const char* name, const std::vector<Column>& columns) {
+  const Configured date("OGR_CURRENT_DATE", kDate);  // what follows writes the dates of the layers before
   points_ = create_layer(name, wkbPoint, columns);
   create_index(name);
   // GDAL's triggers would insert the points one by one.

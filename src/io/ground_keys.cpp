@@ -12,6 +12,28 @@ namespace {
 constexpr Bounds kCode{"code", "1", "what stands for the zone in a raster", 0.0, 1e15, Bounds::Closed, true};
 constexpr const char* kDefaultZone = "default";  // the ground outside all zones
 
+/// The key x of a zone on a profile: [from, to], or a list of such intervals.
+std::vector<Range> intervals_of(TableReader& table) {
+  const TomlValue* value = table.find("x");
+  if (value == nullptr) {
+    table.faults().push_back(table.file() + ":" + std::to_string(table.value()->line) + ": " + table.full("x") +
+                             " is missing, must say where the zone is: x = [from, to] in m, or a list of these");
+    return {};
+  }
+  const bool many =
+      value->kind == TomlValue::Kind::List && !value->items.empty() && value->items[0].kind == TomlValue::Kind::List;
+  std::vector<Range> intervals;
+  for (const TomlValue& item : many ? value->items : std::vector<TomlValue>{*value}) {
+    const std::vector<TomlValue>& ends = item.items;
+    if (item.kind != TomlValue::Kind::List || ends.size() != 2 || ends[0].kind != TomlValue::Kind::Number ||
+        ends[1].kind != TomlValue::Kind::Number || !(ends[0].number < ends[1].number))
+      table.fault("x", item, "must be [from, to] in m, from below to, or a list of such intervals");
+    else
+      intervals.push_back({ends[0].number, ends[1].number});
+  }
+  return intervals;
+}
+
 }  // namespace
 
 void GroundReader::read(TableReader& ground) {
@@ -70,7 +92,11 @@ void GroundReader::read_zone(TableReader table, ZoneSpec zone) {
   if (const auto preset = table.text("preset"))
     if (set_preset(table, "preset", *preset, zone))
       spec_.origins[zone.name == kDefaultZone ? "ground.default" : table.full("preset")] = origin_;
-  if (const auto code = table.number("code", kCode)) zone.code = text_of(*code);
+  if (on_profile_) {
+    if (zone.name != kDefaultZone) zone.intervals = intervals_of(table);
+  } else if (const auto code = table.number("code", kCode)) {
+    zone.code = text_of(*code);
+  }
   for (const auto& field : ground_fields()) {
     const std::string key(field.key);
     if (key == "shape_min" || key == "shape_max") continue;

@@ -18,6 +18,12 @@ class GroundReader {
   /// `default` and `zones`; a zone that is there already keeps what is not said again, unless a preset is named.
   void read(TableReader& ground);
 
+  /// The same on a profile: each zone has intervals of x [m], no code.
+  void read_on_profile(TableReader& ground) {
+    on_profile_ = true;
+    read(ground);
+  }
+
   /// A fault where zones are described and no file says where they are.
   void check_file(const TableReader& ground, const std::string& include);
 
@@ -27,6 +33,7 @@ class GroundReader {
   void store(ZoneSpec zone);
 
   ScenarioSpec& spec_;
+  bool on_profile_ = false;
   std::string origin_;
   std::vector<std::string>& faults_;
 };

@@ -15,19 +15,9 @@ namespace {
 
 // Files that are not there, before any is opened.
 void check_files(const ScenarioSpec& spec, std::vector<std::string>& faults) {
-  start_gdal();
   std::vector<const NamedFile*> files{&spec.include, &spec.dem, &spec.sources, &spec.ground, &spec.screens};
   for (const auto& [name, effect] : spec.effects) files.push_back(&effect.file);
-  for (const NamedFile* file : files) {
-    if (file->path.empty()) continue;
-    VSIStatBufL status;
-    std::error_code none;
-    const bool local = std::filesystem::path(file->path).is_absolute() && file->path.rfind("/vsi", 0) != 0;
-    if (local && !std::filesystem::exists(file->path, none))
-      faults.push_back(file->where + ": no such file (" + file->path + ")");
-    if (file->path.rfind("/vsi", 0) == 0 && VSIStatL(file->path.c_str(), &status) != 0)
-      faults.push_back(file->where + ": no such file");
-  }
+  check_files(files, faults);
 }
 
 void stop_at_faults(const std::vector<std::string>& faults, std::vector<std::string>* all) {
@@ -83,6 +73,20 @@ void record_inputs(const ScenarioSpec& spec, LoadedScenario& out) {
 }
 
 }  // namespace
+
+void check_files(const std::vector<const NamedFile*>& files, std::vector<std::string>& faults) {
+  start_gdal();
+  for (const NamedFile* file : files) {
+    if (file->path.empty()) continue;
+    VSIStatBufL status;
+    std::error_code none;
+    const bool local = std::filesystem::path(file->path).is_absolute() && file->path.rfind("/vsi", 0) != 0;
+    if (local && !std::filesystem::exists(file->path, none))
+      faults.push_back(file->where + ": no such file (" + file->path + ")");
+    if (file->path.rfind("/vsi", 0) == 0 && VSIStatL(file->path.c_str(), &status) != 0)
+      faults.push_back(file->where + ": no such file");
+  }
+}
 
 LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* all_faults) {
   std::vector<std::string> faults;

@@ -29,20 +29,23 @@ class SpecReader {
     TableReader top(&root, "", file_, faults_);
     read_include(top);
     named_file(top, "dem", spec_.dem);
-    scalar(top, "seed");
-    scalar(top, "trajectories");
-    scalar(top, "day");
+    read_common(top);
     read_sources(top.table("sources"));
-    read_blocks(top.table("blocks"));
     read_ground(top.table("ground"));
-    read_model(top.table("model"));
     read_output(top.table("output"));
     TableReader screens = top.table("screens");
     named_file(screens, "file", spec_.screens);
     screens.finish();
-    read_effects(spec_, top.table("effects"), base_);
     refuse_later_parts(top);
     top.finish();
+  }
+
+  /// What a profile has too.
+  void read_common(TableReader& top) {
+    for (const char* key : {"seed", "trajectories", "day"}) scalar(top, key);
+    read_blocks(top.table("blocks"));
+    read_model(top.table("model"));
+    read_effects(spec_, top.table("effects"), base_);
   }
 
   /// The keys of a model alone.
@@ -232,7 +235,8 @@ class SpecReader {
   std::vector<std::string>& faults_;
 };
 
-// In the order of the file: the number that follows its name.
+}  // namespace
+
 void sort_by_line(std::vector<std::string>& faults, const std::string& file) {
   const auto line = [&](const std::string& fault) {
     return fault.rfind(file + ":", 0) == 0 ? std::atoi(fault.c_str() + file.size() + 1) : 0;
@@ -241,7 +245,9 @@ void sort_by_line(std::vector<std::string>& faults, const std::string& file) {
                    [&](const std::string& a, const std::string& b) { return line(a) < line(b); });
 }
 
-}  // namespace
+void read_common_keys(ScenarioSpec& spec, TableReader& top, std::vector<std::string>& faults) {
+  SpecReader(spec, top.file(), "scenario", faults).read_common(top);
+}
 
 void read_model_keys(ScenarioSpec& spec, const std::string& path, const std::string& name, const std::string& origin,
                      std::vector<std::string>& faults) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct ZoneSpec {
   Ground ground;
   std::map<std::string, std::string> own;  ///< origin of each parameter that is not the preset's
   std::string code;                        ///< what stands for the zone in a raster; empty: its name
+  std::vector<Range> intervals{};          ///< of x, on a profile [m]
 };
 
 /// An effect that the input names: where it acts. Its numbers are in `values`.
@@ -31,6 +33,16 @@ struct EffectSpec {
   NamedFile file;
 };
 
+/// What the file of a profile says of its terrain and places, beside what it shares with a scenario.
+struct ProfileSpec {
+  NamedFile csv, line;  ///< a polyline; or a line over `ScenarioSpec::dem`
+  double step = 0.1;    ///< of the columns [m]
+  Range source;         ///< x of the releases [m]
+  double vx = 0.0, vz = 0.0;
+  std::vector<double> screens;  ///< x [m]
+  double bin = 5.0;             ///< of the results [m]
+};
+
 /// All that a scenario file and the flags say, before any other file is opened.
 struct ScenarioSpec {
   NamedFile scenario, include, dem, sources, ground, screens;
@@ -39,6 +51,7 @@ struct ScenarioSpec {
   std::vector<ZoneSpec> zones;                ///< in the order of the file
   std::map<std::string, EffectSpec> effects;  ///< by name
   Range release_height = SourceFeature{}.release_height;
+  std::optional<ProfileSpec> profile;          ///< of `talus profile`: there are no layers then
   Scenario values;                             ///< its settings; without terrain, sources and screens
   std::map<std::string, std::string> origins;  ///< of the keys that are given: "scenario", "flag --seed"
 
@@ -51,6 +64,18 @@ struct ScenarioSpec {
 /// Reads the scenario file, where there is one, and lays the flags over it. Faults of single settings are collected;
 /// what makes reading on senseless (no such file, no TOML) is thrown as InputError.
 ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults);
+
+/// Reads the file of a profile as `read_spec` reads a scenario; `profile` of the result is there.
+ScenarioSpec read_profile_spec(const RunFlags& flags, std::vector<std::string>& faults);
+
+class TableReader;
+/// Reads the keys that a scenario and a profile share: seed, trajectories, day, [blocks], [model], [effects].
+void read_common_keys(ScenarioSpec& spec, TableReader& top, std::vector<std::string>& faults);
+
+/// Puts faults in the order of the lines of the file that they are in; those without a line first.
+void sort_by_line(std::vector<std::string>& faults, const std::string& file);
+/// Adds a fault for each file that is named and not there.
+void check_files(const std::vector<const NamedFile*>& files, std::vector<std::string>& faults);
 
 /// Reads what a scenario may include, and a model for a campaign: [ground] default, [ground.zones.*], the impact law in
 /// [model], [effects.*]. Any other key is a fault.

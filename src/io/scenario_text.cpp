@@ -68,8 +68,10 @@ class Lines {
  public:
   explicit Lines(const ScenarioSpec& spec) : spec_(spec) {
     file("", "dem", spec.dem);
+    if (spec.profile) terrain(*spec.profile);
     fields("");
     file("sources", "file", spec.sources);
+    if (spec.profile) sources(*spec.profile);
     add("sources", "release_height", range_text(spec.release_height), "m");
     fields("blocks");
     const Blocks& blocks = spec.values.blocks;
@@ -80,8 +82,13 @@ class Lines {
     fields("model");
     add("model", "roughness", toml_text(spec.values.impact.roughness == Roughness::Clamp ? "clamp" : "resample"), "");
     fields("output");
-    add("output", "energy_thresholds", list_text(spec.values.output.energy_thresholds), "kJ");
-    add("output", "height_thresholds", list_text(spec.values.output.height_thresholds), "m");
+    if (spec.profile) {
+      add("output", "bin", text_of(spec.profile->bin), "m");
+      if (!spec.profile->screens.empty()) add("screens", "x", list_text(spec.profile->screens), "m");
+    } else {
+      add("output", "energy_thresholds", list_text(spec.values.output.energy_thresholds), "kJ");
+      add("output", "height_thresholds", list_text(spec.values.output.height_thresholds), "m");
+    }
     file("screens", "file", spec.screens);
     effects();
   }
@@ -105,6 +112,18 @@ class Lines {
         add(table, full.substr(dot == std::string::npos ? 0 : dot + 1), text_of(field.get(spec_.values)),
             field.unit == "1" ? "" : std::string(field.unit));
     }
+  }
+
+  void terrain(const ProfileSpec& profile) {
+    file("", "profile", profile.csv);
+    file("", "line", profile.line);
+    add("", "step", text_of(profile.step), "m");
+  }
+
+  void sources(const ProfileSpec& profile) {
+    add("sources", "x", range_text(profile.source), "m");
+    add("sources", "vx", text_of(profile.vx), "m/s");
+    add("sources", "vz", text_of(profile.vz), "m/s");
   }
 
   void effects() {
@@ -139,6 +158,11 @@ class Lines {
       const std::string origin = spec_.origin(full + "preset");
       lines_.push_back({table, "preset", toml_text(zone.preset), "",
                         origin == "default" ? "preset of [ground] default" : origin, full + "preset"});
+      if (!zone.intervals.empty()) {
+        std::vector<std::string> words;
+        for (const Range& x : zone.intervals) words.push_back(list_text({x.low, x.high}));
+        lines_.push_back({table, "x", std::string("[") + joined(words) + "]", "m", "scenario", full + "x"});
+      }
       if (!zone.code.empty()) lines_.push_back({table, "code", zone.code, "", "scenario", full + "code"});
       parameters(zone, table, full, true);
     }
@@ -166,7 +190,9 @@ class Lines {
 }  // namespace
 
 std::string toml_of(const ScenarioSpec& spec) {
-  std::string text = "# A complete scenario, written by Talus: every setting of the run.\n", table;
+  std::string text = std::string("# A complete ") + (spec.profile ? "profile" : "scenario") +
+                     ", written by Talus: every setting of the run.\n",
+              table;
   const Lines lines(spec);
   for (const Line& line : lines.lines()) {
     if (!line.written) continue;

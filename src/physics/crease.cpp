@@ -37,7 +37,10 @@ CreaseEnd slide_along_crease(const Slope& slope, const Slope& beyond, Motion& mo
   const Edge edge = edge_between(slope, beyond, place);
   const double speed = motion.velocity.norm(), ahead = motion.velocity.dot(edge.direction);
   double sign = ahead < 0.0 ? -1.0 : 1.0;
-  if (!(std::abs(ahead) > 1e-9 * speed)) sign = edge.direction.z() > 0.0 ? -1.0 : 1.0;  // none along it: downwards
+  if (!(std::abs(ahead) > 1e-9 * speed)) {                  // none along it: downwards
+    if (edge.direction.z() == 0.0) return CreaseEnd::Held;  // level: nothing leads it to either side
+    sign = edge.direction.z() > 0.0 ? -1.0 : 1.0;
+  }
   const double friction =
       slope.tan_phi * kGravity * 0.5 * (cosine_of_slope(slope, place) + cosine_of_slope(beyond, place));
   const double pull = -sign * kGravity * edge.direction.z() - friction;

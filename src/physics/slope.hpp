@@ -50,7 +50,8 @@ enum class CreaseEnd { Moved, Held };
 /// with the mean of the two slopes; on its way it goes at most to the end of the edge, and at most a quarter of a cell.
 ///
 /// @param slope   the patch the block is in;  beyond: the patch on the other side of the edge
-/// @return        Held where the block rests and friction exceeds gravity along the edge
+/// @return        Held where the block rests and friction exceeds gravity along the edge, or has no velocity along a
+///                level one
 CreaseEnd slide_along_crease(const Slope& slope, const Slope& beyond, Motion& motion, double farthest, Path& path);
 
 }  // namespace talus

@@ -32,7 +32,7 @@ Release make_release(const Scenario& scenario, std::uint32_t source, std::uint32
   const Grid& grid = scenario.surface.grid();
   const Random random(scenario.seed, source, block, Purpose::Release);
   const auto place = random.words(0), size = random.words(1);
-  const double x = cell.point ? cell.x : cell.x + (uniform(place[0]) - 0.5) * grid.cell_x;
+  const double x = cell.x + (uniform(place[0]) - 0.5) * (cell.point ? cell.along : grid.cell_x);
   const double y = cell.point ? cell.y : cell.y + (uniform(place[1]) - 0.5) * grid.cell_y;
   const double height = feature.release_height.at(uniform(place[2]));
   const double diameter = std::isnan(feature.diameter.low)

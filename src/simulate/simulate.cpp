@@ -204,10 +204,11 @@ class Run {
       trace(world, release, path);
       batch.add(path, release.body.mass, source, reach);
       add(totals, release, path);
+      if (sinks_.walked) sinks_.walked(release, path);
       if (sinks_.stops) rows.stops.push_back(stop_row(release, path));
       if (sinks_.crossings) screens_.find(release, path, rows.crossings);
       if (sinks_.paths && is_recorded(scenario_, source, block))
-        rows.paths.push_back({stop_row(release, path), points_of(path, scenario_.surface.grid().cell_x)});
+        rows.paths.push_back({stop_row(release, path), points_of(path, spacing())});
       if (!path.pieces.empty())
         trace_pieces(world, path, [&](const Release& piece, const Path& way) {
           batch.add(way, piece.body.mass, source, reach, true);
@@ -218,6 +219,8 @@ class Run {
     }
     return rows;
   }
+
+  double spacing() const { return sinks_.path_spacing > 0.0 ? sinks_.path_spacing : scenario_.surface.grid().cell_x; }
 
   void report() {
     const std::lock_guard guard(mutex_);

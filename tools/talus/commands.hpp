@@ -13,11 +13,13 @@ using Action = std::function<int()>;
 /// One subcommand each: adds its options to the program and sets `action` when it is called.
 void add_run(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
+void add_profile(CLI::App& app, Action& action);
 void add_presets(CLI::App& app, Action& action);
 void add_trace(CLI::App& app, Action& action);
 void add_calibrate(CLI::App& app, Action& action);
 void add_diagnose(CLI::App& app, Action& action);
 void add_score(CLI::App& app, Action& action);
+void add_sources(CLI::App& app, Action& action);
 
 /// The options that say which scenario is meant: those of `run` and `check`.
 void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags);

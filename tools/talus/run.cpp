@@ -2,15 +2,14 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <exception>
 #include <memory>
 #include <optional>
 
 #include "commands.hpp"
 #include "progress.hpp"
+#include "run_support.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/output_folder.hpp"
 #include "talus/io/run_record.hpp"
@@ -32,33 +31,6 @@ struct Options {
   int threads = 0;
   bool overwrite = false, quiet = false;
 };
-
-/// Measures the stages of a run.
-class Stopwatch {
- public:
-  struct Lap {
-    double cpu, wall;
-  };
-  /// Seconds since the last call.
-  Lap lap() {
-    const Lap now = read(), lap{now.cpu - last_.cpu, now.wall - last_.wall};
-    last_ = now;
-    return lap;
-  }
-
- private:
-  static Lap read() {
-    timespec cpu{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
-    return {static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec),
-            std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count()};
-  }
-  Lap last_ = read();
-};
-
-[[noreturn]] void stop_interrupted() {
-  throw Interrupted("interrupted; nothing was written");
-}
 
 /// The files that are written while the trajectories are traced.
 class Vectors {
@@ -110,25 +82,6 @@ void write_maps(const LoadedScenario& loaded, const talus::Tally& tally, const s
   if (interrupted()) stop_interrupted();
 }
 
-/// Names of the files in a folder, in the order of the alphabet.
-std::vector<std::string> files_in(const std::filesystem::path& folder) {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    names.push_back(entry.path().filename().string());
-  std::ranges::sort(names);
-  return names;
-}
-
-std::uint64_t count_of(const talus::Totals& totals, talus::End end) {
-  return totals.ends[static_cast<std::size_t>(end)];
-}
-
-std::string share_text(std::uint64_t part, std::uint64_t whole) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g %%", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
-  return text;
-}
-
 /// What a user should know of the result.
 std::vector<std::string> warnings_of(const talus::Totals& totals) {
   const std::uint64_t left = count_of(totals, talus::End::Left);
@@ -140,10 +93,7 @@ std::vector<std::string> warnings_of(const talus::Totals& totals) {
 void summarise(const talus::io::RunRecord& record, const LoadedScenario& loaded, const std::string& folder) {
   const talus::Totals& t = record.totals;
   say("", count_text(t.released) + " trajectories from " + count_text(loaded.scenario.sources.size()) +
-              " source cells: " + count_text(count_of(t, talus::End::Stopped)) + " stopped, " +
-              count_text(count_of(t, talus::End::Left)) + " left the map, " +
-              count_text(count_of(t, talus::End::Caught)) + " caught, " + count_text(count_of(t, talus::End::Limit)) +
-              " at a limit");
+              " source cells: " + ends_text(t));
   char seconds[96];
   std::snprintf(seconds, sizeof seconds, "read %.1f s, simulated %.1f s, wrote %.1f s", record.wall.read,
                 record.wall.simulate, record.wall.write);
@@ -184,12 +134,9 @@ void simulate_and_write(const Options& options, const LoadedScenario& loaded, co
 /// Says what went wrong where too many trajectories ended at a limit, and how to look into it.
 int judge_limits(const talus::Totals& totals, const std::filesystem::path& folder) {
   if (!talus::io::too_many_limits(totals)) return 0;
-  const std::uint64_t limits = count_of(totals, talus::End::Limit);
-  say("error", count_text(limits) + " of " + count_text(totals.released) + " trajectories (" +
-                   share_text(limits, totals.released) +
-                   ", allowed are 0.1 %) ended at the limit of impacts or time; " + "look at the first: talus trace " +
-                   (folder / "scenario.toml").string() + " --source " + std::to_string(totals.first_limit[0]) +
-                   " --block " + std::to_string(totals.first_limit[1]));
+  say("error", limits_text(totals) + "; look at the first: talus trace " + (folder / "scenario.toml").string() +
+                   " --source " + std::to_string(totals.first_limit[0]) + " --block " +
+                   std::to_string(totals.first_limit[1]));
   return 1;
 }
 

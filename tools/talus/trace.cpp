@@ -1,20 +1,17 @@
-#include <unistd.h>
-
 #include <array>
 #include <charconv>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "commands.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/loaded.hpp"
+#include "talus/io/output_file.hpp"
 #include "talus/io/write_vectors.hpp"
 #include "talus/simulate/plan.hpp"
 #include "talus/simulate/simulate.hpp"
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -73,38 +70,19 @@ void print_csv(const talus::io::LoadedScenario& loaded, const talus::Path& path)
   }
 }
 
-/// Removes the half-written file where something goes wrong.
-struct Temporary {
-  fs::path path;
-  ~Temporary() {
-    std::error_code ignored;
-    fs::remove(path, ignored);
-  }
-};
-
-void write_geopackage(const fs::path& out, const talus::io::LoadedScenario& loaded, const talus::Release& release,
-                      const talus::Path& path) {
-  const fs::path folder = fs::absolute(out).parent_path();
-  const Temporary temporary{folder / ("." + out.stem().string() + ".talus-" + std::to_string(getpid()) + ".gpkg")};
+void write_geopackage(talus::io::OutputFile& out, const talus::io::LoadedScenario& loaded,
+                      const talus::Release& release, const talus::Path& path) {
   const talus::Grid& grid = loaded.scenario.surface.grid();
-  talus::io::TrajectoriesWriter writer(temporary.path, loaded.geo, grid);
+  talus::io::TrajectoriesWriter writer(out.temporary(), loaded.geo, grid);
   writer.write({stop_row(release, path), talus::points_of(path, grid.cell_x)});
   writer.write_vertices(path);
   writer.finish();
-  fs::rename(temporary.path, out);
-}
-
-void check_out(const std::string& out) {
-  const fs::path path(out);
-  if (path.extension() != ".gpkg") throw talus::InputError(out + ": the file must end in .gpkg, for example path.gpkg");
-  if (fs::exists(path))
-    throw talus::InputError(out + ": the file is there already; give a new name, or remove it first");
-  if (!fs::is_directory(fs::absolute(path).parent_path()))
-    throw talus::InputError(out + ": there is no such folder for the file to go into; create it first");
+  out.commit();
 }
 
 int trace_one(const Options& options) {
-  if (!options.out.empty()) check_out(options.out);
+  std::optional<talus::io::OutputFile> out;
+  if (!options.out.empty()) out.emplace(options.out, ".gpkg", false);
   talus::io::RunFlags flags;
   flags.scenario = options.scenario;
   const talus::io::LoadedScenario loaded = talus::io::load_scenario(flags);
@@ -115,10 +93,10 @@ int trace_one(const Options& options) {
                                                      static_cast<std::uint32_t>(options.block));
   talus::Path path;
   talus::trace(scenario.world(), release, path);
-  if (options.out.empty())
-    print_csv(loaded, path);
+  if (out)
+    write_geopackage(*out, loaded, release, path);
   else
-    write_geopackage(options.out, loaded, release, path);
+    print_csv(loaded, path);
   return 0;
 }
 

@@ -17,6 +17,7 @@ enum class Roughness {
 struct ImpactModel {
   double deformation_coefficient = 0.25;  ///< c in E_d = c D v_n^2 [-]
   Roughness roughness = Roughness::Clamp;
+  bool in_plane = false;  ///< the 2D model: a heading that is drawn is east or west, so that y never changes
 };
 
 /// The random part of one impact.

@@ -31,6 +31,7 @@ struct SourceCell {
   std::uint32_t feature = 0;  ///< index into Scenario::features
   double x = 0.0, y = 0.0;    ///< centre of the cell, or the point [m, local]
   bool point = false;         ///< released exactly there, not uniformly in the cell
+  double along = 0.0;         ///< of a point: uniformly over this length in x, half of it on either side [m]
 };
 
 /// A class of block sizes, with its share of the blocks.

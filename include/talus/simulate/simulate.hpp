@@ -39,6 +39,9 @@ struct Sinks {
   std::function<void(std::span<const StopRow>)> stops;
   std::function<void(std::span<const Crossing>)> crossings;
   std::function<void(const RecordedPath&)> paths;
+  double path_spacing = 0.0;  ///< of the points of `paths`, at most [m]; 0: a cell
+  /// Every path, unlike the others in any order and from several threads at a time.
+  std::function<void(const Release&, const Path&)> walked;
   /// Called with the share done, 0..1, after every unit of work; false interrupts the run. From any thread, one at a
   /// time.
   std::function<bool(double)> progress;

@@ -1,0 +1,69 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+#include "talus/simulate/simulate.hpp"
+
+namespace talus {
+
+/// Mean, percentiles and maximum of values; all 0 where there are none.
+struct Distribution {
+  std::uint64_t count = 0;
+  double mean = 0.0, p50 = 0.0, p95 = 0.0, p99 = 0.0, max = 0.0;
+};
+
+/// The percentile p is the k-th smallest value, k = ceil(p count). The same bits in any order of the values.
+Distribution distribution_of(std::vector<float> values);
+
+/// What happened in one bin of a profile. A trajectory counts once in a bin, with its largest value there.
+struct ProfileBin {
+  double from = 0.0, to = 0.0;         ///< distance from the first node [m]
+  Distribution speed, energy, height;  ///< [m/s], translational [kJ], vertical above the ground [m]
+};
+
+/// Collects trajectories on an extruded profile by bins of x, from several threads.
+///
+/// Keeps every value: 12 bytes per trajectory and bin that it crosses.
+class ProfileBins {
+ public:
+  /// @param columns  of the grid: those between the first and the last node, of `step` [m] each
+  /// @param width    [m], a whole multiple of `step`; the last bin may reach beyond the profile
+  ProfileBins(int columns, double step, double width);
+
+  /// Adds a trajectory: exact largest speed and clearance in each bin. `mass` of the block [kg].
+  void add(const Path& path, double mass);
+
+  std::vector<ProfileBin> bins() const;
+
+ private:
+  struct Values {
+    std::vector<float> speed, energy, height;
+  };
+  double width_;
+  int columns_per_bin_;
+  std::mutex mutex_;
+  std::vector<Values> values_;
+};
+
+/// How far blocks went: the distance in x between release and stop.
+struct Runout {
+  Distribution stopped;              ///< of the blocks that came to rest [m]
+  std::vector<std::uint64_t> stops;  ///< by bins of the distance, from 0
+  std::uint64_t left = 0, released = 0;
+};
+
+class RunoutCounter {
+ public:
+  explicit RunoutCounter(double width) : width_(width) {}
+  void add(std::span<const StopRow> rows);
+  Runout result() const;
+
+ private:
+  double width_;
+  std::vector<float> distances_;
+  Runout counts_;
+};
+
+}  // namespace talus

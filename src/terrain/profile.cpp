@@ -1,0 +1,48 @@
+#include "talus/terrain/profile.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+namespace {
+
+constexpr int kMantissa = 24;  // bits of a float: whole multiples of a quantum up to 2^24 of them are exact
+
+}  // namespace
+
+double Profile::height(double x) const {
+  const auto next =
+      std::upper_bound(nodes.begin(), nodes.end(), x, [](double at, const auto& n) { return at < n.x(); });
+  if (next == nodes.begin()) return nodes.front().y();
+  if (next == nodes.end()) return nodes.back().y();
+  const Eigen::Vector2d &a = *(next - 1), &b = *next;
+  return a.y() + (b.y() - a.y()) * ((x - a.x()) / (b.x() - a.x()));
+}
+
+ExtrudedProfile extrude(const Profile& profile, double step) {
+  const auto [low, high] = std::minmax_element(profile.nodes.begin(), profile.nodes.end(),
+                                               [](const auto& a, const auto& b) { return a.y() < b.y(); });
+  ExtrudedProfile out;
+  out.datum = 0.5 * (low->y() + high->y());
+  const double quantum =
+      std::exp2(std::ceil(std::log2(0.5 * (high->y() - low->y()) + 1.0)) - kMantissa);  // 1 m of room for rounding
+  const auto column_of = [&](double x) { return std::llround((x - profile.from()) / step); };
+
+  std::vector<long long> quanta{std::llround((profile.nodes.front().y() - out.datum) / quantum)};
+  for (std::size_t i = 1; i < profile.nodes.size(); ++i) {
+    const long long first = std::ssize(quanta) - 1, columns = column_of(profile.nodes[i].x()) - first;
+    const double rise = (profile.nodes[i].y() - out.datum) / quantum - static_cast<double>(quanta.back());
+    const long long each = std::llround(rise / static_cast<double>(columns));
+    for (long long c = 0; c < columns; ++c) quanta.push_back(quanta.back() + each);
+  }
+
+  const int columns = static_cast<int>(quanta.size());
+  const Grid grid{columns, 2, step, kProfileLine, profile.from() - 0.5 * step, -kProfileLine};
+  out.heights = Raster<float>(grid, 0.0F);
+  for (int c = 0; c < columns; ++c)
+    out.heights.at(c, 0) = out.heights.at(c, 1) =
+        static_cast<float>(static_cast<double>(quanta[static_cast<std::size_t>(c)]) * quantum);
+  return out;
+}
+
+}  // namespace talus

@@ -1,0 +1,254 @@
+"""talus profile: the 2D model, by hand, against PHYSICS.md's plane, and its files and faults."""
+import csv
+import math
+import os
+import unittest
+import xml.dom.minidom
+
+import numpy as np
+from osgeo import ogr
+
+from support import NORTH, WEST, Case, rows_of, write_dem, write_features
+
+TAN38 = math.tan(math.radians(38.0))
+
+
+class Profile(Case):
+    def nodes(self, *nodes, name="p.csv"):
+        self.write(name, "x,z\n" + "".join(f"{x!r},{z!r}\n" for x, z in nodes))
+
+    def scenario(self, sources, rest="", head='profile = "p.csv"\n', name="p.toml", diameter="1.0"):
+        return self.write(name, f"{head}[sources]\n{sources}\n[blocks]\ndiameter = {diameter}\n{rest}")
+
+    def profile(self, *extra, name="p.toml", out="out"):
+        return self.run_well("profile", self.path(name), "-o", self.path(out), "-q", *extra)
+
+    def rows(self, file, out="out"):
+        with open(self.path(os.path.join(out, file)), encoding="utf-8") as lines:
+            return [{k: v if k in ("end", "screen") else float(v) for k, v in row.items()}
+                    for row in csv.DictReader(lines)]
+
+    def contents(self, out):
+        found = {}
+        for name in sorted(os.listdir(self.path(out))):
+            with open(self.path(os.path.join(out, name)), "rb") as file:
+                found[name] = file.read()
+        return found
+
+
+class ByHand(Profile):
+    def test_free_fall_over_a_step(self):
+        # Thrown at 8 m/s from 2 m above a plateau, over its edge at x = 20 (1.92 m lower by then), to a floor 50 m below.
+        self.nodes((0, 100), (20, 100), (20.1, 50), (80, 50))
+        self.scenario("x = 15\nrelease_height = 2\nvx = 8", "[screens]\nx = [18, 40]\n[output]\nbin = 5\n")
+        self.profile("--trajectories", "7")
+        g, mass = 9.81, 2700.0 * math.pi / 6.0
+        for screen, x, ground in (("18", 18.0, 100.0), ("40", 40.0, 50.0)):
+            t = (x - 15.0) / 8.0
+            rows = [row for row in reversed(self.rows("screens.csv")) if row["screen"] == screen]
+            rows = list({row["block"]: row for row in rows}.values())  # the first of each: some come back
+            self.assertEqual(len(rows), 7)
+            for row in rows:
+                speed = math.hypot(8.0, g * t)
+                self.assertAlmostEqual(row["speed_ms"], speed, 3)
+                self.assertAlmostEqual(row["energy_kj"], 0.5e-3 * mass * speed**2, 2)
+                self.assertAlmostEqual(row["jump_height_m"], 102.0 - 0.5 * g * t * t - ground, 3)
+                self.assertEqual((row["x"], row["y"]), (x, 0.0))
+        envelope = {row["x_from"]: row for row in self.rows("envelope.csv")}
+        bin_30 = envelope[30.0]  # highest where it enters at 30 m, fastest where it leaves at 35 m
+        for statistic in ("mean", "p50", "p95", "p99", "max"):
+            self.assertAlmostEqual(bin_30["jump_height_m_" + statistic], 52.0 - 0.5 * g * (15.0 / 8.0) ** 2, 3)
+            self.assertAlmostEqual(bin_30["speed_ms_" + statistic], math.hypot(8.0, g * 20.0 / 8.0), 3)
+        self.assertEqual((bin_30["passages"], bin_30["share"], bin_30["x_to"]), (7.0, 1.0, 35.0))
+        self.assertEqual(envelope[5.0]["passages"], 0.0)
+        path = rows_of(self.path("out/profile.gpkg"), "trajectories")[0][1]
+        at = [path.GetPoint(i) for i in range(path.GetPointCount())]
+        landing = next(i for i, p in enumerate(at) if p[2] < 50.0001)
+        self.assertAlmostEqual(at[landing][0], 15.0 + 8.0 * math.sqrt(2.0 * 52.0 / g), 2)
+
+    def test_a_release_range_and_the_runout(self):
+        self.nodes((0, 100), (100, 100))
+        self.scenario("x = [20, 60]\nrelease_height = 0", "[ground.zones.default]\nphi = 80\n")
+        self.profile("--trajectories", "400")
+        x = np.array([row["x"] for row in self.rows("stops.csv")])  # they stay where they are put
+        self.assertTrue(((x >= 20) & (x <= 60)).all())
+        self.assertLess(abs(x.mean() - 40.0), 5.0 * 40.0 / math.sqrt(12 * 400))
+        self.assertTrue(all(abs(row["runout_m"]) < 2.0 for row in self.rows("stops.csv")))
+        runout = self.rows("runout.csv")
+        self.assertEqual(runout[0], {"distance_from": 0.0, "distance_to": 5.0, "stopped": 400.0, "share": 1.0,
+                                     "share_beyond": 0.0})
+
+    def test_zones_are_intervals(self):
+        # A bog from 60 m to 80 m takes all; without it blocks slide on for long.
+        self.nodes((0, 100), (40, 70), (200, 70))
+        bog = "[ground.zones.bog]\nx = [60, 80]\nEn50 = 0.001\nEt50 = 0.001\ntheta_scale = 0\nphi = 80\n"
+        self.scenario("x = 5\nrelease_height = 3", "[ground.zones.default]\ntheta_scale = 0\n" + bog)
+        self.profile("--trajectories", "200")
+        self.scenario("x = 5\nrelease_height = 3", "[ground.zones.default]\ntheta_scale = 0\n", name="q.toml")
+        self.profile("--trajectories", "200", name="q.toml", out="free")
+        x = np.array([row["x"] for row in self.rows("stops.csv")])
+        free = np.array([row["x"] for row in self.rows("stops.csv", "free")])
+        self.assertGreater(((free > 82) | (free < 59)).mean(), 0.5)
+        self.assertGreater(((x > 59) & (x < 82)).mean(), 0.9)
+
+    def test_the_plane_of_the_reference(self):
+        # PHYSICS.md 9: 38 degrees, Table 1, D 1.0-1.4 m, released 2 m above the ground, 140 m of height lower.
+        x = 60.0 + 140.0 / TAN38
+        self.nodes((0, 600), (600, 600 - 600 * TAN38))
+        for rule, c, speed, p95, jump, jump95 in (("clamp", 0.25, 10.2, 17.3, 1.31, 2.80),
+                                                  ("resample", 0.25, 8.6, 14.5, 1.29, 2.40),
+                                                  ("clamp", 1.0, 5.1, 8.6, 0.32, 0.70)):
+            with self.subTest(f"{rule} {c}"):
+                self.scenario("x = 60\nrelease_height = 2", f"[screens]\nx = [{x!r}]\n[model]\n"
+                              f"roughness = '{rule}'\ndeformation_coefficient = {c}\n[output]\ntrajectories = 0\n",
+                              'profile = "p.csv"\nstep = 1\n', diameter="[1.0, 1.4]")
+                self.profile("--trajectories", "8000", "--overwrite")
+                rows = self.rows("screens.csv")
+                v, h = (np.array([row[key] for row in rows]) for key in ("speed_ms", "jump_height_m"))
+                self.assertAlmostEqual(v.mean() / speed, 1.0, delta=0.03)
+                self.assertAlmostEqual(np.percentile(v, 95) / p95, 1.0, delta=0.04)
+                self.assertAlmostEqual(h.mean(), jump, delta=0.04 * jump + 0.005)
+                self.assertAlmostEqual(np.percentile(h, 95) / jump95, 1.0, delta=0.05)
+
+    def test_a_mirrored_profile_gives_mirrored_results(self):
+        nodes = [(0.0, 200.0), (150.0, 87.5), (155.0, 87.5), (300.0, 15.0), (400.0, 15.0)]
+        self.nodes(*nodes)
+        self.nodes(*[(400.0 - x, z) for x, z in reversed(nodes)], name="m.csv")
+        # In steps of 0.5 m the columns rise by short binary fractions: both grounds are the same to the last bit.
+        self.scenario("x = 20\nvx = 1", head='profile = "p.csv"\nstep = 0.5\n')
+        self.scenario("x = 380\nvx = -1", head='profile = "m.csv"\nstep = 0.5\n', name="m.toml")
+        self.profile("--trajectories", "300")
+        self.profile("--trajectories", "300", name="m.toml", out="mirror")
+        for a, b in zip(self.rows("stops.csv"), self.rows("stops.csv", "mirror")):
+            self.assertAlmostEqual(a["x"], 400.0 - b["x"], 2)
+            self.assertEqual(a["end"], b["end"])
+        self.assertEqual(self.contents("out")["runout.csv"], self.contents("mirror")["runout.csv"])
+
+
+class Files(Profile):
+    def setUp(self):
+        super().setUp()
+        self.nodes((0, 200), (150, 87.5), (155, 87.5), (300, 15), (400, 15))
+        self.scenario("x = [18, 22]", "[screens]\nx = [100, 200]\n[ground.zones.road]\nx = [150, 155]\n"
+                      "preset = 'forest-road-2d'\n[output]\ntrajectories = 20\n")
+
+    def test_equal_bytes_for_any_threads_and_again_from_its_own_file(self):
+        self.profile("--trajectories", "1000", "--threads", "1")
+        first = self.contents("out")
+        self.profile("--trajectories", "1000", "--threads", "3", out="three")
+        self.profile(name="out/profile.toml", out="again")
+        for other in ("three", "again"):
+            for name, content in self.contents(other).items():
+                if name not in ("run.json", "profile.toml") or (name == "profile.toml" and other == "again"):
+                    self.assertEqual(content == first[name], True, other + "/" + name)
+
+    def test_the_files_agree_with_each_other(self):
+        self.profile("--trajectories", "500")
+        record = self.record()
+        stops = self.rows("stops.csv")
+        self.assertEqual(len(stops), 500)
+        self.assertEqual(sum(record["ends"].values()), 500)
+        self.assertEqual(sum(row["end"] == "stopped" for row in stops), record["ends"]["stopped"])
+        self.assertEqual(record["files"], ["envelope.csv", "profile.gpkg", "profile.svg", "profile.toml", "runout.csv",
+                                           "screens.csv", "stops.csv"])
+        layers = {layer.GetName(): layer.GetFeatureCount() for layer in ogr.Open(self.path("out/profile.gpkg"))}
+        self.assertEqual(layers, {"profile": 1, "stops": 500, "crossings": len(self.rows("screens.csv")),
+                                  "trajectories": 20, "bins": 80})
+        fields, point = rows_of(self.path("out/profile.gpkg"), "stops")[7]
+        self.assertEqual(fields["x"], stops[7]["x"])
+        self.assertAlmostEqual(point.GetX(), stops[7]["x"], 3)
+        self.assertAlmostEqual(point.GetY(), stops[7]["z"], 3)
+        stopped = [row["runout_m"] for row in stops if row["end"] == "stopped"]
+        counts = np.histogram(stopped, bins=np.arange(0, 405, 5.0))[0]
+        runout = self.rows("runout.csv")
+        self.assertEqual([row["stopped"] for row in runout], list(counts[: len(runout)]))
+        self.assertAlmostEqual(runout[-1]["share_beyond"], 1.0 - len(stopped) / 500, 9)
+        self.assertEqual(xml.dom.minidom.parse(self.path("out/profile.svg")).documentElement.tagName, "svg")
+        settings = {s["key"]: (s["value"], s["source"]) for s in record["settings"]}
+        self.assertEqual(settings["ground.zones.road.theta_scale"], (0.4, "preset forest-road-2d"))
+        self.assertEqual(settings["step"], (0.1, "default"))
+
+    def test_a_line_over_a_dem(self):
+        y = (59.5 - np.arange(60))[:, None] * 5.0 + np.zeros((1, 60))
+        write_dem(self.path("dem.tif"), (1000.0 + 0.75 * np.maximum(0.0, y - 100.0)).astype(np.float32))
+        line = f"LINESTRING ({WEST + 50} {NORTH - 20}, {WEST + 50} {NORTH - 150}, {WEST + 120} {NORTH - 280})"
+        write_features(self.path("line.gpkg"), "line", [(line, [])])
+        self.scenario("x = 10", '[screens]\nx = [60]\n', 'dem = "dem.tif"\nline = "line.gpkg"\n')
+        self.profile("--trajectories", "300")
+        shape = ogr.CreateGeometryFromWkt(line)
+        for fields, point in rows_of(self.path("out/profile.gpkg"), "stops"):
+            flat = ogr.CreateGeometryFromWkt(f"POINT ({point.GetX()} {point.GetY()})")
+            self.assertLess(shape.Distance(flat), 1e-6)
+            height = 1000.0 + 0.75 * max(0.0, point.GetY() - (NORTH - 300.0) - 100.0)
+            if abs(point.GetY() - (NORTH - 200.0)) > 5.0:  # the crease lies between two rows of cells
+                self.assertAlmostEqual(point.GetZ(), height, delta=0.1)
+            self.assertAlmostEqual(point.GetZ(), fields["z"], 3)
+        ground = rows_of(self.path("out/profile.gpkg"), "profile")[0][1]
+        self.assertAlmostEqual(ground.GetPoint(0)[2], 1000.0 + 0.75 * 180.0, 3)
+        self.assertGreater(ground.GetPointCount(), 50)  # it has a node at each row that it crosses
+        self.assertAlmostEqual(ground.GetPoint(ground.GetPointCount() - 1)[0], WEST + 120, 3)
+
+
+class Faults(Files):
+    def fails_with(self, *words):
+        before = os.listdir(self.folder)
+        self.fails(2, *words, arguments=["profile", self.path("p.toml"), "-o", self.path("new")])
+        self.assert_nothing_left(before)
+
+    def test_keys(self):
+        for rest, words in {
+                "[screens]\ny = [5]\n": ["p.toml:", "unknown key 'y' in [screens]"],
+                "[ground.zones.road]\npreset = 'forest-road-2d'\n": ["ground.zones.road.x is missing", "[from, to]"],
+                "[ground.zones.road]\nx = [9, 5]\n": ["ground.zones.road.x", "[from, to]"],
+                "[ground.zones.road]\nx = [900, 950]\n": ["lies off the profile", "0 to 400 m"],
+                "[ground.zones.default]\npsi_scale = 0.5\n": ["psi_scale = 0.5", "no sideways roughness"],
+                "[effects.forest-stems]\ndensity = 300\n": ["forest-stems", "out of the plane"],
+                "[screens]\nx = [401]\n": ["screens.x = 401", "0 to 400 m"],
+                "[output]\nbin = 0.25\n": ["output.bin = 0.25", "whole multiple of step"],
+                "[output]\nenergy_thresholds = [3]\n": ["unknown key 'energy_thresholds'"],
+        }.items():
+            with self.subTest(rest):
+                self.scenario("x = 20", rest)
+                self.fails_with(*words)
+        self.scenario("x = 20", head='profil = "p.csv"\n')
+        self.fails(2, "unknown key 'profil' at the top", "did you mean 'profile'",
+                   arguments=["profile", self.path("p.toml"), "-o", self.path("new")])
+        self.scenario("x = 500")
+        self.fails_with("sources.x = 500", "0 to 400 m")
+        self.write("p.toml", 'profile = "p.csv"\n[blocks]\ndiameter = 1\n')
+        self.fails_with("no sources")
+        self.write("p.toml", 'profile = "p.csv"\n[sources]\nx = 20\n')
+        self.fails_with("no block diameter")
+        self.scenario("x = 20", head='profile = "p.csv"\ndem = "dem.tif"\n')
+        self.fails_with("more than one", "columns x, z")
+
+    def test_files(self):
+        for text, words in {"x,z\n0,5\n": ["1 nodes"], "x,z\n0,5\n0.01,4\n": ["p.csv:3", "x = '0.01'", "step = 0.1"],
+                            "x,z\n9,5\n3,4\n": ["p.csv:3", "order the rows"], "x,y\n0,5\n": ["unknown column 'y'"],
+                            "x,z\n0,abc\n9,1\n": ["p.csv:2", "z = 'abc'"]}.items():
+            with self.subTest(text):
+                self.write("p.csv", text)
+                self.scenario("x = 0")
+                self.fails_with(*words)
+        self.scenario("x = 20", head='profile = "none.csv"\n')
+        self.fails_with("none.csv", "no such file")
+        write_features(self.path("line.gpkg"), "line", [(f"LINESTRING ({WEST} {NORTH},{WEST + 90} {NORTH})", [])])
+        self.scenario("x = 20", head='dem = "dem.tif"\nline = "line.gpkg"\n')
+        self.fails_with("line.gpkg", "no terrain")
+
+    def test_folders(self):
+        self.profile("--trajectories", "5")
+        self.fails(2, "--overwrite", arguments=["profile", self.path("p.toml"), "-o", self.path("out")])
+        self.profile("--trajectories", "6", "--overwrite")
+        self.assertEqual(len(self.rows("stops.csv")), 6)
+        self.fails(2, "--trajectories", arguments=["profile", self.path("p.toml"), "-o", self.path("new"),
+                                                   "--trajectories", "-1"])
+
+    def test_a_3d_preset_is_warned_of(self):
+        self.scenario("x = 20", "[ground]\ndefault = 'upper-talus-3d'\n")
+        done = self.run_well("profile", self.path("p.toml"), "-o", self.path("new"), "--trajectories", "5")
+        self.assertIn("upper-talus-3d is of the 3D model", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

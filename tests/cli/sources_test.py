@@ -1,0 +1,105 @@
+"""talus sources: candidate source cells, against gdaldem and by hand."""
+import math
+import os
+import unittest
+
+import numpy as np
+from osgeo import gdal, ogr
+
+from support import NORTH, WEST, Case, heights, rows_of, write_dem
+
+CELL = 5.0
+
+
+def ridge(columns=40, rows=30):
+    """Flat, a wall of 60 degrees over columns 10-19, flat; a hole in the middle of the wall."""
+    x = np.arange(columns)[None, :] * CELL + np.zeros((rows, 1))
+    return (1000.0 + math.tan(math.radians(60.0)) * np.clip(x - 10 * CELL, 0.0, 9 * CELL)).astype(np.float32)
+
+
+class Sources(Case):
+    def find(self, *extra, dem="dem.tif", out="cells.gpkg"):
+        return self.run_well("sources", "--dem", self.path(dem), "-o", self.path(out), *extra)
+
+    def layers(self, out="cells.gpkg"):
+        return rows_of(self.path(out), "source_polygons"), rows_of(self.path(out), "source_points")
+
+    def test_a_wall_by_hand(self):
+        write_dem(self.path("dem.tif"), ridge(), CELL)
+        done = self.find("--slope", "59.99")
+        polygons, points = self.layers()
+        # Of the 10 columns of the wall 8 have both neighbours on it; 28 of 30 rows are not at the rim.
+        self.assertEqual(len(points), 8 * 28)
+        self.assertEqual(len(polygons), 1)
+        fields, shape = polygons[0]
+        self.assertEqual(fields["cells"], 8 * 28)
+        self.assertAlmostEqual(fields["slope_deg"], 60.0, 3)
+        self.assertAlmostEqual(fields["slope_max_deg"], 60.0, 3)
+        self.assertAlmostEqual(fields["plan_area_m2"], 8 * 28 * 25.0, 6)
+        self.assertAlmostEqual(fields["area_m2"], 2.0 * 8 * 28 * 25.0, 0)  # 1 / cos(60 deg) = 2
+        self.assertAlmostEqual(shape.Area(), 8 * 28 * 25.0, 6)
+        self.assertEqual(shape.GetEnvelope(), (WEST + 55.0, WEST + 95.0, NORTH - 145.0, NORTH - 5.0))
+        self.assertEqual(points[0][1].GetPoint_2D(), (WEST + 57.5, NORTH - 7.5))
+        self.assertAlmostEqual(points[0][0]["area_m2"], 50.0, 2)
+        self.assertIn("224 of 1 200 cells", done.stderr)
+
+    def test_the_cells_are_those_of_gdaldem(self):
+        z = heights(60, 60) + 30.0 * np.abs(np.sin(np.arange(60) / 3.0))[None, :]
+        z[20:23, 30] = -9999.0
+        write_dem(self.path("dem.tif"), z.astype(np.float32), CELL, nodata=-9999.0)
+        self.find("--slope", "50")
+        reference = gdal.DEMProcessing("", self.path("dem.tif"), "slope", format="MEM")
+        slope = reference.ReadAsArray()
+        marks = slope >= 50.0
+        self.assertTrue(50 < marks.sum() < 3000)
+        mine = np.zeros_like(marks)
+        for fields, point in self.layers()[1]:
+            row, column = int((NORTH - point.GetY()) / CELL), int((point.GetX() - WEST) / CELL)
+            mine[row, column] = True
+            self.assertAlmostEqual(fields["slope_deg"], float(slope[row, column]), 3)
+        self.assertEqual((mine != marks).sum(), 0)
+        self.assertEqual(sum(fields["cells"] for fields, _ in self.layers()[0]), marks.sum())
+        self.assertGreater(len(self.layers()[0]), 1)
+
+    def test_a_run_takes_the_file_and_starts_from_the_cells(self):
+        write_dem(self.path("dem.tif"), ridge(), CELL)
+        self.find()
+        self.run_well("run", "--dem", self.path("dem.tif"), "--sources", self.path("cells.gpkg"), "--diameter", "0.8",
+                      "--trajectories", "2", "-o", self.path("out"))
+        self.assertEqual(self.record()["source_cells"], len(self.layers()[1]))
+
+    def test_equal_bytes_and_default_threshold(self):
+        write_dem(self.path("dem.tif"), ridge(), CELL)
+        done = self.find()
+        self.find("-q", out="again.gpkg")
+        self.assertIn("48.75 deg (the default for cells of 5 m)", done.stderr)
+        contents = []
+        for name in ("cells.gpkg", "again.gpkg"):
+            with open(self.path(name), "rb") as file:
+                contents.append(file.read())
+        self.assertEqual(contents[0], contents[1])
+
+    def test_faults_leave_nothing(self):
+        before = os.listdir(self.folder)
+        arguments = ["sources", "--dem", self.path("dem.tif"), "-o", self.path("cells.gpkg")]
+        self.fails(2, "--slope = 90", "below 90 deg", arguments=[*arguments, "--slope", "90"])
+        self.fails(2, "no cell is at least 80 deg steep", "--slope", arguments=[*arguments, "--slope", "80"])
+        self.fails(2, "cells.shp", ".gpkg", arguments=[*arguments[:-1], self.path("cells.shp")])
+        self.fails(2, "no such folder", arguments=[*arguments[:-1], self.path("none/cells.gpkg")])
+        self.fails(2, "none.tif", arguments=["sources", "--dem", self.path("none.tif"), "-o", self.path("cells.gpkg")])
+        self.fails(2, "--dem", arguments=["sources", "-o", self.path("cells.gpkg")])
+        self.assert_nothing_left(before)
+
+    def test_a_file_is_kept_and_overwritten_when_asked(self):
+        self.find("--slope", "30")
+        self.fails(2, "is there already", arguments=["sources", "--dem", self.path("dem.tif"), "-o",
+                                                     self.path("cells.gpkg")])
+        self.fails(2, "no cell", arguments=["sources", "--dem", self.path("dem.tif"), "-o", self.path("cells.gpkg"),
+                                            "--slope", "85", "--overwrite"])
+        count = len(self.layers()[1])
+        self.find("--slope", "34.9", "--overwrite")
+        self.assertLess(len(self.layers()[1]), count)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,161 @@
+#include <omp.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "commands.hpp"
+#include "progress.hpp"
+#include "run_support.hpp"
+#include "talus/base/text.hpp"
+#include "talus/io/output_folder.hpp"
+#include "talus/io/run_record.hpp"
+#include "talus/io/write_crossings.hpp"
+#include "talus/io/write_profile.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using talus::io::LoadedProfile;
+
+constexpr std::uint32_t kDrawn = 60;  // paths in the drawing
+constexpr double kPathSpacing = 1.0;  // of the points of a flight that is written, at most [m]
+
+struct Options {
+  talus::io::RunFlags flags;
+  std::string out, progress;
+  int threads = 0;
+  bool overwrite = false, quiet = false;
+};
+
+/// Takes what `simulate` hands out to the files and the counters.
+class Readers {
+ public:
+  Readers(const LoadedProfile& profile, const fs::path& folder)
+      : writer_(folder, profile),
+        bins_(profile.loaded.scenario.surface.grid().columns - 1, profile.step, profile.bin),
+        runout_(profile.bin),
+        every_(std::max(1U, profile.loaded.scenario.output.paths / kDrawn)) {
+    const talus::Scenario& scenario = profile.loaded.scenario;
+    if (!scenario.screens.empty()) crossings_.emplace(folder / "screens.csv", scenario, profile.loaded.geo);
+  }
+
+  talus::Sinks sinks() {
+    talus::Sinks sinks;
+    sinks.path_spacing = kPathSpacing;
+    sinks.stops = [this](std::span<const talus::StopRow> rows) {
+      writer_.write(rows);
+      runout_.add(rows);
+    };
+    sinks.walked = [this](const talus::Release& release, const talus::Path& path) {
+      bins_.add(path, release.body.mass);
+    };
+    sinks.paths = [this](const talus::RecordedPath& path) {
+      writer_.write(path);
+      if (seen_++ % every_ == 0 && drawn_.size() < kDrawn) drawn_.push_back(path);
+    };
+    if (crossings_)
+      sinks.crossings = [this](std::span<const talus::Crossing> rows) {
+        crossings_->write(rows);
+        writer_.write(rows);
+      };
+    return sinks;
+  }
+
+  talus::io::ProfileResults finish(const LoadedProfile& profile, const fs::path& folder) {
+    const talus::io::ProfileResults results{bins_.bins(), runout_.result()};
+    if (crossings_) crossings_->finish();
+    writer_.finish(results);
+    talus::io::write_text(folder / "profile.svg", talus::io::profile_svg(profile, results, drawn_));
+    return results;
+  }
+
+ private:
+  talus::io::ProfileWriter writer_;
+  std::optional<talus::io::CrossingsWriter> crossings_;
+  talus::ProfileBins bins_;
+  talus::RunoutCounter runout_;
+  std::uint32_t every_, seen_ = 0;
+  std::vector<talus::RecordedPath> drawn_;
+};
+
+void summarise(const talus::Totals& totals, const talus::Distribution& runout, const std::string& folder) {
+  const auto metres = [](double value) { return talus::text_of(std::round(value * 10.0) / 10.0); };
+  say("", count_text(totals.released) + " trajectories: " + ends_text(totals));
+  if (runout.count > 0)
+    say("", "runout of those that stopped: mean " + metres(runout.mean) + " m, P50 " + metres(runout.p50) + ", P95 " +
+                metres(runout.p95) + ", P99 " + metres(runout.p99) + ", farthest " + metres(runout.max));
+  say("", "results are in " + folder);
+}
+
+/// Traces, scores and writes everything into `folder`; fills the record.
+talus::io::ProfileResults simulate_and_write(const Options& options, const LoadedProfile& profile,
+                                             const fs::path& folder, Stopwatch& watch, talus::io::RunRecord& record) {
+  const talus::Scenario& scenario = profile.loaded.scenario;
+  Progress progress(Progress::mode_of(options.quiet, options.progress == "machine"), scenario.released());
+  talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
+  Readers readers(profile, folder);
+  talus::Sinks sinks = readers.sinks();
+  sinks.progress = [&progress](double share) { return progress.update(share) && !interrupted(); };
+  record.totals = talus::simulate(scenario, tally, sinks, record.threads);
+  if (record.totals.interrupted || interrupted()) stop_interrupted();
+  record.touched_cells = tally.touched_cells();
+  const Stopwatch::Lap simulated = watch.lap();
+  progress.stage("writing the results");
+  talus::io::ProfileResults results = readers.finish(profile, folder);
+  talus::io::write_text(folder / "profile.toml", profile.loaded.complete_toml);
+  record.files = files_in(folder);
+  const Stopwatch::Lap written = watch.lap();
+  record.cpu.simulate = simulated.cpu - record.totals.sink_cpu_seconds;
+  record.cpu.write = written.cpu + record.totals.sink_cpu_seconds;
+  record.wall.simulate = simulated.wall;
+  record.wall.write = written.wall;
+  talus::io::write_text(folder / "run.json", talus::io::run_json(record, profile.loaded));
+  progress.finish();
+  return results;
+}
+
+int run_profile(const Options& options) {
+  Stopwatch watch;
+  catch_signals();
+  const LoadedProfile profile = talus::io::load_profile(options.flags);
+  if (interrupted()) stop_interrupted();
+  talus::io::OutputFolder folder(options.out, options.overwrite);
+  for (const talus::io::InputFile& input : profile.loaded.inputs)
+    if (input.role != "scenario") folder.protect(input.path);
+  if (!options.quiet)
+    for (const std::string& warning : profile.loaded.warnings) say("warning", warning);
+  talus::io::RunRecord record;
+  record.command = command_line();
+  record.warnings = profile.loaded.warnings;
+  record.threads = options.threads > 0 ? options.threads : omp_get_num_procs();
+  const Stopwatch::Lap read = watch.lap();
+  record.cpu.read = read.cpu;
+  record.wall.read = read.wall;
+  const talus::io::ProfileResults results = simulate_and_write(options, profile, folder.temporary(), watch, record);
+  if (interrupted()) stop_interrupted();
+  folder.commit();
+  if (!options.quiet) summarise(record.totals, results.runout.stopped, folder.final_path().string());
+  if (!talus::io::too_many_limits(record.totals)) return 0;
+  say("error", limits_text(record.totals));
+  return 1;
+}
+
+}  // namespace
+
+void add_profile(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("profile", "Simulate in two dimensions, on a profile");
+  command->add_option("profile", options->flags.scenario, "file of the profile (TOML): docs/profile.md")->required();
+  command->add_option("-o,--out", options->out, "new folder for the results")->required();
+  command->add_flag("--overwrite", options->overwrite, "replace the folder if it holds an earlier result");
+  command->add_option("--trajectories", options->flags.trajectories, "how many blocks");
+  command->add_option("--seed", options->flags.seed, "of the random numbers");
+  command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
+      ->check(CLI::Range(1, 4096));
+  command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
+  command->add_option("--progress", options->progress, "machine: lines `progress 42` for other programs")
+      ->check(CLI::IsMember({"machine"}));
+  command->footer("Example:\n  talus profile profile.toml -o result");
+  command->callback([&action, options] { action = [options] { return run_profile(*options); }; });
+}

@@ -1,0 +1,56 @@
+#include "run_support.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+
+#include "commands.hpp"
+#include "progress.hpp"
+
+Stopwatch::Lap Stopwatch::lap() {
+  const Lap now = read(), lap{now.cpu - last_.cpu, now.wall - last_.wall};
+  last_ = now;
+  return lap;
+}
+
+Stopwatch::Lap Stopwatch::read() {
+  timespec cpu{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+  return {static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec),
+          std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count()};
+}
+
+void stop_interrupted() {
+  throw Interrupted("interrupted; nothing was written");
+}
+
+std::vector<std::string> files_in(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    names.push_back(entry.path().filename().string());
+  std::ranges::sort(names);
+  return names;
+}
+
+std::uint64_t count_of(const talus::Totals& totals, talus::End end) {
+  return totals.ends[static_cast<std::size_t>(end)];
+}
+
+std::string share_text(std::uint64_t part, std::uint64_t whole) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g %%", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
+  return text;
+}
+
+std::string ends_text(const talus::Totals& totals) {
+  return count_text(count_of(totals, talus::End::Stopped)) + " stopped, " +
+         count_text(count_of(totals, talus::End::Left)) + " left the map, " +
+         count_text(count_of(totals, talus::End::Caught)) + " caught, " +
+         count_text(count_of(totals, talus::End::Limit)) + " at a limit";
+}
+
+std::string limits_text(const talus::Totals& totals) {
+  const std::uint64_t limits = count_of(totals, talus::End::Limit);
+  return count_text(limits) + " of " + count_text(totals.released) + " trajectories (" +
+         share_text(limits, totals.released) + ", allowed are 0.1 %) ended at the limit of impacts or time";
+}

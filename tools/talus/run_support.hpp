@@ -1,0 +1,41 @@
+#pragma once
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "talus/simulate/simulate.hpp"
+
+/// What `run` and `profile` share.
+
+/// Measures the stages of a run.
+class Stopwatch {
+ public:
+  struct Lap {
+    double cpu, wall;  // [s]
+  };
+  /// Seconds since the last call.
+  Lap lap();
+
+ private:
+  static Lap read();
+  Lap last_ = read();
+};
+
+/// Throws `Interrupted`.
+[[noreturn]] void stop_interrupted();
+
+/// Names of the files in a folder, in the order of the alphabet.
+std::vector<std::string> files_in(const std::filesystem::path& folder);
+
+std::uint64_t count_of(const talus::Totals& totals, talus::End end);
+
+/// "3.14 %".
+std::string share_text(std::uint64_t part, std::uint64_t whole);
+
+/// "12 stopped, 3 left the map, 0 caught, 0 at a limit".
+std::string ends_text(const talus::Totals& totals);
+
+/// "12 of 3 400 trajectories (0.353 %, allowed are 0.1 %) ended at the limit of impacts or time".
+std::string limits_text(const talus::Totals& totals);

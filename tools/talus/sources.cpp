@@ -1,0 +1,82 @@
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "commands.hpp"
+#include "progress.hpp"
+#include "talus/base/error.hpp"
+#include "talus/io/output_file.hpp"
+#include "talus/io/source_cells.hpp"
+#include "talus/simulate/fields.hpp"
+#include "talus/terrain/source_slope.hpp"
+
+namespace {
+
+constexpr talus::Bounds kSlope{"slope", "deg", "cells at least so steep are candidate sources",
+                               0.0,     90.0,  talus::Bounds::Between};
+
+struct Options {
+  std::string dem, out;
+  std::optional<double> slope;  // [deg]
+  bool overwrite = false, quiet = false;
+};
+
+std::string number(double value, const char* format) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+void summarise(const talus::io::SourceCells& found, const talus::Grid& grid, const std::string& threshold,
+               const std::string& out) {
+  say("", count_text(found.cells) + " of " + count_text(grid.cells()) + " cells are at least " + threshold +
+              " steep: " + number(found.plan_area * 1e-4, "%.4g ha in plan, ") +
+              number(found.true_area * 1e-4, "%.4g ha of ground"));
+  say("", "source_polygons (" + count_text(found.polygons) + ") and source_points (" + count_text(found.cells) +
+              ") are in " + out + "; these are candidates by steepness alone: look at them before a run");
+}
+
+int find_sources(const Options& options) {
+  if (options.slope)
+    if (const auto rule = talus::fault_of(kSlope, *options.slope))
+      throw talus::InputError("flag --slope = " + number(*options.slope, "%.6g") + ": " + *rule);
+  catch_signals();
+  const auto keep_going = [] { return !interrupted(); };
+  talus::io::OutputFile out(options.out, ".gpkg", options.overwrite);
+  out.protect(options.dem);
+  const talus::io::Terrain terrain = talus::io::read_terrain(options.dem);
+  if (!options.quiet)
+    for (const std::string& warning : terrain.warnings) say("warning", warning);
+  const talus::Grid& grid = terrain.heights.grid;
+  const double cell = std::sqrt(grid.cell_x * grid.cell_y);
+  const double slope = options.slope ? talus::radians(*options.slope) : talus::default_source_slope(cell);
+  const std::string threshold = number(talus::degrees(slope), "%.4g deg") +
+                                (options.slope ? "" : number(cell, " (the default for cells of %.4g m)"));
+  const talus::io::SourceCells found = talus::io::write_source_cells(out.temporary(), terrain, slope, keep_going);
+  if (interrupted()) throw Interrupted("interrupted; nothing was written");
+  if (found.cells == 0)
+    throw talus::InputError(options.dem + ": no cell is at least " + threshold + " steep, the steepest has " +
+                            number(talus::degrees(found.steepest), "%.4g deg") + "; give a smaller one with --slope");
+  out.commit();
+  if (!options.quiet) summarise(found, grid, threshold, options.out);
+  return 0;
+}
+
+}  // namespace
+
+void add_sources(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("sources", "Find candidate source cells by the steepness of the terrain");
+  command->add_option("--dem", options->dem, "terrain: a raster in a projected system in metres")->required();
+  command->add_option("-o,--out", options->out, "GeoPackage to write: the cells as polygons and as points")->required();
+  command->add_option("--slope", options->slope,
+                      "cells at least so steep [deg]; without it 55 cell^-0.075, which is 48.7 at 5 m");
+  command->add_flag("--overwrite", options->overwrite, "replace the file if it is there");
+  command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
+  command->footer(
+      "Example:\n"
+      "  talus sources --dem dem.tif -o cells.gpkg\n"
+      "  talus run --dem dem.tif --sources cells.gpkg --diameter 1.2 -o result");
+  command->callback([&action, options] { action = [options] { return find_sources(*options); }; });
+}
