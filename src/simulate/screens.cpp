@@ -29,6 +29,20 @@ Motion motion_between(const Vertex& from, const Vertex& to, double share) {
   return m;
 }
 
+double place_along(const Screen& screen, const Eigen::Vector2d& place) {
+  double along = 0.0, found = 0.0, nearest = std::numeric_limits<double>::infinity();
+  for (const auto& line : screen.lines)
+    for (std::size_t i = 1; i < line.size(); ++i) {
+      const Eigen::Vector2d way = line[i] - line[i - 1];
+      const double length = way.norm();
+      const double share = length > 0.0 ? std::clamp(way.dot(place - line[i - 1]) / (length * length), 0.0, 1.0) : 0.0;
+      const double distance = (line[i - 1] + share * way - place).norm();
+      if (distance < nearest) nearest = distance, found = along + share * length;
+      along += length;
+    }
+  return found;
+}
+
 ScreenFinder::ScreenFinder(const Surface& surface, std::span<const Screen> screens) : surface_(surface) {
   low_.setConstant(std::numeric_limits<double>::infinity());
   high_ = -low_;

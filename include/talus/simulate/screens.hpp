@@ -19,6 +19,9 @@ struct Crossing {
 /// sliding with constant acceleration.
 Motion motion_between(const Vertex& from, const Vertex& to, double share);
 
+/// Distance along a screen from its start, over all its lines, to the point of it that is nearest to a place [m].
+double place_along(const Screen& screen, const Eigen::Vector2d& place);
+
 /// Finds where paths cross the screens.
 class ScreenFinder {
  public:
