@@ -67,6 +67,24 @@ Json screens_of(const LoadedScenario& loaded) {
   return list;
 }
 
+Json barriers_of(const Scenario& scenario, const Totals& totals) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < totals.barriers.size(); ++i) {
+    const Barrier& barrier = scenario.barriers.list()[i];
+    const BarrierCounts sum = totals.barriers.sum(i);
+    const double capacity = 1e-3 * barrier.capacity;
+    list.push_back({{"id", barrier.id},
+                    {"height_m", barrier.height},
+                    {"capacity_kj", std::isfinite(capacity) ? Json(capacity) : Json("inf")},
+                    {"length_m", std::round(scenario.barriers.length(i) * 1e3) / 1e3},
+                    {"hits", sum.hits()},
+                    {"caught", sum.caught},
+                    {"over", sum.over},
+                    {"broken", sum.broken}});
+  }
+  return list;
+}
+
 Json ends_of(const Totals& totals) {
   const auto count = [&totals](End end) { return totals.ends[static_cast<std::size_t>(end)]; };
   return {{"stopped", count(End::Stopped)},
@@ -113,6 +131,7 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   json["percentile_relative_error"] = LogHistogram::kBinWidth;
   json["grid"] = grid_of(loaded);
   if (!scenario.screens.empty()) json["screens"] = screens_of(loaded);
+  if (!scenario.barriers.empty()) json["barriers"] = barriers_of(scenario, totals);
   json["settings"] = settings_of(loaded);
   json["inputs"] = inputs_of(loaded);
   json["reprojections"] = reprojections_of(loaded);

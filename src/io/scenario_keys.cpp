@@ -40,8 +40,10 @@ class SpecReader {
     TableReader screens = top.table("screens");
     named_file(screens, "file", spec_.screens);
     screens.finish();
+    TableReader barriers = top.table("barriers");
+    named_file(barriers, "file", spec_.barriers);
+    barriers.finish();
     read_effects(spec_, top.table("effects"), base_);
-    refuse_later_parts(top);
     top.finish();
   }
 
@@ -218,12 +220,6 @@ class SpecReader {
     }
     out = *values;
     given("output." + key);
-  }
-
-  void refuse_later_parts(TableReader& top) {
-    if (const TomlValue* barriers = top.find("barriers"))
-      faults_.push_back(file_ + ":" + std::to_string(barriers->line) +
-                        ": [barriers] is not in this version of Talus, must be left out");
   }
 
   ScenarioSpec& spec_;

@@ -139,5 +139,96 @@ class Design(Case):
         self.refused("run.json", "cannot be understood")
 
 
+class Walk(Case):
+    """Nets across the slope of 35 degrees, below the sources at y = 230 to 240."""
+
+    FIELDS = (("id", ogr.OFTString), ("height", ogr.OFTReal), ("capacity", ogr.OFTReal))
+
+    def nets(self, *nets):
+        write_features(self.path("nets.gpkg"), "nets", [(line(y, 0.0, 300.0), list(values)) for y, *values in nets],
+                       self.FIELDS)
+
+    def scenario(self, barriers=True):
+        write_features(self.path("lines.gpkg"), "lines", [(line(150.0), ["above"]), (line(100.0), ["below"])],
+                       [("id", ogr.OFTString)])
+        return self.write("s.toml", 'dem = "dem.tif"\ntrajectories = 100\n[sources]\nfile = "sources.gpkg"\n'
+                          "[blocks]\ndiameter = [0.6, 1.2]\n[screens]\nfile = \"lines.gpkg\"\n"
+                          + ('[barriers]\nfile = "nets.gpkg"\n' if barriers else ""))
+
+    def screens(self, out):
+        with open(self.path(out + "/screens.csv"), encoding="utf-8") as file:
+            return [row["screen"] for row in csv.DictReader(file)]
+
+    def test_one_that_holds_all(self):
+        self.nets((125.0, "wall", 100.0, math.inf))
+        self.run_well("run", self.scenario(), "-o", self.path("out"))
+        self.assertIn("above", self.screens("out"))
+        self.assertNotIn("below", self.screens("out"))
+        record = self.record()
+        wall, = record["barriers"]
+        self.assertEqual((wall["id"], wall["capacity_kj"], wall["over"], wall["broken"]), ("wall", "inf", 0, 0))
+        self.assertEqual(wall["caught"], record["ends"]["caught"])
+        self.assertGreater(wall["caught"], 100)
+        self.assertEqual(sum(record["ends"].values()), record["released"])
+        with open(self.path("out/barriers.csv"), encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 60)
+        self.assertEqual(sum(int(row["hits"]) for row in rows), wall["hits"])
+        self.assertEqual((rows[-1]["barrier"], rows[-1]["from_m"], rows[-1]["to_m"]), ("wall", "295", "300"))
+        self.assertIn("nets.gpkg", [os.path.basename(f["path"]) for f in record["inputs"] if f["role"] == "barriers"])
+
+    def test_without_height_nothing_changes(self):
+        self.nets((125.0, "none", 0.0, 1000.0))
+        self.run_well("run", self.scenario(False), "-o", self.path("without"))
+        self.run_well("run", self.scenario(), "-o", self.path("with"))
+        for name in os.listdir(self.path("without")):
+            if name in ("run.json", "scenario.toml"):
+                continue
+            with open(self.path("without/" + name), "rb") as a, open(self.path("with/" + name), "rb") as b:
+                self.assertEqual(a.read(), b.read(), name)
+
+    def test_the_same_for_any_number_of_threads_and_again(self):
+        self.nets((170.0, "low", 1.0, 20.0), (125.0, "high", 2.0, 60.0))
+        self.run_well("run", self.scenario(), "-o", self.path("one"), "--threads", "1")
+        self.run_well("run", self.path("one/scenario.toml"), "-o", self.path("two"), "--threads", "3")
+        for name in ("barriers.csv", "stops.gpkg", "screens.csv", "screens_summary.csv", "impact_probability.tif"):
+            with open(self.path("one/" + name), "rb") as a, open(self.path("two/" + name), "rb") as b:
+                self.assertEqual(a.read(), b.read(), name)
+        for barrier in self.record("one")["barriers"]:
+            self.assertEqual(barrier["hits"], barrier["caught"] + barrier["broken"])
+            self.assertGreater(min(barrier["caught"], barrier["broken"], barrier["over"]), 0)
+        stops = ogr.Open(self.path("one/stops.gpkg"))
+        caught = next(f for f in stops.GetLayerByName("stops") if f["end"] == "caught")
+        rows = self.run_well("trace", self.path("one/scenario.toml"), "--source", str(caught["source"]), "--block",
+                             str(caught["block"])).stdout.splitlines()
+        last = rows[-1].split(",")
+        self.assertEqual(last[-1], "caught")
+        self.assertEqual(float(last[1]), caught.GetGeometryRef().GetX())
+        self.assertEqual(float(last[2]), caught.GetGeometryRef().GetY())
+
+    def test_summary_of_the_screens(self):
+        self.run_well("run", self.scenario(False), "-o", self.path("out"))
+        with open(self.path("out/screens_summary.csv"), encoding="utf-8") as file:
+            rows = {(row["screen"], row["quantity"]): row for row in csv.DictReader(file)}
+        with open(self.path("out/screens.csv"), encoding="utf-8") as file:
+            speeds = [float(row["speed_ms"]) for row in csv.DictReader(file) if row["screen"] == "above"]
+        row = rows["above", "speed"]
+        self.assertEqual(int(row["crossings"]), len(speeds))
+        self.assertAlmostEqual(float(row["mean"]), sum(speeds) / len(speeds), 3)
+        self.assertAlmostEqual(float(row["maximum"]), max(speeds), 3)
+        along = rows["above", "place along"]
+        self.assertTrue(0 < float(along["p50"]) < 260)
+        self.assertTrue(0 < float(rows["above", "dip"]["mean"]) < 90)
+        self.run_well("barrier", self.path("out"), "--screen", "above")
+        self.fails(2, "did you mean 'above'", "below",
+                   arguments=["barrier", self.path("out"), "--screen", "abvoe"])
+
+    def test_wrong_nets(self):
+        self.nets((125.0, "a", -1.0, 100.0))
+        self.fails(2, "nets.gpkg", "height = -1", arguments=["run", self.scenario(), "-o", self.path("out")])
+        write_features(self.path("nets.gpkg"), "nets", [(line(125.0), ["a"])], [("id", ogr.OFTString)])
+        self.fails(2, "nets.gpkg", "has no height", arguments=["run", self.scenario(), "-o", self.path("out")])
+
+
 if __name__ == "__main__":
     unittest.main()
