@@ -140,6 +140,18 @@ void write_text(const fs::path& file, std::string_view text) {
   throw std::runtime_error(file.filename().string() + ": cannot be written: " + std::system_category().message(cause));
 }
 
+void replace_text(const fs::path& file, std::string_view text) {
+  const fs::path temporary =
+      file.parent_path() / ("." + file.filename().string() + ".talus-" + std::to_string(getpid()));
+  write_text(temporary, text);
+  std::error_code error;
+  fs::rename(temporary, file, error);
+  if (!error) return;
+  std::error_code ignored;
+  fs::remove(temporary, ignored);
+  throw std::runtime_error(file.filename().string() + ": cannot be written: " + error.message());
+}
+
 std::string cause_of_failure(const fs::path& folder, const std::string& messages) {
   std::error_code error;
   const fs::space_info space = fs::space(folder, error);

@@ -49,6 +49,42 @@ Json grid_of(const LoadedScenario& loaded) {
           {"west", geo.west},        {"north", geo.north}, {"crs_wkt", geo.crs_wkt}};
 }
 
+/// The lines as they lie on the map, to the millimetre: products of the folder find places along them.
+Json screens_of(const LoadedScenario& loaded) {
+  const double south = loaded.geo.north - loaded.scenario.surface.grid().rows * loaded.geo.cell_y;
+  const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3; };
+  Json list = Json::array();
+  for (const Screen& screen : loaded.scenario.screens) {
+    Json lines = Json::array();
+    for (const auto& line : screen.lines) {
+      Json places = Json::array();
+      for (const Eigen::Vector2d& p : line)
+        places.push_back({rounded(loaded.geo.west + p.x()), rounded(south + p.y())});
+      lines.push_back(std::move(places));
+    }
+    list.push_back({{"id", screen.id}, {"lines", std::move(lines)}});
+  }
+  return list;
+}
+
+Json barriers_of(const Scenario& scenario, const Totals& totals) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < totals.barriers.size(); ++i) {
+    const Barrier& barrier = scenario.barriers.list()[i];
+    const BarrierCounts sum = totals.barriers.sum(i);
+    const double capacity = 1e-3 * barrier.capacity;
+    list.push_back({{"id", barrier.id},
+                    {"height_m", barrier.height},
+                    {"capacity_kj", std::isfinite(capacity) ? Json(capacity) : Json("inf")},
+                    {"length_m", std::round(scenario.barriers.length(i) * 1e3) / 1e3},
+                    {"hits", sum.hits()},
+                    {"caught", sum.caught},
+                    {"over", sum.over},
+                    {"broken", sum.broken}});
+  }
+  return list;
+}
+
 Json ends_of(const Totals& totals) {
   const auto count = [&totals](End end) { return totals.ends[static_cast<std::size_t>(end)]; };
   return {{"stopped", count(End::Stopped)},
@@ -94,6 +130,8 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   json["touched_cells"] = record.touched_cells;
   json["percentile_relative_error"] = LogHistogram::kBinWidth;
   json["grid"] = grid_of(loaded);
+  if (!scenario.screens.empty()) json["screens"] = screens_of(loaded);
+  if (!scenario.barriers.empty()) json["barriers"] = barriers_of(scenario, totals);
   json["settings"] = settings_of(loaded);
   json["inputs"] = inputs_of(loaded);
   json["reprojections"] = reprojections_of(loaded);

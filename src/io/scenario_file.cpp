@@ -15,7 +15,8 @@ namespace {
 
 // Files that are not there, before any is opened.
 void check_files(const ScenarioSpec& spec, std::vector<std::string>& faults) {
-  std::vector<const NamedFile*> files{&spec.include, &spec.dem, &spec.sources, &spec.ground, &spec.screens};
+  std::vector<const NamedFile*> files{&spec.include, &spec.dem,     &spec.sources,
+                                      &spec.ground,  &spec.screens, &spec.barriers};
   for (const auto& [name, effect] : spec.effects) files.push_back(&effect.file);
   check_files(files, faults);
 }
@@ -64,9 +65,9 @@ void check_diameters(const Scenario& parts, const SourceLayer& layer, const std:
 }
 
 void record_inputs(const ScenarioSpec& spec, LoadedScenario& out) {
-  std::vector<std::pair<std::string, const NamedFile*>> files{{"scenario", &spec.scenario}, {"include", &spec.include},
-                                                              {"dem", &spec.dem},           {"sources", &spec.sources},
-                                                              {"ground", &spec.ground},     {"screens", &spec.screens}};
+  std::vector<std::pair<std::string, const NamedFile*>> files{
+      {"scenario", &spec.scenario}, {"include", &spec.include}, {"dem", &spec.dem},          {"sources", &spec.sources},
+      {"ground", &spec.ground},     {"screens", &spec.screens}, {"barriers", &spec.barriers}};
   for (const auto& [name, effect] : spec.effects) files.emplace_back("effects." + name, &effect.file);
   for (const auto& [role, file] : files)
     if (!file->path.empty()) out.inputs.push_back({role, file->path, sha256_of_file(file->path)});
@@ -108,6 +109,11 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
     ScreenLayer screens = read_screens(spec.screens.path, terrain);
     parts.screens = std::move(screens.screens);
     take(out, screens);
+  }
+  if (!spec.barriers.path.empty()) {
+    BarrierLayer barriers = read_barriers(spec.barriers.path, terrain);
+    parts.barriers = Barriers(std::move(barriers.barriers));
+    take(out, barriers);
   }
   parts.features = std::move(sources.features);
   parts.sources = std::move(sources.cells);

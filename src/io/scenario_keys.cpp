@@ -36,7 +36,9 @@ class SpecReader {
     TableReader screens = top.table("screens");
     named_file(screens, "file", spec_.screens);
     screens.finish();
-    refuse_later_parts(top);
+    TableReader barriers = top.table("barriers");
+    named_file(barriers, "file", spec_.barriers);
+    barriers.finish();
     top.finish();
   }
 
@@ -221,12 +223,6 @@ class SpecReader {
     }
     out = *values;
     given("output." + key);
-  }
-
-  void refuse_later_parts(TableReader& top) {
-    if (const TomlValue* barriers = top.find("barriers"))
-      faults_.push_back(file_ + ":" + std::to_string(barriers->line) +
-                        ": [barriers] is not in this version of Talus, must be left out");
   }
 
   ScenarioSpec& spec_;

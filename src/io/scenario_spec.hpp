@@ -45,7 +45,7 @@ struct ProfileSpec {
 
 /// All that a scenario file and the flags say, before any other file is opened.
 struct ScenarioSpec {
-  NamedFile scenario, include, dem, sources, ground, screens;
+  NamedFile scenario, include, dem, sources, ground, screens, barriers;
   std::string ground_field;
   ZoneSpec default_ground;
   std::vector<ZoneSpec> zones;                ///< in the order of the file

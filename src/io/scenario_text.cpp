@@ -90,6 +90,7 @@ class Lines {
       add("output", "height_thresholds", list_text(spec.values.output.height_thresholds), "m");
     }
     file("screens", "file", spec.screens);
+    file("barriers", "file", spec.barriers);
     effects();
   }
   const std::vector<Line>& lines() const { return lines_; }

@@ -211,37 +211,4 @@ SourceLayer read_sources(const std::string& path, const Terrain& terrain, const 
   return out;
 }
 
-ScreenLayer read_screens(const std::string& path, const Terrain& terrain) {
-  Layer layer("screens", path, terrain);
-  ScreenLayer out;
-  const Grid& grid = terrain.heights.grid;
-  const int field = layer.field("id");
-  std::vector<std::int64_t> off_map;
-  while (const Feature feature = layer.next()) {
-    const Parts parts = layer.parts(*feature);
-    if (!parts.polygons.empty() || !parts.points.empty() || parts.lines.empty())
-      throw InputError(layer.label(*feature) + ": " + (parts.empty() ? "has no geometry" : "is no line") +
-                       ", must be a line that blocks may cross");
-    std::string id = field < 0 ? "" : layer.code(*feature, field);
-    if (id.empty()) id = std::to_string(feature->GetFID());
-    auto screen = std::find_if(out.screens.begin(), out.screens.end(), [&](const Screen& s) { return s.id == id; });
-    if (screen == out.screens.end()) screen = out.screens.insert(screen, Screen{id, {}});
-    for (const OGRLineString& line : parts.lines) {
-      if (line.getNumPoints() < 2 || line.get_Length() == 0.0)
-        throw InputError(layer.label(*feature) + ": line has no length, must have two places at least");
-      std::vector<Eigen::Vector2d>& places = screen->lines.emplace_back();
-      for (int i = 0; i < line.getNumPoints(); ++i) places.emplace_back(line.getX(i), line.getY(i));
-    }
-    const OGREnvelope box = parts.envelope();
-    if (box.MaxX < 0.0 || box.MinX > grid.width() || box.MaxY < 0.0 || box.MinY > grid.height())
-      off_map.push_back(feature->GetFID());
-  }
-  if (out.screens.empty()) throw InputError(path + ": has no features, must have lines that blocks may cross");
-  if (!off_map.empty())
-    out.warnings.push_back(path + ": lines wholly off the DEM, which nothing will cross: features " + list_of(off_map));
-  out.reprojections = layer.reprojections();
-  for (std::string& line : layer.warnings()) out.warnings.push_back(std::move(line));
-  return out;
-}
-
 }  // namespace talus::io

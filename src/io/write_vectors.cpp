@@ -60,6 +60,8 @@ const char* name_of(Event event) {
       return "takeoff";
     case Event::Air:
       return "air";
+    case Event::Barrier:
+      return "barrier";
     case Event::Stem:
       return "stem";
     case Event::End:

@@ -21,17 +21,6 @@ struct Lines {
   }
 };
 
-/// Length of a parabola in space, by three Gauss points on the speed (exact where the speed is a quintic in time).
-double arc_length(const Vec3& v, double duration) {
-  constexpr double kNode = 0.7745966692414834;  // sqrt(3/5)
-  const double plan2 = v.x() * v.x() + v.y() * v.y();
-  const auto speed = [&](double share) {
-    const double rise = v.z() - kGravity * duration * share;
-    return std::sqrt(plan2 + rise * rise);
-  };
-  return duration / 18.0 * (5.0 * speed(0.5 - 0.5 * kNode) + 8.0 * speed(0.5) + 5.0 * speed(0.5 + 0.5 * kNode));
-}
-
 /// @tparam kBounded  ends after `longest`; else there is no trace of it in the code
 template <bool kBounded>
 Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path,
@@ -106,6 +95,16 @@ Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool ground
 }
 
 }  // namespace
+
+double arc_length(const Vec3& v, double duration) {
+  constexpr double kNode = 0.7745966692414834;  // sqrt(3/5)
+  const double plan2 = v.x() * v.x() + v.y() * v.y();
+  const auto speed = [&](double share) {
+    const double rise = v.z() - kGravity * duration * share;
+    return std::sqrt(plan2 + rise * rise);
+  };
+  return duration / 18.0 * (5.0 * speed(0.5 - 0.5 * kNode) + 8.0 * speed(0.5) + 5.0 * speed(0.5 + 0.5 * kNode));
+}
 
 [[gnu::flatten]] Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path) {
   return walk<false>(surface, motion, at, grounded, path, kNever);

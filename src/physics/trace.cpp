@@ -5,13 +5,15 @@
 
 #include "acting.hpp"
 #include "anchor.hpp"
+#include "barrier_watch.hpp"
 
 namespace talus {
 namespace {
 
 /// One block on its way: the state that its steps share. A step returns how the trajectory ended, or nothing.
 ///
-/// @tparam Acting  the effects that act: Effectless, which leaves nothing of them in the code, or ActingEffects
+/// @tparam Acting  the effects that act: Effectless, which leaves nothing of them in the code, or ActingEffects;
+///                 either of them alone, or BehindBarriers
 template <class Acting>
 class Walk {
  public:
@@ -36,6 +38,7 @@ class Walk {
         const SlideEnd how = slide_on();
         if (how == SlideEnd::Left) return End::Left;
         if (how == SlideEnd::Stopped) return End::Stopped;
+        if (how == SlideEnd::Caught) return End::Caught;
         if (how == SlideEnd::Asperity) continue;
         path_.vertices.push_back({motion_, Event::Takeoff});
       }
@@ -51,6 +54,7 @@ class Walk {
   static std::optional<End> end_of(Outcome outcome) {
     if (outcome == Outcome::Left) return End::Left;
     if (outcome == Outcome::Aloft) return End::Limit;
+    if (outcome == Outcome::Caught) return End::Caught;
     return std::nullopt;
   }
 
@@ -81,7 +85,8 @@ class Walk {
   SlideEnd slide_on() {
     motion_.velocity -= motion_.velocity.dot(normal_) * normal_;
     const SlideEnd end = effects_.slide(motion_, at_, body_, path_);
-    return end != SlideEnd::Left && anchor_.traps(motion_) ? SlideEnd::Stopped : end;
+    const bool over = end == SlideEnd::Left || end == SlideEnd::Caught;
+    return !over && anchor_.traps(motion_) ? SlideEnd::Stopped : end;
   }
 
   /// Flies from the surface to the next contact.
@@ -114,10 +119,11 @@ void walk(const World& world, const Release& release, Path& path) {
 
 void trace(const World& world, const Release& release, Path& path) {
   path.clear();
-  if (world.effects == nullptr)
-    walk<Effectless>(world, release, path);
+  if (world.barriers == nullptr)
+    world.effects == nullptr ? walk<Effectless>(world, release, path) : walk<ActingEffects>(world, release, path);
   else
-    walk<ActingEffects>(world, release, path);
+    world.effects == nullptr ? walk<BehindBarriers<Effectless>>(world, release, path)
+                             : walk<BehindBarriers<ActingEffects>>(world, release, path);
 }
 
 void trace_pieces(const World& world, const Path& whole,

@@ -126,11 +126,20 @@ void check_thresholds(const std::vector<double>& values, const std::string& key)
   }
 }
 
-void check_screens(const std::vector<Screen>& screens) {
-  for (const Screen& screen : screens)
-    for (const auto& line : screen.lines)
-      if (line.size() < 2 || !std::all_of(line.begin(), line.end(), [](const auto& p) { return p.allFinite(); }))
-        throw InputError("screens: '" + screen.id + "' has a line without length, must have two places at least");
+/// Of a screen or a barrier.
+template <class Line>
+void check_lines(const Line& of, const std::string& what) {
+  for (const auto& line : of.lines)
+    if (line.size() < 2 || !std::all_of(line.begin(), line.end(), [](const auto& p) { return p.allFinite(); }))
+      throw InputError(what + ": '" + of.id + "' has a line without length, must have two places at least");
+}
+
+void check_barriers(const Barriers& barriers) {
+  for (const Barrier& barrier : barriers.list()) {
+    check_lines(barrier, "barriers");
+    check(bounds_of("barriers.height"), barrier.height, "barriers: '" + barrier.id + "' height");
+    check(bounds_of("barriers.capacity"), 1e-3 * barrier.capacity, "barriers: '" + barrier.id + "' capacity");
+  }
 }
 
 void check_extent(const Scenario& s, const Extent& where, const std::string& effect) {
@@ -183,7 +192,8 @@ Scenario make_scenario(Scenario parts) {
   check_sources(parts);
   check_thresholds(parts.output.energy_thresholds, "output.energy_thresholds");
   check_thresholds(parts.output.height_thresholds, "output.height_thresholds");
-  check_screens(parts.screens);
+  for (const Screen& screen : parts.screens) check_lines(screen, "screens");
+  check_barriers(parts.barriers);
   return parts;
 }
 

@@ -12,21 +12,18 @@ double cross_product(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 
 }  // namespace
 
-Motion motion_between(const Vertex& from, const Vertex& to, double share) {
-  const double t = share * (to.motion.time - from.motion.time);
-  Motion m = from.motion;
-  m.time += t;
-  if (from.event == Event::Slide) {
-    const double duration = to.motion.time - from.motion.time;
-    const Vec3 way = to.motion.position - from.motion.position;
-    m.position += share * way;
-    if (duration > 0.0) m.velocity += 2.0 * share * (way / duration - from.motion.velocity);  // constant acceleration
-    return m;
-  }
-  m.position += t * from.motion.velocity;
-  m.position.z() -= 0.5 * kGravity * t * t;
-  m.velocity.z() -= kGravity * t;
-  return m;
+double place_along(const Screen& screen, const Eigen::Vector2d& place) {
+  double along = 0.0, found = 0.0, nearest = std::numeric_limits<double>::infinity();
+  for (const auto& line : screen.lines)
+    for (std::size_t i = 1; i < line.size(); ++i) {
+      const Eigen::Vector2d way = line[i] - line[i - 1];
+      const double length = way.norm();
+      const double share = length > 0.0 ? std::clamp(way.dot(place - line[i - 1]) / (length * length), 0.0, 1.0) : 0.0;
+      const double distance = (line[i - 1] + share * way - place).norm();
+      if (distance < nearest) nearest = distance, found = along + share * length;
+      along += length;
+    }
+  return found;
 }
 
 ScreenFinder::ScreenFinder(const Surface& surface, std::span<const Screen> screens) : surface_(surface) {
@@ -75,7 +72,9 @@ void ScreenFinder::cross(const Release& release, const Block& body, const Vertex
     const double ground = surface_.height(m.position.x(), m.position.y()).value_or(m.position.z());
     crossings.push_back({release.source, release.block, s.screen, m.position.x(), m.position.y(), m.velocity.norm(),
                          from.event == Event::Slide ? 0.0 : std::max(0.0, m.position.z() - ground), m.spin.norm(),
-                         body.mass, body.diameter, s.along + line.norm() * (low / (low - high)), m.time});
+                         body.mass, body.diameter, s.along + line.norm() * (low / (low - high)), m.time,
+                         std::atan2(-m.velocity.z(), m.velocity.head<2>().norm()),
+                         std::atan2(std::abs(way.dot(line)), std::abs(cross_product(way, line)))});
   }
   std::sort(crossings.begin() + static_cast<std::ptrdiff_t>(first), crossings.end(),
             [](const Crossing& l, const Crossing& r) { return l.time < r.time; });

@@ -109,6 +109,7 @@ class Reaches {
 };
 
 void add_way(Totals& totals, const Path& path) {
+  totals.barriers.add(path);
   totals.impacts += path.impacts;
   totals.psi_dropped += path.psi_dropped;
   totals.length_mm += std::llround(1e3 * path.length);
@@ -137,6 +138,7 @@ void add(Totals& totals, const Totals& part) {
   totals.cells_scored += part.cells_scored;
   totals.length_mm += part.length_mm;
   totals.plan_length_mm += part.plan_length_mm;
+  totals.barriers.merge(part.barriers);
   totals.sink_cpu_seconds += part.sink_cpu_seconds;
   totals.cpu_seconds += part.cpu_seconds;
 }
@@ -152,11 +154,14 @@ class Run {
         units_per_source_((scenario.trajectories + kBlocksPerUnit - 1) / kBlocksPerUnit),
         units_(std::uint64_t{units_per_source_} * scenario.sources.size()),
         order_(sinks),
-        reaches_(units_per_source_) {}
+        reaches_(units_per_source_) {
+    totals_.barriers = BarrierTally(scenario.barriers);
+  }
 
   /// Takes units until none is left. Nothing may leave an OpenMP region: the first exception is kept.
   void work() noexcept {
     Totals mine;
+    mine.barriers = BarrierTally(scenario_.barriers);
     const double start = thread_cpu_seconds();
     try {
       VisitBatch batch(scenario_.surface.grid());

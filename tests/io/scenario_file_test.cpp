@@ -108,8 +108,9 @@ TEST_F(ScenarioFile, UnknownKeysAreNamedWithLineAndNearestKey) {
 }
 
 TEST_F(ScenarioFile, WhatIsNotInThisVersionIsSaidByName) {
-  refused(std::string(kFiles) + "[barriers]\nfile = \"n.gpkg\"\n",
-          {"scenario.toml:4: [barriers] is not in this version"});
+  refused(std::string(kFiles) + "[barriers]\nfile = \"n.gpkg\"\n", {"scenario.toml:5", "no such file", "n.gpkg"});
+  refused(std::string(kFiles) + "[barriers]\nfiel = \"n.gpkg\"\n",
+          {"scenario.toml:5: unknown key 'fiel' in [barriers]; did you mean 'file'?"});
   refused(std::string(kFiles) + "[effects.vegetation-drag]\nheight = 8\n",
           {"scenario.toml:4: [effects.vegetation-drag] does nothing, must give coefficient"});
   refused(std::string(kFiles) + "[effects.vegetation-darg]\nheight = 8\n",

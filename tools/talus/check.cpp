@@ -136,6 +136,7 @@ void print_blocks(const Scenario& scenario) {
   line("thresholds", "energy " + list_text(scenario.output.energy_thresholds, "kJ") + "; height " +
                          list_text(scenario.output.height_thresholds, "m"));
   if (!scenario.screens.empty()) line("screens", count_text(scenario.screens.size()));
+  if (!scenario.barriers.empty()) line("barriers", count_text(scenario.barriers.list().size()));
 }
 
 void print_estimate(const Scenario& scenario) {

@@ -15,6 +15,7 @@ void add_run(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
 void add_profile(CLI::App& app, Action& action);
 void add_presets(CLI::App& app, Action& action);
+void add_barrier(CLI::App& app, Action& action);
 void add_trace(CLI::App& app, Action& action);
 void add_calibrate(CLI::App& app, Action& action);
 void add_diagnose(CLI::App& app, Action& action);

@@ -22,7 +22,7 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may set 
 std::vector<std::string> words;
 
 /// Parts of the interface that a later version brings.
-constexpr std::array<std::string_view, 4> kLaterCommands{"hazard", "barrier", "merge", "report"};
+constexpr std::array<std::string_view, 3> kLaterCommands{"hazard", "merge", "report"};
 constexpr std::array<std::string_view, 3> kLaterOptions{"--part", "--resume", "--until-error"};
 
 void refuse_later_parts(int argc, char** argv) {
@@ -90,6 +90,7 @@ int run_program(int argc, char** argv) {
   add_presets(app, action);
   add_profile(app, action);
   add_trace(app, action);
+  add_barrier(app, action);
   add_calibrate(app, action);
   add_diagnose(app, action);
   add_score(app, action);

@@ -15,6 +15,7 @@
 #include "talus/io/run_record.hpp"
 #include "talus/io/style.hpp"
 #include "talus/io/write_crossings.hpp"
+#include "talus/io/write_lines.hpp"
 #include "talus/io/write_rasters.hpp"
 #include "talus/io/write_vectors.hpp"
 #include "talus/products/maps.hpp"
@@ -35,7 +36,11 @@ struct Options {
 /// The files that are written while the trajectories are traced.
 class Vectors {
  public:
-  Vectors(const LoadedScenario& loaded, const std::filesystem::path& folder) : stops_(folder / "stops.gpkg", loaded) {
+  Vectors(const LoadedScenario& loaded, const std::filesystem::path& folder)
+      : scenario_(loaded.scenario),
+        folder_(folder),
+        stops_(folder / "stops.gpkg", loaded),
+        summary_(scenario_.screens.size()) {
     if (loaded.scenario.output.paths > 0)
       paths_.emplace(folder / "trajectories.gpkg", loaded.geo, loaded.scenario.surface.grid());
     if (!loaded.scenario.screens.empty()) crossings_.emplace(folder / "screens.csv", loaded.scenario, loaded.geo);
@@ -45,20 +50,32 @@ class Vectors {
     talus::Sinks sinks;
     sinks.stops = [this](std::span<const talus::StopRow> rows) { stops_.write(rows); };
     if (paths_) sinks.paths = [this](const talus::RecordedPath& path) { paths_->write(path); };
-    if (crossings_) sinks.crossings = [this](std::span<const talus::Crossing> rows) { crossings_->write(rows); };
+    if (crossings_)
+      sinks.crossings = [this](std::span<const talus::Crossing> rows) {
+        crossings_->write(rows);
+        summary_.add(rows);
+      };
     return sinks;
   }
 
-  void finish() {
+  void finish(const talus::Totals& totals) {
     stops_.finish();
     if (paths_) paths_->finish();
-    if (crossings_) crossings_->finish();
+    if (crossings_) {
+      crossings_->finish();
+      talus::io::write_text(folder_ / "screens_summary.csv", talus::io::screens_summary_csv(scenario_, summary_));
+    }
+    if (!scenario_.barriers.empty())
+      talus::io::write_text(folder_ / "barriers.csv", talus::io::barriers_csv(scenario_, totals));
   }
 
  private:
+  const talus::Scenario& scenario_;
+  std::filesystem::path folder_;
   talus::io::StopsWriter stops_;
   std::optional<talus::io::TrajectoriesWriter> paths_;
   std::optional<talus::io::CrossingsWriter> crossings_;
+  talus::ScreenSummary summary_;
 };
 
 /// Writes all maps, several at a time. What is thrown may not leave the parallel region: the first failure is kept.
@@ -117,7 +134,7 @@ void simulate_and_write(const Options& options, const LoadedScenario& loaded, co
   malloc_trim(0);  // gives back what the workers' batches took, before the maps need room
 
   progress.stage("writing the results");
-  vectors.finish();
+  vectors.finish(record.totals);
   write_maps(loaded, tally, folder, record.threads);
   talus::io::write_text(folder / "scenario.toml", loaded.complete_toml);
   record.files = files_in(folder);

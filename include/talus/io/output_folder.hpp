@@ -38,6 +38,10 @@ class OutputFolder {
 /// Writes a text file. Throws std::runtime_error, one line with the file and the cause; no half file is left.
 void write_text(const std::filesystem::path& file, std::string_view text);
 
+/// Writes a text file beside others of a finished folder: under a hidden name first, renamed when it is complete. What
+/// had the name before is replaced. Throws as `write_text`.
+void replace_text(const std::filesystem::path& file, std::string_view text);
+
 /// Why a library could not write into a folder: that the disk is full, where it is; else the first of its messages.
 std::string cause_of_failure(const std::filesystem::path& folder, const std::string& messages);
 

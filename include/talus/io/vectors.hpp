@@ -38,4 +38,15 @@ struct ScreenLayer {
 /// and the parts of a multiline, are one screen. A plain CSV with columns id,wkt is in the system of the DEM.
 ScreenLayer read_screens(const std::string& path, const Terrain& terrain);
 
+/// Barriers, as a vector file says it.
+struct BarrierLayer {
+  std::vector<Barrier> barriers;
+  std::vector<Reprojection> reprojections;
+  std::vector<std::string> warnings;
+};
+
+/// Reads barriers: lines with the fields `height` [m] and `capacity` [kJ], which must be there, and `id` as for
+/// screens. Each feature is one barrier.
+BarrierLayer read_barriers(const std::string& path, const Terrain& terrain);
+
 }  // namespace talus::io

@@ -11,6 +11,7 @@ namespace talus {
 enum class Outcome {
   Landed,  ///< on the surface, in patch `at`
   Left,    ///< over the edge of the terrain or above missing data
+  Caught,  ///< in a barrier
   Aloft    ///< still in the air: the longest time, or the time limit, was reached
 };
 
@@ -33,6 +34,11 @@ inline double first_contact(double f0, double f1, double f2, double until) {
   if (contact <= until) return contact;
   return f2 <= 0.0 && last < 0.0 ? until : kNever;  // below the ground at the end: only rounding puts it later
 }
+
+/// Length of a parabola in space [m], by three Gauss points on the speed (exact where the speed is a quintic in time).
+///
+/// @param v  at its start [m/s];  duration [s]
+double arc_length(const Vec3& v, double duration);
 
 /// Walks a free parabola over the patches under it until it meets the ground, by one quadratic per patch.
 ///

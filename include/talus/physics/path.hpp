@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "talus/physics/barriers.hpp"
 #include "talus/physics/block.hpp"
 #include "talus/terrain/surface.hpp"
 
@@ -18,6 +19,7 @@ enum class Event : std::uint8_t {
   Takeoff,  ///< a flight after sliding, without an impact
   Air,      ///< a further parabola of a flight that air or vegetation brakes
   Stem,     ///< a flight after a stem was met
+  Barrier,  ///< a flight or a slide after a barrier was broken
   End       ///< nothing: the last vertex
 };
 
@@ -27,6 +29,10 @@ struct Vertex {
   Motion motion;
   Event event;
 };
+
+/// The motion a share of the way from one vertex of a path to the next: a parabola with constant spin, or a piece of
+/// sliding with constant acceleration.
+Motion motion_between(const Vertex& from, const Vertex& to, double share);
 
 /// The way across one patch, from `from` to `to` in its own coordinates, over a clearance that is quadratic in the
 /// share s of the way: height(s) = height_from + s ((height_to - height_from) - bend (1 - s)). A slide has no height.
@@ -51,12 +57,13 @@ struct Path {
   std::vector<Span> spans;
   End end = End::Limit;
   std::uint32_t impacts = 0;
-  std::uint32_t psi_dropped = 0;  ///< impacts whose sideways tilt was left out
-  double length = 0.0;            ///< in space [m]
-  double plan_length = 0.0;       ///< in plan [m]
-  double mass = 0.0;              ///< of the block at its end [kg]
-  std::vector<Broken> breaks;     ///< in the order of time
-  std::vector<Release> pieces;    ///< what broke off; `trace_pieces` follows them
+  std::uint32_t psi_dropped = 0;         ///< impacts whose sideways tilt was left out
+  double length = 0.0;                   ///< in space [m]
+  double plan_length = 0.0;              ///< in plan [m]
+  double mass = 0.0;                     ///< of the block at its end [kg]
+  std::vector<Broken> breaks;            ///< in the order of time
+  std::vector<Release> pieces;           ///< what broke off; `trace_pieces` follows them
+  std::vector<BarrierPassage> barriers;  ///< that it met, in the order of time
 
   void clear() {
     vertices.clear();
@@ -66,6 +73,7 @@ struct Path {
     length = plan_length = mass = 0.0;
     breaks.clear();
     pieces.clear();
+    barriers.clear();
   }
 };
 

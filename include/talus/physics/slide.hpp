@@ -10,6 +10,7 @@ enum class SlideEnd {
   Stopped,   ///< (a) friction holds the block
   Takeoff,   ///< (b) the ground falls away faster than the free parabola
   Asperity,  ///< (c) it has slid one diameter and meets the next asperity
+  Caught,    ///< in a barrier
   Left       ///< over the edge of the terrain or onto missing data
 };
 

@@ -24,7 +24,8 @@ struct World {
   const Cover& cover;
   ImpactModel impact;
   EndRules rules;
-  const Effects* effects = nullptr;  ///< null: none
+  const Effects* effects = nullptr;    ///< null: none
+  const Barriers* barriers = nullptr;  ///< null: none
 };
 
 /// Walks one block from its release to its end: flights, impacts and slides in turn.

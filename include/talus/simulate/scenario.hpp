@@ -77,6 +77,7 @@ struct Scenario {
   std::vector<SourceCell> sources;
   Blocks blocks;
   std::vector<Screen> screens;
+  Barriers barriers;
   ImpactModel impact;
   Effects effects;
   bool drag_and_stems = false;  ///< vegetation-drag and forest-stems may act at one place
@@ -86,7 +87,9 @@ struct Scenario {
   std::uint64_t seed = 1;
   std::uint32_t trajectories = 100;  ///< per source cell
 
-  World world() const { return {surface, cover, impact, rules, effects.any() ? &effects : nullptr}; }
+  World world() const {
+    return {surface, cover, impact, rules, effects.any() ? &effects : nullptr, barriers.empty() ? nullptr : &barriers};
+  }
   std::uint64_t released() const { return std::uint64_t{trajectories} * sources.size(); }
 };
 

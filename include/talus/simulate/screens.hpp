@@ -13,11 +13,12 @@ struct Crossing {
   double mass, diameter;                // [kg], [m]
   double along;                         ///< distance along the line from its start [m]
   double time;                          // [s]
+  double dip = 0.0;                     ///< of the velocity below the horizontal, negative where it rises [rad]
+  double incidence = 0.0;               ///< in plan, between the way and the normal of the line [rad], 0 to pi/2
 };
 
-/// The motion a share of the way from one vertex of a path to the next: a parabola with constant spin, or a piece of
-/// sliding with constant acceleration.
-Motion motion_between(const Vertex& from, const Vertex& to, double share);
+/// Distance along a screen from its start, over all its lines, to the point of it that is nearest to a place [m].
+double place_along(const Screen& screen, const Eigen::Vector2d& place);
 
 /// Finds where paths cross the screens.
 class ScreenFinder {

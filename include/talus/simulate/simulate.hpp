@@ -3,6 +3,7 @@
 #include <functional>
 #include <span>
 
+#include "talus/simulate/barrier_counts.hpp"
 #include "talus/simulate/screens.hpp"
 #include "talus/simulate/tally.hpp"
 
@@ -54,6 +55,7 @@ struct Totals {
   std::int64_t length_mm = 0, plan_length_mm = 0;
   std::array<std::uint32_t, 2> first_limit{};  ///< smallest (source, block) that ended at a limit; see ends
   bool interrupted = false;
+  BarrierTally barriers;
   double sink_cpu_seconds = 0.0;  ///< of `cpu_seconds`, spent in the sinks
   double cpu_seconds = 0.0;       ///< of all threads
 };

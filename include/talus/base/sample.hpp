@@ -1,0 +1,18 @@
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+namespace talus {
+
+/// The value below which a share of a sample lies, linear between order statistics (Hyndman & Fan, type 7).
+///
+/// @param sorted  ascending, not empty;  share: 0..1
+inline double sample_quantile(std::span<const double> sorted, double share) {
+  const double place = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const double above = sorted[std::min(below + 1, sorted.size() - 1)];
+  return sorted[below] + (place - static_cast<double>(below)) * (above - sorted[below]);
+}
+
+}  // namespace talus

@@ -1,0 +1,132 @@
+#include "talus/products/weibull.hpp"
+
+#include <algorithm>
+#include <boost/math/tools/roots.hpp>
+#include <cmath>
+
+#include "talus/base/random.hpp"
+#include "talus/base/sample.hpp"
+
+namespace talus {
+namespace {
+
+constexpr std::size_t kMostSimulated = 2000;  // values of one bootstrap draw
+constexpr int kBits = 40;                     // of the shape
+
+/// Fits to logarithms of values, which are moved so that the largest is 0 and no power overflows.
+Weibull fit_to_logarithms(std::vector<double>& logs) {
+  const double largest = *std::max_element(logs.begin(), logs.end());
+  const auto n = static_cast<double>(logs.size());
+  double mean = 0.0, square = 0.0;
+  for (double& y : logs) {
+    y -= largest;
+    mean += y / n;
+    square += y * y / n;
+  }
+  const auto likelihood = [&](double shape) {
+    double s0 = 0.0, s1 = 0.0, s2 = 0.0;  // sums of x^k (ln x)^i
+    for (const double y : logs) {
+      const double power = std::exp(shape * y);
+      s0 += power;
+      s1 += power * y;
+      s2 += power * y * y;
+    }
+    const double first = s1 / s0;
+    return std::make_pair(first - 1.0 / shape - mean, s2 / s0 - first * first + 1.0 / (shape * shape));
+  };
+  const double guess = kPi / std::sqrt(6.0 * (square - mean * mean));  // by the variance of ln x
+  std::uintmax_t steps = 100;
+  const double shape =
+      boost::math::tools::newton_raphson_iterate(likelihood, guess, guess / 100.0, guess * 100.0, kBits, steps);
+  double sum = 0.0;
+  for (const double y : logs) sum += std::exp(shape * y);
+  return {shape, std::exp(largest + std::log(sum / n) / shape)};
+}
+
+/// Fits to n values of the standard exponential distribution, which is Weibull (1, 1).
+Weibull fit_to_standard(std::size_t n, std::uint32_t draw, std::uint64_t seed, std::vector<double>& logs) {
+  const Random random(seed, 0, draw, Purpose::Bootstrap);
+  logs.resize(n);
+  for (std::uint32_t i = 0; i < n; i += 4) {
+    const Words words = random.words(i / 4);
+    for (std::uint32_t j = i; j < std::min<std::size_t>(n, i + 4); ++j)
+      logs[j] = std::log(-std::log(uniform(words[j - i])));
+  }
+  return fit_to_logarithms(logs);
+}
+
+template <class Value>
+Interval middle(const std::vector<Weibull>& draws, double confidence, Value value) {
+  std::vector<double> values;
+  values.reserve(draws.size());
+  for (const Weibull& law : draws) values.push_back(value(law));
+  std::sort(values.begin(), values.end());
+  const double tail = 0.5 * (1.0 - confidence);
+  return {sample_quantile(values, tail), sample_quantile(values, 1.0 - tail)};
+}
+
+/// Laws that n values with this fit may be of: the pivots of the simulated fits turned round.
+std::vector<Weibull> laws_of(const Weibull& fit, std::size_t n, const BootstrapOptions& options) {
+  const std::size_t simulated = std::min(n, kMostSimulated);
+  const double shrink = std::sqrt(static_cast<double>(simulated) / static_cast<double>(n));
+  std::vector<Weibull> laws;
+  laws.reserve(options.draws);
+  std::vector<double> logs;
+  for (std::uint32_t draw = 0; draw < options.draws; ++draw) {
+    const Weibull pivot = fit_to_standard(simulated, draw, options.seed, logs);
+    const double shape = fit.shape / std::exp(shrink * std::log(pivot.shape));
+    laws.push_back({shape, fit.scale * std::exp(-shrink * std::log(pivot.scale) / shape)});
+  }
+  return laws;
+}
+
+}  // namespace
+
+double Weibull::exceedance(double x) const {
+  return x > 0.0 ? std::exp(-std::pow(x / scale, shape)) : 1.0;
+}
+
+Weibull fit_weibull(std::span<const double> values) {
+  std::vector<double> logs;
+  logs.reserve(values.size());
+  for (const double value : values) logs.push_back(std::log(value));
+  return fit_to_logarithms(logs);
+}
+
+double anderson_darling(std::span<const double> sorted, const Weibull& law) {
+  const std::size_t n = sorted.size();
+  const auto count = static_cast<double>(n);
+  const auto hazard = [&](std::size_t i) { return std::pow(sorted[i] / law.scale, law.shape); };  // -ln P(X > x)
+  double sum = 0.0;
+  for (std::size_t i = 0; i < n; ++i)
+    sum += (2.0 * static_cast<double>(i) + 1.0) * (std::log(-std::expm1(-hazard(i))) - hazard(n - 1 - i));
+  return (-count - sum / count) * (1.0 + 0.2 / std::sqrt(count));
+}
+
+WeibullFit fit_weibull(std::span<const double> values, const BootstrapOptions& options) {
+  std::vector<double> positive(values.begin(), values.end());
+  std::erase_if(positive, [](double value) { return !(value > 0.0); });
+  std::sort(positive.begin(), positive.end());
+  WeibullFit fit;
+  fit.values = values.size();
+  fit.zeros = values.size() - positive.size();
+  fit.law = fit_weibull(positive);
+  fit.distance = anderson_darling(positive, fit.law);
+  fit.confidence = options.confidence;
+  fit.draws = laws_of(fit.law, positive.size(), options);
+  fit.shape = middle(fit.draws, options.confidence, [](const Weibull& law) { return law.shape; });
+  fit.scale = middle(fit.draws, options.confidence, [](const Weibull& law) { return law.scale; });
+  return fit;
+}
+
+Exceedance exceedance(const WeibullFit& fit, std::span<const double> values, double limit) {
+  const double positive = 1.0 - static_cast<double>(fit.zeros) / static_cast<double>(fit.values);
+  const auto above =
+      static_cast<std::uint64_t>(std::count_if(values.begin(), values.end(), [&](double v) { return v > limit; }));
+  const auto by = [&](const Weibull& law) { return positive * law.exceedance(limit); };
+  return {by(fit.law), middle(fit.draws, fit.confidence, by),
+          static_cast<double>(above) / static_cast<double>(values.size()),
+          probability_bounds(above, values.size(), fit.confidence)};
+}
+
+}  // namespace talus

@@ -1,0 +1,234 @@
+"""Barriers: their design from the crossings of a run, and what they hold in the walk."""
+import csv
+import json
+import math
+import os
+import unittest
+
+from osgeo import ogr
+
+from support import NORTH, WEST, Case, write_features
+
+SOUTH = NORTH - 300.0
+HEADER = ("source,block,screen,speed_ms,energy_kj,total_energy_kj,jump_height_m,angular_velocity_rads,mass_kg,x,y")
+
+
+def line(y, left=20.0, right=280.0):
+    return f"LINESTRING ({WEST + left} {SOUTH + y},{WEST + right} {SOUTH + y})"
+
+
+class Design(Case):
+    """A folder of results by hand: run.json and screens.csv alone."""
+
+    def setUp(self):
+        super().setUp()
+        os.mkdir(self.path("out"))
+        screens = [{"id": name, "lines": [[[WEST, SOUTH], [WEST + 100.0, SOUTH]]]} for name in ("road", "fe/nce", "low")]
+        self.write("out/run.json", json.dumps({
+            "released": 1000, "grid": {"cell_x_m": 5.0}, "screens": screens,
+            "settings": [{"key": "blocks.density", "value": 2500, "unit": "kg/m3", "source": "scenario"}]}))
+        self.rows = [(0, i, "road", 5.0 + 0.1 * i, 0.01 * (i + 1), 3000.0 if i < 100 else 5000.0, 10.0 + 0.2 * i)
+                     for i in range(101)]
+        self.rows += [(0, i, "low", 5.0 + i, 1.0 + i, 3000.0, 1.0) for i in range(19)]
+        self.save()
+
+    def save(self, extra=()):
+        text = HEADER + "\n"
+        for source, block, screen, speed, jump, mass, place in [*self.rows, *extra]:
+            energy = 0.5e-3 * mass * speed**2
+            text += f"{source},{block},{screen},{speed},{energy},{energy},{jump},3,{mass},{WEST + place},{SOUTH}\n"
+        self.write("out/screens.csv", text)
+
+    def design(self, *arguments):
+        done = self.run_well("barrier", self.path("out"), "--screen", "road", *arguments)
+        with open(self.path("out/barrier_road.json"), encoding="utf-8") as file:
+            report = json.load(file)
+        return {row["name"]: row["value"] for row in report["design"]}, report, done.stdout
+
+    def test_by_hand(self):
+        values, report, text = self.design("--gTr", "1.02", "--gVol", "1.02")
+        # v95 = 14.5, times 1.02 * 1.10; the largest block has 5000 kg: 2 m3; h95 = 0.96
+        self.assertAlmostEqual(values["v95"], 14.5, 9)
+        self.assertAlmostEqual(values["v_d"], 14.5 * 1.122, 9)
+        self.assertAlmostEqual(values["V"], 2.0, 9)
+        self.assertAlmostEqual(values["m_d"], 5100.0, 9)
+        self.assertAlmostEqual(values["E_d"], 0.5e-3 * 5100.0 * (14.5 * 1.122)**2, 9)
+        self.assertAlmostEqual(values["SEL"], values["E_d"], 9)
+        self.assertAlmostEqual(values["MEL"], 1.3 * values["E_d"], 9)
+        self.assertAlmostEqual(values["f_min"], 0.5 * (12.0 / math.pi)**(1.0 / 3.0), 9)
+        self.assertAlmostEqual(values["h_i"], 0.96 * 1.122 + values["f_min"], 9)
+        # 101 crossings over 20 m: 100 of them (99 %) are 19.8 m wide; 25 a bin of 5 m, more than 1 % of 1000
+        width = report["containment"]
+        self.assertAlmostEqual(width["shortest"]["width_m"], 19.8, 6)
+        self.assertEqual((width["by_impact_probability"]["from_m"], width["by_impact_probability"]["to_m"]), (10, 30))
+        self.assertEqual([r["quantity"] for r in report["reliability"]], ["jump height", "speed", "energy"])
+        self.assertIn("h_i", text)
+        with open(self.path("out/barrier_road.csv"), encoding="utf-8") as file:
+            rows = {row["name"]: row for row in csv.DictReader(file)}
+        self.assertAlmostEqual(float(rows["h_i"]["value"]), values["h_i"], 4)
+        self.assertEqual(float(rows["h_i"]["share"]), 0.0)
+
+    def test_options(self):
+        values, _, _ = self.design("--gE", "1.2", "--percentile", "50", "--volume", "1", "--density", "2700")
+        self.assertAlmostEqual(values["MEL"] / values["SEL"], 1.2, 12)
+        self.assertAlmostEqual(values["v50"], 10.0, 9)
+        self.assertAlmostEqual(values["m_d"], 2700.0 * 1.1, 9)
+
+    def test_a_block_counts_once(self):
+        before = self.design()[0]
+        self.save([(0, i, "road", 0.5, 0.0, self.rows[i][5], 10.0) for i in range(50)])
+        self.assertEqual(self.design()[0], before)
+
+    def content(self):
+        found = {}
+        for name in os.listdir(self.path("out")):
+            with open(self.path("out/" + name), "rb") as file:
+                found[name] = file.read()
+        return found
+
+    def test_same_bytes_again_and_nothing_half_written(self):
+        self.design()
+        first = self.content()
+        self.design()
+        self.assertEqual(self.content(), first)
+        self.assertEqual(sorted(first), ["barrier_road.csv", "barrier_road.json", "run.json", "screens.csv"])
+
+    def test_name_of_the_files(self):
+        self.save([(0, i, "fe/nce", 5.0 + i, 1.0 + i, 3000.0, 1.0 + i) for i in range(20)])
+        self.run_well("barrier", self.path("out"), "--screen", "fe/nce")
+        self.assertTrue(os.path.exists(self.path("out/barrier_fe_nce.json")))
+
+    def test_observed_crossings(self):
+        table = "id,screen,speed_ms,jump_height_m,angular_velocity_rads\n"
+        table += "".join(f"b{i},road,{4 + 0.2 * i:.2f},{0.1 + 0.05 * i:.2f},3\n" for i in range(50))
+        observed = self.write("passages.csv", table)
+        _, report, text = self.design("--observed", observed)
+        self.assertEqual([r["quantity"] for r in report["reliability"]], ["jump height", "speed"])
+        self.assertEqual(report["reliability"][0]["values"], 50)
+        # h_i is 0.96 * 1.21 + 0.78 = 1.94 m, which observed jumps 0.1 + 0.05 i exceed from i = 37 on
+        self.assertAlmostEqual(report["reliability"][0]["exceeded"][0]["share"], 13 / 50, 12)
+        self.assertIn("do not say the energy", text)
+
+    def refused(self, *words, arguments=("--screen", "road")):
+        before = os.listdir(self.path("out"))
+        self.fails(2, *words, arguments=["barrier", self.path("out"), *arguments])
+        self.assertEqual(os.listdir(self.path("out")), before)
+
+    def test_wrong_input(self):
+        self.refused("no screen 'raod'", "did you mean 'road'", arguments=["--screen", "raod"])
+        self.refused("only 19 blocks", "20 at least", arguments=["--screen", "low"])
+        self.refused("no block crosses", arguments=["--screen", "fe/nce"])
+        self.refused("--gTr = 0.9", "1 to 3", arguments=["--screen", "road", "--gTr", "0.9"])
+        self.refused("--gE = nan", arguments=["--screen", "road", "--gE", "nan"])
+        self.refused("abc", arguments=["--screen", "road", "--gDp", "abc"])
+        self.refused("--percentile = 100", arguments=["--screen", "road", "--percentile", "100"])
+        self.refused("must be 1000 at least", arguments=["--screen", "road", "--percentile", "99.9"])
+        self.refused("--volume = 0", arguments=["--screen", "road", "--volume", "0"])
+        self.refused("--screen", arguments=[])
+        self.refused("none.csv", arguments=["--screen", "road", "--observed", self.path("none.csv")])
+        few = self.write("few.csv", "id,screen,jump_height_m\n" + "".join(f"b{i},road,{i}\n" for i in range(10)))
+        self.refused("9 values of the jump height", "Weibull", arguments=["--screen", "road", "--observed", few])
+        other = self.write("other.csv", "id,screen,jump_height_m\na,S1,1\n")
+        self.refused("no row of screen 'road'", arguments=["--screen", "road", "--observed", other])
+
+    def test_folders_that_are_none(self):
+        self.fails(2, "no run.json", arguments=["barrier", self.folder, "--screen", "road"])
+        os.remove(self.path("out/screens.csv"))
+        self.refused("no screens.csv")
+        self.write("out/run.json", "{")
+        self.refused("run.json", "cannot be understood")
+
+
+class Walk(Case):
+    """Nets across the slope of 35 degrees, below the sources at y = 230 to 240."""
+
+    FIELDS = (("id", ogr.OFTString), ("height", ogr.OFTReal), ("capacity", ogr.OFTReal))
+
+    def nets(self, *nets):
+        write_features(self.path("nets.gpkg"), "nets", [(line(y, 0.0, 300.0), list(values)) for y, *values in nets],
+                       self.FIELDS)
+
+    def scenario(self, barriers=True):
+        write_features(self.path("lines.gpkg"), "lines", [(line(150.0), ["above"]), (line(100.0), ["below"])],
+                       [("id", ogr.OFTString)])
+        return self.write("s.toml", 'dem = "dem.tif"\ntrajectories = 100\n[sources]\nfile = "sources.gpkg"\n'
+                          "[blocks]\ndiameter = [0.6, 1.2]\n[screens]\nfile = \"lines.gpkg\"\n"
+                          + ('[barriers]\nfile = "nets.gpkg"\n' if barriers else ""))
+
+    def screens(self, out):
+        with open(self.path(out + "/screens.csv"), encoding="utf-8") as file:
+            return [row["screen"] for row in csv.DictReader(file)]
+
+    def test_one_that_holds_all(self):
+        self.nets((125.0, "wall", 100.0, math.inf))
+        self.run_well("run", self.scenario(), "-o", self.path("out"))
+        self.assertIn("above", self.screens("out"))
+        self.assertNotIn("below", self.screens("out"))
+        record = self.record()
+        wall, = record["barriers"]
+        self.assertEqual((wall["id"], wall["capacity_kj"], wall["over"], wall["broken"]), ("wall", "inf", 0, 0))
+        self.assertEqual(wall["caught"], record["ends"]["caught"])
+        self.assertGreater(wall["caught"], 100)
+        self.assertEqual(sum(record["ends"].values()), record["released"])
+        with open(self.path("out/barriers.csv"), encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 60)
+        self.assertEqual(sum(int(row["hits"]) for row in rows), wall["hits"])
+        self.assertEqual((rows[-1]["barrier"], rows[-1]["from_m"], rows[-1]["to_m"]), ("wall", "295", "300"))
+        self.assertIn("nets.gpkg", [os.path.basename(f["path"]) for f in record["inputs"] if f["role"] == "barriers"])
+
+    def test_without_height_nothing_changes(self):
+        self.nets((125.0, "none", 0.0, 1000.0))
+        self.run_well("run", self.scenario(False), "-o", self.path("without"))
+        self.run_well("run", self.scenario(), "-o", self.path("with"))
+        for name in os.listdir(self.path("without")):
+            if name in ("run.json", "scenario.toml"):
+                continue
+            with open(self.path("without/" + name), "rb") as a, open(self.path("with/" + name), "rb") as b:
+                self.assertEqual(a.read(), b.read(), name)
+
+    def test_the_same_for_any_number_of_threads_and_again(self):
+        self.nets((170.0, "low", 1.0, 20.0), (125.0, "high", 2.0, 60.0))
+        self.run_well("run", self.scenario(), "-o", self.path("one"), "--threads", "1")
+        self.run_well("run", self.path("one/scenario.toml"), "-o", self.path("two"), "--threads", "3")
+        for name in ("barriers.csv", "stops.gpkg", "screens.csv", "screens_summary.csv", "impact_probability.tif"):
+            with open(self.path("one/" + name), "rb") as a, open(self.path("two/" + name), "rb") as b:
+                self.assertEqual(a.read(), b.read(), name)
+        for barrier in self.record("one")["barriers"]:
+            self.assertEqual(barrier["hits"], barrier["caught"] + barrier["broken"])
+            self.assertGreater(min(barrier["caught"], barrier["broken"], barrier["over"]), 0)
+        stops = ogr.Open(self.path("one/stops.gpkg"))
+        caught = next(f for f in stops.GetLayerByName("stops") if f["end"] == "caught")
+        rows = self.run_well("trace", self.path("one/scenario.toml"), "--source", str(caught["source"]), "--block",
+                             str(caught["block"])).stdout.splitlines()
+        last = rows[-1].split(",")
+        self.assertEqual(last[-1], "caught")
+        self.assertEqual(float(last[1]), caught.GetGeometryRef().GetX())
+        self.assertEqual(float(last[2]), caught.GetGeometryRef().GetY())
+
+    def test_summary_of_the_screens(self):
+        self.run_well("run", self.scenario(False), "-o", self.path("out"))
+        with open(self.path("out/screens_summary.csv"), encoding="utf-8") as file:
+            rows = {(row["screen"], row["quantity"]): row for row in csv.DictReader(file)}
+        with open(self.path("out/screens.csv"), encoding="utf-8") as file:
+            speeds = [float(row["speed_ms"]) for row in csv.DictReader(file) if row["screen"] == "above"]
+        row = rows["above", "speed"]
+        self.assertEqual(int(row["crossings"]), len(speeds))
+        self.assertAlmostEqual(float(row["mean"]), sum(speeds) / len(speeds), 3)
+        self.assertAlmostEqual(float(row["maximum"]), max(speeds), 3)
+        along = rows["above", "place along"]
+        self.assertTrue(0 < float(along["p50"]) < 260)
+        self.assertTrue(0 < float(rows["above", "dip"]["mean"]) < 90)
+        self.run_well("barrier", self.path("out"), "--screen", "above")
+        self.fails(2, "did you mean 'above'", "below",
+                   arguments=["barrier", self.path("out"), "--screen", "abvoe"])
+
+    def test_wrong_nets(self):
+        self.nets((125.0, "a", -1.0, 100.0))
+        self.fails(2, "nets.gpkg", "height = -1", arguments=["run", self.scenario(), "-o", self.path("out")])
+        write_features(self.path("nets.gpkg"), "nets", [(line(125.0), ["a"])], [("id", ogr.OFTString)])
+        self.fails(2, "nets.gpkg", "has no height", arguments=["run", self.scenario(), "-o", self.path("out")])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,49 @@
+#include <cmath>
+
+#include "files.hpp"
+#include "talus/io/vectors.hpp"
+
+namespace talus::io::test {
+
+class BarrierFile : public Files {
+ protected:
+  BarrierFile() : terrain_(read_terrain(RasterFile{}.write(path("dem.tif")))) {}
+  BarrierLayer read(const std::vector<std::pair<std::string, OGRFieldType>>& fields, const std::vector<Row>& rows) {
+    return read_barriers(write_vector(path("n.gpkg"), "EPSG:32632", fields, rows), terrain_);
+  }
+  const std::vector<std::pair<std::string, OGRFieldType>> fields_{
+      {"id", OFTString}, {"Height", OFTReal}, {"capacity", OFTReal}};
+  Terrain terrain_;
+};
+
+TEST_F(BarrierFile, EachFeatureWithItsNumbers) {
+  const BarrierLayer layer = read(fields_, {{"LINESTRING(10 20,30 40)", {"road", "4.5", "1000"}},
+                                            {"MULTILINESTRING((1 1,2 2),(3 3,4 5))", {"road", "2", "inf"}}});
+  ASSERT_EQ(layer.barriers.size(), 2U);
+  EXPECT_EQ(layer.barriers[0].id, "road");
+  EXPECT_EQ(layer.barriers[0].height, 4.5);
+  EXPECT_EQ(layer.barriers[0].capacity, 1e6);
+  EXPECT_NEAR(layer.barriers[0].lines[0][1].x(), 30.0, 1e-9);
+  EXPECT_EQ(layer.barriers[1].lines.size(), 2U);
+  EXPECT_TRUE(std::isinf(layer.barriers[1].capacity));
+  EXPECT_TRUE(layer.warnings.empty());
+}
+
+TEST_F(BarrierFile, WrongOnesAreRefused) {
+  const auto refused = [&](const Row& row, const std::vector<std::string>& words) {
+    expect_input_error([&] { read(fields_, {row}); }, words);
+  };
+  refused({"LINESTRING(1 1,2 2)", {"a", "-1", "100"}}, {"n.gpkg: feature 1", "height = -1", "0 to 100 m"});
+  refused({"LINESTRING(1 1,2 2)", {"a", "4", "-1"}}, {"n.gpkg: feature 1", "capacity = -1", "kJ"});
+  refused({"LINESTRING(1 1,2 2)", {"a", "NULL", "1"}}, {"n.gpkg: feature 1", "has no height"});
+  refused({"LINESTRING(1 1,2 2)", {"a", "4", "NULL"}}, {"n.gpkg: feature 1", "has no capacity"});
+  refused({"POLYGON((0 0,1 0,1 1,0 0))", {"a", "4", "1"}}, {"is no line", "height (m) and capacity (kJ)"});
+  expect_input_error([&] { read(fields_, {}); }, {"n.gpkg", "no features"});
+  expect_input_error(
+      [&] {
+        read({{"id", OFTString}}, {{"LINESTRING(1 1,2 2)", {"a"}}});
+      },
+      {"has no height", "capacity (kJ)"});
+}
+
+}  // namespace talus::io::test

@@ -1,0 +1,197 @@
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "commands.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/io/barrier_report.hpp"
+#include "talus/io/crossings_file.hpp"
+#include "talus/io/output_folder.hpp"
+#include "talus/io/run_folder.hpp"
+#include "talus/simulate/fields.hpp"
+#include "talus/simulate/screens.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using talus::Bounds;
+using talus::io::BarrierReport;
+using talus::io::CrossingTable;
+using talus::io::RunSummary;
+
+struct Options {
+  std::string folder, screen, observed;
+  talus::DesignFactors factors;
+  double percentile = 95.0, containment = 99.0;  // [%]
+  std::optional<double> volume, density;         // [m^3], [kg/m^3]
+  std::uint64_t seed = 1;
+};
+
+/// What the numbers on the command line may be.
+void check_numbers(const Options& o) {
+  const auto factor = [](std::string_view key, std::string_view meaning) {
+    return Bounds{key, "1", meaning, 1.0, 3.0};
+  };
+  const std::pair<Bounds, std::optional<double>> all[] = {
+      {factor("--gTr", "quality of the trajectories"), o.factors.trajectory},
+      {factor("--gDp", "quality of the topography"), o.factors.topography},
+      {factor("--gVol", "quality of the block's volume"), o.factors.volume},
+      {factor("--gG", "quality of the rock's density"), o.factors.density},
+      {factor("--gE", "safety factor of the maximum energy level"), o.factors.mel},
+      {{"--percentile", "%", "of speed and jump height", 0.0, 100.0, Bounds::Between}, o.percentile},
+      {{"--containment", "%", "share of the crossings that the width holds", 0.0, 100.0, Bounds::AboveMin},
+       o.containment},
+      {{"--volume", "m3", "of the design block", 0.0, 65000.0, Bounds::AboveMin}, o.volume},
+      {{"--density", "kg/m3", "mass per volume of the rock", 500.0, 8000.0}, o.density}};
+  for (const auto& [bounds, value] : all)
+    if (value)
+      if (const auto fault = talus::fault_of(bounds, *value))
+        throw talus::InputError(std::string(bounds.key) + " = " + talus::text_of(*value) + ": " + *fault);
+}
+
+const talus::Screen& screen_of(const RunSummary& run, const Options& o) {
+  std::vector<std::string> ids;
+  for (const talus::Screen& screen : run.screens) {
+    if (screen.id == o.screen) return screen;
+    ids.push_back(screen.id);
+  }
+  throw talus::InputError("--screen: the run has no screen '" + o.screen + "'" + talus::known_names(o.screen, ids));
+}
+
+/// The crossings of the run, as many as a percentile needs.
+CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
+  const fs::path file = fs::path(o.folder) / "screens.csv";
+  if (run.screens.empty() || !fs::exists(file))
+    throw talus::InputError(o.folder +
+                            ": the run kept no crossings (no screens.csv), must have had [screens] file in its "
+                            "scenario: add lines that blocks cross and run it again");
+  screen_of(run, o);
+  CrossingTable crossings = talus::io::read_crossings(file.string(), o.screen);
+  if (crossings.blocks == 0)
+    throw talus::InputError(file.string() + ": no block crosses screen '" + o.screen +
+                            "', so that no barrier is needed there or more trajectories are");
+  for (const std::size_t told : {crossings.speed.size(), crossings.energy.size(), crossings.height.size(),
+                                 crossings.mass.size(), crossings.places.size()})
+    if (told != crossings.blocks)
+      throw talus::InputError(file.string() +
+                              ": has rows without speed, jump height, mass or place, must be as talus run "
+                              "has written it; run the scenario again");
+  const std::size_t fewest = talus::fewest_for_percentile(0.01 * o.percentile);
+  if (crossings.blocks < fewest)
+    throw talus::InputError(file.string() + ": only " + std::to_string(crossings.blocks) + " blocks cross screen '" +
+                            o.screen + "', must be " + std::to_string(fewest) + " at least for percentile " +
+                            talus::text_of(o.percentile) + ": run more trajectories, or give a lower --percentile");
+  return crossings;
+}
+
+CrossingTable observed_crossings(const Options& o) {
+  CrossingTable crossings = talus::io::read_crossings(o.observed, o.screen);
+  if (crossings.blocks == 0)
+    throw talus::InputError(o.observed + ": has no row of screen '" + o.screen + "', must have one per observed block");
+  return crossings;
+}
+
+/// The fit of one quantity; nothing where the table does not hold it.
+void add_reliability(BarrierReport& report, const std::string& quantity, const std::string& unit,
+                     std::vector<double> values, const std::vector<std::pair<std::string, double>>& limits,
+                     std::uint64_t seed) {
+  if (values.empty()) {
+    report.notes.push_back(report.values + " do not say the " + quantity + ": nothing is told of it");
+    return;
+  }
+  std::size_t positive = 0, others = 0;
+  double first = 0.0;
+  for (const double value : values) {
+    if (!(value > 0.0)) continue;
+    if (++positive == 1) first = value;
+    others += value != first ? 1U : 0U;
+  }
+  if (positive < talus::kFewestForWeibull || others == 0)
+    throw talus::InputError(
+        "screen '" + report.screen + "': " + report.values + " hold " + std::to_string(positive) + " values of the " +
+        quantity + " above 0" + (others == 0 ? ", all equal" : "") + ", must be " +
+        std::to_string(talus::kFewestForWeibull) +
+        " at least, not all equal, for a Weibull fit: run more trajectories or observe more blocks");
+  talus::BootstrapOptions how;
+  how.seed = seed;
+  talus::io::Reliability r{quantity, unit, talus::fit_weibull(values, how), {}};
+  for (const auto& [name, limit] : limits) r.limits.push_back({name, limit, talus::exceedance(r.fit, values, limit)});
+  report.reliability.push_back(std::move(r));
+}
+
+void add_design(BarrierReport& report, const CrossingTable& crossings, const RunSummary& run, const Options& o) {
+  report.factors = o.factors;
+  report.factors.percentile = 0.01 * o.percentile;
+  report.block.density = o.density.value_or(run.density);
+  report.block_from = o.volume ? "--volume" : "the largest that crosses";
+  report.block.volume =
+      o.volume.value_or(*std::max_element(crossings.mass.begin(), crossings.mass.end()) / report.block.density);
+  report.design = talus::design_barrier(crossings.speed, crossings.height, report.block, report.factors);
+}
+
+void add_width(BarrierReport& report, const CrossingTable& crossings, const RunSummary& run, const Options& o) {
+  const talus::Screen& screen = screen_of(run, o);
+  std::vector<double> along;
+  for (const Eigen::Vector2d& place : crossings.places) along.push_back(talus::place_along(screen, place));
+  report.containment = 0.01 * o.containment;
+  report.shortest = talus::shortest_stretch(along, report.containment);
+  report.bin = run.cell;
+  report.above = talus::stretch_above(along, run.cell, run.released, 1.0 - report.containment);
+}
+
+int design(const Options& o) {
+  check_numbers(o);
+  const RunSummary run = talus::io::read_run(o.folder);
+  const CrossingTable crossings = simulated_crossings(run, o);
+  const CrossingTable values = o.observed.empty() ? crossings : observed_crossings(o);
+  BarrierReport report;
+  report.screen = o.screen;
+  report.released = run.released;
+  report.crossings = crossings.blocks;
+  report.values = o.observed.empty() ? "the simulated crossings" : "the observed crossings of " + o.observed;
+  add_design(report, crossings, run, o);
+  std::vector<double> kilojoules = values.energy;
+  for (double& energy : kilojoules) energy *= 1e-3;
+  add_reliability(report, "jump height", "m", values.height, {{"h_i", report.design.height}}, o.seed);
+  add_reliability(report, "speed", "m/s", values.speed, {{"v_d", report.design.speed}}, o.seed);
+  add_reliability(report, "energy", "kJ", kilojoules,
+                  {{"SEL", report.design.sel * 1e-3}, {"MEL", report.design.mel * 1e-3}}, o.seed);
+  add_width(report, crossings, run, o);
+
+  const std::string name = talus::io::barrier_file_name(o.screen);
+  talus::io::replace_text(fs::path(o.folder) / (name + ".csv"), talus::io::barrier_csv(report));
+  talus::io::replace_text(fs::path(o.folder) / (name + ".json"), talus::io::barrier_json(report));
+  std::fputs(talus::io::barrier_text(report).c_str(), stdout);
+  return 0;
+}
+
+}  // namespace
+
+void add_barrier(CLI::App& app, Action& action) {
+  const auto o = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("barrier", "Design values of a barrier at a screen of a run");
+  command->add_option("out", o->folder, "folder of results that talus run has written, with screens")->required();
+  command->add_option("--screen", o->screen, "id of the line at which the barrier stands")->required();
+  command->add_option(
+      "--observed", o->observed,
+      "CSV of observed crossings (as screens.csv or a campaign's passages.csv); the probabilities are of "
+      "them, else of the simulated ones");
+  command->add_option("--gTr", o->factors.trajectory, "trajectories: 1.02 for a calibrated model, 1.10 else (default)");
+  command->add_option("--gDp", o->factors.topography, "topography: 1.02 for a good survey, 1.10 else (default)");
+  command->add_option("--gVol", o->factors.volume, "volume: 1.02 for a good survey of the blocks, 1.10 else (default)");
+  command->add_option("--gG", o->factors.density, "density of the rock: 1.00 (default)");
+  command->add_option("--gE", o->factors.mel, "MEL / SEL: 1.30 as in the paper (default), 1.20 as in UNI 11211-4");
+  command->add_option("--percentile", o->percentile, "of speed and jump height [%]: 95 (default)");
+  command->add_option("--volume", o->volume,
+                      "of the design block [m3]; the largest that crosses where it is not given");
+  command->add_option("--density", o->density, "of the design block [kg/m3]; the run's where it is not given");
+  command->add_option("--containment", o->containment, "share of the crossings that the width holds [%]: 99 (default)");
+  command->add_option("--seed", o->seed, "of the bootstrap: 1 (default)");
+  command->footer(
+      "Example:\n  talus barrier result --screen road --gTr 1.02 --gDp 1.02 --gVol 1.02\n\n"
+      "Writes barrier_ID.json and barrier_ID.csv into the folder. docs/barrier.md explains every value.");
+  command->callback([&action, o] { action = [o] { return design(*o); }; });
+}
