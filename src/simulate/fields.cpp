@@ -101,7 +101,7 @@ constexpr std::array<Field<Scenario>, 10> kScenario{{
      [](Scenario& s, double v) { s.output.paths = static_cast<std::uint32_t>(v); }},
 }};
 
-constexpr std::array<Bounds, 13> kLists{{
+constexpr std::array<Bounds, 16> kLists{{
     {"blocks.diameter", "m", "diameter of the sphere of equal volume", 0.01, 50.0},
     {"blocks.weight", "1", "share of a class of blocks, relative to the others", 0.0, 1e9, kAbove},
     {"blocks.frequency", "1/year", "events per year of a class of blocks", 0.0, 1e6},
@@ -114,6 +114,9 @@ constexpr std::array<Bounds, 13> kLists{{
     {"sources.velocity", "m/s", "component of the velocity at the release", -200.0, 200.0},
     {"output.energy_thresholds", "kJ", "translational kinetic energy", 0.0, 1e9, kAbove},
     {"output.height_thresholds", "m", "vertical height above the terrain", 0.0, 1e4, kAbove},
+    {"frequency.per_area", "1/(m2 year)", "events per area of the sources and year", 0.0, 1e3},
+    {"frequency.power_law.A", "1/year", "events per year of 1 m3 and more", 0.0, 1e6},
+    {"frequency.power_law.b", "1", "b in N(>= V) = A V^-b", 0.0, 10.0, kAbove},
     {"dem.cell", "m", "size of the cells", 0.05, 100.0},
 }};
 
