@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "effect_spec.hpp"
+#include "frequency_keys.hpp"
 #include "ground_keys.hpp"
 #include "scenario_spec.hpp"
 #include "table_reader.hpp"
@@ -41,6 +42,7 @@ class SpecReader {
     named_file(screens, "file", spec_.screens);
     screens.finish();
     read_effects(spec_, top.table("effects"), base_);
+    read_frequency(spec_, top.table("frequency"), origin_);
     refuse_later_parts(top);
     top.finish();
   }

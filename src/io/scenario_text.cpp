@@ -83,6 +83,7 @@ class Lines {
     add("output", "energy_thresholds", list_text(spec.values.output.energy_thresholds), "kJ");
     add("output", "height_thresholds", list_text(spec.values.output.height_thresholds), "m");
     file("screens", "file", spec.screens);
+    frequency();
     effects();
   }
   const std::vector<Line>& lines() const { return lines_; }
@@ -105,6 +106,15 @@ class Lines {
         add(table, full.substr(dot == std::string::npos ? 0 : dot + 1), text_of(field.get(spec_.values)),
             field.unit == "1" ? "" : std::string(field.unit));
     }
+  }
+
+  void frequency() {
+    const FrequencyRules& rules = spec_.values.frequency;
+    if (rules.by_true_area) add("frequency", "by_true_area", "true", "");
+    if (!std::isnan(rules.per_area)) add("frequency", "per_area", text_of(rules.per_area), "1/(m2 year)");
+    if (!std::isnan(rules.scale))
+      add("frequency", "power_law", "{ A = " + text_of(rules.scale) + ", b = " + text_of(rules.exponent) + " }",
+          "1/year");
   }
 
   void effects() {

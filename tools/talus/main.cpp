@@ -22,7 +22,7 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may set 
 std::vector<std::string> words;
 
 /// Parts of the interface that a later version brings.
-constexpr std::array<std::string_view, 6> kLaterCommands{"sources", "profile", "hazard", "barrier", "merge", "report"};
+constexpr std::array<std::string_view, 5> kLaterCommands{"sources", "profile", "barrier", "merge", "report"};
 constexpr std::array<std::string_view, 3> kLaterOptions{"--part", "--resume", "--until-error"};
 
 void refuse_later_parts(int argc, char** argv) {
@@ -92,6 +92,7 @@ int run_program(int argc, char** argv) {
   add_calibrate(app, action);
   add_diagnose(app, action);
   add_score(app, action);
+  add_hazard(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
