@@ -28,8 +28,9 @@ Bounded gamma_interval(double sum, double squares, double largest) {
 
 Bounded annual_frequency(const WeightSums& counted, const WeightScale& scale) {
   const double sum = std::min(counted.sum, scale.total), w = scale.largest_weight();
-  Bounded bounds = gamma_interval(sum, counted.squares, w);
-  const double margin = w * poisson_margin(std::max(0.0, counted.squares - counted.overlap) / (w * w));
+  const double squares = std::min(counted.squares, sum * w);  // small weights are rounded up when they are squared
+  Bounded bounds = gamma_interval(sum, squares, w);
+  const double margin = w * poisson_margin(std::max(0.0, squares - counted.overlap) / (w * w));
   bounds.low = std::max(bounds.low, sum > 0.0 ? sum - margin : 0.0);
   bounds.high = std::min({bounds.high, sum + margin, scale.total});
   if (scale.equal) {

@@ -1,7 +1,10 @@
 #include "talus/products/hazard_maps.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
+#include <exception>
 
 #include "talus/base/text.hpp"
 
@@ -47,15 +50,27 @@ std::vector<float> HazardSurvey::figures_of(const HazardCell& cell) const {
   return figures;
 }
 
-void HazardSurvey::set_terrain(int row, std::vector<bool> terrain) {
-  rows_[static_cast<std::size_t>(row)].terrain = std::move(terrain);
-}
-
-void HazardSurvey::add(int column, int row, const HazardCell& cell) {
+// What is thrown may not leave the parallel region: the first failure is kept.
+void HazardSurvey::set_row(int row, std::vector<bool> terrain, std::span<const Cell> cells, int threads) {
   Row& to = rows_[static_cast<std::size_t>(row)];
-  const std::vector<float> figures = figures_of(cell);
-  to.columns.push_back(column);
-  to.figures.insert(to.figures.end(), figures.begin(), figures.end());
+  to = {std::move(terrain), {}, std::vector<float>(cells.size() * nothing_.size())};
+  for (const Cell& cell : cells) to.columns.push_back(cell.first);
+  const auto evaluate = [&](std::size_t i) {
+    const std::vector<float> figures = figures_of(cells[i].second);
+    std::ranges::copy(figures, to.figures.begin() + static_cast<std::ptrdiff_t>(i * figures.size()));
+  };
+  std::exception_ptr failure;
+#pragma omp parallel for schedule(dynamic, 8) num_threads(threads > 0 ? threads : omp_get_num_procs()) default(none) \
+    shared(cells, evaluate, failure)
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    try {
+      evaluate(i);
+    } catch (...) {
+#pragma omp critical
+      if (!failure) failure = std::current_exception();
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
 }
 
 std::uint64_t HazardSurvey::cells() const {

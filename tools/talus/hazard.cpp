@@ -1,6 +1,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <memory>
 
 #include "commands.hpp"
@@ -24,6 +25,12 @@ struct Options {
   bool overwrite = false, quiet = false;
 };
 
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
 /// The file that a run leaves where its sources have frequencies.
 fs::path tally_file(const fs::path& folder) {
   const fs::path file = folder / talus::io::kHazardFile;
@@ -36,18 +43,17 @@ fs::path tally_file(const fs::path& folder) {
 }
 
 /// Reads what the run kept and evaluates every cell.
-std::unique_ptr<talus::HazardSurvey> survey_of(const fs::path& file, const talus::HazardMatrix& matrix,
-                                               Progress& progress, talus::io::HazardHeader& header) {
+std::unique_ptr<talus::HazardSurvey> survey_of(const fs::path& file, int threads, Progress& progress,
+                                               talus::io::HazardRecord& record) {
   std::unique_ptr<talus::HazardSurvey> survey;
-  header = talus::io::read_hazard(
+  record.header = talus::io::read_hazard(
       file,
       [&](const talus::io::HazardHeader& h) {
-        survey = std::make_unique<talus::HazardSurvey>(h.grid, h.rules, matrix);
+        survey = std::make_unique<talus::HazardSurvey>(h.grid, h.rules, record.matrix);
       },
       [&](const talus::io::HazardRow& row) {
         if (interrupted()) throw Interrupted("interrupted; nothing was written");
-        survey->set_terrain(row.row, row.terrain);
-        for (const auto& [column, cell] : row.touched) survey->add(column, row.row, cell);
+        survey->set_row(row.row, row.terrain, row.touched, threads);
         const int rows = survey->grid().rows;
         progress.update(static_cast<double>(rows - row.row) / rows);
       });
@@ -100,7 +106,7 @@ int hazard(const Options& options) {
   if (!options.matrix.empty()) record.matrix = talus::io::read_matrix(options.matrix);
   talus::io::StagedFiles staged(folder, "hazard.json", options.overwrite);
   Progress progress(Progress::mode_of(options.quiet, false), 0);
-  const auto survey = survey_of(file, record.matrix, progress, record.header);
+  const auto survey = survey_of(file, options.threads, progress, record);
   record.cells = survey->cells();
   record.warnings = warnings_of(record.matrix, record.header.rules);
 
@@ -116,9 +122,8 @@ int hazard(const Options& options) {
   staged.commit();
   if (options.quiet) return 0;
   for (const std::string& warning : record.warnings) say("warning", warning);
-  say("", count_text(record.cells) + " cells that something passes, " +
-              talus::text_of(record.header.rules.scale.total) + " events per year; results are in " +
-              fs::absolute(folder).lexically_normal().string());
+  say("", count_text(record.cells) + " cells that something passes, " + number_text(record.header.rules.scale.total) +
+              " events per year; results are in " + fs::absolute(folder).lexically_normal().string());
   return 0;
 }
 

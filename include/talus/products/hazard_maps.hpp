@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "talus/products/hazard.hpp"
@@ -13,18 +14,23 @@ class HazardSurvey {
  public:
   HazardSurvey(const Grid& grid, HazardRules rules, HazardMatrix matrix);
 
-  /// Says which cells of a row have terrain; all have none before.
-  void set_terrain(int row, std::vector<bool> terrain);
-  /// Evaluates a cell. Cells of a row come from west to east; the rows in any order.
-  void add(int column, int row, const HazardCell& cell);
+  /// A touched cell: its column, what was kept.
+  using Cell = std::pair<int, HazardCell>;
+
+  /// Evaluates a row, its cells at the same time.
+  ///
+  /// @param terrain  by column, whether there is any; rows that are not given have none
+  /// @param cells    from west to east
+  /// @param threads  0: as many as the machine has
+  void set_row(int row, std::vector<bool> terrain, std::span<const Cell> cells, int threads = 0);
 
   const Grid& grid() const { return grid_; }
   const HazardRules& rules() const { return rules_; }
   const HazardMatrix& matrix() const { return matrix_; }
-  std::uint64_t cells() const;  ///< that were added
+  std::uint64_t cells() const;  ///< that were touched
 
-  /// Numbers `first` and following of each cell of a row: NaN without terrain, those of no passage where nothing was
-  /// added.
+  /// Numbers `first` and following of each cell of a row: NaN without terrain, those of no passage where it was not
+  /// touched.
   void fill(int row, std::size_t first, std::size_t count, std::span<double> values) const;
 
  private:
@@ -33,7 +39,7 @@ class HazardSurvey {
     std::vector<int> columns;
     std::vector<float> figures;
   };
-  std::vector<float> figures_of(const HazardCell& cell) const;
+  std::vector<float> figures_of(const HazardCell& cell) const;  // as many of every cell
 
   Grid grid_;
   HazardRules rules_;

@@ -67,9 +67,10 @@ Scenario three_sources() {
 HazardSurvey survey_of(const Scenario& s, const Tally& tally) {
   HazardSurvey survey(tally.grid(), tally.hazard_rules(), {});
   for (int row = 0; row < tally.grid().rows; ++row) {
-    survey.set_terrain(row, std::vector<bool>(static_cast<std::size_t>(tally.grid().columns), row != 39));
+    std::vector<HazardSurvey::Cell> cells;
     for (int column = 0; column < tally.grid().columns; ++column)
-      if (const HazardCell* cell = tally.hazard(column, row)) survey.add(column, row, *cell);
+      if (const HazardCell* cell = tally.hazard(column, row)) cells.emplace_back(column, *cell);
+    survey.set_row(row, std::vector<bool>(static_cast<std::size_t>(tally.grid().columns), row != 39), cells, 2);
   }
   EXPECT_EQ(survey.cells(), tally.touched_cells());
   EXPECT_EQ(s.surface.grid(), tally.grid());

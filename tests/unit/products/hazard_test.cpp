@@ -85,6 +85,17 @@ TEST(AnnualFrequency, ExactAtNoneAndAtAll) {
   }
 }
 
+TEST(AnnualFrequency, OfWeightsThatAreTinyBesideTheLargest) {
+  WeightScale scale = rules_of(100, false).scale;
+  for (const double share : {1e-3, 1e-6, 1e-9}) {
+    const double w = scale.largest_weight();
+    const Bounded f = annual_frequency({share * w, scale.square_unit, 0.0}, scale);
+    EXPECT_GE(f.low, 0.0);
+    EXPECT_LE(f.low, f.value);
+    EXPECT_NEAR(f.high, 3.689 * w, 0.01 * w);
+  }
+}
+
 /// Source cells that hit with probabilities of their own, weights and number of blocks: how often the bounds miss.
 struct Strata {
   const char* what;

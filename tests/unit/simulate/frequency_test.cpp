@@ -56,7 +56,7 @@ TEST(AnnualWeights, AFeaturesFrequencyIsDividedOverItsCells) {
   EXPECT_FALSE(scale.equal);
   EXPECT_NEAR(scale.largest_weight(), 0.2, 1e-12);
   EXPECT_LT(scale.total / scale.unit, 0x1p62);  // the sum over all trajectories fits
-  EXPECT_LT(1e-9, 1e9 * scale.unit);            // and 1e-9 events per year are many units
+  EXPECT_LT(1e9 * scale.unit, 1e-9);            // and 1e-9 events per year are very many units
 }
 
 /// Walls of 45 and of 80 degrees of one true area, 4 * 4 m^2 * cos: the steeper one has fewer cells in plan.
