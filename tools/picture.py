@@ -3,10 +3,12 @@
 
   picture.py DEM [RASTER] -o out.png [--band 1] [--log] [--classes 0.001,0.01,0.1]
              [--title TEXT] [--unit TEXT] [--vectors paths.gpkg sources.shp ...]
+             [--names none,low,high]
              [--crop XMIN YMIN XMAX YMAX] [--colours NAME] [--width INCHES] [--dpi 110]
 
 Nodata and zero are transparent.  --classes gives the lower bounds of the classes (a value
-below the first one is transparent); for an impact probability they rise by factors.  --log
+below the first one is transparent); --names those of whole numbers from 0, in the colours of
+a hazard map, 0 being transparent.  For an impact probability they rise by factors.  --log
 is the continuous scale for such values, without classes.  Vectors in any CRS are brought to that of the
 DEM; polygons are outlined, many lines are drawn finer than few.  Without RASTER only the
 hillshade is drawn.  --crop is in the CRS of the DEM.
@@ -23,11 +25,12 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection
-from matplotlib.colors import BoundaryNorm, LogNorm, Normalize
+from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize
 from osgeo import gdal, ogr, osr
 from PIL import Image
 
 gdal.UseExceptions()
+HAZARD = ["#fff9c4", "#ffd600", "#2979ff", "#d50000"]  # those of hazard_class.qml
 INKS = ["#20262c", "#0b62c4", "#b0127b", "#1f7a33", "#8a4b08"]
 
 
@@ -142,6 +145,7 @@ def main():
     ap.add_argument("--band", type=int, default=1)
     ap.add_argument("--log", action="store_true")
     ap.add_argument("--classes", type=lambda s: [float(x) for x in s.split(",")])
+    ap.add_argument("--names", type=lambda s: s.split(","))
     ap.add_argument("--title", default="")
     ap.add_argument("--unit", default="")
     ap.add_argument("--vectors", nargs="+", default=[])
@@ -166,10 +170,13 @@ def main():
         v, where, _ = read(o.raster, o.band)
         v[~(v != 0) | (v < o.classes[0] if o.classes else v < 0 if o.log else False)] = np.nan
         norm, ticks = norm_of(v, o.classes, o.log)
+        if o.names:
+            norm, ticks = BoundaryNorm(np.arange(len(o.names)) + 0.5, len(o.names) - 1), range(1, len(o.names))
+            o.colours = ListedColormap((HAZARD * 3)[:len(o.names) - 1])
         image = ax.imshow(v, cmap=o.colours, norm=norm, extent=where, interpolation="nearest", alpha=0.72, zorder=2)
         bar = fig.colorbar(image, ax=ax, fraction=0.035, pad=0.02, ticks=ticks, extendfrac=0)
         if ticks:
-            bar.ax.set_yticklabels([f"{t:.3g}" for t in ticks])
+            bar.ax.set_yticklabels(o.names[1:] if o.names else [f"{t:.3g}" for t in ticks])
         bar.set_label(o.unit, fontsize=9)
         bar.ax.tick_params(labelsize=8)
     for path, ink in zip(o.vectors, INKS * len(o.vectors)):

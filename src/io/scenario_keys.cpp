@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "effect_spec.hpp"
+#include "frequency_keys.hpp"
 #include "ground_keys.hpp"
 #include "scenario_spec.hpp"
 #include "table_reader.hpp"
@@ -39,6 +40,7 @@ class SpecReader {
     TableReader barriers = top.table("barriers");
     named_file(barriers, "file", spec_.barriers);
     barriers.finish();
+    read_frequency(spec_, top.table("frequency"), origin_);
     top.finish();
   }
 

@@ -91,6 +91,7 @@ class Lines {
     }
     file("screens", "file", spec.screens);
     file("barriers", "file", spec.barriers);
+    frequency();
     effects();
   }
   const std::vector<Line>& lines() const { return lines_; }
@@ -125,6 +126,15 @@ class Lines {
     add("sources", "x", range_text(profile.source), "m");
     add("sources", "vx", text_of(profile.vx), "m/s");
     add("sources", "vz", text_of(profile.vz), "m/s");
+  }
+
+  void frequency() {
+    const FrequencyRules& rules = spec_.values.frequency;
+    if (rules.by_true_area) add("frequency", "by_true_area", "true", "");
+    if (!std::isnan(rules.per_area)) add("frequency", "per_area", text_of(rules.per_area), "1/(m2 year)");
+    if (!std::isnan(rules.scale))
+      add("frequency", "power_law", "{ A = " + text_of(rules.scale) + ", b = " + text_of(rules.exponent) + " }",
+          "1/year");
   }
 
   void effects() {

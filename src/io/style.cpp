@@ -19,6 +19,9 @@ using Palette = std::array<std::string_view, kColours>;
 // the colour-blind.
 constexpr Palette kPlasma{"#f0f921", "#fca636", "#e16462", "#b12a90", "#6a00a8", "#0d0887"};
 constexpr Palette kViridis{"#fde725", "#7ad151", "#22a884", "#2a788e", "#414487", "#440154"};
+constexpr Palette kPlasmaDark{"#0d0887", "#6a00a8", "#b12a90", "#e16462", "#fca636", "#f0f921"};  // small is grave
+// The classes of the Swiss matrix: yellow and white, yellow, blue, red; further ones, should there be any, darker.
+constexpr Palette kClasses{"#fff9c4", "#ffd600", "#2979ff", "#d50000", "#7f0000", "#3e0000"};
 constexpr Palette kCividis{"#ffea46", "#cbba69", "#958f78", "#666970", "#31446b", "#00204d"};
 
 /// Classes up to each limit, and one above the last.
@@ -32,6 +35,9 @@ struct Legend {
 
 Legend legend_of(const Map& map) {
   const std::string& unit = map.bands.front().unit;
+  if (unit == "1/year") return {{1e-4, 1e-3, 1e-2, 1e-1, 1.0}, 1.0, unit, &kPlasma};
+  if (unit == "years") return {{10, 30, 100, 300, 1000}, 1.0, unit, &kPlasmaDark};
+  if (unit == "class") return {{1, 2, 3, 4, 5}, 1.0, "", &kClasses};
   if (map.kind == Map::Kind::Probability) return {{1e-4, 1e-3, 1e-2, 1e-1, 1.0}, 100.0, "%", &kPlasma};
   if (map.kind == Map::Kind::Count) {
     if (map.name == "sources") return {{1, 3, 10, 30, 100}, 1.0, "", &kCividis};
@@ -72,6 +78,12 @@ std::string item(const std::string& value, const std::string& label, std::string
 
 /// The classes of a legend: an item is a class's upper limit, which belongs to it.
 std::string items_of(const Map& map, const Legend& legend) {
+  if (!map.classes.empty()) {
+    std::string named = item("0", map.classes[0], "#ffffff", 0);
+    for (std::size_t i = 1; i < map.classes.size(); ++i)
+      named += item(std::to_string(i), map.classes[i], (*legend.palette)[std::min(i, kColours) - 1], 255);
+    return named;
+  }
   const std::string unit = legend.unit.empty() ? "" : " " + legend.unit;
   const bool to_one = map.kind == Map::Kind::Probability;  // nothing is above 100 %
   const std::size_t classes = legend.limits.size() + (to_one ? 0 : 1);

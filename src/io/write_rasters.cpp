@@ -70,6 +70,15 @@ std::uint32_t larger(std::uint32_t a, std::uint32_t b) {
   return std::max(a + 1U, b + 1U) - 1U;
 }  // kCountNodata + 1 is 0
 
+/// The smaller of two stored values; nodata only where both are.
+float smaller(float a, float b) {
+  const auto nodata = static_cast<float>(kNodata);
+  return a == nodata ? b : b == nodata ? a : std::min(a, b);
+}
+std::uint32_t smaller(std::uint32_t a, std::uint32_t b) {
+  return std::min(a, b);
+}
+
 template <class T>
 constexpr GDALDataType kType = std::is_same_v<T, float> ? GDT_Float32 : GDT_UInt32;
 
@@ -102,9 +111,10 @@ bool fill(GDALDataset& file, const Map& map, const MapTarget& target) {
   return true;
 }
 
-/// Writes the overview `to`, half as wide and high as `from`.
+/// Writes the overview `to`, half as wide and high as `from`: of the cells under a pixel the largest, or the smallest.
 template <class T>
-void halve(GDALRasterBand* from, GDALRasterBand* to) {
+void halve(GDALRasterBand* from, GDALRasterBand* to, bool smallest) {
+  const auto chosen = [smallest](T a, T b) { return smallest ? smaller(a, b) : larger(a, b); };
   const int wide = from->GetXSize(), narrow = to->GetXSize();
   std::vector<T> fine(static_cast<std::size_t>(wide) * 2 * kStripe), coarse(static_cast<std::size_t>(narrow) * kStripe);
   for (int top = 0; top < to->GetYSize(); top += kStripe) {
@@ -117,7 +127,7 @@ void halve(GDALRasterBand* from, GDALRasterBand* to) {
       T* out = &coarse[static_cast<std::size_t>(y) * static_cast<std::size_t>(narrow)];
       for (int x = 0; x < narrow; ++x) {
         const int left = 2 * x, right = std::min(left + 1, wide - 1);
-        out[x] = larger(larger(upper[left], upper[right]), larger(lower[left], lower[right]));
+        out[x] = chosen(chosen(upper[left], upper[right]), chosen(lower[left], lower[right]));
       }
     }
     transfer(to, GF_Write, top, count, coarse.data());
@@ -125,7 +135,7 @@ void halve(GDALRasterBand* from, GDALRasterBand* to) {
 }
 
 template <class T>
-void add_overviews(GDALDataset& file, int block) {
+void add_overviews(GDALDataset& file, int block, bool smallest) {
   std::vector<int> factors;
   for (int size = std::max(file.GetRasterXSize(), file.GetRasterYSize()), factor = 2; size > block; factor *= 2) {
     factors.push_back(factor);
@@ -140,7 +150,7 @@ void add_overviews(GDALDataset& file, int block) {
     for (int level = 0; level < static_cast<int>(factors.size()); ++level) {
       GDALRasterBand* to = file.GetRasterBand(b)->GetOverview(level);
       require(to != nullptr, "its overviews cannot be made");
-      halve<T>(from, to);
+      halve<T>(from, to, smallest);
       from = to;
     }
   }
@@ -159,7 +169,8 @@ void describe(GDALDataset& file, const Map& map, const MapTarget& target) {
   file.SetMetadataItem("TITLE", map.title.c_str());
   file.SetMetadataItem("TIFFTAG_IMAGEDESCRIPTION", map.title.c_str());
   file.SetMetadataItem("TIFFTAG_SOFTWARE", ("Talus " + std::string(version())).c_str());
-  file.SetMetadataItem("OVERVIEWS", "largest value of the cells under a pixel");
+  file.SetMetadataItem("OVERVIEWS", map.smallest_in_overviews ? "smallest value of the cells under a pixel"
+                                                              : "largest value of the cells under a pixel");
   for (std::size_t b = 0; b < map.bands.size(); ++b) {
     GDALRasterBand* band = file.GetRasterBand(static_cast<int>(b) + 1);
     band->SetDescription(map.bands[b].name.c_str());
@@ -184,7 +195,7 @@ bool write_as(const Map& map, const MapTarget& target, const fs::path& draft, co
   describe(*dataset, map, target);
   if (!fill<T>(*dataset, map, target)) return false;
   const int block = block_size(target);
-  add_overviews<T>(*dataset, block);
+  add_overviews<T>(*dataset, block, map.smallest_in_overviews);
   dataset->FlushCache(false);
   const std::string size = "BLOCKSIZE=" + std::to_string(block);
   // Level 6 would be a third slower and 3 % smaller. Blocks of nodata alone are left out: most of a large map.

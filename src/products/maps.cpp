@@ -109,7 +109,7 @@ Map exceedance(const Scenario& scenario, const Tally& tally, const std::string& 
                std::size_t first, const std::vector<double>& thresholds, const std::string& symbol,
                const std::string& unit) {
   const auto released = static_cast<double>(scenario.released());
-  Map map{name, title, Map::Kind::Probability, {}, {}};
+  Map map{name, title, Map::Kind::Probability, {}, {}, false, {}};
   for (const double threshold : thresholds)
     map.bands.push_back({"P(" + symbol + " > " + number(threshold) + " " + unit + ")", "1"});
   map.fill_row = rows_of(scenario, tally, thresholds.size(), 0.0,

@@ -101,7 +101,7 @@ constexpr std::array<Field<Scenario>, 10> kScenario{{
      [](Scenario& s, double v) { s.output.paths = static_cast<std::uint32_t>(v); }},
 }};
 
-constexpr std::array<Bounds, 15> kLists{{
+constexpr std::array<Bounds, 18> kLists{{
     {"blocks.diameter", "m", "diameter of the sphere of equal volume", 0.01, 50.0},
     {"blocks.weight", "1", "share of a class of blocks, relative to the others", 0.0, 1e9, kAbove},
     {"blocks.frequency", "1/year", "events per year of a class of blocks", 0.0, 1e6},
@@ -117,6 +117,9 @@ constexpr std::array<Bounds, 15> kLists{{
     {"barriers.height", "m", "of the top of a barrier above the ground", 0.0, 100.0},
     {"barriers.capacity", "kJ", "translational energy that a barrier takes", 0.0,
      std::numeric_limits<double>::infinity()},
+    {"frequency.per_area", "1/(m2 year)", "events per area of the sources and year", 0.0, 1e3},
+    {"frequency.power_law.A", "1/year", "events per year of 1 m3 and more", 0.0, 1e6},
+    {"frequency.power_law.b", "1", "b in N(>= V) = A V^-b", 0.0, 10.0, kAbove},
     {"dem.cell", "m", "size of the cells", 0.05, 100.0},
 }};
 

@@ -12,16 +12,20 @@ double volume_at(const VolumePowerLaw& law, double share) {
   return std::pow(low - share * (low - high), -1.0 / law.exponent);
 }
 
+std::size_t class_at(const std::vector<BlockClass>& classes, double share) {
+  double total = 0.0;
+  for (const BlockClass& c : classes) total += c.weight;
+  double below = 0.0;
+  for (std::size_t i = 0; i + 1 < classes.size(); ++i) {
+    below += classes[i].weight;
+    if (share * total < below) return i;
+  }
+  return classes.empty() ? 0 : classes.size() - 1;
+}
+
 double diameter_at(const Blocks& blocks, double share_of_class, double share) {
   if (blocks.power_law.volume.high > 0.0) return std::cbrt(6.0 / kPi * volume_at(blocks.power_law, share));
-  double total = 0.0;
-  for (const BlockClass& c : blocks.classes) total += c.weight;
-  double below = 0.0;
-  for (const BlockClass& c : blocks.classes) {
-    below += c.weight;
-    if (share_of_class * total < below) return c.diameter.at(share);
-  }
-  return blocks.classes.back().diameter.at(share);
+  return blocks.classes[class_at(blocks.classes, share_of_class)].diameter.at(share);
 }
 
 }  // namespace
@@ -48,6 +52,11 @@ Release make_release(const Scenario& scenario, std::uint32_t source, std::uint32
   release.motion.position = {x, y, scenario.surface.height(x, y).value_or(kNotGiven) + height};
   release.motion.velocity = feature.velocity;
   return release;
+}
+
+std::size_t class_of_block(const Scenario& scenario, std::uint32_t source, std::uint32_t block) {
+  const Random random(scenario.seed, source, block, Purpose::Release);
+  return class_at(scenario.blocks.classes, uniform(random.words(1)[0]));
 }
 
 bool is_recorded(const Scenario& scenario, std::uint32_t source, std::uint32_t block) {

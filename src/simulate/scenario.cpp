@@ -5,6 +5,7 @@
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/fields.hpp"
+#include "talus/simulate/frequency.hpp"
 
 namespace talus {
 
@@ -142,6 +143,14 @@ void check_barriers(const Barriers& barriers) {
   }
 }
 
+void check_frequency(const Scenario& s) {
+  const FrequencyRules& rules = s.frequency;
+  if (!std::isnan(rules.per_area)) check(bounds_of("frequency.per_area"), rules.per_area, "frequency.per_area");
+  if (!std::isnan(rules.scale)) check(bounds_of("frequency.power_law.A"), rules.scale, "frequency.power_law.A");
+  if (!std::isnan(rules.scale)) check(bounds_of("frequency.power_law.b"), rules.exponent, "frequency.power_law.b");
+  AnnualWeights::of(s);  // refuses what contradicts itself
+}
+
 void check_extent(const Scenario& s, const Extent& where, const std::string& effect) {
   if (!where.zones.empty() && where.zones.size() != s.cover.grounds.size())
     throw InputError(effect + ": says of " + std::to_string(where.zones.size()) +
@@ -194,6 +203,7 @@ Scenario make_scenario(Scenario parts) {
   check_thresholds(parts.output.height_thresholds, "output.height_thresholds");
   for (const Screen& screen : parts.screens) check_lines(screen, "screens");
   check_barriers(parts.barriers);
+  check_frequency(parts);
   return parts;
 }
 

@@ -15,8 +15,6 @@
 namespace talus {
 namespace {
 
-constexpr std::uint32_t kBlocksPerUnit = 128;
-
 double thread_cpu_seconds() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -207,6 +205,8 @@ class Run {
     for (std::uint32_t block = first; block < end; ++block) {
       const Release release = make_release(scenario_, source, block);
       trace(world, release, path);
+      if (const AnnualWeights* weights = tally_.weights())
+        batch.set_stake({weights->weight(scenario_, source, block), unit, end - first});
       batch.add(path, release.body.mass, source, reach);
       add(totals, release, path);
       if (sinks_.walked) sinks_.walked(release, path);

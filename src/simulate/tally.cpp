@@ -101,6 +101,7 @@ void gather(const Group& group, const VisitBatch& batch, Tally::Values& values, 
       source = of.source;
       record.sources += reach.first(trajectory, group.begin->cell) ? 1U : 0U;
     }
+    if (values.keep_stakes) values.stakes[n] = of.stake;
     values.lists[0][n] = energy;
     values.lists[1][n] = std::sqrt(speed_squared);
     values.lists[2][n++] = height;
@@ -121,6 +122,7 @@ struct Tally::Region {
   std::unique_ptr<std::array<std::uint16_t, kRegionCells>> slot;
   std::deque<CellRecord> records;
   std::vector<std::uint32_t> exceedances;
+  std::deque<HazardCell> hazards;  // by record, where hazard is kept
 
   /// Number of the record of a cell, made where there is none.
   std::size_t record_of(std::size_t cell, std::size_t thresholds) {
@@ -145,6 +147,10 @@ Tally::Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vecto
       region_count_(static_cast<std::size_t>(regions_across_) *
                     static_cast<std::size_t>((grid.rows + kRegionSide - 1) / kRegionSide)),
       regions_(std::make_unique<Region[]>(region_count_)) {}
+
+void Tally::keep_hazard(AnnualWeights weights) {
+  hazard_ = std::make_unique<Hazard>(Hazard{{EnergyBins(energy_thresholds_), weights.scale()}, std::move(weights)});
+}
 
 Tally::~Tally() = default;
 Tally::Tally(Tally&&) noexcept = default;
@@ -179,6 +185,8 @@ std::uint64_t Tally::score(std::size_t index, const std::vector<Visit>& visits, 
   std::uint64_t scored = 0;
   ReachOf reach(batch, index);
   Values values;
+  values.keep_stakes = hazard_ != nullptr;
+  if (hazard_) region.hazards.resize(region.records.size());
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (i + 16 < groups.size()) fetch(&region.records[groups[i + 16].record], sizeof(CellRecord));
     if (i + 8 < groups.size())
@@ -186,6 +194,7 @@ std::uint64_t Tally::score(std::size_t index, const std::vector<Visit>& visits, 
     CellRecord& record = region.records[groups[i].record];
     gather(groups[i], batch, values, record, reach);
     add(record, region.exceedances.data() + groups[i].record * thresholds(), values);
+    if (hazard_) region.hazards[groups[i].record].add(hazard_->rules, values.of(0), values.stakes);
     scored += values.count;
   }
   return scored;
@@ -223,6 +232,13 @@ const CellRecord* Tally::find(int column, int row) const {
   if (!region.slot) return nullptr;
   const std::uint16_t slot = (*region.slot)[cell_in_region(column, row)];
   return slot == 0 ? nullptr : &region.records[slot - 1U];
+}
+
+const HazardCell* Tally::hazard(int column, int row) const {
+  const Region& region = region_of(column, row);
+  if (!hazard_ || !region.slot) return nullptr;
+  const std::uint16_t slot = (*region.slot)[cell_in_region(column, row)];
+  return slot == 0 ? nullptr : &region.hazards[slot - 1U];
 }
 
 const std::uint32_t* Tally::exceedances(int column, int row) const {

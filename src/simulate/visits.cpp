@@ -23,6 +23,7 @@ void VisitBatch::clear() {
 
 void VisitBatch::begin(Trajectory trajectory) {
   trajectories_.push_back(std::move(trajectory));
+  trajectories_.back().stake = stake_;
   column_ = row_ = -1;
   region_ = nullptr;
   region_index_ = static_cast<std::size_t>(-1);

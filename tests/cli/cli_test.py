@@ -23,7 +23,7 @@ class CommandLine(Case):
         self.fails(2, "'--versoin'", "did you mean '--version'", arguments=["--versoin"])
 
     def test_parts_of_later_versions(self):
-        for command in ["hazard", "merge", "report"]:
+        for command in ["merge", "report"]:
             self.fails(2, command, "not in this version", arguments=[command, "x"])
         for option in ["--part=1/3", "--resume", "--until-error"]:
             self.fails(2, option.split("=")[0], "not in this version", arguments=[*self.arguments(), option])
@@ -41,7 +41,7 @@ class CommandLine(Case):
     def test_help_and_version(self):
         self.assertRegex(self.run_well("--version").stdout, r"^talus \d+\.\d+\.\d+\n$")
         for command in ([], ["run"], ["check"], ["trace"], ["presets"], ["score"], ["calibrate"], ["diagnose"], ["sources"],
-                        ["profile"], ["barrier"]):
+                        ["profile"], ["barrier"], ["hazard"]):
             text = self.run_well(*command, "--help").stdout
             self.assertIn("Example", text)
             for later in ("--part ", "--resume"):

@@ -58,6 +58,10 @@ class RoundTrip : public Files {
     EXPECT_EQ(a.impact.roughness, b.impact.roughness);
     EXPECT_EQ(a.output.energy_thresholds, b.output.energy_thresholds);
     EXPECT_EQ(a.output.height_thresholds, b.output.height_thresholds);
+    EXPECT_EQ(a.frequency.by_true_area, b.frequency.by_true_area);
+    same(a.frequency.per_area, b.frequency.per_area);
+    same(a.frequency.scale, b.frequency.scale);
+    same(a.frequency.exponent, b.frequency.exponent);
     ASSERT_EQ(a.sources.size(), b.sources.size());
     EXPECT_EQ(a.features.at(0).release_height, b.features.at(0).release_height);
   }
@@ -79,8 +83,16 @@ TEST_F(RoundTrip, OfDiameters) {
   check("diameter = [0.1, 0.7]\n", "\n");
   check("diameter = { volume_min = 0.1, volume_max = 12.3, exponent = 0.7 }\n", "\n");
   check("diameter = [{ diameter = 0.1, weight = 3 }, { diameter = [1, 2.1] }]\n", "\n");
-  check("diameter = [{ diameter = 0.1, weight = 3, frequency = 0.1 }, { diameter = [1, 2.1], frequency = 0 }]\n", "\n");
   check("diameter = [{ diameter = 0.1, weight = 3 }]\n", "\n");
+}
+
+TEST_F(RoundTrip, OfFrequencies) {
+  std::filesystem::remove(path("sources.gpkg"));
+  write_vector(path("sources.gpkg"), "EPSG:32632", {}, {{"POLYGON((0 0,50 0,50 50,0 50,0 0))"}});
+  check("diameter = [{ diameter = 0.1, weight = 3, frequency = 0.1 }, { diameter = [1, 2.1], frequency = 0 }]\n", "\n");
+  check("diameter = 0.1\n", "\n[frequency]\nby_true_area = true\nper_area = 0.00010000000000000005\n");
+  check("diameter = { volume_min = 0.1, volume_max = 12.3, exponent = 0.7 }\n",
+        "\n[frequency]\npower_law = { A = 0.30000000000000004, b = 0.7 }\n");
 }
 
 TEST_F(RoundTrip, OfZonesWithTheirNamesAndOrder) {

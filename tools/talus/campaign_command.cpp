@@ -26,7 +26,3 @@ OpenedCampaign::OpenedCampaign(const CampaignCommand& command, talus::io::FitRec
   record.warnings = loaded.warnings;
   record.campaign = loaded.campaign.name;
 }
-
-void stop_interrupted() {
-  throw Interrupted("interrupted; nothing was written");
-}

@@ -1,5 +1,6 @@
 #pragma once
 #include "commands.hpp"
+#include "run_support.hpp"
 #include "talus/io/campaign_file.hpp"
 #include "talus/io/fit_record.hpp"
 #include "talus/io/output_folder.hpp"
@@ -25,6 +26,3 @@ struct OpenedCampaign {
   /// Reads the campaign, guards its files from being overwritten, says its warnings and fills the head of the report.
   OpenedCampaign(const CampaignCommand& command, talus::io::FitRecord& record);
 };
-
-/// Ends the command as Ctrl-C does.
-[[noreturn]] void stop_interrupted();

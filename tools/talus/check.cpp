@@ -24,6 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kSampleSeconds = 1.5;
 constexpr double kWriteCell = 1e-6;        // all maps, per cell of the grid [s], measured
+constexpr double kHazardCell = 640.0;      // annual frequencies of a touched cell [byte]: 32 bins, and what holds them
 constexpr double kWriteTrajectory = 5e-6;  // a row of stops.gpkg [s], measured
 
 /// What a sample of the trajectories tells of all of them.
@@ -37,6 +38,8 @@ struct Sample {
 Sample trace_sample(const Scenario& scenario) {
   const talus::World world = scenario.world();
   talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
+  const auto weights = talus::AnnualWeights::of(scenario);
+  if (weights) tally.keep_hazard(*weights);
   talus::VisitBatch batch(scenario.surface.grid());
   talus::Path path;
   Sample sample;
@@ -49,6 +52,7 @@ Sample trace_sample(const Scenario& scenario) {
         talus::make_release(scenario, static_cast<std::uint32_t>(release_number / scenario.trajectories),
                             static_cast<std::uint32_t>(release_number % scenario.trajectories));
     talus::trace(world, release, path);
+    if (weights) batch.set_stake({weights->weight(scenario, release.source, release.block), sample.traced, 1});
     batch.add(path, release.body.mass, release.source, nullptr);
     ++sample.traced;
     sample.length += path.length;
@@ -135,6 +139,8 @@ void print_blocks(const Scenario& scenario) {
                        count_text(scenario.released()) + " trajectories, seed " + std::to_string(scenario.seed));
   line("thresholds", "energy " + list_text(scenario.output.energy_thresholds, "kJ") + "; height " +
                          list_text(scenario.output.height_thresholds, "m"));
+  if (const auto weights = talus::AnnualWeights::of(scenario))
+    line("frequency", number(weights->scale().total) + " events per year; kept by energy, for talus hazard");
   if (!scenario.screens.empty()) line("screens", count_text(scenario.screens.size()));
   if (!scenario.barriers.empty()) line("barriers", count_text(scenario.barriers.list().size()));
 }
@@ -149,7 +155,8 @@ void print_estimate(const Scenario& scenario) {
   // Of a touched cell: its record, a histogram of 40 bins for each quantity, its thresholds and its place in a list.
   const double per_cell =
       sizeof(talus::CellRecord) + 3 * 40.0 + 16.0 +
-      4.0 * static_cast<double>(scenario.output.energy_thresholds.size() + scenario.output.height_thresholds.size());
+      4.0 * static_cast<double>(scenario.output.energy_thresholds.size() + scenario.output.height_thresholds.size()) +
+      (talus::AnnualWeights::of(scenario) ? kHazardCell : 0.0);
   const auto megabytes = [&](double cells) {
     return number(std::ceil(so_far + 64.0 + cells * per_cell * 1e-6), "%.0f");
   };

@@ -22,7 +22,7 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may set 
 std::vector<std::string> words;
 
 /// Parts of the interface that a later version brings.
-constexpr std::array<std::string_view, 3> kLaterCommands{"hazard", "merge", "report"};
+constexpr std::array<std::string_view, 2> kLaterCommands{"merge", "report"};
 constexpr std::array<std::string_view, 3> kLaterOptions{"--part", "--resume", "--until-error"};
 
 void refuse_later_parts(int argc, char** argv) {
@@ -95,6 +95,7 @@ int run_program(int argc, char** argv) {
   add_diagnose(app, action);
   add_score(app, action);
   add_sources(app, action);
+  add_hazard(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <memory>
 #include <optional>
 
@@ -11,20 +10,18 @@
 #include "progress.hpp"
 #include "run_support.hpp"
 #include "talus/base/error.hpp"
+#include "talus/io/hazard_file.hpp"
 #include "talus/io/output_folder.hpp"
 #include "talus/io/run_record.hpp"
-#include "talus/io/style.hpp"
 #include "talus/io/write_crossings.hpp"
 #include "talus/io/write_lines.hpp"
-#include "talus/io/write_rasters.hpp"
 #include "talus/io/write_vectors.hpp"
 #include "talus/products/maps.hpp"
+#include "write_maps.hpp"
 
 namespace {
 
 using talus::io::LoadedScenario;
-
-constexpr int kMapsAtOnce = 4;  // each needs room on the disk for its draft
 
 struct Options {
   talus::io::RunFlags flags;
@@ -78,27 +75,6 @@ class Vectors {
   talus::ScreenSummary summary_;
 };
 
-/// Writes all maps, several at a time. What is thrown may not leave the parallel region: the first failure is kept.
-void write_maps(const LoadedScenario& loaded, const talus::Tally& tally, const std::filesystem::path& folder,
-                int threads) {
-  const talus::Grid& grid = loaded.scenario.surface.grid();
-  const talus::io::MapTarget target{folder, loaded.geo, grid.columns, grid.rows, [] { return !interrupted(); }};
-  const std::vector<talus::Map> maps = talus::make_maps(loaded.scenario, tally);
-  std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(std::min(threads, kMapsAtOnce)) default(none) \
-    shared(maps, target, folder, failure)
-  for (const talus::Map& map : maps) {
-    try {
-      if (talus::io::write_map(map, target)) talus::io::write_style(folder, map);
-    } catch (...) {
-#pragma omp critical
-      if (!failure) failure = std::current_exception();
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
-  if (interrupted()) stop_interrupted();
-}
-
 /// What a user should know of the result.
 std::vector<std::string> warnings_of(const talus::Totals& totals) {
   const std::uint64_t left = count_of(totals, talus::End::Left);
@@ -124,6 +100,7 @@ void simulate_and_write(const Options& options, const LoadedScenario& loaded, co
   const talus::Scenario& scenario = loaded.scenario;
   Progress progress(Progress::mode_of(options.quiet, options.progress == "machine"), scenario.released());
   talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
+  if (auto weights = talus::AnnualWeights::of(scenario)) tally.keep_hazard(std::move(*weights));
   Vectors vectors(loaded, folder);
   talus::Sinks sinks = vectors.sinks();
   sinks.progress = [&progress](double share) { return progress.update(share) && !interrupted(); };
@@ -135,7 +112,10 @@ void simulate_and_write(const Options& options, const LoadedScenario& loaded, co
 
   progress.stage("writing the results");
   vectors.finish(record.totals);
-  write_maps(loaded, tally, folder, record.threads);
+  const talus::Grid& grid = scenario.surface.grid();
+  write_maps(talus::make_maps(scenario, tally),
+             {folder, loaded.geo, grid.columns, grid.rows, [] { return !interrupted(); }}, record.threads);
+  if (tally.weights() != nullptr) talus::io::write_hazard(folder / talus::io::kHazardFile, loaded, tally);
   talus::io::write_text(folder / "scenario.toml", loaded.complete_toml);
   record.files = files_in(folder);
   const Stopwatch::Lap written = watch.lap();

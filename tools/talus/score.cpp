@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "run_support.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/model_file.hpp"
 #include "talus/io/output_folder.hpp"
@@ -39,7 +40,7 @@ int score_model(const Options& options) {
   if (options.rows != "all")
     how.blocks = options.rows == "fit" ? talus::fitting_rows(campaign) : talus::holdout_rows(campaign);
   const std::vector<talus::BlockRuns> runs = talus::observe(campaign, model, how);
-  if (interrupted()) throw Interrupted("interrupted; nothing was written");
+  if (interrupted()) stop_interrupted();
 
   std::vector<talus::io::ScoredRows> scores;
   if (options.rows != "holdout")

@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "progress.hpp"
+#include "run_support.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/output_file.hpp"
 #include "talus/io/source_cells.hpp"
@@ -54,7 +55,7 @@ int find_sources(const Options& options) {
   const std::string threshold = number(talus::degrees(slope), "%.4g deg") +
                                 (options.slope ? "" : number(cell, " (the default for cells of %.4g m)"));
   const talus::io::SourceCells found = talus::io::write_source_cells(out.temporary(), terrain, slope, keep_going);
-  if (interrupted()) throw Interrupted("interrupted; nothing was written");
+  if (interrupted()) stop_interrupted();
   if (found.cells == 0)
     throw talus::InputError(options.dem + ": no cell is at least " + threshold + " steep, the steepest has " +
                             number(talus::degrees(found.steepest), "%.4g deg") + "; give a smaller one with --slope");

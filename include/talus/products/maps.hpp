@@ -23,6 +23,8 @@ struct Map {
 
   /// Fills row `row` (0 in the south): values[band * columns + column]; NaN where nothing can be said.
   std::function<void(int row, std::span<double> values)> fill_row;
+  bool smallest_in_overviews = false;  ///< of the cells under a pixel; else the largest
+  std::vector<std::string> classes{};  ///< names of the whole numbers 0, 1, ... where they stand for classes
 };
 
 /// All maps of a finished run, in the order in which they are written. The scenario and the tally must outlive them.

@@ -61,6 +61,13 @@ struct Screen {
   std::vector<std::vector<Eigen::Vector2d>> lines;  ///< [m, local]; more than one where the feature has parts
 };
 
+/// How often blocks fall, beside what features and classes of blocks say themselves. docs/hazard.md.
+struct FrequencyRules {
+  bool by_true_area = false;    ///< divided over source cells by the area of their surface, not equally
+  double per_area = kNotGiven;  ///< events per area and year [1/(m^2 year)]
+  double scale = kNotGiven, exponent = kNotGiven;  ///< A [1/year] and b of N(>= V) = A V^-b, V in m^3
+};
+
 /// What is kept of the trajectories.
 struct OutputSettings {
   std::vector<double> energy_thresholds{30.0, 300.0};    ///< translational [kJ], ascending
@@ -84,6 +91,7 @@ struct Scenario {
   int day = 0;                  ///< of the run, for effects that change with it
   EndRules rules;
   OutputSettings output;
+  FrequencyRules frequency;
   std::uint64_t seed = 1;
   std::uint32_t trajectories = 100;  ///< per source cell
 

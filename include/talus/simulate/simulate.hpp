@@ -9,6 +9,9 @@
 
 namespace talus {
 
+/// Blocks of one source cell that a worker traces in one go, and that are one stratum of the hazard.
+inline constexpr std::uint32_t kBlocksPerUnit = 128;
+
 /// The end of one trajectory.
 struct StopRow {
   std::uint32_t source, block;

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <vector>
 
+#include "talus/simulate/hazard_tally.hpp"
 #include "talus/simulate/histogram.hpp"
 #include "talus/simulate/source_reach.hpp"
 #include "talus/simulate/visits.hpp"
@@ -38,9 +39,12 @@ class Tally {
   /// By quantity: one value of each trajectory. A buffer that keeps its memory.
   struct Values {
     std::array<std::vector<float>, kQuantities> lists;
+    std::vector<Stake> stakes;  // of each value, where `keep_stakes`
+    bool keep_stakes = false;
     std::size_t count = 0;
 
     void make_room(std::size_t n) {
+      if (keep_stakes && stakes.size() < n) stakes.resize(n);
       if (lists[0].size() < n)
         for (std::vector<float>& list : lists) list.resize(n);
     }
@@ -50,6 +54,14 @@ class Tally {
   Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vector<double> height_thresholds);
   ~Tally();
   Tally(Tally&&) noexcept;
+
+  /// Keeps annual frequencies by energy too; before the first batch. Trajectories must then have their stakes.
+  void keep_hazard(AnnualWeights weights);
+  const AnnualWeights* weights() const { return hazard_ ? &hazard_->weights : nullptr; }
+  /// How the hazard of a cell is kept. Only where it is.
+  const HazardRules& hazard_rules() const { return hazard_->rules; }
+  /// The hazard of a cell; nullptr where no trajectory was, or none is kept.
+  const HazardCell* hazard(int column, int row) const;
 
   /// Scores a batch: each trajectory once in each cell it visits, with its largest values there. Safe to call from
   /// several threads. Returns the number of (trajectory, cell) pairs scored.
@@ -68,6 +80,10 @@ class Tally {
 
  private:
   struct Region;
+  struct Hazard {
+    HazardRules rules;
+    AnnualWeights weights;
+  };
 
   const Region& region_of(int column, int row) const;
   std::size_t thresholds() const { return energy_thresholds_.size() + height_thresholds_.size(); }
@@ -78,6 +94,7 @@ class Tally {
   std::vector<double> energy_thresholds_, height_thresholds_;
   int regions_across_ = 0;
   std::size_t region_count_ = 0;
+  std::unique_ptr<Hazard> hazard_;  // null: none is kept
   std::unique_ptr<Region[]> regions_;
 };
 

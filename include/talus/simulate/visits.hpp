@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "talus/physics/path.hpp"
+#include "talus/simulate/frequency.hpp"
 #include "talus/simulate/source_reach.hpp"
 
 namespace talus {
@@ -30,6 +31,7 @@ class VisitBatch {
     std::uint32_t source;
     std::shared_ptr<SourceReach> reach;  // of a source that several batches share; else empty
     bool piece = false;                  // of the trajectory before it: they count as one
+    Stake stake{};                       // where the run has frequencies
   };
 
   explicit VisitBatch(const Grid& grid);
@@ -38,6 +40,9 @@ class VisitBatch {
   /// on each patch (the speed is largest at an end, the clearance at an end or at the apex).
   /// What is left of a block that broke, and a path with `piece`, belong to the trajectory before: one in the tally.
   void add(const Path& path, double mass, std::uint32_t source, std::shared_ptr<SourceReach> reach, bool piece = false);
+
+  /// What the trajectories stand for that are added from here on.
+  void set_stake(const Stake& stake) { stake_ = stake; }
 
   bool full() const { return size_ >= kVisits || trajectories_.size() >= kTrajectories; }
   void clear();
@@ -59,6 +64,7 @@ class VisitBatch {
   int regions_across_;
   std::unordered_map<std::size_t, std::vector<Visit>> regions_;
   std::vector<Trajectory> trajectories_;
+  Stake stake_;
   std::size_t size_ = 0;
   int column_ = -1, row_ = -1;            // cell of the current visit
   std::vector<Visit>* region_ = nullptr;  // whose last element is the current visit

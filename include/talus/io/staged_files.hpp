@@ -1,0 +1,34 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace talus::io {
+
+/// Files that are added to a folder of results: written into a hidden folder inside it, `.NAME.talus-PID`, and renamed
+/// one by one at the end, a record of them last. Without `commit` nothing changes.
+class StagedFiles {
+ public:
+  /// @param record  file that names, in `files`, all that belong together: "hazard.json". Where it is there, the files
+  ///                that it names are replaced
+  /// Throws InputError where `folder` is none of results, where they are there and `overwrite` is not given, or nothing
+  /// can be written there.
+  StagedFiles(const std::filesystem::path& folder, const std::string& record, bool overwrite);
+  ~StagedFiles();
+  StagedFiles(const StagedFiles&) = delete;
+  StagedFiles& operator=(const StagedFiles&) = delete;
+
+  /// Where to write until `commit`.
+  const std::filesystem::path& temporary() const { return temporary_; }
+  /// Names of what was written so far, in the order of the alphabet.
+  std::vector<std::string> files() const;
+  /// Removes the earlier files and gives the new ones their names. Throws std::runtime_error.
+  void commit();
+
+ private:
+  std::filesystem::path folder_, temporary_;
+  std::string record_;
+  std::vector<std::string> earlier_;
+};
+
+}  // namespace talus::io

@@ -1,0 +1,119 @@
+#include "talus/products/hazard.hpp"
+
+#include <algorithm>
+#include <boost/math/special_functions/gamma.hpp>
+#include <cmath>
+#include <limits>
+
+#include "talus/products/maps.hpp"
+
+namespace talus {
+namespace {
+
+constexpr double kConfidence = 0.95, kTail = 0.5 * (1.0 - kConfidence);
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// How much the upper Poisson bound of a count is above it: 3.69 at 0. Of any count k >= 0, not only whole ones.
+double poisson_margin(double k) {
+  return boost::math::gamma_p_inv(k + 1.0, 1.0 - kTail) - k;
+}
+
+}  // namespace
+
+Bounded gamma_interval(double sum, double squares, double largest) {
+  const double above = sum + largest, spread = squares + largest * largest;
+  return {sum, sum > 0.0 ? boost::math::gamma_p_inv(sum * sum / squares, kTail) * squares / sum : 0.0,
+          boost::math::gamma_p_inv(above * above / spread, 1.0 - kTail) * spread / above};
+}
+
+Bounded annual_frequency(const WeightSums& counted, const WeightScale& scale) {
+  const double sum = std::min(counted.sum, scale.total), w = scale.largest_weight();
+  const double squares = std::min(counted.squares, sum * w);  // small weights are rounded up when they are squared
+  Bounded bounds = gamma_interval(sum, squares, w);
+  const double margin = w * poisson_margin(std::max(0.0, squares - counted.overlap) / (w * w));
+  bounds.low = std::max(bounds.low, sum > 0.0 ? sum - margin : 0.0);
+  bounds.high = std::min({bounds.high, sum + margin, scale.total});
+  if (scale.equal) {
+    const auto hits = std::min(scale.trajectories, static_cast<std::uint64_t>(std::llround(counted.sum / w)));
+    const Interval exact = probability_bounds(hits, scale.trajectories, kConfidence);
+    bounds.low = std::max(bounds.low, scale.total * exact.low);
+    bounds.high = std::min(bounds.high, scale.total * exact.high);
+  }
+  bounds.low = std::min(bounds.low, sum);
+  bounds.high = std::max(bounds.high, sum);
+  return bounds;
+}
+
+Bounded return_period(const Bounded& frequency) {
+  return {1.0 / frequency.value, 1.0 / frequency.high, 1.0 / frequency.low};
+}
+
+HazardCurve::HazardCurve(const HazardRules& rules, const HazardCell& cell)
+    : rules_(rules), first_(cell.first()), sums_(cell.bins().size() + 1), levels_(rules.levels()) {
+  const double unit = rules.scale.unit, square_unit = rules.scale.square_unit;
+  std::int64_t sum = 0, squares = 0;
+  const auto bins = cell.bins();
+  for (std::size_t i = bins.size(); i-- > 0;) {
+    sum += bins[i].weight;
+    squares += bins[i].square;
+    sums_[i] = {static_cast<double>(sum) * unit, static_cast<double>(squares) * square_unit, 0.0};
+  }
+  for (std::size_t level = 0; level < levels_.size(); ++level) {
+    const int bin = level == 0 ? first_ : std::max(first_, rules.bins.above(level - 1));
+    levels_[level] = sums_[std::min(static_cast<std::size_t>(bin - first_), bins.size())];
+    if (level < cell.overlaps().size())
+      levels_[level].overlap = static_cast<double>(cell.overlaps()[level]) * square_unit;
+  }
+}
+
+Bounded HazardCurve::passage() const {
+  return annual_frequency(levels_[0], rules_.scale);
+}
+
+Bounded HazardCurve::exceedance(std::size_t threshold) const {
+  return annual_frequency(levels_[threshold + 1], rules_.scale);
+}
+
+double HazardCurve::side(std::size_t i, Side which) const {
+  if (which == Side::Value) return std::min(sums_[i].sum, rules_.scale.total);
+  const Bounded bounds = at(i);
+  return which == Side::Low ? bounds.low : bounds.high;
+}
+
+Bounded HazardCurve::exceedance_of(double energy) const {
+  const auto& thresholds = rules_.bins.thresholds();
+  const auto known = std::ranges::find(thresholds, energy);
+  if (known != thresholds.end()) return exceedance(static_cast<std::size_t>(known - thresholds.begin()));
+  const std::size_t last = sums_.size() - 1;
+  std::size_t i = 0;
+  while (i < last && rules_.bins.edge(first_ + static_cast<int>(i) + 1) <= energy) ++i;
+  const Bounded below = at(i);
+  const double low = rules_.bins.edge(first_ + static_cast<int>(i));
+  if (i == last || !(energy > low)) return below;
+  const double share = std::log(energy / low) / std::log(rules_.bins.edge(first_ + static_cast<int>(i) + 1) / low);
+  const Bounded above = at(i + 1);
+  const auto between = [share](double a, double b) { return a + (b - a) * share; };
+  return {between(below.value, above.value), between(below.low, above.low), between(below.high, above.high)};
+}
+
+/// The curve falls: the last edge at which it is not below the frequency, by halving, and from there into the bin.
+double HazardCurve::energy_of(double frequency, Side which) const {
+  const std::size_t last = sums_.size() - 1;
+  if (side(0, which) < frequency) return 0.0;
+  if (side(last, which) >= frequency) return kInfinity;
+  std::size_t low = 0, high = last;
+  while (high - low > 1) {
+    const std::size_t middle = (low + high) / 2;
+    (side(middle, which) >= frequency ? low : high) = middle;
+  }
+  const double from = rules_.bins.edge(first_ + static_cast<int>(low)),
+               to = rules_.bins.edge(first_ + static_cast<int>(high));
+  const double above = side(low, which), below = side(high, which);
+  return from * std::pow(to / from, (above - frequency) / (above - below));
+}
+
+Bounded HazardCurve::energy_once_in(double years) const {
+  return {energy_of(1.0 / years, Side::Value), energy_of(1.0 / years, Side::Low), energy_of(1.0 / years, Side::High)};
+}
+
+}  // namespace talus

@@ -1,0 +1,142 @@
+#include "talus/products/objects.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+
+#include "object_finder.hpp"
+#include "talus/simulate/plan.hpp"
+#include "talus/simulate/simulate.hpp"
+
+namespace talus {
+namespace {
+
+double largest_radius(const Scenario& s) {
+  double diameter = 0.0;
+  for (const BlockClass& c : s.blocks.classes) diameter = std::max(diameter, c.diameter.high);
+  diameter = std::max(diameter, std::cbrt(6.0 / kPi * s.blocks.power_law.volume.high));
+  for (const SourceFeature& f : s.features)
+    if (!std::isnan(f.diameter.high)) diameter = std::max(diameter, f.diameter.high);
+  return 0.5 * diameter;
+}
+
+/// All that the workers share.
+class Replay {
+ public:
+  Replay(const Scenario& scenario, const AnnualWeights& weights, std::span<const HazardObject> objects,
+         const std::function<bool(double)>& proceed)
+      : scenario_(scenario),
+        weights_(weights),
+        rules_{EnergyBins(scenario.output.energy_thresholds), weights.scale()},
+        finder_(scenario.surface, objects, largest_radius(scenario)),
+        proceed_(proceed),
+        per_source_((scenario.trajectories + kBlocksPerUnit - 1) / kBlocksPerUnit),
+        units_(std::uint64_t{per_source_} * scenario.sources.size()),
+        hits_(fresh(objects.size())) {}
+
+  void work() noexcept {
+    try {
+      std::vector<ObjectHits> mine = fresh(hits_.size());
+      for (std::uint64_t unit = next_++; unit < units_ && !stop_; unit = next_++) {
+        trace_unit(unit, mine);
+        report();
+      }
+      const std::lock_guard guard(mutex_);
+      for (std::size_t i = 0; i < hits_.size(); ++i) hits_[i].merge(mine[i]);
+    } catch (...) {
+      const std::lock_guard guard(mutex_);
+      if (!failure_) failure_ = std::current_exception();
+      stop_ = true;
+    }
+  }
+
+  std::vector<ObjectHits> result() {
+    if (failure_) std::rethrow_exception(failure_);
+    if (ended_) return {};
+    return std::move(hits_);
+  }
+
+ private:
+  std::vector<ObjectHits> fresh(std::size_t count) const {
+    return std::vector<ObjectHits>(count, ObjectHits{{}, std::vector<std::int64_t>(scenario_.features.size()), 0});
+  }
+
+  /// The largest energy of one block at each object; -1 where it does not come to it.
+  void energies_of(const Release& release, Path& path, std::vector<float>& energies) const {
+    std::ranges::fill(energies, -1.0F);
+    const World world = scenario_.world();
+    trace(world, release, path);
+    finder_.raise(path, release.body, energies);
+    if (!path.pieces.empty())
+      trace_pieces(world, path,
+                   [&](const Release& piece, const Path& way) { finder_.raise(way, piece.body, energies); });
+  }
+
+  void trace_unit(std::uint64_t unit, std::vector<ObjectHits>& hits) const {
+    const auto source = static_cast<std::uint32_t>(unit / per_source_);
+    const auto first = static_cast<std::uint32_t>(unit % per_source_) * kBlocksPerUnit;
+    const std::uint32_t end = std::min(scenario_.trajectories, first + kBlocksPerUnit);
+    std::vector<std::vector<float>> energies(hits.size());
+    std::vector<std::vector<Stake>> stakes(hits.size());
+    std::vector<float> here(hits.size());
+    Path path;
+    for (std::uint32_t block = first; block < end; ++block) {
+      energies_of(make_release(scenario_, source, block), path, here);
+      for (std::size_t i = 0; i < hits.size(); ++i) {
+        if (here[i] < 0.0F) continue;
+        energies[i].push_back(here[i]);
+        stakes[i].push_back({weights_.weight(scenario_, source, block), unit, end - first});
+      }
+    }
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      hits[i].cell.add(rules_, energies[i], stakes[i]);
+      hits[i].trajectories += energies[i].size();
+      for (const Stake& stake : stakes[i]) hits[i].by_feature[scenario_.sources[source].feature] += stake.weight;
+    }
+  }
+
+  void report() {
+    const std::lock_guard guard(mutex_);
+    ++done_;
+    if (!proceed_ || stop_ || proceed_(static_cast<double>(done_) / static_cast<double>(units_))) return;
+    ended_ = stop_ = true;
+  }
+
+  const Scenario& scenario_;
+  const AnnualWeights& weights_;
+  HazardRules rules_;
+  ObjectFinder finder_;
+  const std::function<bool(double)>& proceed_;
+  std::uint32_t per_source_;
+  std::uint64_t units_;
+  std::atomic<std::uint64_t> next_{0};
+  std::atomic<bool> stop_{false};
+  std::mutex mutex_;  // guards what follows
+  std::vector<ObjectHits> hits_;
+  std::uint64_t done_ = 0;
+  std::exception_ptr failure_;
+  bool ended_ = false;
+};
+
+}  // namespace
+
+void ObjectHits::merge(const ObjectHits& other) {
+  cell.merge(other.cell);
+  by_feature.resize(std::max(by_feature.size(), other.by_feature.size()));
+  for (std::size_t i = 0; i < other.by_feature.size(); ++i) by_feature[i] += other.by_feature[i];
+  trajectories += other.trajectories;
+}
+
+std::vector<ObjectHits> replay_objects(const Scenario& scenario, const AnnualWeights& weights,
+                                       std::span<const HazardObject> objects,
+                                       const std::function<bool(double)>& proceed, int threads) {
+  Replay replay(scenario, weights, objects, proceed);
+#pragma omp parallel num_threads(threads > 0 ? threads : omp_get_num_procs()) default(none) shared(replay)
+  replay.work();
+  return replay.result();
+}
+
+}  // namespace talus

@@ -1,0 +1,156 @@
+"""talus hazard as a user calls it."""
+import csv
+import hashlib
+import json
+import os
+import unittest
+
+import numpy as np
+from osgeo import ogr
+
+from support import Case, WEST, NORTH, bands_of, box, heights, rows_of, write_dem, write_features
+
+RUN = """dem = "dem.tif"
+trajectories = 200
+[sources]
+file = "sources.gpkg"
+[blocks]
+diameter = 0.8
+"""
+
+
+class Hazard(Case):
+    def setUp(self):
+        super().setUp()
+        write_features(self.path("sources.gpkg"), "sources",
+                       [(box(100, 230, 20, 10), ["west", 0.5]), (box(200, 230, 20, 10), ["east", 0.02])],
+                       [("name", ogr.OFTString), ("frequency", ogr.OFTReal)])
+        self.write("s.toml", RUN)
+
+    def simulate(self, out="out", *more):
+        self.run_well("run", self.path("s.toml"), "-o", self.path(out), "-q", *more)
+
+    def hashes(self, out):
+        return {name: hashlib.sha256(open(self.path(f"{out}/{name}"), "rb").read()).hexdigest()
+                for name in sorted(os.listdir(self.path(out))) if name.endswith((".tif", ".gz", ".gpkg", ".csv"))}
+
+    def refused(self, words, *arguments):
+        done = self.call(*arguments)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertIn(words, done.stderr)
+
+    def test_maps_and_record(self):
+        self.simulate()
+        done = self.run_well("hazard", self.path("out"))
+        self.assertIn("0.52 events per year", done.stderr)
+        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
+            record = json.load(file)
+        for name in ("annual_frequency", "return_period_30", "return_period_300", "intensity_T30", "intensity_T100",
+                     "intensity_T300", "hazard_class"):
+            for end in (".tif", ".qml"):
+                self.assertIn(name + end, record["files"])
+                self.assertTrue(os.path.exists(self.path(f"out/{name}{end}")), name + end)
+        self.assertEqual(record["matrix"]["years"], [30, 100, 300])
+        self.assertAlmostEqual(record["events_per_year"], 0.52)
+        frequency, lower, upper = bands_of(self.path("out/annual_frequency.tif"))
+        self.assertTrue(np.all(lower <= frequency) and np.all(frequency <= upper))
+        self.assertLessEqual(frequency.max(), 0.52 * 1.000001)
+        # 8 source cells each; passages / released of the western cliff alone, below it, are 0.5 per year times that
+        passages = bands_of(self.path("out/passages.tif")).astype(float)
+        west = passages[:, 18:26]
+        self.assertGreater(west.sum(), 0)
+        np.testing.assert_allclose(frequency[:, 18:26], west / 1600 * 0.5, rtol=1e-5)
+        period = bands_of(self.path("out/return_period_30.tif"))[0]
+        over = bands_of(self.path("out/energy_exceedance.tif"))[0][:, 18:26] * 3200 / 1600 * 0.5
+        hit = over > 0
+        np.testing.assert_allclose(period[:, 18:26][hit] * over[hit], 1.0, rtol=1e-5)
+        self.assertTrue(np.all(period[:, 18:26][~hit] == -9999))
+        self.assertEqual(bands_of(self.path("out/hazard_class.tif")).shape[0], 4)
+        self.assertFalse([name for name in os.listdir(self.path("out")) if name.startswith(".")])
+
+    def test_threads_change_no_byte(self):
+        for out, threads in (("one", "1"), ("two", "2")):
+            self.simulate(out, "--threads", threads)
+            self.run_well("hazard", self.path(out), "-q", "--threads", threads)
+        self.assertEqual(self.hashes("one"), self.hashes("two"))
+
+    def test_frequencies_change_no_other_file(self):
+        self.simulate()
+        with_them = self.hashes("out")
+        file = ogr.Open(self.path("sources.gpkg"), 1)
+        file.ExecuteSQL("UPDATE sources SET frequency = NULL")
+        file = None
+        self.simulate("plain")
+        self.assertEqual({k: v for k, v in with_them.items() if k != "hazard_tally.gz"}, self.hashes("plain"))
+        self.refused("knows no annual frequencies; give the sources a field frequency", "hazard", self.path("plain"))
+
+    def test_refusals(self):
+        self.simulate()
+        self.refused("is no folder of results", "hazard", self.folder)
+        self.run_well("hazard", self.path("out"), "-q")
+        self.refused("give --overwrite", "hazard", self.path("out"))
+        matrix = self.write("m.toml", 'energies = [100]\nyears = [50]\nclasses = [[1, 0], [2, 1]]\n')
+        done = self.run_well("hazard", self.path("out"), "--overwrite", "--matrix", matrix)
+        self.assertIn("none of the run's energy_thresholds", done.stderr)
+        self.assertFalse(os.path.exists(self.path("out/intensity_T30.tif")), "of the earlier matrix")
+        self.assertTrue(os.path.exists(self.path("out/intensity_T50.tif")))
+        self.write("m.toml", "energies = [300, 30]\n")
+        self.refused("must be 1 to 8 numbers", "hazard", self.path("out"), "--overwrite", "--matrix", matrix)
+        with open(self.path("out/hazard_tally.gz"), "r+b") as file:
+            file.truncate(200)
+        self.refused("is damaged", "hazard", self.path("out"), "--overwrite")
+        self.assertTrue(os.path.exists(self.path("out/intensity_T50.tif")), "what was there stays")
+
+    def test_contradicting_frequencies(self):
+        self.write("s.toml", RUN + "[frequency]\nper_area = 0.01\n")
+        self.refused("must be given by one of them", "run", self.path("s.toml"), "-o", self.path("out"))
+
+    def test_check_tells(self):
+        done = self.run_well("check", self.path("s.toml"))
+        self.assertIn("0.52 events per year", done.stdout)
+
+    def test_objects(self):
+        """A house below each cliff, one out of reach; a road in another system that all blocks must cross."""
+        write_features(self.path("houses.gpkg"), "houses",
+                       [(box(105, 150, 10, 8), ["A", 3]), (box(205, 150, 10, 8), ["B", 4]),
+                        (box(5, 5, 8, 8), ["C", 1])],
+                       [("name", ogr.OFTString), ("people", ogr.OFTInteger)])
+        self.simulate()
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"))
+        self.assertIn("repeats the run for the objects: 3 200 trajectories of the recorded plan", done.stderr)
+        rows = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
+        self.assertEqual([rows[name]["people"] for name in "ABC"], [3, 4, 1])
+        self.assertEqual(rows["C"]["trajectories"], 0)
+        self.assertEqual(rows["C"]["frequency"], 0.0)
+        self.assertIsNone(rows["C"]["return_period"])
+        self.assertIn("west 100 %", rows["A"]["sources"])
+        for name in "AB":
+            self.assertAlmostEqual(rows[name]["frequency"] * rows[name]["return_period"], 1.0)
+            self.assertLessEqual(rows[name]["frequency_lower"], rows[name]["frequency"])
+            self.assertLessEqual(rows[name]["frequency"], rows[name]["frequency_upper"])
+        # Every cell that a house wholly covers is crossed less often than the house is hit.
+        frequency = bands_of(self.path("out/annual_frequency.tif"))[0]
+        self.assertGreaterEqual(rows["A"]["frequency"], frequency[29, 21] - 1e-9)
+        self.assertLessEqual(rows["A"]["frequency"], 0.5 + 1e-9)
+        with open(self.path("out/objects_curves.csv"), encoding="utf-8", newline="") as file:
+            curve = [float(row["frequency"]) for row in csv.DictReader(file) if row["object"] == "A"]
+        self.assertEqual(curve, sorted(curve, reverse=True))
+        self.assertAlmostEqual(curve[0], rows["A"]["frequency"], 6)
+        with open(self.path("out/objects_sources.csv"), encoding="utf-8", newline="") as file:
+            shares = [float(row["share"]) for row in csv.DictReader(file) if row["object"] == "B"]
+        self.assertAlmostEqual(sum(shares), 1.0, 4)
+        self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"), "--overwrite", "-q",
+                      "--threads", "1")
+        again = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
+        self.assertEqual(rows, again)
+
+    def test_objects_need_the_same_inputs(self):
+        write_features(self.path("houses.gpkg"), "houses", [(box(105, 150, 10, 8), ["A"])], [("name", ogr.OFTString)])
+        self.simulate()
+        write_dem(self.path("dem.tif"), heights() + 1.0)
+        self.refused("has changed since the run", "hazard", self.path("out"), "--objects", self.path("houses.gpkg"))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,161 @@
+#include "talus/io/hazard_file.hpp"
+
+#include <gdal.h>
+
+#include <fstream>
+
+#include "scenario_files.hpp"
+#include "talus/io/hazard_record.hpp"
+#include "talus/io/staged_files.hpp"
+#include "talus/simulate/simulate.hpp"
+
+namespace talus::io {
+namespace {
+
+class HazardFile : public test::ScenarioFile {
+ protected:
+  HazardFile() : loaded_(of_law("[frequency]\npower_law = { A = 0.1, b = 0.5 }\n")) {
+    tally_.keep_hazard(*AnnualWeights::of(loaded_.scenario));
+    simulate(loaded_.scenario, tally_, {}, 1);
+    write_hazard(path(kHazardFile), loaded_, tally_);
+  }
+  LoadedScenario of_law(const std::string& rest) {
+    return load(std::string(kFiles) + "[blocks]\ndiameter = { volume_min = 0.1, volume_max = 10, exponent = 0.5 }\n" +
+                rest);
+  }
+  std::string bytes() {
+    std::ifstream file(path(kHazardFile), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  void refused(const std::string& bytes, const std::string& words) {
+    std::ofstream(path("other.gz"), std::ios::binary) << bytes;
+    expect_input_error(
+        [&] {
+          read_hazard(
+              path("other.gz"), [](const auto&) {}, [](const auto&) {});
+        },
+        {"other.gz: ", words});
+  }
+  /// As gzip, with the library that reads it.
+  std::string packed(const std::string& text) {
+    VSILFILE* file = VSIFOpenL(("/vsigzip/" + path("packed.gz")).c_str(), "wb");
+    VSIFWriteL(text.data(), 1, text.size(), file);
+    VSIFCloseL(file);
+    std::ifstream back(path("packed.gz"), std::ios::binary);
+    return {std::istreambuf_iterator<char>(back), {}};
+  }
+
+  LoadedScenario loaded_;
+  Tally tally_{loaded_.scenario.surface.grid(), loaded_.scenario.output.energy_thresholds,
+               loaded_.scenario.output.height_thresholds};
+};
+
+TEST_F(HazardFile, ReadsBackWhatWasKept) {
+  std::uint64_t cells = 0;
+  int rows = 0;
+  const Raster<float>& heights = loaded_.scenario.surface.heights();
+  const HazardHeader header = read_hazard(
+      path(kHazardFile), [](const auto&) {},
+      [&](const HazardRow& row) {
+        ++rows;
+        for (int column = 0; column < heights.grid.columns; ++column)
+          EXPECT_EQ(row.terrain[static_cast<std::size_t>(column)], !std::isnan(heights.at(column, row.row)));
+        for (const auto& [column, cell] : row.touched) {
+          ++cells;
+          ASSERT_NE(tally_.hazard(column, row.row), nullptr);
+          EXPECT_EQ(cell, *tally_.hazard(column, row.row));
+        }
+      });
+  EXPECT_GT(cells, 0U);
+  EXPECT_EQ(cells, tally_.touched_cells());
+  EXPECT_EQ(rows, heights.grid.rows);
+  EXPECT_EQ(header.plan, plan_checksum(loaded_));
+  EXPECT_EQ(header.rules.scale, tally_.hazard_rules().scale);
+  EXPECT_EQ(header.rules.bins.thresholds(), loaded_.scenario.output.energy_thresholds);
+  EXPECT_EQ(header.geo.crs_wkt, loaded_.geo.crs_wkt);
+  EXPECT_EQ(header.geo.west, loaded_.geo.west);
+  EXPECT_EQ(header.geo.north, loaded_.geo.north);
+}
+
+TEST_F(HazardFile, TheSameBytesAgain) {
+  const std::string first = bytes();
+  write_hazard(path(kHazardFile), loaded_, tally_);
+  EXPECT_EQ(bytes(), first);
+}
+
+TEST_F(HazardFile, DamagedForeignOrLaterFilesAreRefused) {
+  const std::string whole = bytes();
+  refused(whole.substr(0, whole.size() / 2), "is damaged");
+  std::string changed = whole;
+  changed[changed.size() / 2] = static_cast<char>(changed[changed.size() / 2] ^ 4);
+  refused(changed, "is damaged");
+  refused(packed("something else altogether"), "is no file that talus run wrote");
+  refused(packed(std::string("talus-hazard") + std::string("\x02\0\0\0", 4)), "later version of Talus (format 2, this");
+  refused("", "is");
+}
+
+TEST_F(HazardFile, ThePlanChangesWithEverySetting) {
+  const LoadedScenario other = of_law("[frequency]\npower_law = { A = 0.2, b = 0.5 }\n");
+  EXPECT_NE(plan_checksum(other), plan_checksum(loaded_));
+  const std::string again = write_text("again.toml", loaded_.complete_toml);
+  RunFlags flags;
+  flags.scenario = again;
+  EXPECT_EQ(plan_checksum(load_scenario(flags)), plan_checksum(loaded_)) << "OUT/scenario.toml is the same plan";
+}
+
+TEST_F(HazardFile, FrequencyKeys) {
+  EXPECT_EQ(loaded_.scenario.frequency.scale, 0.1);
+  EXPECT_EQ(origin(loaded_, "frequency.power_law"), "scenario");
+  const std::string blocks = std::string(kFiles) + "[blocks]\ndiameter = 1.2\n[frequency]\n";
+  ScenarioFile::refused(blocks + "per_area = -1\n",
+                        {"scenario.toml:7: frequency.per_area = -1", "0 to 1000 1/(m2 year)"});
+  ScenarioFile::refused(blocks + "power_law = 3\n", {"frequency.power_law", "must be a table like { A"});
+  ScenarioFile::refused(blocks + "power_law = { A = 1 }\n", {"has no b"});
+  ScenarioFile::refused(blocks + "by_true_area = 1\n", {"must be true or false"});
+  ScenarioFile::refused(blocks + "by_true_aera = true\n", {"did you mean 'by_true_area'"});
+  ScenarioFile::refused(blocks + "per_area = 0.5\n", {"a source is a point, which has no area"});
+}
+
+TEST_F(HazardFile, Matrix) {
+  const HazardMatrix m = read_matrix(write_text(
+      "m.toml", "energies = [100]\nyears = [50]\nclasses = [[1, 0], [2, 1]]\nnames = [\"-\", \"a\", \"b\"]\n"));
+  EXPECT_EQ(m.energies, std::vector<double>{100.0});
+  EXPECT_EQ(m.classes, (std::vector<std::vector<int>>{{1, 0}, {2, 1}}));
+  EXPECT_EQ(m.names[2], "b");
+  const auto wrong = [&](const std::string& text, const std::vector<std::string>& parts) {
+    expect_input_error([&] { read_matrix(write_text("m.toml", text)); }, parts);
+  };
+  wrong("energys = [30]\n", {"m.toml:1", "did you mean 'energies'"});
+  wrong("years = [30]\n", {"m.toml", "classes: must be 3 rows"});
+  wrong("energies = [300, 30]\n", {"m.toml", "ascend"});
+  wrong("classes = [[1.5]]\n", {"must be a whole number"});
+}
+
+TEST_F(HazardFile, StagedFilesReplaceOnlyTheirOwn) {
+  const std::filesystem::path out(path("out"));
+  std::filesystem::create_directory(out);
+  expect_input_error([&] { StagedFiles(out, "hazard.json", false); }, {"no run.json"});
+  std::ofstream(out / "run.json") << "{}";
+  const auto put = [&](const std::string& name, const std::string& text) {
+    StagedFiles staged(out, "hazard.json", true);
+    std::ofstream(staged.temporary() / name) << text;
+    std::ofstream(staged.temporary() / "hazard.json") << "{\"files\": [\"" << name << "\"]}";
+    staged.commit();
+  };
+  put("a.tif", "1");
+  EXPECT_TRUE(std::filesystem::exists(out / "a.tif"));
+  expect_input_error([&] { StagedFiles(out, "hazard.json", false); }, {"--overwrite"});
+  put("b.tif", "2");
+  EXPECT_FALSE(std::filesystem::exists(out / "a.tif"));
+  EXPECT_TRUE(std::filesystem::exists(out / "b.tif"));
+  {
+    StagedFiles staged(out, "hazard.json", true);
+    std::ofstream(staged.temporary() / "c.tif") << "3";
+  }  // never committed
+  std::size_t left = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(out)) ++left;
+  EXPECT_EQ(left, 3U) << "run.json, hazard.json, b.tif";
+}
+
+}  // namespace
+}  // namespace talus::io

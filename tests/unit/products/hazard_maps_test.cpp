@@ -1,0 +1,127 @@
+#include "talus/products/hazard_maps.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "../../support/scenarios.hpp"
+#include "talus/simulate/simulate.hpp"
+
+namespace talus {
+namespace {
+
+/// A curve with a given class in every field of the default matrix: the energy of an intensity, often enough.
+TEST(HazardMatrix, EveryField) {
+  const HazardMatrix matrix;
+  const std::vector<double> often{1.0 / 20, 1.0 / 60, 1.0 / 200, 1.0 / 900};  // in each column
+  const int expected[3][4] = {{3, 2, 2, 1}, {4, 3, 3, 1}, {4, 4, 4, 1}};      // weak, medium, strong
+  for (std::size_t intensity = 0; intensity < 3; ++intensity)
+    for (std::size_t column = 0; column < 4; ++column) {
+      std::vector<double> frequencies(3, 0.0);
+      for (std::size_t i = 0; i <= intensity; ++i) frequencies[i] = often[column];
+      EXPECT_EQ(class_of(matrix, frequencies), expected[intensity][column]) << intensity << ' ' << column;
+      EXPECT_EQ(class_of(matrix, frequencies, false), column == 3 ? 0 : expected[intensity][column]);
+    }
+  EXPECT_EQ(class_of(matrix, std::vector<double>{0.0, 0.0, 0.0}), 0);
+  EXPECT_EQ(class_of(matrix, std::vector<double>{1.0 / 30, 0.0, 0.0}), 3) << "the limit belongs to the shorter period";
+}
+
+TEST(HazardMatrix, TheGravestIntensityDecides) {  // weak every year, medium every 50, strong every 250 years
+  EXPECT_EQ(class_of({}, std::vector<double>{1.0, 0.02, 0.004}), 4);
+  EXPECT_EQ(class_of({}, std::vector<double>{0.005, 0.005, 0.001}), 3);
+}
+
+TEST(HazardMatrix, Faults) {
+  HazardMatrix m;
+  EXPECT_EQ(fault_of(m), "");
+  m.classes[1][2] = 4;
+  EXPECT_THAT(fault_of(m), testing::HasSubstr("nor rise with the return period"));
+  m = {};
+  m.classes.pop_back();
+  EXPECT_THAT(fault_of(m), testing::HasSubstr("3 rows (weak first) of 4"));
+  m = {};
+  m.years = {30.0, 30.0, 300.0};
+  EXPECT_THAT(fault_of(m), testing::HasSubstr("ascend"));
+  m = {};
+  m.names.pop_back();
+  EXPECT_THAT(fault_of(m), testing::HasSubstr("4 has no name"));
+}
+
+/// Three sources of known frequencies high on a smooth plane of 45 degrees: every block slides or jumps straight down
+/// its own column, so that below a source its whole frequency passes, and where two lie in line their sum.
+Scenario three_sources() {
+  Scenario s = test::scenario_on(test::terrain(test::grid_of(40, 40, 2.0, 2.0), [](double, double y) { return y; }));
+  s.cover.grounds[0].theta_scale = 0.0;
+  s.cover.grounds[0].psi_scale = 0.0;
+  s.features.assign(3, SourceFeature{});
+  s.features[0].frequency = 0.5;
+  s.features[1].frequency = 0.02;
+  s.features[2].frequency = 0.001;
+  s.sources = {{0, 21.0, 71.0, true}, {1, 41.0, 71.0, true}, {2, 41.0, 61.0, true}};
+  s.trajectories = 30;
+  return make_scenario(std::move(s));
+}
+
+HazardSurvey survey_of(const Scenario& s, const Tally& tally) {
+  HazardSurvey survey(tally.grid(), tally.hazard_rules(), {});
+  for (int row = 0; row < tally.grid().rows; ++row) {
+    std::vector<HazardSurvey::Cell> cells;
+    for (int column = 0; column < tally.grid().columns; ++column)
+      if (const HazardCell* cell = tally.hazard(column, row)) cells.emplace_back(column, *cell);
+    survey.set_row(row, std::vector<bool>(static_cast<std::size_t>(tally.grid().columns), row != 39), cells, 2);
+  }
+  EXPECT_EQ(survey.cells(), tally.touched_cells());
+  EXPECT_EQ(s.surface.grid(), tally.grid());
+  return survey;
+}
+
+/// Band `band` of a map at a cell.
+double at(const std::vector<Map>& maps, const std::string& name, int column, int row, std::size_t band = 0) {
+  for (const Map& map : maps) {
+    if (map.name != name) continue;
+    std::vector<double> values(map.bands.size() * 40);
+    map.fill_row(row, values);
+    return values[band * 40 + static_cast<std::size_t>(column)];
+  }
+  ADD_FAILURE() << "no map " << name;
+  return kNotGiven;
+}
+
+TEST(HazardMaps, ThreeSourcesOnAPlane) {
+  const Scenario s = three_sources();
+  Tally tally(s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds);
+  tally.keep_hazard(*AnnualWeights::of(s));
+  simulate(s, tally, {}, 2);
+  const HazardSurvey survey = survey_of(s, tally);
+  const std::vector<Map> maps = make_hazard_maps(survey);
+  std::map<std::string, int> names;
+  for (const Map& map : maps) ++names[map.name];
+  for (const char* name : {"annual_frequency", "return_period_30", "return_period_300", "intensity_T30",
+                           "intensity_T100", "intensity_T300", "hazard_class"})
+    EXPECT_EQ(names[name], 1) << name;
+
+  EXPECT_NEAR(at(maps, "annual_frequency", 10, 15), 0.5, 1e-6);
+  EXPECT_NEAR(at(maps, "annual_frequency", 20, 33), 0.02, 1e-6) << "above the third source";
+  EXPECT_NEAR(at(maps, "annual_frequency", 20, 15), 0.021, 1e-6) << "below both";
+  EXPECT_EQ(at(maps, "annual_frequency", 30, 15), 0.0);
+  EXPECT_NEAR(at(maps, "annual_frequency", 30, 15, 2), 0.5 / 30 * 3.689, 1e-4) << "of no trajectory";
+  EXPECT_TRUE(std::isnan(at(maps, "annual_frequency", 30, 39))) << "no terrain";
+  // 1.4 t, and 50 m below the source: above 300 kJ, as a smooth block on 45 degrees is at 20 m/s and more.
+  EXPECT_NEAR(at(maps, "return_period_300", 10, 5), 2.0, 1e-5);
+  EXPECT_NEAR(at(maps, "return_period_300", 20, 5), 1.0 / 0.021, 1e-3);
+  EXPECT_TRUE(std::isnan(at(maps, "return_period_300", 30, 5)));
+  EXPECT_GT(at(maps, "intensity_T30", 10, 5), 300.0);
+  EXPECT_EQ(at(maps, "intensity_T30", 20, 5), 0.0) << "47 years are rarer than 30";
+  EXPECT_GT(at(maps, "intensity_T100", 20, 5), 300.0);
+  EXPECT_EQ(at(maps, "hazard_class", 10, 5), 4.0);
+  EXPECT_EQ(at(maps, "hazard_class", 10, 5, 1), 4.0);
+  EXPECT_EQ(at(maps, "hazard_class", 10, 5, 3), 0.0) << "it can be told";
+  EXPECT_EQ(at(maps, "hazard_class", 30, 5), 0.0);
+  EXPECT_EQ(at(maps, "hazard_class", 30, 5, 2), 4.0) << "0.06 per year may pass, unseen, of any energy";
+  EXPECT_EQ(at(maps, "hazard_class", 30, 5, 3), 1.0) << "it cannot be told";
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,153 @@
+#include <omp.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "commands.hpp"
+#include "progress.hpp"
+#include "run_support.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/io/hazard_record.hpp"
+#include "talus/io/objects_file.hpp"
+#include "talus/io/output_folder.hpp"
+#include "talus/io/staged_files.hpp"
+#include "talus/products/hazard_maps.hpp"
+#include "write_maps.hpp"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Options {
+  std::string folder, matrix, objects;
+  int threads = 0;
+  bool overwrite = false, quiet = false;
+};
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+/// The file that a run leaves where its sources have frequencies.
+fs::path tally_file(const fs::path& folder) {
+  const fs::path file = folder / talus::io::kHazardFile;
+  if (fs::exists(file)) return file;
+  throw talus::InputError(
+      folder.string() + (fs::exists(folder / "run.json")
+                             ? ": this run knows no annual frequencies; give the sources a field frequency (events per "
+                               "year), or the scenario [frequency] per_area or power_law, and run again"
+                             : ": is no folder of results (it has no run.json); give the OUT of talus run"));
+}
+
+/// Reads what the run kept and evaluates every cell.
+std::unique_ptr<talus::HazardSurvey> survey_of(const fs::path& file, int threads, Progress& progress,
+                                               talus::io::HazardRecord& record) {
+  std::unique_ptr<talus::HazardSurvey> survey;
+  record.header = talus::io::read_hazard(
+      file,
+      [&](const talus::io::HazardHeader& h) {
+        survey = std::make_unique<talus::HazardSurvey>(h.grid, h.rules, record.matrix);
+      },
+      [&](const talus::io::HazardRow& row) {
+        if (interrupted()) stop_interrupted();
+        survey->set_row(row.row, row.terrain, row.touched, threads);
+        const int rows = survey->grid().rows;
+        progress.update(static_cast<double>(rows - row.row) / rows);
+      });
+  return survey;
+}
+
+std::vector<std::string> warnings_of(const talus::HazardMatrix& matrix, const talus::HazardRules& rules) {
+  std::vector<std::string> warnings;
+  for (const double energy : matrix.energies)
+    if (std::ranges::count(rules.bins.thresholds(), energy) == 0)
+      warnings.push_back("the matrix has a class limit of " + talus::text_of(energy) +
+                         " kJ, which is none of the run's energy_thresholds: its frequency is interpolated within a "
+                         "bin of 12.5 %, with wider bounds");
+  return warnings;
+}
+
+/// Runs the recorded plan again and writes what comes to each object.
+void write_objects(const Options& options, const fs::path& folder, talus::io::HazardRecord& record) {
+  talus::io::RunFlags flags;
+  flags.scenario = (fs::path(options.folder) / "scenario.toml").string();
+  const talus::io::LoadedScenario loaded = talus::io::load_scenario(flags);
+  if (talus::io::plan_checksum(loaded) != record.header.plan)
+    throw talus::InputError(flags.scenario +
+                            ": it, or a file that it names, has changed since the run, so that the run "
+                            "cannot be repeated for --objects; run again (the checksums are in run.json)");
+  const talus::io::ObjectLayer layer(options.objects, loaded);
+  for (const std::string& warning : layer.warnings()) record.warnings.push_back(warning);
+  if (!options.quiet)
+    say("", "repeats the run for the objects: " + count_text(loaded.scenario.released()) +
+                " trajectories of the recorded plan, with the same bits");
+  const auto weights = talus::AnnualWeights::of(loaded.scenario);
+  if (!weights) throw std::logic_error("a plan with frequencies has no weights");
+  Progress progress(Progress::mode_of(options.quiet, false), loaded.scenario.released());
+  const std::vector<talus::ObjectHits> hits = talus::replay_objects(
+      loaded.scenario, *weights, layer.objects(),
+      [&progress](double share) { return progress.update(share) && !interrupted(); }, options.threads);
+  if (interrupted() || hits.empty()) stop_interrupted();
+  layer.write(folder, loaded, record.header.rules, hits, record.matrix.years);
+  progress.finish();
+  record.objects_file = options.objects;
+  record.replayed = true;
+}
+
+int hazard(const Options& options) {
+  catch_signals();
+  const fs::path folder(options.folder), file = tally_file(folder);
+  talus::io::HazardRecord record;
+  record.command = command_line();
+  record.matrix_file = options.matrix;
+  if (!options.matrix.empty()) record.matrix = talus::io::read_matrix(options.matrix);
+  talus::io::StagedFiles staged(folder, "hazard.json", options.overwrite);
+  Progress progress(Progress::mode_of(options.quiet, false), 0);
+  const auto survey = survey_of(file, options.threads, progress, record);
+  record.cells = survey->cells();
+  record.warnings = warnings_of(record.matrix, record.header.rules);
+
+  progress.stage("writing the maps");
+  const talus::Grid& grid = survey->grid();
+  write_maps(talus::make_hazard_maps(*survey),
+             {staged.temporary(), record.header.geo, grid.columns, grid.rows, [] { return !interrupted(); }},
+             options.threads > 0 ? options.threads : omp_get_num_procs());
+  progress.finish();
+  if (!options.objects.empty()) write_objects(options, staged.temporary(), record);
+  record.files = staged.files();
+  talus::io::write_text(staged.temporary() / "hazard.json", talus::io::hazard_json(record));
+  staged.commit();
+  if (options.quiet) return 0;
+  for (const std::string& warning : record.warnings) say("warning", warning);
+  say("", count_text(record.cells) + " cells that something passes, " + number_text(record.header.rules.scale.total) +
+              " events per year; results are in " + fs::absolute(folder).lexically_normal().string());
+  return 0;
+}
+
+}  // namespace
+
+void add_hazard(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("hazard", "Annual frequencies, return periods and classes of hazard from a run");
+  command->add_option("folder", options->folder, "OUT of a run whose sources have frequencies")->required();
+  command->add_option("--matrix", options->matrix,
+                      "classes by intensity and return period (TOML); else 30, 300 kJ and 30, 100, 300 years");
+  command->add_option("--objects", options->objects,
+                      "polygons or lines: how often each is hit, and from where; repeats the run");
+  command->add_flag("--overwrite", options->overwrite, "replace the hazard maps that are there");
+  command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
+      ->check(CLI::Range(1, 4096));
+  command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
+  command->footer(
+      "Examples:\n  talus hazard result\n  talus hazard result --objects houses.gpkg --overwrite\n\nWrites into the "
+      "folder: annual_frequency.tif, return_period_<kJ>.tif, "
+      "intensity_T<years>.tif,\nhazard_class.tif, hazard.json. Nothing is simulated again, but for --objects, which "
+      "add objects.gpkg, objects.csv,\nobjects_curves.csv and "
+      "objects_sources.csv.");
+  command->callback([&action, options] { action = [options] { return hazard(*options); }; });
+}

@@ -1,0 +1,29 @@
+#include "write_maps.hpp"
+
+#include <algorithm>
+#include <exception>
+
+#include "commands.hpp"
+#include "run_support.hpp"
+#include "talus/io/style.hpp"
+
+namespace {
+constexpr int kMapsAtOnce = 4;  // each needs room on the disk for its draft
+}  // namespace
+
+// What is thrown may not leave the parallel region: the first failure is kept.
+void write_maps(const std::vector<talus::Map>& maps, const talus::io::MapTarget& target, int threads) {
+  std::exception_ptr failure;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(std::min(threads, kMapsAtOnce)) default(none) \
+    shared(maps, target, failure)
+  for (const talus::Map& map : maps) {
+    try {
+      if (talus::io::write_map(map, target)) talus::io::write_style(target.folder, map);
+    } catch (...) {
+#pragma omp critical
+      if (!failure) failure = std::current_exception();
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+  if (interrupted()) stop_interrupted();
+}

@@ -1,0 +1,8 @@
+#pragma once
+#include <filesystem>
+#include <vector>
+
+#include "talus/io/write_rasters.hpp"
+
+/// Writes maps and their styles, several at a time. Throws Interrupted where the user has ended the program.
+void write_maps(const std::vector<talus::Map>& maps, const talus::io::MapTarget& target, int threads);
