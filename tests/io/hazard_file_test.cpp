@@ -9,10 +9,10 @@
 #include "talus/io/staged_files.hpp"
 #include "talus/simulate/simulate.hpp"
 
-namespace talus::io {
+namespace talus::io::test {
 namespace {
 
-class HazardFile : public test::ScenarioFile {
+class HazardFile : public ScenarioFile {
  protected:
   HazardFile() : loaded_(of_law("[frequency]\npower_law = { A = 0.1, b = 0.5 }\n")) {
     tally_.keep_hazard(*AnnualWeights::of(loaded_.scenario));
@@ -158,4 +158,4 @@ TEST_F(HazardFile, StagedFilesReplaceOnlyTheirOwn) {
 }
 
 }  // namespace
-}  // namespace talus::io
+}  // namespace talus::io::test
