@@ -31,7 +31,7 @@ constexpr std::array<StopColumn, 9> kStops{{
     {"seconds", 1e3, [](const StopRow& r, const LoadedProfile&) { return double{r.seconds}; }},
     {"max_speed_ms", 1e3, [](const StopRow& r, const LoadedProfile&) { return double{r.max_speed}; }},
     {"length_m", 1e3, [](const StopRow& r, const LoadedProfile&) { return double{r.length}; }},
-    {"impacts", 1.0, [](const StopRow& r, const LoadedProfile&) { return double{r.impacts}; }},
+    {"impacts", 1.0, [](const StopRow& r, const LoadedProfile&) { return static_cast<double>(r.impacts); }},
 }};
 
 /// The numbers of a bin, with their names: those of envelope.csv and of the layer `bins`.

@@ -59,6 +59,7 @@ class ByHand(Profile):
         for statistic in ("mean", "p50", "p95", "p99", "max"):
             self.assertAlmostEqual(bin_30["jump_height_m_" + statistic], 52.0 - 0.5 * g * (15.0 / 8.0) ** 2, 3)
             self.assertAlmostEqual(bin_30["speed_ms_" + statistic], math.hypot(8.0, g * 20.0 / 8.0), 3)
+            self.assertAlmostEqual(bin_30["energy_kj_" + statistic], 0.5e-3 * mass * (64.0 + (g * 2.5) ** 2), 2)
         self.assertEqual((bin_30["passages"], bin_30["share"], bin_30["x_to"]), (7.0, 1.0, 35.0))
         self.assertEqual(envelope[5.0]["passages"], 0.0)
         path = rows_of(self.path("out/profile.gpkg"), "trajectories")[0][1]
@@ -73,6 +74,7 @@ class ByHand(Profile):
         x = np.array([row["x"] for row in self.rows("stops.csv")])  # they stay where they are put
         self.assertTrue(((x >= 20) & (x <= 60)).all())
         self.assertLess(abs(x.mean() - 40.0), 5.0 * 40.0 / math.sqrt(12 * 400))
+        self.assertAlmostEqual(x.std(), 40.0 / math.sqrt(12), delta=5.0 * 0.26)  # 0.26: standard error of 400
         self.assertTrue(all(abs(row["runout_m"]) < 2.0 for row in self.rows("stops.csv")))
         runout = self.rows("runout.csv")
         self.assertEqual(runout[0], {"distance_from": 0.0, "distance_to": 5.0, "stopped": 400.0, "share": 1.0,
