@@ -61,12 +61,11 @@ Meeting BarrierWatch::look(std::size_t vertex, const Vertex& to, Motion& motion,
   std::optional<Barriers::Cut> cut;
   while ((cut = world_.barriers->next(a, b, cut))) {
     if (cut->segment == broken_ && a == broken_at_) continue;
-    const bool slides = from.event == Event::Slide;
     Motion there = motion_between(from, to, cut->share);
     const double ground = world_.surface.height(there.position.x(), there.position.y()).value_or(there.position.z());
     const double energy = 0.5 * body.mass * there.velocity.squaredNorm();
     const Barrier& barrier = world_.barriers->list()[cut->barrier];
-    const Meeting how = meeting(barrier, slides ? 0.0 : std::max(0.0, there.position.z() - ground), energy);
+    const Meeting how = meeting(barrier, std::max(0.0, there.position.z() - ground), energy);
     path.barriers.push_back({cut->barrier, how, cut->along});
     if (how == Meeting::Over) continue;
     const double share = how == Meeting::Broken ? cut->share : std::max(0.0, cut->share - kGap / (b - a).norm());
@@ -76,7 +75,7 @@ Meeting BarrierWatch::look(std::size_t vertex, const Vertex& to, Motion& motion,
       there.spin.setZero();
     } else {
       there.velocity *= kept_speed(energy, barrier.capacity);
-      if (slides) there.position.z() = ground;
+      if (from.event == Event::Slide) there.position.z() = ground;
       broken_ = cut->segment;
       broken_at_ = there.position.head<2>();
     }

@@ -95,6 +95,8 @@ TEST(ShortestStretch, LeavesOutTheFarOnes) {
   EXPECT_NEAR(s.from, 100.0, 1e-12);
   EXPECT_NEAR(s.to, 110.0, 1e-12);
   EXPECT_NEAR(s.share, 0.99, 1e-12);
+  for (double& place : places) place = 600.0 - place;  // seen from the other end
+  EXPECT_NEAR(shortest_stretch(places, 0.99).from, 490.0, 1e-12);
   EXPECT_NEAR(shortest_stretch(places, 1.0).width(), 400.0, 1e-12);
   EXPECT_EQ(shortest_stretch(places, 1e-9).width(), 0.0);
 }
