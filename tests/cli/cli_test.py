@@ -23,7 +23,7 @@ class CommandLine(Case):
         self.fails(2, "'--versoin'", "did you mean '--version'", arguments=["--versoin"])
 
     def test_parts_of_later_versions(self):
-        for command in ["sources", "profile", "hazard", "barrier", "merge", "report"]:
+        for command in ["sources", "profile", "barrier", "merge", "report"]:
             self.fails(2, command, "not in this version", arguments=[command, "x"])
         for option in ["--part=1/3", "--resume", "--until-error"]:
             self.fails(2, option.split("=")[0], "not in this version", arguments=[*self.arguments(), option])
