@@ -172,7 +172,7 @@ def main():
         norm, ticks = norm_of(v, o.classes, o.log)
         if o.names:
             norm, ticks = BoundaryNorm(np.arange(len(o.names)) + 0.5, len(o.names) - 1), range(1, len(o.names))
-            o.colours = ListedColormap((HAZARD * 3)[:len(o.names) - 1])
+            o.colours = ListedColormap((HAZARD * 3)[-(len(o.names) - 1):])
         image = ax.imshow(v, cmap=o.colours, norm=norm, extent=where, interpolation="nearest", alpha=0.72, zorder=2)
         bar = fig.colorbar(image, ax=ax, fraction=0.035, pad=0.02, ticks=ticks, extendfrac=0)
         if ticks:

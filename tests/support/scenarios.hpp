@@ -51,6 +51,21 @@ inline Path path_of(std::initializer_list<Span> spans, End end) {
   return path;
 }
 
+/// Three sources of known frequencies high on a smooth plane of 45 degrees: every block slides or jumps straight down
+/// its own column, so that below a source its whole frequency passes, and where two lie in line their sum.
+inline Scenario three_sources() {
+  Scenario s = scenario_on(terrain(grid_of(40, 40, 2.0, 2.0), [](double, double y) { return y; }));
+  s.cover.grounds[0].theta_scale = 0.0;
+  s.cover.grounds[0].psi_scale = 0.0;
+  s.features.assign(3, SourceFeature{});
+  s.features[0].frequency = 0.5;
+  s.features[1].frequency = 0.02;
+  s.features[2].frequency = 0.001;
+  s.sources = {{0, 21.0, 71.0, true}, {1, 41.0, 71.0, true}, {2, 41.0, 61.0, true}};
+  s.trajectories = 30;
+  return make_scenario(std::move(s));
+}
+
 /// All that is known of every cell is equal, bit for bit.
 inline void expect_same_records(const Tally& a, const Tally& b) {
   ASSERT_EQ(a.grid(), b.grid());

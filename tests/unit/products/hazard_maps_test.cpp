@@ -12,6 +12,8 @@
 namespace talus {
 namespace {
 
+using test::three_sources;
+
 /// A curve with a given class in every field of the default matrix: the energy of an intensity, often enough.
 TEST(HazardMatrix, EveryField) {
   const HazardMatrix matrix;
@@ -47,21 +49,6 @@ TEST(HazardMatrix, Faults) {
   m = {};
   m.names.pop_back();
   EXPECT_THAT(fault_of(m), testing::HasSubstr("4 has no name"));
-}
-
-/// Three sources of known frequencies high on a smooth plane of 45 degrees: every block slides or jumps straight down
-/// its own column, so that below a source its whole frequency passes, and where two lie in line their sum.
-Scenario three_sources() {
-  Scenario s = test::scenario_on(test::terrain(test::grid_of(40, 40, 2.0, 2.0), [](double, double y) { return y; }));
-  s.cover.grounds[0].theta_scale = 0.0;
-  s.cover.grounds[0].psi_scale = 0.0;
-  s.features.assign(3, SourceFeature{});
-  s.features[0].frequency = 0.5;
-  s.features[1].frequency = 0.02;
-  s.features[2].frequency = 0.001;
-  s.sources = {{0, 21.0, 71.0, true}, {1, 41.0, 71.0, true}, {2, 41.0, 61.0, true}};
-  s.trajectories = 30;
-  return make_scenario(std::move(s));
 }
 
 HazardSurvey survey_of(const Scenario& s, const Tally& tally) {
