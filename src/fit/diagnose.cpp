@@ -217,6 +217,7 @@ class Diagnosing {
     }
     round.trials.reserve(test.effects.size());
     for (const EffectVerdict& verdict : test.effects) {
+      if (!found.empty() && verdict.p_value > kWorthASearch) continue;  // all have been fitted in the first round
       progress_ = std::min(0.95, progress_ + 0.02);
       const bool thorough = round.trials.size() < kThorough && verdict.p_value < level;
       round.trials.push_back(
