@@ -12,6 +12,8 @@
 namespace talus::io {
 namespace {
 
+using test::expect_input_error;
+
 class HazardFile : public test::ScenarioFile {
  protected:
   HazardFile() : loaded_(of_law("[frequency]\npower_law = { A = 0.1, b = 0.5 }\n")) {
