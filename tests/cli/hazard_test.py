@@ -8,7 +8,7 @@ import unittest
 import numpy as np
 from osgeo import ogr
 
-from support import Case, WEST, NORTH, bands_of, box, heights, rows_of, write_dem, write_features
+from support import Case, bands_of, box, heights, rows_of, write_dem, write_features
 
 RUN = """dem = "dem.tif"
 trajectories = 200
@@ -31,8 +31,12 @@ class Hazard(Case):
         self.run_well("run", self.path("s.toml"), "-o", self.path(out), "-q", *more)
 
     def hashes(self, out):
-        return {name: hashlib.sha256(open(self.path(f"{out}/{name}"), "rb").read()).hexdigest()
-                for name in sorted(os.listdir(self.path(out))) if name.endswith((".tif", ".gz", ".gpkg", ".csv"))}
+        hashes = {}
+        for name in sorted(os.listdir(self.path(out))):
+            if name.endswith((".tif", ".gz", ".gpkg", ".csv")):
+                with open(self.path(f"{out}/{name}"), "rb") as file:
+                    hashes[name] = hashlib.sha256(file.read()).hexdigest()
+        return hashes
 
     def refused(self, words, *arguments):
         done = self.call(*arguments)

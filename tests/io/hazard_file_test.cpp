@@ -9,10 +9,12 @@
 #include "talus/io/staged_files.hpp"
 #include "talus/simulate/simulate.hpp"
 
-namespace talus::io::test {
+namespace talus::io {
 namespace {
 
-class HazardFile : public ScenarioFile {
+using test::expect_input_error;
+
+class HazardFile : public test::ScenarioFile {
  protected:
   HazardFile() : loaded_(of_law("[frequency]\npower_law = { A = 0.1, b = 0.5 }\n")) {
     tally_.keep_hazard(*AnnualWeights::of(loaded_.scenario));
@@ -158,4 +160,4 @@ TEST_F(HazardFile, StagedFilesReplaceOnlyTheirOwn) {
 }
 
 }  // namespace
-}  // namespace talus::io::test
+}  // namespace talus::io
