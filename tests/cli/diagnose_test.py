@@ -43,10 +43,10 @@ class WholeLoop(Case):
         """One day only, and no instruments but the tape: nothing to test there."""
         return {"wet-ground", "instrument-bias"} if name == "authume" else set()
 
-    def test_blocks_of_many_shapes(self):
-        """So few trials are enough to see what is most likely missing; not always to be sure of it, or to fit it."""
-        found = self.diagnose("cedar")
-        self.assertEqual(min(found["candidates"], key=lambda c: c["p_value"])["effect"], "block-shape")
+    def test_days_that_differ(self):
+        found = self.diagnose("elm")
+        self.assertEqual(found["effect"], "wet-ground")
+        self.assertLess(found["error"]["holdout"]["after"], found["error"]["holdout"]["before"])
 
     def test_nothing_hidden(self):
         """So few trials do not fit the ground to the end, which may leave a residual; but no effect may be named."""
