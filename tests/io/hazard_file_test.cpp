@@ -91,6 +91,13 @@ TEST_F(HazardFile, DamagedForeignOrLaterFilesAreRefused) {
   std::string changed = whole;
   changed[changed.size() / 2] = static_cast<char>(changed[changed.size() / 2] ^ 4);
   refused(changed, "is damaged");
+  std::string plain(1U << 20U, ' ');
+  VSILFILE* file = VSIFOpenL(("/vsigzip/" + path(kHazardFile)).c_str(), "rb");
+  plain.resize(VSIFReadL(plain.data(), 1, plain.size(), file));
+  VSIFCloseL(file);
+  ASSERT_LT(plain.size(), 1U << 20U);
+  plain[plain.size() - 80] = static_cast<char>(plain[plain.size() - 80] ^ 1);  // packed well, but another number
+  refused(packed(plain), "is damaged");
   refused(packed("something else altogether"), "is no file that talus run wrote");
   refused(packed(std::string("talus-hazard") + std::string("\x02\0\0\0", 4)), "later version of Talus (format 2, this");
   refused("", "is");
