@@ -4,8 +4,9 @@
   tools/benchmark.py [--bench build/release/tests/bench/talus-bench] [--shared ../shared] [--work DIR] [--repeats 3]
 
 Makes the slope (2 000 x 2 000 cells of 2 m, 1 000 sources) with shared/bench/make_slope.py, compiles shared/bench/sketch.cpp
-(an unoptimised sketch of the loop with counts and one maximum), runs it and talus-bench in turn and prints the medians.
-Figures of one machine; the ratios within one run are what can be compared. Needs g++, python3-numpy, python3-gdal.
+(an unoptimised sketch of the loop with counts and one maximum), runs it and talus-bench in turn and prints the medians of the
+rounds; of ratios, the median of each round's with the range. Two sketches at once show what the machine itself loses where two
+cores share caches, memory or a host. Figures of one machine; the ratios within one run are what can be compared. Needs g++, python3-numpy, python3-gdal.
 """
 import argparse
 import json
@@ -28,26 +29,45 @@ def sketch_speed(folder):
     return float(re.search(r"Mm/s ([0-9.]+)", out).group(1)) * max(1.0, wall / cpu)
 
 
+def two_sketches(folder):
+    """What this machine gives to two programs at once that share nothing: wall seconds of one, twice, over those of two together."""
+    command = [f"{folder}/sketch", f"{folder}/dem.asc", f"{folder}/sources.csv", "10"]
+
+    def seconds(programs):
+        start = time.monotonic()
+        for process in [subprocess.Popen(command, stdout=subprocess.DEVNULL) for _ in range(programs)]:
+            process.wait()
+        return time.monotonic() - start
+
+    return 2 * seconds(1) / seconds(2)
+
+
 def bench(program, folder):
     out = subprocess.run([program, f"{folder}/dem.tif", f"{folder}/sources.shp", "--benchmark_format=json"], check=True,
                          capture_output=True, text=True).stdout
     return {b["name"].split("/iterations")[0]: b for b in json.loads(out)["benchmarks"]}
 
 
-def table(runs, sketches):
+def spread(ratios):
+    """Median of the rounds' ratios, with their range."""
+    return f"{statistics.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
+
+
+def table(runs, sketches, doubles):
     def median(name, key):
         return statistics.median(run[name][key] for run in runs)
 
-    sketch = statistics.median(sketches)
-    print(f"sketch: {sketch:.2f} million plan metres per CPU-second")
+    print(f"sketch: {statistics.median(sketches):.2f} million plan metres per CPU-second ({min(sketches):.2f} to {max(sketches):.2f}, "
+          f"{len(sketches)} rounds)")
     print("| trajectories per source, threads | million plan m per CPU-s | x sketch | us per trajectory | wall s |")
     print("| --- | --- | --- | --- | --- |")
     for name in ("run/10/1", "run/100/1", "run/10/2", "run/100/2"):
-        speed = median(name, "plan_Mm_per_cpu_s")
-        print(f"| {name[4:].replace('/', ', ')} | {speed:.2f} | {speed / sketch:.2f} | "
+        ratio = spread([run[name]["plan_Mm_per_cpu_s"] / sketch for run, sketch in zip(runs, sketches)])
+        print(f"| {name[4:].replace('/', ', ')} | {median(name, 'plan_Mm_per_cpu_s'):.2f} | {ratio} | "
               f"{median(name, 'us_per_trajectory'):.0f} | {median(name, 'wall_s'):.2f} |")
     for n in (10, 100):
-        print(f"two threads against one, {n} trajectories: {median(f'run/{n}/1', 'wall_s') / median(f'run/{n}/2', 'wall_s'):.2f}x")
+        print(f"two threads against one, {n} trajectories: {spread([r[f'run/{n}/1']['wall_s'] / r[f'run/{n}/2']['wall_s'] for r in runs])}x")
+    print(f"two sketches at once against one after the other: {spread(doubles)}x")
     floor = median("floor_walk", "ns_per_plan_m")
     print("| part | figure | per plan metre | x floor |\n| --- | --- | --- | --- |")
     print(f"| floor: bare walk over the same patches | {median('floor_walk', 'ns_per_patch'):.1f} ns per patch | {floor:.1f} ns | 1 |")
@@ -71,11 +91,12 @@ def main():
         if not os.path.exists(f"{folder}/sources.shp"):
             subprocess.run(["/usr/bin/python3", f"{o.shared}/bench/make_slope.py", folder], check=True, stdout=subprocess.DEVNULL)
         subprocess.run(["g++", "-O2", "-std=c++17", f"{o.shared}/bench/sketch.cpp", "-o", f"{folder}/sketch"], check=True)
-        runs, sketches = [], []
+        runs, sketches, doubles = [], [], []
         for _ in range(o.repeats):
             sketches.append(sketch_speed(folder))
             runs.append(bench(o.bench, folder))
-        table(runs, sketches)
+            doubles.append(two_sketches(folder))
+        table(runs, sketches, doubles)
 
 
 main()
