@@ -4,11 +4,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
 #include <system_error>
+#include <vector>
 
+#include "sha256.hpp"
 #include "talus/base/error.hpp"
 
 namespace talus::io {
@@ -47,11 +52,11 @@ void refuse_taken_name(const fs::path& folder, bool overwrite) {
   if (fs::is_empty(folder)) return;
   if (!overwrite)
     throw InputError(name + ": the folder is there and not empty; give a new name, or --overwrite to replace it");
-  for (const char* mark : {"run.json", "calibration.json", "diagnosis.json"})
+  for (const char* mark : {"run.json", "part.json", "calibration.json", "diagnosis.json"})
     if (fs::exists(folder / mark)) return;
   throw InputError(name +
-                   ": --overwrite replaces only results of talus, and there is no run.json, calibration.json or "
-                   "diagnosis.json in this folder; give a new name, or remove the folder yourself");
+                   ": --overwrite replaces only results of talus, and there is no run.json, part.json, "
+                   "calibration.json or diagnosis.json in this folder; give a new name, or remove the folder yourself");
 }
 
 fs::path make_temporary(const fs::path& folder) {
@@ -71,6 +76,27 @@ fs::path make_temporary(const fs::path& folder) {
   throw std::runtime_error(parent.string() + ": too many temporary folders of talus; remove " + stem + "*");
 }
 
+/// The hidden folders of interrupted runs, the latest last. Throws InputError where a process still writes one.
+std::vector<fs::path> unfinished_of(const fs::path& folder) {
+  const std::string stem = "." + folder.filename().string() + ".talus-";
+  std::vector<std::pair<fs::file_time_type, fs::path>> found;
+  if (!fs::is_directory(folder.parent_path())) return {};
+  for (const auto& entry : fs::directory_iterator(folder.parent_path())) {
+    const std::string name = entry.path().filename().string();
+    const fs::path manifest = entry.path() / OutputFolder::kWork / "part.json";
+    if (!name.starts_with(stem) || !fs::exists(manifest)) continue;
+    const int process = std::atoi(name.c_str() + stem.size());
+    if (process > 0 && process != getpid() && (::kill(process, 0) == 0 || errno == EPERM))
+      throw InputError(folder.string() + ": process " + std::to_string(process) + " is writing it (into " + name +
+                       "); wait until it has ended, or give another name");
+    found.emplace_back(fs::last_write_time(manifest), entry.path());
+  }
+  std::ranges::sort(found);
+  std::vector<fs::path> paths;
+  for (auto& [time, path] : found) paths.push_back(std::move(path));
+  return paths;
+}
+
 /// Waits until a file, or the entries of a folder, are on the disk: some file systems tell only now that it is full.
 void synchronise(const fs::path& path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -85,30 +111,54 @@ void synchronise(const fs::path& path) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(const fs::path& path, bool overwrite) : final_(full_name(path)) {
+OutputFolder::OutputFolder(const fs::path& path, bool overwrite, Unfinished unfinished)
+    : final_(full_name(path)), overwrite_(overwrite) {
+  std::vector<fs::path> left;
   try {
     refuse_taken_name(final_, overwrite);
+    if (unfinished != Unfinished::Ignore) left = unfinished_of(final_);
   } catch (const fs::filesystem_error& error) {
     throw InputError(final_.string() + ": cannot be looked at (" + error.code().message() + "); give another folder");
   }
+  if (unfinished == Unfinished::Refuse && !left.empty() && !overwrite)
+    throw InputError(final_.string() + ": an interrupted run of this name is kept in " + left.back().string() +
+                     "; give --resume to go on with it, or --overwrite to begin anew");
   temporary_ = make_temporary(final_);
+  std::error_code ignored;
+  if (unfinished == Unfinished::Resume && !left.empty()) {
+    fs::remove(temporary_, ignored);
+    fs::rename(left.back(), temporary_);
+    kept_ = true;  // what there is must not be lost
+    for (const auto& entry : fs::directory_iterator(temporary_))
+      if (entry.path().filename() != kWork) fs::remove_all(entry.path(), ignored);
+    left.pop_back();
+  }
+  for (const fs::path& folder : left) fs::remove_all(folder, ignored);
 }
 
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
-  if (!committed_) fs::remove_all(temporary_, ignored);
+  if (!committed_ && !kept_) fs::remove_all(temporary_, ignored);
 }
 
 void OutputFolder::protect(const fs::path& file) const {
-  std::error_code error;
-  const fs::path full = fs::weakly_canonical(file, error);
-  if (error) return;
-  const fs::path inside = full.lexically_relative(final_);
-  if (!inside.empty() && *inside.begin() != "..")
-    throw InputError(file.string() + ": lies in the folder that --overwrite would replace; give another folder");
+  for (const std::string& part : files_of_input(file.string())) {
+    std::error_code error;
+    const fs::path full = fs::weakly_canonical(part, error);
+    if (error) continue;
+    const fs::path inside = full.lexically_relative(final_);
+    if (!inside.empty() && *inside.begin() != "..")
+      throw InputError(part + ": lies in the folder that --overwrite would replace; give another folder");
+  }
 }
 
 void OutputFolder::commit() {
+  try {
+    refuse_taken_name(final_, overwrite_);
+  } catch (const InputError& error) {  // somebody has filled it while this ran
+    kept_ = true;
+    throw InputError(std::string(error.what()) + "; the results are kept in " + temporary_.string());
+  }
   for (const auto& entry : fs::recursive_directory_iterator(temporary_)) synchronise(entry.path());
   synchronise(temporary_);
   std::error_code error;
@@ -144,6 +194,7 @@ void replace_text(const fs::path& file, std::string_view text) {
   const fs::path temporary =
       file.parent_path() / ("." + file.filename().string() + ".talus-" + std::to_string(getpid()));
   write_text(temporary, text);
+  synchronise(temporary);
   std::error_code error;
   fs::rename(temporary, file, error);
   if (!error) return;

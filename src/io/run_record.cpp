@@ -93,6 +93,18 @@ Json ends_of(const Totals& totals) {
           {"limit", count(End::Limit)}};
 }
 
+Json rounds_of(const RoundsRecord& rounds) {
+  Json json{{"done", rounds.done},
+            {"above_probability", rounds.asked.above},
+            {"cells", rounds.reached.cells},
+            {"relative_half_width", rounds.reached.half_width}};
+  if (!rounds.asked.until_error) return json;
+  json["asked"] = *rounds.asked.until_error;
+  json["most_rounds"] = rounds.asked.most;
+  json["reached"] = rounds.reached.half_width < *rounds.asked.until_error;
+  return json;
+}
+
 Json seconds(const StageSeconds& s) {
   const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3; };
   return {{"read", rounded(s.read)}, {"simulate", rounded(s.simulate)}, {"write", rounded(s.write)}};
@@ -118,6 +130,8 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   json["source_cells"] = scenario.sources.size();
   json["trajectories_per_source"] = scenario.trajectories;
   json["released"] = totals.released;
+  if (record.rounds.done > 0) json["rounds"] = rounds_of(record.rounds);
+  if (record.parts > 1) json["parts"] = record.parts;
   if (scenario.effects.fragmentation.threshold > 0.0) json["pieces"] = totals.pieces;
   json["ends"] = ends_of(totals);
   if (totals.ends[static_cast<std::size_t>(End::Limit)] > 0)

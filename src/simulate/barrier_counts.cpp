@@ -24,6 +24,20 @@ void BarrierTally::merge(const BarrierTally& other) {
     for (std::size_t k = 0; k < parts_[i].size(); ++k) parts_[i][k].add(other.parts_[i][k]);
 }
 
+void BarrierTally::save(ByteWriter& out) const {
+  for (const auto& parts : parts_) out.put_all(std::span<const BarrierCounts>(parts));
+}
+
+BarrierTally BarrierTally::restored(const Barriers& barriers, ByteReader& in) {
+  BarrierTally tally(barriers);
+  for (auto& parts : tally.parts_) {
+    auto kept = in.get_all<BarrierCounts>();
+    if (kept.size() != parts.size()) throw std::out_of_range("parts of a barrier");
+    parts = std::move(kept);
+  }
+  return tally;
+}
+
 BarrierCounts BarrierTally::sum(std::size_t barrier) const {
   BarrierCounts sum;
   for (const BarrierCounts& part : parts_[barrier]) sum.add(part);

@@ -112,7 +112,7 @@ constexpr std::array<Bounds, 18> kLists{{
     {"sources.release_height", "m", "of the release above the terrain", 0.0, 500.0},
     {"sources.frequency", "1/year", "events per year of the whole feature", 0.0, 1e6},
     {"sources.velocity", "m/s", "component of the velocity at the release", -200.0, 200.0},
-    {"output.energy_thresholds", "kJ", "translational kinetic energy", 0.0, 1e9, kAbove},
+    {"output.energy_thresholds", "kJ", "translational kinetic energy", 0.01, 1e9},
     {"output.height_thresholds", "m", "vertical height above the terrain", 0.0, 1e4, kAbove},
     {"barriers.height", "m", "of the top of a barrier above the ground", 0.0, 100.0},
     {"barriers.capacity", "kJ", "translational energy that a barrier takes", 0.0,

@@ -29,7 +29,7 @@ std::string feature_name(const Scenario& s, std::size_t i) {
 Sources sources_of(const Scenario& s) {
   const FrequencyRules& rules = s.frequency;
   Sources found;
-  for (const SourceFeature& f : s.features) found.features = found.features || !std::isnan(f.frequency);
+  for (const SourceFeature& f : s.features) found.features = found.features || f.frequency > 0.0;  // zeros: not given
   for (const BlockClass& c : s.blocks.classes) found.classes = found.classes || !std::isnan(c.frequency);
   found.area = !std::isnan(rules.per_area);
   found.law = !std::isnan(rules.scale);

@@ -98,6 +98,18 @@ HazardCell HazardCell::restored(int first, std::vector<Bin> bins, std::vector<st
   return cell;
 }
 
+void HazardCell::save(ByteWriter& out) const {
+  out.put(first_);
+  out.put_all(std::span<const Bin>(bins_));
+  out.put_all(std::span<const std::int64_t>(overlaps_));
+}
+
+HazardCell HazardCell::restored(ByteReader& in) {
+  const auto first = in.get<int>();
+  auto bins = in.get_all<Bin>();
+  return restored(first, std::move(bins), in.get_all<std::int64_t>());
+}
+
 bool HazardCell::operator==(const HazardCell& other) const {
   return first_ == other.first_ && bins_ == other.bins_ && overlaps_ == other.overlaps_;
 }

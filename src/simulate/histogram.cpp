@@ -148,6 +148,35 @@ void LogHistogram::merge(const LogHistogram& other) {
   }
 }
 
+void LogHistogram::save(ByteWriter& out) const {
+  out.put(few_count_);
+  for (int i = 0; i < few_count_; ++i) out.put(few_[static_cast<std::size_t>(i)]);
+  out.put(size_);
+  if (size_ == 0) return;
+  out.put(first_);
+  out.put(width_);
+  out.put_all(std::span<const unsigned char>(counts_, static_cast<std::size_t>(size_) * width_));
+}
+
+LogHistogram LogHistogram::restored(ByteReader& in) {
+  LogHistogram h;
+  h.few_count_ = in.get<std::uint8_t>();
+  if (h.few_count_ > kFew) throw std::out_of_range("values of a histogram");
+  for (int i = 0; i < h.few_count_; ++i) h.few_[static_cast<std::size_t>(i)] = in.get<std::uint16_t>();
+  h.size_ = in.get<std::uint16_t>();
+  if (h.size_ == 0) return h;
+  h.first_ = in.get<std::uint16_t>();
+  h.width_ = in.get<std::uint8_t>();
+  const auto counts = in.get_all<unsigned char>();
+  if ((h.width_ != 1 && h.width_ != 2 && h.width_ != 4) || h.size_ > kSpan ||
+      counts.size() != static_cast<std::size_t>(h.size_) * h.width_)
+    throw std::out_of_range("bins of a histogram");
+  h.counts_ = static_cast<unsigned char*>(std::malloc(counts.size()));
+  if (h.counts_ == nullptr) throw std::bad_alloc();
+  std::memcpy(h.counts_, counts.data(), counts.size());
+  return h;
+}
+
 std::uint64_t LogHistogram::count() const {
   std::uint64_t sum = few_count_;
   for (int bin = 0; bin < size_; ++bin) sum += get(bin);

@@ -15,10 +15,13 @@ struct Record {
 
 }  // namespace
 
-Distribution distribution_of(std::vector<float> values) {
-  Distribution d;
+BinDistribution distribution_of(std::vector<float> values) {
+  BinDistribution d;
   d.count = values.size();
-  if (values.empty()) return d;
+  if (values.empty()) {
+    d.mean = d.p50 = d.p95 = d.p99 = d.max = kNotGiven;
+    return d;
+  }
   std::sort(values.begin(), values.end());
   const auto n = static_cast<double>(values.size());
   const auto rank = [&](double share) {

@@ -111,11 +111,6 @@ void gather(const Group& group, const VisitBatch& batch, Tally::Values& values, 
 
 }  // namespace
 
-double CellRecord::mean(Quantity q) const {
-  const auto i = static_cast<std::size_t>(q);
-  return passages == 0 ? 0.0 : static_cast<double>(sum[i]) * kFixedPoint[i] / passages;
-}
-
 /// The records of 64 x 64 cells. `slot` of a cell is its record's number plus one; 0 where there is none yet.
 struct Tally::Region {
   std::mutex mutex;
@@ -150,6 +145,14 @@ Tally::Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vecto
 
 void Tally::keep_hazard(AnnualWeights weights) {
   hazard_ = std::make_unique<Hazard>(Hazard{{EnergyBins(energy_thresholds_), weights.scale()}, std::move(weights)});
+}
+
+void Tally::set_rounds(std::uint32_t rounds) {
+  if (!hazard_) return;
+  WeightScale& scale = hazard_->rules.scale;
+  scale.unit /= rounds;
+  scale.square_unit /= static_cast<double>(rounds) * rounds;
+  scale.trajectories *= rounds;
 }
 
 Tally::~Tally() = default;
@@ -244,6 +247,35 @@ const HazardCell* Tally::hazard(int column, int row) const {
 const std::uint32_t* Tally::exceedances(int column, int row) const {
   const Region& region = region_of(column, row);
   return region.exceedances.data() + ((*region.slot)[cell_in_region(column, row)] - 1U) * thresholds();
+}
+
+void Tally::save(std::size_t index, ByteWriter& out) const {
+  const Region& region = regions_[index];
+  if (!region.slot) return;
+  for (std::size_t cell = 0; cell < kRegionCells; ++cell) {
+    const std::uint16_t slot = (*region.slot)[cell];
+    if (slot == 0) continue;
+    const std::size_t record = slot - 1U;
+    out.put(static_cast<std::uint16_t>(cell));
+    region.records[record].save(out);
+    for (std::size_t i = 0; i < thresholds(); ++i) out.put(region.exceedances[record * thresholds() + i]);
+    if (hazard_) region.hazards[record].save(out);
+  }
+}
+
+void Tally::merge(std::size_t index, ByteReader& in) {
+  Region& region = regions_[index];
+  while (!in.empty()) {
+    const auto cell = in.get<std::uint16_t>();
+    if (cell >= kRegionCells) throw std::out_of_range("a cell of the tally");
+    const std::size_t record = region.record_of(cell, thresholds());
+    region.records[record].merge(CellRecord::restored(in));
+    for (std::size_t i = 0; i < thresholds(); ++i)
+      region.exceedances[record * thresholds() + i] += in.get<std::uint32_t>();
+    if (!hazard_) continue;
+    region.hazards.resize(region.records.size());
+    region.hazards[record].merge(HazardCell::restored(in));
+  }
 }
 
 std::uint64_t Tally::touched_cells() const {

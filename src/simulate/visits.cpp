@@ -40,8 +40,10 @@ void VisitBatch::add(const Path& path, double mass, std::uint32_t source, std::s
     mass = broken.body.mass;
     piece = true;
   }
-  begin({mass, source, std::move(reach), piece});
-  add(spans.subspan(from));
+  if (from < spans.size() || path.breaks.empty()) {  // else it stopped where it broke, on its way before
+    begin({mass, source, std::move(reach), piece});
+    add(spans.subspan(from));
+  }
   if (region_ != nullptr) region_->back().deposited = path.end == End::Stopped || path.end == End::Caught;
 }
 

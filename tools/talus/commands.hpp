@@ -22,6 +22,7 @@ void add_diagnose(CLI::App& app, Action& action);
 void add_score(CLI::App& app, Action& action);
 void add_sources(CLI::App& app, Action& action);
 void add_hazard(CLI::App& app, Action& action);
+void add_merge(CLI::App& app, Action& action);
 
 /// The options that say which scenario is meant: those of `run` and `check`.
 void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags);

@@ -1,150 +1,176 @@
-#include <malloc.h>
 #include <omp.h>
 
-#include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <optional>
 
 #include "commands.hpp"
 #include "progress.hpp"
-#include "run_support.hpp"
+#include "run_results.hpp"
 #include "talus/base/error.hpp"
-#include "talus/io/hazard_file.hpp"
 #include "talus/io/output_folder.hpp"
-#include "talus/io/run_record.hpp"
-#include "talus/io/write_crossings.hpp"
-#include "talus/io/write_lines.hpp"
-#include "talus/io/write_vectors.hpp"
-#include "talus/products/maps.hpp"
-#include "write_maps.hpp"
+#include "talus/products/accuracy.hpp"
+
+namespace fs = std::filesystem;
 
 namespace {
 
+using Clock = std::chrono::steady_clock;
 using talus::io::LoadedScenario;
+using talus::io::OutputFolder;
 
 struct Options {
   talus::io::RunFlags flags;
-  std::string out, progress;
+  std::string out, progress, part;
+  talus::Rounds rounds;
+  double checkpoint = 30.0;
   int threads = 0;
-  bool overwrite = false, quiet = false;
+  bool overwrite = false, resume = false, quiet = false;
 };
 
-/// The files that are written while the trajectories are traced.
-class Vectors {
+/// "I/N".
+talus::Part part_of(const std::string& text) {
+  talus::Part part;
+  if (text.empty()) return part;
+  char end = '\0';
+  if (std::sscanf(text.c_str(), "%9u/%9u%c", &part.number, &part.of, &end) != 2 || part.number < 1 ||
+      part.number > part.of)
+    throw talus::InputError("--part '" + text + "': must be I/N with I from 1 to N, for example 2/3");
+  return part;
+}
+
+void check(const Options& options, const talus::Part& part) {
+  if (options.rounds.until_error && !part.whole())
+    throw talus::InputError(
+        "--until-error with --part: one part cannot know the error of all; give every part the same --rounds, and talus "
+        "merge says what was reached");
+}
+
+/// The simulation of one command, with what it keeps on the disk.
+class Sitting {
  public:
-  Vectors(const LoadedScenario& loaded, const std::filesystem::path& folder)
-      : scenario_(loaded.scenario),
+  Sitting(const Options& options, const LoadedScenario& loaded, const talus::Part& part, OutputFolder& folder,
+          Progress& progress)
+      : options_(options),
+        scenario_(loaded.scenario),
         folder_(folder),
-        stops_(folder / "stops.gpkg", loaded),
-        summary_(scenario_.screens.size()) {
-    if (loaded.scenario.output.paths > 0)
-      paths_.emplace(folder / "trajectories.gpkg", loaded.geo, loaded.scenario.surface.grid());
-    if (!loaded.scenario.screens.empty()) crossings_.emplace(folder / "screens.csv", loaded.scenario, loaded.geo);
+        tally_(scenario_.surface.grid(), scenario_.output.energy_thresholds, scenario_.output.height_thresholds),
+        stores_(store_in(folder, loaded, part, options)),
+        sinks_(store().sinks()),
+        simulation_(scenario_, part, options.rounds.several(), tally_, sinks_) {
+    if (auto weights = talus::AnnualWeights::of(scenario_)) tally_.keep_hazard(std::move(*weights));
+    store().restore(simulation_, tally_);
+    sinks_.progress = [&progress](double share) { return progress.update(share) && !interrupted(); };
+    sinks_.pause = [this] { return seconds_since_kept() > options_.checkpoint; };
   }
 
-  talus::Sinks sinks() {
-    talus::Sinks sinks;
-    sinks.stops = [this](std::span<const talus::StopRow> rows) { stops_.write(rows); };
-    if (paths_) sinks.paths = [this](const talus::RecordedPath& path) { paths_->write(path); };
-    if (crossings_)
-      sinks.crossings = [this](std::span<const talus::Crossing> rows) {
-        crossings_->write(rows);
-        summary_.add(rows);
-      };
-    return sinks;
-  }
+  talus::io::Store& store() { return stores_.front(); }
+  std::span<const talus::io::Store> stores() const { return stores_; }
+  talus::Tally& tally() { return tally_; }
+  const talus::Totals& totals() const { return simulation_.totals(); }
+  std::uint32_t rounds_done() const { return simulation_.position().round + (simulation_.round_done() ? 1U : 0U); }
 
-  void finish(const talus::Totals& totals) {
-    stops_.finish();
-    if (paths_) paths_->finish();
-    if (crossings_) {
-      crossings_->finish();
-      talus::io::write_text(folder_ / "screens_summary.csv", talus::io::screens_summary_csv(scenario_, summary_));
+  /// Traces all rounds. Throws `Interrupted`, after what is done was kept.
+  void trace(int threads) {
+    while (!enough()) {
+      if (simulation_.round_done()) simulation_.next_round();
+      simulation_.advance(threads);
+      if (simulation_.totals().interrupted || interrupted()) interrupt();
+      if (simulation_.round_done()) store().end_round(simulation_.position().round);
+      if (seconds_since_kept() > options_.checkpoint) keep();
     }
-    if (!scenario_.barriers.empty())
-      talus::io::write_text(folder_ / "barriers.csv", talus::io::barriers_csv(scenario_, totals));
+  }
+
+  void keep() {
+    store().keep(simulation_, tally_);
+    folder_.keep();
+    kept_ = Clock::now();
+  }
+
+  /// Keeps what was traced and throws `Interrupted`, which says how to go on.
+  [[noreturn]] void interrupt() {
+    if (simulation_.position().unit == 0 && simulation_.position().round == 0) stop_interrupted();
+    keep();
+    std::string again;
+    for (const std::string& word : command_line())
+      if (word != "--resume") again += (again.empty() ? "" : " ") + word;
+    throw Interrupted("interrupted; what was traced is kept, go on with: " + again + " --resume");
+  }
+
+  /// What `--until-error` asks of the cells, so far.
+  talus::Accuracy accuracy() const {
+    return talus::accuracy_of(tally_, std::uint64_t{rounds_done()} * scenario_.released(), options_.rounds.above);
   }
 
  private:
+  static std::vector<talus::io::Store> store_in(const OutputFolder& folder, const LoadedScenario& loaded,
+                                                const talus::Part& part, const Options& options) {
+    std::vector<talus::io::Store> stores;
+    if (fs::exists(folder.work() / talus::io::kStoreManifest)) {
+      stores.push_back(talus::io::Store::opened(folder.work(), loaded));
+      const talus::Part kept = stores.front().part();
+      if (kept.number != part.number || kept.of != part.of)
+        throw talus::InputError(options.out + ": what is kept there is part " + std::to_string(kept.number) + "/" +
+                                std::to_string(kept.of) + "; give that with --part, or another folder");
+    } else {
+      fs::create_directories(folder.work());
+      stores.emplace_back(folder.work(), loaded, part);
+    }
+    return stores;
+  }
+
+  double seconds_since_kept() const { return std::chrono::duration<double>(Clock::now() - kept_).count(); }
+
+  bool enough() const {
+    const talus::Rounds& wanted = options_.rounds;
+    const std::uint32_t done = rounds_done();
+    if (done == 0) return false;
+    if (!simulation_.round_done() && simulation_.position().unit > 0) return false;
+    if (!wanted.until_error) return done >= wanted.count;
+    return done >= wanted.most || accuracy().half_width < *wanted.until_error;
+  }
+
+  const Options& options_;
   const talus::Scenario& scenario_;
-  std::filesystem::path folder_;
-  talus::io::StopsWriter stops_;
-  std::optional<talus::io::TrajectoriesWriter> paths_;
-  std::optional<talus::io::CrossingsWriter> crossings_;
-  talus::ScreenSummary summary_;
+  OutputFolder& folder_;
+  talus::Tally tally_;
+  std::vector<talus::io::Store> stores_;  // one
+  talus::Sinks sinks_;
+  talus::Simulation simulation_;
+  Clock::time_point kept_ = Clock::now();
 };
 
-/// What a user should know of the result.
-std::vector<std::string> warnings_of(const talus::Totals& totals) {
-  const std::uint64_t left = count_of(totals, talus::End::Left);
-  if (static_cast<double>(left) <= 0.01 * static_cast<double>(totals.released)) return {};
-  return {share_text(left, totals.released) + " of the trajectories (" + count_text(left) +
-          ") left the DEM or met missing data: the maps do not show how far they go; a larger DEM would"};
+/// The scenario with the trajectories of all rounds, so that OUT/scenario.toml says what was traced.
+LoadedScenario with_rounds(const talus::io::RunFlags& flags, std::uint32_t rounds, std::uint32_t each) {
+  talus::io::RunFlags all = flags;
+  all.trajectories = each * rounds;
+  LoadedScenario loaded = talus::io::load_scenario(all);
+  for (talus::io::Setting& setting : loaded.settings)
+    if (setting.key == "trajectories")
+      setting.source = std::to_string(rounds) + " rounds of " + std::to_string(each);
+  return loaded;
 }
 
-void summarise(const talus::io::RunRecord& record, const LoadedScenario& loaded, const std::string& folder) {
-  const talus::Totals& t = record.totals;
-  say("", count_text(t.released) + " trajectories from " + count_text(loaded.scenario.sources.size()) +
-              " source cells: " + ends_text(t));
-  char seconds[96];
-  std::snprintf(seconds, sizeof seconds, "read %.1f s, simulated %.1f s, wrote %.1f s", record.wall.read,
-                record.wall.simulate, record.wall.write);
-  say("", count_text(record.touched_cells) + " cells reached; " + seconds);
-  say("", "results are in " + folder);
-}
-
-/// Traces, scores and writes everything into `folder`; fills the record.
-void simulate_and_write(const Options& options, const LoadedScenario& loaded, const std::filesystem::path& folder,
-                        Stopwatch& watch, talus::io::RunRecord& record) {
-  const talus::Scenario& scenario = loaded.scenario;
-  Progress progress(Progress::mode_of(options.quiet, options.progress == "machine"), scenario.released());
-  talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
-  if (auto weights = talus::AnnualWeights::of(scenario)) tally.keep_hazard(std::move(*weights));
-  Vectors vectors(loaded, folder);
-  talus::Sinks sinks = vectors.sinks();
-  sinks.progress = [&progress](double share) { return progress.update(share) && !interrupted(); };
-  record.totals = talus::simulate(scenario, tally, sinks, record.threads);
-  if (record.totals.interrupted || interrupted()) stop_interrupted();
-  const Stopwatch::Lap simulated = watch.lap();
-  record.touched_cells = tally.touched_cells();
-  malloc_trim(0);  // gives back what the workers' batches took, before the maps need room
-
-  progress.stage("writing the results");
-  vectors.finish(record.totals);
-  const talus::Grid& grid = scenario.surface.grid();
-  write_maps(talus::make_maps(scenario, tally),
-             {folder, loaded.geo, grid.columns, grid.rows, [] { return !interrupted(); }}, record.threads);
-  if (tally.weights() != nullptr) talus::io::write_hazard(folder / talus::io::kHazardFile, loaded, tally);
-  talus::io::write_text(folder / "scenario.toml", loaded.complete_toml);
-  record.files = files_in(folder);
-  const Stopwatch::Lap written = watch.lap();
-  record.cpu.simulate = simulated.cpu - record.totals.sink_cpu_seconds;
-  record.cpu.write = written.cpu + record.totals.sink_cpu_seconds;
-  record.wall.simulate = simulated.wall;
-  record.wall.write = written.wall;
-  for (const std::string& warning : warnings_of(record.totals)) record.warnings.push_back(warning);
-  talus::io::write_text(folder / "run.json", talus::io::run_json(record, loaded));
-  progress.finish();
-}
-
-/// Says what went wrong where too many trajectories ended at a limit, and how to look into it.
-int judge_limits(const talus::Totals& totals, const std::filesystem::path& folder) {
-  if (!talus::io::too_many_limits(totals)) return 0;
-  say("error", limits_text(totals) + "; look at the first: talus trace " + (folder / "scenario.toml").string() +
-                   " --source " + std::to_string(totals.first_limit[0]) + " --block " +
-                   std::to_string(totals.first_limit[1]));
-  return 1;
+/// Turns what a part keeps into its results: the files of the store, complete.
+void deliver_part(Sitting& sitting, const OutputFolder& folder) {
+  sitting.keep();
+  for (const auto& entry : fs::directory_iterator(folder.work()))
+    fs::rename(entry.path(), folder.temporary() / entry.path().filename());
+  fs::remove(folder.work());
 }
 
 int run(const Options& options) {
   Stopwatch watch;
   catch_signals();
+  const talus::Part part = part_of(options.part);
+  check(options, part);
   const LoadedScenario loaded = talus::io::load_scenario(options.flags);
   if (interrupted()) stop_interrupted();
-  talus::io::OutputFolder folder(options.out, options.overwrite);
-  for (const talus::io::InputFile& input : loaded.inputs)
-    if (input.role != "scenario") folder.protect(input.path);
+  OutputFolder folder(options.out, options.overwrite,
+                      options.resume ? OutputFolder::Unfinished::Resume : OutputFolder::Unfinished::Refuse);
+  for (const talus::io::InputFile& input : loaded.inputs)  // the scenario that the run itself left may be replaced
+    if (fs::path(input.path) != folder.final_path() / "scenario.toml") folder.protect(input.path);
   if (!options.quiet)
     for (const std::string& warning : loaded.warnings) say("warning", warning);
 
@@ -152,17 +178,41 @@ int run(const Options& options) {
   record.command = command_line();
   record.warnings = loaded.warnings;
   record.threads = options.threads > 0 ? options.threads : omp_get_num_procs();
+  Progress progress(Progress::mode_of(options.quiet, options.progress == "machine"), loaded.scenario.released());
+  Sitting sitting(options, loaded, part, folder, progress);
   const Stopwatch::Lap read = watch.lap();
   record.cpu.read = read.cpu;
   record.wall.read = read.wall;
-  simulate_and_write(options, loaded, folder.temporary(), watch, record);
-  if (interrupted()) stop_interrupted();
-  folder.commit();
+  sitting.trace(record.threads);
+  const Stopwatch::Lap simulated = watch.lap();
+  record.totals = sitting.totals();
+  record.cpu.simulate = record.totals.cpu_seconds - record.totals.sink_cpu_seconds;
+  record.wall.simulate = simulated.wall;
+  if (options.rounds.several()) record.rounds = {sitting.rounds_done(), options.rounds, sitting.accuracy()};
 
-  if (!options.quiet) {
-    for (const std::string& warning : warnings_of(record.totals)) say("warning", warning);
-    summarise(record, loaded, folder.final_path().string());
+  if (!part.whole()) {
+    deliver_part(sitting, folder);
+    folder.commit();
+    progress.finish();
+    if (!options.quiet)
+      say("", "part " + options.part + ": " + count_text(record.totals.released) + " trajectories; results are in " +
+                  folder.final_path().string() + "; talus merge joins the parts");
+    return 0;
   }
+  const std::uint32_t rounds = sitting.rounds_done();
+  sitting.tally().set_rounds(rounds);
+  const std::optional<LoadedScenario> all =
+      rounds > 1 ? std::optional(with_rounds(options.flags, rounds, loaded.scenario.trajectories)) : std::nullopt;
+  const LoadedScenario& whole = all ? *all : loaded;
+  try {
+    write_results(whole, sitting.stores(), sitting.tally(), folder.temporary(), watch, progress, record);
+  } catch (const Interrupted&) {
+    sitting.interrupt();
+  }
+  if (interrupted()) sitting.interrupt();
+  fs::remove_all(folder.work());
+  folder.commit();
+  if (!options.quiet) summarise(record, whole, folder.final_path().string());
   return judge_limits(record.totals, folder.final_path());
 }
 
@@ -186,6 +236,19 @@ void add_run(CLI::App& app, Action& action) {
   command->add_flag("--overwrite", options->overwrite, "replace the folder if it holds an earlier result");
   command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
       ->check(CLI::Range(1, 4096));
+  command->add_option("--part", options->part, "I/N: only part I of N of the source cells, for talus merge");
+  command->add_flag("--resume", options->resume, "go on with an interrupted run of the same command");
+  command->add_option("--checkpoint", options->checkpoint, "seconds between two times that the work is kept on the disk")
+      ->check(CLI::Range(0.0, 1e6));
+  command->add_option("--rounds", options->rounds.count, "how often the scenario's trajectories are traced")
+      ->check(CLI::Range(1, 10'000));
+  command->add_option("--until-error", options->rounds.until_error,
+                      "rounds until the relative 95 % half-width of the impact probability is below this")
+      ->check(CLI::Range(1e-4, 10.0));
+  command->add_option("--above", options->rounds.above, "--until-error: in all cells with a larger probability; 0.01")
+      ->check(CLI::Range(1e-9, 1.0));
+  command->add_option("--most-rounds", options->rounds.most, "--until-error: never more; 100")
+      ->check(CLI::Range(1, 10'000));
   command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
   command->add_option("--progress", options->progress, "machine: lines `progress 42` for other programs")
       ->check(CLI::IsMember({"machine"}));

@@ -8,31 +8,44 @@ namespace talus::io {
 /// A folder of results that appears under its name complete, or not at all.
 ///
 /// Everything is written into a hidden folder beside it, `.NAME.talus-PID`, so that a rename is all that `commit` has
-/// to do. Without `commit` (an exception, an interruption, a full disk) the hidden folder is removed.
+/// to do. Without `commit` (an exception, an interruption, a full disk) the hidden folder is removed, unless it is to be
+/// kept for a run that goes on.
 class OutputFolder {
  public:
-  /// @param overwrite  an earlier result of talus (it holds a run.json, calibration.json or diagnosis.json) may be
-  /// replaced Throws InputError where the name is taken or nothing can be written there.
-  OutputFolder(const std::filesystem::path& path, bool overwrite);
+  /// What to do with the hidden folder of an interrupted run of this name.
+  enum class Unfinished {
+    Ignore,  ///< this command leaves none
+    Refuse,  ///< InputError with the way out; where `overwrite` is given, it is removed
+    Resume   ///< it becomes this one's, where there is one
+  };
+
+  /// @param overwrite  an earlier result of talus (it holds a run.json, part.json, calibration.json or diagnosis.json)
+  /// may be replaced. Throws InputError where the name is taken or nothing can be written there.
+  OutputFolder(const std::filesystem::path& path, bool overwrite, Unfinished unfinished = Unfinished::Ignore);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
   /// Where to write until `commit`.
   const std::filesystem::path& temporary() const { return temporary_; }
+  /// Where in it a run keeps its work while it goes on: what is looked for by `Unfinished`.
+  std::filesystem::path work() const { return temporary_ / kWork; }
+  static constexpr const char* kWork = "unfinished";
+  /// The hidden folder stays where there is no `commit`.
+  void keep() { kept_ = true; }
   /// Absolute; what the user will find.
   const std::filesystem::path& final_path() const { return final_; }
 
   /// Throws InputError where `file` lies in a folder that `commit` would replace: an input must not be deleted.
   void protect(const std::filesystem::path& file) const;
 
-  /// Brings all files to the disk and gives the folder its name. An earlier result is moved aside first, put back where
+  /// Brings all files to the disk and gives the folder its name, if that is still free or may be overwritten. An earlier result is moved aside first, put back where
   /// the rename fails, and removed last. Throws std::runtime_error.
   void commit();
 
  private:
   std::filesystem::path final_, temporary_;
-  bool committed_ = false;
+  bool overwrite_, committed_ = false, kept_ = false;
 };
 
 /// Writes a text file. Throws std::runtime_error, one line with the file and the cause; no half file is left.

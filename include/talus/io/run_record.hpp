@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "talus/io/loaded.hpp"
+#include "talus/products/accuracy.hpp"
 #include "talus/simulate/simulate.hpp"
 
 namespace talus::io {
@@ -16,6 +17,13 @@ struct StageSeconds {
   double read = 0.0, simulate = 0.0, write = 0.0;
 };
 
+/// The rounds of a run that was asked for several.
+struct RoundsRecord {
+  std::uint32_t done = 0;  ///< 0: it was not
+  Rounds asked;
+  Accuracy reached;
+};
+
 /// What happened in a run.
 struct RunRecord {
   std::vector<std::string> command;  ///< as it was called
@@ -25,6 +33,8 @@ struct RunRecord {
   std::uint64_t touched_cells = 0;
   StageSeconds cpu, wall;
   int threads = 0;
+  RoundsRecord rounds;
+  std::uint32_t parts = 1;  ///< that were joined
 };
 
 /// Whether too many trajectories ended at a limit (`kAllowedLimitShare`).

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "talus/physics/path.hpp"
+#include "talus/simulate/bytes.hpp"
 
 namespace talus {
 
@@ -24,6 +25,9 @@ class BarrierTally {
   void add(const Path& path);
   /// Of the same barriers.
   void merge(const BarrierTally& other);
+  void save(ByteWriter& out) const;
+  /// Throws std::out_of_range where the bytes are of other barriers.
+  static BarrierTally restored(const Barriers& barriers, ByteReader& in);
 
   std::size_t size() const { return parts_.size(); }
   const std::vector<BarrierCounts>& parts(std::size_t barrier) const { return parts_[barrier]; }

@@ -2,6 +2,7 @@
 #include <span>
 #include <vector>
 
+#include "talus/simulate/bytes.hpp"
 #include "talus/simulate/energy_bins.hpp"
 #include "talus/simulate/frequency.hpp"
 
@@ -44,6 +45,9 @@ class HazardCell {
 
   /// From what was stored.
   static HazardCell restored(int first, std::vector<Bin> bins, std::vector<std::int64_t> overlaps);
+
+  void save(ByteWriter& out) const;
+  static HazardCell restored(ByteReader& in);
 
   bool operator==(const HazardCell& other) const;  ///< whatever room is held ready
 

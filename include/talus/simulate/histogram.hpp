@@ -4,6 +4,8 @@
 #include <span>
 #include <utility>
 
+#include "talus/simulate/bytes.hpp"
+
 namespace talus {
 
 /// Counts of positive values in bins of equal relative width: 16 to each doubling, so that a bin is 3.2 to 6.25 % wide.
@@ -28,6 +30,10 @@ class LogHistogram {
 
   void add(std::span<const float> values);
   void merge(const LogHistogram& other);
+
+  void save(ByteWriter& out) const;
+  /// What `save` wrote. Throws std::out_of_range where it cannot be that.
+  static LogHistogram restored(ByteReader& in);
 
   std::uint64_t count() const;
   const void* counts() const { return counts_; }  ///< where they lie in memory, for the tally to fetch ahead

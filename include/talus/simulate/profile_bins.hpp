@@ -9,18 +9,18 @@
 namespace talus {
 
 /// Mean, percentiles and maximum of values; all 0 where there are none.
-struct Distribution {
+struct BinDistribution {
   std::uint64_t count = 0;
   double mean = 0.0, p50 = 0.0, p95 = 0.0, p99 = 0.0, max = 0.0;
 };
 
 /// The percentile p is the k-th smallest value, k = ceil(p count). The same bits in any order of the values.
-Distribution distribution_of(std::vector<float> values);
+BinDistribution distribution_of(std::vector<float> values);
 
 /// What happened in one bin of a profile. A trajectory counts once in a bin, with its largest value there.
 struct ProfileBin {
   double from = 0.0, to = 0.0;         ///< distance from the first node [m]
-  Distribution speed, energy, height;  ///< [m/s], translational [kJ], vertical above the ground [m]
+  BinDistribution speed, energy, height;  ///< [m/s], translational [kJ], vertical above the ground [m]
 };
 
 /// Collects trajectories on an extruded profile by bins of x, from several threads.
@@ -49,7 +49,7 @@ class ProfileBins {
 
 /// How far blocks went: the distance in x between release and stop.
 struct Runout {
-  Distribution stopped;              ///< of the blocks that came to rest [m]
+  BinDistribution stopped;              ///< of the blocks that came to rest [m]
   std::vector<std::uint64_t> stops;  ///< by bins of the distance, from 0
   std::uint64_t left = 0, released = 0;
 };

@@ -23,6 +23,8 @@ struct StopRow {
   std::uint32_t impacts;
 };
 
+StopRow stop_row(const Release& release, const Path& path);
+
 /// A point of a recorded path, dense enough to draw.
 struct PathPoint {
   double x, y, z, time;  // [m, local], [s]
@@ -49,6 +51,8 @@ struct Sinks {
   /// Called with the share done, 0..1, after every unit of work; false interrupts the run. From any thread, one at a
   /// time.
   std::function<bool(double)> progress;
+  /// Asked after every unit of work whether to pause, so that what is done can be kept; as `progress`.
+  std::function<bool()> pause;
 };
 
 /// Totals of a run: integers, so that they are equal for any number of threads.
@@ -62,6 +66,9 @@ struct Totals {
   double sink_cpu_seconds = 0.0;  ///< of `cpu_seconds`, spent in the sinks
   double cpu_seconds = 0.0;       ///< of all threads
 };
+
+/// Adds what a part of a run has to its whole. The barriers must be the same.
+void add(Totals& totals, const Totals& part);
 
 /// Traces every trajectory of the scenario and scores it.
 ///

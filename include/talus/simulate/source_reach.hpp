@@ -4,6 +4,8 @@
 #include <mutex>
 #include <unordered_map>
 
+#include "talus/simulate/bytes.hpp"
+
 namespace talus {
 
 /// The grid is scored in square regions of this many cells on a side.
@@ -22,6 +24,9 @@ class SourceReach {
     if (!cells) cells = std::make_unique<Cells>();
     return *cells;
   }
+
+  void save(ByteWriter& out) const;
+  void restore(ByteReader& in);
 
  private:
   std::mutex mutex_;

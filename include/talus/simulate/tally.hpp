@@ -25,6 +25,9 @@ struct CellRecord {
   std::array<LogHistogram, kQuantities> histogram;
 
   double mean(Quantity q) const;
+  void merge(const CellRecord& other);
+  void save(ByteWriter& out) const;
+  static CellRecord restored(ByteReader& in);
 };
 
 /// Units of the sums: 2^-10 kJ, 2^-16 m/s, 2^-16 m.
@@ -57,6 +60,8 @@ class Tally {
 
   /// Keeps annual frequencies by energy too; before the first batch. Trajectories must then have their stakes.
   void keep_hazard(AnnualWeights weights);
+  /// Says how many rounds of the scenario's trajectories were added: each then stands for so much less.
+  void set_rounds(std::uint32_t rounds);
   const AnnualWeights* weights() const { return hazard_ ? &hazard_->weights : nullptr; }
   /// How the hazard of a cell is kept. Only where it is.
   const HazardRules& hazard_rules() const { return hazard_->rules; }
@@ -77,6 +82,14 @@ class Tally {
   /// `find` finds.
   const std::uint32_t* exceedances(int column, int row) const;
   std::uint64_t touched_cells() const;
+
+  /// What is kept of a region, for a file; nothing where no trajectory was. Regions are numbered row by row from the
+  /// south-west; not while batches are added.
+  std::size_t regions() const { return region_count_; }
+  void save(std::size_t region, ByteWriter& out) const;
+  /// Adds what another tally of the same grid, thresholds and weights saved. Throws std::out_of_range where the bytes
+  /// cannot be that.
+  void merge(std::size_t region, ByteReader& in);
 
  private:
   struct Region;

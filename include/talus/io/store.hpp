@@ -1,0 +1,85 @@
+#pragma once
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "talus/io/loaded.hpp"
+#include "talus/simulate/simulation.hpp"
+
+namespace talus::io {
+
+/// What is written once the trajectories of a run, or of a part of it, are done; docs/regions.md, "Files of a part".
+inline constexpr const char* kStoreManifest = "part.json";
+
+/// The work of a run, or of a part of it, on the disk: the tally, the rows of stops, crossings and paths, and how far
+/// it has come. From it an interrupted run goes on, and `talus merge` joins parts.
+///
+/// `part.json` names the files that belong to it, with their checksums, and is replaced last: whenever a program is
+/// killed, what it names is whole. What it doesn't name is removed.
+class Store {
+ public:
+  /// A new one in an empty folder, for this part of the plan. Throws std::runtime_error.
+  Store(const std::filesystem::path& folder, const LoadedScenario& loaded, const Part& part);
+
+  /// What an earlier program left. Throws InputError where it is damaged; `InputError` too where it belongs to another
+  /// plan than `loaded`.
+  static Store opened(const std::filesystem::path& folder, const LoadedScenario& loaded);
+
+  Store(Store&&) noexcept;
+  Store& operator=(Store&&) noexcept;
+  ~Store();
+
+  const Part& part() const { return part_; }
+  std::uint32_t rounds() const { return rounds_; }  ///< that are done
+  bool between_rounds() const { return units_done_ == 0; }
+  bool empty() const { return generation_ == 0; }  ///< nothing was kept yet
+  const std::filesystem::path& folder() const { return folder_; }
+
+  /// Where rows go to until they are kept. Only the functions for rows are set: stops, and paths and crossings where
+  /// the scenario has them.
+  Sinks sinks();
+
+  /// A round is done. Its rows can be replayed; all is not yet kept.
+  void end_round(std::uint32_t round);
+
+  /// Keeps all that was done so far, in place of what was kept before. Throws std::runtime_error: what was kept before
+  /// then still counts.
+  void keep(const Simulation& simulation, const Tally& tally);
+
+  /// Totals of what was kept; adds its tally to `tally`. Throws InputError where a file is damaged.
+  Totals add_to(Tally& tally) const;
+  /// Puts a simulation where the kept one was; its tally too.
+  void restore(Simulation& simulation, Tally& tally) const;
+  /// Hands the kept rows of one round to sinks, in the order in which they came.
+  void replay(std::uint32_t round, const Sinks& sinks) const;
+
+ private:
+  struct Rows;
+  struct RowsFile {
+    std::uint32_t round;
+    std::string name, sha256;
+  };
+  Store(std::filesystem::path folder, const LoadedScenario& loaded);
+  std::string checked(const std::string& name, const std::string& sha256) const;
+  void close_rows(std::uint32_t round);
+  void write_manifest() const;
+  void read_manifest();
+  void remove_unnamed() const;
+
+  std::filesystem::path folder_;
+  std::string plan_;  // its checksum
+  const LoadedScenario* loaded_;
+  Part part_;
+  std::uint32_t rounds_ = 0;
+  std::uint64_t units_done_ = 0;
+  std::uint32_t generation_ = 0;  // of the files; 0: none yet
+  std::string tally_sha256_, rest_sha256_;
+  std::vector<RowsFile> rows_files_;
+  std::unique_ptr<Rows> rows_;  // that are being written
+};
+
+}  // namespace talus::io

@@ -1,0 +1,93 @@
+#pragma once
+#include <map>
+#include <memory>
+
+#include "talus/simulate/simulate.hpp"
+
+namespace talus {
+
+/// The source cells that one program traces of a plan that several share: whole ones, those of a part in one piece.
+struct Part {
+  std::uint32_t number = 1, of = 1;
+  bool whole() const { return of == 1; }
+
+  /// The first source cell of this part, of so many in all; the next part's first is this part's end.
+  std::uint32_t first(std::size_t sources) const { return begin_of(number - 1, sources); }
+  std::uint32_t end(std::size_t sources) const { return begin_of(number, sources); }
+
+ private:
+  std::uint32_t begin_of(std::uint32_t part, std::size_t sources) const {
+    return static_cast<std::uint32_t>(std::uint64_t{part} * sources / of);
+  }
+};
+
+/// Which cells the source cells have reached, where that must be known beyond one unit of work: a source cell counts
+/// once in a cell, however many units, rounds or sittings trace it.
+class Reaches {
+ public:
+  /// @param units  of work of a source cell, in one round;  @param keep  all, for further rounds
+  Reaches(std::uint32_t units, bool keep) : units_(units), keep_(keep) {}
+
+  /// Once per unit. Empty where one unit holds all of the source cell. Safe to call from several threads.
+  std::shared_ptr<SourceReach> of(std::uint32_t source);
+
+  void save(ByteWriter& out) const;
+  void restore(ByteReader& in);
+
+ private:
+  struct Entry {
+    std::shared_ptr<SourceReach> reach;
+    std::uint32_t asked = 0;
+  };
+  std::uint32_t units_;
+  bool keep_;
+  std::mutex mutex_;
+  std::map<std::uint32_t, Entry> open_;
+};
+
+/// A run that can be paused, kept on the disk and gone on with: same bits wherever it pauses.
+///
+/// A round traces `scenario.trajectories` blocks of each source cell: round r the blocks from r times that number on.
+/// Work is done in units, blocks of one source cell; a pause comes between units, and all before it are done.
+class Simulation {
+ public:
+  struct Position {
+    std::uint32_t round = 0;  ///< the current one, from 0
+    std::uint64_t unit = 0;   ///< the first of it that is not done
+  };
+
+  /// @param further_rounds  there may be more than one
+  /// The scenario, the tally and the sinks must outlive it.
+  Simulation(const Scenario& scenario, const Part& part, bool further_rounds, Tally& tally, const Sinks& sinks);
+
+  /// Traces on to the end of the round, or until `sinks.pause` or `sinks.progress` asks to stop.
+  ///
+  /// @param threads  0: as many as the machine has
+  /// An exception of a sink leaves it of no use.
+  void advance(int threads);
+
+  bool round_done() const { return position_.unit == units_; }
+  void next_round() { position_ = {position_.round + 1, 0}; }
+  std::uint64_t units() const { return units_; }  ///< of a round
+
+  const Position& position() const { return position_; }
+  const Totals& totals() const { return totals_; }
+  void save_reaches(ByteWriter& out) const { reaches_.save(out); }
+
+  /// Goes on from what was kept; before the first `advance`.
+  void restore(const Position& position, const Totals& totals, ByteReader& reaches);
+
+ private:
+  class Advance;
+  const Scenario& scenario_;
+  Tally& tally_;
+  const Sinks& sinks_;
+  ScreenFinder screens_;
+  std::uint32_t first_source_, units_per_source_;
+  std::uint64_t units_;
+  Position position_;
+  Totals totals_;
+  Reaches reaches_;
+};
+
+}  // namespace talus

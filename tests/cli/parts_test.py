@@ -1,0 +1,157 @@
+"""Parts and merge, rounds, interruption and resume: whatever way the work is cut, the bits are those of one run."""
+import hashlib
+import json
+import os
+import random
+import signal
+import subprocess
+import time
+import unittest
+
+from osgeo import ogr
+
+from support import TALUS, Case, box, write_features
+
+RUN = """dem = "dem.tif"
+trajectories = 40
+[sources]
+file = "sources.gpkg"
+[blocks]
+diameter = [0.6, 1.2]
+[screens]
+file = "screens.gpkg"
+[barriers]
+file = "nets.gpkg"
+[output]
+trajectories = 50
+"""
+
+
+class Parts(Case):
+    def setUp(self):
+        super().setUp()
+        write_features(self.path("sources.gpkg"), "sources",
+                       [(box(100, 230, 30, 15), ["west", 0.5]), (box(200, 230, 20, 10), ["east", 0.02])],
+                       [("name", ogr.OFTString), ("frequency", ogr.OFTReal)])
+        line = "LINESTRING (2600000 {0},2600300 {0})"
+        write_features(self.path("screens.gpkg"), "screens", [(line.format(1200100), ["road"])], [("id", ogr.OFTString)])
+        write_features(self.path("nets.gpkg"), "nets", [(line.format(1200090), ["net", 1.0, 100.0])],
+                       [("id", ogr.OFTString), ("height", ogr.OFTReal), ("capacity", ogr.OFTReal)])
+        self.write("s.toml", RUN)
+
+    def run_scenario(self, out, *more):
+        return self.run_well("run", self.path("s.toml"), "-o", self.path(out), "-q", *more)
+
+    def hashes(self, out):
+        hashes = {}
+        for name in sorted(os.listdir(self.path(out))):
+            if name != "run.json":
+                with open(self.path(f"{out}/{name}"), "rb") as file:
+                    hashes[name] = hashlib.sha256(file.read()).hexdigest()
+        return hashes
+
+    def assert_same(self, one, other):
+        self.maxDiff = None
+        self.assertEqual(self.hashes(one), self.hashes(other))
+        left, right = self.record(one), self.record(other)
+        for key in ("released", "ends", "trajectory_metres", "impacts", "cells_scored", "touched_cells", "barriers", "files"):
+            self.assertEqual(left[key], right[key], key)
+
+    def test_three_parts_and_three_rounds(self):
+        self.run_scenario("whole", "--rounds", "3", "--threads", "2")
+        for i in (3, 1, 2):
+            self.run_scenario(f"part{i}", "--rounds", "3", "--part", f"{i}/3", "--threads", "1")
+        self.run_well("merge", self.path("merged"), *(self.path(f"part{i}") for i in (2, 3, 1)), "-q")
+        self.assert_same("whole", "merged")
+        self.assertEqual(self.record("merged")["parts"], 3)
+        self.assertEqual(self.record("merged")["rounds"], self.record("whole")["rounds"])
+        self.assertEqual(self.record("whole")["rounds"]["done"], 3)
+        with open(self.path("whole/scenario.toml"), encoding="utf-8") as file:
+            self.assertIn("trajectories = 120\n", file.read())
+        # The same blocks in one round: the same counts, a source cell counted once, in another order of the rows.
+        self.run_scenario("one", "--trajectories", "120")
+        for name in ("impact_probability", "reach_probability", "energy", "jump_height", "sources", "deposits"):
+            self.assertEqual(self.hashes("whole")[name + ".tif"], self.hashes("one")[name + ".tif"], name)
+        self.run_well("hazard", self.path("merged"), "-q")  # evaluates what the rounds kept
+
+    def test_what_cannot_be_merged(self):
+        for i in (1, 2):
+            self.run_scenario(f"part{i}", "--part", f"{i}/2")
+        one, two = self.path("part1"), self.path("part2")
+        self.fails(2, "1 of 2 parts are given", arguments=["merge", self.path("m"), one])
+        self.fails(2, "give each part once", arguments=["merge", self.path("m"), one, one])
+        self.fails(2, "is no part of a run", arguments=["merge", self.path("m"), self.folder, one])
+        self.run_scenario("other", "--part", "2/2", "--seed", "9")
+        self.fails(2, "another plan", arguments=["merge", self.path("m"), one, self.path("other")])
+        self.run_scenario("rounds", "--part", "2/2", "--rounds", "2")
+        self.fails(2, "the same --rounds", arguments=["merge", self.path("m"), one, self.path("rounds")])
+        self.fails(2, "--until-error with --part",
+                   arguments=["run", self.path("s.toml"), "-o", self.path("x"), "--part", "1/2", "--until-error", "0.1"])
+        for text in ("0/2", "3/2", "1", "1/2x"):
+            self.fails(2, "must be I/N", arguments=["run", self.path("s.toml"), "-o", self.path("x"), "--part", text])
+        name = next(n for n in sorted(os.listdir(two)) if n.startswith("tally"))
+        with open(f"{two}/{name}", "r+b") as file:
+            file.seek(1000)
+            byte = file.read(1)
+            file.seek(1000)
+            file.write(bytes([byte[0] ^ 1]))
+        self.fails(2, name, "is damaged", arguments=["merge", self.path("m"), one, two])
+        self.assertFalse(os.path.exists(self.path("m")))
+
+    def start(self, out, *more):
+        return subprocess.Popen([TALUS, "run", self.path("s.toml"), "-o", self.path(out), "-q", "--trajectories", "400", *more],
+                                stderr=subprocess.PIPE, text=True)
+
+    def unfinished(self, out):
+        return [name for name in os.listdir(self.folder) if name.startswith(f".{out}.talus-")]
+
+    def test_killed_ten_times(self):
+        self.write("s.toml", RUN.replace('trajectories = 40\n', 'trajectories = 400\n'))
+        start = time.monotonic()
+        self.run_scenario("whole")
+        whole = time.monotonic() - start
+        luck = random.Random(1)
+        for attempt in range(10):
+            out = f"killed{attempt}"
+            process = self.start(out, "--checkpoint", "0", "--threads", "2")
+            time.sleep(luck.uniform(0.1, 1.0) * whole)
+            process.kill()
+            process.communicate()
+            self.run_scenario(out, "--resume", "--trajectories", "400", "--checkpoint", "0.05", "--threads", "1")
+            self.assert_same("whole", out)
+            self.assertEqual([n for n in self.unfinished(out) if os.path.exists(self.path(f"{n}/unfinished/part.json"))], [])
+
+    def test_interrupted_and_gone_on_with(self):
+        self.run_scenario("whole", "--trajectories", "400")
+        process = self.start("out", "--threads", "1", "--progress=machine")
+        self.assertTrue(any(line == "progress 5\n" for line in iter(process.stderr.readline, "")))
+        process.send_signal(signal.SIGINT)
+        error = process.communicate(timeout=20)[1]
+        self.assertEqual(process.returncode, 130)
+        self.assertIn("interrupted", error)
+        self.assertIn("--resume", error)
+        self.assertEqual(len(self.unfinished("out")), 1)
+        arguments = ["run", self.path("s.toml"), "-o", self.path("out"), "-q", "--trajectories", "400"]
+        self.fails(2, "--resume", "--overwrite", arguments=arguments)
+        self.fails(2, "another plan", arguments=[*arguments, "--resume", "--seed", "2"])
+        self.run_well(*arguments, "--resume")
+        self.assert_same("whole", "out")
+        self.assertEqual(self.unfinished("out"), [])
+
+    def test_until_the_error_is_small(self):
+        for threads in ("1", "2"):
+            self.run_scenario(f"out{threads}", "--until-error", "0.2", "--above", "0.02", "--threads", threads)
+        self.assert_same("out1", "out2")
+        rounds = self.record("out1")["rounds"]
+        self.assertTrue(rounds["reached"])
+        self.assertLess(rounds["relative_half_width"], 0.2)
+        self.assertGreater(rounds["done"], 1)
+        self.run_scenario("less", "--rounds", str(rounds["done"] - 1), "--above", "0.02")
+        self.assertGreaterEqual(self.record("less")["rounds"]["relative_half_width"], 0.2)  # it did not go on for nothing
+        self.run_scenario("cap", "--until-error", "0.001", "--most-rounds", "2")
+        self.assertFalse(self.record("cap")["rounds"]["reached"])
+        self.assertEqual(self.record("cap")["rounds"]["done"], 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,120 @@
+#include <omp.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "commands.hpp"
+#include "progress.hpp"
+#include "run_results.hpp"
+#include "talus/base/error.hpp"
+#include "talus/io/output_folder.hpp"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using talus::io::LoadedScenario;
+using talus::io::Store;
+
+struct Options {
+  std::string out;
+  std::vector<std::string> parts;
+  int threads = 0;
+  bool overwrite = false, quiet = false;
+};
+
+LoadedScenario scenario_of(const std::string& part, std::optional<std::uint32_t> trajectories) {
+  const fs::path file = fs::path(part) / "scenario.toml";
+  if (!fs::exists(file) || !fs::exists(fs::path(part) / talus::io::kStoreManifest))
+    throw talus::InputError(part + ": is no part of a run (it has no " + talus::io::kStoreManifest +
+                            "); give the folders that talus run --part I/N has written");
+  talus::io::RunFlags flags;
+  flags.scenario = file.string();
+  flags.trajectories = trajectories;
+  return talus::io::load_scenario(flags);
+}
+
+std::string name_of(const talus::Part& part) {
+  return std::to_string(part.number) + "/" + std::to_string(part.of);
+}
+
+/// The parts in their order. Throws InputError where they are not one whole.
+std::vector<Store> opened(const std::vector<std::string>& folders, const LoadedScenario& loaded) {
+  std::vector<Store> stores;
+  for (const std::string& folder : folders) stores.push_back(Store::opened(folder, loaded));
+  std::ranges::sort(stores, {}, [](const Store& store) { return store.part().number; });
+  const Store& first = stores.front();
+  for (std::size_t i = 0; i < stores.size(); ++i) {
+    const std::string name = stores[i].folder().string() + ": ";
+    const talus::Part part = stores[i].part();
+    if (part.of != first.part().of)
+      throw talus::InputError(name + "is part " + name_of(part) + ", another one is " + name_of(first.part()) +
+                              "; must all be of one division");
+    if (i > 0 && part.number == stores[i - 1].part().number)
+      throw talus::InputError(name + "is part " + name_of(part) + ", and so is " + stores[i - 1].folder().string() +
+                              "; give each part once");
+    if (!stores[i].between_rounds() || stores[i].rounds() != first.rounds())
+      throw talus::InputError(name + "has " + std::to_string(stores[i].rounds()) + " rounds, another part " +
+                              std::to_string(first.rounds()) + "; run all parts with the same --rounds");
+  }
+  if (stores.size() != first.part().of)
+    throw talus::InputError(std::to_string(stores.size()) + " of " + std::to_string(first.part().of) +
+                            " parts are given; give all");
+  return stores;
+}
+
+int merge(const Options& options) {
+  Stopwatch watch;
+  catch_signals();
+  const LoadedScenario loaded = scenario_of(options.parts.front(), std::nullopt);
+  const std::vector<Store> stores = opened(options.parts, loaded);
+  talus::io::OutputFolder folder(options.out, options.overwrite);
+  const talus::Scenario& scenario = loaded.scenario;
+  talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
+  if (auto weights = talus::AnnualWeights::of(scenario)) tally.keep_hazard(std::move(*weights));
+  talus::io::RunRecord record;
+  record.command = command_line();
+  record.warnings = loaded.warnings;
+  record.threads = options.threads > 0 ? options.threads : omp_get_num_procs();
+  record.parts = static_cast<std::uint32_t>(stores.size());
+  record.totals.barriers = talus::BarrierTally(scenario.barriers);
+  Progress progress(Progress::mode_of(options.quiet, false), 0);
+  for (const Store& store : stores) {
+    if (interrupted()) stop_interrupted();
+    add(record.totals, store.add_to(tally));
+  }
+  const std::uint32_t rounds = stores.front().rounds();
+  if (rounds > 1) {
+    record.rounds = {rounds, {}, {}};
+    record.rounds.asked.count = rounds;
+    record.rounds.reached = talus::accuracy_of(tally, record.totals.released, record.rounds.asked.above);
+  }
+  tally.set_rounds(rounds);
+  const LoadedScenario whole = scenario_of(options.parts.front(), scenario.trajectories * rounds);
+  record.wall.read = watch.lap().wall;
+  record.cpu.simulate = record.totals.cpu_seconds - record.totals.sink_cpu_seconds;
+  write_results(whole, stores, tally, folder.temporary(), watch, progress, record);
+  if (interrupted()) stop_interrupted();
+  folder.commit();
+  if (!options.quiet) summarise(record, whole, folder.final_path().string());
+  return judge_limits(record.totals, folder.final_path());
+}
+
+}  // namespace
+
+void add_merge(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("merge", "Join the parts of a run; the same bits as one run");
+  command->add_option("out", options->out, "new folder for the results")->required();
+  command->add_option("parts", options->parts, "folders that talus run --part I/N has written, all of them")->required();
+  command->add_flag("--overwrite", options->overwrite, "replace the folder if it holds an earlier result");
+  command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
+      ->check(CLI::Range(1, 4096));
+  command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
+  command->footer(
+      "Example:\n"
+      "  talus run scenario.toml --part 1/2 -o part1\n"
+      "  talus run scenario.toml --part 2/2 -o part2\n"
+      "  talus merge result part1 part2");
+  command->callback([&action, options] { action = [options] { return merge(*options); }; });
+}

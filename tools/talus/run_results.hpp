@@ -1,0 +1,24 @@
+#pragma once
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "progress.hpp"
+#include "run_support.hpp"
+#include "talus/io/run_record.hpp"
+#include "talus/io/store.hpp"
+
+/// What `run` and `merge` do once all trajectories are traced.
+
+/// Writes every result into `folder`: maps from the tally, vectors from the rows that the stores keep. Fills the record.
+///
+/// @param stores  one, or the parts in their order; all with the same number of rounds
+void write_results(const talus::io::LoadedScenario& loaded, std::span<const talus::io::Store> stores,
+                   const talus::Tally& tally, const std::filesystem::path& folder, Stopwatch& watch,
+                   Progress& progress, talus::io::RunRecord& record);
+
+/// Tells what was done.
+void summarise(const talus::io::RunRecord& record, const talus::io::LoadedScenario& loaded, const std::string& folder);
+
+/// The exit code: says what went wrong where too many trajectories ended at a limit, and how to look into it.
+int judge_limits(const talus::Totals& totals, const std::filesystem::path& folder);
