@@ -25,8 +25,9 @@ std::string strengths_of(const std::string& name) {
 /// Reads the table of one effect.
 class EffectReader {
  public:
-  EffectReader(ScenarioSpec& spec, TableReader table, std::string name, const std::filesystem::path& base)
-      : spec_(spec), table_(std::move(table)), name_(std::move(name)), base_(base) {}
+  EffectReader(ScenarioSpec& spec, TableReader table, std::string name, const std::filesystem::path& base,
+               const std::string& origin)
+      : spec_(spec), table_(std::move(table)), name_(std::move(name)), base_(base), origin_(origin) {}
 
   void read() {
     if (table_.value() == nullptr) return;
@@ -42,15 +43,16 @@ class EffectReader {
   }
 
  private:
-  void given(const std::string& key) { spec_.origins["effects." + name_ + "." + key] = "scenario"; }
+  void given(const std::string& key) { spec_.origins["effects." + name_ + "." + key] = origin_; }
 
-  /// Returns whether a strength is among them.
+  /// Returns whether it acts: one of its strengths is given, here or by what the scenario includes.
   bool numbers() {
     bool strength = false;
     for (const auto& field : effect_fields()) {
       if (!field.key.starts_with(name_ + ".")) continue;
       const std::string key(field.key.substr(name_.size() + 1));
-      strength = strength || (table_.value()->find(key) != nullptr && !std::isnan(field.off));
+      const bool given_before = spec_.origins.contains("effects." + name_ + "." + key);
+      strength = strength || ((given_before || table_.value()->find(key) != nullptr) && !std::isnan(field.off));
       if (const auto value = table_.number(key, field)) {
         field.set(spec_.values.effects, *value);
         given(key);
@@ -61,10 +63,12 @@ class EffectReader {
 
   void days(const EffectSpec& effect) {
     const auto days = table_.numbers("days", kDay);
-    if (table_.value()->find("days") == nullptr)
+    std::vector<int>& wet = spec_.values.effects.wet_ground.days;
+    if (table_.value()->find("days") == nullptr && wet.empty())
       table_.faults().push_back(effect.where + " has no days, must list the wet ones: days = [1, 2]");
     if (!days) return;
-    for (const double day : *days) spec_.values.effects.wet_ground.days.push_back(static_cast<int>(day));
+    wet.clear();  // what a scenario includes said others
+    for (const double day : *days) wet.push_back(static_cast<int>(day));
     given("days");
   }
 
@@ -74,6 +78,8 @@ class EffectReader {
                          std::all_of(zones->items.begin(), zones->items.end(),
                                      [](const TomlValue& item) { return item.kind == Kind::Text; });
       if (!names) table_.fault("zones", *zones, "must be a list of names of [ground.zones], like [\"meadow\"]");
+      effect.zones.clear();  // what a scenario includes said others
+      effect.file = {};
       for (const TomlValue& item : zones->items) effect.zones.push_back(item.text);
       effect.zones_where = table_.where("zones", *zones);
       given("zones");
@@ -81,7 +87,9 @@ class EffectReader {
     if (const auto file = table_.text("file")) {
       effect.file = {absolute_path(*file, base_), table_.where("file", *table_.value()->find("file"))};
       given("file");
-      if (!effect.zones.empty())
+      if (table_.value()->find("zones") == nullptr)
+        effect.zones.clear();
+      else
         table_.fault("file", *table_.value()->find("file"), "must not come with zones: give one of the two");
     }
   }
@@ -90,17 +98,18 @@ class EffectReader {
   TableReader table_;
   std::string name_;
   const std::filesystem::path& base_;
+  const std::string& origin_;
 };
 
 }  // namespace
 
-void read_effects(ScenarioSpec& spec, TableReader table, const std::filesystem::path& base) {
+void read_effects(ScenarioSpec& spec, TableReader table, const std::filesystem::path& base, const std::string& origin) {
   for (const std::string_view name : effect_names())
-    EffectReader(spec, table.table(std::string(name)), std::string(name), base).read();
+    EffectReader(spec, table.table(std::string(name)), std::string(name), base, origin).read();
   if (const TomlValue* both = table.find("allow_both")) {
     if (both->kind != Kind::Boolean) table.fault("allow_both", *both, "must be true or false");
     spec.values.drag_and_stems = both->boolean;
-    spec.origins["effects.allow_both"] = "scenario";
+    spec.origins["effects.allow_both"] = origin;
   }
   table.finish();
 }

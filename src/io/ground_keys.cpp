@@ -37,26 +37,23 @@ std::vector<Range> intervals_of(TableReader& table) {
 }  // namespace
 
 void GroundReader::read(TableReader& ground) {
-  const bool flag = spec_.origin("ground.default").rfind("flag", 0) == 0;  // the flag wins
+  flag_ = spec_.origin("ground.default").starts_with("flag");
   if (const auto name = ground.text("default")) {
     ZoneSpec asked = spec_.default_ground;
-    if (set_preset(ground, "default", *name, asked) && !flag) {
+    if (set_preset(ground, "default", *name, asked) && !flag_) {
       spec_.default_ground = asked;
       spec_.origins["ground.default"] = origin_;
     }
   }
   TableReader zones = ground.table("zones");
   if (zones.value() == nullptr) return;
-  if (zones.value()->find(kDefaultZone) != nullptr) {
-    const ZoneSpec before = spec_.default_ground;
-    read_zone(zones.table(kDefaultZone), spec_.default_ground);
-    if (flag) spec_.default_ground = before;
-  }
+  if (zones.value()->find(kDefaultZone) != nullptr) read_zone(zones.table(kDefaultZone), spec_.default_ground);
   for (const auto& [name, value] : zones.value()->members) {
     if (name == kDefaultZone) continue;
     const auto known = std::find_if(spec_.zones.begin(), spec_.zones.end(),
                                     [&zone = name](const ZoneSpec& z) { return z.name == zone; });
     ZoneSpec start = known == spec_.zones.end() ? spec_.default_ground : *known;
+    if (known == spec_.zones.end()) start.code.clear(), start.intervals.clear();  // the default ground's own
     start.name = name;
     read_zone(zones.table(name), std::move(start));
   }
@@ -89,11 +86,15 @@ bool GroundReader::set_preset(TableReader& table, const std::string& key, const 
 }
 
 void GroundReader::read_zone(TableReader table, ZoneSpec zone) {
-  if (const auto preset = table.text("preset"))
-    if (set_preset(table, "preset", *preset, zone))
-      spec_.origins[zone.name == kDefaultZone ? "ground.default" : table.full("preset")] = origin_;
+  const bool is_default = zone.name == kDefaultZone;
+  if (const auto preset = table.text("preset")) {
+    const ZoneSpec before = zone;
+    if (set_preset(table, "preset", *preset, zone) && !(is_default && flag_))
+      spec_.origins[is_default ? "ground.default" : table.full("preset")] = origin_;
+    if (is_default && flag_) zone = before;  // the flag wins; parameters of their own stay
+  }
   if (on_profile_) {
-    if (zone.name != kDefaultZone) zone.intervals = intervals_of(table);
+    if (!is_default) zone.intervals = intervals_of(table);
   } else if (const auto code = table.number("code", kCode)) {
     zone.code = text_of(*code);
   }

@@ -33,7 +33,7 @@ class GroundReader {
   void store(ZoneSpec zone);
 
   ScenarioSpec& spec_;
-  bool on_profile_ = false;
+  bool on_profile_ = false, flag_ = false;  // flag_: the preset of the default ground is the command line's
   std::string origin_;
   std::vector<std::string>& faults_;
 };

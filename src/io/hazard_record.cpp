@@ -22,8 +22,9 @@ void read_classes(TableReader& table, HazardMatrix& matrix) {
   for (const TomlValue& row : value->items) {
     classes.emplace_back();
     for (const TomlValue& item : row.items) {
-      if (item.kind != Kind::Number || item.number != static_cast<int>(item.number)) {
-        table.fault("classes", item, "must be a whole number");
+      if (item.kind != Kind::Number || !(item.number >= 0.0 && item.number <= 15.0) ||
+          item.number != static_cast<int>(item.number)) {
+        table.fault("classes", item, "must be a whole number from 0 to 15");
         return;
       }
       classes.back().push_back(static_cast<int>(item.number));

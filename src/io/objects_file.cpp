@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "geopackage.hpp"
 #include "layer.hpp"
@@ -56,13 +55,14 @@ std::unique_ptr<OGRGeometry> geometry_of(const Parts& parts, double west, double
 /// A figure of an object, with the name of its column. NaN and infinite: NULL, an empty field.
 using Figures = std::vector<std::pair<std::string, double>>;
 
-Figures figures_of(const HazardCurve& curve, const ObjectHits& hits, const std::vector<double>& thresholds,
+/// @param on_map  else nothing can be said of it
+Figures figures_of(const HazardCurve& curve, const ObjectHits& hits, bool on_map, const std::vector<double>& thresholds,
                    const std::vector<double>& years) {
-  Figures figures{{"trajectories", static_cast<double>(hits.trajectories)}};
-  const auto add = [&figures](const std::string& name, const Bounded& b) {
-    figures.emplace_back(name, b.value);
-    figures.emplace_back(name + "_lower", b.low);
-    figures.emplace_back(name + "_upper", b.high);
+  Figures figures{{"trajectories", on_map ? static_cast<double>(hits.trajectories) : kNotGiven}};
+  const auto add = [&figures, on_map](const std::string& name, const Bounded& b) {
+    figures.emplace_back(name, on_map ? b.value : kNotGiven);
+    figures.emplace_back(name + "_lower", on_map ? b.low : kNotGiven);
+    figures.emplace_back(name + "_upper", on_map ? b.high : kNotGiven);
   };
   add("frequency", curve.passage());
   figures.emplace_back("return_period", return_period(curve.passage()).value);
@@ -87,15 +87,16 @@ struct ObjectLayer::State {
   std::vector<std::string> names;
   std::vector<Parts> parts;
   std::vector<HazardObject> objects;
+  std::vector<bool> on_map;
   std::vector<std::string> warnings;
 
   /// Features that send anything to an object, the most first: index and share.
   static std::vector<std::pair<std::size_t, double>> sources_of(const ObjectHits& hits) {
-    const auto sum =
-        static_cast<double>(std::accumulate(hits.by_feature.begin(), hits.by_feature.end(), std::int64_t{0}));
+    std::int64_t sum = 0;
+    for (const auto& [feature, weight] : hits.by_feature) sum += weight;
     std::vector<std::pair<std::size_t, double>> list;
-    for (std::size_t i = 0; i < hits.by_feature.size(); ++i)
-      if (hits.by_feature[i] > 0) list.emplace_back(i, static_cast<double>(hits.by_feature[i]) / sum);
+    for (const auto& [feature, weight] : hits.by_feature)
+      if (weight > 0) list.emplace_back(feature, static_cast<double>(weight) / static_cast<double>(sum));
     std::ranges::stable_sort(list, std::ranges::greater{}, &std::pair<std::size_t, double>::second);
     return list;
   }
@@ -108,24 +109,26 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded) 
   const Grid& grid = terrain.heights.grid;
   Layer layer("objects", path, terrain);
   const int id = layer.field("name") >= 0 ? layer.field("name") : layer.field("id");
-  std::size_t off = 0;
+  std::string off;
   while (Feature feature = layer.next()) {
     Parts parts = layer.parts(*feature);
     if (parts.empty() || !parts.points.empty())
       throw InputError(layer.label(*feature) + ": " + (parts.empty() ? "has no geometry" : "is a point") +
                        ", must be a polygon or a line that blocks may hit");
     const OGREnvelope box = parts.envelope();
-    off += box.MaxX < 0.0 || box.MinX > grid.width() || box.MaxY < 0.0 || box.MinY > grid.height() ? 1 : 0;
     const std::string name = id >= 0 ? feature->GetFieldAsString(id) : "";
     state_->names.push_back(name.empty() ? std::to_string(feature->GetFID()) : name);
+    state_->on_map.push_back(box.MaxX >= 0.0 && box.MinX <= grid.width() && box.MaxY >= 0.0 && box.MinY <= grid.height());
+    if (!state_->on_map.back()) off += (off.empty() ? "" : ", ") + state_->names.back();
     state_->objects.push_back(object_of(parts));
     state_->parts.push_back(std::move(parts));
     state_->features.push_back(std::move(feature));
   }
   if (state_->objects.empty()) throw InputError(path + ": has no features, must have polygons or lines");
-  if (off == state_->objects.size())
+  if (std::ranges::count(state_->on_map, true) == 0)
     throw InputError(path + ": lies wholly off the DEM: is the coordinate system of the layer the right one?");
-  if (off > 0) state_->warnings.push_back(path + ": " + std::to_string(off) + " objects lie wholly off the DEM");
+  if (!off.empty())
+    state_->warnings.push_back(path + ": objects wholly off the DEM, of which nothing is told: " + off);
   for (std::string& line : layer.warnings()) state_->warnings.push_back(std::move(line));
 }
 
@@ -210,7 +213,7 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
                      from = "object,feature,frequency,share\n";
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const HazardCurve curve(rules, hits[i].cell);
-    const Figures figures = figures_of(curve, hits[i], thresholds, years);
+    const Figures figures = figures_of(curve, hits[i], state_->on_map[i], thresholds, years);
     const std::string object = csv_field(state_->names[i]);
     std::string sources;
     for (const auto& [feature, share] : State::sources_of(hits[i])) {
@@ -220,7 +223,7 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
       std::snprintf(percent, sizeof percent, " %.3g %%", 100.0 * share);
       sources += (sources.empty() ? "" : "; ") + name + percent;
       from += object + ',' + csv_field(name) + ',' +
-              number(static_cast<double>(hits[i].by_feature[feature]) * rules.scale.unit) + ',' + number(share) + '\n';
+              number(static_cast<double>(hits[i].by_feature.at(static_cast<std::uint32_t>(feature))) * rules.scale.unit) + ',' + number(share) + '\n';
     }
     if (!writer) {
       writer = std::make_unique<ObjectsWriter>(folder / "objects.gpkg", loaded, *state_->features[i], figures);
@@ -232,7 +235,7 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
     table += object;
     for (const auto& [name, value] : figures) table += ',' + number(value);
     table += ',' + csv_field(sources) + '\n';
-    curves += curve_rows(object, curve, rules.bins);
+    if (state_->on_map[i]) curves += curve_rows(object, curve, rules.bins);
   }
   writer->finish();
   write_text(folder / "objects.csv", table);

@@ -111,6 +111,7 @@ Eigen::Vector2d LoadedProfile::place(double x, double z) const {
   if (plan.empty()) return {x, z};
   for (std::size_t i = 1; i < plan.size(); ++i) {
     const double length = (plan[i] - plan[i - 1]).norm();
+    if (!(length > 0.0)) continue;  // a doubled vertex
     if (x <= length || i + 1 == plan.size()) return plan[i - 1] + (plan[i] - plan[i - 1]) * (x / length);
     x -= length;
   }

@@ -106,7 +106,7 @@ Points along(const LoadedProfile& p, const std::vector<ProfileBin>& bins, Get ge
 }
 
 void envelope(const Panel& panel, const LoadedProfile& p, const std::vector<ProfileBin>& bins,
-              Distribution ProfileBin::*quantity) {
+              BinDistribution ProfileBin::*quantity) {
   panel.line(along(p, bins, [=](const ProfileBin& b) { return (b.*quantity).max; }), "max");
   panel.line(along(p, bins, [=](const ProfileBin& b) { return (b.*quantity).p99; }), "p99");
   panel.line(along(p, bins, [=](const ProfileBin& b) { return (b.*quantity).p95; }), "p95");
@@ -154,7 +154,7 @@ void draw_ground(const Panel& panel, const LoadedProfile& p, std::span<const Rec
   }
 }
 
-double most(const std::vector<ProfileBin>& bins, Distribution ProfileBin::*quantity) {
+double most(const std::vector<ProfileBin>& bins, BinDistribution ProfileBin::*quantity) {
   double value = 1e-3;
   for (const ProfileBin& bin : bins) value = std::max(value, (bin.*quantity).max);
   return 1.04 * value;

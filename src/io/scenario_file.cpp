@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 
 #include "dataset.hpp"
 #include "effect_spec.hpp"
@@ -46,6 +47,7 @@ void load_ground(ScenarioSpec& spec, const Terrain& terrain, Scenario& parts, Lo
   if (spec.ground.path.empty()) return;
   ZoneRequest request{spec.ground.path, spec.ground_field, {parts.zone_names.begin() + 1, parts.zone_names.end()}};
   for (const ZoneSpec& zone : spec.zones) request.codes.push_back(zone.code);
+  request.default_code = spec.default_ground.code;
   ZoneLayer layer = read_zones(request, terrain);
   parts.cover.zones = std::move(layer.zones);
   spec.ground_field = layer.field;
@@ -96,25 +98,39 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
   stop_at_faults(faults, all_faults);
 
   LoadedScenario out;
+  const auto attempt = [&](const std::function<void()>& read) {  // where all faults are asked for, the next layer too
+    try {
+      read();
+    } catch (const InputError& error) {
+      if (all_faults == nullptr) throw;
+      faults.emplace_back(error.what());
+    }
+  };
   Terrain terrain = read_terrain(spec.dem.path);
   out.warnings = terrain.warnings;
   out.geo = terrain.geo;
   Scenario parts = spec.values;
-  SourceLayer sources = read_sources(spec.sources.path, terrain, spec.release_height);
-  check_diameters(parts, sources, spec.sources.path);
-  take(out, sources);
-  load_ground(spec, terrain, parts, out);
-  load_effect_places(spec, terrain, parts, out);
-  if (!spec.screens.path.empty()) {
-    ScreenLayer screens = read_screens(spec.screens.path, terrain);
-    parts.screens = std::move(screens.screens);
-    take(out, screens);
-  }
-  if (!spec.barriers.path.empty()) {
-    BarrierLayer barriers = read_barriers(spec.barriers.path, terrain);
-    parts.barriers = Barriers(std::move(barriers.barriers));
-    take(out, barriers);
-  }
+  SourceLayer sources;
+  attempt([&] {
+    sources = read_sources(spec.sources.path, terrain, spec.release_height);
+    check_diameters(parts, sources, spec.sources.path);
+    take(out, sources);
+  });
+  attempt([&] { load_ground(spec, terrain, parts, out); });
+  attempt([&] { load_effect_places(spec, terrain, parts, out); });
+  if (!spec.screens.path.empty())
+    attempt([&] {
+      ScreenLayer screens = read_screens(spec.screens.path, terrain);
+      parts.screens = std::move(screens.screens);
+      take(out, screens);
+    });
+  if (!spec.barriers.path.empty())
+    attempt([&] {
+      BarrierLayer barriers = read_barriers(spec.barriers.path, terrain);
+      parts.barriers = Barriers(std::move(barriers.barriers));
+      take(out, barriers);
+    });
+  stop_at_faults(faults, all_faults);
   parts.features = std::move(sources.features);
   parts.sources = std::move(sources.cells);
   parts.surface = Surface(std::move(terrain.heights));

@@ -49,7 +49,7 @@ class SpecReader {
     for (const char* key : {"seed", "trajectories", "day"}) scalar(top, key);
     read_blocks(top.table("blocks"));
     read_model(top.table("model"));
-    read_effects(spec_, top.table("effects"), base_);
+    read_effects(spec_, top.table("effects"), base_, origin_);
   }
 
   /// The keys of a model alone.
@@ -61,7 +61,7 @@ class SpecReader {
     TableReader model = top.table("model");
     read_impact(model);
     model.finish();
-    read_effects(spec_, top.table("effects"), base_);
+    read_effects(spec_, top.table("effects"), base_, origin_);
     top.finish();
   }
 

@@ -60,6 +60,10 @@ std::vector<std::string> StagedFiles::files() const {
 }
 
 void StagedFiles::commit() {
+  for (const std::string& name : files())
+    if (fs::exists(folder_ / name) && std::ranges::count(earlier_, name) == 0)
+      throw InputError((folder_ / name).string() + ": is there and none of the files of an earlier " + record_ +
+                       ", so it is not replaced; move it, or give it another name");
   std::error_code error;
   fs::remove(folder_ / record_, error);  // first: what lies there is from now on not complete
   for (const std::string& name : earlier_) fs::remove(folder_ / name, error);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -71,9 +72,17 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
-std::string item(const std::string& value, const std::string& label, std::string_view colour, int alpha) {
-  return "          <item value=\"" + value + "\" label=\"" + escaped(label) + "\" color=\"" + std::string(colour) +
-         "\" alpha=\"" + std::to_string(alpha) + "\"/>\n";
+std::string item(std::string_view value, std::string_view label, std::string_view colour, int alpha) {
+  std::string line = "          <item value=\"";
+  line.append(value).append("\" label=\"").append(escaped(label)).append("\" color=\"").append(colour);
+  return line.append("\" alpha=\"").append(std::to_string(alpha)).append("\"/>\n");
+}
+
+/// A limit in a label: never with an exponent.
+std::string plain(double value) {
+  std::array<char, 32> digits{};
+  const auto end = std::to_chars(digits.begin(), digits.end(), value, std::chars_format::fixed).ptr;
+  return {digits.begin(), end};
 }
 
 /// The classes of a legend: an item is a class's upper limit, which belongs to it.
@@ -87,7 +96,7 @@ std::string items_of(const Map& map, const Legend& legend) {
   const std::string unit = legend.unit.empty() ? "" : " " + legend.unit;
   const bool to_one = map.kind == Map::Kind::Probability;  // nothing is above 100 %
   const std::size_t classes = legend.limits.size() + (to_one ? 0 : 1);
-  std::string items = map.kind == Map::Kind::Quantity ? "" : item("0", "0" + unit, "#ffffff", 0);
+  std::string items = item("0", "0" + unit, "#ffffff", 0);  // nothing is there: not drawn
   std::string below;
   for (std::size_t i = 0; i < classes; ++i) {
     const std::string_view colour = (*legend.palette)[i + kColours - classes];
@@ -95,7 +104,7 @@ std::string items_of(const Map& map, const Legend& legend) {
       items += item("inf", "above " + below + unit, colour, 255);
       break;
     }
-    const std::string limit = text_of(legend.limits[i] * legend.factor);
+    const std::string limit = plain(legend.limits[i] * legend.factor);
     const std::string label = below.empty() ? "up to " + limit : below + " to " + limit;
     items += item(i + 1 == classes ? "inf" : text_of(legend.limits[i]), label + unit, colour, 255);
     below = limit;

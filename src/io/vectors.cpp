@@ -171,6 +171,10 @@ class Placer {
       out_.warnings.push_back(path + ": features without geometry: " + list_of(without_geometry_));
     if (!off_map_.empty())
       out_.warnings.push_back(path + ": features wholly off the DEM, which release nothing: " + list_of(off_map_));
+    if (at_edge_ > 0)
+      out_.warnings.push_back(path + ": " + std::to_string(at_edge_) +
+                              " source cells or points lie at the edge of the DEM or beside missing heights: blocks "
+                              "that start where there is no terrain count as left at once");
     if (without_terrain_ > 0)
       out_.warnings.push_back(path + ": " + std::to_string(without_terrain_) +
                               " source cells or points have no height in the DEM and release nothing");
@@ -183,13 +187,23 @@ class Placer {
       ++without_terrain_;
     else
       out_.cells.push_back(source);
+    at_edge_ += at_edge(cell) ? 1U : 0U;
+  }
+
+  /// Whether a cell with a height has a neighbour without one, so that there is no surface on some of it.
+  bool at_edge(const Cell& cell) const {
+    if (std::isnan(heights_.at(cell.column, cell.row))) return false;
+    for (int row = cell.row - 1; row <= cell.row + 1; ++row)
+      for (int column = cell.column - 1; column <= cell.column + 1; ++column)
+        if (!heights_.grid.contains(column, row) || std::isnan(heights_.at(column, row))) return true;
+    return false;
   }
 
   const Raster<float>& heights_;
   SourceLayer& out_;
   OGREnvelope box_;
   std::vector<std::int64_t> without_geometry_, off_map_;
-  std::uint64_t without_terrain_ = 0;
+  std::uint64_t without_terrain_ = 0, at_edge_ = 0;
 };
 
 }  // namespace

@@ -45,7 +45,7 @@ std::vector<Named> numbers_of(const ProfileBin& bin, double start, std::uint64_t
                          {"x_to", start + bin.to},
                          {"passages", static_cast<double>(bin.speed.count)},
                          {"share", static_cast<double>(bin.speed.count) / static_cast<double>(released)}};
-  const auto add = [&out](const std::string& name, const Distribution& d) {
+  const auto add = [&out](const std::string& name, const BinDistribution& d) {
     for (const auto& [statistic, value] :
          {std::pair{"mean", d.mean}, {"p50", d.p50}, {"p95", d.p95}, {"p99", d.p99}, {"max", d.max}})
       out.push_back({name + "_" + statistic, value});

@@ -24,6 +24,7 @@ class ZoneIndex {
 
   std::uint8_t at(const std::string& zone, const std::string& where) {
     const auto found = std::find(names_.begin(), names_.end(), zone);
+    if (found == names_.end() && (zone == "default" || zone == request_.default_code)) return 0;
     if (found == names_.end())
       throw InputError(where + ": zone '" + zone + "' is not described, must be one of [" + request_.table +
                        "]: " + (names_.empty() ? "none is there" : joined(names_)) + ": " +

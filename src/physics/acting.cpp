@@ -46,7 +46,7 @@ Ground ActingEffects::ground(const Vec3& place, const Block& body) {
 
 Contact ActingEffects::impact(const Ground& ground, const Block& body, const Motion& motion, const Vec3& normal,
                               const Asperity& asperity) {
-  const RoughPlane plane = rough_plane(normal, motion.velocity, asperity);
+  const RoughPlane plane = rough_plane(normal, motion.velocity, met_by(world_.impact, asperity));
   const double v_n = std::max(0.0, -motion.velocity.dot(plane.normal));
   Restitution k = restitution(ground, world_.impact.deformation_coefficient * body.diameter * v_n * v_n);
   if (here(effects_.block_shape.where)) k.tangential *= shape_keeps(effects_.block_shape, body);
@@ -59,7 +59,7 @@ Contact ActingEffects::impact(const Ground& ground, const Block& body, const Mot
 
   const RollingResistance& rolling = effects_.rolling_resistance;
   if (rolling.coefficient > 0.0 && here(rolling.where) &&
-      is_rolling(rolling, after.velocity.dot(normal), normal.z(), body.radius())) {
+      is_rolling(rolling, std::max(0.0, after.velocity.dot(normal)), normal.z(), body.radius())) {
     const double v_t = (after.velocity - after.velocity.dot(plane.normal) * plane.normal).norm();
     const double kept = rolling_keeps(rolling, v_t, (1.0 + k.normal) * v_n);
     scale_along(after.velocity, plane.normal, kept);

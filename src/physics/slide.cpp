@@ -85,8 +85,10 @@ Step next_step(const Slope& slope, const Motion& motion, double farthest, double
   const Vec3 force = along(slope.acceleration(place, v), gradient);
   const double pull = speed > 0.0 ? motion.velocity.dot(force) / speed : force.norm();
   double longest = time_to_cover(farthest, speed, pull, kLongestPiece);
-  if (pull < 0.0 && gradient.norm() <= slope.tan_phi)  // until friction holds it
-    longest = std::min(longest, std::max(0.0, speed - stop_speed) / -pull + 1e-9);
+  if (pull < 0.0) {  // until friction holds it; on steep ground until it turns, where friction turns too
+    const double left = gradient.norm() <= slope.tan_phi ? std::max(0.0, speed - stop_speed) : speed;
+    longest = std::min(longest, left / -pull + 1e-9);
+  }
   const Piece piece = make_piece(slope, place, v, longest, tolerance);
   const Edge edge = edge_of(slope, place, v, piece);
   const double dt = std::min(edge.time, piece.duration);

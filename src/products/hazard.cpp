@@ -113,7 +113,8 @@ double HazardCurve::energy_of(double frequency, Side which) const {
 }
 
 Bounded HazardCurve::energy_once_in(double years) const {
-  return {energy_of(1.0 / years, Side::Value), energy_of(1.0 / years, Side::Low), energy_of(1.0 / years, Side::High)};
+  const double once = (1.0 - 1e-12) / years;  // a frequency is a sum: its last bits must not decide
+  return {energy_of(once, Side::Value), energy_of(once, Side::Low), energy_of(once, Side::High)};
 }
 
 }  // namespace talus

@@ -7,6 +7,8 @@
 namespace talus {
 namespace {
 
+constexpr double kOnce = 1.0 - 1e-12;  // a frequency is a sum: its last bits must not decide
+
 bool ascend(const std::vector<double>& values) {
   return !values.empty() && values.front() > 0.0 &&
          std::ranges::adjacent_find(values, std::ranges::greater_equal{}) == values.end();
@@ -40,7 +42,7 @@ int class_of(const HazardMatrix& matrix, std::span<const double> frequencies, bo
   for (std::size_t i = 0; i < matrix.classes.size() && i < frequencies.size(); ++i) {
     if (!(frequencies[i] > 0.0)) continue;
     std::size_t column = 0;
-    while (column < matrix.years.size() && !(frequencies[i] * matrix.years[column] >= 1.0)) ++column;
+    while (column < matrix.years.size() && !(frequencies[i] * matrix.years[column] >= kOnce)) ++column;
     if (column < matrix.years.size() || rare) highest = std::max(highest, matrix.classes[i][column]);
   }
   return highest;

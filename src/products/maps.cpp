@@ -140,7 +140,7 @@ std::vector<Map> make_maps(const Scenario& scenario, const Tally& tally) {
                            [](const CellRecord& c) { return static_cast<double>(c.passages); }));
   maps.push_back(count_map(scenario, tally, "impacts", "Impacts in the cell",
                            [](const CellRecord& c) { return static_cast<double>(c.impacts); }));
-  maps.push_back(count_map(scenario, tally, "deposits", "Trajectories that end in the cell",
+  maps.push_back(count_map(scenario, tally, "deposits", "Trajectories that stop in the cell, or are caught there",
                            [](const CellRecord& c) { return static_cast<double>(c.deposits); }));
   maps.push_back(count_map(scenario, tally, "sources", "Source cells that reach the cell",
                            [](const CellRecord& c) { return static_cast<double>(c.sources); }));

@@ -35,11 +35,11 @@ class Replay {
         proceed_(proceed),
         per_source_((scenario.trajectories + kBlocksPerUnit - 1) / kBlocksPerUnit),
         units_(std::uint64_t{per_source_} * scenario.sources.size()),
-        hits_(fresh(objects.size())) {}
+        hits_(objects.size()) {}
 
   void work() noexcept {
     try {
-      std::vector<ObjectHits> mine = fresh(hits_.size());
+      std::vector<ObjectHits> mine(hits_.size());
       for (std::uint64_t unit = next_++; unit < units_ && !stop_; unit = next_++) {
         trace_unit(unit, mine);
         report();
@@ -60,10 +60,6 @@ class Replay {
   }
 
  private:
-  std::vector<ObjectHits> fresh(std::size_t count) const {
-    return std::vector<ObjectHits>(count, ObjectHits{{}, std::vector<std::int64_t>(scenario_.features.size()), 0});
-  }
-
   /// The largest energy of one block at each object; -1 where it does not come to it.
   void energies_of(const Release& release, Path& path, std::vector<float>& energies) const {
     std::ranges::fill(energies, -1.0F);
@@ -94,7 +90,8 @@ class Replay {
     for (std::size_t i = 0; i < hits.size(); ++i) {
       hits[i].cell.add(rules_, energies[i], stakes[i]);
       hits[i].trajectories += energies[i].size();
-      for (const Stake& stake : stakes[i]) hits[i].by_feature[scenario_.sources[source].feature] += stake.weight;
+      for (const Stake& stake : stakes[i])
+        if (stake.weight > 0) hits[i].by_feature[scenario_.sources[source].feature] += stake.weight;
     }
   }
 
@@ -125,8 +122,7 @@ class Replay {
 
 void ObjectHits::merge(const ObjectHits& other) {
   cell.merge(other.cell);
-  by_feature.resize(std::max(by_feature.size(), other.by_feature.size()));
-  for (std::size_t i = 0; i < other.by_feature.size(); ++i) by_feature[i] += other.by_feature[i];
+  for (const auto& [feature, weight] : other.by_feature) by_feature[feature] += weight;
   trajectories += other.trajectories;
 }
 

@@ -30,7 +30,8 @@ ExtrudedProfile extrude(const Profile& profile, double step) {
 
   std::vector<long long> quanta{std::llround((profile.nodes.front().y() - out.datum) / quantum)};
   for (std::size_t i = 1; i < profile.nodes.size(); ++i) {
-    const long long first = std::ssize(quanta) - 1, columns = column_of(profile.nodes[i].x()) - first;
+    const long long first = std::ssize(quanta) - 1;
+    const long long columns = std::max(1LL, column_of(profile.nodes[i].x()) - first);  // two nodes that round to one
     const double rise = (profile.nodes[i].y() - out.datum) / quantum - static_cast<double>(quanta.back());
     const long long each = std::llround(rise / static_cast<double>(columns));
     for (long long c = 0; c < columns; ++c) quanta.push_back(quanta.back() + each);

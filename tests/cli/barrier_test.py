@@ -127,7 +127,9 @@ class Design(Case):
         self.refused("--screen", arguments=[])
         self.refused("none.csv", arguments=["--screen", "road", "--observed", self.path("none.csv")])
         few = self.write("few.csv", "id,screen,jump_height_m\n" + "".join(f"b{i},road,{i}\n" for i in range(10)))
-        self.refused("9 values of the jump height", "Weibull", arguments=["--screen", "road", "--observed", few])
+        self.run_well("barrier", self.path("out"), "--screen", "road", "--observed", few)
+        with open(self.path("out/barrier_road.json"), encoding="utf-8") as file:
+            self.assertIn("9 values of the jump height above 0: too few for a Weibull fit", " ".join(json.load(file)["notes"]))
         other = self.write("other.csv", "id,screen,jump_height_m\na,S1,1\n")
         self.refused("no row of screen 'road'", arguments=["--screen", "road", "--observed", other])
 

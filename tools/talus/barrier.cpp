@@ -28,6 +28,7 @@ struct Options {
   double percentile = 95.0, containment = 99.0;  // [%]
   std::optional<double> volume, density;         // [m^3], [kg/m^3]
   std::uint64_t seed = 1;
+  bool quiet = false;
 };
 
 /// What the numbers on the command line may be.
@@ -109,12 +110,13 @@ void add_reliability(BarrierReport& report, const std::string& quantity, const s
     if (++positive == 1) first = value;
     others += value != first ? 1U : 0U;
   }
-  if (positive < talus::kFewestForWeibull || others == 0)
-    throw talus::InputError(
-        "screen '" + report.screen + "': " + report.values + " hold " + std::to_string(positive) + " values of the " +
-        quantity + " above 0" + (others == 0 ? ", all equal" : "") + ", must be " +
-        std::to_string(talus::kFewestForWeibull) +
-        " at least, not all equal, for a Weibull fit: run more trajectories or observe more blocks");
+  if (positive < talus::kFewestForWeibull || others == 0) {
+    report.notes.push_back(report.values + " hold " + std::to_string(positive) + " values of the " + quantity +
+                           " above 0" + (others == 0 ? ", all equal" : "") + ": too few for a Weibull fit (" +
+                           std::to_string(talus::kFewestForWeibull) +
+                           ", not all equal), so nothing is told of how often its design value is exceeded");
+    return;
+  }
   talus::BootstrapOptions how;
   how.seed = seed;
   talus::io::Reliability r{quantity, unit, talus::fit_weibull(values, how), {}};
@@ -128,7 +130,7 @@ void add_design(BarrierReport& report, const CrossingTable& crossings, const Run
   report.block.density = o.density.value_or(run.density);
   report.block_from = o.volume ? "--volume" : "the largest that crosses";
   report.block.volume =
-      o.volume.value_or(*std::max_element(crossings.mass.begin(), crossings.mass.end()) / report.block.density);
+      o.volume.value_or(*std::max_element(crossings.mass.begin(), crossings.mass.end()) / run.density);
   report.design = talus::design_barrier(crossings.speed, crossings.height, report.block, report.factors);
 }
 
@@ -164,7 +166,7 @@ int design(const Options& o) {
   const std::string name = talus::io::barrier_file_name(o.screen);
   talus::io::replace_text(fs::path(o.folder) / (name + ".csv"), talus::io::barrier_csv(report));
   talus::io::replace_text(fs::path(o.folder) / (name + ".json"), talus::io::barrier_json(report));
-  std::fputs(talus::io::barrier_text(report).c_str(), stdout);
+  if (!o.quiet) std::fputs(talus::io::barrier_text(report).c_str(), stdout);
   return 0;
 }
 
@@ -189,6 +191,7 @@ void add_barrier(CLI::App& app, Action& action) {
                       "of the design block [m3]; the largest that crosses where it is not given");
   command->add_option("--density", o->density, "of the design block [kg/m3]; the run's where it is not given");
   command->add_option("--containment", o->containment, "share of the crossings that the width holds [%]: 99 (default)");
+  command->add_flag("-q,--quiet", o->quiet, "say nothing but errors");
   command->add_option("--seed", o->seed, "of the bootstrap: 1 (default)");
   command->footer(
       "Example:\n  talus barrier result --screen road --gTr 1.02 --gDp 1.02 --gVol 1.02\n\n"

@@ -54,6 +54,10 @@ Sample trace_sample(const Scenario& scenario) {
     talus::trace(world, release, path);
     if (weights) batch.set_stake({weights->weight(scenario, release.source, release.block), sample.traced, 1});
     batch.add(path, release.body.mass, release.source, nullptr);
+    talus::trace_pieces(world, path, [&](const talus::Release& piece, const talus::Path& way) {
+      batch.add(way, piece.body.mass, release.source, nullptr, true);
+    });
+    if (batch.full()) tally.add(batch), batch.clear();
     ++sample.traced;
     sample.length += path.length;
     sample.left += path.end == talus::End::Left ? 1U : 0U;
@@ -145,11 +149,11 @@ void print_blocks(const Scenario& scenario) {
   if (!scenario.barriers.empty()) line("barriers", count_text(scenario.barriers.list().size()));
 }
 
-void print_estimate(const Scenario& scenario) {
+void print_estimate(const Scenario& scenario, unsigned threads) {
   const double so_far = talus::io::peak_memory_mb();
   const Sample sample = trace_sample(scenario);
   const auto all = static_cast<double>(scenario.released()), traced = static_cast<double>(sample.traced);
-  const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
+  const unsigned processors = threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
   const double seconds = sample.seconds * all / traced / processors + kWriteTrajectory * all +
                          kWriteCell * static_cast<double>(scenario.surface.grid().cells()) / std::min(processors, 4U);
   // Of a touched cell: its record, a histogram of 40 bins for each quantity, its thresholds and its place in a list.
@@ -172,15 +176,16 @@ void print_estimate(const Scenario& scenario) {
     line("warning", count_text(sample.limits) + " of the sample ended at the limit of impacts or time");
 }
 
-int check(const talus::io::RunFlags& flags) {
+int check(const talus::io::RunFlags& flags, unsigned threads, bool quiet) {
   std::vector<std::string> faults;
   try {
     const LoadedScenario loaded = talus::io::load_scenario(flags, &faults);
+    if (faults.empty() && quiet) return 0;
     if (faults.empty()) {
       print_terrain(loaded);
       print_zones(loaded.scenario);
       print_blocks(loaded.scenario);
-      print_estimate(loaded.scenario);
+      print_estimate(loaded.scenario, threads);
       for (const std::string& warning : loaded.warnings) line("warning", warning);
       return 0;
     }
@@ -195,10 +200,17 @@ int check(const talus::io::RunFlags& flags) {
 
 void add_check(CLI::App& app, Action& action) {
   const auto flags = std::make_shared<talus::io::RunFlags>();
+  const auto threads = std::make_shared<unsigned>(0U);
+  const auto quiet = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("check", "Check a scenario and print the plan; writes nothing");
   add_scenario_options(*command, *flags);
+  command->add_option("--threads", *threads, "of the run whose time is estimated; all processors where it is not given")
+      ->check(CLI::Range(1, 4096));
+  command->add_flag("-q,--quiet", *quiet, "say nothing but errors");
   command->footer(
-      "Example:\n  talus check scenario.toml\n\nLists every fault. Traces for at most two seconds to estimate the "
+      "Example:\n  talus check scenario.toml\n\nLists every fault of the settings and of the layers. Traces for at most two seconds to estimate the "
       "time.");
-  command->callback([&action, flags] { action = [flags] { return check(*flags); }; });
+  command->callback([&action, flags, threads, quiet] {
+    action = [flags, threads, quiet] { return check(*flags, *threads, *quiet); };
+  });
 }

@@ -23,7 +23,9 @@ namespace {
 struct Options {
   std::string folder, matrix, objects;
   int threads = 0;
+  std::string progress;
   bool overwrite = false, quiet = false;
+  Progress::Mode mode() const { return Progress::mode_of(quiet, progress == "machine"); }
 };
 
 std::string number_text(double value) {
@@ -87,7 +89,7 @@ void write_objects(const Options& options, const fs::path& folder, talus::io::Ha
                 " trajectories of the recorded plan, with the same bits");
   const auto weights = talus::AnnualWeights::of(loaded.scenario);
   if (!weights) throw std::logic_error("a plan with frequencies has no weights");
-  Progress progress(Progress::mode_of(options.quiet, false), loaded.scenario.released());
+  Progress progress(options.mode(), loaded.scenario.released());
   const std::vector<talus::ObjectHits> hits = talus::replay_objects(
       loaded.scenario, *weights, layer.objects(),
       [&progress](double share) { return progress.update(share) && !interrupted(); }, options.threads);
@@ -106,7 +108,7 @@ int hazard(const Options& options) {
   record.matrix_file = options.matrix;
   if (!options.matrix.empty()) record.matrix = talus::io::read_matrix(options.matrix);
   talus::io::StagedFiles staged(folder, "hazard.json", options.overwrite);
-  Progress progress(Progress::mode_of(options.quiet, false), 0);
+  Progress progress(options.mode(), 0);
   const auto survey = survey_of(file, options.threads, progress, record);
   record.cells = survey->cells();
   record.warnings = warnings_of(record.matrix, record.header.rules);
@@ -142,6 +144,8 @@ void add_hazard(CLI::App& app, Action& action) {
   command->add_flag("--overwrite", options->overwrite, "replace the hazard maps that are there");
   command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
       ->check(CLI::Range(1, 4096));
+  command->add_option("--progress", options->progress, "machine: lines `progress 42` for other programs")
+      ->check(CLI::IsMember({"machine"}));
   command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
   command->footer(
       "Examples:\n  talus hazard result\n  talus hazard result --objects houses.gpkg --overwrite\n\nWrites into the "

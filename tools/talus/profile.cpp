@@ -79,7 +79,7 @@ class Readers {
   std::vector<talus::RecordedPath> drawn_;
 };
 
-void summarise(const talus::Totals& totals, const talus::Distribution& runout, const std::string& folder) {
+void summarise(const talus::Totals& totals, const talus::BinDistribution& runout, const std::string& folder) {
   const auto metres = [](double value) { return talus::text_of(std::round(value * 10.0) / 10.0); };
   say("", count_text(totals.released) + " trajectories: " + ends_text(totals));
   if (runout.count > 0)

@@ -37,7 +37,8 @@ bool Progress::update(double share) {
 }
 
 void Progress::stage(const std::string& text) {
-  if (mode_ == Mode::Terminal) show(text);
+  const bool long_run = Clock::now() - start_ > std::chrono::seconds(10);
+  if (mode_ == Mode::Terminal || (mode_ == Mode::Lines && long_run)) show(text);
 }
 
 void Progress::finish() {

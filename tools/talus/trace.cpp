@@ -26,27 +26,6 @@ void check_range(const char* option, std::uint64_t value, std::uint64_t count, c
                             what + " 0 to " + std::to_string(count - 1));
 }
 
-/// The end of a path as a row of stops.gpkg has it.
-talus::StopRow stop_row(const talus::Release& release, const talus::Path& path) {
-  double speed = 0.0;
-  for (const talus::Vertex& vertex : path.vertices) speed = std::max(speed, vertex.motion.velocity.norm());
-  const talus::Motion& last = path.vertices.back().motion;
-  talus::StopRow row{};
-  row.source = release.source;
-  row.block = release.block;
-  row.end = path.end;
-  row.diameter = static_cast<float>(path.breaks.empty() ? release.body.diameter : path.breaks.back().body.diameter);
-  row.mass = static_cast<float>(path.mass);
-  row.x = last.position.x();
-  row.y = last.position.y();
-  row.z = last.position.z();
-  row.seconds = static_cast<float>(last.time);
-  row.max_speed = static_cast<float>(speed);
-  row.length = static_cast<float>(path.length);
-  row.impacts = path.impacts;
-  return row;
-}
-
 /// Every vertex in full precision: the shortest decimals that read back as the same numbers.
 void print_csv(const talus::io::LoadedScenario& loaded, const talus::Path& path) {
   const double south = loaded.geo.north - loaded.scenario.surface.grid().rows * loaded.geo.cell_y;

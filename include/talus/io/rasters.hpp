@@ -39,6 +39,7 @@ struct ZoneRequest {
   std::string field;                   ///< of polygons; empty: "zone". Not for rasters
   std::vector<std::string> names;      ///< the zones that are described, as the file calls them; at most 255
   std::vector<std::string> codes{};    ///< what stands for each in a raster; empty, or an empty text: its name
+  std::string default_code{};          ///< what stands in a raster for the ground outside all zones; "default" does too
   std::string table = "ground.zones";  ///< of the scenario or campaign that describes them, for messages
 };
 

@@ -50,6 +50,12 @@ class Asperities {
   std::array<Draw, kAhead> draws_;
 };
 
+/// The asperity as the model meets it: the 2D model draws no heading but east or west.
+inline Asperity met_by(const ImpactModel& model, Asperity asperity) {
+  if (model.in_plane) asperity.heading = asperity.heading < 0.5 ? 0.0 : 0.5;
+  return asperity;
+}
+
 /// The plane that a block meets instead of the smooth surface.
 struct RoughPlane {
   Vec3 normal;       ///< n', unit

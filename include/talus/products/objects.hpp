@@ -2,6 +2,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <map>
 #include <vector>
 
 #include "talus/simulate/hazard_tally.hpp"
@@ -18,7 +19,7 @@ struct HazardObject {
 /// The trajectories that come to one object. Whole numbers only: equal bits for any number of threads.
 struct ObjectHits {
   HazardCell cell;
-  std::vector<std::int64_t> by_feature;  ///< weight of those from each feature [WeightScale::unit]
+  std::map<std::uint32_t, std::int64_t> by_feature;  ///< weight of those from each feature [WeightScale::unit]
   std::uint64_t trajectories = 0;
 
   void merge(const ObjectHits& other);

@@ -41,8 +41,8 @@ TEST(Objects, AreHitWithinTheRadiusOfTheBlock) {
   EXPECT_NEAR(per_year(scale, hits[4]), 0.02, 1e-9);
   EXPECT_EQ(hits[2].trajectories, 90U);
   for (std::size_t feature = 0; feature < 3; ++feature)
-    EXPECT_NEAR(static_cast<double>(hits[2].by_feature[feature]) * scale.unit, s.features[feature].frequency, 1e-9);
-  EXPECT_EQ(hits[3].by_feature[0], 0);
+    EXPECT_NEAR(static_cast<double>(hits[2].by_feature.at(feature)) * scale.unit, s.features[feature].frequency, 1e-9);
+  EXPECT_FALSE(hits[3].by_feature.contains(0));
 }
 
 /// A block falls through the yard of a house, 1 m from the walls: the hole of the polygon is not the house.

@@ -7,7 +7,7 @@ namespace talus {
 
 /// Whether a block that leaves the ground is as good as rolling: its hop, v^2/(2 g cos beta), is a share of its radius.
 ///
-/// @param away  speed away from the smooth surface after the impact [m/s]
+/// @param away  speed away from the smooth surface after the impact [m/s], >= 0
 inline bool is_rolling(const RollingResistance& effect, double away, double cos_beta, double radius) {
   return away * away < 2.0 * kGravity * cos_beta * effect.hop * radius;
 }
