@@ -84,6 +84,7 @@ std::string hazard_json(const HazardRecord& record) {
   json["matrix_file"] = record.matrix_file.empty() ? Json("default") : Json(record.matrix_file);
   json["cells"] = record.cells;
   if (!record.objects_file.empty()) json["objects"] = {{"file", record.objects_file}, {"replayed", record.replayed}};
+  if (!record.frequency_file.empty()) json["frequency"] = {{"file", record.frequency_file}, {"replayed", true}};
   json["warnings"] = record.warnings;
   json["files"] = record.files;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

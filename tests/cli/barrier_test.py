@@ -74,6 +74,12 @@ class Design(Case):
         self.assertAlmostEqual(values["v50"], 10.0, 9)
         self.assertAlmostEqual(values["m_d"], 2700.0 * 1.1, 9)
 
+    def test_a_denser_rock_has_more_energy(self):
+        """The largest block has 5000 kg at the run's 2500 kg/m3: 2 m3, which weigh 6000 kg at 3000 kg/m3."""
+        values, _, _ = self.design("--density", "3000")
+        self.assertAlmostEqual(values["V"], 2.0, 9)
+        self.assertAlmostEqual(values["E_d"], self.design()[0]["E_d"] * 1.2, 6)
+
     def test_a_block_counts_once(self):
         before = self.design()[0]
         self.save([(0, i, "road", 0.5, 0.0, self.rows[i][5], 10.0) for i in range(50)])

@@ -106,6 +106,38 @@ class Hazard(Case):
         self.refused("is damaged", "hazard", self.path("out"), "--overwrite")
         self.assertTrue(os.path.exists(self.path("out/intensity_T50.tif")), "what was there stays")
 
+    def test_another_weighting(self):
+        """The same maps as of a run whose sources had these frequencies from the start."""
+        self.simulate()
+        new = self.write("new.toml", "[features]\neast = 3.0\n")
+        done = self.run_well("hazard", self.path("out"), "--frequency", new)
+        self.assertIn("repeats the run with another weighting: 3 200 trajectories", done.stderr)
+        write_features(self.path("new.gpkg"), "sources",
+                       [(box(100, 230, 20, 10), ["west", 0.5]), (box(200, 230, 20, 10), ["east", 3.0])],
+                       [("name", ogr.OFTString), ("frequency", ogr.OFTReal)])
+        os.replace(self.path("new.gpkg"), self.path("sources.gpkg"))
+        self.simulate("other")
+        self.run_well("hazard", self.path("other"), "-q")
+        for name in ("annual_frequency", "return_period_30", "intensity_T100", "hazard_class"):
+            self.assertEqual(self.hashes("out")[name + ".tif"], self.hashes("other")[name + ".tif"], name)
+        self.refused("has changed since the run", "hazard", self.path("out"), "--frequency", new, "--overwrite")
+        self.refused("no such feature", "hazard", self.path("other"), "--overwrite", "--frequency",
+                     self.write("bad.toml", "[features]\neats = 1\n"))
+
+    def test_what_is_not_its_own_stays(self):
+        self.simulate()
+        write_features(self.path("out/objects.gpkg"), "mine", [(box(105, 150, 10, 8), ["A"]), (box(5000, 0, 9, 9), ["far"])],
+                       [("name", ogr.OFTString)])
+        done = self.call("hazard", self.path("out"), "--objects", self.path("out/objects.gpkg"))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("is there and none of the files of an earlier hazard.json", done.stderr)
+        os.replace(self.path("out/objects.gpkg"), self.path("mine.gpkg"))
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("mine.gpkg"))
+        self.assertIn("objects wholly off the DEM, of which nothing is told: far", done.stderr)
+        rows = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
+        self.assertIsNone(rows["far"]["frequency"])
+        self.assertIsNone(rows["far"]["trajectories"])
+
     def test_contradicting_frequencies(self):
         self.write("s.toml", RUN + "[frequency]\nper_area = 0.01\n")
         self.refused("must be given by one of them", "run", self.path("s.toml"), "-o", self.path("out"))

@@ -1,6 +1,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -13,6 +14,7 @@
 #include "talus/io/objects_file.hpp"
 #include "talus/io/output_folder.hpp"
 #include "talus/io/staged_files.hpp"
+#include "talus/io/weighting_file.hpp"
 #include "talus/products/hazard_maps.hpp"
 #include "write_maps.hpp"
 
@@ -21,7 +23,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Options {
-  std::string folder, matrix, objects;
+  std::string folder, matrix, objects, frequency;
   int threads = 0;
   std::string progress;
   bool overwrite = false, quiet = false;
@@ -73,15 +75,57 @@ std::vector<std::string> warnings_of(const talus::HazardMatrix& matrix, const ta
   return warnings;
 }
 
-/// Runs the recorded plan again and writes what comes to each object.
-void write_objects(const Options& options, const fs::path& folder, talus::io::HazardRecord& record) {
+/// The recorded plan, with the weighting that is asked for.
+talus::io::LoadedScenario recorded_plan(const Options& options, const std::string& plan) {
   talus::io::RunFlags flags;
   flags.scenario = (fs::path(options.folder) / "scenario.toml").string();
-  const talus::io::LoadedScenario loaded = talus::io::load_scenario(flags);
-  if (talus::io::plan_checksum(loaded) != record.header.plan)
+  talus::io::LoadedScenario loaded = talus::io::load_scenario(flags);
+  if (talus::io::plan_checksum(loaded) != plan)
     throw talus::InputError(flags.scenario +
                             ": it, or a file that it names, has changed since the run, so that the run "
-                            "cannot be repeated for --objects; run again (the checksums are in run.json)");
+                            "cannot be repeated; run again (the checksums are in run.json)");
+  if (!options.frequency.empty()) talus::io::apply_weighting(options.frequency, loaded.scenario);
+  return loaded;
+}
+
+/// Traces the recorded plan again with other weights and evaluates every cell.
+std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, const fs::path& file, Progress& progress,
+                                                       talus::io::HazardRecord& record) {
+  record.header = talus::io::read_hazard(
+      file, [](const talus::io::HazardHeader&) {}, [](const talus::io::HazardRow&) {});
+  const talus::io::LoadedScenario loaded = recorded_plan(options, record.header.plan);
+  const talus::Scenario& scenario = loaded.scenario;
+  auto weights = talus::AnnualWeights::of(scenario);
+  if (!weights)
+    throw talus::InputError(options.frequency + ": no blocks fall with these frequencies; give one above 0");
+  if (!options.quiet)
+    say("", "repeats the run with another weighting: " + count_text(scenario.released()) +
+                " trajectories of the recorded plan, with the same bits");
+  talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
+  tally.keep_hazard(std::move(*weights));
+  talus::Sinks sinks;
+  sinks.progress = [&progress](double share) { return progress.update(share) && !interrupted(); };
+  if (talus::simulate(scenario, tally, sinks, options.threads).interrupted || interrupted()) stop_interrupted();
+  record.header.rules = tally.hazard_rules();
+  record.frequency_file = options.frequency;
+  record.replayed = true;
+  auto survey = std::make_unique<talus::HazardSurvey>(record.header.grid, record.header.rules, record.matrix);
+  const talus::Grid& grid = scenario.surface.grid();
+  for (int row = 0; row < grid.rows; ++row) {
+    std::vector<bool> terrain;
+    std::vector<talus::HazardSurvey::Cell> touched;
+    for (int column = 0; column < grid.columns; ++column) {
+      terrain.push_back(!std::isnan(scenario.surface.heights().at(column, row)));
+      if (const talus::HazardCell* cell = tally.hazard(column, row)) touched.emplace_back(column, *cell);
+    }
+    survey->set_row(row, std::move(terrain), touched, options.threads);
+  }
+  return survey;
+}
+
+/// Runs the recorded plan again and writes what comes to each object.
+void write_objects(const Options& options, const fs::path& folder, talus::io::HazardRecord& record) {
+  const talus::io::LoadedScenario loaded = recorded_plan(options, record.header.plan);
   const talus::io::ObjectLayer layer(options.objects, loaded);
   for (const std::string& warning : layer.warnings()) record.warnings.push_back(warning);
   if (!options.quiet)
@@ -94,7 +138,9 @@ void write_objects(const Options& options, const fs::path& folder, talus::io::Ha
       loaded.scenario, *weights, layer.objects(),
       [&progress](double share) { return progress.update(share) && !interrupted(); }, options.threads);
   if (interrupted() || hits.empty()) stop_interrupted();
-  layer.write(folder, loaded, record.header.rules, hits, record.matrix.years);
+  talus::HazardRules rules = record.header.rules;
+  rules.scale = weights->scale();  // a run in rounds has kept another
+  layer.write(folder, loaded, rules, hits, record.matrix.years);
   progress.finish();
   record.objects_file = options.objects;
   record.replayed = true;
@@ -109,7 +155,8 @@ int hazard(const Options& options) {
   if (!options.matrix.empty()) record.matrix = talus::io::read_matrix(options.matrix);
   talus::io::StagedFiles staged(folder, "hazard.json", options.overwrite);
   Progress progress(options.mode(), 0);
-  const auto survey = survey_of(file, options.threads, progress, record);
+  const auto survey = options.frequency.empty() ? survey_of(file, options.threads, progress, record)
+                                                : reweighted_survey(options, file, progress, record);
   record.cells = survey->cells();
   record.warnings = warnings_of(record.matrix, record.header.rules);
 
@@ -141,6 +188,8 @@ void add_hazard(CLI::App& app, Action& action) {
                       "classes by intensity and return period (TOML); else 30, 300 kJ and 30, 100, 300 years");
   command->add_option("--objects", options->objects,
                       "polygons or lines: how often each is hit, and from where; repeats the run");
+  command->add_option("--frequency", options->frequency,
+                      "another weighting (TOML: [frequency], [features]); repeats the run");
   command->add_flag("--overwrite", options->overwrite, "replace the hazard maps that are there");
   command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
       ->check(CLI::Range(1, 4096));
@@ -150,8 +199,9 @@ void add_hazard(CLI::App& app, Action& action) {
   command->footer(
       "Examples:\n  talus hazard result\n  talus hazard result --objects houses.gpkg --overwrite\n\nWrites into the "
       "folder: annual_frequency.tif, return_period_<kJ>.tif, "
-      "intensity_T<years>.tif,\nhazard_class.tif, hazard.json. Nothing is simulated again, but for --objects, which "
-      "add objects.gpkg, objects.csv,\nobjects_curves.csv and "
+      "intensity_T<years>.tif,\nhazard_class.tif, hazard.json. Nothing is simulated again, but for --frequency "
+      "and --objects, which "
+      "adds objects.gpkg, objects.csv,\nobjects_curves.csv and "
       "objects_sources.csv.");
   command->callback([&action, options] { action = [options] { return hazard(*options); }; });
 }

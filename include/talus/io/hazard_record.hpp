@@ -19,7 +19,8 @@ struct HazardRecord {
   std::string matrix_file;  ///< empty: the default
   std::uint64_t cells = 0;  ///< that anything passes
   std::string objects_file;
-  bool replayed = false;  ///< the plan was run again, for the objects
+  std::string frequency_file;  ///< another weighting than the run's; empty: the run's
+  bool replayed = false;       ///< the plan was run again, for the objects or the weighting
   std::vector<std::string> warnings, files;
 };
 

@@ -75,6 +75,48 @@ TEST(AnnualWeights, EqualTrueAreasHaveEqualFrequencies) {
   EXPECT_NEAR(ratio, 4.07, 0.01);
 }
 
+/// Two walls of one true area: 57 cells at 45 degrees are 57 x 4 / cos 45 = 322.4 m2, 14 at 80 degrees 322.5 m2.
+TEST(AnnualWeights, TwoWallsOfOneTrueAreaFallEquallyOften) {
+  const auto wall = [](double degrees, int cells) {
+    Scenario s = plane(degrees, {0});
+    s.sources.clear();
+    for (int i = 0; i < cells; ++i) s.sources.push_back({0, 5.0 + 2.0 * (i % 15), 7.0 + 2.0 * (i / 15), false});
+    s.frequency.per_area = 1e-3;
+    s.frequency.by_true_area = true;
+    return AnnualWeights::of(s)->scale().total;
+  };
+  EXPECT_NEAR(wall(45.0, 57), 0.3224, 2e-4);
+  EXPECT_NEAR(wall(80.0, 14), wall(45.0, 57), 2e-4);
+}
+
+/// N(>= V) = A V^-b over classes that are ranges of diameters, by hand: volumes pi/6 D^3 of 1 to 2 m and 2 to 4 m.
+TEST(AnnualWeights, PowerLawOverClasses) {
+  Scenario s = plane(30.0, {0, 0});
+  s.blocks.classes = {{{1.0, 2.0}, 3.0, kNotGiven}, {{2.0, 4.0}, 1.0, kNotGiven}};
+  s.frequency.scale = 0.2;
+  s.frequency.exponent = 1.0 / 3.0;  // V^(-1/3) is (pi/6)^(-1/3) / D
+  const double c = 0.2 * std::pow(kPi / 6.0, -1.0 / 3.0);
+  EXPECT_NEAR(AnnualWeights::of(s)->scale().total, c * (1.0 - 0.25), 1e-12);
+  const AnnualWeights weights = AnnualWeights::of(s).value();
+  std::int64_t small = 0, large = 0;  // of one block of each class: events of the class / (blocks x share drawn)
+  for (std::uint32_t block = 0; block < s.trajectories; ++block)
+    (class_of_block(s, 0, block) == 0 ? small : large) = weights.weight(s, 0, block);
+  const double unit = weights.scale().unit, blocks = 2.0 * s.trajectories;
+  if (small > 0) EXPECT_NEAR(static_cast<double>(small) * unit, c * 0.5 / (blocks * 0.75), 1e-12);
+  if (large > 0) EXPECT_NEAR(static_cast<double>(large) * unit, c * 0.25 / (blocks * 0.25), 1e-12);
+  s.blocks.classes[1].diameter = {1.5, 4.0};
+  refused(s, "classes of blocks that overlap");
+  s.blocks.classes[1].diameter = {3.0, 3.0};
+  refused(s, "blocks of one diameter");
+}
+
+TEST(AnnualWeights, AFieldOfZerosCountsAsNotGiven) {
+  Scenario s = plane(30.0, {0, 0});
+  s.features[0].frequency = 0.0;
+  s.frequency.per_area = 0.01;
+  EXPECT_NEAR(AnnualWeights::of(s)->scale().total, 2 * 4.0 * 0.01, 1e-12);
+}
+
 /// One feature over a 45 and an 80 degree face: with the switch the steep cells get more of its frequency.
 TEST(AnnualWeights, TheSwitchDividesAFeatureByTrueArea) {
   Scenario s = plane(45.0, {0, 0});

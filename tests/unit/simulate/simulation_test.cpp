@@ -1,0 +1,149 @@
+#include "talus/simulate/simulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include "../../support/scenarios.hpp"
+
+namespace talus {
+namespace {
+
+constexpr std::uint32_t kSources = 5, kTrajectories = 300;  // three units of work to a source
+
+Scenario scenario() {
+  return test::rough_slope(kSources, kTrajectories);
+}
+
+Tally tally_of(const Scenario& s) {
+  return {s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds};
+}
+
+std::vector<std::string> bytes_of(const Tally& tally) {
+  std::vector<std::string> regions;
+  for (std::size_t i = 0; i < tally.regions(); ++i) {
+    ByteWriter out;
+    tally.save(i, out);
+    regions.push_back(out.bytes());
+  }
+  return regions;
+}
+
+/// The counts and percentiles of every cell: what maps are made of.
+std::vector<double> cells_of(const Tally& tally) {
+  std::vector<double> values;
+  for (int row = 0; row < tally.grid().rows; ++row)
+    for (int column = 0; column < tally.grid().columns; ++column) {
+      const CellRecord* cell = tally.find(column, row);
+      if (cell == nullptr) continue;
+      for (const double count : {double(cell->passages), double(cell->impacts), double(cell->deposits), double(cell->sources)})
+        values.push_back(count);
+      for (std::size_t q = 0; q < kQuantities; ++q) {
+        values.push_back(cell->maximum[q]);
+        values.push_back(static_cast<double>(cell->sum[q]));
+        values.push_back(cell->histogram[q].percentile(0.95));
+      }
+      for (std::size_t i = 0; i < 5; ++i) values.push_back(tally.exceedances(column, row)[i]);
+    }
+  return values;
+}
+
+/// What is on the disk between two programs.
+struct Kept {
+  Simulation::Position position;
+  Totals totals;
+  std::string reaches;
+  std::vector<std::string> regions;
+};
+
+Kept kept_of(const Simulation& simulation, const Tally& tally) {
+  ByteWriter reaches;
+  simulation.save_reaches(reaches);
+  return {simulation.position(), simulation.totals(), reaches.bytes(), bytes_of(tally)};
+}
+
+void restore(const Kept& kept, Simulation& simulation, Tally& tally) {
+  for (std::size_t i = 0; i < kept.regions.size(); ++i) {
+    ByteReader in(kept.regions[i]);
+    tally.merge(i, in);
+  }
+  ByteReader reaches(kept.reaches);
+  simulation.restore(kept.position, kept.totals, reaches);
+}
+
+TEST(Simulation, StoppedAndRestoredAfterEveryUnitItEndsAsOneRun) {
+  const Scenario s = scenario();
+  ASSERT_EQ(s.output.energy_thresholds.size() + s.output.height_thresholds.size(), 5U);
+  Tally whole = tally_of(s);
+  const Totals expected = simulate(s, whole, {}, 2);
+  for (const int threads : {1, 3}) {
+    std::vector<std::uint64_t> released;
+    Sinks sinks;
+    sinks.stops = [&](std::span<const StopRow> rows) {
+      for (const StopRow& row : rows) released.push_back(row.source * kTrajectories + row.block);
+    };
+    sinks.pause = [] { return true; };
+    Kept kept;
+    int sittings = 0;
+    for (bool done = false; !done; ++sittings) {
+      Tally tally = tally_of(s);
+      Simulation simulation(s, {}, false, tally, sinks);
+      if (sittings > 0) restore(kept, simulation, tally);
+      simulation.advance(threads);
+      kept = kept_of(simulation, tally);
+      done = simulation.round_done();
+      if (done) EXPECT_EQ(cells_of(tally), cells_of(whole));
+    }
+    EXPECT_GE(sittings, 15 / threads);  // units of work
+    EXPECT_EQ(kept.totals.ends, expected.ends);
+    EXPECT_EQ(kept.totals.length_mm, expected.length_mm);
+    ASSERT_EQ(released.size(), s.released());  // every block once, in order
+    for (std::size_t i = 0; i < released.size(); ++i) ASSERT_EQ(released[i], i);
+  }
+}
+
+TEST(Simulation, RoundsOfFewAreOneOfMany) {
+  const Scenario all = scenario();
+  Scenario third = all;
+  third.trajectories = kTrajectories / 3;
+  Tally whole = tally_of(all), tally = tally_of(all);
+  simulate(all, whole, {}, 2);
+  const Sinks none;
+  Simulation simulation(third, {}, true, tally, none);
+  for (int round = 0; round < 3; ++round) {
+    if (round > 0) simulation.next_round();
+    simulation.advance(2);
+    ASSERT_TRUE(simulation.round_done());
+  }
+  EXPECT_EQ(simulation.totals().released, all.released());
+  EXPECT_EQ(cells_of(tally), cells_of(whole));  // a source cell counts once in a cell
+}
+
+TEST(Simulation, PartsHoldEverySourceOnce) {
+  for (std::uint32_t of = 1; of <= 7; ++of) {
+    std::uint32_t next = 0;
+    for (std::uint32_t number = 1; number <= of; ++number) {
+      const Part part{number, of};
+      EXPECT_EQ(part.first(kSources), next);
+      next = part.end(kSources);
+    }
+    EXPECT_EQ(next, kSources);
+  }
+}
+
+TEST(Simulation, DamagedBytesAreNoTally) {
+  const Scenario s = scenario();
+  Tally tally = tally_of(s);
+  simulate(s, tally, {}, 1);
+  const std::vector<std::string> regions = bytes_of(tally);
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    if (regions[i].empty()) continue;
+    for (const std::size_t length : {std::size_t{1}, regions[i].size() / 2 + 1, regions[i].size() - 1}) {
+      Tally other = tally_of(s);
+      const std::string cut = regions[i].substr(0, length);
+      ByteReader in(cut);
+      EXPECT_THROW(other.merge(i, in), std::out_of_range) << i << ' ' << length;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace talus
