@@ -70,7 +70,7 @@ HazardCell get_cell(HazardReader& in, const HazardRules& rules) {
   for (HazardCell::Bin& bin : bins) bin = {in.get<std::int64_t>(), in.get<std::int64_t>()};
   std::vector<std::int64_t> overlaps(in.get_count(rules.levels()));
   for (std::int64_t& overlap : overlaps) overlap = in.get<std::int64_t>();
-  return HazardCell::restored(first, std::move(bins), std::move(overlaps));
+  return HazardCell::restored(first, bins, overlaps);
 }
 
 /// The first line: mark, format, length of the header that follows.

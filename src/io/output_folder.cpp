@@ -1,6 +1,7 @@
 #include "talus/io/output_folder.hpp"
 
 #include <fcntl.h>
+#include <gdal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "sha256.hpp"
+#include "talus/base/scratch.hpp"
 #include "talus/base/error.hpp"
 
 namespace talus::io {
@@ -174,6 +176,14 @@ void OutputFolder::commit() {
   committed_ = true;
   synchronise(final_.parent_path());
   if (replace) fs::remove_all(aside, error);
+}
+
+void limit_memory(const fs::path& results, std::size_t bytes) {
+  const fs::path parent = full_name(results).parent_path();
+  if (!fs::is_directory(parent))
+    throw InputError(parent.string() + ": there is no such folder for the results to go into; create it first");
+  scratch::set_limit(parent.string(), bytes);
+  GDALSetCacheMax64(static_cast<GIntBig>(bytes / 16));
 }
 
 void write_text(const fs::path& file, std::string_view text) {

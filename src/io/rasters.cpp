@@ -7,6 +7,7 @@
 
 #include "dataset.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/scratch.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/fields.hpp"
 
@@ -120,6 +121,7 @@ void read_heights(GDALRasterBand& band, const std::string& path, Terrain& terrai
   double lowest_other = std::numeric_limits<double>::infinity();
   for (int row = 0; row < grid.rows; ++row) {
     const std::vector<double>& heights = reader.row(row);
+    if (row % 64 == 0) scratch::keep_below_limit();
     float* out = terrain.heights.values.data() + grid.index(0, grid.rows - 1 - row);
     for (int column = 0; column < grid.columns; ++column) {
       const double height = heights[column];

@@ -13,7 +13,7 @@ double squares_per_unit(const WeightScale& scale) {
 
 }  // namespace
 
-void StratumSums::add(const Stake& stake, float energy, std::vector<std::int64_t>& overlaps) {
+void StratumSums::add(const Stake& stake, float energy, ScratchVector<std::int64_t>& overlaps) {
   if (blocks_ == 0 || stake.stratum != stratum_) {
     finish(overlaps);
     stratum_ = stake.stratum;
@@ -29,7 +29,7 @@ void StratumSums::add(const Stake& stake, float energy, std::vector<std::int64_t
   }
 }
 
-void StratumSums::finish(std::vector<std::int64_t>& overlaps) {
+void StratumSums::finish(ScratchVector<std::int64_t>& overlaps) {
   if (overlaps.empty()) overlaps.resize(levels_.size());
   for (std::size_t i = 0; i < levels_.size(); ++i) {
     Level& level = levels_[i];
@@ -90,11 +90,11 @@ void HazardCell::merge(const HazardCell& other) {
   for (std::size_t i = 0; i < other.overlaps_.size(); ++i) overlaps_[i] += other.overlaps_[i];
 }
 
-HazardCell HazardCell::restored(int first, std::vector<Bin> bins, std::vector<std::int64_t> overlaps) {
+HazardCell HazardCell::restored(int first, const std::vector<Bin>& bins, const std::vector<std::int64_t>& overlaps) {
   HazardCell cell;
   cell.first_ = first;
-  cell.bins_ = std::move(bins);
-  cell.overlaps_ = std::move(overlaps);
+  cell.bins_.assign(bins.begin(), bins.end());
+  cell.overlaps_.assign(overlaps.begin(), overlaps.end());
   return cell;
 }
 
@@ -106,8 +106,8 @@ void HazardCell::save(ByteWriter& out) const {
 
 HazardCell HazardCell::restored(ByteReader& in) {
   const auto first = in.get<int>();
-  auto bins = in.get_all<Bin>();
-  return restored(first, std::move(bins), in.get_all<std::int64_t>());
+  const auto bins = in.get_all<Bin>();
+  return restored(first, bins, in.get_all<std::int64_t>());
 }
 
 bool HazardCell::operator==(const HazardCell& other) const {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
-#include <new>
+
+#include "talus/base/scratch.hpp"
 
 namespace talus {
 namespace {
@@ -18,6 +18,10 @@ int key_of(float value) {
                           kShift);
 }
 
+unsigned char* zeros(std::size_t bytes) {
+  return static_cast<unsigned char*>(std::memset(scratch::allocate(bytes), 0, bytes));
+}
+
 double edge_of(int key) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(key) << kShift);
 }
@@ -25,7 +29,7 @@ double edge_of(int key) {
 }  // namespace
 
 LogHistogram::~LogHistogram() {
-  std::free(counts_);
+  scratch::release(counts_, static_cast<std::size_t>(size_) * width_);
 }
 
 std::uint32_t LogHistogram::get(int bin) const {
@@ -60,8 +64,7 @@ void LogHistogram::put(int bin, std::uint32_t count) {
 
 void LogHistogram::widen(std::uint8_t width) {
   LogHistogram wide;
-  wide.counts_ = static_cast<unsigned char*>(std::calloc(size_, width));
-  if (wide.counts_ == nullptr) throw std::bad_alloc();
+  wide.counts_ = zeros(std::size_t{size_} * width);
   wide.first_ = first_;
   wide.size_ = size_;
   wide.width_ = width;
@@ -79,8 +82,7 @@ void LogHistogram::cover(int low_key, int high_key) {
   low = std::max(low, high - kSpan + 1);
   if (size_ > 0 && low == first_ && high == first_ + size_ - 1) return;
   LogHistogram wide;
-  wide.counts_ = static_cast<unsigned char*>(std::calloc(static_cast<std::size_t>(high - low + 1), width_));
-  if (wide.counts_ == nullptr) throw std::bad_alloc();
+  wide.counts_ = zeros(static_cast<std::size_t>(high - low + 1) * width_);
   wide.first_ = static_cast<std::uint16_t>(low);
   wide.size_ = static_cast<std::uint16_t>(high - low + 1);
   wide.width_ = width_;
@@ -171,8 +173,7 @@ LogHistogram LogHistogram::restored(ByteReader& in) {
   if ((h.width_ != 1 && h.width_ != 2 && h.width_ != 4) || h.size_ > kSpan ||
       counts.size() != static_cast<std::size_t>(h.size_) * h.width_)
     throw std::out_of_range("bins of a histogram");
-  h.counts_ = static_cast<unsigned char*>(std::malloc(counts.size()));
-  if (h.counts_ == nullptr) throw std::bad_alloc();
+  h.counts_ = zeros(counts.size());
   std::memcpy(h.counts_, counts.data(), counts.size());
   return h;
 }

@@ -114,15 +114,15 @@ void gather(const Group& group, const VisitBatch& batch, Tally::Values& values, 
 /// The records of 64 x 64 cells. `slot` of a cell is its record's number plus one; 0 where there is none yet.
 struct Tally::Region {
   std::mutex mutex;
-  std::unique_ptr<std::array<std::uint16_t, kRegionCells>> slot;
-  std::deque<CellRecord> records;
-  std::vector<std::uint32_t> exceedances;
-  std::deque<HazardCell> hazards;  // by record, where hazard is kept
+  ScratchVector<std::uint16_t> slot;  // empty: no cell was touched
+  std::deque<CellRecord, ScratchAllocator<CellRecord>> records;
+  ScratchVector<std::uint32_t> exceedances;
+  std::deque<HazardCell, ScratchAllocator<HazardCell>> hazards;  // by record, where hazard is kept
 
   /// Number of the record of a cell, made where there is none.
   std::size_t record_of(std::size_t cell, std::size_t thresholds) {
-    if (!slot) slot = std::make_unique<std::array<std::uint16_t, kRegionCells>>();
-    std::uint16_t& number = (*slot)[cell];
+    if (slot.empty()) slot.resize(kRegionCells);
+    std::uint16_t& number = slot[cell];
     if (number == 0) {
       records.emplace_back();
       if (exceedances.size() == exceedances.capacity())  // in small steps: doubling would waste what it holds ready
@@ -177,6 +177,7 @@ std::uint64_t Tally::add(const VisitBatch& batch) {
 }
 
 std::uint64_t Tally::score(std::size_t index, const std::vector<Visit>& visits, const VisitBatch& batch) {
+  scratch::keep_below_limit();
   Region& region = regions_[index];
   const std::vector<Visit> sorted = sorted_by_cell(visits);
   std::vector<Group> groups;
@@ -232,28 +233,28 @@ const Tally::Region& Tally::region_of(int column, int row) const {
 
 const CellRecord* Tally::find(int column, int row) const {
   const Region& region = region_of(column, row);
-  if (!region.slot) return nullptr;
-  const std::uint16_t slot = (*region.slot)[cell_in_region(column, row)];
+  if (region.slot.empty()) return nullptr;
+  const std::uint16_t slot = region.slot[cell_in_region(column, row)];
   return slot == 0 ? nullptr : &region.records[slot - 1U];
 }
 
 const HazardCell* Tally::hazard(int column, int row) const {
   const Region& region = region_of(column, row);
-  if (!hazard_ || !region.slot) return nullptr;
-  const std::uint16_t slot = (*region.slot)[cell_in_region(column, row)];
+  if (!hazard_ || region.slot.empty()) return nullptr;
+  const std::uint16_t slot = region.slot[cell_in_region(column, row)];
   return slot == 0 ? nullptr : &region.hazards[slot - 1U];
 }
 
 const std::uint32_t* Tally::exceedances(int column, int row) const {
   const Region& region = region_of(column, row);
-  return region.exceedances.data() + ((*region.slot)[cell_in_region(column, row)] - 1U) * thresholds();
+  return region.exceedances.data() + (region.slot[cell_in_region(column, row)] - 1U) * thresholds();
 }
 
 void Tally::save(std::size_t index, ByteWriter& out) const {
   const Region& region = regions_[index];
-  if (!region.slot) return;
+  if (region.slot.empty()) return;
   for (std::size_t cell = 0; cell < kRegionCells; ++cell) {
-    const std::uint16_t slot = (*region.slot)[cell];
+    const std::uint16_t slot = region.slot[cell];
     if (slot == 0) continue;
     const std::size_t record = slot - 1U;
     out.put(static_cast<std::uint16_t>(cell));

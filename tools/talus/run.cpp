@@ -24,10 +24,22 @@ struct Options {
   talus::io::RunFlags flags;
   std::string out, progress, part;
   talus::Rounds rounds;
+  std::string memory;
   double checkpoint = 30.0;
   int threads = 0;
   bool overwrite = false, resume = false, quiet = false;
 };
+
+/// "2G", "500M": bytes.
+std::size_t bytes_of(const std::string& text) {
+  double number = 0.0;
+  char unit = ' ', end = ' ';
+  const int read = std::sscanf(text.c_str(), "%lf%c%c", &number, &unit, &end);
+  const double factor = unit == 'G' ? 1e9 : unit == 'M' ? 1e6 : 0.0;
+  if (read != 2 || !(number * factor >= 2e8) || !(number * factor <= 1e15))
+    throw talus::InputError("--memory '" + text + "': must be 200M at least, for example 500M or 2G");
+  return static_cast<std::size_t>(number * factor);
+}
 
 /// "I/N".
 talus::Part part_of(const std::string& text) {
@@ -165,6 +177,7 @@ int run(const Options& options) {
   catch_signals();
   const talus::Part part = part_of(options.part);
   check(options, part);
+  if (!options.memory.empty()) talus::io::limit_memory(options.out, bytes_of(options.memory));
   const LoadedScenario loaded = talus::io::load_scenario(options.flags);
   if (interrupted()) stop_interrupted();
   OutputFolder folder(options.out, options.overwrite,
@@ -238,6 +251,7 @@ void add_run(CLI::App& app, Action& action) {
       ->check(CLI::Range(1, 4096));
   command->add_option("--part", options->part, "I/N: only part I of N of the source cells, for talus merge");
   command->add_flag("--resume", options->resume, "go on with an interrupted run of the same command");
+  command->add_option("--memory", options->memory, "such as 2G: what does not fit lies in a file beside the results");
   command->add_option("--checkpoint", options->checkpoint, "seconds between two times that the work is kept on the disk")
       ->check(CLI::Range(0.0, 1e6));
   command->add_option("--rounds", options->rounds.count, "how often the scenario's trajectories are traced")

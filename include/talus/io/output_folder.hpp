@@ -48,6 +48,10 @@ class OutputFolder {
   bool overwrite_, committed_ = false, kept_ = false;
 };
 
+/// From now on what grows with the map lies in a file beside the results as far as it does not fit into so many bytes.
+/// Before anything is read. Throws InputError where there is no folder for the results to go into.
+void limit_memory(const std::filesystem::path& results, std::size_t bytes);
+
 /// Writes a text file. Throws std::runtime_error, one line with the file and the cause; no half file is left.
 void write_text(const std::filesystem::path& file, std::string_view text);
 

@@ -2,6 +2,7 @@
 #include <span>
 #include <vector>
 
+#include "talus/base/scratch.hpp"
 #include "talus/simulate/bytes.hpp"
 #include "talus/simulate/energy_bins.hpp"
 #include "talus/simulate/frequency.hpp"
@@ -44,7 +45,7 @@ class HazardCell {
   std::span<const std::int64_t> overlaps() const { return overlaps_; }
 
   /// From what was stored.
-  static HazardCell restored(int first, std::vector<Bin> bins, std::vector<std::int64_t> overlaps);
+  static HazardCell restored(int first, const std::vector<Bin>& bins, const std::vector<std::int64_t>& overlaps);
 
   void save(ByteWriter& out) const;
   static HazardCell restored(ByteReader& in);
@@ -55,8 +56,8 @@ class HazardCell {
   void cover(int low, int high);
 
   int first_ = 0;
-  std::vector<Bin> bins_;
-  std::vector<std::int64_t> overlaps_;
+  ScratchVector<Bin> bins_;
+  ScratchVector<std::int64_t> overlaps_;
 };
 
 /// Sums the weights of one stratum in one place, by level, and gives what `HazardCell::overlaps` adds up.
@@ -65,8 +66,8 @@ class StratumSums {
   explicit StratumSums(const HazardRules& rules) : rules_(rules), levels_(rules.levels()) {}
 
   /// The next trajectory, of this stratum or a new one; the finished one is added to `overlaps`.
-  void add(const Stake& stake, float energy, std::vector<std::int64_t>& overlaps);
-  void finish(std::vector<std::int64_t>& overlaps);
+  void add(const Stake& stake, float energy, ScratchVector<std::int64_t>& overlaps);
+  void finish(ScratchVector<std::int64_t>& overlaps);
 
  private:
   struct Level {

@@ -1,0 +1,153 @@
+#include "talus/base/scratch.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <mutex>
+#include <new>
+#include <stdexcept>
+#include <system_error>
+
+namespace talus::scratch {
+namespace {
+
+constexpr std::size_t kReserved = std::size_t{1} << 43U;  // addresses, not memory
+constexpr std::size_t kStep = std::size_t{64} << 20U;     // by which the file grows
+constexpr std::size_t kGrain = 16, kSmall = 1024;         // up to kSmall in multiples of kGrain, above in pages
+constexpr std::size_t kPage = 4096;
+constexpr std::size_t kSlab = std::size_t{1} << 16U;      // of which small pieces are cut
+constexpr double kNear = 0.85;                            // of the limit: what is not in the file needs room too
+
+std::atomic<bool> limited{false};
+
+/// The file: pieces of it that are in use, and those that are free by their size.
+class File {
+ public:
+  void open(const std::string& folder, std::size_t limit) {
+    file_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (file_ < 0) {  // a file system that knows none without a name
+      std::string name = folder + "/.talus-scratch-XXXXXX";
+      file_ = mkostemp(name.data(), O_CLOEXEC);
+      if (file_ >= 0) unlink(name.c_str());
+    }
+    status_ = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+    void* const reserved = mmap(nullptr, kReserved, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (file_ < 0 || status_ < 0 || reserved == MAP_FAILED)
+      throw std::runtime_error(folder + ": no file for --memory can be made there: " +
+                               std::system_category().message(errno));
+    begin_ = static_cast<char*>(reserved);
+    limit_ = limit;
+  }
+
+  void* take(std::size_t bytes) {
+    const std::lock_guard guard(mutex_);
+    std::vector<void*>& list = free_[bytes];
+    if (!list.empty()) {
+      void* const memory = list.back();
+      list.pop_back();
+      return memory;
+    }
+    if (bytes > kSmall) return extend(bytes);
+    if (slab_left_ < bytes) {
+      slab_ = static_cast<char*>(extend(kSlab));
+      slab_left_ = kSlab;
+    }
+    void* const memory = slab_;
+    slab_ += bytes;
+    slab_left_ -= bytes;
+    return memory;
+  }
+
+  bool holds(const void* memory) const {
+    return begin_ != nullptr && memory >= begin_ && memory < begin_ + kReserved;
+  }
+
+  void give_back(void* memory, std::size_t bytes) {
+    const std::lock_guard guard(mutex_);
+    free_[bytes].push_back(memory);
+  }
+
+  void keep_below_limit() noexcept {
+    std::array<char, 128> text{};
+    unsigned long pages = 0;
+    if (pread(status_, text.data(), text.size() - 1, 0) <= 0 || std::sscanf(text.data(), "%*u %lu", &pages) != 1) return;
+    if (static_cast<double>(pages * kPage) < kNear * static_cast<double>(limit_)) return;
+    madvise(begin_, mapped_, MADV_DONTNEED);  // of a shared file: its pages stay as they are, in the file
+  }
+
+ private:
+  char* extend(std::size_t bytes) {
+    if (used_ + bytes > mapped_) {
+      const std::size_t step = (used_ + bytes - mapped_ + kStep - 1) / kStep * kStep;
+      const int full = posix_fallocate(file_, static_cast<off_t>(mapped_.load()), static_cast<off_t>(step));
+      if (full != 0)
+        throw std::runtime_error("the file for --memory cannot grow to " + std::to_string((mapped_ + step) >> 20U) +
+                                 " MB: " + std::system_category().message(full));
+      if (mapped_ + step > kReserved ||
+          mmap(begin_ + mapped_, step, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED, file_,
+               static_cast<off_t>(mapped_.load())) == MAP_FAILED)
+        throw std::bad_alloc();
+      mapped_ += step;
+    }
+    char* const memory = begin_ + used_;
+    used_ += bytes;
+    return memory;
+  }
+
+  int file_ = -1, status_ = -1;
+  char* begin_ = nullptr;
+  std::size_t limit_ = 0, used_ = 0;
+  std::atomic<std::size_t> mapped_{0};
+  char* slab_ = nullptr;
+  std::size_t slab_left_ = 0;
+  std::map<std::size_t, std::vector<void*>> free_;
+  std::mutex mutex_;
+};
+
+File& file() {
+  static File* const one = new File;  // never destroyed: containers may outlive whatever order there is
+  return *one;
+}
+
+/// What is really taken for so many bytes.
+std::size_t rounded(std::size_t bytes) {
+  const std::size_t unit = bytes <= kSmall ? kGrain : kPage;
+  return std::max(unit, (bytes + unit - 1) / unit * unit);
+}
+
+}  // namespace
+
+void set_limit(const std::string& folder, std::size_t bytes) {
+  file().open(folder, bytes);
+  limited = true;
+}
+
+void* allocate(std::size_t bytes) {
+  if (limited.load(std::memory_order_relaxed)) return file().take(rounded(bytes));
+  void* const memory = std::malloc(bytes);
+  if (memory == nullptr && bytes > 0) throw std::bad_alloc();
+  return memory;
+}
+
+void release(void* memory, std::size_t bytes) noexcept {
+  if (memory == nullptr) return;
+  if (limited.load(std::memory_order_relaxed) && file().holds(memory))
+    file().give_back(memory, rounded(bytes));
+  else
+    std::free(memory);
+}
+
+void keep_below_limit() noexcept {
+  if (limited.load(std::memory_order_relaxed)) file().keep_below_limit();
+}
+
+}  // namespace talus::scratch
