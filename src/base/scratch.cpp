@@ -22,8 +22,8 @@ namespace {
 
 constexpr std::size_t kReserved = std::size_t{1} << 43U;  // addresses, not memory
 constexpr std::size_t kStep = std::size_t{64} << 20U;     // by which the file grows
-constexpr std::size_t kGrain = 16, kSmall = 1024;         // up to kSmall in multiples of kGrain, above in pages
-constexpr std::size_t kPage = 4096;
+constexpr std::size_t kGrain = 16, kSmall = 1024;         // up to kSmall in multiples of kGrain
+constexpr std::size_t kPiece = 4096;                       // of larger ones
 constexpr std::size_t kSlab = std::size_t{1} << 16U;      // of which small pieces are cut
 constexpr double kNear = 0.85;                            // of the limit: what is not in the file needs room too
 
@@ -80,7 +80,7 @@ class File {
     std::array<char, 128> text{};
     unsigned long pages = 0;
     if (pread(status_, text.data(), text.size() - 1, 0) <= 0 || std::sscanf(text.data(), "%*u %lu", &pages) != 1) return;
-    if (static_cast<double>(pages * kPage) < kNear * static_cast<double>(limit_)) return;
+    if (static_cast<double>(pages) * static_cast<double>(page_) < kNear * static_cast<double>(limit_)) return;
     madvise(begin_, mapped_, MADV_DONTNEED);  // of a shared file: its pages stay as they are, in the file
   }
 
@@ -88,7 +88,9 @@ class File {
   char* extend(std::size_t bytes) {
     if (used_ + bytes > mapped_) {
       const std::size_t step = (used_ + bytes - mapped_ + kStep - 1) / kStep * kStep;
-      const int full = posix_fallocate(file_, static_cast<off_t>(mapped_.load()), static_cast<off_t>(step));
+      int full = EINTR;
+      while (full == EINTR)
+        full = posix_fallocate(file_, static_cast<off_t>(mapped_.load()), static_cast<off_t>(step));
       if (full != 0)
         throw std::runtime_error("the file for --memory cannot grow to " + std::to_string((mapped_ + step) >> 20U) +
                                  " MB: " + std::system_category().message(full));
@@ -104,6 +106,7 @@ class File {
   }
 
   int file_ = -1, status_ = -1;
+  long page_ = sysconf(_SC_PAGESIZE);
   char* begin_ = nullptr;
   std::size_t limit_ = 0, used_ = 0;
   std::atomic<std::size_t> mapped_{0};
@@ -120,7 +123,7 @@ File& file() {
 
 /// What is really taken for so many bytes.
 std::size_t rounded(std::size_t bytes) {
-  const std::size_t unit = bytes <= kSmall ? kGrain : kPage;
+  const std::size_t unit = bytes <= kSmall ? kGrain : kPiece;
   return std::max(unit, (bytes + unit - 1) / unit * unit);
 }
 
@@ -129,6 +132,10 @@ std::size_t rounded(std::size_t bytes) {
 void set_limit(const std::string& folder, std::size_t bytes) {
   file().open(folder, bytes);
   limited = true;
+}
+
+bool is_limited() {
+  return limited.load(std::memory_order_relaxed);
 }
 
 void* allocate(std::size_t bytes) {

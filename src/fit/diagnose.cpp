@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kFolds = 2;
 constexpr std::size_t kThorough = 3;       // of the effects that the test finds most significant
+constexpr std::size_t kLaterFits = 6;      // after the first round: with an effect in place all takes several times as long
 constexpr double kWorthASearch = 0.1;      // p of the score test
 constexpr std::uint32_t kManyBlocks = 72;  // of fewer, more trials each are tested: a signature is a mean over blocks
 constexpr double kPrice = 0.56;            // by which one more fitted number must lower the error, times fitting blocks
@@ -217,7 +218,8 @@ class Diagnosing {
     }
     round.trials.reserve(test.effects.size());
     for (const EffectVerdict& verdict : test.effects) {
-      if (!found.empty() && verdict.p_value > kWorthASearch) continue;  // all have been fitted in the first round
+      // All have been fitted in the first round; from then on those that may be chosen, the most significant first.
+      if (!found.empty() && (verdict.p_value >= level || round.trials.size() == kLaterFits)) continue;
       progress_ = std::min(0.95, progress_ + 0.02);
       const bool thorough = round.trials.size() < kThorough && verdict.p_value < level;
       round.trials.push_back(

@@ -9,6 +9,7 @@
 #include "hazard_stream.hpp"
 #include "sha256.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/scratch.hpp"
 #include "talus/base/version.hpp"
 
 namespace talus::io {
@@ -100,6 +101,12 @@ std::string plan_checksum(const LoadedScenario& loaded) {
   return sum.digits();
 }
 
+void refuse_changed_inputs(const LoadedScenario& before, const LoadedScenario& after) {
+  for (std::size_t i = 0; i < before.inputs.size() && i < after.inputs.size(); ++i)
+    if (before.inputs[i].sha256 != after.inputs[i].sha256)
+      throw InputError(after.inputs[i].path + ": has changed while its blocks were traced; run again");
+}
+
 void write_hazard(const std::filesystem::path& file, const LoadedScenario& loaded, const Tally& tally) {
   const Raster<float>& heights = loaded.scenario.surface.heights();
   const Grid& grid = heights.grid;
@@ -110,6 +117,7 @@ void write_hazard(const std::filesystem::path& file, const LoadedScenario& loade
   out.put(static_cast<std::uint32_t>(header.size()));
   out.put(header.data(), header.size());
   for (int row = grid.rows - 1; row >= 0; --row) {
+    scratch::keep_below_limit();
     for (int column = 0; column < grid.columns; ++column) {
       const std::uint8_t touched = tally.hazard(column, row) != nullptr ? 2 : 0;
       out.put(static_cast<std::uint8_t>(touched + (std::isnan(heights.at(column, row)) ? 0 : 1)));

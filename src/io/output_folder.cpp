@@ -2,14 +2,13 @@
 
 #include <fcntl.h>
 #include <gdal.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <stdexcept>
 #include <system_error>
 #include <vector>
@@ -23,6 +22,8 @@ namespace talus::io {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr const char* kLock = ".lock";
 
 /// Absolute, through symbolic links, without a slash at its end.
 fs::path full_name(const fs::path& path) {
@@ -87,9 +88,11 @@ std::vector<fs::path> unfinished_of(const fs::path& folder) {
     const std::string name = entry.path().filename().string();
     const fs::path manifest = entry.path() / OutputFolder::kWork / "part.json";
     if (!name.starts_with(stem) || !fs::exists(manifest)) continue;
-    const int process = std::atoi(name.c_str() + stem.size());
-    if (process > 0 && process != getpid() && (::kill(process, 0) == 0 || errno == EPERM))
-      throw InputError(folder.string() + ": process " + std::to_string(process) + " is writing it (into " + name +
+    const int lock = open((entry.path() / OutputFolder::kWork / kLock).c_str(), O_RDWR | O_CLOEXEC);
+    const bool in_use = lock >= 0 && flock(lock, LOCK_EX | LOCK_NB) != 0;
+    if (lock >= 0) close(lock);
+    if (in_use)
+      throw InputError(folder.string() + ": another process is writing it (into " + name +
                        "); wait until it has ended, or give another name");
     found.emplace_back(fs::last_write_time(manifest), entry.path());
   }
@@ -130,10 +133,10 @@ OutputFolder::OutputFolder(const fs::path& path, bool overwrite, Unfinished unfi
   if (unfinished == Unfinished::Resume && !left.empty()) {
     fs::remove(temporary_, ignored);
     fs::rename(left.back(), temporary_);
-    kept_ = true;  // what there is must not be lost
+    kept_ = true;  // what there is must not be lost; nor are others of that name removed
     for (const auto& entry : fs::directory_iterator(temporary_))
       if (entry.path().filename() != kWork) fs::remove_all(entry.path(), ignored);
-    left.pop_back();
+    left.clear();
   }
   for (const fs::path& folder : left) fs::remove_all(folder, ignored);
 }
@@ -141,6 +144,7 @@ OutputFolder::OutputFolder(const fs::path& path, bool overwrite, Unfinished unfi
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
   if (!committed_ && !kept_) fs::remove_all(temporary_, ignored);
+  if (lock_ >= 0) close(lock_);
 }
 
 void OutputFolder::protect(const fs::path& file) const {
@@ -154,21 +158,41 @@ void OutputFolder::protect(const fs::path& file) const {
   }
 }
 
+void OutputFolder::hold_work() {
+  fs::create_directories(work());
+  lock_ = open((work() / kLock).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (lock_ < 0 || flock(lock_, LOCK_EX | LOCK_NB) != 0)
+    throw std::runtime_error(work().string() + ": cannot be locked: " + std::system_category().message(errno));
+}
+
 void OutputFolder::commit() {
+  commit(temporary_);
+  std::error_code ignored;
+  fs::remove_all(final_ / kWork, ignored);  // last: until here a run that is killed can go on
+}
+
+void OutputFolder::commit_work() {
+  std::error_code ignored;
+  fs::remove(work() / kLock, ignored);
+  commit(work());
+  fs::remove_all(temporary_, ignored);
+}
+
+void OutputFolder::commit(const fs::path& folder) {
   try {
     refuse_taken_name(final_, overwrite_);
   } catch (const InputError& error) {  // somebody has filled it while this ran
     kept_ = true;
     throw InputError(std::string(error.what()) + "; the results are kept in " + temporary_.string());
   }
-  for (const auto& entry : fs::recursive_directory_iterator(temporary_)) synchronise(entry.path());
-  synchronise(temporary_);
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) synchronise(entry.path());
+  synchronise(folder);
   std::error_code error;
   const fs::path aside = temporary_.string() + "-old";
   const bool replace = fs::exists(final_) && !fs::is_empty(final_);
   if (replace) fs::rename(final_, aside, error);
   if (!error) {
-    fs::rename(temporary_, final_, error);
+    fs::rename(folder, final_, error);
     std::error_code ignored;
     if (error && replace) fs::rename(aside, final_, ignored);
   }
@@ -207,7 +231,10 @@ void replace_text(const fs::path& file, std::string_view text) {
   synchronise(temporary);
   std::error_code error;
   fs::rename(temporary, file, error);
-  if (!error) return;
+  if (!error) {
+    synchronise(file.parent_path());
+    return;
+  }
   std::error_code ignored;
   fs::remove(temporary, ignored);
   throw std::runtime_error(file.filename().string() + ": cannot be written: " + error.message());

@@ -101,7 +101,7 @@ Json rounds_of(const RoundsRecord& rounds) {
   if (!rounds.asked.until_error) return json;
   json["asked"] = *rounds.asked.until_error;
   json["most_rounds"] = rounds.asked.most;
-  json["reached"] = rounds.reached.half_width < *rounds.asked.until_error;
+  json["reached"] = rounds.reached_it();
   return json;
 }
 

@@ -66,6 +66,20 @@ void check_diameters(const Scenario& parts, const SourceLayer& layer, const std:
   }
 }
 
+/// Diameters that no block gets, because every feature has its own: easily overlooked.
+void warn_unused_diameter(const ScenarioSpec& spec, const SourceLayer& layer, std::vector<std::string>& warnings) {
+  const std::string origin = spec.origin("blocks.diameter");
+  if (origin == "default" || layer.features.empty()) return;
+  Range all{1e9, 0.0};
+  for (const SourceFeature& feature : layer.features) {
+    if (std::isnan(feature.diameter.low)) return;
+    all = {std::min(all.low, feature.diameter.low), std::max(all.high, feature.diameter.high)};
+  }
+  warnings.push_back("blocks.diameter (" + origin + ") is not used: all " + std::to_string(layer.features.size()) +
+                     " features of " + spec.sources.path + " have diameters of their own, " + text_of(all.low) + " to " +
+                     text_of(all.high) + " m");
+}
+
 void record_inputs(const ScenarioSpec& spec, LoadedScenario& out) {
   std::vector<std::pair<std::string, const NamedFile*>> files{
       {"scenario", &spec.scenario}, {"include", &spec.include}, {"dem", &spec.dem},          {"sources", &spec.sources},
@@ -114,6 +128,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
   attempt([&] {
     sources = read_sources(spec.sources.path, terrain, spec.release_height);
     check_diameters(parts, sources, spec.sources.path);
+    warn_unused_diameter(spec, sources, out.warnings);
     take(out, sources);
   });
   attempt([&] { load_ground(spec, terrain, parts, out); });

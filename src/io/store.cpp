@@ -92,20 +92,36 @@ struct Store::Rows {
 Store::Store(fs::path folder, const LoadedScenario& loaded)
     : folder_(std::move(folder)), plan_(plan_checksum(loaded)), loaded_(&loaded) {}
 
-Store::Store(const fs::path& folder, const LoadedScenario& loaded, const Part& part) : Store(folder, loaded) {
+Store::Store(const fs::path& folder, const LoadedScenario& loaded, const Part& part, bool further_rounds)
+    : Store(folder, loaded) {
   part_ = part;
-  write_text(folder_ / "scenario.toml", loaded.complete_toml);
+  further_rounds_ = further_rounds;
+  settings_ = loaded.settings;
+  replace_text(folder_ / "scenario.toml", loaded.complete_toml);
 }
 
 Store::Store(Store&&) noexcept = default;
 Store& Store::operator=(Store&&) noexcept = default;
 Store::~Store() = default;
 
-Store Store::opened(const fs::path& folder, const LoadedScenario& loaded) {
+Store Store::opened(const fs::path& folder, const LoadedScenario& loaded, bool to_go_on) {
   Store store(folder, loaded);
   store.read_manifest();
-  store.remove_unnamed();
+  if (to_go_on) {
+    store.remove_unnamed();
+    replace_text(folder / "scenario.toml", loaded.complete_toml);
+  }
   return store;
+}
+
+std::vector<Setting> Store::settings(std::uint32_t rounds) const {
+  std::vector<Setting> settings = settings_;
+  for (Setting& setting : settings)
+    if (setting.key == "trajectories" && rounds > 1) {
+      setting.source = std::to_string(rounds) + " rounds of " + setting.value + ", " + setting.source;
+      setting.value = std::to_string(std::stoull(setting.value) * rounds);
+    }
+  return settings;
 }
 
 Sinks Store::sinks() {
@@ -187,19 +203,23 @@ void Store::write_manifest() const {
   Json rows = Json::array();
   for (const RowsFile& file : rows_files_)
     rows.push_back({{"round", file.round}, {"file", file.name}, {"sha256", file.sha256}});
+  Json settings = Json::array();
+  for (const Setting& s : settings_) settings.push_back({s.key, s.value, s.unit, s.source});
   const Json json{{"program", "talus"},
                   {"version", version()},
                   {"format", kFormat},
                   {"plan", plan_},
                   {"part", part_.number},
                   {"of", part_.of},
+                  {"further_rounds", further_rounds_},
                   {"rounds_done", rounds_},
                   {"units_done", units_done_},
                   {"generation", generation_},
                   {"tally_sha256", tally_sha256_},
                   {"rest_sha256", rest_sha256_},
-                  {"rows", rows}};
-  replace_text(folder_ / kStoreManifest, json.dump(2) + "\n");
+                  {"rows", rows},
+                  {"settings", settings}};
+  replace_text(folder_ / kStoreManifest, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 void Store::read_manifest() {
@@ -215,11 +235,13 @@ void Store::read_manifest() {
       throw InputError("was written by Talus " + json.at("version").get<std::string>());
     plan = json.at("plan");
     part_ = {json.at("part"), json.at("of")};
+    further_rounds_ = json.at("further_rounds");
     rounds_ = json.at("rounds_done");
     units_done_ = json.at("units_done");
     generation_ = json.at("generation");
     tally_sha256_ = json.at("tally_sha256");
     rest_sha256_ = json.at("rest_sha256");
+    for (const Json& s : json.at("settings")) settings_.push_back({s.at(0), s.at(1), s.at(2), s.at(3)});
     for (const Json& rows : json.at("rows"))
       rows_files_.push_back({rows.at("round"), rows.at("file"), rows.at("sha256")});
   } catch (const std::exception& error) {
@@ -227,18 +249,20 @@ void Store::read_manifest() {
                      "), must be as this version of Talus has written it; run this part again");
   }
   if (plan != plan_)
-    throw InputError(file.string() + ": belongs to another plan: the scenario or one of its files is not the same; run "
-                     "this part again");
+    throw InputError(file.string() + ": belongs to another plan: the scenario, a flag or a file is not what it was when this was "
+                     "traced; give the same again, or begin anew (--overwrite)");
 }
 
 void Store::remove_unnamed() const {
-  std::vector<std::string> named{kStoreManifest, "scenario.toml", numbered("tally", generation_),
-                                 numbered("rest", generation_)};
+  std::vector<std::string> named{numbered("tally", generation_), numbered("rest", generation_)};
   for (const RowsFile& file : rows_files_) named.push_back(file.name);
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder_))
-    if (entry.path().extension() == ".bin" && std::ranges::count(named, entry.path().filename().string()) == 0)
-      fs::remove(entry.path(), ignored);
+  for (const auto& entry : fs::directory_iterator(folder_)) {
+    const std::string name = entry.path().filename().string();
+    const bool ours = name.starts_with("tally-") || name.starts_with("rest-") || name.starts_with("rows-") ||
+                      name.starts_with(".part.json.talus-") || name.starts_with(".scenario.toml.talus-");
+    if (ours && std::ranges::count(named, name) == 0) fs::remove(entry.path(), ignored);
+  }
 }
 
 }  // namespace talus::io

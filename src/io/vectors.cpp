@@ -168,9 +168,9 @@ class Placer {
           ", the DEM over " + extent_text(terrain.extent()) + " in " + crs_name(terrain.geo.crs_wkt) +
           ": is the coordinate system of the layer the right one?");
     if (!without_geometry_.empty())
-      out_.warnings.push_back(path + ": features without geometry: " + list_of(without_geometry_));
+      out_.warnings.push_back(path + ": features without geometry: FID " + list_of(without_geometry_));
     if (!off_map_.empty())
-      out_.warnings.push_back(path + ": features wholly off the DEM, which release nothing: " + list_of(off_map_));
+      out_.warnings.push_back(path + ": features wholly off the DEM, which release nothing: FID " + list_of(off_map_));
     if (at_edge_ > 0)
       out_.warnings.push_back(path + ": " + std::to_string(at_edge_) +
                               " source cells or points lie at the edge of the DEM or beside missing heights: blocks "

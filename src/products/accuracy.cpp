@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "talus/base/scratch.hpp"
 #include "talus/products/maps.hpp"
 
 namespace talus {
@@ -11,7 +12,8 @@ Accuracy accuracy_of(const Tally& tally, std::uint64_t released, double above) {
   Accuracy worst;
   std::unordered_map<std::uint32_t, double> known;  // many cells have the same count
   const Grid& grid = tally.grid();
-  for (int row = 0; row < grid.rows; ++row)
+  for (int row = 0; row < grid.rows; ++row) {
+    scratch::keep_below_limit();
     for (int column = 0; column < grid.columns; ++column) {
       const CellRecord* cell = tally.find(column, row);
       if (cell == nullptr) continue;
@@ -25,6 +27,7 @@ Accuracy accuracy_of(const Tally& tally, std::uint64_t released, double above) {
       worst.half_width = std::max(worst.half_width, it->second);
       worst.cells += 1;
     }
+  }
   return worst;
 }
 

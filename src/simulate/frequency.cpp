@@ -9,7 +9,8 @@
 namespace talus {
 namespace {
 
-constexpr int kBits = 62;                    // of the sum over all trajectories
+constexpr int kBits = 62;                    // of the sum over all trajectories of all rounds
+constexpr int kRoundBits = 14;               // of the number of rounds
 constexpr std::int64_t kLeastWeight = 1024;  // below it the unit would change a weight by more than 0.05 %
 
 /// What says how often blocks fall.
@@ -23,7 +24,7 @@ struct Sources {
 }
 
 std::string feature_name(const Scenario& s, std::size_t i) {
-  return "feature number " + std::to_string(i) + (s.features[i].name.empty() ? "" : " (" + s.features[i].name + ")");
+  return "feature number " + std::to_string(i) + " (from 0)" + (s.features[i].name.empty() ? "" : " (" + s.features[i].name + ")");
 }
 
 Sources sources_of(const Scenario& s) {
@@ -164,7 +165,8 @@ double true_area(const Raster<float>& heights, int column, int row) {
   return grid.cell_x * grid.cell_y * std::sqrt(1.0 + east * east + north * north);  // 1 / cos(slope)
 }
 
-std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s) {
+std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, bool further_rounds) {
+  const int bits = kBits - (further_rounds ? kRoundBits : 0);
   const Sources found = sources_of(s);
   check_contradictions(s, found);
   if (found.count() == 0) return std::nullopt;
@@ -189,8 +191,8 @@ std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s) {
     scale.total += cell;
   }
   if (!(scale.total > 0.0)) return std::nullopt;  // a field of zeros: not known
-  scale.unit = std::ldexp(power_of_two_above(most), -kBits);
-  scale.square_unit = std::ldexp(power_of_two_above(squares), -kBits);
+  scale.unit = std::ldexp(power_of_two_above(most), -bits);
+  scale.square_unit = std::ldexp(power_of_two_above(squares), -bits);
   out.weights_.reserve(cells.size() * factors.size());
   for (const double cell : cells)
     for (const double factor : factors) {

@@ -155,7 +155,9 @@ void Tally::set_rounds(std::uint32_t rounds) {
   scale.trajectories *= rounds;
 }
 
-Tally::~Tally() = default;
+Tally::~Tally() {
+  if (scratch::is_limited()) static_cast<void>(regions_.release());  // else every record would be read once more
+}
 Tally::Tally(Tally&&) noexcept = default;
 
 std::uint64_t Tally::add(const VisitBatch& batch) {
@@ -251,6 +253,7 @@ const std::uint32_t* Tally::exceedances(int column, int row) const {
 }
 
 void Tally::save(std::size_t index, ByteWriter& out) const {
+  scratch::keep_below_limit();
   const Region& region = regions_[index];
   if (region.slot.empty()) return;
   for (std::size_t cell = 0; cell < kRegionCells; ++cell) {
@@ -265,6 +268,7 @@ void Tally::save(std::size_t index, ByteWriter& out) const {
 }
 
 void Tally::merge(std::size_t index, ByteReader& in) {
+  scratch::keep_below_limit();
   Region& region = regions_[index];
   while (!in.empty()) {
     const auto cell = in.get<std::uint16_t>();

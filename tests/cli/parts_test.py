@@ -8,9 +8,10 @@ import subprocess
 import time
 import unittest
 
+import numpy as np
 from osgeo import ogr
 
-from support import TALUS, Case, box, write_features
+from support import TALUS, Case, bands_of, box, write_features
 
 RUN = """dem = "dem.tif"
 trajectories = 40
@@ -138,6 +139,65 @@ class Parts(Case):
         self.assert_same("whole", "out")
         self.assertEqual(self.unfinished("out"), [])
 
+    def test_a_killed_part_in_rounds(self):
+        """Killed in the second part of a run in rounds, gone on with, merged: the bits of one run."""
+        self.write("s.toml", RUN.replace("trajectories = 40\n", "trajectories = 150\n"))
+        self.run_scenario("whole", "--rounds", "3")
+        self.run_scenario("part1", "--rounds", "3", "--part", "1/2")
+        part2 = ["run", self.path("s.toml"), "-o", self.path("part2"), "-q", "--rounds", "3", "--part", "2/2"]
+        for seconds in (0.15, 0.3):
+            process = subprocess.Popen([TALUS, *part2, "--checkpoint", "0", "--resume", "--threads", "2"])
+            time.sleep(seconds)
+            process.kill()
+            process.wait()
+        if self.unfinished("part2"):
+            other = [word if word != "3" else "2" for word in part2]
+            done = self.call(*other, "--resume")  # fewer rounds than are done may be no fault, other rounds than several are
+            self.assertIn(done.returncode, (0, 2))
+            single = [word for word in part2 if word not in ("--rounds", "3")]
+            if done.returncode == 2:
+                self.fails(2, "other --rounds", arguments=[*single, "--resume"])
+        self.run_well(*part2, "--resume", *(["--overwrite"] if os.path.exists(self.path("part2")) else []))
+        self.run_well("merge", self.path("merged"), self.path("part1"), self.path("part2"), "-q")
+        self.assert_same("whole", "merged")
+
+    def test_merge_spares_what_it_reads(self):
+        self.run_scenario("all", "--part", "1/1")  # a whole run: its results
+        self.assertTrue(os.path.exists(self.path("all/run.json")))
+        os.mkdir(self.path("result"))
+        for i in (1, 2):
+            self.run_scenario(f"result/part{i}", "--part", f"{i}/2")
+        self.write("result/run.json", "{}")
+        self.write("result/part1/mine.bin", "x")
+        parts = [self.path(f"result/part{i}") for i in (1, 2)]
+        self.fails(2, "lies in the folder that --overwrite would replace",
+                   arguments=["merge", self.path("result"), *parts, "--overwrite"])
+        self.run_well("merge", self.path("merged"), *parts, "-q")
+        self.assertTrue(os.path.exists(self.path("result/part1/mine.bin")))
+
+    def test_many_rounds_have_frequencies_of_one(self):
+        """Nine rounds of few blocks: sums of weights that would not fit if one round took all the bits."""
+        self.run_scenario("rounds", "--rounds", "9", "--trajectories", "10")
+        self.run_scenario("one", "--trajectories", "90")
+        for out in ("rounds", "one"):
+            self.run_well("hazard", self.path(out), "-q")
+        rounds, one = (bands_of(self.path(f"{out}/annual_frequency.tif"))[0] for out in ("rounds", "one"))
+        np.testing.assert_allclose(rounds, one, rtol=1e-5)
+        self.assertGreater(rounds.max(), 0.1)
+
+    def test_a_limit_of_memory_changes_no_bit(self):
+        self.run_scenario("whole")
+        self.run_scenario("limited", "--memory", "200M", "--checkpoint", "0.05")
+        self.assert_same("whole", "limited")
+        for text in ("2", "2X", "1M", "G"):
+            self.fails(2, "--memory", arguments=["run", self.path("s.toml"), "-o", self.path("x"), "--memory", text])
+
+    def test_options_that_contradict_each_other(self):
+        start = ["run", self.path("s.toml"), "-o", self.path("x")]
+        self.fails(2, "--rounds", arguments=[*start, "--rounds", "2", "--until-error", "0.1"])
+        self.fails(2, "--until-error", arguments=[*start, "--most-rounds", "2"])
+        self.fails(2, "1e9 blocks", arguments=[*start, "--rounds", "10000", "--trajectories", "1000000"])
+
     def test_until_the_error_is_small(self):
         for threads in ("1", "2"):
             self.run_scenario(f"out{threads}", "--until-error", "0.2", "--above", "0.02", "--threads", threads)
@@ -150,6 +210,7 @@ class Parts(Case):
         self.assertGreaterEqual(self.record("less")["rounds"]["relative_half_width"], 0.2)  # it did not go on for nothing
         self.run_scenario("cap", "--until-error", "0.001", "--most-rounds", "2")
         self.assertFalse(self.record("cap")["rounds"]["reached"])
+        self.assertIn("--until-error was not reached", " ".join(self.record("cap")["warnings"]))
         self.assertEqual(self.record("cap")["rounds"]["done"], 2)
 
 

@@ -152,6 +152,9 @@ int hazard(const Options& options) {
   talus::io::HazardRecord record;
   record.command = command_line();
   record.matrix_file = options.matrix;
+  for (const std::string& input : {options.objects, options.frequency})
+    if (!input.empty() && input.find(':') == std::string::npos && !fs::exists(input))  // PG:... is no file
+      throw talus::InputError(input + ": there is no such file");
   if (!options.matrix.empty()) record.matrix = talus::io::read_matrix(options.matrix);
   talus::io::StagedFiles staged(folder, "hazard.json", options.overwrite);
   Progress progress(options.mode(), 0);

@@ -7,6 +7,7 @@
 #include "progress.hpp"
 #include "run_results.hpp"
 #include "talus/base/error.hpp"
+#include "talus/io/hazard_file.hpp"
 #include "talus/io/output_folder.hpp"
 
 namespace fs = std::filesystem;
@@ -17,7 +18,7 @@ using talus::io::LoadedScenario;
 using talus::io::Store;
 
 struct Options {
-  std::string out;
+  std::string out, memory;
   std::vector<std::string> parts;
   int threads = 0;
   bool overwrite = false, quiet = false;
@@ -41,7 +42,7 @@ std::string name_of(const talus::Part& part) {
 /// The parts in their order. Throws InputError where they are not one whole.
 std::vector<Store> opened(const std::vector<std::string>& folders, const LoadedScenario& loaded) {
   std::vector<Store> stores;
-  for (const std::string& folder : folders) stores.push_back(Store::opened(folder, loaded));
+  for (const std::string& folder : folders) stores.push_back(Store::opened(folder, loaded, false));
   std::ranges::sort(stores, {}, [](const Store& store) { return store.part().number; });
   const Store& first = stores.front();
   for (std::size_t i = 0; i < stores.size(); ++i) {
@@ -66,12 +67,15 @@ std::vector<Store> opened(const std::vector<std::string>& folders, const LoadedS
 int merge(const Options& options) {
   Stopwatch watch;
   catch_signals();
+  if (!options.memory.empty()) talus::io::limit_memory(options.out, bytes_of(options.memory));
   const LoadedScenario loaded = scenario_of(options.parts.front(), std::nullopt);
   const std::vector<Store> stores = opened(options.parts, loaded);
   talus::io::OutputFolder folder(options.out, options.overwrite);
+  for (const std::string& part : options.parts) folder.protect(fs::path(part) / talus::io::kStoreManifest);
+  for (const talus::io::InputFile& input : loaded.inputs) folder.protect(input.path);
   const talus::Scenario& scenario = loaded.scenario;
   talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
-  if (auto weights = talus::AnnualWeights::of(scenario)) tally.keep_hazard(std::move(*weights));
+  if (auto weights = talus::AnnualWeights::of(scenario, stores.front().further_rounds())) tally.keep_hazard(std::move(*weights));
   talus::io::RunRecord record;
   record.command = command_line();
   record.warnings = loaded.warnings;
@@ -90,13 +94,15 @@ int merge(const Options& options) {
     record.rounds.reached = talus::accuracy_of(tally, record.totals.released, record.rounds.asked.above);
   }
   tally.set_rounds(rounds);
-  const LoadedScenario whole = scenario_of(options.parts.front(), scenario.trajectories * rounds);
+  LoadedScenario whole = scenario_of(options.parts.front(), scenario.trajectories * rounds);
+  talus::io::refuse_changed_inputs(loaded, whole);
+  whole.settings = stores.front().settings(rounds);
   record.wall.read = watch.lap().wall;
   record.cpu.simulate = record.totals.cpu_seconds - record.totals.sink_cpu_seconds;
   write_results(whole, stores, tally, folder.temporary(), watch, progress, record);
   if (interrupted()) stop_interrupted();
   folder.commit();
-  if (!options.quiet) summarise(record, whole, folder.final_path().string());
+  if (!options.quiet) summarise(record, whole, 0, folder.final_path().string());
   return judge_limits(record.totals, folder.final_path());
 }
 
@@ -107,6 +113,7 @@ void add_merge(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("merge", "Join the parts of a run; the same bits as one run");
   command->add_option("out", options->out, "new folder for the results")->required();
   command->add_option("parts", options->parts, "folders that talus run --part I/N has written, all of them")->required();
+  command->add_option("--memory", options->memory, "such as 2G: what does not fit lies in a file beside the results");
   command->add_flag("--overwrite", options->overwrite, "replace the folder if it holds an earlier result");
   command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
       ->check(CLI::Range(1, 4096));

@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "progress.hpp"
+#include "run_results.hpp"
 #include "run_support.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/output_folder.hpp"
@@ -110,6 +111,7 @@ talus::io::ProfileResults simulate_and_write(const Options& options, const Loade
   record.cpu.write = written.cpu + record.totals.sink_cpu_seconds;
   record.wall.simulate = simulated.wall;
   record.wall.write = written.wall;
+  for (const std::string& warning : warnings_of(record.totals)) record.warnings.push_back(warning);
   talus::io::write_text(folder / "run.json", talus::io::run_json(record, profile.loaded));
   progress.finish();
   return results;
@@ -122,7 +124,7 @@ int run_profile(const Options& options) {
   if (interrupted()) stop_interrupted();
   talus::io::OutputFolder folder(options.out, options.overwrite);
   for (const talus::io::InputFile& input : profile.loaded.inputs)
-    if (input.role != "scenario") folder.protect(input.path);
+    if (std::filesystem::path(input.path) != folder.final_path() / "profile.toml") folder.protect(input.path);
   if (!options.quiet)
     for (const std::string& warning : profile.loaded.warnings) say("warning", warning);
   talus::io::RunRecord record;
@@ -135,6 +137,8 @@ int run_profile(const Options& options) {
   const talus::io::ProfileResults results = simulate_and_write(options, profile, folder.temporary(), watch, record);
   if (interrupted()) stop_interrupted();
   folder.commit();
+  if (!options.quiet)
+    for (const std::string& warning : warnings_of(record.totals)) say("warning", warning);
   if (!options.quiet) summarise(record.totals, results.runout.stopped, folder.final_path().string());
   if (!talus::io::too_many_limits(record.totals)) return 0;
   say("error", limits_text(record.totals));

@@ -30,10 +30,16 @@ bool Progress::update(double share) {
   shown_ = now;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const auto rate = static_cast<std::uint64_t>(share * trajectories_ / elapsed);
-  show(std::to_string(static_cast<int>(100.0 * share)) + " %, " +
+  show(part_ + std::to_string(static_cast<int>(100.0 * share)) + " %, " +
        (trajectories_ > 0.0 ? count_text(rate) + " trajectories/s, " : "") +
        duration_text(elapsed * (1.0 - share) / share) + " left");
   return true;
+}
+
+void Progress::begin(const std::string& part) {
+  part_ = part + ": ";
+  start_ = Clock::now();
+  if (mode_ == Mode::Terminal) shown_ = start_;
 }
 
 void Progress::stage(const std::string& text) {

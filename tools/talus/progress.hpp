@@ -21,6 +21,9 @@ class Progress {
   /// @param share  done, 0..1. Returns false where nobody reads any more what was asked for (a closed pipe).
   bool update(double share);
 
+  /// A part of the run begins, "round 3": shares and rates are from now on its own.
+  void begin(const std::string& part);
+
   /// What follows the trajectories: "writing the results".
   void stage(const std::string& text);
 
@@ -36,6 +39,7 @@ class Progress {
   Mode mode_;
   double trajectories_;
   Clock::time_point start_ = Clock::now(), shown_ = start_;
+  std::string part_;  // in front of the line
   int percent_ = -1;
   bool on_line_ = false;  // something stands on the current line of the terminal
 };

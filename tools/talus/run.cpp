@@ -9,6 +9,7 @@
 #include "progress.hpp"
 #include "run_results.hpp"
 #include "talus/base/error.hpp"
+#include "talus/io/hazard_file.hpp"
 #include "talus/io/output_folder.hpp"
 #include "talus/products/accuracy.hpp"
 
@@ -29,17 +30,6 @@ struct Options {
   int threads = 0;
   bool overwrite = false, resume = false, quiet = false;
 };
-
-/// "2G", "500M": bytes.
-std::size_t bytes_of(const std::string& text) {
-  double number = 0.0;
-  char unit = ' ', end = ' ';
-  const int read = std::sscanf(text.c_str(), "%lf%c%c", &number, &unit, &end);
-  const double factor = unit == 'G' ? 1e9 : unit == 'M' ? 1e6 : 0.0;
-  if (read != 2 || !(number * factor >= 2e8) || !(number * factor <= 1e15))
-    throw talus::InputError("--memory '" + text + "': must be 200M at least, for example 500M or 2G");
-  return static_cast<std::size_t>(number * factor);
-}
 
 /// "I/N".
 talus::Part part_of(const std::string& text) {
@@ -71,7 +61,7 @@ class Sitting {
         stores_(store_in(folder, loaded, part, options)),
         sinks_(store().sinks()),
         simulation_(scenario_, part, options.rounds.several(), tally_, sinks_) {
-    if (auto weights = talus::AnnualWeights::of(scenario_)) tally_.keep_hazard(std::move(*weights));
+    if (auto weights = talus::AnnualWeights::of(scenario_, options.rounds.several())) tally_.keep_hazard(std::move(*weights));
     store().restore(simulation_, tally_);
     sinks_.progress = [&progress](double share) { return progress.update(share) && !interrupted(); };
     sinks_.pause = [this] { return seconds_since_kept() > options_.checkpoint; };
@@ -84,9 +74,11 @@ class Sitting {
   std::uint32_t rounds_done() const { return simulation_.position().round + (simulation_.round_done() ? 1U : 0U); }
 
   /// Traces all rounds. Throws `Interrupted`, after what is done was kept.
-  void trace(int threads) {
+  void trace(int threads, Progress& progress) {
     while (!enough()) {
       if (simulation_.round_done()) simulation_.next_round();
+      if (options_.rounds.several() && simulation_.position().unit == 0)
+        progress.begin("round " + std::to_string(simulation_.position().round + 1));
       simulation_.advance(threads);
       if (simulation_.totals().interrupted || interrupted()) interrupt();
       if (simulation_.round_done()) store().end_round(simulation_.position().round);
@@ -116,18 +108,24 @@ class Sitting {
   }
 
  private:
-  static std::vector<talus::io::Store> store_in(const OutputFolder& folder, const LoadedScenario& loaded,
+  static std::vector<talus::io::Store> store_in(OutputFolder& folder, const LoadedScenario& loaded,
                                                 const talus::Part& part, const Options& options) {
     std::vector<talus::io::Store> stores;
+    folder.hold_work();
     if (fs::exists(folder.work() / talus::io::kStoreManifest)) {
-      stores.push_back(talus::io::Store::opened(folder.work(), loaded));
+      stores.push_back(talus::io::Store::opened(folder.work(), loaded, true));
+      const talus::Rounds& asked = options.rounds;
+      if (stores.front().further_rounds() != asked.several() ||
+          (!asked.until_error && stores.front().rounds() > asked.count))
+        throw talus::InputError(options.out + ": what is kept there was begun with other --rounds or --until-error (" +
+                                std::to_string(stores.front().rounds()) +
+                                " rounds are done); give the same, or begin anew (--overwrite)");
       const talus::Part kept = stores.front().part();
       if (kept.number != part.number || kept.of != part.of)
         throw talus::InputError(options.out + ": what is kept there is part " + std::to_string(kept.number) + "/" +
                                 std::to_string(kept.of) + "; give that with --part, or another folder");
     } else {
-      fs::create_directories(folder.work());
-      stores.emplace_back(folder.work(), loaded, part);
+      stores.emplace_back(folder.work(), loaded, part, options.rounds.several());
     }
     return stores;
   }
@@ -154,22 +152,14 @@ class Sitting {
 };
 
 /// The scenario with the trajectories of all rounds, so that OUT/scenario.toml says what was traced.
-LoadedScenario with_rounds(const talus::io::RunFlags& flags, std::uint32_t rounds, std::uint32_t each) {
+LoadedScenario with_rounds(const talus::io::RunFlags& flags, const talus::io::Store& store,
+                           const LoadedScenario& before) {
   talus::io::RunFlags all = flags;
-  all.trajectories = each * rounds;
+  all.trajectories = before.scenario.trajectories * store.rounds();
   LoadedScenario loaded = talus::io::load_scenario(all);
-  for (talus::io::Setting& setting : loaded.settings)
-    if (setting.key == "trajectories")
-      setting.source = std::to_string(rounds) + " rounds of " + std::to_string(each);
+  talus::io::refuse_changed_inputs(before, loaded);
+  loaded.settings = store.settings(store.rounds());
   return loaded;
-}
-
-/// Turns what a part keeps into its results: the files of the store, complete.
-void deliver_part(Sitting& sitting, const OutputFolder& folder) {
-  sitting.keep();
-  for (const auto& entry : fs::directory_iterator(folder.work()))
-    fs::rename(entry.path(), folder.temporary() / entry.path().filename());
-  fs::remove(folder.work());
 }
 
 int run(const Options& options) {
@@ -180,6 +170,11 @@ int run(const Options& options) {
   if (!options.memory.empty()) talus::io::limit_memory(options.out, bytes_of(options.memory));
   const LoadedScenario loaded = talus::io::load_scenario(options.flags);
   if (interrupted()) stop_interrupted();
+  const std::uint32_t rounds_at_most = options.rounds.until_error ? options.rounds.most : options.rounds.count;
+  if (std::uint64_t{loaded.scenario.trajectories} * rounds_at_most > 1'000'000'000)
+    throw talus::InputError(std::to_string(rounds_at_most) + " rounds of trajectories = " +
+                            std::to_string(loaded.scenario.trajectories) +
+                            ": are more than 1e9 blocks of a source cell; give fewer --rounds, --most-rounds or --trajectories");
   OutputFolder folder(options.out, options.overwrite,
                       options.resume ? OutputFolder::Unfinished::Resume : OutputFolder::Unfinished::Refuse);
   for (const talus::io::InputFile& input : loaded.inputs)  // the scenario that the run itself left may be replaced
@@ -196,7 +191,7 @@ int run(const Options& options) {
   const Stopwatch::Lap read = watch.lap();
   record.cpu.read = read.cpu;
   record.wall.read = read.wall;
-  sitting.trace(record.threads);
+  sitting.trace(record.threads, progress);
   const Stopwatch::Lap simulated = watch.lap();
   record.totals = sitting.totals();
   record.cpu.simulate = record.totals.cpu_seconds - record.totals.sink_cpu_seconds;
@@ -204,8 +199,8 @@ int run(const Options& options) {
   if (options.rounds.several()) record.rounds = {sitting.rounds_done(), options.rounds, sitting.accuracy()};
 
   if (!part.whole()) {
-    deliver_part(sitting, folder);
-    folder.commit();
+    sitting.keep();  // the files of the store are the results
+    folder.commit_work();
     progress.finish();
     if (!options.quiet)
       say("", "part " + options.part + ": " + count_text(record.totals.released) + " trajectories; results are in " +
@@ -215,7 +210,7 @@ int run(const Options& options) {
   const std::uint32_t rounds = sitting.rounds_done();
   sitting.tally().set_rounds(rounds);
   const std::optional<LoadedScenario> all =
-      rounds > 1 ? std::optional(with_rounds(options.flags, rounds, loaded.scenario.trajectories)) : std::nullopt;
+      rounds > 1 ? std::optional(with_rounds(options.flags, sitting.store(), loaded)) : std::nullopt;
   const LoadedScenario& whole = all ? *all : loaded;
   try {
     write_results(whole, sitting.stores(), sitting.tally(), folder.temporary(), watch, progress, record);
@@ -223,9 +218,8 @@ int run(const Options& options) {
     sitting.interrupt();
   }
   if (interrupted()) sitting.interrupt();
-  fs::remove_all(folder.work());
   folder.commit();
-  if (!options.quiet) summarise(record, whole, folder.final_path().string());
+  if (!options.quiet) summarise(record, whole, loaded.warnings.size(), folder.final_path().string());
   return judge_limits(record.totals, folder.final_path());
 }
 
@@ -256,13 +250,15 @@ void add_run(CLI::App& app, Action& action) {
       ->check(CLI::Range(0.0, 1e6));
   command->add_option("--rounds", options->rounds.count, "how often the scenario's trajectories are traced")
       ->check(CLI::Range(1, 10'000));
-  command->add_option("--until-error", options->rounds.until_error,
-                      "rounds until the relative 95 % half-width of the impact probability is below this")
-      ->check(CLI::Range(1e-4, 10.0));
-  command->add_option("--above", options->rounds.above, "--until-error: in all cells with a larger probability; 0.01")
+  CLI::Option* until = command->add_option(
+      "--until-error", options->rounds.until_error,
+      "rounds until the relative 95 % half-width of the impact probability is below this");
+  until->check(CLI::Range(1e-4, 10.0))->excludes("--rounds");
+  command->add_option("--above", options->rounds.above, "the error counts in all cells with a larger probability; 0.01")
       ->check(CLI::Range(1e-9, 1.0));
   command->add_option("--most-rounds", options->rounds.most, "--until-error: never more; 100")
-      ->check(CLI::Range(1, 10'000));
+      ->check(CLI::Range(1, 10'000))
+      ->needs(until);
   command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
   command->add_option("--progress", options->progress, "machine: lines `progress 42` for other programs")
       ->check(CLI::IsMember({"machine"}));

@@ -78,7 +78,26 @@ void write_vectors(const LoadedScenario& loaded, std::span<const talus::io::Stor
   vectors.finish(totals);
 }
 
-/// What a user should know of the result.
+/// "3 rounds: the largest relative half-width of 812 cells with a probability above 0.01 is 0.117".
+std::string rounds_text(const talus::io::RoundsRecord& rounds) {
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "%u rounds: the largest relative 95 %% half-width of the %llu cells with a probability above %g is %.3g",
+                rounds.done, static_cast<unsigned long long>(rounds.reached.cells), rounds.asked.above,
+                rounds.reached.half_width);
+  return text;
+}
+
+/// What `--until-error` did not reach.
+std::vector<std::string> warnings_of(const talus::io::RoundsRecord& rounds) {
+  if (rounds.done == 0 || !rounds.asked.until_error || rounds.reached_it()) return {};
+  if (rounds.reached.cells == 0)
+    return {"no cell has a probability above --above, so that --until-error asks nothing; give a smaller --above"};
+  return {"--until-error was not reached with " + std::to_string(rounds.done) + " rounds; give a larger --most-rounds"};
+}
+
+}  // namespace
+
 std::vector<std::string> warnings_of(const talus::Totals& totals) {
   const std::uint64_t left = count_of(totals, talus::End::Left);
   if (static_cast<double>(left) <= 0.01 * static_cast<double>(totals.released)) return {};
@@ -86,9 +105,9 @@ std::vector<std::string> warnings_of(const talus::Totals& totals) {
           ") left the DEM or met missing data: the maps do not show how far they go; a larger DEM would"};
 }
 
-}  // namespace
-
-void summarise(const talus::io::RunRecord& record, const LoadedScenario& loaded, const std::string& folder) {
+void summarise(const talus::io::RunRecord& record, const LoadedScenario& loaded, std::size_t told,
+               const std::string& folder) {
+  for (std::size_t i = told; i < record.warnings.size(); ++i) say("warning", record.warnings[i]);
   const talus::Totals& t = record.totals;
   say("", count_text(t.released) + " trajectories from " + count_text(loaded.scenario.sources.size()) +
               " source cells: " + ends_text(t));
@@ -96,6 +115,7 @@ void summarise(const talus::io::RunRecord& record, const LoadedScenario& loaded,
   std::snprintf(seconds, sizeof seconds, "read %.1f s, simulated %.1f s, wrote %.1f s", record.wall.read,
                 record.wall.simulate, record.wall.write);
   say("", count_text(record.touched_cells) + " cells reached; " + seconds);
+  if (record.rounds.done > 0) say("", rounds_text(record.rounds));
   say("", "results are in " + folder);
 }
 
@@ -119,6 +139,7 @@ void write_results(const LoadedScenario& loaded, std::span<const talus::io::Stor
   record.cpu.write = written.cpu + record.totals.sink_cpu_seconds;
   record.wall.write = written.wall;
   for (const std::string& warning : warnings_of(record.totals)) record.warnings.push_back(warning);
+  for (const std::string& warning : warnings_of(record.rounds)) record.warnings.push_back(warning);
   talus::io::write_text(folder / "run.json", talus::io::run_json(record, loaded));
   progress.finish();
 }

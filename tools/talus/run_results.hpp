@@ -17,8 +17,12 @@ void write_results(const talus::io::LoadedScenario& loaded, std::span<const talu
                    const talus::Tally& tally, const std::filesystem::path& folder, Stopwatch& watch,
                    Progress& progress, talus::io::RunRecord& record);
 
-/// Tells what was done.
-void summarise(const talus::io::RunRecord& record, const talus::io::LoadedScenario& loaded, const std::string& folder);
+/// Tells what was done, after the warnings from number `told` on.
+void summarise(const talus::io::RunRecord& record, const talus::io::LoadedScenario& loaded, std::size_t told,
+               const std::string& folder);
+
+/// What is to be said of trajectories that left; nothing where they are few.
+std::vector<std::string> warnings_of(const talus::Totals& totals);
 
 /// The exit code: says what went wrong where too many trajectories ended at a limit, and how to look into it.
 int judge_limits(const talus::Totals& totals, const std::filesystem::path& folder);

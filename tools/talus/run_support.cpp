@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "progress.hpp"
+#include "talus/base/error.hpp"
 
 Stopwatch::Lap Stopwatch::lap() {
   const Lap now = read(), lap{now.cpu - last_.cpu, now.wall - last_.wall};
@@ -30,6 +31,16 @@ std::vector<std::string> files_in(const std::filesystem::path& folder) {
     if (entry.is_regular_file()) names.push_back(entry.path().filename().string());
   std::ranges::sort(names);
   return names;
+}
+
+std::size_t bytes_of(const std::string& text) {
+  double number = 0.0;
+  char unit = ' ', end = ' ';
+  const int read = std::sscanf(text.c_str(), "%lf%c%c", &number, &unit, &end);
+  const double factor = unit == 'G' ? 1e9 : unit == 'M' ? 1e6 : 0.0;
+  if (read != 2 || !(number * factor >= 2e8) || !(number * factor <= 1e15))
+    throw talus::InputError("--memory '" + text + "': must be 200M at least, for example 500M or 2G");
+  return static_cast<std::size_t>(number * factor);
 }
 
 std::uint64_t count_of(const talus::Totals& totals, talus::End end) {

@@ -26,6 +26,9 @@ class Stopwatch {
 /// Throws `Interrupted`.
 [[noreturn]] void stop_interrupted();
 
+/// "2G", "500M": bytes. Throws InputError.
+std::size_t bytes_of(const std::string& text);
+
 /// Names of the files in a folder, in the order of the alphabet.
 std::vector<std::string> files_in(const std::filesystem::path& folder);
 

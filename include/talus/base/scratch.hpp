@@ -16,6 +16,9 @@ namespace scratch {
 /// Throws std::runtime_error where no such file can be made.
 void set_limit(const std::string& folder, std::size_t bytes);
 
+/// Whether there is a limit.
+bool is_limited();
+
 /// @return aligned to 16 bytes. Throws std::bad_alloc; std::runtime_error where the disk is full. From any thread.
 void* allocate(std::size_t bytes);
 /// @param bytes  as it was allocated with

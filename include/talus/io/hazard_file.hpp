@@ -29,6 +29,9 @@ struct HazardRow {
 /// SHA-256 of all settings of a scenario and of its input files: equal where the same trajectories follow.
 std::string plan_checksum(const LoadedScenario& loaded);
 
+/// Throws InputError where an input file was not the same when it was read again.
+void refuse_changed_inputs(const LoadedScenario& before, const LoadedScenario& after);
+
 /// Writes the annual frequencies that a tally kept, compressed. docs/hazard.md, "What a run keeps".
 ///
 /// The bytes depend on the values only. Throws std::runtime_error on a full disk; no half file is left.

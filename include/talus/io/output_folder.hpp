@@ -31,6 +31,8 @@ class OutputFolder {
   /// Where in it a run keeps its work while it goes on: what is looked for by `Unfinished`.
   std::filesystem::path work() const { return temporary_ / kWork; }
   static constexpr const char* kWork = "unfinished";
+  /// Makes `work`, and marks it as in use until this process ends, however that comes.
+  void hold_work();
   /// The hidden folder stays where there is no `commit`.
   void keep() { kept_ = true; }
   /// Absolute; what the user will find.
@@ -42,10 +44,14 @@ class OutputFolder {
   /// Brings all files to the disk and gives the folder its name, if that is still free or may be overwritten. An earlier result is moved aside first, put back where
   /// the rename fails, and removed last. Throws std::runtime_error.
   void commit();
+  /// The same of `work` alone, which becomes the folder of results in one step.
+  void commit_work();
 
  private:
+  void commit(const std::filesystem::path& folder);
   std::filesystem::path final_, temporary_;
   bool overwrite_, committed_ = false, kept_ = false;
+  int lock_ = -1;
 };
 
 /// From now on what grows with the map lies in a file beside the results as far as it does not fit into so many bytes.

@@ -22,6 +22,7 @@ struct RoundsRecord {
   std::uint32_t done = 0;  ///< 0: it was not
   Rounds asked;
   Accuracy reached;
+  bool reached_it() const { return asked.until_error && reached.cells > 0 && reached.half_width < *asked.until_error; }
 };
 
 /// What happened in a run.

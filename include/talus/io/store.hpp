@@ -23,18 +23,24 @@ inline constexpr const char* kStoreManifest = "part.json";
 class Store {
  public:
   /// A new one in an empty folder, for this part of the plan. Throws std::runtime_error.
-  Store(const std::filesystem::path& folder, const LoadedScenario& loaded, const Part& part);
+  /// @param further_rounds  there may be more than one round
+  Store(const std::filesystem::path& folder, const LoadedScenario& loaded, const Part& part, bool further_rounds);
 
   /// What an earlier program left. Throws InputError where it is damaged; `InputError` too where it belongs to another
   /// plan than `loaded`.
-  static Store opened(const std::filesystem::path& folder, const LoadedScenario& loaded);
+  ///
+  /// @param to_go_on  what a killed program has left beside is removed
+  static Store opened(const std::filesystem::path& folder, const LoadedScenario& loaded, bool to_go_on);
 
   Store(Store&&) noexcept;
   Store& operator=(Store&&) noexcept;
   ~Store();
 
   const Part& part() const { return part_; }
+  bool further_rounds() const { return further_rounds_; }
   std::uint32_t rounds() const { return rounds_; }  ///< that are done
+  /// Those of the plan, as the program that began it had them; `trajectories` those of so many rounds.
+  std::vector<Setting> settings(std::uint32_t rounds) const;
   bool between_rounds() const { return units_done_ == 0; }
   bool empty() const { return generation_ == 0; }  ///< nothing was kept yet
   const std::filesystem::path& folder() const { return folder_; }
@@ -73,7 +79,9 @@ class Store {
   std::filesystem::path folder_;
   std::string plan_;  // its checksum
   const LoadedScenario* loaded_;
+  std::vector<Setting> settings_;
   Part part_;
+  bool further_rounds_ = false;
   std::uint32_t rounds_ = 0;
   std::uint64_t units_done_ = 0;
   std::uint32_t generation_ = 0;  // of the files; 0: none yet

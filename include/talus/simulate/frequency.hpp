@@ -33,10 +33,11 @@ struct WeightScale {
 /// / (n p). docs/hazard.md, "Weights".
 class AnnualWeights {
  public:
+  /// @param further_rounds  up to 10 000 rounds of the scenario's trajectories may be added up: leaves room for them
   /// @return nothing where the scenario says no frequency, or 0 everywhere
   /// Throws InputError where it says several that contradict each other, or some of what it would need; and where a
   /// frequency is so small beside the others that the unit would change it by more than 0.05 %.
-  static std::optional<AnnualWeights> of(const Scenario& scenario);
+  static std::optional<AnnualWeights> of(const Scenario& scenario, bool further_rounds = false);
 
   /// Of block `block` of a source cell [units].
   std::int64_t weight(const Scenario& scenario, std::uint32_t source, std::uint32_t block) const;
