@@ -49,7 +49,7 @@ class Mountains:
             if spacing > 100:
                 octave = 0.6 - 2 * np.abs(octave)  # ridges
             z += (0.35 * cell * spacing * (spacing / 1600)**0.25 * octave).astype(np.float32)
-        return z + 2000.0
+        return z + 4500.0
 
 
 def main():

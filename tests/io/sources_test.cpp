@@ -167,7 +167,7 @@ TEST_F(Sources, FeaturesOffTheMapAreNamed) {
   EXPECT_EQ(layer.cells.size(), 1U);
   EXPECT_EQ(layer.cells[0].feature, 1U);
   EXPECT_EQ(layer.features.size(), 3U);
-  EXPECT_TRUE(said(layer.warnings, "wholly off the DEM, which release nothing: 1, 3"));
+  EXPECT_TRUE(said(layer.warnings, "wholly off the DEM, which release nothing: FID 1, 3"));
 }
 
 TEST_F(Sources, AllOffTheMapGivesBothExtents) {
@@ -182,7 +182,7 @@ TEST_F(Sources, AllOffTheMapGivesBothExtents) {
 TEST_F(Sources, EmptyLayersAreRefused) {
   expect_input_error([&] { read({}); }, {"s.gpkg", "no features"});
   expect_input_error([&] { read({{""}, {"POLYGON EMPTY"}}); }, {"s.gpkg", "none of its features has a geometry"});
-  EXPECT_TRUE(said(read({{""}, {"POINT(5 5)"}}).warnings, "features without geometry: 1"));
+  EXPECT_TRUE(said(read({{""}, {"POINT(5 5)"}}).warnings, "features without geometry: FID 1"));
 }
 
 TEST_F(Sources, OtherLayersAreNamed) {

@@ -163,7 +163,7 @@ TEST(AnnualWeights, ClassesOfBlocks) {
 TEST(AnnualWeights, Contradictions) {
   Scenario s = plane(30.0, {0, 1});
   s.features[0].frequency = 0.3;
-  refused(s, "feature number 1 of the sources has no frequency, but others have");
+  refused(s, "feature number 1 (from 0) of the sources has no frequency, but others have");
   s.features[1].frequency = 0.1;
   s.frequency.per_area = 1.0;
   refused(s, "is given by the field frequency of the sources, frequency.per_area, must be given by one");
