@@ -76,6 +76,28 @@ double at(const std::vector<Map>& maps, const std::string& name, int column, int
   return kNotGiven;
 }
 
+/// Cells that are built to have one curve each, through the whole way to the map: one weight at 10, 100 or 1000 kJ.
+TEST(HazardMaps, ACurveForEveryFieldOfTheMatrix) {
+  const double unit = 0x1p-40;
+  const WeightScale scale{unit, unit * unit, 1.0, static_cast<std::int64_t>(0.05 / unit), 1000, false};
+  const HazardRules rules{EnergyBins({30.0, 300.0}), scale};
+  const std::vector<double> often{1.0 / 20, 1.0 / 60, 1.0 / 200, 1.0 / 900};
+  const int expected[3][4] = {{3, 2, 2, 1}, {4, 3, 3, 1}, {4, 4, 4, 1}};
+  HazardSurvey survey(test::grid_of(12, 2, 2.0, 2.0), rules, {});
+  std::vector<HazardSurvey::Cell> cells;
+  for (int field = 0; field < 12; ++field) {
+    const std::vector<float> energy{field < 4 ? 10.0F : field < 8 ? 100.0F : 1000.0F};
+    const std::vector<Stake> stake{{static_cast<std::int64_t>(often[static_cast<std::size_t>(field % 4)] / unit), 0, 10}};
+    HazardCell cell;
+    cell.add(rules, energy, stake);
+    cells.emplace_back(field, cell);
+  }
+  survey.set_row(0, std::vector<bool>(12, true), cells, 1);
+  const std::vector<Map> maps = make_hazard_maps(survey);
+  for (int field = 0; field < 12; ++field)
+    EXPECT_EQ(at(maps, "hazard_class", field, 0), expected[field / 4][field % 4]) << field;
+}
+
 TEST(HazardMaps, ThreeSourcesOnAPlane) {
   const Scenario s = three_sources();
   Tally tally(s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds);

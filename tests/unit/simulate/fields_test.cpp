@@ -26,7 +26,8 @@ TEST(Fields, WhatIsSetIsGot) {
 }
 
 TEST(Fields, DefaultsAreAllowed) {
-  for (const auto& field : scenario_fields()) EXPECT_FALSE(fault_of(field, field.get(Scenario{}))) << field.key;
+  const Scenario fresh;
+  for (const auto& field : scenario_fields()) EXPECT_FALSE(fault_of(field, field.get(fresh))) << field.key;
   for (const Preset& preset : presets())
     for (const auto& field : ground_fields())
       EXPECT_FALSE(fault_of(field, field.get(preset.ground))) << preset.name << ' ' << field.key;
