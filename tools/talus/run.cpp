@@ -162,6 +162,34 @@ LoadedScenario with_rounds(const talus::io::RunFlags& flags, const talus::io::St
   return loaded;
 }
 
+/// Blocks are numbered with 32 bits.
+void check_number(const talus::Rounds& rounds, const talus::Scenario& scenario) {
+  const std::uint32_t rounds_at_most = rounds.until_error ? rounds.most : rounds.count;
+  if (std::uint64_t{scenario.trajectories} * rounds_at_most > 1'000'000'000)
+    throw talus::InputError(std::to_string(rounds_at_most) + " rounds of trajectories = " +
+                            std::to_string(scenario.trajectories) +
+                            ": are more than 1e9 blocks of a source cell; give fewer --rounds, --most-rounds or --trajectories");
+}
+
+/// Writes the results of a whole run and gives them their name. Returns the exit code.
+int deliver(const Options& options, const LoadedScenario& loaded, Sitting& sitting, OutputFolder& folder,
+            Stopwatch& watch, Progress& progress, talus::io::RunRecord& record) {
+  const std::uint32_t rounds = sitting.rounds_done();
+  sitting.tally().set_rounds(rounds);
+  const std::optional<LoadedScenario> all =
+      rounds > 1 ? std::optional(with_rounds(options.flags, sitting.store(), loaded)) : std::nullopt;
+  const LoadedScenario& whole = all ? *all : loaded;
+  try {
+    write_results(whole, sitting.stores(), sitting.tally(), folder.temporary(), watch, progress, record);
+  } catch (const Interrupted&) {
+    sitting.interrupt();
+  }
+  if (interrupted()) sitting.interrupt();
+  folder.commit();
+  if (!options.quiet) summarise(record, whole, loaded.warnings.size(), folder.final_path().string());
+  return judge_limits(record.totals, folder.final_path());
+}
+
 int run(const Options& options) {
   Stopwatch watch;
   catch_signals();
@@ -170,11 +198,7 @@ int run(const Options& options) {
   if (!options.memory.empty()) talus::io::limit_memory(options.out, bytes_of(options.memory));
   const LoadedScenario loaded = talus::io::load_scenario(options.flags);
   if (interrupted()) stop_interrupted();
-  const std::uint32_t rounds_at_most = options.rounds.until_error ? options.rounds.most : options.rounds.count;
-  if (std::uint64_t{loaded.scenario.trajectories} * rounds_at_most > 1'000'000'000)
-    throw talus::InputError(std::to_string(rounds_at_most) + " rounds of trajectories = " +
-                            std::to_string(loaded.scenario.trajectories) +
-                            ": are more than 1e9 blocks of a source cell; give fewer --rounds, --most-rounds or --trajectories");
+  check_number(options.rounds, loaded.scenario);
   OutputFolder folder(options.out, options.overwrite,
                       options.resume ? OutputFolder::Unfinished::Resume : OutputFolder::Unfinished::Refuse);
   for (const talus::io::InputFile& input : loaded.inputs)  // the scenario that the run itself left may be replaced
@@ -207,20 +231,7 @@ int run(const Options& options) {
                   folder.final_path().string() + "; talus merge joins the parts");
     return 0;
   }
-  const std::uint32_t rounds = sitting.rounds_done();
-  sitting.tally().set_rounds(rounds);
-  const std::optional<LoadedScenario> all =
-      rounds > 1 ? std::optional(with_rounds(options.flags, sitting.store(), loaded)) : std::nullopt;
-  const LoadedScenario& whole = all ? *all : loaded;
-  try {
-    write_results(whole, sitting.stores(), sitting.tally(), folder.temporary(), watch, progress, record);
-  } catch (const Interrupted&) {
-    sitting.interrupt();
-  }
-  if (interrupted()) sitting.interrupt();
-  folder.commit();
-  if (!options.quiet) summarise(record, whole, loaded.warnings.size(), folder.final_path().string());
-  return judge_limits(record.totals, folder.final_path());
+  return deliver(options, loaded, sitting, folder, watch, progress, record);
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ double at(const std::vector<Map>& maps, const std::string& name, int column, int
 /// Cells that are built to have one curve each, through the whole way to the map: one weight at 10, 100 or 1000 kJ.
 TEST(HazardMaps, ACurveForEveryFieldOfTheMatrix) {
   const double unit = 0x1p-40;
-  const WeightScale scale{unit, unit * unit, 1.0, static_cast<std::int64_t>(0.05 / unit), 1000, false};
+  const WeightScale scale{unit, 0x1p-60, 1.0, static_cast<std::int64_t>(0.05 / unit), 1000, false};
   const HazardRules rules{EnergyBins({30.0, 300.0}), scale};
   const std::vector<double> often{1.0 / 20, 1.0 / 60, 1.0 / 200, 1.0 / 900};
   const int expected[3][4] = {{3, 2, 2, 1}, {4, 3, 3, 1}, {4, 4, 4, 1}};
