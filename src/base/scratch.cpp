@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t kReserved = std::size_t{1} << 43U;  // addresses, not memory
 constexpr std::size_t kStep = std::size_t{64} << 20U;     // by which the file grows
 constexpr std::size_t kGrain = 16, kSmall = 1024;         // up to kSmall in multiples of kGrain
-constexpr std::size_t kPiece = 4096;                       // of larger ones
+constexpr std::size_t kPiece = 4096;                      // of larger ones
 constexpr std::size_t kSlab = std::size_t{1} << 16U;      // of which small pieces are cut
 constexpr double kNear = 0.85;                            // of the limit: what is not in the file needs room too
 
@@ -42,8 +42,8 @@ class File {
     status_ = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
     void* const reserved = mmap(nullptr, kReserved, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (file_ < 0 || status_ < 0 || reserved == MAP_FAILED)
-      throw std::runtime_error(folder + ": no file for --memory can be made there: " +
-                               std::system_category().message(errno));
+      throw std::runtime_error(folder +
+                               ": no file for --memory can be made there: " + std::system_category().message(errno));
     begin_ = static_cast<char*>(reserved);
     limit_ = limit;
   }
@@ -67,9 +67,7 @@ class File {
     return memory;
   }
 
-  bool holds(const void* memory) const {
-    return begin_ != nullptr && memory >= begin_ && memory < begin_ + kReserved;
-  }
+  bool holds(const void* memory) const { return begin_ != nullptr && memory >= begin_ && memory < begin_ + kReserved; }
 
   void give_back(void* memory, std::size_t bytes) {
     const std::lock_guard guard(mutex_);
@@ -79,7 +77,8 @@ class File {
   void keep_below_limit() noexcept {
     std::array<char, 128> text{};
     unsigned long pages = 0;
-    if (pread(status_, text.data(), text.size() - 1, 0) <= 0 || std::sscanf(text.data(), "%*u %lu", &pages) != 1) return;
+    if (pread(status_, text.data(), text.size() - 1, 0) <= 0 || std::sscanf(text.data(), "%*u %lu", &pages) != 1)
+      return;
     if (static_cast<double>(pages) * static_cast<double>(page_) < kNear * static_cast<double>(limit_)) return;
     madvise(begin_, mapped_, MADV_DONTNEED);  // of a shared file: its pages stay as they are, in the file
   }
@@ -89,14 +88,12 @@ class File {
     if (used_ + bytes > mapped_) {
       const std::size_t step = (used_ + bytes - mapped_ + kStep - 1) / kStep * kStep;
       int full = EINTR;
-      while (full == EINTR)
-        full = posix_fallocate(file_, static_cast<off_t>(mapped_.load()), static_cast<off_t>(step));
+      while (full == EINTR) full = posix_fallocate(file_, static_cast<off_t>(mapped_.load()), static_cast<off_t>(step));
       if (full != 0)
         throw std::runtime_error("the file for --memory cannot grow to " + std::to_string((mapped_ + step) >> 20U) +
                                  " MB: " + std::system_category().message(full));
-      if (mapped_ + step > kReserved ||
-          mmap(begin_ + mapped_, step, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED, file_,
-               static_cast<off_t>(mapped_.load())) == MAP_FAILED)
+      if (mapped_ + step > kReserved || mmap(begin_ + mapped_, step, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED,
+                                             file_, static_cast<off_t>(mapped_.load())) == MAP_FAILED)
         throw std::bad_alloc();
       mapped_ += step;
     }

@@ -10,9 +10,9 @@ namespace talus {
 namespace {
 
 constexpr std::size_t kFolds = 2;
-constexpr std::size_t kThorough = 3;       // of the effects that the test finds most significant
-constexpr std::size_t kLaterFits = 6;      // after the first round: with an effect in place all takes several times as long
-constexpr double kWorthASearch = 0.1;      // p of the score test
+constexpr std::size_t kThorough = 3;   // of the effects that the test finds most significant
+constexpr std::size_t kLaterFits = 6;  // after the first round: with an effect in place all takes several times as long
+constexpr double kWorthASearch = 0.1;  // p of the score test
 constexpr std::uint32_t kManyBlocks = 72;  // of fewer, more trials each are tested: a signature is a mean over blocks
 constexpr double kPrice = 0.56;            // by which one more fitted number must lower the error, times fitting blocks
 

@@ -118,7 +118,8 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded) 
     const OGREnvelope box = parts.envelope();
     const std::string name = id >= 0 ? feature->GetFieldAsString(id) : "";
     state_->names.push_back(name.empty() ? std::to_string(feature->GetFID()) : name);
-    state_->on_map.push_back(box.MaxX >= 0.0 && box.MinX <= grid.width() && box.MaxY >= 0.0 && box.MinY <= grid.height());
+    state_->on_map.push_back(box.MaxX >= 0.0 && box.MinX <= grid.width() && box.MaxY >= 0.0 &&
+                             box.MinY <= grid.height());
     if (!state_->on_map.back()) off += (off.empty() ? "" : ", ") + state_->names.back();
     state_->objects.push_back(object_of(parts));
     state_->parts.push_back(std::move(parts));
@@ -127,8 +128,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded) 
   if (state_->objects.empty()) throw InputError(path + ": has no features, must have polygons or lines");
   if (std::ranges::count(state_->on_map, true) == 0)
     throw InputError(path + ": lies wholly off the DEM: is the coordinate system of the layer the right one?");
-  if (!off.empty())
-    state_->warnings.push_back(path + ": objects wholly off the DEM, of which nothing is told: " + off);
+  if (!off.empty()) state_->warnings.push_back(path + ": objects wholly off the DEM, of which nothing is told: " + off);
   for (std::string& line : layer.warnings()) state_->warnings.push_back(std::move(line));
 }
 
@@ -222,8 +222,10 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
       char percent[32];
       std::snprintf(percent, sizeof percent, " %.3g %%", 100.0 * share);
       sources += (sources.empty() ? "" : "; ") + name + percent;
-      from += object + ',' + csv_field(name) + ',' +
-              number(static_cast<double>(hits[i].by_feature.at(static_cast<std::uint32_t>(feature))) * rules.scale.unit) + ',' + number(share) + '\n';
+      from +=
+          object + ',' + csv_field(name) + ',' +
+          number(static_cast<double>(hits[i].by_feature.at(static_cast<std::uint32_t>(feature))) * rules.scale.unit) +
+          ',' + number(share) + '\n';
     }
     if (!writer) {
       writer = std::make_unique<ObjectsWriter>(folder / "objects.gpkg", loaded, *state_->features[i], figures);

@@ -16,7 +16,9 @@ OutputFile::OutputFile(const fs::path& path, const std::string& extension, bool 
     throw InputError(name + ": the file must end in " + extension + ", for example result" + extension);
   if (fs::is_directory(path)) throw InputError(name + ": is a folder; give the name of a file");
   if (fs::exists(path) && !overwrite)
-    throw InputError(name + ": the file is there already; give a new name, or --overwrite where the command has it, or remove it first");
+    throw InputError(
+        name +
+        ": the file is there already; give a new name, or --overwrite where the command has it, or remove it first");
   const fs::path folder = fs::absolute(path).parent_path();
   if (!fs::is_directory(folder))
     throw InputError(name + ": there is no such folder for the file to go into; create it first");

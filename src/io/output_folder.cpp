@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "sha256.hpp"
-#include "talus/base/scratch.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/scratch.hpp"
 
 namespace talus::io {
 

@@ -76,8 +76,8 @@ void warn_unused_diameter(const ScenarioSpec& spec, const SourceLayer& layer, st
     all = {std::min(all.low, feature.diameter.low), std::max(all.high, feature.diameter.high)};
   }
   warnings.push_back("blocks.diameter (" + origin + ") is not used: all " + std::to_string(layer.features.size()) +
-                     " features of " + spec.sources.path + " have diameters of their own, " + text_of(all.low) + " to " +
-                     text_of(all.high) + " m");
+                     " features of " + spec.sources.path + " have diameters of their own, " + text_of(all.low) +
+                     " to " + text_of(all.high) + " m");
 }
 
 void record_inputs(const ScenarioSpec& spec, LoadedScenario& out) {

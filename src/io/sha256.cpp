@@ -93,7 +93,8 @@ std::vector<std::string> files_of_input(const std::string& path) {
     if (const Dataset mosaic{GDALDataset::Open(path.c_str())}) {
       char** const names = mosaic->GetFileList();
       for (char** name = names; name != nullptr && *name != nullptr; ++name)
-        if (*name != path && !std::string_view(*name).ends_with(".aux.xml") && !std::string_view(*name).ends_with(".ovr"))
+        if (*name != path && !std::string_view(*name).ends_with(".aux.xml") &&
+            !std::string_view(*name).ends_with(".ovr"))
           files.emplace_back(*name);
       CSLDestroy(names);
     }

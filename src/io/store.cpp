@@ -27,7 +27,8 @@ std::string numbered(const char* what, std::uint32_t number) {
 
 void put_totals(const Totals& totals, ByteWriter& out) {
   out.put(totals.ends);
-  for (const std::uint64_t n : {totals.released, totals.pieces, totals.impacts, totals.psi_dropped, totals.cells_scored})
+  for (const std::uint64_t n :
+       {totals.released, totals.pieces, totals.impacts, totals.psi_dropped, totals.cells_scored})
     out.put(n);
   out.put(totals.length_mm);
   out.put(totals.plan_length_mm);
@@ -226,8 +227,7 @@ void Store::read_manifest() {
   const fs::path file = folder_ / kStoreManifest;
   std::ifstream stream(file, std::ios::binary);
   if (!stream.is_open())
-    throw InputError(folder_.string() + ": has no " + kStoreManifest +
-                     ", must be what talus run --part has written");
+    throw InputError(folder_.string() + ": has no " + kStoreManifest + ", must be what talus run --part has written");
   std::string plan;
   try {
     const Json json = Json::parse(stream);
@@ -249,7 +249,8 @@ void Store::read_manifest() {
                      "), must be as this version of Talus has written it; run this part again");
   }
   if (plan != plan_)
-    throw InputError(file.string() + ": belongs to another plan: the scenario, a flag or a file is not what it was when this was "
+    throw InputError(file.string() +
+                     ": belongs to another plan: the scenario, a flag or a file is not what it was when this was "
                      "traced; give the same again, or begin anew (--overwrite)");
 }
 

@@ -192,17 +192,16 @@ const char* draft_compression(const MapTarget& target) {
   constexpr double kLarge = 16e6;  // cells
   const char* known = driver("GTiff")->GetMetadataItem(GDAL_DMD_CREATIONOPTIONLIST);
   const bool large = static_cast<double>(target.columns) * target.rows > kLarge;
-  return large && known != nullptr && std::string_view(known).find("ZSTD") != std::string_view::npos
-             ? "COMPRESS=ZSTD"
-             : "COMPRESS=NONE";
+  return large && known != nullptr && std::string_view(known).find("ZSTD") != std::string_view::npos ? "COMPRESS=ZSTD"
+                                                                                                     : "COMPRESS=NONE";
 }
 
 /// Writes the map and its overviews into `draft`, and from there the finished file.
 template <class T>
 bool write_as(const Map& map, const MapTarget& target, const fs::path& draft, const fs::path& file) {
-  const char* const draft_options[] = {"TILED=YES",       "BLOCKXSIZE=512",   "BLOCKYSIZE=64",
-                                       "INTERLEAVE=BAND", "BIGTIFF=IF_SAFER", draft_compression(target),
-                                       "ZSTD_LEVEL=1",    nullptr};
+  const char* const draft_options[] = {
+      "TILED=YES",        "BLOCKXSIZE=512",          "BLOCKYSIZE=64", "INTERLEAVE=BAND",
+      "BIGTIFF=IF_SAFER", draft_compression(target), "ZSTD_LEVEL=1",  nullptr};
   const Dataset dataset(driver("GTiff")->Create(draft.c_str(), target.columns, target.rows,
                                                 static_cast<int>(map.bands.size()), kType<T>, draft_options));
   require(dataset != nullptr, "cannot be created");

@@ -171,7 +171,8 @@ class Simulation::Advance {
     if (stop_) return;
     const Sinks& sinks = run_.sinks_;
     try {
-      const bool proceed = !sinks.progress || sinks.progress(static_cast<double>(done_) / static_cast<double>(run_.units_));
+      const bool proceed =
+          !sinks.progress || sinks.progress(static_cast<double>(done_) / static_cast<double>(run_.units_));
       interrupted_ = !proceed && done_ < run_.units_;
       stop_ = !proceed || (sinks.pause && sinks.pause());
     } catch (...) {

@@ -208,7 +208,8 @@ void add_check(CLI::App& app, Action& action) {
       ->check(CLI::Range(1, 4096));
   command->add_flag("-q,--quiet", *quiet, "say nothing but errors");
   command->footer(
-      "Example:\n  talus check scenario.toml\n\nLists every fault of the settings and of the layers. Traces for at most two seconds to estimate the "
+      "Example:\n  talus check scenario.toml\n\nLists every fault of the settings and of the layers. Traces for at "
+      "most two seconds to estimate the "
       "time.");
   command->callback([&action, flags, threads, quiet] {
     action = [flags, threads, quiet] { return check(*flags, *threads, *quiet); };

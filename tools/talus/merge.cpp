@@ -75,7 +75,8 @@ int merge(const Options& options) {
   for (const talus::io::InputFile& input : loaded.inputs) folder.protect(input.path);
   const talus::Scenario& scenario = loaded.scenario;
   talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
-  if (auto weights = talus::AnnualWeights::of(scenario, stores.front().further_rounds())) tally.keep_hazard(std::move(*weights));
+  if (auto weights = talus::AnnualWeights::of(scenario, stores.front().further_rounds()))
+    tally.keep_hazard(std::move(*weights));
   talus::io::RunRecord record;
   record.command = command_line();
   record.warnings = loaded.warnings;
@@ -112,7 +113,8 @@ void add_merge(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("merge", "Join the parts of a run; the same bits as one run");
   command->add_option("out", options->out, "new folder for the results")->required();
-  command->add_option("parts", options->parts, "folders that talus run --part I/N has written, all of them")->required();
+  command->add_option("parts", options->parts, "folders that talus run --part I/N has written, all of them")
+      ->required();
   command->add_option("--memory", options->memory, "such as 2G: what does not fit lies in a file beside the results");
   command->add_flag("--overwrite", options->overwrite, "replace the folder if it holds an earlier result");
   command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")

@@ -45,7 +45,8 @@ talus::Part part_of(const std::string& text) {
 void check(const Options& options, const talus::Part& part) {
   if (options.rounds.until_error && !part.whole())
     throw talus::InputError(
-        "--until-error with --part: one part cannot know the error of all; give every part the same --rounds, and talus "
+        "--until-error with --part: one part cannot know the error of all; give every part the same --rounds, and "
+        "talus "
         "merge says what was reached");
 }
 
@@ -61,7 +62,8 @@ class Sitting {
         stores_(store_in(folder, loaded, part, options)),
         sinks_(store().sinks()),
         simulation_(scenario_, part, options.rounds.several(), tally_, sinks_) {
-    if (auto weights = talus::AnnualWeights::of(scenario_, options.rounds.several())) tally_.keep_hazard(std::move(*weights));
+    if (auto weights = talus::AnnualWeights::of(scenario_, options.rounds.several()))
+      tally_.keep_hazard(std::move(*weights));
     store().restore(simulation_, tally_);
     sinks_.progress = [&progress](double share) { return progress.update(share) && !interrupted(); };
     sinks_.pause = [this] { return seconds_since_kept() > options_.checkpoint; };
@@ -166,9 +168,9 @@ LoadedScenario with_rounds(const talus::io::RunFlags& flags, const talus::io::St
 void check_number(const talus::Rounds& rounds, const talus::Scenario& scenario) {
   const std::uint32_t rounds_at_most = rounds.until_error ? rounds.most : rounds.count;
   if (std::uint64_t{scenario.trajectories} * rounds_at_most > 1'000'000'000)
-    throw talus::InputError(std::to_string(rounds_at_most) + " rounds of trajectories = " +
-                            std::to_string(scenario.trajectories) +
-                            ": are more than 1e9 blocks of a source cell; give fewer --rounds, --most-rounds or --trajectories");
+    throw talus::InputError(
+        std::to_string(rounds_at_most) + " rounds of trajectories = " + std::to_string(scenario.trajectories) +
+        ": are more than 1e9 blocks of a source cell; give fewer --rounds, --most-rounds or --trajectories");
 }
 
 /// Writes the results of a whole run and gives them their name. Returns the exit code.
@@ -257,13 +259,14 @@ void add_run(CLI::App& app, Action& action) {
   command->add_option("--part", options->part, "I/N: only part I of N of the source cells, for talus merge");
   command->add_flag("--resume", options->resume, "go on with an interrupted run of the same command");
   command->add_option("--memory", options->memory, "such as 2G: what does not fit lies in a file beside the results");
-  command->add_option("--checkpoint", options->checkpoint, "seconds between two times that the work is kept on the disk")
+  command
+      ->add_option("--checkpoint", options->checkpoint, "seconds between two times that the work is kept on the disk")
       ->check(CLI::Range(0.0, 1e6));
   command->add_option("--rounds", options->rounds.count, "how often the scenario's trajectories are traced")
       ->check(CLI::Range(1, 10'000));
-  CLI::Option* until = command->add_option(
-      "--until-error", options->rounds.until_error,
-      "rounds until the relative 95 % half-width of the impact probability is below this");
+  CLI::Option* until =
+      command->add_option("--until-error", options->rounds.until_error,
+                          "rounds until the relative 95 % half-width of the impact probability is below this");
   until->check(CLI::Range(1e-4, 10.0))->excludes("--rounds");
   command->add_option("--above", options->rounds.above, "the error counts in all cells with a larger probability; 0.01")
       ->check(CLI::Range(1e-9, 1.0));

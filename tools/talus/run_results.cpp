@@ -69,8 +69,8 @@ class Vectors {
 };
 
 /// Writes the rows that the stores keep, round by round and in each the parts in their order.
-void write_vectors(const LoadedScenario& loaded, std::span<const talus::io::Store> stores,
-                   const talus::Totals& totals, const std::filesystem::path& folder) {
+void write_vectors(const LoadedScenario& loaded, std::span<const talus::io::Store> stores, const talus::Totals& totals,
+                   const std::filesystem::path& folder) {
   Vectors vectors(loaded, folder);
   const talus::Sinks sinks = vectors.sinks();
   for (std::uint32_t round = 0; round < stores.front().rounds(); ++round)
@@ -81,10 +81,11 @@ void write_vectors(const LoadedScenario& loaded, std::span<const talus::io::Stor
 /// "3 rounds: the largest relative half-width of 812 cells with a probability above 0.01 is 0.117".
 std::string rounds_text(const talus::io::RoundsRecord& rounds) {
   char text[160];
-  std::snprintf(text, sizeof text,
-                "%u rounds: the largest relative 95 %% half-width of the %llu cells with a probability above %g is %.3g",
-                rounds.done, static_cast<unsigned long long>(rounds.reached.cells), rounds.asked.above,
-                rounds.reached.half_width);
+  std::snprintf(
+      text, sizeof text,
+      "%u rounds: the largest relative 95 %% half-width of the %llu cells with a probability above %g is %.3g",
+      rounds.done, static_cast<unsigned long long>(rounds.reached.cells), rounds.asked.above,
+      rounds.reached.half_width);
   return text;
 }
 

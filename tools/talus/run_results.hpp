@@ -10,12 +10,13 @@
 
 /// What `run` and `merge` do once all trajectories are traced.
 
-/// Writes every result into `folder`: maps from the tally, vectors from the rows that the stores keep. Fills the record.
+/// Writes every result into `folder`: maps from the tally, vectors from the rows that the stores keep. Fills the
+/// record.
 ///
 /// @param stores  one, or the parts in their order; all with the same number of rounds
 void write_results(const talus::io::LoadedScenario& loaded, std::span<const talus::io::Store> stores,
-                   const talus::Tally& tally, const std::filesystem::path& folder, Stopwatch& watch,
-                   Progress& progress, talus::io::RunRecord& record);
+                   const talus::Tally& tally, const std::filesystem::path& folder, Stopwatch& watch, Progress& progress,
+                   talus::io::RunRecord& record);
 
 /// Tells what was done, after the warnings from number `told` on.
 void summarise(const talus::io::RunRecord& record, const talus::io::LoadedScenario& loaded, std::size_t told,

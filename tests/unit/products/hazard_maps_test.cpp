@@ -87,7 +87,8 @@ TEST(HazardMaps, ACurveForEveryFieldOfTheMatrix) {
   std::vector<HazardSurvey::Cell> cells;
   for (int field = 0; field < 12; ++field) {
     const std::vector<float> energy{field < 4 ? 10.0F : field < 8 ? 100.0F : 1000.0F};
-    const std::vector<Stake> stake{{static_cast<std::int64_t>(often[static_cast<std::size_t>(field % 4)] / unit), 0, 10}};
+    const std::vector<Stake> stake{
+        {static_cast<std::int64_t>(often[static_cast<std::size_t>(field % 4)] / unit), 0, 10}};
     HazardCell cell;
     cell.add(rules, energy, stake);
     cells.emplace_back(field, cell);

@@ -34,7 +34,8 @@ std::vector<double> cells_of(const Tally& tally) {
     for (int column = 0; column < tally.grid().columns; ++column) {
       const CellRecord* cell = tally.find(column, row);
       if (cell == nullptr) continue;
-      for (const double count : {double(cell->passages), double(cell->impacts), double(cell->deposits), double(cell->sources)})
+      for (const double count :
+           {double(cell->passages), double(cell->impacts), double(cell->deposits), double(cell->sources)})
         values.push_back(count);
       for (std::size_t q = 0; q < kQuantities; ++q) {
         values.push_back(cell->maximum[q]);
