@@ -163,6 +163,8 @@ class Lines {
     file("ground", "file", spec_.ground);
     if (!spec_.ground_field.empty()) add("ground", "field", toml_text(spec_.ground_field), "");
     add("ground", "default", toml_text(spec_.default_ground.preset), "");
+    if (const std::string& code = spec_.default_ground.code; !code.empty())
+      lines_.push_back({"ground.zones.default", "code", code, "", "scenario", "ground.default.code"});
     parameters(spec_.default_ground, "ground.zones.default", "ground.default.", !spec_.default_ground.own.empty());
     for (const ZoneSpec& zone : spec_.zones) {
       const std::string table = "ground.zones." + toml_key(zone.name), full = "ground.zones." + zone.name + ".";

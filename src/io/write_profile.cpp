@@ -63,7 +63,8 @@ std::string envelope_csv(const std::vector<ProfileBin>& bins, double start, std:
     const std::vector<Named> numbers = numbers_of(bin, start, released);
     if (text.empty())
       for (const Named& number : numbers) text += number.name + (&number == &numbers.back() ? "\n" : ",");
-    for (const Named& number : numbers) text += text_of(number.value) + (&number == &numbers.back() ? "\n" : ",");
+    for (const Named& number : numbers)  // of a bin that nothing crosses nothing is known
+      text += (std::isfinite(number.value) ? text_of(number.value) : "") + (&number == &numbers.back() ? "\n" : ",");
   }
   return text;
 }
@@ -218,8 +219,10 @@ void ProfileWriter::finish(const ProfileResults& results) {
     s.write_line(layer, profile.from() + bin.from, std::min(profile.from() + bin.to, profile.to()),
                  [&](OGRFeature& feature) {
                    int next = 0;
-                   for (const Named& number : numbers_of(bin, profile.from(), released))
-                     feature.SetField(next++, number.value);
+                   for (const Named& number : numbers_of(bin, profile.from(), released)) {
+                     if (std::isfinite(number.value)) feature.SetField(next, number.value);
+                     ++next;
+                   }
                  });
   s.file.finish();
   write_text(s.folder / "stops.csv", s.stops_csv);

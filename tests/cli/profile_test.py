@@ -25,7 +25,7 @@ class Profile(Case):
 
     def rows(self, file, out="out"):
         with open(self.path(os.path.join(out, file)), encoding="utf-8") as lines:
-            return [{k: v if k in ("end", "screen") else float(v) for k, v in row.items()}
+            return [{k: v if k in ("end", "screen") else float(v or "nan") for k, v in row.items()}
                     for row in csv.DictReader(lines)]
 
     def contents(self, out):
@@ -62,6 +62,10 @@ class ByHand(Profile):
             self.assertAlmostEqual(bin_30["energy_kj_" + statistic], 0.5e-3 * mass * (64.0 + (g * 2.5) ** 2), 2)
         self.assertEqual((bin_30["passages"], bin_30["share"], bin_30["x_to"]), (7.0, 1.0, 35.0))
         self.assertEqual(envelope[5.0]["passages"], 0.0)
+        self.assertTrue(math.isnan(envelope[5.0]["speed_ms_mean"]))  # where nothing passes nothing is known
+        bins = [fields for fields, _ in rows_of(self.path("out/profile.gpkg"), "bins")]
+        self.assertIsNone(bins[1]["speed_ms_mean"])
+        self.assertIsNotNone(bins[6]["speed_ms_mean"])
         path = rows_of(self.path("out/profile.gpkg"), "trajectories")[0][1]
         at = [path.GetPoint(i) for i in range(path.GetPointCount())]
         landing = next(i for i, p in enumerate(at) if p[2] < 50.0001)

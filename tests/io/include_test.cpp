@@ -48,6 +48,39 @@ deformation_coefficient = 0.5
   EXPECT_EQ(preset.scenario.cover.grounds[1].theta_scale, 1.5);  // a preset starts the zone anew
 }
 
+TEST_F(ScenarioFile, TheDefaultGroundHasACodeOfItsOwn) {
+  RasterFile zones;
+  zones.type = GDT_Byte;
+  zones.values.assign(80, 0.0);
+  zones.values[0] = 2.0;  // the north-western cell
+  zones.write(path("zones.tif"));
+  const LoadedScenario l = load(std::string(kFiles) + "[blocks]\ndiameter = 1.2\n[ground]\nfile = \"zones.tif\"\n" +
+                                "[ground.zones.default]\ncode = 0\n[ground.zones.2]\npreset = \"forest-road-3d\"\n");
+  const auto& cells = l.scenario.cover.zones.values;
+  EXPECT_EQ(std::count(cells.begin(), cells.end(), 1), 1);
+  EXPECT_EQ(std::count(cells.begin(), cells.end(), 0), 79);
+  const LoadedScenario again = load(l.complete_toml);  // what a run leaves can be run
+  EXPECT_EQ(again.scenario.cover.zones.values, cells);
+  EXPECT_EQ(again.complete_toml, l.complete_toml);
+}
+
+TEST_F(ScenarioFile, AnIncludedEffectGivesWayToTheScenario) {
+  RasterFile zones;
+  zones.type = GDT_Byte;
+  zones.values.assign(80, 1.0);
+  zones.write(path("zones.tif"));
+  write_text("fitted.toml", "[effects.soft-ground]\nzones = [\"1\"]\ndrag = 2\n");
+  const LoadedScenario l = load(
+      "include = \"fitted.toml\"\n" + std::string(kFiles) + "[blocks]\ndiameter = 1.2\n[ground]\nfile = " +
+      "\"zones.tif\"\n[ground.zones.1]\npreset = \"forest-road-3d\"\n[effects.soft-ground]\nzones = [\"default\"]\n");
+  const talus::Extent& where = l.scenario.effects.soft_ground.where;
+  EXPECT_TRUE(where.covers(0, 1.0, 1.0));
+  EXPECT_FALSE(where.covers(1, 1.0, 1.0));
+  EXPECT_EQ(l.scenario.effects.soft_ground.drag, 2.0);
+  EXPECT_EQ(origin(l, "effects.soft-ground.drag"), "include fitted.toml");
+  EXPECT_EQ(origin(l, "effects.soft-ground.zones"), "scenario");
+}
+
 TEST_F(ScenarioFile, FaultsOfAnInclude) {
   const std::string head = std::string("include = \"fitted.toml\"\n") + kFiles + "[blocks]\ndiameter = 1.2\n";
   refused(head, {"scenario.toml:1", "include = 'fitted.toml'", "no such file"});

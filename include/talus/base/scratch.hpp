@@ -5,9 +5,9 @@
 
 namespace talus {
 
-/// Memory for what grows with the map: terrain, zones, tallies. On the heap; or, where a limit is set, in a file without
-/// a name, of which only as much stays in the process's memory as the limit leaves. The system moves pages to the disk
-/// and back: whoever uses the memory sees no difference, and no bit of a result depends on it.
+/// Memory for what grows with the map: terrain, zones, tallies. On the heap; or, where a limit is set, in a file
+/// without a name, of which only as much stays in the process's memory as the limit leaves. The system moves pages to
+/// the disk and back: whoever uses the memory sees no difference, and no bit of a result depends on it.
 namespace scratch {
 
 /// Takes all memory that is asked for from now on from a file in `folder`. Once, before the first `allocate`.

@@ -8,8 +8,8 @@ namespace talus::io {
 /// A folder of results that appears under its name complete, or not at all.
 ///
 /// Everything is written into a hidden folder beside it, `.NAME.talus-PID`, so that a rename is all that `commit` has
-/// to do. Without `commit` (an exception, an interruption, a full disk) the hidden folder is removed, unless it is to be
-/// kept for a run that goes on.
+/// to do. Without `commit` (an exception, an interruption, a full disk) the hidden folder is removed, unless it is to
+/// be kept for a run that goes on.
 class OutputFolder {
  public:
   /// What to do with the hidden folder of an interrupted run of this name.
@@ -41,8 +41,8 @@ class OutputFolder {
   /// Throws InputError where `file` lies in a folder that `commit` would replace: an input must not be deleted.
   void protect(const std::filesystem::path& file) const;
 
-  /// Brings all files to the disk and gives the folder its name, if that is still free or may be overwritten. An earlier result is moved aside first, put back where
-  /// the rename fails, and removed last. Throws std::runtime_error.
+  /// Brings all files to the disk and gives the folder its name, if that is still free or may be overwritten. An
+  /// earlier result is moved aside first, put back where the rename fails, and removed last. Throws std::runtime_error.
   void commit();
   /// The same of `work` alone, which becomes the folder of results in one step.
   void commit_work();

@@ -1,8 +1,8 @@
 #pragma once
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
-#include <map>
 #include <vector>
 
 #include "talus/simulate/hazard_tally.hpp"

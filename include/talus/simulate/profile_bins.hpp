@@ -19,7 +19,7 @@ BinDistribution distribution_of(std::vector<float> values);
 
 /// What happened in one bin of a profile. A trajectory counts once in a bin, with its largest value there.
 struct ProfileBin {
-  double from = 0.0, to = 0.0;         ///< distance from the first node [m]
+  double from = 0.0, to = 0.0;            ///< distance from the first node [m]
   BinDistribution speed, energy, height;  ///< [m/s], translational [kJ], vertical above the ground [m]
 };
 
@@ -49,7 +49,7 @@ class ProfileBins {
 
 /// How far blocks went: the distance in x between release and stop.
 struct Runout {
-  BinDistribution stopped;              ///< of the blocks that came to rest [m]
+  BinDistribution stopped;           ///< of the blocks that came to rest [m]
   std::vector<std::uint64_t> stops;  ///< by bins of the distance, from 0
   std::uint64_t left = 0, released = 0;
 };

@@ -42,6 +42,20 @@ Surface plane(double east, double north, double cell = 2.0) {
                                [&](double x, double y) { return 2000.0 + east * x + north * y; }));
 }
 
+/// Up a slope steeper than phi, to rest, and down again: friction turns with the motion. By hand: g (sin b + tan(phi)
+/// cos b) on the way up, g (sin b - tan(phi) cos b) on the way down, one diameter in all.
+TEST(SlideOnAPlane, TurnsOnASteepSlope) {
+  const double b = radians(40.0), v0 = 0.64, diameter = 0.4;
+  const double up = kGravity * (std::sin(b) + kTan30 * std::cos(b)),
+               down = kGravity * (std::sin(b) - kTan30 * std::cos(b));
+  const Slide s(plane(std::tan(b), 0.0), kTan30, {200.3, 150.7}, {v0 * std::cos(b), 0.0}, diameter);
+  ASSERT_EQ(s.end, SlideEnd::Asperity);
+  const double back = std::sqrt(2.0 * down * (diameter - v0 * v0 / (2.0 * up)));
+  EXPECT_LT(s.motion.velocity.x(), 0.0);
+  EXPECT_NEAR(s.speed(), back, 1e-4 * back);
+  EXPECT_NEAR(s.motion.time, v0 / up + back / down, 1e-4);
+}
+
 TEST(SlideOnAPlane, SpeedAfterOneDiameterDownTheSlope) {  // v^2 = v0^2 + 2 g (sin b - tan(phi) cos b) D
   for (const double tan_b : {0.75, 1.0, 3.0})
     for (const double v0 : {0.0, 0.3, 5.0, 30.0})

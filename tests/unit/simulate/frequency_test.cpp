@@ -102,8 +102,9 @@ TEST(AnnualWeights, PowerLawOverClasses) {
   for (std::uint32_t block = 0; block < s.trajectories; ++block)
     (class_of_block(s, 0, block) == 0 ? small : large) = weights.weight(s, 0, block);
   const double unit = weights.scale().unit, blocks = 2.0 * s.trajectories;
-  if (small > 0) EXPECT_NEAR(static_cast<double>(small) * unit, c * 0.5 / (blocks * 0.75), 1e-12);
-  if (large > 0) EXPECT_NEAR(static_cast<double>(large) * unit, c * 0.25 / (blocks * 0.25), 1e-12);
+  ASSERT_GT(std::min(small, large), 0);
+  EXPECT_NEAR(static_cast<double>(small) * unit, c * 0.5 / (blocks * 0.75), 1e-12);
+  EXPECT_NEAR(static_cast<double>(large) * unit, c * 0.25 / (blocks * 0.25), 1e-12);
   s.blocks.classes[1].diameter = {1.5, 4.0};
   refused(s, "classes of blocks that overlap");
   s.blocks.classes[1].diameter = {3.0, 3.0};
