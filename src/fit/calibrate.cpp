@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlopt.hpp>
 
 #include "local_model.hpp"
@@ -27,17 +28,21 @@ class Search {
       upper_[i] = free[i].z(free[i].upper);
     }
     const int screened = options.starts > 1 ? kScreened * static_cast<int>(n) : 0;
-    planned_ =
-        screened + 1 + std::max(1, options.starts) * search_length() + options.rounds * LocalModel::round_length(n);
+    planned_ = screened + 1 + options.starts * search_length() + options.rounds * design_length();
+    fit_.evaluations.assign(options.known.begin(), options.known.end());
+    designed_ = compared_ = static_cast<std::uint32_t>(options.known.size());  // luck that none of them had
   }
 
   Fit run() {
     try {
-      const std::vector<Eigen::VectorXd> starts = choose_starts();
-      for (const Eigen::VectorXd& z : starts) descend(z, 0.5, options_.trials, search_length());
-      settle();
-      fit_.spread = LocalModel::first_spread(std::ssize(problem_.free));
-      for (int round = 0; round < options_.rounds; ++round) refine();
+      std::vector<Eigen::VectorXd> places{origin()};
+      if (options_.starts > 0)
+        for (const Eigen::VectorXd& z : choose_starts()) places.push_back(descend(z));
+      move_to_best(places);
+      fit_.score = score_of(fit_.model);  // the local model needs its groups and rows
+      fit_.spread = options_.spread.size() > 0 ? options_.spread : LocalModel::first_spread(std::ssize(problem_.free));
+      for (int round = 0; round < options_.rounds; ++round)
+        if (refine() < options_.enough) break;
     } catch (const nlopt::forced_stop&) {  // `proceed` said no
       fit_.interrupted = true;
     }
@@ -46,71 +51,69 @@ class Search {
   }
 
  private:
-  static constexpr int kScreened = 6;  // points to choose the starts from, per parameter
-  int polish_length() const {
-    if (options_.evaluations > 0) return 1;
-    return 5 * static_cast<int>(problem_.free.size()) + 5;
-  }
-  int search_length() const {
-    if (options_.evaluations > 0) return options_.evaluations;
-    return 12 * static_cast<int>(problem_.free.size()) + 10;
+  static constexpr int kScreened = 6;                       // points to choose the starts from, per parameter
+  static constexpr std::uint32_t kComparisons = 4'000'000;  // trials from here on are those of comparisons
+
+  int search_length() const { return 6 * static_cast<int>(problem_.free.size()) + 10; }
+  int design_length() const {
+    return options_.design > 0 ? options_.design : LocalModel::round_length(std::ssize(problem_.free));
   }
 
-  /// The objective at z, kept for the local model.
-  double operator()(const Eigen::VectorXd& z, const Trials& trials) {
+  Evaluation at(const Eigen::VectorXd& z, const Trials& trials) {
     ++done_;
     if (options_.proceed && !options_.proceed(std::min(1.0, static_cast<double>(done_) / planned_)))
       throw nlopt::forced_stop();
-    fit_.evaluations.push_back(evaluate(problem_, options_, z, trials));
-    return fit_.evaluations.back().objective;
+    return evaluate(problem_, options_, z, trials);
   }
 
-  /// Goes on from the best point of the searches with more trials, and takes the best of that as the fit.
-  void settle() {
-    const auto better = [](const Evaluation& a, const Evaluation& b) { return a.objective < b.objective; };
-    const auto& all = fit_.evaluations;
-    const Eigen::VectorXd from = std::min_element(all.begin(), all.end(), better)->z;
-    const auto before = std::ssize(all);
-    descend(from, 0.15, options_.polish_trials, polish_length());
-    const auto best = std::min_element(all.begin() + before, all.end(), better);
-    move_to(best->z, best->objective);
-    fit_.score = score_of(fit_.model);  // the local model needs its groups and rows
-  }
-
-  void move_to(const Eigen::VectorXd& z, double objective) {
-    fit_.z = z;
-    fit_.objective = objective;
-    fit_.model = model_at(problem_.start, problem_.free, z);
-  }
-
-  /// One round of the local model: a design, and a step where that is an improvement.
-  void refine() {
-    const int length = LocalModel::round_length(std::ssize(problem_.free));
-    for (const Eigen::VectorXd& z : LocalModel::design(problem_, options_.seed, fit_.z, fit_.spread, length, designed_))
-      (*this)(z, {options_.trials, LocalModel::trials_of(designed_++, options_.trials)});
-    const LocalModel model(problem_, options_, fit_, fit_.spread);
-    const Eigen::VectorXd step = model.step(fit_.spread) - fit_.z, from = fit_.z;
-    for (const double share : {1.0, 0.5, 0.25}) {
-      const Eigen::VectorXd z = from + share * step;
-      const double objective = (*this)(z, {options_.polish_trials});
-      if (objective < fit_.objective) move_to(z, objective);
+  /// Goes to the best of some places, on luck that none of them was chosen by: of many noisy values the lowest is too
+  /// low, and nothing would ever be found better. @return by how much it is below the first of them
+  double move_to_best(std::span<const Eigen::VectorXd> places) {
+    const Trials fresh{options_.comparison_trials, kComparisons + options_.comparison_trials * compared_++};
+    double first = 0.0;
+    fit_.objective = std::numeric_limits<double>::infinity();
+    for (const Eigen::VectorXd& z : places) {
+      const double objective = at(z, fresh).objective;
+      if (&z == &places.front()) first = objective;
+      if (objective < fit_.objective) fit_.z = z, fit_.objective = objective;
     }
+    fit_.model = model_at(problem_.start, problem_.free, fit_.z);
+    return first - fit_.objective;
+  }
+
+  /// One round of the local model: a design, and a step where that is an improvement. @return by how much
+  double refine() {
+    for (const Eigen::VectorXd& z :
+         LocalModel::design(problem_, options_.seed, fit_.z, fit_.spread, design_length(), designed_))
+      fit_.evaluations.push_back(at(z, {options_.trials, LocalModel::trials_of(designed_++, options_.trials)}));
+    const LocalModel model(problem_, options_, fit_, fit_.spread);
+    const Eigen::VectorXd step = model.step(fit_.spread) - fit_.z;
+    const Eigen::VectorXd from = fit_.z;
+    const double gain =
+        move_to_best(std::vector<Eigen::VectorXd>{from, from + step, from + 0.5 * step, from + 0.25 * step});
     fit_.spread = model.next_spread();
+    return gain;
   }
 
   Score score_of(const Model& model) const {
-    const ObserveOptions how{options_.polish_trials, options_.seed, 0, options_.threads, problem_.rows, {}};
+    const ObserveOptions how{options_.comparison_trials, options_.seed, 0, options_.threads, problem_.rows, {}};
     return score(problem_.campaign, observe(problem_.campaign, model, how), problem_.rows);
+  }
+
+  /// Where the model that it starts from is.
+  Eigen::VectorXd origin() const {
+    Eigen::VectorXd z(lower_.size());
+    for (Eigen::Index i = 0; i < z.size(); ++i) {
+      const Parameter& p = problem_.free[static_cast<std::size_t>(i)];
+      z[i] = std::clamp(p.z(p.get(problem_.start)), lower_[i], upper_[i]);
+    }
+    return z;
   }
 
   /// The start itself, and the best of an additive recurrence in the middle of the box, well apart from each other.
   std::vector<Eigen::VectorXd> choose_starts() {
     const auto n = static_cast<Eigen::Index>(problem_.free.size());
-    Eigen::VectorXd origin(n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      origin[i] = std::clamp(problem_.free[i].z(problem_.free[i].get(problem_.start)), lower_[i], upper_[i]);
-    std::vector<Eigen::VectorXd> starts{origin};
-    (*this)(origin, {options_.trials});
+    std::vector<Eigen::VectorXd> starts{origin()};
     if (options_.starts <= 1) return starts;
     double root = 2.0;  // of x^(n + 1) = x + 1: the generalised golden ratio (Roberts 2018)
     for (int k = 0; k < 40; ++k) root = std::pow(1.0 + root, 1.0 / static_cast<double>(n + 1));
@@ -121,8 +124,7 @@ class Search {
         const double u = std::fmod(0.5 + k * std::pow(root, -static_cast<double>(i + 1)), 1.0);
         z[i] = std::clamp(3.0 * u - 1.5, lower_[i], upper_[i]);
       }
-      const double objective = (*this)(z, {options_.trials});
-      tried.emplace_back(objective, z);
+      tried.emplace_back(at(z, {options_.trials}).objective, z);
     }
     std::stable_sort(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (const auto& [objective, z] : tried) {
@@ -133,10 +135,9 @@ class Search {
     return starts;
   }
 
-  /// NLopt's BOBYQA from z. What it finds is in `fit_.evaluations`.
-  void descend(const Eigen::VectorXd& z, double step, std::uint32_t trials, int most) {
+  /// The best that NLopt's BOBYQA finds from z.
+  Eigen::VectorXd descend(const Eigen::VectorXd& z) {
     const auto n = static_cast<unsigned>(problem_.free.size());
-    trials_ = trials;
     // BOBYQA needs two parameters.
     nlopt::opt search(n > 1 ? nlopt::LN_BOBYQA : nlopt::LN_SBPLX, n);
     search.set_lower_bounds({lower_.begin(), lower_.end()});
@@ -144,27 +145,28 @@ class Search {
     search.set_min_objective(
         [](const std::vector<double>& x, std::vector<double>&, void* self) {
           auto& me = *static_cast<Search*>(self);
-          return me(Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x)), {me.trials_});
+          return me.at(Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x)), {me.options_.trials}).objective;
         },
         this);
     std::vector<double> steps;  // BOBYQA wants room for two of them between the bounds
-    for (unsigned i = 0; i < n; ++i) steps.push_back(std::min(step, 0.4 * (upper_[i] - lower_[i])));
+    for (unsigned i = 0; i < n; ++i) steps.push_back(std::min(0.5, 0.4 * (upper_[i] - lower_[i])));
     search.set_initial_step(steps);
     search.set_xtol_abs(0.02);
-    search.set_maxeval(most);
+    search.set_maxeval(search_length());
     std::vector<double> x(z.begin(), z.end());
     double objective = 0.0;
     try {
       search.optimize(x, objective);
     } catch (const nlopt::roundoff_limited&) {  // the noise of the trials: the best point so far stands
     }
+    return Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x));
   }
 
   FitProblem problem_;
   const FitOptions& options_;
   Eigen::VectorXd lower_, upper_;
   Fit fit_;
-  std::uint32_t designed_ = 0, trials_ = 0;
+  std::uint32_t designed_ = 0, compared_ = 0;
   int done_ = 0, planned_ = 1;
 };
 
@@ -238,7 +240,8 @@ Evaluation evaluate(const FitProblem& problem, const FitOptions& options, const 
                     const Trials& trials) {
   const ObserveOptions how{trials.count, options.seed, trials.first, options.threads, problem.rows, {}};
   const Model model = model_at(problem.start, problem.free, z);
-  const Score s = score(problem.campaign, observe(problem.campaign, model, how), problem.rows);
+  const Score s =
+      score(problem.campaign, observe(problem.campaign, model, how), problem.rows, fewest_simulated_of(trials.count));
   Evaluation evaluation{z, Eigen::VectorXd(std::ssize(s.rows)), trials.count, s.total};
   for (std::size_t r = 0; r < s.rows.size(); ++r) evaluation.rows[static_cast<Eigen::Index>(r)] = s.rows[r].score;
   evaluation.objective += problem.prior(options) * z.squaredNorm();

@@ -2,29 +2,33 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "talus/base/random.hpp"
+#include "effect_fits.hpp"
 
 namespace talus {
 namespace {
 
-constexpr std::size_t kFolds = 2;
-constexpr std::size_t kThorough = 3;   // of the effects that the test finds most significant
+constexpr std::size_t kContenders = 4;  // whose fits go on: those that gain most
+constexpr double kUnfinished = 0.02;    // of the error, that a first fit may still be above its minimum
 constexpr std::size_t kLaterFits = 6;  // after the first round: with an effect in place all takes several times as long
-constexpr double kWorthASearch = 0.1;  // p of the score test
 constexpr std::uint32_t kManyBlocks = 72;  // of fewer, more trials each are tested: a signature is a mean over blocks
-constexpr double kPrice = 0.56;            // by which one more fitted number must lower the error, times fitting blocks
+
+double net(const Trial& trial) {
+  return trial.gain - trial.price;
+}
 
 /// The work of one diagnosis.
 class Diagnosing {
  public:
   Diagnosing(const Campaign& campaign, const DiagnoseOptions& options)
-      : campaign_(campaign), options_(options), rows_(fitting_rows(campaign)) {}
+      : campaign_(campaign),
+        options_(options),
+        rows_(fitting_rows(campaign)),
+        fits_(campaign, options, rows_, [this] { return proceeds(); }) {}
 
   Diagnosis run(const Model& start) {
     Diagnosis d;
-    d.base = fit_base(start);
+    d.base = fits_.ground(start);
     d.with_effects = d.base;
     std::vector<std::string> found;
     for (int round = 0; round <= options_.most_effects; ++round) {
@@ -33,7 +37,7 @@ class Diagnosing {
       const Round& last = d.rounds.back();
       if (last.effect == "none" || last.effect == "unexplained") break;
       found.push_back(last.effect);
-      polish(d.rounds.back().trials.front());
+      fits_.polish(d.rounds.back().trials.front());
       d.with_effects = d.rounds.back().trials.front().fitted;
     }
     d.residual_after = residual_of(d.with_effects);
@@ -45,157 +49,8 @@ class Diagnosing {
 
   bool proceeds() const { return !options_.proceed || options_.proceed(progress_); }
 
-  ObserveOptions observing(std::uint32_t trials) const {
-    return {trials, options_.seed, kUnseen, options_.threads, rows_, {}};
-  }
-
-  /// As `calibrate` does it.
-  FitOptions fitting() const {
-    FitOptions how;
-    how.trials = options_.search_trials;
-    how.seed = options_.seed;
-    how.threads = options_.threads;
-    how.proceed = [this](double) { return proceeds(); };
-    return how;
-  }
-
-  /// From a start that is near, with so many evaluations.
-  FitOptions short_fit(int evaluations, int rounds) const {
-    FitOptions how = fitting();
-    how.polish_trials = 2 * options_.search_trials;
-    how.starts = 1;
-    how.evaluations = evaluations;
-    how.rounds = rounds;
-    return how;
-  }
-
-  /// On luck that the search has not seen.
-  Fitted finish(Fit&& fit, std::vector<Parameter> free) const {
-    if (fit.interrupted) throw FitInterrupted{};
-    Fitted out{std::move(fit.model), std::move(free), std::move(fit.z), {}, {}};
-    out.fitting = observe(campaign_, out.model, observing(options_.final_trials));
-    out.score = score(campaign_, out.fitting, rows_);
-    return out;
-  }
-
-  Fitted fit_base(const Model& start) {
-    const std::vector<BlockRuns> runs = observe(campaign_, start, observing(options_.search_trials));
-    std::vector<Parameter> free = ground_parameters(campaign_, start, options_.keys, touched_zones(campaign_, runs));
-    Fit fit = fit_parameters(campaign_, start, free, rows_, fitting());
-    return finish(std::move(fit), std::move(free));
-  }
-
   std::vector<ResidualRow> residual_of(const Fitted& fitted) const {
     return residual_table(campaign_, ResidualSpace(campaign_, fitted.fitting), rows_);
-  }
-
-  /// Where the search of a candidate starts: the estimate of the score test, kept within reason.
-  static Eigen::VectorXd start_of(const Candidate& candidate, const Verdict& verdict) {
-    Eigen::VectorXd z = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(candidate.parameters.size()));
-    for (Eigen::Index i = 0; i < verdict.estimate.size(); ++i) {
-      const Parameter& p = candidate.parameters[static_cast<std::size_t>(i)];
-      const double low = p.lower >= 0.0 ? 0.3 : -2.0;
-      z[i] = kNoticed * std::clamp(verdict.estimate[i], low, 4.0);
-    }
-    return z;
-  }
-
-  /// The best of some places to start a search from: the effect in several amounts, each with the ground as it is and
-  /// moved as the score test expects it to. An amount of zero, the base itself, is one of them.
-  Eigen::VectorXd scan(const FitProblem& problem, const FitOptions& how, const Fitted& base, const Candidate& candidate,
-                       const Verdict& verdict) const {
-    const Eigen::VectorXd effect = start_of(candidate, verdict);
-    const Eigen::Index ground = std::ssize(problem.free) - effect.size();
-    const double share = std::clamp(effect[0] / std::max(1e-9, kNoticed * std::abs(verdict.estimate[0])), 0.0, 1.0);
-    Evaluation best;
-    best.objective = std::numeric_limits<double>::infinity();
-    for (const double amount : {0.0, 0.5, 1.0, 2.0, 4.0})
-      for (const bool along : {false, true}) {
-        if (along && (ground == 0 || amount == 0.0)) continue;
-        Eigen::VectorXd z(std::ssize(problem.free));
-        if (ground > 0) z.head(ground) = base.z;
-        if (along) z.head(ground) += (amount * share * verdict.ground).cwiseMax(-1.5).cwiseMin(1.5);
-        z.tail(effect.size()) = amount * effect;
-        Evaluation here = evaluate(problem, how, z, {how.trials});
-        if (here.objective < best.objective) best = std::move(here);
-      }
-    return best.z;
-  }
-
-  /// What a candidate of so many fitted numbers gains by chance alone; docs/closing-the-loop.md, "Choice".
-  double price_of(double numbers) const { return kPrice * numbers / asked(); }
-
-  /// @param thorough  a longer search
-  Trial try_effect(const Fitted& base, const EffectVerdict& verdict, const Candidate& candidate, bool thorough) const {
-    Trial trial;
-    trial.effect = candidate.effect;
-    trial.where = candidate.where;
-    trial.p_value = verdict.p_value;
-    trial.parameters = candidate.parameters;
-    trial.joint = verdict.p_value < kWorthASearch;
-    std::vector<Parameter> free = trial.joint ? base.free : std::vector<Parameter>{};
-    free.insert(free.end(), candidate.parameters.begin(), candidate.parameters.end());
-    const FitOptions how = short_fit((thorough ? 6 : 3) * static_cast<int>(free.size()), thorough ? 3 : 1);
-    const Model off = with(base.model, candidate, Eigen::VectorXd::Zero(std::ssize(candidate.parameters)));
-    const Eigen::VectorXd z = scan({campaign_, off, free, rows_}, how, base, candidate, verdict.best);
-    Fit fit = fit_parameters(campaign_, model_at(off, free, z), free, rows_, how);
-    trial.fitted = finish(std::move(fit), std::move(free));
-    for (const Parameter& p : candidate.parameters) trial.values.push_back(p.get(trial.fitted.model));
-    const Difference c = difference(base.score, trial.fitted.score, campaign_.blocks.size());
-    trial.gain = -c.mean;
-    trial.price = price_of(static_cast<double>(candidate.parameters.size()) + candidate.searched);
-    trial.gain_interval = {-c.interval.high, -c.interval.low};
-    return trial;
-  }
-
-  /// Fits what was chosen once more, as `calibrate` does: it is what the user gets.
-  void polish(Trial& trial) const {
-    const std::vector<Parameter> free = trial.fitted.free;
-    FitOptions how = fitting();
-    how.starts = 1;
-    Fitted longer = finish(fit_parameters(campaign_, trial.fitted.model, free, rows_, how), free);
-    if (!(longer.score.total < trial.fitted.score.total)) return;
-    trial.fitted = std::move(longer);
-    for (std::size_t i = 0; i < trial.parameters.size(); ++i)
-      trial.values[i] = trial.parameters[i].get(trial.fitted.model);
-  }
-
-  /// The fitting rows in a random order: neighbours in the file are often of one day or one kind.
-  std::vector<std::size_t> shuffled_rows() const {
-    std::vector<std::pair<std::uint32_t, std::size_t>> keyed;
-    for (std::size_t b = 0; b < rows_.size(); ++b)
-      if (rows_[b])
-        keyed.emplace_back(
-            Random(options_.seed, static_cast<std::uint32_t>(b), kUnseen, Purpose::Bootstrap).words(0)[0], b);
-    std::sort(keyed.begin(), keyed.end());
-    std::vector<std::size_t> order;
-    for (const auto& [key, block] : keyed) order.push_back(block);
-    return order;
-  }
-
-  /// By how much a candidate lowers the error of blocks that its fit has not seen.
-  double cross_validate(const Fitted& base, const Trial& trial) const {
-    double gain = 0.0;
-    const std::vector<std::size_t> order = shuffled_rows();
-    for (std::size_t fold = 0; fold < kFolds; ++fold) {
-      std::vector<bool> in = rows_, out(rows_.size(), false);
-      for (std::size_t i = fold; i < order.size(); i += kFolds) {
-        in[order[i]] = false;
-        out[order[i]] = true;
-      }
-      // From the fit to all rows: only what the fold changes has to be found.
-      const int evaluations = 2 * static_cast<int>(trial.fitted.free.size());
-      const Fit with_it =
-          fit_parameters(campaign_, trial.fitted.model, trial.fitted.free, in, short_fit(evaluations, 1));
-      const Fit without = fit_parameters(campaign_, base.model, base.free, in, short_fit(evaluations, 1));
-      if (with_it.interrupted || without.interrupted) throw FitInterrupted{};
-      ObserveOptions how = observing(options_.final_trials);
-      how.blocks = out;
-      const Score a = score(campaign_, observe(campaign_, without.model, how), out);
-      const Score b = score(campaign_, observe(campaign_, with_it.model, how), out);
-      gain += (a.total - b.total) / static_cast<double>(kFolds);
-    }
-    return gain;
   }
 
   Round turn(const Fitted& base, const std::vector<std::string>& found, double level, bool more) {
@@ -213,7 +68,7 @@ class Diagnosing {
     round.p_value = test.p_value;
     const bool noise = test.p_value > level;
     if (!more || (noise && !found.empty())) {  // nothing left, or as much as may be added
-      round.effect = noise ? what_is_left(round) : "unexplained";
+      round.effect = what_is_left(round);
       return round;
     }
     round.trials.reserve(test.effects.size());
@@ -221,16 +76,39 @@ class Diagnosing {
       // All have been fitted in the first round; from then on those that may be chosen, the most significant first.
       if (!found.empty() && (verdict.p_value >= level || round.trials.size() == kLaterFits)) continue;
       progress_ = std::min(0.95, progress_ + 0.02);
-      const bool thorough = round.trials.size() < kThorough && verdict.p_value < level;
-      round.trials.push_back(
-          try_effect(base, verdict, together(campaign_, axis, candidates, verdict.best.members), thorough));
+      round.trials.push_back(fits_.effect(base, verdict, together(campaign_, axis, candidates, verdict.best.members)));
     }
-    choose(base, round, noise, level);
+    if (!noise) compete(base, round.trials, level);
+    choose(base, round, noise, found.empty());
     return round;
   }
 
-  static std::string what_is_left(const Round& round) {
-    return !round.residual.empty() && round.residual.front().corrected < 0.01 ? "unexplained" : "none";
+  /// The fits of those go on that may be chosen and gain most, or could yet.
+  void compete(const Fitted& base, std::vector<Trial>& trials, double level) {
+    std::vector<Trial*> contenders;
+    for (Trial& t : trials)
+      if (t.p_value < level) contenders.push_back(&t);
+    std::stable_sort(contenders.begin(), contenders.end(),
+                     [](const Trial* a, const Trial* b) { return net(*a) > net(*b); });
+    contenders.resize(std::min(contenders.size(), kContenders));
+    const auto behind = [&](const Trial* t) {
+      const Score &best = contenders.front()->fitted.score, &own = t->fitted.score;
+      return difference(best, own, campaign_.blocks.size()).interval.low > kUnfinished;
+    };
+    contenders.erase(std::remove_if(contenders.begin(), contenders.end(), behind), contenders.end());
+    for (Trial* t : contenders) {
+      progress_ = std::min(0.95, progress_ + 0.02);
+      fits_.go_on(base, *t);
+    }
+    const double before = contenders.empty() ? 0.0 : fits_.cross_validated(base);
+    for (Trial* t : contenders) t->cross_validated = before - fits_.cross_validated(t->fitted);
+  }
+
+  /// Nothing explains the residual. It is there if the score test, or a row of the table, says so at the stricter
+  /// level.
+  std::string what_is_left(const Round& round) const {
+    const bool in_table = !round.residual.empty() && round.residual.front().corrected < options_.later_level;
+    return in_table || round.p_value <= options_.later_level ? "unexplained" : "none";
   }
 
   /// How often each trial has the lowest error, drawing blocks with replacement.
@@ -251,22 +129,19 @@ class Diagnosing {
     }
   }
 
-  void choose(const Fitted& base, Round& round, bool noise, double level) {
+  /// @param first  of the rounds: later ones ask for more, because the form of what is in is itself a guess
+  void choose(const Fitted& base, Round& round, bool noise, bool first) {
     count_choices(base, round.trials);
-    const auto net = [](const Trial& t) { return t.gain - t.price; };
-    const auto may = [&](const Trial& t) { return t.p_value < level && net(t) > 0.0; };
-    std::stable_sort(round.trials.begin(), round.trials.end(),
-                     [&](const Trial& a, const Trial& b) { return may(a) != may(b) ? may(a) : net(a) > net(b); });
+    const auto may = [&](const Trial& t) { return t.unseen_gain() > 0.0 && (first || net(t) > 0.0); };
+    std::stable_sort(round.trials.begin(), round.trials.end(), [&](const Trial& a, const Trial& b) {
+      if (may(a) != may(b)) return may(a);
+      return may(a) ? a.unseen_gain() > b.unseen_gain() : net(a) > net(b);
+    });
     if (noise || round.trials.empty() || !may(round.trials.front())) {
-      round.effect = noise ? what_is_left(round) : "unexplained";
+      round.effect = what_is_left(round);
       return;
     }
-    Trial& best = round.trials.front();
-    best.cross_validated = cross_validate(base, best);
-    if (!(best.cross_validated > 0.0)) {
-      round.effect = "unexplained";
-      return;
-    }
+    const Trial& best = round.trials.front();
     round.effect = best.effect;
     round.where = best.where;
     for (std::size_t i = 1; i < round.trials.size(); ++i) {
@@ -280,6 +155,7 @@ class Diagnosing {
   const Campaign& campaign_;
   const DiagnoseOptions& options_;
   std::vector<bool> rows_;
+  EffectFits fits_;
   double progress_ = 0.0;
 };
 

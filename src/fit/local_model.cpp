@@ -10,12 +10,12 @@
 namespace talus {
 namespace {
 
-constexpr double kFirstReach = 0.15;           // standard deviation of the first design, in z
+constexpr double kFirstReach = 0.3;            // standard deviation of the first design, in z
 constexpr double kNarrow = 0.05, kWide = 0.5;  // of the later ones, in any direction
 constexpr double kRise = 0.005;   // of the objective over one standard deviation of a design, where kWide allows it
 constexpr double kLocal = 3.0;    // squared distance, over what is typical of the design, up to which a place counts
 constexpr double kTrust = 2.0;    // a step stays within so many standard deviations
-constexpr double kNoise = 0.007;  // typical of a total, for the ridge
+constexpr double kNoise = 0.007;  // typical of a total: what the ridge starts from
 constexpr double kCurved = 0.03, kTwisted = 0.01;  // typical second derivatives per unit of the spread, for the ridge
 
 /// Weight of each row in the total, for weights of the blocks: the mean over the groups of weighted means.
@@ -70,18 +70,22 @@ LocalModel::LocalModel(const FitProblem& problem, const FitOptions& options, con
     weights[i] = away <= kLocal ? precision * std::exp(-0.5 * away) : 0.0;
     luck_[i] = 1.0 / std::sqrt(precision);
   }
-  model_.emplace(
-      places, weights, centre_,
-      QuadraticFit::Ridge{(kNoise / kCurved) * (kNoise / kCurved), (kNoise / kTwisted) * (kNoise / kTwisted)});
-  rows_ = model_->coefficients(values);
   const Eigen::VectorXd ones = row_weights(score_, std::vector<double>(problem.campaign.blocks.size(), 1.0));
-  total_ = rows_ * ones;
+  const Eigen::VectorXd totals = values * ones;
+  const auto used = static_cast<double>((weights.array() > 0.0).count());
+  noise_ = kNoise;
+  for (int pass = 0; pass < 3; ++pass) {  // the ridge hangs on the noise, and the noise, weakly, on the ridge
+    const double pure = noise_ / kCurved, mixed = noise_ / kTwisted;
+    model_.emplace(places, weights, QuadraticFit::Ridge{pure * pure, mixed * mixed});
+    total_ = model_->coefficients(totals);
+    const Eigen::VectorXd rest = totals - model_->at_places(total_);
+    const double free = std::max(0.1, 1.0 - model_->coefficients_used() / used);
+    noise_ = std::sqrt(rest.cwiseAbs2().dot(weights) / (weights.sum() * free));
+  }
+  rows_ = model_->coefficients(values);
   from_v_ = inverse.transpose();
   curvature_ = from_v_ * model_->curvature(total_) * inverse;
   curvature_.diagonal().array() += 2.0 * prior_;
-  const Eigen::VectorXd rest = values * ones - model_->at_places(total_);
-  const double used = static_cast<double>(total_.size()) / static_cast<double>((weights.array() > 0.0).count());
-  noise_ = std::sqrt(rest.cwiseAbs2().dot(weights) / weights.sum() / std::max(0.3, 1.0 - used));
 }
 
 Eigen::MatrixXd LocalModel::first_spread(Eigen::Index parameters) {
@@ -103,8 +107,13 @@ std::vector<Eigen::VectorXd> LocalModel::design(const FitProblem& problem, std::
 }
 
 Eigen::VectorXd LocalModel::step(const Eigen::MatrixXd& spread) const {
+  return optimum(std::vector<double>(problem_.campaign.blocks.size(), 1.0), spread);
+}
+
+Eigen::VectorXd LocalModel::optimum(std::span<const double> block_weights, const Eigen::MatrixXd& spread) const {
   const Eigen::VectorXd trust = kTrust * spread.diagonal().cwiseSqrt();
-  const Eigen::VectorXd slope = from_v_ * model_->gradient(total_) + 2.0 * prior_ * centre_;
+  const Eigen::VectorXd slope =
+      from_v_ * model_->gradient(rows_ * row_weights(score_, block_weights)) + 2.0 * prior_ * centre_;
   return centre_ + minimum_in_box(slope, curvature_, low_.cwiseMax(-trust), high_.cwiseMin(trust));
 }
 

@@ -30,6 +30,8 @@ class LocalModel {
 
   /// The minimum of the model, within the bounds and two standard deviations of the spread.
   Eigen::VectorXd step(const Eigen::MatrixXd& spread) const;
+  /// Where the optimum is for other weights of the blocks (size: blocks), within two standard deviations of the spread.
+  Eigen::VectorXd optimum(std::span<const double> block_weights, const Eigen::MatrixXd& spread) const;
   /// Where draw number `draw` of the posterior sample has its optimum.
   Eigen::VectorXd draw(std::uint32_t draw) const;
   /// The covariance of the next design: as wide in each direction as the objective stays nearly as good, so that a

@@ -7,13 +7,12 @@
 
 namespace talus {
 
-QuadraticFit::QuadraticFit(const Eigen::MatrixXd& places, const Eigen::VectorXd& weights, const Eigen::VectorXd& centre,
-                           const Ridge& ridge)
+QuadraticFit::QuadraticFit(const Eigen::MatrixXd& places, const Eigen::VectorXd& weights, const Ridge& ridge)
     : directions_(places.rows()) {
   const Eigen::Index n = directions_, coefficients = 1 + n + n * (n + 1) / 2;
   features_.resize(places.cols(), coefficients);
   for (Eigen::Index i = 0; i < places.cols(); ++i) {
-    const Eigen::VectorXd u = places.col(i) - centre;
+    const Eigen::VectorXd u = places.col(i);
     features_(i, 0) = 1.0;
     features_.row(i).segment(1, n) = u;
     Eigen::Index column = 1 + n;

@@ -30,8 +30,9 @@ void keep_finite(std::span<const double> values, std::vector<double>& out) {
 /// Scores the rows of one campaign group by group.
 class Scorer {
  public:
-  Scorer(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask)
-      : campaign_(campaign), runs_(runs), ask_(ask) {}
+  Scorer(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
+         std::size_t fewest_simulated)
+      : campaign_(campaign), runs_(runs), ask_(ask), fewest_simulated_(fewest_simulated) {}
 
   Score result() {
     stops();
@@ -85,7 +86,7 @@ class Scorer {
       places.clear();
       for (std::uint32_t t = 0; t < runs_[b].trials; ++t)
         if (!std::isnan(runs_[b].x[t])) places.emplace_back(runs_[b].x[t], runs_[b].y[t]);
-      row(b, fair_energy_score(places.size() >= kFewestSimulated ? places : climatology, *block.stop) / spread);
+      row(b, fair_energy_score(places.size() >= fewest_simulated_ ? places : climatology, *block.stop) / spread);
     });
     close("stop");
   }
@@ -179,12 +180,13 @@ class Scorer {
   /// So few simulated values say nothing: then the spread of the fitting rows stands in for them.
   double crps_or_climatology(const std::vector<double>& simulated, std::vector<double>& climatology, double measured) {
     keep_finite(simulated, values_);
-    return fair_crps(values_.size() >= kFewestSimulated ? values_ : climatology, measured);
+    return fair_crps(values_.size() >= fewest_simulated_ ? values_ : climatology, measured);
   }
 
   const Campaign& campaign_;
   std::span<const BlockRuns> runs_;
   const std::vector<bool>& ask_;
+  const std::size_t fewest_simulated_;
   std::vector<RowScore> rows_;  // of the group under way
   std::vector<double> values_;
   Score score_;
@@ -213,8 +215,13 @@ double fair_energy_score(std::span<const Eigen::Vector2d> simulated, const Eigen
   return distance / n - pairs / (n * (n - 1.0));
 }
 
-Score score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask) {
-  return Scorer(campaign, runs, ask).result();
+Score score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
+            std::size_t fewest_simulated) {
+  return Scorer(campaign, runs, ask, fewest_simulated).result();
+}
+
+std::size_t fewest_simulated_of(std::uint32_t trials) {
+  return std::clamp<std::size_t>((trials + 9) / 10, 2, kFewestSimulated);
 }
 
 }  // namespace talus

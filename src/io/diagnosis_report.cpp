@@ -59,6 +59,7 @@ Json candidates_of(const Round& round, const std::vector<HoldoutError>& holdout)
                     {"holdout_reduction_ci95",
                      {number(holdout[i].reduction.interval.low), number(holdout[i].reduction.interval.high)}},
                     {"chosen_share", number(t.chosen_share)},
+                    {"statistic", number(t.statistic)},
                     {"p_value", number(t.p_value)}});
   }
   return list;

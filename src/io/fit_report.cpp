@@ -184,7 +184,7 @@ std::string calibration_json(const Calibration& c) {
             {"campaign", c.campaign},
             {"seed", c.options.seed},
             {"trials", c.options.trials},
-            {"polish_trials", c.options.polish_trials},
+            {"comparison_trials", c.options.comparison_trials},
             {"starts", c.options.starts},
             {"evaluations", c.fit.evaluations.size()},
             {"objective", number(c.fit.objective)},

@@ -79,6 +79,7 @@ void add_diagnose(CLI::App& app, Action& action) {
   options->add_to(*command, how.search_trials, how.keys, how.seed, how.threads);
   command->add_option("--test-trials", how.test_trials, "trajectories per block in the tests (100)")
       ->check(CLI::Range(20, 10000));
+  command->add_option("--most-effects", how.most_effects, "that are added, one a round (3)")->check(CLI::Range(1, 9));
   command->add_option("--level", how.first_level, "of significance, over all effects and places (0.05)")
       ->check(CLI::Range(0.0001, 0.5));
   command->footer("Example:\n  talus diagnose campaign.toml -o diagnosis\n\nThen open diagnosis/report.html.");

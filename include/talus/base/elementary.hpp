@@ -33,22 +33,33 @@ inline double natural_log(double x) {
   return e * kLn2High + (2.0 * s + (2.0 * s * series + e * kLn2Low));
 }
 
+/// (e^x - 1 - x) / x^2, |x| <= 0.5. Error: below 2 ulp. Source: Taylor polynomial.
+inline double exponential_rest(double x) {
+  const double x2 = x * x, x4 = x2 * x2;
+  const double first = (1.0 / 2 + x * (1.0 / 6)) + x2 * (1.0 / 24 + x * (1.0 / 120));
+  const double second = (1.0 / 720 + x * (1.0 / 5040)) + x2 * (1.0 / 40320 + x * (1.0 / 362880));
+  const double third = (1.0 / 3628800 + x * (1.0 / 39916800)) +
+                       x2 * (1.0 / 479001600 + x * (1.0 / 6227020800) + x2 * (1.0 / 87178291200));
+  return first + x4 * (second + x4 * third);
+}
+
 /// e^x; exactly 1 at 0. Beyond +-700 the value at +-700. NaN gives NaN.
 ///
 /// Error: below 2 ulp for |x| <= 1, 4 ulp elsewhere. Source: Taylor polynomial on [-ln 2 / 2, ln 2 / 2].
 inline double exponential(double x) {
+  if (x == 0.0) return 1.0;  // an effect that is off
   if (std::isnan(x)) return x;
   constexpr double kLn2High = 0x1.62e42fefa3800p-1, kLn2Low = 0x1.ef35793c76730p-45, kPerLn2 = 1.4426950408889634;
   const double bounded = std::clamp(x, -700.0, 700.0);
   const double k = std::floor(bounded * kPerLn2 + 0.5);
   const double r = (bounded - k * kLn2High) - k * kLn2Low;
-  double sum = 1.0;
-  for (int n = 14; n > 0; --n) sum = 1.0 + sum * r / n;
+  const double sum = 1.0 + (r + r * r * exponential_rest(r));
   return sum * std::bit_cast<double>((static_cast<std::int64_t>(k) + 1023) << 52U);
 }
 
 /// x^p of a positive normal x, p ln x within +-700; exactly 1 at p = 0. Error: below (4 + 2 |p ln x|) ulp.
 inline double power(double x, double p) {
+  if (p == 0.0) return 1.0;
   return exponential(p * natural_log(x));
 }
 

@@ -37,18 +37,6 @@ std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& 
 /// campaign; a zone counts with the bands of other ground that a model has laid over it.
 std::vector<bool> touched_zones(const Campaign& campaign, std::span<const BlockRuns> runs, double share = 0.05);
 
-struct FitOptions {
-  std::uint32_t trials = 30;          ///< per block while it searches
-  std::uint32_t polish_trials = 100;  ///< per block in the last part of the search
-  int starts = 3;                     ///< 1: from the start alone, as when a few parameters are added to a fit
-  int evaluations = 0;                ///< of each search; 0: by the number of parameters
-  int rounds = 3;                     ///< of the quadratic model
-  std::uint64_t seed = 1;
-  int threads = 0;
-  double prior_weight = 0.28;           ///< see Fit::objective and docs/closing-the-loop.md; 0: no prior
-  std::function<bool(double)> proceed;  ///< told the share done, 0..1; false ends the fit. May be empty
-};
-
 /// What one model scored, row by row.
 struct Evaluation {
   Eigen::VectorXd z;     ///< size: free parameters
@@ -57,14 +45,30 @@ struct Evaluation {
   double objective;
 };
 
+struct FitOptions {
+  std::uint32_t trials = 48;              ///< per block while it searches
+  std::uint32_t comparison_trials = 200;  ///< per block where the best of a few places is taken
+  int starts = 3;                         ///< of searches; 0: none, rounds of the quadratic model from the start
+  int rounds = 5;                         ///< of the quadratic model, at most
+  int design = 0;                         ///< evaluations of each round; 0: by the number of parameters
+  double enough = 0.0;                    ///< a round that lowers the objective by less is the last one
+  std::uint64_t seed = 1;
+  int threads = 0;
+  double prior_weight = 0.28;              ///< see Fit::objective and docs/closing-the-loop.md; 0: no prior
+  Eigen::MatrixXd spread;                  ///< covariance of the first round's places, in z; empty: a usual one
+  std::span<const Evaluation> known = {};  ///< of the same parameters and rows, with these trials: not simulated again
+  std::function<bool(double)> proceed;     ///< told the share done, 0..1; false ends the fit. May be empty
+};
+
 /// The model that was found.
 struct Fit {
   Model model;
-  Eigen::VectorXd z;                    ///< of the free parameters
-  double objective = kNotGiven;         ///< total score + prior_weight / (blocks asked for) * sum of z^2
-  Score score;                          ///< of the asked rows, with polish_trials trials, those of the search
-  Eigen::MatrixXd spread;               ///< covariance of z within which the objective is nearly as good
-  std::vector<Evaluation> evaluations;  ///< all that was tried: what an emulator learns from
+  Eigen::VectorXd z;             ///< of the free parameters
+  double objective = kNotGiven;  ///< total score + prior_weight / (blocks asked for) * sum of z^2
+  Score score;                   ///< of the asked rows, with comparison_trials trials
+  Eigen::MatrixXd spread;        ///< covariance of z within which the objective is nearly as good
+  std::vector<Evaluation>
+      evaluations;  ///< all that was tried, and what was known: what the quadratic model learns from
   bool interrupted = false;
 };
 
@@ -75,10 +79,10 @@ struct Fit {
 /// @param rows   which blocks are used; size: blocks. Spreads come from all fitting rows
 ///
 /// Minimises the mean normalised score plus the prior with NLopt's LN_BOBYQA (Powell 2009; quadratic models, no
-/// derivatives) from the start and from the best of a low-discrepancy set, with few trials. The luck of the trials ends
-/// such a search early; rounds of a least-squares quadratic model around the best point (`LocalModel`) go on from
-/// there, each step accepted only if it is better with more trials. The same result for any number of threads. The
-/// score at the optimum is a little too good, because the search has seen these trials: score it again with others.
+/// derivatives) from the start and from the best of a low-discrepancy set. The luck of the trials ends such a search
+/// early; rounds of a least-squares quadratic model around the best point (`LocalModel`) go on from there. Places are
+/// compared on luck of their own: the lowest of many noisy values is too low. The same result for any number of
+/// threads.
 Fit fit_parameters(const Campaign& campaign, const Model& start, std::span<const Parameter> free,
                    const std::vector<bool>& rows, const FitOptions& options);
 

@@ -11,6 +11,8 @@ struct Fitted {
   Eigen::VectorXd z;               ///< of the free parameters
   std::vector<BlockRuns> fitting;  ///< of the fitting rows, on luck that the search has not seen
   Score score;                     ///< of those
+  Eigen::MatrixXd spread;          ///< covariance of z within which the objective is nearly as good
+  std::vector<Evaluation> tried;   ///< by its fit and those before: what the next one learns from
 };
 
 /// A candidate fitted together with the base parameters.
@@ -20,12 +22,17 @@ struct Trial {
   std::vector<double> values;          ///< of them, fitted
   bool joint = true;                   ///< false: the ground was held, because the test found nothing (p above 0.1)
   double p_value = 1.0;                ///< of the score test, corrected for its places
+  double statistic = 0.0;              ///< of the score test
   double gain = 0.0;                   ///< by which it lowers the error of the fitting rows
   Interval gain_interval;              ///< 95 %, paired bootstrap over blocks
   double price = 0.0;                  ///< that its fitted numbers, those of its place too, must gain to be worth it
+  double place_price = 0.0;            ///< that of its place alone, which was chosen by all blocks
   double cross_validated = kNotGiven;  ///< the same in cross-validation; NaN where it was not needed
   double chosen_share = 0.0;           ///< of the bootstraps in which it has the lowest error of all
   Fitted fitted;
+
+  /// What blocks gain that its fit has not seen, less the price of its place. NaN where it was not cross-validated.
+  double unseen_gain() const { return cross_validated - place_price; }
 };
 
 /// One turn of the loop.
@@ -59,9 +66,9 @@ struct DiagnoseOptions {
 /// Finds what a model of the ground alone leaves of a campaign's fitting rows, and which effect explains it.
 ///
 /// (1) Fits the ground. (2) Score test of all candidates. (3) Fits every effect at its best place, together with the
-/// ground where the test finds anything in it. (4) Chooses: significant in the test, better in a cross-validation over
-/// blocks, then the lowest error with the price of its numbers added. (5) Puts it in and goes round again. The held-out
-/// rows are never looked at. docs/closing-the-loop.md, "Diagnosis".
+/// ground where the test finds anything in it; the best of them for longer. (4) Chooses: significant in the test, the
+/// lowest error in a cross-validation over blocks. (5) Puts it in and goes round again. The
+/// held-out rows are never looked at. docs/closing-the-loop.md, "Diagnosis".
 ///
 /// Throws FitInterrupted when `proceed` says no.
 Diagnosis diagnose(const Campaign& campaign, const Model& start, const DiagnoseOptions& options);

@@ -3,9 +3,9 @@
 
 namespace talus {
 
-/// Second-order polynomials in z around a centre, fitted to noisy values at many places by weighted least squares:
+/// Second-order polynomials fitted to noisy values at many places by weighted least squares:
 ///
-///   f(z) = c + g . u + 1/2 u' H u,   u = z - centre
+///   f(u) = c + g . u + 1/2 u' H u
 ///
 /// Linear in the values: the coefficients of many functions at the same places cost one factorisation.
 class QuadraticFit {
@@ -17,8 +17,7 @@ class QuadraticFit {
 
   /// @param places   one per column; size: directions x places
   /// @param weights  of the places, >= 0; size: places
-  QuadraticFit(const Eigen::MatrixXd& places, const Eigen::VectorXd& weights, const Eigen::VectorXd& centre,
-               const Ridge& ridge);
+  QuadraticFit(const Eigen::MatrixXd& places, const Eigen::VectorXd& weights, const Ridge& ridge);
 
   /// Coefficients of functions from their values: one function per column.
   /// @param values  size: places x functions. @return size: coefficients x functions
@@ -27,6 +26,8 @@ class QuadraticFit {
   Eigen::VectorXd at_places(const Eigen::VectorXd& coefficients) const { return features_ * coefficients; }
 
   Eigen::Index directions() const { return directions_; }
+  /// How many coefficients the values decide: all, less what the ridge holds back.
+  double coefficients_used() const { return features_.cwiseProduct(solver_.transpose()).sum(); }
   /// g of a function; size: directions.
   Eigen::VectorXd gradient(const Eigen::VectorXd& coefficients) const { return coefficients.segment(1, directions_); }
   /// H of a function, with its negative curvatures set to zero; size: directions x directions.

@@ -53,7 +53,12 @@ inline constexpr std::size_t kFewestRows = 5;
 /// @param ask   which blocks are scored, the fitting or the held-out ones; size: blocks
 ///
 /// Spreads, p and the climatology come from the fitting rows (holdout = false) alone, whatever `ask` is.
-Score score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask);
+Score score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
+            std::size_t fewest_simulated = kFewestSimulated);
+
+/// The fewest simulated values for a row in a search with so many trials: a tenth of them, as ten of a hundred are. With
+/// ten whatever the trials, a search with few would not see what only some of them reach.
+std::size_t fewest_simulated_of(std::uint32_t trials);
 
 /// The total of the rows of a score with weights, such as how often a bootstrap drew each block: the mean over groups
 /// of the weighted mean over their rows. A group of no weight does not count.

@@ -1,6 +1,7 @@
 #include "talus/physics/effects/soft_ground.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "talus/base/elementary.hpp"
@@ -8,16 +9,24 @@
 namespace talus {
 namespace {
 
+/// Coefficients of asin(x)/x in powers of x^2: (2n)! / (4^n n!^2 (2n + 1)).
+constexpr std::array<double, 12> kArcSine = [] {
+  std::array<double, 12> series{};
+  double c = 1.0;
+  for (std::size_t n = 0; n < series.size(); ++n) {
+    const auto k = static_cast<double>(n);
+    series[n] = c / (2.0 * k + 1.0);
+    c *= (2.0 * k + 1.0) / (2.0 * k + 2.0);
+  }
+  return series;
+}();
+
 /// asin(x) of 0 <= x <= sqrt(1/2): its series after halving the angle twice.
 double arc_sine(double x) {
   for (int halving = 0; halving < 2; ++halving) x /= std::sqrt(2.0 + 2.0 * std::sqrt(1.0 - x * x));
   const double q = x * x;  // below 0.0381
   double sum = 0.0;
-  for (int n = 11; n >= 0; --n) {
-    double c = 1.0 / (2 * n + 1);
-    for (int i = 1; i <= n; ++i) c *= (2.0 * i - 1.0) / (2.0 * i);
-    sum = sum * q + c;
-  }
+  for (auto c = kArcSine.rbegin(); c != kArcSine.rend(); ++c) sum = sum * q + *c;
   return 4.0 * x * sum;
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "local_model.hpp"
 #include "support/campaigns.hpp"
 #include "talus/base/error.hpp"
 #include "talus/fit/quadratic.hpp"
@@ -32,20 +33,21 @@ TEST(Parameters, ThereAndBack) {
 /// A quadratic is found exactly from places without noise.
 TEST(QuadraticFit, ExactForAQuadratic) {
   Numbers numbers(2);
-  const Eigen::Vector3d centre(1.0, -2.0, 0.5), g(0.3, -1.0, 2.0);
+  const Eigen::Vector3d g(0.3, -1.0, 2.0);
   Eigen::Matrix3d h;
   h << 4.0, 1.0, 0.0, 1.0, 3.0, -0.5, 0.0, -0.5, 2.0;
   Eigen::MatrixXd places(3, 40), values(40, 1);
   for (Eigen::Index i = 0; i < 40; ++i) {
     const Eigen::Vector3d u = numbers.vector(1.0);
-    places.col(i) = centre + u;
+    places.col(i) = u;
     values(i, 0) = 5.0 + g.dot(u) + 0.5 * u.dot(h * u);
   }
-  const QuadraticFit fit(places, Eigen::VectorXd::Ones(40), centre, {0.0, 0.0});
+  const QuadraticFit fit(places, Eigen::VectorXd::Ones(40), {0.0, 0.0});
   const Eigen::VectorXd c = fit.coefficients(values);
   EXPECT_LT((fit.gradient(c) - g).norm(), 1e-6);
   EXPECT_LT((fit.curvature(c) - h).norm(), 1e-6);
   const Eigen::Vector3d wide = Eigen::Vector3d::Constant(10.0);
+  EXPECT_NEAR(fit.coefficients_used(), 10.0, 1e-6);  // 1 + 3 + 6: no ridge holds any back
   EXPECT_LT((minimum_in_box(g, h, -wide, wide) + h.ldlt().solve(g)).norm(), 1e-4);
   const Eigen::Vector3d bound(10.0, 10.0, 0.1);  // the third coordinate wants to go below -0.1
   const Eigen::VectorXd at_bound = minimum_in_box(g, h, -bound, bound);
@@ -57,8 +59,47 @@ TEST(QuadraticFit, NegativeCurvatureIsNone) {
   Eigen::MatrixXd places(1, 5), values(5, 1);
   places << -2, -1, 0, 1, 2;
   for (Eigen::Index i = 0; i < 5; ++i) values(i, 0) = -places(0, i) * places(0, i);
-  const QuadraticFit fit(places, Eigen::VectorXd::Ones(5), Eigen::VectorXd::Zero(1), {0.0, 0.0});
+  const QuadraticFit fit(places, Eigen::VectorXd::Ones(5), {0.0, 0.0});
   EXPECT_EQ(fit.curvature(fit.coefficients(values))(0, 0), 0.0);
+}
+
+/// The same bowl for every block, seen from a centre that is neither its minimum nor zero: the step leads to the
+/// minimum, within the trust region and the bounds.
+TEST(LocalModel, StepsToTheMinimumOfABowl) {
+  const Campaign c = campaign_on_slope(6);
+  const Model start = model_of_slope();
+  const std::vector<Parameter> free = two_parameters(c, start);
+  const std::vector<bool> rows = fitting_rows(c);
+  const FitProblem problem{c, start, free, rows};
+  FitOptions options;
+  options.prior_weight = 0.0;
+  const Eigen::Vector2d minimum(0.9, -0.5);
+  Eigen::Matrix2d h;
+  h << 3.0, 1.0, 1.0, 2.0;
+  const Eigen::Matrix2d spread = 0.04 * Eigen::Matrix2d::Identity();
+  Fit fit;
+  fit.z = Eigen::Vector2d(0.7, -0.4);
+  fit.score.groups = {{"stop", 1.0, 6}};
+  for (std::uint32_t block = 0; block < 6; ++block) fit.score.rows.push_back({0, block, 1.0});
+  for (const Eigen::VectorXd& z : LocalModel::design(problem, 1, fit.z, spread, 60, 0)) {
+    const double value = 0.5 + 0.5 * (z - minimum).dot(h * (z - minimum));
+    fit.evaluations.push_back({z, Eigen::VectorXd::Constant(6, value), options.trials, value});
+  }
+  const LocalModel model(problem, options, fit, spread);
+  EXPECT_LT((model.step(spread) - minimum).norm(), 1e-4);
+  EXPECT_LT(model.noise(), 1e-4);
+  const std::vector<double> some{1.0, 0.0, 1.0, 0.0, 0.0, 2.0};
+  EXPECT_LT((model.optimum(some, spread) - minimum).norm(), 1e-4);
+  const Eigen::Matrix2d narrow = 1e-4 * Eigen::Matrix2d::Identity();  // two standard deviations: 0.02
+  EXPECT_NEAR(model.step(narrow).x(), 0.72, 1e-9);
+}
+
+/// With one value in ten, the rows of a search with few trials count as those of one with many do.
+TEST(FewestSimulated, ATenthOfTheTrials) {
+  EXPECT_EQ(fewest_simulated_of(10), 2U);
+  EXPECT_EQ(fewest_simulated_of(24), 3U);
+  EXPECT_EQ(fewest_simulated_of(100), 10U);
+  EXPECT_EQ(fewest_simulated_of(1000), 10U);
 }
 
 /// Data of a known model: the fit comes back to it from elsewhere, within what its interval says (from 24 such
@@ -73,7 +114,7 @@ TEST(Calibrate, ComesBackToTheModelThatMadeTheData) {
   const std::vector<Parameter> free = two_parameters(c, start);
   FitOptions options;
   options.trials = 20;
-  options.polish_trials = 40;
+  options.comparison_trials = 40;
   options.rounds = 1;
   const std::vector<bool> rows = fitting_rows(c);
   const Fit fit = fit_parameters(c, start, free, rows, options);
@@ -108,7 +149,7 @@ TEST(Calibrate, WhatTheDataDoNotSeeIsNotIdentifiable) {
   free[1].set = [](Model&, double) {};  // moves nothing
   FitOptions options;
   options.trials = 20;
-  options.polish_trials = 40;
+  options.comparison_trials = 40;
   options.starts = 1;
   options.rounds = 1;
   const std::vector<bool> rows = fitting_rows(c);

@@ -1,6 +1,4 @@
 #pragma once
-#include <array>
-
 #include "talus/base/elementary.hpp"
 #include "talus/physics/block.hpp"
 #include "talus/physics/effects.hpp"
@@ -40,9 +38,7 @@ class DampedFall {
   /// @param rate r [1/s], >= 0;  time t [s], >= 0. Exactly free fall where either is 0.
   DampedFall(double rate, double time) : damping_(rate * time), time_(time) {
     if (damping_ < 0.5) {
-      double sum = 1.0;  // f2 = 1/2! - a/3! + a^2/4! ...: what is left out is below 1e-16
-      for (int n = damping_ < 0.05 ? 9 : 15; n > 2; --n) sum = 1.0 - sum * (damping_ * kPer[n]);
-      f2_ = 0.5 * sum;
+      f2_ = exponential_rest(-damping_);
       f1_ = 1.0 - damping_ * f2_;
     } else {
       f1_ = (1.0 - exponential(-damping_)) / damping_;
@@ -58,11 +54,6 @@ class DampedFall {
   Vec3 parabola(const Vec3& v) const { return f1_ * v + Vec3(0.0, 0.0, kGravity * time_ * (0.5 - f2_)); }
 
  private:
-  static constexpr std::array<double, 16> kPer = [] {  // 1/n: a division takes as long as a whole series
-    std::array<double, 16> per{};
-    for (int n = 1; n < 16; ++n) per[static_cast<std::size_t>(n)] = 1.0 / n;
-    return per;
-  }();
   double damping_, time_, f1_ = 1.0, f2_ = 0.5;
 };
 

@@ -1,0 +1,46 @@
+#pragma once
+#include "talus/fit/diagnose.hpp"
+
+namespace talus {
+
+/// The fits of one diagnosis: of the ground, and of each effect on top of what has been found before.
+///
+/// What one fit has simulated is kept, and the next one learns from it too: an effect is added to a ground whose
+/// neighbourhood is known. docs/closing-the-loop.md, "Diagnosis".
+class EffectFits {
+ public:
+  /// @param proceed  asked now and then; false: FitInterrupted is thrown
+  EffectFits(const Campaign& campaign, const DiagnoseOptions& options, const std::vector<bool>& rows,
+             std::function<bool()> proceed)
+      : campaign_(campaign), options_(options), rows_(rows), proceed_(std::move(proceed)) {}
+
+  /// The ground alone, as `calibrate` fits it.
+  Fitted ground(const Model& start) const;
+  /// An effect at its best place, from what the score test expects of it; with the ground where the test finds anything
+  /// in it.
+  Trial effect(const Fitted& base, const EffectVerdict& verdict, const Candidate& candidate) const;
+  /// Goes on with the fit of an effect that is among the best.
+  void go_on(const Fitted& base, Trial& trial) const;
+  /// Fits what was chosen once more, with more trials: it is what the user gets.
+  void polish(Trial& trial) const;
+  /// The error of a model on blocks that its fit has not seen: five folds, each of them simulated with the model that
+  /// is best for the others, which is the minimum of the quadratic model of their rows.
+  double cross_validated(const Fitted& fitted) const;
+
+ private:
+  ObserveOptions observing(std::uint32_t trials) const;
+  FitOptions fitting() const;
+  Fitted finish(Fit&& fit, std::vector<Parameter> free) const;
+  Fitted refined(const Fitted& fitted, FitOptions how) const;
+  void compare(const Fitted& base, Trial& trial) const;
+  Eigen::VectorXd scan(const FitProblem& problem, const FitOptions& how, const Fitted& base, const Candidate& candidate,
+                       const Verdict& verdict) const;
+  std::vector<std::size_t> shuffled_rows() const;
+
+  const Campaign& campaign_;
+  const DiagnoseOptions& options_;
+  const std::vector<bool>& rows_;
+  std::function<bool()> proceed_;
+};
+
+}  // namespace talus
