@@ -9,6 +9,7 @@ namespace talus {
 namespace {
 
 constexpr std::size_t kContenders = 4;  // whose fits go on: those that gain most
+constexpr double kWorthNaming = 0.01;   // share of the error that an effect takes away from blocks not fitted
 constexpr double kUnfinished = 0.02;    // of the error, that a first fit may still be above its minimum
 constexpr std::size_t kLaterFits = 6;  // after the first round: with an effect in place all takes several times as long
 constexpr std::uint32_t kManyBlocks = 72;  // of fewer, more trials each are tested: a signature is a mean over blocks
@@ -132,7 +133,8 @@ class Diagnosing {
   /// @param first  of the rounds: later ones ask for more, because the form of what is in is itself a guess
   void choose(const Fitted& base, Round& round, bool noise, bool first) {
     count_choices(base, round.trials);
-    const auto may = [&](const Trial& t) { return t.unseen_gain() > 0.0 && (first || net(t) > 0.0); };
+    const double worth = kWorthNaming * base.score.total;
+    const auto may = [&](const Trial& t) { return t.unseen_gain() > worth && (first || net(t) > 0.0); };
     std::stable_sort(round.trials.begin(), round.trials.end(), [&](const Trial& a, const Trial& b) {
       if (may(a) != may(b)) return may(a);
       return may(a) ? a.unseen_gain() > b.unseen_gain() : net(a) > net(b);

@@ -56,8 +56,8 @@ inline constexpr std::size_t kFewestRows = 5;
 Score score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
             std::size_t fewest_simulated = kFewestSimulated);
 
-/// The fewest simulated values for a row in a search with so many trials: a tenth of them, as ten of a hundred are. With
-/// ten whatever the trials, a search with few would not see what only some of them reach.
+/// The fewest simulated values for a row in a search with so many trials: a tenth of them, as ten of a hundred are.
+/// With ten whatever the trials, a search with few would not see what only some of them reach.
 std::size_t fewest_simulated_of(std::uint32_t trials);
 
 /// The total of the rows of a score with weights, such as how often a bootstrap drew each block: the mean over groups
