@@ -6,7 +6,7 @@ import unittest
 from support import Case
 
 CAMPAIGNS = os.path.join(os.environ.get("TALUS_DATA", ""), "campaigns")
-SHORT = ("--test-trials", "60", "-q")
+SHORT = ("--trials", "20", "--test-trials", "60")
 NAMES = {"none", "unexplained", "vegetation-drag", "forest-stems", "block-shape", "block-mass", "wet-ground", "soft-ground",
          "rolling-resistance", "air-drag", "fragmentation", "undeclared-barrier", "undeclared-zone", "instrument-bias"}
 
@@ -19,9 +19,9 @@ class Diagnose(Case):
 
 @unittest.skipUnless(os.path.isdir(CAMPAIGNS), "no campaigns at TALUS_DATA")
 class WholeLoop(Case):
-    def diagnose(self, name, trials="20"):
+    def diagnose(self, name, *options):
         out = self.path(name)
-        self.run_well("diagnose", f"{CAMPAIGNS}/{name}/campaign.toml", "-o", out, "--trials", trials, *SHORT, timeout=1200)
+        self.run_well("diagnose", f"{CAMPAIGNS}/{name}/campaign.toml", "-o", out, "-q", *options, timeout=1200)
         with open(f"{out}/diagnosis.json", encoding="utf-8") as file:
             found = json.load(file)
         self.assertEqual({"diagnosis.json", "report.html", "fitted.toml", "with_effect.toml"}, set(os.listdir(out)))
@@ -44,16 +44,16 @@ class WholeLoop(Case):
         return {"wet-ground", "instrument-bias"} if name == "authume" else set()
 
     def test_days_that_differ(self):
-        found = self.diagnose("elm")
+        found = self.diagnose("elm", *SHORT)
         self.assertEqual(found["effect"], "wet-ground")
         self.assertLess(found["error"]["holdout"]["after"], found["error"]["holdout"]["before"])
 
     def test_nothing_hidden(self):
-        """So few trials do not fit the ground to the end, which may leave a residual; but no effect may be named."""
-        self.assertIn(self.diagnose("alder")["effect"], ("none", "unexplained"))
+        """With the default trials: with few, a bias of one instrument is named here, by chance (docs, "Results")."""
+        self.assertEqual(self.diagnose("alder")["effect"], "none")
 
     def test_measured_blocks_of_a_quarry(self):
-        found = self.diagnose("authume", "40")  # with 20 the search can end where most blocks leave: docs, "Limits"
+        found = self.diagnose("authume", "--trials", "40", "--test-trials", "60")
         self.assertGreater(len(found["residual"]), 3)
 
 
