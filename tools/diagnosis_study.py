@@ -2,7 +2,8 @@
 """How well `talus diagnose` finds what made a campaign: makes campaigns with the engine itself and diagnoses them.
 
   tools/diagnosis_study.py [--talus build/release/talus] [--effects all] [--magnitudes 0.5,1,2] [--blocks 60,120]
-                           [--none 20] [--trials 24] [--test-trials 100] [--most-effects 3] [--work DIR] [--seed 1] [-o study.csv]
+                           [--none 20] [--trials 24] [--test-trials 100] [--most-effects 3] [--threads N]
+                           [--work DIR] [--seed 1] [-o study.csv]
 
 Each campaign has a slope of its own (length, steepness, a gully, bumps), three zones, blocks of many sizes and shapes, three
 screens and four days. One effect of a known size acts (or none); one simulated trial per block, with errors of measurement, is
@@ -147,7 +148,8 @@ def run(command):
 def diagnose(o, folder):
     if not os.path.exists(f"{folder}/diagnosis/diagnosis.json"):
         run([o.talus, "diagnose", f"{folder}/campaign.toml", "-o", f"{folder}/diagnosis", "--trials", str(o.trials),
-             "--test-trials", str(o.test_trials), "--most-effects", str(o.most_effects), "-q", "--overwrite"])
+             "--test-trials", str(o.test_trials), "--most-effects", str(o.most_effects), "-q", "--overwrite"]
+            + (["--threads", str(o.threads)] if o.threads else []))
     with open(f"{folder}/diagnosis/diagnosis.json", encoding="utf-8") as file:
         found = json.load(file)
     truth = json.loads(run([o.talus, "score", f"{folder}/campaign.toml", "--parameters", f"{folder}/truth_model.toml", "--rows",
@@ -206,6 +208,7 @@ def main():
     parser.add_argument("--trials", type=int, default=24)
     parser.add_argument("--test-trials", type=int, default=100)
     parser.add_argument("--most-effects", type=int, default=3)
+    parser.add_argument("--threads", type=int, help="of each diagnosis; all processors where it is not given")
     parser.add_argument("--work", default="build/study")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("-o", "--out")

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kReach = 2.5;  // bounds of a ground parameter, in sd from its start
 
-/// The search of one fit: keeps all that was tried.
+/// The search of one fit. Keeps what its designs tried; a search lingers where its luck was good, and would mislead.
 class Search {
  public:
   Search(const FitProblem& problem, const FitOptions& options) : problem_(problem), options_(options) {
@@ -47,6 +47,7 @@ class Search {
       fit_.interrupted = true;
     }
     if (!fit_.interrupted) fit_.score = score_of(fit_.model);
+    fit_.tried = done_;
     return std::move(fit_);
   }
 

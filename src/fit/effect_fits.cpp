@@ -111,13 +111,17 @@ VectorXd EffectFits::scan(const FitProblem& problem, const FitOptions& how, cons
   return best.z;
 }
 
-/// What the fit of a trial gained, and what it must: docs/closing-the-loop.md, "Choice".
+void EffectFits::adopt(Fitted&& fitted, Trial& trial) {
+  trial.fitted = std::move(fitted);
+  trial.values.clear();
+  for (const Parameter& p : trial.parameters) trial.values.push_back(p.get(trial.fitted.model));
+}
+
+/// What the fit of a trial gained.
 void EffectFits::compare(const Fitted& base, Trial& trial) const {
   const Difference c = difference(base.score, trial.fitted.score, campaign_.blocks.size());
   trial.gain = -c.mean;
   trial.gain_interval = {-c.interval.high, -c.interval.low};
-  for (std::size_t i = 0; i < trial.parameters.size(); ++i)
-    trial.values[i] = trial.parameters[i].get(trial.fitted.model);
 }
 
 Trial EffectFits::effect(const Fitted& base, const EffectVerdict& verdict, const Candidate& candidate) const {
@@ -127,7 +131,6 @@ Trial EffectFits::effect(const Fitted& base, const EffectVerdict& verdict, const
   trial.p_value = verdict.p_value;
   trial.statistic = verdict.best.statistic;
   trial.parameters = candidate.parameters;
-  trial.values.resize(candidate.parameters.size());
   const auto asked = static_cast<double>(std::count(rows_.begin(), rows_.end(), true));
   trial.price = kPrice * (static_cast<double>(candidate.parameters.size()) + candidate.searched) / asked;
   trial.place_price = kPrice * candidate.searched / asked;
@@ -147,7 +150,7 @@ Trial EffectFits::effect(const Fitted& base, const EffectVerdict& verdict, const
   how.known = known;
   how.spread = first_spread(trial.joint ? base.spread : MatrixXd(0, 0), z.tail(added));
   Fit fit = fit_parameters(campaign_, model_at(off, free, z), free, rows_, how);
-  trial.fitted = finish(std::move(fit), std::move(free));
+  adopt(finish(std::move(fit), std::move(free)), trial);
   compare(base, trial);
   return trial;
 }
@@ -165,7 +168,7 @@ void EffectFits::go_on(const Fitted& base, Trial& trial) const {
   how.rounds = 3;
   how.enough = kWorthARound;
   how.design = 6 * static_cast<int>(trial.fitted.free.size());
-  trial.fitted = refined(trial.fitted, how);
+  adopt(refined(trial.fitted, how), trial);
   compare(base, trial);
 }
 
@@ -175,10 +178,7 @@ void EffectFits::polish(Trial& trial) const {
   how.comparison_trials *= 2;
   how.rounds = 2;
   Fitted longer = refined(trial.fitted, how);
-  if (!(longer.score.total < trial.fitted.score.total)) return;
-  trial.fitted = std::move(longer);
-  for (std::size_t i = 0; i < trial.parameters.size(); ++i)
-    trial.values[i] = trial.parameters[i].get(trial.fitted.model);
+  if (longer.score.total < trial.fitted.score.total) adopt(std::move(longer), trial);
 }
 
 /// The fitting rows in a random order: neighbours in the file are often of one day or one kind.

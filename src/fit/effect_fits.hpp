@@ -32,6 +32,7 @@ class EffectFits {
   FitOptions fitting() const;
   Fitted finish(Fit&& fit, std::vector<Parameter> free) const;
   Fitted refined(const Fitted& fitted, FitOptions how) const;
+  static void adopt(Fitted&& fitted, Trial& trial);
   void compare(const Fitted& base, Trial& trial) const;
   Eigen::VectorXd scan(const FitProblem& problem, const FitOptions& how, const Fitted& base, const Candidate& candidate,
                        const Verdict& verdict) const;

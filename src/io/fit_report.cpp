@@ -186,7 +186,7 @@ std::string calibration_json(const Calibration& c) {
             {"trials", c.options.trials},
             {"comparison_trials", c.options.comparison_trials},
             {"starts", c.options.starts},
-            {"evaluations", c.fit.evaluations.size()},
+            {"evaluations", c.fit.tried},
             {"objective", number(c.fit.objective)},
             {"prior_weight", c.options.prior_weight},
             {"parameters", parameters_of(c)},

@@ -56,19 +56,19 @@ struct FitOptions {
   int threads = 0;
   double prior_weight = 0.28;              ///< see Fit::objective and docs/closing-the-loop.md; 0: no prior
   Eigen::MatrixXd spread;                  ///< covariance of the first round's places, in z; empty: a usual one
-  std::span<const Evaluation> known = {};  ///< of the same parameters and rows, with these trials: not simulated again
+  std::span<const Evaluation> known = {};  ///< of the same parameters and rows: the quadratic model learns from it
   std::function<bool(double)> proceed;     ///< told the share done, 0..1; false ends the fit. May be empty
 };
 
 /// The model that was found.
 struct Fit {
   Model model;
-  Eigen::VectorXd z;             ///< of the free parameters
-  double objective = kNotGiven;  ///< total score + prior_weight / (blocks asked for) * sum of z^2
-  Score score;                   ///< of the asked rows, with comparison_trials trials
-  Eigen::MatrixXd spread;        ///< covariance of z within which the objective is nearly as good
-  std::vector<Evaluation>
-      evaluations;  ///< all that was tried, and what was known: what the quadratic model learns from
+  Eigen::VectorXd z;                    ///< of the free parameters
+  double objective = kNotGiven;         ///< total score + prior_weight / (blocks asked for) * sum of z^2
+  Score score;                          ///< of the asked rows, with comparison_trials trials
+  Eigen::MatrixXd spread;               ///< covariance of z within which the objective is nearly as good
+  std::vector<Evaluation> evaluations;  ///< of the designs, and what was known: what the quadratic model learns from
+  int tried = 0;                        ///< places that were simulated, those of the searches and comparisons too
   bool interrupted = false;
 };
 

@@ -18,17 +18,18 @@ struct Fitted {
 /// A candidate fitted together with the base parameters.
 struct Trial {
   std::string effect, where;
-  std::vector<Parameter> parameters;   ///< its own
-  std::vector<double> values;          ///< of them, fitted
-  bool joint = true;                   ///< false: the ground was held, because the test found nothing (p above 0.1)
-  double p_value = 1.0;                ///< of the score test, corrected for its places
-  double statistic = 0.0;              ///< of the score test
-  double gain = 0.0;                   ///< by which it lowers the error of the fitting rows
-  Interval gain_interval;              ///< 95 %, paired bootstrap over blocks
-  double price = 0.0;                  ///< that its fitted numbers, those of its place too, must gain to be worth it
-  double place_price = 0.0;            ///< that of its place alone, which was chosen by all blocks
-  double cross_validated = kNotGiven;  ///< the same in cross-validation; NaN where it was not needed
-  double chosen_share = 0.0;           ///< of the bootstraps in which it has the lowest error of all
+  std::vector<Parameter> parameters;  ///< its own
+  std::vector<double> values;         ///< of them, fitted
+  bool joint = true;                  ///< false: the ground was held, because the test found nothing (p above 0.1)
+  double p_value = 1.0;               ///< of the score test, corrected for its places
+  double statistic = 0.0;             ///< of the score test
+  double gain = 0.0;                  ///< by which it lowers the error of the fitting rows
+  Interval gain_interval;             ///< 95 %, paired bootstrap over blocks
+  double price = 0.0;                 ///< that its fitted numbers, those of its place too, must gain to be worth it
+  double place_price = 0.0;           ///< that of its place alone, which was chosen by all blocks
+  double cross_validated =
+      kNotGiven;              ///< by which it lowers that of blocks its fit has not seen; NaN where it was not asked
+  double chosen_share = 0.0;  ///< of the bootstraps in which it has the lowest error of all
   Fitted fitted;
 
   /// What blocks gain that its fit has not seen, less the price of its place. NaN where it was not cross-validated.
@@ -67,8 +68,8 @@ struct DiagnoseOptions {
 ///
 /// (1) Fits the ground. (2) Score test of all candidates. (3) Fits every effect at its best place, together with the
 /// ground where the test finds anything in it; the best of them for longer. (4) Chooses: significant in the test, the
-/// lowest error in a cross-validation over blocks. (5) Puts it in and goes round again. The
-/// held-out rows are never looked at. docs/closing-the-loop.md, "Diagnosis".
+/// lowest error in a cross-validation over blocks. (5) Puts it in and goes round again. The held-out rows are never
+/// looked at. docs/closing-the-loop.md, "Diagnosis".
 ///
 /// Throws FitInterrupted when `proceed` says no.
 Diagnosis diagnose(const Campaign& campaign, const Model& start, const DiagnoseOptions& options);
