@@ -193,7 +193,7 @@ Residual ResidualSpace::residual(std::size_t b, const std::vector<double>& value
   for (std::size_t o = 0; o < n; ++o) {
     const auto place = static_cast<Eigen::Index>(o), spread = static_cast<Eigen::Index>(n + o);
     if (observables_[o].kind == Observable::Kind::Crossed) {
-      const double p = crossing_share_[b * n + o];
+      const double p = crossing_share(b, o);
       r[place] = (values[o] - p) / std::sqrt(p * (1.0 - p));
       continue;
     }

@@ -12,6 +12,7 @@ namespace talus {
 namespace {
 
 constexpr std::size_t kFewestBlocks = 10;
+constexpr double kFewestCrossings = 5.0;  // variance of the number that cross, below which it is not nearly normal
 
 std::vector<double> ranks(std::span<const double> values) {
   std::vector<std::size_t> order(values.size());
@@ -51,6 +52,26 @@ const std::vector<Property>& properties() {
                                           {"east", [](const MeasuredBlock& b) { return b.x; }},
                                           {"north", [](const MeasuredBlock& b) { return b.y; }}};
   return list;
+}
+
+/// Whether more of the blocks with a large property cross than the model says: sum of (c - p) times the rank, among
+/// blocks that cross as often as was measured, over its standard deviation. A rank correlation would not do: blocks that
+/// seldom cross have a small residual whatever happens, so that it goes with whatever their chance goes with.
+void add_crossing(std::vector<ResidualRow>& table, const std::string& name, const char* property,
+                  const std::vector<double>& z, const std::vector<double>& variance, std::span<const double> of) {
+  const std::vector<double> rank = ranks(of);
+  const double all = std::accumulate(variance.begin(), variance.end(), 0.0);
+  if (all < kFewestCrossings) return;
+  const double middle = std::inner_product(rank.begin(), rank.end(), variance.begin(), 0.0) / all;
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    sum += (rank[i] - middle) * z[i] * std::sqrt(variance[i]);
+    squares += (rank[i] - middle) * (rank[i] - middle) * variance[i];
+  }
+  if (!(squares > 0.0)) return;
+  const double statistic = sum / std::sqrt(squares);
+  const double tail = boost::math::cdf(boost::math::complement(boost::math::normal(), std::abs(statistic)));
+  table.push_back({name, property, statistic, two_sided(tail), 1.0, z.size()});
 }
 
 void add_moments(std::vector<ResidualRow>& table, const std::string& name, const std::vector<double>& z) {
@@ -96,20 +117,26 @@ std::vector<ResidualRow> residual_table(const Campaign& campaign, const Residual
   std::vector<ResidualRow> table;
   for (std::size_t o = 0; o < space.observables().size(); ++o) {
     const std::string& name = space.observables()[o].name;
-    std::vector<double> z;
+    const bool crossing = space.observables()[o].kind == Observable::Kind::Crossed;
+    std::vector<double> z, variance;
     std::vector<std::vector<double>> of(properties().size());
     for (std::size_t b = 0; b < campaign.blocks.size(); ++b) {
       if (!rows[b]) continue;
       const double value = space.of_measured(b)[static_cast<Eigen::Index>(o)];
       if (std::isnan(value)) continue;
       z.push_back(value);
+      if (crossing) variance.push_back(space.crossing_share(b, o) * (1.0 - space.crossing_share(b, o)));
       for (std::size_t p = 0; p < of.size(); ++p) of[p].push_back(properties()[p].of(campaign.blocks[b]));
     }
     if (z.size() < kFewestBlocks) continue;
-    if (space.observables()[o].kind != Observable::Kind::Crossed) add_moments(table, name, z);
+    if (!crossing) add_moments(table, name, z);
     for (std::size_t p = 0; p < of.size(); ++p) {
       const auto [low, high] = std::minmax_element(of[p].begin(), of[p].end());
       if (!(*high > *low)) continue;
+      if (crossing) {
+        add_crossing(table, name, properties()[p].name, z, variance, of[p]);
+        continue;
+      }
       const double r = spearman(z, of[p]);
       table.push_back({name, properties()[p].name, r, p_of_correlation(r, z.size()), 1.0, z.size()});
     }

@@ -32,6 +32,11 @@ class ResidualSpace {
   /// Number of components of a residual: places first, then spreads.
   Eigen::Index size() const { return 2 * static_cast<Eigen::Index>(observables_.size()); }
 
+  /// How often a block crosses the screen of an observable, simulated: in (0, 1).
+  double crossing_share(std::size_t block, std::size_t observable) const {
+    return crossing_share_[block * observables_.size() + observable];
+  }
+
   Residual of_measured(std::size_t block) const;
   /// Of a trial of any runs, as if it had been measured.
   Residual of_trial(std::size_t block, const BlockRuns& runs, std::size_t trial) const;

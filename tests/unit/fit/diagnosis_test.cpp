@@ -102,6 +102,22 @@ TEST(Residual, SpearmanOfRanksByHand) {
   EXPECT_NEAR(spearman(a, std::vector<double>{9.0, 7.0, 5.0, 3.0, 1.0}), -1.0, 1e-12);
 }
 
+TEST(ResidualTable, IsSilentAboutTheModelsOwnCrossingsAsOftenAsItSays) {
+  Campaign c = slope_campaign(60);
+  c.screens[0].lines = {{{0.0, 60.0}, {120.0, 60.0}}};  // on the plain: the larger ones cross it, most others stop
+  const Model model = model_of_preset(c, "upper-talus-3d");
+  const auto runs = observe(c, model, {200, 7, 1000, 0, {}, {}});
+  const std::vector<bool> rows(c.blocks.size(), true);
+  int alarms = 0, tables = 0;
+  for (; tables < 200; ++tables) {
+    measure(c, model, 100 + tables);
+    for (const ResidualRow& row : residual_table(c, ResidualSpace(c, runs), rows))
+      if (row.observable == "crossed S1" && row.covariate == "mass") alarms += row.p_value < 0.05 ? 1 : 0;
+  }
+  EXPECT_GT(alarms, 0);
+  EXPECT_LE(alarms, 10 + 5.0 * std::sqrt(200 * 0.05 * 0.95));  // five standard errors
+}
+
 TEST(Candidates, OffChangesNoBit) {
   Campaign c = slope_campaign(6);
   const Model model = model_of_preset(c, "upper-talus-3d");
