@@ -7,6 +7,7 @@
 
 #include "kept_file.hpp"
 #include "store_rows.hpp"
+#include "store_tally.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/hazard_file.hpp"
@@ -19,68 +20,11 @@ namespace fs = std::filesystem;
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr int kFormat = 1;
+constexpr int kFormat = 2;
 
-std::string numbered(const char* what, std::uint32_t number) {
-  return std::string(what) + "-" + std::to_string(number) + ".bin";
-}
-
-void put_totals(const Totals& totals, ByteWriter& out) {
-  out.put(totals.ends);
-  for (const std::uint64_t n :
-       {totals.released, totals.pieces, totals.impacts, totals.psi_dropped, totals.cells_scored})
-    out.put(n);
-  out.put(totals.length_mm);
-  out.put(totals.plan_length_mm);
-  out.put(totals.first_limit);
-  out.put(totals.sink_cpu_seconds);
-  out.put(totals.cpu_seconds);
-  totals.barriers.save(out);
-}
-
-Totals get_totals(const Barriers& barriers, ByteReader& in) {
-  Totals totals;
-  totals.ends = in.get<decltype(totals.ends)>();
-  for (std::uint64_t* n :
-       {&totals.released, &totals.pieces, &totals.impacts, &totals.psi_dropped, &totals.cells_scored})
-    *n = in.get<std::uint64_t>();
-  totals.length_mm = in.get<std::int64_t>();
-  totals.plan_length_mm = in.get<std::int64_t>();
-  totals.first_limit = in.get<decltype(totals.first_limit)>();
-  totals.sink_cpu_seconds = in.get<double>();
-  totals.cpu_seconds = in.get<double>();
-  totals.barriers = BarrierTally::restored(barriers, in);
-  return totals;
-}
-
-/// The tally, region by region: number, length, bytes.
-std::string write_tally(const fs::path& file, const Tally& tally) {
-  KeptFileWriter out(file);
-  ByteWriter region;
-  for (std::size_t i = 0; i < tally.regions(); ++i) {
-    region.clear();
-    tally.save(i, region);
-    if (region.bytes().empty()) continue;
-    out.put_value(std::uint64_t{i});
-    out.put_value(std::uint64_t{region.bytes().size()});
-    out.put(region.bytes());
-  }
-  return out.finish();
-}
-
-void read_tally(const fs::path& file, const std::string& sha256, Tally& tally) {
-  KeptFileReader in(file, sha256);
-  for (std::uint64_t region = 0, length = 0; in.get_value(region);) {
-    if (!in.get_value(length) || region >= tally.regions()) in.fail();
-    const std::string bytes = in.get(length);
-    ByteReader reader(bytes);
-    try {
-      tally.merge(region, reader);
-    } catch (const std::out_of_range&) {
-      in.fail();
-    }
-  }
-  in.finish();
+/// "tally-3.bin"; of a further process of a team "tally-3-1.bin".
+std::string numbered(const std::string& what, std::uint32_t number, int rank = 0) {
+  return what + "-" + std::to_string(number) + (rank > 0 ? "-" + std::to_string(rank) : "") + ".bin";
 }
 
 }  // namespace
@@ -90,25 +34,25 @@ struct Store::Rows {
   std::string name;
 };
 
-Store::Store(fs::path folder, const LoadedScenario& loaded)
-    : folder_(std::move(folder)), plan_(plan_checksum(loaded)), loaded_(&loaded) {}
+Store::Store(fs::path folder, const LoadedScenario& loaded, Team& team)
+    : folder_(std::move(folder)), plan_(plan_checksum(loaded)), loaded_(&loaded), team_(&team) {}
 
-Store::Store(const fs::path& folder, const LoadedScenario& loaded, const Part& part, bool further_rounds)
-    : Store(folder, loaded) {
+Store::Store(const fs::path& folder, const LoadedScenario& loaded, const Part& part, bool further_rounds, Team& team)
+    : Store(folder, loaded, team) {
   part_ = part;
   further_rounds_ = further_rounds;
   settings_ = loaded.settings;
-  replace_text(folder_ / "scenario.toml", loaded.complete_toml);
+  if (team.leads()) replace_text(folder_ / "scenario.toml", loaded.complete_toml);
 }
 
 Store::Store(Store&&) noexcept = default;
 Store& Store::operator=(Store&&) noexcept = default;
 Store::~Store() = default;
 
-Store Store::opened(const fs::path& folder, const LoadedScenario& loaded, bool to_go_on) {
-  Store store(folder, loaded);
+Store Store::opened(const fs::path& folder, const LoadedScenario& loaded, bool to_go_on, Team& team) {
+  Store store(folder, loaded, team);
   store.read_manifest();
-  if (to_go_on) {
+  if (to_go_on && team.leads()) {
     store.remove_unnamed();
     replace_text(folder / "scenario.toml", loaded.complete_toml);
   }
@@ -128,12 +72,13 @@ std::vector<Setting> Store::settings(std::uint32_t rounds) const {
 Sinks Store::sinks() {
   const auto writer = [this]() -> RowsWriter& {
     if (!rows_) {
-      const std::string name = numbered("rows", static_cast<std::uint32_t>(rows_files_.size()) + 1);
+      const std::string name = numbered("rows-" + std::to_string(generation_ + 1), round_, team_->rank());
       rows_ = std::make_unique<Rows>(Rows{RowsWriter(folder_ / name), name});
     }
     return rows_->writer;
   };
   Sinks sinks;
+  sinks.unit = [writer](std::uint64_t unit) { writer().put(unit); };
   sinks.stops = [writer](std::span<const StopRow> rows) { writer().put(rows); };
   if (loaded_->scenario.output.paths > 0) sinks.paths = [writer](const RecordedPath& path) { writer().put(path); };
   if (!loaded_->scenario.screens.empty())
@@ -141,38 +86,64 @@ Sinks Store::sinks() {
   return sinks;
 }
 
+/// Of all processes: the leader knows their files then.
 void Store::close_rows(std::uint32_t round) {
-  if (!rows_) return;
-  rows_files_.push_back({round, rows_->name, rows_->writer.finish()});
+  Json mine;
+  if (rows_) mine = {{"name", rows_->name}, {"sha256", rows_->writer.finish()}};
   rows_.reset();
+  for (const std::string& given : team_->gather(mine.dump())) {
+    const Json file = Json::parse(given);
+    if (!file.is_null()) rows_files_.push_back({round, generation_ + 1, file.at("name"), file.at("sha256")});
+  }
 }
 
 void Store::end_round(std::uint32_t round) {
   close_rows(round);
-  rounds_ = round + 1;
+  round_ = rounds_ = round + 1;
   units_done_ = 0;
 }
 
 void Store::keep(const Simulation& simulation, const Tally& tally) {
-  const std::uint32_t before = generation_, next = generation_ + 1;
-  tally_sha256_ = write_tally(folder_ / numbered("tally", next), tally);
-  ByteWriter rest;
-  put_totals(simulation.totals(), rest);
-  simulation.save_reaches(rest);
-  KeptFileWriter rest_file(folder_ / numbered("rest", next));
-  rest_file.put(rest.bytes());
-  rest_sha256_ = rest_file.finish();
+  const std::uint32_t next = generation_ + 1;
+  const std::string name = numbered("tally", next, team_->rank());
+  const std::string sha256 = write_tally(folder_ / name, tally);
+  ByteWriter totals, reaches;
+  put_totals(totals_of_all(simulation.totals()), totals);
+  simulation.save_reaches(reaches);
+  const std::vector<std::string> names = team_->gather(name), sums = team_->gather(sha256);
+  const std::vector<std::string> all_reaches = team_->gather(reaches.bytes());
   close_rows(simulation.position().round);
   generation_ = next;
-  rounds_ = simulation.position().round + (simulation.round_done() ? 1U : 0U);
+  round_ = simulation.position().round;
+  rounds_ = round_ + (simulation.round_done() ? 1U : 0U);
   units_done_ = simulation.round_done() ? 0 : simulation.position().unit;
-  write_manifest();
-  std::error_code ignored;
-  for (const char* what : {"tally", "rest"}) fs::remove(folder_ / numbered(what, before), ignored);
+  if (team_->leads()) {
+    KeptFileWriter rest(folder_ / numbered("rest", next));
+    rest.put(totals.bytes());
+    for (const std::string& bytes : all_reaches) rest.put(bytes);
+    rest_sha256_ = rest.finish();
+    tallies_.clear();
+    for (std::size_t i = 0; i < names.size(); ++i) tallies_.push_back({names[i], sums[i]});
+    write_manifest();
+    remove_unnamed();
+  }
+  team_->tell({});  // no process goes on before what it has traced is kept
+}
+
+Totals Store::totals_of_all(const Totals& mine) const {
+  ByteWriter bytes;
+  put_totals(mine, bytes);
+  Totals sum;
+  sum.barriers = BarrierTally(loaded_->scenario.barriers);
+  for (const std::string& given : team_->gather(bytes.bytes())) {
+    ByteReader in(given);
+    add(sum, get_totals(loaded_->scenario.barriers, in));
+  }
+  return sum;
 }
 
 Totals Store::add_to(Tally& tally) const {
-  read_tally(folder_ / numbered("tally", generation_), tally_sha256_, tally);
+  for (const KeptFile& file : tallies_) read_tally(folder_ / file.name, file.sha256, tally);
   const std::string bytes = checked(numbered("rest", generation_), rest_sha256_);
   ByteReader rest(bytes);
   return get_totals(loaded_->scenario.barriers, rest);
@@ -180,16 +151,24 @@ Totals Store::add_to(Tally& tally) const {
 
 void Store::restore(Simulation& simulation, Tally& tally) const {
   if (empty()) return;
-  read_tally(folder_ / numbered("tally", generation_), tally_sha256_, tally);
+  const auto size = static_cast<std::size_t>(team_->size()), me = static_cast<std::size_t>(team_->rank());
+  for (std::size_t i = me; i < tallies_.size(); i += size)
+    read_tally(folder_ / tallies_[i].name, tallies_[i].sha256, tally);
   const std::string bytes = checked(numbered("rest", generation_), rest_sha256_);
   ByteReader rest(bytes);
-  const Totals totals = get_totals(loaded_->scenario.barriers, rest);
-  simulation.restore({rounds_, units_done_}, totals, rest);
+  Totals totals = get_totals(loaded_->scenario.barriers, rest), none;
+  none.barriers = BarrierTally(loaded_->scenario.barriers);
+  simulation.restore({rounds_, units_done_}, team_->leads() ? totals : none, rest);
 }
 
 void Store::replay(std::uint32_t round, const Sinks& sinks) const {
-  for (const RowsFile& file : rows_files_)
-    if (file.round == round) replay_rows(folder_ / file.name, file.sha256, sinks);
+  for (auto file = rows_files_.begin(); file != rows_files_.end();) {
+    std::vector<std::unique_ptr<RowsReader>> together;  // of one sitting of several processes
+    const RowsFile& first = *file;
+    for (; file != rows_files_.end() && file->round == first.round && file->generation == first.generation; ++file)
+      if (file->round == round) together.push_back(std::make_unique<RowsReader>(folder_ / file->name, file->sha256));
+    replay_rows(together, sinks);
+  }
 }
 
 std::string Store::checked(const std::string& name, const std::string& sha256) const {
@@ -201,9 +180,11 @@ std::string Store::checked(const std::string& name, const std::string& sha256) c
 }
 
 void Store::write_manifest() const {
-  Json rows = Json::array();
+  Json rows = Json::array(), tallies = Json::array();
   for (const RowsFile& file : rows_files_)
-    rows.push_back({{"round", file.round}, {"file", file.name}, {"sha256", file.sha256}});
+    rows.push_back(
+        {{"round", file.round}, {"generation", file.generation}, {"file", file.name}, {"sha256", file.sha256}});
+  for (const KeptFile& file : tallies_) tallies.push_back({{"file", file.name}, {"sha256", file.sha256}});
   Json settings = Json::array();
   for (const Setting& s : settings_) settings.push_back({s.key, s.value, s.unit, s.source});
   const Json json{{"program", "talus"},
@@ -216,7 +197,7 @@ void Store::write_manifest() const {
                   {"rounds_done", rounds_},
                   {"units_done", units_done_},
                   {"generation", generation_},
-                  {"tally_sha256", tally_sha256_},
+                  {"tallies", tallies},
                   {"rest_sha256", rest_sha256_},
                   {"rows", rows},
                   {"settings", settings}};
@@ -239,11 +220,12 @@ void Store::read_manifest() {
     rounds_ = json.at("rounds_done");
     units_done_ = json.at("units_done");
     generation_ = json.at("generation");
-    tally_sha256_ = json.at("tally_sha256");
     rest_sha256_ = json.at("rest_sha256");
     for (const Json& s : json.at("settings")) settings_.push_back({s.at(0), s.at(1), s.at(2), s.at(3)});
     for (const Json& rows : json.at("rows"))
-      rows_files_.push_back({rows.at("round"), rows.at("file"), rows.at("sha256")});
+      rows_files_.push_back({rows.at("round"), rows.at("generation"), rows.at("file"), rows.at("sha256")});
+    for (const Json& tally : json.at("tallies")) tallies_.push_back({tally.at("file"), tally.at("sha256")});
+    round_ = rounds_;
   } catch (const std::exception& error) {
     throw InputError(file.string() + ": cannot be understood (" + error.what() +
                      "), must be as this version of Talus has written it; run this part again");
@@ -255,7 +237,8 @@ void Store::read_manifest() {
 }
 
 void Store::remove_unnamed() const {
-  std::vector<std::string> named{numbered("tally", generation_), numbered("rest", generation_)};
+  std::vector<std::string> named{numbered("rest", generation_)};
+  for (const KeptFile& file : tallies_) named.push_back(file.name);
   for (const RowsFile& file : rows_files_) named.push_back(file.name);
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder_)) {

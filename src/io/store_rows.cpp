@@ -20,27 +20,50 @@ void RowsWriter::put(const RecordedPath& path) {
   file_.put_value(path.stop);
 }
 
-void replay_rows(const std::filesystem::path& file, const std::string& sha256, const Sinks& sinks) {
-  KeptFileReader in(file, sha256);
-  std::uint64_t count = 0;
-  for (char kind = ' '; in.get_value(kind);) {
-    if (!in.get_value(count)) in.fail();
-    if (kind == 'S') {
-      const auto rows = rows_of<StopRow>(in, count);
+RowsReader::RowsReader(const std::filesystem::path& file, const std::string& sha256) : in_(file, sha256) {
+  read_kind();
+  if (!done() && kind_ != 'U') in_.fail();
+}
+
+/// What comes next; the number of a unit is read with it.
+void RowsReader::read_kind() {
+  if (!in_.get_value(kind_)) {
+    kind_ = kEnd;
+    in_.finish();
+  } else if (kind_ == 'U' && !in_.get_value(unit_)) {
+    in_.fail();
+  }
+}
+
+void RowsReader::hand_out(const Sinks& sinks) {
+  for (read_kind(); kind_ != kEnd && kind_ != 'U'; read_kind()) {
+    std::uint64_t count = 0;
+    if (!in_.get_value(count)) in_.fail();
+    if (kind_ == 'S') {
+      const auto rows = rows_of<StopRow>(in_, count);
       if (sinks.stops) sinks.stops(rows);
-    } else if (kind == 'C') {
-      const auto rows = rows_of<Crossing>(in, count);
+    } else if (kind_ == 'C') {
+      const auto rows = rows_of<Crossing>(in_, count);
       if (sinks.crossings) sinks.crossings(rows);
-    } else if (kind == 'P') {
+    } else if (kind_ == 'P') {
       RecordedPath path;
-      path.points = rows_of<PathPoint>(in, count);
-      if (!in.get_value(path.stop)) in.fail();
+      path.points = rows_of<PathPoint>(in_, count);
+      if (!in_.get_value(path.stop)) in_.fail();
       if (sinks.paths) sinks.paths(path);
     } else {
-      in.fail();
+      in_.fail();
     }
   }
-  in.finish();
+}
+
+void replay_rows(const std::vector<std::unique_ptr<RowsReader>>& files, const Sinks& sinks) {
+  for (;;) {
+    RowsReader* next = nullptr;
+    for (const auto& file : files)
+      if (!file->done() && (next == nullptr || file->unit() < next->unit())) next = file.get();
+    if (next == nullptr) return;
+    next->hand_out(sinks);
+  }
 }
 
 }  // namespace talus::io

@@ -11,6 +11,11 @@ namespace talus::io {
 class RowsWriter {
  public:
   explicit RowsWriter(const std::filesystem::path& file) : file_(file) {}
+  /// The rows that follow are of this unit of work.
+  void put(std::uint64_t unit) {
+    file_.put_value('U');
+    file_.put_value(unit);
+  }
   void put(std::span<const StopRow> rows) { put('S', rows); }
   void put(std::span<const Crossing> rows) { put('C', rows); }
   void put(const RecordedPath& path);
@@ -26,7 +31,24 @@ class RowsWriter {
   KeptFileWriter file_;
 };
 
-/// Hands the rows of a file to those sinks that are set. Throws InputError where it is damaged.
-void replay_rows(const std::filesystem::path& file, const std::string& sha256, const Sinks& sinks);
+/// Reads such a file, unit by unit. Throws InputError where it is damaged.
+class RowsReader {
+ public:
+  RowsReader(const std::filesystem::path& file, const std::string& sha256);
+  bool done() const { return kind_ == kEnd; }
+  std::uint64_t unit() const { return unit_; }  ///< whose rows come next
+  /// Hands them to those sinks that are set.
+  void hand_out(const Sinks& sinks);
+
+ private:
+  static constexpr char kEnd = ' ';
+  void read_kind();
+  KeptFileReader in_;
+  char kind_ = kEnd;
+  std::uint64_t unit_ = 0;
+};
+
+/// Hands out the rows of files that hold different units, each its own in ascending order: all in ascending order.
+void replay_rows(const std::vector<std::unique_ptr<RowsReader>>& files, const Sinks& sinks);
 
 }  // namespace talus::io

@@ -9,6 +9,8 @@
 #include <exception>
 
 #include "talus/simulate/plan.hpp"
+#include "talus/simulate/units.hpp"
+#include "talus/simulate/work_order.hpp"
 
 namespace talus {
 namespace {
@@ -19,24 +21,29 @@ double thread_cpu_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+/// Of a chunk of work, at most, where several processes take them: so that none waits for long at the end.
+constexpr std::uint64_t kUnitsPerChunk = 32;
+
 /// What one unit of work (some blocks of one source) hands to the sinks.
 struct Rows {
+  std::uint64_t unit;
   std::vector<StopRow> stops;
   std::vector<Crossing> crossings;
   std::vector<RecordedPath> paths;
 };
 
-/// Hands the rows of the units to the sinks in the order of the units, whichever worker finished them.
+/// Hands the rows of the units to the sinks in the order in which they were taken, whichever worker finished them.
 class InOrder {
  public:
-  InOrder(const Sinks& sinks, std::uint64_t first) : sinks_(sinks), next_(first) {}
+  explicit InOrder(const Sinks& sinks) : sinks_(sinks) {}
 
-  void finish(std::uint64_t unit, Rows&& rows) {
+  void finish(std::uint64_t number, Rows&& rows) {
     const std::lock_guard guard(mutex_);
     if (failed_) return;
     failed_ = true;  // until all is handed out: no sink is called again after it has thrown
-    waiting_.emplace(unit, std::move(rows));
+    waiting_.emplace(number, std::move(rows));
     for (auto it = waiting_.begin(); it != waiting_.end() && it->first == next_; it = waiting_.erase(it), ++next_) {
+      if (sinks_.unit) sinks_.unit(it->second.unit);
       if (sinks_.stops) sinks_.stops(it->second.stops);
       if (sinks_.crossings && !it->second.crossings.empty()) sinks_.crossings(it->second.crossings);
       if (sinks_.paths)
@@ -49,7 +56,7 @@ class InOrder {
   const Sinks& sinks_;
   std::mutex mutex_;
   std::map<std::uint64_t, Rows> waiting_;
-  std::uint64_t next_;
+  std::uint64_t next_ = 0;
   bool failed_ = false;
 };
 
@@ -79,9 +86,9 @@ class Simulation::Advance {
   explicit Advance(Simulation& simulation)
       : run_(simulation),
         scenario_(simulation.scenario_),
-        order_(simulation.sinks_, simulation.position_.unit),
-        next_(simulation.position_.unit),
-        done_(simulation.position_.unit) {
+        order_(simulation.sinks_),
+        units_(simulation.team_, {simulation.position_.unit, simulation.units_}, simulation.chunk_,
+               simulation.further_rounds_) {
     totals_.barriers = BarrierTally(scenario_.barriers);
   }
 
@@ -93,13 +100,13 @@ class Simulation::Advance {
     try {
       VisitBatch batch(scenario_.surface.grid());
       Path path;
-      while (!stop_) {
-        const std::uint64_t unit = next_++;  // is done now, so that a pause leaves none out
-        if (unit >= run_.units_) break;
-        Rows rows = trace_unit(unit, path, batch, mine);
+      while (!failed_) {
+        const std::optional<Units::Taken> taken = units_.next();  // is done now, so that a pause leaves none out
+        if (!taken) break;
+        Rows rows = trace_unit(taken->unit, path, batch, mine);
         if (batch.full()) score(batch, mine);
         const double before = thread_cpu_seconds();
-        order_.finish(unit, std::move(rows));
+        order_.finish(taken->number, std::move(rows));
         mine.sink_cpu_seconds += thread_cpu_seconds() - before;
         report();
       }
@@ -107,19 +114,21 @@ class Simulation::Advance {
     } catch (...) {
       const std::lock_guard guard(mutex_);
       if (!failure_) failure_ = std::current_exception();
-      stop_ = true;
+      failed_ = true;
     }
     mine.cpu_seconds = thread_cpu_seconds() - start;
     const std::lock_guard guard(mutex_);
     add(totals_, mine);
   }
 
-  /// All workers are done: what they did becomes the simulation's.
-  void finish() {
+  /// All workers are done. Whether all units of the team are; else there is more to take. Throws what a worker threw.
+  bool finish() {
     if (failure_) std::rethrow_exception(failure_);
-    run_.position_.unit = std::min<std::uint64_t>(next_, run_.units_);
+    if (!units_.finish()) return false;
+    run_.position_.unit = units_.end();
     add(run_.totals_, totals_);
     run_.totals_.interrupted = interrupted_;
+    return true;
   }
 
  private:
@@ -129,13 +138,15 @@ class Simulation::Advance {
   }
 
   Rows trace_unit(std::uint64_t unit, Path& path, VisitBatch& batch, Totals& totals) {
-    const std::uint32_t source = run_.first_source_ + static_cast<std::uint32_t>(unit / run_.units_per_source_);
+    const std::uint32_t place = run_.first_place_ + static_cast<std::uint32_t>(unit / run_.units_per_source_);
+    const std::uint32_t source = run_.order_[place];
     const auto first = static_cast<std::uint32_t>(unit % run_.units_per_source_) * kBlocksPerUnit;
     const std::uint32_t count = std::min(scenario_.trajectories - first, kBlocksPerUnit);
     const std::uint32_t round = run_.position_.round, begin = round * scenario_.trajectories + first;
     const World world = scenario_.world();
-    const std::shared_ptr<SourceReach> reach = run_.reaches_.of(source);
+    const std::shared_ptr<SourceReach> reach = run_.reaches_.of(place);
     Rows rows;
+    rows.unit = unit;
     for (std::uint32_t block = begin; block < begin + count; ++block) {
       const Release release = make_release(scenario_, source, block);
       trace(world, release, path);
@@ -168,35 +179,41 @@ class Simulation::Advance {
   void report() {
     const std::lock_guard guard(mutex_);
     ++done_;
-    if (stop_) return;
+    if (stopped_) return;
     const Sinks& sinks = run_.sinks_;
     try {
-      const bool proceed =
-          !sinks.progress || sinks.progress(static_cast<double>(done_) / static_cast<double>(run_.units_));
-      interrupted_ = !proceed && done_ < run_.units_;
-      stop_ = !proceed || (sinks.pause && sinks.pause());
+      const bool proceed = !sinks.progress || sinks.progress(share_done());
+      interrupted_ = !proceed && !(share_done() >= 1.0);
+      stopped_ = !proceed || (sinks.pause && sinks.pause());
     } catch (...) {
-      stop_ = true;  // before the lock is released: it is not called again
+      stopped_ = true;  // before the lock is released: it is not called again
       throw;
     }
+    if (stopped_) units_.stop();
+  }
+
+  /// Of a team as if all were as fast.
+  double share_done() const {
+    const double done = static_cast<double>(done_) * run_.team_.size() + static_cast<double>(run_.position_.unit);
+    return std::min(1.0, done / static_cast<double>(run_.units_));
   }
 
   Simulation& run_;
   const Scenario& scenario_;
   InOrder order_;
-  std::atomic<std::uint64_t> next_;
-  std::atomic<bool> stop_{false};
+  Units units_;
+  std::atomic<bool> failed_{false};
   std::mutex mutex_;  // guards what follows
-  std::uint64_t done_;
+  std::uint64_t done_ = 0;
   Totals totals_;
   std::exception_ptr failure_;
-  bool interrupted_ = false;
+  bool stopped_ = false, interrupted_ = false;
 };
 
-std::shared_ptr<SourceReach> Reaches::of(std::uint32_t source) {
+std::shared_ptr<SourceReach> Reaches::of(std::uint32_t place) {
   if (units_ == 1 && !keep_) return nullptr;
   const std::lock_guard guard(mutex_);
-  const auto it = open_.try_emplace(source).first;
+  const auto it = open_.try_emplace(place).first;
   if (!it->second.reach) it->second.reach = std::make_shared<SourceReach>();
   std::shared_ptr<SourceReach> reach = it->second.reach;
   if (++it->second.asked == units_ && !keep_) open_.erase(it);
@@ -205,47 +222,69 @@ std::shared_ptr<SourceReach> Reaches::of(std::uint32_t source) {
 
 void Reaches::save(ByteWriter& out) const {
   out.put(static_cast<std::uint64_t>(open_.size()));
-  for (const auto& [source, entry] : open_) {
-    out.put(source);
+  for (const auto& [place, entry] : open_) {
+    out.put(place);
     out.put(entry.asked);
     entry.reach->save(out);
   }
 }
 
-void Reaches::restore(ByteReader& in) {
+void Reaches::restore(ByteReader& in, const std::function<bool(std::uint32_t)>& wanted) {
   const auto count = in.get<std::uint64_t>();
   for (std::uint64_t i = 0; i < count; ++i) {
-    Entry& entry = open_[in.get<std::uint32_t>()];
+    const auto place = in.get<std::uint32_t>();
+    Entry entry;
     entry.asked = in.get<std::uint32_t>();
     entry.reach = std::make_shared<SourceReach>();
     entry.reach->restore(in);
+    if (wanted(place)) open_[place] = std::move(entry);
   }
 }
 
 Simulation::Simulation(const Scenario& scenario, const Part& part, bool further_rounds, Tally& tally,
-                       const Sinks& sinks)
+                       const Sinks& sinks, Team& team)
     : scenario_(scenario),
       tally_(tally),
       sinks_(sinks),
+      team_(team),
       screens_(scenario),
-      first_source_(part.first(scenario.sources.size())),
+      order_(work_order(scenario.surface.grid(), scenario.sources)),
+      first_place_(part.first(scenario.sources.size())),
       units_per_source_((scenario.trajectories + kBlocksPerUnit - 1) / kBlocksPerUnit),
-      units_(std::uint64_t{units_per_source_} * (part.end(scenario.sources.size()) - first_source_)),
+      units_(std::uint64_t{units_per_source_} * (part.end(scenario.sources.size()) - first_place_)),
+      chunk_(1),
+      further_rounds_(further_rounds),
       reaches_(units_per_source_, further_rounds) {
   totals_.barriers = BarrierTally(scenario.barriers);
+  if (team.size() == 1) return;
+  const std::uint64_t fair = units_ / (64U * static_cast<std::uint64_t>(team.size()));
+  const std::uint64_t sources = std::min(fair, kUnitsPerChunk) / units_per_source_;  // whole ones
+  chunk_ = std::max<std::uint64_t>(1, sources) * units_per_source_;
 }
 
 void Simulation::advance(int threads) {
   Advance work(*this);
+  do {
 #pragma omp parallel num_threads(threads > 0 ? threads : omp_get_num_procs()) default(none) shared(work)
-  work.work();
-  work.finish();
+    work.work();
+  } while (!work.finish());
+}
+
+void Simulation::save_reaches(ByteWriter& out) const {
+  if (team_.size() == 1 || further_rounds_)
+    reaches_.save(out);
+  else
+    Reaches(1, false).save(out);  // chunks hold whole source cells, and all that were begun are done
 }
 
 void Simulation::restore(const Position& position, const Totals& totals, ByteReader& reaches) {
   position_ = position;
   totals_ = totals;
-  reaches_.restore(reaches);
+  while (!reaches.empty())
+    reaches_.restore(reaches, [this](std::uint32_t place) {
+      const std::uint64_t unit = std::uint64_t{place - first_place_} * units_per_source_;
+      return !further_rounds_ || Units::owns(team_, unit, chunk_);
+    });
 }
 
 }  // namespace talus

@@ -267,6 +267,13 @@ void Tally::save(std::size_t index, ByteWriter& out) const {
   }
 }
 
+void Tally::take(std::size_t index, ByteWriter& out) {
+  save(index, out);
+  Region& region = regions_[index];
+  region.slot = {}, region.exceedances = {};
+  region.records.clear(), region.hazards.clear();
+}
+
 void Tally::merge(std::size_t index, ByteReader& in) {
   scratch::keep_below_limit();
   Region& region = regions_[index];

@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "talus/io/loaded.hpp"
+#include "talus/simulate/team.hpp"
 
 /// What the program does once the command line is understood; returns its exit code.
 using Action = std::function<int()>;
 
 /// One subcommand each: adds its options to the program and sets `action` when it is called.
-void add_run(CLI::App& app, Action& action);
+/// @param team  the processes that do it together; must outlive the action
+void add_run(CLI::App& app, Action& action, talus::Team& team);
 void add_check(CLI::App& app, Action& action);
 void add_profile(CLI::App& app, Action& action);
 void add_presets(CLI::App& app, Action& action);

@@ -25,6 +25,28 @@ void stop_interrupted() {
   throw Interrupted("interrupted; nothing was written");
 }
 
+std::string command_to_resume() {
+  std::string again;
+  for (const std::string& word : command_line())
+    if (word != "--resume") again += word + " ";
+  return again + "--resume";
+}
+
+void together(talus::Team& team, const std::function<void()>& what) {
+  if (team.size() == 1) return what();
+  std::string fault;
+  try {
+    what();
+  } catch (const talus::InputError& error) {
+    fault = error.what();
+  }
+  std::string first;
+  for (const std::string& given : team.gather(fault))
+    if (first.empty()) first = given;
+  first = team.tell(first);
+  if (!first.empty()) throw WrongForAll(first);
+}
+
 std::vector<std::string> files_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder))

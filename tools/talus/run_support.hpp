@@ -2,10 +2,13 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "talus/simulate/simulate.hpp"
+#include "talus/simulate/team.hpp"
 
 /// What `run` and `profile` share.
 
@@ -26,8 +29,20 @@ class Stopwatch {
 /// Throws `Interrupted`.
 [[noreturn]] void stop_interrupted();
 
+/// Input that is wrong for a team of processes: the leader says it for all.
+struct WrongForAll : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Does it in every process of a team. Where it throws InputError in one of them, throws `WrongForAll` in all of them;
+/// in a single process what it has thrown.
+void together(talus::Team& team, const std::function<void()>& what);
+
 /// "2G", "500M": bytes. Throws InputError.
 std::size_t bytes_of(const std::string& text);
+
+/// The command line with --resume.
+std::string command_to_resume();
 
 /// Names of the files in a folder, in the order of the alphabet.
 std::vector<std::string> files_in(const std::filesystem::path& folder);

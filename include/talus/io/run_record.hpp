@@ -33,7 +33,8 @@ struct RunRecord {
   std::vector<std::string> files;     ///< written beside run.json
   std::uint64_t touched_cells = 0;
   StageSeconds cpu, wall;
-  int threads = 0;
+  int threads = 0;  ///< of all processes
+  int ranks = 1;    ///< processes
   RoundsRecord rounds;
   std::uint32_t parts = 1;  ///< that were joined
 };
@@ -41,7 +42,7 @@ struct RunRecord {
 /// Whether too many trajectories ended at a limit (`kAllowedLimitShare`).
 bool too_many_limits(const Totals& totals);
 
-/// The text of run.json. Equal runs differ only in command, threads, cpu_seconds, wall_seconds and peak_memory_mb.
+/// The text of run.json. Equal runs differ only in command, threads, ranks, cpu_seconds, wall_seconds and peak_memory_mb.
 std::string run_json(const RunRecord& record, const LoadedScenario& loaded);
 
 /// The most memory that this process has held so far [MB]; 0 where the system does not tell.

@@ -24,13 +24,16 @@ class Store {
  public:
   /// A new one in an empty folder, for this part of the plan. Throws std::runtime_error.
   /// @param further_rounds  there may be more than one round
-  Store(const std::filesystem::path& folder, const LoadedScenario& loaded, const Part& part, bool further_rounds);
+  /// The processes of a team share the folder: all must make it, and call all that writes.
+  Store(const std::filesystem::path& folder, const LoadedScenario& loaded, const Part& part, bool further_rounds,
+        Team& team = alone());
 
   /// What an earlier program left. Throws InputError where it is damaged; `InputError` too where it belongs to another
   /// plan than `loaded`.
   ///
   /// @param to_go_on  what a killed program has left beside is removed
-  static Store opened(const std::filesystem::path& folder, const LoadedScenario& loaded, bool to_go_on);
+  static Store opened(const std::filesystem::path& folder, const LoadedScenario& loaded, bool to_go_on,
+                      Team& team = alone());
 
   Store(Store&&) noexcept;
   Store& operator=(Store&&) noexcept;
@@ -49,6 +52,9 @@ class Store {
   /// the scenario has them.
   Sinks sinks();
 
+  /// The sum of what the processes of the team have; at the leader.
+  Totals totals_of_all(const Totals& mine) const;
+
   /// A round is done. Its rows can be replayed; all is not yet kept.
   void end_round(std::uint32_t round);
 
@@ -58,18 +64,21 @@ class Store {
 
   /// Totals of what was kept; adds its tally to `tally`. Throws InputError where a file is damaged.
   Totals add_to(Tally& tally) const;
-  /// Puts a simulation where the kept one was; its tally too.
+  /// Puts a simulation where the kept one was; its tally too. Of a team whoever goes on: each process takes a share.
   void restore(Simulation& simulation, Tally& tally) const;
   /// Hands the kept rows of one round to sinks, in the order in which they came.
   void replay(std::uint32_t round, const Sinks& sinks) const;
 
  private:
   struct Rows;
-  struct RowsFile {
-    std::uint32_t round;
+  struct KeptFile {
     std::string name, sha256;
   };
-  Store(std::filesystem::path folder, const LoadedScenario& loaded);
+  struct RowsFile {
+    std::uint32_t round, generation;
+    std::string name, sha256;
+  };
+  Store(std::filesystem::path folder, const LoadedScenario& loaded, Team& team);
   std::string checked(const std::string& name, const std::string& sha256) const;
   void close_rows(std::uint32_t round);
   void write_manifest() const;
@@ -79,13 +88,16 @@ class Store {
   std::filesystem::path folder_;
   std::string plan_;  // its checksum
   const LoadedScenario* loaded_;
+  Team* team_;
   std::vector<Setting> settings_;
   Part part_;
   bool further_rounds_ = false;
   std::uint32_t rounds_ = 0;
   std::uint64_t units_done_ = 0;
   std::uint32_t generation_ = 0;  // of the files; 0: none yet
-  std::string tally_sha256_, rest_sha256_;
+  std::uint32_t round_ = 0;       // in work
+  std::string rest_sha256_;
+  std::vector<KeptFile> tallies_;  // one of each process
   std::vector<RowsFile> rows_files_;
   std::unique_ptr<Rows> rows_;  // that are being written
 };

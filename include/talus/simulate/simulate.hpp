@@ -39,9 +39,11 @@ struct RecordedPath {
 /// A path as points: its vertices, and points of the parabolas between them at most `spacing` apart in plan [m].
 std::vector<PathPoint> points_of(const Path& path, double spacing);
 
-/// What `simulate` hands out while it runs, always in the order (source, block) and from one thread at a time.
+/// What `simulate` hands out while it runs, unit of work by unit, always in the same order (source cells by place, the
+/// blocks of each by number) and from one thread at a time.
 /// A sink may throw: the run ends and the exception reaches the caller of `simulate`.
 struct Sinks {
+  std::function<void(std::uint64_t)> unit;  ///< the rows that follow are of this unit
   std::function<void(std::span<const StopRow>)> stops;
   std::function<void(std::span<const Crossing>)> crossings;
   std::function<void(const RecordedPath&)> paths;

@@ -3,15 +3,17 @@
 #include <memory>
 
 #include "talus/simulate/simulate.hpp"
+#include "talus/simulate/team.hpp"
 
 namespace talus {
 
-/// The source cells that one program traces of a plan that several share: whole ones, those of a part in one piece.
+/// The source cells that one program traces of a plan that several share: whole ones, those that follow each other in
+/// the order of work.
 struct Part {
   std::uint32_t number = 1, of = 1;
   bool whole() const { return of == 1; }
 
-  /// The first source cell of this part, of so many in all; the next part's first is this part's end.
+  /// The place of its first source cell, of so many in all; the next part's first is this part's end.
   std::uint32_t first(std::size_t sources) const { return begin_of(number - 1, sources); }
   std::uint32_t end(std::size_t sources) const { return begin_of(number, sources); }
 
@@ -22,17 +24,18 @@ struct Part {
 };
 
 /// Which cells the source cells have reached, where that must be known beyond one unit of work: a source cell counts
-/// once in a cell, however many units, rounds or sittings trace it.
+/// once in a cell, however many units, rounds or sittings trace it. Source cells by their place in the order of work.
 class Reaches {
  public:
   /// @param units  of work of a source cell, in one round;  @param keep  all, for further rounds
   Reaches(std::uint32_t units, bool keep) : units_(units), keep_(keep) {}
 
   /// Once per unit. Empty where one unit holds all of the source cell. Safe to call from several threads.
-  std::shared_ptr<SourceReach> of(std::uint32_t source);
+  std::shared_ptr<SourceReach> of(std::uint32_t place);
 
   void save(ByteWriter& out) const;
-  void restore(ByteReader& in);
+  /// Adds what was saved of those places that `wanted` wants.
+  void restore(ByteReader& in, const std::function<bool(std::uint32_t)>& wanted);
 
  private:
   struct Entry {
@@ -48,7 +51,8 @@ class Reaches {
 /// A run that can be paused, kept on the disk and gone on with: same bits wherever it pauses.
 ///
 /// A round traces `scenario.trajectories` blocks of each source cell: round r the blocks from r times that number on.
-/// Work is done in units, blocks of one source cell; a pause comes between units, and all before it are done.
+/// Work is done in units, blocks of one source cell, in the order of `work_order`; a pause comes between units, and all
+/// before it are done, by whichever process of the team.
 class Simulation {
  public:
   struct Position {
@@ -57,10 +61,12 @@ class Simulation {
   };
 
   /// @param further_rounds  there may be more than one
-  /// The scenario, the tally and the sinks must outlive it.
-  Simulation(const Scenario& scenario, const Part& part, bool further_rounds, Tally& tally, const Sinks& sinks);
+  /// The scenario, the tally, the sinks and the team must outlive it.
+  Simulation(const Scenario& scenario, const Part& part, bool further_rounds, Tally& tally, const Sinks& sinks,
+             Team& team = alone());
 
-  /// Traces on to the end of the round, or until `sinks.pause` or `sinks.progress` asks to stop.
+  /// Traces on to the end of the round, or until `sinks.pause` or `sinks.progress` of one process asks to stop.
+  /// All processes of the team must call it. Tally, totals and rows are then of what this process has traced.
   ///
   /// @param threads  0: as many as the machine has
   /// An exception of a sink leaves it of no use.
@@ -72,9 +78,12 @@ class Simulation {
 
   const Position& position() const { return position_; }
   const Totals& totals() const { return totals_; }
-  void save_reaches(ByteWriter& out) const { reaches_.save(out); }
+  Team& team() const { return team_; }
+  void save_reaches(ByteWriter& out) const;
 
   /// Goes on from what was kept; before the first `advance`.
+  ///
+  /// @param reaches  what the processes that kept it have saved, one after the other
   void restore(const Position& position, const Totals& totals, ByteReader& reaches);
 
  private:
@@ -82,9 +91,12 @@ class Simulation {
   const Scenario& scenario_;
   Tally& tally_;
   const Sinks& sinks_;
+  Team& team_;
   ScreenFinder screens_;
-  std::uint32_t first_source_, units_per_source_;
-  std::uint64_t units_;
+  std::vector<std::uint32_t> order_;  // numbers of all source cells
+  std::uint32_t first_place_, units_per_source_;
+  std::uint64_t units_, chunk_;  // of this part; that one process takes at a time
+  bool further_rounds_;
   Position position_;
   Totals totals_;
   Reaches reaches_;

@@ -87,6 +87,8 @@ class Tally {
   /// south-west; not while batches are added.
   std::size_t regions() const { return region_count_; }
   void save(std::size_t region, ByteWriter& out) const;
+  /// The same, and then nothing is kept of the region any more.
+  void take(std::size_t region, ByteWriter& out);
   /// Adds what another tally of the same grid, thresholds and weights saved. Throws std::out_of_range where the bytes
   /// cannot be that.
   void merge(std::size_t region, ByteReader& in);

@@ -1,0 +1,143 @@
+#include "program.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <new>
+#include <string_view>
+
+#include "talus/base/error.hpp"
+#include "talus/base/memory.hpp"
+#include "talus/base/text.hpp"
+#include "talus/base/version.hpp"
+
+namespace {
+
+std::atomic<bool> asked_to_end{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may set it");
+
+std::vector<std::string> words;
+
+/// Parts of the interface that a later version brings.
+constexpr std::array<std::string_view, 1> kLaterCommands{"report"};
+
+void refuse_later_parts(int argc, char** argv) {
+  const auto fail = [](const std::string& what) {
+    throw talus::InputError(what + " is not in this version (" + std::string(talus::version()) +
+                            ") yet; see talus --help for what is");
+  };
+  if (argc > 1 && std::ranges::count(kLaterCommands, std::string_view(argv[1])) > 0)
+    fail("the command " + std::string(argv[1]));
+}
+
+/// The names of a command's options.
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+/// What is wrong with the command line, with the way out: CLI11's message, where it has no better one.
+std::string explain(const CLI::App& app, const CLI::ParseError& error) {
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands(nullptr)) commands.push_back(command->get_name());
+  if (words.size() < 2) return "no command is given (known: " + talus::joined(commands) + "); see talus --help";
+  const auto called = app.get_subcommands();
+  const CLI::App& command = called.empty() ? app : *called.front();
+  const std::string see_help = "; see " + (called.empty() ? "talus" : "talus " + command.get_name()) + " --help";
+  const std::string text = error.what();
+  const auto is = [&error](CLI::ExitCodes code) { return error.get_exit_code() == static_cast<int>(code); };
+  if (is(CLI::ExitCodes::ConversionError))
+    return text.substr(text.find(": ") + 2) + ": is not a number that can stand there" + see_help;
+  if (!is(CLI::ExitCodes::ExtrasError) && !called.empty()) return text + see_help;
+  const std::vector<std::string> given(words.begin() + 1, words.end());
+  for (const std::string& word : called.empty() ? given : command.remaining(true)) {
+    if (word.starts_with("-"))
+      return "unknown option '" + word + "'" + talus::known_names(word, option_names(command)) + see_help;
+    if (called.empty()) return "unknown command '" + word + "'" + talus::known_names(word, commands) + see_help;
+    return "'" + word + "' was not expected there" + see_help;
+  }
+  return text + see_help;
+}
+
+void describe(CLI::App& app) {
+  app.name("talus");
+  app.set_version_flag("--version", "talus " + std::string(talus::version()));
+  app.require_subcommand(1);
+  app.footer(
+      "Example:\n"
+      "  talus run --dem dem.tif --sources cliffs.gpkg --diameter 1.2 -o result\n\n"
+      "talus COMMAND --help tells more of each command. Exit codes: 0 done, 2 the input is wrong,\n"
+      "130 interrupted, 1 anything else.");
+}
+
+}  // namespace
+
+void begin_program(int argc, char** argv) {
+  talus::keep_freed_memory();
+  std::signal(SIGPIPE, SIG_IGN);  // whoever reads the output may go: a write then fails, and results are tidied up
+  std::signal(SIGXFSZ, SIG_IGN);  // the same of a file that gets larger than is allowed
+  words.assign(argv, argv + argc);
+}
+
+Action understood(int argc, char** argv, const std::vector<AddCommand>& commands) {
+  refuse_later_parts(argc, argv);
+  CLI::App app("Talus maps rock-fall hazard on 3D terrain.");
+  describe(app);
+  Action action;
+  for (const AddCommand& add : commands) add(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {  // --help, --version
+      const int code = app.exit(error);
+      return [code] { return code; };
+    }
+    throw talus::InputError(explain(app, error));
+  }
+  return action;
+}
+
+int exit_code_of(const std::function<int()>& program) {
+  try {
+    const int code = program();
+    if (std::fflush(stdout) != 0) throw std::runtime_error("the output cannot be written");
+    return code;
+  } catch (const talus::InputError& error) {
+    say("error", error.what());
+    return kWrongInput;
+  } catch (const Interrupted& error) {
+    say("", error.what());
+    return kInterrupted;
+  } catch (const std::bad_alloc&) {
+    say("error", "not enough memory");
+  } catch (const std::exception& error) {
+    say("error", error.what());
+  }
+  return kFailed;
+}
+
+void catch_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const auto before = std::signal(signal, [](int) { asked_to_end = true; });
+    if (before == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup
+  }
+}
+
+const std::vector<std::string>& command_line() {
+  return words;
+}
+
+bool interrupted() {
+  return asked_to_end;
+}
+
+void say(const std::string& kind, const std::string& text) {
+  std::string line = "talus: " + (kind.empty() ? "" : kind + ": ") + text;
+  std::ranges::replace_if(
+      line, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  std::fprintf(stderr, "%s\n", line.c_str());
+}

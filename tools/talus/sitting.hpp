@@ -1,0 +1,66 @@
+#pragma once
+#include <chrono>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "progress.hpp"
+#include "talus/io/output_folder.hpp"
+#include "talus/io/store.hpp"
+#include "talus/products/accuracy.hpp"
+
+/// What `run` was asked for.
+struct RunOptions {
+  talus::io::RunFlags flags;
+  std::string out, progress, part;
+  talus::Rounds rounds;
+  std::string memory;
+  double checkpoint = 30.0;
+  int threads = 0;
+  bool overwrite = false, resume = false, quiet = false;
+};
+
+/// The simulation of one command, with what it keeps on the disk. Each process of the team has one, and all call the
+/// same of it.
+class Sitting {
+ public:
+  /// @param folder  of the results: the leader's; elsewhere null
+  Sitting(const RunOptions& options, const talus::io::LoadedScenario& loaded, const talus::Part& part,
+          talus::io::OutputFolder* folder, Progress& progress, talus::Team& team);
+
+  talus::io::Store& store() { return stores_.front(); }
+  std::span<const talus::io::Store> stores() const { return stores_; }
+  talus::Tally& tally() { return tally_; }
+  std::uint32_t rounds_done() const { return simulation_.position().round + (simulation_.round_done() ? 1U : 0U); }
+
+  /// Traces all rounds. Throws `Interrupted`, after what is done was kept.
+  void trace(int threads, Progress& progress);
+  /// What all have traced; at the leader.
+  talus::Totals totals();
+  void keep();
+  /// Keeps what was traced and throws `Interrupted`, which says how to go on.
+  [[noreturn]] void interrupt();
+  /// The same while the leader writes the results: of a team what was kept last must do.
+  [[noreturn]] void interrupt_writing();
+  /// What `--until-error` asks of the cells, so far; the tally is then shared out over the team.
+  talus::Accuracy accuracy();
+
+ private:
+  std::vector<talus::io::Store> opened(const talus::io::LoadedScenario& loaded, const talus::Part& part);
+  double seconds_since_kept() const { return std::chrono::duration<double>(Clock::now() - kept_).count(); }
+  bool any(bool here) { return team_.largest(here ? 1 : 0) > 0; }
+  bool enough();
+
+  using Clock = std::chrono::steady_clock;
+  const RunOptions& options_;
+  const talus::Scenario& scenario_;
+  talus::io::OutputFolder* folder_;
+  talus::Team& team_;
+  talus::Tally tally_;
+  std::vector<talus::io::Store> stores_;  // one
+  talus::Sinks sinks_;
+  talus::Simulation simulation_;
+  Clock::time_point kept_ = Clock::now();
+  bool has_kept_ = false;
+};
