@@ -177,8 +177,8 @@ Terrain read_terrain(const std::string& path) {
   if (dataset->GetRasterCount() > 1 && dataset->GetRasterBand(2)->GetColorInterpretation() != GCI_AlphaBand)
     terrain.warnings.push_back(path + ": has " + std::to_string(dataset->GetRasterCount()) +
                                " bands: the first is taken as heights");
-  terrain.heights = Raster<float>(grid, std::numeric_limits<float>::quiet_NaN());
-  read_heights(band, path, terrain);
+  terrain.heights.grid = grid;
+  fill_shared(terrain.heights, std::numeric_limits<float>::quiet_NaN(), [&] { read_heights(band, path, terrain); });
   return terrain;
 }
 

@@ -32,6 +32,7 @@ std::uint64_t Units::next_chunk() {
 
 std::optional<Units::Taken> Units::next() {
   const std::lock_guard guard(mutex_);
+  team_.attend();
   if (at_ == till_) {
     const std::uint64_t chunk = next_chunk();
     if (chunk >= chunks_) return std::nullopt;

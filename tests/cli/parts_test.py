@@ -1,6 +1,4 @@
 """Parts and merge, rounds, interruption and resume: whatever way the work is cut, the bits are those of one run."""
-import hashlib
-import json
 import os
 import random
 import signal
@@ -9,55 +7,10 @@ import time
 import unittest
 
 import numpy as np
-from osgeo import ogr
 
-from support import TALUS, Case, bands_of, box, write_features
+from support import RUN, TALUS, RunCase, bands_of
 
-RUN = """dem = "dem.tif"
-trajectories = 40
-[sources]
-file = "sources.gpkg"
-[blocks]
-diameter = [0.6, 1.2]
-[screens]
-file = "screens.gpkg"
-[barriers]
-file = "nets.gpkg"
-[output]
-trajectories = 50
-"""
-
-
-class Parts(Case):
-    def setUp(self):
-        super().setUp()
-        write_features(self.path("sources.gpkg"), "sources",
-                       [(box(100, 230, 30, 15), ["west", 0.5]), (box(200, 230, 20, 10), ["east", 0.02])],
-                       [("name", ogr.OFTString), ("frequency", ogr.OFTReal)])
-        line = "LINESTRING (2600000 {0},2600300 {0})"
-        write_features(self.path("screens.gpkg"), "screens", [(line.format(1200100), ["road"])], [("id", ogr.OFTString)])
-        write_features(self.path("nets.gpkg"), "nets", [(line.format(1200090), ["net", 1.0, 100.0])],
-                       [("id", ogr.OFTString), ("height", ogr.OFTReal), ("capacity", ogr.OFTReal)])
-        self.write("s.toml", RUN)
-
-    def run_scenario(self, out, *more):
-        return self.run_well("run", self.path("s.toml"), "-o", self.path(out), "-q", *more)
-
-    def hashes(self, out):
-        hashes = {}
-        for name in sorted(os.listdir(self.path(out))):
-            if name != "run.json":
-                with open(self.path(f"{out}/{name}"), "rb") as file:
-                    hashes[name] = hashlib.sha256(file.read()).hexdigest()
-        return hashes
-
-    def assert_same(self, one, other):
-        self.maxDiff = None
-        self.assertEqual(self.hashes(one), self.hashes(other))
-        left, right = self.record(one), self.record(other)
-        for key in ("released", "ends", "trajectory_metres", "impacts", "cells_scored", "touched_cells", "barriers", "files"):
-            self.assertEqual(left[key], right[key], key)
-
+class Parts(RunCase):
     def test_three_parts_and_three_rounds(self):
         self.run_scenario("whole", "--rounds", "3", "--threads", "2")
         for i in (3, 1, 2):
@@ -102,9 +55,6 @@ class Parts(Case):
     def start(self, out, *more):
         return subprocess.Popen([TALUS, "run", self.path("s.toml"), "-o", self.path(out), "-q", "--trajectories", "400", *more],
                                 stderr=subprocess.PIPE, text=True)
-
-    def unfinished(self, out):
-        return [name for name in os.listdir(self.folder) if name.startswith(f".{out}.talus-")]
 
     def test_killed_ten_times(self):
         self.write("s.toml", RUN.replace('trajectories = 40\n', 'trajectories = 400\n'))

@@ -1,4 +1,5 @@
 """A small mountain side to try the program on, and ways to call it. TALUS is the path of the program."""
+import hashlib
 import json
 import os
 import shutil
@@ -122,3 +123,55 @@ class Case(unittest.TestCase):
 
     def assert_nothing_left(self, before):
         self.assertEqual(sorted(os.listdir(self.folder)), sorted(before))
+
+
+# A run with all kinds of results.
+RUN = """dem = "dem.tif"
+trajectories = 40
+[sources]
+file = "sources.gpkg"
+[blocks]
+diameter = [0.6, 1.2]
+[screens]
+file = "screens.gpkg"
+[barriers]
+file = "nets.gpkg"
+[output]
+trajectories = 50
+"""
+
+
+class RunCase(Case):
+    """Runs of that scenario, s.toml, and whether two of them are the same."""
+
+    def setUp(self):
+        super().setUp()
+        write_features(self.path("sources.gpkg"), "sources",
+                       [(box(100, 230, 30, 15), ["west", 0.5]), (box(200, 230, 20, 10), ["east", 0.02])],
+                       [("name", ogr.OFTString), ("frequency", ogr.OFTReal)])
+        line = "LINESTRING (2600000 {0},2600300 {0})"
+        write_features(self.path("screens.gpkg"), "screens", [(line.format(1200100), ["road"])], [("id", ogr.OFTString)])
+        write_features(self.path("nets.gpkg"), "nets", [(line.format(1200090), ["net", 1.0, 100.0])],
+                       [("id", ogr.OFTString), ("height", ogr.OFTReal), ("capacity", ogr.OFTReal)])
+        self.write("s.toml", RUN)
+
+    def run_scenario(self, out, *more):
+        return self.run_well("run", self.path("s.toml"), "-o", self.path(out), "-q", *more)
+
+    def hashes(self, out):
+        hashes = {}
+        for name in sorted(os.listdir(self.path(out))):
+            if name != "run.json":
+                with open(self.path(f"{out}/{name}"), "rb") as file:
+                    hashes[name] = hashlib.sha256(file.read()).hexdigest()
+        return hashes
+
+    def assert_same(self, one, other):
+        self.maxDiff = None
+        self.assertEqual(self.hashes(one), self.hashes(other))
+        left, right = self.record(one), self.record(other)
+        for key in ("released", "ends", "trajectory_metres", "impacts", "cells_scored", "touched_cells", "barriers", "files"):
+            self.assertEqual(left[key], right[key], key)
+
+    def unfinished(self, out):
+        return [name for name in os.listdir(self.folder) if name.startswith(f".{out}.talus-")]

@@ -1,7 +1,9 @@
 #include <omp.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <memory>
 #include <optional>
 
@@ -10,6 +12,7 @@
 #include "run_results.hpp"
 #include "sitting.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/shared_memory.hpp"
 #include "talus/io/hazard_file.hpp"
 #include "talus/io/output_folder.hpp"
 #include "talus/simulate/team_tally.hpp"
@@ -79,9 +82,22 @@ int deliver(const RunOptions& options, const LoadedScenario& loaded, Sitting& si
   return judge_limits(record.totals, folder.final_path());
 }
 
-/// Reads and checks. One process of a machine after the other where they share the terrain: the first one reads it.
+/// The terrain is shared by the processes of a machine while this lives; with --memory each has it in a file.
+class SharedTerrain {
+ public:
+  SharedTerrain(const RunOptions& options, talus::Team& team) {
+    const std::string name = "talus-" + std::to_string(getpid()) + "-" + std::to_string(std::time(nullptr));
+    if (team.size() > 1 && options.memory.empty()) talus::SharedMemory::begin(team.tell(name));
+  }
+  ~SharedTerrain() { talus::SharedMemory::end(); }
+  SharedTerrain(const SharedTerrain&) = delete;
+  SharedTerrain& operator=(const SharedTerrain&) = delete;
+};
+
+/// Reads and checks, the leader first: it tells what is wrong, and the others of its machine need not read the terrain.
 LoadedScenario load(const RunOptions& options, talus::Team& team) {
   std::optional<LoadedScenario> loaded;
+  const SharedTerrain sharing(options, team);
   const auto read = [&] {
     if (!options.memory.empty()) talus::io::limit_memory(options.out, bytes_of(options.memory));
     loaded = talus::io::load_scenario(options.flags);

@@ -33,6 +33,8 @@ class Team {
   virtual std::uint64_t take(std::uint64_t count) { return counter_.fetch_add(count); }
   /// Sets the counter to `kClosed`, and returns what it was; as `take`.
   virtual std::uint64_t close() { return counter_.exchange(kClosed); }
+  /// Now and then, so that others need not wait for what this one must answer; as `take`.
+  virtual void attend() {}
 
  private:
   std::atomic<std::uint64_t> counter_{0};

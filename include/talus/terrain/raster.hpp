@@ -1,31 +1,95 @@
 #pragma once
 #include <algorithm>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "talus/base/scratch.hpp"
+#include "talus/base/shared_memory.hpp"
 #include "talus/terrain/grid.hpp"
 
 namespace talus {
+
+/// The values of a raster: its own, or some that processes share.
+template <class T>
+class Cells {
+ public:
+  Cells() = default;
+  Cells(std::size_t size, T fill) {
+    constexpr std::size_t kPiece = std::size_t{1} << 24U;
+    own_.reserve(size);
+    while (own_.size() < size) {  // piece by piece, so that a map larger than the memory can be made
+      own_.resize(std::min(size, own_.size() + kPiece), fill);
+      scratch::keep_below_limit();
+    }
+    data_ = own_.data(), size_ = size;
+  }
+  template <class Iterator>
+  Cells(Iterator begin, Iterator end) : own_(begin, end), data_(own_.data()), size_(own_.size()) {}
+  Cells(std::shared_ptr<SharedMemory> shared, std::size_t size)
+      : shared_(std::move(shared)), data_(static_cast<T*>(shared_->data())), size_(size) {}
+  Cells(const Cells& other) : own_(other.own_), shared_(other.shared_), size_(other.size_) {
+    data_ = shared_ ? other.data_ : own_.data();
+  }
+  Cells(Cells&& other) noexcept { swap(other); }
+  Cells& operator=(Cells other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~Cells() = default;
+
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  T* begin() { return data_; }
+  T* end() { return data_ + size_; }
+  const T* begin() const { return data_; }
+  const T* end() const { return data_ + size_; }
+  T& operator[](std::size_t i) { return data_[i]; }
+  const T& operator[](std::size_t i) const { return data_[i]; }
+  bool operator==(const Cells& other) const { return std::equal(begin(), end(), other.begin(), other.end()); }
+
+ private:
+  void swap(Cells& other) noexcept {
+    own_.swap(other.own_);
+    shared_.swap(other.shared_);
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+  }
+  ScratchVector<T> own_;
+  std::shared_ptr<SharedMemory> shared_;
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+};
 
 /// Values on a grid, row 0 in the south. What stands for a missing value is the reader's business (NaN for heights).
 template <class T>
 struct Raster {
   Grid grid;
-  ScratchVector<T> values;
+  Cells<T> values;
 
   Raster() = default;
-  Raster(const Grid& g, T fill) : grid(g) {
-    constexpr std::size_t kPiece = std::size_t{1} << 24U;
-    values.reserve(g.cells());
-    while (values.size() < g.cells()) {  // piece by piece, so that a map larger than the memory can be made
-      values.resize(std::min(g.cells(), values.size() + kPiece), fill);
-      scratch::keep_below_limit();
-    }
-  }
+  Raster(const Grid& g, T fill) : grid(g), values(g.cells(), fill) {}
   Raster(const Grid& g, const std::vector<T>& v) : grid(g), values(v.begin(), v.end()) {}
 
   T& at(int column, int row) { return values[grid.index(column, row)]; }
   const T& at(int column, int row) const { return values[grid.index(column, row)]; }
 };
+
+/// A raster that `read` fills: once on a machine where its processes share memory, else in each.
+template <class T, class Read>
+void fill_shared(Raster<T>& raster, T before, Read read) {
+  if (!SharedMemory::is_on()) {
+    raster.values = Cells<T>(raster.grid.cells(), before);
+    read();
+    return;
+  }
+  const auto memory = std::make_shared<SharedMemory>(raster.grid.cells() * sizeof(T));
+  raster.values = Cells<T>(memory, raster.grid.cells());
+  if (memory->is_filled()) return;
+  read();
+  memory->set_filled();
+}
 
 }  // namespace talus

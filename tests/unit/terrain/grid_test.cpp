@@ -58,7 +58,7 @@ TEST(Raster, AtReadsWhatWasWritten) {
   Raster<int> raster(kGrid, 5);
   raster.at(6, 3) = 1;
   raster.at(0, 2) = 2;
-  EXPECT_EQ(raster.values.back(), 1);
+  EXPECT_EQ(raster.values[raster.values.size() - 1], 1);
   EXPECT_EQ(raster.values[14], 2);
   EXPECT_EQ(raster.at(3, 1), 5);
 }

@@ -1,0 +1,63 @@
+#include "mpi_team.hpp"
+#include "program.hpp"
+#include "run_support.hpp"
+#include "talus/base/error.hpp"
+
+namespace {
+
+/// Understands the command line, the same in every process. Nothing where it is wrong, which the leader has said.
+Action action_of(int argc, char** argv, MpiTeam& team, int& code) {
+  const auto run = [&team](CLI::App& app, Action& action) { add_run(app, action, team); };
+  Action action;
+  const auto understand = [&] {
+    action = understood(argc, argv, {run});
+    return 0;
+  };
+  if (team.leads()) {
+    code = exit_code_of(understand);
+  } else {
+    try {
+      understand();
+    } catch (const talus::InputError&) {
+      code = kWrongInput;
+    }
+  }
+  return action;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  begin_program(argc, argv);
+  int threads = 0;
+  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &threads);
+  int code = kDone;
+  {
+    MpiTeam team;
+    const Action action = action_of(argc, argv, team, code);
+    bool alike = true;  // all processes end in the same way
+    if (action && threads < MPI_THREAD_SERIALIZED) {
+      if (team.leads()) say("error", "this MPI lets no threads call it (MPI_THREAD_SERIALIZED)");
+      code = kFailed;
+    } else if (action) {
+      code = exit_code_of([&] {
+        alike = false;
+        int ended = kDone;
+        try {
+          ended = action();
+        } catch (const WrongForAll& error) {
+          if (team.leads()) say("error", error.what());
+          ended = kWrongInput;
+        } catch (const Interrupted& error) {
+          if (team.leads()) say("", error.what());
+          ended = kInterrupted;
+        }
+        alike = true;
+        return ended;
+      });
+    }
+    if (!alike) MPI_Abort(MPI_COMM_WORLD, code);
+  }
+  MPI_Finalize();
+  return code;
+}
