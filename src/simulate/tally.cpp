@@ -290,6 +290,13 @@ void Tally::merge(std::size_t index, ByteReader& in) {
   }
 }
 
+std::vector<std::uint64_t> Tally::cells_by_passages(std::uint32_t most) const {
+  std::vector<std::uint64_t> cells(most + 1U);
+  for (std::size_t i = 0; i < region_count_; ++i)
+    for (const CellRecord& record : regions_[i].records) ++cells[std::min(record.passages, most)];
+  return cells;
+}
+
 std::uint64_t Tally::touched_cells() const {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < region_count_; ++i) sum += regions_[i].records.size();

@@ -1,5 +1,6 @@
 """What the program says and leaves behind where something is wrong: exit codes, one line, no half results."""
 import os
+import re
 import resource
 import shutil
 import signal
@@ -108,6 +109,18 @@ class Input(Case):
                       "0.8 m", "energy 30, 300 kJ"):
             self.assertIn(words, text)
         self.assert_nothing_left(set(before))
+
+    def test_check_foretells_within_a_factor_of_one_and_a_half(self):
+        """Cells, memory and disk of a run of which it traces an eighth at most. (Seconds: tools/scaling.py.)"""
+        scenario = self.scenario("trajectories = 20000")
+        text = self.run_well("check", scenario).stdout
+        self.run_well("run", scenario, "-o", self.path("out"), "-q")
+        record = self.record()
+        was = {"cells": record["touched_cells"], "memory": record["peak_memory_mb"],
+               "disk": sum(os.path.getsize(self.path(f"out/{name}")) for name in record["files"]) / 1e6}
+        for what, value in was.items():
+            said = float(re.search(rf"^{what}\s+about ([0-9 ]+)", text, re.M).group(1).replace(" ", ""))
+            self.assertLess(abs(np.log(said / value)), np.log(1.5), f"{what}: {said}, was {value}")
 
 
 class Folder(Case):

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "commands.hpp"
+#include "estimate.hpp"
 #include "progress.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
@@ -13,6 +14,7 @@
 #include "talus/io/loaded.hpp"
 #include "talus/io/run_record.hpp"
 #include "talus/simulate/plan.hpp"
+#include "talus/simulate/screens.hpp"
 #include "talus/simulate/tally.hpp"
 #include "talus/simulate/visits.hpp"
 
@@ -23,13 +25,11 @@ using talus::io::LoadedScenario;
 using Clock = std::chrono::steady_clock;
 
 constexpr double kSampleSeconds = 1.5;
-constexpr double kWriteCell = 1e-6;        // all maps, per cell of the grid [s], measured
-constexpr double kHazardCell = 640.0;      // annual frequencies of a touched cell [byte]: 32 bins, and what holds them
-constexpr double kWriteTrajectory = 5e-6;  // a row of stops.gpkg [s], measured
 
 /// What a sample of the trajectories tells of all of them.
 struct Sample {
-  std::uint64_t traced = 0, touched_cells = 0;
+  std::uint64_t traced = 0, touched_cells = 0, crossings = 0;
+  std::vector<std::uint64_t> cells_by_passages;
   double seconds = 0.0, length = 0.0;  // of one processor; in space [m]
   std::uint64_t left = 0, limits = 0;
 };
@@ -41,6 +41,8 @@ Sample trace_sample(const Scenario& scenario) {
   const auto weights = talus::AnnualWeights::of(scenario);
   if (weights) tally.keep_hazard(*weights);
   talus::VisitBatch batch(scenario.surface.grid());
+  const talus::ScreenFinder screens(scenario);
+  std::vector<talus::Crossing> crossings;
   talus::Path path;
   Sample sample;
   const Clock::time_point start = Clock::now();
@@ -59,6 +61,9 @@ Sample trace_sample(const Scenario& scenario) {
     });
     if (batch.full()) tally.add(batch), batch.clear();
     ++sample.traced;
+    crossings.clear();
+    screens.find(release, path, crossings);
+    sample.crossings += crossings.size();
     sample.length += path.length;
     sample.left += path.end == talus::End::Left ? 1U : 0U;
     sample.limits += path.end == talus::End::Limit ? 1U : 0U;
@@ -67,6 +72,7 @@ Sample trace_sample(const Scenario& scenario) {
   tally.add(batch);
   sample.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   sample.touched_cells = tally.touched_cells();
+  sample.cells_by_passages = tally.cells_by_passages(4);
   return sample;
 }
 
@@ -153,23 +159,26 @@ void print_estimate(const Scenario& scenario, unsigned threads) {
   const double so_far = talus::io::peak_memory_mb();
   const Sample sample = trace_sample(scenario);
   const auto all = static_cast<double>(scenario.released()), traced = static_cast<double>(sample.traced);
+  RunSize size;
+  size.trajectories = all;
+  size.grid_cells = static_cast<double>(scenario.surface.grid().cells());
+  size.touched_cells = expected_cells(sample.cells_by_passages, all / traced, size.grid_cells);
+  size.crossings = static_cast<double>(sample.crossings) * all / traced;
+  size.metres_per_path = sample.length / traced;
+  size.with_hazard = talus::AnnualWeights::of(scenario).has_value();
   const unsigned processors = threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
-  const double seconds = sample.seconds * all / traced / processors + kWriteTrajectory * all +
-                         kWriteCell * static_cast<double>(scenario.surface.grid().cells()) / std::min(processors, 4U);
-  // Of a touched cell: its record, a histogram of 40 bins for each quantity, its thresholds and its place in a list.
-  const double per_cell =
-      sizeof(talus::CellRecord) + 3 * 40.0 + 16.0 +
-      4.0 * static_cast<double>(scenario.output.energy_thresholds.size() + scenario.output.height_thresholds.size()) +
-      (talus::AnnualWeights::of(scenario) ? kHazardCell : 0.0);
-  const auto megabytes = [&](double cells) {
-    return number(std::ceil(so_far + 64.0 + cells * per_cell * 1e-6), "%.0f");
-  };
-  line("time", "about " + duration_text(seconds) + " on " + std::to_string(processors) + " processors (" +
-                   number(sample.length / traced, "%.0f") + " m a trajectory; from a sample of " +
+  const double trace_seconds = sample.seconds * all / traced / processors;
+  const double write_seconds = seconds_to_write(scenario, size, processors);
+  line("time", "about " + duration_text(trace_seconds + write_seconds) + " on " + std::to_string(processors) +
+                   " processors, " + duration_text(write_seconds) + " of them to write (" +
+                   number(size.metres_per_path, "%.0f") + " m a trajectory; from a sample of " +
                    count_text(sample.traced) + ")");
-  line("memory", "from " + megabytes(static_cast<double>(sample.touched_cells)) + " MB, if no more than the " +
-                     count_text(sample.touched_cells) + " cells of the sample are reached, to " +
-                     megabytes(static_cast<double>(scenario.surface.grid().cells())) + " MB, if all are");
+  line("cells", "about " + rounded_text(size.touched_cells) + " reached (" + count_text(sample.touched_cells) +
+                    " by the sample)");
+  line("memory", "about " + rounded_text(so_far + 1e-6 * bytes_in_memory(scenario, size)) +
+                     " MB; talus run --memory sets a limit");
+  line("disk", "about " + rounded_text(1e-6 * bytes_of_results(scenario, size)) + " MB of results, up to " +
+                   rounded_text(1e-6 * bytes_at_work(scenario, size)) + " MB more while a long run goes on");
   if (sample.left * 100 > sample.traced)
     line("warning", number(100.0 * static_cast<double>(sample.left) / traced) + " % of the sample left the DEM");
   if (static_cast<double>(sample.limits) > talus::io::kAllowedLimitShare * traced)

@@ -82,6 +82,8 @@ class Tally {
   /// `find` finds.
   const std::uint32_t* exceedances(int column, int row) const;
   std::uint64_t touched_cells() const;
+  /// How many cells have so many trajectories; 0, 1, 2, ... up to `most`, and there all with more.
+  std::vector<std::uint64_t> cells_by_passages(std::uint32_t most) const;
 
   /// What is kept of a region, for a file; nothing where no trajectory was. Regions are numbered row by row from the
   /// south-west; not while batches are added.

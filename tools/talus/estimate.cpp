@@ -1,0 +1,79 @@
+#include "estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "progress.hpp"
+#include "talus/simulate/simulate.hpp"
+
+namespace {
+
+using talus::Scenario;
+
+// Measured on the valley and on the region of docs/performance.md.
+constexpr double kBase = 64e6;             // of the process [byte]
+constexpr double kHistogram = 3 * 40.0;    // of a touched cell [byte]
+constexpr double kHazardCell = 640.0;      // annual frequencies of a touched cell [byte]: 32 bins, and what holds them
+constexpr double kRasterCell = 3.8;        // of a touched cell in a band of a compressed raster [byte]
+constexpr double kHazardFile = 77.0;       // of a touched cell [byte]
+constexpr double kStop = 172.0;            // a row of stops.gpkg [byte]
+constexpr double kPathPoint = 36.0;        // of trajectories.gpkg [byte]
+constexpr double kCrossing = 150.0;        // a row of screens.csv [byte]
+constexpr double kKeptCell = 320.0;        // of a touched cell in the kept tally [byte]
+constexpr double kEmptyCell = 2.1e-8;      // of the grid, per band, to write [s]
+constexpr double kTouchedCell = 1.8e-7;    // the same of a touched cell
+constexpr double kWriteTrajectory = 5e-6;  // a row of stops.gpkg [s]
+constexpr double kWriteFiles = 0.6;        // to make all of them [s]
+
+double thresholds(const Scenario& scenario) {
+  return static_cast<double>(scenario.output.energy_thresholds.size() + scenario.output.height_thresholds.size());
+}
+
+double bands(const Scenario& scenario) {
+  return 20.0 + thresholds(scenario);
+}
+
+}  // namespace
+
+double expected_cells(const std::vector<std::uint64_t>& cells, double times, double most) {
+  const auto one = static_cast<double>(cells[1]), two = static_cast<double>(cells[2]);
+  const auto three = static_cast<double>(cells[3]);
+  double reached = 0.0;
+  for (const std::uint64_t count : cells) reached += static_cast<double>(count);
+  if (times <= 1.0 || one == 0.0) return reached;
+  if (two < 10.0 || three < 10.0) return std::min(most, reached + one * (times - 1.0));  // hardly any cell twice
+  const double first = 2.0 * two / one, second = 3.0 * three / two;  // (k + 1) q and (k + 2) q
+  const double q = std::clamp(second - first, 0.02, 0.98), k = std::max(0.05, first / q - 1.0);
+  const double unseen = one / (k * q), odds = q / (1.0 - q);
+  return std::min(most, reached + unseen * (1.0 - std::pow((1.0 + odds * times) / (1.0 + odds), -k)));
+}
+
+double bytes_in_memory(const Scenario& scenario, const RunSize& size) {
+  const double cell = sizeof(talus::CellRecord) + kHistogram + 16.0 + 4.0 * thresholds(scenario) +
+                      (size.with_hazard ? kHazardCell : 0.0);
+  return kBase + size.touched_cells * cell;
+}
+
+double bytes_of_results(const Scenario& scenario, const RunSize& size) {
+  const talus::Grid& grid = scenario.surface.grid();
+  const double paths = std::min<double>(scenario.output.paths, size.trajectories);
+  return size.touched_cells * (kRasterCell * bands(scenario) + (size.with_hazard ? kHazardFile : 0.0)) +
+         size.trajectories * kStop + size.crossings * kCrossing +
+         paths * (500.0 + kPathPoint * size.metres_per_path / grid.cell_x);
+}
+
+double bytes_at_work(const Scenario& scenario, const RunSize& size) {
+  const double kept = kKeptCell + 4.0 * thresholds(scenario) + (size.with_hazard ? kHazardCell : 0.0);
+  return 2.0 * size.touched_cells * kept + size.trajectories * sizeof(talus::StopRow) +
+         size.crossings * sizeof(talus::Crossing);
+}
+
+double seconds_to_write(const Scenario& scenario, const RunSize& size, unsigned processors) {
+  const double rasters = bands(scenario) * (kEmptyCell * size.grid_cells + kTouchedCell * size.touched_cells);
+  return kWriteFiles + rasters / std::min(processors, 4U) + kWriteTrajectory * size.trajectories;
+}
+
+std::string rounded_text(double value) {
+  const double unit = std::pow(10.0, std::floor(std::log10(std::max(1.0, value))) - 1.0);
+  return count_text(static_cast<std::uint64_t>(std::ceil(std::ceil(value / unit) * unit)));
+}
