@@ -8,10 +8,10 @@
 namespace talus {
 namespace {
 
-constexpr std::size_t kContenders = 4;  // whose fits go on: those that gain most
-constexpr double kWorthNaming = 0.01;   // share of the error that an effect takes away from blocks not fitted
-constexpr double kUnfinished = 0.02;    // of the error, that a first fit may still be above its minimum
-constexpr std::size_t kLaterFits = 6;  // after the first round: with an effect in place all takes several times as long
+constexpr std::size_t kContenders = 4;     // whose fits go on: those that gain most
+constexpr double kWorthNaming = 0.02;       // share of the error that an effect takes away, also from blocks not fitted
+constexpr double kUnfinished = 0.02;        // of the error, that a first fit may still be above its minimum
+constexpr std::size_t kLaterFits = 6;       // after the first round: with an effect in place all takes several times as long
 constexpr std::uint32_t kManyBlocks = 72;  // of fewer, more trials each are tested: a signature is a mean over blocks
 
 double net(const Trial& trial) {
@@ -134,7 +134,9 @@ class Diagnosing {
   void choose(const Fitted& base, Round& round, bool noise, bool first) {
     count_choices(base, round.trials);
     const double worth = kWorthNaming * base.score.total;
-    const auto may = [&](const Trial& t) { return t.unseen_gain() > worth && (first || net(t) > 0.0); };
+    const auto may = [&](const Trial& t) {
+      return t.gain > worth && t.unseen_gain() > worth && (first || net(t) > 0.0);
+    };
     std::stable_sort(round.trials.begin(), round.trials.end(), [&](const Trial& a, const Trial& b) {
       if (may(a) != may(b)) return may(a);
       return may(a) ? a.unseen_gain() > b.unseen_gain() : net(a) > net(b);
