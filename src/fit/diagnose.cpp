@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "effect_fits.hpp"
 
@@ -12,6 +13,7 @@ constexpr std::size_t kContenders = 4;     // whose fits go on: those that gain 
 constexpr double kWorthNaming = 0.02;       // share of the error that an effect takes away, also from blocks not fitted
 constexpr double kUnfinished = 0.02;        // of the error, that a first fit may still be above its minimum
 constexpr std::size_t kLaterFits = 6;       // after the first round: with an effect in place all takes several times as long
+constexpr std::size_t kOtherPlaces = 2;       // effects that are fitted in a second zone, too: those that gain most
 constexpr std::uint32_t kManyBlocks = 72;  // of fewer, more trials each are tested: a signature is a mean over blocks
 
 double net(const Trial& trial) {
@@ -79,9 +81,29 @@ class Diagnosing {
       progress_ = std::min(0.95, progress_ + 0.02);
       round.trials.push_back(fits_.effect(base, verdict, together(campaign_, axis, candidates, verdict.best.members)));
     }
+    if (!noise && found.empty()) try_other_zones(base, test, candidates, axis, round.trials);
     if (!noise) compete(base, round.trials, level);
     choose(base, round, noise, found.empty());
     return round;
+  }
+
+  /// The test, which is linear, may find a strong effect in the wrong zone: those that gain most are fitted in the
+  /// second best one, too, and stay where they fit better.
+  void try_other_zones(const Fitted& base, const ScoreTest& test, const std::vector<Candidate>& candidates,
+                       const Axis& axis, std::vector<Trial>& trials) {
+    std::vector<std::size_t> order(trials.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return net(trials[a]) > net(trials[b]); });
+    order.resize(std::min(order.size(), kOtherPlaces));
+    for (const std::size_t i : order) {
+      EffectVerdict verdict = test.effects[i];
+      const bool in_zone = trials[i].where == "everywhere" || trials[i].where.starts_with("zone ");
+      if (!in_zone || verdict.second.members.empty() || verdict.second.p_value > options_.later_level) continue;
+      verdict.best = verdict.second;
+      Trial other = fits_.effect(base, verdict, together(campaign_, axis, candidates, verdict.best.members));
+      if (other.fitted.score.total < trials[i].fitted.score.total) trials[i] = std::move(other);
+    }
   }
 
   /// The fits of those go on that may be chosen and gain most, or could yet.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "talus/base/random.hpp"
 #include "talus/fit/projection.hpp"
@@ -150,6 +151,15 @@ void correct(ScoreTest& test, const std::vector<Projection>& projections, const 
   test.p_value = (as_lucky + 1.0) / static_cast<double>(n + 1);
 }
 
+/// Puts a further place of an effect where it belongs: best, second, or nowhere.
+void rank(const Verdict& verdict, EffectVerdict& effect) {
+  if (verdict.p_value < effect.best.p_value) {
+    effect.second = std::exchange(effect.best, verdict);
+  } else if (effect.second.members.empty() || verdict.p_value < effect.second.p_value) {
+    effect.second = verdict;
+  }
+}
+
 /// By how much a parameter of the base is moved: away from its upper bound [z].
 double step_of(const Parameter& parameter, double z) {
   return parameter.value(z + kStep) < parameter.upper ? kStep : -kStep;
@@ -201,8 +211,10 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
     const std::string& name = candidates[place.members.front()].effect;
     auto effect = std::find_if(test.effects.begin(), test.effects.end(),
                                [&](const EffectVerdict& e) { return e.effect == name; });
-    if (effect == test.effects.end()) effect = test.effects.insert(effect, {name, verdict, 1.0});
-    if (verdict.p_value < effect->best.p_value) effect->best = verdict;
+    if (effect == test.effects.end())
+      effect = test.effects.insert(effect, {name, verdict, {}, 1.0});
+    else
+      rank(verdict, *effect);
     effect_of.push_back(static_cast<std::size_t>(effect - test.effects.begin()));
   }
   correct(test, projections, effect_of, trials, options);

@@ -17,6 +17,7 @@ struct Verdict {
 struct EffectVerdict {
   std::string effect;
   Verdict best;
+  Verdict second;        ///< the next best place; without members where there is no other
   double p_value = 1.0;  ///< corrected for the number of its places, from simulated data sets
 };
 
