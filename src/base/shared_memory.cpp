@@ -46,7 +46,8 @@ SharedMemory::SharedMemory(std::size_t bytes) : length_(kHead + bytes) {
   if (file_ < 0) throw failure("cannot be opened");
   while (flock(file_, LOCK_EX) != 0)  // until whoever fills it is done, or gone
     if (errno != EINTR) throw failure("cannot be locked");
-  errno = posix_fallocate(file_, 0, static_cast<off_t>(length_));
+  do errno = posix_fallocate(file_, 0, static_cast<off_t>(length_));
+  while (errno == EINTR);
   if (errno != 0) throw failure("cannot be had");
   begin_ = mmap(nullptr, length_, PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
   if (begin_ == MAP_FAILED) throw failure("cannot be mapped");

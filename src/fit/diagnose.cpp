@@ -9,11 +9,11 @@
 namespace talus {
 namespace {
 
-constexpr std::size_t kContenders = 4;     // whose fits go on: those that gain most
-constexpr double kWorthNaming = 0.02;       // share of the error that an effect takes away, also from blocks not fitted
-constexpr double kUnfinished = 0.02;        // of the error, that a first fit may still be above its minimum
-constexpr std::size_t kLaterFits = 6;       // after the first round: with an effect in place all takes several times as long
-constexpr std::size_t kOtherPlaces = 2;       // effects that are fitted in a second zone, too: those that gain most
+constexpr std::size_t kContenders = 4;  // whose fits go on: those that gain most
+constexpr double kWorthNaming = 0.02;   // share of the error that an effect takes away, also from blocks not fitted
+constexpr double kUnfinished = 0.02;    // of the error, that a first fit may still be above its minimum
+constexpr std::size_t kLaterFits = 6;  // after the first round: with an effect in place all takes several times as long
+constexpr std::size_t kOtherPlaces = 2;    // effects that are fitted in a second zone, too: those that gain most
 constexpr std::uint32_t kManyBlocks = 72;  // of fewer, more trials each are tested: a signature is a mean over blocks
 
 double net(const Trial& trial) {

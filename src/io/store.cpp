@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "kept_file.hpp"
 #include "store_rows.hpp"
@@ -105,7 +106,7 @@ void Store::end_round(std::uint32_t round) {
 
 void Store::keep(const Simulation& simulation, const Tally& tally) {
   const std::uint32_t next = generation_ + 1;
-  const std::string name = numbered("tally", next, team_->rank());
+  const std::string before = numbered("rest", generation_), name = numbered("tally", next, team_->rank());
   const std::string sha256 = write_tally(folder_ / name, tally);
   ByteWriter totals, reaches;
   put_totals(totals_of_all(simulation.totals()), totals);
@@ -114,18 +115,20 @@ void Store::keep(const Simulation& simulation, const Tally& tally) {
   const std::vector<std::string> all_reaches = team_->gather(reaches.bytes());
   close_rows(simulation.position().round);
   generation_ = next;
-  round_ = simulation.position().round;
-  rounds_ = round_ + (simulation.round_done() ? 1U : 0U);
+  rounds_ = simulation.position().round + (simulation.round_done() ? 1U : 0U);
   units_done_ = simulation.round_done() ? 0 : simulation.position().unit;
+  round_ = rounds_;
   if (team_->leads()) {
     KeptFileWriter rest(folder_ / numbered("rest", next));
     rest.put(totals.bytes());
     for (const std::string& bytes : all_reaches) rest.put(bytes);
     rest_sha256_ = rest.finish();
-    tallies_.clear();
+    const std::vector<KeptFile> old = std::exchange(tallies_, {});
     for (std::size_t i = 0; i < names.size(); ++i) tallies_.push_back({names[i], sums[i]});
     write_manifest();
-    remove_unnamed();
+    std::error_code ignored;
+    fs::remove(folder_ / before, ignored);
+    for (const KeptFile& file : old) fs::remove(folder_ / file.name, ignored);
   }
   team_->tell({});  // no process goes on before what it has traced is kept
 }
@@ -163,11 +166,11 @@ void Store::restore(Simulation& simulation, Tally& tally) const {
 
 void Store::replay(std::uint32_t round, const Sinks& sinks) const {
   for (auto file = rows_files_.begin(); file != rows_files_.end();) {
-    std::vector<std::unique_ptr<RowsReader>> together;  // of one sitting of several processes
+    std::vector<std::unique_ptr<RowsReader>> files;  // of one sitting of several processes
     const RowsFile& first = *file;
     for (; file != rows_files_.end() && file->round == first.round && file->generation == first.generation; ++file)
-      if (file->round == round) together.push_back(std::make_unique<RowsReader>(folder_ / file->name, file->sha256));
-    replay_rows(together, sinks);
+      if (file->round == round) files.push_back(std::make_unique<RowsReader>(folder_ / file->name, file->sha256));
+    replay_rows(files, sinks);
   }
 }
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
+
+#include "tally_region.hpp"
 
 namespace talus {
 namespace {
@@ -110,29 +111,6 @@ void gather(const Group& group, const VisitBatch& batch, Tally::Values& values, 
 }
 
 }  // namespace
-
-/// The records of 64 x 64 cells. `slot` of a cell is its record's number plus one; 0 where there is none yet.
-struct Tally::Region {
-  std::mutex mutex;
-  ScratchVector<std::uint16_t> slot;  // empty: no cell was touched
-  std::deque<CellRecord, ScratchAllocator<CellRecord>> records;
-  ScratchVector<std::uint32_t> exceedances;
-  std::deque<HazardCell, ScratchAllocator<HazardCell>> hazards;  // by record, where hazard is kept
-
-  /// Number of the record of a cell, made where there is none.
-  std::size_t record_of(std::size_t cell, std::size_t thresholds) {
-    if (slot.empty()) slot.resize(kRegionCells);
-    std::uint16_t& number = slot[cell];
-    if (number == 0) {
-      records.emplace_back();
-      if (exceedances.size() == exceedances.capacity())  // in small steps: doubling would waste what it holds ready
-        exceedances.reserve(exceedances.size() + 128 * thresholds);
-      exceedances.resize(exceedances.size() + thresholds);
-      number = static_cast<std::uint16_t>(records.size());
-    }
-    return number - 1U;
-  }
-};
 
 Tally::Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vector<double> height_thresholds)
     : grid_(grid),
@@ -250,57 +228,6 @@ const HazardCell* Tally::hazard(int column, int row) const {
 const std::uint32_t* Tally::exceedances(int column, int row) const {
   const Region& region = region_of(column, row);
   return region.exceedances.data() + (region.slot[cell_in_region(column, row)] - 1U) * thresholds();
-}
-
-void Tally::save(std::size_t index, ByteWriter& out) const {
-  scratch::keep_below_limit();
-  const Region& region = regions_[index];
-  if (region.slot.empty()) return;
-  for (std::size_t cell = 0; cell < kRegionCells; ++cell) {
-    const std::uint16_t slot = region.slot[cell];
-    if (slot == 0) continue;
-    const std::size_t record = slot - 1U;
-    out.put(static_cast<std::uint16_t>(cell));
-    region.records[record].save(out);
-    for (std::size_t i = 0; i < thresholds(); ++i) out.put(region.exceedances[record * thresholds() + i]);
-    if (hazard_) region.hazards[record].save(out);
-  }
-}
-
-void Tally::take(std::size_t index, ByteWriter& out) {
-  save(index, out);
-  Region& region = regions_[index];
-  region.slot = {}, region.exceedances = {};
-  region.records.clear(), region.hazards.clear();
-}
-
-void Tally::merge(std::size_t index, ByteReader& in) {
-  scratch::keep_below_limit();
-  Region& region = regions_[index];
-  while (!in.empty()) {
-    const auto cell = in.get<std::uint16_t>();
-    if (cell >= kRegionCells) throw std::out_of_range("a cell of the tally");
-    const std::size_t record = region.record_of(cell, thresholds());
-    region.records[record].merge(CellRecord::restored(in));
-    for (std::size_t i = 0; i < thresholds(); ++i)
-      region.exceedances[record * thresholds() + i] += in.get<std::uint32_t>();
-    if (!hazard_) continue;
-    region.hazards.resize(region.records.size());
-    region.hazards[record].merge(HazardCell::restored(in));
-  }
-}
-
-std::vector<std::uint64_t> Tally::cells_by_passages(std::uint32_t most) const {
-  std::vector<std::uint64_t> cells(most + 1U);
-  for (std::size_t i = 0; i < region_count_; ++i)
-    for (const CellRecord& record : regions_[i].records) ++cells[std::min(record.passages, most)];
-  return cells;
-}
-
-std::uint64_t Tally::touched_cells() const {
-  std::uint64_t sum = 0;
-  for (std::size_t i = 0; i < region_count_; ++i) sum += regions_[i].records.size();
-  return sum;
 }
 
 }  // namespace talus

@@ -33,7 +33,7 @@ std::uint64_t Units::next_chunk() {
 std::optional<Units::Taken> Units::next() {
   const std::lock_guard guard(mutex_);
   team_.attend();
-  if (at_ == till_) {
+  while (at_ == till_) {  // of an empty range a chunk may be empty
     const std::uint64_t chunk = next_chunk();
     if (chunk >= chunks_) return std::nullopt;
     at_ = std::max(range_.first, chunk * chunk_);

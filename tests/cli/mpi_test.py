@@ -32,8 +32,10 @@ class Mpi(RunCase):
             self.ranks(n, f"ranks{n}", "--checkpoint", "0.05")
             self.assert_same("whole", f"ranks{n}")
         self.assertEqual(self.record("ranks4")["ranks"], 4)
-        self.ranks(2, "threads", "--threads", "2", "--memory", "200M")
+        self.ranks(2, "threads", "--threads", "2")
         self.assert_same("whole", "threads")
+        self.ranks(2, "limited", "--memory", "200M")
+        self.assert_same("whole", "limited")
         self.assertEqual(self.shared_names(), before)
         self.run_well("hazard", self.path("ranks4"), "-q")
 
@@ -86,7 +88,23 @@ class Mpi(RunCase):
             time.sleep(0.02)
         self.fail("nothing was kept")
 
+    def test_interrupted_while_it_writes(self):
+        """A signal to the leader alone, at any time: all end, with 130, or had been done."""
+        for seconds in (0.6, 1.2, 1.6, 2.0):
+            out = f"out{seconds}"
+            process = subprocess.Popen(self.command(2, out), stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+            time.sleep(seconds)
+            leader = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True).stdout.split()[:1]
+            for pid in leader:
+                os.kill(int(pid), signal.SIGTERM)
+            error = process.communicate(timeout=60)[1]
+            if process.returncode != 0:
+                self.assertEqual(process.returncode, 130, error)
+                self.assertEqual(error.count("talus: interrupted"), 1, error)
+                self.assertFalse(os.path.exists(self.path(out)))
+
     def test_wrong_input_is_said_once(self):
+        before = self.shared_names()
         self.write("s.toml", RUN + "nonsense = 1\n")
         error = self.ranks(3, "x", code=2)
         self.assertEqual(error.count("talus: error"), 1)
@@ -95,7 +113,8 @@ class Mpi(RunCase):
         self.assertEqual(self.ranks(2, "x", "--no-such", code=2).count("talus: error"), 1)
         self.ranks(2, "x")
         self.assertEqual(self.ranks(2, "x", code=2).count("talus: error"), 1)  # the folder is there
-        self.assertEqual(self.shared_names(), [])
+        self.assertEqual(self.ranks(3, "y", "--part", "5/2", code=2).count("talus: error"), 1)
+        self.assertEqual(self.shared_names(), before)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "program.hpp"
 #include "progress.hpp"
 #include "run_results.hpp"
 #include "sitting.hpp"
@@ -126,8 +127,9 @@ std::unique_ptr<OutputFolder> folder_of(const RunOptions& options, const LoadedS
 }
 
 /// Gives a part its name: what was kept of it is the result.
-int deliver_part(const RunOptions& options, OutputFolder& folder, const talus::Totals& totals) {
+int deliver_part(const RunOptions& options, OutputFolder& folder, const talus::Totals& totals, Progress& progress) {
   folder.commit_work();
+  progress.finish();
   if (!options.quiet)
     say("", "part " + options.part + ": " + count_text(totals.released) + " trajectories; results are in " +
                 folder.final_path().string() + "; talus merge joins the parts");
@@ -137,8 +139,11 @@ int deliver_part(const RunOptions& options, OutputFolder& folder, const talus::T
 int run(const RunOptions& options, talus::Team& team) {
   Stopwatch watch;
   catch_signals();
-  const talus::Part part = part_of(options.part);
-  check(options, part);
+  talus::Part part;
+  together(team, [&] {
+    part = part_of(options.part);
+    check(options, part);
+  });
   const LoadedScenario loaded = load(options, team);
   if (team.largest(interrupted() ? 1 : 0) > 0) stop_interrupted();
   const std::unique_ptr<OutputFolder> folder = folder_of(options, loaded, team);
@@ -167,10 +172,15 @@ int run(const RunOptions& options, talus::Team& team) {
     talus::collect(sitting.tally(), team);
   else
     sitting.keep();
-  int code = 0;
-  if (team.leads())
-    code = part.whole() ? deliver(options, loaded, sitting, *folder, watch, progress, record)
-                        : deliver_part(options, *folder, record.totals);
+  int code = kDone;
+  try {
+    if (team.leads())
+      code = part.whole() ? deliver(options, loaded, sitting, *folder, watch, progress, record)
+                          : deliver_part(options, *folder, record.totals, progress);
+  } catch (const Interrupted& interruption) {  // the others wait to be told
+    say("", interruption.what());
+    code = kInterrupted;
+  }
   return std::stoi(team.tell(std::to_string(code)));
 }
 
@@ -192,7 +202,9 @@ void add_run(CLI::App& app, Action& action, talus::Team& team) {
   add_scenario_options(*command, options->flags);
   command->add_option("-o,--out", options->out, "new folder for the results")->required();
   command->add_flag("--overwrite", options->overwrite, "replace the folder if it holds an earlier result");
-  command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
+  command
+      ->add_option("--threads", options->threads,
+                   "all processors where it is not given, of several processes one each; the results are the same")
       ->check(CLI::Range(1, 4096));
   command->add_option("--part", options->part, "I/N: only part I of N of the source cells, for talus merge");
   command->add_flag("--resume", options->resume, "go on with an interrupted run of the same command");

@@ -3,6 +3,7 @@
 #include "commands.hpp"
 #include "run_support.hpp"
 #include "talus/base/error.hpp"
+#include "talus/io/hazard_file.hpp"
 #include "talus/simulate/team_tally.hpp"
 
 namespace fs = std::filesystem;
@@ -19,9 +20,9 @@ Sitting::Sitting(const RunOptions& options, const talus::io::LoadedScenario& loa
       simulation_(scenario_, part, options.rounds.several(), tally_, sinks_, team) {
   if (auto weights = talus::AnnualWeights::of(scenario_, options.rounds.several()))
     tally_.keep_hazard(std::move(*weights));
-  store().restore(simulation_, tally_);
+  together(team_, [this] { store().restore(simulation_, tally_); });
   sinks_.progress = [&progress](double share) { return progress.update(share) && !interrupted(); };
-  if (team.leads()) sinks_.pause = [this] { return seconds_since_kept() > options_.checkpoint; };
+  sinks_.pause = [this] { return seconds_since_kept() > options_.checkpoint; };
 }
 
 /// What is kept in the folder of the leader, which the others must see; or nothing yet.
@@ -29,11 +30,17 @@ std::vector<talus::io::Store> Sitting::opened(const talus::io::LoadedScenario& l
   if (folder_ != nullptr) folder_->hold_work();
   const fs::path work = team_.tell(folder_ != nullptr ? folder_->work().string() : "");
   const bool kept = !team_.tell(team_.leads() && fs::exists(work / talus::io::kStoreManifest) ? "kept" : "").empty();
+  const std::string plan = team_.tell(talus::io::plan_checksum(loaded));
   std::vector<talus::io::Store> stores;
   together(team_, [&] {
+    if (talus::io::plan_checksum(loaded) != plan)
+      throw talus::InputError(options_.out +
+                              ": the processes of the run have read different files, must be the same on "
+                              "every machine");
     if (!fs::is_directory(work))
-      throw talus::InputError(options_.out + ": its folder cannot be seen by every process, must lie on a file system "
-                              "that all machines of the run share");
+      throw talus::InputError(options_.out +
+                              ": its folder cannot be seen by every process, must lie on a file system that all "
+                              "machines of the run share");
     if (!kept) {
       stores.emplace_back(work, loaded, part, options_.rounds.several(), team_);
       return;
@@ -60,7 +67,7 @@ void Sitting::trace(int threads, Progress& progress) {
     simulation_.advance(threads);
     if (any(simulation_.totals().interrupted || interrupted())) interrupt();
     if (simulation_.round_done()) store().end_round(simulation_.position().round);
-    if (any(team_.leads() && seconds_since_kept() > options_.checkpoint)) keep();
+    if (any(seconds_since_kept() > options_.checkpoint)) keep();
   }
 }
 
@@ -72,7 +79,6 @@ void Sitting::keep() {
   store().keep(simulation_, tally_);
   if (folder_ != nullptr) folder_->keep();
   kept_ = Clock::now();
-  has_kept_ = true;
 }
 
 void Sitting::interrupt() {
@@ -83,7 +89,7 @@ void Sitting::interrupt() {
 
 void Sitting::interrupt_writing() {
   if (team_.size() == 1) interrupt();
-  if (!has_kept_) stop_interrupted();
+  if (store().empty()) stop_interrupted();
   throw Interrupted("interrupted; what was kept last goes on with: " + command_to_resume());
 }
 

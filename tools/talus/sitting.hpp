@@ -62,5 +62,4 @@ class Sitting {
   talus::Sinks sinks_;
   talus::Simulation simulation_;
   Clock::time_point kept_ = Clock::now();
-  bool has_kept_ = false;
 };

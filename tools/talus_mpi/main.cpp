@@ -1,3 +1,5 @@
+#include <iostream>
+
 #include "mpi_team.hpp"
 #include "program.hpp"
 #include "run_support.hpp"
@@ -16,6 +18,7 @@ Action action_of(int argc, char** argv, MpiTeam& team, int& code) {
   if (team.leads()) {
     code = exit_code_of(understand);
   } else {
+    std::cout.setstate(std::ios::failbit);  // the leader gives the help
     try {
       understand();
     } catch (const talus::InputError&) {
@@ -45,6 +48,10 @@ int main(int argc, char** argv) {
         int ended = kDone;
         try {
           ended = action();
+        } catch (const talus::InputError& error) {
+          if (team.size() > 1) throw;  // of one process: the others do not know
+          say("error", error.what());
+          ended = kWrongInput;
         } catch (const WrongForAll& error) {
           if (team.leads()) say("error", error.what());
           ended = kWrongInput;

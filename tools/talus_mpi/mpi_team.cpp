@@ -36,8 +36,10 @@ void MpiTeam::wait(std::vector<MPI_Request>& requests) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (!told_ && rank_ == 0 && interrupted() && spins > kSpins + 200) {
       told_ = true;
-      say("", "told to end, by the user or because another process of the run has ended; what was kept goes on with the "
-              "same command and --resume");
+      say("",
+          "told to end, by the user or because another process of the run has ended; what was kept, if anything, goes "
+          "on "
+          "with the same command and --resume");
     }
   }
   requests.clear();

@@ -42,7 +42,8 @@ struct RunRecord {
 /// Whether too many trajectories ended at a limit (`kAllowedLimitShare`).
 bool too_many_limits(const Totals& totals);
 
-/// The text of run.json. Equal runs differ only in command, threads, ranks, cpu_seconds, wall_seconds and peak_memory_mb.
+/// The text of run.json. Equal runs differ only in command, threads, ranks, cpu_seconds, wall_seconds and
+/// peak_memory_mb.
 std::string run_json(const RunRecord& record, const LoadedScenario& loaded);
 
 /// The most memory that this process has held so far [MB]; 0 where the system does not tell.

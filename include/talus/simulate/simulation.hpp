@@ -74,11 +74,9 @@ class Simulation {
 
   bool round_done() const { return position_.unit == units_; }
   void next_round() { position_ = {position_.round + 1, 0}; }
-  std::uint64_t units() const { return units_; }  ///< of a round
 
   const Position& position() const { return position_; }
   const Totals& totals() const { return totals_; }
-  Team& team() const { return team_; }
   void save_reaches(ByteWriter& out) const;
 
   /// Goes on from what was kept; before the first `advance`.

@@ -51,11 +51,11 @@ class Units {
   Range range_;
   std::uint64_t chunk_, chunks_;  // units of one; first one that is not wanted
   bool fixed_;
-  std::mutex mutex_;               // guards what follows
+  std::mutex mutex_;                 // guards what follows
   std::uint64_t at_ = 0, till_ = 0;  // units of the chunk in work
   std::uint64_t taken_ = 0;
-  std::uint64_t mine_ = 0;           // next chunk of this process, where they are fixed
-  std::uint64_t closed_at_;          // chunk before which all were taken
+  std::uint64_t mine_ = 0;   // next chunk of this process, where they are fixed
+  std::uint64_t closed_at_;  // chunk before which all were taken
   bool catching_up_ = false;
   std::uint64_t end_ = 0;
 };
