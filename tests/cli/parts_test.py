@@ -32,7 +32,11 @@ class Parts(RunCase):
         for i in (1, 2):
             self.run_scenario(f"part{i}", "--part", f"{i}/2")
         one, two = self.path("part1"), self.path("part2")
-        self.fails(2, "1 of 2 parts are given", arguments=["merge", self.path("m"), one])
+        done = self.run_well("run", self.path("s.toml"), "-o", one, "--part", "1/2", "--resume")  # a task that was requeued
+        self.assertIn("part 1/2 is done", done.stderr)
+        self.fails(2, "another plan",
+                   arguments=["run", self.path("s.toml"), "-o", one, "--part", "1/2", "--resume", "--seed", "9"])
+        self.fails(2, "1 of 2 parts are given, part 2 is the first", arguments=["merge", self.path("m"), one])
         self.fails(2, "give each part once", arguments=["merge", self.path("m"), one, one])
         self.fails(2, "is no part of a run", arguments=["merge", self.path("m"), self.folder, one])
         self.run_scenario("other", "--part", "2/2", "--seed", "9")

@@ -58,9 +58,13 @@ std::vector<Store> opened(const std::vector<std::string>& folders, const LoadedS
       throw talus::InputError(name + "has " + std::to_string(stores[i].rounds()) + " rounds, another part " +
                               std::to_string(first.rounds()) + "; run all parts with the same --rounds");
   }
-  if (stores.size() != first.part().of)
+  if (stores.size() != first.part().of) {
+    std::uint32_t missing = 1;
+    while (missing <= stores.size() && stores[missing - 1].part().number == missing) ++missing;
     throw talus::InputError(std::to_string(stores.size()) + " of " + std::to_string(first.part().of) +
-                            " parts are given; give all");
+                            " parts are given, part " + std::to_string(missing) +
+                            " is the first that is not; give all");
+  }
   return stores;
 }
 

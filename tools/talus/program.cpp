@@ -64,7 +64,7 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 void describe(CLI::App& app) {
-  app.name("talus");
+  app.name(words.front().ends_with("-mpi") ? "talus-mpi" : "talus");
   app.set_version_flag("--version", "talus " + std::string(talus::version()));
   app.require_subcommand(1);
   app.footer(

@@ -113,6 +113,19 @@ LoadedScenario load(const RunOptions& options, talus::Team& team) {
   return std::move(*loaded);
 }
 
+/// Whether --resume finds the part complete, as a scheduler may ask for it again. Throws InputError where what is there
+/// is of another plan.
+bool is_done(const RunOptions& options, const LoadedScenario& loaded, const talus::Part& part, talus::Team& team) {
+  bool done = false;
+  together(team, [&] {
+    if (!options.resume || part.whole() || !fs::exists(fs::path(options.out) / talus::io::kStoreManifest)) return;
+    const auto store = talus::io::Store::opened(options.out, loaded, false);
+    done = store.part().number == part.number && store.part().of == part.of && store.between_rounds() &&
+           store.rounds() == options.rounds.count;
+  });
+  return done;
+}
+
 std::unique_ptr<OutputFolder> folder_of(const RunOptions& options, const LoadedScenario& loaded, talus::Team& team) {
   std::unique_ptr<OutputFolder> folder;
   together(team, [&] {
@@ -146,6 +159,10 @@ int run(const RunOptions& options, talus::Team& team) {
   });
   const LoadedScenario loaded = load(options, team);
   if (team.largest(interrupted() ? 1 : 0) > 0) stop_interrupted();
+  if (is_done(options, loaded, part, team)) {
+    if (!options.quiet && team.leads()) say("", "part " + options.part + " is done: " + options.out);
+    return kDone;
+  }
   const std::unique_ptr<OutputFolder> folder = folder_of(options, loaded, team);
   if (!options.quiet && team.leads())
     for (const std::string& warning : loaded.warnings) say("warning", warning);
@@ -159,6 +176,8 @@ int run(const RunOptions& options, talus::Team& team) {
   Progress progress(Progress::mode_of(options.quiet || !team.leads(), options.progress == "machine" && team.leads()),
                     loaded.scenario.released());
   Sitting sitting(options, loaded, part, folder.get(), progress, team);
+  if (!options.quiet && team.leads() && !sitting.store().empty())
+    say("", "going on: " + count_text(sitting.traced()) + " trajectories were kept");
   const Stopwatch::Lap read = watch.lap();
   record.cpu.read = read.cpu;
   record.wall.read = read.wall;

@@ -26,7 +26,7 @@ void stop_interrupted() {
 }
 
 std::string command_to_resume() {
-  std::string again;
+  std::string again = command_line().front().ends_with("-mpi") ? "mpirun ... " : "";
   for (const std::string& word : command_line())
     if (word != "--resume") again += word + " ";
   return again + "--resume";

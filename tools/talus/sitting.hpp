@@ -34,6 +34,8 @@ class Sitting {
   talus::Tally& tally() { return tally_; }
   std::uint32_t rounds_done() const { return simulation_.position().round + (simulation_.round_done() ? 1U : 0U); }
 
+  std::uint64_t traced() const { return simulation_.totals().released; }  ///< by this process, and what was kept
+
   /// Traces all rounds. Throws `Interrupted`, after what is done was kept.
   void trace(int threads, Progress& progress);
   /// What all have traced; at the leader.
