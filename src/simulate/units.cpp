@@ -5,7 +5,7 @@
 namespace talus {
 
 Team& alone() {
-  static Team one;
+  thread_local Team one;  // simulations of several threads must not share its counter
   return one;
 }
 

@@ -88,20 +88,21 @@ class Mpi(RunCase):
             time.sleep(0.02)
         self.fail("nothing was kept")
 
-    def test_interrupted_while_it_writes(self):
-        """A signal to the leader alone, at any time: all end, with 130, or had been done."""
-        for seconds in (0.6, 1.2, 1.6, 2.0):
-            out = f"out{seconds}"
-            process = subprocess.Popen(self.command(2, out), stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
-            time.sleep(seconds)
-            leader = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True).stdout.split()[:1]
-            for pid in leader:
-                os.kill(int(pid), signal.SIGTERM)
+    def test_a_signal_to_the_leader(self):
+        """A signal to the leader alone, in the middle and when it begins to write: all end, with 130, or were done."""
+        self.write("s.toml", RUN.replace("trajectories = 40\n", "trajectories = 400\n"))
+        for percent in (40, 99):
+            out = f"out{percent}"
+            process = subprocess.Popen(self.command(2, out, "--progress=machine"), stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+            self.assertTrue(any(line == f"progress {percent}\n" for line in iter(process.stderr.readline, "")))
+            leader = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True).stdout.split()[0]
+            os.kill(int(leader), signal.SIGTERM)
             error = process.communicate(timeout=60)[1]
-            if process.returncode != 0:
-                self.assertEqual(process.returncode, 130, error)
-                self.assertEqual(error.count("talus: interrupted"), 1, error)
-                self.assertFalse(os.path.exists(self.path(out)))
+            if percent == 99 and process.returncode == 0:
+                continue
+            self.assertEqual(process.returncode, 130, error)
+            self.assertEqual(error.count("talus: interrupted"), 1, error)
+            self.assertFalse(os.path.exists(self.path(out)))
 
     def test_wrong_input_is_said_once(self):
         before = self.shared_names()

@@ -13,6 +13,7 @@
 #include "talus/io/crs.hpp"
 #include "talus/io/loaded.hpp"
 #include "talus/io/run_record.hpp"
+#include "talus/products/expected_cells.hpp"
 #include "talus/simulate/plan.hpp"
 #include "talus/simulate/screens.hpp"
 #include "talus/simulate/tally.hpp"
@@ -162,7 +163,7 @@ void print_estimate(const Scenario& scenario, unsigned threads) {
   RunSize size;
   size.trajectories = all;
   size.grid_cells = static_cast<double>(scenario.surface.grid().cells());
-  size.touched_cells = expected_cells(sample.cells_by_passages, all / traced, size.grid_cells);
+  size.touched_cells = talus::expected_cells(sample.cells_by_passages, all / traced, size.grid_cells);
   size.crossings = static_cast<double>(sample.crossings) * all / traced;
   size.metres_per_path = sample.length / traced;
   size.with_hazard = talus::AnnualWeights::of(scenario).has_value();

@@ -1,7 +1,5 @@
 #pragma once
-#include <cstdint>
 #include <string>
-#include <vector>
 
 #include "talus/simulate/scenario.hpp"
 
@@ -13,17 +11,6 @@ struct RunSize {
   double metres_per_path = 0.0;
   bool with_hazard = false;  ///< annual frequencies are kept
 };
-
-/// How many cells `times` as many trajectories reach as a sample.
-///
-/// The cells that few of the sample reach tell of those that none does. Their rates are taken as gamma distributed, so
-/// that the numbers of passages are negative binomial: its two parameters follow from the ratios of the cells with one,
-/// two and three. Source: Fisher, Corbet and Williams, J. Animal Ecology 12, 1943; Efron and Thisted, Biometrika 63,
-/// 1976.
-///
-/// @param cells  with 0, 1, 2, 3, and 4 or more of the sample
-/// @param most   there are
-double expected_cells(const std::vector<std::uint64_t>& cells, double times, double most);
 
 double bytes_in_memory(const talus::Scenario& scenario, const RunSize& size);  ///< beside the terrain and zones
 double bytes_of_results(const talus::Scenario& scenario, const RunSize& size);

@@ -118,12 +118,14 @@ LoadedScenario load(const RunOptions& options, talus::Team& team) {
 bool is_done(const RunOptions& options, const LoadedScenario& loaded, const talus::Part& part, talus::Team& team) {
   bool done = false;
   together(team, [&] {
-    if (!options.resume || part.whole() || !fs::exists(fs::path(options.out) / talus::io::kStoreManifest)) return;
+    if (!team.leads() || !options.resume || options.overwrite || part.whole() ||
+        !fs::exists(fs::path(options.out) / talus::io::kStoreManifest))
+      return;
     const auto store = talus::io::Store::opened(options.out, loaded, false);
     done = store.part().number == part.number && store.part().of == part.of && store.between_rounds() &&
            store.rounds() == options.rounds.count;
   });
-  return done;
+  return team.largest(done ? 1 : 0) > 0;
 }
 
 std::unique_ptr<OutputFolder> folder_of(const RunOptions& options, const LoadedScenario& loaded, talus::Team& team) {

@@ -40,7 +40,7 @@ class Team {
   std::atomic<std::uint64_t> counter_{0};
 };
 
-/// This process and no other.
+/// This process and no other: of the calling thread, which must live as long as what uses it.
 Team& alone();
 
 }  // namespace talus

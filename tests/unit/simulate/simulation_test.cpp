@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <thread>
+
 #include "../../support/scenarios.hpp"
 
 namespace talus {
@@ -116,6 +118,18 @@ TEST(Simulation, RoundsOfFewAreOneOfMany) {
   }
   EXPECT_EQ(simulation.totals().released, all.released());
   EXPECT_EQ(cells_of(tally), cells_of(whole));  // a source cell counts once in a cell
+}
+
+TEST(Simulation, SeveralAtATimeDoNotDisturbEachOther) {
+  const Scenario s = scenario();
+  Tally expected = tally_of(s);
+  simulate(s, expected, {}, 1);
+  std::vector<Tally> tallies;
+  for (int i = 0; i < 4; ++i) tallies.push_back(tally_of(s));
+  std::vector<std::thread> threads;
+  for (Tally& tally : tallies) threads.emplace_back([&s, &tally] { simulate(s, tally, {}, 1); });
+  for (std::thread& thread : threads) thread.join();
+  for (const Tally& tally : tallies) EXPECT_EQ(cells_of(tally), cells_of(expected));
 }
 
 TEST(Simulation, PartsHoldEverySourceOnce) {
