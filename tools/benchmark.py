@@ -68,13 +68,20 @@ def table(runs, sketches, doubles):
     for n in (10, 100):
         print(f"two threads against one, {n} trajectories: {spread([r[f'run/{n}/1']['wall_s'] / r[f'run/{n}/2']['wall_s'] for r in runs])}x")
     print(f"two sketches at once against one after the other: {spread(doubles)}x")
-    floor = median("floor_walk", "ns_per_plan_m")
+    walk, law, traced = (median(name, "ns_per_plan_m") for name in ("floor_walk", "impact_law", "trace_only"))
+    floor = walk + law
+
+    def row(name, figure, ns):
+        print(f"| {name} | {figure} | {ns:.1f} ns | {ns / floor:.2f} |")
+
     print("| part | figure | per plan metre | x floor |\n| --- | --- | --- | --- |")
-    print(f"| floor: bare walk over the same patches | {median('floor_walk', 'ns_per_patch'):.1f} ns per patch | {floor:.1f} ns | 1 |")
-    traced = median("trace_only", "ns_per_plan_m")
-    print(f"| trace: flight, impacts, slides | {median('trace_only', 'ns_per_patch'):.1f} ns per patch | {traced:.1f} ns | {traced / floor:.1f} |")
-    print(f"| the impact law alone | {median('impact_law', 'ns_per_impact'):.1f} ns per impact | | |")
-    print(f"| scoring alone | {median('score', 'ns_per_cell'):.1f} ns per cell and trajectory | | |")
+    row("bare walk over the same patches", f"{median('floor_walk', 'ns_per_patch'):.1f} ns per patch", walk)
+    row("the impact law alone", f"{median('impact_law', 'ns_per_impact'):.1f} ns per impact", law)
+    row("floor: both", "", floor)
+    row("trace: flight, impacts, slides", f"{median('trace_only', 'ns_per_patch'):.1f} ns per patch", traced)
+    for name in ("run/10/1", "run/100/1"):
+        row(f"full run, {name[4:-2]} trajectories per source, 1 thread", f"{median('score', 'ns_per_cell'):.1f} ns per cell scored",
+            1e3 / median(name, "plan_Mm_per_cpu_s"))
 
 
 def main():

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "effect_fits.hpp"
 
@@ -13,7 +12,6 @@ constexpr std::size_t kContenders = 4;  // whose fits go on: those that gain mos
 constexpr double kWorthNaming = 0.02;   // share of the error that an effect takes away, also from blocks not fitted
 constexpr double kUnfinished = 0.02;    // of the error, that a first fit may still be above its minimum
 constexpr std::size_t kLaterFits = 6;  // after the first round: with an effect in place all takes several times as long
-constexpr std::size_t kOtherPlaces = 2;    // effects that are fitted in a second zone, too: those that gain most
 constexpr std::uint32_t kManyBlocks = 72;  // of fewer, more trials each are tested: a signature is a mean over blocks
 
 double net(const Trial& trial) {
@@ -79,31 +77,26 @@ class Diagnosing {
       // All have been fitted in the first round; from then on those that may be chosen, the most significant first.
       if (!found.empty() && (verdict.p_value >= level || round.trials.size() == kLaterFits)) continue;
       progress_ = std::min(0.95, progress_ + 0.02);
-      round.trials.push_back(fits_.effect(base, verdict, together(campaign_, axis, candidates, verdict.best.members)));
+      const EffectVerdict placed = in_better_zone(base, verdict, candidates);
+      round.trials.push_back(fits_.effect(base, placed, together(campaign_, axis, candidates, placed.best.members)));
     }
-    if (!noise && found.empty()) try_other_zones(base, test, candidates, axis, round.trials);
     if (!noise) compete(base, round.trials, level);
     choose(base, round, noise, found.empty());
     return round;
   }
 
-  /// The test, which is linear, may find a strong effect in the wrong zone: those that gain most are fitted in the
-  /// second best one, too, and stay where they fit better.
-  void try_other_zones(const Fitted& base, const ScoreTest& test, const std::vector<Candidate>& candidates,
-                       const Axis& axis, std::vector<Trial>& trials) {
-    std::vector<std::size_t> order(trials.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return net(trials[a]) > net(trials[b]); });
-    order.resize(std::min(order.size(), kOtherPlaces));
-    for (const std::size_t i : order) {
-      EffectVerdict verdict = test.effects[i];
-      const bool in_zone = trials[i].where == "everywhere" || trials[i].where.starts_with("zone ");
-      if (!in_zone || verdict.second.members.empty() || verdict.second.p_value > options_.later_level) continue;
-      verdict.best = verdict.second;
-      Trial other = fits_.effect(base, verdict, together(campaign_, axis, candidates, verdict.best.members));
-      if (other.fitted.score.total < trials[i].fitted.score.total) trials[i] = std::move(other);
-    }
+  /// The test, which is linear, may find a strong effect in the wrong zone: where the second best one is significant,
+  /// too, a look at both decides.
+  EffectVerdict in_better_zone(const Fitted& base, const EffectVerdict& verdict,
+                               const std::vector<Candidate>& candidates) const {
+    EffectVerdict placed = verdict;
+    if (verdict.second.members.empty() || verdict.second.p_value > options_.later_level) return placed;
+    const Candidate& first = candidates[verdict.best.members.front()];
+    const Candidate& second = candidates[verdict.second.members.front()];
+    const bool in_zone = first.where == "everywhere" || first.where.starts_with("zone ");
+    if (in_zone && fits_.promise(base, verdict.second, second) < fits_.promise(base, verdict.best, first))
+      placed.best = verdict.second;
+    return placed;
   }
 
   /// The fits of those go on that may be chosen and gain most, or could yet.

@@ -89,10 +89,22 @@ Fitted EffectFits::ground(const Model& start) const {
   return finish(std::move(fit), std::move(free));
 }
 
+/// A model without any of the effect, to which amounts of it may be added.
+Model EffectFits::without(const Fitted& base, const Candidate& candidate) {
+  return with(base.model, candidate, VectorXd::Zero(std::ssize(candidate.parameters)));
+}
+
+double EffectFits::promise(const Fitted& base, const Verdict& verdict, const Candidate& candidate) const {
+  std::vector<Parameter> free = base.free;
+  free.insert(free.end(), candidate.parameters.begin(), candidate.parameters.end());
+  const Model off = without(base, candidate);
+  return scan({campaign_, off, free, rows_}, fitting(), base, candidate, verdict).objective;
+}
+
 /// The best of some places to start from: the effect in several amounts, each with the ground as it is and moved as the
 /// score test expects it to. An amount of zero, the base itself, is one of them.
-VectorXd EffectFits::scan(const FitProblem& problem, const FitOptions& how, const Fitted& base,
-                          const Candidate& candidate, const Verdict& verdict) const {
+Evaluation EffectFits::scan(const FitProblem& problem, const FitOptions& how, const Fitted& base,
+                            const Candidate& candidate, const Verdict& verdict) const {
   const VectorXd effect = start_of(candidate, verdict);
   const Index ground = std::ssize(problem.free) - effect.size();
   const double share = std::clamp(effect[0] / std::max(1e-9, kNoticed * std::abs(verdict.estimate[0])), 0.0, 1.0);
@@ -108,7 +120,7 @@ VectorXd EffectFits::scan(const FitProblem& problem, const FitOptions& how, cons
       Evaluation here = evaluate(problem, how, z, {how.trials});
       if (here.objective < best.objective) best = std::move(here);
     }
-  return best.z;
+  return best;
 }
 
 void EffectFits::adopt(Fitted&& fitted, Trial& trial) {
@@ -143,8 +155,8 @@ Trial EffectFits::effect(const Fitted& base, const EffectVerdict& verdict, const
   how.rounds = 2;
   how.enough = kWorthARound;
   how.design = trial.joint ? 4 * static_cast<int>(free.size()) : 20;
-  const Model off = with(base.model, candidate, VectorXd::Zero(added));
-  const VectorXd z = scan({campaign_, off, free, rows_}, how, base, candidate, verdict.best);
+  const Model off = without(base, candidate);
+  const VectorXd z = scan({campaign_, off, free, rows_}, how, base, candidate, verdict.best).z;
   std::vector<Evaluation> known;
   if (trial.joint) known = without_effect(base.tried, added);
   how.known = known;

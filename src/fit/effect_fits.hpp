@@ -19,6 +19,8 @@ class EffectFits {
   /// An effect at its best place, from what the score test expects of it; with the ground where the test finds anything
   /// in it.
   Trial effect(const Fitted& base, const EffectVerdict& verdict, const Candidate& candidate) const;
+  /// The least objective that a look at some amounts of an effect finds, to compare its places.
+  double promise(const Fitted& base, const Verdict& verdict, const Candidate& candidate) const;
   /// Goes on with the fit of an effect that is among the best.
   void go_on(const Fitted& base, Trial& trial) const;
   /// Fits what was chosen once more, with more trials: it is what the user gets.
@@ -34,8 +36,9 @@ class EffectFits {
   Fitted refined(const Fitted& fitted, FitOptions how) const;
   static void adopt(Fitted&& fitted, Trial& trial);
   void compare(const Fitted& base, Trial& trial) const;
-  Eigen::VectorXd scan(const FitProblem& problem, const FitOptions& how, const Fitted& base, const Candidate& candidate,
-                       const Verdict& verdict) const;
+  static Model without(const Fitted& base, const Candidate& candidate);
+  Evaluation scan(const FitProblem& problem, const FitOptions& how, const Fitted& base, const Candidate& candidate,
+                  const Verdict& verdict) const;
   std::vector<std::size_t> shuffled_rows() const;
 
   const Campaign& campaign_;

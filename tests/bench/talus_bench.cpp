@@ -138,6 +138,7 @@ void impact_law(benchmark::State& state) {
       }
     }
   per(state, "ns_per_impact", s.impacts);
+  per(state, "ns_per_plan_m", static_cast<std::uint64_t>(s.plan_length));
 }
 
 /// Scoring alone: paths into the tally.

@@ -39,6 +39,8 @@ class Parts(RunCase):
         self.fails(2, "1 of 2 parts are given, part 2 is the first", arguments=["merge", self.path("m"), one])
         self.fails(2, "give each part once", arguments=["merge", self.path("m"), one, one])
         self.fails(2, "is no part of a run", arguments=["merge", self.path("m"), self.folder, one])
+        empty = self.run_well("run", self.path("s.toml"), "-o", self.path("empty"), "--part", "1/99999")
+        self.assertIn("is empty: the plan has", empty.stderr)
         self.run_scenario("other", "--part", "2/2", "--seed", "9")
         self.fails(2, "another plan", arguments=["merge", self.path("m"), one, self.path("other")])
         self.run_scenario("rounds", "--part", "2/2", "--rounds", "2")

@@ -168,6 +168,9 @@ int run(const RunOptions& options, talus::Team& team) {
   const std::unique_ptr<OutputFolder> folder = folder_of(options, loaded, team);
   if (!options.quiet && team.leads())
     for (const std::string& warning : loaded.warnings) say("warning", warning);
+  const std::size_t sources = loaded.scenario.sources.size();
+  if (!options.quiet && team.leads() && part.first(sources) == part.end(sources))
+    say("warning", "--part " + options.part + " is empty: the plan has " + count_text(sources) + " source cells");
 
   talus::io::RunRecord record;
   record.command = command_line();
