@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t kContenders = 4;  // whose fits go on: those that gain most
 constexpr double kWorthNaming = 0.02;   // share of the error that an effect takes away, also from blocks not fitted
+constexpr double kNothing = 0.1;        // of what one would notice: so little of an effect explains nothing
 constexpr double kUnfinished = 0.02;    // of the error, that a first fit may still be above its minimum
 constexpr std::size_t kLaterFits = 6;  // after the first round: with an effect in place all takes several times as long
 constexpr std::uint32_t kManyBlocks = 72;  // of fewer, more trials each are tested: a signature is a mean over blocks
@@ -29,12 +30,13 @@ class Diagnosing {
 
   Diagnosis run(const Model& start) {
     Diagnosis d;
-    d.base = fits_.ground(start);
-    d.with_effects = d.base;
+    d.with_effects = fits_.ground(start);
     std::vector<std::string> found;
     for (int round = 0; round <= options_.most_effects; ++round) {
       const double level = round == 0 ? options_.first_level : options_.later_level;
-      d.rounds.push_back(turn(d.with_effects, found, level, round < options_.most_effects));
+      Fitted base = d.with_effects;
+      d.rounds.push_back(turn(base, found, level, round < options_.most_effects));
+      if (round == 0) d.base = d.with_effects = base;
       const Round& last = d.rounds.back();
       if (last.effect == "none" || last.effect == "unexplained") break;
       found.push_back(last.effect);
@@ -54,7 +56,8 @@ class Diagnosing {
     return residual_table(campaign_, ResidualSpace(campaign_, fitted.fitting), rows_);
   }
 
-  Round turn(const Fitted& base, const std::vector<std::string>& found, double level, bool more) {
+  /// @param base  what has been found so far; better fitted afterwards where the competition finds that it can be
+  Round turn(Fitted& base, const std::vector<std::string>& found, double level, bool more) {
     Round round;
     round.residual = residual_of(base);
     progress_ += 0.1;
@@ -99,8 +102,9 @@ class Diagnosing {
     return placed;
   }
 
-  /// The fits of those go on that may be chosen and gain most, or could yet.
-  void compete(const Fitted& base, std::vector<Trial>& trials, double level) {
+  /// The fits of those go on that may be chosen and gain most, or could yet; and that of the base, so that an effect
+  /// does not gain what the ground alone would have.
+  void compete(Fitted& base, std::vector<Trial>& trials, double level) {
     std::vector<Trial*> contenders;
     for (Trial& t : trials)
       if (t.p_value < level) contenders.push_back(&t);
@@ -114,9 +118,13 @@ class Diagnosing {
     contenders.erase(std::remove_if(contenders.begin(), contenders.end(), behind), contenders.end());
     for (Trial* t : contenders) {
       progress_ = std::min(0.95, progress_ + 0.02);
-      fits_.go_on(base, *t);
+      fits_.go_on(*t);
     }
-    const double before = contenders.empty() ? 0.0 : fits_.cross_validated(base);
+    if (contenders.empty()) return;
+    Fitted longer = fits_.went_on(base);
+    if (longer.score.total < base.score.total) base = std::move(longer);
+    for (Trial& t : trials) fits_.compare(base, t);
+    const double before = fits_.cross_validated(base);
     for (Trial* t : contenders) t->cross_validated = before - fits_.cross_validated(t->fitted);
   }
 
@@ -150,16 +158,20 @@ class Diagnosing {
     count_choices(base, round.trials);
     const double worth = kWorthNaming * base.score.total;
     const auto may = [&](const Trial& t) {
-      return t.gain > worth && t.unseen_gain() > worth && (first || net(t) > 0.0);
+      return t.amount > kNothing && t.gain > worth && t.unseen_gain() > worth && (first || net(t) > 0.0);
     };
     std::stable_sort(round.trials.begin(), round.trials.end(), [&](const Trial& a, const Trial& b) {
       if (may(a) != may(b)) return may(a);
       return may(a) ? a.unseen_gain() > b.unseen_gain() : net(a) > net(b);
     });
-    if (noise || round.trials.empty() || !may(round.trials.front())) {
+    const auto chosen = std::find_if(round.trials.begin(), round.trials.end(), [&](const Trial& t) {
+      return !noise && may(t) && fits_.confirmed(base, t, worth);
+    });
+    if (chosen == round.trials.end()) {
       round.effect = what_is_left(round);
       return;
     }
+    std::rotate(round.trials.begin(), chosen, chosen + 1);
     const Trial& best = round.trials.front();
     round.effect = best.effect;
     round.where = best.where;

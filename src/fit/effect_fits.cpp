@@ -15,9 +15,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t kFolds = 5;
-constexpr double kWorthASearch = 0.1;   // p of the score test
-constexpr double kPrice = 0.56;         // by which one more fitted number must lower the error, times fitting blocks
-constexpr double kWorthARound = 0.002;  // of the objective, by one round of the quadratic model
+constexpr double kWorthASearch = 0.1;     // p of the score test
+constexpr double kPrice = 0.56;           // by which one more fitted number must lower the error, times fitting blocks
+constexpr std::uint32_t kConfirming = 4;  // times as many trials as the scores
+constexpr double kWorthARound = 0.002;    // of the objective, by one round of the quadratic model
 
 /// Where the search of a candidate starts: the estimate of the score test, kept within reason.
 VectorXd start_of(const Candidate& candidate, const Verdict& verdict) {
@@ -127,9 +128,10 @@ void EffectFits::adopt(Fitted&& fitted, Trial& trial) {
   trial.fitted = std::move(fitted);
   trial.values.clear();
   for (const Parameter& p : trial.parameters) trial.values.push_back(p.get(trial.fitted.model));
+  const auto own = std::ssize(trial.parameters);
+  trial.amount = trial.fitted.z.tail(own).head(static_cast<Index>(trial.tested)).cwiseAbs().maxCoeff() / kNoticed;
 }
 
-/// What the fit of a trial gained.
 void EffectFits::compare(const Fitted& base, Trial& trial) const {
   const Difference c = difference(base.score, trial.fitted.score, campaign_.blocks.size());
   trial.gain = -c.mean;
@@ -143,6 +145,7 @@ Trial EffectFits::effect(const Fitted& base, const EffectVerdict& verdict, const
   trial.p_value = verdict.p_value;
   trial.statistic = verdict.best.statistic;
   trial.parameters = candidate.parameters;
+  trial.tested = candidate.tested;
   const auto asked = static_cast<double>(std::count(rows_.begin(), rows_.end(), true));
   trial.price = kPrice * (static_cast<double>(candidate.parameters.size()) + candidate.searched) / asked;
   trial.place_price = kPrice * candidate.searched / asked;
@@ -175,13 +178,16 @@ Fitted EffectFits::refined(const Fitted& fitted, FitOptions how) const {
   return finish(fit_parameters(campaign_, fitted.model, fitted.free, rows_, how), fitted.free);
 }
 
-void EffectFits::go_on(const Fitted& base, Trial& trial) const {
+FitOptions EffectFits::going_on(const Fitted& fitted) const {
   FitOptions how = fitting();
   how.rounds = 3;
   how.enough = kWorthARound;
-  how.design = 6 * static_cast<int>(trial.fitted.free.size());
-  adopt(refined(trial.fitted, how), trial);
-  compare(base, trial);
+  how.design = 6 * static_cast<int>(fitted.free.size());
+  return how;
+}
+
+void EffectFits::go_on(Trial& trial) const {
+  adopt(refined(trial.fitted, going_on(trial.fitted)), trial);
 }
 
 void EffectFits::polish(Trial& trial) const {
@@ -206,7 +212,7 @@ std::vector<std::size_t> EffectFits::shuffled_rows() const {
   return order;
 }
 
-double EffectFits::cross_validated(const Fitted& fitted) const {
+double EffectFits::cross_validated(const Fitted& fitted, ObserveOptions how) const {
   const std::vector<std::size_t> order = shuffled_rows();
   const FitProblem problem{campaign_, fitted.model, fitted.free, rows_};
   const FitOptions options = fitting();
@@ -219,7 +225,6 @@ double EffectFits::cross_validated(const Fitted& fitted) const {
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     if (!proceed_()) throw FitInterrupted{};
     std::vector<double> others(runs.size(), 1.0);
-    ObserveOptions how = observing(options_.final_trials);
     how.blocks.assign(runs.size(), false);
     for (std::size_t i = fold; i < order.size(); i += kFolds) {
       others[order[i]] = 0.0;
@@ -230,6 +235,16 @@ double EffectFits::cross_validated(const Fitted& fitted) const {
     for (std::size_t i = fold; i < order.size(); i += kFolds) runs[order[i]] = std::move(seen[order[i]]);
   }
   return score(campaign_, runs, rows_).total;
+}
+
+bool EffectFits::confirmed(const Fitted& base, const Trial& trial, double worth) const {
+  ObserveOptions fresh = observing(kConfirming * options_.final_trials);
+  fresh.first_trial += kConfirming * options_.final_trials;  // after those that `observing` sees
+  const auto error = [&](const Fitted& fitted) {
+    return score(campaign_, observe(campaign_, fitted.model, fresh), rows_).total;
+  };
+  if (error(base) - error(trial.fitted) < worth) return false;
+  return cross_validated(base, fresh) - cross_validated(trial.fitted, fresh) - trial.place_price >= worth;
 }
 
 }  // namespace talus

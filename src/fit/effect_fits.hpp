@@ -22,20 +22,30 @@ class EffectFits {
   /// The least objective that a look at some amounts of an effect finds, to compare its places.
   double promise(const Fitted& base, const Verdict& verdict, const Candidate& candidate) const;
   /// Goes on with the fit of an effect that is among the best.
-  void go_on(const Fitted& base, Trial& trial) const;
+  void go_on(Trial& trial) const;
+  /// The same of the base, which competes with the effects: it must have been looked for as long as they.
+  Fitted went_on(const Fitted& base) const { return refined(base, going_on(base)); }
+  /// What the fit of a trial gained.
+  void compare(const Fitted& base, Trial& trial) const;
   /// Fits what was chosen once more, with more trials: it is what the user gets.
   void polish(Trial& trial) const;
   /// The error of a model on blocks that its fit has not seen: five folds, each of them simulated with the model that
   /// is best for the others, which is the minimum of the quadratic model of their rows.
-  double cross_validated(const Fitted& fitted) const;
+  double cross_validated(const Fitted& fitted) const {
+    return cross_validated(fitted, observing(options_.final_trials));
+  }
+  /// Whether a trial gains so much on luck that nothing was chosen by, on its rows and in cross-validation: of several
+  /// effects the best one was lucky, too.
+  bool confirmed(const Fitted& base, const Trial& trial, double worth) const;
 
  private:
   ObserveOptions observing(std::uint32_t trials) const;
+  FitOptions going_on(const Fitted& fitted) const;
+  double cross_validated(const Fitted& fitted, ObserveOptions how) const;
   FitOptions fitting() const;
   Fitted finish(Fit&& fit, std::vector<Parameter> free) const;
   Fitted refined(const Fitted& fitted, FitOptions how) const;
   static void adopt(Fitted&& fitted, Trial& trial);
-  void compare(const Fitted& base, Trial& trial) const;
   static Model without(const Fitted& base, const Candidate& candidate);
   Evaluation scan(const FitProblem& problem, const FitOptions& how, const Fitted& base, const Candidate& candidate,
                   const Verdict& verdict) const;

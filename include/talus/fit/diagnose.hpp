@@ -19,6 +19,7 @@ struct Fitted {
 struct Trial {
   std::string effect, where;
   std::vector<Parameter> parameters;  ///< its own
+  std::size_t tested = 0;             ///< the first of them: zero of these is none of the effect
   std::vector<double> values;         ///< of them, fitted
   bool joint = true;                  ///< false: the ground was held, because the test found nothing (p above 0.1)
   double p_value = 1.0;               ///< of the score test, corrected for its places
@@ -29,6 +30,7 @@ struct Trial {
   double place_price = 0.0;           ///< that of its place alone, which was chosen by all blocks
   double cross_validated =
       kNotGiven;              ///< by which it lowers that of blocks its fit has not seen; NaN where it was not asked
+  double amount = 0.0;        ///< of it, fitted, in units of what one would notice: the largest of those tested
   double chosen_share = 0.0;  ///< of the bootstraps in which it has the lowest error of all
   Fitted fitted;
 
