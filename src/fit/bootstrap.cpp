@@ -18,12 +18,11 @@ std::vector<double> weighted_groups(const Score& score, std::span<const double> 
   return sum;
 }
 
-double mean_of_finite(std::span<const double> values) {
-  double sum = 0.0;
-  int count = 0;
-  for (const double value : values)
-    if (!std::isnan(value)) sum += value, ++count;
-  return count > 0 ? sum / count : kNotGiven;
+double total_of(const Score& score, std::span<const double> groups) {
+  double sum = 0.0, weights = 0.0;
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    if (!std::isnan(groups[g])) sum += score.groups[g].weight * groups[g], weights += score.groups[g].weight;
+  return weights > 0.0 ? sum / weights : kNotGiven;
 }
 
 Interval middle(std::vector<double> values) {
@@ -36,7 +35,7 @@ Interval middle(std::vector<double> values) {
 }  // namespace
 
 double weighted_total(const Score& score, std::span<const double> weight) {
-  return mean_of_finite(weighted_groups(score, weight));
+  return total_of(score, weighted_groups(score, weight));
 }
 
 std::vector<double> bootstrap_weights(const Score& score, std::size_t blocks, std::uint32_t draw, std::uint64_t seed) {
@@ -58,7 +57,7 @@ ScoreIntervals bootstrap(const Score& score, std::size_t blocks, std::uint32_t d
   std::vector<std::vector<double>> groups(score.groups.size());
   for (std::uint32_t draw = 0; draw < draws; ++draw) {
     const std::vector<double> values = weighted_groups(score, bootstrap_weights(score, blocks, draw, seed));
-    totals.push_back(mean_of_finite(values));
+    totals.push_back(total_of(score, values));
     for (std::size_t g = 0; g < values.size(); ++g) groups[g].push_back(values[g]);
   }
   ScoreIntervals intervals{middle(std::move(totals)), {}};

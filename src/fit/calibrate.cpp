@@ -98,7 +98,7 @@ class Search {
 
   Score score_of(const Model& model) const {
     const ObserveOptions how{options_.comparison_trials, options_.seed, 0, options_.threads, problem_.rows, {}};
-    return score(problem_.campaign, observe(problem_.campaign, model, how), problem_.rows);
+    return weigh_groups(score(problem_.campaign, observe(problem_.campaign, model, how), problem_.rows));
   }
 
   /// Where the model that it starts from is.
@@ -241,8 +241,8 @@ Evaluation evaluate(const FitProblem& problem, const FitOptions& options, const 
                     const Trials& trials) {
   const ObserveOptions how{trials.count, options.seed, trials.first, options.threads, problem.rows, {}};
   const Model model = model_at(problem.start, problem.free, z);
-  const Score s =
-      score(problem.campaign, observe(problem.campaign, model, how), problem.rows, fewest_simulated_of(trials.count));
+  const Score s = weigh_groups(
+      score(problem.campaign, observe(problem.campaign, model, how), problem.rows, fewest_simulated_of(trials.count)));
   Evaluation evaluation{z, Eigen::VectorXd(std::ssize(s.rows)), trials.count, s.total};
   for (std::size_t r = 0; r < s.rows.size(); ++r) evaluation.rows[static_cast<Eigen::Index>(r)] = s.rows[r].score;
   evaluation.objective += problem.prior(options) * z.squaredNorm();

@@ -112,7 +112,7 @@ class Diagnosing {
                      [](const Trial* a, const Trial* b) { return net(*a) > net(*b); });
     contenders.resize(std::min(contenders.size(), kContenders));
     const auto behind = [&](const Trial* t) {
-      const Score &best = contenders.front()->fitted.score, &own = t->fitted.score;
+      const Score &best = contenders.front()->fitted.objective, &own = t->fitted.objective;
       return difference(best, own, campaign_.blocks.size()).interval.low > kUnfinished;
     };
     contenders.erase(std::remove_if(contenders.begin(), contenders.end(), behind), contenders.end());
@@ -122,7 +122,7 @@ class Diagnosing {
     }
     if (contenders.empty()) return;
     Fitted longer = fits_.went_on(base);
-    if (longer.score.total < base.score.total) base = std::move(longer);
+    if (longer.objective.total < base.objective.total) base = std::move(longer);
     for (Trial& t : trials) fits_.compare(base, t);
     const double before = fits_.cross_validated(base);
     for (Trial* t : contenders) t->cross_validated = before - fits_.cross_validated(t->fitted);
@@ -140,7 +140,7 @@ class Diagnosing {
     std::vector<Difference> all;
     all.reserve(trials.size());
     for (const Trial& t : trials) {
-      all.push_back(difference(base.score, t.fitted.score, campaign_.blocks.size()));
+      all.push_back(difference(base.objective, t.fitted.objective, campaign_.blocks.size()));
       for (double& draw : all.back().draws) draw += t.price;
     }
     if (all.empty()) return;
@@ -156,7 +156,7 @@ class Diagnosing {
   /// @param first  of the rounds: later ones ask for more, because the form of what is in is itself a guess
   void choose(const Fitted& base, Round& round, bool noise, bool first) {
     count_choices(base, round.trials);
-    const double worth = kWorthNaming * base.score.total;
+    const double worth = kWorthNaming * base.objective.total;
     const auto may = [&](const Trial& t) {
       return t.amount > kNothing && t.gain > worth && t.unseen_gain() > worth && (first || net(t) > 0.0);
     };
@@ -178,7 +178,7 @@ class Diagnosing {
     for (std::size_t i = 1; i < round.trials.size(); ++i) {
       const Trial& other = round.trials[i];
       if (!may(other)) continue;
-      const Difference c = difference(other.fitted.score, best.fitted.score, campaign_.blocks.size());
+      const Difference c = difference(other.fitted.objective, best.fitted.objective, campaign_.blocks.size());
       if (c.interval.high > 0.0) round.alike.push_back(other.effect);
     }
   }

@@ -72,6 +72,7 @@ Fitted EffectFits::finish(Fit&& fit, std::vector<Parameter> free) const {
   Fitted out;
   out.fitting = observe(campaign_, fit.model, observing(options_.final_trials));
   out.score = score(campaign_, out.fitting, rows_);
+  out.objective = weigh_groups(out.score);
   out.model = std::move(fit.model);
   out.free = std::move(free);
   out.z = std::move(fit.z);
@@ -133,7 +134,7 @@ void EffectFits::adopt(Fitted&& fitted, Trial& trial) {
 }
 
 void EffectFits::compare(const Fitted& base, Trial& trial) const {
-  const Difference c = difference(base.score, trial.fitted.score, campaign_.blocks.size());
+  const Difference c = difference(base.objective, trial.fitted.objective, campaign_.blocks.size());
   trial.gain = -c.mean;
   trial.gain_interval = {-c.interval.high, -c.interval.low};
 }
@@ -196,7 +197,7 @@ void EffectFits::polish(Trial& trial) const {
   how.comparison_trials *= 2;
   how.rounds = 2;
   Fitted longer = refined(trial.fitted, how);
-  if (longer.score.total < trial.fitted.score.total) adopt(std::move(longer), trial);
+  if (longer.objective.total < trial.fitted.objective.total) adopt(std::move(longer), trial);
 }
 
 /// The fitting rows in a random order: neighbours in the file are often of one day or one kind.
@@ -218,7 +219,7 @@ double EffectFits::cross_validated(const Fitted& fitted, ObserveOptions how) con
   const FitOptions options = fitting();
   Fit fit;
   fit.z = fitted.z;
-  fit.score = fitted.score;
+  fit.score = fitted.objective;
   fit.evaluations = fitted.tried;
   const LocalModel local(problem, options, fit, fitted.spread);
   std::vector<BlockRuns> runs(campaign_.blocks.size());
@@ -234,14 +235,14 @@ double EffectFits::cross_validated(const Fitted& fitted, ObserveOptions how) con
     std::vector<BlockRuns> seen = observe(campaign_, model, how);
     for (std::size_t i = fold; i < order.size(); i += kFolds) runs[order[i]] = std::move(seen[order[i]]);
   }
-  return score(campaign_, runs, rows_).total;
+  return weigh_groups(score(campaign_, runs, rows_)).total;
 }
 
 bool EffectFits::confirmed(const Fitted& base, const Trial& trial, double worth) const {
   ObserveOptions fresh = observing(kConfirming * options_.final_trials);
   fresh.first_trial += kConfirming * options_.final_trials;  // after those that `observing` sees
   const auto error = [&](const Fitted& fitted) {
-    return score(campaign_, observe(campaign_, fitted.model, fresh), rows_).total;
+    return weigh_groups(score(campaign_, observe(campaign_, fitted.model, fresh), rows_)).total;
   };
   if (error(base) - error(trial.fitted) < worth) return false;
   return cross_validated(base, fresh) - cross_validated(trial.fitted, fresh) - trial.place_price >= worth;

@@ -18,15 +18,19 @@ constexpr double kTrust = 2.0;    // a step stays within so many standard deviat
 constexpr double kNoise = 0.007;  // typical of a total: what the ridge starts from
 constexpr double kCurved = 0.03, kTwisted = 0.01;  // typical second derivatives per unit of the spread, for the ridge
 
-/// Weight of each row in the total, for weights of the blocks: the mean over the groups of weighted means.
+/// Weight of each row in the total, for weights of the blocks: the weighted mean over the groups of weighted means.
 Eigen::VectorXd row_weights(const Score& score, std::span<const double> block) {
   std::vector<double> total(score.groups.size(), 0.0);
   for (const RowScore& row : score.rows) total[row.group] += block[row.block];
-  const auto groups = static_cast<double>(std::count_if(total.begin(), total.end(), [](double t) { return t > 0.0; }));
-  Eigen::VectorXd weights(std::ssize(score.rows));
+  double groups = 0.0;
+  for (std::size_t g = 0; g < total.size(); ++g)
+    if (total[g] > 0.0) groups += score.groups[g].weight;
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(std::ssize(score.rows));
   for (std::size_t r = 0; r < score.rows.size(); ++r) {
     const RowScore& row = score.rows[r];
-    weights[static_cast<Eigen::Index>(r)] = total[row.group] > 0.0 ? block[row.block] / total[row.group] / groups : 0.0;
+    if (total[row.group] > 0.0)
+      weights[static_cast<Eigen::Index>(r)] =
+          score.groups[row.group].weight * block[row.block] / total[row.group] / groups;
   }
   return weights;
 }

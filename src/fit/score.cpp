@@ -7,6 +7,8 @@
 namespace talus {
 namespace {
 
+constexpr double kHalfWeight = 10.0;  // rows with which a group counts half in a fit
+
 double mean_of(std::span<const double> values) {
   double sum = 0.0;
   for (const double value : values) sum += value;
@@ -218,6 +220,17 @@ double fair_energy_score(std::span<const Eigen::Vector2d> simulated, const Eigen
 Score score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
             std::size_t fewest_simulated) {
   return Scorer(campaign, runs, ask, fewest_simulated).result();
+}
+
+Score weigh_groups(Score score) {
+  double sum = 0.0, weights = 0.0;
+  for (GroupScore& group : score.groups) {
+    group.weight = group.rows / (group.rows + kHalfWeight);
+    sum += group.weight * group.score;
+    weights += group.weight;
+  }
+  if (!score.groups.empty()) score.total = sum / weights;
+  return score;
 }
 
 std::size_t fewest_simulated_of(std::uint32_t trials) {

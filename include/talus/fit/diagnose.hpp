@@ -11,6 +11,7 @@ struct Fitted {
   Eigen::VectorXd z;               ///< of the free parameters
   std::vector<BlockRuns> fitting;  ///< of the fitting rows, on luck that the search has not seen
   Score score;                     ///< of those
+  Score objective;                 ///< the same, as the fit weighs it: what effects are chosen by
   Eigen::MatrixXd spread;          ///< covariance of z within which the objective is nearly as good
   std::vector<Evaluation> tried;   ///< by its fit and those before: what the next one learns from
 };

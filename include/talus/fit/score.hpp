@@ -24,9 +24,10 @@ double fair_energy_score(std::span<const Eigen::Vector2d> simulated, const Eigen
 
 /// What is compared: one quantity at one place.
 struct GroupScore {
-  std::string name;    ///< "stop", "mass", "crossed S1", "speed S1", "jump S1", "spin S1", "sample speed", ...
-  double score;        ///< mean over its rows, as a share of the spread of the fitting rows [-]
-  std::uint32_t rows;  ///< measurements that were scored: blocks
+  std::string name;     ///< "stop", "mass", "crossed S1", "speed S1", "jump S1", "spin S1", "sample speed", ...
+  double score;         ///< mean over its rows, as a share of the spread of the fitting rows [-]
+  std::uint32_t rows;   ///< measurements that were scored: blocks
+  double weight = 1.0;  ///< in the total
 };
 
 /// The score of one block in one group.
@@ -37,7 +38,7 @@ struct RowScore {
 };
 
 struct Score {
-  double total = kNotGiven;  ///< mean over the groups; NaN where there is none
+  double total = kNotGiven;  ///< weighted mean over the groups; NaN where there is none
   std::vector<GroupScore> groups;
   std::vector<RowScore> rows;  ///< ordered by group, then by block
 };
@@ -55,6 +56,12 @@ inline constexpr std::size_t kFewestRows = 5;
 /// Spreads, p and the climatology come from the fitting rows (holdout = false) alone, whatever `ask` is.
 Score score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
             std::size_t fewest_simulated = kFewestSimulated);
+
+/// The same with groups of n rows that count n / (n + 10): what a fit minimises. The mean of a group tells of its
+/// quantity, with a variance that all groups have, and of the luck of its rows, with one that falls with n. In the
+/// error all groups count alike, and five rows at a far screen would rule the search. docs/closing-the-loop.md,
+/// "Objective".
+Score weigh_groups(Score score);
 
 /// The fewest simulated values for a row in a search with so many trials: a tenth of them, as ten of a hundred are.
 /// With ten whatever the trials, a search with few would not see what only some of them reach.

@@ -94,6 +94,31 @@ TEST(LocalModel, StepsToTheMinimumOfABowl) {
   EXPECT_NEAR(model.step(narrow).x(), 0.72, 1e-9);
 }
 
+/// Two groups whose rows want to be at 1 and at 0, thirty of them and ten: the optimum is where the weights of the
+/// groups put it, for the weights that a fit gives them and for equal ones.
+TEST(LocalModel, GroupsPullByTheirWeights) {
+  const Campaign c = campaign_on_slope(30);
+  const Model start = model_of_slope();
+  const std::vector<Parameter> free{two_parameters(c, start).front()};
+  const std::vector<bool> rows = fitting_rows(c);
+  const FitProblem problem{c, start, free, rows};
+  FitOptions options;
+  options.prior_weight = 0.0;
+  const Eigen::MatrixXd spread = Eigen::MatrixXd::Constant(1, 1, 0.25);
+  Fit fit;
+  fit.z = Eigen::VectorXd::Constant(1, 0.5);
+  fit.score.groups = {{"stop", 1.0, 30}, {"speed S", 1.0, 10}};
+  for (std::uint32_t row = 0; row < 40; ++row) fit.score.rows.push_back({row / 30, row % 30, 1.0});
+  for (const Eigen::VectorXd& z : LocalModel::design(problem, 1, fit.z, spread, 40, 0)) {
+    Eigen::VectorXd values(40);
+    for (Eigen::Index row = 0; row < 40; ++row) values[row] = std::pow(z[0] - (row < 30 ? 1.0 : 0.0), 2.0);
+    fit.evaluations.push_back({z, values, options.trials, 0.0});
+  }
+  EXPECT_NEAR(LocalModel(problem, options, fit, spread).step(spread)[0], 0.5, 1e-4);
+  fit.score = weigh_groups(fit.score);  // 30/40 and 10/20
+  EXPECT_NEAR(LocalModel(problem, options, fit, spread).step(spread)[0], 0.6, 1e-4);
+}
+
 /// With one value in ten, the rows of a search with few trials count as those of one with many do.
 TEST(FewestSimulated, ATenthOfTheTrials) {
   EXPECT_EQ(fewest_simulated_of(10), 2U);

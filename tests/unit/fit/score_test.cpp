@@ -224,6 +224,20 @@ TEST_F(Scores, EqualWeightsGiveTheTotalAndTheBootstrapHoldsIt) {
   for (std::size_t b = 2; b < 24; b += 3) EXPECT_EQ(w[b], 0.0);  // held out: not drawn
 }
 
+/// Groups of 30 and 10 rows with errors of 0.4 and 0.8 count 30/40 and 10/20: (0.3 + 0.4) / 1.25. The rows stay as they
+/// are, and equal weights of the blocks give the total again.
+TEST(WeighGroups, ByWhatTheirRowsTell) {
+  Score s;
+  s.groups = {{"stop", 0.4, 30}, {"speed S", 0.8, 10}};
+  for (std::uint32_t row = 0; row < 40; ++row) s.rows.push_back({row / 30, row % 30, row < 30 ? 0.4 : 0.8});
+  const Score weighed = weigh_groups(s);
+  EXPECT_NEAR(weighed.total, 0.56, 1e-12);
+  EXPECT_NEAR(weighted_total(weighed, std::vector<double>(30, 1.0)), 0.56, 1e-12);
+  EXPECT_NEAR(weighted_total(s, std::vector<double>(30, 1.0)), 0.6, 1e-12);
+  EXPECT_EQ(weighed.rows.size(), 40U);
+  EXPECT_TRUE(std::isnan(weigh_groups({}).total));
+}
+
 /// The standard error of a mean of normal values is known: the percentile interval must be near 2 x 1.96 of it.
 TEST(Bootstrap, WidthOfTheIntervalOfAMean) {
   Numbers numbers(12);
