@@ -88,7 +88,7 @@ Fitted EffectFits::ground(const Model& start) const {
   how.trials *= 2;
   how.comparison_trials *= 2;
   Fit fit = fit_parameters(campaign_, start, free, rows_, how);
-  return finish(std::move(fit), std::move(free));
+  return went_on(finish(std::move(fit), std::move(free)));
 }
 
 /// A model without any of the effect, to which amounts of it may be added.
