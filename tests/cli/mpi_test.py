@@ -94,8 +94,7 @@ class Mpi(RunCase):
         for percent in (40, 99):
             out = f"out{percent}"
             process = subprocess.Popen(self.command(2, out, "--progress=machine"), stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
-            lines = iter(process.stderr.readline, "")
-            self.assertTrue(any(line.startswith("progress ") and int(line.split()[1]) >= percent for line in lines))
+            self.wait_for_progress(process, percent)
             leader = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True).stdout.split()[0]
             os.kill(int(leader), signal.SIGTERM)
             error = process.communicate(timeout=60)[1]

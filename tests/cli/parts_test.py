@@ -63,6 +63,7 @@ class Parts(RunCase):
                                 stderr=subprocess.PIPE, text=True)
 
     def test_killed_ten_times(self):
+        """Five times after a random time, the start and the end of a run included, and five times at a random share of the work."""
         self.write("s.toml", RUN.replace('trajectories = 40\n', 'trajectories = 400\n'))
         start = time.monotonic()
         self.run_scenario("whole")
@@ -70,20 +71,23 @@ class Parts(RunCase):
         luck, kept = random.Random(1), 0
         for attempt in range(10):
             out = f"killed{attempt}"
-            process = self.start(out, "--checkpoint", "0", "--threads", "2")
-            time.sleep(luck.uniform(0.1, 1.0) * whole)
+            process = self.start(out, "--checkpoint", "0", "--threads", "2", "--progress=machine")
+            if attempt % 2 == 0:
+                time.sleep(luck.uniform(0.1, 1.0) * whole)
+            else:
+                self.wait_for_progress(process, luck.randint(5, 80))
             process.kill()
             process.communicate()
             kept += any(os.path.exists(self.path(f"{n}/unfinished/part.json")) for n in self.unfinished(out))
             self.run_scenario(out, "--resume", "--trajectories", "400", "--checkpoint", "0.05", "--threads", "1")
             self.assert_same("whole", out)
             self.assertEqual([n for n in self.unfinished(out) if os.path.exists(self.path(f"{n}/unfinished/part.json"))], [])
-        self.assertGreater(kept, 5)  # there was something to go on with
+        self.assertGreaterEqual(kept, 5)  # there was something to go on with
 
     def test_interrupted_and_gone_on_with(self):
         self.run_scenario("whole", "--trajectories", "400")
         process = self.start("out", "--threads", "1", "--progress=machine")
-        self.assertTrue(any(line == "progress 5\n" for line in iter(process.stderr.readline, "")))
+        self.wait_for_progress(process, 5)
         process.send_signal(signal.SIGINT)
         error = process.communicate(timeout=20)[1]
         self.assertEqual(process.returncode, 130)
@@ -105,7 +109,7 @@ class Parts(RunCase):
         part2 = ["run", self.path("s.toml"), "-o", self.path("part2"), "--rounds", "3", "--part", "2/2"]
         process = subprocess.Popen([TALUS, *part2, "--checkpoint", "0", "--threads", "1", "--progress=machine"],
                                    stderr=subprocess.PIPE, text=True)
-        self.assertTrue(any(line == "progress 60\n" for line in iter(process.stderr.readline, "")))
+        self.wait_for_progress(process, 60)
         process.kill()
         process.communicate()
         self.assertEqual(len(self.unfinished("part2")), 1)

@@ -155,6 +155,11 @@ class RunCase(Case):
                        [("id", ogr.OFTString), ("height", ogr.OFTReal), ("capacity", ogr.OFTReal)])
         self.write("s.toml", RUN)
 
+    def wait_for_progress(self, process, percent):
+        """Until a program with --progress=machine has said so much or more: on a busy machine it skips lines."""
+        lines = iter(process.stderr.readline, "")
+        self.assertTrue(any(line.startswith("progress ") and int(line.split()[1]) >= percent for line in lines))
+
     def run_scenario(self, out, *more):
         return self.run_well("run", self.path("s.toml"), "-o", self.path(out), "-q", *more)
 

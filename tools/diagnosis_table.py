@@ -1,0 +1,68 @@
+#!/usr/bin/python3
+"""The tables of docs/closing-the-loop.md, from what `talus diagnose CAMPAIGN/campaign.toml -o OUT/NAME` has written.
+
+  tools/diagnosis_table.py CAMPAIGNS OUT NAME...
+
+CAMPAIGNS: the folder of the campaigns, such as ../shared/data/campaigns. Prints what was found in each of them, beside what its truth.toml
+says where it has one, and then every candidate of the first round: its error on the held-out rows, by which share that is lower (95 %
+interval over blocks), and the p-value of its score test.
+"""
+import json
+import os
+import sys
+import tomllib
+
+
+def read(out, name):
+    with open(f"{out}/{name}/diagnosis.json", encoding="utf-8") as file:
+        return json.load(file)
+
+
+def truth_of(campaigns, name):
+    path = f"{campaigns}/{name}/truth.toml"
+    if not os.path.exists(path):
+        return {}
+    with open(path, "rb") as file:
+        return tomllib.load(file)
+
+
+def found(d):
+    words = []
+    for r in d["rounds"]:
+        alike = r.get("indistinguishable_from", [])
+        words.append(f"{r['effect']} {r.get('where', '')}".strip() + (f" (alike: {', '.join(alike)})" if alike else ""))
+    return "; then ".join(words)
+
+
+def campaigns_table(campaigns, results):
+    print("| campaign | found | p | hidden | held-out before, after | reduction, 95 % | with the truth | seconds x threads |")
+    print("| --- " * 8 + "|")
+    for name, d in results.items():
+        e, truth = d["error"]["holdout"], truth_of(campaigns, name)
+        low, high = e["ci95"]
+        hidden = truth.get("effects", truth.get("effect", ""))
+        best = truth.get("holdout_error_with_the_truth")
+        above = f"{best:.3f} ({100 * (e['after'] / best - 1):+.1f} %)" if best else ""
+        print(f"| {name} | {found(d)} | {d['rounds'][0]['p_value']:.4f} | {hidden} | {e['before']:.3f}, {e['after']:.3f} | "
+              f"{100 * e['reduction']:.0f} % ({100 * low:.0f} to {100 * high:.0f}) | {above} | {d['seconds']:.0f} |")
+
+
+def candidates_table(name, d):
+    print(f"\n{name}: {d['error']['holdout']['before']:.3f} before\n\n| candidate | held-out error (reduction, 95 %) | p |\n| --- | --- | --- |")
+    for c in d["candidates"]:
+        low, high = c["holdout_reduction_ci95"]
+        print(f"| {c['effect']}, {c['where']} | {c['holdout']:.3f} ({100 * low:.0f} to {100 * high:.0f} %) | {c['p_value']:.2g} |")
+
+
+def main():
+    if len(sys.argv) < 4:
+        sys.exit(__doc__)
+    campaigns, out, names = sys.argv[1], sys.argv[2], sys.argv[3:]
+    results = {name: read(out, name) for name in names}
+    campaigns_table(campaigns, results)
+    for name, d in results.items():
+        candidates_table(name, d)
+
+
+if __name__ == "__main__":
+    main()
