@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""The tables of docs/closing-the-loop.md, from what `talus diagnose CAMPAIGN/campaign.toml -o OUT/NAME` has written.
+"""What the tables of docs/closing-the-loop.md are made from: prints what `talus diagnose CAMPAIGN/campaign.toml -o OUT/NAME` has found.
 
   tools/diagnosis_table.py CAMPAIGNS OUT NAME...
 
-CAMPAIGNS: the folder of the campaigns, such as ../shared/data/campaigns. Prints what was found in each of them, beside what its truth.toml
+CAMPAIGNS: the folder of the campaigns, such as ../shared/data/campaigns. Seconds are those of the clock. Prints what was found in each of them, beside what its truth.toml
 says where it has one, and then every candidate of the first round: its error on the held-out rows, by which share that is lower (95 %
 interval over blocks), and the p-value of its score test.
 """
@@ -16,6 +16,14 @@ import tomllib
 def read(out, name):
     with open(f"{out}/{name}/diagnosis.json", encoding="utf-8") as file:
         return json.load(file)
+
+
+def text(value, form="{:.3f}"):
+    return "-" if value is None else form.format(value)
+
+
+def percent(interval):
+    return " to ".join(text(None if value is None else 100 * value, "{:.0f}") for value in interval)
 
 
 def truth_of(campaigns, name):
@@ -35,23 +43,21 @@ def found(d):
 
 
 def campaigns_table(campaigns, results):
-    print("| campaign | found | p | hidden | held-out before, after | reduction, 95 % | with the truth | seconds x threads |")
+    print("| campaign | found | p | hidden | held-out before, after | reduction, 95 % | with the truth | s |")
     print("| --- " * 8 + "|")
     for name, d in results.items():
         e, truth = d["error"]["holdout"], truth_of(campaigns, name)
-        low, high = e["ci95"]
-        hidden = truth.get("effects", truth.get("effect", ""))
+        hidden = truth.get("effect", "")
         best = truth.get("holdout_error_with_the_truth")
-        above = f"{best:.3f} ({100 * (e['after'] / best - 1):+.1f} %)" if best else ""
-        print(f"| {name} | {found(d)} | {d['rounds'][0]['p_value']:.4f} | {hidden} | {e['before']:.3f}, {e['after']:.3f} | "
-              f"{100 * e['reduction']:.0f} % ({100 * low:.0f} to {100 * high:.0f}) | {above} | {d['seconds']:.0f} |")
+        above = f"{best:.3f} ({100 * (e['after'] / best - 1):+.1f} %)" if best and e["after"] else ""
+        print(f"| {name} | {found(d)} | {d['rounds'][0]['p_value']:.4f} | {hidden} | {text(e['before'])}, {text(e['after'])} | "
+              f"{text(e['reduction'] and 100 * e['reduction'], '{:.0f}')} % ({percent(e['ci95'])}) | {above} | {d['seconds']:.0f} |")
 
 
 def candidates_table(name, d):
-    print(f"\n{name}: {d['error']['holdout']['before']:.3f} before\n\n| candidate | held-out error (reduction, 95 %) | p |\n| --- | --- | --- |")
+    print(f"\n{name}: {text(d['error']['holdout']['before'])} before\n\n| candidate | held-out error (reduction, 95 %) | p |\n| --- | --- | --- |")
     for c in d["candidates"]:
-        low, high = c["holdout_reduction_ci95"]
-        print(f"| {c['effect']}, {c['where']} | {c['holdout']:.3f} ({100 * low:.0f} to {100 * high:.0f} %) | {c['p_value']:.2g} |")
+        print(f"| {c['effect']}, {c['where']} | {text(c['holdout'])} ({percent(c['holdout_reduction_ci95'])} %) | {c['p_value']:.2g} |")
 
 
 def main():

@@ -30,7 +30,8 @@ class Search {
     const int screened = options.starts > 1 ? kScreened * static_cast<int>(n) : 0;
     planned_ = screened + 1 + options.starts * search_length() + options.rounds * design_length();
     fit_.evaluations.assign(options.known.begin(), options.known.end());
-    designed_ = compared_ = static_cast<std::uint32_t>(options.known.size());  // luck that none of them had
+    designed_ = LocalModel::first_unused(options.known, options.trials);
+    compared_ = static_cast<std::uint32_t>(options.known.size());
   }
 
   Fit run() {

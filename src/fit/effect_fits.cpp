@@ -88,7 +88,12 @@ Fitted EffectFits::ground(const Model& start) const {
   how.trials *= 2;
   how.comparison_trials *= 2;
   Fit fit = fit_parameters(campaign_, start, free, rows_, how);
-  return went_on(finish(std::move(fit), std::move(free)));
+  Fitted fitted = finish(std::move(fit), std::move(free));
+  FitOptions on = going_on(fitted);
+  on.trials = how.trials;
+  on.comparison_trials = how.comparison_trials;
+  Fitted longer = refined(fitted, on);
+  return longer.objective.total < fitted.objective.total ? longer : fitted;
 }
 
 /// A model without any of the effect, to which amounts of it may be added.

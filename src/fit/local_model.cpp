@@ -110,6 +110,12 @@ std::vector<Eigen::VectorXd> LocalModel::design(const FitProblem& problem, std::
   return places;
 }
 
+std::uint32_t LocalModel::first_unused(std::span<const Evaluation> known, std::uint32_t trials) {
+  std::uint32_t used = 0;
+  for (const Evaluation& e : known) used += e.trials;
+  return (used + trials - 1) / trials;
+}
+
 Eigen::VectorXd LocalModel::step(const Eigen::MatrixXd& spread) const {
   return optimum(std::vector<double>(problem_.campaign.blocks.size(), 1.0), spread);
 }

@@ -13,6 +13,7 @@ class LocalModel {
  public:
   static constexpr std::uint32_t kDesigns = 2'000'000;  ///< trials from here on are those of designs
 
+  /// @param fit     with a score whose groups are weighed as the objective's are
   /// @param spread  covariance of the places it is learnt from; those far outside do not count
   LocalModel(const FitProblem& problem, const FitOptions& options, const Fit& fit, const Eigen::MatrixXd& spread);
 
@@ -27,6 +28,9 @@ class LocalModel {
 
   /// First trial of place number `place`: each has luck of its own, so that the model averages over it.
   static std::uint32_t trials_of(std::uint32_t place, std::uint32_t trials) { return kDesigns + place * trials; }
+
+  /// Number of the first place, with so many trials each, whose luck none of those known has had.
+  static std::uint32_t first_unused(std::span<const Evaluation> known, std::uint32_t trials);
 
   /// The minimum of the model, within the bounds and two standard deviations of the spread.
   Eigen::VectorXd step(const Eigen::MatrixXd& spread) const;

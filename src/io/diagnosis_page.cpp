@@ -116,9 +116,8 @@ std::string plots(const Campaign& campaign, const Diagnosis& d) {
 
 std::string candidates_table(const Round& round, const std::vector<HoldoutError>& holdout) {
   std::string html =
-      "<table><tr><th>effect</th><th>where</th><th>parameters</th><th>p of the score test</th><th>error lower by "
-      "(fitting "
-      "rows, 95 %)</th><th>held-out error after</th><th>reduction, 95 %</th></tr>\n";
+      "<table><tr><th>effect</th><th>where</th><th>parameters</th><th>p of the score test</th><th>objective lower "
+      "by (fitting rows, 95 %)</th><th>held-out error after</th><th>reduction, 95 %</th></tr>\n";
   for (std::size_t i = 0; i < round.trials.size(); ++i) {
     const Trial& t = round.trials[i];
     std::string numbers;
@@ -189,7 +188,7 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
           "spread of the measurements.</p>\n";
   html +=
       "<h2>Candidates</h2>\n<p>Each at its best place, fitted together with the ground where p is below 0.1, else with "
-      "the ground held.</p>\n" +
+      "the ground held. The objective is the error with groups of n rows that count n / (n + 10).</p>\n" +
       candidates_table(d.rounds.front(), record.candidates.front());
   html +=
       "<h2>Residuals</h2>\n<p>Each point is a block; z is where its measurement lies among what the model "

@@ -216,7 +216,10 @@ std::string calibration_report(const Calibration& c) {
   text += "## Error\n\nMean normalised score, " + std::to_string(c.score_trials) +
           " trials per block that the search has not seen. 0: the model says the very value; about 0.56: it knows the "
           "spread of the measurements and no more. Before: " +
-          std::string(kDefaultPreset) + " everywhere. Held-out rows took no part in the fit.\n\n" + error_lines(c);
+          std::string(kDefaultPreset) +
+          " everywhere. Held-out rows took no part in the fit. What was minimised is the same with groups of n rows "
+          "that count n / (n + 10).\n\n" +
+          error_lines(c);
   text +=
       "## Measured and simulated, all blocks\n\nQuantiles over all blocks, simulated with the measurement error.\n\n" +
       distribution_lines(c.comparison);

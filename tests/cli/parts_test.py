@@ -68,7 +68,7 @@ class Parts(RunCase):
         start = time.monotonic()
         self.run_scenario("whole")
         whole = time.monotonic() - start
-        luck, kept = random.Random(1), 0
+        luck = random.Random(1)
         for attempt in range(10):
             out = f"killed{attempt}"
             process = self.start(out, "--checkpoint", "0", "--threads", "2", "--progress=machine")
@@ -78,11 +78,11 @@ class Parts(RunCase):
                 self.wait_for_progress(process, luck.randint(5, 80))
             process.kill()
             process.communicate()
-            kept += any(os.path.exists(self.path(f"{n}/unfinished/part.json")) for n in self.unfinished(out))
+            if attempt % 2 == 1:  # there is something to go on with
+                self.assertTrue(any(os.path.exists(self.path(f"{n}/unfinished/part.json")) for n in self.unfinished(out)))
             self.run_scenario(out, "--resume", "--trajectories", "400", "--checkpoint", "0.05", "--threads", "1")
             self.assert_same("whole", out)
             self.assertEqual([n for n in self.unfinished(out) if os.path.exists(self.path(f"{n}/unfinished/part.json"))], [])
-        self.assertGreaterEqual(kept, 5)  # there was something to go on with
 
     def test_interrupted_and_gone_on_with(self):
         self.run_scenario("whole", "--trajectories", "400")

@@ -157,8 +157,13 @@ class RunCase(Case):
 
     def wait_for_progress(self, process, percent):
         """Until a program with --progress=machine has said so much or more: on a busy machine it skips lines."""
-        lines = iter(process.stderr.readline, "")
-        self.assertTrue(any(line.startswith("progress ") and int(line.split()[1]) >= percent for line in lines))
+        self.addCleanup(process.kill)
+        said = []
+        for line in iter(process.stderr.readline, ""):
+            said.append(line)
+            if line.startswith("progress ") and int(line.split()[1]) >= percent:
+                return
+        self.fail("".join(said))
 
     def run_scenario(self, out, *more):
         return self.run_well("run", self.path("s.toml"), "-o", self.path(out), "-q", *more)

@@ -63,10 +63,10 @@ struct FitOptions {
 /// The model that was found.
 struct Fit {
   Model model;
-  Eigen::VectorXd z;                    ///< of the free parameters
-  double objective = kNotGiven;         ///< total score + prior_weight / (blocks asked for) * sum of z^2
-  Score score;                          ///< of the asked rows, with comparison_trials trials
-  Eigen::MatrixXd spread;               ///< covariance of z within which the objective is nearly as good
+  Eigen::VectorXd z;             ///< of the free parameters
+  double objective = kNotGiven;  ///< total of the weighed groups + prior_weight / (blocks asked for) * sum of z^2
+  Score score;                   ///< of the asked rows, with comparison_trials trials, its groups weighed
+  Eigen::MatrixXd spread;        ///< covariance of z within which the objective is nearly as good
   std::vector<Evaluation> evaluations;  ///< of the designs, and what was known: what the quadratic model learns from
   int tried = 0;                        ///< places that were simulated, those of the searches and comparisons too
   bool interrupted = false;
@@ -78,11 +78,11 @@ struct Fit {
 /// @param free   at least one
 /// @param rows   which blocks are used; size: blocks. Spreads come from all fitting rows
 ///
-/// Minimises the mean normalised score plus the prior with NLopt's LN_BOBYQA (Powell 2009; quadratic models, no
-/// derivatives) from the start and from the best of a low-discrepancy set. The luck of the trials ends such a search
-/// early; rounds of a least-squares quadratic model around the best point (`LocalModel`) go on from there. Places are
-/// compared on luck of their own: the lowest of many noisy values is too low. The same result for any number of
-/// threads.
+/// Minimises the mean normalised score, its groups weighed (`weigh_groups`), plus the prior with NLopt's LN_BOBYQA
+/// (Powell 2009; quadratic models, no derivatives) from the start and from the best of a low-discrepancy set. The luck
+/// of the trials ends such a search early; rounds of a least-squares quadratic model around the best point
+/// (`LocalModel`) go on from there. Places are compared on luck of their own: the lowest of many noisy values is too
+/// low. The same result for any number of threads.
 Fit fit_parameters(const Campaign& campaign, const Model& start, std::span<const Parameter> free,
                    const std::vector<bool>& rows, const FitOptions& options);
 

@@ -25,14 +25,14 @@ struct Trial {
   bool joint = true;                  ///< false: the ground was held, because the test found nothing (p above 0.1)
   double p_value = 1.0;               ///< of the score test, corrected for its places
   double statistic = 0.0;             ///< of the score test
-  double gain = 0.0;                  ///< by which it lowers the error of the fitting rows
-  Interval gain_interval;             ///< 95 %, paired bootstrap over blocks
-  double price = 0.0;                 ///< that its fitted numbers, those of its place too, must gain to be worth it
-  double place_price = 0.0;           ///< that of its place alone, which was chosen by all blocks
+  double gain = 0.0;         ///< by which it lowers the objective of the fitting rows: groups weighed, no prior
+  Interval gain_interval;    ///< 95 %, paired bootstrap over blocks
+  double price = 0.0;        ///< that its fitted numbers, those of its place too, must gain to be worth it
+  double place_price = 0.0;  ///< that of its place alone, which was chosen by all blocks
   double cross_validated =
       kNotGiven;              ///< by which it lowers that of blocks its fit has not seen; NaN where it was not asked
   double amount = 0.0;        ///< of it, fitted, in units of what one would notice: the largest of those tested
-  double chosen_share = 0.0;  ///< of the bootstraps in which it has the lowest error of all
+  double chosen_share = 0.0;  ///< of the bootstraps in which it has the lowest objective of all
   Fitted fitted;
 
   /// What blocks gain that its fit has not seen, less the price of its place. NaN where it was not cross-validated.

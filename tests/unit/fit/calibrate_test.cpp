@@ -119,6 +119,42 @@ TEST(LocalModel, GroupsPullByTheirWeights) {
   EXPECT_NEAR(LocalModel(problem, options, fit, spread).step(spread)[0], 0.6, 1e-4);
 }
 
+/// What a fit minimises is the score with its groups weighed, plus the prior: here 40 stops and few crossings.
+TEST(Evaluate, IsTheWeighedScoreAndThePrior) {
+  Campaign c = campaign_on_slope(60);
+  const Model start = model_of_slope();
+  measure(c, start, 77);
+  for (std::size_t b = 12; b < 60; ++b)
+    for (auto& passage : c.blocks[b].passages) passage.reset();
+  const std::vector<Parameter> free = two_parameters(c, start);
+  const std::vector<bool> rows = fitting_rows(c);
+  FitOptions options;
+  const Eigen::Vector2d z(0.5, -0.25);
+  const Evaluation e = evaluate({c, start, free, rows}, options, z, {40});
+  const ObserveOptions how{40, options.seed, 0, options.threads, rows, {}};
+  const Score plain = score(c, observe(c, model_at(start, free, z), how), rows, fewest_simulated_of(40));
+  const double prior = 0.28 / static_cast<double>(std::count(rows.begin(), rows.end(), true)) * 0.3125;  // sum of z^2
+  double sum = 0.0, weights = 0.0;
+  for (const GroupScore& g : plain.groups)
+    sum += g.rows / (g.rows + 10.0) * g.score, weights += g.rows / (g.rows + 10.0);
+  ASSERT_GT(plain.groups.size(), 1U);
+  EXPECT_NEAR(e.objective, sum / weights + prior, 1e-12);
+  EXPECT_GT(std::abs(e.objective - prior - plain.total), 1e-4);  // not the plain mean
+  options.starts = options.rounds = 0;
+  const Fit fit = fit_parameters(c, start, free, rows, options);
+  for (const GroupScore& g : fit.score.groups) EXPECT_DOUBLE_EQ(g.weight, g.rows / (g.rows + 10.0));
+}
+
+/// What is known of earlier fits is known from their trials: a later one sees others, whatever their numbers.
+TEST(Calibrate, LaterPlacesHaveLuckOfTheirOwn) {
+  EXPECT_EQ(LocalModel::trials_of(7, 24), LocalModel::kDesigns + 168);
+  std::vector<Evaluation> known(10, {Eigen::Vector2d::Zero(), {}, 48, 0.0});
+  EXPECT_EQ(LocalModel::first_unused(known, 24), 20U);
+  known.push_back({Eigen::Vector2d::Zero(), {}, 25, 0.0});
+  EXPECT_EQ(LocalModel::first_unused(known, 24), 22U);  // 505 trials
+  EXPECT_EQ(LocalModel::first_unused({}, 24), 0U);
+}
+
 /// With one value in ten, the rows of a search with few trials count as those of one with many do.
 TEST(FewestSimulated, ATenthOfTheTrials) {
   EXPECT_EQ(fewest_simulated_of(10), 2U);
