@@ -120,6 +120,7 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
       turn["holdout"] = {{"before", number(record.rounds[i].before)}, {"after", number(record.rounds[i].after)}};
     }
     turn["p_value"] = number(round.p_value);
+    if (i > 0) turn["candidates"] = candidates_of(round, record.candidates[i]);
     rounds.push_back(turn);
   }
   if (effects.empty()) effects.push_back(first.effect);

@@ -30,6 +30,8 @@ class WholeLoop(Case):
         for rows in ("fit", "holdout"):
             self.assertTrue(0.1 < found["error"][rows]["after"] < 2.0)  # a number; 24 blocks and 10 trials fit badly
         self.assertEqual(found["rounds"][-1]["effect"] in ("none", "unexplained"), True)
+        for round in found["rounds"][1:]:  # those of the first are at the top
+            self.assertNotIn(found["effect"], {c["effect"] for c in round["candidates"]})
         with open(f"{out}/report.html", encoding="utf-8") as file:
             page = file.read()
         self.assertIn("<svg", page)
