@@ -15,6 +15,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t kFolds = 5;
+constexpr std::uint32_t kOrders = 5;      // in which the blocks are cut into folds: one may be unlucky
 constexpr double kWorthASearch = 0.1;     // p of the score test
 constexpr double kPrice = 0.56;           // by which one more fitted number must lower the error, times fitting blocks
 constexpr std::uint32_t kConfirming = 4;  // times as many trials as the scores
@@ -206,12 +207,12 @@ void EffectFits::polish(Trial& trial) const {
 }
 
 /// The fitting rows in a random order: neighbours in the file are often of one day or one kind.
-std::vector<std::size_t> EffectFits::shuffled_rows() const {
+std::vector<std::size_t> EffectFits::shuffled_rows(std::uint32_t number) const {
   std::vector<std::pair<std::uint32_t, std::size_t>> keyed;
-  for (std::size_t b = 0; b < rows_.size(); ++b)
-    if (rows_[b])
-      keyed.emplace_back(Random(options_.seed, static_cast<std::uint32_t>(b), kUnseen, Purpose::Bootstrap).words(0)[0],
-                         b);
+  for (std::size_t b = 0; b < rows_.size(); ++b) {
+    const Random random(options_.seed, static_cast<std::uint32_t>(b), kUnseen, Purpose::Bootstrap);
+    if (rows_[b]) keyed.emplace_back(random.words(number)[0], b);
+  }
   std::sort(keyed.begin(), keyed.end());
   std::vector<std::size_t> order;
   for (const auto& [key, block] : keyed) order.push_back(block);
@@ -219,7 +220,6 @@ std::vector<std::size_t> EffectFits::shuffled_rows() const {
 }
 
 double EffectFits::cross_validated(const Fitted& fitted, ObserveOptions how) const {
-  const std::vector<std::size_t> order = shuffled_rows();
   const FitProblem problem{campaign_, fitted.model, fitted.free, rows_};
   const FitOptions options = fitting();
   Fit fit;
@@ -227,6 +227,14 @@ double EffectFits::cross_validated(const Fitted& fitted, ObserveOptions how) con
   fit.score = fitted.objective;
   fit.evaluations = fitted.tried;
   const LocalModel local(problem, options, fit, fitted.spread);
+  double sum = 0.0;
+  for (std::uint32_t number = 0; number < kOrders; ++number)
+    sum += error_in_folds(local, fitted, how, shuffled_rows(number));
+  return sum / kOrders;
+}
+
+double EffectFits::error_in_folds(const LocalModel& local, const Fitted& fitted, ObserveOptions how,
+                                  const std::vector<std::size_t>& order) const {
   std::vector<BlockRuns> runs(campaign_.blocks.size());
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     if (!proceed_()) throw FitInterrupted{};

@@ -3,6 +3,8 @@
 
 namespace talus {
 
+class LocalModel;
+
 /// The fits of one diagnosis: of the ground, and of each effect on top of what has been found before.
 ///
 /// What one fit has simulated is kept, and the next one learns from it too: an effect is added to a ground whose
@@ -30,8 +32,9 @@ class EffectFits {
   void compare(const Fitted& base, Trial& trial) const;
   /// Fits what was chosen once more, with more trials: it is what the user gets.
   void polish(Trial& trial) const;
-  /// The error of a model on blocks that its fit has not seen: five folds, each of them simulated with the model that
-  /// is best for the others, which is the minimum of the quadratic model of their rows.
+  /// The objective of a model on blocks that its fit has not seen: five folds, each of them simulated with the model
+  /// that is best for the others, which is the minimum of the quadratic model of their rows. Mean over five orders in
+  /// which the blocks are cut.
   double cross_validated(const Fitted& fitted) const {
     return cross_validated(fitted, observing(options_.final_trials));
   }
@@ -50,7 +53,9 @@ class EffectFits {
   static Model without(const Fitted& base, const Candidate& candidate);
   Evaluation scan(const FitProblem& problem, const FitOptions& how, const Fitted& base, const Candidate& candidate,
                   const Verdict& verdict) const;
-  std::vector<std::size_t> shuffled_rows() const;
+  std::vector<std::size_t> shuffled_rows(std::uint32_t number) const;
+  double error_in_folds(const LocalModel& local, const Fitted& fitted, ObserveOptions how,
+                        const std::vector<std::size_t>& order) const;
 
   const Campaign& campaign_;
   const DiagnoseOptions& options_;
