@@ -84,7 +84,7 @@ class Diagnosing {
       round.trials.push_back(fits_.effect(base, placed, together(campaign_, axis, candidates, placed.best.members)));
     }
     if (!noise) compete(base, round.trials, level);
-    choose(base, round, noise, found.empty());
+    choose(base, round, noise);
     return round;
   }
 
@@ -153,13 +153,10 @@ class Diagnosing {
     }
   }
 
-  /// @param first  of the rounds: later ones ask for more, because the form of what is in is itself a guess
-  void choose(const Fitted& base, Round& round, bool noise, bool first) {
+  void choose(const Fitted& base, Round& round, bool noise) const {
     count_choices(base, round.trials);
     const double worth = kWorthNaming * base.objective.total;
-    const auto may = [&](const Trial& t) {
-      return t.amount > kNothing && t.gain > worth && t.unseen_gain() > worth && (first || net(t) > 0.0);
-    };
+    const auto may = [&](const Trial& t) { return t.amount > kNothing && t.gain > worth && t.unseen_gain() > worth; };
     std::stable_sort(round.trials.begin(), round.trials.end(), [&](const Trial& a, const Trial& b) {
       if (may(a) != may(b)) return may(a);
       return may(a) ? a.unseen_gain() > b.unseen_gain() : net(a) > net(b);
