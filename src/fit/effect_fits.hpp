@@ -16,8 +16,8 @@ class EffectFits {
              std::function<bool()> proceed)
       : campaign_(campaign), options_(options), rows_(rows), proceed_(std::move(proceed)) {}
 
-  /// The ground alone, as `calibrate` fits it, and on for as long as the effects: what it has missed looks like an
-  /// effect.
+  /// The ground alone, as `calibrate` fits it, its fit gone on with where that is better: what it has missed looks
+  /// like an effect.
   Fitted ground(const Model& start) const;
   /// An effect at its best place, from what the score test expects of it; with the ground where the test finds anything
   /// in it.
