@@ -11,12 +11,21 @@ namespace {
 constexpr std::size_t kContenders = 4;  // whose fits go on: those that gain most
 constexpr double kWorthNaming = 0.02;   // share of the error that an effect takes away, also from blocks not fitted
 constexpr double kNothing = 0.1;        // of what one would notice: so little of an effect explains nothing
+constexpr double kHalfWay = 0.5;        // of that share: a gain from which on the fit may yet get there
 constexpr double kUnfinished = 0.02;    // of the error, that a first fit may still be above its minimum
 constexpr std::size_t kLaterFits = 6;  // after the first round: with an effect in place all takes several times as long
-constexpr std::uint32_t kManyBlocks = 72;  // of fewer, more trials each are tested: a signature is a mean over blocks
+constexpr std::uint32_t kManyBlocks = 72;  // of fewer, more trials each: what counts are means over blocks
 
 double net(const Trial& trial) {
   return trial.gain - trial.price;
+}
+
+/// As many trajectories for a campaign of few blocks as for one of many.
+DiagnoseOptions shared_out(DiagnoseOptions options, std::size_t blocks) {
+  const double more = std::max(1.0, static_cast<double>(kManyBlocks) / static_cast<double>(blocks));
+  for (std::uint32_t* trials : {&options.search_trials, &options.test_trials, &options.final_trials})
+    *trials = static_cast<std::uint32_t>(std::lround(more * *trials));
+  return options;
 }
 
 /// The work of one diagnosis.
@@ -24,9 +33,9 @@ class Diagnosing {
  public:
   Diagnosing(const Campaign& campaign, const DiagnoseOptions& options)
       : campaign_(campaign),
-        options_(options),
         rows_(fitting_rows(campaign)),
-        fits_(campaign, options, rows_, [this] { return proceeds(); }) {}
+        options_(shared_out(options, static_cast<std::size_t>(std::count(rows_.begin(), rows_.end(), true)))),
+        fits_(campaign, options_, rows_, [this] { return proceeds(); }) {}
 
   Diagnosis run(const Model& start) {
     Diagnosis d;
@@ -40,7 +49,6 @@ class Diagnosing {
       const Round& last = d.rounds.back();
       if (last.effect == "none" || last.effect == "unexplained") break;
       found.push_back(last.effect);
-      fits_.polish(d.rounds.back().trials.front());
       d.with_effects = d.rounds.back().trials.front().fitted;
     }
     d.residual_after = residual_of(d.with_effects);
@@ -48,8 +56,7 @@ class Diagnosing {
   }
 
  private:
-  std::uint32_t asked() const { return static_cast<std::uint32_t>(std::count(rows_.begin(), rows_.end(), true)); }
-
+  void advance() { progress_ = std::min(0.95, progress_ + 0.02); }
   bool proceeds() const { return !options_.proceed || options_.proceed(progress_); }
 
   std::vector<ResidualRow> residual_of(const Fitted& fitted) const {
@@ -64,7 +71,7 @@ class Diagnosing {
     const std::vector<Candidate> candidates = candidates_of(campaign_, base.model, base.fitting, found);
     const Axis axis = axis_of(campaign_, base.fitting);
     ScoreTestOptions how;
-    how.trials = std::max(options_.test_trials, options_.test_trials * kManyBlocks / asked());
+    how.trials = options_.test_trials;
     how.seed = options_.seed;
     how.threads = options_.threads;
     how.proceed = [this] { return proceeds(); };
@@ -79,7 +86,7 @@ class Diagnosing {
     for (const EffectVerdict& verdict : test.effects) {
       // All have been fitted in the first round; from then on those that may be chosen, the most significant first.
       if (!found.empty() && (verdict.p_value >= level || round.trials.size() == kLaterFits)) continue;
-      progress_ = std::min(0.95, progress_ + 0.02);
+      advance();
       const EffectVerdict placed = in_better_zone(base, verdict, candidates);
       round.trials.push_back(fits_.effect(base, placed, together(campaign_, axis, candidates, placed.best.members)));
     }
@@ -103,29 +110,33 @@ class Diagnosing {
   }
 
   /// The fits of those go on that may be chosen and gain most, or could yet; and that of the base, so that an effect
-  /// does not gain what the ground alone would have.
+  /// does not gain what the ground alone would have. Those that may still win then do so with more trials.
   void compete(Fitted& base, std::vector<Trial>& trials, double level) {
     std::vector<Trial*> contenders;
     for (Trial& t : trials)
       if (t.p_value < level) contenders.push_back(&t);
-    std::stable_sort(contenders.begin(), contenders.end(),
-                     [](const Trial* a, const Trial* b) { return net(*a) > net(*b); });
-    contenders.resize(std::min(contenders.size(), kContenders));
-    const auto behind = [&](const Trial* t) {
-      const Score &best = contenders.front()->fitted.objective, &own = t->fitted.objective;
-      return difference(best, own, campaign_.blocks.size()).interval.low > kUnfinished;
-    };
-    contenders.erase(std::remove_if(contenders.begin(), contenders.end(), behind), contenders.end());
-    for (Trial* t : contenders) {
-      progress_ = std::min(0.95, progress_ + 0.02);
-      fits_.go_on(*t);
-    }
     if (contenders.empty()) return;
-    Fitted longer = fits_.went_on(base);
-    if (longer.objective.total < base.objective.total) base = std::move(longer);
+    drop_losers(contenders, -kUnfinished);
+    for (Trial* t : contenders) advance(), fits_.go_on(*t);
+    base = fits_.went_on(base);
+    for (Trial* t : contenders) fits_.compare(base, *t);
+    drop_losers(contenders, kHalfWay * kWorthNaming * base.objective.total);
+    for (Trial* t : contenders) advance(), fits_.polish(*t);
+    if (!contenders.empty()) base = fits_.polished(base);
     for (Trial& t : trials) fits_.compare(base, t);
     const double before = fits_.cross_validated(base);
     for (Trial* t : contenders) t->cross_validated = before - fits_.cross_validated(t->fitted);
+  }
+
+  /// Leaves the few that gain most: those that gain so much at least and may yet win.
+  void drop_losers(std::vector<Trial*>& contenders, double least) const {
+    std::stable_sort(contenders.begin(), contenders.end(),
+                     [](const Trial* a, const Trial* b) { return net(*a) > net(*b); });
+    contenders.resize(std::min(contenders.size(), kContenders));
+    const Score best = contenders.front()->fitted.objective;
+    const auto behind = [&](const Score& own) { return difference(best, own, campaign_.blocks.size()).interval.low; };
+    std::erase_if(contenders,
+                  [&](const Trial* t) { return t->gain < least || behind(t->fitted.objective) > kUnfinished; });
   }
 
   /// Nothing explains the residual. It is there if the score test, or a row of the table, says so at the stricter
@@ -181,8 +192,8 @@ class Diagnosing {
   }
 
   const Campaign& campaign_;
-  const DiagnoseOptions& options_;
   std::vector<bool> rows_;
+  DiagnoseOptions options_;
   EffectFits fits_;
   double progress_ = 0.0;
 };

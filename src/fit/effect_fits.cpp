@@ -53,6 +53,10 @@ std::vector<Evaluation> without_effect(const std::vector<Evaluation>& tried, Ind
 
 }  // namespace
 
+const Fitted& EffectFits::better(const Fitted& fitted, const Fitted& longer) {
+  return longer.objective.total < fitted.objective.total ? longer : fitted;
+}
+
 ObserveOptions EffectFits::observing(std::uint32_t trials) const {
   return {trials, options_.seed, kUnseen, options_.threads, rows_, {}};
 }
@@ -93,8 +97,7 @@ Fitted EffectFits::ground(const Model& start) const {
   FitOptions on = going_on(fitted);
   on.trials = how.trials;
   on.comparison_trials = how.comparison_trials;
-  Fitted longer = refined(fitted, on);
-  return longer.objective.total < fitted.objective.total ? longer : fitted;
+  return better(fitted, refined(fitted, on));
 }
 
 /// A model without any of the effect, to which amounts of it may be added.
@@ -197,13 +200,16 @@ void EffectFits::go_on(Trial& trial) const {
   adopt(refined(trial.fitted, going_on(trial.fitted)), trial);
 }
 
-void EffectFits::polish(Trial& trial) const {
+Fitted EffectFits::polished(const Fitted& fitted) const {
   FitOptions how = fitting();
   how.trials *= 2;
   how.comparison_trials *= 2;
   how.rounds = 2;
-  Fitted longer = refined(trial.fitted, how);
-  if (longer.objective.total < trial.fitted.objective.total) adopt(std::move(longer), trial);
+  return better(fitted, refined(fitted, how));
+}
+
+void EffectFits::polish(Trial& trial) const {
+  adopt(polished(trial.fitted), trial);
 }
 
 /// The fitting rows in a random order: neighbours in the file are often of one day or one kind.
@@ -228,7 +234,7 @@ double EffectFits::cross_validated(const Fitted& fitted, ObserveOptions how) con
   fit.evaluations = fitted.tried;
   const LocalModel local(problem, options, fit, fitted.spread);
   double sum = 0.0;
-  for (std::uint32_t number = 0; number < kOrders; ++number)
+  for (std::uint32_t number = 0; number < kOrders; ++number, how.first_trial += how.trials)  // luck of its own
     sum += error_in_folds(local, fitted, how, shuffled_rows(number));
   return sum / kOrders;
 }
@@ -253,7 +259,7 @@ double EffectFits::error_in_folds(const LocalModel& local, const Fitted& fitted,
 
 bool EffectFits::confirmed(const Fitted& base, const Trial& trial, double worth) const {
   ObserveOptions fresh = observing(kConfirming * options_.final_trials);
-  fresh.first_trial += kConfirming * options_.final_trials;  // after those that `observing` sees
+  fresh.first_trial += kOrders * options_.final_trials;  // after those of the cross-validation
   const auto error = [&](const Fitted& fitted) {
     return weigh_groups(score(campaign_, observe(campaign_, fitted.model, fresh), rows_)).total;
   };

@@ -27,10 +27,11 @@ class EffectFits {
   /// Goes on with the fit of an effect that is among the best.
   void go_on(Trial& trial) const;
   /// The same of the base, which competes with the effects: it must have been looked for as long as they.
-  Fitted went_on(const Fitted& base) const { return refined(base, going_on(base)); }
+  Fitted went_on(const Fitted& base) const { return better(base, refined(base, going_on(base))); }
   /// What the fit of a trial gained.
   void compare(const Fitted& base, Trial& trial) const;
-  /// Fits what was chosen once more, with more trials: it is what the user gets.
+  /// Once more, with more trials, where that makes it better: between these is chosen, and the user gets one of them.
+  Fitted polished(const Fitted& fitted) const;
   void polish(Trial& trial) const;
   /// The objective of a model on blocks that its fit has not seen: five folds, each of them simulated with the model
   /// that is best for the others, which is the minimum of the quadratic model of their rows. Mean over five orders in
@@ -49,6 +50,7 @@ class EffectFits {
   FitOptions fitting() const;
   Fitted finish(Fit&& fit, std::vector<Parameter> free) const;
   Fitted refined(const Fitted& fitted, FitOptions how) const;
+  static const Fitted& better(const Fitted& fitted, const Fitted& longer);
   static void adopt(Fitted&& fitted, Trial& trial);
   static Model without(const Fitted& base, const Candidate& candidate);
   Evaluation scan(const FitProblem& problem, const FitOptions& how, const Fitted& base, const Candidate& candidate,

@@ -55,7 +55,7 @@ class WholeLoop(Case):
         self.assertEqual(self.diagnose("alder")["effect"], "none")
 
     def test_measured_blocks_of_a_quarry(self):
-        found = self.diagnose("authume", "--trials", "40", "--test-trials", "60")
+        found = self.diagnose("authume", *SHORT)
         self.assertGreater(len(found["residual"]), 3)
 
 
