@@ -188,8 +188,11 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
           "spread of the measurements.</p>\n";
   html +=
       "<h2>Candidates</h2>\n<p>Each at its best place, fitted together with the ground where p is below 0.1, else with "
-      "the ground held. The objective is the error with groups of n rows that count n / (n + 10).</p>\n" +
-      candidates_table(d.rounds.front(), record.candidates.front());
+      "the ground held. The objective is the error with groups of n rows that count n / (n + 10).</p>\n";
+  for (std::size_t i = 0; i < d.rounds.size(); ++i)
+    if (!d.rounds[i].trials.empty())
+      html += "<h3>Round " + std::to_string(i + 1) + (i > 0 ? ", with what was found before in the model" : "") +
+              "</h3>\n" + candidates_table(d.rounds[i], record.candidates[i]);
   html +=
       "<h2>Residuals</h2>\n<p>Each point is a block; z is where its measurement lies among what the model "
       "simulates for it, as a standard normal number. Grey: 95 % of the points of a right model.</p>\n" +
