@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """How well `talus diagnose` finds what made a campaign: makes campaigns with the engine itself and diagnoses them.
 
-  tools/diagnosis_study.py [--talus build/release/talus] [--effects all] [--magnitudes 0.5,1,2] [--blocks 60,120]
+  tools/diagnosis_study.py [--talus build/release/talus] [--effects all] [--magnitudes 1,2,0.5] [--blocks 60,120]
                            [--none 20] [--trials 24] [--test-trials 100] [--most-effects 3] [--threads N]
-                           [--work DIR] [--seed 1] [-o study.csv]
+                           [--jobs 1] [--work DIR] [--seed 1] [-o study.csv]
 
 Each campaign has a slope of its own (length, steepness, a gully, bumps), three zones, blocks of many sizes and shapes, three
 screens and four days. One effect of a known size acts (or none); one simulated trial per block, with errors of measurement, is
@@ -13,11 +13,13 @@ The same engine makes and judges the data: this measures the statistics, not the
 """
 import argparse
 import csv
+import itertools
 import json
 import os
 import subprocess
 import sys
 from collections import defaultdict
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from osgeo import gdal, osr
@@ -141,7 +143,7 @@ def make(talus, folder, effect, magnitude, count, seed):
 def run(command):
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:
-        sys.exit(f"{' '.join(command)}\n{done.stderr}")
+        raise RuntimeError(f"{' '.join(command)}\n{done.stderr}")
     return done.stdout
 
 
@@ -157,22 +159,28 @@ def diagnose(o, folder):
     return found, truth["holdout"]["score"]
 
 
+def one(o, effect, magnitude, count, k):
+    """Makes and diagnoses one campaign, and prints what came out."""
+    folder = f"{o.work}/{effect}-{magnitude:g}-{count}-{k}"
+    if not os.path.exists(f"{folder}/campaign.toml"):
+        make(o.talus, folder, effect, magnitude, count, o.seed + 7919 * k + sum(map(ord, effect)) + int(100 * magnitude) + count)
+    found, truth = diagnose(o, folder)
+    e = found["error"]["holdout"]
+    row = dict(effect=effect, magnitude=magnitude, blocks=count, found=found["effect"], alike=" ".join(found["indistinguishable_from"]),
+               p=found["rounds"][0]["p_value"], before=e["before"], after=e["after"], truth=truth, seconds=found["seconds"])
+    print(f"{effect} x{magnitude:g}, {count} blocks, {k}: {row['found']} ({row['alike']}) p {row['p']:.4f}, held-out {row['before']:.3f} -> "
+          f"{row['after']:.3f}, truth {truth:.3f}, {row['seconds']:.0f} s", flush=True)
+    return row
+
+
 def study(o):
-    plan = [("none", 1.0, n, k) for n in o.blocks for k in range(o.none)]
-    plan += [(e, m, n, 0) for e in o.effects for m in o.magnitudes for n in o.blocks]
-    table = []
-    for number, (effect, magnitude, count, k) in enumerate(plan):
-        folder = f"{o.work}/{effect}-{magnitude:g}-{count}-{k}"
-        if not os.path.exists(f"{folder}/campaign.toml"):
-            make(o.talus, folder, effect, magnitude, count, o.seed + 7919 * k + sum(map(ord, effect)) + int(100 * magnitude) + count)
-        found, truth = diagnose(o, folder)
-        e = found["error"]["holdout"]
-        table.append(dict(effect=effect, magnitude=magnitude, blocks=count, found=found["effect"], alike=" ".join(found["indistinguishable_from"]),
-                          p=found["rounds"][0]["p_value"], before=e["before"], after=e["after"], truth=truth, seconds=found["seconds"]))
-        row = table[-1]
-        print(f"{number + 1}/{len(plan)} {effect} x{magnitude:g}, {count} blocks: {row['found']} ({row['alike']}) p {row['p']:.4f}, held-out "
-              f"{row['before']:.3f} -> {row['after']:.3f}, truth {truth:.3f}, {row['seconds']:.0f} s", flush=True)
-    return table
+    plan = []
+    for n in o.blocks:  # half of a study says something of everything
+        none = [("none", 1.0, n, k) for k in range(o.none)]
+        some = [(e, m, n, 0) for m in o.magnitudes for e in o.effects]
+        plan += [p for pair in itertools.zip_longest(some, none) for p in pair if p]
+    with ThreadPoolExecutor(o.jobs) as jobs:
+        return list(jobs.map(lambda campaign: one(o, *campaign), plan))
 
 
 def report(table):
@@ -202,13 +210,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--talus", default=f"{here}/../build/release/talus")
     parser.add_argument("--effects", default="all")
-    parser.add_argument("--magnitudes", default="0.5,1,2")
+    parser.add_argument("--magnitudes", default="1,2,0.5")
     parser.add_argument("--blocks", default="60,120")
     parser.add_argument("--none", type=int, default=20)
     parser.add_argument("--trials", type=int, default=24)
     parser.add_argument("--test-trials", type=int, default=100)
     parser.add_argument("--most-effects", type=int, default=3)
     parser.add_argument("--threads", type=int, help="of each diagnosis; all processors where it is not given")
+    parser.add_argument("--jobs", type=int, default=1, help="campaigns at a time; with --threads 1 the quickest way")
     parser.add_argument("--work", default="build/study")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("-o", "--out")
