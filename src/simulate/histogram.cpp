@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "talus/base/scratch.hpp"
 
@@ -123,13 +122,30 @@ void LogHistogram::add(std::span<const float> values) {
     for (const float value : values) few_[few_count_++] = static_cast<std::uint16_t>(key_of(value));
     return;
   }
-  int low = std::numeric_limits<int>::max(), high = 0;
-  for (const float value : values) {
-    low = std::min(low, key_of(value));
-    high = std::max(high, key_of(value));
+  float least = values.front(), largest = least;
+#pragma omp simd reduction(min : least) reduction(max : largest)
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    least = std::min(least, values[i]);
+    largest = std::max(largest, values[i]);
   }
+  const int low = key_of(least), high = key_of(largest);  // a key grows with its value
   if (few_count_ > 0 || low < first_ || high >= first_ + size_) spill(low, high);
-  for (const float value : values) add_key(key_of(value));
+  count_all(values);
+}
+
+/// Counts values whose bins there is room for. From locals: a byte written to the counts might be any member's.
+void LogHistogram::count_all(std::span<const float> values) {
+  auto value = values.begin();
+  if (width_ == 1) {
+    unsigned char* const counts = counts_;
+    const int first = first_;
+    for (; value != values.end(); ++value) {
+      unsigned char& here = counts[std::max(0, key_of(*value) - first)];
+      if (here == 0xFFU) break;
+      ++here;
+    }
+  }
+  for (; value != values.end(); ++value) add_key(key_of(*value));
 }
 
 void LogHistogram::merge(const LogHistogram& other) {

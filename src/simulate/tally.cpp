@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tally_region.hpp"
 
@@ -10,6 +11,23 @@ namespace {
 
 std::int64_t fixed_point(float value, double units) {
   return static_cast<std::int64_t>(static_cast<double>(value) * units + 0.5);
+}
+
+/// The largest float at or below each: a float exceeds a threshold just where it exceeds that.
+std::vector<float> floats_below(const std::vector<double>& thresholds) {
+  std::vector<float> limits;
+  for (const double threshold : thresholds) {
+    const auto nearest = static_cast<float>(threshold);
+    limits.push_back(nearest > threshold ? std::nextafter(nearest, -std::numeric_limits<float>::infinity()) : nearest);
+  }
+  return limits;
+}
+
+std::uint32_t exceeding(std::span<const float> values, float limit) {
+  std::uint32_t count = 0;
+#pragma omp simd reduction(+ : count)
+  for (std::size_t i = 0; i < values.size(); ++i) count += values[i] > limit ? 1U : 0U;
+  return count;
 }
 
 std::size_t cell_in_region(int column, int row) {
@@ -116,6 +134,8 @@ Tally::Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vecto
     : grid_(grid),
       energy_thresholds_(std::move(energy_thresholds)),
       height_thresholds_(std::move(height_thresholds)),
+      energy_limits_(floats_below(energy_thresholds_)),
+      height_limits_(floats_below(height_thresholds_)),
       regions_across_((grid.columns + kRegionSide - 1) / kRegionSide),
       region_count_(static_cast<std::size_t>(regions_across_) *
                     static_cast<std::size_t>((grid.rows + kRegionSide - 1) / kRegionSide)),
@@ -188,22 +208,26 @@ void Tally::add(CellRecord& record, std::uint32_t* over, const Values& values) c
   record.passages += static_cast<std::uint32_t>(values.count);
   std::array<float, kQuantities> largest{};
   for (std::size_t q = 0; q < kQuantities; ++q) {
-    for (const float value : values.of(q)) {
-      largest[q] = std::max(largest[q], value);
-      record.sum[q] += fixed_point(value, 1.0 / kFixedPoint[q]);
+    std::int64_t sum = 0;
+    float most = 0.0F;
+#pragma omp simd reduction(+ : sum) reduction(max : most)
+    for (std::size_t i = 0; i < values.count; ++i) {
+      sum += fixed_point(values.lists[q][i], 1.0 / kFixedPoint[q]);
+      most = std::max(most, values.lists[q][i]);
     }
+    record.sum[q] += sum;
+    largest[q] = most;
     record.maximum[q] = std::max(record.maximum[q], largest[q]);
     record.histogram[q].add(values.of(q));
   }
-  const auto count_over = [&](const std::vector<double>& limits, Quantity of) {
+  const auto count_over = [&](const std::vector<float>& limits, Quantity of) {
     const auto q = static_cast<std::size_t>(of);
     for (std::size_t i = 0; i < limits.size() && largest[q] > limits[i]; ++i)  // ascending: the rest is not exceeded
-      over[i] += static_cast<std::uint32_t>(
-          std::ranges::count_if(values.of(q), [limit = limits[i]](float v) { return v > limit; }));
+      over[i] += exceeding(values.of(q), limits[i]);
     over += limits.size();
   };
-  count_over(energy_thresholds_, Quantity::Energy);
-  count_over(height_thresholds_, Quantity::Height);
+  count_over(energy_limits_, Quantity::Energy);
+  count_over(height_limits_, Quantity::Height);
 }
 
 const Tally::Region& Tally::region_of(int column, int row) const {

@@ -109,6 +109,7 @@ class Tally {
 
   Grid grid_;
   std::vector<double> energy_thresholds_, height_thresholds_;
+  std::vector<float> energy_limits_, height_limits_;  // the same for values, which are floats
   int regions_across_ = 0;
   std::size_t region_count_ = 0;
   std::unique_ptr<Hazard> hazard_;  // null: none is kept
