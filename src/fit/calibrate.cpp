@@ -211,6 +211,10 @@ std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& 
       p.set = [set = field->set, zone](Model& model, double value) { set(model.grounds[zone], value); };
       parameters.push_back(std::move(p));
     }
+  if (parameters.empty())
+    throw InputError(
+        "no zone is touched by 5 % of the simulated paths, so that nothing can be fitted: are the releases on the "
+        "slope?");
   return parameters;
 }
 

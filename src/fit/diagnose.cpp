@@ -39,13 +39,11 @@ class Diagnosing {
 
   Diagnosis run(const Model& start) {
     Diagnosis d;
-    d.with_effects = fits_.ground(start);
+    d.base = d.with_effects = fits_.ground(start);
     std::vector<std::string> found;
     for (int round = 0; round <= options_.most_effects; ++round) {
       const double level = round == 0 ? options_.first_level : options_.later_level;
-      Fitted base = d.with_effects;
-      d.rounds.push_back(turn(base, found, level, round < options_.most_effects));
-      if (round == 0) d.base = d.with_effects = base;
+      d.rounds.push_back(turn(d.with_effects, found, level, round < options_.most_effects));
       const Round& last = d.rounds.back();
       if (last.effect == "none" || last.effect == "unexplained") break;
       found.push_back(last.effect);
@@ -56,18 +54,18 @@ class Diagnosing {
   }
 
  private:
-  void advance() { progress_ = std::min(0.95, progress_ + 0.02); }
+  void advance(double share = 0.02) { progress_ = std::min(0.95, progress_ + share); }
   bool proceeds() const { return !options_.proceed || options_.proceed(progress_); }
 
   std::vector<ResidualRow> residual_of(const Fitted& fitted) const {
     return residual_table(campaign_, ResidualSpace(campaign_, fitted.fitting), rows_);
   }
 
-  /// @param base  what has been found so far; better fitted afterwards where the competition finds that it can be
-  Round turn(Fitted& base, const std::vector<std::string>& found, double level, bool more) {
+  /// @param base  what has been found so far
+  Round turn(const Fitted& base, const std::vector<std::string>& found, double level, bool more) {
     Round round;
     round.residual = residual_of(base);
-    progress_ += 0.1;
+    advance(0.1);
     const std::vector<Candidate> candidates = candidates_of(campaign_, base.model, base.fitting, found);
     const Axis axis = axis_of(campaign_, base.fitting);
     ScoreTestOptions how;
@@ -109,31 +107,34 @@ class Diagnosing {
     return placed;
   }
 
-  /// The fits of those go on that may be chosen and gain most, or could yet; and that of the base, so that an effect
-  /// does not gain what the ground alone would have. Those that may still win then do so with more trials.
-  void compete(Fitted& base, std::vector<Trial>& trials, double level) {
+  /// The fits of those go on that may be chosen and gain most, or could yet; of those that may still win, with more
+  /// trials. That of the base has had as many rounds before.
+  void compete(const Fitted& base, std::vector<Trial>& trials, double level) {
     std::vector<Trial*> contenders;
     for (Trial& t : trials)
       if (t.p_value < level) contenders.push_back(&t);
-    if (contenders.empty()) return;
     drop_losers(contenders, -kUnfinished);
-    for (Trial* t : contenders) advance(), fits_.go_on(*t);
-    base = fits_.went_on(base);
-    for (Trial* t : contenders) fits_.compare(base, *t);
+    for (Trial* t : contenders) {
+      advance();
+      fits_.go_on(base, *t);
+    }
     drop_losers(contenders, kHalfWay * kWorthNaming * base.objective.total);
-    for (Trial* t : contenders) advance(), fits_.polish(*t);
-    if (!contenders.empty()) base = fits_.polished(base);
-    for (Trial& t : trials) fits_.compare(base, t);
+    for (Trial* t : contenders) {
+      advance();
+      fits_.polish(base, *t);
+    }
+    if (contenders.empty()) return;
     const double before = fits_.cross_validated(base);
     for (Trial* t : contenders) t->cross_validated = before - fits_.cross_validated(t->fitted);
   }
 
   /// Leaves the few that gain most: those that gain so much at least and may yet win.
   void drop_losers(std::vector<Trial*>& contenders, double least) const {
+    if (contenders.empty()) return;
     std::stable_sort(contenders.begin(), contenders.end(),
                      [](const Trial* a, const Trial* b) { return net(*a) > net(*b); });
     contenders.resize(std::min(contenders.size(), kContenders));
-    const Score best = contenders.front()->fitted.objective;
+    const Score& best = contenders.front()->fitted.objective;
     const auto behind = [&](const Score& own) { return difference(best, own, campaign_.blocks.size()).interval.low; };
     std::erase_if(contenders,
                   [&](const Trial* t) { return t->gain < least || behind(t->fitted.objective) > kUnfinished; });

@@ -53,10 +53,6 @@ std::vector<Evaluation> without_effect(const std::vector<Evaluation>& tried, Ind
 
 }  // namespace
 
-const Fitted& EffectFits::better(const Fitted& fitted, const Fitted& longer) {
-  return longer.objective.total < fitted.objective.total ? longer : fitted;
-}
-
 ObserveOptions EffectFits::observing(std::uint32_t trials) const {
   return {trials, options_.seed, kUnseen, options_.threads, rows_, {}};
 }
@@ -69,6 +65,13 @@ FitOptions EffectFits::fitting() const {
   how.threads = options_.threads;
   how.proceed = [this](double) { return proceed_(); };
   return how;
+}
+
+/// The one with the lower error; what the other has simulated is kept, too.
+Fitted EffectFits::better(Fitted fitted, Fitted longer) {
+  if (longer.objective.total < fitted.objective.total) return longer;
+  fitted.tried = std::move(longer.tried);
+  return fitted;
 }
 
 /// Scored on luck that the search has not seen.
@@ -97,7 +100,8 @@ Fitted EffectFits::ground(const Model& start) const {
   FitOptions on = going_on(fitted);
   on.trials = how.trials;
   on.comparison_trials = how.comparison_trials;
-  return better(fitted, refined(fitted, on));
+  Fitted longer = refined(fitted, on);
+  return better(std::move(fitted), std::move(longer));
 }
 
 /// A model without any of the effect, to which amounts of it may be added.
@@ -196,20 +200,22 @@ FitOptions EffectFits::going_on(const Fitted& fitted) const {
   return how;
 }
 
-void EffectFits::go_on(Trial& trial) const {
-  adopt(refined(trial.fitted, going_on(trial.fitted)), trial);
+void EffectFits::go_on(const Fitted& base, Trial& trial) const {
+  continued(base, trial, going_on(trial.fitted));
 }
 
-Fitted EffectFits::polished(const Fitted& fitted) const {
+void EffectFits::polish(const Fitted& base, Trial& trial) const {
   FitOptions how = fitting();
   how.trials *= 2;
   how.comparison_trials *= 2;
   how.rounds = 2;
-  return better(fitted, refined(fitted, how));
+  continued(base, trial, how);
 }
 
-void EffectFits::polish(Trial& trial) const {
-  adopt(polished(trial.fitted), trial);
+void EffectFits::continued(const Fitted& base, Trial& trial, const FitOptions& how) const {
+  Fitted longer = refined(trial.fitted, how);
+  adopt(better(std::move(trial.fitted), std::move(longer)), trial);
+  compare(base, trial);
 }
 
 /// The fitting rows in a random order: neighbours in the file are often of one day or one kind.
@@ -259,7 +265,7 @@ double EffectFits::error_in_folds(const LocalModel& local, const Fitted& fitted,
 
 bool EffectFits::confirmed(const Fitted& base, const Trial& trial, double worth) const {
   ObserveOptions fresh = observing(kConfirming * options_.final_trials);
-  fresh.first_trial += kOrders * options_.final_trials;  // after those of the cross-validation
+  fresh.first_trial += (1 + kOrders) * options_.final_trials;  // after those of the choice and the cross-validation
   const auto error = [&](const Fitted& fitted) {
     return weigh_groups(score(campaign_, observe(campaign_, fitted.model, fresh), rows_)).total;
   };

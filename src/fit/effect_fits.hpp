@@ -24,20 +24,17 @@ class EffectFits {
   Trial effect(const Fitted& base, const EffectVerdict& verdict, const Candidate& candidate) const;
   /// The least objective that a look at some amounts of an effect finds, to compare its places.
   double promise(const Fitted& base, const Verdict& verdict, const Candidate& candidate) const;
-  /// Goes on with the fit of an effect that is among the best.
-  void go_on(Trial& trial) const;
-  /// The same of the base, which competes with the effects: it must have been looked for as long as they.
-  Fitted went_on(const Fitted& base) const { return better(base, refined(base, going_on(base))); }
-  /// What the fit of a trial gained.
-  void compare(const Fitted& base, Trial& trial) const;
-  /// Once more, with more trials, where that makes it better: between these is chosen, and the user gets one of them.
-  Fitted polished(const Fitted& fitted) const;
-  void polish(Trial& trial) const;
+  /// Goes on with the fit of an effect that is among the best, where that makes it better.
+  void go_on(const Fitted& base, Trial& trial) const;
+  /// The same with more trials: between these is chosen, and the user gets one of them.
+  void polish(const Fitted& base, Trial& trial) const;
   /// The objective of a model on blocks that its fit has not seen: five folds, each of them simulated with the model
   /// that is best for the others, which is the minimum of the quadratic model of their rows. Mean over five orders in
   /// which the blocks are cut.
   double cross_validated(const Fitted& fitted) const {
-    return cross_validated(fitted, observing(options_.final_trials));
+    ObserveOptions unseen = observing(options_.final_trials);
+    unseen.first_trial += options_.final_trials;  // the first of them have chosen between fits
+    return cross_validated(fitted, unseen);
   }
   /// Whether a trial gains so much on luck that nothing was chosen by, on its rows and in cross-validation: of several
   /// effects the best one was lucky, too.
@@ -50,7 +47,9 @@ class EffectFits {
   FitOptions fitting() const;
   Fitted finish(Fit&& fit, std::vector<Parameter> free) const;
   Fitted refined(const Fitted& fitted, FitOptions how) const;
-  static const Fitted& better(const Fitted& fitted, const Fitted& longer);
+  static Fitted better(Fitted fitted, Fitted longer);
+  void compare(const Fitted& base, Trial& trial) const;  ///< what the fit of a trial gained
+  void continued(const Fitted& base, Trial& trial, const FitOptions& how) const;
   static void adopt(Fitted&& fitted, Trial& trial);
   static Model without(const Fitted& base, const Candidate& candidate);
   Evaluation scan(const FitProblem& problem, const FitOptions& how, const Fitted& base, const Candidate& candidate,

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "talus/base/scratch.hpp"
 
@@ -122,11 +123,12 @@ void LogHistogram::add(std::span<const float> values) {
     for (const float value : values) few_[few_count_++] = static_cast<std::uint16_t>(key_of(value));
     return;
   }
-  float least = values.front(), largest = least;
+  float least = std::numeric_limits<float>::infinity(), largest = kFloor;
 #pragma omp simd reduction(min : least) reduction(max : largest)
   for (std::size_t i = 0; i < values.size(); ++i) {
-    least = std::min(least, values[i]);
-    largest = std::max(largest, values[i]);
+    const float value = values[i] > kFloor ? values[i] : kFloor;  // NaN, too, counts as the floor
+    least = std::min(least, value);
+    largest = std::max(largest, value);
   }
   const int low = key_of(least), high = key_of(largest);  // a key grows with its value
   if (few_count_ > 0 || low < first_ || high >= first_ + size_) spill(low, high);

@@ -150,6 +150,20 @@ class OwnCampaign(Case):
         self.assertRegex(done.stdout, r"stop +\d\.\d{3} +\d\.\d{3} to +\d\.\d{3} +30\n")
         self.assertNotIn("held-out", done.stdout)
 
+    def test_too_little_that_was_measured(self):
+        """No block to fit to, fewer than five, and five that measured nothing: one error each, and no folder."""
+        with open(self.path("blocks.csv"), encoding="utf-8") as file:
+            head, *blocks = file.read().splitlines()
+        for fitting in 0, 4:
+            self.write("blocks.csv", "\n".join([head] + [b[:-1] + str(int(i >= fitting)) for i, b in enumerate(blocks)]) + "\n")
+            for command in "calibrate", "diagnose":
+                self.fails(2, "campaign.toml", f"{fitting} of 45", "of 5 of them that differ", arguments=[command, self.campaign, "-o", self.path("x")])
+        self.write("blocks.csv", "\n".join([head] + blocks) + "\n")
+        self.write("stops.csv", "id,x,y\n")
+        self.write("passages.csv", "id,screen\n")
+        self.fails(2, "30 of 45", arguments=["diagnose", self.campaign, "-o", self.path("x")])
+        self.assertFalse(os.path.exists(self.path("x")))
+
     def test_faults(self):
         before = os.listdir(self.folder)
         self.fails(2, "--parameters", arguments=["score", self.campaign])

@@ -39,10 +39,6 @@ void choose_parameters(const talus::Campaign& campaign, const std::vector<std::s
     if (!touched[zone] && there) c.untouched.push_back(campaign.zone_names[zone]);
   }
   c.free = talus::ground_parameters(campaign, c.start, keys, touched);
-  if (c.free.empty())
-    throw talus::InputError(
-        "calibrate: no zone is touched by 5 % of the simulated paths, so that nothing can be fitted: "
-        "are the releases on the slope?");
 }
 
 /// Scores start and fit on both kinds of rows, with trials of their own.
@@ -89,9 +85,6 @@ int calibrate(const Options& options) {
   c.options.proceed = [&](double share) { return progress.update(kSearchShare * share) && !interrupted(); };
   c.fit = talus::fit_parameters(campaign, c.start, c.free, rows, c.options);
   if (c.fit.interrupted) stop_interrupted();
-  if (c.fit.score.groups.empty())
-    throw talus::InputError(options.campaign +
-                            ": no observable has five fitting rows, so that nothing can be fitted: measure more");
   c.options.proceed = [&](double share) {
     return progress.update(kSearchShare + (1.0 - kSearchShare) * share) && !interrupted();
   };

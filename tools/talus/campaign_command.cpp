@@ -1,5 +1,30 @@
 #include "campaign_command.hpp"
 
+#include <algorithm>
+
+#include "talus/base/error.hpp"
+#include "talus/fit/score.hpp"
+#include "talus/simulate/presets.hpp"
+
+namespace {
+
+/// Throws InputError where no quantity was measured often enough to be fitted.
+void require_measurements(const std::string& path, const talus::Campaign& campaign) {
+  const std::vector<bool> rows = talus::fitting_rows(campaign);
+  const talus::Model model = talus::model_of_preset(campaign, talus::kDefaultPreset);
+  const auto runs = talus::observe(campaign, model, {1, 1, 0, 1, rows, {}});  // which rows there are hangs on no value
+  if (!talus::score(campaign, runs, rows).groups.empty()) return;
+  throw talus::InputError(path + ": nothing to fit to: " +
+                          std::to_string(std::count(rows.begin(), rows.end(), true)) + " of " +
+                          std::to_string(rows.size()) +
+                          " blocks are not held out, and no quantity (stop, mass, crossing, speed, jump, spin, sample) "
+                          "has values of " +
+                          std::to_string(talus::kFewestRows) +
+                          " of them that differ: hold out fewer blocks, or measure more");
+}
+
+}  // namespace
+
 void CampaignCommand::add_to(CLI::App& command, std::uint32_t& trials, std::vector<std::string>& keys,
                              std::uint64_t& seed, int& threads) {
   command.add_option("campaign", campaign, "measured data: campaign.toml")->required();
@@ -21,6 +46,7 @@ OpenedCampaign::OpenedCampaign(const CampaignCommand& command, talus::io::FitRec
   for (const talus::io::InputFile& input : loaded.inputs) folder.protect(input.path);
   if (!command.quiet)
     for (const std::string& warning : loaded.warnings) say("warning", warning);
+  require_measurements(command.campaign, loaded.campaign);
   record.command = command_line();
   record.inputs = loaded.inputs;
   record.warnings = loaded.warnings;

@@ -24,5 +24,6 @@ struct OpenedCampaign {
   talus::io::OutputFolder folder;
 
   /// Reads the campaign, guards its files from being overwritten, says its warnings and fills the head of the report.
+  /// Throws InputError where nothing can be fitted to it.
   OpenedCampaign(const CampaignCommand& command, talus::io::FitRecord& record);
 };

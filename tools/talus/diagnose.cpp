@@ -82,6 +82,8 @@ void add_diagnose(CLI::App& app, Action& action) {
   command->add_option("--most-effects", how.most_effects, "that are added, one a round (3)")->check(CLI::Range(1, 9));
   command->add_option("--level", how.first_level, "of significance, over all effects and places (0.05)")
       ->check(CLI::Range(0.0001, 0.5));
-  command->footer("Example:\n  talus diagnose campaign.toml -o diagnosis\n\nThen open diagnosis/report.html.");
+  command->footer(
+      "Of fewer than 72 fitting blocks so many times more trajectories as makes their number the same.\n\n"
+      "Example:\n  talus diagnose campaign.toml -o diagnosis\n\nThen open diagnosis/report.html.");
   command->callback([&action, options] { action = [options] { return diagnose(*options); }; });
 }

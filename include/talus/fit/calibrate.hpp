@@ -29,7 +29,8 @@ struct Parameter {
 
 /// The parameters `keys` of ground_fields() in the given zones, with the start as centre of the prior. theta_scale,
 /// psi_scale, En50 and Et50 on the log scale with sd 1 (a factor of e), phi on the linear one with sd 8 degrees; bounds
-/// 2.5 sd from the start, and those of the field. Throws InputError for a key that cannot be fitted.
+/// 2.5 sd from the start, and those of the field. Throws InputError for a key that cannot be fitted, and
+/// where there is no such zone.
 std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& start,
                                          std::span<const std::string> keys, const std::vector<bool>& zones);
 

@@ -27,7 +27,7 @@ TEST(Parameters, ThereAndBack) {
   }
   EXPECT_EQ(two_parameters(c, start)[1].key, "ground.zones.default.En50");
   EXPECT_THROW(ground_parameters(c, start, std::vector<std::string>{"E50"}, {true}), InputError);
-  EXPECT_TRUE(ground_parameters(c, start, std::vector<std::string>{"phi"}, {false}).empty());
+  EXPECT_THROW(ground_parameters(c, start, std::vector<std::string>{"phi"}, {false}), InputError);
 }
 
 /// A quadratic is found exactly from places without noise.
