@@ -14,9 +14,8 @@ void require_measurements(const std::string& path, const talus::Campaign& campai
   const talus::Model model = talus::model_of_preset(campaign, talus::kDefaultPreset);
   const auto runs = talus::observe(campaign, model, {1, 1, 0, 1, rows, {}});  // which rows there are hangs on no value
   if (!talus::score(campaign, runs, rows).groups.empty()) return;
-  throw talus::InputError(path + ": nothing to fit to: " +
-                          std::to_string(std::count(rows.begin(), rows.end(), true)) + " of " +
-                          std::to_string(rows.size()) +
+  throw talus::InputError(path + ": nothing to fit to: " + std::to_string(std::count(rows.begin(), rows.end(), true)) +
+                          " of " + std::to_string(rows.size()) +
                           " blocks are not held out, and no quantity (stop, mass, crossing, speed, jump, spin, sample) "
                           "has values of " +
                           std::to_string(talus::kFewestRows) +

@@ -58,7 +58,7 @@ struct Diagnosis {
 
 struct DiagnoseOptions {
   std::vector<std::string> keys{"theta_scale", "psi_scale", "En50", "Et50"};  ///< of the ground, fitted per zone
-  std::uint32_t search_trials = 24, test_trials = 100, final_trials = 200;    ///< per block
+  std::uint32_t search_trials = 24, test_trials = 100, final_trials = 200;    ///< per block of 72; of fewer, more
   std::uint64_t seed = 1;
   int threads = 0;
   int most_effects = 3;
@@ -68,6 +68,8 @@ struct DiagnoseOptions {
 };
 
 /// Finds what a model of the ground alone leaves of a campaign's fitting rows, and which effect explains it.
+///
+/// @param campaign  with at least one fitting block
 ///
 /// (1) Fits the ground. (2) Score test of all candidates. (3) Fits every effect at its best place, together with the
 /// ground where the test finds anything in it; the best of them for longer. (4) Chooses: significant in the test, the
