@@ -8,12 +8,13 @@
 namespace talus {
 namespace {
 
-constexpr std::size_t kContenders = 4;  // whose fits go on: those that gain most
-constexpr double kWorthNaming = 0.02;   // share of the error that an effect takes away, also from blocks not fitted
-constexpr double kNothing = 0.1;        // of what one would notice: so little of an effect explains nothing
-constexpr double kHalfWay = 0.5;        // of that share: a gain from which on the fit may yet get there
-constexpr double kUnfinished = 0.02;    // of the error, that a first fit may still be above its minimum
-constexpr std::size_t kLaterFits = 6;  // after the first round: with an effect in place all takes several times as long
+constexpr std::size_t kContenders = 4;       // whose fits go on: those that gain most
+constexpr std::size_t kLaterContenders = 2;  // after the first round all takes several times as long,
+constexpr std::size_t kLaterFits = 6;        // with an effect in place
+constexpr double kWorthNaming = 0.02;      // share of the error that an effect takes away, also from blocks not fitted
+constexpr double kNothing = 0.1;           // of what one would notice: so little of an effect explains nothing
+constexpr double kHalfWay = 0.5;           // of that share: a gain from which on the fit may yet get there
+constexpr double kUnfinished = 0.02;       // of the error, that a first fit may still be above its minimum
 constexpr std::uint32_t kManyBlocks = 72;  // of fewer, more trials each: what counts are means over blocks
 
 double net(const Trial& trial) {
@@ -88,7 +89,7 @@ class Diagnosing {
       const EffectVerdict placed = in_better_zone(base, verdict, candidates);
       round.trials.push_back(fits_.effect(base, placed, together(campaign_, axis, candidates, placed.best.members)));
     }
-    if (!noise) compete(base, round.trials, level);
+    if (!noise) compete(base, round.trials, level, found.empty() ? kContenders : kLaterContenders);
     choose(base, round, noise);
     return round;
   }
@@ -109,16 +110,16 @@ class Diagnosing {
 
   /// The fits of those go on that may be chosen and gain most, or could yet; of those that may still win, with more
   /// trials. That of the base has had as many rounds before.
-  void compete(const Fitted& base, std::vector<Trial>& trials, double level) {
+  void compete(const Fitted& base, std::vector<Trial>& trials, double level, std::size_t most) {
     std::vector<Trial*> contenders;
     for (Trial& t : trials)
       if (t.p_value < level) contenders.push_back(&t);
-    drop_losers(contenders, -kUnfinished);
+    drop_losers(contenders, most, -kUnfinished);
     for (Trial* t : contenders) {
       advance();
       fits_.go_on(base, *t);
     }
-    drop_losers(contenders, kHalfWay * kWorthNaming * base.objective.total);
+    drop_losers(contenders, most, kHalfWay * kWorthNaming * base.objective.total);
     for (Trial* t : contenders) {
       advance();
       fits_.polish(base, *t);
@@ -129,11 +130,11 @@ class Diagnosing {
   }
 
   /// Leaves the few that gain most: those that gain so much at least and may yet win.
-  void drop_losers(std::vector<Trial*>& contenders, double least) const {
+  void drop_losers(std::vector<Trial*>& contenders, std::size_t most, double least) const {
     if (contenders.empty()) return;
     std::stable_sort(contenders.begin(), contenders.end(),
                      [](const Trial* a, const Trial* b) { return net(*a) > net(*b); });
-    contenders.resize(std::min(contenders.size(), kContenders));
+    contenders.resize(std::min(contenders.size(), most));
     const Score& best = contenders.front()->fitted.objective;
     const auto behind = [&](const Score& own) { return difference(best, own, campaign_.blocks.size()).interval.low; };
     std::erase_if(contenders,

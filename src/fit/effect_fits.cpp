@@ -264,13 +264,15 @@ double EffectFits::error_in_folds(const LocalModel& local, const Fitted& fitted,
 }
 
 bool EffectFits::confirmed(const Fitted& base, const Trial& trial, double worth) const {
-  ObserveOptions fresh = observing(kConfirming * options_.final_trials);
-  fresh.first_trial += (1 + kOrders) * options_.final_trials;  // after those of the choice and the cross-validation
+  ObserveOptions unseen = observing(options_.final_trials);
+  unseen.first_trial += (1 + kOrders) * options_.final_trials;  // after those of the choice and its cross-validation
+  if (cross_validated(base, unseen) - cross_validated(trial.fitted, unseen) - trial.place_price < worth) return false;
+  unseen.first_trial += kOrders * options_.final_trials;
+  unseen.trials *= kConfirming;
   const auto error = [&](const Fitted& fitted) {
-    return weigh_groups(score(campaign_, observe(campaign_, fitted.model, fresh), rows_)).total;
+    return weigh_groups(score(campaign_, observe(campaign_, fitted.model, unseen), rows_)).total;
   };
-  if (error(base) - error(trial.fitted) < worth) return false;
-  return cross_validated(base, fresh) - cross_validated(trial.fitted, fresh) - trial.place_price >= worth;
+  return error(base) - error(trial.fitted) >= worth;
 }
 
 }  // namespace talus

@@ -55,8 +55,8 @@ class Scorer {
       if (ask_[b]) visit(b, campaign_.blocks[b]);
   }
 
-  void row(std::uint32_t block, double score) {
-    rows_.push_back({static_cast<std::uint32_t>(score_.groups.size()), block, score});
+  void row(std::uint32_t block, double score, bool unseen = false) {
+    rows_.push_back({static_cast<std::uint32_t>(score_.groups.size()), block, score, unseen});
   }
 
   void close(const std::string& name) {
@@ -65,6 +65,7 @@ class Scorer {
       for (const RowScore& r : rows_) sum += r.score;
       score_.groups.push_back(
           {name, sum / static_cast<double>(rows_.size()), static_cast<std::uint32_t>(rows_.size())});
+      score_.groups.back().unseen = static_cast<std::uint32_t>(std::ranges::count(rows_, true, &RowScore::unseen));
       score_.rows.insert(score_.rows.end(), rows_.begin(), rows_.end());
     }
     rows_.clear();
@@ -88,7 +89,8 @@ class Scorer {
       places.clear();
       for (std::uint32_t t = 0; t < runs_[b].trials; ++t)
         if (!std::isnan(runs_[b].x[t])) places.emplace_back(runs_[b].x[t], runs_[b].y[t]);
-      row(b, fair_energy_score(places.size() >= fewest_simulated_ ? places : climatology, *block.stop) / spread);
+      const bool unseen = places.size() < fewest_simulated_;
+      row(b, fair_energy_score(unseen ? climatology : places, *block.stop) / spread, unseen);
     });
     close("stop");
   }
@@ -152,7 +154,9 @@ class Scorer {
     if (!(spread > 0.0)) return;
     for_asked([&](std::uint32_t b, const MeasuredBlock& block) {
       const double y = measured(block);
-      if (!std::isnan(y)) row(b, crps_or_climatology(simulated(b), climatology, y) / spread);
+      if (std::isnan(y)) return;
+      const double score = crps_or_climatology(simulated(b), climatology, y) / spread;
+      row(b, score, unseen());
     });
     close(name);
   }
@@ -168,13 +172,14 @@ class Scorer {
     if (!(spread > 0.0)) return;
     for_asked([&](std::uint32_t b, const MeasuredBlock& block) {
       double sum = 0.0;
-      int count = 0;
+      int count = 0, not_seen = 0;
       for (std::size_t i = 0; i < block.samples.size(); ++i) {
         if (std::isnan(block.samples[i].*measured)) continue;
         sum += crps_or_climatology(runs_[b].samples[i].*simulated, climatology, block.samples[i].*measured);
         ++count;
+        not_seen += unseen() ? 1 : 0;
       }
-      if (count > 0) row(b, sum / count / spread);
+      if (count > 0) row(b, sum / count / spread, not_seen == count);
     });
     close(name);
   }
@@ -182,8 +187,9 @@ class Scorer {
   /// So few simulated values say nothing: then the spread of the fitting rows stands in for them.
   double crps_or_climatology(const std::vector<double>& simulated, std::vector<double>& climatology, double measured) {
     keep_finite(simulated, values_);
-    return fair_crps(values_.size() >= fewest_simulated_ ? values_ : climatology, measured);
+    return fair_crps(unseen() ? climatology : values_, measured);
   }
+  bool unseen() const { return values_.size() < fewest_simulated_; }  // of the values scored last
 
   const Campaign& campaign_;
   std::span<const BlockRuns> runs_;

@@ -41,6 +41,11 @@ std::string value_text(double value) {
   return std::isnan(value) ? "-" : print("%.3f", value);
 }
 
+std::string reduction_text(const Reduction& r) {
+  if (std::isnan(r.share)) return "-";
+  return print("%.1f %% (%.1f to %.1f)", 100.0 * r.share, 100.0 * r.interval.low, 100.0 * r.interval.high);
+}
+
 /// The property of a block that a row of the residual table names; the number of the block where it names none.
 double property_of(const MeasuredBlock& b, const std::string& name, std::size_t number) {
   if (name == "mass") return b.mass;
@@ -127,10 +132,7 @@ std::string candidates_table(const Round& round, const std::vector<HoldoutError>
     html += "<tr><td>" + t.effect + "</td><td>" + escaped(t.where) + "</td><td>" + numbers + "</td><td>" +
             print("%.4f", t.p_value) + "</td><td>" +
             print("%.3f (%.3f to %.3f)", t.gain, t.gain_interval.low, t.gain_interval.high) + "</td><td>" +
-            value_text(e.after) + "</td><td>" +
-            print("%.0f %% (%.0f to %.0f)", 100.0 * e.reduction.share, 100.0 * e.reduction.interval.low,
-                  100.0 * e.reduction.interval.high) +
-            "</td></tr>\n";
+            value_text(e.after) + "</td><td>" + reduction_text(e.reduction) + "</td></tr>\n";
   }
   return html + "</table>\n";
 }
@@ -181,11 +183,10 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
   html += "<tr><td>fitting rows</td><td>" + value_text(d.base.score.total) + "</td><td>" +
           value_text(d.with_effects.score.total) + "</td><td></td></tr>\n";
   html += "<tr><td>held-out rows (never fitted)</td><td>" + value_text(e.before) + "</td><td>" + value_text(e.after) +
-          "</td><td>" +
-          print("%.1f %% (%.1f to %.1f)", 100.0 * e.reduction.share, 100.0 * e.reduction.interval.low,
-                100.0 * e.reduction.interval.high) +
+          "</td><td>" + reduction_text(e.reduction) +
           "</td></tr></table>\n<p>Mean normalised score: 0 says the very value, about 0.56 knows no more than the "
           "spread of the measurements.</p>\n";
+  for (const std::string& warning : record.warnings) html += "<p>Warning: " + escaped(warning) + "</p>\n";
   html +=
       "<h2>Candidates</h2>\n<p>Each at its best place, fitted together with the ground where p is below 0.1, else with "
       "the ground held. The objective is the error with groups of n rows that count n / (n + 10).</p>\n";

@@ -146,7 +146,8 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
             {"seed", record.options.seed},
             {"seconds", number(record.seconds)},
             {"talus", version()},
-            {"command", record.command}};
+            {"command", record.command},
+            {"warnings", record.warnings}};
   Json ground = Json::object();
   for (const Parameter& p : d.base.free) ground[p.key] = number(p.get(d.base.model));
   json["base_parameters"] = ground;

@@ -58,6 +58,17 @@ ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<c
   return out;
 }
 
+std::vector<std::string> unseen_warnings(const Score& score) {
+  std::vector<std::string> warnings;
+  for (const GroupScore& group : score.groups)
+    if (2 * group.unseen > group.rows)
+      warnings.push_back(group.name + ": " + std::to_string(group.unseen) + " of " + std::to_string(group.rows) +
+                         " rows have fewer than " + std::to_string(kFewestSimulated) +
+                         " simulated values and score as the climatology: the model hardly ever does there what was "
+                         "measured, and the score says nothing of it");
+  return warnings;
+}
+
 std::string score_table(const ScoreSettings& settings, std::span<const ScoredRows> scores) {
   std::string text = "campaign " + settings.campaign + ": " + std::to_string(settings.trials) +
                      " trials per block, seed " + std::to_string(settings.seed) + "\n";
@@ -97,7 +108,8 @@ std::string score_json(const ScoreSettings& settings, std::span<const ScoredRows
       groups.push_back({{"group", s.score.groups[g].name},
                         {"score", number(s.score.groups[g].score)},
                         {"ci95", interval_of(s.intervals.groups[g])},
-                        {"rows", s.score.groups[g].rows}});
+                        {"rows", s.score.groups[g].rows},
+                        {"rows_as_climatology", s.score.groups[g].unseen}});
     json[s.rows] = {{"score", number(s.score.total)},
                     {"ci95", interval_of(s.intervals.total)},
                     {"blocks", s.blocks},

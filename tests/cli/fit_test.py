@@ -164,6 +164,16 @@ class OwnCampaign(Case):
         self.fails(2, "30 of 45", arguments=["diagnose", self.campaign, "-o", self.path("x")])
         self.assertFalse(os.path.exists(self.path("x")))
 
+    def test_a_model_that_does_nothing_that_was_measured_is_said_to(self):
+        """No block gets to the screen: its speeds score as the climatology, which is not the model's doing."""
+        self.write("stuck.toml", "[ground.zones.default]\nEn50 = 0.1\nEt50 = 0.1\ntheta_scale = 2\nphi = 60\n")
+        done = self.run_well("score", self.campaign, "--parameters", self.path("stuck.toml"), "--rows", "fit", "--json")
+        groups = {g["group"]: g for g in json.loads(done.stdout)["fit"]["groups"]}
+        self.assertEqual(groups["speed S1"]["rows_as_climatology"], groups["speed S1"]["rows"])
+        self.assertEqual(groups["stop"]["rows_as_climatology"], 0)
+        self.assertRegex(done.stderr, r"warning: speed S1: \d+ of \d+ rows")
+        self.assertNotIn("stop", done.stderr)
+
     def test_faults(self):
         before = os.listdir(self.folder)
         self.fails(2, "--parameters", arguments=["score", self.campaign])

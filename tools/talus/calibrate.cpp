@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -63,11 +64,13 @@ void print_summary(const talus::io::Calibration& c, const std::string& folder) {
   }
   for (const std::string& zone : c.untouched)
     std::printf("zone %s: too few simulated paths touch it; not fitted\n", zone.c_str());
-  for (const talus::io::BeforeAfter& e : c.errors)
+  for (const talus::io::BeforeAfter& e : c.errors) {
+    if (std::isnan(e.after.score.total)) continue;  // no group has five rows: the report says so
     std::printf("error, %s rows (%zu blocks): %.3f before, %.3f after (lower by %.1f %%, 95 %%: %.1f to %.1f %%)\n",
                 e.after.rows == "fit" ? "fitting" : "held-out", e.after.blocks, e.before.score.total,
                 e.after.score.total, 100.0 * e.reduction.share, 100.0 * e.reduction.interval.low,
                 100.0 * e.reduction.interval.high);
+  }
   std::printf("written: %s\n", folder.c_str());
 }
 
@@ -91,6 +94,7 @@ int calibrate(const Options& options) {
   c.uncertainty = talus::uncertainty_of({campaign, c.start, c.free, rows}, c.options, {}, c.fit);
   if (c.uncertainty.interrupted) stop_interrupted();
   score_both(campaign, c);
+  opened.warn_unseen(options, c, c.errors.front().after.score);
 
   talus::io::write_text(folder.temporary() / "calibration.json", talus::io::calibration_json(c));
   talus::io::write_text(folder.temporary() / "report.md", talus::io::calibration_report(c));

@@ -51,3 +51,11 @@ OpenedCampaign::OpenedCampaign(const CampaignCommand& command, talus::io::FitRec
   record.warnings = loaded.warnings;
   record.campaign = loaded.campaign.name;
 }
+
+void OpenedCampaign::warn_unseen(const CampaignCommand& command, talus::io::FitRecord& record,
+                                 const talus::Score& score) {
+  for (const std::string& warning : talus::io::unseen_warnings(score)) {
+    if (!command.quiet) say("warning", warning);
+    record.warnings.push_back(warning);
+  }
+}

@@ -4,6 +4,7 @@
 #include "talus/io/campaign_file.hpp"
 #include "talus/io/fit_record.hpp"
 #include "talus/io/output_folder.hpp"
+#include "talus/io/score_report.hpp"
 
 /// What `calibrate` and `diagnose` have in common: a campaign, a new folder, and how to tell of progress.
 struct CampaignCommand {
@@ -26,4 +27,7 @@ struct OpenedCampaign {
   /// Reads the campaign, guards its files from being overwritten, says its warnings and fills the head of the report.
   /// Throws InputError where nothing can be fitted to it.
   OpenedCampaign(const CampaignCommand& command, talus::io::FitRecord& record);
+
+  /// Says, and puts on record, where a fitted model scores as the climatology: a search can hide there.
+  static void warn_unseen(const CampaignCommand& command, talus::io::FitRecord& record, const talus::Score& score);
 };

@@ -1,4 +1,5 @@
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -27,8 +28,12 @@ void print_summary(const talus::io::DiagnosisRecord& record, const std::string& 
   }
   std::printf("error, fitting rows: %.3f before, %.3f after\n", d.base.score.total, d.with_effects.score.total);
   const talus::io::HoldoutError& e = record.whole;
-  std::printf("error, held-out rows: %.3f before, %.3f after (lower by %.1f %%, 95 %%: %.1f to %.1f %%)\n", e.before,
-              e.after, 100.0 * e.reduction.share, 100.0 * e.reduction.interval.low, 100.0 * e.reduction.interval.high);
+  if (std::isnan(e.before))
+    std::printf("error, held-out rows: nothing can be said, no group has five rows\n");
+  else
+    std::printf("error, held-out rows: %.3f before, %.3f after (lower by %.1f %%, 95 %%: %.1f to %.1f %%)\n", e.before,
+                e.after, 100.0 * e.reduction.share, 100.0 * e.reduction.interval.low,
+                100.0 * e.reduction.interval.high);
   std::printf("written: %s\n", folder.c_str());
 }
 
@@ -61,6 +66,7 @@ int diagnose(const Options& options) {
   } catch (const talus::FitInterrupted&) {
     stop_interrupted();
   }
+  OpenedCampaign::warn_unseen(options, record, record.diagnosis.with_effects.score);
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write_results(opened.folder, opened.loaded, record);
   opened.folder.commit();

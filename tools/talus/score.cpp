@@ -47,6 +47,9 @@ int score_model(const Options& options) {
     scores.push_back(talus::io::scored("fit", campaign, runs, talus::fitting_rows(campaign)));
   if (options.rows != "fit")
     scores.push_back(talus::io::scored("holdout", campaign, runs, talus::holdout_rows(campaign)));
+  if (!options.quiet)
+    for (const talus::io::ScoredRows& s : scores)
+      for (const std::string& warning : talus::io::unseen_warnings(s.score)) say("warning", warning);
   const talus::io::ScoreSettings settings{campaign.name, options.trials, options.seed};
   const std::string text =
       options.json ? talus::io::score_json(settings, scores) : talus::io::score_table(settings, scores);

@@ -24,10 +24,11 @@ double fair_energy_score(std::span<const Eigen::Vector2d> simulated, const Eigen
 
 /// What is compared: one quantity at one place.
 struct GroupScore {
-  std::string name;     ///< "stop", "mass", "crossed S1", "speed S1", "jump S1", "spin S1", "sample speed", ...
-  double score;         ///< mean over its rows, as a share of the spread of the fitting rows [-]
-  std::uint32_t rows;   ///< measurements that were scored: blocks
-  double weight = 1.0;  ///< in the total
+  std::string name;          ///< "stop", "mass", "crossed S1", "speed S1", "jump S1", "spin S1", "sample speed", ...
+  double score;              ///< mean over its rows, as a share of the spread of the fitting rows [-]
+  std::uint32_t rows;        ///< measurements that were scored: blocks
+  double weight = 1.0;       ///< in the total
+  std::uint32_t unseen = 0;  ///< rows of too few simulated values: they score as the climatology, not as the model
 };
 
 /// The score of one block in one group.
@@ -35,6 +36,7 @@ struct RowScore {
   std::uint32_t group;  ///< index into Score::groups
   std::uint32_t block;  ///< index into Campaign::blocks
   double score;
+  bool unseen = false;  ///< see GroupScore::unseen
 };
 
 struct Score {

@@ -28,6 +28,10 @@ struct ScoreSettings {
   std::uint64_t seed = 1;
 };
 
+/// One sentence for each group of which more than half of the rows score as the climatology: what a model leaves out
+/// altogether, it is not scored for, and a fit can hide there.
+std::vector<std::string> unseen_warnings(const Score& score);
+
 /// The scores as a table for people: one line per group, the rows beside the score.
 std::string score_table(const ScoreSettings& settings, std::span<const ScoredRows> scores);
 /// The same as JSON. The text ends with a line end.

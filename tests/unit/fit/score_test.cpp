@@ -179,11 +179,15 @@ TEST_F(Scores, ARowWithFewValuesScoresAsTheClimatology) {
     if (!b.holdout) fitting.push_back(*b.stop), x.push_back(b.stop->x()), y.push_back(b.stop->y());
   const Score s = score(campaign_, runs_, fitting_rows(campaign_));
   ASSERT_EQ(s.groups[0].name, "stop");
-  for (const RowScore& row : s.rows)
-    if (row.group == 0 && row.block == 4) {
+  EXPECT_EQ(s.groups[0].unseen, 1U);
+  for (const RowScore& row : s.rows) {
+    if (row.group != 0) continue;
+    EXPECT_EQ(row.unseen, row.block == 4);
+    if (row.block == 4) {
       EXPECT_NEAR(row.score, fair_energy_score(fitting, *campaign_.blocks[4].stop) / std::hypot(spread(x), spread(y)),
                   1e-12);
     }
+  }
 }
 
 TEST_F(Scores, ABlockCountsOnceForAllItsSamples) {
