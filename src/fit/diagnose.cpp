@@ -11,11 +11,12 @@ namespace {
 constexpr std::size_t kContenders = 4;       // whose fits go on: those that gain most
 constexpr std::size_t kLaterContenders = 2;  // after the first round all takes several times as long,
 constexpr std::size_t kLaterFits = 6;        // with an effect in place
-constexpr double kWorthNaming = 0.02;      // share of the error that an effect takes away, also from blocks not fitted
-constexpr double kNothing = 0.1;           // of what one would notice: so little of an effect explains nothing
-constexpr double kHalfWay = 0.5;           // of that share: a gain from which on the fit may yet get there
-constexpr double kUnfinished = 0.02;       // of the error, that a first fit may still be above its minimum
-constexpr std::uint32_t kManyBlocks = 72;  // of fewer, more trials each: what counts are means over blocks
+constexpr double kWorthNaming = 0.02;        // share of the objective that an effect takes away
+constexpr double kWorthUnseen = 0.01;        // the same of blocks that its fit has not seen
+constexpr double kNothing = 0.1;             // of what one would notice: so little of an effect explains nothing
+constexpr double kHalfWay = 0.5;             // of that share: a gain from which on the fit may yet get there
+constexpr double kUnfinished = 0.02;         // of the error, that a first fit may still be above its minimum
+constexpr std::uint32_t kManyBlocks = 72;    // of fewer, more trials each: what counts are means over blocks
 
 double net(const Trial& trial) {
   return trial.gain - trial.price;
@@ -168,8 +169,10 @@ class Diagnosing {
 
   void choose(const Fitted& base, Round& round, bool noise) const {
     count_choices(base, round.trials);
-    const double worth = kWorthNaming * base.objective.total;
-    const auto may = [&](const Trial& t) { return t.amount > kNothing && t.gain > worth && t.unseen_gain() > worth; };
+    const Worth worth{kWorthNaming * base.objective.total, kWorthUnseen * base.objective.total};
+    const auto may = [&](const Trial& t) {
+      return t.amount > kNothing && t.gain > worth.fitted && t.unseen_gain() > worth.unseen;
+    };
     std::stable_sort(round.trials.begin(), round.trials.end(), [&](const Trial& a, const Trial& b) {
       if (may(a) != may(b)) return may(a);
       return may(a) ? a.unseen_gain() > b.unseen_gain() : net(a) > net(b);

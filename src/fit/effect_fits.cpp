@@ -263,16 +263,17 @@ double EffectFits::error_in_folds(const LocalModel& local, const Fitted& fitted,
   return weigh_groups(score(campaign_, runs, rows_)).total;
 }
 
-bool EffectFits::confirmed(const Fitted& base, const Trial& trial, double worth) const {
+bool EffectFits::confirmed(const Fitted& base, const Trial& trial, const Worth& worth) const {
   ObserveOptions unseen = observing(options_.final_trials);
   unseen.first_trial += (1 + kOrders) * options_.final_trials;  // after those of the choice and its cross-validation
-  if (cross_validated(base, unseen) - cross_validated(trial.fitted, unseen) - trial.place_price < worth) return false;
+  if (cross_validated(base, unseen) - cross_validated(trial.fitted, unseen) - trial.place_price < worth.unseen)
+    return false;
   unseen.first_trial += kOrders * options_.final_trials;
   unseen.trials *= kConfirming;
   const auto error = [&](const Fitted& fitted) {
     return weigh_groups(score(campaign_, observe(campaign_, fitted.model, unseen), rows_)).total;
   };
-  return error(base) - error(trial.fitted) >= worth;
+  return error(base) - error(trial.fitted) >= worth.fitted;
 }
 
 }  // namespace talus

@@ -5,6 +5,12 @@ namespace talus {
 
 class LocalModel;
 
+/// By how much an effect must lower the objective to be named.
+struct Worth {
+  double fitted;  ///< of the fitting rows
+  double unseen;  ///< in cross-validation
+};
+
 /// The fits of one diagnosis: of the ground, and of each effect on top of what has been found before.
 ///
 /// What one fit has simulated is kept, and the next one learns from it too: an effect is added to a ground whose
@@ -38,7 +44,7 @@ class EffectFits {
   }
   /// Whether a trial gains so much on luck that nothing was chosen by, on its rows and in cross-validation: of several
   /// effects the best one was lucky, too.
-  bool confirmed(const Fitted& base, const Trial& trial, double worth) const;
+  bool confirmed(const Fitted& base, const Trial& trial, const Worth& worth) const;
 
  private:
   ObserveOptions observing(std::uint32_t trials) const;
