@@ -110,7 +110,7 @@ class Diagnosing {
   }
 
   /// The fits of those go on that may be chosen and gain most, or could yet; of those that may still win, with more
-  /// trials. That of the base has had as many rounds before.
+  /// trials. In the first round the base's has had as many before.
   void compete(const Fitted& base, std::vector<Trial>& trials, double level, std::size_t most) {
     std::vector<Trial*> contenders;
     for (Trial& t : trials)
