@@ -14,8 +14,8 @@ constexpr std::size_t kLaterFits = 6;        // with an effect in place
 constexpr double kWorthNaming = 0.02;        // share of the objective that an effect takes away
 constexpr double kWorthUnseen = 0.01;        // the same of blocks that its fit has not seen
 constexpr double kNothing = 0.1;             // of what one would notice: so little of an effect explains nothing
-constexpr double kHalfWay = 0.5;             // of that share: a gain from which on the fit may yet get there
-constexpr double kUnfinished = 0.02;         // of the error, that a first fit may still be above its minimum
+constexpr double kHalfWay = 0.5;             // of kWorthNaming: a gain from which on the fit may yet get there
+constexpr double kUnfinished = 0.02;         // [objective] that a first fit may still be above its minimum
 constexpr std::uint32_t kManyBlocks = 72;    // of fewer, more trials each: what counts are means over blocks
 
 double net(const Trial& trial) {

@@ -151,7 +151,7 @@ class OwnCampaign(Case):
         self.assertNotIn("held-out", done.stdout)
 
     def test_too_little_that_was_measured(self):
-        """No block to fit to, fewer than five, and five that measured nothing: one error each, and no folder."""
+        """No block to fit to, fewer than five, and thirty of which nothing was measured: one error each, and no folder."""
         with open(self.path("blocks.csv"), encoding="utf-8") as file:
             head, *blocks = file.read().splitlines()
         for fitting in 0, 4:
