@@ -213,7 +213,7 @@ std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& 
     }
   if (parameters.empty())
     throw InputError(
-        "no zone is touched by 5 % of the simulated paths, so that nothing can be fitted: are the releases on the "
+        "no zone is touched by enough of the simulated paths, so that nothing can be fitted: are the releases on the "
         "slope?");
   return parameters;
 }

@@ -16,18 +16,11 @@ constexpr double kWorthUnseen = 0.01;        // the same of blocks that its fit 
 constexpr double kNothing = 0.1;             // of what one would notice: so little of an effect explains nothing
 constexpr double kHalfWay = 0.5;             // of kWorthNaming: a gain from which on the fit may yet get there
 constexpr double kUnfinished = 0.02;         // [objective] that a first fit may still be above its minimum
-constexpr std::uint32_t kManyBlocks = 72;    // of fewer, more trials each: what counts are means over blocks
+constexpr double kManyBlocks = 72.0;         // of fewer, more trials each
+constexpr double kMostOfOne = 4.0;           // times as many, so that five blocks do not ask for thousands
 
 double net(const Trial& trial) {
   return trial.gain - trial.price;
-}
-
-/// As many trajectories for a campaign of few blocks as for one of many.
-DiagnoseOptions shared_out(DiagnoseOptions options, std::size_t blocks) {
-  const double more = std::max(1.0, static_cast<double>(kManyBlocks) / static_cast<double>(blocks));
-  for (std::uint32_t* trials : {&options.search_trials, &options.test_trials, &options.final_trials})
-    *trials = static_cast<std::uint32_t>(std::lround(more * *trials));
-  return options;
 }
 
 /// The work of one diagnosis.
@@ -36,8 +29,10 @@ class Diagnosing {
   Diagnosing(const Campaign& campaign, const DiagnoseOptions& options)
       : campaign_(campaign),
         rows_(fitting_rows(campaign)),
-        options_(shared_out(options, static_cast<std::size_t>(std::count(rows_.begin(), rows_.end(), true)))),
-        fits_(campaign, options_, rows_, [this] { return proceeds(); }) {}
+        options_(options),
+        fits_(campaign, options_, rows_, [this] { return proceeds(); }) {
+    options_.trials = shared_out(options.trials, static_cast<std::size_t>(std::count(rows_.begin(), rows_.end(), true)));
+  }
 
   Diagnosis run(const Model& start) {
     Diagnosis d;
@@ -52,6 +47,7 @@ class Diagnosing {
       d.with_effects = d.rounds.back().trials.front().fitted;
     }
     d.residual_after = residual_of(d.with_effects);
+    d.trials = options_.trials;
     return d;
   }
 
@@ -71,7 +67,7 @@ class Diagnosing {
     const std::vector<Candidate> candidates = candidates_of(campaign_, base.model, base.fitting, found);
     const Axis axis = axis_of(campaign_, base.fitting);
     ScoreTestOptions how;
-    how.trials = options_.test_trials;
+    how.trials = options_.trials.test;
     how.seed = options_.seed;
     how.threads = options_.threads;
     how.proceed = [this] { return proceeds(); };
@@ -204,6 +200,13 @@ class Diagnosing {
 };
 
 }  // namespace
+
+TrialsPerBlock shared_out(TrialsPerBlock trials, std::size_t blocks) {
+  const double more = std::clamp(kManyBlocks / static_cast<double>(blocks), 1.0, kMostOfOne);
+  for (std::uint32_t* count : {&trials.search, &trials.test, &trials.compare})
+    *count = static_cast<std::uint32_t>(std::lround(more * *count));
+  return trials;
+}
 
 Diagnosis diagnose(const Campaign& campaign, const Model& start, const DiagnoseOptions& options) {
   return Diagnosing(campaign, options).run(start);

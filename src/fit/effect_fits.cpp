@@ -59,15 +59,14 @@ ObserveOptions EffectFits::observing(std::uint32_t trials) const {
 
 FitOptions EffectFits::fitting() const {
   FitOptions how;
-  how.trials = options_.search_trials;
-  how.comparison_trials = 4 * options_.search_trials;
+  how.trials = options_.trials.search;
+  how.comparison_trials = 4 * options_.trials.search;
   how.seed = options_.seed;
   how.threads = options_.threads;
   how.proceed = [this](double) { return proceed_(); };
   return how;
 }
 
-/// The one with the lower error; what the other has simulated is kept, too.
 Fitted EffectFits::better(Fitted fitted, Fitted longer) {
   if (longer.objective.total < fitted.objective.total) return longer;
   fitted.tried = std::move(longer.tried);
@@ -78,7 +77,7 @@ Fitted EffectFits::better(Fitted fitted, Fitted longer) {
 Fitted EffectFits::finish(Fit&& fit, std::vector<Parameter> free) const {
   if (fit.interrupted) throw FitInterrupted{};
   Fitted out;
-  out.fitting = observe(campaign_, fit.model, observing(options_.final_trials));
+  out.fitting = observe(campaign_, fit.model, observing(options_.trials.compare));
   out.score = score(campaign_, out.fitting, rows_);
   out.objective = weigh_groups(out.score);
   out.model = std::move(fit.model);
@@ -90,7 +89,7 @@ Fitted EffectFits::finish(Fit&& fit, std::vector<Parameter> free) const {
 }
 
 Fitted EffectFits::ground(const Model& start) const {
-  const std::vector<BlockRuns> runs = observe(campaign_, start, observing(options_.search_trials));
+  const std::vector<BlockRuns> runs = observe(campaign_, start, observing(options_.trials.search));
   std::vector<Parameter> free = ground_parameters(campaign_, start, options_.keys, touched_zones(campaign_, runs));
   FitOptions how = fitting();  // all that follows rests on this fit
   how.trials *= 2;
@@ -264,11 +263,11 @@ double EffectFits::error_in_folds(const LocalModel& local, const Fitted& fitted,
 }
 
 bool EffectFits::confirmed(const Fitted& base, const Trial& trial, const Worth& worth) const {
-  ObserveOptions unseen = observing(options_.final_trials);
-  unseen.first_trial += (1 + kOrders) * options_.final_trials;  // after those of the choice and its cross-validation
+  ObserveOptions unseen = observing(options_.trials.compare);
+  unseen.first_trial += (1 + kOrders) * options_.trials.compare;  // after those of the choice and its cross-validation
   if (cross_validated(base, unseen) - cross_validated(trial.fitted, unseen) - trial.place_price < worth.unseen)
     return false;
-  unseen.first_trial += kOrders * options_.final_trials;
+  unseen.first_trial += kOrders * options_.trials.compare;
   unseen.trials *= kConfirming;
   const auto error = [&](const Fitted& fitted) {
     return weigh_groups(score(campaign_, observe(campaign_, fitted.model, unseen), rows_)).total;

@@ -38,13 +38,15 @@ class EffectFits {
   /// that is best for the others, which is the minimum of the quadratic model of their rows. Mean over five orders in
   /// which the blocks are cut.
   double cross_validated(const Fitted& fitted) const {
-    ObserveOptions unseen = observing(options_.final_trials);
-    unseen.first_trial += options_.final_trials;  // the first of them have chosen between fits
+    ObserveOptions unseen = observing(options_.trials.compare);
+    unseen.first_trial += options_.trials.compare;  // the first of them have chosen between fits
     return cross_validated(fitted, unseen);
   }
   /// Whether a trial gains so much on luck that nothing was chosen by, on its rows and in cross-validation: of several
   /// effects the best one was lucky, too.
   bool confirmed(const Fitted& base, const Trial& trial, const Worth& worth) const;
+  /// The one with the lower objective; what the other has simulated is kept, too.
+  static Fitted better(Fitted fitted, Fitted longer);
 
  private:
   ObserveOptions observing(std::uint32_t trials) const;
@@ -53,7 +55,6 @@ class EffectFits {
   FitOptions fitting() const;
   Fitted finish(Fit&& fit, std::vector<Parameter> free) const;
   Fitted refined(const Fitted& fitted, FitOptions how) const;
-  static Fitted better(Fitted fitted, Fitted longer);
   void compare(const Fitted& base, Trial& trial) const;  ///< what the fit of a trial gained
   void continued(const Fitted& base, Trial& trial, const FitOptions& how) const;
   static void adopt(Fitted&& fitted, Trial& trial);

@@ -104,6 +104,7 @@ void open_holdout(const Campaign& campaign, DiagnosisRecord& record) {
     before = chosen;
   }
   record.whole = error_of(base, before, blocks);
+  record.holdout = std::move(before);
 }
 
 std::string diagnosis_json(const DiagnosisRecord& record) {
@@ -144,6 +145,7 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
             {"residual_after", residual_of(d.residual_after)},
             {"campaign", record.campaign},
             {"seed", record.options.seed},
+            {"trials_per_block", {{"search", d.trials.search}, {"test", d.trials.test}, {"compare", d.trials.compare}}},
             {"seconds", number(record.seconds)},
             {"talus", version()},
             {"command", record.command},

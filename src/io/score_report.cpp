@@ -48,6 +48,10 @@ std::string field(double value) {
   return std::isnan(value) ? "" : text_of(value);
 }
 
+std::string in_words(const std::string& rows) {
+  return rows == "fit" ? "fitting" : "held-out";
+}
+
 }  // namespace
 
 ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<const BlockRuns> runs,
@@ -58,12 +62,12 @@ ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<c
   return out;
 }
 
-std::vector<std::string> unseen_warnings(const Score& score) {
+std::vector<std::string> unseen_warnings(const std::string& rows, const Score& score) {
   std::vector<std::string> warnings;
   for (const GroupScore& group : score.groups)
     if (2 * group.unseen > group.rows)
       warnings.push_back(group.name + ": " + std::to_string(group.unseen) + " of " + std::to_string(group.rows) +
-                         " rows have fewer than " + std::to_string(kFewestSimulated) +
+                         " " + in_words(rows) + " rows have fewer than " + std::to_string(kFewestSimulated) +
                          " simulated values and score as the climatology: the model hardly ever does there what was "
                          "measured, and the score says nothing of it");
   return warnings;
@@ -77,7 +81,7 @@ std::string score_table(const ScoreSettings& settings, std::span<const ScoredRow
   for (const std::string& name : names) width = std::max(width, name.size());
   text += padded("", width);
   for (const ScoredRows& s : scores)
-    text += padded("  " + std::string(s.rows == "fit" ? "fitting" : "held-out") + " rows (" + std::to_string(s.blocks) +
+    text += padded("  " + in_words(s.rows) + " rows (" + std::to_string(s.blocks) +
                        " blocks)",
                    33);
   text += "\n" + padded("group", width);

@@ -171,7 +171,7 @@ class OwnCampaign(Case):
         groups = {g["group"]: g for g in json.loads(done.stdout)["fit"]["groups"]}
         self.assertEqual(groups["speed S1"]["rows_as_climatology"], groups["speed S1"]["rows"])
         self.assertEqual(groups["stop"]["rows_as_climatology"], 0)
-        self.assertRegex(done.stderr, r"warning: speed S1: \d+ of \d+ rows")
+        self.assertRegex(done.stderr, r"warning: speed S1: \d+ of \d+ fitting rows")
         self.assertNotIn("stop", done.stderr)
 
     def test_faults(self):

@@ -94,7 +94,7 @@ int calibrate(const Options& options) {
   c.uncertainty = talus::uncertainty_of({campaign, c.start, c.free, rows}, c.options, {}, c.fit);
   if (c.uncertainty.interrupted) stop_interrupted();
   score_both(campaign, c);
-  opened.warn_unseen(options, c, c.errors.front().after.score);
+  for (const talus::io::BeforeAfter& e : c.errors) opened.warn_unseen(options, c, e.after.rows, e.after.score);
 
   talus::io::write_text(folder.temporary() / "calibration.json", talus::io::calibration_json(c));
   talus::io::write_text(folder.temporary() / "report.md", talus::io::calibration_report(c));

@@ -53,8 +53,8 @@ OpenedCampaign::OpenedCampaign(const CampaignCommand& command, talus::io::FitRec
 }
 
 void OpenedCampaign::warn_unseen(const CampaignCommand& command, talus::io::FitRecord& record,
-                                 const talus::Score& score) {
-  for (const std::string& warning : talus::io::unseen_warnings(score)) {
+                                 const std::string& rows, const talus::Score& score) {
+  for (const std::string& warning : talus::io::unseen_warnings(rows, score)) {
     if (!command.quiet) say("warning", warning);
     record.warnings.push_back(warning);
   }

@@ -29,5 +29,6 @@ struct OpenedCampaign {
   OpenedCampaign(const CampaignCommand& command, talus::io::FitRecord& record);
 
   /// Says, and puts on record, where a fitted model scores as the climatology: a search can hide there.
-  static void warn_unseen(const CampaignCommand& command, talus::io::FitRecord& record, const talus::Score& score);
+  static void warn_unseen(const CampaignCommand& command, talus::io::FitRecord& record, const std::string& rows,
+                          const talus::Score& score);
 };

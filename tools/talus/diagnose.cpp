@@ -66,7 +66,8 @@ int diagnose(const Options& options) {
   } catch (const talus::FitInterrupted&) {
     stop_interrupted();
   }
-  OpenedCampaign::warn_unseen(options, record, record.diagnosis.with_effects.score);
+  OpenedCampaign::warn_unseen(options, record, "fit", record.diagnosis.with_effects.score);
+  OpenedCampaign::warn_unseen(options, record, "holdout", record.holdout);
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write_results(opened.folder, opened.loaded, record);
   opened.folder.commit();
@@ -82,14 +83,14 @@ void add_diagnose(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("diagnose", "Find what a fitted model leaves of measured data, and which effect explains it");
   talus::DiagnoseOptions& how = options->how;
-  options->add_to(*command, how.search_trials, how.keys, how.seed, how.threads);
-  command->add_option("--test-trials", how.test_trials, "trajectories per block in the tests (100)")
+  options->add_to(*command, how.trials.search, how.keys, how.seed, how.threads);
+  command->add_option("--test-trials", how.trials.test, "trajectories per block in the tests (100)")
       ->check(CLI::Range(20, 10000));
   command->add_option("--most-effects", how.most_effects, "that are added, one a round (3)")->check(CLI::Range(1, 9));
   command->add_option("--level", how.first_level, "of significance, over all effects and places (0.05)")
       ->check(CLI::Range(0.0001, 0.5));
   command->footer(
-      "Of fewer than 72 fitting blocks so many times more trajectories as makes their number the same.\n\n"
+      "Of fewer than 72 fitting blocks each gets more trajectories, up to four times as many, so that their number in all stays the same.\n\n"
       "Example:\n  talus diagnose campaign.toml -o diagnosis\n\nThen open diagnosis/report.html.");
   command->callback([&action, options] { action = [options] { return diagnose(*options); }; });
 }

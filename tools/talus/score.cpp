@@ -49,7 +49,7 @@ int score_model(const Options& options) {
     scores.push_back(talus::io::scored("holdout", campaign, runs, talus::holdout_rows(campaign)));
   if (!options.quiet)
     for (const talus::io::ScoredRows& s : scores)
-      for (const std::string& warning : talus::io::unseen_warnings(s.score)) say("warning", warning);
+      for (const std::string& warning : talus::io::unseen_warnings(s.rows, s.score)) say("warning", warning);
   const talus::io::ScoreSettings settings{campaign.name, options.trials, options.seed};
   const std::string text =
       options.json ? talus::io::score_json(settings, scores) : talus::io::score_table(settings, scores);

@@ -49,16 +49,28 @@ struct Round {
   double p_value = 1.0;               ///< that the residual is noise: score test over all effects and places
 };
 
+/// Trajectories of each block.
+struct TrialsPerBlock {
+  std::uint32_t search = 24, test = 100, compare = 200;
+};
+
+/// As many trajectories for a campaign of few blocks as for one of 72: what counts are means over blocks. At most four
+/// times as many of each block.
+///
+/// @param blocks  that are fitted
+TrialsPerBlock shared_out(TrialsPerBlock trials, std::size_t blocks);
+
 struct Diagnosis {
   Fitted base;                ///< recalibrated, without an effect
   std::vector<Round> rounds;  ///< the last one found "none" or "unexplained"
   Fitted with_effects;        ///< the last model; the base where nothing was found
   std::vector<ResidualRow> residual_after;
+  TrialsPerBlock trials;  ///< that were simulated
 };
 
 struct DiagnoseOptions {
   std::vector<std::string> keys{"theta_scale", "psi_scale", "En50", "Et50"};  ///< of the ground, fitted per zone
-  std::uint32_t search_trials = 24, test_trials = 100, final_trials = 200;    ///< per block of 72; of fewer, more
+  TrialsPerBlock trials;                                                      ///< of 72 blocks; of fewer, more
   std::uint64_t seed = 1;
   int threads = 0;
   int most_effects = 3;

@@ -17,6 +17,7 @@ struct DiagnosisRecord : FitRecord {
   HoldoutError whole;                                 ///< base against the last model
   std::vector<HoldoutError> rounds;                   ///< each effect found, against the model before it
   std::vector<std::vector<HoldoutError>> candidates;  ///< as Round::trials
+  Score holdout;                                      ///< of the last model
   double seconds = 0.0;
 };
 

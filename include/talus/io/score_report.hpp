@@ -30,7 +30,9 @@ struct ScoreSettings {
 
 /// One sentence for each group of which more than half of the rows score as the climatology: what a model leaves out
 /// altogether, it is not scored for, and a fit can hide there.
-std::vector<std::string> unseen_warnings(const Score& score);
+///
+/// @param rows  "fit" or "holdout"
+std::vector<std::string> unseen_warnings(const std::string& rows, const Score& score);
 
 /// The scores as a table for people: one line per group, the rows beside the score.
 std::string score_table(const ScoreSettings& settings, std::span<const ScoredRows> scores);
