@@ -9,10 +9,12 @@ Each campaign has a slope of its own (length, steepness, a gully, bumps), three 
 screens and four days. One effect of a known size acts (or none); one simulated trial per block, with errors of measurement, is
 what was "measured"; a third of the blocks is held out. Prints the confusion matrix, the false alarms and the power by magnitude,
 and the error on the held-out rows with the ground alone, with what was found, and with the model that made the data.
-The same engine makes and judges the data: this measures the statistics, not the physics. Finished campaigns are not run again.
+The same engine makes and judges the data: this measures the statistics, not the physics. What is finished, with the same seed, options and
+program, is not run again.
 """
 import argparse
 import csv
+import hashlib
 import itertools
 import json
 import os
@@ -147,12 +149,19 @@ def run(command):
     return done.stdout
 
 
+def program(o):
+    """What tells one program from another."""
+    with open(o.talus, "rb") as file:
+        return hashlib.sha256(file.read()).hexdigest()[:12]
+
+
 def diagnose(o, folder):
-    if not os.path.exists(f"{folder}/diagnosis/diagnosis.json"):
-        run([o.talus, "diagnose", f"{folder}/campaign.toml", "-o", f"{folder}/diagnosis", "--trials", str(o.trials),
+    out = f"{folder}/{o.trials}-{o.test_trials}-{o.most_effects}-{o.program}"
+    if not os.path.exists(f"{out}/diagnosis.json"):
+        run([o.talus, "diagnose", f"{folder}/campaign.toml", "-o", out, "--trials", str(o.trials),
              "--test-trials", str(o.test_trials), "--most-effects", str(o.most_effects), "-q", "--overwrite"]
             + (["--threads", str(o.threads)] if o.threads else []))
-    with open(f"{folder}/diagnosis/diagnosis.json", encoding="utf-8") as file:
+    with open(f"{out}/diagnosis.json", encoding="utf-8") as file:
         found = json.load(file)
     truth = json.loads(run([o.talus, "score", f"{folder}/campaign.toml", "--parameters", f"{folder}/truth_model.toml", "--rows",
                             "holdout", "--trials", "200", "--json", "-q"]))
@@ -161,7 +170,7 @@ def diagnose(o, folder):
 
 def one(o, effect, magnitude, count, k):
     """Makes and diagnoses one campaign, and prints what came out."""
-    folder = f"{o.work}/{effect}-{magnitude:g}-{count}-{k}"
+    folder = f"{o.work}/{o.seed}/{effect}-{magnitude:g}-{count}-{k}"
     if not os.path.exists(f"{folder}/campaign.toml"):
         make(o.talus, folder, effect, magnitude, count, o.seed + 7919 * k + sum(map(ord, effect)) + int(100 * magnitude) + count)
     found, truth = diagnose(o, folder)
@@ -225,6 +234,7 @@ def main():
     o.effects = list(EFFECTS) if o.effects == "all" else [e for e in o.effects.split(",") if e]
     o.magnitudes = [float(m) for m in o.magnitudes.split(",")]
     o.blocks = [int(n) for n in o.blocks.split(",")]
+    o.program = program(o)
     table = study(o)
     report(table)
     if o.out:

@@ -55,14 +55,14 @@ void add_biases(std::vector<Candidate>& list, const Campaign& campaign) {
   };
   for (std::size_t s = 0; s < campaign.screens.size(); ++s) {
     const auto crossed = std::count_if(campaign.blocks.begin(), campaign.blocks.end(),
-                                       [s](const MeasuredBlock& b) { return b.passages[s].has_value(); });
+                                       [s](const MeasuredBlock& b) { return !b.holdout && b.passages[s].has_value(); });
     if (crossed < 5) continue;
     add(s, "screen " + campaign.screens[s].id, &Bias::speed, "speed");
     add(s, "screen " + campaign.screens[s].id, &Bias::jump, "jump");
     add(s, "screen " + campaign.screens[s].id, &Bias::spin, "spin");
   }
   const bool sampled = std::any_of(campaign.blocks.begin(), campaign.blocks.end(),
-                                   [](const MeasuredBlock& b) { return !b.samples.empty(); });
+                                   [](const MeasuredBlock& b) { return !b.holdout && !b.samples.empty(); });
   if (!sampled) return;
   add(campaign.screens.size(), "samples", &Bias::speed, "speed");
   add(campaign.screens.size(), "samples", &Bias::spin, "spin");
@@ -70,15 +70,16 @@ void add_biases(std::vector<Candidate>& list, const Campaign& campaign) {
 
 Axis axis_of(const Campaign& campaign, std::span<const BlockRuns> runs) {
   Eigen::Vector2d release = Eigen::Vector2d::Zero(), stop = release;
-  double stops = 0.0;
-  for (const MeasuredBlock& block : campaign.blocks) release += Eigen::Vector2d(block.x, block.y);
-  release /= static_cast<double>(campaign.blocks.size());
+  double stops = 0.0, released = 0.0;
+  for (const MeasuredBlock& block : campaign.blocks)
+    if (!block.holdout) release += Eigen::Vector2d(block.x, block.y), released += 1.0;
+  release /= released;
   std::vector<Eigen::Vector2d> ends;
   for (const BlockRuns& r : runs)
     for (std::size_t t = 0; t < r.trials; ++t)
       if (!std::isnan(r.x[t])) ends.emplace_back(r.x[t], r.y[t]);
   for (const MeasuredBlock& block : campaign.blocks)
-    if (block.stop) ends.push_back(*block.stop);
+    if (!block.holdout && block.stop) ends.push_back(*block.stop);
   for (const Eigen::Vector2d& end : ends) stop += end, stops += 1.0;
   Axis axis{release, Eigen::Vector2d::UnitX(), 0.0, 1.0};
   if (stops == 0.0 || (stop / stops - release).norm() == 0.0) return axis;

@@ -53,8 +53,8 @@ class Search {
   }
 
  private:
-  static constexpr int kScreened = 6;                       // points to choose the starts from, per parameter
-  static constexpr std::uint32_t kComparisons = 4'000'000;  // trials from here on are those of comparisons
+  static constexpr int kScreened = 6;                           // points to choose the starts from, per parameter
+  static constexpr std::uint32_t kComparisons = 3'000'000'000;  // trials from here on are those of comparisons
 
   int search_length() const { return 6 * static_cast<int>(problem_.free.size()) + 10; }
   int design_length() const {
@@ -193,6 +193,7 @@ std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& 
       const auto field = std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.key == key; });
       if (field == fields.end() || std::find(known.begin(), known.end(), key) == known.end())
         throw InputError("'" + key + "' is no parameter that can be fitted" + known_names(key, known));
+      if (std::ranges::count(keys, key) > 1) throw InputError("'" + key + "' is to be fitted twice: name it once");
       if (!zones[zone]) continue;
       Parameter p;
       p.key = "ground.zones." + campaign.zone_names[zone] + "." + key;

@@ -16,6 +16,8 @@ Parameter effect_amount(const char* key, const char* unit, double off, double si
       [=](Model& m, double v) { m.effects.*effect.*member = v; });
 }
 
+constexpr std::size_t kMostZones = 256;  // that a raster of bytes can tell apart
+
 double median_of(const Campaign& campaign, const std::function<double(const MeasuredBlock&)>& value) {
   std::vector<double> values;
   for (const MeasuredBlock& block : campaign.blocks)
@@ -54,7 +56,7 @@ void add_placed(std::vector<Candidate>& list, const std::vector<Place>& places, 
 
 void add_shape_and_mass(std::vector<Candidate>& list, const Campaign& campaign) {
   const bool shaped = std::any_of(campaign.blocks.begin(), campaign.blocks.end(),
-                                  [](const MeasuredBlock& b) { return b.axes.x() > 1.05 * b.axes.z(); });
+                                  [](const MeasuredBlock& b) { return !b.holdout && b.axes.x() > 1.05 * b.axes.z(); });
   for (const double elongation : shaped ? std::vector<double>{0.0, 1.0} : std::vector<double>{})
     list.push_back(
         {"block-shape",
@@ -91,8 +93,10 @@ Candidate wet_on(std::vector<int> days) {
 
 void add_days(std::vector<Candidate>& list, const Campaign& campaign) {
   std::set<int> days;
-  for (const MeasuredBlock& block : campaign.blocks) days.insert(block.day);
+  for (const MeasuredBlock& block : campaign.blocks)
+    if (!block.holdout) days.insert(block.day);
   if (days.size() < 2) return;
+  days.erase(0);  // not given
   for (const int day : days) list.push_back(wet_on({day}));
 }
 
@@ -144,7 +148,7 @@ std::vector<Candidate> candidates_of(const Campaign& campaign, const Model& base
   const Axis axis = axis_of(campaign, runs);
   const Grid& grid = campaign.surface.grid();
   const double width = grid.columns * grid.cell_x + grid.rows * grid.cell_y, length = axis.to - axis.from;
-  for (int i = 0; i < kBands; ++i)
+  for (int i = 0; i < kBands && base.grounds.size() <= kMostZones / 2; ++i)  // a band repeats them
     list.push_back(band(campaign, axis, axis.from + length * i / kBands, axis.from + length * (i + 1) / kBands));
   for (int i = 1; i <= kLines; ++i) list.push_back(barrier(axis, width, axis.from + length * i / (kLines + 1)));
   std::erase_if(list, [&](const Candidate& c) { return std::ranges::find(without, c.effect) != without.end(); });

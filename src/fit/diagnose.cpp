@@ -17,7 +17,8 @@ constexpr double kNothing = 0.1;             // of what one would notice: so lit
 constexpr double kHalfWay = 0.5;             // of kWorthNaming: a gain from which on the fit may yet get there
 constexpr double kUnfinished = 0.02;         // [objective] that a first fit may still be above its minimum
 constexpr double kManyBlocks = 72.0;         // of fewer, more trials each
-constexpr double kMostOfOne = 4.0;           // times as many, so that five blocks do not ask for thousands
+constexpr double kGroundShare = 0.3, kTestShare = 0.05;  // of the time of a diagnosis, roughly
+constexpr double kMostOfOne = 4.0;                       // times as many, so that five blocks do not ask for thousands
 
 double net(const Trial& trial) {
   return trial.gain - trial.price;
@@ -30,16 +31,20 @@ class Diagnosing {
       : campaign_(campaign),
         rows_(fitting_rows(campaign)),
         options_(options),
-        fits_(campaign, options_, rows_, [this] { return proceeds(); }) {
-    options_.trials = shared_out(options.trials, static_cast<std::size_t>(std::count(rows_.begin(), rows_.end(), true)));
+        fits_(campaign, options_, rows_, [this](double share) { return proceeds(share); }) {
+    const auto fitting = std::count(rows_.begin(), rows_.end(), true);
+    options_.trials = shared_out(options.trials, static_cast<std::size_t>(fitting));
   }
 
   Diagnosis run(const Model& start) {
     Diagnosis d;
-    d.base = d.with_effects = fits_.ground(start);
+    d.with_effects = fits_.ground(start);
+    advance(kGroundShare);
     std::vector<std::string> found;
     for (int round = 0; round <= options_.most_effects; ++round) {
       const double level = round == 0 ? options_.first_level : options_.later_level;
+      d.with_effects = fits_.begin_round(std::move(d.with_effects));
+      if (round == 0) d.base = d.with_effects;
       d.rounds.push_back(turn(d.with_effects, found, level, round < options_.most_effects));
       const Round& last = d.rounds.back();
       if (last.effect == "none" || last.effect == "unexplained") break;
@@ -53,7 +58,11 @@ class Diagnosing {
 
  private:
   void advance(double share = 0.02) { progress_ = std::min(0.95, progress_ + share); }
-  bool proceeds() const { return !options_.proceed || options_.proceed(progress_); }
+  /// @param share  of a fit; only that of the ground, the longest, is shown
+  bool proceeds(double share = 1.0) const {
+    const double first = progress_ > 0.0 ? 0.0 : kGroundShare * share;
+    return !options_.proceed || options_.proceed(progress_ + first);
+  }
 
   std::vector<ResidualRow> residual_of(const Fitted& fitted) const {
     return residual_table(campaign_, ResidualSpace(campaign_, fitted.fitting), rows_);
@@ -63,7 +72,7 @@ class Diagnosing {
   Round turn(const Fitted& base, const std::vector<std::string>& found, double level, bool more) {
     Round round;
     round.residual = residual_of(base);
-    advance(0.1);
+    advance(kTestShare);
     const std::vector<Candidate> candidates = candidates_of(campaign_, base.model, base.fitting, found);
     const Axis axis = axis_of(campaign_, base.fitting);
     ScoreTestOptions how;

@@ -20,6 +20,9 @@ constexpr double kWorthASearch = 0.1;     // p of the score test
 constexpr double kPrice = 0.56;           // by which one more fitted number must lower the error, times fitting blocks
 constexpr std::uint32_t kConfirming = 4;  // times as many trials as the scores
 constexpr double kWorthARound = 0.002;    // of the objective, by one round of the quadratic model
+/// Trials of a round, in units of those that compare fits: for the choice and its cross-validation, then the same to
+/// confirm it.
+constexpr std::uint32_t kTrialsOfRound = 1 + kOrders + kOrders + kConfirming;
 
 /// Where the search of a candidate starts: the estimate of the score test, kept within reason.
 VectorXd start_of(const Candidate& candidate, const Verdict& verdict) {
@@ -54,7 +57,8 @@ std::vector<Evaluation> without_effect(const std::vector<Evaluation>& tried, Ind
 }  // namespace
 
 ObserveOptions EffectFits::observing(std::uint32_t trials) const {
-  return {trials, options_.seed, kUnseen, options_.threads, rows_, {}};
+  const std::uint32_t first = kUnseen + round_ * kTrialsOfRound * options_.trials.compare;
+  return {trials, options_.seed, first, options_.threads, rows_, {}};
 }
 
 FitOptions EffectFits::fitting() const {
@@ -63,7 +67,7 @@ FitOptions EffectFits::fitting() const {
   how.comparison_trials = 4 * options_.trials.search;
   how.seed = options_.seed;
   how.threads = options_.threads;
-  how.proceed = [this](double) { return proceed_(); };
+  how.proceed = proceed_;
   return how;
 }
 
@@ -73,14 +77,24 @@ Fitted EffectFits::better(Fitted fitted, Fitted longer) {
   return fitted;
 }
 
+void EffectFits::simulate(Fitted& fitted) const {
+  fitted.fitting = observe(campaign_, fitted.model, observing(options_.trials.compare));
+  fitted.score = score(campaign_, fitted.fitting, rows_);
+  fitted.objective = weigh_groups(fitted.score);
+}
+
+Fitted EffectFits::begin_round(Fitted base) {
+  ++round_;
+  simulate(base);
+  return base;
+}
+
 /// Scored on luck that the search has not seen.
 Fitted EffectFits::finish(Fit&& fit, std::vector<Parameter> free) const {
   if (fit.interrupted) throw FitInterrupted{};
   Fitted out;
-  out.fitting = observe(campaign_, fit.model, observing(options_.trials.compare));
-  out.score = score(campaign_, out.fitting, rows_);
-  out.objective = weigh_groups(out.score);
   out.model = std::move(fit.model);
+  simulate(out);
   out.free = std::move(free);
   out.z = std::move(fit.z);
   out.spread = std::move(fit.spread);
@@ -162,7 +176,7 @@ Trial EffectFits::effect(const Fitted& base, const EffectVerdict& verdict, const
   const auto asked = static_cast<double>(std::count(rows_.begin(), rows_.end(), true));
   trial.price = kPrice * (static_cast<double>(candidate.parameters.size()) + candidate.searched) / asked;
   trial.place_price = kPrice * candidate.searched / asked;
-  trial.joint = verdict.p_value < kWorthASearch;
+  trial.joint = verdict.p_value < std::max(kWorthASearch, options_.first_level);  // what may be chosen is
   std::vector<Parameter> free = trial.joint ? base.free : std::vector<Parameter>{};
   free.insert(free.end(), candidate.parameters.begin(), candidate.parameters.end());
   const Index added = std::ssize(candidate.parameters);
@@ -248,7 +262,7 @@ double EffectFits::error_in_folds(const LocalModel& local, const Fitted& fitted,
                                   const std::vector<std::size_t>& order) const {
   std::vector<BlockRuns> runs(campaign_.blocks.size());
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    if (!proceed_()) throw FitInterrupted{};
+    if (!proceed_(1.0)) throw FitInterrupted{};
     std::vector<double> others(runs.size(), 1.0);
     how.blocks.assign(runs.size(), false);
     for (std::size_t i = fold; i < order.size(); i += kFolds) {

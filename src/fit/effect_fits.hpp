@@ -17,11 +17,14 @@ struct Worth {
 /// neighbourhood is known. docs/closing-the-loop.md, "Diagnosis".
 class EffectFits {
  public:
-  /// @param proceed  asked now and then; false: FitInterrupted is thrown
+  /// @param proceed  asked now and then, told which share of the fit is done; false: FitInterrupted is thrown
   EffectFits(const Campaign& campaign, const DiagnoseOptions& options, const std::vector<bool>& rows,
-             std::function<bool()> proceed)
+             std::function<bool(double)> proceed)
       : campaign_(campaign), options_(options), rows_(rows), proceed_(std::move(proceed)) {}
 
+  /// Begins a round: all that is compared in it has luck that no earlier round has seen. @return the model to start
+  /// from, simulated anew
+  Fitted begin_round(Fitted base);
   /// The ground alone, as `calibrate` fits it, its fit gone on with where that is better: what it has missed looks
   /// like an effect.
   Fitted ground(const Model& start) const;
@@ -50,6 +53,7 @@ class EffectFits {
 
  private:
   ObserveOptions observing(std::uint32_t trials) const;
+  void simulate(Fitted& fitted) const;
   FitOptions going_on(const Fitted& fitted) const;
   double cross_validated(const Fitted& fitted, ObserveOptions how) const;
   FitOptions fitting() const;
@@ -68,7 +72,8 @@ class EffectFits {
   const Campaign& campaign_;
   const DiagnoseOptions& options_;
   const std::vector<bool>& rows_;
-  std::function<bool()> proceed_;
+  std::function<bool(double)> proceed_;
+  std::uint32_t round_ = 0;
 };
 
 }  // namespace talus

@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "talus/base/random.hpp"
 
@@ -88,8 +89,13 @@ LocalModel::LocalModel(const FitProblem& problem, const FitOptions& options, con
   }
   rows_ = model_->coefficients(values);
   from_v_ = inverse.transpose();
-  curvature_ = from_v_ * model_->curvature(total_) * inverse;
-  curvature_.diagonal().array() += 2.0 * prior_;
+  curvature_ = curvature_of(total_, prior_);
+}
+
+Eigen::MatrixXd LocalModel::curvature_of(const Eigen::VectorXd& total, double prior) const {
+  Eigen::MatrixXd curvature = from_v_ * model_->curvature(total) * from_v_.transpose();
+  curvature.diagonal().array() += 2.0 * prior;
+  return curvature;
 }
 
 Eigen::MatrixXd LocalModel::first_spread(Eigen::Index parameters) {
@@ -122,9 +128,11 @@ Eigen::VectorXd LocalModel::step(const Eigen::MatrixXd& spread) const {
 
 Eigen::VectorXd LocalModel::optimum(std::span<const double> block_weights, const Eigen::MatrixXd& spread) const {
   const Eigen::VectorXd trust = kTrust * spread.diagonal().cwiseSqrt();
-  const Eigen::VectorXd slope =
-      from_v_ * model_->gradient(rows_ * row_weights(score_, block_weights)) + 2.0 * prior_ * centre_;
-  return centre_ + minimum_in_box(slope, curvature_, low_.cwiseMax(-trust), high_.cwiseMin(trust));
+  const Eigen::VectorXd total = rows_ * row_weights(score_, block_weights);
+  const double blocks = std::accumulate(block_weights.begin(), block_weights.end(), 0.0);
+  const double prior = prior_ * static_cast<double>(block_weights.size()) / blocks;  // of so many blocks
+  const Eigen::VectorXd slope = from_v_ * model_->gradient(total) + 2.0 * prior * centre_;
+  return centre_ + minimum_in_box(slope, curvature_of(total, prior), low_.cwiseMax(-trust), high_.cwiseMin(trust));
 }
 
 Eigen::VectorXd LocalModel::draw(std::uint32_t draw) const {

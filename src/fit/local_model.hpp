@@ -11,7 +11,7 @@ namespace talus {
 /// to step from there, and how far other blocks, another prior and other luck would move it.
 class LocalModel {
  public:
-  static constexpr std::uint32_t kDesigns = 2'000'000;  ///< trials from here on are those of designs
+  static constexpr std::uint32_t kDesigns = 2'000'000'000;  ///< trials from here on are those of designs
 
   /// @param fit     with a score whose groups are weighed as the objective's are
   /// @param spread  covariance of the places it is learnt from; those far outside do not count
@@ -34,7 +34,8 @@ class LocalModel {
 
   /// The minimum of the model, within the bounds and two standard deviations of the spread.
   Eigen::VectorXd step(const Eigen::MatrixXd& spread) const;
-  /// Where the optimum is for other weights of the blocks (size: blocks), within two standard deviations of the spread.
+  /// Where the optimum is for other weights of the blocks (size: blocks), within two standard deviations of the spread:
+  /// slopes and curvatures are those of the blocks that count, and so is the weight of the prior.
   Eigen::VectorXd optimum(std::span<const double> block_weights, const Eigen::MatrixXd& spread) const;
   /// Where draw number `draw` of the posterior sample has its optimum.
   Eigen::VectorXd draw(std::uint32_t draw) const;
@@ -45,6 +46,8 @@ class LocalModel {
   double noise() const { return noise_; }
 
  private:
+  Eigen::MatrixXd curvature_of(const Eigen::VectorXd& total, double prior) const;
+
   const FitProblem& problem_;
   const FitOptions& options_;
   const Score& score_;

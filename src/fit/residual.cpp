@@ -12,14 +12,27 @@ constexpr double kShrink = 0.1;            // of the pooled correlation towards 
 
 bool blocks_broke(const Campaign& campaign) {
   return std::count_if(campaign.blocks.begin(), campaign.blocks.end(), [](const MeasuredBlock& b) {
-           return b.stop_mass && std::abs(*b.stop_mass / b.mass - 1.0) > 0.05;
+           return !b.holdout && b.stop_mass && std::abs(*b.stop_mass / b.mass - 1.0) > 0.05;
          }) >= 5;
 }
+
+/// What was measured of the fitting rows.
 
 std::vector<Observable> observables_of(const Campaign& campaign) {
   using Kind = Observable::Kind;
   std::vector<Observable> list;
-  const auto any = [&campaign](auto has) { return std::any_of(campaign.blocks.begin(), campaign.blocks.end(), has); };
+  const auto any = [&campaign](auto has) {
+    return std::any_of(campaign.blocks.begin(), campaign.blocks.end(),
+                       [&has](const MeasuredBlock& b) { return !b.holdout && has(b); });
+  };
+  const auto any_passage = [&any](std::size_t s, double Passage::*value) {
+    return any([=](const MeasuredBlock& b) { return b.passages[s] && !std::isnan((*b.passages[s]).*value); });
+  };
+  const auto any_sample = [&any](double Sample::*value) {
+    return any([value](const MeasuredBlock& b) {
+      return std::any_of(b.samples.begin(), b.samples.end(), [&](const Sample& s) { return !std::isnan(s.*value); });
+    });
+  };
   if (any([](const MeasuredBlock& b) { return b.stop.has_value(); })) {
     list.push_back({Kind::Runout, 0, false, "runout"});
     list.push_back({Kind::Lateral, 0, false, "lateral"});
@@ -29,16 +42,15 @@ std::vector<Observable> observables_of(const Campaign& campaign) {
     if (!any([s](const MeasuredBlock& b) { return b.passages[s].has_value(); })) continue;
     const std::string id = " " + campaign.screens[s].id;
     list.push_back({Kind::Crossed, s, false, "crossed" + id});
-    list.push_back({Kind::Speed, s, false, "speed" + id});
-    list.push_back({Kind::Jump, s, false, "jump" + id});
-    list.push_back({Kind::Spin, s, false, "spin" + id});
+    if (any_passage(s, &Passage::speed)) list.push_back({Kind::Speed, s, false, "speed" + id});
+    if (any_passage(s, &Passage::jump)) list.push_back({Kind::Jump, s, false, "jump" + id});
+    if (any_passage(s, &Passage::spin)) list.push_back({Kind::Spin, s, false, "spin" + id});
   }
-  if (any([](const MeasuredBlock& b) { return !b.samples.empty(); }))
-    for (const bool late : {false, true}) {
-      const std::string when = late ? " late" : " early";
-      list.push_back({Kind::SampleSpeed, 0, late, "sample speed" + when});
-      list.push_back({Kind::SampleSpin, 0, late, "sample spin" + when});
-    }
+  for (const bool late : {false, true}) {
+    const std::string when = late ? " late" : " early";
+    if (any_sample(&Sample::speed)) list.push_back({Kind::SampleSpeed, 0, late, "sample speed" + when});
+    if (any_sample(&Sample::spin)) list.push_back({Kind::SampleSpin, 0, late, "sample spin" + when});
+  }
   return list;
 }
 
@@ -110,6 +122,7 @@ ResidualSpace::ResidualSpace(const Campaign& campaign, const std::vector<BlockRu
 
 /// Mean score of a block's samples of one half, of those that have one.
 double ResidualSpace::sample_score(std::size_t block, const Observable& o, const std::vector<double>& values) const {
+  if (samples_[block].empty()) return kNotGiven;  // not simulated
   double sum = 0.0;
   int count = 0;
   const std::size_t which = o.kind == Observable::Kind::SampleSpeed ? 0 : 1;
@@ -131,20 +144,28 @@ ResidualSpace::Seen ResidualSpace::seen_measured(std::size_t b) const {
   return seen;
 }
 
+/// What would have been measured of a trial: a value that is missing of the block itself is missing of its trials, too.
 ResidualSpace::Seen ResidualSpace::seen_of_trial(std::size_t b, const BlockRuns& runs, std::size_t t) const {
   const MeasuredBlock& block = campaign_.blocks[b];
+  const auto where_measured = [](double simulated, double measured) {
+    return std::isnan(measured) ? kNotGiven : simulated;
+  };
   Seen seen;
-  if (!std::isnan(runs.x[t])) {
-    seen.way = {runs.x[t] - block.x, runs.y[t] - block.y};
-    seen.mass_share = runs.mass_share[t];
+  if (block.stop && !std::isnan(runs.x[t])) seen.way = {runs.x[t] - block.x, runs.y[t] - block.y};
+  if (block.stop_mass && !std::isnan(runs.x[t])) seen.mass_share = runs.mass_share[t];
+  for (std::size_t s = 0; s < runs.screens.size(); ++s) {
+    const BlockRuns::AtScreen& screen = runs.screens[s];
+    seen.passages.emplace_back();
+    if (std::isnan(screen.speed[t])) continue;                                    // did not cross
+    const Passage measured = block.passages[s].value_or(Passage{0.0, 0.0, 0.0});  // it would have been seen
+    seen.passages.back() =
+        Passage{where_measured(screen.speed[t], measured.speed), where_measured(screen.jump[t], measured.jump),
+                where_measured(screen.spin[t], measured.spin)};
   }
-  for (const BlockRuns::AtScreen& screen : runs.screens) {
-    const bool crossed = !std::isnan(screen.speed[t]);
-    seen.passages.push_back(crossed ? std::optional(Passage{screen.speed[t], screen.jump[t], screen.spin[t]})
-                                    : std::nullopt);
+  for (std::size_t i = 0; i < runs.samples.size(); ++i) {
+    seen.sample_speed.push_back(where_measured(runs.samples[i].speed[t], block.samples[i].speed));
+    seen.sample_spin.push_back(where_measured(runs.samples[i].spin[t], block.samples[i].spin));
   }
-  for (const BlockRuns::AtSample& sample : runs.samples)
-    seen.sample_speed.push_back(sample.speed[t]), seen.sample_spin.push_back(sample.spin[t]);
   return seen;
 }
 

@@ -5,7 +5,6 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <functional>
 #include <numeric>
 
 namespace talus {
@@ -36,22 +35,6 @@ double p_of_correlation(double r, std::size_t n) {
   const double freedom = static_cast<double>(n) - 2.0;
   const double t = std::abs(r) * std::sqrt(freedom / std::max(1e-12, 1.0 - r * r));
   return two_sided(boost::math::cdf(boost::math::complement(boost::math::students_t(freedom), t)));
-}
-
-struct Property {
-  const char* name;
-  std::function<double(const MeasuredBlock&)> of;
-};
-
-const std::vector<Property>& properties() {
-  static const std::vector<Property> list{{"mass", [](const MeasuredBlock& b) { return b.mass; }},
-                                          {"L1/L2", [](const MeasuredBlock& b) { return b.axes.x() / b.axes.y(); }},
-                                          {"L1/L3", [](const MeasuredBlock& b) { return b.axes.x() / b.axes.z(); }},
-                                          {"day", [](const MeasuredBlock& b) { return static_cast<double>(b.day); }},
-                                          {"release height", [](const MeasuredBlock& b) { return b.release_height; }},
-                                          {"east", [](const MeasuredBlock& b) { return b.x; }},
-                                          {"north", [](const MeasuredBlock& b) { return b.y; }}};
-  return list;
 }
 
 /// Whether more of the blocks with a large property cross than the model says: sum of (c - p) times the rank, among
@@ -100,6 +83,18 @@ void correct(std::vector<ResidualRow>& table) {
 
 }  // namespace
 
+const std::vector<Property>& properties() {
+  static const std::vector<Property> list{
+      {"mass", [](const MeasuredBlock& b) { return b.mass; }},
+      {"L1/L2", [](const MeasuredBlock& b) { return b.axes.x() / b.axes.y(); }},
+      {"L1/L3", [](const MeasuredBlock& b) { return b.axes.x() / b.axes.z(); }},
+      {"day", [](const MeasuredBlock& b) { return b.day == 0 ? kNotGiven : static_cast<double>(b.day); }},
+      {"release height", [](const MeasuredBlock& b) { return b.release_height; }},
+      {"east", [](const MeasuredBlock& b) { return b.x; }},
+      {"north", [](const MeasuredBlock& b) { return b.y; }}};
+  return list;
+}
+
 double spearman(std::span<const double> a, std::span<const double> b) {
   const std::vector<double> ra = ranks(a), rb = ranks(b);
   const double middle = 0.5 * (static_cast<double>(a.size()) - 1.0);
@@ -118,27 +113,28 @@ std::vector<ResidualRow> residual_table(const Campaign& campaign, const Residual
   for (std::size_t o = 0; o < space.observables().size(); ++o) {
     const std::string& name = space.observables()[o].name;
     const bool crossing = space.observables()[o].kind == Observable::Kind::Crossed;
-    std::vector<double> z, variance;
-    std::vector<std::vector<double>> of(properties().size());
+    std::vector<std::size_t> seen;
+    std::vector<double> all;
     for (std::size_t b = 0; b < campaign.blocks.size(); ++b) {
       if (!rows[b]) continue;
-      const double value = space.of_measured(b)[static_cast<Eigen::Index>(o)];
-      if (std::isnan(value)) continue;
-      z.push_back(value);
-      if (crossing) variance.push_back(space.crossing_share(b, o) * (1.0 - space.crossing_share(b, o)));
-      for (std::size_t p = 0; p < of.size(); ++p) of[p].push_back(properties()[p].of(campaign.blocks[b]));
+      const double z = space.of_measured(b)[static_cast<Eigen::Index>(o)];
+      if (!std::isnan(z)) seen.push_back(b), all.push_back(z);
     }
-    if (z.size() < kFewestBlocks) continue;
-    if (!crossing) add_moments(table, name, z);
-    for (std::size_t p = 0; p < of.size(); ++p) {
-      const auto [low, high] = std::minmax_element(of[p].begin(), of[p].end());
-      if (!(*high > *low)) continue;
-      if (crossing) {
-        add_crossing(table, name, properties()[p].name, z, variance, of[p]);
-        continue;
+    if (seen.size() < kFewestBlocks) continue;
+    if (!crossing) add_moments(table, name, all);
+    for (const Property& property : properties()) {
+      std::vector<double> z, variance, of;  // of the blocks whose property is known
+      for (std::size_t i = 0; i < seen.size(); ++i) {
+        const double value = property.of(campaign.blocks[seen[i]]), p = space.crossing_share(seen[i], o);
+        if (!std::isnan(value)) z.push_back(all[i]), variance.push_back(p * (1.0 - p)), of.push_back(value);
       }
-      const double r = spearman(z, of[p]);
-      table.push_back({name, properties()[p].name, r, p_of_correlation(r, z.size()), 1.0, z.size()});
+      if (of.size() < kFewestBlocks || std::ranges::min(of) == std::ranges::max(of)) continue;
+      if (crossing) {
+        add_crossing(table, name, property.name, z, variance, of);
+      } else {
+        const double r = spearman(z, of);
+        table.push_back({name, property.name, r, p_of_correlation(r, z.size()), 1.0, z.size()});
+      }
     }
   }
   correct(table);

@@ -119,8 +119,13 @@ MatrixXd drawn(const std::vector<MatrixXd>& trials, std::uint64_t seed, int repl
   return scores;
 }
 
+/// How unlikely a data set is by one effect, compared with all others: how many have a p-value as small, and, between
+/// those of the same rank by different effects, the p-value itself.
+using Rarity = std::pair<double, double>;
+
 /// Corrects p-values for the number of places, and the smallest one for the number of effects, by data sets drawn from
-/// the model. Each effect counts alike, however many places it has.
+/// the model. Each effect counts alike, however many places it has. What was measured is one data set among the others:
+/// whatever the model makes is as likely to be the most unlikely of them as any.
 void correct(ScoreTest& test, const std::vector<Projection>& projections, const std::vector<std::size_t>& effect_of,
              const std::vector<MatrixXd>& trials, const ScoreTestOptions& options) {
   const std::size_t effects = test.effects.size();
@@ -133,29 +138,35 @@ void correct(ScoreTest& test, const std::vector<Projection>& projections, const 
       best = std::min(best, projections[i].verdict(scores).p_value);
     }
   }
-  std::vector<double> luckiest(n, 1.0);  // by data set: its smallest corrected p-value
-  test.p_value = 1.0;
+  const auto sets = static_cast<double>(n + 1);
+  std::vector<Rarity> rarest(n, {sets, 1.0});  // by data set: by its most unlikely effect
+  Rarity measured{sets, 1.0};
   for (std::size_t e = 0; e < effects; ++e) {
+    const double own = test.effects[e].best.p_value;
     std::vector<double> sorted = smallest[e];
+    sorted.push_back(own);
     std::sort(sorted.begin(), sorted.end());
-    const auto up_to = [&sorted](double p) {
-      return static_cast<double>(std::upper_bound(sorted.begin(), sorted.end(), p) - sorted.begin());
+    const auto rarity = [&sorted](double p) {
+      return Rarity{std::upper_bound(sorted.begin(), sorted.end(), p) - sorted.begin(), p};
     };
-    const auto count = static_cast<double>(n);
-    for (std::size_t r = 0; r < n; ++r) luckiest[r] = std::min(luckiest[r], up_to(smallest[e][r]) / count);
-    test.effects[e].p_value = (up_to(test.effects[e].best.p_value) + 1.0) / (count + 1.0);
-    test.p_value = std::min(test.p_value, test.effects[e].p_value);
+    for (std::size_t r = 0; r < n; ++r) rarest[r] = std::min(rarest[r], rarity(smallest[e][r]));
+    measured = std::min(measured, rarity(own));
+    test.effects[e].p_value = rarity(own).first / sets;
   }
-  const double as_lucky =
-      static_cast<double>(std::count_if(luckiest.begin(), luckiest.end(), [&](double p) { return p <= test.p_value; }));
-  test.p_value = (as_lucky + 1.0) / static_cast<double>(n + 1);
+  const auto as_rare = std::count_if(rarest.begin(), rarest.end(), [&](const Rarity& r) { return r <= measured; });
+  test.p_value = (static_cast<double>(as_rare) + 1.0) / sets;
+}
+
+/// Beyond what a double can say both p-values are zero.
+bool more_significant(const Verdict& a, const Verdict& b) {
+  return a.p_value != b.p_value ? a.p_value < b.p_value : a.statistic > b.statistic;
 }
 
 /// Puts a further place of an effect where it belongs: best, second, or nowhere.
 void rank(const Verdict& verdict, EffectVerdict& effect) {
-  if (verdict.p_value < effect.best.p_value) {
+  if (more_significant(verdict, effect.best)) {
     effect.second = std::exchange(effect.best, verdict);
-  } else if (effect.second.members.empty() || verdict.p_value < effect.second.p_value) {
+  } else if (effect.second.members.empty() || more_significant(verdict, effect.second)) {
     effect.second = verdict;
   }
 }
@@ -219,7 +230,7 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
   }
   correct(test, projections, effect_of, trials, options);
   std::sort(test.effects.begin(), test.effects.end(), [](const EffectVerdict& a, const EffectVerdict& b) {
-    return a.p_value != b.p_value ? a.p_value < b.p_value : a.best.p_value < b.best.p_value;
+    return a.p_value != b.p_value ? a.p_value < b.p_value : more_significant(a.best, b.best);
   });
   return test;
 }

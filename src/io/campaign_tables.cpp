@@ -20,7 +20,7 @@ constexpr Bounds kVelocity{"vx", "m/s", "component of the velocity at the releas
 constexpr Bounds kMass{"mass_kg", "kg", "mass of the block", 0.0, 1e9, kAbove};
 constexpr Bounds kDensity{"density_kgm3", "kg/m3", "mass per volume of the rock", 500.0, 8000.0};
 constexpr Bounds kAxis{"L1_m", "m", "length of an axis of the block", 0.0, 100.0, kAbove};
-constexpr Bounds kDay{"day", "1", "number of the day of release", -1e9, 1e9, Bounds::Closed, true};
+constexpr Bounds kDay{"day", "1", "number of the day of release, 0: not known", 0.0, 1e6, Bounds::Closed, true};
 constexpr Bounds kHoldout{"holdout", "1", "1: never used to fit", 0.0, 1.0, Bounds::Closed, true};
 constexpr Bounds kSpeed{"speed_ms", "m/s", "measured speed", 0.0, 300.0};
 constexpr Bounds kJump{"jump_height_m", "m", "measured height above the terrain", 0.0, 1000.0};
@@ -108,6 +108,16 @@ class Tables {
     return {table.required(row, "x", kPlace) - grid.west, table.required(row, "y", kPlace) - grid.south};
   }
 
+  /// Of what was measured: one place far off would widen the spread that all errors are divided by.
+  Eigen::Vector2d place_on_terrain(const CsvTable& table, const Row& row) const {
+    const Eigen::Vector2d place = place_of(table, row);
+    if (!campaign_.surface.height(place.x(), place.y()))
+      table.refuse(row, "x",
+                   "with y = " + table.text(row, "y") +
+                       " is off the terrain, must be on it: is it mistyped? A block that ran off the DEM has no row");
+    return place;
+  }
+
   MeasuredBlock& block_of_row(const CsvTable& table, const Row& row) {
     const auto found = indices_.find(table.name(row, "id"));
     if (found == indices_.end()) table.refuse(row, "id", "is no block of " + files_.blocks + ", must be one");
@@ -118,13 +128,12 @@ class Tables {
     const CsvTable table(files_.stops, {"id", "x", "y", "mass_kg"}, {"id", "x", "y"});
     for (const Row& row : table.rows()) {
       MeasuredBlock& block = block_of_row(table, row);
-      if (table.text(row, "x").empty() && table.text(row, "y").empty()) continue;
-      if (block.stop) {
+      if (block.stop || block.stop_mass) {
         warnings_.push_back(files_.stops + ":" + std::to_string(row.line) + ": block '" + block.id +
                             "' has a stop already: the first one counts");
         continue;
       }
-      block.stop = place_of(table, row);
+      if (!table.text(row, "x").empty() || !table.text(row, "y").empty()) block.stop = place_on_terrain(table, row);
       block.stop_mass = table.number(row, "mass_kg", kMass);
     }
   }
@@ -159,7 +168,7 @@ class Tables {
     const CsvTable table(files_.samples, {"id", "x", "y", "z", "speed_ms", "angular_velocity_rads"}, {"id", "x", "y"});
     for (const Row& row : table.rows()) {
       MeasuredBlock& block = block_of_row(table, row);
-      const Eigen::Vector2d place = place_of(table, row);
+      const Eigen::Vector2d place = place_on_terrain(table, row);
       Sample sample;
       sample.x = place.x();
       sample.y = place.y();

@@ -48,13 +48,8 @@ std::string reduction_text(const Reduction& r) {
 
 /// The property of a block that a row of the residual table names; the number of the block where it names none.
 double property_of(const MeasuredBlock& b, const std::string& name, std::size_t number) {
-  if (name == "mass") return b.mass;
-  if (name == "L1/L2") return b.axes.x() / b.axes.y();
-  if (name == "L1/L3") return b.axes.x() / b.axes.z();
-  if (name == "day") return b.day;
-  if (name == "release height") return b.release_height;
-  if (name == "east") return b.x;
-  if (name == "north") return b.y;
+  for (const Property& property : properties())
+    if (name == property.name) return property.of(b);
   return static_cast<double>(number + 1);
 }
 
@@ -70,8 +65,9 @@ Points points_of(const Campaign& campaign, const ResidualSpace& space, const Res
     for (std::size_t b = 0; b < campaign.blocks.size(); ++b) {
       if (!rows[b]) continue;
       const double z = space.of_measured(b)[static_cast<Eigen::Index>(o)];
-      if (std::isnan(z)) continue;
-      points.x.push_back(property_of(campaign.blocks[b], row.covariate, b));
+      const double x = property_of(campaign.blocks[b], row.covariate, b);
+      if (std::isnan(z) || std::isnan(x)) continue;
+      points.x.push_back(x);
       points.z.push_back(z);
     }
   }
@@ -110,13 +106,17 @@ std::string plots(const Campaign& campaign, const Diagnosis& d) {
   std::string html;
   const std::vector<ResidualRow>& rows = d.rounds.front().residual;
   for (std::size_t i = 0; i < std::min(kPlots, rows.size()); ++i) {
-    const std::string title =
-        rows[i].observable + " against " +
-        (rows[i].covariate == "mean" || rows[i].covariate == "spread" ? "block" : rows[i].covariate);
-    html += "<p>" + plot(points_of(campaign, before, rows[i]), title + ", before", rows[i].covariate) +
-            plot(points_of(campaign, after, rows[i]), title + ", after", rows[i].covariate) + "</p>\n";
+    const bool by_block = rows[i].covariate == "mean" || rows[i].covariate == "spread";
+    const std::string across = by_block ? "number of the block" : rows[i].covariate;
+    const std::string title = rows[i].observable + " against " + across;
+    html += "<p>" + plot(points_of(campaign, before, rows[i]), title + ", before", across) +
+            plot(points_of(campaign, after, rows[i]), title + ", after", across) + "</p>\n";
   }
   return html;
+}
+
+std::string unit_text(const Parameter& parameter) {
+  return parameter.unit.empty() || parameter.unit == "1" ? "" : " " + parameter.unit;
 }
 
 std::string candidates_table(const Round& round, const std::vector<HoldoutError>& holdout) {
@@ -127,7 +127,7 @@ std::string candidates_table(const Round& round, const std::vector<HoldoutError>
     const Trial& t = round.trials[i];
     std::string numbers;
     for (std::size_t k = 0; k < t.parameters.size(); ++k)
-      numbers += t.parameters[k].key + " = " + print("%.3g", t.values[k]) + " " + t.parameters[k].unit + "<br>";
+      numbers += t.parameters[k].key + " = " + print("%.3g", t.values[k]) + unit_text(t.parameters[k]) + "<br>";
     const HoldoutError& e = holdout[i];
     html += "<tr><td>" + t.effect + "</td><td>" + escaped(t.where) + "</td><td>" + numbers + "</td><td>" +
             print("%.4f", t.p_value) + "</td><td>" +
@@ -150,7 +150,9 @@ std::string residual_rows(const std::vector<ResidualRow>& rows) {
 }
 
 std::string sentence(const Round& round) {
-  if (round.effect == "none") return "Nothing is left that differs from noise: no effect is missing.";
+  if (round.effect == "none" && round.p_value > 0.05) return "Nothing is left that differs from noise.";
+  if (round.effect == "none")
+    return "What is left would be rare as noise, but too little for any effect of the library to be named.";
   if (round.effect == "unexplained")
     return "A residual is left that no effect of the library explains better than chance.";
   std::string text = "The model lacks <b>" + round.effect + "</b> (" + escaped(round.where) + ").";

@@ -86,6 +86,13 @@ bool found(const Round& round) {
   return round.effect != "none" && round.effect != "unexplained";
 }
 
+/// That the answer is the right one, in some sense: of an effect the share of the bootstraps in which it is the best;
+/// of `none` how often noise leaves as much; of `unexplained` how often it does not.
+double probability_of(const Round& round) {
+  if (found(round)) return round.trials.front().chosen_share;
+  return round.effect == "none" ? round.p_value : 1.0 - round.p_value;
+}
+
 }  // namespace
 
 void open_holdout(const Campaign& campaign, DiagnosisRecord& record) {
@@ -129,7 +136,7 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
   Json json{{"effect", first.effect},
             {"effects", effects},
             {"where", first.where},
-            {"probability", found(first) ? number(first.trials.front().chosen_share) : number(1.0 - first.p_value)},
+            {"probability", number(probability_of(first))},
             {"indistinguishable_from", first.alike},
             {"rounds", rounds},
             {"error",
@@ -157,7 +164,7 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
   for (const InputFile& input : record.inputs)
     inputs.push_back({{"role", input.role}, {"path", input.path}, {"sha256", input.sha256}});
   json["inputs"] = inputs;
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace talus::io

@@ -32,6 +32,8 @@ std::string zones_text(const Extent* extent, const Campaign& campaign) {
 /// The tables [effects.*] of a model, as the reader of [effects.*] takes them; empty where none is on.
 std::string effects_text(Effects effects, const Campaign& campaign) {
   std::string text;
+  if (is_on(effects, "vegetation-drag") && is_on(effects, "forest-stems"))  // found one after the other
+    text += "\n[effects]\nallow_both = true\n";
   for (const std::string_view name : effect_names()) {
     if (!is_on(effects, name)) continue;
     text += "\n[effects." + std::string(name) + "]\n";

@@ -17,6 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string cell(double score, const Interval& interval, std::size_t rows) {
+  if (std::isnan(score)) return "       -                        -";
   std::array<char, 80> text{};
   std::snprintf(text.data(), text.size(), "  %6.3f  %6.3f to %6.3f  %5zu", score, interval.low, interval.high, rows);
   return text.data();
@@ -66,10 +67,10 @@ std::vector<std::string> unseen_warnings(const std::string& rows, const Score& s
   std::vector<std::string> warnings;
   for (const GroupScore& group : score.groups)
     if (2 * group.unseen > group.rows)
-      warnings.push_back(group.name + ": " + std::to_string(group.unseen) + " of " + std::to_string(group.rows) +
-                         " " + in_words(rows) + " rows have fewer than " + std::to_string(kFewestSimulated) +
-                         " simulated values and score as the climatology: the model hardly ever does there what was "
-                         "measured, and the score says nothing of it");
+      warnings.push_back(group.name + ": " + std::to_string(group.unseen) + " of " + std::to_string(group.rows) + " " +
+                         in_words(rows) + " rows have fewer than " + std::to_string(kFewestSimulated) +
+                         " simulated values and score as the climatology: the model seldom does there what was "
+                         "measured, and the score says nothing of it (more trials may help)");
   return warnings;
 }
 
@@ -81,9 +82,7 @@ std::string score_table(const ScoreSettings& settings, std::span<const ScoredRow
   for (const std::string& name : names) width = std::max(width, name.size());
   text += padded("", width);
   for (const ScoredRows& s : scores)
-    text += padded("  " + in_words(s.rows) + " rows (" + std::to_string(s.blocks) +
-                       " blocks)",
-                   33);
+    text += padded("  " + in_words(s.rows) + " rows (" + std::to_string(s.blocks) + " blocks)", 33);
   text += "\n" + padded("group", width);
   for (std::size_t i = 0; i < scores.size(); ++i) text += "   score  95 % interval    rows";
   for (const std::string& name : names) {

@@ -85,7 +85,7 @@ TomlValue read_toml(const std::string& path, const std::string& name) {
   std::error_code none;
   std::ifstream file(path, std::ios::binary);
   if (!file.is_open() || std::filesystem::is_directory(path, none))
-    throw InputError(name + ": cannot be read, must be a scenario file (TOML)");
+    throw InputError(name + ": cannot be read, must be a TOML file");
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   try {
     return converted(toml::parse(text));

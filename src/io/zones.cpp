@@ -20,6 +20,11 @@ class ZoneIndex {
       : request_(request), names_(request.names), seen_(request.names.size(), false) {
     for (std::size_t i = 0; raster && i < request.codes.size(); ++i)
       if (!request.codes[i].empty()) names_[i] = request.codes[i];
+    for (std::size_t i = 0; i < names_.size(); ++i)
+      for (std::size_t k = 0; k < i; ++k)
+        if (names_[i] == names_[k])
+          throw InputError(request.path + ": '" + names_[i] + "' stands for both " + described(k) + " and " +
+                           described(i) + ": give each a code of its own");
   }
 
   std::uint8_t at(const std::string& zone, const std::string& where) {
@@ -38,11 +43,15 @@ class ZoneIndex {
   void warn_unseen(std::vector<std::string>& warnings) const {
     for (std::size_t i = 0; i < seen_.size(); ++i)
       if (!seen_[i])
-        warnings.push_back(request_.path + ": no zone '" + names_[i] + "' on the map: [" + request_.table + "." +
-                           quoted(names_[i]) + "] is not used");
+        warnings.push_back(request_.path + ": no zone '" + names_[i] + "' on the map: " + described(i) +
+                           " is not used");
   }
 
  private:
+  std::string described(std::size_t i) const {
+    const bool by_code = request_.table != "ground.zones";  // else by name
+    return "[" + request_.table + "." + quoted(by_code ? names_[i] : request_.names[i]) + "]";
+  }
   static std::string quoted(const std::string& name) {
     const bool bare = std::all_of(name.begin(), name.end(),
                                   [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });

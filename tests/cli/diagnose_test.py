@@ -28,7 +28,14 @@ class WholeLoop(Case):
         self.assertIn(found["effect"], NAMES)
         self.assertEqual(NAMES - {"none", "unexplained"} - {c["effect"] for c in found["candidates"]}, self.untested(name))
         for rows in ("fit", "holdout"):
-            self.assertTrue(0.1 < found["error"][rows]["after"] < 2.0)  # a number; 24 blocks and 10 trials fit badly
+            self.assertTrue(0.1 < found["error"][rows]["after"] < 2.0)  # a number; 24 blocks and few trials fit badly
+        e = found["error"]["holdout"]
+        self.assertAlmostEqual(e["reduction"], 1 - e["after"] / e["before"], places=4)
+        self.assertTrue(e["ci95"][0] <= e["reduction"] <= e["ci95"][1])
+        self.assertTrue(0 <= found["probability"] <= 1)
+        if found["effect"] == "none":
+            self.assertEqual(found["probability"], found["rounds"][0]["p_value"])
+            self.assertEqual((e["reduction"], found["where"], found["indistinguishable_from"]), (0, "", []))
         self.assertEqual(found["rounds"][-1]["effect"] in ("none", "unexplained"), True)
         for round in found["rounds"][1:]:  # those of the first are at the top
             self.assertNotIn(found["effect"], {c["effect"] for c in round["candidates"]})
@@ -55,7 +62,8 @@ class WholeLoop(Case):
         self.assertEqual(self.diagnose("alder")["effect"], "none")
 
     def test_measured_blocks_of_a_quarry(self):
-        found = self.diagnose("authume", *SHORT)
+        found = self.diagnose("authume", *SHORT)  # 24 of its 48 blocks are fitted: a third of 72
+        self.assertEqual(found["trials_per_block"], {"search": 60, "test": 180, "compare": 600})
         self.assertGreater(len(found["residual"]), 3)
 
 

@@ -173,6 +173,26 @@ class OwnCampaign(Case):
         self.assertEqual(groups["stop"]["rows_as_climatology"], 0)
         self.assertRegex(done.stderr, r"warning: speed S1: \d+ of \d+ fitting rows")
         self.assertNotIn("stop", done.stderr)
+        done = self.run_well("score", self.campaign, "--parameters", self.path("stuck.toml"))
+        self.assertRegex(done.stderr, r"warning: speed S1: \d+ of \d+ held-out rows")
+
+    def test_a_place_off_the_terrain_would_widen_every_spread(self):
+        with open(self.path("stops.csv"), encoding="utf-8") as file:
+            head, first, *stops = file.read().splitlines()
+        block, x, rest = first.split(",", 2)
+        self.write("stops.csv", "\n".join([head, f"{block},{float(x) + 5e4},{rest}"] + stops) + "\n")
+        self.fails(2, "stops.csv:2: x = ", "off the terrain", arguments=["score", self.campaign, "--parameters", self.path("truth.toml")])
+
+    def test_nothing_to_score(self):
+        self.write("stops.csv", "id,x,y\n")
+        self.write("passages.csv", "id,screen\n")
+        self.fails(2, "nothing to score", arguments=["score", self.campaign, "--parameters", self.path("truth.toml")])
+
+    def test_a_day_is_a_number_that_a_model_can_name(self):
+        with open(self.path("blocks.csv"), encoding="utf-8") as file:
+            head, *blocks = file.read().splitlines()
+        self.write("blocks.csv", "\n".join([head + ",day"] + [b + ",-3" for b in blocks]) + "\n")
+        self.fails(2, "blocks.csv:2: day = '-3'", "0 to 1000000", arguments=["score", self.campaign, "--parameters", self.path("truth.toml")])
 
     def test_faults(self):
         before = os.listdir(self.folder)
@@ -180,6 +200,15 @@ class OwnCampaign(Case):
         self.fails(2, "none.toml", arguments=["score", self.campaign, "--parameters", self.path("none.toml")])
         self.fails(2, "nowhere.toml", arguments=["calibrate", self.path("nowhere.toml"), "-o", self.path("x")])
         self.fails(2, "'E50'", "En50", arguments=["calibrate", self.campaign, "-o", self.path("x"), "--fit", "E50"])
+        self.fails(2, "'En50'", "twice", arguments=["calibrate", self.campaign, "-o", self.path("x"), "--fit", "En50,En50"])
+        for command in ["score", self.campaign, "--parameters", self.path("truth.toml")], ["calibrate", self.campaign, "-o", self.path("x")]:
+            self.fails(2, "--seed", "9007199254740991", arguments=[*command, "--seed", "-1"])
+        os.mkdir(self.path("taken"))
+        self.write("taken/note.txt", "mine")
+        done = self.fails(2, "taken", "new name", arguments=["score", self.campaign, "--parameters", self.path("truth.toml"), "--dump", self.path("taken")])
+        self.assertNotIn("--overwrite", done.stderr)  # score has no such option
+        os.remove(self.path("taken/note.txt"))
+        os.rmdir(self.path("taken"))
         self.write("m.toml", "[ground.zones.rock]\nEn50 = 3\n")
         self.fails(2, "rock", "no such zone", arguments=["score", self.campaign, "--parameters", self.path("m.toml")])
         os.remove(self.path("m.toml"))

@@ -120,6 +120,7 @@ class Case(unittest.TestCase):
         for word in words:
             self.assertIn(word, errors[0])
         self.assertEqual(done.stdout, "")
+        return done
 
     def assert_nothing_left(self, before):
         self.assertEqual(sorted(os.listdir(self.folder)), sorted(before))

@@ -101,6 +101,20 @@ TEST_F(Zones, PolygonsInAnotherSystem) {  // the whole map, in degrees: 600 000 
   EXPECT_EQ(layer.reprojections[0].role, "ground");
 }
 
+TEST_F(Zones, OneCodeForTwoZonesIsRefusedAndAZoneIsCalledByItsName) {
+  const std::string file = RasterFile{.type = GDT_Byte, .values = std::vector<double>(80, 2.0)}.write(path("c.tif"));
+  try {
+    read_zones({file, "", {"2", "rock face"}, {"", "2"}}, terrain_);
+    FAIL() << "not refused";
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("'2' stands for both [ground.zones.2] and [ground.zones.\"rock face\"]"), std::string::npos)
+        << text;
+  }
+  const ZoneLayer layer = read_zones({file, "", {"2", "rock face"}, {"", "3"}}, terrain_);
+  EXPECT_TRUE(said(layer.warnings, "no zone '3' on the map: [ground.zones.\"rock face\"] is not used"));
+}
+
 TEST_F(Zones, RasterOnTheSameGrid) {
   std::vector<double> codes(80, 2.0);
   codes[0] = 7.0;     // the north-western cell

@@ -145,6 +145,7 @@ void add_width(BarrierReport& report, const CrossingTable& crossings, const RunS
 }
 
 int design(const Options& o) {
+  require_seed(o.seed);
   check_numbers(o);
   const RunSummary run = talus::io::read_run(o.folder);
   const CrossingTable crossings = simulated_crossings(run, o);

@@ -76,6 +76,7 @@ void print_summary(const talus::io::Calibration& c, const std::string& folder) {
 
 int calibrate(const Options& options) {
   catch_signals();
+  require_seed(options.how.seed);
   talus::io::Calibration c;
   OpenedCampaign opened(options, c);
   const talus::Campaign& campaign = opened.loaded.campaign;

@@ -1,5 +1,6 @@
 #pragma once
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -40,6 +41,9 @@ bool interrupted();
 
 /// The words that the program was called with.
 const std::vector<std::string>& command_line();
+
+/// Throws InputError where a seed is none. (A negative number would else be a huge one.)
+void require_seed(std::uint64_t seed);
 
 /// "talus: KIND: TEXT" on stderr, in one line.
 void say(const std::string& kind, const std::string& text);

@@ -52,6 +52,7 @@ void write_results(const talus::io::OutputFolder& folder, const talus::io::Loade
 
 int diagnose(const Options& options) {
   catch_signals();
+  require_seed(options.how.seed);
   const auto start = std::chrono::steady_clock::now();
   talus::io::DiagnosisRecord record;
   OpenedCampaign opened(options, record);
@@ -90,7 +91,9 @@ void add_diagnose(CLI::App& app, Action& action) {
   command->add_option("--level", how.first_level, "of significance, over all effects and places (0.05)")
       ->check(CLI::Range(0.0001, 0.5));
   command->footer(
-      "Of fewer than 72 fitting blocks each gets more trajectories, up to four times as many, so that their number in all stays the same.\n\n"
+      "Where fewer than 72 blocks are fitted, each gets more trajectories, so that there are as many in all; at most "
+      "four "
+      "times as many.\n\n"
       "Example:\n  talus diagnose campaign.toml -o diagnosis\n\nThen open diagnosis/report.html.");
   command->callback([&action, options] { action = [options] { return diagnose(*options); }; });
 }

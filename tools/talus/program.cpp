@@ -12,6 +12,7 @@
 #include "talus/base/memory.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
+#include "talus/simulate/fields.hpp"
 
 namespace {
 
@@ -118,6 +119,12 @@ int exit_code_of(const std::function<int()>& program) {
     say("error", error.what());
   }
   return kFailed;
+}
+
+void require_seed(std::uint64_t seed) {
+  const talus::Bounds& bounds = talus::scenario_fields().front();  // the seed
+  if (const auto fault = talus::fault_of(bounds, static_cast<double>(seed)))
+    throw talus::InputError("flag --seed = " + std::to_string(seed) + ": " + *fault);
 }
 
 void catch_signals() {

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -21,6 +23,7 @@ struct Options {
 
 int score_model(const Options& options) {
   catch_signals();
+  require_seed(options.seed);
   if (options.parameters.empty())
     throw talus::InputError(
         "score: no model is given: name it by --parameters fitted.toml (talus calibrate writes one)");
@@ -30,7 +33,11 @@ int score_model(const Options& options) {
   if (!options.quiet)
     for (const std::string& warning : loaded.warnings) say("warning", warning);
   std::optional<talus::io::OutputFolder> dump;
-  if (!options.dump.empty()) dump.emplace(options.dump, false);
+  if (!options.dump.empty()) {
+    if (std::filesystem::is_directory(options.dump) && !std::filesystem::is_empty(options.dump))
+      throw talus::InputError(options.dump + ": the folder is there and not empty; give a new name");
+    dump.emplace(options.dump, false);
+  }
 
   talus::ObserveOptions how;
   how.trials = options.trials;
@@ -47,6 +54,11 @@ int score_model(const Options& options) {
     scores.push_back(talus::io::scored("fit", campaign, runs, talus::fitting_rows(campaign)));
   if (options.rows != "fit")
     scores.push_back(talus::io::scored("holdout", campaign, runs, talus::holdout_rows(campaign)));
+  if (!dump && std::all_of(scores.begin(), scores.end(), [](const auto& s) { return s.score.groups.empty(); }))
+    throw talus::InputError(options.campaign + ": nothing to score: no quantity was measured of " +
+                            std::to_string(talus::kFewestRows) +
+                            " of the asked blocks: measure more, or see by --dump what the model does" +
+                            (options.rows == "all" ? "" : ", or ask for --rows all"));
   if (!options.quiet)
     for (const talus::io::ScoredRows& s : scores)
       for (const std::string& warning : talus::io::unseen_warnings(s.rows, s.score)) say("warning", warning);

@@ -57,7 +57,7 @@ struct BlockRuns {
 };
 
 /// First trial of the luck that no search has seen: what a fitted model is scored with.
-inline constexpr std::uint32_t kUnseen = 1'000'000;
+inline constexpr std::uint32_t kUnseen = 1'000'000'000;
 
 /// The user has ended a fit: a `proceed` said no.
 struct FitInterrupted {};

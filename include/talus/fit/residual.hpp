@@ -25,7 +25,7 @@ using Residual = Eigen::VectorXd;
 /// The distributions that a model gives for every block of a campaign, and residuals against them.
 class ResidualSpace {
  public:
-  /// @param runs  of the model, all blocks simulated; at least 20 trials. The campaign must outlive this.
+  /// @param runs  of the model; at least 20 trials of each fitting block. The campaign must outlive this.
   ResidualSpace(const Campaign& campaign, const std::vector<BlockRuns>& runs);
 
   const std::vector<Observable>& observables() const { return observables_; }
@@ -38,7 +38,7 @@ class ResidualSpace {
   }
 
   Residual of_measured(std::size_t block) const;
-  /// Of a trial of any runs, as if it had been measured.
+  /// Of a trial of any runs, as if it had been measured, with the gaps that the block's measurements have.
   Residual of_trial(std::size_t block, const BlockRuns& runs, std::size_t trial) const;
 
   /// `residual` divided by the correlation of its components, pooled over all blocks: what is NaN stays out and

@@ -1,4 +1,6 @@
 #pragma once
+#include <functional>
+
 #include "talus/fit/residual.hpp"
 
 namespace talus {
@@ -13,6 +15,13 @@ struct ResidualRow {
   double corrected;        ///< for the number of rows (Holm)
   std::size_t blocks;
 };
+
+/// What a residual may go with.
+struct Property {
+  const char* name;                                ///< as in ResidualRow::covariate
+  std::function<double(const MeasuredBlock&)> of;  ///< NaN: not known of this block
+};
+const std::vector<Property>& properties();
 
 /// Every observable against every property, most significant first. Rows with fewer than ten blocks are left out.
 std::vector<ResidualRow> residual_table(const Campaign& campaign, const ResidualSpace& space,

@@ -122,6 +122,7 @@ TEST(Candidates, OffChangesNoBit) {
   Campaign c = slope_campaign(6);
   const Model model = model_of_preset(c, "upper-talus-3d");
   measure(c, model, 3);
+  for (MeasuredBlock& b : c.blocks) b.samples.push_back({b.x, b.y - 20.0, 0.0, 20.0, 8.0, 9.0});
   const auto runs = observe(c, model, {20, 1, 0, 0, {}, {}});
   const auto list = candidates_of(c, model, runs, {});
   ASSERT_GT(list.size(), 20U);
@@ -129,9 +130,18 @@ TEST(Candidates, OffChangesNoBit) {
     Model off = with(model, candidate, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(candidate.parameters.size())));
     const auto same = observe(c, off, {20, 1, 0, 0, {}, {}});
     for (std::size_t b = 0; b < runs.size(); ++b)
-      for (std::size_t t = 0; t < 20; ++t)
-        ASSERT_TRUE(same[b].x[t] == runs[b].x[t] || (std::isnan(same[b].x[t]) && std::isnan(runs[b].x[t])))
+      for (std::size_t t = 0; t < 20; ++t) {
+        const auto same_bits = [&](const std::vector<double>& a, const std::vector<double>& b) {
+          return a[t] == b[t] || (std::isnan(a[t]) && std::isnan(b[t]));
+        };
+        ASSERT_TRUE(same_bits(same[b].x, runs[b].x) && same_bits(same[b].y, runs[b].y) &&
+                    same_bits(same[b].screens[0].speed, runs[b].screens[0].speed) &&
+                    same_bits(same[b].screens[0].jump, runs[b].screens[0].jump) &&
+                    same_bits(same[b].screens[0].spin, runs[b].screens[0].spin) &&
+                    same_bits(same[b].samples[0].speed, runs[b].samples[0].speed) &&
+                    same_bits(same[b].samples[0].spin, runs[b].samples[0].spin))
             << candidate.effect << ' ' << candidate.where;
+      }
   }
 }
 

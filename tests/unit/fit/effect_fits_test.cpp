@@ -56,7 +56,7 @@ TEST(EffectFits, WhatIsNoBetterIsNotConfirmed) {
   DiagnoseOptions options;
   options.keys = {"theta_scale"};
   options.trials = {20, 20, 50};
-  const EffectFits fits(campaign, options, rows, [] { return true; });
+  const EffectFits fits(campaign, options, rows, [](double) { return true; });
   const Fitted good = fits.ground(truth);
   const Fitted bad = too_rough(campaign, rows, good);
   ASSERT_GT(bad.objective.total, good.objective.total);
