@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kWidth = 330, kHeight = 190, kMargin = 34;  // of a plot [px]
 constexpr std::size_t kPlots = 6;
+constexpr double kRare = 0.05;  // p below which noise is not the word for what is left
 
 template <class... Values>
 std::string print(const char* format, Values... values) {
@@ -109,8 +110,9 @@ std::string plots(const Campaign& campaign, const Diagnosis& d) {
     const bool by_block = rows[i].covariate == "mean" || rows[i].covariate == "spread";
     const std::string across = by_block ? "number of the block" : rows[i].covariate;
     const std::string title = rows[i].observable + " against " + across;
-    html += "<p>" + plot(points_of(campaign, before, rows[i]), title + ", before", across) +
-            plot(points_of(campaign, after, rows[i]), title + ", after", across) + "</p>\n";
+    html += "<p>" + plot(points_of(campaign, before, rows[i]), title + ", before", across);
+    if (d.rounds.size() > 1) html += plot(points_of(campaign, after, rows[i]), title + ", after", across);
+    html += "</p>\n";
   }
   return html;
 }
@@ -150,7 +152,8 @@ std::string residual_rows(const std::vector<ResidualRow>& rows) {
 }
 
 std::string sentence(const Round& round) {
-  if (round.effect == "none" && round.p_value > 0.05) return "Nothing is left that differs from noise.";
+  const bool rare = round.p_value <= kRare || (!round.residual.empty() && round.residual.front().corrected <= kRare);
+  if (round.effect == "none" && !rare) return "Nothing is left that differs from noise.";
   if (round.effect == "none")
     return "What is left would be rare as noise, but too little for any effect of the library to be named.";
   if (round.effect == "unexplained")
@@ -199,8 +202,8 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
   html +=
       "<h2>Residuals</h2>\n<p>Each point is a block; z is where its measurement lies among what the model "
       "simulates for it, as a standard normal number. Grey: 95 % of the points of a right model.</p>\n" +
-      plots(campaign, d) + "<h3>Before</h3>\n" + residual_rows(d.rounds.front().residual) + "<h3>After</h3>\n" +
-      residual_rows(d.residual_after);
+      plots(campaign, d) + "<h3>Before</h3>\n" + residual_rows(d.rounds.front().residual);
+  if (d.rounds.size() > 1) html += "<h3>After</h3>\n" + residual_rows(d.residual_after);
   return html + "<p>" +
          print("talus %s, seed %llu, %.0f s.", std::string(version()).c_str(),
                static_cast<unsigned long long>(record.options.seed), record.seconds) +

@@ -25,7 +25,7 @@ void SourceReach::save(ByteWriter& out) const {
   out.put(static_cast<std::uint64_t>(order.size()));
   for (const std::size_t region : order) {
     out.put(static_cast<std::uint64_t>(region));
-    out.put(words_of(*regions_.at(region)));
+    out.put(words_of(regions_.at(region)));
   }
 }
 

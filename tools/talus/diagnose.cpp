@@ -47,7 +47,9 @@ void write_results(const talus::io::OutputFolder& folder, const talus::io::Loade
                         talus::io::model_text(d.base.model, loaded, "The ground alone, fitted by talus diagnose."));
   talus::io::write_text(
       out / "with_effect.toml",
-      talus::io::model_text(d.with_effects.model, loaded, "The ground and what talus diagnose found missing."));
+      talus::io::model_text(d.with_effects.model, loaded,
+                            d.rounds.size() > 1 ? "The ground and what talus diagnose found missing."
+                                                : "The ground alone: talus diagnose found nothing to add."));
 }
 
 int diagnose(const Options& options) {

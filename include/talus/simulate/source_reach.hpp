@@ -1,9 +1,9 @@
 #pragma once
 #include <bitset>
-#include <memory>
 #include <mutex>
 #include <unordered_map>
 
+#include "talus/base/scratch.hpp"
 #include "talus/simulate/bytes.hpp"
 
 namespace talus {
@@ -20,9 +20,7 @@ class SourceReach {
 
   Cells& cells(std::size_t region) {
     const std::lock_guard guard(mutex_);
-    std::unique_ptr<Cells>& cells = regions_[region];
-    if (!cells) cells = std::make_unique<Cells>();
-    return *cells;
+    return regions_[region];  // stays where it is while others come
   }
 
   void save(ByteWriter& out) const;
@@ -30,7 +28,9 @@ class SourceReach {
 
  private:
   std::mutex mutex_;
-  std::unordered_map<std::size_t, std::unique_ptr<Cells>> regions_;
+  std::unordered_map<std::size_t, Cells, std::hash<std::size_t>, std::equal_to<>,
+                     ScratchAllocator<std::pair<const std::size_t, Cells>>>
+      regions_;
 };
 
 }  // namespace talus
