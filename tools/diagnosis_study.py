@@ -156,7 +156,7 @@ def program(o):
 
 
 def diagnose(o, folder):
-    out = f"{folder}/{o.trials}-{o.test_trials}-{o.most_effects}-{o.program}"
+    out = f"{folder}/diagnosis-{o.trials}-{o.test_trials}-{o.most_effects}"
     if not os.path.exists(f"{out}/diagnosis.json"):
         run([o.talus, "diagnose", f"{folder}/campaign.toml", "-o", out, "--trials", str(o.trials),
              "--test-trials", str(o.test_trials), "--most-effects", str(o.most_effects), "-q", "--overwrite"]
@@ -170,7 +170,7 @@ def diagnose(o, folder):
 
 def one(o, effect, magnitude, count, k):
     """Makes and diagnoses one campaign, and prints what came out."""
-    folder = f"{o.work}/{o.seed}/{effect}-{magnitude:g}-{count}-{k}"
+    folder = f"{o.work}/{o.program}-{o.seed}/{effect}-{magnitude:g}-{count}-{k}"
     if not os.path.exists(f"{folder}/campaign.toml"):
         make(o.talus, folder, effect, magnitude, count, o.seed + 7919 * k + sum(map(ord, effect)) + int(100 * magnitude) + count)
     found, truth = diagnose(o, folder)

@@ -95,8 +95,8 @@ void add_days(std::vector<Candidate>& list, const Campaign& campaign) {
   std::set<int> days;
   for (const MeasuredBlock& block : campaign.blocks)
     if (!block.holdout) days.insert(block.day);
+  days.erase(0);  // not known
   if (days.size() < 2) return;
-  days.erase(0);  // not given
   for (const int day : days) list.push_back(wet_on({day}));
 }
 

@@ -51,7 +51,7 @@ class Diagnosing {
       found.push_back(last.effect);
       d.with_effects = d.rounds.back().trials.front().fitted;
     }
-    d.residual_after = residual_of(d.with_effects);
+    if (!found.empty()) d.base = fits_.again(std::move(d.base));
     d.trials = options_.trials;
     return d;
   }
@@ -59,9 +59,9 @@ class Diagnosing {
  private:
   void advance(double share = 0.02) { progress_ = std::min(0.95, progress_ + share); }
   /// @param share  of a fit; only that of the ground, the longest, is shown
-  bool proceeds(double share = 1.0) const {
-    const double first = progress_ > 0.0 ? 0.0 : kGroundShare * share;
-    return !options_.proceed || options_.proceed(progress_ + first);
+  bool proceeds(double share = 1.0) {
+    if (progress_ == 0.0) ground_ = std::max(ground_, kGroundShare * share);
+    return !options_.proceed || options_.proceed(std::max(progress_, ground_));
   }
 
   std::vector<ResidualRow> residual_of(const Fitted& fitted) const {
@@ -205,7 +205,7 @@ class Diagnosing {
   std::vector<bool> rows_;
   DiagnoseOptions options_;
   EffectFits fits_;
-  double progress_ = 0.0;
+  double progress_ = 0.0, ground_ = 0.0;
 };
 
 }  // namespace

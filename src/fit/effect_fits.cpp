@@ -77,16 +77,16 @@ Fitted EffectFits::better(Fitted fitted, Fitted longer) {
   return fitted;
 }
 
-void EffectFits::simulate(Fitted& fitted) const {
+Fitted EffectFits::again(Fitted fitted) const {
   fitted.fitting = observe(campaign_, fitted.model, observing(options_.trials.compare));
   fitted.score = score(campaign_, fitted.fitting, rows_);
   fitted.objective = weigh_groups(fitted.score);
+  return fitted;
 }
 
 Fitted EffectFits::begin_round(Fitted base) {
   ++round_;
-  simulate(base);
-  return base;
+  return again(std::move(base));
 }
 
 /// Scored on luck that the search has not seen.
@@ -94,12 +94,11 @@ Fitted EffectFits::finish(Fit&& fit, std::vector<Parameter> free) const {
   if (fit.interrupted) throw FitInterrupted{};
   Fitted out;
   out.model = std::move(fit.model);
-  simulate(out);
   out.free = std::move(free);
   out.z = std::move(fit.z);
   out.spread = std::move(fit.spread);
   out.tried = std::move(fit.evaluations);
-  return out;
+  return again(std::move(out));
 }
 
 Fitted EffectFits::ground(const Model& start) const {

@@ -25,6 +25,8 @@ class EffectFits {
   /// Begins a round: all that is compared in it has luck that no earlier round has seen. @return the model to start
   /// from, simulated anew
   Fitted begin_round(Fitted base);
+  /// A fit simulated on the luck of this round.
+  Fitted again(Fitted fitted) const;
   /// The ground alone, as `calibrate` fits it, its fit gone on with where that is better: what it has missed looks
   /// like an effect.
   Fitted ground(const Model& start) const;
@@ -53,7 +55,6 @@ class EffectFits {
 
  private:
   ObserveOptions observing(std::uint32_t trials) const;
-  void simulate(Fitted& fitted) const;
   FitOptions going_on(const Fitted& fitted) const;
   double cross_validated(const Fitted& fitted, ObserveOptions how) const;
   FitOptions fitting() const;

@@ -4,7 +4,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "talus/base/random.hpp"
 
@@ -129,8 +128,10 @@ Eigen::VectorXd LocalModel::step(const Eigen::MatrixXd& spread) const {
 Eigen::VectorXd LocalModel::optimum(std::span<const double> block_weights, const Eigen::MatrixXd& spread) const {
   const Eigen::VectorXd trust = kTrust * spread.diagonal().cwiseSqrt();
   const Eigen::VectorXd total = rows_ * row_weights(score_, block_weights);
-  const double blocks = std::accumulate(block_weights.begin(), block_weights.end(), 0.0);
-  const double prior = prior_ * static_cast<double>(block_weights.size()) / blocks;  // of so many blocks
+  double blocks = 0.0, counted = 0.0;
+  for (std::size_t b = 0; b < block_weights.size(); ++b)
+    if (problem_.rows[b]) blocks += 1.0, counted += block_weights[b];
+  const double prior = prior_ * blocks / counted;  // of as many blocks as count
   const Eigen::VectorXd slope = from_v_ * model_->gradient(total) + 2.0 * prior * centre_;
   return centre_ + minimum_in_box(slope, curvature_of(total, prior), low_.cwiseMax(-trust), high_.cwiseMin(trust));
 }

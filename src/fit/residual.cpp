@@ -17,7 +17,6 @@ bool blocks_broke(const Campaign& campaign) {
 }
 
 /// What was measured of the fitting rows.
-
 std::vector<Observable> observables_of(const Campaign& campaign) {
   using Kind = Observable::Kind;
   std::vector<Observable> list;

@@ -119,18 +119,12 @@ MatrixXd drawn(const std::vector<MatrixXd>& trials, std::uint64_t seed, int repl
   return scores;
 }
 
-/// How unlikely a data set is by one effect, compared with all others: how many have a p-value as small, and, between
-/// those of the same rank by different effects, the p-value itself.
-using Rarity = std::pair<double, double>;
-
-/// Corrects p-values for the number of places, and the smallest one for the number of effects, by data sets drawn from
-/// the model. Each effect counts alike, however many places it has. What was measured is one data set among the others:
-/// whatever the model makes is as likely to be the most unlikely of them as any.
-void correct(ScoreTest& test, const std::vector<Projection>& projections, const std::vector<std::size_t>& effect_of,
-             const std::vector<MatrixXd>& trials, const ScoreTestOptions& options) {
-  const std::size_t effects = test.effects.size();
+/// The smallest p-value over the places of each effect, in data sets drawn from the model.
+std::vector<std::vector<double>> smallest_drawn(std::size_t effects, const std::vector<Projection>& projections,
+                                                const std::vector<std::size_t>& effect_of,
+                                                const std::vector<MatrixXd>& trials, const ScoreTestOptions& options) {
   const auto n = static_cast<std::size_t>(options.replicates);
-  std::vector<std::vector<double>> smallest(effects, std::vector<double>(n, 1.0));  // by effect and data set
+  std::vector<std::vector<double>> smallest(effects, std::vector<double>(n, 1.0));
   for (std::size_t replicate = 0; replicate < n; ++replicate) {
     const MatrixXd scores = drawn(trials, options.seed, static_cast<int>(replicate));
     for (std::size_t i = 0; i < projections.size(); ++i) {
@@ -138,23 +132,15 @@ void correct(ScoreTest& test, const std::vector<Projection>& projections, const 
       best = std::min(best, projections[i].verdict(scores).p_value);
     }
   }
-  const auto sets = static_cast<double>(n + 1);
-  std::vector<Rarity> rarest(n, {sets, 1.0});  // by data set: by its most unlikely effect
-  Rarity measured{sets, 1.0};
-  for (std::size_t e = 0; e < effects; ++e) {
-    const double own = test.effects[e].best.p_value;
-    std::vector<double> sorted = smallest[e];
-    sorted.push_back(own);
-    std::sort(sorted.begin(), sorted.end());
-    const auto rarity = [&sorted](double p) {
-      return Rarity{std::upper_bound(sorted.begin(), sorted.end(), p) - sorted.begin(), p};
-    };
-    for (std::size_t r = 0; r < n; ++r) rarest[r] = std::min(rarest[r], rarity(smallest[e][r]));
-    measured = std::min(measured, rarity(own));
-    test.effects[e].p_value = rarity(own).first / sets;
-  }
-  const auto as_rare = std::count_if(rarest.begin(), rarest.end(), [&](const Rarity& r) { return r <= measured; });
-  test.p_value = (static_cast<double>(as_rare) + 1.0) / sets;
+  return smallest;
+}
+
+void correct(ScoreTest& test, const std::vector<std::vector<double>>& simulated) {
+  std::vector<double> measured;
+  for (const EffectVerdict& effect : test.effects) measured.push_back(effect.best.p_value);
+  const Corrected p = corrected(simulated, measured);
+  for (std::size_t e = 0; e < test.effects.size(); ++e) test.effects[e].p_value = p.effects[e];
+  test.p_value = p.all;
 }
 
 /// Beyond what a double can say both p-values are zero.
@@ -194,6 +180,31 @@ void add_directions(Directions& directions, const TestedModel& base, std::span<c
 
 }  // namespace
 
+Corrected corrected(std::span<const std::vector<double>> simulated, std::span<const double> measured) {
+  // How many sets have a p-value as small by one effect; between those of the same rank by different effects, the
+  // value.
+  using Rarity = std::pair<double, double>;
+  const std::size_t n = simulated.front().size();
+  const auto sets = static_cast<double>(n + 1);
+  std::vector<Rarity> rarest(n, {sets, 1.0});  // by data set: by its most unlikely effect
+  Rarity own{sets, 1.0};
+  Corrected out;
+  for (std::size_t e = 0; e < simulated.size(); ++e) {
+    std::vector<double> sorted = simulated[e];
+    sorted.push_back(measured[e]);
+    std::sort(sorted.begin(), sorted.end());
+    const auto rarity = [&sorted](double p) {
+      return Rarity{std::upper_bound(sorted.begin(), sorted.end(), p) - sorted.begin(), p};
+    };
+    for (std::size_t set = 0; set < n; ++set) rarest[set] = std::min(rarest[set], rarity(simulated[e][set]));
+    own = std::min(own, rarity(measured[e]));
+    out.effects.push_back(rarity(measured[e]).first / sets);
+  }
+  const auto as_rare = std::count_if(rarest.begin(), rarest.end(), [&](const Rarity& r) { return r <= own; });
+  out.all = (static_cast<double>(as_rare) + 1.0) / sets;
+  return out;
+}
+
 ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::span<const Candidate> candidates,
                      const std::vector<bool>& rows, const ScoreTestOptions& options) {
   const auto observed = [&](const Model& model) {
@@ -228,7 +239,7 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
       rank(verdict, *effect);
     effect_of.push_back(static_cast<std::size_t>(effect - test.effects.begin()));
   }
-  correct(test, projections, effect_of, trials, options);
+  correct(test, smallest_drawn(test.effects.size(), projections, effect_of, trials, options));
   std::sort(test.effects.begin(), test.effects.end(), [](const EffectVerdict& a, const EffectVerdict& b) {
     return a.p_value != b.p_value ? a.p_value < b.p_value : more_significant(a.best, b.best);
   });

@@ -109,12 +109,13 @@ class Tables {
   }
 
   /// Of what was measured: one place far off would widen the spread that all errors are divided by.
-  Eigen::Vector2d place_on_terrain(const CsvTable& table, const Row& row) const {
+  Eigen::Vector2d place_on_map(const CsvTable& table, const Row& row) const {
     const Eigen::Vector2d place = place_of(table, row);
-    if (!campaign_.surface.height(place.x(), place.y()))
+    const Grid& grid = campaign_.surface.grid();
+    if (place.x() < 0.0 || place.y() < 0.0 || place.x() > grid.width() || place.y() > grid.height())
       table.refuse(row, "x",
                    "with y = " + table.text(row, "y") +
-                       " is off the terrain, must be on it: is it mistyped? A block that ran off the DEM has no row");
+                       " is off the DEM, must be on it: is it mistyped? A block that ran off the DEM has no row");
     return place;
   }
 
@@ -128,13 +129,14 @@ class Tables {
     const CsvTable table(files_.stops, {"id", "x", "y", "mass_kg"}, {"id", "x", "y"});
     for (const Row& row : table.rows()) {
       MeasuredBlock& block = block_of_row(table, row);
-      if (block.stop || block.stop_mass) {
+      const bool placed = !table.text(row, "x").empty() || !table.text(row, "y").empty();
+      if ((placed && block.stop) || (!table.text(row, "mass_kg").empty() && block.stop_mass)) {
         warnings_.push_back(files_.stops + ":" + std::to_string(row.line) + ": block '" + block.id +
                             "' has a stop already: the first one counts");
         continue;
       }
-      if (!table.text(row, "x").empty() || !table.text(row, "y").empty()) block.stop = place_on_terrain(table, row);
-      block.stop_mass = table.number(row, "mass_kg", kMass);
+      if (placed) block.stop = place_on_map(table, row);
+      if (const auto mass = table.number(row, "mass_kg", kMass)) block.stop_mass = mass;
     }
   }
 
@@ -168,7 +170,7 @@ class Tables {
     const CsvTable table(files_.samples, {"id", "x", "y", "z", "speed_ms", "angular_velocity_rads"}, {"id", "x", "y"});
     for (const Row& row : table.rows()) {
       MeasuredBlock& block = block_of_row(table, row);
-      const Eigen::Vector2d place = place_on_terrain(table, row);
+      const Eigen::Vector2d place = place_on_map(table, row);
       Sample sample;
       sample.x = place.x();
       sample.y = place.y();

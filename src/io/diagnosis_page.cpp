@@ -155,7 +155,7 @@ std::string sentence(const Round& round) {
   const bool rare = round.p_value <= kRare || (!round.residual.empty() && round.residual.front().corrected <= kRare);
   if (round.effect == "none" && !rare) return "Nothing is left that differs from noise.";
   if (round.effect == "none")
-    return "What is left would be rare as noise, but too little for any effect of the library to be named.";
+    return "What is left would be rare as noise, but no effect of the library is named for it.";
   if (round.effect == "unexplained")
     return "A residual is left that no effect of the library explains better than chance.";
   std::string text = "The model lacks <b>" + round.effect + "</b> (" + escaped(round.where) + ").";
@@ -193,7 +193,8 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
           "spread of the measurements.</p>\n";
   for (const std::string& warning : record.warnings) html += "<p>Warning: " + escaped(warning) + "</p>\n";
   html +=
-      "<h2>Candidates</h2>\n<p>Each at its best place, fitted together with the ground where p is below 0.1, else with "
+      "<h2>Candidates</h2>\n<p>Each at its best place, fitted together with the ground where p is below 0.1 (or "
+      "--level), else with "
       "the ground held. The objective is the error with groups of n rows that count n / (n + 10).</p>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i)
     if (!d.rounds[i].trials.empty())
@@ -203,7 +204,7 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
       "<h2>Residuals</h2>\n<p>Each point is a block; z is where its measurement lies among what the model "
       "simulates for it, as a standard normal number. Grey: 95 % of the points of a right model.</p>\n" +
       plots(campaign, d) + "<h3>Before</h3>\n" + residual_rows(d.rounds.front().residual);
-  if (d.rounds.size() > 1) html += "<h3>After</h3>\n" + residual_rows(d.residual_after);
+  if (d.rounds.size() > 1) html += "<h3>After</h3>\n" + residual_rows(d.rounds.back().residual);
   return html + "<p>" +
          print("talus %s, seed %llu, %.0f s.", std::string(version()).c_str(),
                static_cast<unsigned long long>(record.options.seed), record.seconds) +

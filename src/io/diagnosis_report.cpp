@@ -86,11 +86,12 @@ bool found(const Round& round) {
   return round.effect != "none" && round.effect != "unexplained";
 }
 
-/// That the answer is the right one, in some sense: of an effect the share of the bootstraps in which it is the best;
-/// of `none` how often noise leaves as much; of `unexplained` how often it does not.
+/// Of an effect the share of the bootstraps in which it is the best. No probabilities of being right: of `none` the
+/// p-value of the test, of `unexplained` one less the smallest p-value that says so.
 double probability_of(const Round& round) {
   if (found(round)) return round.trials.front().chosen_share;
-  return round.effect == "none" ? round.p_value : 1.0 - round.p_value;
+  if (round.effect == "none") return round.p_value;
+  return 1.0 - std::min(round.p_value, round.residual.empty() ? 1.0 : round.residual.front().corrected);
 }
 
 }  // namespace
@@ -149,7 +150,7 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
                 {"ci95", {number(e.reduction.interval.low), number(e.reduction.interval.high)}}}}}},
             {"candidates", candidates_of(first, record.candidates.front())},
             {"residual", residual_of(first.residual)},
-            {"residual_after", residual_of(d.residual_after)},
+            {"residual_after", residual_of(d.rounds.back().residual)},
             {"campaign", record.campaign},
             {"seed", record.options.seed},
             {"trials_per_block", {{"search", d.trials.search}, {"test", d.trials.test}, {"compare", d.trials.compare}}},

@@ -20,11 +20,11 @@ class ZoneIndex {
       : request_(request), names_(request.names), seen_(request.names.size(), false) {
     for (std::size_t i = 0; raster && i < request.codes.size(); ++i)
       if (!request.codes[i].empty()) names_[i] = request.codes[i];
-    for (std::size_t i = 0; i < names_.size(); ++i)
+    for (std::size_t i = 0; i < names_.size(); ++i) {
       for (std::size_t k = 0; k < i; ++k)
-        if (names_[i] == names_[k])
-          throw InputError(request.path + ": '" + names_[i] + "' stands for both " + described(k) + " and " +
-                           described(i) + ": give each a code of its own");
+        if (names_[i] == names_[k]) refuse_both(names_[i], described(k), described(i));
+      if (names_[i] == request.default_code) refuse_both(names_[i], "[" + request.table + ".default]", described(i));
+    }
   }
 
   std::uint8_t at(const std::string& zone, const std::string& where) {
@@ -48,6 +48,10 @@ class ZoneIndex {
   }
 
  private:
+  [[noreturn]] void refuse_both(const std::string& code, const std::string& one, const std::string& other) const {
+    throw InputError(request_.path + ": '" + code + "' stands for both " + one + " and " + other +
+                     ": give each a code of its own");
+  }
   std::string described(std::size_t i) const {
     const bool by_code = request_.table != "ground.zones";  // else by name
     return "[" + request_.table + "." + quoted(by_code ? names_[i] : request_.names[i]) + "]";

@@ -176,12 +176,12 @@ class OwnCampaign(Case):
         done = self.run_well("score", self.campaign, "--parameters", self.path("stuck.toml"))
         self.assertRegex(done.stderr, r"warning: speed S1: \d+ of \d+ held-out rows")
 
-    def test_a_place_off_the_terrain_would_widen_every_spread(self):
+    def test_a_place_off_the_map_would_widen_every_spread(self):
         with open(self.path("stops.csv"), encoding="utf-8") as file:
             head, first, *stops = file.read().splitlines()
         block, x, rest = first.split(",", 2)
         self.write("stops.csv", "\n".join([head, f"{block},{float(x) + 5e4},{rest}"] + stops) + "\n")
-        self.fails(2, "stops.csv:2: x = ", "off the terrain", arguments=["score", self.campaign, "--parameters", self.path("truth.toml")])
+        self.fails(2, "stops.csv:2: x = ", "off the DEM", arguments=["score", self.campaign, "--parameters", self.path("truth.toml")])
 
     def test_nothing_to_score(self):
         self.write("stops.csv", "id,x,y\n")

@@ -111,6 +111,7 @@ TEST_F(Zones, OneCodeForTwoZonesIsRefusedAndAZoneIsCalledByItsName) {
     EXPECT_NE(text.find("'2' stands for both [ground.zones.2] and [ground.zones.\"rock face\"]"), std::string::npos)
         << text;
   }
+  EXPECT_THROW(read_zones({file, "", {"rock face"}, {"2"}, "2"}, terrain_), InputError) << "the default's code";
   const ZoneLayer layer = read_zones({file, "", {"2", "rock face"}, {"", "3"}}, terrain_);
   EXPECT_TRUE(said(layer.warnings, "no zone '3' on the map: [ground.zones.\"rock face\"] is not used"));
 }

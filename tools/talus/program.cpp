@@ -122,9 +122,10 @@ int exit_code_of(const std::function<int()>& program) {
 }
 
 void require_seed(std::uint64_t seed) {
-  const talus::Bounds& bounds = talus::scenario_fields().front();  // the seed
-  if (const auto fault = talus::fault_of(bounds, static_cast<double>(seed)))
-    throw talus::InputError("flag --seed = " + std::to_string(seed) + ": " + *fault);
+  const auto fields = talus::scenario_fields();
+  const auto bounds = std::find_if(fields.begin(), fields.end(), [](const auto& field) { return field.key == "seed"; });
+  if (const auto fault = talus::fault_of(*bounds, static_cast<double>(seed)))  // what was negative is huge
+    throw talus::InputError("flag --seed = " + std::to_string(static_cast<std::int64_t>(seed)) + ": " + *fault);
 }
 
 void catch_signals() {

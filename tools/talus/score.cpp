@@ -55,9 +55,9 @@ int score_model(const Options& options) {
   if (options.rows != "fit")
     scores.push_back(talus::io::scored("holdout", campaign, runs, talus::holdout_rows(campaign)));
   if (!dump && std::all_of(scores.begin(), scores.end(), [](const auto& s) { return s.score.groups.empty(); }))
-    throw talus::InputError(options.campaign + ": nothing to score: no quantity was measured of " +
+    throw talus::InputError(options.campaign + ": nothing to score: no quantity has values of " +
                             std::to_string(talus::kFewestRows) +
-                            " of the asked blocks: measure more, or see by --dump what the model does" +
+                            " of the asked blocks that differ: measure more, or see by --dump what the model does" +
                             (options.rows == "all" ? "" : ", or ask for --rows all"));
   if (!options.quiet)
     for (const talus::io::ScoredRows& s : scores)

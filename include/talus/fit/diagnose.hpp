@@ -22,7 +22,7 @@ struct Trial {
   std::vector<Parameter> parameters;  ///< its own
   std::size_t tested = 0;             ///< the first of them: zero of these is none of the effect
   std::vector<double> values;         ///< of them, fitted
-  bool joint = true;                  ///< false: the ground was held, because the test found nothing (p above 0.1)
+  bool joint = true;                  ///< false: the ground was held, because the test found nothing
   double p_value = 1.0;               ///< of the score test, corrected for its places
   double statistic = 0.0;             ///< of the score test
   double gain = 0.0;         ///< by which it lowers the objective of the fitting rows: groups weighed, no prior
@@ -61,11 +61,10 @@ struct TrialsPerBlock {
 TrialsPerBlock shared_out(TrialsPerBlock trials, std::size_t blocks);
 
 struct Diagnosis {
-  Fitted base;                ///< recalibrated, without an effect
+  Fitted base;                ///< recalibrated, without an effect; simulated on the luck of `with_effects`
   std::vector<Round> rounds;  ///< the last one found "none" or "unexplained"
   Fitted with_effects;        ///< the last model; the base where nothing was found
-  std::vector<ResidualRow> residual_after;
-  TrialsPerBlock trials;  ///< that were simulated
+  TrialsPerBlock trials;      ///< that were simulated
 };
 
 struct DiagnoseOptions {

@@ -26,6 +26,20 @@ struct ScoreTest {
   double p_value = 1.0;                ///< of the most significant one, corrected for all effects and places
 };
 
+/// P-values among data sets that the model itself has made.
+struct Corrected {
+  std::vector<double>
+      effects;       ///< of each effect: the share of all sets, the measured one included, as small as its own
+  double all = 1.0;  ///< of the most unlikely effect
+};
+
+/// What was measured is one data set among the others: the model is as likely to have made it the most unlikely of them
+/// as any. Each effect counts alike, however many places its p-value is the smallest of.
+///
+/// @param simulated  by effect and data set: the smallest p-value over its places
+/// @param measured   the same of what was measured, by effect
+Corrected corrected(std::span<const std::vector<double>> simulated, std::span<const double> measured);
+
 struct ScoreTestOptions {
   std::uint32_t trials = 200;
   std::uint64_t seed = 1;

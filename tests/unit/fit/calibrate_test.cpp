@@ -94,6 +94,32 @@ TEST(LocalModel, StepsToTheMinimumOfABowl) {
   EXPECT_NEAR(model.step(narrow).x(), 0.72, 1e-9);
 }
 
+/// Of the blocks that count alone are slope, curvature and the weight of the prior: for one block of four the minimum
+/// of k / 2 (z - m)^2 + w / 1 z^2.
+TEST(LocalModel, AFoldHasItsOwnCurvatureAndPrior) {
+  const Campaign c = campaign_on_slope(6);
+  const Model start = model_of_slope();
+  const std::vector<Parameter> free{two_parameters(c, start).front()};
+  const std::vector<bool> rows = fitting_rows(c);  // all but 2 and 5
+  const FitProblem problem{c, start, free, rows};
+  FitOptions options;
+  options.prior_weight = 0.028;
+  const Eigen::MatrixXd spread = Eigen::MatrixXd::Constant(1, 1, 0.25);
+  Fit fit;
+  fit.z = Eigen::VectorXd::Constant(1, 0.5);
+  fit.score.groups = {{"stop", 1.0, 4}};
+  for (const std::uint32_t block : {0U, 1U, 3U, 4U}) fit.score.rows.push_back({0, block, 1.0});
+  for (const Eigen::VectorXd& z : LocalModel::design(problem, 1, fit.z, spread, 40, 0)) {
+    Eigen::VectorXd values(4);
+    for (Eigen::Index row = 0; row < 4; ++row) values[row] = (row == 0 ? 0.1 : 0.3) * std::pow(z[0] - 0.8, 2.0);
+    fit.evaluations.push_back({z, values, options.trials, 0.0});
+  }
+  const LocalModel model(problem, options, fit, spread);
+  const std::vector<double> first{1.0, 0.0, 1.0, 0.0, 0.0, 1.0}, all(6, 1.0);  // held-out blocks count for nothing
+  EXPECT_NEAR(model.optimum(first, spread)[0], 0.8 * 0.1 / (0.1 + 0.028), 1e-3);
+  EXPECT_NEAR(model.optimum(all, spread)[0], 0.8 * 0.25 / (0.25 + 0.028 / 4.0), 1e-3);
+}
+
 /// Two groups whose rows want to be at 1 and at 0, thirty of them and ten: the optimum is where the weights of the
 /// groups put it, for the weights that a fit gives them and for equal ones.
 TEST(LocalModel, GroupsPullByTheirWeights) {

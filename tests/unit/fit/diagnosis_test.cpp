@@ -168,6 +168,23 @@ TEST(Candidates, ANetAboveEveryJumpLetsNothingPassAndABiasMultiplies) {
     }
 }
 
+/// Three drawn sets, two effects; ranks by hand. The measured 0.02 is the second smallest of four by the first effect
+/// and 0.9 the largest by the second. Set 2 is the rarest by the first, set 0 by the second; set 1 is no rarer than 3
+/// of 4.
+TEST(ScoreTest, WhatWasMeasuredIsOneDataSetAmongTheOthers) {
+  const std::vector<std::vector<double>> simulated{{0.5, 0.3, 0.01}, {0.1, 0.4, 0.2}};
+  const Corrected p = corrected(simulated, std::vector<double>{0.02, 0.9});
+  EXPECT_EQ(p.effects, (std::vector<double>{0.5, 1.0}));
+  EXPECT_EQ(p.all, 0.75);  // itself, set 2 and set 0
+  // The rarest of all by one effect, set 1 by the other: the smaller p-value decides between them.
+  EXPECT_EQ(corrected(simulated, std::vector<double>{0.001, 0.9}).all, 0.25);
+  EXPECT_EQ(corrected(simulated, std::vector<double>{0.001, 0.9}).effects[0], 0.25);
+  EXPECT_EQ(
+      corrected(std::vector<std::vector<double>>{{0.5, 0.3, 0.01}, {0.1, 0.0001, 0.2}}, std::vector<double>{0.001, 0.9})
+          .all,
+      0.5);
+}
+
 TEST(ScoreTest, FindsAnEffectThatMadeTheData) {
   Campaign c = slope_campaign(60);
   Model model = model_of_preset(c, "upper-talus-3d");

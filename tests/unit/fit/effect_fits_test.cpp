@@ -56,10 +56,11 @@ TEST(EffectFits, WhatIsNoBetterIsNotConfirmed) {
   DiagnoseOptions options;
   options.keys = {"theta_scale"};
   options.trials = {20, 20, 50};
-  const EffectFits fits(campaign, options, rows, [](double) { return true; });
+  EffectFits fits(campaign, options, rows, [](double) { return true; });
   const Fitted good = fits.ground(truth);
   const Fitted bad = too_rough(campaign, rows, good);
   ASSERT_GT(bad.objective.total, good.objective.total);
+  EXPECT_EQ(fits.again(good).objective.total, good.objective.total);
   EXPECT_GT(fits.cross_validated(bad), fits.cross_validated(good));
   Trial trial;
   trial.fitted = good;
@@ -71,6 +72,10 @@ TEST(EffectFits, WhatIsNoBetterIsNotConfirmed) {
   trial.place_price = 0.0;
   trial.fitted = bad;
   EXPECT_FALSE(fits.confirmed(good, trial, {0.0, 0.0}));
+  const Fitted anew = fits.begin_round(good), later = fits.begin_round(good);
+  EXPECT_EQ(anew.z, good.z);
+  EXPECT_NE(anew.objective.total, good.objective.total) << "luck of its own";
+  EXPECT_NE(later.objective.total, anew.objective.total);
 }
 
 }  // namespace
