@@ -85,13 +85,13 @@ void correct(std::vector<ResidualRow>& table) {
 
 const std::vector<Property>& properties() {
   static const std::vector<Property> list{
-      {"mass", [](const MeasuredBlock& b) { return b.mass; }},
-      {"L1/L2", [](const MeasuredBlock& b) { return b.axes.x() / b.axes.y(); }},
-      {"L1/L3", [](const MeasuredBlock& b) { return b.axes.x() / b.axes.z(); }},
-      {"day", [](const MeasuredBlock& b) { return b.day == 0 ? kNotGiven : static_cast<double>(b.day); }},
-      {"release height", [](const MeasuredBlock& b) { return b.release_height; }},
-      {"east", [](const MeasuredBlock& b) { return b.x; }},
-      {"north", [](const MeasuredBlock& b) { return b.y; }}};
+      {"mass", "kg", [](const MeasuredBlock& b) { return b.mass; }},
+      {"L1/L2", "", [](const MeasuredBlock& b) { return b.axes.x() / b.axes.y(); }},
+      {"L1/L3", "", [](const MeasuredBlock& b) { return b.axes.x() / b.axes.z(); }},
+      {"day", "", [](const MeasuredBlock& b) { return b.day == 0 ? kNotGiven : static_cast<double>(b.day); }},
+      {"release height", "m", [](const MeasuredBlock& b) { return b.release_height; }},
+      {"east", "m", [](const MeasuredBlock& b) { return b.x; }},
+      {"north", "m", [](const MeasuredBlock& b) { return b.y; }}};
   return list;
 }
 

@@ -54,6 +54,13 @@ double property_of(const MeasuredBlock& b, const std::string& name, std::size_t 
   return static_cast<double>(number + 1);
 }
 
+/// A property with its unit.
+std::string labelled(const std::string& name) {
+  for (const Property& property : properties())
+    if (name == property.name && *property.unit != '\0') return name + " [" + property.unit + "]";
+  return name;
+}
+
 struct Points {
   std::vector<double> x, z;
 };
@@ -93,7 +100,7 @@ std::string plot(const Points& points, const std::string& title, const std::stri
                  y_of(points.z[i]));
   for (const double z : {-2.0, 0.0, 2.0})
     svg += print("<text x='%d' y='%.1f' text-anchor='end'>%g</text>", kMargin - 4, y_of(z) + 4.0, z);
-  svg += print("<text x='%d' y='%d'>%.3g</text><text x='%d' y='%d' text-anchor='end'>%.3g</text>", kMargin,
+  svg += print("<text x='%d' y='%d'>%.4g</text><text x='%d' y='%d' text-anchor='end'>%.4g</text>", kMargin,
                kHeight - 18, low, kWidth - kMargin, kHeight - 18, high);
   svg += "<text x='" + std::to_string(kWidth / 2) + "' y='14' text-anchor='middle' font-weight='bold'>" +
          escaped(title) + "</text>";
@@ -108,8 +115,8 @@ std::string plots(const Campaign& campaign, const Diagnosis& d) {
   const std::vector<ResidualRow>& rows = d.rounds.front().residual;
   for (std::size_t i = 0; i < std::min(kPlots, rows.size()); ++i) {
     const bool by_block = rows[i].covariate == "mean" || rows[i].covariate == "spread";
-    const std::string across = by_block ? "number of the block" : rows[i].covariate;
-    const std::string title = rows[i].observable + " against " + across;
+    const std::string title = rows[i].observable + " against " + (by_block ? "block" : rows[i].covariate);
+    const std::string across = by_block ? "number of the block" : labelled(rows[i].covariate);
     html += "<p>" + plot(points_of(campaign, before, rows[i]), title + ", before", across);
     if (d.rounds.size() > 1) html += plot(points_of(campaign, after, rows[i]), title + ", after", across);
     html += "</p>\n";

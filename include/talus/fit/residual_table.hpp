@@ -19,6 +19,7 @@ struct ResidualRow {
 /// What a residual may go with.
 struct Property {
   const char* name;                                ///< as in ResidualRow::covariate
+  const char* unit;                                ///< empty: none
   std::function<double(const MeasuredBlock&)> of;  ///< NaN: not known of this block
 };
 const std::vector<Property>& properties();
