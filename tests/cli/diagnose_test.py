@@ -59,7 +59,7 @@ class Diagnosis(Loop):
 @unittest.skipUnless(os.path.isdir(CAMPAIGNS), "no campaigns at TALUS_DATA")
 class OfOthers(Loop):
     def test_nothing_hidden(self):
-        """With the default trials: with few, a bias of one instrument is named here, by chance (docs, "Results")."""
+        """With the default trials, which a false alarm must be judged by."""
         self.assertEqual(self.diagnose(f"{CAMPAIGNS}/alder/campaign.toml")["effect"], "none")
 
     def test_measured_blocks_of_a_quarry(self):

@@ -94,8 +94,7 @@ void add_diagnose(CLI::App& app, Action& action) {
       ->check(CLI::Range(0.0001, 0.5));
   command->footer(
       "Where fewer than 72 blocks are fitted, each gets more trajectories, so that there are as many in all; at most "
-      "four "
-      "times as many.\n\n"
+      "four times as many.\n\n"
       "Example:\n  talus diagnose campaign.toml -o diagnosis\n\nThen open diagnosis/report.html.");
   command->callback([&action, options] { action = [options] { return diagnose(*options); }; });
 }

@@ -28,9 +28,8 @@ struct ScoreTest {
 
 /// P-values among data sets that the model itself has made.
 struct Corrected {
-  std::vector<double>
-      effects;       ///< of each effect: the share of all sets, the measured one included, as small as its own
-  double all = 1.0;  ///< of the most unlikely effect
+  std::vector<double> effects;  ///< by effect: the share of all sets, the measured one among them, that are as small
+  double all = 1.0;             ///< of the most unlikely effect
 };
 
 /// What was measured is one data set among the others: the model is as likely to have made it the most unlikely of them

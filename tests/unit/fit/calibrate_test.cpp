@@ -94,8 +94,8 @@ TEST(LocalModel, StepsToTheMinimumOfABowl) {
   EXPECT_NEAR(model.step(narrow).x(), 0.72, 1e-9);
 }
 
-/// Of the blocks that count alone are slope, curvature and the weight of the prior: for one block of four the minimum
-/// of k / 2 (z - m)^2 + w / 1 z^2.
+/// Of the blocks that count alone are slope, curvature and the weight of the prior: of n blocks the minimum of
+/// k (z - 0.8)^2 + w / n z^2, with the mean k of those n.
 TEST(LocalModel, AFoldHasItsOwnCurvatureAndPrior) {
   const Campaign c = campaign_on_slope(6);
   const Model start = model_of_slope();
