@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "dataset.hpp"
-#include "talus/base/scratch.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/output_folder.hpp"
 
@@ -99,7 +98,6 @@ bool fill(GDALDataset& file, const Map& map, const MapTarget& target) {
   std::vector<double> row(map.bands.size() * columns);
   std::vector<T> stripe(map.bands.size() * band_size);
   for (int top = 0; top < target.rows; top += kStripe) {
-    scratch::keep_below_limit();
     const int count = std::min(kStripe, target.rows - top);
     for (int i = 0; i < count; ++i) {
       map.fill_row(target.rows - 1 - (top + i), row);

@@ -1,9 +1,12 @@
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
 namespace talus::io {
+
+class FolderLock;
 
 /// A folder of results that appears under its name complete, or not at all.
 ///
@@ -12,7 +15,8 @@ namespace talus::io {
 /// be kept for a run that goes on.
 class OutputFolder {
  public:
-  /// What to do with the hidden folder of an interrupted run of this name.
+  /// What to do with the hidden folder of an interrupted run of this name. While a process has one, no other may
+  /// begin a run of this name; what was killed before it kept anything is removed.
   enum class Unfinished {
     Ignore,  ///< this command leaves none
     Refuse,  ///< InputError with the way out; where `overwrite` is given, it is removed
@@ -31,8 +35,6 @@ class OutputFolder {
   /// Where in it a run keeps its work while it goes on: what is looked for by `Unfinished`.
   std::filesystem::path work() const { return temporary_ / kWork; }
   static constexpr const char* kWork = "unfinished";
-  /// Makes `work`, and marks it as in use until this process ends, however that comes.
-  void hold_work();
   /// The hidden folder stays where there is no `commit`.
   void keep() { kept_ = true; }
   /// Absolute; what the user will find.
@@ -48,10 +50,12 @@ class OutputFolder {
   void commit_work();
 
  private:
+  /// Makes `work`, and marks it as in use until this process ends, however that comes.
+  void hold_work();
   void commit(const std::filesystem::path& folder);
   std::filesystem::path final_, temporary_;
   bool overwrite_, committed_ = false, kept_ = false;
-  int lock_ = -1;
+  std::unique_ptr<FolderLock> lock_;  // of `work`
 };
 
 /// From now on what grows with the map lies in a file beside the results as far as it does not fit into so many bytes.
