@@ -109,16 +109,9 @@ std::vector<Left> left_of(const fs::path& folder) {
   return found;
 }
 
-/// Waits until a file, or the entries of a folder, are on the disk: some file systems tell only now that it is full.
-void synchronise(const fs::path& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return;
-  const int result = fsync(file);
-  const int cause = errno;
-  close(file);
-  if (result != 0 && cause != EINVAL && cause != ENOTSUP)
-    throw std::runtime_error(path.filename().string() +
-                             ": cannot be written: " + std::system_category().message(cause));
+/// Whether it is a map that a run had finished when it was killed: `write_map` gives it this name last.
+bool is_finished_map(const fs::path& file) {
+  return file.extension() == ".tif" && !file.stem().has_extension();
 }
 
 }  // namespace
@@ -144,7 +137,7 @@ OutputFolder::OutputFolder(const fs::path& path, bool overwrite, Unfinished unfi
     *lock_ = std::move(left.back().lock);
     kept_ = true;  // what there is must not be lost; nor are others of that name removed
     for (const auto& entry : fs::directory_iterator(temporary_))
-      if (entry.path().filename() != kWork) fs::remove_all(entry.path(), ignored);
+      if (entry.path().filename() != kWork && !is_finished_map(entry.path())) fs::remove_all(entry.path(), ignored);
     left.clear();
   } else if (unfinished != Unfinished::Ignore) {
     hold_work();
@@ -226,6 +219,17 @@ void limit_memory(const fs::path& results, std::size_t bytes) {
     throw InputError(parent.string() + ": there is no such folder for the results to go into; create it first");
   scratch::set_limit(parent.string(), bytes);
   GDALSetCacheMax64(static_cast<GIntBig>(bytes / 16));
+}
+
+void synchronise(const fs::path& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return;
+  const int result = fsync(file);
+  const int cause = errno;
+  close(file);
+  if (result != 0 && cause != EINVAL && cause != ENOTSUP)
+    throw std::runtime_error(path.filename().string() +
+                             ": cannot be written: " + std::system_category().message(cause));
 }
 
 void write_text(const fs::path& file, std::string_view text) {

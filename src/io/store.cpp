@@ -276,8 +276,9 @@ void Store::remove_unnamed() const {
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder_)) {
     const std::string name = entry.path().filename().string();
-    const bool ours = name.starts_with("tally-") || name.starts_with("reach-") || name.starts_with("rest-") || name.starts_with("rows-") ||
-                      name.starts_with(".part.json.talus-") || name.starts_with(".scenario.toml.talus-");
+    const bool ours = name.starts_with("tally-") || name.starts_with("reach-") || name.starts_with("rest-") ||
+                      name.starts_with("rows-") || name.starts_with(".part.json.talus-") ||
+                      name.starts_with(".scenario.toml.talus-");
     if (ours && std::ranges::count(named, name) == 0) fs::remove(entry.path(), ignored);
   }
 }

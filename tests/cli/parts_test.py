@@ -101,6 +101,24 @@ class Parts(RunCase):
         self.assert_same("whole", "out")
         self.assertEqual(self.unfinished("out"), [])
 
+    def test_killed_while_it_writes(self):
+        """The maps that were finished are not written again, and all is as if nothing had happened."""
+        self.run_scenario("whole", "--trajectories", "400")
+        for attempt in range(5):
+            process = self.start(out := f"out{attempt}", "--checkpoint", "0")
+            finished = []
+            while process.poll() is None and not finished:
+                finished = [f"{self.path(n)}/{f}" for n in self.unfinished(out) for f in os.listdir(self.path(n))
+                            if f.endswith(".tif") and f.count(".") == 1]
+            process.kill()
+            process.communicate()
+            if self.unfinished(out):
+                break
+        inode = os.stat(finished[0]).st_ino
+        self.run_scenario(out, "--trajectories", "400", "--resume")
+        self.assertEqual(os.stat(self.path(f"{out}/{os.path.basename(finished[0])}")).st_ino, inode)
+        self.assert_same("whole", out)
+
     def test_a_killed_part_in_rounds(self):
         """Killed in the second part of a run in rounds, gone on with, merged: the bits of one run."""
         self.write("s.toml", RUN.replace("trajectories = 40\n", "trajectories = 150\n"))

@@ -112,8 +112,8 @@ LoadedScenario load(const RunOptions& options, talus::Team& team) {
   return std::move(*loaded);
 }
 
-/// Whether --resume finds the run or the part complete, as a scheduler may ask for it again. Throws InputError where what
-/// is there is a part of another plan.
+/// Whether --resume finds the run or the part complete, as a scheduler may ask for it again. Throws InputError where
+/// what is there is a part of another plan.
 bool is_done(const RunOptions& options, const LoadedScenario& loaded, const talus::Part& part, talus::Team& team) {
   bool done = false;
   together(team, [&] {
@@ -191,7 +191,8 @@ int run(const RunOptions& options, talus::Team& team) {
     for (const std::string& warning : loaded.warnings) say("warning", warning);
   const std::size_t sources = loaded.scenario.sources.size();
   if (!options.quiet && team.leads() && part.first(sources) == part.end(sources))
-    say("warning", "--part " + options.part.value_or("1/1") + " is empty: the plan has " + count_text(sources) + " source cells");
+    say("warning",
+        "--part " + options.part.value_or("1/1") + " is empty: the plan has " + count_text(sources) + " source cells");
 
   talus::io::RunRecord record;
   record.command = command_line();

@@ -49,7 +49,7 @@ struct LoadedScenario {
   std::vector<Setting> settings;
   std::vector<InputFile> inputs;
   std::vector<Reprojection> reprojections;
-  std::vector<std::string> warnings;  ///< one line each
+  std::vector<std::string> warnings;         ///< one line each
   std::shared_ptr<const ScenarioSpec> spec;  ///< what the file and the flags said
 };
 

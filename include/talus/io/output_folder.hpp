@@ -20,7 +20,7 @@ class OutputFolder {
   enum class Unfinished {
     Ignore,  ///< this command leaves none
     Refuse,  ///< InputError with the way out; where `overwrite` is given, it is removed
-    Resume   ///< it becomes this one's, where there is one
+    Resume   ///< it becomes this one's, where there is one, with the maps that it had finished
   };
 
   /// @param overwrite  an earlier result of talus (it holds a run.json, part.json, calibration.json or diagnosis.json)
@@ -61,6 +61,10 @@ class OutputFolder {
 /// From now on what grows with the map lies in a file beside the results as far as it does not fit into so many bytes.
 /// Before anything is read. Throws InputError where there is no folder for the results to go into.
 void limit_memory(const std::filesystem::path& results, std::size_t bytes);
+
+/// Waits until a file, or the entries of a folder, are on the disk: some file systems tell only now that it is full.
+/// Throws std::runtime_error.
+void synchronise(const std::filesystem::path& path);
 
 /// Writes a text file. Throws std::runtime_error, one line with the file and the cause; no half file is left.
 void write_text(const std::filesystem::path& file, std::string_view text);
