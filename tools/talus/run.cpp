@@ -169,6 +169,13 @@ void with_hint(Sitting& sitting, const std::function<void()>& what) {
   }
 }
 
+void warn_of_input(const RunOptions& options, const LoadedScenario& loaded, const talus::Part& part) {
+  for (const std::string& warning : loaded.warnings) say("warning", warning);
+  const std::size_t sources = loaded.scenario.sources.size();
+  if (options.part && part.first(sources) == part.end(sources))
+    say("warning", "--part " + *options.part + " is empty: the plan has " + count_text(sources) + " source cells");
+}
+
 int run(const RunOptions& options, talus::Team& team) {
   Stopwatch watch;
   catch_signals();
@@ -187,12 +194,7 @@ int run(const RunOptions& options, talus::Team& team) {
     return kDone;
   }
   const std::unique_ptr<OutputFolder> folder = folder_of(options, loaded, team);
-  if (!options.quiet && team.leads())
-    for (const std::string& warning : loaded.warnings) say("warning", warning);
-  const std::size_t sources = loaded.scenario.sources.size();
-  if (!options.quiet && team.leads() && part.first(sources) == part.end(sources))
-    say("warning",
-        "--part " + options.part.value_or("1/1") + " is empty: the plan has " + count_text(sources) + " source cells");
+  if (!options.quiet && team.leads()) warn_of_input(options, loaded, part);
 
   talus::io::RunRecord record;
   record.command = command_line();
