@@ -7,6 +7,7 @@
 
 #include "dataset.hpp"
 #include "hazard_stream.hpp"
+#include "scenario_spec.hpp"
 #include "sha256.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/scratch.hpp"
@@ -91,20 +92,23 @@ HazardHeader get_header(HazardReader& in) {
   }
 }
 
+/// Machines may have the same files in other folders: what is in them counts, and what they are called.
+void strip_folder(NamedFile& file) {
+  const std::filesystem::path path(file.path);
+  if (path.is_absolute()) file.path = path.filename().string();
+}
+
 }  // namespace
 
 std::string plan_checksum(const LoadedScenario& loaded) {
+  ScenarioSpec spec = *loaded.spec;
+  for (NamedFile* file : {&spec.dem, &spec.sources, &spec.ground, &spec.screens, &spec.barriers}) strip_folder(*file);
+  for (auto& [name, effect] : spec.effects) strip_folder(effect.file);
   Sha256 sum;
-  sum.add(loaded.complete_toml);
+  sum.add(toml_of(spec));
   for (const InputFile& input : loaded.inputs)
     if (input.role != "scenario" && input.role != "include") sum.add(input.role + input.sha256 + "\n");
   return sum.digits();
-}
-
-void refuse_changed_inputs(const LoadedScenario& before, const LoadedScenario& after) {
-  for (std::size_t i = 0; i < before.inputs.size() && i < after.inputs.size(); ++i)
-    if (before.inputs[i].sha256 != after.inputs[i].sha256)
-      throw InputError(after.inputs[i].path + ": has changed while its blocks were traced; run again");
 }
 
 void write_hazard(const std::filesystem::path& file, const LoadedScenario& loaded, const Tally& tally) {

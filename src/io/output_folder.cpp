@@ -2,17 +2,18 @@
 
 #include <fcntl.h>
 #include <gdal.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <optional>
 #include <stdexcept>
 #include <system_error>
 #include <vector>
 
+#include "folder_lock.hpp"
 #include "sha256.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/scratch.hpp"
@@ -22,8 +23,6 @@ namespace talus::io {
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr const char* kLock = ".lock";
 
 /// Absolute, through symbolic links, without a slash at its end.
 fs::path full_name(const fs::path& path) {
@@ -79,72 +78,87 @@ fs::path make_temporary(const fs::path& folder) {
   throw std::runtime_error(parent.string() + ": too many temporary folders of talus; remove " + stem + "*");
 }
 
-/// The hidden folders of interrupted runs, the latest last. Throws InputError where a process still writes one.
-std::vector<fs::path> unfinished_of(const fs::path& folder) {
+/// A hidden folder that no process has any more.
+struct Left {
+  fs::path path;
+  FolderLock lock;
+  std::optional<fs::file_time_type> kept;  // when work was kept in it; nothing: never
+};
+
+/// The hidden folders that runs have left, the one that kept its work last at the end. All are locked by now. Throws
+/// InputError where a process still writes one.
+std::vector<Left> left_of(const fs::path& folder) {
   const std::string stem = "." + folder.filename().string() + ".talus-";
-  std::vector<std::pair<fs::file_time_type, fs::path>> found;
-  if (!fs::is_directory(folder.parent_path())) return {};
+  std::vector<Left> found;
+  if (!fs::is_directory(folder.parent_path())) return found;
   for (const auto& entry : fs::directory_iterator(folder.parent_path())) {
     const std::string name = entry.path().filename().string();
-    const fs::path manifest = entry.path() / OutputFolder::kWork / "part.json";
-    if (!name.starts_with(stem) || !fs::exists(manifest)) continue;
-    const int lock = open((entry.path() / OutputFolder::kWork / kLock).c_str(), O_RDWR | O_CLOEXEC);
-    const bool in_use = lock >= 0 && flock(lock, LOCK_EX | LOCK_NB) != 0;
-    if (lock >= 0) close(lock);
-    if (in_use)
+    if (!name.starts_with(stem)) continue;
+    const fs::path work = entry.path() / OutputFolder::kWork, manifest = work / "part.json";
+    Left left{entry.path(), {}, {}};
+    const FolderLock::Found state = FolderLock::take(work, fs::exists(manifest), left.lock);
+    const bool taken = !fs::exists(entry.path());  // a moment ago, by a process that goes on with it or is done
+    if (state == FolderLock::Found::InUse || taken)
       throw InputError(folder.string() + ": another process is writing it (into " + name +
                        "); wait until it has ended, or give another name");
-    found.emplace_back(fs::last_write_time(manifest), entry.path());
+    if (state == FolderLock::Found::None) continue;  // of a command that keeps nothing
+    if (fs::exists(manifest)) left.kept = fs::last_write_time(manifest);
+    found.push_back(std::move(left));
   }
-  std::ranges::sort(found);
-  std::vector<fs::path> paths;
-  for (auto& [time, path] : found) paths.push_back(std::move(path));
-  return paths;
+  std::ranges::sort(found, {}, &Left::kept);
+  return found;
 }
 
-/// Waits until a file, or the entries of a folder, are on the disk: some file systems tell only now that it is full.
-void synchronise(const fs::path& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return;
-  const int result = fsync(file);
-  const int cause = errno;
-  close(file);
-  if (result != 0 && cause != EINVAL && cause != ENOTSUP)
-    throw std::runtime_error(path.filename().string() +
-                             ": cannot be written: " + std::system_category().message(cause));
+/// Whether it is a map that a run had finished when it was killed: `write_map` gives it this name last.
+bool is_finished_map(const fs::path& file) {
+  return file.extension() == ".tif" && !file.stem().has_extension();
 }
 
 }  // namespace
 
 OutputFolder::OutputFolder(const fs::path& path, bool overwrite, Unfinished unfinished)
-    : final_(full_name(path)), overwrite_(overwrite) {
-  std::vector<fs::path> left;
+    : final_(full_name(path)), overwrite_(overwrite), lock_(std::make_unique<FolderLock>()) {
+  std::vector<Left> left;
   try {
     refuse_taken_name(final_, overwrite);
-    if (unfinished != Unfinished::Ignore) left = unfinished_of(final_);
+    if (unfinished != Unfinished::Ignore) left = left_of(final_);
   } catch (const fs::filesystem_error& error) {
     throw InputError(final_.string() + ": cannot be looked at (" + error.code().message() + "); give another folder");
   }
-  if (unfinished == Unfinished::Refuse && !left.empty() && !overwrite)
-    throw InputError(final_.string() + ": an interrupted run of this name is kept in " + left.back().string() +
+  const bool kept = !left.empty() && left.back().kept;
+  if (unfinished == Unfinished::Refuse && kept && !overwrite)
+    throw InputError(final_.string() + ": an interrupted run of this name is kept in " + left.back().path.string() +
                      "; give --resume to go on with it, or --overwrite to begin anew");
   temporary_ = make_temporary(final_);
   std::error_code ignored;
-  if (unfinished == Unfinished::Resume && !left.empty()) {
+  if (unfinished == Unfinished::Resume && kept) {
     fs::remove(temporary_, ignored);
-    fs::rename(left.back(), temporary_);
+    fs::rename(left.back().path, temporary_);
+    *lock_ = std::move(left.back().lock);
     kept_ = true;  // what there is must not be lost; nor are others of that name removed
     for (const auto& entry : fs::directory_iterator(temporary_))
-      if (entry.path().filename() != kWork) fs::remove_all(entry.path(), ignored);
+      if (entry.path().filename() != kWork && !is_finished_map(entry.path())) fs::remove_all(entry.path(), ignored);
     left.clear();
+  } else if (unfinished != Unfinished::Ignore) {
+    hold_work();
   }
-  for (const fs::path& folder : left) fs::remove_all(folder, ignored);
+  for (const Left& folder : left) fs::remove_all(folder.path, ignored);
 }
 
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
   if (!committed_ && !kept_) fs::remove_all(temporary_, ignored);
-  if (lock_ >= 0) close(lock_);
+}
+
+void OutputFolder::hold_work() {
+  try {
+    fs::create_directories(work());
+    *lock_ = FolderLock::made_in(work());
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(temporary_, ignored);
+    throw;
+  }
 }
 
 void OutputFolder::protect(const fs::path& file) const {
@@ -158,13 +172,6 @@ void OutputFolder::protect(const fs::path& file) const {
   }
 }
 
-void OutputFolder::hold_work() {
-  fs::create_directories(work());
-  lock_ = open((work() / kLock).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-  if (lock_ < 0 || flock(lock_, LOCK_EX | LOCK_NB) != 0)
-    throw std::runtime_error(work().string() + ": cannot be locked: " + std::system_category().message(errno));
-}
-
 void OutputFolder::commit() {
   commit(temporary_);
   std::error_code ignored;
@@ -173,7 +180,7 @@ void OutputFolder::commit() {
 
 void OutputFolder::commit_work() {
   std::error_code ignored;
-  fs::remove(work() / kLock, ignored);
+  fs::remove(work() / FolderLock::kName, ignored);
   commit(work());
   fs::remove_all(temporary_, ignored);
 }
@@ -189,14 +196,18 @@ void OutputFolder::commit(const fs::path& folder) {
   synchronise(folder);
   std::error_code error;
   const fs::path aside = temporary_.string() + "-old";
-  const bool replace = fs::exists(final_) && !fs::is_empty(final_);
+  const bool replace = overwrite_ && fs::exists(final_) && !fs::is_empty(final_);
   if (replace) fs::rename(final_, aside, error);
   if (!error) {
-    fs::rename(folder, final_, error);
+    fs::rename(folder, final_, error);  // fails where somebody has filled it by now
     std::error_code ignored;
     if (error && replace) fs::rename(aside, final_, ignored);
   }
-  if (error) throw std::runtime_error(final_.string() + ": the results cannot be given this name: " + error.message());
+  if (error) {
+    kept_ = true;
+    throw std::runtime_error(final_.string() + ": the results cannot be given this name (" + error.message() +
+                             "); they are kept in " + temporary_.string());
+  }
   committed_ = true;
   synchronise(final_.parent_path());
   if (replace) fs::remove_all(aside, error);
@@ -208,6 +219,17 @@ void limit_memory(const fs::path& results, std::size_t bytes) {
     throw InputError(parent.string() + ": there is no such folder for the results to go into; create it first");
   scratch::set_limit(parent.string(), bytes);
   GDALSetCacheMax64(static_cast<GIntBig>(bytes / 16));
+}
+
+void synchronise(const fs::path& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return;
+  const int result = fsync(file);
+  const int cause = errno;
+  close(file);
+  if (result != 0 && cause != EINVAL && cause != ENOTSUP)
+    throw std::runtime_error(path.filename().string() +
+                             ": cannot be written: " + std::system_category().message(cause));
 }
 
 void write_text(const fs::path& file, std::string_view text) {

@@ -117,6 +117,21 @@ bool too_many_limits(const Totals& totals) {
   return limits > kAllowedLimitShare * static_cast<double>(totals.released);
 }
 
+bool is_result_of(const std::filesystem::path& folder, const std::string& plan, const Rounds& asked) {
+  std::ifstream stream(folder / "run.json", std::ios::binary);
+  try {
+    const Json json = Json::parse(stream);
+    if (json.at("plan") != plan || json.contains("rounds") != asked.several()) return false;
+    if (!asked.several()) return true;
+    const Json& rounds = json.at("rounds");
+    if (!asked.until_error) return !rounds.contains("asked") && rounds.at("done") == asked.count;
+    return rounds.at("asked") == *asked.until_error && rounds.at("above_probability") == asked.above &&
+           rounds.at("most_rounds") == asked.most;
+  } catch (const Json::exception&) {
+    return false;  // no such file, or another one
+  }
+}
+
 std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
   const Totals& totals = record.totals;
@@ -124,6 +139,7 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   json["program"] = "talus";
   json["version"] = version();
   json["command"] = record.command;
+  if (!record.plan.empty()) json["plan"] = record.plan;
   json["status"] = too_many_limits(totals) ? "too many trajectories ended at a limit" : "complete";
   json["seed"] = scenario.seed;
   json["deformation_coefficient"] = scenario.impact.deformation_coefficient;

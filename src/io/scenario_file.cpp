@@ -153,9 +153,18 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
 
   out.complete_toml = toml_of(spec);
   out.settings = settings_of(spec);
+  out.spec = std::make_shared<ScenarioSpec>(spec);
   out.settings.insert(out.settings.end(), sources.attributes.begin(), sources.attributes.end());
   record_inputs(spec, out);
   return out;
+}
+
+void set_rounds(LoadedScenario& loaded, std::uint32_t rounds) {
+  ScenarioSpec spec = *loaded.spec;
+  loaded.scenario.trajectories *= rounds;
+  spec.values.trajectories = loaded.scenario.trajectories;
+  loaded.complete_toml = toml_of(spec);
+  loaded.spec = std::make_shared<ScenarioSpec>(std::move(spec));
 }
 
 }  // namespace talus::io

@@ -21,11 +21,31 @@ namespace fs = std::filesystem;
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr int kFormat = 2;
+constexpr int kFormat = 3;
 
 /// "tally-3.bin"; of a further process of a team "tally-3-1.bin".
 std::string numbered(const std::string& what, std::uint32_t number, int rank = 0) {
   return what + "-" + std::to_string(number) + (rank > 0 ? "-" + std::to_string(rank) : "") + ".bin";
+}
+
+Json json_of(const Rounds& asked) {
+  Json json{{"count", asked.count}, {"above", asked.above}, {"most", asked.most}};
+  if (asked.until_error) json["until_error"] = *asked.until_error;
+  return json;
+}
+
+Rounds rounds_of(const Json& json) {
+  Rounds asked{json.at("count"), {}, json.at("above"), json.at("most")};
+  if (json.contains("until_error")) asked.until_error = json.at("until_error").get<double>();
+  return asked;
+}
+
+/// Pairs of name and checksum, in a manifest.
+template <class File>
+Json json_of(const std::vector<File>& files) {
+  Json list = Json::array();
+  for (const File& file : files) list.push_back({{"file", file.name}, {"sha256", file.sha256}});
+  return list;
 }
 
 }  // namespace
@@ -38,10 +58,10 @@ struct Store::Rows {
 Store::Store(fs::path folder, const LoadedScenario& loaded, Team& team)
     : folder_(std::move(folder)), plan_(plan_checksum(loaded)), loaded_(&loaded), team_(&team) {}
 
-Store::Store(const fs::path& folder, const LoadedScenario& loaded, const Part& part, bool further_rounds, Team& team)
+Store::Store(const fs::path& folder, const LoadedScenario& loaded, const Part& part, const Rounds& asked, Team& team)
     : Store(folder, loaded, team) {
   part_ = part;
-  further_rounds_ = further_rounds;
+  asked_ = asked;
   settings_ = loaded.settings;
   if (team.leads()) replace_text(folder_ / "scenario.toml", loaded.complete_toml);
 }
@@ -106,13 +126,12 @@ void Store::end_round(std::uint32_t round) {
 
 void Store::keep(const Simulation& simulation, const Tally& tally) {
   const std::uint32_t next = generation_ + 1;
-  const std::string before = numbered("rest", generation_), name = numbered("tally", next, team_->rank());
-  const std::string sha256 = write_tally(folder_ / name, tally);
-  ByteWriter totals, reaches;
+  const std::string before = numbered("rest", generation_);
+  const std::string name = numbered("tally", next, team_->rank()), reach = numbered("reach", next, team_->rank());
+  const std::vector<KeptFile> tallies = gathered({name, write_tally(folder_ / name, tally)});
+  const std::vector<KeptFile> reaches = gathered({reach, write_reaches(folder_ / reach, simulation)});
+  ByteWriter totals;
   put_totals(totals_of_all(simulation.totals()), totals);
-  simulation.save_reaches(reaches);
-  const std::vector<std::string> names = team_->gather(name), sums = team_->gather(sha256);
-  const std::vector<std::string> all_reaches = team_->gather(reaches.bytes());
   close_rows(simulation.position().round);
   generation_ = next;
   rounds_ = simulation.position().round + (simulation.round_done() ? 1U : 0U);
@@ -121,16 +140,24 @@ void Store::keep(const Simulation& simulation, const Tally& tally) {
   if (team_->leads()) {
     KeptFileWriter rest(folder_ / numbered("rest", next));
     rest.put(totals.bytes());
-    for (const std::string& bytes : all_reaches) rest.put(bytes);
     rest_sha256_ = rest.finish();
-    const std::vector<KeptFile> old = std::exchange(tallies_, {});
-    for (std::size_t i = 0; i < names.size(); ++i) tallies_.push_back({names[i], sums[i]});
+    const std::vector<KeptFile> old_tallies = std::exchange(tallies_, tallies);
+    const std::vector<KeptFile> old_reaches = std::exchange(reaches_, reaches);
     write_manifest();
     std::error_code ignored;
     fs::remove(folder_ / before, ignored);
-    for (const KeptFile& file : old) fs::remove(folder_ / file.name, ignored);
+    for (const auto& old : {old_tallies, old_reaches})
+      for (const KeptFile& file : old) fs::remove(folder_ / file.name, ignored);
   }
   team_->tell({});  // no process goes on before what it has traced is kept
+}
+
+/// At the leader.
+std::vector<Store::KeptFile> Store::gathered(const KeptFile& mine) const {
+  const std::vector<std::string> names = team_->gather(mine.name), sums = team_->gather(mine.sha256);
+  std::vector<KeptFile> files;
+  for (std::size_t i = 0; i < names.size(); ++i) files.push_back({names[i], sums[i]});
+  return files;
 }
 
 Totals Store::totals_of_all(const Totals& mine) const {
@@ -161,7 +188,8 @@ void Store::restore(Simulation& simulation, Tally& tally) const {
   ByteReader rest(bytes);
   Totals totals = get_totals(loaded_->scenario.barriers, rest), none;
   none.barriers = BarrierTally(loaded_->scenario.barriers);
-  simulation.restore({rounds_, units_done_}, team_->leads() ? totals : none, rest);
+  simulation.restore({rounds_, units_done_}, team_->leads() ? totals : none);
+  for (const KeptFile& file : reaches_) read_reaches(folder_ / file.name, file.sha256, simulation);
 }
 
 void Store::replay(std::uint32_t round, const Sinks& sinks) const {
@@ -183,11 +211,10 @@ std::string Store::checked(const std::string& name, const std::string& sha256) c
 }
 
 void Store::write_manifest() const {
-  Json rows = Json::array(), tallies = Json::array();
+  Json rows = Json::array();
   for (const RowsFile& file : rows_files_)
     rows.push_back(
         {{"round", file.round}, {"generation", file.generation}, {"file", file.name}, {"sha256", file.sha256}});
-  for (const KeptFile& file : tallies_) tallies.push_back({{"file", file.name}, {"sha256", file.sha256}});
   Json settings = Json::array();
   for (const Setting& s : settings_) settings.push_back({s.key, s.value, s.unit, s.source});
   const Json json{{"program", "talus"},
@@ -196,11 +223,12 @@ void Store::write_manifest() const {
                   {"plan", plan_},
                   {"part", part_.number},
                   {"of", part_.of},
-                  {"further_rounds", further_rounds_},
+                  {"rounds", json_of(asked_)},
                   {"rounds_done", rounds_},
                   {"units_done", units_done_},
                   {"generation", generation_},
-                  {"tallies", tallies},
+                  {"tallies", json_of(tallies_)},
+                  {"reaches", json_of(reaches_)},
                   {"rest_sha256", rest_sha256_},
                   {"rows", rows},
                   {"settings", settings}};
@@ -219,7 +247,7 @@ void Store::read_manifest() {
       throw InputError("was written by Talus " + json.at("version").get<std::string>());
     plan = json.at("plan");
     part_ = {json.at("part"), json.at("of")};
-    further_rounds_ = json.at("further_rounds");
+    asked_ = rounds_of(json.at("rounds"));
     rounds_ = json.at("rounds_done");
     units_done_ = json.at("units_done");
     generation_ = json.at("generation");
@@ -228,6 +256,7 @@ void Store::read_manifest() {
     for (const Json& rows : json.at("rows"))
       rows_files_.push_back({rows.at("round"), rows.at("generation"), rows.at("file"), rows.at("sha256")});
     for (const Json& tally : json.at("tallies")) tallies_.push_back({tally.at("file"), tally.at("sha256")});
+    for (const Json& reach : json.at("reaches")) reaches_.push_back({reach.at("file"), reach.at("sha256")});
     round_ = rounds_;
   } catch (const std::exception& error) {
     throw InputError(file.string() + ": cannot be understood (" + error.what() +
@@ -241,13 +270,15 @@ void Store::read_manifest() {
 
 void Store::remove_unnamed() const {
   std::vector<std::string> named{numbered("rest", generation_)};
-  for (const KeptFile& file : tallies_) named.push_back(file.name);
+  for (const auto& files : {tallies_, reaches_})
+    for (const KeptFile& file : files) named.push_back(file.name);
   for (const RowsFile& file : rows_files_) named.push_back(file.name);
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder_)) {
     const std::string name = entry.path().filename().string();
-    const bool ours = name.starts_with("tally-") || name.starts_with("rest-") || name.starts_with("rows-") ||
-                      name.starts_with(".part.json.talus-") || name.starts_with(".scenario.toml.talus-");
+    const bool ours = name.starts_with("tally-") || name.starts_with("reach-") || name.starts_with("rest-") ||
+                      name.starts_with("rows-") || name.starts_with(".part.json.talus-") ||
+                      name.starts_with(".scenario.toml.talus-");
     if (ours && std::ranges::count(named, name) == 0) fs::remove(entry.path(), ignored);
   }
 }

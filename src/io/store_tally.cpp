@@ -65,4 +65,27 @@ void read_tally(const fs::path& file, const std::string& sha256, Tally& tally) {
   in.finish();
 }
 
+std::string write_reaches(const fs::path& file, const Simulation& simulation) {
+  KeptFileWriter out(file);
+  simulation.save_reaches([&](std::string_view piece) {
+    out.put_value(std::uint64_t{piece.size()});
+    out.put(piece);
+  });
+  return out.finish();
+}
+
+void read_reaches(const fs::path& file, const std::string& sha256, Simulation& simulation) {
+  KeptFileReader in(file, sha256);
+  for (std::uint64_t length = 0; in.get_value(length);) {
+    const std::string bytes = in.get(length);
+    ByteReader reader(bytes);
+    try {
+      simulation.restore_reach(reader);
+    } catch (const std::out_of_range&) {
+      in.fail();
+    }
+  }
+  in.finish();
+}
+
 }  // namespace talus::io

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <string>
 
-#include "talus/simulate/simulate.hpp"
+#include "talus/simulate/simulation.hpp"
 #include "talus/simulate/tally.hpp"
 
 namespace talus::io {
@@ -16,5 +16,9 @@ Totals get_totals(const Barriers& barriers, ByteReader& in);
 std::string write_tally(const std::filesystem::path& file, const Tally& tally);
 /// Adds it to `tally`. Throws InputError where the file is damaged.
 void read_tally(const std::filesystem::path& file, const std::string& sha256, Tally& tally);
+
+/// Which cells the source cells have reached, one after the other: length, bytes. As the tally.
+std::string write_reaches(const std::filesystem::path& file, const Simulation& simulation);
+void read_reaches(const std::filesystem::path& file, const std::string& sha256, Simulation& simulation);
 
 }  // namespace talus::io

@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "dataset.hpp"
-#include "talus/base/scratch.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/output_folder.hpp"
 
@@ -26,17 +25,16 @@ int block_size(const MapTarget& target) {
   return size > 256 ? 512 : size > 128 ? 256 : 128;  // a small map is not filled up to a large block
 }
 
-/// Removes a file at the end of the scope, unless it is kept.
+/// Removes a file at the end of the scope.
 class Removed {
  public:
   explicit Removed(fs::path path) : path_(std::move(path)) {}
   ~Removed() {
     std::error_code ignored;
-    if (!path_.empty()) fs::remove(path_, ignored);
+    fs::remove(path_, ignored);
   }
   Removed(const Removed&) = delete;
   Removed& operator=(const Removed&) = delete;
-  void keep() { path_.clear(); }
 
  private:
   fs::path path_;
@@ -99,7 +97,6 @@ bool fill(GDALDataset& file, const Map& map, const MapTarget& target) {
   std::vector<double> row(map.bands.size() * columns);
   std::vector<T> stripe(map.bands.size() * band_size);
   for (int top = 0; top < target.rows; top += kStripe) {
-    scratch::keep_below_limit();
     const int count = std::min(kStripe, target.rows - top);
     for (int i = 0; i < count; ++i) {
       map.fill_row(target.rows - 1 - (top + i), row);
@@ -234,22 +231,23 @@ bool write_map(const Map& map, const MapTarget& target) {
   start_gdal();
   const fs::path file = target.folder / (map.name + ".tif");
   const fs::path draft_path = target.folder / (map.name + ".draft.tif");
-  const Removed draft(draft_path);
-  Removed finished(file);
+  const fs::path part_path = target.folder / (map.name + ".part.tif");
+  const Removed draft(draft_path), part(part_path);
   GdalMessages messages;
   const auto fail = [&](const std::string& what) {
     throw std::runtime_error(map.name + ".tif: " + what + ": " + cause_of_failure(target.folder, messages.take()));
   };
   bool whole = false;
   try {
-    whole = map.kind == Map::Kind::Count ? write_as<std::uint32_t>(map, target, draft_path, file)
-                                         : write_as<float>(map, target, draft_path, file);
+    whole = map.kind == Map::Kind::Count ? write_as<std::uint32_t>(map, target, draft_path, part_path)
+                                         : write_as<float>(map, target, draft_path, part_path);
   } catch (const std::runtime_error& error) {
     fail(error.what());
   }
   if (!whole) return false;
   if (messages.failed()) fail("cannot be written");
-  finished.keep();
+  synchronise(part_path);  // what has its name is whole, whenever the program is killed
+  fs::rename(part_path, file);
   return true;
 }
 

@@ -12,9 +12,9 @@ Accuracy accuracy_of(const Tally& tally, std::uint64_t released, double above) {
   Accuracy worst;
   std::unordered_map<std::uint32_t, double> known;  // many cells have the same count
   const Grid& grid = tally.grid();
-  for (int row = 0; row < grid.rows; ++row) {
-    scratch::keep_below_limit();
+  for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
+      if (column % kRegionSide == 0) scratch::keep_below_limit();
       const CellRecord* cell = tally.find(column, row);
       if (cell == nullptr) continue;
       const double probability = static_cast<double>(cell->passages) / static_cast<double>(released);
@@ -27,7 +27,6 @@ Accuracy accuracy_of(const Tally& tally, std::uint64_t released, double above) {
       worst.half_width = std::max(worst.half_width, it->second);
       worst.cells += 1;
     }
-  }
   return worst;
 }
 

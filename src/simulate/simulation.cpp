@@ -210,6 +210,13 @@ class Simulation::Advance {
   bool stopped_ = false, interrupted_ = false;
 };
 
+Reaches::~Reaches() {
+  for (auto& [place, entry] : open_) {
+    scratch::keep_below_limit();  // what lies in the file is read once more
+    entry.reach.reset();
+  }
+}
+
 std::shared_ptr<SourceReach> Reaches::of(std::uint32_t place) {
   if (units_ == 1 && !keep_) return nullptr;
   const std::lock_guard guard(mutex_);
@@ -220,25 +227,26 @@ std::shared_ptr<SourceReach> Reaches::of(std::uint32_t place) {
   return reach;
 }
 
-void Reaches::save(ByteWriter& out) const {
-  out.put(static_cast<std::uint64_t>(open_.size()));
+void Reaches::save(const std::function<void(std::string_view)>& put) const {
+  ByteWriter out;
   for (const auto& [place, entry] : open_) {
+    scratch::keep_below_limit();
+    out.clear();
     out.put(place);
     out.put(entry.asked);
     entry.reach->save(out);
+    put(out.bytes());
   }
 }
 
 void Reaches::restore(ByteReader& in, const std::function<bool(std::uint32_t)>& wanted) {
-  const auto count = in.get<std::uint64_t>();
-  for (std::uint64_t i = 0; i < count; ++i) {
-    const auto place = in.get<std::uint32_t>();
-    Entry entry;
-    entry.asked = in.get<std::uint32_t>();
-    entry.reach = std::make_shared<SourceReach>();
-    entry.reach->restore(in);
-    if (wanted(place)) open_[place] = std::move(entry);
-  }
+  scratch::keep_below_limit();
+  const auto place = in.get<std::uint32_t>();
+  if (!wanted(place)) return;
+  Entry& entry = open_[place];
+  entry.asked = in.get<std::uint32_t>();
+  entry.reach = std::make_shared<SourceReach>();
+  entry.reach->restore(in);
 }
 
 Simulation::Simulation(const Scenario& scenario, const Part& part, bool further_rounds, Tally& tally,
@@ -270,21 +278,21 @@ void Simulation::advance(int threads) {
   } while (!work.finish());
 }
 
-void Simulation::save_reaches(ByteWriter& out) const {
-  if (team_.size() == 1 || further_rounds_)
-    reaches_.save(out);
-  else
-    Reaches(1, false).save(out);  // chunks hold whole source cells, and all that were begun are done
+void Simulation::save_reaches(const std::function<void(std::string_view)>& put) const {
+  // Else chunks hold whole source cells, and all that were begun are done.
+  if (team_.size() == 1 || further_rounds_) reaches_.save(put);
 }
 
-void Simulation::restore(const Position& position, const Totals& totals, ByteReader& reaches) {
+void Simulation::restore(const Position& position, const Totals& totals) {
   position_ = position;
   totals_ = totals;
-  while (!reaches.empty())
-    reaches_.restore(reaches, [this](std::uint32_t place) {
-      const std::uint64_t unit = std::uint64_t{place - first_place_} * units_per_source_;
-      return !further_rounds_ || Units::owns(team_, unit, chunk_);
-    });
+}
+
+void Simulation::restore_reach(ByteReader& piece) {
+  reaches_.restore(piece, [this](std::uint32_t place) {
+    const std::uint64_t unit = std::uint64_t{place - first_place_} * units_per_source_;
+    return !further_rounds_ || Units::owns(team_, unit, chunk_);
+  });
 }
 
 }  // namespace talus

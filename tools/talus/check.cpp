@@ -179,7 +179,7 @@ void print_estimate(const Scenario& scenario, unsigned threads) {
   line("memory", "about " + rounded_text(so_far + 1e-6 * bytes_in_memory(scenario, size)) +
                      " MB; talus run --memory sets a limit");
   line("disk", "about " + rounded_text(1e-6 * bytes_of_results(scenario, size)) + " MB of results, up to " +
-                   rounded_text(1e-6 * bytes_at_work(scenario, size)) + " MB more while a long run goes on");
+                   rounded_text(1e-6 * bytes_at_work(scenario, size, processors)) + " MB more while it goes on");
   if (sample.left * 100 > sample.traced)
     line("warning", number(100.0 * static_cast<double>(sample.left) / traced) + " % of the sample left the DEM");
   if (static_cast<double>(sample.limits) > talus::io::kAllowedLimitShare * traced)

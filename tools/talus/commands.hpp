@@ -42,6 +42,9 @@ bool interrupted();
 /// The words that the program was called with.
 const std::vector<std::string>& command_line();
 
+/// For options that are numbers with a fraction: from low to high, and a number. (CLI::Range lets "nan" through.)
+CLI::Validator between(double low, double high);
+
 /// Throws InputError where a seed is none. (A negative number would else be a huge one.)
 void require_seed(std::uint64_t seed);
 

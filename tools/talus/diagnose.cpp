@@ -91,7 +91,7 @@ void add_diagnose(CLI::App& app, Action& action) {
       ->check(CLI::Range(20, 10000));
   command->add_option("--most-effects", how.most_effects, "that are added, one a round (3)")->check(CLI::Range(1, 9));
   command->add_option("--level", how.first_level, "of significance, over all effects and places (0.05)")
-      ->check(CLI::Range(0.0001, 0.5));
+      ->check(between(0.0001, 0.5));
   command->footer(
       "Where fewer than 72 blocks are fitted, each gets more trajectories, so that there are as many in all; at most "
       "four times as many.\n\n"

@@ -20,6 +20,9 @@ constexpr double kStop = 172.0;            // a row of stops.gpkg [byte]
 constexpr double kPathPoint = 36.0;        // of trajectories.gpkg [byte]
 constexpr double kCrossing = 150.0;        // a row of screens.csv [byte]
 constexpr double kKeptCell = 320.0;        // of a touched cell in the kept tally [byte]
+constexpr double kDraftBand = 16.0 / 3.0;  // of a cell, with overviews [byte]
+constexpr double kDraftBands = 5.0;        // of the largest maps
+constexpr double kLargeMap = 16e6;         // cells; from there on drafts are compressed, and empty cells take nothing
 constexpr double kEmptyCell = 2.1e-8;      // of the grid, per band, to write [s]
 constexpr double kTouchedCell = 1.8e-7;    // the same of a touched cell
 constexpr double kWriteTrajectory = 5e-6;  // a row of stops.gpkg [s]
@@ -49,10 +52,12 @@ double bytes_of_results(const Scenario& scenario, const RunSize& size) {
          paths * (500.0 + kPathPoint * size.metres_per_path / grid.cell_x);
 }
 
-double bytes_at_work(const Scenario& scenario, const RunSize& size) {
+double bytes_at_work(const Scenario& scenario, const RunSize& size, unsigned processors) {
   const double kept = kKeptCell + 4.0 * thresholds(scenario) + (size.with_hazard ? kHazardCell : 0.0);
-  return 2.0 * size.touched_cells * kept + size.trajectories * sizeof(talus::StopRow) +
-         size.crossings * sizeof(talus::Crossing);
+  const double cells = size.grid_cells > kLargeMap ? size.touched_cells : size.grid_cells;
+  const double drafts = kDraftBand * kDraftBands * std::min(processors, 4U) * cells;
+  return size.touched_cells * kept + std::max(size.touched_cells * kept, drafts) +
+         size.trajectories * sizeof(talus::StopRow) + size.crossings * sizeof(talus::Crossing);
 }
 
 double seconds_to_write(const Scenario& scenario, const RunSize& size, unsigned processors) {

@@ -14,7 +14,8 @@ struct RunSize {
 
 double bytes_in_memory(const talus::Scenario& scenario, const RunSize& size);  ///< beside the terrain and zones
 double bytes_of_results(const talus::Scenario& scenario, const RunSize& size);
-double bytes_at_work(const talus::Scenario& scenario, const RunSize& size);  ///< kept for --resume, beside the results
+/// Kept for --resume, and drafts of the maps: beside the results, while it goes on.
+double bytes_at_work(const talus::Scenario& scenario, const RunSize& size, unsigned processors);
 double seconds_to_write(const talus::Scenario& scenario, const RunSize& size, unsigned processors);
 
 /// Two digits of a number: "1 200".

@@ -24,14 +24,13 @@ struct Options {
   bool overwrite = false, quiet = false;
 };
 
-LoadedScenario scenario_of(const std::string& part, std::optional<std::uint32_t> trajectories) {
+LoadedScenario scenario_of(const std::string& part) {
   const fs::path file = fs::path(part) / "scenario.toml";
   if (!fs::exists(file) || !fs::exists(fs::path(part) / talus::io::kStoreManifest))
     throw talus::InputError(part + ": is no part of a run (it has no " + talus::io::kStoreManifest +
                             "); give the folders that talus run --part I/N has written");
   talus::io::RunFlags flags;
   flags.scenario = file.string();
-  flags.trajectories = trajectories;
   return talus::io::load_scenario(flags);
 }
 
@@ -72,17 +71,18 @@ int merge(const Options& options) {
   Stopwatch watch;
   catch_signals();
   if (!options.memory.empty()) talus::io::limit_memory(options.out, bytes_of(options.memory));
-  const LoadedScenario loaded = scenario_of(options.parts.front(), std::nullopt);
+  LoadedScenario loaded = scenario_of(options.parts.front());
   const std::vector<Store> stores = opened(options.parts, loaded);
   talus::io::OutputFolder folder(options.out, options.overwrite);
   for (const std::string& part : options.parts) folder.protect(fs::path(part) / talus::io::kStoreManifest);
   for (const talus::io::InputFile& input : loaded.inputs) folder.protect(input.path);
   const talus::Scenario& scenario = loaded.scenario;
   talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
-  if (auto weights = talus::AnnualWeights::of(scenario, stores.front().further_rounds()))
+  if (auto weights = talus::AnnualWeights::of(scenario, stores.front().asked().several()))
     tally.keep_hazard(std::move(*weights));
   talus::io::RunRecord record;
   record.command = command_line();
+  record.plan = talus::io::plan_checksum(loaded);
   record.warnings = loaded.warnings;
   record.threads = options.threads > 0 ? options.threads : omp_get_num_procs();
   record.parts = static_cast<std::uint32_t>(stores.size());
@@ -99,15 +99,14 @@ int merge(const Options& options) {
     record.rounds.reached = talus::accuracy_of(tally, record.totals.released, record.rounds.asked.above);
   }
   tally.set_rounds(rounds);
-  LoadedScenario whole = scenario_of(options.parts.front(), scenario.trajectories * rounds);
-  talus::io::refuse_changed_inputs(loaded, whole);
-  whole.settings = stores.front().settings(rounds);
+  loaded.settings = stores.front().settings(rounds);
+  talus::io::set_rounds(loaded, rounds);
   record.wall.read = watch.lap().wall;
   record.cpu.simulate = record.totals.cpu_seconds - record.totals.sink_cpu_seconds;
-  write_results(whole, stores, tally, folder.temporary(), watch, progress, record);
+  write_results(loaded, stores, tally, folder.temporary(), watch, progress, record);
   if (interrupted()) stop_interrupted();
   folder.commit();
-  if (!options.quiet) summarise(record, whole, 0, folder.final_path().string());
+  if (!options.quiet) summarise(record, loaded, 0, folder.final_path().string());
   return judge_limits(record.totals, folder.final_path());
 }
 

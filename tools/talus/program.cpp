@@ -121,6 +121,16 @@ int exit_code_of(const std::function<int()>& program) {
   return kFailed;
 }
 
+CLI::Validator between(double low, double high) {
+  const std::string range = "[" + talus::text_of(low) + " - " + talus::text_of(high) + "]";
+  return {[low, high, range](std::string& text) -> std::string {
+            double value = 0.0;
+            const bool good = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
+            return good ? "" : "Value " + text + " not in range " + range;
+          },
+          "FLOAT in " + range};
+}
+
 void require_seed(std::uint64_t seed) {
   const auto fields = talus::scenario_fields();
   const auto bounds = std::find_if(fields.begin(), fields.end(), [](const auto& field) { return field.key == "seed"; });

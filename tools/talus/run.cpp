@@ -14,6 +14,7 @@
 #include "sitting.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/shared_memory.hpp"
+#include "talus/base/text.hpp"
 #include "talus/io/hazard_file.hpp"
 #include "talus/io/output_folder.hpp"
 #include "talus/simulate/team_tally.hpp"
@@ -26,9 +27,10 @@ using talus::io::LoadedScenario;
 using talus::io::OutputFolder;
 
 /// "I/N".
-talus::Part part_of(const std::string& text) {
+talus::Part part_of(const std::optional<std::string>& given) {
   talus::Part part;
-  if (text.empty()) return part;
+  if (!given) return part;
+  const std::string& text = *given;
   char end = '\0';
   if (std::sscanf(text.c_str(), "%9u/%9u%c", &part.number, &part.of, &end) != 2 || part.number < 1 ||
       part.number > part.of)
@@ -36,23 +38,19 @@ talus::Part part_of(const std::string& text) {
   return part;
 }
 
-void check(const RunOptions& options, const talus::Part& part) {
-  if (options.rounds.until_error && !part.whole())
-    throw talus::InputError(
-        "--until-error with --part: one part cannot know the error of all; give every part the same --rounds, and "
-        "talus "
-        "merge says what was reached");
+/// What the memory must hold whatever the limit, measured: the program and what each thread has in work.
+void check_memory(const RunOptions& options, int threads) {
+  const double least = 140.0 + 30.0 * threads;  // [MB]
+  if (options.memory.empty() || static_cast<double>(bytes_of(options.memory)) >= 1e6 * least) return;
+  throw talus::InputError("--memory " + options.memory + " with " + std::to_string(threads) + " threads: must be " +
+                          talus::text_of(least) + "M at least; give fewer --threads or more --memory");
 }
 
-/// The scenario with the trajectories of all rounds, so that OUT/scenario.toml says what was traced.
-LoadedScenario with_rounds(const talus::io::RunFlags& flags, const talus::io::Store& store,
-                           const LoadedScenario& before) {
-  talus::io::RunFlags all = flags;
-  all.trajectories = before.scenario.trajectories * store.rounds();
-  LoadedScenario loaded = talus::io::load_scenario(all);
-  talus::io::refuse_changed_inputs(before, loaded);
-  loaded.settings = store.settings(store.rounds());
-  return loaded;
+void check(const RunOptions& options) {
+  if (options.rounds.until_error && options.part)
+    throw talus::InputError(
+        "--until-error with --part: one part cannot know the error of all; give every part the same --rounds, and "
+        "talus merge says what was reached");
 }
 
 /// Blocks are numbered with 32 bits.
@@ -65,21 +63,22 @@ void check_number(const talus::Rounds& rounds, const talus::Scenario& scenario) 
 }
 
 /// Writes the results of a whole run and gives them their name; the leader alone. Returns the exit code.
-int deliver(const RunOptions& options, const LoadedScenario& loaded, Sitting& sitting, OutputFolder& folder,
-            Stopwatch& watch, Progress& progress, talus::io::RunRecord& record) {
+///
+/// @param loaded  becomes the scenario with the trajectories of all rounds: OUT/scenario.toml says what was traced
+int deliver(const RunOptions& options, LoadedScenario& loaded, Sitting& sitting, OutputFolder& folder, Stopwatch& watch,
+            Progress& progress, talus::io::RunRecord& record) {
   const std::uint32_t rounds = sitting.rounds_done();
   sitting.tally().set_rounds(rounds);
-  const std::optional<LoadedScenario> all =
-      rounds > 1 ? std::optional(with_rounds(options.flags, sitting.store(), loaded)) : std::nullopt;
-  const LoadedScenario& whole = all ? *all : loaded;
+  loaded.settings = sitting.store().settings(rounds);
+  talus::io::set_rounds(loaded, rounds);
   try {
-    write_results(whole, sitting.stores(), sitting.tally(), folder.temporary(), watch, progress, record);
+    write_results(loaded, sitting.stores(), sitting.tally(), folder.temporary(), watch, progress, record);
   } catch (const Interrupted&) {
     sitting.interrupt_writing();
   }
   if (interrupted()) sitting.interrupt_writing();
   folder.commit();
-  if (!options.quiet) summarise(record, whole, loaded.warnings.size(), folder.final_path().string());
+  if (!options.quiet) summarise(record, loaded, loaded.warnings.size(), folder.final_path().string());
   return judge_limits(record.totals, folder.final_path());
 }
 
@@ -113,17 +112,21 @@ LoadedScenario load(const RunOptions& options, talus::Team& team) {
   return std::move(*loaded);
 }
 
-/// Whether --resume finds the part complete, as a scheduler may ask for it again. Throws InputError where what is there
-/// is of another plan.
+/// Whether --resume finds the run or the part complete, as a scheduler may ask for it again. Throws InputError where
+/// what is there is a part of another plan.
 bool is_done(const RunOptions& options, const LoadedScenario& loaded, const talus::Part& part, talus::Team& team) {
   bool done = false;
   together(team, [&] {
-    if (!team.leads() || !options.resume || options.overwrite || part.whole() ||
-        !fs::exists(fs::path(options.out) / talus::io::kStoreManifest))
-      return;
-    const auto store = talus::io::Store::opened(options.out, loaded, false);
-    done = store.part().number == part.number && store.part().of == part.of && store.between_rounds() &&
-           store.rounds() == options.rounds.count;
+    if (!team.leads() || !options.resume || options.overwrite) return;
+    if (!options.part) {
+      done = talus::io::is_result_of(options.out, talus::io::plan_checksum(loaded), options.rounds);
+      std::error_code ignored;  // a run that was killed at its very end may have left what it kept
+      if (done) fs::remove_all(fs::path(options.out) / OutputFolder::kWork, ignored);
+    } else if (fs::exists(fs::path(options.out) / talus::io::kStoreManifest)) {
+      const auto store = talus::io::Store::opened(options.out, loaded, false);
+      done = store.part().number == part.number && store.part().of == part.of && store.between_rounds() &&
+             store.rounds() == options.rounds.count;
+    }
   });
   return team.largest(done ? 1 : 0) > 0;
 }
@@ -146,36 +149,57 @@ int deliver_part(const RunOptions& options, OutputFolder& folder, const talus::T
   folder.commit_work();
   progress.finish();
   if (!options.quiet)
-    say("", "part " + options.part + ": " + count_text(totals.released) + " trajectories; results are in " +
+    say("", "part " + *options.part + ": " + count_text(totals.released) + " trajectories; results are in " +
                 folder.final_path().string() + "; talus merge joins the parts");
   return 0;
+}
+
+/// Does it. Where it fails (a full disk), says how to go on with what was kept.
+void with_hint(Sitting& sitting, const std::function<void()>& what) {
+  try {
+    what();
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const talus::InputError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    if (!sitting.is_kept()) throw;
+    throw std::runtime_error(std::string(error.what()) +
+                             "; what was traced is kept as far as it was, go on with: " + command_to_resume());
+  }
+}
+
+void warn_of_input(const RunOptions& options, const LoadedScenario& loaded, const talus::Part& part) {
+  for (const std::string& warning : loaded.warnings) say("warning", warning);
+  const std::size_t sources = loaded.scenario.sources.size();
+  if (options.part && part.first(sources) == part.end(sources))
+    say("warning", "--part " + *options.part + " is empty: the plan has " + count_text(sources) + " source cells");
 }
 
 int run(const RunOptions& options, talus::Team& team) {
   Stopwatch watch;
   catch_signals();
   talus::Part part;
+  const int threads = options.threads > 0 ? options.threads : team.size() > 1 ? 1 : omp_get_num_procs();
   together(team, [&] {
     part = part_of(options.part);
-    check(options, part);
+    check(options);
+    check_memory(options, threads);
   });
-  const LoadedScenario loaded = load(options, team);
+  LoadedScenario loaded = load(options, team);
   if (team.largest(interrupted() ? 1 : 0) > 0) stop_interrupted();
   if (is_done(options, loaded, part, team)) {
-    if (!options.quiet && team.leads()) say("", "part " + options.part + " is done: " + options.out);
+    if (!options.quiet && team.leads())
+      say("", (options.part ? "part " + *options.part : "the run") + " is done: " + options.out);
     return kDone;
   }
   const std::unique_ptr<OutputFolder> folder = folder_of(options, loaded, team);
-  if (!options.quiet && team.leads())
-    for (const std::string& warning : loaded.warnings) say("warning", warning);
-  const std::size_t sources = loaded.scenario.sources.size();
-  if (!options.quiet && team.leads() && part.first(sources) == part.end(sources))
-    say("warning", "--part " + options.part + " is empty: the plan has " + count_text(sources) + " source cells");
+  if (!options.quiet && team.leads()) warn_of_input(options, loaded, part);
 
   talus::io::RunRecord record;
   record.command = command_line();
+  record.plan = talus::io::plan_checksum(loaded);
   record.warnings = loaded.warnings;
-  const int threads = options.threads > 0 ? options.threads : team.size() > 1 ? 1 : omp_get_num_procs();
   record.threads = threads * team.size();
   record.ranks = team.size();
   Progress progress(Progress::mode_of(options.quiet || !team.leads(), options.progress == "machine" && team.leads()),
@@ -186,21 +210,25 @@ int run(const RunOptions& options, talus::Team& team) {
   const Stopwatch::Lap read = watch.lap();
   record.cpu.read = read.cpu;
   record.wall.read = read.wall;
-  sitting.trace(threads, progress);
+  with_hint(sitting, [&] { sitting.trace(threads, progress); });
   const Stopwatch::Lap simulated = watch.lap();
   record.totals = sitting.totals();
   record.cpu.simulate = record.totals.cpu_seconds - record.totals.sink_cpu_seconds;
   record.wall.simulate = simulated.wall;
   if (options.rounds.several()) record.rounds = {sitting.rounds_done(), options.rounds, sitting.accuracy()};
-  if (part.whole())
-    talus::collect(sitting.tally(), team);
-  else
+  if (options.part) {
     sitting.keep();
+  } else {
+    sitting.keep_the_rest();
+    talus::collect(sitting.tally(), team);
+  }
   int code = kDone;
   try {
     if (team.leads())
-      code = part.whole() ? deliver(options, loaded, sitting, *folder, watch, progress, record)
-                          : deliver_part(options, *folder, record.totals, progress);
+      with_hint(sitting, [&] {
+        code = options.part ? deliver_part(options, *folder, record.totals, progress)
+                            : deliver(options, loaded, sitting, *folder, watch, progress, record);
+      });
   } catch (const Interrupted& interruption) {  // the others wait to be told
     say("", interruption.what());
     code = kInterrupted;
@@ -235,15 +263,15 @@ void add_run(CLI::App& app, Action& action, talus::Team& team) {
   command->add_option("--memory", options->memory, "such as 2G: what does not fit lies in a file beside the results");
   command
       ->add_option("--checkpoint", options->checkpoint, "seconds between two times that the work is kept on the disk")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(between(0.0, 1e6));
   command->add_option("--rounds", options->rounds.count, "how often the scenario's trajectories are traced")
       ->check(CLI::Range(1, 10'000));
   CLI::Option* until =
       command->add_option("--until-error", options->rounds.until_error,
                           "rounds until the relative 95 % half-width of the impact probability is below this");
-  until->check(CLI::Range(1e-4, 10.0))->excludes("--rounds");
+  until->check(between(1e-4, 10.0))->excludes("--rounds");
   command->add_option("--above", options->rounds.above, "the error counts in all cells with a larger probability; 0.01")
-      ->check(CLI::Range(1e-9, 1.0));
+      ->check(between(1e-9, 1.0));
   command->add_option("--most-rounds", options->rounds.most, "--until-error: never more; 100")
       ->check(CLI::Range(1, 10'000))
       ->needs(until);

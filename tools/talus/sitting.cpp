@@ -27,7 +27,6 @@ Sitting::Sitting(const RunOptions& options, const talus::io::LoadedScenario& loa
 
 /// What is kept in the folder of the leader, which the others must see; or nothing yet.
 std::vector<talus::io::Store> Sitting::opened(const talus::io::LoadedScenario& loaded, const talus::Part& part) {
-  if (folder_ != nullptr) folder_->hold_work();
   const fs::path work = team_.tell(folder_ != nullptr ? folder_->work().string() : "");
   const bool kept = !team_.tell(team_.leads() && fs::exists(work / talus::io::kStoreManifest) ? "kept" : "").empty();
   const std::string plan = team_.tell(talus::io::plan_checksum(loaded));
@@ -42,14 +41,15 @@ std::vector<talus::io::Store> Sitting::opened(const talus::io::LoadedScenario& l
                               ": its folder cannot be seen by every process, must lie on a file system that all "
                               "machines of the run share");
     if (!kept) {
-      stores.emplace_back(work, loaded, part, options_.rounds.several(), team_);
+      stores.emplace_back(work, loaded, part, options_.rounds, team_);
       return;
     }
     stores.push_back(talus::io::Store::opened(work, loaded, true, team_));
     const talus::io::Store& store = stores.front();
-    const talus::Rounds& asked = options_.rounds;
-    if (store.further_rounds() != asked.several() || (!asked.until_error && store.rounds() > asked.count))
-      throw talus::InputError(options_.out + ": what is kept there was begun with other --rounds or --until-error (" +
+    if (store.asked() != options_.rounds)
+      throw talus::InputError(options_.out +
+                              ": what is kept there was begun with other --rounds, --until-error, --above or "
+                              "--most-rounds (" +
                               std::to_string(store.rounds()) +
                               " rounds are done); give the same, or begin anew (--overwrite)");
     if (store.part().number != part.number || store.part().of != part.of)
@@ -64,6 +64,7 @@ void Sitting::trace(int threads, Progress& progress) {
     if (simulation_.round_done()) simulation_.next_round();
     if (options_.rounds.several() && simulation_.position().unit == 0)
       progress.begin("round " + std::to_string(simulation_.position().round + 1));
+    all_kept_ = false;
     simulation_.advance(threads);
     if (any(simulation_.totals().interrupted || interrupted())) interrupt();
     if (simulation_.round_done()) store().end_round(simulation_.position().round);
@@ -79,11 +80,16 @@ void Sitting::keep() {
   store().keep(simulation_, tally_);
   if (folder_ != nullptr) folder_->keep();
   kept_ = Clock::now();
+  all_kept_ = true;
+}
+
+void Sitting::keep_the_rest() {
+  if (is_kept() && !all_kept_) keep();
 }
 
 void Sitting::interrupt() {
   if (simulation_.position().unit == 0 && simulation_.position().round == 0) stop_interrupted();
-  keep();
+  if (!all_kept_) keep();
   throw Interrupted("interrupted; what was traced is kept, go on with: " + command_to_resume());
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,7 +14,8 @@
 /// What `run` was asked for.
 struct RunOptions {
   talus::io::RunFlags flags;
-  std::string out, progress, part;
+  std::string out, progress;
+  std::optional<std::string> part;  ///< "I/N"; nothing: the whole run
   talus::Rounds rounds;
   std::string memory;
   double checkpoint = 30.0;
@@ -41,6 +43,10 @@ class Sitting {
   /// What all have traced; at the leader.
   talus::Totals totals();
   void keep();
+  /// Where something was kept before, what was traced since is kept, too.
+  void keep_the_rest();
+  /// Whether something was: an interrupted run can go on.
+  bool is_kept() { return !store().empty(); }
   /// Keeps what was traced and throws `Interrupted`, which says how to go on.
   [[noreturn]] void interrupt();
   /// The same while the leader writes the results: of a team what was kept last must do.
@@ -64,4 +70,5 @@ class Sitting {
   talus::Sinks sinks_;
   talus::Simulation simulation_;
   Clock::time_point kept_ = Clock::now();
+  bool all_kept_ = true;
 };

@@ -18,7 +18,8 @@ void write_maps(const std::vector<talus::Map>& maps, const talus::io::MapTarget&
     shared(maps, target, failure)
   for (const talus::Map& map : maps) {
     try {
-      if (talus::io::write_map(map, target)) talus::io::write_style(target.folder, map);
+      const bool there = std::filesystem::exists(target.folder / (map.name + ".tif"));  // of a run that was killed
+      if (there || talus::io::write_map(map, target)) talus::io::write_style(target.folder, map);
     } catch (...) {
 #pragma omp critical
       if (!failure) failure = std::current_exception();

@@ -26,11 +26,9 @@ struct HazardRow {
   std::vector<std::pair<int, HazardCell>> touched;  ///< by column, from the west
 };
 
-/// SHA-256 of all settings of a scenario and of its input files: equal where the same trajectories follow.
+/// SHA-256 of all settings of a scenario and of its input files, wherever these lie: equal where the same trajectories
+/// follow.
 std::string plan_checksum(const LoadedScenario& loaded);
-
-/// Throws InputError where an input file was not the same when it was read again.
-void refuse_changed_inputs(const LoadedScenario& before, const LoadedScenario& after);
 
 /// Writes the annual frequencies that a tally kept, compressed. docs/hazard.md, "What a run keeps".
 ///

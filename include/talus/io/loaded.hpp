@@ -1,4 +1,5 @@
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,8 @@ struct GeoReference {
   double cell_x = 1.0, cell_y = 1.0;  ///< [m], both > 0
 };
 
+struct ScenarioSpec;
+
 /// A scenario with all that is to be told of its origin.
 struct LoadedScenario {
   Scenario scenario;
@@ -46,7 +49,8 @@ struct LoadedScenario {
   std::vector<Setting> settings;
   std::vector<InputFile> inputs;
   std::vector<Reprojection> reprojections;
-  std::vector<std::string> warnings;  ///< one line each
+  std::vector<std::string> warnings;         ///< one line each
+  std::shared_ptr<const ScenarioSpec> spec;  ///< what the file and the flags said
 };
 
 /// What the command line says over or instead of a scenario file.
@@ -61,5 +65,8 @@ struct RunFlags {
 /// Reads and checks everything. Throws InputError, one line; `all_faults` gets every fault of the settings (for
 /// `check`).
 LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* all_faults = nullptr);
+
+/// Makes it the scenario whose blocks so many rounds of it trace. `settings` stay as they are.
+void set_rounds(LoadedScenario& loaded, std::uint32_t rounds);
 
 }  // namespace talus::io

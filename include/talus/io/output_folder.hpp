@@ -1,9 +1,12 @@
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
 namespace talus::io {
+
+class FolderLock;
 
 /// A folder of results that appears under its name complete, or not at all.
 ///
@@ -12,11 +15,12 @@ namespace talus::io {
 /// be kept for a run that goes on.
 class OutputFolder {
  public:
-  /// What to do with the hidden folder of an interrupted run of this name.
+  /// What to do with the hidden folder of an interrupted run of this name. While a process has one, no other may
+  /// begin a run of this name; what was killed before it kept anything is removed.
   enum class Unfinished {
     Ignore,  ///< this command leaves none
     Refuse,  ///< InputError with the way out; where `overwrite` is given, it is removed
-    Resume   ///< it becomes this one's, where there is one
+    Resume   ///< it becomes this one's, where there is one, with the maps that it had finished
   };
 
   /// @param overwrite  an earlier result of talus (it holds a run.json, part.json, calibration.json or diagnosis.json)
@@ -31,8 +35,6 @@ class OutputFolder {
   /// Where in it a run keeps its work while it goes on: what is looked for by `Unfinished`.
   std::filesystem::path work() const { return temporary_ / kWork; }
   static constexpr const char* kWork = "unfinished";
-  /// Makes `work`, and marks it as in use until this process ends, however that comes.
-  void hold_work();
   /// The hidden folder stays where there is no `commit`.
   void keep() { kept_ = true; }
   /// Absolute; what the user will find.
@@ -48,15 +50,21 @@ class OutputFolder {
   void commit_work();
 
  private:
+  /// Makes `work`, and marks it as in use until this process ends, however that comes.
+  void hold_work();
   void commit(const std::filesystem::path& folder);
   std::filesystem::path final_, temporary_;
   bool overwrite_, committed_ = false, kept_ = false;
-  int lock_ = -1;
+  std::unique_ptr<FolderLock> lock_;  // of `work`
 };
 
 /// From now on what grows with the map lies in a file beside the results as far as it does not fit into so many bytes.
 /// Before anything is read. Throws InputError where there is no folder for the results to go into.
 void limit_memory(const std::filesystem::path& results, std::size_t bytes);
+
+/// Waits until a file, or the entries of a folder, are on the disk: some file systems tell only now that it is full.
+/// Throws std::runtime_error.
+void synchronise(const std::filesystem::path& path);
 
 /// Writes a text file. Throws std::runtime_error, one line with the file and the cause; no half file is left.
 void write_text(const std::filesystem::path& file, std::string_view text);

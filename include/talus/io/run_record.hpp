@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,7 @@ struct RunRecord {
   int ranks = 1;    ///< processes
   RoundsRecord rounds;
   std::uint32_t parts = 1;  ///< that were joined
+  std::string plan;         ///< `plan_checksum` of one round
 };
 
 /// Whether too many trajectories ended at a limit (`kAllowedLimitShare`).
@@ -45,6 +47,9 @@ bool too_many_limits(const Totals& totals);
 /// The text of run.json. Equal runs differ only in command, threads, ranks, cpu_seconds, wall_seconds and
 /// peak_memory_mb.
 std::string run_json(const RunRecord& record, const LoadedScenario& loaded);
+
+/// Whether the folder holds the complete results of this plan, and of so many rounds as were asked for.
+bool is_result_of(const std::filesystem::path& folder, const std::string& plan, const Rounds& asked);
 
 /// The most memory that this process has held so far [MB]; 0 where the system does not tell.
 double peak_memory_mb();

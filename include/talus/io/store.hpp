@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "talus/io/loaded.hpp"
+#include "talus/products/accuracy.hpp"
 #include "talus/simulate/simulation.hpp"
 
 namespace talus::io {
@@ -23,9 +24,9 @@ inline constexpr const char* kStoreManifest = "part.json";
 class Store {
  public:
   /// A new one in an empty folder, for this part of the plan. Throws std::runtime_error.
-  /// @param further_rounds  there may be more than one round
+  /// @param asked  how many rounds there will be: who goes on must ask for the same
   /// The processes of a team share the folder: all must make it, and call all that writes.
-  Store(const std::filesystem::path& folder, const LoadedScenario& loaded, const Part& part, bool further_rounds,
+  Store(const std::filesystem::path& folder, const LoadedScenario& loaded, const Part& part, const Rounds& asked,
         Team& team = alone());
 
   /// What an earlier program left. Throws InputError where it is damaged; `InputError` too where it belongs to another
@@ -40,7 +41,7 @@ class Store {
   ~Store();
 
   const Part& part() const { return part_; }
-  bool further_rounds() const { return further_rounds_; }
+  const Rounds& asked() const { return asked_; }
   std::uint32_t rounds() const { return rounds_; }  ///< that are done
   /// Those of the plan, as the program that began it had them; `trajectories` those of so many rounds.
   std::vector<Setting> settings(std::uint32_t rounds) const;
@@ -79,6 +80,7 @@ class Store {
     std::string name, sha256;
   };
   Store(std::filesystem::path folder, const LoadedScenario& loaded, Team& team);
+  std::vector<KeptFile> gathered(const KeptFile& mine) const;
   std::string checked(const std::string& name, const std::string& sha256) const;
   void close_rows(std::uint32_t round);
   void write_manifest() const;
@@ -91,13 +93,13 @@ class Store {
   Team* team_;
   std::vector<Setting> settings_;
   Part part_;
-  bool further_rounds_ = false;
+  Rounds asked_;
   std::uint32_t rounds_ = 0;
   std::uint64_t units_done_ = 0;
   std::uint32_t generation_ = 0;  // of the files; 0: none yet
   std::uint32_t round_ = 0;       // in work
   std::string rest_sha256_;
-  std::vector<KeptFile> tallies_;  // one of each process
+  std::vector<KeptFile> tallies_, reaches_;  // one of each process
   std::vector<RowsFile> rows_files_;
   std::unique_ptr<Rows> rows_;  // that are being written
 };

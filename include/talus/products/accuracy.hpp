@@ -13,6 +13,7 @@ struct Rounds {
   double above = 0.01;                ///< in all cells with a larger probability
   std::uint32_t most = 100;           ///< rounds, whatever is reached
   bool several() const { return count > 1 || until_error.has_value(); }
+  bool operator==(const Rounds&) const = default;
 };
 
 /// How well the impact probability is known.

@@ -29,12 +29,16 @@ class Reaches {
  public:
   /// @param units  of work of a source cell, in one round;  @param keep  all, for further rounds
   Reaches(std::uint32_t units, bool keep) : units_(units), keep_(keep) {}
+  ~Reaches();
+  Reaches(const Reaches&) = delete;
+  Reaches& operator=(const Reaches&) = delete;
 
   /// Once per unit. Empty where one unit holds all of the source cell. Safe to call from several threads.
   std::shared_ptr<SourceReach> of(std::uint32_t place);
 
-  void save(ByteWriter& out) const;
-  /// Adds what was saved of those places that `wanted` wants.
+  /// Hands out what is known of each source cell, one after the other: all together may not fit into the memory.
+  void save(const std::function<void(std::string_view)>& put) const;
+  /// Adds what was saved of a source cell, where its place is one that `wanted` wants.
   void restore(ByteReader& in, const std::function<bool(std::uint32_t)>& wanted);
 
  private:
@@ -77,12 +81,12 @@ class Simulation {
 
   const Position& position() const { return position_; }
   const Totals& totals() const { return totals_; }
-  void save_reaches(ByteWriter& out) const;
+  void save_reaches(const std::function<void(std::string_view)>& put) const;
 
-  /// Goes on from what was kept; before the first `advance`.
-  ///
-  /// @param reaches  what the processes that kept it have saved, one after the other
-  void restore(const Position& position, const Totals& totals, ByteReader& reaches);
+  /// Goes on from what was kept; before the first `advance`. Then what `save_reaches` of each process that kept it has
+  /// handed out, piece by piece.
+  void restore(const Position& position, const Totals& totals);
+  void restore_reach(ByteReader& piece);
 
  private:
   class Advance;

@@ -53,14 +53,14 @@ std::vector<double> cells_of(const Tally& tally) {
 struct Kept {
   Simulation::Position position;
   Totals totals;
-  std::string reaches;
+  std::vector<std::string> reaches;  // by source cell
   std::vector<std::string> regions;
 };
 
 Kept kept_of(const Simulation& simulation, const Tally& tally) {
-  ByteWriter reaches;
-  simulation.save_reaches(reaches);
-  return {simulation.position(), simulation.totals(), reaches.bytes(), bytes_of(tally)};
+  std::vector<std::string> reaches;
+  simulation.save_reaches([&](std::string_view piece) { reaches.emplace_back(piece); });
+  return {simulation.position(), simulation.totals(), reaches, bytes_of(tally)};
 }
 
 void restore(const Kept& kept, Simulation& simulation, Tally& tally) {
@@ -68,8 +68,11 @@ void restore(const Kept& kept, Simulation& simulation, Tally& tally) {
     ByteReader in(kept.regions[i]);
     tally.merge(i, in);
   }
-  ByteReader reaches(kept.reaches);
-  simulation.restore(kept.position, kept.totals, reaches);
+  simulation.restore(kept.position, kept.totals);
+  for (const std::string& piece : kept.reaches) {
+    ByteReader in(piece);
+    simulation.restore_reach(in);
+  }
 }
 
 TEST(Simulation, StoppedAndRestoredAfterEveryUnitItEndsAsOneRun) {
