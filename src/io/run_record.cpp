@@ -121,7 +121,8 @@ bool is_result_of(const std::filesystem::path& folder, const std::string& plan, 
   std::ifstream stream(folder / "run.json", std::ios::binary);
   try {
     const Json json = Json::parse(stream);
-    if (json.at("plan") != plan || json.contains("rounds") != asked.several()) return false;
+    if (json.at("status") != "complete" || json.at("plan") != plan || json.contains("rounds") != asked.several())
+      return false;
     if (!asked.several()) return true;
     const Json& rounds = json.at("rounds");
     if (!asked.until_error) return !rounds.contains("asked") && rounds.at("done") == asked.count;

@@ -164,8 +164,7 @@ void with_hint(Sitting& sitting, const std::function<void()>& what) {
     throw;
   } catch (const std::runtime_error& error) {
     if (!sitting.is_kept()) throw;
-    throw std::runtime_error(std::string(error.what()) +
-                             "; what was traced is kept as far as it was, go on with: " + command_to_resume());
+    throw std::runtime_error(std::string(error.what()) + "; what was kept last goes on with: " + command_to_resume());
   }
 }
 

@@ -50,7 +50,7 @@ struct LoadedScenario {
   std::vector<InputFile> inputs;
   std::vector<Reprojection> reprojections;
   std::vector<std::string> warnings;         ///< one line each
-  std::shared_ptr<const ScenarioSpec> spec;  ///< what the file and the flags said
+  std::shared_ptr<const ScenarioSpec> spec;  ///< what the file and the flags said; none of a profile
 };
 
 /// What the command line says over or instead of a scenario file.

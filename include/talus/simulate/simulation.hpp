@@ -11,7 +11,6 @@ namespace talus {
 /// the order of work.
 struct Part {
   std::uint32_t number = 1, of = 1;
-  bool whole() const { return of == 1; }
 
   /// The place of its first source cell, of so many in all; the next part's first is this part's end.
   std::uint32_t first(std::size_t sources) const { return begin_of(number - 1, sources); }
