@@ -117,19 +117,22 @@ bool too_many_limits(const Totals& totals) {
   return limits > kAllowedLimitShare * static_cast<double>(totals.released);
 }
 
-bool is_result_of(const std::filesystem::path& folder, const std::string& plan, const Rounds& asked) {
+std::optional<std::string> status_of_result(const std::filesystem::path& folder, const std::string& plan,
+                                            const Rounds& asked) {
   std::ifstream stream(folder / "run.json", std::ios::binary);
   try {
     const Json json = Json::parse(stream);
-    if (json.at("status") != "complete" || json.at("plan") != plan || json.contains("rounds") != asked.several())
-      return false;
-    if (!asked.several()) return true;
+    if (json.at("plan") != plan || json.contains("rounds") != asked.several()) return std::nullopt;
+    std::string status = json.at("status");
+    if (!asked.several()) return status;
     const Json& rounds = json.at("rounds");
-    if (!asked.until_error) return !rounds.contains("asked") && rounds.at("done") == asked.count;
-    return rounds.at("asked") == *asked.until_error && rounds.at("above_probability") == asked.above &&
-           rounds.at("most_rounds") == asked.most;
+    const bool as_asked = asked.until_error ? rounds.at("asked") == *asked.until_error &&
+                                                  rounds.at("above_probability") == asked.above &&
+                                                  rounds.at("most_rounds") == asked.most
+                                            : !rounds.contains("asked") && rounds.at("done") == asked.count;
+    return as_asked ? std::optional(std::move(status)) : std::nullopt;
   } catch (const Json::exception&) {
-    return false;  // no such file, or another one
+    return std::nullopt;  // no such file, or another one
   }
 }
 
@@ -141,7 +144,7 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   json["version"] = version();
   json["command"] = record.command;
   if (!record.plan.empty()) json["plan"] = record.plan;
-  json["status"] = too_many_limits(totals) ? "too many trajectories ended at a limit" : "complete";
+  json["status"] = too_many_limits(totals) ? "too many trajectories ended at a limit" : kComplete;
   json["seed"] = scenario.seed;
   json["deformation_coefficient"] = scenario.impact.deformation_coefficient;
   json["source_cells"] = scenario.sources.size();

@@ -119,4 +119,10 @@ std::string sha256_of_file(const std::string& path) {
   return any ? sum.digits() : "";
 }
 
+std::string sha256_of_bytes(std::string_view bytes) {
+  Sha256 sum;
+  sum.add(bytes);
+  return sum.digits();
+}
+
 }  // namespace talus::io

@@ -23,6 +23,8 @@ class Sha256 {
   std::uint64_t length_ = 0;  // bytes so far
 };
 
+std::string sha256_of_bytes(std::string_view bytes);
+
 /// The files that belong to one input: see `sha256_of_file`.
 std::vector<std::string> files_of_input(const std::string& path);
 

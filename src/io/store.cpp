@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "kept_file.hpp"
+#include "sha256.hpp"
 #include "store_rows.hpp"
 #include "store_tally.hpp"
 #include "talus/base/error.hpp"
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr int kFormat = 3;
+constexpr int kFormat = 4;
 
 /// "tally-3.bin"; of a further process of a team "tally-3-1.bin".
 std::string numbered(const std::string& what, std::uint32_t number, int rank = 0) {
@@ -38,6 +39,10 @@ Rounds rounds_of(const Json& json) {
   Rounds asked{json.at("count"), {}, json.at("above"), json.at("most")};
   if (json.contains("until_error")) asked.until_error = json.at("until_error").get<double>();
   return asked;
+}
+
+std::string text_of(const Json& manifest) {
+  return manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 /// Pairs of name and checksum, in a manifest.
@@ -217,22 +222,23 @@ void Store::write_manifest() const {
         {{"round", file.round}, {"generation", file.generation}, {"file", file.name}, {"sha256", file.sha256}});
   Json settings = Json::array();
   for (const Setting& s : settings_) settings.push_back({s.key, s.value, s.unit, s.source});
-  const Json json{{"program", "talus"},
-                  {"version", version()},
-                  {"format", kFormat},
-                  {"plan", plan_},
-                  {"part", part_.number},
-                  {"of", part_.of},
-                  {"rounds", json_of(asked_)},
-                  {"rounds_done", rounds_},
-                  {"units_done", units_done_},
-                  {"generation", generation_},
-                  {"tallies", json_of(tallies_)},
-                  {"reaches", json_of(reaches_)},
-                  {"rest_sha256", rest_sha256_},
-                  {"rows", rows},
-                  {"settings", settings}};
-  replace_text(folder_ / kStoreManifest, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  Json json{{"program", "talus"},
+            {"version", version()},
+            {"format", kFormat},
+            {"plan", plan_},
+            {"part", part_.number},
+            {"of", part_.of},
+            {"rounds", json_of(asked_)},
+            {"rounds_done", rounds_},
+            {"units_done", units_done_},
+            {"generation", generation_},
+            {"tallies", json_of(tallies_)},
+            {"reaches", json_of(reaches_)},
+            {"rest_sha256", rest_sha256_},
+            {"rows", rows},
+            {"settings", settings}};
+  json["sha256"] = sha256_of_bytes(text_of(json));  // of what stands before it
+  replace_text(folder_ / kStoreManifest, text_of(json));
 }
 
 void Store::read_manifest() {
@@ -242,7 +248,10 @@ void Store::read_manifest() {
     throw InputError(folder_.string() + ": has no " + kStoreManifest + ", must be what talus run --part has written");
   std::string plan;
   try {
-    const Json json = Json::parse(stream);
+    Json json = Json::parse(stream);
+    const std::string sha256 = json.at("sha256");
+    json.erase("sha256");
+    if (sha256 != sha256_of_bytes(text_of(json))) throw InputError("its checksum is another");
     if (json.at("format").get<int>() != kFormat || json.at("version").get<std::string>() != version())
       throw InputError("was written by Talus " + json.at("version").get<std::string>());
     plan = json.at("plan");
@@ -265,7 +274,8 @@ void Store::read_manifest() {
   if (plan != plan_)
     throw InputError(file.string() +
                      ": belongs to another plan: the scenario, a flag or a file is not what it was when this was "
-                     "traced; give the same again, or begin anew (--overwrite)");
+                     "traced. To go on give the same again, or begin anew (--overwrite); to merge give parts of the "
+                     "plan of the first one");
 }
 
 void Store::remove_unnamed() const {

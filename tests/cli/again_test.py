@@ -54,6 +54,15 @@ class Again(RunCase):
             other = next(e for e in errors if "results are in" not in e)
             self.assertTrue("another process is writing it" in other or "is done" in other, other)
 
+    def test_a_run_that_is_done_with_too_many_at_a_limit(self):
+        with open(self.path("s.toml"), "a") as file:
+            file.write("\n[model]\nimpact_limit = 2\n")
+        arguments = ["run", self.path("s.toml"), "-o", self.path("out")]
+        self.fails(1, "ended at the limit", arguments=[*arguments, "-q"])
+        before = os.stat(self.path("out/run.json")).st_mtime_ns
+        self.fails(1, "the run is done, but too many", arguments=[*arguments, "--resume"])  # not traced again
+        self.assertEqual(os.stat(self.path("out/run.json")).st_mtime_ns, before)
+
     def test_a_run_that_is_done(self):
         self.run_scenario("out")
         again = self.run_well("run", self.path("s.toml"), "-o", self.path("out"), "--resume")  # a task that was requeued
@@ -113,7 +122,7 @@ class Again(RunCase):
         for option in ("--until-error", "--checkpoint", "--above"):
             self.fails(2, option, "nan", "not in range", arguments=[*start, option, "nan"])
         self.fails(2, "--part", "must be I/N", arguments=[*start, "--part", ""])
-        self.fails(2, "--memory", "1100M at least", arguments=[*start, "--memory", "500M", "--threads", "32"])
+        self.fails(2, "--memory", "1750M at least", arguments=[*start, "--memory", "500M", "--threads", "32"])
         self.assertFalse(os.path.exists(self.path("x")))
 
 

@@ -57,6 +57,12 @@ class Parts(RunCase):
             file.seek(1000)
             file.write(bytes([byte[0] ^ 1]))
         self.fails(2, name, "is damaged", arguments=["merge", self.path("m"), one, two])
+        with open(f"{one}/part.json") as file:
+            manifest = file.read()
+        self.write("part1/part.json", manifest.replace('"upper-talus-3d"', '"lower-talus-3d"').replace('"1"', '"3"'))
+        self.fails(2, "part.json", "its checksum is another", arguments=["merge", self.path("m"), one, two])
+        os.remove(f"{one}/scenario.toml")
+        self.fails(2, "it has no scenario.toml", arguments=["merge", self.path("m"), one, two])
         self.assertFalse(os.path.exists(self.path("m")))
 
     def start(self, out, *more):
@@ -163,10 +169,12 @@ class Parts(RunCase):
 
     def test_a_limit_of_memory_changes_no_bit(self):
         self.run_scenario("whole")
-        self.run_scenario("limited", "--memory", "200M", "--checkpoint", "0.05")
+        self.run_scenario("limited", "--memory", "200M", "--threads", "1", "--checkpoint", "0.05")
         self.assert_same("whole", "limited")
-        for text in ("2", "2X", "1M", "G"):
-            self.fails(2, "--memory", arguments=["run", self.path("s.toml"), "-o", self.path("x"), "--memory", text])
+        start = ["run", self.path("s.toml"), "-o", self.path("x"), "--threads", "1", "--memory"]
+        for text in ("2", "2X", "G", "500MB", "500m"):
+            self.fails(2, "--memory", text, "with M or G", arguments=[*start, text])
+        self.fails(2, "--memory", "1 threads", "200M at least", arguments=[*start, "1M"])
 
     def test_options_that_contradict_each_other(self):
         start = ["run", self.path("s.toml"), "-o", self.path("x")]

@@ -52,8 +52,8 @@ OpenedCampaign::OpenedCampaign(const CampaignCommand& command, talus::io::FitRec
   record.campaign = loaded.campaign.name;
 }
 
-void OpenedCampaign::warn_unseen(const CampaignCommand& command, talus::io::FitRecord& record,
-                                 const std::string& rows, const talus::Score& score) {
+void OpenedCampaign::warn_unseen(const CampaignCommand& command, talus::io::FitRecord& record, const std::string& rows,
+                                 const talus::Score& score) {
   for (const std::string& warning : talus::io::unseen_warnings(rows, score)) {
     if (!command.quiet) say("warning", warning);
     record.warnings.push_back(warning);

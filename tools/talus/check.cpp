@@ -183,7 +183,9 @@ void print_estimate(const Scenario& scenario, unsigned threads) {
   if (sample.left * 100 > sample.traced)
     line("warning", number(100.0 * static_cast<double>(sample.left) / traced) + " % of the sample left the DEM");
   if (static_cast<double>(sample.limits) > talus::io::kAllowedLimitShare * traced)
-    line("warning", count_text(sample.limits) + " of the sample ended at the limit of impacts or time");
+    line("warning", count_text(sample.limits) +
+                        " of the sample ended at the limit of impacts or time; where more than 0.1 % do, the "
+                        "run ends with exit code 1");
 }
 
 int check(const talus::io::RunFlags& flags, unsigned threads, bool quiet) {

@@ -26,9 +26,10 @@ struct Options {
 
 LoadedScenario scenario_of(const std::string& part) {
   const fs::path file = fs::path(part) / "scenario.toml";
-  if (!fs::exists(file) || !fs::exists(fs::path(part) / talus::io::kStoreManifest))
-    throw talus::InputError(part + ": is no part of a run (it has no " + talus::io::kStoreManifest +
-                            "); give the folders that talus run --part I/N has written");
+  for (const fs::path& needed : {fs::path(part) / talus::io::kStoreManifest, file})
+    if (!fs::exists(needed))
+      throw talus::InputError(part + ": is no part of a run (it has no " + needed.filename().string() +
+                              "); give the folders that talus run --part I/N has written");
   talus::io::RunFlags flags;
   flags.scenario = file.string();
   return talus::io::load_scenario(flags);
@@ -70,7 +71,8 @@ std::vector<Store> opened(const std::vector<std::string>& folders, const LoadedS
 int merge(const Options& options) {
   Stopwatch watch;
   catch_signals();
-  if (!options.memory.empty()) talus::io::limit_memory(options.out, bytes_of(options.memory));
+  const int threads = options.threads > 0 ? options.threads : omp_get_num_procs();
+  if (!options.memory.empty()) talus::io::limit_memory(options.out, memory_limit_of(options.memory, threads));
   LoadedScenario loaded = scenario_of(options.parts.front());
   const std::vector<Store> stores = opened(options.parts, loaded);
   talus::io::OutputFolder folder(options.out, options.overwrite);
@@ -84,7 +86,7 @@ int merge(const Options& options) {
   record.command = command_line();
   record.plan = talus::io::plan_checksum(loaded);
   record.warnings = loaded.warnings;
-  record.threads = options.threads > 0 ? options.threads : omp_get_num_procs();
+  record.threads = threads;
   record.parts = static_cast<std::uint32_t>(stores.size());
   record.totals.barriers = talus::BarrierTally(scenario.barriers);
   Progress progress(Progress::mode_of(options.quiet, false), 0);

@@ -38,14 +38,6 @@ talus::Part part_of(const std::optional<std::string>& given) {
   return part;
 }
 
-/// What the memory must hold whatever the limit, measured: the program and what each thread has in work.
-void check_memory(const RunOptions& options, int threads) {
-  const double least = 140.0 + 30.0 * threads;  // [MB]
-  if (options.memory.empty() || static_cast<double>(bytes_of(options.memory)) >= 1e6 * least) return;
-  throw talus::InputError("--memory " + options.memory + " with " + std::to_string(threads) + " threads: must be " +
-                          talus::text_of(least) + "M at least; give fewer --threads or more --memory");
-}
-
 void check(const RunOptions& options) {
   if (options.rounds.until_error && options.part)
     throw talus::InputError(
@@ -95,11 +87,11 @@ class SharedTerrain {
 };
 
 /// Reads and checks, the leader first: it tells what is wrong, and the others of its machine need not read the terrain.
-LoadedScenario load(const RunOptions& options, talus::Team& team) {
+LoadedScenario load(const RunOptions& options, std::size_t memory, talus::Team& team) {
   std::optional<LoadedScenario> loaded;
   const SharedTerrain sharing(options, team);
   const auto read = [&] {
-    if (!options.memory.empty()) talus::io::limit_memory(options.out, bytes_of(options.memory));
+    if (memory > 0) talus::io::limit_memory(options.out, memory);
     loaded = talus::io::load_scenario(options.flags);
     check_number(options.rounds, loaded->scenario);
   };
@@ -112,23 +104,28 @@ LoadedScenario load(const RunOptions& options, talus::Team& team) {
   return std::move(*loaded);
 }
 
-/// Whether --resume finds the run or the part complete, as a scheduler may ask for it again. Throws InputError where
-/// what is there is a part of another plan.
-bool is_done(const RunOptions& options, const LoadedScenario& loaded, const talus::Part& part, talus::Team& team) {
-  bool done = false;
+/// The exit code of the run or the part that --resume finds done, as a scheduler may ask for it again; nothing where it
+/// is not. Throws InputError where what is there is a part of another plan.
+std::optional<int> code_of_done(const RunOptions& options, const LoadedScenario& loaded, const talus::Part& part,
+                                talus::Team& team) {
+  std::optional<int> code;
   together(team, [&] {
     if (!team.leads() || !options.resume || options.overwrite) return;
     if (!options.part) {
-      done = talus::io::is_result_of(options.out, talus::io::plan_checksum(loaded), options.rounds);
+      const auto status = talus::io::status_of_result(options.out, talus::io::plan_checksum(loaded), options.rounds);
+      if (!status) return;
+      code = *status == talus::io::kComplete ? kDone : kFailed;
       std::error_code ignored;  // a run that was killed at its very end may have left what it kept
-      if (done) fs::remove_all(fs::path(options.out) / OutputFolder::kWork, ignored);
+      fs::remove_all(fs::path(options.out) / OutputFolder::kWork, ignored);
     } else if (fs::exists(fs::path(options.out) / talus::io::kStoreManifest)) {
       const auto store = talus::io::Store::opened(options.out, loaded, false);
-      done = store.part().number == part.number && store.part().of == part.of && store.between_rounds() &&
-             store.rounds() == options.rounds.count;
+      if (store.part().number == part.number && store.part().of == part.of && store.between_rounds() &&
+          store.rounds() == options.rounds.count)
+        code = kDone;
     }
   });
-  return team.largest(done ? 1 : 0) > 0;
+  const auto largest = static_cast<int>(team.largest(code ? *code + 1 : 0));
+  return largest > 0 ? std::optional(largest - 1) : std::nullopt;
 }
 
 std::unique_ptr<OutputFolder> folder_of(const RunOptions& options, const LoadedScenario& loaded, talus::Team& team) {
@@ -179,18 +176,21 @@ int run(const RunOptions& options, talus::Team& team) {
   Stopwatch watch;
   catch_signals();
   talus::Part part;
+  std::size_t memory = 0;  // 0: no limit
   const int threads = options.threads > 0 ? options.threads : team.size() > 1 ? 1 : omp_get_num_procs();
   together(team, [&] {
     part = part_of(options.part);
     check(options);
-    check_memory(options, threads);
+    if (!options.memory.empty()) memory = memory_limit_of(options.memory, threads);
   });
-  LoadedScenario loaded = load(options, team);
+  LoadedScenario loaded = load(options, memory, team);
   if (team.largest(interrupted() ? 1 : 0) > 0) stop_interrupted();
-  if (is_done(options, loaded, part, team)) {
-    if (!options.quiet && team.leads())
+  if (const std::optional<int> code = code_of_done(options, loaded, part, team)) {
+    if (team.leads() && *code != kDone)
+      say("error", "the run is done, but too many trajectories ended at a limit: " + options.out);
+    else if (team.leads() && !options.quiet)
       say("", (options.part ? "part " + *options.part : "the run") + " is done: " + options.out);
-    return kDone;
+    return *code;
   }
   const std::unique_ptr<OutputFolder> folder = folder_of(options, loaded, team);
   if (!options.quiet && team.leads()) warn_of_input(options, loaded, part);

@@ -83,9 +83,9 @@ std::string rounds_text(const talus::io::RoundsRecord& rounds) {
   char text[160];
   std::snprintf(
       text, sizeof text,
-      "%u rounds: the largest relative 95 %% half-width of the %llu cells with a probability above %g is %.3g",
-      rounds.done, static_cast<unsigned long long>(rounds.reached.cells), rounds.asked.above,
-      rounds.reached.half_width);
+      "%u round%s: the largest relative 95 %% half-width of the %llu cells with a probability above %g is %.3g",
+      rounds.done, rounds.done == 1 ? "" : "s", static_cast<unsigned long long>(rounds.reached.cells),
+      rounds.asked.above, rounds.reached.half_width);
   return text;
 }
 

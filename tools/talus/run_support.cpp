@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "progress.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
 
 Stopwatch::Lap Stopwatch::lap() {
   const Lap now = read(), lap{now.cpu - last_.cpu, now.wall - last_.wall};
@@ -55,13 +56,18 @@ std::vector<std::string> files_in(const std::filesystem::path& folder) {
   return names;
 }
 
-std::size_t bytes_of(const std::string& text) {
+std::size_t memory_limit_of(const std::string& text, int threads) {
   double number = 0.0;
   char unit = ' ', end = ' ';
   const int read = std::sscanf(text.c_str(), "%lf%c%c", &number, &unit, &end);
   const double factor = unit == 'G' ? 1e9 : unit == 'M' ? 1e6 : 0.0;
-  if (read != 2 || !(number * factor >= 2e8) || !(number * factor <= 1e15))
-    throw talus::InputError("--memory '" + text + "': must be 200M at least, for example 500M or 2G");
+  if (read != 2 || factor == 0.0 || !(number * factor <= 1e15))
+    throw talus::InputError("--memory '" + text +
+                            "': must be a number with M or G (10^6 or 10^9 bytes), such as 500M or 2G");
+  const double least = 150.0 + 50.0 * threads;  // [MB] the program and what each thread has in work: measured
+  if (!(number * factor >= 1e6 * least))
+    throw talus::InputError("--memory '" + text + "' with " + std::to_string(threads) + " threads: must be " +
+                            talus::text_of(least) + "M at least; give fewer --threads or more --memory");
   return static_cast<std::size_t>(number * factor);
 }
 

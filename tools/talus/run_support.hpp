@@ -38,8 +38,8 @@ struct WrongForAll : std::runtime_error {
 /// in a single process what it has thrown.
 void together(talus::Team& team, const std::function<void()>& what);
 
-/// "2G", "500M": bytes. Throws InputError.
-std::size_t bytes_of(const std::string& text);
+/// --memory, such as "2G" or "500M", in bytes. Throws InputError where it is none, or less than so many threads need.
+std::size_t memory_limit_of(const std::string& text, int threads);
 
 /// The command line with --resume.
 std::string command_to_resume();

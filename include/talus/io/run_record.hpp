@@ -48,8 +48,13 @@ bool too_many_limits(const Totals& totals);
 /// peak_memory_mb.
 std::string run_json(const RunRecord& record, const LoadedScenario& loaded);
 
-/// Whether the folder holds the complete results of this plan, and of so many rounds as were asked for.
-bool is_result_of(const std::filesystem::path& folder, const std::string& plan, const Rounds& asked);
+/// `status` of a run whose results are good.
+inline constexpr const char* kComplete = "complete";
+
+/// `status` of the results in a folder; nothing where it holds none of this plan and of so many rounds as were asked
+/// for.
+std::optional<std::string> status_of_result(const std::filesystem::path& folder, const std::string& plan,
+                                            const Rounds& asked);
 
 /// The most memory that this process has held so far [MB]; 0 where the system does not tell.
 double peak_memory_mb();
