@@ -23,6 +23,7 @@ class Sha256 {
   std::uint64_t length_ = 0;  // bytes so far
 };
 
+/// Of bytes.
 std::string sha256_of_bytes(std::string_view bytes);
 
 /// The files that belong to one input: see `sha256_of_file`.

@@ -174,7 +174,7 @@ class Parts(RunCase):
         start = ["run", self.path("s.toml"), "-o", self.path("x"), "--threads", "1", "--memory"]
         for text in ("2", "2X", "G", "500MB", "500m"):
             self.fails(2, "--memory", text, "with M or G", arguments=[*start, text])
-        self.fails(2, "--memory", "1 threads", "200M at least", arguments=[*start, "1M"])
+        self.fails(2, "--memory", "1 thread:", "200M at least", arguments=[*start, "1M"])
 
     def test_options_that_contradict_each_other(self):
         start = ["run", self.path("s.toml"), "-o", self.path("x")]

@@ -66,8 +66,9 @@ std::size_t memory_limit_of(const std::string& text, int threads) {
                             "': must be a number with M or G (10^6 or 10^9 bytes), such as 500M or 2G");
   const double least = 150.0 + 50.0 * threads;  // [MB] the program and what each thread has in work: measured
   if (!(number * factor >= 1e6 * least))
-    throw talus::InputError("--memory '" + text + "' with " + std::to_string(threads) + " threads: must be " +
-                            talus::text_of(least) + "M at least; give fewer --threads or more --memory");
+    throw talus::InputError("--memory '" + text + "' with " + std::to_string(threads) +
+                            (threads == 1 ? " thread: must be " : " threads: must be ") + talus::text_of(least) +
+                            "M at least; give fewer --threads or more --memory");
   return static_cast<std::size_t>(number * factor);
 }
 
