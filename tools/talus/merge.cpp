@@ -9,6 +9,7 @@
 #include "talus/base/error.hpp"
 #include "talus/io/hazard_file.hpp"
 #include "talus/io/output_folder.hpp"
+#include "write_maps.hpp"
 
 namespace fs = std::filesystem;
 
@@ -72,7 +73,8 @@ int merge(const Options& options) {
   Stopwatch watch;
   catch_signals();
   const int threads = options.threads > 0 ? options.threads : omp_get_num_procs();
-  if (!options.memory.empty()) talus::io::limit_memory(options.out, memory_limit_of(options.memory, threads));
+  if (!options.memory.empty())
+    talus::io::limit_memory(options.out, memory_limit_of(options.memory, std::min(threads, kMapsAtOnce)));
   LoadedScenario loaded = scenario_of(options.parts.front());
   const std::vector<Store> stores = opened(options.parts, loaded);
   talus::io::OutputFolder folder(options.out, options.overwrite);

@@ -8,6 +8,7 @@
 #include "progress.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
+#include "write_maps.hpp"
 
 Stopwatch::Lap Stopwatch::lap() {
   const Lap now = read(), lap{now.cpu - last_.cpu, now.wall - last_.wall};
@@ -64,7 +65,7 @@ std::size_t memory_limit_of(const std::string& text, int threads) {
   if (read != 2 || factor == 0.0 || !(number * factor <= 1e15))
     throw talus::InputError("--memory '" + text +
                             "': must be a number with M or G (10^6 or 10^9 bytes), such as 500M or 2G");
-  const double least = 150.0 + 50.0 * threads;  // [MB] the program and what each thread has in work: measured
+  const double least = std::max(140.0 + 30.0 * threads, 150.0 + 50.0 * std::min(threads, kMapsAtOnce));  // measured
   if (!(number * factor >= 1e6 * least))
     throw talus::InputError("--memory '" + text + "' with " + std::to_string(threads) +
                             (threads == 1 ? " thread: must be " : " threads: must be ") + talus::text_of(least) +

@@ -38,7 +38,8 @@ struct WrongForAll : std::runtime_error {
 /// in a single process what it has thrown.
 void together(talus::Team& team, const std::function<void()>& what);
 
-/// --memory, such as "2G" or "500M", in bytes. Throws InputError where it is none, or less than so many threads need.
+/// --memory, such as "2G" or "500M", in bytes. Throws InputError where it is none, or less than what so many threads
+/// need to trace, or to write maps.
 std::size_t memory_limit_of(const std::string& text, int threads);
 
 /// The command line with --resume.

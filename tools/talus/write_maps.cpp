@@ -7,10 +7,6 @@
 #include "run_support.hpp"
 #include "talus/io/style.hpp"
 
-namespace {
-constexpr int kMapsAtOnce = 4;  // each needs room on the disk for its draft
-}  // namespace
-
 // What is thrown may not leave the parallel region: the first failure is kept.
 void write_maps(const std::vector<talus::Map>& maps, const talus::io::MapTarget& target, int threads) {
   std::exception_ptr failure;
