@@ -18,7 +18,7 @@ fi
 cmake --preset release
 cmake --build --preset release
 build/release/talus run data/valley/scenario.toml -o build/valley --overwrite
-/usr/bin/python3 tools/picture.py data/valley/dem.tif build/valley/impact_probability.tif -o build/valley/map.png --log \
+/usr/bin/python3 tools/scripts/figures/picture.py data/valley/dem.tif build/valley/impact_probability.tif -o build/valley/map.png --log \
   --classes 0.00001,0.0001,0.001,0.01 --vectors data/valley/cliffs.shp data/valley/screens.gpkg data/valley/houses.gpkg \
   --title "Impact probability"
 echo "Maps are in build/valley (open them in QGIS), a picture in build/valley/map.png"

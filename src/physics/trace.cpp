@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "acting.hpp"
+#include "physics/effects/active_effects.hpp"
 #include "anchor.hpp"
 #include "barrier_watch.hpp"
 
@@ -12,7 +12,7 @@ namespace {
 
 /// One block on its way: the state that its steps share. A step returns how the trajectory ended, or nothing.
 ///
-/// @tparam Acting  the effects that act: Effectless, which leaves nothing of them in the code, or ActingEffects;
+/// @tparam Acting  the effects that act: Effectless, which leaves nothing of them in the code, or ActiveEffects;
 ///                 either of them alone, or BehindBarriers
 template <class Acting>
 class Walk {
@@ -120,10 +120,10 @@ void walk(const World& world, const Release& release, Path& path) {
 void trace(const World& world, const Release& release, Path& path) {
   path.clear();
   if (world.barriers == nullptr)
-    world.effects == nullptr ? walk<Effectless>(world, release, path) : walk<ActingEffects>(world, release, path);
+    world.effects == nullptr ? walk<Effectless>(world, release, path) : walk<ActiveEffects>(world, release, path);
   else
     world.effects == nullptr ? walk<BehindBarriers<Effectless>>(world, release, path)
-                             : walk<BehindBarriers<ActingEffects>>(world, release, path);
+                             : walk<BehindBarriers<ActiveEffects>>(world, release, path);
 }
 
 void trace_pieces(const World& world, const Path& whole,

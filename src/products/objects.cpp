@@ -8,7 +8,7 @@
 #include <mutex>
 
 #include "object_finder.hpp"
-#include "talus/simulate/plan.hpp"
+#include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/simulate.hpp"
 
 namespace talus {

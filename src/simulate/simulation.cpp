@@ -8,9 +8,9 @@
 #include <cmath>
 #include <exception>
 
-#include "talus/simulate/plan.hpp"
-#include "talus/simulate/units.hpp"
-#include "talus/simulate/work_order.hpp"
+#include "talus/simulate/plan/plan.hpp"
+#include "talus/simulate/plan/work_units.hpp"
+#include "talus/simulate/plan/work_order.hpp"
 
 namespace talus {
 namespace {
@@ -87,7 +87,7 @@ class Simulation::Advance {
       : run_(simulation),
         scenario_(simulation.scenario_),
         order_(simulation.sinks_),
-        units_(simulation.team_, {simulation.position_.unit, simulation.units_}, simulation.chunk_,
+        units_(simulation.processes_, {simulation.position_.unit, simulation.units_}, simulation.chunk_,
                simulation.further_rounds_) {
     totals_.barriers = BarrierTally(scenario_.barriers);
   }
@@ -101,7 +101,7 @@ class Simulation::Advance {
       VisitBatch batch(scenario_.surface.grid());
       Path path;
       while (!failed_) {
-        const std::optional<Units::Taken> taken = units_.next();  // is done now, so that a pause leaves none out
+        const std::optional<WorkUnits::Taken> taken = units_.next();  // is done now, so that a pause leaves none out
         if (!taken) break;
         Rows rows = trace_unit(taken->unit, path, batch, mine);
         if (batch.full()) score(batch, mine);
@@ -121,7 +121,7 @@ class Simulation::Advance {
     add(totals_, mine);
   }
 
-  /// All workers are done. Whether all units of the team are; else there is more to take. Throws what a worker threw.
+  /// All workers are done. Whether all units of the process group are; else there is more to take. Throws what a worker threw.
   bool finish() {
     if (failure_) std::rethrow_exception(failure_);
     if (!units_.finish()) return false;
@@ -192,16 +192,16 @@ class Simulation::Advance {
     if (stopped_) units_.stop();
   }
 
-  /// Of a team as if all were as fast.
+  /// Of a process group as if all were as fast.
   double share_done() const {
-    const double done = static_cast<double>(done_) * run_.team_.size() + static_cast<double>(run_.position_.unit);
+    const double done = static_cast<double>(done_) * run_.processes_.size() + static_cast<double>(run_.position_.unit);
     return std::min(1.0, done / static_cast<double>(run_.units_));
   }
 
   Simulation& run_;
   const Scenario& scenario_;
   InOrder order_;
-  Units units_;
+  WorkUnits units_;
   std::atomic<bool> failed_{false};
   std::mutex mutex_;  // guards what follows
   std::uint64_t done_ = 0;
@@ -250,11 +250,11 @@ void Reaches::restore(ByteReader& in, const std::function<bool(std::uint32_t)>& 
 }
 
 Simulation::Simulation(const Scenario& scenario, const Part& part, bool further_rounds, Tally& tally,
-                       const Sinks& sinks, Team& team)
+                       const Sinks& sinks, ProcessGroup& processes)
     : scenario_(scenario),
       tally_(tally),
       sinks_(sinks),
-      team_(team),
+      processes_(processes),
       screens_(scenario),
       order_(work_order(scenario.surface.grid(), scenario.sources)),
       first_place_(part.first(scenario.sources.size())),
@@ -264,8 +264,8 @@ Simulation::Simulation(const Scenario& scenario, const Part& part, bool further_
       further_rounds_(further_rounds),
       reaches_(units_per_source_, further_rounds) {
   totals_.barriers = BarrierTally(scenario.barriers);
-  if (team.size() == 1) return;
-  const std::uint64_t fair = units_ / (64U * static_cast<std::uint64_t>(team.size()));
+  if (processes.size() == 1) return;
+  const std::uint64_t fair = units_ / (64U * static_cast<std::uint64_t>(processes.size()));
   const std::uint64_t sources = std::min(fair, kUnitsPerChunk) / units_per_source_;  // whole ones
   chunk_ = std::max<std::uint64_t>(1, sources) * units_per_source_;
 }
@@ -280,7 +280,7 @@ void Simulation::advance(int threads) {
 
 void Simulation::save_reaches(const std::function<void(std::string_view)>& put) const {
   // Else chunks hold whole source cells, and all that were begun are done.
-  if (team_.size() == 1 || further_rounds_) reaches_.save(put);
+  if (processes_.size() == 1 || further_rounds_) reaches_.save(put);
 }
 
 void Simulation::restore(const Position& position, const Totals& totals) {
@@ -291,7 +291,7 @@ void Simulation::restore(const Position& position, const Totals& totals) {
 void Simulation::restore_reach(ByteReader& piece) {
   reaches_.restore(piece, [this](std::uint32_t place) {
     const std::uint64_t unit = std::uint64_t{place - first_place_} * units_per_source_;
-    return !further_rounds_ || Units::owns(team_, unit, chunk_);
+    return !further_rounds_ || WorkUnits::owns(processes_, unit, chunk_);
   });
 }
 

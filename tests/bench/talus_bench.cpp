@@ -1,5 +1,5 @@
 // Speed of the engine on one slope: talus-bench DEM SOURCES [Google Benchmark's options].
-// tools/benchmark.py makes the slope that all figures are measured on, and compares with the sketch and the floor.
+// tools/scripts/studies/benchmark.py makes the slope that all figures are measured on, and compares with the sketch and the floor.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "talus/base/memory.hpp"
-#include "talus/io/loaded.hpp"
+#include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/physics/flight.hpp"
-#include "talus/simulate/plan.hpp"
+#include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/simulate.hpp"
 
 namespace {

@@ -111,7 +111,7 @@ class Input(Case):
         self.assert_nothing_left(set(before))
 
     def test_check_foretells_within_a_factor_of_one_and_a_half(self):
-        """Cells, memory and disk of a run of which it traces an eighth at most. (Seconds: tools/scaling.py.)"""
+        """Cells, memory and disk of a run of which it traces an eighth at most. (Seconds: tools/scripts/studies/scaling.py.)"""
         scenario = self.scenario("trajectories = 20000")
         text = self.run_well("check", scenario).stdout
         self.run_well("run", scenario, "-o", self.path("out"), "-q")

@@ -1,4 +1,4 @@
-"""The law in tools/rebound_law.py against the impacts worked by hand; the study without its data says so."""
+"""The law in tools/scripts/studies/rebound_law.py against the impacts worked by hand; the study without its data says so."""
 import csv
 import subprocess
 import sys
@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path.insert(0, str(ROOT / "tools/scripts/studies"))
 import rebound_law as rebounds
 
 LEVEL = np.array([[0.0, 0.0, 1.0]])
@@ -52,7 +52,7 @@ class Law(unittest.TestCase):
 class Study(unittest.TestCase):
     def test_without_data_it_is_skipped_plainly(self):
         with tempfile.TemporaryDirectory() as nothing:
-            done = subprocess.run([sys.executable, ROOT / "tools/rebound_study.py", "--shared", nothing],
+            done = subprocess.run([sys.executable, ROOT / "tools/scripts/studies/rebound_study.py", "--shared", nothing],
                                   capture_output=True, text=True)
         self.assertEqual(done.returncode, 77)
         self.assertIn("no measured data", done.stderr)

@@ -1,7 +1,7 @@
-#include "talus/io/campaign_file.hpp"
+#include "talus/io/campaign/campaign_file.hpp"
 
 #include "files.hpp"
-#include "talus/io/model_file.hpp"
+#include "talus/io/campaign/model_file.hpp"
 
 namespace talus::io::test {
 namespace {

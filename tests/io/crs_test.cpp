@@ -1,7 +1,7 @@
-#include "talus/io/crs.hpp"
+#include "talus/io/gdal/crs.hpp"
 
 #include "files.hpp"
-#include "talus/io/vectors.hpp"
+#include "talus/io/gdal/vectors.hpp"
 
 namespace talus::io::test {
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "talus/base/error.hpp"
-#include "talus/io/rasters.hpp"
+#include "talus/io/gdal/rasters.hpp"
 
 namespace talus::io::test {
 

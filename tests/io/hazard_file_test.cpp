@@ -1,12 +1,12 @@
-#include "talus/io/hazard_file.hpp"
+#include "talus/io/results/hazard_file.hpp"
 
 #include <gdal.h>
 
 #include <fstream>
 
 #include "scenario_files.hpp"
-#include "talus/io/hazard_record.hpp"
-#include "talus/io/staged_files.hpp"
+#include "talus/io/results/hazard_record.hpp"
+#include "talus/io/files/staged_files.hpp"
 #include "talus/simulate/simulate.hpp"
 
 namespace talus::io {

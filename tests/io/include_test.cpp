@@ -73,7 +73,7 @@ TEST_F(ScenarioFile, AnIncludedEffectGivesWayToTheScenario) {
   const LoadedScenario l = load(
       "include = \"fitted.toml\"\n" + std::string(kFiles) + "[blocks]\ndiameter = 1.2\n[ground]\nfile = " +
       "\"zones.tif\"\n[ground.zones.1]\npreset = \"forest-road-3d\"\n[effects.soft-ground]\nzones = [\"default\"]\n");
-  const talus::Extent& where = l.scenario.effects.soft_ground.where;
+  const talus::EffectArea& where = l.scenario.effects.soft_ground.where;
   EXPECT_TRUE(where.covers(0, 1.0, 1.0));
   EXPECT_FALSE(where.covers(1, 1.0, 1.0));
   EXPECT_EQ(l.scenario.effects.soft_ground.drag, 2.0);

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <random>
 
-#include "geopackage.hpp"
+#include "io/gdal/geopackage.hpp"
 
 namespace talus::io {
 namespace {

@@ -1,4 +1,4 @@
-#include "talus/io/rasters.hpp"
+#include "talus/io/gdal/rasters.hpp"
 
 #include <cmath>
 #include <limits>

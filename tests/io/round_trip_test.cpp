@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include "files.hpp"
-#include "talus/io/loaded.hpp"
-#include "talus/simulate/fields.hpp"
+#include "talus/io/scenario/loaded_scenario.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace talus::io::test {
 

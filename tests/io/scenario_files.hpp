@@ -1,6 +1,6 @@
 #pragma once
 #include "files.hpp"
-#include "talus/io/loaded.hpp"
+#include "talus/io/scenario/loaded_scenario.hpp"
 
 namespace talus::io::test {
 

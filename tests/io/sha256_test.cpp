@@ -1,4 +1,4 @@
-#include "sha256.hpp"
+#include "io/files/sha256.hpp"
 
 #include "files.hpp"
 

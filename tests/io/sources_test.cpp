@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "files.hpp"
-#include "talus/io/vectors.hpp"
+#include "talus/io/gdal/vectors.hpp"
 
 namespace talus::io::test {
 

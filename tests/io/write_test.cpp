@@ -8,14 +8,14 @@
 #include <fstream>
 #include <sstream>
 
-#include "dataset.hpp"
-#include "point_index.hpp"
+#include "io/gdal/dataset.hpp"
+#include "io/gdal/point_index.hpp"
 #include "talus/base/error.hpp"
-#include "talus/io/output_folder.hpp"
-#include "talus/io/run_record.hpp"
-#include "talus/io/style.hpp"
-#include "talus/io/write_crossings.hpp"
-#include "talus/io/write_rasters.hpp"
+#include "talus/io/files/output_folder.hpp"
+#include "talus/io/results/run_record.hpp"
+#include "talus/io/results/style.hpp"
+#include "talus/io/results/write_crossings.hpp"
+#include "talus/io/results/write_rasters.hpp"
 
 namespace talus::io {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 #include "scenarios.hpp"
-#include "talus/fit/observe.hpp"
+#include "talus/fit/campaign/observe.hpp"
 
 /// Small campaigns by hand for the tests of `fit`.
 namespace talus::test {

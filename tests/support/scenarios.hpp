@@ -5,8 +5,8 @@
 #include <initializer_list>
 
 #include "scenes.hpp"
-#include "talus/simulate/scenario.hpp"
-#include "talus/simulate/tally.hpp"
+#include "talus/simulate/scenario/scenario.hpp"
+#include "talus/simulate/tally/tally.hpp"
 
 /// Scenarios, paths and tallies by hand for the tests of `simulate` and `products`.
 namespace talus::test {

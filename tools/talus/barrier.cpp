@@ -7,12 +7,12 @@
 #include "commands.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
-#include "talus/io/barrier_report.hpp"
-#include "talus/io/crossings_file.hpp"
-#include "talus/io/output_folder.hpp"
-#include "talus/io/run_folder.hpp"
-#include "talus/simulate/fields.hpp"
-#include "talus/simulate/screens.hpp"
+#include "talus/io/reports/barrier_report.hpp"
+#include "talus/io/gdal/crossings_file.hpp"
+#include "talus/io/files/output_folder.hpp"
+#include "talus/io/results/run_folder.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
+#include "talus/simulate/screens/screens.hpp"
 
 namespace {
 

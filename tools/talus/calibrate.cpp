@@ -7,9 +7,9 @@
 #include "progress.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
-#include "talus/io/fit_report.hpp"
-#include "talus/io/model_file.hpp"
-#include "talus/simulate/presets.hpp"
+#include "talus/io/reports/fit_report.hpp"
+#include "talus/io/campaign/model_file.hpp"
+#include "talus/simulate/scenario/presets.hpp"
 
 namespace {
 

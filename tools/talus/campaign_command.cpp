@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "talus/base/error.hpp"
-#include "talus/fit/score.hpp"
-#include "talus/simulate/presets.hpp"
+#include "talus/fit/score/score.hpp"
+#include "talus/simulate/scenario/presets.hpp"
 
 namespace {
 

@@ -1,10 +1,10 @@
 #pragma once
 #include "commands.hpp"
 #include "run_support.hpp"
-#include "talus/io/campaign_file.hpp"
-#include "talus/io/fit_record.hpp"
-#include "talus/io/output_folder.hpp"
-#include "talus/io/score_report.hpp"
+#include "talus/io/campaign/campaign_file.hpp"
+#include "talus/io/reports/fit_record.hpp"
+#include "talus/io/files/output_folder.hpp"
+#include "talus/io/reports/score_report.hpp"
 
 /// What `calibrate` and `diagnose` have in common: a campaign, a new folder, and how to tell of progress.
 struct CampaignCommand {

@@ -10,14 +10,14 @@
 #include "progress.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
-#include "talus/io/crs.hpp"
-#include "talus/io/loaded.hpp"
-#include "talus/io/run_record.hpp"
+#include "talus/io/gdal/crs.hpp"
+#include "talus/io/scenario/loaded_scenario.hpp"
+#include "talus/io/results/run_record.hpp"
 #include "talus/products/expected_cells.hpp"
-#include "talus/simulate/plan.hpp"
-#include "talus/simulate/screens.hpp"
-#include "talus/simulate/tally.hpp"
-#include "talus/simulate/visits.hpp"
+#include "talus/simulate/plan/plan.hpp"
+#include "talus/simulate/screens/screens.hpp"
+#include "talus/simulate/tally/tally.hpp"
+#include "talus/simulate/tally/visits.hpp"
 
 namespace {
 

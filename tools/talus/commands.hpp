@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "talus/io/loaded.hpp"
-#include "talus/simulate/team.hpp"
+#include "talus/io/scenario/loaded_scenario.hpp"
+#include "talus/simulate/plan/process_group.hpp"
 
 /// What the program does once the command line is understood; returns its exit code.
 using Action = std::function<int()>;
 
 /// One subcommand each: adds its options to the program and sets `action` when it is called.
-/// @param team  the processes that do it together; must outlive the action
-void add_run(CLI::App& app, Action& action, talus::Team& team);
+/// @param processes  the processes that do it together; must outlive the action
+void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes);
 void add_check(CLI::App& app, Action& action);
 void add_profile(CLI::App& app, Action& action);
 void add_presets(CLI::App& app, Action& action);

@@ -6,9 +6,9 @@
 #include "campaign_command.hpp"
 #include "progress.hpp"
 #include "talus/base/error.hpp"
-#include "talus/io/diagnosis_report.hpp"
-#include "talus/io/model_file.hpp"
-#include "talus/simulate/presets.hpp"
+#include "talus/io/reports/diagnosis_report.hpp"
+#include "talus/io/campaign/model_file.hpp"
+#include "talus/simulate/scenario/presets.hpp"
 
 namespace {
 

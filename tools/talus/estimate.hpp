@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "talus/simulate/scenario.hpp"
+#include "talus/simulate/scenario/scenario.hpp"
 
 /// What a run will need, from a sample of its trajectories. docs/performance.md, "What check foretells".
 

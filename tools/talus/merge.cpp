@@ -7,8 +7,8 @@
 #include "progress.hpp"
 #include "run_results.hpp"
 #include "talus/base/error.hpp"
-#include "talus/io/hazard_file.hpp"
-#include "talus/io/output_folder.hpp"
+#include "talus/io/results/hazard_file.hpp"
+#include "talus/io/files/output_folder.hpp"
 #include "write_maps.hpp"
 
 namespace fs = std::filesystem;
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 namespace {
 
 using talus::io::LoadedScenario;
-using talus::io::Store;
+using talus::io::Checkpoint;
 
 struct Options {
   std::string out, memory;
@@ -27,7 +27,7 @@ struct Options {
 
 LoadedScenario scenario_of(const std::string& part) {
   const fs::path file = fs::path(part) / "scenario.toml";
-  for (const fs::path& needed : {fs::path(part) / talus::io::kStoreManifest, file})
+  for (const fs::path& needed : {fs::path(part) / talus::io::kCheckpointManifest, file})
     if (!fs::exists(needed))
       throw talus::InputError(part + ": is no part of a run (it has no " + needed.filename().string() +
                               "); give the folders that talus run --part I/N has written");
@@ -41,32 +41,32 @@ std::string name_of(const talus::Part& part) {
 }
 
 /// The parts in their order. Throws InputError where they are not one whole.
-std::vector<Store> opened(const std::vector<std::string>& folders, const LoadedScenario& loaded) {
-  std::vector<Store> stores;
-  for (const std::string& folder : folders) stores.push_back(Store::opened(folder, loaded, false));
-  std::ranges::sort(stores, {}, [](const Store& store) { return store.part().number; });
-  const Store& first = stores.front();
-  for (std::size_t i = 0; i < stores.size(); ++i) {
-    const std::string name = stores[i].folder().string() + ": ";
-    const talus::Part part = stores[i].part();
+std::vector<Checkpoint> opened(const std::vector<std::string>& folders, const LoadedScenario& loaded) {
+  std::vector<Checkpoint> checkpoints;
+  for (const std::string& folder : folders) checkpoints.push_back(Checkpoint::opened(folder, loaded, false));
+  std::ranges::sort(checkpoints, {}, [](const Checkpoint& checkpoint) { return checkpoint.part().number; });
+  const Checkpoint& first = checkpoints.front();
+  for (std::size_t i = 0; i < checkpoints.size(); ++i) {
+    const std::string name = checkpoints[i].folder().string() + ": ";
+    const talus::Part part = checkpoints[i].part();
     if (part.of != first.part().of)
       throw talus::InputError(name + "is part " + name_of(part) + ", another one is " + name_of(first.part()) +
                               "; must all be of one division");
-    if (i > 0 && part.number == stores[i - 1].part().number)
-      throw talus::InputError(name + "is part " + name_of(part) + ", and so is " + stores[i - 1].folder().string() +
+    if (i > 0 && part.number == checkpoints[i - 1].part().number)
+      throw talus::InputError(name + "is part " + name_of(part) + ", and so is " + checkpoints[i - 1].folder().string() +
                               "; give each part once");
-    if (!stores[i].between_rounds() || stores[i].rounds() != first.rounds())
-      throw talus::InputError(name + "has " + std::to_string(stores[i].rounds()) + " rounds, another part " +
+    if (!checkpoints[i].between_rounds() || checkpoints[i].rounds() != first.rounds())
+      throw talus::InputError(name + "has " + std::to_string(checkpoints[i].rounds()) + " rounds, another part " +
                               std::to_string(first.rounds()) + "; run all parts with the same --rounds");
   }
-  if (stores.size() != first.part().of) {
+  if (checkpoints.size() != first.part().of) {
     std::uint32_t missing = 1;
-    while (missing <= stores.size() && stores[missing - 1].part().number == missing) ++missing;
-    throw talus::InputError(std::to_string(stores.size()) + " of " + std::to_string(first.part().of) +
+    while (missing <= checkpoints.size() && checkpoints[missing - 1].part().number == missing) ++missing;
+    throw talus::InputError(std::to_string(checkpoints.size()) + " of " + std::to_string(first.part().of) +
                             " parts are given, part " + std::to_string(missing) +
                             " is the first that is not; give all");
   }
-  return stores;
+  return checkpoints;
 }
 
 int merge(const Options& options) {
@@ -76,38 +76,38 @@ int merge(const Options& options) {
   if (!options.memory.empty())
     talus::io::limit_memory(options.out, memory_limit_of(options.memory, std::min(threads, kMapsAtOnce)));
   LoadedScenario loaded = scenario_of(options.parts.front());
-  const std::vector<Store> stores = opened(options.parts, loaded);
+  const std::vector<Checkpoint> checkpoints = opened(options.parts, loaded);
   talus::io::OutputFolder folder(options.out, options.overwrite);
-  for (const std::string& part : options.parts) folder.protect(fs::path(part) / talus::io::kStoreManifest);
+  for (const std::string& part : options.parts) folder.protect(fs::path(part) / talus::io::kCheckpointManifest);
   for (const talus::io::InputFile& input : loaded.inputs) folder.protect(input.path);
   const talus::Scenario& scenario = loaded.scenario;
   talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
-  if (auto weights = talus::AnnualWeights::of(scenario, stores.front().asked().several()))
+  if (auto weights = talus::AnnualWeights::of(scenario, checkpoints.front().asked().several()))
     tally.keep_hazard(std::move(*weights));
   talus::io::RunRecord record;
   record.command = command_line();
   record.plan = talus::io::plan_checksum(loaded);
   record.warnings = loaded.warnings;
   record.threads = threads;
-  record.parts = static_cast<std::uint32_t>(stores.size());
+  record.parts = static_cast<std::uint32_t>(checkpoints.size());
   record.totals.barriers = talus::BarrierTally(scenario.barriers);
   Progress progress(Progress::mode_of(options.quiet, false), 0);
-  for (const Store& store : stores) {
+  for (const Checkpoint& checkpoint : checkpoints) {
     if (interrupted()) stop_interrupted();
-    add(record.totals, store.add_to(tally));
+    add(record.totals, checkpoint.add_to(tally));
   }
-  const std::uint32_t rounds = stores.front().rounds();
+  const std::uint32_t rounds = checkpoints.front().rounds();
   if (rounds > 1) {
     record.rounds = {rounds, {}, {}};
     record.rounds.asked.count = rounds;
     record.rounds.reached = talus::accuracy_of(tally, record.totals.released, record.rounds.asked.above);
   }
   tally.set_rounds(rounds);
-  loaded.settings = stores.front().settings(rounds);
+  loaded.settings = checkpoints.front().settings(rounds);
   talus::io::set_rounds(loaded, rounds);
   record.wall.read = watch.lap().wall;
   record.cpu.simulate = record.totals.cpu_seconds - record.totals.sink_cpu_seconds;
-  write_results(loaded, stores, tally, folder.temporary(), watch, progress, record);
+  write_results(loaded, checkpoints, tally, folder.temporary(), watch, progress, record);
   if (interrupted()) stop_interrupted();
   folder.commit();
   if (!options.quiet) summarise(record, loaded, 0, folder.final_path().string());

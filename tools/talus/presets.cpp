@@ -1,10 +1,10 @@
-#include "talus/simulate/presets.hpp"
+#include "talus/simulate/scenario/presets.hpp"
 
 #include <cstdio>
 
 #include "commands.hpp"
 #include "talus/base/text.hpp"
-#include "talus/simulate/fields.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace {
 

@@ -9,10 +9,10 @@
 #include "run_results.hpp"
 #include "run_support.hpp"
 #include "talus/base/text.hpp"
-#include "talus/io/output_folder.hpp"
-#include "talus/io/run_record.hpp"
-#include "talus/io/write_crossings.hpp"
-#include "talus/io/write_profile.hpp"
+#include "talus/io/files/output_folder.hpp"
+#include "talus/io/results/run_record.hpp"
+#include "talus/io/results/write_crossings.hpp"
+#include "talus/io/results/write_profile.hpp"
 
 namespace {
 

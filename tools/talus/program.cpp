@@ -12,7 +12,7 @@
 #include "talus/base/memory.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
-#include "talus/simulate/fields.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace {
 

@@ -11,13 +11,13 @@
 #include "program.hpp"
 #include "progress.hpp"
 #include "run_results.hpp"
-#include "sitting.hpp"
+#include "run_session.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/shared_memory.hpp"
 #include "talus/base/text.hpp"
-#include "talus/io/hazard_file.hpp"
-#include "talus/io/output_folder.hpp"
-#include "talus/simulate/team_tally.hpp"
+#include "talus/io/results/hazard_file.hpp"
+#include "talus/io/files/output_folder.hpp"
+#include "talus/simulate/tally/tally_exchange.hpp"
 
 namespace fs = std::filesystem;
 
@@ -57,18 +57,18 @@ void check_number(const talus::Rounds& rounds, const talus::Scenario& scenario) 
 /// Writes the results of a whole run and gives them their name; the leader alone. Returns the exit code.
 ///
 /// @param loaded  becomes the scenario with the trajectories of all rounds: OUT/scenario.toml says what was traced
-int deliver(const RunOptions& options, LoadedScenario& loaded, Sitting& sitting, OutputFolder& folder, Stopwatch& watch,
+int deliver(const RunOptions& options, LoadedScenario& loaded, RunSession& session, OutputFolder& folder, Stopwatch& watch,
             Progress& progress, talus::io::RunRecord& record) {
-  const std::uint32_t rounds = sitting.rounds_done();
-  sitting.tally().set_rounds(rounds);
-  loaded.settings = sitting.store().settings(rounds);
+  const std::uint32_t rounds = session.rounds_done();
+  session.tally().set_rounds(rounds);
+  loaded.settings = session.checkpoint().settings(rounds);
   talus::io::set_rounds(loaded, rounds);
   try {
-    write_results(loaded, sitting.stores(), sitting.tally(), folder.temporary(), watch, progress, record);
+    write_results(loaded, session.checkpoints(), session.tally(), folder.temporary(), watch, progress, record);
   } catch (const Interrupted&) {
-    sitting.interrupt_writing();
+    session.interrupt_writing();
   }
-  if (interrupted()) sitting.interrupt_writing();
+  if (interrupted()) session.interrupt_writing();
   folder.commit();
   if (!options.quiet) summarise(record, loaded, loaded.warnings.size(), folder.final_path().string());
   return judge_limits(record.totals, folder.final_path());
@@ -77,9 +77,9 @@ int deliver(const RunOptions& options, LoadedScenario& loaded, Sitting& sitting,
 /// The terrain is shared by the processes of a machine while this lives; with --memory each has it in a file.
 class SharedTerrain {
  public:
-  SharedTerrain(const RunOptions& options, talus::Team& team) {
+  SharedTerrain(const RunOptions& options, talus::ProcessGroup& processes) {
     const std::string name = "talus-" + std::to_string(getpid()) + "-" + std::to_string(std::time(nullptr));
-    if (team.size() > 1 && options.memory.empty()) talus::SharedMemory::begin(team.tell(name));
+    if (processes.size() > 1 && options.memory.empty()) talus::SharedMemory::begin(processes.tell(name));
   }
   ~SharedTerrain() { talus::SharedMemory::end(); }
   SharedTerrain(const SharedTerrain&) = delete;
@@ -87,19 +87,19 @@ class SharedTerrain {
 };
 
 /// Reads and checks, the leader first: it tells what is wrong, and the others of its machine need not read the terrain.
-LoadedScenario load(const RunOptions& options, std::size_t memory, talus::Team& team) {
+LoadedScenario load(const RunOptions& options, std::size_t memory, talus::ProcessGroup& processes) {
   std::optional<LoadedScenario> loaded;
-  const SharedTerrain sharing(options, team);
+  const SharedTerrain sharing(options, processes);
   const auto read = [&] {
     if (memory > 0) talus::io::limit_memory(options.out, memory);
     loaded = talus::io::load_scenario(options.flags);
     check_number(options.rounds, loaded->scenario);
   };
-  together(team, [&] {
-    if (team.leads()) read();
+  together(processes, [&] {
+    if (processes.leads()) read();
   });
-  together(team, [&] {
-    if (!team.leads()) read();
+  together(processes, [&] {
+    if (!processes.leads()) read();
   });
   return std::move(*loaded);
 }
@@ -107,31 +107,31 @@ LoadedScenario load(const RunOptions& options, std::size_t memory, talus::Team& 
 /// The exit code of the run or the part that --resume finds done, as a scheduler may ask for it again; nothing where it
 /// is not. Throws InputError where what is there is a part of another plan.
 std::optional<int> code_of_done(const RunOptions& options, const LoadedScenario& loaded, const talus::Part& part,
-                                talus::Team& team) {
+                                talus::ProcessGroup& processes) {
   std::optional<int> code;
-  together(team, [&] {
-    if (!team.leads() || !options.resume || options.overwrite) return;
+  together(processes, [&] {
+    if (!processes.leads() || !options.resume || options.overwrite) return;
     if (!options.part) {
       const auto status = talus::io::status_of_result(options.out, talus::io::plan_checksum(loaded), options.rounds);
       if (!status) return;
       code = *status == talus::io::kComplete ? kDone : kFailed;
       std::error_code ignored;  // a run that was killed at its very end may have left what it kept
       fs::remove_all(fs::path(options.out) / OutputFolder::kWork, ignored);
-    } else if (fs::exists(fs::path(options.out) / talus::io::kStoreManifest)) {
-      const auto store = talus::io::Store::opened(options.out, loaded, false);
-      if (store.part().number == part.number && store.part().of == part.of && store.between_rounds() &&
-          store.rounds() == options.rounds.count)
+    } else if (fs::exists(fs::path(options.out) / talus::io::kCheckpointManifest)) {
+      const auto checkpoint = talus::io::Checkpoint::opened(options.out, loaded, false);
+      if (checkpoint.part().number == part.number && checkpoint.part().of == part.of && checkpoint.between_rounds() &&
+          checkpoint.rounds() == options.rounds.count)
         code = kDone;
     }
   });
-  const auto largest = static_cast<int>(team.largest(code ? *code + 1 : 0));
+  const auto largest = static_cast<int>(processes.largest(code ? *code + 1 : 0));
   return largest > 0 ? std::optional(largest - 1) : std::nullopt;
 }
 
-std::unique_ptr<OutputFolder> folder_of(const RunOptions& options, const LoadedScenario& loaded, talus::Team& team) {
+std::unique_ptr<OutputFolder> folder_of(const RunOptions& options, const LoadedScenario& loaded, talus::ProcessGroup& processes) {
   std::unique_ptr<OutputFolder> folder;
-  together(team, [&] {
-    if (!team.leads()) return;
+  together(processes, [&] {
+    if (!processes.leads()) return;
     folder = std::make_unique<OutputFolder>(
         options.out, options.overwrite,
         options.resume ? OutputFolder::Unfinished::Resume : OutputFolder::Unfinished::Refuse);
@@ -152,7 +152,7 @@ int deliver_part(const RunOptions& options, OutputFolder& folder, const talus::T
 }
 
 /// Does it. Where it fails (a full disk), says how to go on with what was kept.
-void with_hint(Sitting& sitting, const std::function<void()>& what) {
+void with_hint(RunSession& session, const std::function<void()>& what) {
   try {
     what();
   } catch (const Interrupted&) {
@@ -160,7 +160,7 @@ void with_hint(Sitting& sitting, const std::function<void()>& what) {
   } catch (const talus::InputError&) {
     throw;
   } catch (const std::runtime_error& error) {
-    if (!sitting.is_kept()) throw;
+    if (!session.is_kept()) throw;
     throw std::runtime_error(std::string(error.what()) + "; what was kept last goes on with: " + command_to_resume());
   }
 }
@@ -172,67 +172,67 @@ void warn_of_input(const RunOptions& options, const LoadedScenario& loaded, cons
     say("warning", "--part " + *options.part + " is empty: the plan has " + count_text(sources) + " source cells");
 }
 
-int run(const RunOptions& options, talus::Team& team) {
+int run(const RunOptions& options, talus::ProcessGroup& processes) {
   Stopwatch watch;
   catch_signals();
   talus::Part part;
   std::size_t memory = 0;  // 0: no limit
-  const int threads = options.threads > 0 ? options.threads : team.size() > 1 ? 1 : omp_get_num_procs();
-  together(team, [&] {
+  const int threads = options.threads > 0 ? options.threads : processes.size() > 1 ? 1 : omp_get_num_procs();
+  together(processes, [&] {
     part = part_of(options.part);
     check(options);
     if (!options.memory.empty()) memory = memory_limit_of(options.memory, threads);
   });
-  LoadedScenario loaded = load(options, memory, team);
-  if (team.largest(interrupted() ? 1 : 0) > 0) stop_interrupted();
-  if (const std::optional<int> code = code_of_done(options, loaded, part, team)) {
-    if (team.leads() && *code != kDone)
+  LoadedScenario loaded = load(options, memory, processes);
+  if (processes.largest(interrupted() ? 1 : 0) > 0) stop_interrupted();
+  if (const std::optional<int> code = code_of_done(options, loaded, part, processes)) {
+    if (processes.leads() && *code != kDone)
       say("error", "the run is done, but too many trajectories ended at a limit: " + options.out);
-    else if (team.leads() && !options.quiet)
+    else if (processes.leads() && !options.quiet)
       say("", (options.part ? "part " + *options.part : "the run") + " is done: " + options.out);
     return *code;
   }
-  const std::unique_ptr<OutputFolder> folder = folder_of(options, loaded, team);
-  if (!options.quiet && team.leads()) warn_of_input(options, loaded, part);
+  const std::unique_ptr<OutputFolder> folder = folder_of(options, loaded, processes);
+  if (!options.quiet && processes.leads()) warn_of_input(options, loaded, part);
 
   talus::io::RunRecord record;
   record.command = command_line();
   record.plan = talus::io::plan_checksum(loaded);
   record.warnings = loaded.warnings;
-  record.threads = threads * team.size();
-  record.ranks = team.size();
-  Progress progress(Progress::mode_of(options.quiet || !team.leads(), options.progress == "machine" && team.leads()),
+  record.threads = threads * processes.size();
+  record.ranks = processes.size();
+  Progress progress(Progress::mode_of(options.quiet || !processes.leads(), options.progress == "machine" && processes.leads()),
                     loaded.scenario.released());
-  Sitting sitting(options, loaded, part, folder.get(), progress, team);
-  if (!options.quiet && team.leads() && !sitting.store().empty())
-    say("", "going on: " + count_text(sitting.traced()) + " trajectories were kept");
+  RunSession session(options, loaded, part, folder.get(), progress, processes);
+  if (!options.quiet && processes.leads() && !session.checkpoint().empty())
+    say("", "going on: " + count_text(session.traced()) + " trajectories were kept");
   const Stopwatch::Lap read = watch.lap();
   record.cpu.read = read.cpu;
   record.wall.read = read.wall;
-  with_hint(sitting, [&] { sitting.trace(threads, progress); });
+  with_hint(session, [&] { session.trace(threads, progress); });
   const Stopwatch::Lap simulated = watch.lap();
-  record.totals = sitting.totals();
+  record.totals = session.totals();
   record.cpu.simulate = record.totals.cpu_seconds - record.totals.sink_cpu_seconds;
   record.wall.simulate = simulated.wall;
-  if (options.rounds.several()) record.rounds = {sitting.rounds_done(), options.rounds, sitting.accuracy()};
+  if (options.rounds.several()) record.rounds = {session.rounds_done(), options.rounds, session.accuracy()};
   if (options.part) {
-    sitting.keep();
+    session.keep();
   } else {
-    sitting.keep_the_rest();
-    talus::collect(sitting.tally(), team);
+    session.keep_the_rest();
+    talus::collect(session.tally(), processes);
   }
   int code = kDone;
   try {
-    if (team.leads())
-      with_hint(sitting, [&] {
+    if (processes.leads())
+      with_hint(session, [&] {
         code = options.part ? deliver_part(options, *folder, record.totals, progress)
-                            : deliver(options, loaded, sitting, *folder, watch, progress, record);
+                            : deliver(options, loaded, session, *folder, watch, progress, record);
       });
   } catch (const Interrupted& interruption) {  // the others wait to be told
     say("", interruption.what());
     code = kInterrupted;
   }
-  return std::stoi(team.tell(std::to_string(code)));
+  return std::stoi(processes.tell(std::to_string(code)));
 }
 
 }  // namespace
@@ -247,7 +247,7 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags) {
   command.add_option("--seed", flags.seed, "of the random numbers");
 }
 
-void add_run(CLI::App& app, Action& action, talus::Team& team) {
+void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes) {
   const auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "Simulate a scenario and write its hazard maps");
   add_scenario_options(*command, options->flags);
@@ -282,5 +282,5 @@ void add_run(CLI::App& app, Action& action, talus::Team& team) {
       "  talus run scenario.toml -o result\n"
       "  talus run --dem dem.tif --sources cliffs.gpkg --diameter 1.2 --trajectories 100 -o result\n\n"
       "An option given here counts more than the scenario file. OUT/scenario.toml holds all settings.");
-  command->callback([&action, &team, options] { action = [options, &team] { return run(*options, team); }; });
+  command->callback([&action, &processes, options] { action = [options, &processes] { return run(*options, processes); }; });
 }

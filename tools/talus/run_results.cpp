@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "commands.hpp"
-#include "talus/io/hazard_file.hpp"
-#include "talus/io/output_folder.hpp"
-#include "talus/io/write_crossings.hpp"
-#include "talus/io/write_lines.hpp"
-#include "talus/io/write_vectors.hpp"
+#include "talus/io/results/hazard_file.hpp"
+#include "talus/io/files/output_folder.hpp"
+#include "talus/io/results/write_crossings.hpp"
+#include "talus/io/results/write_lines.hpp"
+#include "talus/io/results/write_vectors.hpp"
 #include "talus/products/maps.hpp"
 #include "talus/products/screen_summary.hpp"
 #include "write_maps.hpp"
@@ -68,13 +68,13 @@ class Vectors {
   talus::ScreenSummary summary_;
 };
 
-/// Writes the rows that the stores keep, round by round and in each the parts in their order.
-void write_vectors(const LoadedScenario& loaded, std::span<const talus::io::Store> stores, const talus::Totals& totals,
+/// Writes the rows that the checkpoints keep, round by round and in each the parts in their order.
+void write_vectors(const LoadedScenario& loaded, std::span<const talus::io::Checkpoint> checkpoints, const talus::Totals& totals,
                    const std::filesystem::path& folder) {
   Vectors vectors(loaded, folder);
   const talus::Sinks sinks = vectors.sinks();
-  for (std::uint32_t round = 0; round < stores.front().rounds(); ++round)
-    for (const talus::io::Store& store : stores) store.replay(round, sinks);
+  for (std::uint32_t round = 0; round < checkpoints.front().rounds(); ++round)
+    for (const talus::io::Checkpoint& checkpoint : checkpoints) checkpoint.replay(round, sinks);
   vectors.finish(totals);
 }
 
@@ -120,13 +120,13 @@ void summarise(const talus::io::RunRecord& record, const LoadedScenario& loaded,
   say("", "results are in " + folder);
 }
 
-void write_results(const LoadedScenario& loaded, std::span<const talus::io::Store> stores, const talus::Tally& tally,
+void write_results(const LoadedScenario& loaded, std::span<const talus::io::Checkpoint> checkpoints, const talus::Tally& tally,
                    const std::filesystem::path& folder, Stopwatch& watch, Progress& progress,
                    talus::io::RunRecord& record) {
   malloc_trim(0);  // gives back what the workers' batches took, before the maps need room
   record.touched_cells = tally.touched_cells();
   progress.stage("writing the results");
-  const auto vectors = [&] { write_vectors(loaded, stores, record.totals, folder); };
+  const auto vectors = [&] { write_vectors(loaded, checkpoints, record.totals, folder); };
   const bool aside = record.threads > 1;
   auto writing = std::async(aside ? std::launch::async : std::launch::deferred, vectors);
   const talus::Grid& grid = loaded.scenario.surface.grid();

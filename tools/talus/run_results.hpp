@@ -5,16 +5,16 @@
 
 #include "progress.hpp"
 #include "run_support.hpp"
-#include "talus/io/run_record.hpp"
-#include "talus/io/store.hpp"
+#include "talus/io/results/run_record.hpp"
+#include "talus/run/checkpoint.hpp"
 
 /// What `run` and `merge` do once all trajectories are traced.
 
-/// Writes every result into `folder`: maps from the tally, vectors from the rows that the stores keep. Fills the
+/// Writes every result into `folder`: maps from the tally, vectors from the rows that the checkpoints keep. Fills the
 /// record.
 ///
-/// @param stores  one, or the parts in their order; all with the same number of rounds
-void write_results(const talus::io::LoadedScenario& loaded, std::span<const talus::io::Store> stores,
+/// @param checkpoints  one, or the parts in their order; all with the same number of rounds
+void write_results(const talus::io::LoadedScenario& loaded, std::span<const talus::io::Checkpoint> checkpoints,
                    const talus::Tally& tally, const std::filesystem::path& folder, Stopwatch& watch, Progress& progress,
                    talus::io::RunRecord& record);
 

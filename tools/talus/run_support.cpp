@@ -34,8 +34,8 @@ std::string command_to_resume() {
   return again + "--resume";
 }
 
-void together(talus::Team& team, const std::function<void()>& what) {
-  if (team.size() == 1) return what();
+void together(talus::ProcessGroup& processes, const std::function<void()>& what) {
+  if (processes.size() == 1) return what();
   std::string fault;
   try {
     what();
@@ -43,9 +43,9 @@ void together(talus::Team& team, const std::function<void()>& what) {
     fault = error.what();
   }
   std::string first;
-  for (const std::string& given : team.gather(fault))
+  for (const std::string& given : processes.gather(fault))
     if (first.empty()) first = given;
-  first = team.tell(first);
+  first = processes.tell(first);
   if (!first.empty()) throw WrongForAll(first);
 }
 

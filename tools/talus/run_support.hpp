@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "talus/simulate/simulate.hpp"
-#include "talus/simulate/team.hpp"
+#include "talus/simulate/plan/process_group.hpp"
 
 /// What `run` and `profile` share.
 
@@ -29,14 +29,14 @@ class Stopwatch {
 /// Throws `Interrupted`.
 [[noreturn]] void stop_interrupted();
 
-/// Input that is wrong for a team of processes: the leader says it for all.
+/// Input that is wrong for a process group: the leader says it for all.
 struct WrongForAll : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Does it in every process of a team. Where it throws InputError in one of them, throws `WrongForAll` in all of them;
+/// Does it in every process of a process group. Where it throws InputError in one of them, throws `WrongForAll` in all of them;
 /// in a single process what it has thrown.
-void together(talus::Team& team, const std::function<void()>& what);
+void together(talus::ProcessGroup& processes, const std::function<void()>& what);
 
 /// --memory, such as "2G" or "500M", in bytes. Throws InputError where it is none, or less than what so many threads
 /// need to trace, or to write maps.

@@ -7,9 +7,9 @@
 #include "commands.hpp"
 #include "run_support.hpp"
 #include "talus/base/error.hpp"
-#include "talus/io/model_file.hpp"
-#include "talus/io/output_folder.hpp"
-#include "talus/io/score_report.hpp"
+#include "talus/io/campaign/model_file.hpp"
+#include "talus/io/files/output_folder.hpp"
+#include "talus/io/reports/score_report.hpp"
 
 namespace {
 

@@ -7,9 +7,9 @@
 #include "progress.hpp"
 #include "run_support.hpp"
 #include "talus/base/error.hpp"
-#include "talus/io/output_file.hpp"
-#include "talus/io/source_cells.hpp"
-#include "talus/simulate/fields.hpp"
+#include "talus/io/files/output_file.hpp"
+#include "talus/io/gdal/source_cells.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
 #include "talus/terrain/source_slope.hpp"
 
 namespace {

@@ -7,10 +7,10 @@
 #include "commands.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
-#include "talus/io/loaded.hpp"
-#include "talus/io/output_file.hpp"
-#include "talus/io/write_vectors.hpp"
-#include "talus/simulate/plan.hpp"
+#include "talus/io/scenario/loaded_scenario.hpp"
+#include "talus/io/files/output_file.hpp"
+#include "talus/io/results/write_vectors.hpp"
+#include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/simulate.hpp"
 
 namespace {

@@ -5,7 +5,7 @@
 
 #include "commands.hpp"
 #include "run_support.hpp"
-#include "talus/io/style.hpp"
+#include "talus/io/results/style.hpp"
 
 // What is thrown may not leave the parallel region: the first failure is kept.
 void write_maps(const std::vector<talus::Map>& maps, const talus::io::MapTarget& target, int threads) {

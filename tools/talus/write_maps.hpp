@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "talus/io/write_rasters.hpp"
+#include "talus/io/results/write_rasters.hpp"
 
 /// Each needs room on the disk for its draft.
 inline constexpr int kMapsAtOnce = 4;

@@ -1,6 +1,6 @@
 #include <iostream>
 
-#include "mpi_team.hpp"
+#include "mpi_process_group.hpp"
 #include "program.hpp"
 #include "run_support.hpp"
 #include "talus/base/error.hpp"
@@ -8,14 +8,14 @@
 namespace {
 
 /// Understands the command line, the same in every process. Nothing where it is wrong, which the leader has said.
-Action action_of(int argc, char** argv, MpiTeam& team, int& code) {
-  const auto run = [&team](CLI::App& app, Action& action) { add_run(app, action, team); };
+Action action_of(int argc, char** argv, MpiProcessGroup& processes, int& code) {
+  const auto run = [&processes](CLI::App& app, Action& action) { add_run(app, action, processes); };
   Action action;
   const auto understand = [&] {
     action = understood(argc, argv, {run});
     return 0;
   };
-  if (team.leads()) {
+  if (processes.leads()) {
     code = exit_code_of(understand);
   } else {
     std::cout.setstate(std::ios::failbit);  // the leader gives the help
@@ -36,11 +36,11 @@ int main(int argc, char** argv) {
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &threads);
   int code = kDone;
   {
-    MpiTeam team;
-    const Action action = action_of(argc, argv, team, code);
+    MpiProcessGroup processes;
+    const Action action = action_of(argc, argv, processes, code);
     bool alike = true;  // all processes end in the same way
     if (action && threads < MPI_THREAD_SERIALIZED) {
-      if (team.leads()) say("error", "this MPI lets no threads call it (MPI_THREAD_SERIALIZED)");
+      if (processes.leads()) say("error", "this MPI lets no threads call it (MPI_THREAD_SERIALIZED)");
       code = kFailed;
     } else if (action) {
       code = exit_code_of([&] {
@@ -49,14 +49,14 @@ int main(int argc, char** argv) {
         try {
           ended = action();
         } catch (const talus::InputError& error) {
-          if (team.size() > 1) throw;  // of one process: the others do not know
+          if (processes.size() > 1) throw;  // of one process: the others do not know
           say("error", error.what());
           ended = kWrongInput;
         } catch (const WrongForAll& error) {
-          if (team.leads()) say("error", error.what());
+          if (processes.leads()) say("error", error.what());
           ended = kWrongInput;
         } catch (const Interrupted& error) {
-          if (team.leads()) say("", error.what());
+          if (processes.leads()) say("", error.what());
           ended = kInterrupted;
         }
         alike = true;

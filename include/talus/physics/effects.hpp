@@ -11,7 +11,7 @@ namespace talus {
 /// A fresh one is off, and off is bit-identical to absent.
 
 /// Where an effect acts: everywhere, in some zones, or in the cells of a mask (polygons).
-struct Extent {
+struct EffectArea {
   std::vector<std::uint8_t> zones;  ///< by zone of the cover: 1 where it acts; empty: in all of them
   Raster<std::uint8_t> mask;        ///< 1 where it acts; empty: everywhere
 
@@ -25,7 +25,7 @@ struct Extent {
 struct VegetationDrag {
   double coefficient = 0.0;  ///< c [kg/s]; 0: off
   double height = 10.0;      ///< of the stand [m]
-  Extent where;
+  EffectArea where;
 };
 
 /// Single stems, met at random.
@@ -34,7 +34,7 @@ struct ForestStems {
   double diameter = 0.3;        ///< DBH [m]
   double height = 20.0;         ///< of the trees [m]
   double species_factor = 1.0;  ///< of the energy a stem takes; 1: silver fir [-]
-  Extent where;
+  EffectArea where;
 };
 
 /// Air resistance, 1/2 rho C_d A v^2.
@@ -48,7 +48,7 @@ struct BlockShape {
   double lateral = 0.0;     ///< psi_scale is multiplied by 1 + lateral (L1/L3 - 1) [-]
   double loss = 0.0;        ///< k_t is multiplied by exp(-loss (L1/L3 - 1)) [-]
   double elongation = 0.0;  ///< share of L1/L2 - 1 in the index, the rest is L1/L3 - 1 [-]
-  Extent where;
+  EffectArea where;
 };
 
 /// How roughness and damping change with the size of the block.
@@ -56,7 +56,7 @@ struct BlockMass {
   double roughness = 0.0;           ///< theta_scale is multiplied by (D0/D)^roughness [-]
   double stiffness = 0.0;           ///< En50 is multiplied by (D/D0)^stiffness [-]
   double reference_diameter = 1.0;  ///< D0 [m]
-  Extent where;
+  EffectArea where;
 };
 
 /// Ground that is softer on wet days.
@@ -64,7 +64,7 @@ struct WetGround {
   double softening = 0.0;  ///< En50 is multiplied by exp(-softening) on a wet day [-]
   double drag = 0.0;       ///< Et50 is multiplied by exp(-drag) on a wet day [-]
   std::vector<int> days;   ///< the wet ones
-  Extent where;
+  EffectArea where;
 };
 
 /// Soft soil in which the block ploughs a scar.
@@ -72,21 +72,21 @@ struct SoftGround {
   double drag = 0.0;         ///< C_d of the soil [-]; 0: off
   double stiffness = 15.0;   ///< M_E [MN/m^2]
   double scar_length = 1.5;  ///< [m]
-  Extent where;
+  EffectArea where;
 };
 
 /// Resistance to rolling, once the block hops no higher than a share of its radius.
 struct RollingResistance {
   double coefficient = 0.0;  ///< mu_r [-]; 0: off
   double hop = 0.5;          ///< highest hop that counts as rolling, in radii [-]
-  Extent where;
+  EffectArea where;
 };
 
 /// A block that breaks at a hard impact.
 struct Fragmentation {
   double threshold = 0.0;  ///< energy lost across the plane, per mass, above which it breaks [J/kg]; 0: never
   double largest = 0.5;    ///< share of the mass that the largest piece keeps, in [1/2, 1)
-  Extent where;
+  EffectArea where;
 };
 
 /// All of them.

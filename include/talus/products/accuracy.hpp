@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "talus/simulate/tally.hpp"
+#include "talus/simulate/tally/tally.hpp"
 
 namespace talus {
 

@@ -2,7 +2,7 @@
 #include <span>
 #include <vector>
 
-#include "talus/simulate/hazard_tally.hpp"
+#include "talus/simulate/tally/hazard_tally.hpp"
 
 namespace talus {
 

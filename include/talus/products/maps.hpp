@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "talus/simulate/scenario.hpp"
-#include "talus/simulate/tally.hpp"
+#include "talus/simulate/scenario/scenario.hpp"
+#include "talus/simulate/tally/tally.hpp"
 
 namespace talus {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "talus/simulate/hazard_tally.hpp"
+#include "talus/simulate/tally/hazard_tally.hpp"
 
 namespace talus {
 

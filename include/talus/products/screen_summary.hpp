@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "talus/simulate/screens.hpp"
+#include "talus/simulate/screens/screens.hpp"
 
 namespace talus {
 

@@ -3,9 +3,9 @@
 #include <functional>
 #include <span>
 
-#include "talus/simulate/barrier_counts.hpp"
-#include "talus/simulate/screens.hpp"
-#include "talus/simulate/tally.hpp"
+#include "talus/simulate/tally/barrier_counts.hpp"
+#include "talus/simulate/screens/screens.hpp"
+#include "talus/simulate/tally/tally.hpp"
 
 namespace talus {
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "talus/simulate/simulate.hpp"
-#include "talus/simulate/team.hpp"
+#include "talus/simulate/plan/process_group.hpp"
 
 namespace talus {
 
@@ -23,7 +23,7 @@ struct Part {
 };
 
 /// Which cells the source cells have reached, where that must be known beyond one unit of work: a source cell counts
-/// once in a cell, however many units, rounds or sittings trace it. Source cells by their place in the order of work.
+/// once in a cell, however many units, rounds or sessions trace it. Source cells by their place in the order of work.
 class Reaches {
  public:
   /// @param units  of work of a source cell, in one round;  @param keep  all, for further rounds
@@ -55,7 +55,7 @@ class Reaches {
 ///
 /// A round traces `scenario.trajectories` blocks of each source cell: round r the blocks from r times that number on.
 /// Work is done in units, blocks of one source cell, in the order of `work_order`; a pause comes between units, and all
-/// before it are done, by whichever process of the team.
+/// before it are done, by whichever process of the process group.
 class Simulation {
  public:
   struct Position {
@@ -64,12 +64,12 @@ class Simulation {
   };
 
   /// @param further_rounds  there may be more than one
-  /// The scenario, the tally, the sinks and the team must outlive it.
+  /// The scenario, the tally, the sinks and the process group must outlive it.
   Simulation(const Scenario& scenario, const Part& part, bool further_rounds, Tally& tally, const Sinks& sinks,
-             Team& team = alone());
+             ProcessGroup& processes = alone());
 
   /// Traces on to the end of the round, or until `sinks.pause` or `sinks.progress` of one process asks to stop.
-  /// All processes of the team must call it. Tally, totals and rows are then of what this process has traced.
+  /// All processes of the process group must call it. Tally, totals and rows are then of what this process has traced.
   ///
   /// @param threads  0: as many as the machine has
   /// An exception of a sink leaves it of no use.
@@ -92,7 +92,7 @@ class Simulation {
   const Scenario& scenario_;
   Tally& tally_;
   const Sinks& sinks_;
-  Team& team_;
+  ProcessGroup& processes_;
   ScreenFinder screens_;
   std::vector<std::uint32_t> order_;  // numbers of all source cells
   std::uint32_t first_place_, units_per_source_;

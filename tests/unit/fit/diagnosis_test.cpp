@@ -5,10 +5,10 @@
 #include <numeric>
 
 #include "support/scenes.hpp"
-#include "talus/fit/candidates.hpp"
-#include "talus/fit/projection.hpp"
-#include "talus/fit/residual_table.hpp"
-#include "talus/fit/score_test.hpp"
+#include "talus/fit/diagnose/candidates.hpp"
+#include "talus/fit/calibrate/projection.hpp"
+#include "talus/fit/diagnose/residual_table.hpp"
+#include "talus/fit/diagnose/score_test.hpp"
 
 namespace talus {
 namespace {

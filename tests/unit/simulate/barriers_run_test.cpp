@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "../../support/scenarios.hpp"
-#include "talus/simulate/plan.hpp"
+#include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/simulate.hpp"
 
 namespace talus {

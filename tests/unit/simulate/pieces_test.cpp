@@ -3,7 +3,7 @@
 #include <map>
 
 #include "../../support/scenarios.hpp"
-#include "talus/simulate/plan.hpp"
+#include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/simulate.hpp"
 
 namespace talus {

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "../../support/scenarios.hpp"
-#include "talus/simulate/plan.hpp"
+#include "talus/simulate/plan/plan.hpp"
 
 namespace talus {
 namespace {

@@ -88,17 +88,17 @@ TEST(Simulation, StoppedAndRestoredAfterEveryUnitItEndsAsOneRun) {
     };
     sinks.pause = [] { return true; };
     Kept kept;
-    int sittings = 0;
-    for (bool done = false; !done; ++sittings) {
+    int sessions = 0;
+    for (bool done = false; !done; ++sessions) {
       Tally tally = tally_of(s);
       Simulation simulation(s, {}, false, tally, sinks);
-      if (sittings > 0) restore(kept, simulation, tally);
+      if (sessions > 0) restore(kept, simulation, tally);
       simulation.advance(threads);
       kept = kept_of(simulation, tally);
       done = simulation.round_done();
       if (done) EXPECT_EQ(cells_of(tally), cells_of(whole));
     }
-    EXPECT_GE(sittings, 15 / threads);  // units of work
+    EXPECT_GE(sessions, 15 / threads);  // units of work
     EXPECT_EQ(kept.totals.ends, expected.ends);
     EXPECT_EQ(kept.totals.length_mm, expected.length_mm);
     ASSERT_EQ(released.size(), s.released());  // every block once, in order

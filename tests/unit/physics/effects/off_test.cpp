@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "../../../support/slopes.hpp"
-#include "talus/simulate/fields.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace talus {
 namespace {
@@ -87,10 +87,10 @@ TEST(Effects, OutsideTheirPlaceChangeNoImpact) {  // flights are cut in pieces t
   acting.effects.fragmentation.threshold = 60.0;
   const Raster<std::uint8_t> nowhere(acting.surface.grid(), 0);
   Effects& e = acting.effects;
-  for (Extent* where : {&e.vegetation_drag.where, &e.forest_stems.where, &e.block_shape.where, &e.block_mass.where,
+  for (EffectArea* where : {&e.vegetation_drag.where, &e.forest_stems.where, &e.block_shape.where, &e.block_mass.where,
                         &e.wet_ground.where})
     where->zones = {0, 1};
-  for (Extent* where : {&e.soft_ground.where, &e.rolling_resistance.where, &e.fragmentation.where})
+  for (EffectArea* where : {&e.soft_ground.where, &e.rolling_resistance.where, &e.fragmentation.where})
     where->mask = nowhere;
   e.vegetation_drag.coefficient = e.forest_stems.density = 0.0;  // those two: in the tests of drag
   for (std::uint32_t block = 0; block < 40; ++block)

@@ -1,0 +1,43 @@
+#pragma once
+#include <vector>
+
+#include "talus/fit/diagnose/score_test.hpp"
+
+namespace talus {
+
+/// Where an effect is tested: the candidates whose signatures are summed up, and which of all directions these are.
+struct TestedPlace {
+  std::vector<std::size_t> members;  ///< indices into the candidates; all of one effect
+  Eigen::MatrixXd pick;              ///< directions x tested parameters
+  std::vector<bool> one_sided;       ///< by tested parameter: it cannot be below zero
+};
+
+/// Every place of every candidate: alone; neighbouring bands joined; sets of days. The directions are those of the
+/// base's parameters, then the tested ones of each candidate in turn.
+std::vector<TestedPlace> places_of(std::span<const Candidate> candidates, Eigen::Index base, Eigen::Index directions);
+
+/// The linear map from scores to one place's effective score: what the free parameters of the base explain is taken out
+/// of it by a regression on their scores.
+class Projection {
+ public:
+  /// @param covariance  of the scores of one data set under the model; directions x directions
+  /// @param steps       by which the base's parameters were moved [z]
+  /// @param prior       precision of a step of the base
+  Projection(const TestedPlace& place, const Eigen::MatrixXd& covariance, const Eigen::VectorXd& steps, double prior);
+
+  /// @param scores  directions x blocks
+  ///
+  /// The estimate is the best one within its bounds. The statistic is the larger of two: with the variance that the
+  /// model gives, and with that of the blocks' own contributions, so that a model which scatters too much does not hide
+  /// an effect. Its distribution is taken as a mixture of chi squared ones, as for bounds on uncorrelated estimates:
+  /// p-values that are reported come from data sets of the model, which go through the same choice.
+  Verdict verdict(const Eigen::MatrixXd& scores) const;
+
+ private:
+  Eigen::MatrixXd map_;  // tested parameters x directions
+  Eigen::MatrixXd information_;
+  Eigen::VectorXd steps_;
+  std::vector<bool> one_sided_;
+};
+
+}  // namespace talus

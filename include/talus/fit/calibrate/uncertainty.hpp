@@ -1,0 +1,38 @@
+#pragma once
+#include "talus/fit/calibrate/calibrate.hpp"
+
+namespace talus {
+
+/// How well the parameters of a fit are known.
+struct Uncertainty {
+  Eigen::MatrixXd draws;            ///< one z per row; size: draws x free parameters
+  std::vector<Interval> intervals;  ///< 95 %, of the values in the units of the files
+  std::vector<bool> identifiable;   ///< false: the interval covers most of what was possible before
+  Eigen::MatrixXd correlation;      ///< of z over the draws; size: parameters x parameters
+  double noise = 0.0;               ///< of a total with FitOptions::trials, from the luck of the trials
+  bool interrupted = false;
+};
+
+/// A parameter is called not identifiable where its 95 % interval is wider than this share of the prior's, or of the
+/// bounds where these are narrower.
+inline constexpr double kMostOfThePrior = 0.5;
+
+struct UncertaintyOptions {
+  int rounds = 3;  ///< of new evaluations where the draws lie
+  int draws = 400;
+};
+
+/// Posterior sample by randomised minimisation (randomise, then optimise): each draw takes the blocks anew with
+/// replacement, draws the centre of the prior from the prior, adds the luck of the trials, and moves the optimum of the
+/// fit to the new minimum within the bounds. The objective is a quadratic model of every row score around the optimum
+/// (`LocalModel`), so that a draw costs no simulation; it is learnt from what the fit tried and from rounds of designs
+/// as wide as the draws of the round before.
+///
+/// @param fit  of the same problem
+///
+/// What it holds: which blocks were released, the prior, the simulation's luck. What it does not: that the model may be
+/// wrong. docs/closing-the-loop.md, "Uncertainty".
+Uncertainty uncertainty_of(const FitProblem& problem, const FitOptions& options, const UncertaintyOptions& how,
+                           const Fit& fit);
+
+}  // namespace talus

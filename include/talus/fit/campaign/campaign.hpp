@@ -1,0 +1,77 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "talus/physics/block.hpp"
+#include "talus/simulate/scenario/scenario.hpp"
+
+namespace talus {
+
+/// What was measured of a block where it first crossed a screen. NaN: not measured, though it did cross.
+struct Passage {
+  double speed = kNotGiven;  ///< in space [m/s]
+  double jump = kNotGiven;   ///< vertical height of the centre above the terrain [m]
+  double spin = kNotGiven;   ///< angular velocity [rad/s]
+};
+
+/// A state that was measured along a path.
+struct Sample {
+  double x = 0.0, y = 0.0, z = 0.0;  ///< [m, local]
+  double distance = 0.0;             ///< in plan from the block's nominal place of release [m]
+  double speed = kNotGiven;          ///< [m/s]; NaN: not measured
+  double spin = kNotGiven;           ///< [rad/s]; NaN: not measured
+};
+
+/// A block that was released, and what was measured of it.
+struct MeasuredBlock {
+  std::string id;
+  double x = 0.0, y = 0.0;       ///< nominal place of release [m, local]
+  double release_height = 1.0;   ///< of the centre above the terrain [m]
+  double release_radius = 0.0;   ///< the place of release is uniform in a disc of this radius around (x, y) [m]
+  Vec3 velocity = Vec3::Zero();  ///< at the release [m/s]
+  double mass = 1.0;             ///< [kg], > 0
+  double density = 2700.0;       ///< [kg/m^3], > 0
+  Vec3 axes = Vec3::Ones();      ///< L1 >= L2 >= L3 [m]; of a sphere of this mass where they are not given
+  int day = 0;                   ///< of the release; 0: not given
+  std::string group;             ///< empty: none
+  bool holdout = false;          ///< never enters a fit
+
+  std::optional<Eigen::Vector2d> stop;           ///< where it came to rest [m, local]
+  std::optional<double> stop_mass;               ///< what arrived there [kg]
+  std::vector<std::optional<Passage>> passages;  ///< one per screen of the campaign: its first crossing; nothing: none
+  std::vector<Sample> samples;                   ///< in the order of the file
+};
+
+/// Standard deviations of the measurement, added to what is simulated before the two are compared. Normal errors.
+struct MeasurementError {
+  double position_m = 0.0;                 ///< of each coordinate of a stop [m]
+  double speed_fraction = 0.0;             ///< of a speed, relative to it [-]
+  double jump_height_m = 0.0;              ///< of a jump height, which is cut off at 0 [m]
+  double angular_velocity_fraction = 0.0;  ///< of a spin, relative to it [-]
+};
+
+/// Measured data: the place, what was released, what was seen. Valid by construction: `io::read_campaign` builds it.
+/// docs/closing-the-loop.md, "Campaign".
+struct Campaign {
+  std::string name;
+  Surface surface{Raster<float>{}};
+  Raster<std::uint8_t> zones;           ///< index into zone_names; empty where one ground is everywhere
+  std::vector<std::string> zone_names;  ///< "default" (what no zone covers) first, then those of the campaign
+  std::vector<MeasuredBlock> blocks;
+  std::vector<Screen> screens;
+  MeasurementError error;
+};
+
+/// The blocks that may enter a fit: true where holdout is not set. Size: blocks.
+std::vector<bool> fitting_rows(const Campaign& campaign);
+/// The blocks that are held out.
+std::vector<bool> holdout_rows(const Campaign& campaign);
+
+/// The body of a measured block: a sphere of its mass and density, with its axes.
+Block body_of(const MeasuredBlock& block);
+
+/// Diameter of the sphere of a mass [kg] and a density [kg/m^3]: (6 m / (pi rho))^(1/3) [m].
+double equivalent_diameter(double mass, double density);
+
+}  // namespace talus

@@ -1,0 +1,88 @@
+#pragma once
+#include <array>
+#include <functional>
+#include <span>
+
+#include "talus/fit/campaign/campaign.hpp"
+
+namespace talus {
+
+/// A net that catches what crosses it low and slowly enough: a candidate of the diagnosis.
+struct Net {
+  std::vector<Eigen::Vector2d> line;  ///< in plan [m, local]
+  double height = 0.0;                ///< above the terrain [m]; 0: catches nothing
+  double capacity = 1e9;              ///< translational energy it holds [kJ]
+};
+
+/// How much an instrument reads too high, as a share of the true value.
+struct Bias {
+  double speed = 0.0, jump = 0.0, spin = 0.0;
+};
+
+/// What is fitted and compared: the ground of each zone, the impact law and the effects on top of it; then what the
+/// campaign's files do not say of the place and of its instruments.
+struct Model {
+  std::vector<Ground> grounds;  ///< by zone: as Campaign::zone_names, or of `zones`
+  ImpactModel impact;
+  Effects effects;
+  Raster<std::uint8_t> zones;  ///< instead of the campaign's; empty: the campaign's
+  std::vector<Net> nets;
+  std::vector<Bias> bias;  ///< by screen, then that of the samples; empty: none
+};
+
+/// A model with the same ground in all zones of a campaign: the preset of this name, no effect.
+/// Throws InputError for a name that is no preset.
+Model model_of_preset(const Campaign& campaign, std::string_view preset);
+
+/// What would have been measured of the simulated trajectories of one block, measurement error included.
+/// Arrays have one value per trial; NaN where nothing was seen.
+struct BlockRuns {
+  struct AtScreen {
+    std::vector<double> speed, jump, spin;  ///< of the first crossing [m/s], [m], [rad/s]; NaN: not crossed
+  };
+  struct AtSample {
+    std::vector<double> speed,
+        spin;  ///< where the path first reaches the sample's distance; NaN: it does not get there
+  };
+
+  std::uint32_t trials = 0;                 ///< 0: the block was not asked for
+  std::vector<double> x, y;                 ///< where it came to rest [m, local]; NaN unless stopped or caught
+  std::vector<double> mass_share;           ///< of the mass, at the end [-]
+  std::vector<AtScreen> screens;            ///< by screen of the campaign
+  std::vector<AtSample> samples;            ///< by sample of the block
+  std::vector<std::uint32_t> impacts;       ///< by trial
+  std::vector<End> end;                     ///< by trial
+  std::array<std::uint32_t, kEnds> ends{};  ///< trials by End
+  std::vector<std::uint32_t> zone_hits;     ///< trials with an impact in each zone
+};
+
+/// First trial of the luck that no search has seen: what a fitted model is scored with.
+inline constexpr std::uint32_t kUnseen = 1'000'000'000;
+
+/// The user has ended a fit: a `proceed` said no.
+struct FitInterrupted {};
+
+struct ObserveOptions {
+  std::uint32_t trials = 100;  ///< per block
+  std::uint64_t seed = 1;
+  std::uint32_t first_trial = 0;  ///< number of the first one: other trials of the same seed are other trajectories
+  int threads = 0;                ///< 0: as many as the machine has
+  std::vector<bool> blocks;       ///< which ones; empty: all
+  std::function<bool()> proceed;  ///< asked now and then, from any thread; false ends the work. May be empty
+};
+
+/// Simulates every block of a campaign and measures the paths as the campaign did.
+///
+/// @return one entry per block of the campaign, with trials = 0 for those not asked for (or not reached when `proceed`
+///         said no)
+///
+/// Common random numbers: the draws of (seed, block, trial), the place of release in its disc and the errors of the
+/// measurement among them, do not depend on the model, so that two models are compared on the same luck. The same bits
+/// for any number of threads and any choice of blocks. A screen's values are those of `screens.csv`.
+/// Precondition: model.grounds has one entry per zone.
+std::vector<BlockRuns> observe(const Campaign& campaign, const Model& model, const ObserveOptions& options);
+
+/// The release of one trial of a block, as `observe` makes it. A place without terrain gives a height of NaN.
+Release release_of(const Campaign& campaign, std::uint32_t block, std::uint64_t seed, std::uint32_t trial);
+
+}  // namespace talus

@@ -1,0 +1,79 @@
+#pragma once
+#include <Eigen/Dense>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "talus/fit/campaign/observe.hpp"
+
+namespace talus {
+
+/// What is compared of a block, one number each. docs/closing-the-loop.md, "The residual".
+struct Observable {
+  enum class Kind { Runout, Lateral, Mass, Crossed, Speed, Jump, Spin, SampleSpeed, SampleSpin } kind;
+  std::size_t screen = 0;  ///< of Crossed, Speed, Jump, Spin
+  bool late = false;       ///< of the samples: the farther half of a block's
+  std::string name;        ///< "runout", "speed S1", "sample spin late", ...
+};
+
+/// A block's residual: standard normal numbers, each zero on average and of variance one if the model is right.
+///
+/// Per observable its place, z = Phi^-1(rank of the measured value among the simulated ones), and its spread,
+/// (z^2 - 1) / sqrt(2); for a crossing (c - p) / sqrt(p (1 - p)). NaN where nothing was measured.
+using Residual = Eigen::VectorXd;
+
+/// The distributions that a model gives for every block of a campaign, and residuals against them.
+class ResidualSpace {
+ public:
+  /// @param runs  of the model; at least 20 trials of each fitting block. The campaign must outlive this.
+  ResidualSpace(const Campaign& campaign, const std::vector<BlockRuns>& runs);
+
+  const std::vector<Observable>& observables() const { return observables_; }
+  /// Number of components of a residual: places first, then spreads.
+  Eigen::Index size() const { return 2 * static_cast<Eigen::Index>(observables_.size()); }
+
+  /// How often a block crosses the screen of an observable, simulated: in (0, 1).
+  double crossing_share(std::size_t block, std::size_t observable) const {
+    return crossing_share_[block * observables_.size() + observable];
+  }
+
+  Residual of_measured(std::size_t block) const;
+  /// Of a trial of any runs, as if it had been measured, with the gaps that the block's measurements have.
+  Residual of_trial(std::size_t block, const BlockRuns& runs, std::size_t trial) const;
+
+  /// `residual` divided by the correlation of its components, pooled over all blocks: what is NaN stays out and
+  /// becomes zero.
+  Eigen::VectorXd whitened(const Residual& residual) const;
+
+ private:
+  /// Simulated values that were observed, ascending; fewer than ten: of no use.
+  using Sorted = std::vector<double>;
+  /// What there is to see of one block, measured or of one trial. NaN: not seen.
+  struct Seen {
+    Eigen::Vector2d way{kNotGiven, kNotGiven};  // from the place of release to the stop [m]
+    double mass_share = kNotGiven;
+    std::vector<std::optional<Passage>> passages;   // by screen; nothing: not crossed
+    std::vector<double> sample_speed, sample_spin;  // by sample
+  };
+
+  Seen seen_measured(std::size_t block) const;
+  Seen seen_of_trial(std::size_t block, const BlockRuns& runs, std::size_t trial) const;
+  std::vector<double> values_of(std::size_t block, const Seen& seen) const;
+  Residual residual(std::size_t block, const std::vector<double>& values) const;
+  double sample_score(std::size_t block, const Observable& o, const std::vector<double>& values) const;
+  void correlate(const std::vector<BlockRuns>& runs);
+
+  const Campaign& campaign_;
+  std::vector<Observable> observables_;
+  std::vector<Eigen::Vector2d> forward_;                     // by block: towards its mean simulated stop, unit
+  std::vector<std::vector<Sorted>> distributions_;           // by block and observable
+  std::vector<std::vector<std::array<Sorted, 2>>> samples_;  // by block and sample: speed, spin
+  std::vector<double> crossing_share_;                       // by block and observable
+  Eigen::MatrixXd correlation_;
+  mutable std::map<std::vector<bool>, Eigen::MatrixXd> inverses_;  // by what is observed
+};
+
+/// Quantile of the standard normal distribution; share in (0, 1). Source: boost::math.
+double normal_quantile(double share);
+
+}  // namespace talus

@@ -1,0 +1,34 @@
+#pragma once
+#include <functional>
+
+#include "talus/fit/diagnose/residual.hpp"
+
+namespace talus {
+
+/// How the residual of one observable goes with one property of the blocks.
+struct ResidualRow {
+  std::string observable;  ///< "runout", "speed S1", ...
+  std::string covariate;   ///< "mean", "spread", "mass", "L1/L2", "L1/L3", "day", "release height", "east", "north"
+  double statistic;        ///< of "mean" the mean of z; of "spread" its variance; of a crossing a standard normal
+                           ///< number, positive where more cross than should; else Spearman's rank correlation
+  double p_value;          ///< of this row alone, two-sided
+  double corrected;        ///< for the number of rows (Holm)
+  std::size_t blocks;
+};
+
+/// What a residual may go with.
+struct Property {
+  const char* name;                                ///< as in ResidualRow::covariate
+  const char* unit;                                ///< empty: none
+  std::function<double(const MeasuredBlock&)> of;  ///< NaN: not known of this block
+};
+const std::vector<Property>& properties();
+
+/// Every observable against every property, most significant first. Rows with fewer than ten blocks are left out.
+std::vector<ResidualRow> residual_table(const Campaign& campaign, const ResidualSpace& space,
+                                        const std::vector<bool>& rows);
+
+/// Spearman's rank correlation of two lists of equal length; ties share their mean rank.
+double spearman(std::span<const double> a, std::span<const double> b);
+
+}  // namespace talus

@@ -1,0 +1,28 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "talus/fit/campaign/campaign.hpp"
+#include "talus/io/scenario/loaded_scenario.hpp"
+
+namespace talus::io {
+
+/// Measured data with what is to be told of their origin.
+struct LoadedCampaign {
+  Campaign campaign;
+  GeoReference geo;
+  std::vector<std::string> zone_codes;  ///< by zone, as the zones' file has them; of "default" empty
+  std::vector<InputFile> inputs;
+  std::vector<std::string> warnings;  ///< one line each
+};
+
+/// Reads a campaign: campaign.toml, the terrain, the zones, and the tables blocks, stops, passages, screens, samples.
+///
+/// @param path  of campaign.toml; the paths in it are relative to its folder
+///
+/// Throws InputError, one line with file, line, column, value and way out: what cannot be read, unknown keys and
+/// columns, what is no number or out of bounds, a block twice, an id that blocks.csv lacks, a screen that screens.csv
+/// lacks, axes that do not descend, a release off the terrain. docs/closing-the-loop.md, "Campaign".
+LoadedCampaign read_campaign(const std::string& path);
+
+}  // namespace talus::io

@@ -1,0 +1,64 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "talus/io/scenario/loaded_scenario.hpp"
+
+namespace talus::io {
+
+/// "EPSG:31287 (MGI / Austria Lambert)"; the name alone where it has no code.
+std::string crs_name(const std::string& wkt);
+
+/// A rectangle in a coordinate system [m].
+struct MapExtent {
+  double west, south, east, north;
+};
+
+/// A rectangle and its system.
+struct MapArea {
+  MapExtent extent;
+  std::string wkt;
+};
+
+/// What is transformed, for the record and for messages.
+struct LayerName {
+  std::string role;  ///< "sources"
+  std::string path;
+};
+
+/// Refuses, for the raster `path`, a coordinate system that is not a plane one in metres (heights too, where it says).
+/// A way out is part of each message. Local systems (engineering CRS) in metres are taken.
+///
+/// @return a warning where the map projection stretches distances by more than 1 % at the middle of the extent (more
+///         than 5 %, as Web Mercator does, is refused); nothing otherwise
+std::optional<std::string> check_metric(const std::string& path, const std::string& wkt, const MapExtent& extent);
+
+/// Brings places from one coordinate system into another by PROJ; nothing is done where both are the same.
+class Transformer {
+ public:
+  /// @param map  PROJ chooses the operation that is best there
+  /// Throws InputError where there is no way from one to the other.
+  Transformer(LayerName layer, const std::string& from_wkt, const std::string& to_wkt, const MapArea& map);
+  ~Transformer();
+  Transformer(Transformer&&) noexcept;
+
+  bool is_identity() const;
+
+  /// x east, y north (or longitude, latitude), whatever the order of the axes in the system.
+  /// Throws InputError "`where`: the place ..." where it cannot be transformed.
+  void apply(double& x, double& y, const std::string& where);
+
+  /// Every operation that was used so far, with its accuracy. Empty for the identity.
+  const std::vector<Reprojection>& used() const;
+
+  /// One line for every operation whose accuracy is unknown or worse than half a cell.
+  std::vector<std::string> warnings(double cell) const;
+
+ private:
+  struct Projection;
+  std::unique_ptr<Projection> projection_;
+};
+
+}  // namespace talus::io

@@ -1,0 +1,38 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "talus/io/scenario/loaded_scenario.hpp"
+#include "talus/products/hazard.hpp"
+#include "talus/products/objects.hpp"
+
+namespace talus::io {
+
+/// Polygons and lines of a vector file with their attributes, in local metres.
+class ObjectLayer {
+ public:
+  /// Reads them in any coordinate system. Throws InputError for points, features without geometry, and where all lie
+  /// off the DEM.
+  ObjectLayer(const std::string& path, const LoadedScenario& loaded);
+  ~ObjectLayer();
+
+  const std::vector<HazardObject>& objects() const;
+  const std::vector<std::string>& warnings() const;
+
+  /// Writes objects.gpkg (the geometries in the system of the DEM, their attributes, and the hazard), objects.csv (the
+  /// same as a table), objects_curves.csv (how often each energy is exceeded) and objects_sources.csv (from where).
+  ///
+  /// @param hits  by object
+  /// @param years  periods of the columns energy_T<years>
+  /// Throws std::runtime_error on a full disk.
+  void write(const std::filesystem::path& folder, const LoadedScenario& loaded, const HazardRules& rules,
+             const std::vector<ObjectHits>& hits, const std::vector<double>& years) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace talus::io

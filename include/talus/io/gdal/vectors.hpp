@@ -1,0 +1,52 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "talus/io/gdal/rasters.hpp"
+
+namespace talus::io {
+
+/// Where blocks are released, as a vector file says it.
+struct SourceLayer {
+  std::vector<SourceFeature> features;  ///< in the order of the file; those wholly off the map too
+  std::vector<SourceCell> cells;        ///< by feature; within one row by row from the north-west, then its points
+  std::vector<std::int64_t> ids;        ///< of the features in the file, for messages
+  std::vector<Setting> attributes;      ///< what was read from the fields
+  std::vector<Reprojection> reprojections;
+  std::vector<std::string> warnings;
+};
+
+/// Reads sources: polygons, lines, points, mixed or in collections, in any coordinate system.
+///
+/// A polygon gives the cells whose centres it covers, and where that is none the cells that it touches; a line those
+/// that it crosses; a point itself. Each part of a feature by its own kind, each cell once per feature. Cells without
+/// terrain are left out (with a warning). Fields read where present, upper or lower case: frequency, diameter,
+/// diameter_min, diameter_max, height, vx, vy, vz, name; NULL is not given.
+///
+/// @param release_height  where the field height does not say it [m]
+/// Throws InputError that names file, feature, field, value and what is allowed; also where no cell is left.
+SourceLayer read_sources(const std::string& path, const Terrain& terrain, const Range& release_height);
+
+/// Lines whose crossings are recorded, as a vector file says it.
+struct ScreenLayer {
+  std::vector<Screen> screens;
+  std::vector<Reprojection> reprojections;
+  std::vector<std::string> warnings;
+};
+
+/// Reads screens: lines with a field `id` (text or whole number; else the number of the feature). Lines of the same id,
+/// and the parts of a multiline, are one screen. A plain CSV with columns id,wkt is in the system of the DEM.
+ScreenLayer read_screens(const std::string& path, const Terrain& terrain);
+
+/// Barriers, as a vector file says it.
+struct BarrierLayer {
+  std::vector<Barrier> barriers;
+  std::vector<Reprojection> reprojections;
+  std::vector<std::string> warnings;
+};
+
+/// Reads barriers: lines with the fields `height` [m] and `capacity` [kJ], which must be there, and `id` as for
+/// screens. Each feature is one barrier.
+BarrierLayer read_barriers(const std::string& path, const Terrain& terrain);
+
+}  // namespace talus::io

@@ -1,0 +1,17 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "talus/io/scenario/loaded_scenario.hpp"
+
+namespace talus::io {
+
+/// Where a fit comes from: at the head of every report.
+struct FitRecord {
+  std::vector<std::string> command;
+  std::vector<InputFile> inputs;
+  std::vector<std::string> warnings;
+  std::string campaign;
+};
+
+}  // namespace talus::io

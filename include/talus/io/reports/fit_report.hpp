@@ -1,0 +1,36 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "talus/fit/score/distributions.hpp"
+#include "talus/fit/calibrate/uncertainty.hpp"
+#include "talus/io/reports/fit_record.hpp"
+#include "talus/io/reports/score_report.hpp"
+
+namespace talus::io {
+
+/// The score of the model before and after a fit, on rows of one kind.
+struct BeforeAfter {
+  ScoredRows before, after;
+  Reduction reduction;
+};
+
+/// All that `talus calibrate` found.
+struct Calibration : FitRecord {
+  FitOptions options;
+  Model start;
+  std::vector<Parameter> free;
+  std::vector<std::string> untouched;  ///< zones whose parameters stayed, because too few simulated paths touch them
+  Fit fit;
+  Uncertainty uncertainty;
+  std::uint32_t score_trials = 100;
+  std::vector<BeforeAfter> errors;  ///< of the fitting and the held-out rows, with trials the search has not seen
+  Comparison comparison;            ///< of all blocks, after the fit
+};
+
+/// The text of calibration.json.
+std::string calibration_json(const Calibration& calibration);
+/// The text of report.md: the same for people.
+std::string calibration_report(const Calibration& calibration);
+
+}  // namespace talus::io

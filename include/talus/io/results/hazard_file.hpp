@@ -1,0 +1,46 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+
+#include "talus/io/scenario/loaded_scenario.hpp"
+#include "talus/simulate/tally/tally.hpp"
+
+namespace talus::io {
+
+/// The name of the file in a folder of results.
+inline constexpr const char* kHazardFile = "hazard_tally.gz";
+
+/// What a run kept of its hazard, cells apart.
+struct HazardHeader {
+  std::string version;  ///< of the program that wrote it
+  std::string plan;     ///< `plan_checksum`
+  Grid grid;
+  GeoReference geo;
+  HazardRules rules;
+};
+
+/// A row of cells. Row 0 is the southern one.
+struct HazardRow {
+  int row = 0;
+  std::vector<bool> terrain;                        ///< by column
+  std::vector<std::pair<int, HazardCell>> touched;  ///< by column, from the west
+};
+
+/// SHA-256 of all settings of a scenario and of its input files, wherever these lie: equal where the same trajectories
+/// follow.
+std::string plan_checksum(const LoadedScenario& loaded);
+
+/// Writes the annual frequencies that a tally kept, compressed. docs/hazard.md, "What a run keeps".
+///
+/// The bytes depend on the values only. Throws std::runtime_error on a full disk; no half file is left.
+void write_hazard(const std::filesystem::path& file, const LoadedScenario& loaded, const Tally& tally);
+
+/// Reads such a file, row by row in bounded memory, from the north.
+///
+/// @param begin  called once before the rows
+/// Throws InputError, one line with the way out: where it is not there, is none, was written by a later version, or its
+/// bytes have changed (a checksum over all of them). The last is known at the end only.
+HazardHeader read_hazard(const std::filesystem::path& file, const std::function<void(const HazardHeader&)>& begin,
+                         const std::function<void(const HazardRow&)>& visit);
+
+}  // namespace talus::io

@@ -1,0 +1,30 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "talus/io/results/hazard_file.hpp"
+#include "talus/products/hazard_matrix.hpp"
+
+namespace talus::io {
+
+/// Reads a matrix of classes from a TOML file: energies, years, classes, names; what is not given has the default.
+/// Throws InputError with file, line, key, value and what is allowed.
+HazardMatrix read_matrix(const std::string& path);
+
+/// What `talus hazard` did.
+struct HazardRecord {
+  std::vector<std::string> command;
+  HazardHeader header;
+  HazardMatrix matrix;
+  std::string matrix_file;  ///< empty: the default
+  std::uint64_t cells = 0;  ///< that anything passes
+  std::string objects_file;
+  std::string frequency_file;  ///< another weighting than the run's; empty: the run's
+  bool replayed = false;       ///< the plan was run again, for the objects or the weighting
+  std::vector<std::string> warnings, files;
+};
+
+/// The text of hazard.json.
+std::string hazard_json(const HazardRecord& record);
+
+}  // namespace talus::io

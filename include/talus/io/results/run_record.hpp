@@ -1,0 +1,62 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "talus/io/scenario/loaded_scenario.hpp"
+#include "talus/products/accuracy.hpp"
+#include "talus/simulate/simulate.hpp"
+
+namespace talus::io {
+
+/// Largest share of trajectories that may end at a limit; above it a run counts as failed.
+inline constexpr double kAllowedLimitShare = 0.001;
+
+/// Seconds of the three stages of a run.
+struct StageSeconds {
+  double read = 0.0, simulate = 0.0, write = 0.0;
+};
+
+/// The rounds of a run that was asked for several.
+struct RoundsRecord {
+  std::uint32_t done = 0;  ///< 0: it was not
+  Rounds asked;
+  Accuracy reached;
+  bool reached_it() const { return asked.until_error && reached.cells > 0 && reached.half_width < *asked.until_error; }
+};
+
+/// What happened in a run.
+struct RunRecord {
+  std::vector<std::string> command;  ///< as it was called
+  Totals totals;
+  std::vector<std::string> warnings;  ///< those of the input and those of the result
+  std::vector<std::string> files;     ///< written beside run.json
+  std::uint64_t touched_cells = 0;
+  StageSeconds cpu, wall;
+  int threads = 0;  ///< of all processes
+  int ranks = 1;    ///< processes
+  RoundsRecord rounds;
+  std::uint32_t parts = 1;  ///< that were joined
+  std::string plan;         ///< `plan_checksum` of one round
+};
+
+/// Whether too many trajectories ended at a limit (`kAllowedLimitShare`).
+bool too_many_limits(const Totals& totals);
+
+/// The text of run.json. Equal runs differ only in command, threads, ranks, cpu_seconds, wall_seconds and
+/// peak_memory_mb.
+std::string run_json(const RunRecord& record, const LoadedScenario& loaded);
+
+/// `status` of a run whose results are good.
+inline constexpr const char* kComplete = "complete";
+
+/// `status` of the results in a folder; nothing where it holds none of this plan and of so many rounds as were asked
+/// for.
+std::optional<std::string> status_of_result(const std::filesystem::path& folder, const std::string& plan,
+                                            const Rounds& asked);
+
+/// The most memory that this process has held so far [MB]; 0 where the system does not tell.
+double peak_memory_mb();
+
+}  // namespace talus::io

@@ -1,0 +1,42 @@
+#pragma once
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "talus/io/scenario/loaded_scenario.hpp"
+#include "talus/simulate/screens/screens.hpp"
+
+namespace talus::io {
+
+/// Writes `screens.csv`: one row for every time a block crossed a screen, in the order (source, block, time).
+///
+///   source,block,screen,speed_ms,energy_kj,total_energy_kj,jump_height_m,angular_velocity_rads,mass_kg,x,y
+///
+/// speed_ms is the speed in space; energy_kj = 1/2 m v^2, total_energy_kj adds the rotation 1/2 (2/5 m R^2) w^2. Six
+/// digits; x and y in map coordinates, to the millimetre. Throws std::runtime_error on a full disk.
+class CrossingsWriter {
+ public:
+  CrossingsWriter(const std::filesystem::path& file, const Scenario& scenario, const GeoReference& geo);
+  void write(std::span<const Crossing> crossings);
+  void finish();
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  [[noreturn]] void fail() const;
+  void put(const std::string& text);
+
+  std::string name_;  // of the file
+  std::unique_ptr<std::FILE, Close> file_;
+  std::vector<std::string> screens_;  // their ids as they stand in the file
+  double west_, south_;               // lower-left corner of the grid [m]
+};
+
+/// A text as a field of a CSV file: in quotes where it needs them.
+std::string csv_field(const std::string& text);
+
+}  // namespace talus::io

@@ -1,0 +1,55 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <span>
+
+#include "talus/io/scenario/loaded_scenario.hpp"
+#include "talus/simulate/simulate.hpp"
+
+namespace talus::io {
+
+/// Writers of what `simulate` hands out while it runs: rows go to the file as they come, memory does not grow with
+/// them. Called from one thread at a time, whichever. `finish` completes the file; without it what was written is
+/// worthless. All throw std::runtime_error, one line with the file and the cause (a full disk).
+
+/// Where every block ended: the layer `stops` of a GeoPackage, points in the system of the DEM.
+///
+/// Fields: source, block, end (stopped, left, caught, limit), feature (name of the source's feature, else its number
+/// from 0), diameter_m, mass_kg, x_release, y_release (map coordinates), z, seconds, max_speed_ms, length_m, impacts.
+/// The point and z in full precision, other numbers to three decimals (the diameter to four).
+class StopsWriter {
+ public:
+  StopsWriter(const std::filesystem::path& file, const LoadedScenario& loaded);
+  ~StopsWriter();
+  void write(std::span<const StopRow> rows);
+  void finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Paths of recorded blocks: the layer `trajectories` of a GeoPackage, LineString ZM with M = time since the release
+/// [s].
+class TrajectoriesWriter {
+ public:
+  TrajectoriesWriter(const std::filesystem::path& file, const GeoReference& geo, const Grid& grid);
+  ~TrajectoriesWriter();
+  void write(const RecordedPath& path);
+
+  /// Adds the layer `vertices`, points ZM with the motion that leaves each vertex: time, speed_ms, vx, vy, vz, wx, wy,
+  /// wz, event. For `talus trace`.
+  void write_vertices(const Path& path);
+  void finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// What begins at a vertex, in words: release, impact, slide, takeoff, end.
+const char* name_of(Event event);
+/// stopped, left, caught or limit.
+const char* name_of(End end);
+
+}  // namespace talus::io

@@ -1,0 +1,57 @@
+#pragma once
+#include <optional>
+
+#include "talus/simulate/scenario/scenario.hpp"
+
+namespace talus {
+
+/// What one trajectory stands for in a year, and the group of trajectories that are drawn alike with it.
+struct Stake {
+  std::int64_t weight = 0;    ///< events per year, in units of WeightScale::unit
+  std::uint64_t stratum = 0;  ///< some blocks of one source cell
+  std::uint32_t blocks = 0;   ///< of the stratum
+};
+
+/// What the weights of all trajectories of a run have in common.
+struct WeightScale {
+  double unit = 0.0;               ///< [1/year], a power of two
+  double square_unit = 0.0;        ///< of sums of squares [1/year^2], a power of two
+  double total = 0.0;              ///< events per year of all trajectories
+  std::int64_t largest = 0;        ///< weight of a trajectory [units]
+  std::uint64_t trajectories = 0;  ///< how many there are
+  bool equal = true;               ///< all have the same weight
+
+  double largest_weight() const { return static_cast<double>(largest) * unit; }  ///< [1/year]
+  bool operator==(const WeightScale&) const = default;
+};
+
+/// Events per year of every source cell and class of blocks, as whole multiples of a unit: sums over trajectories are
+/// equal in any order. The unit is a power of two, chosen so that the sum over all trajectories stays below 2^62; it
+/// follows from the scenario alone, so that parts of one plan have the same.
+///
+/// A trajectory of a class that is drawn with the share p of n blocks stands for (events per year of cell and class)
+/// / (n p). docs/hazard.md, "Weights".
+class AnnualWeights {
+ public:
+  /// @param further_rounds  up to 10 000 rounds of the scenario's trajectories may be added up: leaves room for them
+  /// @return nothing where the scenario says no frequency, or 0 everywhere
+  /// Throws InputError where it says several that contradict each other, or some of what it would need; and where a
+  /// frequency is so small beside the others that the unit would change it by more than 0.05 %.
+  static std::optional<AnnualWeights> of(const Scenario& scenario, bool further_rounds = false);
+
+  /// Of block `block` of a source cell [units].
+  std::int64_t weight(const Scenario& scenario, std::uint32_t source, std::uint32_t block) const;
+
+  const WeightScale& scale() const { return scale_; }
+
+ private:
+  std::size_t classes_ = 1;
+  std::vector<std::int64_t> weights_;  // by source cell and class
+  WeightScale scale_;
+};
+
+/// Area of the surface in a cell [m^2]: the cell's own over the cosine of its slope, from the heights of its four
+/// neighbours (of one side, where the other has none).
+double true_area(const Raster<float>& heights, int column, int row);
+
+}  // namespace talus

@@ -1,0 +1,47 @@
+#pragma once
+#include <span>
+
+#include "talus/simulate/scenario/scenario.hpp"
+
+namespace talus {
+
+/// A block that crossed a screen.
+struct Crossing {
+  std::uint32_t source, block, screen;  ///< index of the screen in the scenario
+  double x, y;                          // [m, local]
+  double speed, height, spin;           // [m/s], vertical above the terrain [m], [rad/s]
+  double mass, diameter;                // [kg], [m]
+  double along;                         ///< distance along the line from its start [m]
+  double time;                          // [s]
+  double dip = 0.0;                     ///< of the velocity below the horizontal, negative where it rises [rad]
+  double incidence = 0.0;               ///< in plan, between the way and the normal of the line [rad], 0 to pi/2
+};
+
+/// Distance along a screen from its start, over all its lines, to the point of it that is nearest to a place [m].
+double place_along(const Screen& screen, const Eigen::Vector2d& place);
+
+/// Finds where paths cross the screens.
+class ScreenFinder {
+ public:
+  explicit ScreenFinder(const Scenario& scenario) : ScreenFinder(scenario.surface, scenario.screens) {}
+  /// The surface must outlive the finder.
+  ScreenFinder(const Surface& surface, std::span<const Screen> screens);
+
+  /// Appends every crossing of the path, in the order of time.
+  void find(const Release& release, const Path& path, std::vector<Crossing>& crossings) const;
+
+ private:
+  struct Segment {
+    std::uint32_t screen;
+    Eigen::Vector2d from, to;
+    double along;  // of `from` [m]
+  };
+  void cross(const Release& release, const Block& body, const Vertex& from, const Vertex& to,
+             std::vector<Crossing>& crossings) const;
+
+  const Surface& surface_;
+  std::vector<Segment> segments_;
+  Eigen::Vector2d low_, high_;  // box around all segments
+};
+
+}  // namespace talus

@@ -1,0 +1,84 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "talus/base/scratch.hpp"
+#include "talus/simulate/tally/bytes.hpp"
+#include "talus/simulate/tally/energy_bins.hpp"
+#include "talus/simulate/scenario/frequency.hpp"
+
+namespace talus {
+
+/// How the hazard of a run is kept: the same for all its cells.
+struct HazardRules {
+  EnergyBins bins;
+  WeightScale scale;
+
+  std::size_t levels() const { return 1 + bins.thresholds().size(); }  ///< passage, then each threshold
+};
+
+/// Annual frequency by energy in one place: of each trajectory its weight, once, in the bin of its largest energy
+/// there.
+///
+/// Whole numbers only: equal bits in any order. Only the bins from the smallest to the largest energy are stored, 16
+/// bytes each. docs/hazard.md, "What a run keeps".
+class HazardCell {
+ public:
+  struct Bin {
+    std::int64_t weight = 0;  ///< sum [WeightScale::unit]
+    std::int64_t square = 0;  ///< sum of the squares of the weights, each rounded up [square_unit]
+    bool operator==(const Bin&) const = default;
+  };
+
+  /// Adds trajectories in the order of their blocks, those of a stratum all at once.
+  ///
+  /// @param energies  of each its largest here [kJ]
+  /// @param stakes    of each; as long as `energies` or longer
+  void add(const HazardRules& rules, std::span<const float> energies, std::span<const Stake> stakes);
+  void merge(const HazardCell& other);
+
+  int first() const { return first_; }  ///< bin of bins()[0]
+  std::span<const Bin> bins() const { return bins_; }
+
+  /// By level, what the variance of independent trajectories has too much, because those of a stratum that pass are
+  /// drawn from a fixed number: sum over the strata of ((sum w)^2 - sum w^2) / (blocks - 1) [square_unit].
+  std::span<const std::int64_t> overlaps() const { return overlaps_; }
+
+  /// From what was stored.
+  static HazardCell restored(int first, const std::vector<Bin>& bins, const std::vector<std::int64_t>& overlaps);
+
+  void save(ByteWriter& out) const;
+  static HazardCell restored(ByteReader& in);
+
+  bool operator==(const HazardCell& other) const;  ///< whatever room is held ready
+
+ private:
+  void cover(int low, int high);
+
+  int first_ = 0;
+  ScratchVector<Bin> bins_;
+  ScratchVector<std::int64_t> overlaps_;
+};
+
+/// Sums the weights of one stratum in one place, by level, and gives what `HazardCell::overlaps` adds up.
+class StratumSums {
+ public:
+  explicit StratumSums(const HazardRules& rules) : rules_(rules), levels_(rules.levels()) {}
+
+  /// The next trajectory, of this stratum or a new one; the finished one is added to `overlaps`.
+  void add(const Stake& stake, float energy, ScratchVector<std::int64_t>& overlaps);
+  void finish(ScratchVector<std::int64_t>& overlaps);
+
+ private:
+  struct Level {
+    std::int64_t sum = 0;
+    double squares = 0.0;
+    std::uint32_t hits = 0;
+  };
+  const HazardRules& rules_;
+  std::vector<Level> levels_;
+  std::uint64_t stratum_ = 0;
+  std::uint32_t blocks_ = 0;  // 0: no stratum yet
+};
+
+}  // namespace talus

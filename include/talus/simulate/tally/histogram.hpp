@@ -1,0 +1,75 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include "talus/simulate/tally/bytes.hpp"
+
+namespace talus {
+
+/// Counts of positive values in bins of equal relative width: 16 to each doubling, so that a bin is 3.2 to 6.25 % wide.
+///
+/// The first few values are kept as they come (their bins), without memory of their own: most cells at the edge of a
+/// map see no more. Then only the bins from the smallest to the largest value are stored, as 8-bit counts that widen to
+/// 16 and 32 bits when one is full; at most the kSpan bins below the largest value are kept apart, what is smaller is
+/// counted in the lowest of them. The state depends on the values only, not on their order: merging is exact.
+class LogHistogram {
+ public:
+  static constexpr int kSpan = 128;            ///< bins: the largest value down to 1/128 of it, and often less
+  static constexpr float kFloor = 0x1p-7F;     ///< what is smaller counts as this: 8 J, 8 mm/s or 8 mm
+  static constexpr double kBinWidth = 0.0625;  ///< largest relative width of a bin
+
+  LogHistogram() = default;
+  LogHistogram(LogHistogram&& other) noexcept { swap(other); }
+  LogHistogram& operator=(LogHistogram&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~LogHistogram();
+
+  void add(std::span<const float> values);
+  void merge(const LogHistogram& other);
+
+  void save(ByteWriter& out) const;
+  /// What `save` wrote. Throws std::out_of_range where it cannot be that.
+  static LogHistogram restored(ByteReader& in);
+
+  std::uint64_t count() const;
+  const void* counts() const { return counts_; }  ///< where they lie in memory, for the tally to fetch ahead
+
+  /// The value below which `share` of the counted values lie, interpolated within its bin.
+  ///
+  /// Against the k-th smallest value, k = ceil(share n): in the same bin, so off by less than 6.25 %. Where that value
+  /// is below m = max(kFloor, largest / 128), only known to be so: the answer is below 1.0625 m. 0 where nothing was
+  /// counted.
+  double percentile(double share) const;
+
+ private:
+  static constexpr int kFew = 5;
+
+  void swap(LogHistogram& other) noexcept {
+    std::swap(counts_, other.counts_);
+    std::swap(first_, other.first_);
+    std::swap(size_, other.size_);
+    std::swap(width_, other.width_);
+    std::swap(few_count_, other.few_count_);
+    std::swap(few_, other.few_);
+  }
+  std::uint32_t get(int bin) const;
+  void put(int bin, std::uint32_t count);
+  void add_key(int key);
+  void count_all(std::span<const float> values);
+  void cover(int low_key, int high_key);
+  void spill(int low_key, int high_key);
+  void widen(std::uint8_t width);
+
+  unsigned char* counts_ = nullptr;  // null while there are few values
+  std::uint16_t first_ = 0;          // key of the lowest stored bin
+  std::uint16_t size_ = 0;           // bins stored
+  std::uint8_t width_ = 1;           // bytes per count
+  std::uint8_t few_count_ = 0;
+  std::array<std::uint16_t, kFew> few_{};  // keys of the first values
+};
+
+}  // namespace talus

@@ -1,0 +1,36 @@
+#pragma once
+#include <bitset>
+#include <mutex>
+#include <unordered_map>
+
+#include "talus/base/scratch.hpp"
+#include "talus/simulate/tally/bytes.hpp"
+
+namespace talus {
+
+/// The grid is scored in square regions of this many cells on a side.
+inline constexpr int kRegionSide = 64;
+inline constexpr int kRegionCells = kRegionSide * kRegionSide;
+
+/// Which cells the trajectories of one source cell have reached so far, by region. Needed only where several batches
+/// share a source; the cells of a region are guarded by the region's own lock in the tally.
+class SourceReach {
+ public:
+  using Cells = std::bitset<kRegionCells>;
+
+  Cells& cells(std::size_t region) {
+    const std::lock_guard guard(mutex_);
+    return regions_[region];  // stays where it is while others come
+  }
+
+  void save(ByteWriter& out) const;
+  void restore(ByteReader& in);
+
+ private:
+  std::mutex mutex_;
+  std::unordered_map<std::size_t, Cells, std::hash<std::size_t>, std::equal_to<>,
+                     ScratchAllocator<std::pair<const std::size_t, Cells>>>
+      regions_;
+};
+
+}  // namespace talus

@@ -1,0 +1,74 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "talus/physics/path.hpp"
+#include "talus/simulate/scenario/frequency.hpp"
+#include "talus/simulate/tally/source_reach.hpp"
+
+namespace talus {
+
+/// A trajectory on its way through a cell: the largest values on that way. A trajectory that comes back has several
+/// visits to a cell; they are made one when they are scored.
+struct Visit {
+  std::uint16_t cell;        ///< within its region: row * kRegionSide + column
+  std::uint16_t trajectory;  ///< within its batch
+  float speed_squared;       ///< [m^2/s^2]
+  float height;              ///< vertical, above the terrain [m]
+  std::uint32_t impacts : 31;
+  std::uint32_t deposited : 1;
+};
+
+/// The visits of a batch of trajectories, sorted by region of the grid while they come, so that the tally is
+/// written region by region and cell by cell instead of along each path.
+class VisitBatch {
+ public:
+  struct Trajectory {
+    double mass;  // [kg]
+    std::uint32_t source;
+    std::shared_ptr<SourceReach> reach;  // of a source that several batches share; else empty
+    bool piece = false;                  // of the trajectory before it: they count as one
+    Stake stake{};                       // where the run has frequencies
+  };
+
+  explicit VisitBatch(const Grid& grid);
+
+  /// Reads a path. Within a cell the largest speed and clearance are exact, at no output step: both are closed forms
+  /// on each patch (the speed is largest at an end, the clearance at an end or at the apex).
+  /// What is left of a block that broke, and a path with `piece`, belong to the trajectory before: one in the tally.
+  void add(const Path& path, double mass, std::uint32_t source, std::shared_ptr<SourceReach> reach, bool piece = false);
+
+  /// What the trajectories stand for that are added from here on.
+  void set_stake(const Stake& stake) { stake_ = stake; }
+
+  bool full() const { return size_ >= kVisits || trajectories_.size() >= kTrajectories; }
+  void clear();
+
+  const std::vector<Trajectory>& trajectories() const { return trajectories_; }
+  const std::unordered_map<std::size_t, std::vector<Visit>>& regions() const { return regions_; }
+
+ private:
+  static constexpr std::size_t kVisits = 7U << 17U;  // 14 MB
+  static constexpr std::size_t kTrajectories = 60'000;
+
+  Visit& visit(int column, int row) {
+    return column == column_ && row == row_ ? region_->back() : new_visit(column, row);
+  }
+  Visit& new_visit(int column, int row);
+  void begin(Trajectory trajectory);
+  void add(std::span<const Span> spans);
+
+  int regions_across_;
+  std::unordered_map<std::size_t, std::vector<Visit>> regions_;
+  std::vector<Trajectory> trajectories_;
+  Stake stake_;
+  std::size_t size_ = 0;
+  int column_ = -1, row_ = -1;            // cell of the current visit
+  std::vector<Visit>* region_ = nullptr;  // whose last element is the current visit
+  std::size_t region_index_ = 0;
+};
+
+}  // namespace talus

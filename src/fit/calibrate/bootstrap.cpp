@@ -1,0 +1,96 @@
+#include <algorithm>
+#include <cmath>
+
+#include "talus/base/random.hpp"
+#include "talus/fit/score/score.hpp"
+
+namespace talus {
+namespace {
+
+/// The weighted mean of each group; NaN for one of no weight.
+std::vector<double> weighted_groups(const Score& score, std::span<const double> weight) {
+  std::vector<double> sum(score.groups.size(), 0.0), total(score.groups.size(), 0.0);
+  for (const RowScore& row : score.rows) {
+    sum[row.group] += weight[row.block] * row.score;
+    total[row.group] += weight[row.block];
+  }
+  for (std::size_t g = 0; g < sum.size(); ++g) sum[g] = total[g] > 0.0 ? sum[g] / total[g] : kNotGiven;
+  return sum;
+}
+
+double total_of(const Score& score, std::span<const double> groups) {
+  double sum = 0.0, weights = 0.0;
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    if (!std::isnan(groups[g])) sum += score.groups[g].weight * groups[g], weights += score.groups[g].weight;
+  return weights > 0.0 ? sum / weights : kNotGiven;
+}
+
+Interval middle(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return std::isnan(value); });
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  return {quantile(values, 0.025), quantile(values, 0.975)};
+}
+
+}  // namespace
+
+double weighted_total(const Score& score, std::span<const double> weight) {
+  return total_of(score, weighted_groups(score, weight));
+}
+
+std::vector<double> bootstrap_weights(const Score& score, std::size_t blocks, std::uint32_t draw, std::uint64_t seed) {
+  std::vector<std::uint32_t> present;
+  for (const RowScore& row : score.rows) present.push_back(row.block);
+  std::sort(present.begin(), present.end());
+  present.erase(std::unique(present.begin(), present.end()), present.end());
+  std::vector<double> weight(blocks, 0.0);
+  const Random random(seed, 0, draw, Purpose::Bootstrap);
+  for (std::uint32_t i = 0; i < present.size(); ++i) {
+    const double share = uniform(random.words(i / 4)[i % 4]);
+    weight[present[static_cast<std::size_t>(share * static_cast<double>(present.size()))]] += 1.0;
+  }
+  return weight;
+}
+
+ScoreIntervals bootstrap(const Score& score, std::size_t blocks, std::uint32_t draws, std::uint64_t seed) {
+  std::vector<double> totals;
+  std::vector<std::vector<double>> groups(score.groups.size());
+  for (std::uint32_t draw = 0; draw < draws; ++draw) {
+    const std::vector<double> values = weighted_groups(score, bootstrap_weights(score, blocks, draw, seed));
+    totals.push_back(total_of(score, values));
+    for (std::size_t g = 0; g < values.size(); ++g) groups[g].push_back(values[g]);
+  }
+  ScoreIntervals intervals{middle(std::move(totals)), {}};
+  for (std::vector<double>& group : groups) intervals.groups.push_back(middle(std::move(group)));
+  return intervals;
+}
+
+Reduction reduction(const Score& before, const Score& after, std::size_t blocks, std::uint32_t draws,
+                    std::uint64_t seed) {
+  std::vector<double> shares;
+  for (std::uint32_t draw = 0; draw < draws; ++draw) {
+    const std::vector<double> weight = bootstrap_weights(before, blocks, draw, seed);
+    shares.push_back(1.0 - weighted_total(after, weight) / weighted_total(before, weight));
+  }
+  return {1.0 - after.total / before.total, middle(std::move(shares))};
+}
+
+Difference difference(const Score& before, const Score& after, std::size_t blocks, std::uint32_t draws,
+                      std::uint64_t seed) {
+  Difference d{after.total - before.total, {}, {}};
+  for (std::uint32_t draw = 0; draw < draws; ++draw) {
+    const std::vector<double> weight = bootstrap_weights(before, blocks, draw, seed);
+    d.draws.push_back(weighted_total(after, weight) - weighted_total(before, weight));
+  }
+  d.interval = middle(d.draws);
+  return d;
+}
+
+double quantile(std::span<const double> sorted, double share) {
+  const double place = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const double above = sorted[std::min(below + 1, sorted.size() - 1)];
+  return sorted[below] + (place - static_cast<double>(below)) * (above - sorted[below]);
+}
+
+}  // namespace talus

@@ -1,0 +1,263 @@
+#include "talus/fit/calibrate/calibrate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlopt.hpp>
+
+#include "local_model.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
+
+namespace talus {
+namespace {
+
+constexpr double kReach = 2.5;  // bounds of a ground parameter, in sd from its start
+
+/// The search of one fit. Keeps what its designs tried; a search lingers where its luck was good, and would mislead.
+class Search {
+ public:
+  Search(const FitProblem& problem, const FitOptions& options) : problem_(problem), options_(options) {
+    const auto& free = problem.free;
+    const auto n = static_cast<Eigen::Index>(free.size());
+    lower_.resize(n);
+    upper_.resize(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      lower_[i] = free[i].z(free[i].lower);
+      upper_[i] = free[i].z(free[i].upper);
+    }
+    const int screened = options.starts > 1 ? kScreened * static_cast<int>(n) : 0;
+    planned_ = screened + 1 + options.starts * search_length() + options.rounds * design_length();
+    fit_.evaluations.assign(options.known.begin(), options.known.end());
+    designed_ = LocalModel::first_unused(options.known, options.trials);
+    compared_ = static_cast<std::uint32_t>(options.known.size());
+  }
+
+  Fit run() {
+    try {
+      std::vector<Eigen::VectorXd> places{origin()};
+      if (options_.starts > 0)
+        for (const Eigen::VectorXd& z : choose_starts()) places.push_back(descend(z));
+      move_to_best(places);
+      fit_.score = score_of(fit_.model);  // the local model needs its groups and rows
+      fit_.spread = options_.spread.size() > 0 ? options_.spread : LocalModel::first_spread(std::ssize(problem_.free));
+      for (int round = 0; round < options_.rounds; ++round)
+        if (refine() < options_.enough) break;
+    } catch (const nlopt::forced_stop&) {  // `proceed` said no
+      fit_.interrupted = true;
+    }
+    if (!fit_.interrupted) fit_.score = score_of(fit_.model);
+    fit_.tried = done_;
+    return std::move(fit_);
+  }
+
+ private:
+  static constexpr int kScreened = 6;                           // points to choose the starts from, per parameter
+  static constexpr std::uint32_t kComparisons = 3'000'000'000;  // trials from here on are those of comparisons
+
+  int search_length() const { return 6 * static_cast<int>(problem_.free.size()) + 10; }
+  int design_length() const {
+    return options_.design > 0 ? options_.design : LocalModel::round_length(std::ssize(problem_.free));
+  }
+
+  Evaluation at(const Eigen::VectorXd& z, const Trials& trials) {
+    ++done_;
+    if (options_.proceed && !options_.proceed(std::min(1.0, static_cast<double>(done_) / planned_)))
+      throw nlopt::forced_stop();
+    return evaluate(problem_, options_, z, trials);
+  }
+
+  /// Goes to the best of some places, on luck that none of them was chosen by: of many noisy values the lowest is too
+  /// low, and nothing would ever be found better. @return by how much it is below the first of them
+  double move_to_best(std::span<const Eigen::VectorXd> places) {
+    const Trials fresh{options_.comparison_trials, kComparisons + options_.comparison_trials * compared_++};
+    double first = 0.0;
+    fit_.objective = std::numeric_limits<double>::infinity();
+    for (const Eigen::VectorXd& z : places) {
+      const double objective = at(z, fresh).objective;
+      if (&z == &places.front()) first = objective;
+      if (objective < fit_.objective) fit_.z = z, fit_.objective = objective;
+    }
+    fit_.model = model_at(problem_.start, problem_.free, fit_.z);
+    return first - fit_.objective;
+  }
+
+  /// One round of the local model: a design, and a step where that is an improvement. @return by how much
+  double refine() {
+    for (const Eigen::VectorXd& z :
+         LocalModel::design(problem_, options_.seed, fit_.z, fit_.spread, design_length(), designed_))
+      fit_.evaluations.push_back(at(z, {options_.trials, LocalModel::trials_of(designed_++, options_.trials)}));
+    const LocalModel model(problem_, options_, fit_, fit_.spread);
+    const Eigen::VectorXd step = model.step(fit_.spread) - fit_.z;
+    const Eigen::VectorXd from = fit_.z;
+    const double gain =
+        move_to_best(std::vector<Eigen::VectorXd>{from, from + step, from + 0.5 * step, from + 0.25 * step});
+    fit_.spread = model.next_spread();
+    return gain;
+  }
+
+  Score score_of(const Model& model) const {
+    const ObserveOptions how{options_.comparison_trials, options_.seed, 0, options_.threads, problem_.rows, {}};
+    return weigh_groups(score(problem_.campaign, observe(problem_.campaign, model, how), problem_.rows));
+  }
+
+  /// Where the model that it starts from is.
+  Eigen::VectorXd origin() const {
+    Eigen::VectorXd z(lower_.size());
+    for (Eigen::Index i = 0; i < z.size(); ++i) {
+      const Parameter& p = problem_.free[static_cast<std::size_t>(i)];
+      z[i] = std::clamp(p.z(p.get(problem_.start)), lower_[i], upper_[i]);
+    }
+    return z;
+  }
+
+  /// The start itself, and the best of an additive recurrence in the middle of the box, well apart from each other.
+  std::vector<Eigen::VectorXd> choose_starts() {
+    const auto n = static_cast<Eigen::Index>(problem_.free.size());
+    std::vector<Eigen::VectorXd> starts{origin()};
+    if (options_.starts <= 1) return starts;
+    double root = 2.0;  // of x^(n + 1) = x + 1: the generalised golden ratio (Roberts 2018)
+    for (int k = 0; k < 40; ++k) root = std::pow(1.0 + root, 1.0 / static_cast<double>(n + 1));
+    std::vector<std::pair<double, Eigen::VectorXd>> tried;
+    for (int k = 1; k <= kScreened * static_cast<int>(n); ++k) {
+      Eigen::VectorXd z(n);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const double u = std::fmod(0.5 + k * std::pow(root, -static_cast<double>(i + 1)), 1.0);
+        z[i] = std::clamp(3.0 * u - 1.5, lower_[i], upper_[i]);
+      }
+      tried.emplace_back(at(z, {options_.trials}).objective, z);
+    }
+    std::stable_sort(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [objective, z] : tried) {
+      const bool apart = std::all_of(starts.begin(), starts.end(),
+                                     [&place = z](const auto& other) { return (place - other).norm() > 1.0; });
+      if (apart && static_cast<int>(starts.size()) < options_.starts) starts.push_back(z);
+    }
+    return starts;
+  }
+
+  /// The best that NLopt's BOBYQA finds from z.
+  Eigen::VectorXd descend(const Eigen::VectorXd& z) {
+    const auto n = static_cast<unsigned>(problem_.free.size());
+    // BOBYQA needs two parameters.
+    nlopt::opt search(n > 1 ? nlopt::LN_BOBYQA : nlopt::LN_SBPLX, n);
+    search.set_lower_bounds({lower_.begin(), lower_.end()});
+    search.set_upper_bounds({upper_.begin(), upper_.end()});
+    search.set_min_objective(
+        [](const std::vector<double>& x, std::vector<double>&, void* self) {
+          auto& me = *static_cast<Search*>(self);
+          return me.at(Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x)), {me.options_.trials}).objective;
+        },
+        this);
+    std::vector<double> steps;  // BOBYQA wants room for two of them between the bounds
+    for (unsigned i = 0; i < n; ++i) steps.push_back(std::min(0.5, 0.4 * (upper_[i] - lower_[i])));
+    search.set_initial_step(steps);
+    search.set_xtol_abs(0.02);
+    search.set_maxeval(search_length());
+    std::vector<double> x(z.begin(), z.end());
+    double objective = 0.0;
+    try {
+      search.optimize(x, objective);
+    } catch (const nlopt::roundoff_limited&) {  // the noise of the trials: the best point so far stands
+    }
+    return Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x));
+  }
+
+  FitProblem problem_;
+  const FitOptions& options_;
+  Eigen::VectorXd lower_, upper_;
+  Fit fit_;
+  std::uint32_t designed_ = 0, compared_ = 0;
+  int done_ = 0, planned_ = 1;
+};
+
+}  // namespace
+
+double Parameter::value(double z) const {
+  const double free = scale == Scale::Log ? centre * std::exp(sd * z) : centre + sd * z;
+  return std::clamp(free, lower, upper);
+}
+
+double Parameter::z(double value) const {
+  return scale == Scale::Log ? std::log(value / centre) / sd : (value - centre) / sd;
+}
+
+std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& start,
+                                         std::span<const std::string> keys, const std::vector<bool>& zones) {
+  static const std::vector<std::string> known{"theta_scale", "psi_scale", "En50", "Et50", "phi"};
+  std::vector<Parameter> parameters;
+  for (std::size_t zone = 0; zone < start.grounds.size(); ++zone)
+    for (const std::string& key : keys) {
+      const auto fields = ground_fields();
+      const auto field = std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.key == key; });
+      if (field == fields.end() || std::find(known.begin(), known.end(), key) == known.end())
+        throw InputError("'" + key + "' is no parameter that can be fitted" + known_names(key, known));
+      if (std::ranges::count(keys, key) > 1) throw InputError("'" + key + "' is to be fitted twice: name it once");
+      if (!zones[zone]) continue;
+      Parameter p;
+      p.key = "ground.zones." + campaign.zone_names[zone] + "." + key;
+      p.unit = field->unit == "1" ? "" : std::string(field->unit);
+      p.scale = key == "phi" ? Parameter::Scale::Linear : Parameter::Scale::Log;
+      p.sd = key == "phi" ? 8.0 : 1.0;
+      p.centre = field->get(start.grounds[zone]);
+      if (p.scale == Parameter::Scale::Log) p.centre = std::max(p.centre, 0.01);
+      p.lower = field->min;
+      p.upper = field->max;
+      const double low = p.scale == Parameter::Scale::Log ? p.centre * std::exp(-kReach) : p.centre - kReach * p.sd;
+      const double high = p.scale == Parameter::Scale::Log ? p.centre * std::exp(kReach) : p.centre + kReach * p.sd;
+      p.lower = std::max(p.lower, low);
+      p.upper = std::min(p.upper, high);
+      p.get = [get = field->get, zone](const Model& model) { return get(model.grounds[zone]); };
+      p.set = [set = field->set, zone](Model& model, double value) { set(model.grounds[zone], value); };
+      parameters.push_back(std::move(p));
+    }
+  if (parameters.empty())
+    throw InputError(
+        "no zone is touched by enough of the simulated paths, so that nothing can be fitted: are the releases on the "
+        "slope?");
+  return parameters;
+}
+
+std::vector<bool> touched_zones(const Campaign& campaign, std::span<const BlockRuns> runs, double share) {
+  std::vector<double> hits(campaign.zone_names.size(), 0.0);
+  double trials = 0.0;
+  for (const BlockRuns& block : runs) {
+    trials += block.trials;
+    for (std::size_t zone = 0; zone < block.zone_hits.size(); ++zone)  // a band repeats the zones
+      hits[zone % hits.size()] += block.zone_hits[zone];
+  }
+  std::vector<bool> touched;
+  touched.reserve(hits.size());
+  for (const double count : hits) touched.push_back(count > 0.0 && count >= share * trials);
+  return touched;
+}
+
+Model model_at(const Model& start, std::span<const Parameter> free, const Eigen::VectorXd& z) {
+  Model model = start;
+  for (std::size_t i = 0; i < free.size(); ++i) free[i].set(model, free[i].value(z[static_cast<Eigen::Index>(i)]));
+  return model;
+}
+
+double FitProblem::prior(const FitOptions& options) const {
+  return options.prior_weight / static_cast<double>(std::count(rows.begin(), rows.end(), true));
+}
+
+Evaluation evaluate(const FitProblem& problem, const FitOptions& options, const Eigen::VectorXd& z,
+                    const Trials& trials) {
+  const ObserveOptions how{trials.count, options.seed, trials.first, options.threads, problem.rows, {}};
+  const Model model = model_at(problem.start, problem.free, z);
+  const Score s = weigh_groups(
+      score(problem.campaign, observe(problem.campaign, model, how), problem.rows, fewest_simulated_of(trials.count)));
+  Evaluation evaluation{z, Eigen::VectorXd(std::ssize(s.rows)), trials.count, s.total};
+  for (std::size_t r = 0; r < s.rows.size(); ++r) evaluation.rows[static_cast<Eigen::Index>(r)] = s.rows[r].score;
+  evaluation.objective += problem.prior(options) * z.squaredNorm();
+  return evaluation;
+}
+
+Fit fit_parameters(const Campaign& campaign, const Model& start, std::span<const Parameter> free,
+                   const std::vector<bool>& rows, const FitOptions& options) {
+  return Search({campaign, start, free, rows}, options).run();
+}
+
+}  // namespace talus

@@ -1,0 +1,139 @@
+#include "talus/fit/calibrate/projection.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/chi_squared.hpp>
+
+namespace talus {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::size_t kMostJoined = 4;  // neighbouring bands
+constexpr std::size_t kFewDays = 6;     // up to here every set of days is tried, above only runs of them
+
+/// Sets of n days, by number, all days together excepted: that would be other ground.
+std::vector<std::vector<std::size_t>> sets_of_days(std::size_t n) {
+  std::vector<std::vector<std::size_t>> sets;
+  if (n <= kFewDays) {
+    for (unsigned mask = 1; mask + 1 < 1U << n; ++mask) {
+      sets.emplace_back();
+      for (std::size_t day = 0; day < n; ++day)
+        if (mask >> day & 1U) sets.back().push_back(day);
+    }
+    return sets;
+  }
+  for (std::size_t first = 0; first < n; ++first) {
+    std::vector<std::size_t> run;
+    for (std::size_t day = first; day < n && run.size() + 1 < n; ++day) {
+      run.push_back(day);
+      sets.push_back(run);
+    }
+  }
+  return sets;
+}
+
+/// Which of the n candidates of an effect are tested together.
+std::vector<std::vector<std::size_t>> groups_of(const std::string& effect, std::size_t n) {
+  if (effect == "wet-ground") return sets_of_days(n);
+  const std::size_t most = effect == "undeclared-zone" ? kMostJoined : 1;
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t first = 0; first < n; ++first)
+    for (std::size_t joined = 1; joined <= most && first + joined <= n; ++joined) {
+      groups.emplace_back();
+      for (std::size_t i = first; i < first + joined; ++i) groups.back().push_back(i);
+    }
+  return groups;
+}
+
+/// Share of chi-bar-squared above the statistic: each of `bounded` estimates is inside its bound half of the time.
+double tail_of(double statistic, Index freedom, int bounded) {
+  if (!(statistic > 0.0)) return 1.0;
+  const boost::math::binomial inside(bounded, 0.5);
+  double tail = 0.0;
+  for (int k = 0; k <= bounded; ++k) {
+    const auto f = static_cast<double>(freedom - bounded + k);
+    if (f > 0.0)
+      tail += boost::math::pdf(inside, k) *
+              boost::math::cdf(boost::math::complement(boost::math::chi_squared(f), statistic));
+  }
+  return tail;
+}
+
+/// Indices of the parameters that the bits of `mask` leave free.
+std::vector<Index> free_in(unsigned mask, Index size) {
+  std::vector<Index> free;
+  for (Index i = 0; i < size; ++i)
+    if (mask >> i & 1U) free.push_back(i);
+  return free;
+}
+
+}  // namespace
+
+std::vector<TestedPlace> places_of(std::span<const Candidate> candidates, Index base, Index directions) {
+  std::vector<TestedPlace> places;
+  Index next = base;
+  for (std::size_t first = 0; first < candidates.size();) {
+    std::size_t end = first;
+    std::vector<Index> direction;
+    for (; end < candidates.size() && candidates[end].effect == candidates[first].effect; ++end) {
+      direction.push_back(next);
+      next += static_cast<Index>(candidates[end].tested);
+    }
+    for (const std::vector<std::size_t>& group : groups_of(candidates[first].effect, end - first)) {
+      const Candidate& one = candidates[first + group.front()];
+      TestedPlace place{{}, MatrixXd::Zero(directions, static_cast<Index>(one.tested)), {}};
+      for (const std::size_t i : group) {
+        place.members.push_back(first + i);
+        for (Index p = 0; p < place.pick.cols(); ++p) place.pick(direction[i] + p, p) = 1.0;
+      }
+      for (std::size_t p = 0; p < one.tested; ++p) place.one_sided.push_back(one.parameters[p].lower >= 0.0);
+      places.push_back(std::move(place));
+    }
+    first = end;
+  }
+  return places;
+}
+
+Projection::Projection(const TestedPlace& place, const MatrixXd& covariance, const VectorXd& steps, double prior)
+    : steps_(steps), one_sided_(place.one_sided) {
+  const Index base = steps.size();
+  MatrixXd information = covariance.topLeftCorner(base, base);
+  information.diagonal().array() += prior;
+  MatrixXd imitated = MatrixXd::Zero(place.pick.cols(), covariance.rows());
+  imitated.leftCols(base) = information.ldlt().solve(covariance.topRows(base) * place.pick).transpose();
+  map_ = place.pick.transpose() - imitated;
+  information_ = map_ * covariance * map_.transpose();
+  information_.diagonal().array() += 1e-9;
+}
+
+Verdict Projection::verdict(const MatrixXd& scores) const {
+  MatrixXd parts = map_ * scores;  // tested parameters x blocks
+  const VectorXd s = parts.rowwise().sum();
+  parts.colwise() -= s / static_cast<double>(parts.cols());
+  MatrixXd variance = parts * parts.transpose();
+  variance.diagonal().array() += 1e-9;
+  Verdict v;
+  v.estimate = VectorXd::Zero(s.size());
+  double best = 0.0;
+  for (unsigned mask = 1; mask < 1U << s.size(); ++mask) {  // the bounded optimum is free in some, zero in the others
+    const std::vector<Index> free = free_in(mask, s.size());
+    const VectorXd part = s(free), estimate = information_(free, free).ldlt().solve(part);
+    bool inside = true;
+    for (std::size_t i = 0; i < free.size(); ++i)
+      if (one_sided_[static_cast<std::size_t>(free[i])] && !(estimate[static_cast<Index>(i)] > 0.0)) inside = false;
+    if (!inside || part.dot(estimate) <= best) continue;
+    best = part.dot(estimate);
+    v.estimate.setZero();
+    v.estimate(free) = estimate;
+    v.statistic = std::max(best, part.dot(variance(free, free).ldlt().solve(part)));
+  }
+  v.ground = steps_.cwiseProduct(map_.leftCols(steps_.size()).transpose() * v.estimate);
+  const auto bounded = static_cast<int>(std::count(one_sided_.begin(), one_sided_.end(), true));
+  v.p_value = tail_of(v.statistic, s.size(), bounded);
+  return v;
+}
+
+}  // namespace talus

@@ -1,0 +1,61 @@
+#include "talus/fit/calibrate/uncertainty.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "local_model.hpp"
+
+namespace talus {
+namespace {
+
+constexpr std::uint32_t kOwnDesigns = 10'000;  // numbers of places that no search has used
+
+void summarise(std::span<const Parameter> free, Uncertainty& out) {
+  const Eigen::Index n = out.draws.cols();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    std::vector<double> z(out.draws.col(i).begin(), out.draws.col(i).end());
+    std::sort(z.begin(), z.end());
+    const double low = quantile(z, 0.025), high = quantile(z, 0.975);
+    const Parameter& p = free[static_cast<std::size_t>(i)];
+    out.intervals.push_back({p.value(low), p.value(high)});
+    const double possible = std::min(2.0 * 1.96, p.z(p.upper) - p.z(p.lower));
+    out.identifiable.push_back(high - low <= kMostOfThePrior * possible);
+  }
+  const Eigen::MatrixXd centred = out.draws.rowwise() - out.draws.colwise().mean();
+  const Eigen::MatrixXd covariance = centred.transpose() * centred;
+  const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseMax(1e-12).cwiseInverse();
+  out.correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
+}
+
+}  // namespace
+
+Uncertainty uncertainty_of(const FitProblem& problem, const FitOptions& options, const UncertaintyOptions& how,
+                           const Fit& fit) {
+  Uncertainty out;
+  const Eigen::Index n = std::ssize(problem.free);
+  const int length = LocalModel::round_length(n);
+  Fit around = fit;
+  around.evaluations.clear();  // the search lingers where its luck was good: what it saw would look too sharp
+  Eigen::MatrixXd spread = fit.spread;
+  std::uint32_t done = 0;
+  for (int round = 0; round < how.rounds; ++round) {
+    const auto first = kOwnDesigns + done;
+    for (const Eigen::VectorXd& z : LocalModel::design(problem, options.seed, fit.z, spread, length, first)) {
+      if (options.proceed && !options.proceed(static_cast<double>(done) / (how.rounds * length))) {
+        out.interrupted = true;
+        return out;
+      }
+      const Trials own{options.trials, LocalModel::trials_of(kOwnDesigns + done++, options.trials)};
+      around.evaluations.push_back(evaluate(problem, options, z, own));
+    }
+    if (round + 1 < how.rounds) spread = LocalModel(problem, options, around, spread).next_spread();
+  }
+  const LocalModel model(problem, options, around, spread);
+  out.draws.resize(how.draws, n);
+  for (int k = 0; k < how.draws; ++k) out.draws.row(k) = model.draw(static_cast<std::uint32_t>(k));
+  out.noise = model.noise();
+  summarise(problem.free, out);
+  return out;
+}
+
+}  // namespace talus

@@ -1,0 +1,27 @@
+#include "talus/fit/campaign/campaign.hpp"
+
+#include <cmath>
+
+namespace talus {
+
+std::vector<bool> fitting_rows(const Campaign& campaign) {
+  std::vector<bool> rows = holdout_rows(campaign);
+  rows.flip();
+  return rows;
+}
+
+std::vector<bool> holdout_rows(const Campaign& campaign) {
+  std::vector<bool> rows;
+  for (const MeasuredBlock& block : campaign.blocks) rows.push_back(block.holdout);
+  return rows;
+}
+
+Block body_of(const MeasuredBlock& block) {
+  return {equivalent_diameter(block.mass, block.density), block.mass, block.axes};
+}
+
+double equivalent_diameter(double mass, double density) {
+  return std::cbrt(6.0 * mass / (kPi * density));
+}
+
+}  // namespace talus

@@ -1,0 +1,250 @@
+#include "talus/fit/campaign/observe.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <limits>
+
+#include "talus/simulate/scenario/presets.hpp"
+#include "talus/simulate/screens/screens.hpp"
+
+namespace talus {
+namespace {
+
+constexpr std::uint32_t kTrialsPerUnit = 32;
+constexpr std::uint32_t kSampleEvents = 0x10000;  // above those of the screens
+
+/// Standard normal numbers of the measurement of one trial: four for each thing that is measured.
+class Errors {
+ public:
+  Errors(std::uint64_t seed, std::uint32_t block, std::uint32_t trial)
+      : random_(seed, block, trial, Purpose::Measurement) {}
+
+  std::array<double, 4> at(std::uint32_t event) const {
+    const Words w = random_.words(event);
+    const auto a = normal_pair(w[0], w[1]), b = normal_pair(w[2], w[3]);
+    return {a[0], a[1], b[0], b[1]};
+  }
+  std::array<double, 4> of_stop() const { return at(0); }
+  std::array<double, 4> of_screen(std::uint32_t screen) const { return at(1 + screen); }
+  std::array<double, 4> of_sample(std::size_t sample) const {
+    return at(kSampleEvents + static_cast<std::uint32_t>(sample));
+  }
+
+ private:
+  Random random_;
+};
+
+/// Measures the paths of one block; its buffers are reused.
+class Instrument {
+ public:
+  Instrument(const Campaign& campaign, const Model& model, const Cover& cover, const ScreenFinder& screens)
+      : campaign_(campaign), model_(model), cover_(cover), screens_(screens), hit_(cover.grounds.size()) {}
+
+  void measure(const Release& release, const Path& path, std::uint32_t trial, BlockRuns& runs) {
+    const Errors errors(release.seed, release.source, release.block);
+    const MeasuredBlock& block = campaign_.blocks[release.source];
+    crossings_.clear();
+    screens_.find(release, path, crossings_);
+    const Crossing* caught = first_catch();
+    until_ = caught ? caught->time : std::numeric_limits<double>::infinity();
+    stop(errors, path, release.body.mass, caught, trial, runs);
+    passages(errors, trial, runs);
+    samples(errors, block, path, trial, runs);
+    runs.impacts[trial] = path.impacts;
+    runs.end[trial] = caught ? End::Caught : path.end;
+    std::atomic_ref(runs.ends[static_cast<std::size_t>(runs.end[trial])]).fetch_add(1, std::memory_order_relaxed);
+    count_zones(path, runs);
+  }
+
+ private:
+  void stop(const Errors& errors, const Path& path, double mass, const Crossing* caught, std::uint32_t trial,
+            BlockRuns& runs) const {
+    runs.mass_share[trial] = path.mass / mass;
+    if (!caught && path.end != End::Stopped && path.end != End::Caught) return;
+    const auto error = errors.of_stop();
+    const Vec3& end = path.vertices.back().motion.position;
+    runs.x[trial] = (caught ? caught->x : end.x()) + campaign_.error.position_m * error[0];
+    runs.y[trial] = (caught ? caught->y : end.y()) + campaign_.error.position_m * error[1];
+  }
+
+  void passages(const Errors& errors, std::uint32_t trial, BlockRuns& runs) const {
+    for (const Crossing& crossing : crossings_) {
+      if (crossing.screen >= campaign_.screens.size() || crossing.time > until_) continue;
+      const Bias bias = bias_of(crossing.screen);
+      BlockRuns::AtScreen& screen = runs.screens[crossing.screen];
+      if (!std::isnan(screen.speed[trial])) continue;  // only the first crossing counts
+      const auto error = errors.of_screen(crossing.screen);
+      screen.speed[trial] = crossing.speed * (1.0 + bias.speed) * (1.0 + campaign_.error.speed_fraction * error[0]);
+      screen.jump[trial] =
+          std::max(0.0, crossing.height * (1.0 + bias.jump) + campaign_.error.jump_height_m * error[1]);
+      screen.spin[trial] =
+          crossing.spin * (1.0 + bias.spin) * (1.0 + campaign_.error.angular_velocity_fraction * error[2]);
+    }
+  }
+
+  /// The distance from a place is largest at an end of a straight piece: a sample's distance is first reached on the
+  /// first piece that ends beyond it.
+  void samples(const Errors& errors, const MeasuredBlock& block, const Path& path, std::uint32_t trial,
+               BlockRuns& runs) {
+    if (block.samples.empty()) return;
+    order_.resize(block.samples.size());
+    for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = i;
+    std::sort(order_.begin(), order_.end(),
+              [&](std::size_t a, std::size_t b) { return block.samples[a].distance < block.samples[b].distance; });
+    const Eigen::Vector2d origin(block.x, block.y);
+    auto next = order_.begin();
+    for (std::size_t i = 1; i < path.vertices.size() && path.vertices[i].motion.time <= until_; ++i) {
+      const Vertex &from = path.vertices[i - 1], &to = path.vertices[i];
+      const Eigen::Vector2d a = from.motion.position.head<2>() - origin, b = to.motion.position.head<2>() - origin;
+      for (; next != order_.end() && b.norm() >= block.samples[*next].distance; ++next) {
+        const Eigen::Vector2d way = b - a;
+        const double r = block.samples[*next].distance, length = way.squaredNorm(), along = way.dot(a);
+        const double inside = r * r - a.squaredNorm();  // not above 0: it is there at the start
+        const double share =
+            inside > 0.0 ? std::min(1.0, (std::sqrt(along * along + length * inside) - along) / length) : 0.0;
+        record(errors, *next, motion_between(from, to, share), runs.samples[*next], trial);
+      }
+    }
+  }
+
+  void record(const Errors& errors, std::size_t sample, const Motion& motion, BlockRuns::AtSample& out,
+              std::uint32_t trial) const {
+    const auto error = errors.of_sample(sample);
+    const Bias bias = bias_of(campaign_.screens.size());
+    out.speed[trial] = motion.velocity.norm() * (1.0 + bias.speed) * (1.0 + campaign_.error.speed_fraction * error[0]);
+    out.spin[trial] =
+        motion.spin.norm() * (1.0 + bias.spin) * (1.0 + campaign_.error.angular_velocity_fraction * error[1]);
+  }
+
+  void count_zones(const Path& path, BlockRuns& runs) {
+    std::fill(hit_.begin(), hit_.end(), false);
+    for (const Vertex& vertex : path.vertices)
+      if (vertex.event == Event::Impact)
+        hit_[cover_.zone_at(vertex.motion.position.x(), vertex.motion.position.y())] = true;
+    for (std::size_t zone = 0; zone < hit_.size(); ++zone)
+      if (hit_[zone]) std::atomic_ref(runs.zone_hits[zone]).fetch_add(1, std::memory_order_relaxed);
+  }
+
+  /// The net that ends the path, if one does: it is crossed below its top and within its capacity.
+  const Crossing* first_catch() const {
+    for (const Crossing& c : crossings_) {
+      if (c.screen < campaign_.screens.size()) continue;
+      const Net& net = model_.nets[c.screen - campaign_.screens.size()];
+      if (c.height < net.height && 0.5e-3 * c.mass * c.speed * c.speed <= net.capacity) return &c;
+    }
+    return nullptr;
+  }
+
+  Bias bias_of(std::size_t instrument) const { return model_.bias.empty() ? Bias{} : model_.bias[instrument]; }
+
+  const Campaign& campaign_;
+  const Model& model_;
+  const Cover& cover_;
+  const ScreenFinder& screens_;
+  std::vector<Crossing> crossings_;
+  std::vector<std::size_t> order_;
+  std::vector<char> hit_;  // by zone, of the path
+  double until_ = 0.0;     // when a net ends the path [s]
+};
+
+void prepare(const Campaign& campaign, const MeasuredBlock& block, std::size_t zones, std::uint32_t trials,
+             BlockRuns& runs) {
+  const std::vector<double> none(trials, kNotGiven);
+  runs.trials = trials;
+  runs.x = runs.y = runs.mass_share = none;
+  runs.screens.assign(campaign.screens.size(), {none, none, none});
+  runs.samples.assign(block.samples.size(), {none, none});
+  runs.impacts.assign(trials, 0);
+  runs.end.assign(trials, End::Limit);
+  runs.zone_hits.assign(zones, 0);
+}
+
+/// Some trials of one block.
+struct Unit {
+  std::uint32_t block, first, end;
+};
+
+std::vector<Unit> units_of(const Campaign& campaign, std::size_t zones, const ObserveOptions& options,
+                           std::vector<BlockRuns>& runs) {
+  std::vector<Unit> units;
+  for (std::uint32_t block = 0; block < campaign.blocks.size(); ++block) {
+    if (!options.blocks.empty() && !options.blocks[block]) continue;
+    prepare(campaign, campaign.blocks[block], zones, options.trials, runs[block]);
+    for (std::uint32_t first = 0; first < options.trials; first += kTrialsPerUnit)
+      units.push_back({block, first, std::min(options.trials, first + kTrialsPerUnit)});
+  }
+  return units;
+}
+
+/// The screens of the campaign, then the nets.
+std::vector<Screen> lines_of(const Campaign& campaign, const Model& model) {
+  std::vector<Screen> lines = campaign.screens;
+  for (const Net& net : model.nets) lines.push_back({"net", {net.line}});
+  return lines;
+}
+
+}  // namespace
+
+Model model_of_preset(const Campaign& campaign, std::string_view preset) {
+  Model model;
+  model.grounds.assign(std::max<std::size_t>(1, campaign.zone_names.size()), find_preset(preset).ground);
+  return model;
+}
+
+Release release_of(const Campaign& campaign, std::uint32_t block, std::uint64_t seed, std::uint32_t trial) {
+  const MeasuredBlock& measured = campaign.blocks[block];
+  const Words words = Random(seed, block, trial, Purpose::Release).words(0);
+  const SineCosine direction = sine_cosine_of_turn(uniform(words[0]));
+  const double radius = measured.release_radius * std::sqrt(uniform(words[1]));
+  const double x = measured.x + radius * direction.cosine, y = measured.y + radius * direction.sine;
+  Release release;
+  release.seed = seed;
+  release.source = block;
+  release.block = trial;
+  release.body = body_of(measured);
+  release.motion.position = {x, y, campaign.surface.height(x, y).value_or(kNotGiven) + measured.release_height};
+  release.motion.velocity = measured.velocity;
+  release.day = measured.day;
+  return release;
+}
+
+std::vector<BlockRuns> observe(const Campaign& campaign, const Model& model, const ObserveOptions& options) {
+  std::vector<BlockRuns> runs(campaign.blocks.size());
+  const std::vector<Unit> units = units_of(campaign, model.grounds.size(), options, runs);
+  const Cover cover{model.grounds, model.zones.values.empty() ? campaign.zones : model.zones};
+  const World world{campaign.surface, cover, model.impact, EndRules{}, model.effects.any() ? &model.effects : nullptr};
+  const std::vector<Screen> lines = lines_of(campaign, model);
+  const ScreenFinder screens(campaign.surface, lines);
+  std::exception_ptr failure;
+  std::atomic<bool> stop{false};
+#pragma omp parallel num_threads(options.threads > 0 ? options.threads : omp_get_num_procs()) default(none) \
+    shared(campaign, model, options, runs, units, cover, world, screens, failure, stop)
+  {
+    Instrument instrument(campaign, model, cover, screens);
+    Path path;
+#pragma omp for schedule(dynamic, 1)
+    for (const Unit& unit : units) {
+      if (stop) continue;
+      try {
+        for (std::uint32_t trial = unit.first; trial < unit.end; ++trial) {
+          const Release release = release_of(campaign, unit.block, options.seed, options.first_trial + trial);
+          trace(world, release, path);
+          instrument.measure(release, path, trial, runs[unit.block]);
+        }
+        if (options.proceed && !options.proceed()) stop = true;
+      } catch (...) {  // nothing may leave a parallel region
+#pragma omp critical
+        if (!failure) failure = std::current_exception();
+        stop = true;
+      }
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+  return runs;
+}
+
+}  // namespace talus

@@ -1,0 +1,144 @@
+#include "talus/fit/diagnose/residual_table.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <numeric>
+
+namespace talus {
+namespace {
+
+constexpr std::size_t kFewestBlocks = 10;
+constexpr double kFewestCrossings = 5.0;  // variance of the number that cross, below which it is not nearly normal
+
+std::vector<double> ranks(std::span<const double> values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  std::vector<double> rank(values.size());
+  for (std::size_t i = 0; i < order.size();) {
+    std::size_t end = i;
+    while (end < order.size() && values[order[end]] == values[order[i]]) ++end;
+    for (std::size_t k = i; k < end; ++k) rank[order[k]] = 0.5 * static_cast<double>(i + end - 1);
+    i = end;
+  }
+  return rank;
+}
+
+double two_sided(double tail) {
+  return std::min(1.0, 2.0 * tail);
+}
+
+double p_of_correlation(double r, std::size_t n) {
+  const double freedom = static_cast<double>(n) - 2.0;
+  const double t = std::abs(r) * std::sqrt(freedom / std::max(1e-12, 1.0 - r * r));
+  return two_sided(boost::math::cdf(boost::math::complement(boost::math::students_t(freedom), t)));
+}
+
+/// Whether more of the blocks with a large property cross than the model says: sum of (c - p) times the rank, among
+/// blocks that cross as often as was measured, over its standard deviation. A rank correlation would not do: blocks
+/// that seldom cross have a small residual whatever happens, so that it goes with whatever their chance goes with.
+void add_crossing(std::vector<ResidualRow>& table, const std::string& name, const char* property,
+                  const std::vector<double>& z, const std::vector<double>& variance, std::span<const double> of) {
+  const std::vector<double> rank = ranks(of);
+  const double all = std::accumulate(variance.begin(), variance.end(), 0.0);
+  if (all < kFewestCrossings) return;
+  const double middle = std::inner_product(rank.begin(), rank.end(), variance.begin(), 0.0) / all;
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    sum += (rank[i] - middle) * z[i] * std::sqrt(variance[i]);
+    squares += (rank[i] - middle) * (rank[i] - middle) * variance[i];
+  }
+  if (!(squares > 0.0)) return;
+  const double statistic = sum / std::sqrt(squares);
+  const double tail = boost::math::cdf(boost::math::complement(boost::math::normal(), std::abs(statistic)));
+  table.push_back({name, property, statistic, two_sided(tail), 1.0, z.size()});
+}
+
+void add_moments(std::vector<ResidualRow>& table, const std::string& name, const std::vector<double>& z) {
+  const auto n = static_cast<double>(z.size());
+  const double mean = std::accumulate(z.begin(), z.end(), 0.0) / n;
+  const boost::math::normal standard;
+  table.push_back({name, "mean", mean,
+                   two_sided(boost::math::cdf(boost::math::complement(standard, std::abs(mean) * std::sqrt(n)))), 1.0,
+                   z.size()});
+  double squares = 0.0;
+  for (const double v : z) squares += (v - mean) * (v - mean);
+  const boost::math::chi_squared spread(n - 1.0);
+  const double below = boost::math::cdf(spread, squares);
+  table.push_back({name, "spread", squares / (n - 1.0), two_sided(std::min(below, 1.0 - below)), 1.0, z.size()});
+}
+
+void correct(std::vector<ResidualRow>& table) {
+  std::sort(table.begin(), table.end(),
+            [](const ResidualRow& a, const ResidualRow& b) { return a.p_value < b.p_value; });
+  double largest = 0.0;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    largest = std::max(largest, std::min(1.0, table[i].p_value * static_cast<double>(table.size() - i)));
+    table[i].corrected = largest;
+  }
+}
+
+}  // namespace
+
+const std::vector<Property>& properties() {
+  static const std::vector<Property> list{
+      {"mass", "kg", [](const MeasuredBlock& b) { return b.mass; }},
+      {"L1/L2", "", [](const MeasuredBlock& b) { return b.axes.x() / b.axes.y(); }},
+      {"L1/L3", "", [](const MeasuredBlock& b) { return b.axes.x() / b.axes.z(); }},
+      {"day", "", [](const MeasuredBlock& b) { return b.day == 0 ? kNotGiven : static_cast<double>(b.day); }},
+      {"release height", "m", [](const MeasuredBlock& b) { return b.release_height; }},
+      {"east", "m", [](const MeasuredBlock& b) { return b.x; }},
+      {"north", "m", [](const MeasuredBlock& b) { return b.y; }}};
+  return list;
+}
+
+double spearman(std::span<const double> a, std::span<const double> b) {
+  const std::vector<double> ra = ranks(a), rb = ranks(b);
+  const double middle = 0.5 * (static_cast<double>(a.size()) - 1.0);
+  double ab = 0.0, aa = 0.0, bb = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ab += (ra[i] - middle) * (rb[i] - middle);
+    aa += (ra[i] - middle) * (ra[i] - middle);
+    bb += (rb[i] - middle) * (rb[i] - middle);
+  }
+  return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
+}
+
+std::vector<ResidualRow> residual_table(const Campaign& campaign, const ResidualSpace& space,
+                                        const std::vector<bool>& rows) {
+  std::vector<ResidualRow> table;
+  for (std::size_t o = 0; o < space.observables().size(); ++o) {
+    const std::string& name = space.observables()[o].name;
+    const bool crossing = space.observables()[o].kind == Observable::Kind::Crossed;
+    std::vector<std::size_t> seen;
+    std::vector<double> all;
+    for (std::size_t b = 0; b < campaign.blocks.size(); ++b) {
+      if (!rows[b]) continue;
+      const double z = space.of_measured(b)[static_cast<Eigen::Index>(o)];
+      if (!std::isnan(z)) seen.push_back(b), all.push_back(z);
+    }
+    if (seen.size() < kFewestBlocks) continue;
+    if (!crossing) add_moments(table, name, all);
+    for (const Property& property : properties()) {
+      std::vector<double> z, variance, of;  // of the blocks whose property is known
+      for (std::size_t i = 0; i < seen.size(); ++i) {
+        const double value = property.of(campaign.blocks[seen[i]]), p = space.crossing_share(seen[i], o);
+        if (!std::isnan(value)) z.push_back(all[i]), variance.push_back(p * (1.0 - p)), of.push_back(value);
+      }
+      if (of.size() < kFewestBlocks || std::ranges::min(of) == std::ranges::max(of)) continue;
+      if (crossing) {
+        add_crossing(table, name, property.name, z, variance, of);
+      } else {
+        const double r = spearman(z, of);
+        table.push_back({name, property.name, r, p_of_correlation(r, z.size()), 1.0, z.size()});
+      }
+    }
+  }
+  correct(table);
+  return table;
+}
+
+}  // namespace talus

@@ -1,0 +1,160 @@
+#include "talus/io/campaign/campaign_file.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "campaign_tables.hpp"
+#include "io/gdal/dataset.hpp"
+#include "io/scenario/scenario_spec.hpp"
+#include "io/files/sha256.hpp"
+#include "io/scenario/table_reader.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/io/gdal/vectors.hpp"
+
+namespace talus::io {
+namespace {
+
+using Kind = TomlValue::Kind;
+
+/// What campaign.toml says, before any other file is opened.
+struct CampaignSpec {
+  std::string name, crs;
+  NamedFile dem, zones, blocks, stops, passages, screens, samples;
+  std::vector<std::string> zone_codes, zone_names;
+  MeasurementError error;
+};
+
+class CampaignReader {
+ public:
+  explicit CampaignReader(const std::string& path)
+      : path_(path), base_(std::filesystem::absolute(path).parent_path()) {}
+
+  CampaignSpec read() {
+    const TomlValue root = read_toml(path_, path_);
+    TableReader top(&root, "", path_, faults_);
+    spec_.name = top.text("name").value_or(base_.filename().string());
+    spec_.crs = top.text("crs").value_or("");
+    for (const auto& [key, file] : {std::pair{"dem", &spec_.dem},
+                                    {"zones", &spec_.zones},
+                                    {"blocks", &spec_.blocks},
+                                    {"stops", &spec_.stops},
+                                    {"passages", &spec_.passages},
+                                    {"screens", &spec_.screens},
+                                    {"samples", &spec_.samples}})
+      named_file(top, key, *file);
+    read_zone_names(top.table("zone_names"));
+    read_error(top.table("measurement_error"));
+    top.finish();
+    for (const auto& [key, file] : {std::pair{"dem", &spec_.dem}, {"blocks", &spec_.blocks}})
+      if (file->path.empty() && root.find(key) == nullptr)
+        faults_.push_back(path_ + ": has no " + key + ", must name the file: " + key + " = \"" +
+                          (file == &spec_.dem ? "dem.tif" : "blocks.csv") + "\"");
+    if (!spec_.zones.path.empty() && spec_.zone_codes.empty())
+      faults_.push_back(spec_.zones.where + ": must come with [zone_names], such as 1 = \"talus\"");
+    if (!faults_.empty()) throw InputError(faults_.front());
+    return std::move(spec_);
+  }
+
+ private:
+  void named_file(TableReader& table, const std::string& key, NamedFile& file) {
+    const auto text = table.text(key);
+    if (!text) return;
+    file = {absolute_path(*text, base_), table.where(key, *table.value()->find(key))};
+    std::error_code none;
+    if (!std::filesystem::exists(file.path, none)) faults_.push_back(file.where + ": no such file (" + file.path + ")");
+  }
+
+  void read_zone_names(TableReader table) {
+    if (table.value() == nullptr) return;
+    for (const auto& [code, value] : table.value()->members) {
+      const auto name = table.text(code);
+      if (!name) continue;
+      if (*name == "default")
+        table.fault(code, value, "must be another name: default is what no zone covers");
+      else if (std::count(spec_.zone_names.begin(), spec_.zone_names.end(), *name) > 0)
+        table.fault(code, value, "is the name of two zones, must be of one");
+      spec_.zone_codes.push_back(code);
+      spec_.zone_names.push_back(*name);
+    }
+  }
+
+  void read_error(TableReader table) {
+    constexpr Bounds kMetres{"", "m", "standard deviation of the measurement", 0.0, 1000.0};
+    constexpr Bounds kFraction{"", "1", "standard deviation relative to the value", 0.0, 10.0};
+    MeasurementError& e = spec_.error;
+    e.position_m = table.number("position_m", kMetres).value_or(0.0);
+    e.speed_fraction = table.number("speed_fraction", kFraction).value_or(0.0);
+    e.jump_height_m = table.number("jump_height_m", kMetres).value_or(0.0);
+    e.angular_velocity_fraction = table.number("angular_velocity_fraction", kFraction).value_or(0.0);
+    table.finish();
+  }
+
+  std::string path_;
+  std::filesystem::path base_;
+  std::vector<std::string> faults_;
+  CampaignSpec spec_;
+};
+
+/// The tables hold plain coordinates: they must be those of the DEM.
+void check_crs(const std::string& path, const std::string& given, const Terrain& terrain) {
+  if (given.empty()) return;
+  GdalMessages messages;
+  OGRSpatialReference system, of_dem;
+  if (system.SetFromUserInput(given.c_str()) != OGRERR_NONE)
+    throw InputError(path + ": crs = '" + given + "': is no coordinate system, must be one like \"EPSG:2056\"");
+  of_dem.importFromWkt(terrain.geo.crs_wkt.c_str());
+  const char* const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", "CRITERION=EQUIVALENT", nullptr};
+  if (system.IsSame(&of_dem, options) == 0)
+    throw InputError(path + ": crs = '" + given + "': must be the system of the DEM, " + crs_name(terrain.geo.crs_wkt) +
+                     ": reproject the DEM with gdalwarp -t_srs " + given);
+}
+
+template <class Part>
+void take_warnings(LoadedCampaign& out, const Part& part) {
+  out.warnings.insert(out.warnings.end(), part.warnings.begin(), part.warnings.end());
+}
+
+}  // namespace
+
+LoadedCampaign read_campaign(const std::string& path) {
+  const CampaignSpec spec = CampaignReader(path).read();
+  LoadedCampaign out;
+  Campaign& campaign = out.campaign;
+  campaign.name = spec.name;
+  campaign.error = spec.error;
+  Terrain terrain = read_terrain(spec.dem.path);
+  check_crs(path, spec.crs, terrain);
+  take_warnings(out, terrain);
+  out.geo = terrain.geo;
+  campaign.zone_names = {"default"};
+  out.zone_codes = {""};
+  if (!spec.zones.path.empty()) {
+    ZoneLayer zones = read_zones({spec.zones.path, "", spec.zone_names, spec.zone_codes, "", "zone_names"}, terrain);
+    campaign.zones = std::move(zones.zones);
+    campaign.zone_names.insert(campaign.zone_names.end(), spec.zone_names.begin(), spec.zone_names.end());
+    out.zone_codes.insert(out.zone_codes.end(), spec.zone_codes.begin(), spec.zone_codes.end());
+    take_warnings(out, zones);
+  }
+  if (!spec.screens.path.empty()) {
+    ScreenLayer screens = read_screens(spec.screens.path, terrain);
+    campaign.screens = std::move(screens.screens);
+    take_warnings(out, screens);
+  }
+  campaign.surface = Surface(std::move(terrain.heights));
+  read_tables({spec.blocks.path, spec.stops.path, spec.passages.path, spec.samples.path}, campaign, out.warnings);
+  const std::pair<const char*, std::string> files[] = {
+      {"campaign", std::filesystem::absolute(path).lexically_normal().string()},
+      {"dem", spec.dem.path},
+      {"zones", spec.zones.path},
+      {"blocks", spec.blocks.path},
+      {"stops", spec.stops.path},
+      {"passages", spec.passages.path},
+      {"screens", spec.screens.path},
+      {"samples", spec.samples.path}};
+  for (const auto& [role, file] : files)
+    if (!file.empty()) out.inputs.push_back({role, file, sha256_of_file(file)});
+  return out;
+}
+
+}  // namespace talus::io

@@ -1,0 +1,198 @@
+#include "campaign_tables.hpp"
+
+#include <array>
+#include <cmath>
+#include <unordered_map>
+
+#include "io/gdal/csv_table.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+
+namespace talus::io {
+namespace {
+
+constexpr auto kAbove = Bounds::AboveMin;
+constexpr Bounds kPlace{"x", "m", "map coordinate", -1e8, 1e8};
+constexpr Bounds kHeight{"z", "m", "height above the sea", -500.0, 9000.0};
+constexpr Bounds kReleaseHeight{"release_height_m", "m", "of the centre above the terrain", 0.0, 500.0};
+constexpr Bounds kRadius{"release_radius_m", "m", "of the disc of release", 0.0, 1000.0};
+constexpr Bounds kVelocity{"vx", "m/s", "component of the velocity at the release", -200.0, 200.0};
+constexpr Bounds kMass{"mass_kg", "kg", "mass of the block", 0.0, 1e9, kAbove};
+constexpr Bounds kDensity{"density_kgm3", "kg/m3", "mass per volume of the rock", 500.0, 8000.0};
+constexpr Bounds kAxis{"L1_m", "m", "length of an axis of the block", 0.0, 100.0, kAbove};
+constexpr Bounds kDay{"day", "1", "number of the day of release, 0: not known", 0.0, 1e6, Bounds::Closed, true};
+constexpr Bounds kHoldout{"holdout", "1", "1: never used to fit", 0.0, 1.0, Bounds::Closed, true};
+constexpr Bounds kSpeed{"speed_ms", "m/s", "measured speed", 0.0, 300.0};
+constexpr Bounds kJump{"jump_height_m", "m", "measured height above the terrain", 0.0, 1000.0};
+constexpr Bounds kSpin{"angular_velocity_rads", "rad/s", "measured angular velocity", 0.0, 10000.0};
+
+/// Reads the tables of one campaign; blocks first.
+class Tables {
+ public:
+  Tables(const CampaignFiles& files, Campaign& campaign, std::vector<std::string>& warnings)
+      : files_(files), campaign_(campaign), warnings_(warnings) {}
+
+  void read() {
+    read_blocks();
+    if (!files_.stops.empty()) read_stops();
+    if (!files_.passages.empty()) read_passages();
+    if (!files_.samples.empty()) read_samples();
+  }
+
+ private:
+  using Row = CsvTable::Row;
+
+  void read_blocks() {
+    const CsvTable table(files_.blocks,
+                         {"id", "x", "y", "release_height_m", "release_radius_m", "vx", "vy", "vz", "mass_kg",
+                          "density_kgm3", "L1_m", "L2_m", "L3_m", "day", "group", "holdout"},
+                         {"id", "x", "y", "release_height_m", "mass_kg"});
+    for (const Row& row : table.rows()) {
+      MeasuredBlock block;
+      block.id = table.name(row, "id");
+      const auto [earlier, fresh] = lines_.try_emplace(block.id, row.line);
+      if (!fresh) table.refuse(row, "id", "is there already in line " + std::to_string(earlier->second));
+      indices_[block.id] = campaign_.blocks.size();
+      const Eigen::Vector2d place = place_of(table, row);
+      block.x = place.x();
+      block.y = place.y();
+      block.release_height = table.required(row, "release_height_m", kReleaseHeight);
+      block.release_radius = table.number(row, "release_radius_m", kRadius).value_or(0.0);
+      for (const auto& [column, axis] : {std::pair{"vx", 0}, {"vy", 1}, {"vz", 2}})
+        block.velocity[axis] = table.number(row, column, kVelocity).value_or(0.0);
+      block.mass = table.required(row, "mass_kg", kMass);
+      block.density = table.number(row, "density_kgm3", kDensity).value_or(2700.0);
+      block.axes = axes_of(table, row, equivalent_diameter(block.mass, block.density));
+      block.day = static_cast<int>(table.number(row, "day", kDay).value_or(0.0));
+      block.group = table.text(row, "group");
+      block.holdout = table.number(row, "holdout", kHoldout).value_or(0.0) == 1.0;
+      block.passages.resize(campaign_.screens.size());
+      check_release(table, row, block);
+      campaign_.blocks.push_back(std::move(block));
+    }
+    if (campaign_.blocks.empty()) throw InputError(files_.blocks + ": has no blocks, must have one row for each");
+  }
+
+  static Vec3 axes_of(const CsvTable& table, const Row& row, double diameter) {
+    constexpr std::array<const char*, 3> kColumns{"L1_m", "L2_m", "L3_m"};
+    std::array<std::optional<double>, 3> axes;
+    for (std::size_t i = 0; i < 3; ++i) axes[i] = table.number(row, kColumns[i], kAxis);
+    if (!axes[0] && !axes[1] && !axes[2]) return Vec3::Constant(diameter);
+    for (std::size_t i = 0; i < 3; ++i)
+      if (!axes[i]) table.refuse(row, kColumns[i], "must be given where another axis is, or all three left empty");
+    for (std::size_t i = 1; i < 3; ++i)
+      if (*axes[i] > *axes[i - 1])
+        table.refuse(
+            row, kColumns[i],
+            std::string("must not be above ") + kColumns[i - 1] + " = " + text_of(*axes[i - 1]) + " (L1 >= L2 >= L3)");
+    return {*axes[0], *axes[1], *axes[2]};
+  }
+
+  void check_release(const CsvTable& table, const Row& row, const MeasuredBlock& block) const {
+    const auto there = [&](double x, double y) { return campaign_.surface.height(x, y).has_value(); };
+    if (!there(block.x, block.y))
+      table.refuse(row, "x",
+                   "with y = " + table.text(row, "y") +
+                       " the release is off the terrain, must be on it: are the coordinates those of the "
+                       "DEM's system?");
+    constexpr int kDirections = 8;
+    for (int i = 0; i < kDirections; ++i) {
+      const double angle = 2.0 * kPi * i / kDirections, r = block.release_radius;
+      if (!there(block.x + r * std::cos(angle), block.y + r * std::sin(angle)))
+        table.refuse(row, "release_radius_m", "the disc of release reaches off the terrain, must be on it");
+    }
+  }
+
+  Eigen::Vector2d place_of(const CsvTable& table, const Row& row) const {
+    const Grid& grid = campaign_.surface.grid();
+    return {table.required(row, "x", kPlace) - grid.west, table.required(row, "y", kPlace) - grid.south};
+  }
+
+  /// Of what was measured: one place far off would widen the spread that all errors are divided by.
+  Eigen::Vector2d place_on_map(const CsvTable& table, const Row& row) const {
+    const Eigen::Vector2d place = place_of(table, row);
+    const Grid& grid = campaign_.surface.grid();
+    if (place.x() < 0.0 || place.y() < 0.0 || place.x() > grid.width() || place.y() > grid.height())
+      table.refuse(row, "x",
+                   "with y = " + table.text(row, "y") +
+                       " is off the DEM, must be on it: is it mistyped? A block that ran off the DEM has no row");
+    return place;
+  }
+
+  MeasuredBlock& block_of_row(const CsvTable& table, const Row& row) {
+    const auto found = indices_.find(table.name(row, "id"));
+    if (found == indices_.end()) table.refuse(row, "id", "is no block of " + files_.blocks + ", must be one");
+    return campaign_.blocks[found->second];
+  }
+
+  void read_stops() {
+    const CsvTable table(files_.stops, {"id", "x", "y", "mass_kg"}, {"id", "x", "y"});
+    for (const Row& row : table.rows()) {
+      MeasuredBlock& block = block_of_row(table, row);
+      const bool placed = !table.text(row, "x").empty() || !table.text(row, "y").empty();
+      if ((placed && block.stop) || (!table.text(row, "mass_kg").empty() && block.stop_mass)) {
+        warnings_.push_back(files_.stops + ":" + std::to_string(row.line) + ": block '" + block.id +
+                            "' has a stop already: the first one counts");
+        continue;
+      }
+      if (placed) block.stop = place_on_map(table, row);
+      if (const auto mass = table.number(row, "mass_kg", kMass)) block.stop_mass = mass;
+    }
+  }
+
+  void read_passages() {
+    const CsvTable table(files_.passages, {"id", "screen", "speed_ms", "jump_height_m", "angular_velocity_rads"},
+                         {"id", "screen"});
+    for (const Row& row : table.rows()) {
+      MeasuredBlock& block = block_of_row(table, row);
+      const std::size_t screen = screen_of(table, row);
+      Passage passage;
+      passage.speed = table.number(row, "speed_ms", kSpeed).value_or(kNotGiven);
+      passage.jump = table.number(row, "jump_height_m", kJump).value_or(kNotGiven);
+      passage.spin = table.number(row, "angular_velocity_rads", kSpin).value_or(kNotGiven);
+      if (!block.passages[screen]) block.passages[screen] = passage;  // the first crossing counts
+    }
+  }
+
+  std::size_t screen_of(const CsvTable& table, const Row& row) const {
+    const std::string& id = table.name(row, "screen");
+    std::vector<std::string> ids;
+    for (std::size_t s = 0; s < campaign_.screens.size(); ++s) {
+      if (campaign_.screens[s].id == id) return s;
+      ids.push_back(campaign_.screens[s].id);
+    }
+    table.refuse(row, "screen",
+                 ids.empty() ? "is no screen: name the file of the screens by screens = \"screens.csv\" in the campaign"
+                             : "is no screen" + known_names(id, ids));
+  }
+
+  void read_samples() {
+    const CsvTable table(files_.samples, {"id", "x", "y", "z", "speed_ms", "angular_velocity_rads"}, {"id", "x", "y"});
+    for (const Row& row : table.rows()) {
+      MeasuredBlock& block = block_of_row(table, row);
+      const Eigen::Vector2d place = place_on_map(table, row);
+      Sample sample;
+      sample.x = place.x();
+      sample.y = place.y();
+      sample.z = table.number(row, "z", kHeight).value_or(kNotGiven);
+      sample.distance = (place - Eigen::Vector2d(block.x, block.y)).norm();
+      sample.speed = table.number(row, "speed_ms", kSpeed).value_or(kNotGiven);
+      sample.spin = table.number(row, "angular_velocity_rads", kSpin).value_or(kNotGiven);
+      block.samples.push_back(sample);
+    }
+  }
+
+  const CampaignFiles& files_;
+  Campaign& campaign_;
+  std::vector<std::string>& warnings_;
+  std::unordered_map<std::string, std::size_t> indices_;
+  std::unordered_map<std::string, int> lines_;  // of blocks.csv
+};
+
+}  // namespace
+
+void read_tables(const CampaignFiles& files, Campaign& campaign, std::vector<std::string>& warnings) {
+  Tables(files, campaign, warnings).read();
+}
+
+}  // namespace talus::io

@@ -1,0 +1,272 @@
+#include "talus/io/files/output_folder.hpp"
+
+#include <fcntl.h>
+#include <gdal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
+#include <vector>
+
+#include "folder_lock.hpp"
+#include "sha256.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/scratch.hpp"
+
+namespace talus::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Absolute, through symbolic links, without a slash at its end.
+fs::path full_name(const fs::path& path) {
+  if (path.empty())
+    throw InputError("--out: the name of the folder is empty; give a new folder, for example -o result");
+  std::error_code error;
+  fs::path full = fs::weakly_canonical(fs::absolute(path), error);
+  if (error) full = fs::absolute(path).lexically_normal();
+  if (full.filename().empty()) full = full.parent_path();
+  if (full.filename().empty()) throw InputError(path.string() + ": cannot be a folder of results; give a new folder");
+  return full;
+}
+
+/// A mount point can neither be renamed nor replaced: better said before the run than after it.
+bool is_mount_point(const fs::path& folder) {
+  struct stat self {
+  }, parent{};
+  return stat(folder.c_str(), &self) == 0 && stat(folder.parent_path().c_str(), &parent) == 0 &&
+         self.st_dev != parent.st_dev;
+}
+
+void refuse_taken_name(const fs::path& folder, bool overwrite) {
+  const std::string name = folder.string();
+  if (!fs::exists(folder)) return;
+  if (!fs::is_directory(folder)) throw InputError(name + ": is a file; give the name of a new folder");
+  if (is_mount_point(folder))
+    throw InputError(name + ": is a mount point, which cannot be replaced; give a new folder in it, for example " +
+                     (folder / "result").string());
+  if (fs::is_empty(folder)) return;
+  if (!overwrite)
+    throw InputError(name + ": the folder is there and not empty; give a new name, or --overwrite to replace it");
+  for (const char* mark : {"run.json", "part.json", "calibration.json", "diagnosis.json"})
+    if (fs::exists(folder / mark)) return;
+  throw InputError(name +
+                   ": --overwrite replaces only results of talus, and there is no run.json, part.json, "
+                   "calibration.json or diagnosis.json in this folder; give a new name, or remove the folder yourself");
+}
+
+fs::path make_temporary(const fs::path& folder) {
+  const fs::path parent = folder.parent_path();
+  if (!fs::is_directory(parent))
+    throw InputError(parent.string() + ": there is no such folder for the results to go into; create it first");
+  const std::string stem = "." + folder.filename().string() + ".talus-" + std::to_string(getpid());
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    fs::path path = parent / (attempt == 0 ? stem : stem + "-" + std::to_string(attempt));
+    std::error_code error;
+    if (fs::create_directory(path, error)) return path;
+    if (error == std::errc::no_space_on_device) throw std::runtime_error(parent.string() + ": " + error.message());
+    if (error)
+      throw InputError(parent.string() + ": no folder can be made there (" + error.message() +
+                       "); give an output folder where you may write");
+  }
+  throw std::runtime_error(parent.string() + ": too many temporary folders of talus; remove " + stem + "*");
+}
+
+/// A hidden folder that no process has any more.
+struct Left {
+  fs::path path;
+  FolderLock lock;
+  std::optional<fs::file_time_type> kept;  // when work was kept in it; nothing: never
+};
+
+/// The hidden folders that runs have left, the one that kept its work last at the end. All are locked by now. Throws
+/// InputError where a process still writes one.
+std::vector<Left> left_of(const fs::path& folder) {
+  const std::string stem = "." + folder.filename().string() + ".talus-";
+  std::vector<Left> found;
+  if (!fs::is_directory(folder.parent_path())) return found;
+  for (const auto& entry : fs::directory_iterator(folder.parent_path())) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(stem)) continue;
+    const fs::path work = entry.path() / OutputFolder::kWork, manifest = work / "part.json";
+    Left left{entry.path(), {}, {}};
+    const FolderLock::Found state = FolderLock::take(work, fs::exists(manifest), left.lock);
+    const bool taken = !fs::exists(entry.path());  // a moment ago, by a process that goes on with it or is done
+    if (state == FolderLock::Found::InUse || taken)
+      throw InputError(folder.string() + ": another process is writing it (into " + name +
+                       "); wait until it has ended, or give another name");
+    if (state == FolderLock::Found::None) continue;  // of a command that keeps nothing
+    if (fs::exists(manifest)) left.kept = fs::last_write_time(manifest);
+    found.push_back(std::move(left));
+  }
+  std::ranges::sort(found, {}, &Left::kept);
+  return found;
+}
+
+/// Whether it is a map that a run had finished when it was killed: `write_map` gives it this name last.
+bool is_finished_map(const fs::path& file) {
+  return file.extension() == ".tif" && !file.stem().has_extension();
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const fs::path& path, bool overwrite, Unfinished unfinished)
+    : final_(full_name(path)), overwrite_(overwrite), lock_(std::make_unique<FolderLock>()) {
+  std::vector<Left> left;
+  try {
+    refuse_taken_name(final_, overwrite);
+    if (unfinished != Unfinished::Ignore) left = left_of(final_);
+  } catch (const fs::filesystem_error& error) {
+    throw InputError(final_.string() + ": cannot be looked at (" + error.code().message() + "); give another folder");
+  }
+  const bool kept = !left.empty() && left.back().kept;
+  if (unfinished == Unfinished::Refuse && kept && !overwrite)
+    throw InputError(final_.string() + ": an interrupted run of this name is kept in " + left.back().path.string() +
+                     "; give --resume to go on with it, or --overwrite to begin anew");
+  temporary_ = make_temporary(final_);
+  std::error_code ignored;
+  if (unfinished == Unfinished::Resume && kept) {
+    fs::remove(temporary_, ignored);
+    fs::rename(left.back().path, temporary_);
+    *lock_ = std::move(left.back().lock);
+    kept_ = true;  // what there is must not be lost; nor are others of that name removed
+    for (const auto& entry : fs::directory_iterator(temporary_))
+      if (entry.path().filename() != kWork && !is_finished_map(entry.path())) fs::remove_all(entry.path(), ignored);
+    left.clear();
+  } else if (unfinished != Unfinished::Ignore) {
+    hold_work();
+  }
+  for (const Left& folder : left) fs::remove_all(folder.path, ignored);
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;
+  if (!committed_ && !kept_) fs::remove_all(temporary_, ignored);
+}
+
+void OutputFolder::hold_work() {
+  try {
+    fs::create_directories(work());
+    *lock_ = FolderLock::made_in(work());
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(temporary_, ignored);
+    throw;
+  }
+}
+
+void OutputFolder::protect(const fs::path& file) const {
+  for (const std::string& part : files_of_input(file.string())) {
+    std::error_code error;
+    const fs::path full = fs::weakly_canonical(part, error);
+    if (error) continue;
+    const fs::path inside = full.lexically_relative(final_);
+    if (!inside.empty() && *inside.begin() != "..")
+      throw InputError(part + ": lies in the folder that --overwrite would replace; give another folder");
+  }
+}
+
+void OutputFolder::commit() {
+  commit(temporary_);
+  std::error_code ignored;
+  fs::remove_all(final_ / kWork, ignored);  // last: until here a run that is killed can go on
+}
+
+void OutputFolder::commit_work() {
+  std::error_code ignored;
+  fs::remove(work() / FolderLock::kName, ignored);
+  commit(work());
+  fs::remove_all(temporary_, ignored);
+}
+
+void OutputFolder::commit(const fs::path& folder) {
+  try {
+    refuse_taken_name(final_, overwrite_);
+  } catch (const InputError& error) {  // somebody has filled it while this ran
+    kept_ = true;
+    throw InputError(std::string(error.what()) + "; the results are kept in " + temporary_.string());
+  }
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) synchronise(entry.path());
+  synchronise(folder);
+  std::error_code error;
+  const fs::path aside = temporary_.string() + "-old";
+  const bool replace = overwrite_ && fs::exists(final_) && !fs::is_empty(final_);
+  if (replace) fs::rename(final_, aside, error);
+  if (!error) {
+    fs::rename(folder, final_, error);  // fails where somebody has filled it by now
+    std::error_code ignored;
+    if (error && replace) fs::rename(aside, final_, ignored);
+  }
+  if (error) {
+    kept_ = true;
+    throw std::runtime_error(final_.string() + ": the results cannot be given this name (" + error.message() +
+                             "); they are kept in " + temporary_.string());
+  }
+  committed_ = true;
+  synchronise(final_.parent_path());
+  if (replace) fs::remove_all(aside, error);
+}
+
+void limit_memory(const fs::path& results, std::size_t bytes) {
+  const fs::path parent = full_name(results).parent_path();
+  if (!fs::is_directory(parent))
+    throw InputError(parent.string() + ": there is no such folder for the results to go into; create it first");
+  scratch::set_limit(parent.string(), bytes);
+  GDALSetCacheMax64(static_cast<GIntBig>(bytes / 16));
+}
+
+void synchronise(const fs::path& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return;
+  const int result = fsync(file);
+  const int cause = errno;
+  close(file);
+  if (result != 0 && cause != EINVAL && cause != ENOTSUP)
+    throw std::runtime_error(path.filename().string() +
+                             ": cannot be written: " + std::system_category().message(cause));
+}
+
+void write_text(const fs::path& file, std::string_view text) {
+  std::FILE* stream = std::fopen(file.c_str(), "wb");
+  bool good = stream != nullptr && std::fwrite(text.data(), 1, text.size(), stream) == text.size();
+  int cause = good ? 0 : errno;
+  if (stream != nullptr && std::fclose(stream) != 0 && good) {
+    good = false;
+    cause = errno;
+  }
+  if (good) return;
+  std::error_code ignored;
+  fs::remove(file, ignored);
+  throw std::runtime_error(file.filename().string() + ": cannot be written: " + std::system_category().message(cause));
+}
+
+void replace_text(const fs::path& file, std::string_view text) {
+  const fs::path temporary =
+      file.parent_path() / ("." + file.filename().string() + ".talus-" + std::to_string(getpid()));
+  write_text(temporary, text);
+  synchronise(temporary);
+  std::error_code error;
+  fs::rename(temporary, file, error);
+  if (!error) {
+    synchronise(file.parent_path());
+    return;
+  }
+  std::error_code ignored;
+  fs::remove(temporary, ignored);
+  throw std::runtime_error(file.filename().string() + ": cannot be written: " + error.message());
+}
+
+std::string cause_of_failure(const fs::path& folder, const std::string& messages) {
+  std::error_code error;
+  const fs::space_info space = fs::space(folder, error);
+  if (!error && space.available < (std::uintmax_t{1} << 20U)) return "the disk is full";
+  return messages.substr(0, messages.find("; "));
+}
+
+}  // namespace talus::io

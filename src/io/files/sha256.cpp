@@ -1,0 +1,128 @@
+#include "sha256.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <filesystem>
+
+#include "io/gdal/dataset.hpp"
+
+namespace talus::io {
+
+namespace {
+
+constexpr std::array<std::uint32_t, 64> kRound{
+    0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
+    0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
+    0xe49b69c1, 0xefbe4786, 0x0fc19dc6, 0x240ca1cc, 0x2de92c6f, 0x4a7484aa, 0x5cb0a9dc, 0x76f988da,
+    0x983e5152, 0xa831c66d, 0xb00327c8, 0xbf597fc7, 0xc6e00bf3, 0xd5a79147, 0x06ca6351, 0x14292967,
+    0x27b70a85, 0x2e1b2138, 0x4d2c6dfc, 0x53380d13, 0x650a7354, 0x766a0abb, 0x81c2c92e, 0x92722c85,
+    0xa2bfe8a1, 0xa81a664b, 0xc24b8b70, 0xc76c51a3, 0xd192e819, 0xd6990624, 0xf40e3585, 0x106aa070,
+    0x19a4c116, 0x1e376c08, 0x2748774c, 0x34b0bcb5, 0x391c0cb3, 0x4ed8aa4a, 0x5b9cca4f, 0x682e6ff3,
+    0x748f82ee, 0x78a5636f, 0x84c87814, 0x8cc70208, 0x90befffa, 0xa4506ceb, 0xbef9a3f7, 0xc67178f2};
+
+bool add_file(Sha256& sum, const std::string& path) {
+  VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
+  if (file == nullptr) return false;
+  std::vector<char> bytes(1U << 16);
+  for (std::size_t n = 0; (n = VSIFReadL(bytes.data(), 1, bytes.size(), file)) > 0;) sum.add({bytes.data(), n});
+  VSIFCloseL(file);
+  return true;
+}
+
+}  // namespace
+
+void Sha256::block(const unsigned char* data) {
+  std::array<std::uint32_t, 64> w{};
+  for (int i = 0; i < 16; ++i)
+    w[i] = std::uint32_t{data[4 * i]} << 24 | std::uint32_t{data[4 * i + 1]} << 16 |
+           std::uint32_t{data[4 * i + 2]} << 8 | data[4 * i + 3];
+  for (int i = 16; i < 64; ++i) {
+    const std::uint32_t s0 = std::rotr(w[i - 15], 7) ^ std::rotr(w[i - 15], 18) ^ (w[i - 15] >> 3);
+    const std::uint32_t s1 = std::rotr(w[i - 2], 17) ^ std::rotr(w[i - 2], 19) ^ (w[i - 2] >> 10);
+    w[i] = w[i - 16] + s0 + w[i - 7] + s1;
+  }
+  auto [a, b, c, d, e, f, g, h] = state_;
+  for (int i = 0; i < 64; ++i) {
+    const std::uint32_t s1 = std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25);
+    const std::uint32_t t1 = h + s1 + ((e & f) ^ (~e & g)) + kRound[i] + w[i];
+    const std::uint32_t s0 = std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22);
+    const std::uint32_t t2 = s0 + ((a & b) ^ (a & c) ^ (b & c));
+    h = g, g = f, f = e, e = d + t1, d = c, c = b, b = a, a = t1 + t2;
+  }
+  const std::array<std::uint32_t, 8> mixed{a, b, c, d, e, f, g, h};
+  for (int i = 0; i < 8; ++i) state_[i] += mixed[i];
+}
+
+void Sha256::add(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const std::size_t held = length_ % 64, n = std::min(bytes.size(), 64 - held);
+    std::memcpy(buffer_.data() + held, bytes.data(), n);
+    length_ += n;
+    bytes.remove_prefix(n);
+    if (held + n == 64) block(buffer_.data());
+  }
+}
+
+std::string Sha256::digits() {
+  const std::uint64_t bits = length_ * 8;
+  add(std::string_view("\x80", 1));
+  while (length_ % 64 != 56) add(std::string_view("\0", 1));
+  std::array<char, 8> end{};
+  for (int i = 0; i < 8; ++i) end[i] = static_cast<char>(bits >> (56 - 8 * i) & 0xFF);
+  add({end.data(), end.size()});
+  std::string text;
+  for (const std::uint32_t word : state_)
+    for (int shift = 28; shift >= 0; shift -= 4) text += "0123456789abcdef"[word >> shift & 0xF];
+  return text;
+}
+
+std::vector<std::string> files_of_input(const std::string& path) {
+  std::error_code none;
+  std::vector<std::string> files;
+  if (std::filesystem::is_directory(path, none)) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(path, none))
+      if (entry.is_regular_file(none)) files.push_back(entry.path().string());
+    std::sort(files.begin(), files.end());
+    return files;
+  }
+  files.push_back(path);
+  const std::string end = path.size() > 4 ? path.substr(path.size() - 4) : "";
+  if (end == ".vrt" || end == ".VRT") {  // and the rasters that it is made of
+    const GdalMessages quiet;
+    if (const Dataset mosaic{GDALDataset::Open(path.c_str())}) {
+      char** const names = mosaic->GetFileList();
+      for (char** name = names; name != nullptr && *name != nullptr; ++name)
+        if (*name != path && !std::string_view(*name).ends_with(".aux.xml") &&
+            !std::string_view(*name).ends_with(".ovr"))
+          files.emplace_back(*name);
+      CSLDestroy(names);
+    }
+    std::sort(files.begin() + 1, files.end());
+  }
+  if (end == ".shp" || end == ".SHP")
+    for (const char* other : {".dbf", ".shx", ".prj"}) {
+      std::string name = path.substr(0, path.size() - 4) + other;
+      if (!std::filesystem::exists(name, none))
+        std::transform(name.end() - 3, name.end(), name.end() - 3,
+                       [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+      files.push_back(name);
+    }
+  return files;
+}
+
+std::string sha256_of_file(const std::string& path) {
+  start_gdal();
+  Sha256 sum;
+  bool any = false;
+  for (const std::string& file : files_of_input(path)) any = add_file(sum, file) || any;
+  return any ? sum.digits() : "";
+}
+
+std::string sha256_of_bytes(std::string_view bytes) {
+  Sha256 sum;
+  sum.add(bytes);
+  return sum.digits();
+}
+
+}  // namespace talus::io

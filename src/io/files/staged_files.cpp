@@ -1,0 +1,78 @@
+#include "talus/io/files/staged_files.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "talus/base/error.hpp"
+
+namespace talus::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The files that a record names; itself where it names none.
+std::vector<std::string> files_of(const fs::path& record) {
+  std::vector<std::string> names;
+  std::ifstream file(record);
+  const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
+  if (json.is_object() && json.contains("files") && json["files"].is_array())
+    for (const auto& name : json["files"])
+      if (name.is_string() && fs::path(name.get<std::string>()).filename() == name.get<std::string>())
+        names.push_back(name);
+  names.push_back(record.filename().string());
+  return names;
+}
+
+}  // namespace
+
+StagedFiles::StagedFiles(const fs::path& folder, const std::string& record, bool overwrite)
+    : folder_(folder), record_(record) {
+  if (!fs::exists(folder / "run.json"))
+    throw InputError(folder.string() + ": is no folder of results (it has no run.json); give the OUT of talus run");
+  if (fs::exists(folder / record)) {
+    if (!overwrite)
+      throw InputError(folder.string() + ": has a " + record +
+                       " already; give --overwrite to replace it and its files");
+    earlier_ = files_of(folder / record);
+  }
+  temporary_ = folder / ("." + fs::path(record).stem().string() + ".talus-" + std::to_string(getpid()));
+  std::error_code error;
+  fs::remove_all(temporary_, error);  // of a process of the same number that was killed
+  if (!fs::create_directory(temporary_, error))
+    throw InputError(folder.string() + ": nothing can be written there (" + error.message() + ")");
+}
+
+StagedFiles::~StagedFiles() {
+  std::error_code ignored;
+  fs::remove_all(temporary_, ignored);
+}
+
+std::vector<std::string> StagedFiles::files() const {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(temporary_)) names.push_back(entry.path().filename().string());
+  std::ranges::sort(names);
+  return names;
+}
+
+void StagedFiles::commit() {
+  for (const std::string& name : files())
+    if (fs::exists(folder_ / name) && std::ranges::count(earlier_, name) == 0)
+      throw InputError((folder_ / name).string() + ": is there and none of the files of an earlier " + record_ +
+                       ", so it is not replaced; move it, or give it another name");
+  std::error_code error;
+  fs::remove(folder_ / record_, error);  // first: what lies there is from now on not complete
+  for (const std::string& name : earlier_) fs::remove(folder_ / name, error);
+  std::vector<std::string> names = files();
+  std::ranges::stable_partition(names, [this](const std::string& name) { return name != record_; });
+  for (const std::string& name : names) {
+    fs::rename(temporary_ / name, folder_ / name, error);
+    if (error) throw std::runtime_error(name + ": cannot be given this name: " + error.message());
+  }
+}
+
+}  // namespace talus::io

@@ -1,0 +1,51 @@
+#include "talus/io/gdal/crossings_file.hpp"
+
+#include <unordered_set>
+
+#include "csv_table.hpp"
+
+namespace talus::io {
+namespace {
+
+constexpr Bounds kSpeed{"speed_ms", "m/s", "speed of the block", 0.0, 1e4};
+constexpr Bounds kEnergy{"energy_kj", "kJ", "translational energy", 0.0, 1e12};
+constexpr Bounds kHeight{"jump_height_m", "m", "height above the terrain", 0.0, 1e4};
+constexpr Bounds kMass{"mass_kg", "kg", "mass of the block", 0.0, 1e10, Bounds::AboveMin};
+constexpr Bounds kPlace{"x", "m", "map coordinate", -1e8, 1e8};
+
+/// What tells one block from another; empty where the table does not say.
+std::string block_of(const CsvTable& table, const CsvTable::Row& row) {
+  const std::string name = table.text(row, "id") + ',' + table.text(row, "source") + ',' + table.text(row, "block");
+  return name == ",," ? std::string() : name + ',' + table.text(row, "mass_kg");
+}
+
+}  // namespace
+
+CrossingTable read_crossings(const std::string& path, const std::string& screen) {
+  const CsvTable table(path,
+                       {"id", "source", "block", "screen", "speed_ms", "energy_kj", "total_energy_kj", "jump_height_m",
+                        "angular_velocity_rads", "mass_kg", "x", "y"},
+                       {"screen"});
+  CrossingTable out;
+  std::unordered_set<std::string> seen;
+  for (const CsvTable::Row& row : table.rows()) {
+    if (table.text(row, "screen") != screen) continue;
+    const std::string block = block_of(table, row);
+    if (!block.empty() && !seen.insert(block).second) continue;
+    ++out.blocks;
+    const auto speed = table.number(row, "speed_ms", kSpeed), energy = table.number(row, "energy_kj", kEnergy),
+               height = table.number(row, "jump_height_m", kHeight), mass = table.number(row, "mass_kg", kMass),
+               x = table.number(row, "x", kPlace), y = table.number(row, "y", kPlace);
+    if (speed) out.speed.push_back(*speed);
+    if (height) out.height.push_back(*height);
+    if (mass) out.mass.push_back(*mass);
+    if (energy)
+      out.energy.push_back(*energy * 1e3);
+    else if (mass && speed)
+      out.energy.push_back(0.5 * *mass * *speed * *speed);
+    if (x && y) out.places.emplace_back(*x, *y);
+  }
+  return out;
+}
+
+}  // namespace talus::io

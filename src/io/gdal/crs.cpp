@@ -1,0 +1,282 @@
+#include "talus/io/gdal/crs.hpp"
+
+#include <geodesic.h>
+#include <proj.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "dataset.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+
+namespace talus::io {
+
+namespace {
+
+struct DropContext {
+  void operator()(PJ_CONTEXT* c) const { proj_context_destroy(c); }
+};
+struct DropObject {
+  void operator()(PJ* p) const { proj_destroy(p); }
+};
+struct DropArea {
+  void operator()(PJ_AREA* a) const { proj_area_destroy(a); }
+};
+using Context = std::unique_ptr<PJ_CONTEXT, DropContext>;
+using Object = std::unique_ptr<PJ, DropObject>;
+using Area = std::unique_ptr<PJ_AREA, DropArea>;
+
+Context make_context() {
+  Context context(proj_context_create());
+  if (!context) throw std::runtime_error("PROJ cannot be started");
+  proj_log_level(context.get(), PJ_LOG_NONE);
+  return context;
+}
+
+// The plane part, without a height system and without a transformation tied to it.
+Object plane_part(PJ_CONTEXT* context, const std::string& wkt) {
+  Object object(proj_create(context, wkt.c_str()));
+  for (int depth = 0; object && depth < 4; ++depth) {
+    const PJ_TYPE type = proj_get_type(object.get());
+    if (type == PJ_TYPE_COMPOUND_CRS)
+      object.reset(proj_crs_get_sub_crs(context, object.get(), 0));
+    else if (type == PJ_TYPE_BOUND_CRS)
+      object.reset(proj_get_source_crs(context, object.get()));
+    else
+      break;
+  }
+  return object;
+}
+
+bool same_system(PJ_CONTEXT* context, const PJ* a, const PJ* b) {
+  const Object p(proj_normalize_for_visualization(context, a)), q(proj_normalize_for_visualization(context, b));
+  return p && q &&
+         proj_is_equivalent_to_with_ctx(context, p.get(), q.get(), PJ_COMP_EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS) != 0;
+}
+
+// An operation between two systems for longitude/latitude or east/north; null where there is none.
+Object make_operation(PJ_CONTEXT* context, const PJ* from, const PJ* to, PJ_AREA* area) {
+  const Object operation(proj_create_crs_to_crs_from_pj(context, from, to, area, nullptr));
+  return Object(operation ? proj_normalize_for_visualization(context, operation.get()) : nullptr);
+}
+
+// To longitude and latitude on WGS 84 [deg]; null for a system that is not tied to the earth.
+Object to_degrees(PJ_CONTEXT* context, const PJ* system) {
+  const Object degrees(proj_create(context, "OGC:CRS84"));
+  return degrees ? make_operation(context, system, degrees.get(), nullptr) : Object();
+}
+
+PJ_COORD transformed(PJ* operation, double x, double y) {
+  return proj_trans(operation, PJ_FWD, proj_coord(x, y, 0.0, HUGE_VAL));
+}
+
+struct Axis {
+  double unit = 0.0;  // in metres, or in radians
+  std::string name;
+};
+
+Axis axis_of(PJ_CONTEXT* context, const PJ* system, int index) {
+  const Object axes(proj_crs_get_coordinate_system(context, system));
+  Axis axis;
+  const char* name = nullptr;
+  if (axes && proj_cs_get_axis_info(context, axes.get(), index, nullptr, nullptr, nullptr, &axis.unit, &name, nullptr,
+                                    nullptr) != 0)
+    axis.name = name == nullptr ? "" : name;
+  return axis;
+}
+
+bool is_metre(const Axis& axis) {
+  return std::abs(axis.unit - 1.0) < 1e-9;
+}
+
+// "EPSG:32632" of the UTM zone of a place, as an example in messages.
+std::string example_system(PJ_CONTEXT* context, const PJ* system, const MapExtent& e) {
+  const Object operation = to_degrees(context, system);
+  if (!operation) return "EPSG:32632";
+  const PJ_COORD place = transformed(operation.get(), 0.5 * (e.west + e.east), 0.5 * (e.south + e.north));
+  if (!(std::abs(place.xy.x) <= 180.0 && std::abs(place.xy.y) <= 84.0)) return "EPSG:32632";
+  const int zone = std::min(60, static_cast<int>((place.xy.x + 180.0) / 6.0) + 1);
+  return "EPSG:" + std::to_string((place.xy.y < 0.0 ? 32700 : 32600) + zone);
+}
+
+// Metres on the earth per metre of the map, the farther from 1 of east and north; 1 where it cannot be told.
+double stretch(PJ_CONTEXT* context, const PJ* system, const MapExtent& e) {
+  const Object operation = to_degrees(context, system);
+  if (!operation) return 1.0;
+  geod_geodesic earth;
+  geod_init(&earth, 6378137.0, 1.0 / 298.257223563);
+  const double x = 0.5 * (e.west + e.east), y = 0.5 * (e.south + e.north), half = 500.0;
+  double worst = 1.0;
+  for (const bool eastwards : {true, false}) {
+    const double dx = eastwards ? half : 0.0, dy = half - dx;
+    const PJ_COORD a = transformed(operation.get(), x - dx, y - dy), b = transformed(operation.get(), x + dx, y + dy);
+    double metres = 0.0;
+    geod_inverse(&earth, a.xy.y, a.xy.x, b.xy.y, b.xy.x, &metres, nullptr, nullptr);
+    const double ratio = metres / (2.0 * half);
+    if (std::abs(ratio - 1.0) > std::abs(worst - 1.0)) worst = ratio;
+  }
+  return worst;
+}
+
+std::string percent(double share) {
+  return text_of(std::round(share * 1000.0) / 10.0) + " %";
+}
+
+void check_heights(PJ_CONTEXT* context, const std::string& path, const std::string& wkt) {
+  const Object whole(proj_create(context, wkt.c_str()));
+  if (!whole || proj_get_type(whole.get()) != PJ_TYPE_COMPOUND_CRS) return;
+  const Object heights(proj_crs_get_sub_crs(context, whole.get(), 1));
+  if (!heights) return;
+  const Axis up = axis_of(context, heights.get(), 0);
+  if (!up.name.empty() && !is_metre(up))
+    throw InputError(path + ": heights are in '" + up.name + "' (coordinate system " + crs_name(wkt) +
+                     "), must be metres: convert them with gdal_calc.py --calc='A*" + text_of(up.unit) +
+                     "' and give the result a system in metres with gdal_edit.py -a_srs");
+}
+
+}  // namespace
+
+std::string crs_name(const std::string& wkt) {
+  const Context context = make_context();
+  const Object object(proj_create(context.get(), wkt.c_str()));
+  if (!object) return "unknown coordinate system";
+  const char* name = proj_get_name(object.get());
+  const char* authority = proj_get_id_auth_name(object.get(), 0);
+  const char* code = proj_get_id_code(object.get(), 0);
+  const std::string title = name == nullptr || *name == '\0' ? "unnamed coordinate system" : name;
+  return authority == nullptr || code == nullptr ? title : std::string(authority) + ":" + code + " (" + title + ")";
+}
+
+std::optional<std::string> check_metric(const std::string& path, const std::string& wkt, const MapExtent& extent) {
+  if (wkt.empty())
+    throw InputError(path + ": has no coordinate system, must be a projected one in metres: say which it is with " +
+                     edit_command(path, "-a_srs EPSG:..."));
+  const Context context = make_context();
+  const Object system = plane_part(context.get(), wkt);
+  if (!system)
+    throw InputError(path + ": its coordinate system cannot be read by PROJ: say which it is with " +
+                     edit_command(path, "-a_srs EPSG:..."));
+  const PJ_TYPE type = proj_get_type(system.get());
+  const std::string way_out = "; reproject it, for example with gdalwarp -t_srs " +
+                              example_system(context.get(), system.get(), extent) + " -r bilinear " + path +
+                              " projected.tif";
+  if (type == PJ_TYPE_GEOGRAPHIC_2D_CRS || type == PJ_TYPE_GEOGRAPHIC_3D_CRS)
+    throw InputError(path + ": coordinates are in degrees (" + crs_name(wkt) +
+                     "), must be metres of a projected coordinate system" + way_out);
+  if (type != PJ_TYPE_PROJECTED_CRS && type != PJ_TYPE_ENGINEERING_CRS && type != PJ_TYPE_OTHER_CRS)
+    throw InputError(path + ": " + crs_name(wkt) + " is not a projected coordinate system" + way_out);
+  const Axis east = axis_of(context.get(), system.get(), 0), north = axis_of(context.get(), system.get(), 1);
+  if (!is_metre(east) || !is_metre(north))
+    throw InputError(path + ": coordinates are in '" + (is_metre(east) ? north : east).name + "' (" + crs_name(wkt) +
+                     "), must be metres" + way_out);
+  check_heights(context.get(), path, wkt);
+
+  const double ratio = stretch(context.get(), system.get(), extent);
+  if (!(std::abs(ratio - 1.0) > 0.01)) return std::nullopt;
+  const std::string text = path + ": " + crs_name(wkt) + " makes distances " + percent(std::abs(1.0 / ratio - 1.0)) +
+                           (ratio < 1.0 ? " longer" : " shorter") + " than they are here, so that slopes are wrong";
+  if (std::abs(ratio - 1.0) > 0.05) throw InputError(text + way_out);
+  return text + way_out;
+}
+
+namespace {
+
+// In degrees; without bounds where the map is not tied to the earth.
+Area area_of(PJ_CONTEXT* context, const MapArea& map) {
+  Area box(proj_area_create());
+  const Object system = plane_part(context, map.wkt);
+  const Object operation = system ? to_degrees(context, system.get()) : Object();
+  if (!operation) return box;
+  const PJ_COORD a = transformed(operation.get(), map.extent.west, map.extent.south);
+  const PJ_COORD b = transformed(operation.get(), map.extent.east, map.extent.north);
+  if (std::isfinite(a.xy.x) && std::isfinite(a.xy.y) && std::isfinite(b.xy.x) && std::isfinite(b.xy.y))
+    proj_area_set_bbox(box.get(), a.xy.x, a.xy.y, b.xy.x, b.xy.y);
+  return box;
+}
+
+}  // namespace
+
+struct Transformer::Projection {
+  Context context;
+  Object operation;  // null: identity
+  LayerName layer;
+  std::string from_wkt, to_wkt;
+  std::vector<Reprojection> used;
+  std::size_t places = 0;
+
+  void note_operation();
+};
+
+// PROJ holds several operations and takes for each place the one that fits best: ask which.
+void Transformer::Projection::note_operation() {
+  const Object last(proj_trans_get_last_used_operation(operation.get()));
+  PJ* const p = last ? last.get() : operation.get();
+  const PJ_PROJ_INFO info = proj_pj_info(p);
+  const char* name = proj_get_name(p);
+  const std::string title = name != nullptr && *name != '\0' ? name
+                            : info.description != nullptr    ? info.description
+                                                             : "unnamed";
+  if (std::any_of(used.begin(), used.end(), [&](const Reprojection& r) { return r.operation == title; })) return;
+  const double accuracy = proj_coordoperation_get_accuracy(context.get(), p);
+  used.push_back({layer.role, title, accuracy >= 0.0 ? std::optional(accuracy) : std::nullopt});
+}
+
+Transformer::Transformer(LayerName layer, const std::string& from_wkt, const std::string& to_wkt, const MapArea& map)
+    : projection_(std::make_unique<Projection>()) {
+  Projection& p = *projection_;
+  p.context = make_context();
+  p.layer = std::move(layer);
+  p.from_wkt = from_wkt;
+  p.to_wkt = to_wkt;
+  const Object from = plane_part(p.context.get(), from_wkt), to = plane_part(p.context.get(), to_wkt);
+  if (!from || !to)
+    throw InputError(p.layer.path +
+                     ": a coordinate system cannot be read by PROJ: say which it is with ogr2ogr -a_srs EPSG:...");
+  if (same_system(p.context.get(), from.get(), to.get())) return;
+  const Area box = area_of(p.context.get(), map);
+  p.operation = make_operation(p.context.get(), from.get(), to.get(), box.get());
+  if (!p.operation)
+    throw InputError(p.layer.path + ": there is no transformation from " + crs_name(from_wkt) + " to " +
+                     crs_name(to_wkt) +
+                     ": bring the layer into the system of the DEM first, with ogr2ogr -t_srs or gdalwarp -t_srs");
+}
+
+Transformer::~Transformer() = default;
+Transformer::Transformer(Transformer&&) noexcept = default;
+
+bool Transformer::is_identity() const {
+  return !projection_->operation;
+}
+
+void Transformer::apply(double& x, double& y, const std::string& where) {
+  Projection& p = *projection_;
+  if (!p.operation) return;
+  const PJ_COORD out = transformed(p.operation.get(), x, y);
+  if (!std::isfinite(out.xy.x) || !std::isfinite(out.xy.y))
+    throw InputError(where + ": the place (" + text_of(x) + ", " + text_of(y) + ") cannot be transformed from " +
+                     crs_name(p.from_wkt) + " to " + crs_name(p.to_wkt) + ": is its coordinate system the right one?");
+  if (p.places++ % 256 == 0) p.note_operation();
+  x = out.xy.x;
+  y = out.xy.y;
+}
+
+const std::vector<Reprojection>& Transformer::used() const {
+  return projection_->used;
+}
+
+std::vector<std::string> Transformer::warnings(double cell) const {
+  std::vector<std::string> lines;
+  for (const Reprojection& r : used()) {
+    if (r.accuracy_m && *r.accuracy_m <= 0.5 * cell) continue;
+    lines.push_back(projection_->layer.path + ": brought from " + crs_name(projection_->from_wkt) + " to " +
+                    crs_name(projection_->to_wkt) + " by '" + r.operation + "', " +
+                    (r.accuracy_m ? "accurate to " + text_of(*r.accuracy_m) + " m only: worse than half a cell"
+                                  : "of unknown accuracy") +
+                    " (a grid of PROJ, package proj-data, may be missing)");
+  }
+  return lines;
+}
+
+}  // namespace talus::io

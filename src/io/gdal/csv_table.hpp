@@ -1,0 +1,48 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "talus/simulate/scenario/parameter_table.hpp"
+
+namespace talus::io {
+
+/// A text table with a header, read whole: commas, quotation marks as in RFC 4180. Every fault names file, line,
+/// column, value and what is allowed.
+class CsvTable {
+ public:
+  struct Row {
+    int line;                        ///< in the file, from 1
+    std::vector<std::string> cells;  ///< as many as columns, without blanks around them
+  };
+
+  /// @param known     columns that may be there; any other is refused
+  /// @param required  those that must be
+  /// Throws InputError where it cannot be read, has no header or rows of another length.
+  CsvTable(std::string path, const std::vector<std::string>& known, const std::vector<std::string>& required);
+
+  const std::vector<Row>& rows() const { return rows_; }
+  bool has(const std::string& column) const { return column_of(column) >= 0; }
+
+  /// The text of a cell; empty where it is empty or the column is not there.
+  const std::string& text(const Row& row, const std::string& column) const;
+  /// The same, which must not be empty.
+  const std::string& name(const Row& row, const std::string& column) const;
+  /// A number; nothing where the cell is empty or the column is not there.
+  std::optional<double> number(const Row& row, const std::string& column, const Bounds& bounds) const;
+  /// The same, which must be there.
+  double required(const Row& row, const std::string& column, const Bounds& bounds) const;
+
+  /// Throws InputError "blocks.csv:12: mass_kg = -3: must be ...".
+  [[noreturn]] void refuse(const Row& row, const std::string& column, const std::string& rule) const;
+
+ private:
+  int column_of(const std::string& name) const;
+  void read_header(const std::vector<std::string>& known, const std::vector<std::string>& required);
+
+  std::string path_;
+  std::vector<std::string> columns_;
+  std::vector<Row> rows_;
+};
+
+}  // namespace talus::io

@@ -1,0 +1,123 @@
+#include "geopackage.hpp"
+
+#include <stdexcept>
+
+#include "talus/io/files/output_folder.hpp"
+
+namespace talus::io {
+namespace {
+
+/// Options of GDAL that hold while the object lives, then what was set before holds again.
+class Configured {
+ public:
+  Configured(const char* key, const char* value) : key_(key) {
+    const char* old = CPLGetThreadLocalConfigOption(key, nullptr);
+    had_ = old != nullptr;
+    if (had_) old_ = old;
+    CPLSetThreadLocalConfigOption(key, value);
+  }
+  ~Configured() { CPLSetThreadLocalConfigOption(key_, had_ ? old_.c_str() : nullptr); }
+  Configured(const Configured&) = delete;
+  Configured& operator=(const Configured&) = delete;
+
+ private:
+  const char* key_;
+  std::string old_;
+  bool had_ = false;
+};
+
+constexpr const char* kDate = "1970-01-01T00:00:00.000Z";
+
+}  // namespace
+
+GeoPackage::GeoPackage(std::filesystem::path file, const GeoReference& geo) : file_(std::move(file)) {
+  GdalMessages messages;
+  // The file has its final name only when it is complete: nothing has to survive a crash, no journal is needed.
+  const Configured date("OGR_CURRENT_DATE", kDate), journal("OGR_SQLITE_JOURNAL", "OFF"),
+      synchronous("OGR_SQLITE_SYNCHRONOUS", "OFF");
+  if (!geo.crs_wkt.empty()) system_.importFromWkt(geo.crs_wkt.c_str());
+  system_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
+  if (driver == nullptr) fail("this GDAL has no driver GPKG");
+  const char* const options[] = {"ADD_GPKG_OGR_CONTENTS=NO", nullptr};
+  dataset_.reset(driver->Create(file_.c_str(), 0, 0, 0, GDT_Unknown, options));
+  require(dataset_ != nullptr, messages);
+  require(dataset_->StartTransaction() == OGRERR_NONE, messages);
+}
+
+OGRLayer* GeoPackage::create_layer(const char* name, OGRwkbGeometryType type, const std::vector<Column>& columns) {
+  GdalMessages messages;
+  const Configured date("OGR_CURRENT_DATE", kDate);
+  CPLStringList options;
+  options.SetNameValue("SPATIAL_INDEX", "NO");
+  OGRLayer* layer = dataset_->CreateLayer(name, system_.IsEmpty() ? nullptr : &system_, type, options.List());
+  require(layer != nullptr, messages);
+  for (const Column& column : columns) {
+    OGRFieldDefn field(column.name, column.type);
+    require(layer->CreateField(&field) == OGRERR_NONE, messages);
+  }
+  return layer;
+}
+
+OGRLayer* GeoPackage::add_layer(const char* name, OGRwkbGeometryType type, const std::vector<Column>& columns) {
+  layers_.emplace_back(name);
+  return create_layer(name, type, columns);
+}
+
+OGRLayer* GeoPackage::add_point_layer(const char* name, const std::vector<Column>& columns) {
+  const Configured date("OGR_CURRENT_DATE", kDate);  // what follows writes the dates of the layers before
+  points_ = create_layer(name, wkbPoint, columns);
+  create_index(name);
+  // GDAL's triggers would insert the points one by one.
+  const std::string of_layer = std::string(" FROM sqlite_master WHERE type = 'trigger' AND tbl_name = '") + name + "'";
+  triggers_ = execute("SELECT sql" + of_layer + " ORDER BY name");
+  for (const std::string& trigger : execute("SELECT name" + of_layer)) execute("DROP TRIGGER \"" + trigger + "\"");
+  index_.emplace(std::string("rtree_") + name + "_geom", [this](const std::string& sql) { execute(sql); });
+  return points_;
+}
+
+void GeoPackage::append(OGRLayer* layer, OGRFeature& feature) {
+  feature.SetFID(OGRNullFID);
+  if (layer->CreateFeature(&feature) != OGRERR_NONE) fail(CPLGetLastErrorMsg());
+  if (layer != points_) return;
+  const OGRPoint* point = feature.GetGeometryRef()->toPoint();
+  index_->add(point->getX(), point->getY());
+}
+
+void GeoPackage::finish() {
+  GdalMessages messages;
+  const Configured date("OGR_CURRENT_DATE", kDate);
+  if (index_) index_->finish();
+  for (const std::string& trigger : triggers_) execute(trigger);
+  for (const std::string& layer : layers_) create_index(layer);
+  require(dataset_->CommitTransaction() == OGRERR_NONE, messages);
+  dataset_.reset();
+  require(true, messages);
+}
+
+std::vector<std::string> GeoPackage::execute(const std::string& sql) {
+  GdalMessages messages;
+  std::vector<std::string> rows;
+  if (OGRLayer* result = dataset_->ExecuteSQL(sql.c_str(), nullptr, nullptr)) {
+    while (const Feature row{result->GetNextFeature()}) rows.emplace_back(row->GetFieldAsString(0));
+    dataset_->ReleaseResultSet(result);
+  }
+  require(true, messages);
+  return rows;
+}
+
+void GeoPackage::create_index(const std::string& layer) {
+  if (execute("SELECT CreateSpatialIndex('" + layer + "', 'geom')") != std::vector<std::string>{"1"})
+    fail("the spatial index of " + layer + " cannot be made");
+}
+
+void GeoPackage::fail(const std::string& cause) const {
+  throw std::runtime_error(file_.filename().string() +
+                           ": cannot be written: " + cause_of_failure(file_.parent_path(), cause));
+}
+
+void GeoPackage::require(bool good, GdalMessages& messages) const {
+  if (!good || messages.failed()) fail(messages.take());
+}
+
+}  // namespace talus::io

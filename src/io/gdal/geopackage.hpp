@@ -1,0 +1,53 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dataset.hpp"
+#include "point_index.hpp"
+#include "talus/io/scenario/loaded_scenario.hpp"
+
+namespace talus::io {
+
+/// A GeoPackage that is being written, in one transaction. Its rows and all its bytes are the same for the same input:
+/// the dates that the format asks for are those of 1970.
+class GeoPackage {
+ public:
+  struct Column {
+    const char* name;
+    OGRFieldType type;
+  };
+
+  GeoPackage(std::filesystem::path file, const GeoReference& geo);
+
+  /// A new layer, which gets its spatial index from `finish`.
+  OGRLayer* add_layer(const char* name, OGRwkbGeometryType type, const std::vector<Column>& columns);
+
+  /// A new layer of points, of which there may be millions: its spatial index is packed while they come. All its
+  /// features must be given to `append`. At most one layer of this kind.
+  OGRLayer* add_point_layer(const char* name, const std::vector<Column>& columns);
+
+  /// Appends a row, which gets the next number as its fid. The feature may be used again.
+  void append(OGRLayer* layer, OGRFeature& feature);
+
+  /// Builds the spatial indices and closes the file.
+  void finish();
+
+ private:
+  OGRLayer* create_layer(const char* name, OGRwkbGeometryType type, const std::vector<Column>& columns);
+  std::vector<std::string> execute(const std::string& sql);
+  void create_index(const std::string& layer);
+  [[noreturn]] void fail(const std::string& cause) const;
+  void require(bool good, GdalMessages& messages) const;
+
+  std::filesystem::path file_;
+  OGRSpatialReference system_;
+  std::vector<std::string> layers_;  // still without an index
+  OGRLayer* points_ = nullptr;
+  std::optional<PointIndex> index_;    // of points_
+  std::vector<std::string> triggers_;  // of points_, to be set again
+  Dataset dataset_;
+};
+
+}  // namespace talus::io

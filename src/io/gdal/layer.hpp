@@ -1,0 +1,91 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dataset.hpp"
+#include "talus/io/gdal/rasters.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
+
+namespace talus::io {
+
+/// The simple geometries of a feature in local metres: without curves, heights or invalid polygons.
+struct Parts {
+  std::vector<OGRPolygon> polygons;
+  std::vector<OGRLineString> lines;
+  std::vector<Eigen::Vector2d> points;
+
+  bool empty() const { return polygons.empty() && lines.empty() && points.empty(); }
+  OGREnvelope envelope() const;
+};
+
+/// The first layer with geometry of a vector file, feature by feature on the grid of the DEM.
+class Layer {
+ public:
+  /// @param role  "sources", for the record of the transformation
+  Layer(std::string role, const std::string& path, const Terrain& terrain);
+
+  /// The next feature; null at the end.
+  Feature next();
+  /// Its geometries. Empty where it has none.
+  Parts parts(const OGRFeature& feature);
+
+  /// Index of a field, whatever its case, also as a Shapefile cuts it; -1 where there is none.
+  int field(const char* name) const;
+  std::vector<std::string> field_names() const;
+  const OGRFeatureDefn& fields() const { return *layer_->GetLayerDefn(); }
+  /// "cliffs.shp: feature 12", for messages.
+  std::string label(const OGRFeature& feature) const;
+  /// The value of a numeric field; nothing where it is NULL or the field is not there. Throws InputError where it is no
+  /// number, or out of bounds.
+  std::optional<double> number(const OGRFeature& feature, const char* name, const Bounds& bounds) const;
+  /// The value of a text or whole-number field; empty where it is NULL. Throws InputError for other fields.
+  std::string code(const OGRFeature& feature, int field) const;
+
+  const std::string& crs_wkt() const { return crs_wkt_; }
+  const std::vector<Reprojection>& reprojections() const { return transformer_->used(); }
+  /// Of the opening, the geometries and the transformation.
+  std::vector<std::string> warnings() const;
+
+ private:
+  void choose_layer();
+  void collect(OGRGeometry& geometry, Parts& parts, const std::string& where);
+  void move(OGRSimpleCurve& line, const std::string& where);
+  void add_valid(const OGRPolygon& polygon, Parts& parts, const std::string& where);
+
+  std::string path_, crs_wkt_;
+  const Terrain& terrain_;
+  Dataset dataset_;
+  OGRLayer* layer_ = nullptr;
+  std::optional<Transformer> transformer_;
+  bool north_first_ = false;  // the file has its coordinates in the order of the axes: latitude first
+  std::vector<std::string> warnings_;
+  std::size_t mended_ = 0;
+};
+
+/// Calls `visit(column, row)` (row 0 in the south) for the cells of a geometry in local metres, row by row from the
+/// north-west: those whose centre it covers, or all that it touches.
+template <class Visit>
+void for_each_cell(const OGRGeometry& geometry, const Grid& grid, bool touched, Visit visit);
+
+/// A window of the grid with a mark for each cell that a geometry has. Rows from the north.
+struct CellMask {
+  int column = 0, north_row = 0, columns = 0, rows = 0;  ///< north_row: row 0 in the south
+  std::vector<std::uint8_t> marks;
+};
+
+CellMask mask_of(const OGRGeometry& geometry, const Grid& grid, bool touched);
+
+template <class Visit>
+void for_each_cell(const OGRGeometry& geometry, const Grid& grid, bool touched, Visit visit) {
+  const CellMask mask = mask_of(geometry, grid, touched);
+  const std::uint8_t* mark = mask.marks.data();
+  for (int j = 0; j < mask.rows; ++j)
+    for (int i = 0; i < mask.columns; ++i)
+      if (*mark++ != 0) visit(mask.column + i, mask.north_row - j);
+}
+
+/// "3, 7, 12 and 5 more".
+std::string list_of(const std::vector<std::int64_t>& ids);
+
+}  // namespace talus::io

@@ -1,0 +1,248 @@
+#include "talus/io/gdal/objects_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geopackage.hpp"
+#include "layer.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/io/files/output_folder.hpp"
+#include "talus/io/results/write_crossings.hpp"
+
+namespace talus::io {
+namespace {
+
+HazardObject::Ring ring_of(const OGRSimpleCurve& curve) {
+  HazardObject::Ring ring;
+  for (int i = 0; i < curve.getNumPoints(); ++i) ring.emplace_back(curve.getX(i), curve.getY(i));
+  return ring;
+}
+
+HazardObject object_of(const Parts& parts) {
+  HazardObject object;
+  for (const OGRPolygon& polygon : parts.polygons) {
+    auto& rings = object.polygons.emplace_back();
+    for (const OGRLinearRing* ring : polygon) rings.push_back(ring_of(*ring));
+  }
+  for (const OGRLineString& line : parts.lines) object.lines.push_back(ring_of(line));
+  return object;
+}
+
+/// The geometry of an object in map coordinates: a multipolygon or a multiline; a collection where it has both.
+std::unique_ptr<OGRGeometry> geometry_of(const Parts& parts, double west, double south) {
+  std::unique_ptr<OGRGeometryCollection> all;
+  if (parts.lines.empty())
+    all = std::make_unique<OGRMultiPolygon>();
+  else if (parts.polygons.empty())
+    all = std::make_unique<OGRMultiLineString>();
+  else
+    all = std::make_unique<OGRGeometryCollection>();
+  const auto moved = [&](OGRSimpleCurve& curve) {
+    for (int i = 0; i < curve.getNumPoints(); ++i) curve.setPoint(i, curve.getX(i) + west, curve.getY(i) + south);
+  };
+  for (OGRPolygon polygon : parts.polygons) {
+    for (OGRLinearRing* ring : polygon) moved(*ring);
+    all->addGeometry(&polygon);
+  }
+  for (OGRLineString line : parts.lines) {
+    moved(line);
+    all->addGeometry(&line);
+  }
+  return all;
+}
+
+/// A figure of an object, with the name of its column. NaN and infinite: NULL, an empty field.
+using Figures = std::vector<std::pair<std::string, double>>;
+
+/// @param on_map  else nothing can be said of it
+Figures figures_of(const HazardCurve& curve, const ObjectHits& hits, bool on_map, const std::vector<double>& thresholds,
+                   const std::vector<double>& years) {
+  Figures figures{{"trajectories", on_map ? static_cast<double>(hits.trajectories) : kNotGiven}};
+  const auto add = [&figures, on_map](const std::string& name, const Bounded& b) {
+    figures.emplace_back(name, on_map ? b.value : kNotGiven);
+    figures.emplace_back(name + "_lower", on_map ? b.low : kNotGiven);
+    figures.emplace_back(name + "_upper", on_map ? b.high : kNotGiven);
+  };
+  add("frequency", curve.passage());
+  figures.emplace_back("return_period", return_period(curve.passage()).value);
+  for (std::size_t i = 0; i < thresholds.size(); ++i) {
+    add("frequency_" + text_of(thresholds[i]), curve.exceedance(i));
+    figures.emplace_back("return_period_" + text_of(thresholds[i]), return_period(curve.exceedance(i)).value);
+  }
+  for (const double t : years) add("energy_T" + text_of(t), curve.energy_once_in(t));
+  return figures;
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return std::isfinite(value) ? text : "";
+}
+
+}  // namespace
+
+struct ObjectLayer::State {
+  std::vector<Feature> features;  // with their attributes
+  std::vector<std::string> names;
+  std::vector<Parts> parts;
+  std::vector<HazardObject> objects;
+  std::vector<bool> on_map;
+  std::vector<std::string> warnings;
+
+  /// Features that send anything to an object, the most first: index and share.
+  static std::vector<std::pair<std::size_t, double>> sources_of(const ObjectHits& hits) {
+    std::int64_t sum = 0;
+    for (const auto& [feature, weight] : hits.by_feature) sum += weight;
+    std::vector<std::pair<std::size_t, double>> list;
+    for (const auto& [feature, weight] : hits.by_feature)
+      if (weight > 0) list.emplace_back(feature, static_cast<double>(weight) / static_cast<double>(sum));
+    std::ranges::stable_sort(list, std::ranges::greater{}, &std::pair<std::size_t, double>::second);
+    return list;
+  }
+};
+
+ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded) : state_(std::make_unique<State>()) {
+  Terrain terrain;
+  terrain.geo = loaded.geo;
+  terrain.heights.grid = loaded.scenario.surface.grid();
+  const Grid& grid = terrain.heights.grid;
+  Layer layer("objects", path, terrain);
+  const int id = layer.field("name") >= 0 ? layer.field("name") : layer.field("id");
+  std::string off;
+  while (Feature feature = layer.next()) {
+    Parts parts = layer.parts(*feature);
+    if (parts.empty() || !parts.points.empty())
+      throw InputError(layer.label(*feature) + ": " + (parts.empty() ? "has no geometry" : "is a point") +
+                       ", must be a polygon or a line that blocks may hit");
+    const OGREnvelope box = parts.envelope();
+    const std::string name = id >= 0 ? feature->GetFieldAsString(id) : "";
+    state_->names.push_back(name.empty() ? std::to_string(feature->GetFID()) : name);
+    state_->on_map.push_back(box.MaxX >= 0.0 && box.MinX <= grid.width() && box.MaxY >= 0.0 &&
+                             box.MinY <= grid.height());
+    if (!state_->on_map.back()) off += (off.empty() ? "" : ", ") + state_->names.back();
+    state_->objects.push_back(object_of(parts));
+    state_->parts.push_back(std::move(parts));
+    state_->features.push_back(std::move(feature));
+  }
+  if (state_->objects.empty()) throw InputError(path + ": has no features, must have polygons or lines");
+  if (std::ranges::count(state_->on_map, true) == 0)
+    throw InputError(path + ": lies wholly off the DEM: is the coordinate system of the layer the right one?");
+  if (!off.empty()) state_->warnings.push_back(path + ": objects wholly off the DEM, of which nothing is told: " + off);
+  for (std::string& line : layer.warnings()) state_->warnings.push_back(std::move(line));
+}
+
+ObjectLayer::~ObjectLayer() = default;
+
+const std::vector<HazardObject>& ObjectLayer::objects() const {
+  return state_->objects;
+}
+const std::vector<std::string>& ObjectLayer::warnings() const {
+  return state_->warnings;
+}
+
+namespace {
+
+/// The layer `objects`: attributes of the input that no figure has the name of, then the figures, then the sources.
+class ObjectsWriter {
+ public:
+  ObjectsWriter(const std::filesystem::path& file, const LoadedScenario& loaded, OGRFeature& model,
+                const Figures& figures)
+      : file_(file, loaded.geo) {
+    for (const auto& [name, value] : figures) names_.push_back(name);
+    names_.insert(names_.end(), {"sources", "fid", "geom"});
+    std::vector<GeoPackage::Column> columns;
+    for (int i = 0; i < model.GetFieldCount(); ++i) {
+      const OGRFieldDefn* field = model.GetFieldDefnRef(i);
+      if (std::ranges::any_of(names_,
+                              [&](const std::string& name) { return EQUAL(name.c_str(), field->GetNameRef()); }))
+        continue;
+      columns.push_back({field->GetNameRef(), field->GetType()});
+      attributes_.push_back(i);
+    }
+    for (const auto& [name, value] : figures) columns.push_back({name.c_str(), OFTReal});
+    columns.push_back({"sources", OFTString});
+    layer_ = file_.add_layer("objects", wkbUnknown, columns);
+  }
+
+  void write(OGRFeature& from, const OGRGeometry& geometry, const Figures& figures, const std::string& sources) {
+    const GdalMessages messages;
+    const Feature row(OGRFeature::CreateFeature(layer_->GetLayerDefn()));
+    int next = 0;
+    for (const int i : attributes_) {
+      if (from.IsFieldSetAndNotNull(i) != 0) row->SetField(next, from.GetRawFieldRef(i));
+      ++next;
+    }
+    for (const auto& [name, value] : figures) {
+      if (std::isfinite(value)) row->SetField(next, value);
+      ++next;
+    }
+    row->SetField(next, sources.c_str());
+    row->SetGeometry(&geometry);
+    file_.append(layer_, *row);
+  }
+
+  void finish() { file_.finish(); }
+
+ private:
+  GeoPackage file_;
+  std::vector<std::string> names_;
+  std::vector<int> attributes_;  // of the input that are copied
+  OGRLayer* layer_ = nullptr;
+};
+
+std::string curve_rows(const std::string& object, const HazardCurve& curve, const EnergyBins& bins) {
+  std::string rows;
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    const Bounded f = curve.at(i);
+    rows += object + ',' + number(bins.edge(curve.first() + static_cast<int>(i)));
+    for (const double value : {f.value, f.low, f.high, 1.0 / f.value}) rows += ',' + number(value);
+    rows += '\n';
+  }
+  return rows;
+}
+
+}  // namespace
+
+void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenario& loaded, const HazardRules& rules,
+                        const std::vector<ObjectHits>& hits, const std::vector<double>& years) const {
+  const Grid& grid = loaded.scenario.surface.grid();
+  const auto& thresholds = rules.bins.thresholds();
+  std::unique_ptr<ObjectsWriter> writer;
+  std::string table, curves = "object,energy_kj,frequency,lower,upper,return_period\n",
+                     from = "object,feature,frequency,share\n";
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const HazardCurve curve(rules, hits[i].cell);
+    const Figures figures = figures_of(curve, hits[i], state_->on_map[i], thresholds, years);
+    const std::string object = csv_field(state_->names[i]);
+    std::string sources;
+    for (const auto& [feature, share] : State::sources_of(hits[i])) {
+      const std::string& given = loaded.scenario.features[feature].name;
+      const std::string name = given.empty() ? std::to_string(feature) : given;
+      char percent[32];
+      std::snprintf(percent, sizeof percent, " %.3g %%", 100.0 * share);
+      sources += (sources.empty() ? "" : "; ") + name + percent;
+      from +=
+          object + ',' + csv_field(name) + ',' +
+          number(static_cast<double>(hits[i].by_feature.at(static_cast<std::uint32_t>(feature))) * rules.scale.unit) +
+          ',' + number(share) + '\n';
+    }
+    if (!writer) {
+      writer = std::make_unique<ObjectsWriter>(folder / "objects.gpkg", loaded, *state_->features[i], figures);
+      table = "object";
+      for (const auto& [name, value] : figures) table += ',' + name;
+      table += ",sources\n";
+    }
+    writer->write(*state_->features[i], *geometry_of(state_->parts[i], grid.west, grid.south), figures, sources);
+    table += object;
+    for (const auto& [name, value] : figures) table += ',' + number(value);
+    table += ',' + csv_field(sources) + '\n';
+    if (state_->on_map[i]) curves += curve_rows(object, curve, rules.bins);
+  }
+  writer->finish();
+  write_text(folder / "objects.csv", table);
+  write_text(folder / "objects_curves.csv", curves);
+  write_text(folder / "objects_sources.csv", from);
+}
+
+}  // namespace talus::io

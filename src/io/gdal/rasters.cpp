@@ -1,0 +1,185 @@
+#include "talus/io/gdal/rasters.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "dataset.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/scratch.hpp"
+#include "talus/base/text.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
+
+namespace talus::io {
+
+namespace {
+
+constexpr double kLowest = -500.0, kHighest = 9000.0;  // heights on the earth, with room to spare [m]
+
+GeoReference read_place(GDALDataset& dataset, const std::string& path) {
+  std::array<double, 6> g{};
+  if (dataset.GetGeoTransform(g.data()) != CE_None)
+    throw InputError(path +
+                     ": does not say where it lies (no geotransform), must be a north-up raster: georeference it with "
+                     "" +
+                     edit_command(path, "-a_ullr WEST NORTH EAST SOUTH"));
+  if (std::abs(g[2]) > 1e-9 * std::abs(g[1]) || std::abs(g[4]) > 1e-9 * std::abs(g[5]) || g[1] == 0.0) {
+    const double turn = degrees(std::atan2(g[4], g[1]));
+    throw InputError(path + ": raster is rotated or sheared (by " + text_of(std::round(turn * 100.0) / 100.0) +
+                     " deg), must be north-up: resample it, for example with gdalwarp -r bilinear " + path +
+                     " north_up.tif");
+  }
+  if (g[1] < 0.0 || g[5] > 0.0)
+    throw InputError(
+        path +
+        ": rows run from south to north or columns from east to west, must be north-up: turn it over with gdalwarp " +
+        path + " north_up.tif");
+  GeoReference geo;
+  geo.crs_wkt = wkt_of(dataset.GetSpatialRef());
+  geo.west = g[0];
+  geo.north = g[3];
+  geo.cell_x = g[1];
+  geo.cell_y = -g[5];
+  return geo;
+}
+
+void check_cell(const std::string& path, double size) {
+  if (const auto fault = fault_of(bounds_of("dem.cell"), size))
+    throw InputError(path + ": cells of " + text_of(size) + " m, " + *fault + ": resample it with gdalwarp -tr");
+}
+
+void check_band(GDALRasterBand& band, const std::string& path, std::vector<std::string>& warnings) {
+  if (GDALDataTypeIsComplex(band.GetRasterDataType()) != 0)
+    throw InputError(path + ": band 1 has complex numbers, must be heights in metres");
+  std::string unit = band.GetUnitType();
+  std::transform(unit.begin(), unit.end(), unit.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (unit.empty() || unit == "m" || unit == "metre" || unit == "meter" || unit == "metres" || unit == "meters") return;
+  if (unit.find("ft") != std::string::npos || unit.find("foot") != std::string::npos ||
+      unit.find("feet") != std::string::npos)
+    throw InputError(path + ": heights are in feet (unit '" + band.GetUnitType() +
+                     "' of band 1), must be metres: convert them with gdal_calc.py -A " + path +
+                     " --calc='A*0.3048' --outfile=metres.tif");
+  warnings.push_back(path + ": unknown unit '" + band.GetUnitType() + "' of the heights: taken as metres");
+}
+
+// Rows of the file in blocks: heights in metres with NaN for what is missing.
+class HeightReader {
+ public:
+  HeightReader(GDALRasterBand& band, std::string path) : band_(band), path_(std::move(path)) {
+    int given = 0;
+    scale_ = band.GetScale(&given);
+    if (given == 0) scale_ = 1.0;
+    offset_ = band.GetOffset(&given);
+    if (given == 0) offset_ = 0.0;
+    masked_ = (band.GetMaskFlags() & GMF_ALL_VALID) == 0;
+  }
+
+  // Row `row`, 0 in the north.
+  const std::vector<double>& row(int row) {
+    const int columns = band_.GetXSize();
+    values_.resize(columns);
+    mask_.assign(columns, 255);
+    if (band_.RasterIO(GF_Read, 0, row, columns, 1, values_.data(), columns, 1, GDT_Float64, 0, 0, nullptr) !=
+            CE_None ||
+        (masked_ && band_.GetMaskBand()->RasterIO(GF_Read, 0, row, columns, 1, mask_.data(), columns, 1, GDT_Byte, 0, 0,
+                                                  nullptr) != CE_None))
+      throw InputError(path_ + ": row " + std::to_string(row) + " cannot be read: " + messages_.take());
+    for (int i = 0; i < columns; ++i) {
+      const bool there = mask_[i] != 0 && std::isfinite(values_[i]);
+      values_[i] = there ? values_[i] * scale_ + offset_ : std::numeric_limits<double>::quiet_NaN();
+    }
+    return values_;
+  }
+
+  // The value as it is in the file.
+  double stored(double height) const { return (height - offset_) / scale_; }
+
+ private:
+  GDALRasterBand& band_;
+  std::string path_;
+  double scale_ = 1.0, offset_ = 0.0;
+  bool masked_ = false;
+  std::vector<double> values_;
+  std::vector<std::uint8_t> mask_;
+  GdalMessages messages_;
+};
+
+[[noreturn]] void refuse_height(const std::string& path, int column, int row, double height,
+                                const std::string& stored) {
+  throw InputError(path + ": height " + text_of(height) + " m in column " + std::to_string(column) + ", row " +
+                   std::to_string(row) + " (from 0 in the north-west), must be " + text_of(kLowest) + " to " +
+                   text_of(kHighest) + " m: if it stands for missing values, declare it with " +
+                   edit_command(path, "-a_nodata " + stored));
+}
+
+void read_heights(GDALRasterBand& band, const std::string& path, Terrain& terrain) {
+  Grid& grid = terrain.heights.grid;
+  HeightReader reader(band, path);
+  std::uint64_t known = 0, zeros = 0;
+  double lowest_other = std::numeric_limits<double>::infinity();
+  for (int row = 0; row < grid.rows; ++row) {
+    const std::vector<double>& heights = reader.row(row);
+    if (row % 64 == 0) scratch::keep_below_limit();
+    float* out = terrain.heights.values.data() + grid.index(0, grid.rows - 1 - row);
+    for (int column = 0; column < grid.columns; ++column) {
+      const double height = heights[column];
+      out[column] = static_cast<float>(height);
+      if (std::isnan(height)) continue;
+      if (!(height >= kLowest && height <= kHighest))
+        refuse_height(path, column, row, height, text_of(reader.stored(height)));
+      ++known;
+      if (height == 0.0)
+        ++zeros;
+      else
+        lowest_other = std::min(lowest_other, height);
+    }
+  }
+  if (known == 0)
+    throw InputError(path + ": all cells are missing values, must hold heights: is its nodata value right? (gdalinfo " +
+                     path + ")");
+  if (zeros > 0 && lowest_other > 50.0 && zeros < known)
+    terrain.warnings.push_back(
+        path + ": " + std::to_string(zeros) + " cells have the height 0 and all others more than " +
+        text_of(std::floor(lowest_other)) + " m: if 0 stands for missing values, declare it with " +
+        edit_command(path, "-a_nodata 0"));
+}
+
+}  // namespace
+
+MapExtent Terrain::extent() const {
+  const Grid& g = heights.grid;
+  return {g.west, g.south, g.west + g.width(), g.south + g.height()};
+}
+
+Terrain read_terrain(const std::string& path) {
+  const Dataset dataset = open_dataset(path, GDAL_OF_RASTER);
+  GdalMessages messages;
+  if (dataset->GetRasterCount() < 1)
+    throw InputError(path +
+                     ": has no band, must be one raster (one of several in a file is named like NETCDF:file.nc:height, "
+                     "see gdalinfo)");
+  Terrain terrain;
+  terrain.geo = read_place(*dataset, path);
+  Grid grid{dataset->GetRasterXSize(), dataset->GetRasterYSize(), terrain.geo.cell_x,
+            terrain.geo.cell_y,        terrain.geo.west,          0.0};
+  grid.south = terrain.geo.north - grid.height();
+  if (grid.columns < 2 || grid.rows < 2)
+    throw InputError(path + ": has " + std::to_string(grid.columns) + " x " + std::to_string(grid.rows) +
+                     " cells, must have at least 2 x 2");
+  const MapExtent extent{grid.west, grid.south, grid.west + grid.width(), terrain.geo.north};
+  if (const auto warning = check_metric(path, terrain.geo.crs_wkt, extent)) terrain.warnings.push_back(*warning);
+  check_cell(path, grid.cell_x);
+  check_cell(path, grid.cell_y);
+  GDALRasterBand& band = *dataset->GetRasterBand(1);
+  check_band(band, path, terrain.warnings);
+  if (dataset->GetRasterCount() > 1 && dataset->GetRasterBand(2)->GetColorInterpretation() != GCI_AlphaBand)
+    terrain.warnings.push_back(path + ": has " + std::to_string(dataset->GetRasterCount()) +
+                               " bands: the first is taken as heights");
+  terrain.heights.grid = grid;
+  fill_shared(terrain.heights, std::numeric_limits<float>::quiet_NaN(), [&] { read_heights(band, path, terrain); });
+  return terrain;
+}
+
+}  // namespace talus::io

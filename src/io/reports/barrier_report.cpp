@@ -1,0 +1,193 @@
+#include "talus/io/reports/barrier_report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "talus/base/vector.hpp"
+#include "talus/base/version.hpp"
+#include "talus/io/results/write_crossings.hpp"
+
+namespace talus::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A value of the design as it is told: name, value, unit, where it comes from.
+struct DesignRow {
+  std::string name;
+  double value;
+  std::string unit, from;
+};
+
+std::string digits(double value, const char* format = "%.4g") {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), format, value);
+  return text.data();
+}
+
+std::string percent(double share) {
+  return digits(100.0 * share, "%.3g") + " %";
+}
+
+std::string between(const Interval& i, double factor, const char* format) {
+  return "[" + digits(factor * i.low, format) + ", " + digits(factor * i.high, format) + "]";
+}
+
+std::vector<DesignRow> design_rows(const BarrierReport& r) {
+  const BarrierDesign& d = r.design;
+  const DesignFactors& f = r.factors;
+  const std::string rank = digits(100.0 * f.percentile),
+                    reach = " x gTr " + digits(f.trajectory) + " x gDp " + digits(f.topography);
+  const double diameter = std::cbrt(6.0 * r.block.volume / kPi);
+  return {{"v" + rank, d.speed_percentile, "m/s", "of the crossings"},
+          {"v_d", d.speed, "m/s", "v" + rank + reach},
+          {"V", r.block.volume, "m3", r.block_from + ", diameter " + digits(diameter) + " m"},
+          {"m_d", d.mass, "kg",
+           "V x " + digits(r.block.density) + " kg/m3 x gVol " + digits(f.volume) + " x gG " + digits(f.density)},
+          {"E_d", d.energy * 1e-3, "kJ", "1/2 m_d v_d^2"},
+          {"SEL", d.sel * 1e-3, "kJ", "E_d x gE " + digits(f.sel)},
+          {"MEL", d.mel * 1e-3, "kJ", "E_d x gE " + digits(f.mel)},
+          {"h" + rank, d.height_percentile, "m", "of the crossings, vertical, ground to centre"},
+          {"f_min", d.freeboard, "m", "half the block, at least " + digits(f.freeboard) + " m"},
+          {"h_i", d.height, "m", "h" + rank + reach + " + f_min"}};
+}
+
+std::string padded(std::string text, std::size_t width) {
+  text.resize(std::max(width, text.size() + 1), ' ');
+  return text;
+}
+
+std::string reliability_text(const Reliability& r) {
+  std::string text = "  " + padded(r.quantity, 14) + "Weibull shape " + digits(r.fit.law.shape, "%.3g") + " " +
+                     between(r.fit.shape, 1.0, "%.3g") + ", scale " + digits(r.fit.law.scale, "%.3g") + " " + r.unit +
+                     " " + between(r.fit.scale, 1.0, "%.3g") + "; A2 = " + digits(r.fit.distance, "%.3g") +
+                     (r.fit.accepted() ? " agrees" : " DEPARTS") + " (5 % limit 0.757)" +
+                     (r.fit.zeros > 0 ? "; " + std::to_string(r.fit.zeros) + " of " + std::to_string(r.fit.values) +
+                                            " are 0 and no part of the fit"
+                                      : "") +
+                     "\n";
+  for (const Reliability::Limit& l : r.limits)
+    text += "    " + padded(l.name, 6) + padded(digits(l.value) + " " + r.unit, 14) + "exceeded by " +
+            padded(percent(l.exceeded.fitted) + " " + between(l.exceeded.fitted_bounds, 100.0, "%.3g"), 28) +
+            "of the law, " + percent(l.exceeded.observed) + " " + between(l.exceeded.observed_bounds, 100.0, "%.3g") +
+            " of the values\n";
+  return text;
+}
+
+std::string stretch_text(const Stretch& s) {
+  return digits(s.width()) + " m, from " + digits(s.from) + " m to " + digits(s.to) + " m along the line (" +
+         percent(s.share) + " of the crossings)";
+}
+
+Json interval_of(const Interval& i) {
+  return Json::array({i.low, i.high});
+}
+
+Json stretch_of(const Stretch& s) {
+  return {{"width_m", s.width()}, {"from_m", s.from}, {"to_m", s.to}, {"share", s.share}};
+}
+
+Json reliability_of(const Reliability& r) {
+  Json limits = Json::array();
+  for (const Reliability::Limit& l : r.limits)
+    limits.push_back({{"name", l.name},
+                      {"value", l.value},
+                      {"weibull", l.exceeded.fitted},
+                      {"weibull_interval", interval_of(l.exceeded.fitted_bounds)},
+                      {"share", l.exceeded.observed},
+                      {"share_interval", interval_of(l.exceeded.observed_bounds)}});
+  return {{"quantity", r.quantity},
+          {"unit", r.unit},
+          {"values", r.fit.values},
+          {"zeros", r.fit.zeros},
+          {"shape", r.fit.law.shape},
+          {"shape_interval", interval_of(r.fit.shape)},
+          {"scale", r.fit.law.scale},
+          {"scale_interval", interval_of(r.fit.scale)},
+          {"anderson_darling", r.fit.distance},
+          {"anderson_darling_5_percent", kAndersonDarling5},
+          {"agrees", r.fit.accepted()},
+          {"exceeded", std::move(limits)}};
+}
+
+}  // namespace
+
+std::string barrier_text(const BarrierReport& r) {
+  std::string text = "screen " + r.screen + ": " + std::to_string(r.crossings) + " blocks cross it, " +
+                     percent(static_cast<double>(r.crossings) / r.released) + " of those released\n\ndesign values\n";
+  for (const DesignRow& row : design_rows(r))
+    text += "  " + padded(row.name, 8) + padded(digits(row.value) + " " + row.unit, 14) + row.from + "\n";
+  text += "\nprobability that a block exceeds them, by " + r.values + " [95 %]\n";
+  for (const Reliability& quantity : r.reliability) text += reliability_text(quantity);
+  text +=
+      "\nwidth for a containment of " + percent(r.containment) + "\n  shortest    " + stretch_text(r.shortest) + "\n";
+  text += "  by the map  " + (r.above ? stretch_text(*r.above) : std::string("none")) + ": bins of " + digits(r.bin) +
+          " m that more than " + percent(1.0 - r.containment) + " of the released blocks cross\n";
+  for (const std::string& note : r.notes) text += "\nnote: " + note + "\n";
+  return text;
+}
+
+std::string barrier_json(const BarrierReport& r) {
+  Json json;
+  json["program"] = "talus";
+  json["version"] = version();
+  json["screen"] = r.screen;
+  json["released"] = r.released;
+  json["crossings"] = r.crossings;
+  json["factors"] = {{"gTr", r.factors.trajectory},
+                     {"gDp", r.factors.topography},
+                     {"gVol", r.factors.volume},
+                     {"gG", r.factors.density},
+                     {"gE_sel", r.factors.sel},
+                     {"gE_mel", r.factors.mel},
+                     {"percentile", 100.0 * r.factors.percentile},
+                     {"least_freeboard_m", r.factors.freeboard}};
+  Json design = Json::array();
+  for (const DesignRow& row : design_rows(r))
+    design.push_back({{"name", row.name}, {"value", row.value}, {"unit", row.unit}, {"from", row.from}});
+  json["design"] = std::move(design);
+  json["reliability_of"] = r.values;
+  json["reliability"] = Json::array();
+  for (const Reliability& quantity : r.reliability) json["reliability"].push_back(reliability_of(quantity));
+  json["containment"] = {{"target", r.containment},
+                         {"shortest", stretch_of(r.shortest)},
+                         {"bin_m", r.bin},
+                         {"by_impact_probability", r.above ? stretch_of(*r.above) : Json()}};
+  json["notes"] = r.notes;
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string barrier_csv(const BarrierReport& r) {
+  std::string text = "screen,name,value,unit,weibull,weibull_low,weibull_high,share,share_low,share_high\n";
+  const std::string screen = csv_field(r.screen);
+  for (const DesignRow& row : design_rows(r)) {
+    text += screen + ',' + row.name + ',' + digits(row.value, "%.6g") + ',' + row.unit;
+    const Exceedance* exceeded = nullptr;
+    for (const Reliability& quantity : r.reliability)
+      for (const Reliability::Limit& limit : quantity.limits)
+        if (limit.name == row.name) exceeded = &limit.exceeded;
+    if (exceeded == nullptr)
+      text += ",,,,,,";
+    else
+      for (const double value : {exceeded->fitted, exceeded->fitted_bounds.low, exceeded->fitted_bounds.high,
+                                 exceeded->observed, exceeded->observed_bounds.low, exceeded->observed_bounds.high})
+        text += ',' + digits(value, "%.6g");
+    text += '\n';
+  }
+  return text;
+}
+
+std::string barrier_file_name(const std::string& screen) {
+  std::string name = "barrier_" + screen;
+  for (char& c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+                       c == '_' || static_cast<unsigned char>(c) >= 0x80;
+    if (!plain) c = '_';
+  }
+  return name;
+}
+
+}  // namespace talus::io

@@ -1,0 +1,221 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "talus/base/version.hpp"
+#include "talus/io/reports/diagnosis_report.hpp"
+
+namespace talus::io {
+namespace {
+
+constexpr int kWidth = 330, kHeight = 190, kMargin = 34;  // of a plot [px]
+constexpr std::size_t kPlots = 6;
+constexpr double kRare = 0.05;  // p below which noise is not the word for what is left
+
+template <class... Values>
+std::string print(const char* format, Values... values) {
+  std::array<char, 512> text{};
+  std::snprintf(text.data(), text.size(), format, values...);
+  return text.data();
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) switch (c) {
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '&':
+        out += "&amp;";
+        break;
+      default:
+        out += c;
+    }
+  return out;
+}
+
+std::string value_text(double value) {
+  return std::isnan(value) ? "-" : print("%.3f", value);
+}
+
+std::string reduction_text(const Reduction& r) {
+  if (std::isnan(r.share)) return "-";
+  return print("%.1f %% (%.1f to %.1f)", 100.0 * r.share, 100.0 * r.interval.low, 100.0 * r.interval.high);
+}
+
+/// The property of a block that a row of the residual table names; the number of the block where it names none.
+double property_of(const MeasuredBlock& b, const std::string& name, std::size_t number) {
+  for (const Property& property : properties())
+    if (name == property.name) return property.of(b);
+  return static_cast<double>(number + 1);
+}
+
+/// A property with its unit.
+std::string labelled(const std::string& name) {
+  for (const Property& property : properties())
+    if (name == property.name && *property.unit != '\0') return name + " [" + property.unit + "]";
+  return name;
+}
+
+struct Points {
+  std::vector<double> x, z;
+};
+
+Points points_of(const Campaign& campaign, const ResidualSpace& space, const ResidualRow& row) {
+  Points points;
+  const std::vector<bool> rows = fitting_rows(campaign);
+  for (std::size_t o = 0; o < space.observables().size(); ++o) {
+    if (space.observables()[o].name != row.observable) continue;
+    for (std::size_t b = 0; b < campaign.blocks.size(); ++b) {
+      if (!rows[b]) continue;
+      const double z = space.of_measured(b)[static_cast<Eigen::Index>(o)];
+      const double x = property_of(campaign.blocks[b], row.covariate, b);
+      if (std::isnan(z) || std::isnan(x)) continue;
+      points.x.push_back(x);
+      points.z.push_back(z);
+    }
+  }
+  return points;
+}
+
+/// A scatter plot of z against a property; the grey band holds 95 % of the points of a right model.
+std::string plot(const Points& points, const std::string& title, const std::string& below) {
+  std::string svg = print("<svg width='%d' height='%d' viewBox='0 0 %d %d'>", kWidth, kHeight, kWidth, kHeight);
+  const double low = points.x.empty() ? 0.0 : *std::min_element(points.x.begin(), points.x.end());
+  const double high = points.x.empty() ? 1.0 : *std::max_element(points.x.begin(), points.x.end());
+  const auto x_of = [&](double x) {
+    return kMargin + (kWidth - 2.0 * kMargin) * (high > low ? (x - low) / (high - low) : 0.5);
+  };
+  const auto y_of = [](double z) { return kHeight / 2.0 - std::clamp(z, -3.5, 3.5) * (kHeight / 2.0 - kMargin) / 3.5; };
+  svg += print("<rect x='%d' y='%.1f' width='%d' height='%.1f' fill='#eee'/>", kMargin, y_of(1.96),
+               kWidth - 2 * kMargin, y_of(-1.96) - y_of(1.96));
+  svg += print("<line x1='%d' x2='%d' y1='%.1f' y2='%.1f' stroke='#999'/>", kMargin, kWidth - kMargin, y_of(0.0),
+               y_of(0.0));
+  for (std::size_t i = 0; i < points.x.size(); ++i)
+    svg += print("<circle cx='%.1f' cy='%.1f' r='2.6' fill='#1f5fa8' fill-opacity='0.7'/>", x_of(points.x[i]),
+                 y_of(points.z[i]));
+  for (const double z : {-2.0, 0.0, 2.0})
+    svg += print("<text x='%d' y='%.1f' text-anchor='end'>%g</text>", kMargin - 4, y_of(z) + 4.0, z);
+  svg += print("<text x='%d' y='%d'>%.4g</text><text x='%d' y='%d' text-anchor='end'>%.4g</text>", kMargin,
+               kHeight - 18, low, kWidth - kMargin, kHeight - 18, high);
+  svg += "<text x='" + std::to_string(kWidth / 2) + "' y='14' text-anchor='middle' font-weight='bold'>" +
+         escaped(title) + "</text>";
+  svg += "<text x='" + std::to_string(kWidth / 2) + "' y='" + std::to_string(kHeight - 4) + "' text-anchor='middle'>" +
+         escaped(below) + "</text></svg>\n";
+  return svg;
+}
+
+std::string plots(const Campaign& campaign, const Diagnosis& d) {
+  const ResidualSpace before(campaign, d.base.fitting), after(campaign, d.with_effects.fitting);
+  std::string html;
+  const std::vector<ResidualRow>& rows = d.rounds.front().residual;
+  for (std::size_t i = 0; i < std::min(kPlots, rows.size()); ++i) {
+    const bool by_block = rows[i].covariate == "mean" || rows[i].covariate == "spread";
+    const std::string title = rows[i].observable + " against " + (by_block ? "block" : rows[i].covariate);
+    const std::string across = by_block ? "number of the block" : labelled(rows[i].covariate);
+    html += "<p>" + plot(points_of(campaign, before, rows[i]), title + ", before", across);
+    if (d.rounds.size() > 1) html += plot(points_of(campaign, after, rows[i]), title + ", after", across);
+    html += "</p>\n";
+  }
+  return html;
+}
+
+std::string unit_text(const Parameter& parameter) {
+  return parameter.unit.empty() || parameter.unit == "1" ? "" : " " + parameter.unit;
+}
+
+std::string candidates_table(const Round& round, const std::vector<HoldoutError>& holdout) {
+  std::string html =
+      "<table><tr><th>effect</th><th>where</th><th>parameters</th><th>p of the score test</th><th>objective lower "
+      "by (fitting rows, 95 %)</th><th>held-out error after</th><th>reduction, 95 %</th></tr>\n";
+  for (std::size_t i = 0; i < round.trials.size(); ++i) {
+    const Trial& t = round.trials[i];
+    std::string numbers;
+    for (std::size_t k = 0; k < t.parameters.size(); ++k)
+      numbers += t.parameters[k].key + " = " + print("%.3g", t.values[k]) + unit_text(t.parameters[k]) + "<br>";
+    const HoldoutError& e = holdout[i];
+    html += "<tr><td>" + t.effect + "</td><td>" + escaped(t.where) + "</td><td>" + numbers + "</td><td>" +
+            print("%.4f", t.p_value) + "</td><td>" +
+            print("%.3f (%.3f to %.3f)", t.gain, t.gain_interval.low, t.gain_interval.high) + "</td><td>" +
+            value_text(e.after) + "</td><td>" + reduction_text(e.reduction) + "</td></tr>\n";
+  }
+  return html + "</table>\n";
+}
+
+std::string residual_rows(const std::vector<ResidualRow>& rows) {
+  std::string html =
+      "<table><tr><th>observable</th><th>against</th><th>statistic</th><th>p</th><th>corrected</th><th>blocks</th></"
+      "tr>\n";
+  for (std::size_t i = 0; i < std::min<std::size_t>(12, rows.size()); ++i)
+    html += "<tr><td>" + escaped(rows[i].observable) + "</td><td>" + rows[i].covariate + "</td><td>" +
+            print("%.2f</td><td>%.2g</td><td>%.2g</td><td>%zu", rows[i].statistic, rows[i].p_value, rows[i].corrected,
+                  rows[i].blocks) +
+            "</td></tr>\n";
+  return html + "</table>\n";
+}
+
+std::string sentence(const Round& round) {
+  const bool rare = round.p_value <= kRare || (!round.residual.empty() && round.residual.front().corrected <= kRare);
+  if (round.effect == "none" && !rare) return "Nothing is left that differs from noise.";
+  if (round.effect == "none")
+    return "What is left would be rare as noise, but no effect of the library is named for it.";
+  if (round.effect == "unexplained")
+    return "A residual is left that no effect of the library explains better than chance.";
+  std::string text = "The model lacks <b>" + round.effect + "</b> (" + escaped(round.where) + ").";
+  if (!round.alike.empty()) {
+    text += " On these data it cannot be told apart from: ";
+    for (std::size_t i = 0; i < round.alike.size(); ++i) text += (i > 0 ? ", " : "") + round.alike[i];
+    text += ".";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& record) {
+  const Diagnosis& d = record.diagnosis;
+  std::string html =
+      "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'><title>Talus: diagnosis of " +
+      escaped(campaign.name) +
+      "</title><style>body{font:15px/1.5 sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#222}"
+      "table{border-collapse:collapse;font-size:13px}td,th{border:1px solid #ccc;padding:3px 8px;text-align:left;"
+      "vertical-align:top}svg text{font:11px sans-serif}</style></head><body>\n<h1>What the model of " +
+      escaped(campaign.name) + " lacks</h1>\n";
+  for (std::size_t i = 0; i < d.rounds.size(); ++i)
+    html += "<p>Round " + std::to_string(i + 1) + ": " + sentence(d.rounds[i]) +
+            print(" (p that the residual is noise: %.4f)</p>\n", d.rounds[i].p_value);
+  const HoldoutError& e = record.whole;
+  html +=
+      "<h2>Error before and after</h2>\n<table><tr><th></th><th>ground fitted</th><th>with what was found</th>"
+      "<th>reduction, 95 %</th></tr>\n";
+  html += "<tr><td>fitting rows</td><td>" + value_text(d.base.score.total) + "</td><td>" +
+          value_text(d.with_effects.score.total) + "</td><td></td></tr>\n";
+  html += "<tr><td>held-out rows (never fitted)</td><td>" + value_text(e.before) + "</td><td>" + value_text(e.after) +
+          "</td><td>" + reduction_text(e.reduction) +
+          "</td></tr></table>\n<p>Mean normalised score: 0 says the very value, about 0.56 knows no more than the "
+          "spread of the measurements.</p>\n";
+  for (const std::string& warning : record.warnings) html += "<p>Warning: " + escaped(warning) + "</p>\n";
+  html +=
+      "<h2>Candidates</h2>\n<p>Each at its best place, fitted together with the ground where p is below 0.1 (or "
+      "--level), else with "
+      "the ground held. The objective is the error with groups of n rows that count n / (n + 10).</p>\n";
+  for (std::size_t i = 0; i < d.rounds.size(); ++i)
+    if (!d.rounds[i].trials.empty())
+      html += "<h3>Round " + std::to_string(i + 1) + (i > 0 ? ", with what was found before in the model" : "") +
+              "</h3>\n" + candidates_table(d.rounds[i], record.candidates[i]);
+  html +=
+      "<h2>Residuals</h2>\n<p>Each point is a block; z is where its measurement lies among what the model "
+      "simulates for it, as a standard normal number. Grey: 95 % of the points of a right model.</p>\n" +
+      plots(campaign, d) + "<h3>Before</h3>\n" + residual_rows(d.rounds.front().residual);
+  if (d.rounds.size() > 1) html += "<h3>After</h3>\n" + residual_rows(d.rounds.back().residual);
+  return html + "<p>" +
+         print("talus %s, seed %llu, %.0f s.", std::string(version()).c_str(),
+               static_cast<unsigned long long>(record.options.seed), record.seconds) +
+         "</p></body></html>\n";
+}
+
+}  // namespace talus::io

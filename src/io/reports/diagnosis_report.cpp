@@ -1,0 +1,171 @@
+#include "talus/io/reports/diagnosis_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "talus/base/version.hpp"
+
+namespace talus::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint32_t kHoldoutTrials = 200;
+constexpr std::size_t kResidualRows = 20;
+constexpr double kOpening = 0.97;  // of the progress
+
+double rounded(double value) {
+  if (value == 0.0 || !std::isfinite(value)) return value;
+  const double scale = std::pow(10.0, 5.0 - std::floor(std::log10(std::abs(value))));
+  return std::round(value * scale) / scale;
+}
+
+Json number(double value) {
+  return std::isnan(value) ? Json() : Json(rounded(value));
+}
+
+Json parameters_of(const Trial& trial) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < trial.parameters.size(); ++i) json[trial.parameters[i].key] = number(trial.values[i]);
+  return json;
+}
+
+Json residual_of(const std::vector<ResidualRow>& rows) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < std::min(kResidualRows, rows.size()); ++i)
+    list.push_back({{"observable", rows[i].observable},
+                    {"covariate", rows[i].covariate},
+                    {"statistic", number(rows[i].statistic)},
+                    {"p_value", number(rows[i].p_value)},
+                    {"p_corrected", number(rows[i].corrected)},
+                    {"blocks", rows[i].blocks}});
+  return list;
+}
+
+Json candidates_of(const Round& round, const std::vector<HoldoutError>& holdout) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < round.trials.size(); ++i) {
+    const Trial& t = round.trials[i];
+    list.push_back({{"effect", t.effect},
+                    {"where", t.where},
+                    {"parameters", parameters_of(t)},
+                    {"fitted_with_ground", t.joint},
+                    {"fit", number(t.fitted.score.total)},
+                    {"price", number(t.price)},
+                    {"objective_gain", number(t.gain)},
+                    {"objective_gain_ci95", {number(t.gain_interval.low), number(t.gain_interval.high)}},
+                    {"cross_validated_objective_gain", number(t.cross_validated)},
+                    {"holdout", number(holdout[i].after)},
+                    {"holdout_reduction_ci95",
+                     {number(holdout[i].reduction.interval.low), number(holdout[i].reduction.interval.high)}},
+                    {"chosen_share", number(t.chosen_share)},
+                    {"statistic", number(t.statistic)},
+                    {"p_value", number(t.p_value)}});
+  }
+  return list;
+}
+
+Score holdout_score(const Campaign& campaign, const Model& model, const DiagnosisRecord& record) {
+  if (record.options.proceed && !record.options.proceed(kOpening)) throw FitInterrupted{};
+  ObserveOptions how;
+  how.trials = kHoldoutTrials;
+  how.seed = record.options.seed + 1;
+  how.threads = record.options.threads;
+  how.blocks = holdout_rows(campaign);
+  return score(campaign, observe(campaign, model, how), how.blocks);
+}
+
+HoldoutError error_of(const Score& before, const Score& after, std::size_t blocks) {
+  if (before.rows.empty() || std::isnan(before.total) || std::isnan(after.total))
+    return {before.total, after.total, {}};
+  return {before.total, after.total, reduction(before, after, blocks)};
+}
+
+bool found(const Round& round) {
+  return round.effect != "none" && round.effect != "unexplained";
+}
+
+/// Of an effect the share of the bootstraps in which it is the best. No probabilities of being right: of `none` the
+/// p-value of the test, of `unexplained` one less the smallest p-value that says so.
+double probability_of(const Round& round) {
+  if (found(round)) return round.trials.front().chosen_share;
+  if (round.effect == "none") return round.p_value;
+  return 1.0 - std::min(round.p_value, round.residual.empty() ? 1.0 : round.residual.front().corrected);
+}
+
+}  // namespace
+
+void open_holdout(const Campaign& campaign, DiagnosisRecord& record) {
+  const std::size_t blocks = campaign.blocks.size();
+  const Score base = holdout_score(campaign, record.diagnosis.base.model, record);
+  Score before = base;
+  for (const Round& round : record.diagnosis.rounds) {
+    record.candidates.emplace_back();
+    Score chosen = before;
+    for (std::size_t i = 0; i < round.trials.size(); ++i) {
+      const Score after = holdout_score(campaign, round.trials[i].fitted.model, record);
+      record.candidates.back().push_back(error_of(before, after, blocks));
+      if (i == 0 && found(round)) chosen = after;
+    }
+    record.rounds.push_back(error_of(before, chosen, blocks));
+    before = chosen;
+  }
+  record.whole = error_of(base, before, blocks);
+  record.holdout = std::move(before);
+}
+
+std::string diagnosis_json(const DiagnosisRecord& record) {
+  const Diagnosis& d = record.diagnosis;
+  const Round& first = d.rounds.front();
+  Json effects = Json::array(), rounds = Json::array();
+  for (std::size_t i = 0; i < d.rounds.size(); ++i) {
+    const Round& round = d.rounds[i];
+    Json turn{{"effect", round.effect}};
+    if (found(round)) {
+      effects.push_back(round.effect);
+      turn["where"] = round.where;
+      turn["indistinguishable_from"] = round.alike;
+      turn["holdout"] = {{"before", number(record.rounds[i].before)}, {"after", number(record.rounds[i].after)}};
+    }
+    turn["p_value"] = number(round.p_value);
+    if (i > 0) turn["candidates"] = candidates_of(round, record.candidates[i]);
+    rounds.push_back(turn);
+  }
+  if (effects.empty()) effects.push_back(first.effect);
+  const HoldoutError& e = record.whole;
+  Json json{{"effect", first.effect},
+            {"effects", effects},
+            {"where", first.where},
+            {"probability", number(probability_of(first))},
+            {"indistinguishable_from", first.alike},
+            {"rounds", rounds},
+            {"error",
+             {{"metric", "mean normalised score"},
+              {"fit", {{"before", number(d.base.score.total)}, {"after", number(d.with_effects.score.total)}}},
+              {"holdout",
+               {{"before", number(e.before)},
+                {"after", number(e.after)},
+                {"reduction", number(e.reduction.share)},
+                {"ci95", {number(e.reduction.interval.low), number(e.reduction.interval.high)}}}}}},
+            {"candidates", candidates_of(first, record.candidates.front())},
+            {"residual", residual_of(first.residual)},
+            {"residual_after", residual_of(d.rounds.back().residual)},
+            {"campaign", record.campaign},
+            {"seed", record.options.seed},
+            {"trials_per_block", {{"search", d.trials.search}, {"test", d.trials.test}, {"compare", d.trials.compare}}},
+            {"seconds", number(record.seconds)},
+            {"talus", version()},
+            {"command", record.command},
+            {"warnings", record.warnings}};
+  Json ground = Json::object();
+  for (const Parameter& p : d.base.free) ground[p.key] = number(p.get(d.base.model));
+  json["base_parameters"] = ground;
+  Json inputs = Json::array();
+  for (const InputFile& input : record.inputs)
+    inputs.push_back({{"role", input.role}, {"path", input.path}, {"sha256", input.sha256}});
+  json["inputs"] = inputs;
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace talus::io

@@ -1,0 +1,230 @@
+#include "talus/io/reports/fit_report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "talus/base/text.hpp"
+#include "talus/base/version.hpp"
+#include "talus/simulate/scenario/presets.hpp"
+
+namespace talus::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kCorrelated = 0.5;  // from here on a correlation is worth a line of the report
+
+/// Six significant digits: more would say more than is known.
+double rounded(double value) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", value);
+  return std::strtod(text.data(), nullptr);
+}
+
+Json number(double value) {
+  return std::isnan(value) ? Json() : Json(rounded(value));
+}
+
+Json interval_of(const Interval& i) {
+  return Json::array({number(i.low), number(i.high)});
+}
+
+std::string shown(double value, const char* format = "%.3g") {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), format, value);
+  return text.data();
+}
+
+std::string rows_name(const std::string& rows) {
+  return rows == "fit" ? "fitting" : "held-out";
+}
+
+Json parameters_of(const Calibration& c) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < c.free.size(); ++i) {
+    const Parameter& p = c.free[i];
+    list.push_back({{"key", p.key},
+                    {"unit", p.unit},
+                    {"start", number(p.get(c.start))},
+                    {"value", number(p.get(c.fit.model))},
+                    {"ci95", interval_of(c.uncertainty.intervals[i])},
+                    {"identifiable", static_cast<bool>(c.uncertainty.identifiable[i])},
+                    {"bounds", Json::array({number(p.lower), number(p.upper)})},
+                    {"prior",
+                     {{"scale", p.scale == Parameter::Scale::Log ? "log" : "linear"},
+                      {"centre", number(p.centre)},
+                      {"sd", p.sd}}}});
+  }
+  return list;
+}
+
+Json correlation_of(const Calibration& c) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < c.uncertainty.correlation.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j < c.uncertainty.correlation.cols(); ++j)
+      row.push_back(std::round(c.uncertainty.correlation(i, j) * 1e3) / 1e3);
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Json error_of(const Calibration& c) {
+  Json error{{"metric", "mean normalised score"}, {"trials", c.score_trials}};
+  for (const BeforeAfter& e : c.errors) {
+    Json groups = Json::array();
+    for (std::size_t g = 0; g < e.after.score.groups.size(); ++g)
+      groups.push_back({{"group", e.after.score.groups[g].name},
+                        {"before", number(e.before.score.groups[g].score)},
+                        {"after", number(e.after.score.groups[g].score)},
+                        {"rows", e.after.score.groups[g].rows}});
+    error[e.after.rows] = {{"before", number(e.before.score.total)},
+                           {"after", number(e.after.score.total)},
+                           {"reduction", number(e.reduction.share)},
+                           {"ci95", interval_of(e.reduction.interval)},
+                           {"blocks", e.after.blocks},
+                           {"groups", groups}};
+  }
+  return error;
+}
+
+Json distributions_of(const Comparison& comparison) {
+  Json list = Json::array();
+  for (const Distribution& d : comparison.distributions) {
+    Json measured = Json::array(), simulated = Json::array();
+    for (std::size_t i = 0; i < kCompared.size(); ++i) {
+      measured.push_back(number(d.measured[i]));
+      simulated.push_back(number(d.simulated[i]));
+    }
+    list.push_back({{"observable", d.name},
+                    {"unit", d.unit},
+                    {"quantiles", kCompared},
+                    {"measured", measured},
+                    {"simulated", simulated},
+                    {"measured_values", d.measured_count}});
+  }
+  for (const CrossingShare& s : comparison.crossings)
+    list.push_back({{"observable", "crossed " + s.screen},
+                    {"unit", "share"},
+                    {"measured", number(s.measured)},
+                    {"simulated", number(s.simulated)}});
+  return list;
+}
+
+std::string parameter_lines(const Calibration& c) {
+  std::string text = "| parameter | start | fitted | 95 % interval | |\n| --- | --- | --- | --- | --- |\n";
+  for (std::size_t i = 0; i < c.free.size(); ++i) {
+    const Parameter& p = c.free[i];
+    const Interval& interval = c.uncertainty.intervals[i];
+    const bool known = c.uncertainty.identifiable[i];
+    text += "| " + p.key + (p.unit.empty() ? "" : " [" + p.unit + "]") + " | " + shown(p.get(c.start)) + " | " +
+            (known ? shown(p.get(c.fit.model)) : "(" + shown(p.get(c.fit.model)) + ")") + " | " + shown(interval.low) +
+            " to " + shown(interval.high) + " | " + (known ? "" : "not identifiable") + " |\n";
+  }
+  return text;
+}
+
+std::string correlation_lines(const Calibration& c) {
+  std::string text;
+  for (Eigen::Index i = 0; i < c.uncertainty.correlation.rows(); ++i)
+    for (Eigen::Index j = 0; j < i; ++j)
+      if (std::abs(c.uncertainty.correlation(i, j)) >= kCorrelated)
+        text += "- " + c.free[static_cast<std::size_t>(j)].key + " and " + c.free[static_cast<std::size_t>(i)].key +
+                ": " + shown(c.uncertainty.correlation(i, j), "%.2f") + "\n";
+  return text.empty() ? "None of " + shown(kCorrelated) + " or more.\n" : text;
+}
+
+std::string error_lines(const Calibration& c) {
+  std::string text;
+  for (const BeforeAfter& e : c.errors) {
+    text += "### " + rows_name(e.after.rows) + " rows (" + std::to_string(e.after.blocks) + " blocks)\n\n";
+    if (e.after.score.groups.empty()) {
+      text += "No group has five rows: nothing can be said.\n\n";
+      continue;
+    }
+    text += "| group | before | after | rows |\n| --- | --- | --- | --- |\n";
+    for (std::size_t g = 0; g < e.after.score.groups.size(); ++g)
+      text += "| " + e.after.score.groups[g].name + " | " + shown(e.before.score.groups[g].score, "%.3f") + " | " +
+              shown(e.after.score.groups[g].score, "%.3f") + " | " + std::to_string(e.after.score.groups[g].rows) +
+              " |\n";
+    text += "| **mean** | **" + shown(e.before.score.total, "%.3f") + "** | **" + shown(e.after.score.total, "%.3f") +
+            "** | " + std::to_string(e.after.score.rows.size()) + " |\n\n";
+    text += "The fit lowers the error by " + shown(100.0 * e.reduction.share, "%.1f") +
+            " % (95 % interval over the blocks: " + shown(100.0 * e.reduction.interval.low, "%.1f") + " to " +
+            shown(100.0 * e.reduction.interval.high, "%.1f") + " %).\n\n";
+  }
+  return text;
+}
+
+std::string distribution_lines(const Comparison& comparison) {
+  std::string text =
+      "| | | 5 % | 25 % | 50 % | 75 % | 95 % | values |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n";
+  for (const Distribution& d : comparison.distributions)
+    for (const bool measured : {true, false}) {
+      text += "| " + (measured ? d.name + " [" + d.unit + "]" : std::string()) +
+              (measured ? " | measured" : " | simulated");
+      for (const double value : measured ? d.measured : d.simulated) text += " | " + shown(value);
+      text += " | " + std::to_string(measured ? d.measured_count : d.simulated_count) + " |\n";
+    }
+  for (const CrossingShare& s : comparison.crossings)
+    text += "\nCrossed " + s.screen + ": " + shown(100.0 * s.measured) + " % of the blocks, " +
+            shown(100.0 * s.simulated) + " % of the simulated ones.\n";
+  return text;
+}
+
+}  // namespace
+
+std::string calibration_json(const Calibration& c) {
+  Json json{{"program", "talus"},
+            {"version", version()},
+            {"command", c.command},
+            {"campaign", c.campaign},
+            {"seed", c.options.seed},
+            {"trials", c.options.trials},
+            {"comparison_trials", c.options.comparison_trials},
+            {"starts", c.options.starts},
+            {"evaluations", c.fit.tried},
+            {"objective", number(c.fit.objective)},
+            {"prior_weight", c.options.prior_weight},
+            {"parameters", parameters_of(c)},
+            {"correlation", correlation_of(c)},
+            {"not_fitted_zones", c.untouched},
+            {"error", error_of(c)},
+            {"distributions", distributions_of(c.comparison)}};
+  Json inputs = Json::array();
+  for (const InputFile& f : c.inputs) inputs.push_back({{"role", f.role}, {"path", f.path}, {"sha256", f.sha256}});
+  json["inputs"] = inputs;
+  json["warnings"] = c.warnings;
+  json["files"] = {"calibration.json", "report.md", "fitted.toml"};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string calibration_report(const Calibration& c) {
+  std::string text = "# Calibration on " + c.campaign + "\n\n## Parameters\n\n" + parameter_lines(c) + "\n";
+  text +=
+      "Intervals: 400 fits to blocks drawn with replacement, each with its own draw of the prior (normal; of the "
+      "logarithm where the scale is one, with a factor of e, around the start). **Not identifiable**: the interval is "
+      "wider than half of what the prior or the bounds allow; the number in brackets is one of many that do as well. "
+      "The intervals hold if the model is right; they do not say that it is.\n\n";
+  for (const std::string& zone : c.untouched)
+    text += "Zone " + zone + ": too few simulated paths touch it; its parameters are those of the start, " +
+            std::string(kDefaultPreset) + ".\n\n";
+  text += "## Correlations of " + shown(kCorrelated) + " or more\n\n" + correlation_lines(c) + "\n";
+  text += "## Error\n\nMean normalised score, " + std::to_string(c.score_trials) +
+          " trials per block that the search has not seen. 0: the model says the very value; about 0.56: it knows the "
+          "spread of the measurements and no more. Before: " +
+          std::string(kDefaultPreset) +
+          " everywhere. Held-out rows took no part in the fit. What was minimised is the same with groups of n rows "
+          "that count n / (n + 10).\n\n" +
+          error_lines(c);
+  text +=
+      "## Measured and simulated, all blocks\n\nQuantiles over all blocks, simulated with the measurement error.\n\n" +
+      distribution_lines(c.comparison);
+  for (const std::string& warning : c.warnings) text += "\nWarning: " + warning + "\n";
+  return text;
+}
+
+}  // namespace talus::io

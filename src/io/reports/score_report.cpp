@@ -1,0 +1,152 @@
+#include "talus/io/reports/score_report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "talus/base/text.hpp"
+#include "talus/io/files/output_folder.hpp"
+#include "talus/io/results/write_crossings.hpp"
+#include "talus/io/results/write_vectors.hpp"
+
+namespace talus::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string cell(double score, const Interval& interval, std::size_t rows) {
+  if (std::isnan(score)) return "       -                        -";
+  std::array<char, 80> text{};
+  std::snprintf(text.data(), text.size(), "  %6.3f  %6.3f to %6.3f  %5zu", score, interval.low, interval.high, rows);
+  return text.data();
+}
+
+std::string padded(std::string text, std::size_t width) {
+  text.resize(std::max(width, text.size()), ' ');
+  return text;
+}
+
+/// All groups of all the scores, in the order of the first that has them.
+std::vector<std::string> group_names(std::span<const ScoredRows> scores) {
+  std::vector<std::string> names;
+  for (const ScoredRows& s : scores)
+    for (const GroupScore& group : s.score.groups)
+      if (std::find(names.begin(), names.end(), group.name) == names.end()) names.push_back(group.name);
+  return names;
+}
+
+Json number(double value) {
+  return std::isnan(value) ? Json() : Json(std::round(value * 1e6) / 1e6);
+}
+
+Json interval_of(const Interval& interval) {
+  return Json::array({number(interval.low), number(interval.high)});
+}
+
+std::string field(double value) {
+  return std::isnan(value) ? "" : text_of(value);
+}
+
+std::string in_words(const std::string& rows) {
+  return rows == "fit" ? "fitting" : "held-out";
+}
+
+}  // namespace
+
+ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<const BlockRuns> runs,
+                  const std::vector<bool>& ask) {
+  ScoredRows out{
+      rows, static_cast<std::size_t>(std::count(ask.begin(), ask.end(), true)), score(campaign, runs, ask), {}};
+  out.intervals = bootstrap(out.score, campaign.blocks.size());
+  return out;
+}
+
+std::vector<std::string> unseen_warnings(const std::string& rows, const Score& score) {
+  std::vector<std::string> warnings;
+  for (const GroupScore& group : score.groups)
+    if (2 * group.unseen > group.rows)
+      warnings.push_back(group.name + ": " + std::to_string(group.unseen) + " of " + std::to_string(group.rows) + " " +
+                         in_words(rows) + " rows have fewer than " + std::to_string(kFewestSimulated) +
+                         " simulated values and score as the climatology: the model seldom does there what was "
+                         "measured, and the score says nothing of it (more trials may help)");
+  return warnings;
+}
+
+std::string score_table(const ScoreSettings& settings, std::span<const ScoredRows> scores) {
+  std::string text = "campaign " + settings.campaign + ": " + std::to_string(settings.trials) +
+                     " trials per block, seed " + std::to_string(settings.seed) + "\n";
+  const std::vector<std::string> names = group_names(scores);
+  std::size_t width = 24;
+  for (const std::string& name : names) width = std::max(width, name.size());
+  text += padded("", width);
+  for (const ScoredRows& s : scores)
+    text += padded("  " + in_words(s.rows) + " rows (" + std::to_string(s.blocks) + " blocks)", 33);
+  text += "\n" + padded("group", width);
+  for (std::size_t i = 0; i < scores.size(); ++i) text += "   score  95 % interval    rows";
+  for (const std::string& name : names) {
+    text += "\n" + padded(name, width);
+    for (const ScoredRows& s : scores) {
+      const auto& groups = s.score.groups;
+      const auto found = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.name == name; });
+      const auto index = static_cast<std::size_t>(found - groups.begin());
+      text +=
+          found == groups.end() ? padded("       -", 33) : cell(found->score, s.intervals.groups[index], found->rows);
+    }
+  }
+  text += "\n" + padded("mean normalised score", width);
+  for (const ScoredRows& s : scores) text += cell(s.score.total, s.intervals.total, s.score.rows.size());
+  return text + "\n";
+}
+
+std::string score_json(const ScoreSettings& settings, std::span<const ScoredRows> scores) {
+  Json json{{"campaign", settings.campaign},
+            {"metric", "mean normalised score"},
+            {"trials", settings.trials},
+            {"seed", settings.seed}};
+  for (const ScoredRows& s : scores) {
+    Json groups = Json::array();
+    for (std::size_t g = 0; g < s.score.groups.size(); ++g)
+      groups.push_back({{"group", s.score.groups[g].name},
+                        {"score", number(s.score.groups[g].score)},
+                        {"ci95", interval_of(s.intervals.groups[g])},
+                        {"rows", s.score.groups[g].rows},
+                        {"rows_as_climatology", s.score.groups[g].unseen}});
+    json[s.rows] = {{"score", number(s.score.total)},
+                    {"ci95", interval_of(s.intervals.total)},
+                    {"blocks", s.blocks},
+                    {"rows", s.score.rows.size()},
+                    {"groups", groups}};
+  }
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_runs(const std::filesystem::path& folder, const LoadedCampaign& loaded, std::span<const BlockRuns> runs) {
+  const Campaign& campaign = loaded.campaign;
+  const Grid& grid = campaign.surface.grid();
+  std::string stops = "block,trial,end,x,y,mass_share\n";
+  std::string passages = "block,trial,screen,speed_ms,jump_height_m,angular_velocity_rads\n";
+  std::string samples = "block,trial,sample,speed_ms,angular_velocity_rads\n";
+  for (std::size_t b = 0; b < runs.size(); ++b) {
+    const BlockRuns& r = runs[b];
+    for (std::uint32_t t = 0; t < r.trials; ++t) {
+      const std::string key = csv_field(campaign.blocks[b].id) + ',' + std::to_string(t) + ',';
+      stops += key + name_of(r.end[t]) + ',' + field(r.x[t] + grid.west) + ',' + field(r.y[t] + grid.south) + ',' +
+               field(r.mass_share[t]) + '\n';
+      for (std::size_t s = 0; s < r.screens.size(); ++s)
+        if (!std::isnan(r.screens[s].speed[t]))
+          passages += key + csv_field(campaign.screens[s].id) + ',' + field(r.screens[s].speed[t]) + ',' +
+                      field(r.screens[s].jump[t]) + ',' + field(r.screens[s].spin[t]) + '\n';
+      for (std::size_t s = 0; s < r.samples.size(); ++s)
+        if (!std::isnan(r.samples[s].speed[t]))
+          samples +=
+              key + std::to_string(s) + ',' + field(r.samples[s].speed[t]) + ',' + field(r.samples[s].spin[t]) + '\n';
+    }
+  }
+  write_text(folder / "stops.csv", stops);
+  write_text(folder / "passages.csv", passages);
+  write_text(folder / "samples.csv", samples);
+}
+
+}  // namespace talus::io

@@ -1,0 +1,154 @@
+#include "talus/io/results/hazard_file.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "io/gdal/dataset.hpp"
+#include "hazard_stream.hpp"
+#include "io/scenario/scenario_spec.hpp"
+#include "io/files/sha256.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/scratch.hpp"
+#include "talus/base/version.hpp"
+
+namespace talus::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kMark = "talus-hazard";
+constexpr int kFormat = 1;
+
+Json json_of(const LoadedScenario& loaded, const HazardRules& rules) {
+  const Grid& grid = loaded.scenario.surface.grid();
+  const WeightScale& scale = rules.scale;
+  return {{"version", version()},
+          {"plan", plan_checksum(loaded)},
+          {"columns", grid.columns},
+          {"rows", grid.rows},
+          {"cell_x", grid.cell_x},
+          {"cell_y", grid.cell_y},
+          {"west", loaded.geo.west},
+          {"north", loaded.geo.north},
+          {"crs_wkt", loaded.geo.crs_wkt},
+          {"energy_thresholds", rules.bins.thresholds()},
+          {"unit", scale.unit},
+          {"square_unit", scale.square_unit},
+          {"total", scale.total},
+          {"largest", scale.largest},
+          {"trajectories", scale.trajectories},
+          {"equal", scale.equal}};
+}
+
+HazardHeader header_of(const std::string& text) {
+  const Json json = Json::parse(text);
+  HazardHeader header{json.at("version"), json.at("plan"), {}, {}, {EnergyBins(json.at("energy_thresholds")), {}}};
+  Grid& grid = header.grid;
+  grid.columns = json.at("columns");
+  grid.rows = json.at("rows");
+  grid.cell_x = json.at("cell_x");
+  grid.cell_y = json.at("cell_y");
+  header.geo = {json.at("crs_wkt"), json.at("west"), json.at("north"), grid.cell_x, grid.cell_y};
+  header.rules.scale = {json.at("unit"),    json.at("square_unit"),  json.at("total"),
+                        json.at("largest"), json.at("trajectories"), json.at("equal")};
+  if (grid.columns < 1 || grid.rows < 1 || !(header.rules.scale.unit > 0.0)) throw std::out_of_range("a number");
+  return header;
+}
+
+void put_cell(HazardWriter& out, const HazardCell& cell) {
+  out.put(static_cast<std::int32_t>(cell.first()));
+  out.put(static_cast<std::uint32_t>(cell.bins().size()));
+  for (const HazardCell::Bin& bin : cell.bins()) out.put(bin.weight), out.put(bin.square);
+  out.put(static_cast<std::uint32_t>(cell.overlaps().size()));
+  for (const std::int64_t overlap : cell.overlaps()) out.put(overlap);
+}
+
+HazardCell get_cell(HazardReader& in, const HazardRules& rules) {
+  const auto first = in.get<std::int32_t>();
+  std::vector<HazardCell::Bin> bins(in.get_count(static_cast<std::size_t>(rules.bins.count())));
+  if (first < 0 || first + static_cast<std::int64_t>(bins.size()) > rules.bins.count()) in.fail();
+  for (HazardCell::Bin& bin : bins) bin = {in.get<std::int64_t>(), in.get<std::int64_t>()};
+  std::vector<std::int64_t> overlaps(in.get_count(rules.levels()));
+  for (std::int64_t& overlap : overlaps) overlap = in.get<std::int64_t>();
+  return HazardCell::restored(first, bins, overlaps);
+}
+
+/// The first line: mark, format, length of the header that follows.
+HazardHeader get_header(HazardReader& in) {
+  std::string mark(std::strlen(kMark), ' ');
+  in.get(mark.data(), mark.size());
+  if (mark != kMark) throw InputError(in.name() + ": is no file that talus run wrote; give the folder of a run");
+  if (const auto format = in.get<std::int32_t>(); format > kFormat)
+    throw InputError(in.name() + ": was written by a later version of Talus (format " + std::to_string(format) +
+                     ", this one reads " + std::to_string(kFormat) + "); use that version, or run again");
+  std::string text(in.get_count(1U << 20U), ' ');
+  in.get(text.data(), text.size());
+  try {
+    return header_of(text);
+  } catch (const std::exception&) {
+    in.fail();
+  }
+}
+
+/// Machines may have the same files in other folders: what is in them counts, and what they are called.
+void strip_folder(NamedFile& file) {
+  const std::filesystem::path path(file.path);
+  if (path.is_absolute()) file.path = path.filename().string();
+}
+
+}  // namespace
+
+std::string plan_checksum(const LoadedScenario& loaded) {
+  ScenarioSpec spec = *loaded.spec;
+  for (NamedFile* file : {&spec.dem, &spec.sources, &spec.ground, &spec.screens, &spec.barriers}) strip_folder(*file);
+  for (auto& [name, effect] : spec.effects) strip_folder(effect.file);
+  Sha256 sum;
+  sum.add(toml_of(spec));
+  for (const InputFile& input : loaded.inputs)
+    if (input.role != "scenario" && input.role != "include") sum.add(input.role + input.sha256 + "\n");
+  return sum.digits();
+}
+
+void write_hazard(const std::filesystem::path& file, const LoadedScenario& loaded, const Tally& tally) {
+  const Raster<float>& heights = loaded.scenario.surface.heights();
+  const Grid& grid = heights.grid;
+  HazardWriter out(file);
+  out.put(kMark, std::strlen(kMark));
+  out.put(std::int32_t{kFormat});
+  const std::string header = json_of(loaded, tally.hazard_rules()).dump();
+  out.put(static_cast<std::uint32_t>(header.size()));
+  out.put(header.data(), header.size());
+  for (int row = grid.rows - 1; row >= 0; --row) {
+    scratch::keep_below_limit();
+    for (int column = 0; column < grid.columns; ++column) {
+      const std::uint8_t touched = tally.hazard(column, row) != nullptr ? 2 : 0;
+      out.put(static_cast<std::uint8_t>(touched + (std::isnan(heights.at(column, row)) ? 0 : 1)));
+    }
+    for (int column = 0; column < grid.columns; ++column)
+      if (const HazardCell* cell = tally.hazard(column, row)) put_cell(out, *cell);
+  }
+  out.finish();
+}
+
+HazardHeader read_hazard(const std::filesystem::path& file, const std::function<void(const HazardHeader&)>& begin,
+                         const std::function<void(const HazardRow&)>& visit) {
+  HazardReader in(file);
+  const HazardHeader header = get_header(in);
+  begin(header);
+  std::vector<std::uint8_t> states(static_cast<std::size_t>(header.grid.columns));
+  for (int row = header.grid.rows - 1; row >= 0; --row) {
+    in.get(states.data(), states.size());
+    HazardRow cells;
+    cells.row = row;
+    for (const std::uint8_t state : states) cells.terrain.push_back((state & 1U) != 0);
+    for (std::size_t column = 0; column < states.size(); ++column)
+      if ((states[column] & 2U) != 0) cells.touched.emplace_back(static_cast<int>(column), get_cell(in, header.rules));
+    visit(cells);
+  }
+  in.finish();
+  return header;
+}
+
+}  // namespace talus::io

@@ -1,0 +1,93 @@
+#include "talus/io/results/hazard_record.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "io/scenario/table_reader.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/version.hpp"
+
+namespace talus::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Kind = TomlValue::Kind;
+
+constexpr Bounds kEnergy{"energies", "kJ", "between classes of intensity", 0.0, 1e9, Bounds::AboveMin};
+constexpr Bounds kYears{"years", "years", "between classes of return period", 0.0, 1e6, Bounds::AboveMin};
+
+void read_classes(TableReader& table, HazardMatrix& matrix) {
+  const TomlValue* value = table.find("classes");
+  if (value == nullptr) return;
+  std::vector<std::vector<int>> classes;
+  for (const TomlValue& row : value->items) {
+    classes.emplace_back();
+    for (const TomlValue& item : row.items) {
+      if (item.kind != Kind::Number || !(item.number >= 0.0 && item.number <= 15.0) ||
+          item.number != static_cast<int>(item.number)) {
+        table.fault("classes", item, "must be a whole number from 0 to 15");
+        return;
+      }
+      classes.back().push_back(static_cast<int>(item.number));
+    }
+  }
+  matrix.classes = std::move(classes);
+}
+
+void read_names(TableReader& table, HazardMatrix& matrix) {
+  const TomlValue* value = table.find("names");
+  if (value == nullptr) return;
+  matrix.names.clear();
+  for (const TomlValue& item : value->items) {
+    if (item.kind != Kind::Text) table.fault("names", item, "must be text in quotation marks");
+    matrix.names.push_back(item.text);
+  }
+}
+
+Json json_of(const HazardMatrix& matrix) {
+  return {
+      {"energies_kj", matrix.energies}, {"years", matrix.years}, {"classes", matrix.classes}, {"names", matrix.names}};
+}
+
+}  // namespace
+
+HazardMatrix read_matrix(const std::string& path) {
+  HazardMatrix matrix;
+  const TomlValue root = read_toml(path, path);
+  std::vector<std::string> faults;
+  TableReader table(&root, "", path, faults);
+  if (const auto energies = table.numbers("energies", kEnergy)) matrix.energies = *energies;
+  if (const auto years = table.numbers("years", kYears)) matrix.years = *years;
+  read_classes(table, matrix);
+  read_names(table, matrix);
+  table.finish();
+  if (faults.empty())
+    if (const std::string fault = fault_of(matrix); !fault.empty()) faults.push_back(path + ": " + fault);
+  if (!faults.empty()) throw InputError(faults.front());
+  return matrix;
+}
+
+std::string hazard_json(const HazardRecord& record) {
+  const WeightScale& scale = record.header.rules.scale;
+  Json json;
+  json["program"] = "talus";
+  json["version"] = version();
+  json["command"] = record.command;
+  json["run"] = {{"version", record.header.version}, {"plan", record.header.plan}};
+  json["events_per_year"] = scale.total;
+  json["trajectories"] = scale.trajectories;
+  json["equal_weights"] = scale.equal;
+  json["largest_weight_per_year"] = scale.largest_weight();
+  json["confidence"] = 0.95;
+  json["energy_relative_error"] = EnergyBins::kRelativeWidth;
+  json["energy_thresholds_kj"] = record.header.rules.bins.thresholds();
+  json["matrix"] = json_of(record.matrix);
+  json["matrix_file"] = record.matrix_file.empty() ? Json("default") : Json(record.matrix_file);
+  json["cells"] = record.cells;
+  if (!record.objects_file.empty()) json["objects"] = {{"file", record.objects_file}, {"replayed", record.replayed}};
+  if (!record.frequency_file.empty()) json["frequency"] = {{"file", record.frequency_file}, {"replayed", true}};
+  json["warnings"] = record.warnings;
+  json["files"] = record.files;
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace talus::io

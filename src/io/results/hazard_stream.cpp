@@ -1,0 +1,111 @@
+#include "hazard_stream.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+
+#include "talus/base/error.hpp"
+#include "talus/io/files/output_folder.hpp"
+
+namespace talus::io {
+namespace {
+
+constexpr std::size_t kBuffer = 1U << 18U;
+constexpr std::size_t kDigits = 64;  // of the checksum
+
+std::string gzip_name(const std::filesystem::path& file) {
+  return "/vsigzip/" + file.string();
+}
+
+}  // namespace
+
+HazardWriter::HazardWriter(const std::filesystem::path& file) : file_(file) {
+  stream_ = VSIFOpenL(gzip_name(file).c_str(), "wb");
+  if (stream_ == nullptr) fail();
+}
+
+HazardWriter::~HazardWriter() {
+  if (stream_ == nullptr) return;
+  VSIFCloseL(stream_);
+  std::error_code ignored;
+  std::filesystem::remove(file_, ignored);
+}
+
+void HazardWriter::put(const void* bytes, std::size_t count) {
+  buffer_.append(static_cast<const char*>(bytes), count);
+  if (buffer_.size() >= kBuffer) flush();
+}
+
+void HazardWriter::flush() {
+  sum_.add(buffer_);
+  if (!buffer_.empty() && VSIFWriteL(buffer_.data(), 1, buffer_.size(), stream_) != buffer_.size()) fail();
+  buffer_.clear();
+}
+
+void HazardWriter::finish() {
+  flush();
+  const std::string digits = sum_.digits();
+  if (VSIFWriteL(digits.data(), 1, digits.size(), stream_) != digits.size()) fail();
+  VSILFILE* stream = stream_;
+  stream_ = nullptr;
+  if (VSIFCloseL(stream) != 0 || messages_.failed()) {
+    std::error_code ignored;
+    std::filesystem::remove(file_, ignored);
+    fail();
+  }
+}
+
+void HazardWriter::fail() {
+  throw std::runtime_error(file_.filename().string() +
+                           ": cannot be written: " + cause_of_failure(file_.parent_path(), messages_.take()));
+}
+
+HazardReader::HazardReader(const std::filesystem::path& file) : name_(file.string()) {
+  stream_ = VSIFOpenL(gzip_name(file).c_str(), "rb");
+  if (stream_ == nullptr) fail();
+}
+
+HazardReader::~HazardReader() {
+  if (stream_ != nullptr) VSIFCloseL(stream_);
+}
+
+/// Keeps what is left and reads on.
+void HazardReader::fill() {
+  buffer_.erase(0, next_);
+  next_ = 0;
+  const std::size_t left = buffer_.size();
+  buffer_.resize(left + kBuffer);
+  buffer_.resize(left + VSIFReadL(&buffer_[left], 1, kBuffer, stream_));
+}
+
+void HazardReader::get(void* bytes, std::size_t count) {
+  auto* to = static_cast<char*>(bytes);
+  while (count > 0) {
+    if (next_ == buffer_.size()) fill();
+    const std::size_t part = std::min(count, buffer_.size() - next_);
+    if (part == 0) fail();
+    std::memcpy(to, &buffer_[next_], part);
+    sum_.add({&buffer_[next_], part});
+    next_ += part;
+    to += part;
+    count -= part;
+  }
+}
+
+std::size_t HazardReader::get_count(std::size_t most) {
+  const auto count = get<std::uint32_t>();
+  if (count > most) fail();
+  return count;
+}
+
+void HazardReader::finish() {
+  fill();
+  const std::string digits = sum_.digits();
+  if (buffer_ != digits || digits.size() != kDigits) fail();
+}
+
+void HazardReader::fail() const {
+  throw InputError(name_ + ": is damaged: it is not as talus run wrote it; run again");
+}
+
+}  // namespace talus::io

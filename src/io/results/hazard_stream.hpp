@@ -1,0 +1,70 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "io/gdal/dataset.hpp"
+#include "io/files/sha256.hpp"
+
+namespace talus::io {
+
+/// Bytes into a gzip file, with a checksum at the end. Little-endian, as every machine that Talus runs on.
+class HazardWriter {
+ public:
+  explicit HazardWriter(const std::filesystem::path& file);
+  ~HazardWriter();  ///< without `finish` the file is removed
+  HazardWriter(const HazardWriter&) = delete;
+  HazardWriter& operator=(const HazardWriter&) = delete;
+
+  void put(const void* bytes, std::size_t count);
+  template <class Number>
+  void put(Number number) {
+    put(&number, sizeof number);
+  }
+  void finish();
+
+ private:
+  void flush();
+  [[noreturn]] void fail();
+
+  std::filesystem::path file_;
+  GdalMessages messages_;
+  VSILFILE* stream_ = nullptr;
+  std::string buffer_;
+  Sha256 sum_;
+};
+
+/// The bytes of such a file again. Throws InputError where they are not those that were written.
+class HazardReader {
+ public:
+  explicit HazardReader(const std::filesystem::path& file);
+  ~HazardReader();
+  HazardReader(const HazardReader&) = delete;
+  HazardReader& operator=(const HazardReader&) = delete;
+
+  void get(void* bytes, std::size_t count);
+  template <class Number>
+  Number get() {
+    Number number{};
+    get(&number, sizeof number);
+    return number;
+  }
+  /// A number of things that follow, which cannot be more than `most`.
+  std::size_t get_count(std::size_t most);
+  /// Compares the checksum.
+  void finish();
+
+  const std::string& name() const { return name_; }
+  [[noreturn]] void fail() const;
+
+ private:
+  void fill();
+
+  std::string name_;
+  GdalMessages messages_;
+  VSILFILE* stream_ = nullptr;
+  std::string buffer_;
+  std::size_t next_ = 0;
+  Sha256 sum_;
+};
+
+}  // namespace talus::io

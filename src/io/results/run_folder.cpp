@@ -1,0 +1,51 @@
+#include "talus/io/results/run_folder.hpp"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "talus/base/error.hpp"
+
+namespace talus::io {
+namespace {
+
+using Json = nlohmann::json;
+
+double setting_of(const Json& json, const std::string& key) {
+  for (const Json& setting : json.at("settings"))
+    if (setting.at("key") == key) return setting.at("value").get<double>();
+  throw InputError("no setting '" + key + "'");
+}
+
+Screen screen_of(const Json& json) {
+  Screen screen{json.at("id").get<std::string>(), {}};
+  for (const Json& line : json.at("lines")) {
+    auto& places = screen.lines.emplace_back();
+    for (const Json& place : line) places.emplace_back(place.at(0).get<double>(), place.at(1).get<double>());
+    if (places.size() < 2) throw InputError("screen '" + screen.id + "' has a line of less than two places");
+  }
+  return screen;
+}
+
+}  // namespace
+
+RunSummary read_run(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "run.json";
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream.is_open())
+    throw InputError(folder.string() +
+                     ": has no run.json that can be read, must be a folder that talus run has written");
+  RunSummary run;
+  try {
+    const Json json = Json::parse(stream);
+    run.released = json.at("released").get<double>();
+    run.density = setting_of(json, "blocks.density");
+    run.cell = json.at("grid").at("cell_x_m").get<double>();
+    for (const Json& screen : json.value("screens", Json::array())) run.screens.push_back(screen_of(screen));
+  } catch (const std::exception& error) {
+    throw InputError(file.string() + ": cannot be understood (" + error.what() +
+                     "), must be as talus run has written it; run the scenario again");
+  }
+  return run;
+}
+
+}  // namespace talus::io

@@ -1,0 +1,191 @@
+#include "talus/io/results/run_record.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "talus/base/version.hpp"
+#include "talus/simulate/tally/histogram.hpp"
+
+namespace talus::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Numbers as numbers, all else as text.
+Json value_of(const std::string& text) {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(number)) return text;
+  return Json::parse(text, nullptr, false).is_number() ? Json::parse(text) : Json(number);
+}
+
+Json settings_of(const LoadedScenario& loaded) {
+  Json list = Json::array();
+  for (const Setting& s : loaded.settings)
+    list.push_back({{"key", s.key}, {"value", value_of(s.value)}, {"unit", s.unit}, {"source", s.source}});
+  return list;
+}
+
+Json inputs_of(const LoadedScenario& loaded) {
+  Json list = Json::array();
+  for (const InputFile& f : loaded.inputs) list.push_back({{"role", f.role}, {"path", f.path}, {"sha256", f.sha256}});
+  return list;
+}
+
+Json reprojections_of(const LoadedScenario& loaded) {
+  Json list = Json::array();
+  for (const Reprojection& r : loaded.reprojections)
+    list.push_back(
+        {{"role", r.role}, {"operation", r.operation}, {"accuracy_m", r.accuracy_m ? Json(*r.accuracy_m) : Json()}});
+  return list;
+}
+
+Json grid_of(const LoadedScenario& loaded) {
+  const Grid& grid = loaded.scenario.surface.grid();
+  const GeoReference& geo = loaded.geo;
+  return {{"columns", grid.columns}, {"rows", grid.rows},  {"cell_x_m", geo.cell_x}, {"cell_y_m", geo.cell_y},
+          {"west", geo.west},        {"north", geo.north}, {"crs_wkt", geo.crs_wkt}};
+}
+
+/// The lines as they lie on the map, to the millimetre: products of the folder find places along them.
+Json screens_of(const LoadedScenario& loaded) {
+  const double south = loaded.geo.north - loaded.scenario.surface.grid().rows * loaded.geo.cell_y;
+  const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3; };
+  Json list = Json::array();
+  for (const Screen& screen : loaded.scenario.screens) {
+    Json lines = Json::array();
+    for (const auto& line : screen.lines) {
+      Json places = Json::array();
+      for (const Eigen::Vector2d& p : line)
+        places.push_back({rounded(loaded.geo.west + p.x()), rounded(south + p.y())});
+      lines.push_back(std::move(places));
+    }
+    list.push_back({{"id", screen.id}, {"lines", std::move(lines)}});
+  }
+  return list;
+}
+
+Json barriers_of(const Scenario& scenario, const Totals& totals) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < totals.barriers.size(); ++i) {
+    const Barrier& barrier = scenario.barriers.list()[i];
+    const BarrierCounts sum = totals.barriers.sum(i);
+    const double capacity = 1e-3 * barrier.capacity;
+    list.push_back({{"id", barrier.id},
+                    {"height_m", barrier.height},
+                    {"capacity_kj", std::isfinite(capacity) ? Json(capacity) : Json("inf")},
+                    {"length_m", std::round(scenario.barriers.length(i) * 1e3) / 1e3},
+                    {"hits", sum.hits()},
+                    {"caught", sum.caught},
+                    {"over", sum.over},
+                    {"broken", sum.broken}});
+  }
+  return list;
+}
+
+Json ends_of(const Totals& totals) {
+  const auto count = [&totals](End end) { return totals.ends[static_cast<std::size_t>(end)]; };
+  return {{"stopped", count(End::Stopped)},
+          {"left", count(End::Left)},
+          {"caught", count(End::Caught)},
+          {"limit", count(End::Limit)}};
+}
+
+Json rounds_of(const RoundsRecord& rounds) {
+  Json json{{"done", rounds.done},
+            {"above_probability", rounds.asked.above},
+            {"cells", rounds.reached.cells},
+            {"relative_half_width", rounds.reached.half_width}};
+  if (!rounds.asked.until_error) return json;
+  json["asked"] = *rounds.asked.until_error;
+  json["most_rounds"] = rounds.asked.most;
+  json["reached"] = rounds.reached_it();
+  return json;
+}
+
+Json seconds(const StageSeconds& s) {
+  const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3; };
+  return {{"read", rounded(s.read)}, {"simulate", rounded(s.simulate)}, {"write", rounded(s.write)}};
+}
+
+}  // namespace
+
+bool too_many_limits(const Totals& totals) {
+  const auto limits = static_cast<double>(totals.ends[static_cast<std::size_t>(End::Limit)]);
+  return limits > kAllowedLimitShare * static_cast<double>(totals.released);
+}
+
+std::optional<std::string> status_of_result(const std::filesystem::path& folder, const std::string& plan,
+                                            const Rounds& asked) {
+  std::ifstream stream(folder / "run.json", std::ios::binary);
+  try {
+    const Json json = Json::parse(stream);
+    if (json.at("plan") != plan || json.contains("rounds") != asked.several()) return std::nullopt;
+    std::string status = json.at("status");
+    if (!asked.several()) return status;
+    const Json& rounds = json.at("rounds");
+    const bool as_asked = asked.until_error ? rounds.at("asked") == *asked.until_error &&
+                                                  rounds.at("above_probability") == asked.above &&
+                                                  rounds.at("most_rounds") == asked.most
+                                            : !rounds.contains("asked") && rounds.at("done") == asked.count;
+    return as_asked ? std::optional(std::move(status)) : std::nullopt;
+  } catch (const Json::exception&) {
+    return std::nullopt;  // no such file, or another one
+  }
+}
+
+std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
+  const Scenario& scenario = loaded.scenario;
+  const Totals& totals = record.totals;
+  Json json;
+  json["program"] = "talus";
+  json["version"] = version();
+  json["command"] = record.command;
+  if (!record.plan.empty()) json["plan"] = record.plan;
+  json["status"] = too_many_limits(totals) ? "too many trajectories ended at a limit" : kComplete;
+  json["seed"] = scenario.seed;
+  json["deformation_coefficient"] = scenario.impact.deformation_coefficient;
+  json["source_cells"] = scenario.sources.size();
+  json["trajectories_per_source"] = scenario.trajectories;
+  json["released"] = totals.released;
+  if (record.rounds.done > 0) json["rounds"] = rounds_of(record.rounds);
+  if (record.parts > 1) json["parts"] = record.parts;
+  if (scenario.effects.fragmentation.threshold > 0.0) json["pieces"] = totals.pieces;
+  json["ends"] = ends_of(totals);
+  if (totals.ends[static_cast<std::size_t>(End::Limit)] > 0)
+    json["first_limit"] = {{"source", totals.first_limit[0]}, {"block", totals.first_limit[1]}};
+  json["trajectory_metres"] = static_cast<double>(totals.length_mm) * 1e-3;
+  json["trajectory_metres_plan"] = static_cast<double>(totals.plan_length_mm) * 1e-3;
+  json["impacts"] = totals.impacts;
+  json["psi_dropped"] = totals.psi_dropped;
+  json["cells_scored"] = totals.cells_scored;
+  json["touched_cells"] = record.touched_cells;
+  json["percentile_relative_error"] = LogHistogram::kBinWidth;
+  json["grid"] = grid_of(loaded);
+  if (!scenario.screens.empty()) json["screens"] = screens_of(loaded);
+  if (!scenario.barriers.empty()) json["barriers"] = barriers_of(scenario, totals);
+  json["settings"] = settings_of(loaded);
+  json["inputs"] = inputs_of(loaded);
+  json["reprojections"] = reprojections_of(loaded);
+  json["warnings"] = record.warnings;
+  json["files"] = record.files;
+  json["threads"] = record.threads;
+  if (record.ranks > 1) json["ranks"] = record.ranks;
+  json["cpu_seconds"] = seconds(record.cpu);
+  json["wall_seconds"] = seconds(record.wall);
+  json["peak_memory_mb"] = std::round(peak_memory_mb() * 10.0) / 10.0;
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+double peak_memory_mb() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    double kilobytes = 0.0;
+    if (word == "VmHWM:" && status >> kilobytes) return kilobytes * 1024e-6;
+  }
+  return 0.0;
+}
+
+}  // namespace talus::io

@@ -1,0 +1,219 @@
+#include "talus/io/results/write_vectors.hpp"
+
+#include <cmath>
+
+#include "io/gdal/geopackage.hpp"
+
+namespace talus::io {
+namespace {
+
+double decimals(double value, double scale) {
+  return std::round(value * scale) / scale;
+}
+
+/// Sets the attributes of a row one after the other, in the order of the columns.
+class Fields {
+ public:
+  explicit Fields(OGRFeature& feature) : feature_(feature) {}
+  void add(std::uint32_t value) { feature_.SetField(next_++, static_cast<GIntBig>(value)); }
+  void add(double value) { feature_.SetField(next_++, value); }
+  void add(const char* value) { feature_.SetField(next_++, value); }
+
+ private:
+  OGRFeature& feature_;
+  int next_ = 0;
+};
+
+/// From metres in the grid to coordinates of the map.
+struct Place {
+  double west = 0.0, south = 0.0;
+  Place(const GeoReference& geo, const Grid& grid) : west(geo.west), south(geo.north - grid.rows * geo.cell_y) {}
+  double x(double local) const { return west + local; }
+  double y(double local) const { return south + local; }
+};
+
+}  // namespace
+
+const char* name_of(End end) {
+  switch (end) {
+    case End::Stopped:
+      return "stopped";
+    case End::Left:
+      return "left";
+    case End::Caught:
+      return "caught";
+    case End::Limit:
+      return "limit";
+  }
+  return "";
+}
+
+const char* name_of(Event event) {
+  switch (event) {
+    case Event::Release:
+      return "release";
+    case Event::Impact:
+      return "impact";
+    case Event::Slide:
+      return "slide";
+    case Event::Takeoff:
+      return "takeoff";
+    case Event::Air:
+      return "air";
+    case Event::Barrier:
+      return "barrier";
+    case Event::Stem:
+      return "stem";
+    case Event::End:
+      return "end";
+  }
+  return "";
+}
+
+struct StopsWriter::State {
+  State(const std::filesystem::path& name, const LoadedScenario& loaded)
+      : file(name, loaded.geo), scenario(loaded.scenario), place(loaded.geo, loaded.scenario.surface.grid()) {
+    layer = file.add_point_layer("stops", {{"source", OFTInteger64},
+                                           {"block", OFTInteger64},
+                                           {"end", OFTString},
+                                           {"feature", OFTString},
+                                           {"diameter_m", OFTReal},
+                                           {"mass_kg", OFTReal},
+                                           {"x_release", OFTReal},
+                                           {"y_release", OFTReal},
+                                           {"z", OFTReal},
+                                           {"seconds", OFTReal},
+                                           {"max_speed_ms", OFTReal},
+                                           {"length_m", OFTReal},
+                                           {"impacts", OFTInteger64}});
+    feature.reset(OGRFeature::CreateFeature(layer->GetLayerDefn()));
+    point = new OGRPoint(0.0, 0.0);
+    feature->SetGeometryDirectly(point);
+    for (std::size_t i = 0; i < scenario.features.size(); ++i)
+      names.push_back(scenario.features[i].name.empty() ? std::to_string(i) : scenario.features[i].name);
+  }
+
+  void append(const StopRow& row) {
+    Fields fields(*feature);
+    fields.add(row.source);
+    fields.add(row.block);
+    fields.add(name_of(row.end));
+    fields.add(names[scenario.sources[row.source].feature].c_str());
+    fields.add(decimals(row.diameter, 1e4));
+    fields.add(decimals(row.mass, 1e3));
+    fields.add(decimals(place.x(row.x_release), 1e3));
+    fields.add(decimals(place.y(row.y_release), 1e3));
+    fields.add(row.z);
+    fields.add(decimals(row.seconds, 1e3));
+    fields.add(decimals(row.max_speed, 1e3));
+    fields.add(decimals(row.length, 1e3));
+    fields.add(row.impacts);
+    point->setX(place.x(row.x));
+    point->setY(place.y(row.y));
+    file.append(layer, *feature);
+  }
+
+  GeoPackage file;
+  const Scenario& scenario;
+  Place place;
+  OGRLayer* layer = nullptr;
+  Feature feature;
+  OGRPoint* point = nullptr;  // of the feature
+  std::vector<std::string> names;
+};
+
+StopsWriter::StopsWriter(const std::filesystem::path& file, const LoadedScenario& loaded)
+    : state_(std::make_unique<State>(file, loaded)) {}
+StopsWriter::~StopsWriter() = default;
+
+void StopsWriter::write(std::span<const StopRow> rows) {
+  const GdalMessages messages;
+  for (const StopRow& row : rows) state_->append(row);
+}
+
+void StopsWriter::finish() {
+  state_->file.finish();
+}
+
+struct TrajectoriesWriter::State {
+  State(const std::filesystem::path& name, const GeoReference& geo, const Grid& grid)
+      : file(name, geo), place(geo, grid) {
+    layer = file.add_layer("trajectories", wkbLineStringZM,
+                           {{"source", OFTInteger64},
+                            {"block", OFTInteger64},
+                            {"end", OFTString},
+                            {"diameter_m", OFTReal},
+                            {"max_speed_ms", OFTReal},
+                            {"length_m", OFTReal},
+                            {"impacts", OFTInteger64}});
+  }
+
+  GeoPackage file;
+  Place place;
+  OGRLayer* layer = nullptr;
+  std::vector<double> x, y, z, m;
+};
+
+TrajectoriesWriter::TrajectoriesWriter(const std::filesystem::path& file, const GeoReference& geo, const Grid& grid)
+    : state_(std::make_unique<State>(file, geo, grid)) {}
+TrajectoriesWriter::~TrajectoriesWriter() = default;
+
+void TrajectoriesWriter::write(const RecordedPath& path) {
+  const GdalMessages messages;
+  State& s = *state_;
+  const Feature feature(OGRFeature::CreateFeature(s.layer->GetLayerDefn()));
+  Fields fields(*feature);
+  fields.add(path.stop.source);
+  fields.add(path.stop.block);
+  fields.add(name_of(path.stop.end));
+  fields.add(decimals(path.stop.diameter, 1e4));
+  fields.add(decimals(path.stop.max_speed, 1e3));
+  fields.add(decimals(path.stop.length, 1e3));
+  fields.add(path.stop.impacts);
+  for (auto* list : {&s.x, &s.y, &s.z, &s.m}) list->clear();
+  for (const PathPoint& point : path.points) {
+    s.x.push_back(s.place.x(point.x));
+    s.y.push_back(s.place.y(point.y));
+    s.z.push_back(point.z);
+    s.m.push_back(point.time);
+  }
+  auto line = std::make_unique<OGRLineString>();
+  line->setPoints(static_cast<int>(s.x.size()), s.x.data(), s.y.data(), s.z.data(), s.m.data());
+  feature->SetGeometryDirectly(line.release());
+  s.file.append(s.layer, *feature);
+}
+
+void TrajectoriesWriter::write_vertices(const Path& path) {
+  const GdalMessages messages;
+  State& s = *state_;
+  OGRLayer* layer = s.file.add_layer("vertices", wkbPointZM,
+                                     {{"time_s", OFTReal},
+                                      {"speed_ms", OFTReal},
+                                      {"vx", OFTReal},
+                                      {"vy", OFTReal},
+                                      {"vz", OFTReal},
+                                      {"wx", OFTReal},
+                                      {"wy", OFTReal},
+                                      {"wz", OFTReal},
+                                      {"event", OFTString}});
+  const Feature feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
+  for (const Vertex& vertex : path.vertices) {
+    const Motion& motion = vertex.motion;
+    Fields fields(*feature);
+    fields.add(motion.time);
+    fields.add(motion.velocity.norm());
+    for (const double value : motion.velocity) fields.add(value);
+    for (const double value : motion.spin) fields.add(value);
+    fields.add(vertex.event == Event::End ? name_of(path.end) : name_of(vertex.event));
+    const OGRPoint point(s.place.x(motion.position.x()), s.place.y(motion.position.y()), motion.position.z(),
+                         motion.time);
+    feature->SetGeometry(&point);
+    s.file.append(layer, *feature);
+  }
+}
+
+void TrajectoriesWriter::finish() {
+  state_->file.finish();
+}
+
+}  // namespace talus::io

@@ -1,0 +1,126 @@
+#include <algorithm>
+#include <filesystem>
+
+#include "effect_spec.hpp"
+#include "talus/base/text.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
+
+namespace talus::io {
+
+namespace {
+
+using Kind = TomlValue::Kind;
+
+constexpr Bounds kDay{"days", "1", "number of a day", 0.0, 1e6, Bounds::Closed, true};
+
+/// "softening or drag".
+std::string strengths_of(const std::string& name) {
+  std::string keys;
+  for (const auto& field : effect_fields())
+    if (field.key.starts_with(name + ".") && !std::isnan(field.off))
+      keys += (keys.empty() ? "" : " or ") + std::string(field.key.substr(name.size() + 1));
+  return keys;
+}
+
+/// Reads the table of one effect.
+class EffectReader {
+ public:
+  EffectReader(ScenarioSpec& spec, TableReader table, std::string name, const std::filesystem::path& base,
+               const std::string& origin)
+      : spec_(spec), table_(std::move(table)), name_(std::move(name)), base_(base), origin_(origin) {}
+
+  void read() {
+    if (table_.value() == nullptr) return;
+    EffectSpec& effect = spec_.effects[name_];
+    effect.where = table_.file() + ":" + std::to_string(table_.value()->line) + ": [effects." + name_ + "]";
+    const bool acts = numbers();
+    if (name_ == "wet-ground") days(effect);
+    if (extent_of(spec_.values.effects, name_) != nullptr) place(effect);
+    const std::size_t faults = table_.faults().size();
+    table_.finish();
+    if (!acts && table_.faults().size() == faults)  // else the unknown key was meant for it
+      table_.faults().push_back(effect.where + " does nothing, must give " + strengths_of(name_) + ", or be left out");
+  }
+
+ private:
+  void given(const std::string& key) { spec_.origins["effects." + name_ + "." + key] = origin_; }
+
+  /// Returns whether it acts: one of its strengths is given, here or by what the scenario includes.
+  bool numbers() {
+    bool strength = false;
+    for (const auto& field : effect_fields()) {
+      if (!field.key.starts_with(name_ + ".")) continue;
+      const std::string key(field.key.substr(name_.size() + 1));
+      const bool given_before = spec_.origins.contains("effects." + name_ + "." + key);
+      strength = strength || ((given_before || table_.value()->find(key) != nullptr) && !std::isnan(field.off));
+      if (const auto value = table_.number(key, field)) {
+        field.set(spec_.values.effects, *value);
+        given(key);
+      }
+    }
+    return strength;
+  }
+
+  void days(const EffectSpec& effect) {
+    const auto days = table_.numbers("days", kDay);
+    std::vector<int>& wet = spec_.values.effects.wet_ground.days;
+    if (table_.value()->find("days") == nullptr && wet.empty())
+      table_.faults().push_back(effect.where + " has no days, must list the wet ones: days = [1, 2]");
+    if (!days) return;
+    wet.clear();  // what a scenario includes said others
+    for (const double day : *days) wet.push_back(static_cast<int>(day));
+    given("days");
+  }
+
+  void place(EffectSpec& effect) {
+    if (const TomlValue* zones = table_.find("zones")) {
+      const bool names = zones->kind == Kind::List && !zones->items.empty() &&
+                         std::all_of(zones->items.begin(), zones->items.end(),
+                                     [](const TomlValue& item) { return item.kind == Kind::Text; });
+      if (!names) table_.fault("zones", *zones, "must be a list of names of [ground.zones], like [\"meadow\"]");
+      effect.zones.clear();  // what a scenario includes said others
+      effect.file = {};
+      for (const TomlValue& item : zones->items) effect.zones.push_back(item.text);
+      effect.zones_where = table_.where("zones", *zones);
+      given("zones");
+    }
+    if (const auto file = table_.text("file")) {
+      effect.file = {absolute_path(*file, base_), table_.where("file", *table_.value()->find("file"))};
+      given("file");
+      if (table_.value()->find("zones") == nullptr)
+        effect.zones.clear();
+      else
+        table_.fault("file", *table_.value()->find("file"), "must not come with zones: give one of the two");
+    }
+  }
+
+  ScenarioSpec& spec_;
+  TableReader table_;
+  std::string name_;
+  const std::filesystem::path& base_;
+  const std::string& origin_;
+};
+
+}  // namespace
+
+void read_effects(ScenarioSpec& spec, TableReader table, const std::filesystem::path& base, const std::string& origin) {
+  for (const std::string_view name : effect_names())
+    EffectReader(spec, table.table(std::string(name)), std::string(name), base, origin).read();
+  if (const TomlValue* both = table.find("allow_both")) {
+    if (both->kind != Kind::Boolean) table.fault("allow_both", *both, "must be true or false");
+    spec.values.drag_and_stems = both->boolean;
+    spec.origins["effects.allow_both"] = origin;
+  }
+  table.finish();
+}
+
+void check_effect_zones(const ScenarioSpec& spec, std::vector<std::string>& faults) {
+  std::vector<std::string> known{"default"};
+  for (const ZoneSpec& zone : spec.zones) known.push_back(zone.name);
+  for (const auto& [name, effect] : spec.effects)
+    for (const std::string& zone : effect.zones)
+      if (std::find(known.begin(), known.end(), zone) == known.end())
+        faults.push_back(effect.zones_where + ": there is no zone '" + zone + "'" + known_names(zone, known));
+}
+
+}  // namespace talus::io

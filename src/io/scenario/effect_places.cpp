@@ -1,0 +1,55 @@
+#include <algorithm>
+
+#include "effect_spec.hpp"
+#include "io/gdal/layer.hpp"
+#include "talus/base/error.hpp"
+#include "talus/io/gdal/rasters.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
+
+namespace talus::io {
+
+namespace {
+
+/// The cells whose centres the polygons of a file cover, as zones of ground are read.
+Raster<std::uint8_t> read_mask(const std::string& name, const std::string& path, const Terrain& terrain,
+                               LoadedScenario& out) {
+  const Grid& grid = terrain.heights.grid;
+  Raster<std::uint8_t> mask(grid, 0);
+  Layer layer("effects." + name, path, terrain);
+  while (const Feature feature = layer.next()) {
+    const Parts parts = layer.parts(*feature);
+    if (!parts.lines.empty() || !parts.points.empty())
+      throw InputError(layer.label(*feature) + ": is no polygon, must be one: [effects." + name + "] acts inside");
+    if (parts.empty()) continue;
+    const OGREnvelope box = parts.envelope();
+    if (box.MaxX <= 0.0 || box.MinX >= grid.width() || box.MaxY <= 0.0 || box.MinY >= grid.height()) continue;
+    for (const OGRPolygon& polygon : parts.polygons)
+      for_each_cell(polygon, grid, false, [&](int column, int row) { mask.at(column, row) = 1; });
+  }
+  if (std::find(mask.values.begin(), mask.values.end(), 1) == mask.values.end())
+    out.warnings.push_back(path + ": covers no cell of the DEM: [effects." + name + "] acts nowhere");
+  const auto& used = layer.reprojections();
+  out.reprojections.insert(out.reprojections.end(), used.begin(), used.end());
+  for (std::string& line : layer.warnings()) out.warnings.push_back(std::move(line));
+  return mask;
+}
+
+}  // namespace
+
+void load_effect_places(const ScenarioSpec& spec, const Terrain& terrain, Scenario& parts, LoadedScenario& out) {
+  for (const std::string_view effect_name : effect_names()) {
+    const std::string name(effect_name);
+    const auto found = spec.effects.find(name);
+    talus::EffectArea* extent = extent_of(parts.effects, name);
+    if (found == spec.effects.end() || extent == nullptr) continue;
+    const EffectSpec& effect = found->second;
+    if (!effect.zones.empty()) {
+      extent->zones.assign(parts.zone_names.size(), 0);
+      for (std::size_t i = 0; i < parts.zone_names.size(); ++i)
+        extent->zones[i] = std::count(effect.zones.begin(), effect.zones.end(), parts.zone_names[i]) > 0 ? 1 : 0;
+    }
+    if (!effect.file.path.empty()) extent->mask = read_mask(name, effect.file.path, terrain, out);
+  }
+}
+
+}  // namespace talus::io

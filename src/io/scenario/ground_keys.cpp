@@ -1,0 +1,131 @@
+#include "ground_keys.hpp"
+
+#include <algorithm>
+
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/simulate/scenario/presets.hpp"
+
+namespace talus::io {
+namespace {
+
+constexpr Bounds kCode{"code", "1", "what stands for the zone in a raster", 0.0, 1e15, Bounds::Closed, true};
+constexpr const char* kDefaultZone = "default";  // the ground outside all zones
+
+/// The key x of a zone on a profile: [from, to], or a list of such intervals.
+std::vector<Range> intervals_of(TableReader& table) {
+  const TomlValue* value = table.find("x");
+  if (value == nullptr) {
+    table.faults().push_back(table.file() + ":" + std::to_string(table.value()->line) + ": " + table.full("x") +
+                             " is missing, must say where the zone is: x = [from, to] in m, or a list of these");
+    return {};
+  }
+  const bool many =
+      value->kind == TomlValue::Kind::List && !value->items.empty() && value->items[0].kind == TomlValue::Kind::List;
+  std::vector<Range> intervals;
+  for (const TomlValue& item : many ? value->items : std::vector<TomlValue>{*value}) {
+    const std::vector<TomlValue>& ends = item.items;
+    if (item.kind != TomlValue::Kind::List || ends.size() != 2 || ends[0].kind != TomlValue::Kind::Number ||
+        ends[1].kind != TomlValue::Kind::Number || !(ends[0].number < ends[1].number))
+      table.fault("x", item, "must be [from, to] in m, from below to, or a list of such intervals");
+    else
+      intervals.push_back({ends[0].number, ends[1].number});
+  }
+  return intervals;
+}
+
+}  // namespace
+
+void GroundReader::read(TableReader& ground) {
+  flag_ = spec_.origin("ground.default").starts_with("flag");
+  if (const auto name = ground.text("default")) {
+    ZoneSpec asked = spec_.default_ground;
+    if (set_preset(ground, "default", *name, asked) && !flag_) {
+      spec_.default_ground = asked;
+      spec_.origins["ground.default"] = origin_;
+    }
+  }
+  TableReader zones = ground.table("zones");
+  if (zones.value() == nullptr) return;
+  if (zones.value()->find(kDefaultZone) != nullptr) read_zone(zones.table(kDefaultZone), spec_.default_ground);
+  for (const auto& [name, value] : zones.value()->members) {
+    if (name == kDefaultZone) continue;
+    const auto known = std::find_if(spec_.zones.begin(), spec_.zones.end(),
+                                    [&zone = name](const ZoneSpec& z) { return z.name == zone; });
+    ZoneSpec start = known == spec_.zones.end() ? spec_.default_ground : *known;
+    if (known == spec_.zones.end()) start.code.clear(), start.intervals.clear();  // the default ground's own
+    start.name = name;
+    read_zone(zones.table(name), std::move(start));
+  }
+  if (spec_.zones.size() > 255)
+    faults_.push_back(ground.file() + ": [ground.zones] has " + std::to_string(spec_.zones.size()) +
+                      " zones, must be at most 255");
+}
+
+void GroundReader::check_file(const TableReader& ground, const std::string& include) {
+  if (spec_.zones.empty() || !spec_.ground.path.empty()) return;
+  const TomlValue* zones = ground.value() == nullptr ? nullptr : ground.value()->find("zones");
+  faults_.push_back(zones != nullptr
+                        ? ground.file() + ":" + std::to_string(zones->line) +
+                              ": [ground.zones] without file in [ground], must say where the zones are"
+                        : include +
+                              ": describes zones of ground: must come with file in [ground] of the scenario, "
+                              "which says where they are");
+}
+
+bool GroundReader::set_preset(TableReader& table, const std::string& key, const std::string& name, ZoneSpec& zone) {
+  try {
+    zone.ground = find_preset(name).ground;
+    zone.preset = name;
+    zone.own.clear();
+    return true;
+  } catch (const InputError& error) {
+    table.fault(key, *table.value()->find(key), error.what());
+    return false;
+  }
+}
+
+void GroundReader::read_zone(TableReader table, ZoneSpec zone) {
+  const bool is_default = zone.name == kDefaultZone;
+  if (const auto preset = table.text("preset")) {
+    const ZoneSpec before = zone;
+    if (set_preset(table, "preset", *preset, zone) && !(is_default && flag_))
+      spec_.origins[is_default ? "ground.default" : table.full("preset")] = origin_;
+    if (is_default && flag_) zone = before;  // the flag wins; parameters of their own stay
+  }
+  if (on_profile_) {
+    if (!is_default) zone.intervals = intervals_of(table);
+  } else if (const auto code = table.number("code", kCode)) {
+    zone.code = text_of(*code);
+  }
+  for (const auto& field : ground_fields()) {
+    const std::string key(field.key);
+    if (key == "shape_min" || key == "shape_max") continue;
+    if (const auto value = table.number(key, field)) {
+      field.set(zone.ground, *value);
+      zone.own[key] = origin_;
+    }
+  }
+  if (const auto shape = table.range("shape", ground_fields().back())) {
+    zone.ground.shape_min = shape->low;
+    zone.ground.shape_max = shape->high;
+    zone.own["shape"] = origin_;
+  }
+  table.finish();
+  store(std::move(zone));
+}
+
+void GroundReader::store(ZoneSpec zone) {
+  if (zone.name == kDefaultZone) {
+    spec_.default_ground = std::move(zone);
+    return;
+  }
+  const auto known =
+      std::find_if(spec_.zones.begin(), spec_.zones.end(), [&](const ZoneSpec& z) { return z.name == zone.name; });
+  if (known == spec_.zones.end())
+    spec_.zones.push_back(std::move(zone));
+  else
+    *known = std::move(zone);
+}
+
+}  // namespace talus::io

@@ -1,0 +1,175 @@
+#include "talus/io/scenario/profile_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/gdal/csv_table.hpp"
+#include "effect_spec.hpp"
+#include "profile_line.hpp"
+#include "scenario_spec.hpp"
+#include "io/files/sha256.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/simulate/scenario/presets.hpp"
+
+namespace talus::io {
+namespace {
+
+constexpr double kMostColumns = 2e6;
+constexpr Bounds kX{"x", "m", "along the profile", -1e7, 1e7}, kZ{"z", "m", "height", -500.0, 9000.0};
+
+/// Where a place of the input must lie.
+void check_inside(const Profile& profile, double x, const std::string& key) {
+  if (x >= profile.from() && x <= profile.to()) return;
+  throw InputError(key + " = " + text_of(x) + ": must be on the profile, " + text_of(profile.from()) + " to " +
+                   text_of(profile.to()) + " m");
+}
+
+void place_sources(const ScenarioSpec& spec, const Profile& profile, double west, Scenario& parts) {
+  const ProfileSpec& p = *spec.profile;
+  check_inside(profile, p.source.low, spec.scenario.where + ": sources.x");
+  check_inside(profile, p.source.high, spec.scenario.where + ": sources.x");
+  SourceFeature feature;
+  feature.release_height = spec.release_height;
+  feature.velocity = {p.vx, 0.0, p.vz};
+  parts.features = {feature};
+  parts.sources = {{0, 0.5 * (p.source.low + p.source.high) - west, kProfileLine, true, p.source.high - p.source.low}};
+}
+
+void place_screens(const ScenarioSpec& spec, const Profile& profile, double west, Scenario& parts) {
+  for (const double x : spec.profile->screens) {
+    check_inside(profile, x, spec.scenario.where + ": screens.x");
+    parts.screens.push_back({text_of(x), {{{x - west, 0.5}, {x - west, 1.5}}}});
+  }
+}
+
+/// The ground of each column: that of the last zone of the file whose interval [from, to) holds its centre.
+void place_zones(const ScenarioSpec& spec, const Profile& profile, const Grid& grid, Scenario& parts) {
+  parts.cover.grounds = {spec.default_ground.ground};
+  parts.zone_names = {"default"};
+  if (spec.zones.empty()) return;
+  parts.cover.zones = Raster<std::uint8_t>(grid, 0);
+  for (const ZoneSpec& zone : spec.zones) {
+    parts.cover.grounds.push_back(zone.ground);
+    parts.zone_names.push_back(zone.name);
+    for (const Range& x : zone.intervals) {
+      if (x.high <= profile.from() || x.low >= profile.to())
+        throw InputError(spec.scenario.where + ": ground.zones." + zone.name + ".x = [" + text_of(x.low) + ", " +
+                         text_of(x.high) + "]: lies off the profile, must be on " + text_of(profile.from()) + " to " +
+                         text_of(profile.to()) + " m");
+      for (int c = 0; c < grid.columns; ++c) {
+        const double centre = grid.west + grid.centre_x(c);
+        if (centre < x.low - 1e-9 || centre >= x.high - 1e-9) continue;
+        parts.cover.zones.at(c, 0) = parts.cover.zones.at(c, 1) =
+            static_cast<std::uint8_t>(parts.zone_names.size() - 1);
+      }
+    }
+  }
+}
+
+void warn_of_presets(const ScenarioSpec& spec, std::vector<std::string>& warnings) {
+  std::vector<const ZoneSpec*> zones{&spec.default_ground};
+  for (const ZoneSpec& zone : spec.zones) zones.push_back(&zone);
+  for (const ZoneSpec* zone : zones)
+    if (find_preset(zone->preset).ground.psi_scale > 0.0)
+      warnings.push_back("ground '" + zone->name + "': preset " + zone->preset +
+                         " is of the 3D model; its sideways roughness is left out");
+}
+
+/// The polyline, from whichever file.
+void read_terrain_of(const ScenarioSpec& spec, LoadedProfile& out) {
+  const ProfileSpec& p = *spec.profile;
+  if (!p.csv.path.empty()) {
+    out.profile = read_profile_csv(p.csv.path, p.step);
+  } else {
+    const Terrain terrain = read_terrain(spec.dem.path);
+    out.loaded.warnings = terrain.warnings;
+    ProfileLine line = read_profile_line(p.line.path, terrain, p.step, out.loaded);
+    out.profile = std::move(line.profile);
+    out.map = terrain.geo;
+    const Grid& grid = terrain.heights.grid;
+    for (const Eigen::Vector2d& place : line.plan) out.plan.emplace_back(grid.west + place.x(), grid.south + place.y());
+  }
+  const double columns = (out.profile.to() - out.profile.from()) / p.step;
+  if (columns > kMostColumns)
+    throw InputError(spec.scenario.where + ": step = " + text_of(p.step) + ": would be " +
+                     text_of(std::round(columns)) + " columns, must be at most " + text_of(kMostColumns) +
+                     ": give a larger step");
+}
+
+void record_inputs(const ScenarioSpec& spec, LoadedScenario& out) {
+  for (const auto& [role, file] : {std::pair{"scenario", &spec.scenario},
+                                   {"profile", &spec.profile->csv},
+                                   {"dem", &spec.dem},
+                                   {"line", &spec.profile->line}})
+    if (!file->path.empty()) out.inputs.push_back({role, file->path, sha256_of_file(file->path)});
+}
+
+}  // namespace
+
+Eigen::Vector2d LoadedProfile::place(double x, double z) const {
+  if (plan.empty()) return {x, z};
+  for (std::size_t i = 1; i < plan.size(); ++i) {
+    const double length = (plan[i] - plan[i - 1]).norm();
+    if (!(length > 0.0)) continue;  // a doubled vertex
+    if (x <= length || i + 1 == plan.size()) return plan[i - 1] + (plan[i] - plan[i - 1]) * (x / length);
+    x -= length;
+  }
+  return plan.back();
+}
+
+Profile read_profile_csv(const std::string& path, double step) {
+  const CsvTable table(path, {"x", "z"}, {"x", "z"});
+  Profile profile;
+  for (const CsvTable::Row& row : table.rows()) {
+    const Eigen::Vector2d node(table.required(row, "x", kX), table.required(row, "z", kZ));
+    if (!profile.nodes.empty() && !(node.x() - profile.to() >= step * (1.0 - 1e-9)))
+      table.refuse(row, "x",
+                   "must be at least step = " + text_of(step) + " m beyond " + text_of(profile.to()) +
+                       " of the row before: order the rows by x, lean walls by that much, or give a smaller step");
+    profile.nodes.push_back(node);
+  }
+  if (profile.nodes.size() < 2)
+    throw InputError(path + ": has " + std::to_string(profile.nodes.size()) + " nodes, must have 2 at least");
+  return profile;
+}
+
+LoadedProfile load_profile(const RunFlags& flags) {
+  std::vector<std::string> faults;
+  const ScenarioSpec spec = read_profile_spec(flags, faults);
+  check_files({&spec.dem, &spec.profile->csv, &spec.profile->line}, faults);
+  if (!faults.empty())
+    throw InputError(faults.front() +
+                     (faults.size() == 1 ? "" : " (and " + std::to_string(faults.size() - 1) + " more)"));
+  LoadedProfile out;
+  out.step = spec.profile->step;
+  out.bin = spec.profile->bin;
+  read_terrain_of(spec, out);
+  ExtrudedProfile extruded = extrude(out.profile, out.step);
+  const Grid grid = extruded.heights.grid;
+  out.datum = extruded.datum;
+  LoadedScenario& loaded = out.loaded;
+  loaded.geo.west = grid.west;
+  loaded.geo.north = grid.south + grid.height();
+  loaded.geo.cell_x = grid.cell_x;
+  loaded.geo.cell_y = grid.cell_y;
+  loaded.geo.crs_wkt = out.map.crs_wkt;
+
+  Scenario parts = spec.values;
+  parts.impact.in_plane = true;
+  place_sources(spec, out.profile, grid.west, parts);
+  if (parts.blocks.classes.empty() && parts.blocks.power_law.volume.high == 0.0)
+    throw InputError(spec.scenario.where + ": no block diameter, must have one: give [blocks] diameter, in m");
+  place_screens(spec, out.profile, grid.west, parts);
+  place_zones(spec, out.profile, grid, parts);
+  load_effect_places(spec, Terrain{}, parts, loaded);  // zones only: no file is read
+  parts.surface = Surface(std::move(extruded.heights));
+  loaded.scenario = make_scenario(std::move(parts));
+  warn_of_presets(spec, loaded.warnings);
+  loaded.complete_toml = toml_of(spec);
+  loaded.settings = settings_of(spec);
+  record_inputs(spec, loaded);
+  return out;
+}
+
+}  // namespace talus::io

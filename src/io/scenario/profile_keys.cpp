@@ -1,0 +1,149 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "effect_spec.hpp"
+#include "ground_keys.hpp"
+#include "scenario_spec.hpp"
+#include "table_reader.hpp"
+#include "talus/base/text.hpp"
+#include "talus/simulate/scenario/presets.hpp"
+
+namespace talus::io {
+namespace {
+
+constexpr std::string_view kDefaultProfilePreset = "firm-talus-2d";
+constexpr Bounds kStep{"step", "m", "spacing of the columns", 0.05, 10.0},
+    kBin{"bin", "m", "width of the bins of the results", 0.05, 1000.0},
+    kPlace{"x", "m", "place along the profile", -1e7, 1e7};
+
+/// Reads what only a profile has.
+class ProfileReader {
+ public:
+  ProfileReader(ScenarioSpec& spec, const std::string& file, std::vector<std::string>& faults)
+      : spec_(spec), profile_(*spec.profile), faults_(faults), base_(std::filesystem::absolute(file).parent_path()) {}
+
+  void read(TableReader top) {
+    named_file(top, "profile", profile_.csv);
+    named_file(top, "dem", spec_.dem);
+    named_file(top, "line", profile_.line);
+    number(top, "step", kStep, profile_.step);
+    read_common_keys(spec_, top, faults_);
+    read_sources(top.table("sources"));
+    TableReader ground = top.table("ground");
+    GroundReader(spec_, "scenario", faults_).read_on_profile(ground);
+    ground.finish();
+    read_output(top.table("output"));
+    TableReader screens = top.table("screens");
+    if (const auto x = screens.numbers("x", kPlace)) {
+      profile_.screens = *x;
+      given("screens.x");
+    }
+    screens.finish();
+    top.finish();
+    check_effects();
+  }
+
+  /// What must be given: faults without a line, which come last.
+  void check_given(const std::string& file) {
+    const bool csv = !profile_.csv.path.empty(), dem = !spec_.dem.path.empty(), line = !profile_.line.path.empty();
+    if (csv ? dem || line : !dem || !line)
+      faults_.push_back(file +
+                        ": no terrain, or more than one: give profile = \"FILE.csv\" (columns x, z), or "
+                        "dem = \"FILE\" with line = \"FILE\"");
+    if (!spec_.origins.contains("sources.x"))
+      faults_.push_back(file + ": no sources: give [sources] x = 60, or x = [50, 70], in m along the profile");
+  }
+
+ private:
+  void given(const std::string& key) { spec_.origins[key] = "scenario"; }
+
+  void named_file(TableReader& table, const std::string& key, NamedFile& file) {
+    if (const auto text = table.text(key)) {
+      file = {absolute_path(*text, base_), table.where(key, *table.value()->find(key))};
+      given(key);
+    }
+  }
+
+  void number(TableReader& table, const std::string& key, const Bounds& bounds, double& out) {
+    if (const auto value = table.number(key, bounds)) {
+      out = *value;
+      given(table.full(key));
+    }
+  }
+
+  void read_sources(TableReader table) {
+    if (const auto x = table.range("x", kPlace)) {
+      profile_.source = *x;
+      given("sources.x");
+    }
+    if (const auto range = table.range("release_height", bounds_of("sources.release_height"))) {
+      spec_.release_height = *range;
+      given("sources.release_height");
+    }
+    number(table, "vx", bounds_of("sources.velocity"), profile_.vx);
+    number(table, "vz", bounds_of("sources.velocity"), profile_.vz);
+    table.finish();
+  }
+
+  void read_output(TableReader table) {
+    for (const auto& field : scenario_fields())
+      if (field.key == "output.trajectories")
+        if (const auto value = table.number("trajectories", field)) {
+          field.set(spec_.values, *value);
+          given("output.trajectories");
+        }
+    number(table, "bin", kBin, profile_.bin);
+    const double columns = profile_.bin / profile_.step;
+    if (columns < 0.5 || std::abs(columns - std::round(columns)) > 1e-6)
+      faults_.push_back(table.file() + ": output.bin = " + text_of(profile_.bin) +
+                        ": must be a whole multiple of step = " + text_of(profile_.step) + " m");
+    table.finish();
+  }
+
+  /// What turns a block out of the plane has no place in a model of two dimensions.
+  void check_effects() {
+    for (const auto& [name, effect] : spec_.effects) {
+      if (name == "forest-stems" || name == "fragmentation")
+        faults_.push_back(effect.where + ": leads blocks out of the plane of the profile, must be left out here");
+      if (!effect.file.path.empty())
+        faults_.push_back(effect.file.where + ": there are no polygons on a profile, must be zones");
+    }
+  }
+
+  ScenarioSpec& spec_;
+  ProfileSpec& profile_;
+  std::vector<std::string>& faults_;
+  std::filesystem::path base_;
+};
+
+/// No sideways tilt: that of a preset is left out, one that is asked for is a fault.
+void flatten(ZoneSpec& zone, const std::string& table, std::vector<std::string>& faults) {
+  const auto own = zone.own.find("psi_scale");
+  if (own != zone.own.end() && zone.ground.psi_scale != 0.0)
+    faults.push_back(table + ".psi_scale = " + text_of(zone.ground.psi_scale) +
+                     ": a profile has no sideways roughness, must be 0 or left out");
+  zone.ground.psi_scale = 0.0;
+}
+
+}  // namespace
+
+ScenarioSpec read_profile_spec(const RunFlags& flags, std::vector<std::string>& faults) {
+  ScenarioSpec spec;
+  spec.profile.emplace();
+  spec.default_ground = {
+      "default", std::string(kDefaultProfilePreset), find_preset(kDefaultProfilePreset).ground, {}, {}, {}};
+  spec.scenario = {std::filesystem::absolute(flags.scenario).lexically_normal().string(), flags.scenario};
+  const TomlValue root = read_toml(flags.scenario, flags.scenario);
+  ProfileReader reader(spec, flags.scenario, faults);
+  reader.read(TableReader(&root, "", flags.scenario, faults));
+  flatten(spec.default_ground, flags.scenario + ": ground.zones.default", faults);
+  for (ZoneSpec& zone : spec.zones) flatten(zone, flags.scenario + ": ground.zones." + zone.name, faults);
+  lay_flags(spec, flags, faults);
+  check_effect_zones(spec, faults);
+  sort_by_line(faults, flags.scenario);
+  reader.check_given(flags.scenario);
+  return spec;
+}
+
+}  // namespace talus::io

@@ -1,0 +1,69 @@
+#include "profile_line.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/gdal/layer.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+
+namespace talus::io {
+namespace {
+
+/// Shares of the way from one place to another at which it crosses whole numbers, in one direction.
+void crossings(double from, double to, std::vector<double>& shares) {
+  if (from == to) return;
+  const double low = std::min(from, to), high = std::max(from, to);
+  for (double line = std::ceil(low); line <= high; line += 1.0) shares.push_back((line - from) / (to - from));
+}
+
+}  // namespace
+
+ProfileLine profile_along(const std::vector<Eigen::Vector2d>& plan, const Surface& surface, double step,
+                          const std::string& name) {
+  ProfileLine out{{}, plan};
+  std::vector<Eigen::Vector2d>& nodes = out.profile.nodes;
+  double before = 0.0;
+  const auto add = [&](const Eigen::Vector2d& place, double x, bool last) {
+    const auto z = surface.height(place.x(), place.y());
+    if (!z)
+      throw InputError(name + ": there is no terrain under it " + text_of(std::round(x * 10.0) / 10.0) +
+                       " m from its start, must lie on the DEM between the centres of its outermost cells");
+    if (last)
+      while (nodes.size() > 1 && x - nodes.back().x() < step) nodes.pop_back();
+    if (nodes.empty() || x - nodes.back().x() >= step) nodes.emplace_back(x, *z);
+  };
+  for (std::size_t i = 1; i < plan.size(); ++i) {
+    const Eigen::Vector2d &a = plan[i - 1], &b = plan[i];
+    const double length = (b - a).norm();
+    std::vector<double> shares{0.0, 1.0};
+    crossings(surface.u_of(a.x()), surface.u_of(b.x()), shares);
+    crossings(surface.v_of(a.y()), surface.v_of(b.y()), shares);
+    std::sort(shares.begin(), shares.end());
+    for (const double share : shares)
+      add(a + share * (b - a), before + share * length, i + 1 == plan.size() && share == 1.0);
+    before += length;
+  }
+  if (nodes.size() < 2) throw InputError(name + ": is shorter than step = " + text_of(step) + " m, must be longer");
+  return out;
+}
+
+ProfileLine read_profile_line(const std::string& path, const Terrain& terrain, double step, LoadedScenario& out) {
+  Layer layer("profile", path, terrain);
+  std::vector<Eigen::Vector2d> plan;
+  while (const Feature feature = layer.next()) {
+    const Parts parts = layer.parts(*feature);
+    if (parts.lines.size() != 1 || !parts.polygons.empty() || !parts.points.empty())
+      throw InputError(layer.label(*feature) + ": is no single line, must be one line from the top to the bottom");
+    if (!plan.empty()) throw InputError(path + ": has several lines, must have one: a profile is one line");
+    const OGRLineString& line = parts.lines.front();
+    for (int i = 0; i < line.getNumPoints(); ++i) plan.emplace_back(line.getX(i), line.getY(i));
+  }
+  if (plan.size() < 2) throw InputError(path + ": has no line, must have one");
+  const auto& used = layer.reprojections();
+  out.reprojections.insert(out.reprojections.end(), used.begin(), used.end());
+  for (std::string& warning : layer.warnings()) out.warnings.push_back(std::move(warning));
+  return profile_along(plan, Surface(terrain.heights), step, path);
+}
+
+}  // namespace talus::io

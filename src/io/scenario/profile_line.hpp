@@ -1,0 +1,26 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scenario_spec.hpp"
+#include "talus/io/gdal/rasters.hpp"
+#include "talus/terrain/profile.hpp"
+
+namespace talus::io {
+
+/// A line over a DEM as a profile.
+struct ProfileLine {
+  Profile profile;                    ///< x is the distance along the line in plan [m]
+  std::vector<Eigen::Vector2d> plan;  ///< its vertices in local metres of the DEM
+};
+
+/// Samples the terrain along a line: where it crosses the lines between the cells' centres, at which the bilinear
+/// surface has its creases, and at its own vertices. Between two of these the profile is straight. Points nearer than
+/// `step` to the one before are left out. Throws InputError where there is no terrain under a part of it.
+ProfileLine profile_along(const std::vector<Eigen::Vector2d>& plan, const Surface& surface, double step,
+                          const std::string& name);
+
+/// Reads the one line of a vector file and samples it. Throws InputError where it is not one line.
+ProfileLine read_profile_line(const std::string& path, const Terrain& terrain, double step, LoadedScenario& out);
+
+}  // namespace talus::io

@@ -1,0 +1,170 @@
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+
+#include "io/gdal/dataset.hpp"
+#include "effect_spec.hpp"
+#include "scenario_spec.hpp"
+#include "io/files/sha256.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/io/gdal/vectors.hpp"
+
+namespace talus::io {
+
+namespace {
+
+// Files that are not there, before any is opened.
+void check_files(const ScenarioSpec& spec, std::vector<std::string>& faults) {
+  std::vector<const NamedFile*> files{&spec.include, &spec.dem,     &spec.sources,
+                                      &spec.ground,  &spec.screens, &spec.barriers};
+  for (const auto& [name, effect] : spec.effects) files.push_back(&effect.file);
+  check_files(files, faults);
+}
+
+void stop_at_faults(const std::vector<std::string>& faults, std::vector<std::string>* all) {
+  if (all != nullptr) *all = faults;
+  if (faults.empty()) return;
+  const std::size_t more = faults.size() - 1;
+  throw InputError(more == 0 ? faults.front()
+                             : faults.front() + " (and " + std::to_string(more) +
+                                   (more == 1 ? " more fault" : " more faults") + ": talus check lists all)");
+}
+
+template <class Part>
+void take(LoadedScenario& out, const Part& part) {
+  out.reprojections.insert(out.reprojections.end(), part.reprojections.begin(), part.reprojections.end());
+  out.warnings.insert(out.warnings.end(), part.warnings.begin(), part.warnings.end());
+}
+
+void load_ground(ScenarioSpec& spec, const Terrain& terrain, Scenario& parts, LoadedScenario& out) {
+  parts.cover.grounds = {spec.default_ground.ground};
+  parts.zone_names = {"default"};
+  for (const ZoneSpec& zone : spec.zones) {
+    parts.cover.grounds.push_back(zone.ground);
+    parts.zone_names.push_back(zone.name);
+  }
+  if (spec.ground.path.empty()) return;
+  ZoneRequest request{spec.ground.path, spec.ground_field, {parts.zone_names.begin() + 1, parts.zone_names.end()}};
+  for (const ZoneSpec& zone : spec.zones) request.codes.push_back(zone.code);
+  request.default_code = spec.default_ground.code;
+  ZoneLayer layer = read_zones(request, terrain);
+  parts.cover.zones = std::move(layer.zones);
+  spec.ground_field = layer.field;
+  take(out, layer);
+}
+
+// A run without any diameter is the most frequent fault of a first scenario: say all ways to give one.
+void check_diameters(const Scenario& parts, const SourceLayer& layer, const std::string& path) {
+  if (!parts.blocks.classes.empty() || parts.blocks.power_law.volume.high != 0.0) return;
+  for (const SourceCell& cell : layer.cells) {
+    if (!std::isnan(layer.features[cell.feature].diameter.low)) continue;
+    throw InputError(path + ": feature " + std::to_string(layer.ids[cell.feature]) +
+                     " has no block diameter, must have one (there is no default block): give [blocks] diameter in the "
+                     "scenario, --diameter M, or a field diameter "
+                     "(or diameter_min and diameter_max) of the sources, in m");
+  }
+}
+
+/// Diameters that no block gets, because every feature has its own: easily overlooked.
+void warn_unused_diameter(const ScenarioSpec& spec, const SourceLayer& layer, std::vector<std::string>& warnings) {
+  const std::string origin = spec.origin("blocks.diameter");
+  if (origin == "default" || layer.features.empty()) return;
+  Range all{1e9, 0.0};
+  for (const SourceFeature& feature : layer.features) {
+    if (std::isnan(feature.diameter.low)) return;
+    all = {std::min(all.low, feature.diameter.low), std::max(all.high, feature.diameter.high)};
+  }
+  warnings.push_back("blocks.diameter (" + origin + ") is not used: all " + std::to_string(layer.features.size()) +
+                     " features of " + spec.sources.path + " have diameters of their own, " + text_of(all.low) +
+                     " to " + text_of(all.high) + " m");
+}
+
+void record_inputs(const ScenarioSpec& spec, LoadedScenario& out) {
+  std::vector<std::pair<std::string, const NamedFile*>> files{
+      {"scenario", &spec.scenario}, {"include", &spec.include}, {"dem", &spec.dem},          {"sources", &spec.sources},
+      {"ground", &spec.ground},     {"screens", &spec.screens}, {"barriers", &spec.barriers}};
+  for (const auto& [name, effect] : spec.effects) files.emplace_back("effects." + name, &effect.file);
+  for (const auto& [role, file] : files)
+    if (!file->path.empty()) out.inputs.push_back({role, file->path, sha256_of_file(file->path)});
+}
+
+}  // namespace
+
+void check_files(const std::vector<const NamedFile*>& files, std::vector<std::string>& faults) {
+  start_gdal();
+  for (const NamedFile* file : files) {
+    if (file->path.empty()) continue;
+    VSIStatBufL status;
+    std::error_code none;
+    const bool local = std::filesystem::path(file->path).is_absolute() && file->path.rfind("/vsi", 0) != 0;
+    if (local && !std::filesystem::exists(file->path, none))
+      faults.push_back(file->where + ": no such file (" + file->path + ")");
+    if (file->path.rfind("/vsi", 0) == 0 && VSIStatL(file->path.c_str(), &status) != 0)
+      faults.push_back(file->where + ": no such file");
+  }
+}
+
+LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* all_faults) {
+  std::vector<std::string> faults;
+  ScenarioSpec spec = read_spec(flags, faults);
+  check_files(spec, faults);
+  stop_at_faults(faults, all_faults);
+
+  LoadedScenario out;
+  const auto attempt = [&](const std::function<void()>& read) {  // where all faults are asked for, the next layer too
+    try {
+      read();
+    } catch (const InputError& error) {
+      if (all_faults == nullptr) throw;
+      faults.emplace_back(error.what());
+    }
+  };
+  Terrain terrain = read_terrain(spec.dem.path);
+  out.warnings = terrain.warnings;
+  out.geo = terrain.geo;
+  Scenario parts = spec.values;
+  SourceLayer sources;
+  attempt([&] {
+    sources = read_sources(spec.sources.path, terrain, spec.release_height);
+    check_diameters(parts, sources, spec.sources.path);
+    warn_unused_diameter(spec, sources, out.warnings);
+    take(out, sources);
+  });
+  attempt([&] { load_ground(spec, terrain, parts, out); });
+  attempt([&] { load_effect_places(spec, terrain, parts, out); });
+  if (!spec.screens.path.empty())
+    attempt([&] {
+      ScreenLayer screens = read_screens(spec.screens.path, terrain);
+      parts.screens = std::move(screens.screens);
+      take(out, screens);
+    });
+  if (!spec.barriers.path.empty())
+    attempt([&] {
+      BarrierLayer barriers = read_barriers(spec.barriers.path, terrain);
+      parts.barriers = Barriers(std::move(barriers.barriers));
+      take(out, barriers);
+    });
+  stop_at_faults(faults, all_faults);
+  parts.features = std::move(sources.features);
+  parts.sources = std::move(sources.cells);
+  parts.surface = Surface(std::move(terrain.heights));
+  out.scenario = make_scenario(std::move(parts));
+
+  out.complete_toml = toml_of(spec);
+  out.settings = settings_of(spec);
+  out.spec = std::make_shared<ScenarioSpec>(spec);
+  out.settings.insert(out.settings.end(), sources.attributes.begin(), sources.attributes.end());
+  record_inputs(spec, out);
+  return out;
+}
+
+void set_rounds(LoadedScenario& loaded, std::uint32_t rounds) {
+  ScenarioSpec spec = *loaded.spec;
+  loaded.scenario.trajectories *= rounds;
+  spec.values.trajectories = loaded.scenario.trajectories;
+  loaded.complete_toml = toml_of(spec);
+  loaded.spec = std::make_shared<ScenarioSpec>(std::move(spec));
+}
+
+}  // namespace talus::io

@@ -1,0 +1,66 @@
+#include <filesystem>
+
+#include "scenario_spec.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
+#include "talus/simulate/scenario/presets.hpp"
+
+namespace talus::io {
+
+namespace {
+
+void lay_flag(ScenarioSpec& spec, const char* key, double value, std::vector<std::string>& faults) {
+  const std::string flag = std::string("flag --") + key;
+  for (const auto& field : scenario_fields()) {
+    if (field.key != key) continue;
+    if (const auto rule = fault_of(field, value)) {
+      faults.push_back(flag + " = " + text_of(value) + ": " + *rule);
+      continue;
+    }
+    field.set(spec.values, value);
+    spec.origins[key] = flag;
+  }
+}
+
+}  // namespace
+
+std::string absolute_path(const std::string& given, const std::filesystem::path& base) {
+  const std::filesystem::path path = (base / given).lexically_normal();
+  std::error_code none;
+  if (!std::filesystem::exists(path, none) && given.find(':') != std::string::npos) return given;
+  return std::filesystem::absolute(path).lexically_normal().string();
+}
+
+void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults) {
+  spec.default_ground = {"default", std::string(kDefaultPreset), find_preset(kDefaultPreset).ground, {}, {}};
+  if (!flags.preset) return;
+  try {
+    spec.default_ground.ground = find_preset(*flags.preset).ground;
+    spec.default_ground.preset = *flags.preset;
+    spec.origins["ground.default"] = "flag --preset";
+  } catch (const InputError& error) {
+    faults.push_back("flag --preset = '" + *flags.preset + "': " + error.what());
+  }
+}
+
+void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults) {
+  const auto here = std::filesystem::current_path();
+  if (flags.dem)
+    spec.dem = {absolute_path(*flags.dem, here), "flag --dem = '" + *flags.dem + "'"},
+    spec.origins["dem"] = "flag --dem";
+  if (flags.sources)
+    spec.sources = {absolute_path(*flags.sources, here), "flag --sources = '" + *flags.sources + "'"},
+    spec.origins["sources.file"] = "flag --sources";
+  if (flags.trajectories) lay_flag(spec, "trajectories", *flags.trajectories, faults);
+  if (flags.seed) lay_flag(spec, "seed", static_cast<double>(*flags.seed), faults);
+  if (flags.diameter) {
+    if (const auto rule = fault_of(bounds_of("blocks.diameter"), *flags.diameter))
+      faults.push_back("flag --diameter = " + text_of(*flags.diameter) + ": " + *rule);
+    spec.values.blocks.power_law = {};
+    spec.values.blocks.classes = {BlockClass{{*flags.diameter, *flags.diameter}}};
+    spec.origins["blocks.diameter"] = "flag --diameter";
+  }
+}
+
+}  // namespace talus::io

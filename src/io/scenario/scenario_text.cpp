@@ -1,0 +1,234 @@
+#include <algorithm>
+
+#include "scenario_spec.hpp"
+#include "talus/base/text.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
+
+namespace talus::io {
+
+std::string toml_text(const std::string& text) {
+  constexpr const char* kHex = "0123456789ABCDEF";
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\')
+      out += std::string("\\") + c;
+    else if (byte < 0x20 || byte == 0x7F)
+      out += std::string("\\u00") + kHex[byte >> 4] + kHex[byte & 0xF];
+    else
+      out += c;
+  }
+  return out + "\"";
+}
+
+std::string toml_key(const std::string& name) {
+  const bool bare = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
+  return bare ? name : toml_text(name);
+}
+
+namespace {
+
+std::string list_text(const std::vector<double>& values) {
+  std::vector<std::string> words;
+  words.reserve(values.size());
+  for (const double value : values) words.push_back(text_of(value));
+  return std::string("[") + joined(words) + "]";
+}
+
+std::string range_text(const Range& range) {
+  return range.low == range.high ? text_of(range.low) : list_text({range.low, range.high});
+}
+
+std::string diameter_text(const Blocks& blocks) {
+  const VolumePowerLaw& law = blocks.power_law;
+  if (law.volume.high != 0.0)
+    return "{ volume_min = " + text_of(law.volume.low) + ", volume_max = " + text_of(law.volume.high) +
+           ", exponent = " + text_of(law.exponent) + " }";
+  if (blocks.classes.size() == 1 && blocks.classes[0].weight == 1.0 && std::isnan(blocks.classes[0].frequency))
+    return range_text(blocks.classes[0].diameter);
+  std::string text = "[";
+  for (const BlockClass& block : blocks.classes)
+    text += std::string(text.size() > 1 ? ", " : "") + "{ diameter = " + range_text(block.diameter) +
+            ", weight = " + text_of(block.weight) +
+            (std::isnan(block.frequency) ? "" : ", frequency = " + text_of(block.frequency)) + " }";
+  return text + "]";
+}
+
+// One setting as the file has it.
+struct Line {
+  std::string table;  // "ground.zones.\"2\""; empty: at the top
+  std::string key, value, unit, source;
+  std::string full;     // "ground.zones.2.En50"
+  bool written = true;  // in the file; a parameter that follows from a preset is written only in its zone
+};
+
+class Lines {
+ public:
+  explicit Lines(const ScenarioSpec& spec) : spec_(spec) {
+    file("", "dem", spec.dem);
+    if (spec.profile) terrain(*spec.profile);
+    fields("");
+    file("sources", "file", spec.sources);
+    if (spec.profile) sources(*spec.profile);
+    add("sources", "release_height", range_text(spec.release_height), "m");
+    fields("blocks");
+    const Blocks& blocks = spec.values.blocks;
+    if (!blocks.classes.empty() || blocks.power_law.volume.high != 0.0)
+      add("blocks", "diameter", diameter_text(blocks), blocks.power_law.volume.high != 0.0 ? "m3" : "m");
+    add("blocks", "axes", list_text({blocks.axes[0], blocks.axes[1], blocks.axes[2]}), "");
+    ground();
+    fields("model");
+    add("model", "roughness", toml_text(spec.values.impact.roughness == Roughness::Clamp ? "clamp" : "resample"), "");
+    fields("output");
+    if (spec.profile) {
+      add("output", "bin", text_of(spec.profile->bin), "m");
+      if (!spec.profile->screens.empty()) add("screens", "x", list_text(spec.profile->screens), "m");
+    } else {
+      add("output", "energy_thresholds", list_text(spec.values.output.energy_thresholds), "kJ");
+      add("output", "height_thresholds", list_text(spec.values.output.height_thresholds), "m");
+    }
+    file("screens", "file", spec.screens);
+    file("barriers", "file", spec.barriers);
+    frequency();
+    effects();
+  }
+  const std::vector<Line>& lines() const { return lines_; }
+
+ private:
+  void add(const std::string& table, const std::string& key, const std::string& value, const std::string& unit) {
+    const std::string full = table.empty() ? key : table + "." + key;
+    lines_.push_back({table, key, value, unit, spec_.origin(full), full});
+  }
+
+  void file(const std::string& table, const std::string& key, const NamedFile& file) {
+    if (!file.path.empty()) add(table, key, toml_text(file.path), "");
+  }
+
+  void fields(const std::string& table) {
+    for (const auto& field : scenario_fields()) {
+      const std::string full(field.key);
+      const auto dot = full.find('.');
+      if ((dot == std::string::npos ? "" : full.substr(0, dot)) == table)
+        add(table, full.substr(dot == std::string::npos ? 0 : dot + 1), text_of(field.get(spec_.values)),
+            field.unit == "1" ? "" : std::string(field.unit));
+    }
+  }
+
+  void terrain(const ProfileSpec& profile) {
+    file("", "profile", profile.csv);
+    file("", "line", profile.line);
+    add("", "step", text_of(profile.step), "m");
+  }
+
+  void sources(const ProfileSpec& profile) {
+    add("sources", "x", range_text(profile.source), "m");
+    add("sources", "vx", text_of(profile.vx), "m/s");
+    add("sources", "vz", text_of(profile.vz), "m/s");
+  }
+
+  void frequency() {
+    const FrequencyRules& rules = spec_.values.frequency;
+    if (rules.by_true_area) add("frequency", "by_true_area", "true", "");
+    if (!std::isnan(rules.per_area)) add("frequency", "per_area", text_of(rules.per_area), "1/(m2 year)");
+    if (!std::isnan(rules.scale))
+      add("frequency", "power_law", "{ A = " + text_of(rules.scale) + ", b = " + text_of(rules.exponent) + " }",
+          "1/year");
+  }
+
+  void effects() {
+    if (spec_.effects.empty()) return;
+    add("effects", "allow_both", spec_.values.drag_and_stems ? "true" : "false", "");
+    for (const std::string_view name : effect_names()) {
+      const auto found = spec_.effects.find(std::string(name));
+      if (found == spec_.effects.end()) continue;
+      const std::string table = "effects." + found->first;
+      for (const auto& field : effect_fields())
+        if (field.key.starts_with(found->first + "."))
+          add(table, std::string(field.key.substr(name.size() + 1)), text_of(field.get(spec_.values.effects)),
+              field.unit == "1" ? "" : std::string(field.unit));
+      if (name == "wet-ground") {
+        const std::vector<int>& days = spec_.values.effects.wet_ground.days;
+        add(table, "days", list_text({days.begin(), days.end()}), "");
+      }
+      std::vector<std::string> zones;
+      for (const std::string& zone : found->second.zones) zones.push_back(toml_text(zone));
+      if (!zones.empty()) add(table, "zones", std::string("[") + joined(zones) + "]", "");
+      file(table, "file", found->second.file);
+    }
+  }
+
+  void ground() {
+    file("ground", "file", spec_.ground);
+    if (!spec_.ground_field.empty()) add("ground", "field", toml_text(spec_.ground_field), "");
+    add("ground", "default", toml_text(spec_.default_ground.preset), "");
+    if (const std::string& code = spec_.default_ground.code; !code.empty())
+      lines_.push_back({"ground.zones.default", "code", code, "", "scenario", "ground.default.code"});
+    parameters(spec_.default_ground, "ground.zones.default", "ground.default.", !spec_.default_ground.own.empty());
+    for (const ZoneSpec& zone : spec_.zones) {
+      const std::string table = "ground.zones." + toml_key(zone.name), full = "ground.zones." + zone.name + ".";
+      const std::string origin = spec_.origin(full + "preset");
+      lines_.push_back({table, "preset", toml_text(zone.preset), "",
+                        origin == "default" ? "preset of [ground] default" : origin, full + "preset"});
+      if (!zone.intervals.empty()) {
+        std::vector<std::string> words;
+        for (const Range& x : zone.intervals) words.push_back(list_text({x.low, x.high}));
+        lines_.push_back({table, "x", std::string("[") + joined(words) + "]", "m", "scenario", full + "x"});
+      }
+      if (!zone.code.empty()) lines_.push_back({table, "code", zone.code, "", "scenario", full + "code"});
+      parameters(zone, table, full, true);
+    }
+  }
+
+  void parameters(const ZoneSpec& zone, const std::string& table, const std::string& full, bool written) {
+    const auto source = [&](const std::string& key) {
+      const auto own = zone.own.find(key);
+      return own == zone.own.end() ? "preset " + zone.preset : own->second;
+    };
+    for (const auto& field : ground_fields()) {
+      const std::string key(field.key);
+      if (key == "shape_min" || key == "shape_max") continue;
+      lines_.push_back({table, key, text_of(field.get(zone.ground)), field.unit == "1" ? "" : std::string(field.unit),
+                        source(key), full + key, written});
+    }
+    lines_.push_back({table, "shape", list_text({zone.ground.shape_min, zone.ground.shape_max}), "", source("shape"),
+                      full + "shape", written});
+  }
+
+  const ScenarioSpec& spec_;
+  std::vector<Line> lines_;
+};
+
+}  // namespace
+
+std::string toml_of(const ScenarioSpec& spec) {
+  std::string text = std::string("# A complete ") + (spec.profile ? "profile" : "scenario") +
+                     ", written by Talus: every setting of the run.\n",
+              table;
+  const Lines lines(spec);
+  for (const Line& line : lines.lines()) {
+    if (!line.written) continue;
+    if (line.table != table) {
+      text += "\n[" + line.table + "]\n";
+      table = line.table;
+    }
+    text += line.key + " = " + line.value;
+    if (!line.unit.empty()) text += "  # " + line.unit;
+    text += "\n";
+  }
+  return text;
+}
+
+std::vector<Setting> settings_of(const ScenarioSpec& spec) {
+  std::vector<Setting> settings;
+  const Lines lines(spec);
+  for (const Line& line : lines.lines()) {
+    std::string value = line.value;
+    if (value.size() >= 2 && value.front() == '"') value = value.substr(1, value.size() - 2);
+    settings.push_back({line.full, value, line.unit, line.source});
+  }
+  return settings;
+}
+
+}  // namespace talus::io

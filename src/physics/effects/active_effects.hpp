@@ -1,0 +1,64 @@
+#pragma once
+#include <optional>
+
+#include "physics/drag_flight.hpp"
+#include "talus/physics/flight.hpp"
+#include "talus/physics/slide.hpp"
+#include "talus/physics/trace.hpp"
+
+namespace talus {
+
+/// What a trajectory goes through where no effect acts: the plain engine.
+class Effectless {
+ public:
+  Effectless(const World& world, const Release&) : world_(world) {}
+
+  const Ground& ground(const Vec3& place, const Block&) const {
+    return world_.cover.grounds[world_.cover.zone_at(place.x(), place.y())];
+  }
+  Contact impact(const Ground& ground, const Block& body, const Motion& motion, const Vec3& normal,
+                 const Asperity& asperity) const {
+    return talus::impact(world_.impact, ground, body, motion, normal, asperity);
+  }
+  static void after_impact(const Vec3&, Block&, Motion&, Path&) {}
+  Outcome fly(Motion& motion, PatchIndex& at, bool grounded, const Block&, Path& path) const {
+    return talus::fly(world_.surface, motion, at, grounded, path);
+  }
+  SlideEnd slide(Motion& motion, PatchIndex& at, const Block& body, Path& path) const {
+    return talus::slide(world_.surface, world_.cover, motion, at, body.diameter, world_.rules.stop_speed, path);
+  }
+
+ private:
+  const World& world_;
+};
+
+/// The same with effects. One that is at its off value changes no bit.
+class ActiveEffects {
+ public:
+  ActiveEffects(const World& world, const Release& release);
+
+  /// The ground of a place as this block meets it on this day: block-shape, block-mass, wet-ground.
+  Ground ground(const Vec3& place, const Block& body);
+  /// The impact law with block-shape, soft-ground and rolling-resistance, where `ground` was last asked for.
+  Contact impact(const Ground& ground, const Block& body, const Motion& motion, const Vec3& normal,
+                 const Asperity& asperity);
+  /// fragmentation: what the last impact breaks.
+  void after_impact(const Vec3& normal, Block& body, Motion& motion, Path& path) const;
+  /// vegetation-drag, air-drag, forest-stems.
+  Outcome fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path);
+  /// The same three, and rolling-resistance.
+  SlideEnd slide(Motion& motion, PatchIndex& at, const Block& body, Path& path);
+
+ private:
+  bool here(const EffectArea& where) const { return where.covers(zone_, x_, y_); }
+
+  const World& world_;
+  const Effects& effects_;
+  const Release& release_;
+  bool wet_;  // the day
+  std::optional<DragFlight> drag_;
+  std::uint8_t zone_ = 0;  // of the impact
+  double x_ = 0.0, y_ = 0.0, break_energy_ = 0.0;
+};
+
+}  // namespace talus

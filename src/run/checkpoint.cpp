@@ -1,0 +1,296 @@
+#include "talus/run/checkpoint.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "checkpoint_file.hpp"
+#include "io/files/sha256.hpp"
+#include "checkpoint_rows.hpp"
+#include "checkpoint_tally.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/version.hpp"
+#include "talus/io/results/hazard_file.hpp"
+#include "talus/io/files/output_folder.hpp"
+
+namespace talus::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr int kFormat = 4;
+
+/// "tally-3.bin"; of a further process of a process group "tally-3-1.bin".
+std::string numbered(const std::string& what, std::uint32_t number, int rank = 0) {
+  return what + "-" + std::to_string(number) + (rank > 0 ? "-" + std::to_string(rank) : "") + ".bin";
+}
+
+Json json_of(const Rounds& asked) {
+  Json json{{"count", asked.count}, {"above", asked.above}, {"most", asked.most}};
+  if (asked.until_error) json["until_error"] = *asked.until_error;
+  return json;
+}
+
+Rounds rounds_of(const Json& json) {
+  Rounds asked{json.at("count"), {}, json.at("above"), json.at("most")};
+  if (json.contains("until_error")) asked.until_error = json.at("until_error").get<double>();
+  return asked;
+}
+
+std::string text_of(const Json& manifest) {
+  return manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+/// Pairs of name and checksum, in a manifest.
+template <class File>
+Json json_of(const std::vector<File>& files) {
+  Json list = Json::array();
+  for (const File& file : files) list.push_back({{"file", file.name}, {"sha256", file.sha256}});
+  return list;
+}
+
+}  // namespace
+
+struct Checkpoint::Rows {
+  RowsWriter writer;
+  std::string name;
+};
+
+Checkpoint::Checkpoint(fs::path folder, const LoadedScenario& loaded, ProcessGroup& processes)
+    : folder_(std::move(folder)), plan_(plan_checksum(loaded)), loaded_(&loaded), processes_(&processes) {}
+
+Checkpoint::Checkpoint(const fs::path& folder, const LoadedScenario& loaded, const Part& part, const Rounds& asked, ProcessGroup& processes)
+    : Checkpoint(folder, loaded, processes) {
+  part_ = part;
+  asked_ = asked;
+  settings_ = loaded.settings;
+  if (processes.leads()) replace_text(folder_ / "scenario.toml", loaded.complete_toml);
+}
+
+Checkpoint::Checkpoint(Checkpoint&&) noexcept = default;
+Checkpoint& Checkpoint::operator=(Checkpoint&&) noexcept = default;
+Checkpoint::~Checkpoint() = default;
+
+Checkpoint Checkpoint::opened(const fs::path& folder, const LoadedScenario& loaded, bool to_go_on, ProcessGroup& processes) {
+  Checkpoint checkpoint(folder, loaded, processes);
+  checkpoint.read_manifest();
+  if (to_go_on && processes.leads()) {
+    checkpoint.remove_unnamed();
+    replace_text(folder / "scenario.toml", loaded.complete_toml);
+  }
+  return checkpoint;
+}
+
+std::vector<Setting> Checkpoint::settings(std::uint32_t rounds) const {
+  std::vector<Setting> settings = settings_;
+  for (Setting& setting : settings)
+    if (setting.key == "trajectories" && rounds > 1) {
+      setting.source = std::to_string(rounds) + " rounds of " + setting.value + ", " + setting.source;
+      setting.value = std::to_string(std::stoull(setting.value) * rounds);
+    }
+  return settings;
+}
+
+Sinks Checkpoint::sinks() {
+  const auto writer = [this]() -> RowsWriter& {
+    if (!rows_) {
+      const std::string name = numbered("rows-" + std::to_string(generation_ + 1), round_, processes_->rank());
+      rows_ = std::make_unique<Rows>(Rows{RowsWriter(folder_ / name), name});
+    }
+    return rows_->writer;
+  };
+  Sinks sinks;
+  sinks.unit = [writer](std::uint64_t unit) { writer().put(unit); };
+  sinks.stops = [writer](std::span<const StopRow> rows) { writer().put(rows); };
+  if (loaded_->scenario.output.paths > 0) sinks.paths = [writer](const RecordedPath& path) { writer().put(path); };
+  if (!loaded_->scenario.screens.empty())
+    sinks.crossings = [writer](std::span<const Crossing> rows) { writer().put(rows); };
+  return sinks;
+}
+
+/// Of all processes: the leader knows their files then.
+void Checkpoint::close_rows(std::uint32_t round) {
+  Json mine;
+  if (rows_) mine = {{"name", rows_->name}, {"sha256", rows_->writer.finish()}};
+  rows_.reset();
+  for (const std::string& given : processes_->gather(mine.dump())) {
+    const Json file = Json::parse(given);
+    if (!file.is_null()) rows_files_.push_back({round, generation_ + 1, file.at("name"), file.at("sha256")});
+  }
+}
+
+void Checkpoint::end_round(std::uint32_t round) {
+  close_rows(round);
+  round_ = rounds_ = round + 1;
+  units_done_ = 0;
+}
+
+void Checkpoint::keep(const Simulation& simulation, const Tally& tally) {
+  const std::uint32_t next = generation_ + 1;
+  const std::string before = numbered("rest", generation_);
+  const std::string name = numbered("tally", next, processes_->rank()), reach = numbered("reach", next, processes_->rank());
+  const std::vector<KeptFile> tallies = gathered({name, write_tally(folder_ / name, tally)});
+  const std::vector<KeptFile> reaches = gathered({reach, write_reaches(folder_ / reach, simulation)});
+  ByteWriter totals;
+  put_totals(totals_of_all(simulation.totals()), totals);
+  close_rows(simulation.position().round);
+  generation_ = next;
+  rounds_ = simulation.position().round + (simulation.round_done() ? 1U : 0U);
+  units_done_ = simulation.round_done() ? 0 : simulation.position().unit;
+  round_ = rounds_;
+  if (processes_->leads()) {
+    CheckpointFileWriter rest(folder_ / numbered("rest", next));
+    rest.put(totals.bytes());
+    rest_sha256_ = rest.finish();
+    const std::vector<KeptFile> old_tallies = std::exchange(tallies_, tallies);
+    const std::vector<KeptFile> old_reaches = std::exchange(reaches_, reaches);
+    write_manifest();
+    std::error_code ignored;
+    fs::remove(folder_ / before, ignored);
+    for (const auto& old : {old_tallies, old_reaches})
+      for (const KeptFile& file : old) fs::remove(folder_ / file.name, ignored);
+  }
+  processes_->tell({});  // no process goes on before what it has traced is kept
+}
+
+/// At the leader.
+std::vector<Checkpoint::KeptFile> Checkpoint::gathered(const KeptFile& mine) const {
+  const std::vector<std::string> names = processes_->gather(mine.name), sums = processes_->gather(mine.sha256);
+  std::vector<KeptFile> files;
+  for (std::size_t i = 0; i < names.size(); ++i) files.push_back({names[i], sums[i]});
+  return files;
+}
+
+Totals Checkpoint::totals_of_all(const Totals& mine) const {
+  ByteWriter bytes;
+  put_totals(mine, bytes);
+  Totals sum;
+  sum.barriers = BarrierTally(loaded_->scenario.barriers);
+  for (const std::string& given : processes_->gather(bytes.bytes())) {
+    ByteReader in(given);
+    add(sum, get_totals(loaded_->scenario.barriers, in));
+  }
+  return sum;
+}
+
+Totals Checkpoint::add_to(Tally& tally) const {
+  for (const KeptFile& file : tallies_) read_tally(folder_ / file.name, file.sha256, tally);
+  const std::string bytes = checked(numbered("rest", generation_), rest_sha256_);
+  ByteReader rest(bytes);
+  return get_totals(loaded_->scenario.barriers, rest);
+}
+
+void Checkpoint::restore(Simulation& simulation, Tally& tally) const {
+  if (empty()) return;
+  const auto size = static_cast<std::size_t>(processes_->size()), me = static_cast<std::size_t>(processes_->rank());
+  for (std::size_t i = me; i < tallies_.size(); i += size)
+    read_tally(folder_ / tallies_[i].name, tallies_[i].sha256, tally);
+  const std::string bytes = checked(numbered("rest", generation_), rest_sha256_);
+  ByteReader rest(bytes);
+  Totals totals = get_totals(loaded_->scenario.barriers, rest), none;
+  none.barriers = BarrierTally(loaded_->scenario.barriers);
+  simulation.restore({rounds_, units_done_}, processes_->leads() ? totals : none);
+  for (const KeptFile& file : reaches_) read_reaches(folder_ / file.name, file.sha256, simulation);
+}
+
+void Checkpoint::replay(std::uint32_t round, const Sinks& sinks) const {
+  for (auto file = rows_files_.begin(); file != rows_files_.end();) {
+    std::vector<std::unique_ptr<RowsReader>> files;  // of one session of several processes
+    const RowsFile& first = *file;
+    for (; file != rows_files_.end() && file->round == first.round && file->generation == first.generation; ++file)
+      if (file->round == round) files.push_back(std::make_unique<RowsReader>(folder_ / file->name, file->sha256));
+    replay_rows(files, sinks);
+  }
+}
+
+std::string Checkpoint::checked(const std::string& name, const std::string& sha256) const {
+  CheckpointFileReader in(folder_ / name, sha256);
+  std::error_code error;
+  std::string bytes = in.get(fs::file_size(folder_ / name, error));
+  in.finish();
+  return bytes;
+}
+
+void Checkpoint::write_manifest() const {
+  Json rows = Json::array();
+  for (const RowsFile& file : rows_files_)
+    rows.push_back(
+        {{"round", file.round}, {"generation", file.generation}, {"file", file.name}, {"sha256", file.sha256}});
+  Json settings = Json::array();
+  for (const Setting& s : settings_) settings.push_back({s.key, s.value, s.unit, s.source});
+  Json json{{"program", "talus"},
+            {"version", version()},
+            {"format", kFormat},
+            {"plan", plan_},
+            {"part", part_.number},
+            {"of", part_.of},
+            {"rounds", json_of(asked_)},
+            {"rounds_done", rounds_},
+            {"units_done", units_done_},
+            {"generation", generation_},
+            {"tallies", json_of(tallies_)},
+            {"reaches", json_of(reaches_)},
+            {"rest_sha256", rest_sha256_},
+            {"rows", rows},
+            {"settings", settings}};
+  json["sha256"] = sha256_of_bytes(text_of(json));  // of what stands before it
+  replace_text(folder_ / kCheckpointManifest, text_of(json));
+}
+
+void Checkpoint::read_manifest() {
+  const fs::path file = folder_ / kCheckpointManifest;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream.is_open())
+    throw InputError(folder_.string() + ": has no " + kCheckpointManifest + ", must be what talus run --part has written");
+  std::string plan;
+  try {
+    Json json = Json::parse(stream);
+    const std::string sha256 = json.at("sha256");
+    json.erase("sha256");
+    if (sha256 != sha256_of_bytes(text_of(json))) throw InputError("its checksum is another");
+    if (json.at("format").get<int>() != kFormat || json.at("version").get<std::string>() != version())
+      throw InputError("was written by Talus " + json.at("version").get<std::string>());
+    plan = json.at("plan");
+    part_ = {json.at("part"), json.at("of")};
+    asked_ = rounds_of(json.at("rounds"));
+    rounds_ = json.at("rounds_done");
+    units_done_ = json.at("units_done");
+    generation_ = json.at("generation");
+    rest_sha256_ = json.at("rest_sha256");
+    for (const Json& s : json.at("settings")) settings_.push_back({s.at(0), s.at(1), s.at(2), s.at(3)});
+    for (const Json& rows : json.at("rows"))
+      rows_files_.push_back({rows.at("round"), rows.at("generation"), rows.at("file"), rows.at("sha256")});
+    for (const Json& tally : json.at("tallies")) tallies_.push_back({tally.at("file"), tally.at("sha256")});
+    for (const Json& reach : json.at("reaches")) reaches_.push_back({reach.at("file"), reach.at("sha256")});
+    round_ = rounds_;
+  } catch (const std::exception& error) {
+    throw InputError(file.string() + ": cannot be understood (" + error.what() +
+                     "), must be as this version of Talus has written it; run this part again");
+  }
+  if (plan != plan_)
+    throw InputError(file.string() +
+                     ": belongs to another plan: the scenario, a flag or a file is not what it was when this was "
+                     "traced. To go on give the same again, or begin anew (--overwrite); to merge give parts of the "
+                     "plan of the first one");
+}
+
+void Checkpoint::remove_unnamed() const {
+  std::vector<std::string> named{numbered("rest", generation_)};
+  for (const auto& files : {tallies_, reaches_})
+    for (const KeptFile& file : files) named.push_back(file.name);
+  for (const RowsFile& file : rows_files_) named.push_back(file.name);
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder_)) {
+    const std::string name = entry.path().filename().string();
+    const bool ours = name.starts_with("tally-") || name.starts_with("reach-") || name.starts_with("rest-") ||
+                      name.starts_with("rows-") || name.starts_with(".part.json.talus-") ||
+                      name.starts_with(".scenario.toml.talus-");
+    if (ours && std::ranges::count(named, name) == 0) fs::remove(entry.path(), ignored);
+  }
+}
+
+}  // namespace talus::io

@@ -1,0 +1,64 @@
+#include "checkpoint_file.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+
+#include "talus/base/error.hpp"
+#include "talus/io/files/output_folder.hpp"
+
+namespace talus::io {
+
+CheckpointFileWriter::CheckpointFileWriter(const std::filesystem::path& file) : path_(file), file_(std::fopen(file.c_str(), "wb")) {
+  if (!file_) fail();
+}
+
+void CheckpointFileWriter::put(std::string_view bytes) {
+  sum_.add(bytes);
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) fail();
+}
+
+std::string CheckpointFileWriter::finish() {
+  if (std::fflush(file_.get()) != 0 || fsync(fileno(file_.get())) != 0) fail();
+  if (std::fclose(file_.release()) != 0) fail();
+  return sum_.digits();
+}
+
+void CheckpointFileWriter::fail() const {
+  throw std::runtime_error(path_.filename().string() + ": cannot be written: " +
+                           cause_of_failure(path_.parent_path(), std::system_category().message(errno)));
+}
+
+CheckpointFileReader::CheckpointFileReader(const std::filesystem::path& file, std::string sha256)
+    : path_(file), sha256_(std::move(sha256)), file_(std::fopen(file.c_str(), "rb")) {
+  std::error_code error;
+  left_ = std::filesystem::file_size(file, error);
+  if (!file_ || error) fail();
+}
+
+bool CheckpointFileReader::read(void* to, std::size_t count) {
+  if (left_ == 0) return false;
+  if (count > left_ || std::fread(to, 1, count, file_.get()) != count) fail();
+  left_ -= count;
+  sum_.add({static_cast<const char*>(to), count});
+  return true;
+}
+
+std::string CheckpointFileReader::get(std::size_t count) {
+  if (count > left_) fail();
+  std::string bytes(count, '\0');
+  if (count > 0) read(bytes.data(), count);
+  return bytes;
+}
+
+void CheckpointFileReader::finish() {
+  if (left_ > 0 || sum_.digits() != sha256_) fail();
+}
+
+void CheckpointFileReader::fail() const {
+  throw InputError(path_.string() + ": is damaged or missing: it is not as Talus wrote it; run this part again");
+}
+
+}  // namespace talus::io

@@ -1,0 +1,57 @@
+#pragma once
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "io/files/sha256.hpp"
+
+namespace talus::io {
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+/// Writes a file of a `Checkpoint` and its checksum; on the disk, not only on its way there, after `finish`. Throws
+/// std::runtime_error with the name and the cause.
+class CheckpointFileWriter {
+ public:
+  explicit CheckpointFileWriter(const std::filesystem::path& file);
+  void put(std::string_view bytes);
+  template <class T>
+  void put_value(const T& value) {
+    put({reinterpret_cast<const char*>(&value), sizeof value});
+  }
+  /// @return the checksum
+  std::string finish();
+
+ private:
+  [[noreturn]] void fail() const;
+  std::filesystem::path path_;
+  std::unique_ptr<std::FILE, CloseFile> file_;
+  Sha256 sum_;
+};
+
+/// Reads it again. Throws InputError where it is not what was written.
+class CheckpointFileReader {
+ public:
+  CheckpointFileReader(const std::filesystem::path& file, std::string sha256);
+  /// The next bytes; empty at the end of the file, where `count` is 0 or nothing is left.
+  std::string get(std::size_t count);
+  template <class T>
+  bool get_value(T& value) {  // false at the end of the file
+    return read(&value, sizeof value);
+  }
+  void finish();  ///< compares the checksum
+  [[noreturn]] void fail() const;
+
+ private:
+  bool read(void* to, std::size_t count);
+  std::filesystem::path path_;
+  std::string sha256_;
+  std::unique_ptr<std::FILE, CloseFile> file_;
+  std::uint64_t left_ = 0;
+  Sha256 sum_;
+};
+
+}  // namespace talus::io

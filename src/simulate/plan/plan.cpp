@@ -1,0 +1,69 @@
+#include "talus/simulate/plan/plan.hpp"
+
+#include <cmath>
+
+namespace talus {
+namespace {
+
+/// Volume of a share of the power law N(>= V) = A V^-b between two bounds, by its inverse. Equal bounds give that
+/// volume.
+double volume_at(const VolumePowerLaw& law, double share) {
+  const double low = std::pow(law.volume.low, -law.exponent), high = std::pow(law.volume.high, -law.exponent);
+  return std::pow(low - share * (low - high), -1.0 / law.exponent);
+}
+
+std::size_t class_at(const std::vector<BlockClass>& classes, double share) {
+  double total = 0.0;
+  for (const BlockClass& c : classes) total += c.weight;
+  double below = 0.0;
+  for (std::size_t i = 0; i + 1 < classes.size(); ++i) {
+    below += classes[i].weight;
+    if (share * total < below) return i;
+  }
+  return classes.empty() ? 0 : classes.size() - 1;
+}
+
+double diameter_at(const Blocks& blocks, double share_of_class, double share) {
+  if (blocks.power_law.volume.high > 0.0) return std::cbrt(6.0 / kPi * volume_at(blocks.power_law, share));
+  return blocks.classes[class_at(blocks.classes, share_of_class)].diameter.at(share);
+}
+
+}  // namespace
+
+Release make_release(const Scenario& scenario, std::uint32_t source, std::uint32_t block) {
+  const SourceCell& cell = scenario.sources[source];
+  const SourceFeature& feature = scenario.features[cell.feature];
+  const Grid& grid = scenario.surface.grid();
+  const Random random(scenario.seed, source, block, Purpose::Release);
+  const auto place = random.words(0), size = random.words(1);
+  const double x = cell.x + (uniform(place[0]) - 0.5) * (cell.point ? cell.along : grid.cell_x);
+  const double y = cell.point ? cell.y : cell.y + (uniform(place[1]) - 0.5) * grid.cell_y;
+  const double height = feature.release_height.at(uniform(place[2]));
+  const double diameter = std::isnan(feature.diameter.low)
+                              ? diameter_at(scenario.blocks, uniform(size[0]), uniform(size[1]))
+                              : feature.diameter.at(uniform(size[1]));
+  Release release;
+  release.seed = scenario.seed;
+  release.source = source;
+  release.block = block;
+  release.body = block_of(diameter, scenario.blocks.density);
+  release.body.axes = scenario.blocks.axes;
+  release.day = scenario.day;
+  release.motion.position = {x, y, scenario.surface.height(x, y).value_or(kNotGiven) + height};
+  release.motion.velocity = feature.velocity;
+  return release;
+}
+
+std::size_t class_of_block(const Scenario& scenario, std::uint32_t source, std::uint32_t block) {
+  const Random random(scenario.seed, source, block, Purpose::Release);
+  return class_at(scenario.blocks.classes, uniform(random.words(1)[0]));
+}
+
+bool is_recorded(const Scenario& scenario, std::uint32_t source, std::uint32_t block) {
+  // The paths are the releases g at which floor(g K / N) steps up: K of N, evenly spread.
+  const std::uint64_t wanted = scenario.output.paths, all = scenario.released();
+  const std::uint64_t g = std::uint64_t{source} * scenario.trajectories + block;
+  return (g + 1) * wanted / all > g * wanted / all;
+}
+
+}  // namespace talus

@@ -1,0 +1,215 @@
+#include "talus/simulate/scenario/frequency.hpp"
+
+#include <algorithm>
+
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/simulate/plan/plan.hpp"
+
+namespace talus {
+namespace {
+
+constexpr int kBits = 62;                    // of the sum over all trajectories of all rounds
+constexpr int kRoundBits = 14;               // of the number of rounds
+constexpr std::int64_t kLeastWeight = 1024;  // below it the unit would change a weight by more than 0.05 %
+
+/// What says how often blocks fall.
+struct Sources {
+  bool features = false, classes = false, area = false, law = false;
+  int count() const { return int{features} + int{classes} + int{area} + int{law}; }
+};
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw InputError("frequency: " + what);
+}
+
+std::string feature_name(const Scenario& s, std::size_t i) {
+  return "feature number " + std::to_string(i) + " (from 0)" +
+         (s.features[i].name.empty() ? "" : " (" + s.features[i].name + ")");
+}
+
+Sources sources_of(const Scenario& s) {
+  const FrequencyRules& rules = s.frequency;
+  Sources found;
+  for (const SourceFeature& f : s.features) found.features = found.features || f.frequency > 0.0;  // zeros: not given
+  for (const BlockClass& c : s.blocks.classes) found.classes = found.classes || !std::isnan(c.frequency);
+  found.area = !std::isnan(rules.per_area);
+  found.law = !std::isnan(rules.scale);
+  return found;
+}
+
+void check_contradictions(const Scenario& s, const Sources& found) {
+  if (found.count() > 1)
+    refuse(std::string("is given by ") + (found.features ? "the field frequency of the sources, " : "") +
+           (found.classes ? "the classes of blocks.diameter, " : "") + (found.area ? "frequency.per_area, " : "") +
+           (found.law ? "frequency.power_law, " : "") + "must be given by one of them: leave out the others");
+  if (found.features)
+    for (const SourceCell& cell : s.sources)
+      if (std::isnan(s.features[cell.feature].frequency))
+        refuse(
+            feature_name(s, cell.feature) +
+            " of the sources has no frequency, but others have; must be given for all (0 where nothing falls) or none");
+  if (!found.features && !found.area && !found.classes && !found.law && s.frequency.by_true_area)
+    refuse(
+        "by_true_area = true, but nothing says how often blocks fall; give the sources a field frequency, or "
+        "frequency.per_area, or frequency.power_law");
+  if ((found.classes || found.law))
+    for (const SourceCell& cell : s.sources)
+      if (!std::isnan(s.features[cell.feature].diameter.low))
+        refuse(feature_name(s, cell.feature) +
+               " of the sources has a diameter of its own, where a frequency by size "
+               "of the blocks does not hold; give the sources a field frequency instead");
+  const bool areas = found.area || s.frequency.by_true_area;
+  if (areas && std::ranges::any_of(s.sources, [](const SourceCell& cell) { return cell.point; }))
+    refuse(
+        "a source is a point, which has no area; give the sources a field frequency and leave out per_area and "
+        "by_true_area, or draw polygons");
+}
+
+/// Events per year of volumes between two bounds, N(>= V) = A V^-b.
+double frequency_between(const FrequencyRules& rules, double low, double high) {
+  return rules.scale * (std::pow(low, -rules.exponent) - std::pow(high, -rules.exponent));
+}
+
+double volume_of(double diameter) {
+  return kPi / 6.0 * diameter * diameter * diameter;
+}
+
+/// Events per year of each class of blocks, of a power law N(>= V) = A V^-b.
+std::vector<double> law_frequencies(const Scenario& s) {
+  const FrequencyRules& rules = s.frequency;
+  const VolumePowerLaw& law = s.blocks.power_law;
+  if (law.volume.high > 0.0) {
+    if (law.exponent != rules.exponent)
+      refuse("power_law.b = " + text_of(rules.exponent) + ", must be the exponent of blocks.diameter, " +
+             text_of(law.exponent) + ": the blocks are drawn by that one");
+    if (!(law.volume.low < law.volume.high))
+      refuse("power_law with volume_min = volume_max, must be a range of volumes");
+    return {frequency_between(rules, law.volume.low, law.volume.high)};
+  }
+  std::vector<Range> volumes;
+  std::vector<double> frequencies;
+  for (const BlockClass& c : s.blocks.classes) {
+    volumes.push_back({volume_of(c.diameter.low), volume_of(c.diameter.high)});
+    if (!(c.diameter.low < c.diameter.high))
+      refuse("power_law with blocks of one diameter, " + text_of(c.diameter.low) +
+             " m; blocks.diameter must be a power law of volume, or ranges of diameters");
+    frequencies.push_back(frequency_between(rules, volumes.back().low, volumes.back().high));
+  }
+  std::ranges::sort(volumes, {}, &Range::low);
+  for (std::size_t i = 1; i < volumes.size(); ++i)
+    if (volumes[i].low < volumes[i - 1].high * (1.0 - 1e-12))
+      refuse("power_law with classes of blocks that overlap, must lie side by side");
+  return frequencies;
+}
+
+/// The share that each source cell has: of its feature's frequency, or of the whole; or its area.
+std::vector<double> areas_of(const Scenario& s) {
+  const Grid& grid = s.surface.grid();
+  std::vector<double> areas(s.sources.size(), grid.cell_x * grid.cell_y);
+  if (s.frequency.by_true_area)
+    for (std::size_t i = 0; i < areas.size(); ++i)
+      areas[i] = true_area(s.surface.heights(), grid.column_of(s.sources[i].x), grid.row_of(s.sources[i].y));
+  return areas;
+}
+
+/// Events per year of each source cell, all classes together.
+std::vector<double> cell_frequencies(const Scenario& s, const Sources& found, double all_classes) {
+  std::vector<double> cells = areas_of(s);
+  if (found.area) {
+    for (double& cell : cells) cell *= s.frequency.per_area;
+  } else if (found.features) {
+    std::vector<double> sums(s.features.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) sums[s.sources[i].feature] += cells[i];
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      cells[i] *= s.features[s.sources[i].feature].frequency / sums[s.sources[i].feature];
+  } else {
+    double sum = 0.0;
+    for (const double cell : cells) sum += cell;
+    for (double& cell : cells) cell *= all_classes / sum;
+  }
+  return cells;
+}
+
+/// How much more often than a mean block one of each class comes: its share of the events over its share of the blocks.
+std::vector<double> class_factors(const Scenario& s, const std::vector<double>& frequencies) {
+  const auto& classes = s.blocks.classes;
+  if (frequencies.size() < 2) return {1.0};
+  double weights = 0.0, events = 0.0;
+  for (const BlockClass& c : classes) weights += c.weight;
+  for (const double f : frequencies) events += f;
+  std::vector<double> factors;
+  for (std::size_t c = 0; c < classes.size(); ++c)
+    factors.push_back(events > 0.0 ? frequencies[c] / events * weights / classes[c].weight : 0.0);
+  return factors;
+}
+
+double power_of_two_above(double value) {
+  return std::ldexp(1.0, std::ilogb(value) + 1);
+}
+
+}  // namespace
+
+double true_area(const Raster<float>& heights, int column, int row) {
+  const Grid& grid = heights.grid;
+  const auto slope = [&](int dx, int dy, double step) {
+    const auto height = [&](int sign) {
+      const int c = column + sign * dx, r = row + sign * dy;
+      return grid.contains(c, r) ? double{heights.at(c, r)} : kNotGiven;
+    };
+    const double low = height(-1), here = height(0), high = height(1);
+    if (!std::isnan(low) && !std::isnan(high)) return 0.5 * (high - low) / step;
+    if (!std::isnan(high)) return (high - here) / step;
+    return std::isnan(low) ? 0.0 : (here - low) / step;
+  };
+  const double east = slope(1, 0, grid.cell_x), north = slope(0, 1, grid.cell_y);
+  return grid.cell_x * grid.cell_y * std::sqrt(1.0 + east * east + north * north);  // 1 / cos(slope)
+}
+
+std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, bool further_rounds) {
+  const int bits = kBits - (further_rounds ? kRoundBits : 0);
+  const Sources found = sources_of(s);
+  check_contradictions(s, found);
+  if (found.count() == 0) return std::nullopt;
+  std::vector<double> by_class;
+  if (found.law) by_class = law_frequencies(s);
+  if (found.classes)
+    for (const BlockClass& c : s.blocks.classes) by_class.push_back(c.frequency);
+  double events = 0.0;
+  for (const double f : by_class) events += f;
+  const std::vector<double> cells = cell_frequencies(s, found, events), factors = class_factors(s, by_class);
+  const double largest_factor = *std::ranges::max_element(factors);
+
+  AnnualWeights out;
+  WeightScale& scale = out.scale_;
+  out.classes_ = factors.size();
+  scale.trajectories = s.released();
+  double most = 0.0, squares = 0.0;  // bounds of the sums over all trajectories
+  for (const double cell : cells) {
+    const double weight = cell * largest_factor / s.trajectories;
+    most += weight * s.trajectories;
+    squares += weight * weight * s.trajectories;
+    scale.total += cell;
+  }
+  if (!(scale.total > 0.0)) return std::nullopt;  // a field of zeros: not known
+  scale.unit = std::ldexp(power_of_two_above(most), -bits);
+  scale.square_unit = std::ldexp(power_of_two_above(squares), -bits);
+  out.weights_.reserve(cells.size() * factors.size());
+  for (const double cell : cells)
+    for (const double factor : factors) {
+      const double weight = cell * factor / s.trajectories;
+      out.weights_.push_back(static_cast<std::int64_t>(weight / scale.unit + 0.5));
+      if (weight > 0.0 && out.weights_.back() < kLeastWeight)
+        refuse("a trajectory stands for " + text_of(weight) + " events per year, too few beside all " +
+               text_of(scale.total) + "; give 0 instead");
+    }
+  scale.largest = *std::ranges::max_element(out.weights_);
+  scale.equal = *std::ranges::min_element(out.weights_) == scale.largest;
+  return out;
+}
+
+std::int64_t AnnualWeights::weight(const Scenario& scenario, std::uint32_t source, std::uint32_t block) const {
+  return weights_[source * classes_ + (classes_ > 1 ? class_of_block(scenario, source, block) : 0)];
+}
+
+}  // namespace talus

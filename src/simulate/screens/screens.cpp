@@ -1,0 +1,83 @@
+#include "talus/simulate/screens/screens.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+namespace {
+
+double cross_product(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+}  // namespace
+
+double place_along(const Screen& screen, const Eigen::Vector2d& place) {
+  double along = 0.0, found = 0.0, nearest = std::numeric_limits<double>::infinity();
+  for (const auto& line : screen.lines)
+    for (std::size_t i = 1; i < line.size(); ++i) {
+      const Eigen::Vector2d way = line[i] - line[i - 1];
+      const double length = way.norm();
+      const double share = length > 0.0 ? std::clamp(way.dot(place - line[i - 1]) / (length * length), 0.0, 1.0) : 0.0;
+      const double distance = (line[i - 1] + share * way - place).norm();
+      if (distance < nearest) nearest = distance, found = along + share * length;
+      along += length;
+    }
+  return found;
+}
+
+ScreenFinder::ScreenFinder(const Surface& surface, std::span<const Screen> screens) : surface_(surface) {
+  low_.setConstant(std::numeric_limits<double>::infinity());
+  high_ = -low_;
+  for (std::uint32_t s = 0; s < screens.size(); ++s) {
+    double along = 0.0;
+    for (const auto& line : screens[s].lines) {
+      for (std::size_t i = 1; i < line.size(); ++i) {
+        segments_.push_back({s, line[i - 1], line[i], along});
+        along += (line[i] - line[i - 1]).norm();
+        low_ = low_.cwiseMin(line[i - 1]).cwiseMin(line[i]);
+        high_ = high_.cwiseMax(line[i - 1]).cwiseMax(line[i]);
+      }
+    }
+  }
+}
+
+void ScreenFinder::find(const Release& release, const Path& path, std::vector<Crossing>& crossings) const {
+  if (segments_.empty()) return;
+  Block body = release.body;
+  auto broken = path.breaks.begin();
+  for (std::size_t i = 1; i < path.vertices.size(); ++i) {
+    for (; broken != path.breaks.end() && broken->vertex < i; ++broken) body = broken->body;
+    const Vertex &from = path.vertices[i - 1], &to = path.vertices[i];
+    const Eigen::Vector2d a = from.motion.position.head<2>(), b = to.motion.position.head<2>();
+    if ((a.cwiseMax(b).array() < low_.array()).any() || (a.cwiseMin(b).array() > high_.array()).any()) continue;
+    cross(release, body, from, to, crossings);
+  }
+}
+
+/// A segment is crossed where its ends lie on different sides of it, its own end points belonging to one side only,
+/// so that a path through a vertex of the path or of the screen is counted once.
+void ScreenFinder::cross(const Release& release, const Block& body, const Vertex& from, const Vertex& to,
+                         std::vector<Crossing>& crossings) const {
+  const Eigen::Vector2d a = from.motion.position.head<2>(), b = to.motion.position.head<2>(), way = b - a;
+  const std::size_t first = crossings.size();
+  for (const Segment& s : segments_) {
+    const Eigen::Vector2d line = s.to - s.from;
+    const double side_from = cross_product(line, a - s.from), side_to = cross_product(line, b - s.from);
+    if ((side_from < 0.0) == (side_to < 0.0)) continue;
+    const double low = cross_product(way, s.from - a), high = cross_product(way, s.to - a);
+    if ((low < 0.0) == (high < 0.0)) continue;
+    const double share = side_from / (side_from - side_to);
+    const Motion m = motion_between(from, to, share);
+    const double ground = surface_.height(m.position.x(), m.position.y()).value_or(m.position.z());
+    crossings.push_back({release.source, release.block, s.screen, m.position.x(), m.position.y(), m.velocity.norm(),
+                         from.event == Event::Slide ? 0.0 : std::max(0.0, m.position.z() - ground), m.spin.norm(),
+                         body.mass, body.diameter, s.along + line.norm() * (low / (low - high)), m.time,
+                         std::atan2(-m.velocity.z(), m.velocity.head<2>().norm()),
+                         std::atan2(std::abs(way.dot(line)), std::abs(cross_product(way, line)))});
+  }
+  std::sort(crossings.begin() + static_cast<std::ptrdiff_t>(first), crossings.end(),
+            [](const Crossing& l, const Crossing& r) { return l.time < r.time; });
+}
+
+}  // namespace talus

@@ -1,0 +1,117 @@
+#include "talus/simulate/tally/hazard_tally.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+namespace {
+
+/// [square_unit] of one squared weight; the ratio of the units is a power of two.
+double squares_per_unit(const WeightScale& scale) {
+  return scale.unit * (scale.unit / scale.square_unit);
+}
+
+}  // namespace
+
+void StratumSums::add(const Stake& stake, float energy, ScratchVector<std::int64_t>& overlaps) {
+  if (blocks_ == 0 || stake.stratum != stratum_) {
+    finish(overlaps);
+    stratum_ = stake.stratum;
+    blocks_ = stake.blocks;
+  }
+  const auto weight = static_cast<double>(stake.weight);
+  const auto& thresholds = rules_.bins.thresholds();
+  for (std::size_t level = 0; level < levels_.size(); ++level) {
+    if (level > 0 && !(energy > thresholds[level - 1])) break;  // ascending: the rest is not exceeded
+    levels_[level].sum += stake.weight;
+    levels_[level].squares += weight * weight;
+    levels_[level].hits += 1;
+  }
+}
+
+void StratumSums::finish(ScratchVector<std::int64_t>& overlaps) {
+  if (overlaps.empty()) overlaps.resize(levels_.size());
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    Level& level = levels_[i];
+    if (level.hits > 1 && blocks_ > 1) {
+      const auto sum = static_cast<double>(level.sum);
+      const double pairs = std::max(0.0, sum * sum - level.squares);
+      overlaps[i] += static_cast<std::int64_t>(pairs / (blocks_ - 1.0) * squares_per_unit(rules_.scale));
+    }
+    level = {};
+  }
+  blocks_ = 0;
+}
+
+void HazardCell::cover(int low, int high) {
+  const int end = first_ + static_cast<int>(bins_.size());
+  if (bins_.empty()) {
+    first_ = low;
+    bins_.resize(static_cast<std::size_t>(high - low + 1));
+    return;
+  }
+  if (low < first_) {
+    bins_.insert(bins_.begin(), static_cast<std::size_t>(first_ - low), Bin{});
+    first_ = low;
+  }
+  if (high >= end) {
+    bins_.reserve(static_cast<std::size_t>(high - first_ + 1));  // no more than that: most cells see few bins
+    bins_.resize(static_cast<std::size_t>(high - first_ + 1));
+  }
+}
+
+void HazardCell::add(const HazardRules& rules, std::span<const float> energies, std::span<const Stake> stakes) {
+  if (energies.empty()) return;
+  const auto [low, high] = std::ranges::minmax_element(energies);
+  cover(rules.bins.of(*low), rules.bins.of(*high));
+  const double scale = squares_per_unit(rules.scale);
+  StratumSums stratum(rules);
+  for (std::size_t i = 0; i < energies.size(); ++i) {
+    const Stake& stake = stakes[i];
+    if (stake.weight == 0) continue;
+    Bin& bin = bins_[static_cast<std::size_t>(rules.bins.of(energies[i]) - first_)];
+    const auto weight = static_cast<double>(stake.weight);
+    bin.weight += stake.weight;
+    bin.square += static_cast<std::int64_t>(std::ceil(weight * weight * scale));
+    stratum.add(stake, energies[i], overlaps_);
+  }
+  stratum.finish(overlaps_);
+}
+
+void HazardCell::merge(const HazardCell& other) {
+  if (other.bins_.empty()) return;
+  cover(other.first_, other.first_ + static_cast<int>(other.bins_.size()) - 1);
+  for (std::size_t i = 0; i < other.bins_.size(); ++i) {
+    Bin& bin = bins_[i + static_cast<std::size_t>(other.first_ - first_)];
+    bin.weight += other.bins_[i].weight;
+    bin.square += other.bins_[i].square;
+  }
+  overlaps_.resize(std::max(overlaps_.size(), other.overlaps_.size()));
+  for (std::size_t i = 0; i < other.overlaps_.size(); ++i) overlaps_[i] += other.overlaps_[i];
+}
+
+HazardCell HazardCell::restored(int first, const std::vector<Bin>& bins, const std::vector<std::int64_t>& overlaps) {
+  HazardCell cell;
+  cell.first_ = first;
+  cell.bins_.assign(bins.begin(), bins.end());
+  cell.overlaps_.assign(overlaps.begin(), overlaps.end());
+  return cell;
+}
+
+void HazardCell::save(ByteWriter& out) const {
+  out.put(first_);
+  out.put_all(std::span<const Bin>(bins_));
+  out.put_all(std::span<const std::int64_t>(overlaps_));
+}
+
+HazardCell HazardCell::restored(ByteReader& in) {
+  const auto first = in.get<int>();
+  const auto bins = in.get_all<Bin>();
+  return restored(first, bins, in.get_all<std::int64_t>());
+}
+
+bool HazardCell::operator==(const HazardCell& other) const {
+  return first_ == other.first_ && bins_ == other.bins_ && overlaps_ == other.overlaps_;
+}
+
+}  // namespace talus

@@ -1,0 +1,228 @@
+#include "talus/simulate/tally/histogram.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "talus/base/scratch.hpp"
+
+namespace talus {
+namespace {
+
+constexpr int kShift = 19;  // a float keeps 23 bits after the leading one: 4 of them number the bins of a doubling
+
+int key_of(float value) {
+  return static_cast<int>(std::bit_cast<std::uint32_t>(value > LogHistogram::kFloor ? value : LogHistogram::kFloor) >>
+                          kShift);
+}
+
+unsigned char* zeros(std::size_t bytes) {
+  return static_cast<unsigned char*>(std::memset(scratch::allocate(bytes), 0, bytes));
+}
+
+double edge_of(int key) {
+  return std::bit_cast<float>(static_cast<std::uint32_t>(key) << kShift);
+}
+
+}  // namespace
+
+LogHistogram::~LogHistogram() {
+  scratch::release(counts_, static_cast<std::size_t>(size_) * width_);
+}
+
+std::uint32_t LogHistogram::get(int bin) const {
+  switch (width_) {
+    case 1:
+      return counts_[bin];
+    case 2: {
+      std::uint16_t value = 0;
+      std::memcpy(&value, counts_ + 2 * bin, 2);
+      return value;
+    }
+    default: {
+      std::uint32_t value = 0;
+      std::memcpy(&value, counts_ + 4 * bin, 4);
+      return value;
+    }
+  }
+}
+
+void LogHistogram::put(int bin, std::uint32_t count) {
+  if (width_ == 1 && count > 0xFFU) widen(2);
+  if (width_ == 2 && count > 0xFFFFU) widen(4);
+  if (width_ == 1) {
+    counts_[bin] = static_cast<unsigned char>(count);
+  } else if (width_ == 2) {
+    const auto value = static_cast<std::uint16_t>(count);
+    std::memcpy(counts_ + 2 * bin, &value, 2);
+  } else {
+    std::memcpy(counts_ + 4 * bin, &count, 4);
+  }
+}
+
+void LogHistogram::widen(std::uint8_t width) {
+  LogHistogram wide;
+  wide.counts_ = zeros(std::size_t{size_} * width);
+  wide.first_ = first_;
+  wide.size_ = size_;
+  wide.width_ = width;
+  for (int bin = 0; bin < size_; ++bin) wide.put(bin, get(bin));
+  swap(wide);
+}
+
+/// Makes room for the keys of a range. It grows by half doublings, so that it rarely does.
+void LogHistogram::cover(int low_key, int high_key) {
+  int low = low_key & ~7, high = high_key | 7;
+  if (size_ > 0) {
+    low = std::min<int>(low, first_);
+    high = std::max<int>(high, first_ + size_ - 1);
+  }
+  low = std::max(low, high - kSpan + 1);
+  if (size_ > 0 && low == first_ && high == first_ + size_ - 1) return;
+  LogHistogram wide;
+  wide.counts_ = zeros(static_cast<std::size_t>(high - low + 1) * width_);
+  wide.first_ = static_cast<std::uint16_t>(low);
+  wide.size_ = static_cast<std::uint16_t>(high - low + 1);
+  wide.width_ = width_;
+  const int collapsed = std::clamp(low - first_, 0, static_cast<int>(size_));  // bins that fall into the lowest one
+  std::uint32_t sum = 0;
+  for (int bin = 0; bin < collapsed; ++bin) sum += get(bin);
+  if (collapsed < size_)
+    std::memcpy(wide.counts_ + (first_ + collapsed - low) * width_, counts_ + collapsed * width_,
+                static_cast<std::size_t>(size_ - collapsed) * width_);
+  if (sum > 0) wide.put(0, wide.get(0) + sum);
+  swap(wide);
+}
+
+void LogHistogram::add_key(int key) {
+  const int bin = std::max(0, key - first_);
+  if (width_ == 1 && counts_[bin] < 0xFFU)
+    ++counts_[bin];
+  else
+    put(bin, get(bin) + 1);
+}
+
+/// Turns the few values kept so far into counts, with room for the keys of a range.
+void LogHistogram::spill(int low_key, int high_key) {
+  const auto few = few_;
+  const int n = few_count_;
+  few_count_ = 0;
+  for (int i = 0; i < n; ++i) {
+    low_key = std::min<int>(low_key, few[static_cast<std::size_t>(i)]);
+    high_key = std::max<int>(high_key, few[static_cast<std::size_t>(i)]);
+  }
+  cover(low_key, high_key);
+  for (int i = 0; i < n; ++i) add_key(few[static_cast<std::size_t>(i)]);
+}
+
+void LogHistogram::add(std::span<const float> values) {
+  if (values.empty()) return;
+  if (counts_ == nullptr && few_count_ + values.size() <= kFew) {
+    for (const float value : values) few_[few_count_++] = static_cast<std::uint16_t>(key_of(value));
+    return;
+  }
+  float least = std::numeric_limits<float>::infinity(), largest = kFloor;
+#pragma omp simd reduction(min : least) reduction(max : largest)
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const float value = values[i] > kFloor ? values[i] : kFloor;  // NaN, too, counts as the floor
+    least = std::min(least, value);
+    largest = std::max(largest, value);
+  }
+  const int low = key_of(least), high = key_of(largest);  // a key grows with its value
+  if (few_count_ > 0 || low < first_ || high >= first_ + size_) spill(low, high);
+  count_all(values);
+}
+
+/// Counts values whose bins there is room for. From locals: a byte written to the counts might be any member's.
+void LogHistogram::count_all(std::span<const float> values) {
+  auto value = values.begin();
+  if (width_ == 1) {
+    unsigned char* const counts = counts_;
+    const int first = first_;
+    for (; value != values.end(); ++value) {
+      unsigned char& here = counts[std::max(0, key_of(*value) - first)];
+      if (here == 0xFFU) break;
+      ++here;
+    }
+  }
+  for (; value != values.end(); ++value) add_key(key_of(*value));
+}
+
+void LogHistogram::merge(const LogHistogram& other) {
+  if (other.counts_ == nullptr && other.few_count_ == 0) return;
+  if (other.counts_ == nullptr && counts_ == nullptr && few_count_ + other.few_count_ <= kFew) {
+    for (int i = 0; i < other.few_count_; ++i) few_[few_count_++] = other.few_[static_cast<std::size_t>(i)];
+    return;
+  }
+  const auto few_end = other.few_.begin() + other.few_count_;
+  const int low = other.counts_ ? other.first_ : *std::min_element(other.few_.begin(), few_end);
+  const int high = other.counts_ ? other.first_ + other.size_ - 1 : *std::max_element(other.few_.begin(), few_end);
+  spill(low, high);
+  for (auto key = other.few_.begin(); key != few_end; ++key) add_key(*key);
+  for (int bin = 0; bin < other.size_; ++bin) {
+    const std::uint32_t count = other.get(bin);
+    const int to = std::max(0, other.first_ + bin - first_);
+    if (count > 0) put(to, get(to) + count);
+  }
+}
+
+void LogHistogram::save(ByteWriter& out) const {
+  out.put(few_count_);
+  for (int i = 0; i < few_count_; ++i) out.put(few_[static_cast<std::size_t>(i)]);
+  out.put(size_);
+  if (size_ == 0) return;
+  out.put(first_);
+  out.put(width_);
+  out.put_all(std::span<const unsigned char>(counts_, static_cast<std::size_t>(size_) * width_));
+}
+
+LogHistogram LogHistogram::restored(ByteReader& in) {
+  LogHistogram h;
+  h.few_count_ = in.get<std::uint8_t>();
+  if (h.few_count_ > kFew) throw std::out_of_range("values of a histogram");
+  for (int i = 0; i < h.few_count_; ++i) h.few_[static_cast<std::size_t>(i)] = in.get<std::uint16_t>();
+  h.size_ = in.get<std::uint16_t>();
+  if (h.size_ == 0) return h;
+  h.first_ = in.get<std::uint16_t>();
+  h.width_ = in.get<std::uint8_t>();
+  const auto counts = in.get_all<unsigned char>();
+  if ((h.width_ != 1 && h.width_ != 2 && h.width_ != 4) || h.size_ > kSpan ||
+      counts.size() != static_cast<std::size_t>(h.size_) * h.width_)
+    throw std::out_of_range("bins of a histogram");
+  h.counts_ = zeros(counts.size());
+  std::memcpy(h.counts_, counts.data(), counts.size());
+  return h;
+}
+
+std::uint64_t LogHistogram::count() const {
+  std::uint64_t sum = few_count_;
+  for (int bin = 0; bin < size_; ++bin) sum += get(bin);
+  return sum;
+}
+
+double LogHistogram::percentile(double share) const {
+  if (counts_ == nullptr && few_count_ > 0) {
+    LogHistogram bins;
+    bins.few_ = few_;
+    bins.few_count_ = few_count_;
+    bins.spill(few_[0], few_[0]);
+    return bins.percentile(share);
+  }
+  const std::uint64_t total = count();
+  if (total == 0) return 0.0;
+  const double rank = std::clamp(std::ceil(share * static_cast<double>(total)), 1.0, static_cast<double>(total));
+  double below = 0.0;
+  for (int bin = 0; bin < size_; ++bin) {
+    const double here = get(bin);
+    if (here > 0.0 && below + here >= rank) {
+      const double low = edge_of(first_ + bin), high = edge_of(first_ + bin + 1);
+      return low + (high - low) * (rank - below - 0.5) / here;
+    }
+    below += here;
+  }
+  return edge_of(first_ + size_);
+}
+
+}  // namespace talus

@@ -1,0 +1,103 @@
+#include "talus/fit/diagnose/candidates.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/campaigns.hpp"
+#include "talus/fit/diagnose/residual.hpp"
+
+namespace talus::test {
+namespace {
+
+/// Blocks of two days, each measured, with a sample halfway down; a second screen that none crossed.
+Campaign measured_campaign() {
+  Campaign c = campaign_on_slope(30);
+  measure(c, model_of_slope(), 5);
+  c.screens.push_back({"S2", {{{100.0, 0.0}, {100.0, 140.0}}}});
+  for (MeasuredBlock& b : c.blocks) b.passages.resize(2);
+  for (std::size_t b = 0; b < c.blocks.size(); ++b) {
+    c.blocks[b].day = 1 + static_cast<int>(b % 2);
+    c.blocks[b].samples.push_back({60.0, c.blocks[b].y, 0.0, 52.0, 8.0, 9.0});
+  }
+  return c;
+}
+
+std::vector<BlockRuns> fitting_runs(const Campaign& c, std::uint32_t trials) {
+  return observe(c, model_of_slope(), {trials, 1, 0, 0, fitting_rows(c), {}});
+}
+
+/// All that tells candidates apart.
+std::vector<std::string> described(const Campaign& c) {
+  std::vector<std::string> list;
+  const auto runs = fitting_runs(c, 20);
+  for (const Candidate& candidate : candidates_of(c, model_of_slope(), runs, {})) {
+    Model m = with(model_of_slope(), candidate, Eigen::VectorXd::Ones(std::ssize(candidate.parameters)));
+    list.push_back(candidate.effect + ' ' + candidate.where + ' ' + std::to_string(candidate.from));
+    if (!m.nets.empty()) list.back() += ' ' + std::to_string(m.nets[0].line[0].x());
+    list.back() += ' ' + std::to_string(m.effects.block_mass.reference_diameter);
+  }
+  return list;
+}
+
+TEST(Candidates, HangOnNothingThatWasHeldOut) {
+  Campaign c = measured_campaign();
+  const std::vector<std::string> before = described(c);
+  ASSERT_GT(before.size(), 40U);
+  for (MeasuredBlock& b : c.blocks) {
+    if (!b.holdout) continue;
+    b.x += 40.0;
+    b.mass *= 10.0;
+    b.day = 7;
+    b.axes = {3.0, 1.0, 0.5};
+    b.stop = Eigen::Vector2d(300.0, 10.0);
+    b.stop_mass = 0.1 * b.mass;
+    b.passages[0].reset();
+    b.passages[1] = Passage{5.0, 1.0, 5.0};
+    b.samples.clear();
+  }
+  EXPECT_EQ(described(c), before);
+  const ResidualSpace space(c, fitting_runs(c, 20));
+  for (const Observable& o : space.observables()) {
+    EXPECT_NE(o.name, "mass") << "only held-out blocks broke";
+    EXPECT_NE(o.name, "crossed S2") << "only held-out blocks crossed it";
+  }
+}
+
+TEST(Candidates, ADayThatIsNotGivenIsNoDay) {
+  Campaign c = measured_campaign();
+  for (std::size_t b = 0; b < c.blocks.size(); b += 3) c.blocks[b].day = 0;
+  for (const Candidate& candidate : candidates_of(c, model_of_slope(), fitting_runs(c, 20), {}))
+    EXPECT_NE(candidate.where, "day 0");
+}
+
+TEST(Residual, OfATrialHasTheGapsOfItsBlock) {
+  Campaign c = measured_campaign();
+  c.blocks[0].stop.reset();
+  c.blocks[1].passages[0] = Passage{kNotGiven, 1.0, 5.0};
+  c.blocks[3].passages[0].reset();  // did not cross: of a trial that does, all is seen
+  for (MeasuredBlock& b : c.blocks) b.samples[0].spin = kNotGiven;
+  const auto runs = fitting_runs(c, 40);
+  const ResidualSpace space(c, runs);
+  std::vector<std::string> names;
+  for (const Observable& o : space.observables()) names.push_back(o.name);
+  const auto at = [&names](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) - names.begin();
+  };
+  EXPECT_EQ(at("sample spin early"), std::ssize(names)) << "no block has it";
+  std::array<int, 4> stops{}, speeds{}, jumps{};
+  for (const std::size_t b : {0U, 1U, 3U})
+    for (std::size_t t = 0; t < 40; ++t) {
+      const Residual r = space.of_trial(b, runs[b], t);
+      stops[b] += std::isnan(r[at("runout")]) ? 0 : 1;
+      speeds[b] += std::isnan(r[at("speed S1")]) ? 0 : 1;
+      jumps[b] += std::isnan(r[at("jump S1")]) ? 0 : 1;
+    }
+  EXPECT_EQ(stops[0], 0);
+  EXPECT_GT(stops[1], 20);
+  EXPECT_EQ(speeds[1], 0);
+  EXPECT_GT(jumps[1], 20);
+  EXPECT_EQ(speeds[3], jumps[3]);
+  EXPECT_GT(speeds[3], 20);
+}
+
+}  // namespace
+}  // namespace talus::test

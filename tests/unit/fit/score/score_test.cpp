@@ -1,0 +1,264 @@
+#include "talus/fit/score/score.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "support/campaigns.hpp"
+
+namespace talus::test {
+namespace {
+
+/// The CRPS by its definition, the integral of (F - 1{y <= x})^2, of the empirical distribution of n values. The fair
+/// score differs from it by the mean distance of the values over 2 (n - 1) (Ferro 2014, Eq. 4 against Eq. 2).
+double crps_by_integral(std::vector<double> x, double y) {
+  const double n = static_cast<double>(x.size());
+  double gini = 0.0;
+  for (const double a : x)
+    for (const double b : x) gini += std::abs(a - b);
+  std::vector<double> breaks = x;
+  breaks.push_back(y);
+  std::sort(breaks.begin(), breaks.end());
+  double integral = 0.0;
+  for (std::size_t i = 1; i < breaks.size(); ++i) {
+    const double middle = 0.5 * (breaks[i - 1] + breaks[i]);
+    const double below = static_cast<double>(std::count_if(x.begin(), x.end(), [&](double v) { return v <= middle; }));
+    const double step = below / n - (y <= middle ? 1.0 : 0.0);
+    integral += step * step * (breaks[i] - breaks[i - 1]);
+  }
+  return integral - gini / (2.0 * n * n * (n - 1.0));
+}
+
+TEST(FairCrps, IsTheIntegralOfTheSquaredDifferenceOfTheDistributions) {
+  Numbers numbers(3);
+  for (const std::size_t n : {2U, 3U, 10U, 57U}) {
+    std::vector<double> x(n);
+    for (double& v : x) v = 10.0 * numbers.normal();
+    if (n > 5) x[3] = x[4];  // ties
+    for (const double y : {-40.0, 0.0, 3.0, x[1], 50.0}) {
+      const double expected = crps_by_integral(x, y);
+      std::vector<double> copy = x;
+      EXPECT_NEAR(fair_crps(copy, y), expected, 1e-12 * 50.0) << n << ' ' << y;
+    }
+  }
+}
+
+/// For a standard normal forecast the CRPS at y is y (2 Phi(y) - 1) + 2 phi(y) - 1/sqrt(pi) (Gneiting & Raftery 2007).
+TEST(FairCrps, OfANormalForecast) {
+  Numbers numbers(4);
+  std::vector<double> x(200000);
+  for (double& v : x) v = numbers.normal();
+  for (const double y : {0.0, 1.0, -2.5}) {
+    const double phi = std::exp(-0.5 * y * y) / std::sqrt(2.0 * kPi), cdf = 0.5 * std::erfc(-y / std::sqrt(2.0));
+    EXPECT_NEAR(fair_crps(x, y), y * (2.0 * cdf - 1.0) + 2.0 * phi - 1.0 / std::sqrt(kPi), 5.0 * 0.9 / std::sqrt(2e5));
+  }
+}
+
+TEST(FairEnergyScore, OnALineIsTheCrps) {
+  Numbers numbers(5);
+  std::vector<double> x(40);
+  std::vector<Eigen::Vector2d> places;
+  const Eigen::Vector2d direction(0.6, 0.8), origin(100.0, -30.0);
+  for (double& v : x) places.push_back(origin + (v = 7.0 * numbers.normal()) * direction);
+  EXPECT_NEAR(fair_energy_score(places, origin + 4.0 * direction), fair_crps(x, 4.0), 1e-12 * 100.0);
+}
+
+/// The estimate is unbiased: two values on average give what two hundred give.
+TEST(FairCrps, DoesNotDependOnTheNumberOfValuesOnAverage) {
+  Numbers numbers(6);
+  Moments few, many;
+  for (int k = 0; k < 20000; ++k) {
+    std::vector<double> two{numbers.normal(), numbers.normal()};
+    few.add(fair_crps(two, 0.7));
+  }
+  for (int k = 0; k < 300; ++k) {
+    std::vector<double> lot(200);
+    for (double& v : lot) v = numbers.normal();
+    many.add(fair_crps(lot, 0.7));
+  }
+  EXPECT_NEAR(few.mean(), many.mean(), 5.0 * std::hypot(few.error(), many.error()));
+}
+
+/// A small campaign and simulated values, scored group by group in another form.
+class Scores : public testing::Test {
+ protected:
+  Scores() : campaign_(campaign_on_slope(24)), runs_(24) {
+    Numbers numbers(8);
+    for (std::size_t b = 0; b < 24; ++b) {
+      MeasuredBlock& block = campaign_.blocks[b];
+      block.stop = Eigen::Vector2d(numbers.uniform(100, 140), numbers.uniform(30, 100));
+      block.samples = {{0, 0, 0, 20.0, numbers.uniform(5, 10), kNotGiven},
+                       {0, 0, 0, 50.0, numbers.uniform(5, 10), 3.0}};
+      if (b % 2 == 0) block.passages[0] = Passage{numbers.uniform(5, 15), b % 4 == 0 ? kNotGiven : 1.0 + 0.1 * b, 9.0};
+      BlockRuns& r = runs_[b];
+      r.trials = 20;
+      r.mass_share.assign(20, 1.0);
+      r.screens.resize(1);
+      r.samples.resize(2);
+      for (int t = 0; t < 20; ++t) {
+        const bool stopped = b != 4 || t < 9, crossed = t % 3 != 0;  // block 4: too few stops
+        r.x.push_back(stopped ? numbers.uniform(100, 140) : kNotGiven);
+        r.y.push_back(stopped ? numbers.uniform(30, 100) : kNotGiven);
+        r.screens[0].speed.push_back(crossed ? numbers.uniform(5, 15) : kNotGiven);
+        r.screens[0].jump.push_back(crossed ? numbers.uniform(0, 3) : kNotGiven);
+        r.screens[0].spin.push_back(crossed ? numbers.uniform(0, 20) : kNotGiven);
+        for (auto& s : r.samples) {
+          s.speed.push_back(numbers.uniform(5, 10));
+          s.spin.push_back(numbers.uniform(0, 9));
+        }
+      }
+    }
+  }
+
+  double group(const Score& s, const std::string& name, std::uint32_t rows) const {
+    for (const GroupScore& g : s.groups)
+      if (g.name == name) {
+        EXPECT_EQ(g.rows, rows) << name;
+        return g.score;
+      }
+    ADD_FAILURE() << "no group " << name;
+    return kNotGiven;
+  }
+
+  static double spread(const std::vector<double>& v) {
+    double mean = 0.0, square = 0.0;
+    for (const double x : v) mean += x / static_cast<double>(v.size());
+    for (const double x : v) square += (x - mean) * (x - mean) / static_cast<double>(v.size());
+    return std::sqrt(square);
+  }
+
+  Campaign campaign_;
+  std::vector<BlockRuns> runs_;
+};
+
+TEST_F(Scores, SpeedAtTheScreen) {
+  std::vector<double> fitting;
+  for (const MeasuredBlock& b : campaign_.blocks)
+    if (!b.holdout && b.passages[0]) fitting.push_back(b.passages[0]->speed);
+  double sum = 0.0;
+  int rows = 0;
+  for (std::size_t b = 0; b < 24; ++b) {
+    if (!campaign_.blocks[b].holdout || !campaign_.blocks[b].passages[0]) continue;
+    std::vector<double> x;
+    for (const double v : runs_[b].screens[0].speed)
+      if (!std::isnan(v)) x.push_back(v);
+    sum += crps_by_integral(x, campaign_.blocks[b].passages[0]->speed);
+    ++rows;
+  }
+  ASSERT_EQ(rows, 4);  // fewer than five: no group
+  for (const GroupScore& g : score(campaign_, runs_, holdout_rows(campaign_)).groups) EXPECT_NE(g.name, "speed S1");
+  sum = 0.0, rows = 0;
+  for (std::size_t b = 0; b < 24; ++b) {
+    if (campaign_.blocks[b].holdout || !campaign_.blocks[b].passages[0]) continue;
+    std::vector<double> x;
+    for (const double v : runs_[b].screens[0].speed)
+      if (!std::isnan(v)) x.push_back(v);
+    sum += crps_by_integral(x, campaign_.blocks[b].passages[0]->speed);
+    ++rows;
+  }
+  const Score s = score(campaign_, runs_, fitting_rows(campaign_));
+  EXPECT_NEAR(group(s, "speed S1", 8), sum / rows / spread(fitting), 1e-12);
+}
+
+TEST_F(Scores, MissingValuesDropTheRowOfTheirQuantityOnly) {
+  const Score s = score(campaign_, runs_, fitting_rows(campaign_));
+  for (const GroupScore& g : s.groups) EXPECT_NE(g.name, "jump S1");  // four of eight measured: fewer than five
+  for (const GroupScore& g : s.groups) EXPECT_NE(g.name, "spin S1");  // all equal: no spread to compare with
+}
+
+TEST_F(Scores, CrossedIsABrierScore) {
+  double sum = 0.0;
+  for (std::size_t b = 0; b < 24; ++b)
+    if (!campaign_.blocks[b].holdout) sum += std::pow(13.0 / 20.0 - (b % 2 == 0 ? 1.0 : 0.0), 2);
+  EXPECT_NEAR(group(score(campaign_, runs_, fitting_rows(campaign_)), "crossed S1", 16), sum / 16.0 / 0.25, 1e-12);
+}
+
+TEST_F(Scores, ARowWithFewValuesScoresAsTheClimatology) {
+  std::vector<Eigen::Vector2d> fitting;
+  std::vector<double> x, y;
+  for (const MeasuredBlock& b : campaign_.blocks)
+    if (!b.holdout) fitting.push_back(*b.stop), x.push_back(b.stop->x()), y.push_back(b.stop->y());
+  const Score s = score(campaign_, runs_, fitting_rows(campaign_));
+  ASSERT_EQ(s.groups[0].name, "stop");
+  EXPECT_EQ(s.groups[0].unseen, 1U);
+  for (const RowScore& row : s.rows) {
+    if (row.group != 0) continue;
+    EXPECT_EQ(row.unseen, row.block == 4);
+    if (row.block == 4) {
+      EXPECT_NEAR(row.score, fair_energy_score(fitting, *campaign_.blocks[4].stop) / std::hypot(spread(x), spread(y)),
+                  1e-12);
+    }
+  }
+}
+
+TEST_F(Scores, ABlockCountsOnceForAllItsSamples) {
+  std::vector<double> fitting;
+  double sum = 0.0;
+  for (std::size_t b = 0; b < 24; ++b) {
+    if (campaign_.blocks[b].holdout) continue;
+    double mean = 0.0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      fitting.push_back(campaign_.blocks[b].samples[i].speed);
+      mean += 0.5 * crps_by_integral(runs_[b].samples[i].speed, campaign_.blocks[b].samples[i].speed);
+    }
+    sum += mean;
+  }
+  const Score s = score(campaign_, runs_, fitting_rows(campaign_));
+  EXPECT_NEAR(group(s, "sample speed", 16), sum / 16.0 / spread(fitting), 1e-12);
+}
+
+TEST_F(Scores, MassOnlyWhereBlocksBroke) {
+  const auto has_mass = [&] {
+    const Score s = score(campaign_, runs_, fitting_rows(campaign_));
+    return std::any_of(s.groups.begin(), s.groups.end(), [](const auto& g) { return g.name == "mass"; });
+  };
+  for (MeasuredBlock& b : campaign_.blocks) b.stop_mass = b.mass * 0.96;
+  EXPECT_FALSE(has_mass());
+  for (std::size_t b = 0; b < 5; ++b) campaign_.blocks[b].stop_mass = 0.3 * campaign_.blocks[b].mass;
+  EXPECT_TRUE(has_mass());
+}
+
+TEST_F(Scores, EqualWeightsGiveTheTotalAndTheBootstrapHoldsIt) {
+  const Score s = score(campaign_, runs_, fitting_rows(campaign_));
+  EXPECT_NEAR(weighted_total(s, std::vector<double>(24, 2.0)), s.total, 1e-13);
+  const ScoreIntervals i = bootstrap(s, 24);
+  EXPECT_LT(i.total.low, s.total);
+  EXPECT_GT(i.total.high, s.total);
+  const std::vector<double> w = bootstrap_weights(s, 24, 7, 1);
+  EXPECT_EQ(std::accumulate(w.begin(), w.end(), 0.0), 16.0);
+  for (std::size_t b = 2; b < 24; b += 3) EXPECT_EQ(w[b], 0.0);  // held out: not drawn
+}
+
+/// Groups of 30 and 10 rows with errors of 0.4 and 0.8 count 30/40 and 10/20: (0.3 + 0.4) / 1.25. The rows stay as they
+/// are, and equal weights of the blocks give the total again.
+TEST(WeighGroups, ByWhatTheirRowsTell) {
+  Score s;
+  s.groups = {{"stop", 0.4, 30}, {"speed S", 0.8, 10}};
+  for (std::uint32_t row = 0; row < 40; ++row) s.rows.push_back({row / 30, row % 30, row < 30 ? 0.4 : 0.8});
+  const Score weighed = weigh_groups(s);
+  EXPECT_NEAR(weighed.total, 0.56, 1e-12);
+  EXPECT_NEAR(weighted_total(weighed, std::vector<double>(30, 1.0)), 0.56, 1e-12);
+  EXPECT_NEAR(weighted_total(s, std::vector<double>(30, 1.0)), 0.6, 1e-12);
+  EXPECT_EQ(weighed.rows.size(), 40U);
+  EXPECT_TRUE(std::isnan(weigh_groups({}).total));
+}
+
+/// The standard error of a mean of normal values is known: the percentile interval must be near 2 x 1.96 of it.
+TEST(Bootstrap, WidthOfTheIntervalOfAMean) {
+  Numbers numbers(12);
+  Score s;
+  s.groups = {{"g", 0.0, 400}};
+  double squares = 0.0;
+  for (std::uint32_t b = 0; b < 400; ++b) {
+    s.rows.push_back({0, b, numbers.normal()});
+    s.groups[0].score += s.rows.back().score / 400.0;
+    squares += s.rows.back().score * s.rows.back().score;
+  }
+  s.total = s.groups[0].score;
+  const double error = std::sqrt(squares / 400.0 - s.total * s.total) / 20.0;
+  const Interval i = bootstrap(s, 400, 4000).total;
+  EXPECT_NEAR(i.high - i.low, 2.0 * 1.96 * error, 0.06 * 3.92 * error);
+  EXPECT_NEAR(reduction(s, s, 400).share, 0.0, 1e-15);
+}
+
+}  // namespace
+}  // namespace talus::test

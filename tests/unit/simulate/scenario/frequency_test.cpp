@@ -1,0 +1,189 @@
+#include "talus/simulate/scenario/frequency.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../../support/scenarios.hpp"
+#include "talus/base/error.hpp"
+#include "talus/simulate/plan/plan.hpp"
+
+namespace talus {
+namespace {
+
+/// A plane of 20 x 20 cells of 2 m that rises to the east with a slope [degrees]; cells of sources by feature.
+Scenario plane(double degrees, std::vector<std::uint32_t> features) {
+  Scenario s = test::scenario_on(
+      test::terrain(test::grid_of(20, 20, 2.0, 2.0), [&](double x, double) { return x * std::tan(radians(degrees)); }));
+  s.features.assign(1 + *std::max_element(features.begin(), features.end()), SourceFeature{});
+  for (std::size_t i = 0; i < features.size(); ++i)
+    s.sources.push_back({features[i], 5.0 + 2.0 * static_cast<double>(i), 7.0, false});
+  s.trajectories = 10;
+  return s;
+}
+
+/// Events per year of a source cell: the sum over its trajectories.
+double per_year(const Scenario& s, std::uint32_t source) {
+  const AnnualWeights weights = AnnualWeights::of(s).value();
+  std::int64_t sum = 0;
+  for (std::uint32_t block = 0; block < s.trajectories; ++block) sum += weights.weight(s, source, block);
+  return static_cast<double>(sum) * weights.scale().unit;
+}
+
+void refused(const Scenario& s, const std::string& words) {
+  try {
+    AnnualWeights::of(s);
+    FAIL() << "was taken: " << words;
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr(words));
+  }
+}
+
+TEST(AnnualWeights, NoFrequencyNoWeights) {
+  EXPECT_FALSE(AnnualWeights::of(plane(30.0, {0, 0})).has_value());
+  Scenario zeros = plane(30.0, {0, 0});
+  zeros.features[0].frequency = 0.0;  // an attribute that nobody filled in
+  EXPECT_FALSE(AnnualWeights::of(zeros).has_value());
+}
+
+TEST(AnnualWeights, AFeaturesFrequencyIsDividedOverItsCells) {
+  Scenario s = plane(30.0, {0, 0, 0, 1});
+  s.features[0].frequency = 0.3;
+  s.features[1].frequency = 2.0;
+  for (const std::uint32_t source : {0U, 1U, 2U}) EXPECT_NEAR(per_year(s, source), 0.1, 1e-12);
+  EXPECT_NEAR(per_year(s, 3), 2.0, 1e-12);
+  const WeightScale scale = AnnualWeights::of(s)->scale();
+  EXPECT_NEAR(scale.total, 2.3, 1e-12);
+  EXPECT_FALSE(scale.equal);
+  EXPECT_NEAR(scale.largest_weight(), 0.2, 1e-12);
+  EXPECT_LT(scale.total / scale.unit, 0x1p62);  // the sum over all trajectories fits
+  EXPECT_LT(1e9 * scale.unit, 1e-9);            // and 1e-9 events per year are very many units
+}
+
+/// Walls of 45 and of 80 degrees of one true area, 4 * 4 m^2 * cos: the steeper one has fewer cells in plan.
+TEST(AnnualWeights, EqualTrueAreasHaveEqualFrequencies) {
+  const double ratio = std::cos(radians(45.0)) / std::cos(radians(80.0));  // of the true areas of one cell
+  for (const double degrees : {45.0, 80.0}) {
+    Scenario s = plane(degrees, {0, 0});
+    s.frequency.per_area = 1e-3;
+    s.frequency.by_true_area = true;
+    const double area = 4.0 / std::cos(radians(degrees));
+    EXPECT_NEAR(per_year(s, 0), 1e-3 * area, 1e-3 * area * 1e-4);  // heights are floats
+    EXPECT_NEAR(true_area(s.surface.heights(), 0, 5), area, area * 1e-4) << "at the edge, of one side";
+    s.frequency.by_true_area = false;
+    EXPECT_NEAR(per_year(s, 0), 4e-3, 1e-12);
+  }
+  EXPECT_NEAR(ratio, 4.07, 0.01);
+}
+
+/// Two walls of one true area: 57 cells at 45 degrees are 57 x 4 / cos 45 = 322.4 m2, 14 at 80 degrees 322.5 m2.
+TEST(AnnualWeights, TwoWallsOfOneTrueAreaFallEquallyOften) {
+  const auto wall = [](double degrees, int cells) {
+    Scenario s = plane(degrees, {0});
+    s.sources.clear();
+    for (int i = 0; i < cells; ++i) s.sources.push_back({0, 5.0 + 2.0 * (i % 15), 7.0 + 2.0 * (i / 15), false});
+    s.frequency.per_area = 1e-3;
+    s.frequency.by_true_area = true;
+    return AnnualWeights::of(s)->scale().total;
+  };
+  EXPECT_NEAR(wall(45.0, 57), 0.3224, 2e-4);
+  EXPECT_NEAR(wall(80.0, 14), wall(45.0, 57), 2e-4);
+}
+
+/// N(>= V) = A V^-b over classes that are ranges of diameters, by hand: volumes pi/6 D^3 of 1 to 2 m and 2 to 4 m.
+TEST(AnnualWeights, PowerLawOverClasses) {
+  Scenario s = plane(30.0, {0, 0});
+  s.blocks.classes = {{{1.0, 2.0}, 3.0, kNotGiven}, {{2.0, 4.0}, 1.0, kNotGiven}};
+  s.frequency.scale = 0.2;
+  s.frequency.exponent = 1.0 / 3.0;  // V^(-1/3) is (pi/6)^(-1/3) / D
+  const double c = 0.2 * std::pow(kPi / 6.0, -1.0 / 3.0);
+  EXPECT_NEAR(AnnualWeights::of(s)->scale().total, c * (1.0 - 0.25), 1e-12);
+  const AnnualWeights weights = AnnualWeights::of(s).value();
+  std::int64_t small = 0, large = 0;  // of one block of each class: events of the class / (blocks x share drawn)
+  for (std::uint32_t block = 0; block < s.trajectories; ++block)
+    (class_of_block(s, 0, block) == 0 ? small : large) = weights.weight(s, 0, block);
+  const double unit = weights.scale().unit, blocks = 2.0 * s.trajectories;
+  ASSERT_GT(std::min(small, large), 0);
+  EXPECT_NEAR(static_cast<double>(small) * unit, c * 0.5 / (blocks * 0.75), 1e-12);
+  EXPECT_NEAR(static_cast<double>(large) * unit, c * 0.25 / (blocks * 0.25), 1e-12);
+  s.blocks.classes[1].diameter = {1.5, 4.0};
+  refused(s, "classes of blocks that overlap");
+  s.blocks.classes[1].diameter = {3.0, 3.0};
+  refused(s, "blocks of one diameter");
+}
+
+TEST(AnnualWeights, AFieldOfZerosCountsAsNotGiven) {
+  Scenario s = plane(30.0, {0, 0});
+  s.features[0].frequency = 0.0;
+  s.frequency.per_area = 0.01;
+  EXPECT_NEAR(AnnualWeights::of(s)->scale().total, 2 * 4.0 * 0.01, 1e-12);
+}
+
+/// One feature over a 45 and an 80 degree face: with the switch the steep cells get more of its frequency.
+TEST(AnnualWeights, TheSwitchDividesAFeatureByTrueArea) {
+  Scenario s = plane(45.0, {0, 0});
+  Raster<float> heights = s.surface.heights();
+  for (int row = 0; row < 20; ++row)
+    for (int column = 10; column < 20; ++column)
+      heights.at(column, row) = static_cast<float>(18.0 + (column - 9) * 2.0 * std::tan(radians(80.0)));
+  s.surface = Surface(heights);
+  s.sources[1].x = 31.0;
+  s.features[0].frequency = 1.0;
+  EXPECT_NEAR(per_year(s, 0), 0.5, 1e-12);
+  s.frequency.by_true_area = true;
+  const double gentle = 1.0 / std::cos(radians(45.0)), steep = 1.0 / std::cos(radians(80.0));
+  EXPECT_NEAR(per_year(s, 0), gentle / (gentle + steep), 1e-4);
+  EXPECT_NEAR(per_year(s, 0) + per_year(s, 1), 1.0, 1e-12);
+}
+
+TEST(AnnualWeights, PowerLawOfVolume) {  // by hand: 0.1 (1^-0.5 - 100^-0.5) = 0.1 (1 - 0.1)
+  Scenario s = plane(30.0, {0, 0, 0});
+  s.blocks.classes.clear();
+  s.blocks.power_law = {{1.0, 100.0}, 0.5};
+  s.frequency.scale = 0.1;
+  s.frequency.exponent = 0.5;
+  for (const std::uint32_t source : {0U, 1U, 2U}) EXPECT_NEAR(per_year(s, source), 0.03, 1e-12);
+  EXPECT_TRUE(AnnualWeights::of(s)->scale().equal);
+  s.frequency.exponent = 0.6;
+  refused(s, "must be the exponent of blocks.diameter, 0.5");
+}
+
+/// Classes drawn equally often that come 9 : 1; each block's weight follows from its diameter.
+TEST(AnnualWeights, ClassesOfBlocks) {
+  Scenario s = plane(30.0, {0, 0});
+  s.blocks.classes = {{{0.5, 0.5}, 1.0, 0.9}, {{2.0, 2.0}, 1.0, 0.1}};
+  const AnnualWeights weights = AnnualWeights::of(s).value();
+  for (std::uint32_t block = 0; block < 10; ++block) {
+    const double diameter = make_release(s, 1, block).body.diameter;
+    const double expected =
+        (diameter < 1.0 ? 0.9 : 0.1) / 2.0 / (10.0 * 0.5);  // over cells; over the blocks of a class
+    EXPECT_NEAR(static_cast<double>(weights.weight(s, 1, block)) * weights.scale().unit, expected, 1e-12);
+  }
+  EXPECT_NEAR(weights.scale().total, 1.0, 1e-12);
+}
+
+TEST(AnnualWeights, Contradictions) {
+  Scenario s = plane(30.0, {0, 1});
+  s.features[0].frequency = 0.3;
+  refused(s, "feature number 1 (from 0) of the sources has no frequency, but others have");
+  s.features[1].frequency = 0.1;
+  s.frequency.per_area = 1.0;
+  refused(s, "is given by the field frequency of the sources, frequency.per_area, must be given by one");
+  s = plane(30.0, {0});
+  s.frequency.by_true_area = true;
+  refused(s, "nothing says how often");
+  s.frequency.per_area = 1.0;
+  s.sources[0].point = true;
+  refused(s, "a source is a point, which has no area");
+  s = plane(30.0, {0});
+  s.blocks.classes[0].frequency = 1.0;
+  s.features[0].diameter = {1.0, 1.0};
+  refused(s, "has a diameter of its own");
+  s = plane(30.0, {0, 1});
+  s.trajectories = 1'000'000'000;
+  s.features[0].frequency = 1e-9;
+  s.features[1].frequency = 1e6;
+  refused(s, "too few beside all");
+}
+
+}  // namespace
+}  // namespace talus

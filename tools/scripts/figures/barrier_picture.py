@@ -1,0 +1,96 @@
+#!/usr/bin/python3
+"""Draw what a barrier at a screen must hold, along the line: crossings, energy and jump height, with the design values.
+
+  tools/scripts/figures/barrier_picture.py OUT --screen ID -o picture.png [--bin 10]
+
+OUT is a folder of `talus run` in which `talus barrier OUT --screen ID` has been run. Every block counts once, with its first
+crossing. Bins with fewer than 20 blocks show no percentile. Needs numpy and matplotlib.
+"""
+import argparse
+import csv
+import json
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+FEWEST = 20  # of a 95th percentile: 1 / (1 - 0.95)
+
+
+def along(lines, x, y):
+    """Distance from the start of the line to the point of it that is nearest to each place, over all its parts."""
+    best, result, start = np.full(len(x), np.inf), np.zeros(len(x)), 0.0
+    for line in lines:
+        for a, b in zip(np.array(line[:-1]), np.array(line[1:])):
+            way = b - a
+            length = np.hypot(*way)
+            if length > 0:
+                t = np.clip(((x - a[0]) * way[0] + (y - a[1]) * way[1]) / length**2, 0, 1)
+                gap = np.hypot(x - a[0] - t * way[0], y - a[1] - t * way[1])
+                nearer = gap < best
+                best[nearer], result[nearer] = gap[nearer], start + t[nearer] * length
+            start += length
+    return result, start
+
+
+def first_crossings(path, screen):
+    seen, rows = set(), []
+    with open(path, encoding="utf-8", newline="") as file:
+        for row in csv.DictReader(file):
+            block = (row["source"], row["block"])
+            if row["screen"] == screen and block not in seen:
+                seen.add(block)
+                rows.append([float(row[k]) for k in ("x", "y", "energy_kj", "jump_height_m")])
+    return np.array(rows).T
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("out")
+    parser.add_argument("--screen", required=True)
+    parser.add_argument("-o", "--output", required=True)
+    parser.add_argument("--bin", type=float, default=10.0)
+    o = parser.parse_args()
+    with open(f"{o.out}/run.json", encoding="utf-8") as file:
+        run = json.load(file)
+    with open(f"{o.out}/barrier_{o.screen}.json", encoding="utf-8") as file:
+        report = json.load(file)
+    design = {row["name"]: row["value"] for row in report["design"]}
+    lines = next(s["lines"] for s in run["screens"] if s["id"] == o.screen)
+    x, y, energy, height = first_crossings(f"{o.out}/screens.csv", o.screen)
+    place, length = along(lines, x, y)
+    edges = np.arange(0.0, length + o.bin, o.bin)
+    which = np.digitize(place, edges) - 1
+
+    def p95(values):
+        groups = [values[which == i] for i in range(len(edges) - 1)]
+        return np.array([np.percentile(g, 95) if len(g) >= FEWEST else np.nan for g in groups])
+
+    figure, (top, middle, low) = plt.subplots(3, 1, sharex=True, figsize=(8.2, 6.6))
+    share = np.histogram(place, edges)[0] / run["released"]
+    top.stairs(100 * share, edges, fill=True, color="#5c7fa3")
+    top.set_ylabel(f"blocks per {o.bin:g} m\n[% of all released]")
+    stretch = report["containment"]["shortest"]
+    for axes in (top, middle, low):
+        axes.axvspan(stretch["from_m"], stretch["to_m"], color="#f3ead2", zorder=0)
+        axes.grid(color="#e3e3e3", linewidth=0.6)
+    middle.stairs(p95(energy), edges, color="#b0127b", label="P95 of each bin", baseline=None)
+    middle.axhline(design["SEL"], color="#20262c", label=f"SEL {design['SEL']:.0f} kJ")
+    middle.axhline(design["MEL"], color="#20262c", linestyle="--", label=f"MEL {design['MEL']:.0f} kJ")
+    middle.set_ylabel("translational\nenergy [kJ]")
+    low.stairs(p95(height), edges, color="#1f7a33", label="P95 of each bin", baseline=None)
+    low.axhline(design["h_i"], color="#20262c", label=f"h_i {design['h_i']:.2f} m")
+    low.set_ylabel("jump height [m]")
+    low.set_xlabel(f"along '{o.screen}' [m]; shaded: the shortest stretch with "
+                   f"{100 * report['containment']['target']:g} % of the crossings")
+    for axes in (middle, low):
+        axes.set_ylim(bottom=0)
+        axes.legend(loc="upper right", fontsize=8)
+    figure.suptitle(f"{len(x):,} blocks cross '{o.screen}' of {run['released']:,}".replace(",", " "), fontsize=11)
+    figure.tight_layout()
+    figure.savefig(o.output, dpi=100)
+
+
+main()

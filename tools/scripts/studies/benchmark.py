@@ -1,0 +1,109 @@
+#!/usr/bin/python3
+"""Measures the speed of the engine on the common test slope, next to the sketch and the floor, in one run.
+
+  tools/scripts/studies/benchmark.py [--bench build/release/tests/bench/talus-bench] [--shared ../shared] [--work DIR] [--repeats 3]
+
+Makes the slope (2 000 x 2 000 cells of 2 m, 1 000 sources) with shared/bench/make_slope.py, compiles shared/bench/sketch.cpp
+(an unoptimised sketch of the loop with counts and one maximum), runs it and talus-bench in turn and prints the medians of the
+rounds; of ratios, the median of each round's with the range. Two sketches at once show what the machine itself loses where two
+cores share caches, memory or a host. Figures of one machine; the ratios within one run are what can be compared. Needs g++, python3-numpy, python3-gdal.
+"""
+import argparse
+import json
+import os
+import re
+import resource
+import statistics
+import subprocess
+import tempfile
+import time
+
+
+def sketch_speed(folder):
+    """Plan metres per CPU-second of the sketch, in millions: its own clock is wall time, so scaled by wall / CPU of the process."""
+    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
+    out = subprocess.run([f"{folder}/sketch", f"{folder}/dem.asc", f"{folder}/sources.csv", "10"], check=True,
+                         capture_output=True, text=True).stdout
+    wall, after = time.monotonic() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return float(re.search(r"Mm/s ([0-9.]+)", out).group(1)) * max(1.0, wall / cpu)
+
+
+def two_sketches(folder):
+    """What this machine gives to two programs at once that share nothing: wall seconds of one, twice, over those of two together."""
+    command = [f"{folder}/sketch", f"{folder}/dem.asc", f"{folder}/sources.csv", "10"]
+
+    def seconds(programs):
+        start = time.monotonic()
+        for process in [subprocess.Popen(command, stdout=subprocess.DEVNULL) for _ in range(programs)]:
+            process.wait()
+        return time.monotonic() - start
+
+    return 2 * seconds(1) / seconds(2)
+
+
+def bench(program, folder):
+    out = subprocess.run([program, f"{folder}/dem.tif", f"{folder}/sources.shp", "--benchmark_format=json"], check=True,
+                         capture_output=True, text=True).stdout
+    return {b["name"].split("/iterations")[0]: b for b in json.loads(out)["benchmarks"]}
+
+
+def spread(ratios):
+    """Median of the rounds' ratios, with their range."""
+    return f"{statistics.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
+
+
+def table(runs, sketches, doubles):
+    def median(name, key):
+        return statistics.median(run[name][key] for run in runs)
+
+    print(f"sketch: {statistics.median(sketches):.2f} million plan metres per CPU-second ({min(sketches):.2f} to {max(sketches):.2f}, "
+          f"{len(sketches)} rounds)")
+    print("| trajectories per source, threads | million plan m per CPU-s | x sketch | us per trajectory | wall s |")
+    print("| --- | --- | --- | --- | --- |")
+    for name in ("run/10/1", "run/100/1", "run/10/2", "run/100/2"):
+        ratio = spread([run[name]["plan_Mm_per_cpu_s"] / sketch for run, sketch in zip(runs, sketches)])
+        print(f"| {name[4:].replace('/', ', ')} | {median(name, 'plan_Mm_per_cpu_s'):.2f} | {ratio} | "
+              f"{median(name, 'us_per_trajectory'):.0f} | {median(name, 'wall_s'):.2f} |")
+    for n in (10, 100):
+        print(f"two threads against one, {n} trajectories: {spread([r[f'run/{n}/1']['wall_s'] / r[f'run/{n}/2']['wall_s'] for r in runs])}x")
+    print(f"two sketches at once against one after the other: {spread(doubles)}x")
+    walk, law, traced = (median(name, "ns_per_plan_m") for name in ("floor_walk", "impact_law", "trace_only"))
+    floor = walk + law
+
+    def row(name, figure, ns):
+        print(f"| {name} | {figure} | {ns:.1f} ns | {ns / floor:.2f} |")
+
+    print("| part | figure | per plan metre | x floor |\n| --- | --- | --- | --- |")
+    row("bare walk over the same patches", f"{median('floor_walk', 'ns_per_patch'):.1f} ns per patch", walk)
+    row("the impact law alone", f"{median('impact_law', 'ns_per_impact'):.1f} ns per impact", law)
+    row("floor: both", "", floor)
+    row("trace: flight, impacts, slides", f"{median('trace_only', 'ns_per_patch'):.1f} ns per patch", traced)
+    for name in ("run/10/1", "run/100/1"):
+        row(f"full run, {name[4:-2]} trajectories per source, 1 thread", f"{median('score', 'ns_per_cell'):.1f} ns per cell scored",
+            1e3 / median(name, "plan_Mm_per_cpu_s"))
+
+
+def main():
+    here = os.path.dirname(os.path.abspath(__file__))
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--bench", default=f"{here}/../../../build/release/tests/bench/talus-bench")
+    parser.add_argument("--shared", default=f"{here}/../../../../shared")
+    parser.add_argument("--work")
+    parser.add_argument("--repeats", type=int, default=3)
+    o = parser.parse_args()
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = o.work or temporary
+        os.makedirs(folder, exist_ok=True)
+        if not os.path.exists(f"{folder}/sources.shp"):
+            subprocess.run(["/usr/bin/python3", f"{o.shared}/bench/make_slope.py", folder], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run(["g++", "-O2", "-std=c++17", f"{o.shared}/bench/sketch.cpp", "-o", f"{folder}/sketch"], check=True)
+        runs, sketches, doubles = [], [], []
+        for _ in range(o.repeats):
+            sketches.append(sketch_speed(folder))
+            runs.append(bench(o.bench, folder))
+            doubles.append(two_sketches(folder))
+        table(runs, sketches, doubles)
+
+
+main()

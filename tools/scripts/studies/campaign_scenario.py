@@ -1,0 +1,65 @@
+#!/usr/bin/python3
+"""Makes a scenario of a field campaign's releases: tools/scripts/studies/campaign_scenario.py CAMPAIGN_FOLDER OUT_FOLDER [--trajectories 100]
+
+Each block of blocks.csv becomes a point source with its own diameter (of the sphere of its mass and density), release height
+and velocity; zones.tif becomes the ground, with a preset per code: --zone 1=lower-talus-3d --zone 2=quarry-floor-2d ...
+The result is a forward run with chosen parameters, not a fit.
+"""
+import argparse
+import csv
+import math
+import os
+
+from osgeo import gdal, ogr, osr
+
+gdal.UseExceptions()
+ogr.UseExceptions()
+
+
+def write_sources(blocks, dem, path):
+    system = osr.SpatialReference(wkt=gdal.Open(dem).GetProjection())
+    file = ogr.GetDriverByName("GPKG").CreateDataSource(path)
+    layer = file.CreateLayer("sources", system, ogr.wkbPoint)
+    layer.CreateField(ogr.FieldDefn("name", ogr.OFTString))
+    for name in ("diameter", "height", "vx", "vy", "vz"):
+        layer.CreateField(ogr.FieldDefn(name, ogr.OFTReal))
+    for block in blocks:
+        volume = float(block["mass_kg"]) / float(block["density_kgm3"])
+        feature = ogr.Feature(layer.GetLayerDefn())
+        feature["name"] = block["id"]
+        feature["diameter"] = (6.0 * volume / math.pi) ** (1.0 / 3.0)
+        feature["height"] = float(block["release_height_m"] or 1.0)
+        for name in ("vx", "vy", "vz"):
+            feature[name] = float(block[name] or 0.0)
+        feature.SetGeometry(ogr.CreateGeometryFromWkt(f"POINT ({block['x']} {block['y']})"))
+        layer.CreateFeature(feature)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("campaign")
+    parser.add_argument("out")
+    parser.add_argument("--trajectories", type=int, default=100)
+    parser.add_argument("--zone", action="append", default=[], metavar="CODE=PRESET")
+    o = parser.parse_args()
+    os.makedirs(o.out, exist_ok=True)
+    folder = os.path.abspath(o.campaign)
+    blocks = list(csv.DictReader(open(f"{folder}/blocks.csv")))
+    sources = os.path.join(o.out, "sources.gpkg")
+    if os.path.exists(sources):
+        os.remove(sources)
+    write_sources(blocks, f"{folder}/dem.tif", sources)
+    lines = [f'dem = "{folder}/dem.tif"', f"trajectories = {o.trajectories}", "", "[sources]", 'file = "sources.gpkg"', "",
+             "[blocks]", f"density = {blocks[0]['density_kgm3']}", "", "[ground]"]
+    if o.zone:
+        lines += [f'file = "{folder}/zones.tif"', 'default = "upper-talus-3d"']
+        for zone in o.zone:
+            code, preset = zone.split("=")
+            lines += ["", f"[ground.zones.{code}]", f'preset = "{preset}"']
+    else:
+        lines += ['default = "upper-talus-3d"']
+    with open(os.path.join(o.out, "scenario.toml"), "w", encoding="utf-8") as file:
+        file.write("\n".join(lines) + "\n")
+
+
+main()

@@ -1,0 +1,247 @@
+#!/usr/bin/python3
+"""How well `talus diagnose` finds what made a campaign: makes campaigns with the engine itself and diagnoses them.
+
+  tools/scripts/studies/diagnosis_study.py [--talus build/release/talus] [--effects all] [--magnitudes 1,2,0.5] [--blocks 60,120]
+                           [--none 20] [--trials 24] [--test-trials 100] [--most-effects 3] [--threads N]
+                           [--jobs 1] [--work DIR] [--seed 1] [-o study.csv]
+
+Each campaign has a slope of its own (length, steepness, a gully, bumps), three zones, blocks of many sizes and shapes, three
+screens and four days. One effect of a known size acts (or none); one simulated trial per block, with errors of measurement, is
+what was "measured"; a third of the blocks is held out. Prints the confusion matrix, the false alarms and the power by magnitude,
+and the error on the held-out rows with the ground alone, with what was found, and with the model that made the data.
+The same engine makes and judges the data: this measures the statistics, not the physics. What is finished, with the same seed, options and
+program, is not run again.
+"""
+import argparse
+import csv
+import hashlib
+import itertools
+import json
+import os
+import subprocess
+import sys
+from collections import defaultdict
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from osgeo import gdal, osr
+
+gdal.UseExceptions()
+WEST, SOUTH, CELL, COLUMNS, ROWS = 2_600_000.0, 1_200_000.0, 2.0, 160, 260
+GROUND = """
+[ground.zones.{name}]
+theta_scale = {theta:.4f}
+psi_scale = {psi:.4f}
+En50 = {En:.4f}
+Et50 = {Et:.4f}
+shape = [1.0, 1.4]
+"""
+# The size 1 of each effect: [table] and its keys, each times the magnitude where it is a pair (value, "x").
+EFFECTS = {
+    "vegetation-drag": {"coefficient": (150.0, "x"), "height": (8.0, ""), "zones": '["meadow"]'},
+    "forest-stems": {"density": (300.0, "x"), "diameter": (0.35, ""), "zones": '["meadow"]'},
+    "block-shape": {"lateral": (0.8, "x"), "loss": (0.12, "x")},
+    "block-mass": {"roughness": (0.4, "x")},
+    "wet-ground": {"softening": (0.8, "x"), "drag": (0.5, "x"), "days": "[2]"},
+    "soft-ground": {"drag": (2.0, "x"), "zones": '["meadow"]'},
+    "rolling-resistance": {"coefficient": (0.3, "x"), "zones": '["meadow"]'},
+    "air-drag": {"coefficient": (1.0, "x")},
+    "fragmentation": {"threshold": (60.0, "/"), "largest": (0.7, "")},
+}
+
+
+def write_raster(path, values, kind, nodata=None):
+    raster = gdal.GetDriverByName("GTiff").Create(path, COLUMNS, ROWS, 1, kind, ["COMPRESS=DEFLATE"])
+    raster.SetGeoTransform([WEST, CELL, 0, SOUTH + ROWS * CELL, 0, -CELL])
+    system = osr.SpatialReference()
+    system.ImportFromEPSG(2056)
+    raster.SetProjection(system.ExportToWkt())
+    if nodata is not None:
+        raster.GetRasterBand(1).SetNoDataValue(nodata)
+    raster.GetRasterBand(1).WriteArray(values)
+
+
+def terrain(g, folder):
+    """A face that eases into a run-out, with a gully and bumps. Row 0 is in the north, where the blocks start."""
+    y = (np.arange(ROWS) + 0.5)[:, None] * CELL
+    x = (np.arange(COLUMNS) + 0.5)[None, :] * CELL - COLUMNS * CELL / 2
+    steep = np.tan(np.radians(g.uniform(37, 42)))
+    knee = 40 * np.log1p(np.exp((y - 260) / 40))
+    fall = y * steep - knee * (steep - 0.10)
+    gully = g.uniform(2, 6) * np.exp(-((x - g.uniform(-20, 20)) / 25) ** 2)
+    bumps = sum(g.uniform(0.2, 0.5) * np.sin(x / g.uniform(9, 25) + y / g.uniform(9, 25) + g.uniform(0, 6)) for _ in range(6))
+    write_raster(f"{folder}/dem.tif", (400 - fall - gully + bumps).astype(np.float32), gdal.GDT_Float32)
+    zones = np.where(y < 60, 3, np.where(y < 240, 1, 2)) * np.ones((1, COLUMNS))
+    write_raster(f"{folder}/zones.tif", zones.astype(np.uint8), gdal.GDT_Byte)
+
+
+def blocks(g, folder, count):
+    with open(f"{folder}/blocks.csv", "w", encoding="utf-8") as out:
+        out.write("id,x,y,release_height_m,vx,vy,vz,mass_kg,density_kgm3,L1_m,L2_m,L3_m,day,holdout\n")
+        for i in range(count):
+            mass = np.exp(g.uniform(np.log(80), np.log(2500)))
+            a, b = sorted(g.uniform(0.45, 1.0, 2), reverse=True)
+            length = (6 * mass / 2700 / np.pi / a / b) ** (1 / 3)
+            out.write(f"b{i:03d},{WEST + COLUMNS * CELL / 2 + g.uniform(-30, 30):.2f},{SOUTH + ROWS * CELL - g.uniform(8, 40):.2f},"
+                      f"{g.uniform(0.5, 2):.2f},0,-1,0,{mass:.1f},2700,{length:.3f},{a * length:.3f},{b * length:.3f},"
+                      f"{1 + i % 4},{int(i % 3 == 1)}\n")
+
+
+def campaign_text(name, measured):
+    tables = 'stops = "stops.csv"\npassages = "passages.csv"\n' if measured else ""
+    return (f'name = "{name}"\ncrs = "EPSG:2056"\ndem = "dem.tif"\nzones = "zones.tif"\nblocks = "blocks.csv"\n{tables}'
+            'screens = "screens.csv"\n[zone_names]\n1 = "talus"\n2 = "meadow"\n3 = "rock"\n[measurement_error]\n'
+            "position_m = 0.3\nspeed_fraction = 0.03\njump_height_m = 0.1\nangular_velocity_fraction = 0.05\n")
+
+
+def model_text(g, effect, magnitude):
+    text = '[ground]\ndefault = "upper-talus-3d"\n'
+    for name, theta, En in (("talus", 0.8, 13), ("meadow", 1.0, 8), ("rock", 0.5, 20)):
+        text += GROUND.format(name=name, theta=theta * g.uniform(0.9, 1.2), psi=g.uniform(0.5, 0.8), En=En * g.uniform(0.8, 1.2),
+                              Et=45 * g.uniform(0.7, 1.3))
+    if effect != "none":
+        text += f"\n[effects.{effect}]\n"
+        for key, value in EFFECTS[effect].items():
+            if isinstance(value, tuple):
+                size = value[0] * magnitude if value[1] == "x" else value[0] / magnitude if value[1] == "/" else value[0]
+                value = f"{size:.6g}"
+            text += f"{key} = {value}\n"
+    return text
+
+
+def write(path, text):
+    with open(path, "w", encoding="utf-8") as out:
+        out.write(text)
+
+
+def rows(path):
+    with open(path, encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def make(talus, folder, effect, magnitude, count, seed):
+    """A campaign in `folder`: what one trial of the model in truth_model.toml would have been measured as."""
+    os.makedirs(folder, exist_ok=True)
+    g = np.random.default_rng(seed)
+    terrain(g, folder)
+    blocks(g, folder, count)
+    top = SOUTH + ROWS * CELL
+    lines = [f'S{i + 1},"LINESTRING ({WEST + 4} {top - d}, {WEST + COLUMNS * CELL - 4} {top - d})"' for i, d in enumerate((140, 250, 320))]
+    write(f"{folder}/screens.csv", "id,wkt\n" + "\n".join(lines) + "\n")
+    write(f"{folder}/truth_model.toml", model_text(g, effect, magnitude))
+    write(f"{folder}/plan.toml", campaign_text("plan", False))
+    run([talus, "score", f"{folder}/plan.toml", "--parameters", f"{folder}/truth_model.toml", "--trials", "10", "--seed",
+         str(1000 + seed), "--dump", f"{folder}/truth", "-q"])
+    mass = {b["id"]: float(b["mass_kg"]) for b in rows(f"{folder}/blocks.csv")}
+    stops = [s for s in rows(f"{folder}/truth/stops.csv") if s["trial"] == "0" and s["end"] == "stopped"]
+    write(f"{folder}/stops.csv", "id,x,y,mass_kg\n" + "".join(
+        f"{s['block']},{s['x']},{s['y']},{float(s['mass_share']) * mass[s['block']]:.1f}\n" for s in stops))
+    write(f"{folder}/passages.csv", "id,screen,speed_ms,jump_height_m,angular_velocity_rads\n" + "".join(
+        f"{p['block']},{p['screen']},{p['speed_ms']},{p['jump_height_m']},{p['angular_velocity_rads']}\n"
+        for p in rows(f"{folder}/truth/passages.csv") if p["trial"] == "0"))
+    write(f"{folder}/campaign.toml", campaign_text(os.path.basename(folder), True))
+
+
+def run(command):
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise RuntimeError(f"{' '.join(command)}\n{done.stderr}")
+    return done.stdout
+
+
+def program(o):
+    """What tells one program from another."""
+    with open(o.talus, "rb") as file:
+        return hashlib.sha256(file.read()).hexdigest()[:12]
+
+
+def diagnose(o, folder):
+    out = f"{folder}/diagnosis-{o.trials}-{o.test_trials}-{o.most_effects}"
+    if not os.path.exists(f"{out}/diagnosis.json"):
+        run([o.talus, "diagnose", f"{folder}/campaign.toml", "-o", out, "--trials", str(o.trials),
+             "--test-trials", str(o.test_trials), "--most-effects", str(o.most_effects), "-q", "--overwrite"]
+            + (["--threads", str(o.threads)] if o.threads else []))
+    with open(f"{out}/diagnosis.json", encoding="utf-8") as file:
+        found = json.load(file)
+    truth = json.loads(run([o.talus, "score", f"{folder}/campaign.toml", "--parameters", f"{folder}/truth_model.toml", "--rows",
+                            "holdout", "--trials", "200", "--json", "-q"]))
+    return found, truth["holdout"]["score"]
+
+
+def one(o, effect, magnitude, count, k):
+    """Makes and diagnoses one campaign, and prints what came out."""
+    folder = f"{o.work}/{o.program}-{o.seed}/{effect}-{magnitude:g}-{count}-{k}"
+    if not os.path.exists(f"{folder}/campaign.toml"):
+        make(o.talus, folder, effect, magnitude, count, o.seed + 7919 * k + sum(map(ord, effect)) + int(100 * magnitude) + count)
+    found, truth = diagnose(o, folder)
+    e = found["error"]["holdout"]
+    row = dict(effect=effect, magnitude=magnitude, blocks=count, found=found["effect"], alike=" ".join(found["indistinguishable_from"]),
+               p=found["rounds"][0]["p_value"], before=e["before"], after=e["after"], truth=truth, seconds=found["seconds"])
+    print(f"{effect} x{magnitude:g}, {count} blocks, {k}: {row['found']} ({row['alike']}) p {row['p']:.4f}, held-out {row['before']:.3f} -> "
+          f"{row['after']:.3f}, truth {truth:.3f}, {row['seconds']:.0f} s", flush=True)
+    return row
+
+
+def study(o):
+    plan = []
+    for n in o.blocks:  # half of a study says something of everything
+        none = [("none", 1.0, n, k) for k in range(o.none)]
+        some = [(e, m, n, 0) for m in o.magnitudes for e in o.effects]
+        plan += [p for pair in itertools.zip_longest(some, none) for p in pair if p]
+    with ThreadPoolExecutor(o.jobs) as jobs:
+        return list(jobs.map(lambda campaign: one(o, *campaign), plan))
+
+
+def report(table):
+    names = sorted({r["effect"] for r in table})
+    counts = defaultdict(int)
+    for r in table:
+        counts[r["effect"], r["found"]] += 1
+    found = sorted({r["found"] for r in table})
+    print("\n| made with | " + " | ".join(found) + " |\n| --- |" + " --- |" * len(found))
+    for name in names:
+        print(f"| {name} | " + " | ".join(str(counts[name, f] or "") for f in found) + " |")
+    none = [r for r in table if r["effect"] == "none"]
+    if none:
+        alarms = sum(r["found"] not in ("none", "unexplained") for r in none)
+        print(f"\nfalse alarms: {alarms} of {len(none)}")
+    effects = [r for r in table if r["effect"] != "none"]
+    for size in sorted({r["magnitude"] for r in effects}):
+        of = [r for r in effects if r["magnitude"] == size]
+        named = sum(r["found"] == r["effect"] for r in of)
+        listed = sum(r["effect"] in [r["found"]] + r["alike"].split() for r in of)
+        seen = sum(r["found"] != "none" for r in of)
+        print(f"magnitude {size:g}: {len(of)} campaigns, residual seen {seen}, right effect named {named}, named or listed as alike {listed}")
+
+
+def main():
+    here = os.path.dirname(os.path.abspath(__file__))
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--talus", default=f"{here}/../../../build/release/talus")
+    parser.add_argument("--effects", default="all")
+    parser.add_argument("--magnitudes", default="1,2,0.5")
+    parser.add_argument("--blocks", default="60,120")
+    parser.add_argument("--none", type=int, default=20)
+    parser.add_argument("--trials", type=int, default=24)
+    parser.add_argument("--test-trials", type=int, default=100)
+    parser.add_argument("--most-effects", type=int, default=3)
+    parser.add_argument("--threads", type=int, help="of each diagnosis; all processors where it is not given")
+    parser.add_argument("--jobs", type=int, default=1, help="campaigns at a time; with --threads 1 the quickest way")
+    parser.add_argument("--work", default="build/study")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("-o", "--out")
+    o = parser.parse_args()
+    o.effects = list(EFFECTS) if o.effects == "all" else [e for e in o.effects.split(",") if e]
+    o.magnitudes = [float(m) for m in o.magnitudes.split(",")]
+    o.blocks = [int(n) for n in o.blocks.split(",")]
+    o.program = program(o)
+    table = study(o)
+    report(table)
+    if o.out:
+        with open(o.out, "w", encoding="utf-8") as out:
+            writer = csv.DictWriter(out, table[0].keys())
+            writer.writeheader()
+            writer.writerows(table)
+
+
+main()
