@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "../support/slopes.hpp"
+#include "support/slopes.hpp"
 
 namespace talus {
 namespace {

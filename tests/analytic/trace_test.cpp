@@ -5,7 +5,7 @@
 #include <array>
 #include <limits>
 
-#include "../support/scenes.hpp"
+#include "support/scenes.hpp"
 
 namespace talus {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "../support/scenes.hpp"
+#include "support/scenes.hpp"
 #include "talus/physics/trace.hpp"
 
 namespace talus {

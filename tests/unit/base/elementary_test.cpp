@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "../../support/scenes.hpp"
+#include "support/scenes.hpp"
 #include "talus/base/random.hpp"
 
 namespace talus {

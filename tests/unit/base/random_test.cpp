@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "../../support/scenes.hpp"
+#include "support/scenes.hpp"
 
 namespace talus {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "../../support/scenes.hpp"
+#include "support/scenes.hpp"
 #include "talus/physics/impact.hpp"
 
 namespace talus {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "../../support/scenes.hpp"
+#include "support/scenes.hpp"
 #include "talus/physics/trace.hpp"
 
 namespace talus {

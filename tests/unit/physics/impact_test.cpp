@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "../../support/scenes.hpp"
+#include "support/scenes.hpp"
 
 #ifndef TALUS_SOURCE_DIR
 #define TALUS_SOURCE_DIR "/work/main"

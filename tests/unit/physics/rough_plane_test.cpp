@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "../../support/scenes.hpp"
+#include "support/scenes.hpp"
 #include "talus/physics/impact.hpp"
 
 namespace talus {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "../../support/scenes.hpp"
+#include "support/scenes.hpp"
 #include "talus/physics/slide.hpp"
 
 namespace talus {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "../../support/scenarios.hpp"
+#include "support/scenarios.hpp"
 #include "talus/simulate/simulate.hpp"
 
 namespace talus {

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "../../support/scenarios.hpp"
+#include "support/scenarios.hpp"
 #include "talus/simulate/simulate.hpp"
 
 namespace talus {

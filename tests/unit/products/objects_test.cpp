@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "../../support/scenarios.hpp"
+#include "support/scenarios.hpp"
 #include "talus/simulate/simulate.hpp"
 
 namespace talus {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../../support/scenes.hpp"
+#include "support/scenes.hpp"
 
 namespace talus {
 namespace {

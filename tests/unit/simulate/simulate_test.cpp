@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "../../support/scenarios.hpp"
+#include "support/scenarios.hpp"
 #include "talus/simulate/plan/plan.hpp"
 
 namespace talus {

@@ -4,7 +4,7 @@
 
 #include <thread>
 
-#include "../../support/scenarios.hpp"
+#include "support/scenarios.hpp"
 
 namespace talus {
 namespace {

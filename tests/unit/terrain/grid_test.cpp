@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "../../support/scenes.hpp"
+#include "support/scenes.hpp"
 #include "talus/terrain/raster.hpp"
 
 namespace talus {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "../../support/scenes.hpp"
+#include "support/scenes.hpp"
 
 namespace talus {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "../../support/scenes.hpp"
+#include "support/scenes.hpp"
 
 namespace talus {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "../../../support/slopes.hpp"
+#include "support/slopes.hpp"
 
 namespace talus {
 namespace {

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <set>
 
-#include "../../../support/slopes.hpp"
+#include "support/slopes.hpp"
 
 namespace talus {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "../../../support/slopes.hpp"
+#include "support/slopes.hpp"
 #include "talus/physics/effects/block_mass.hpp"
 #include "talus/physics/effects/block_shape.hpp"
 #include "talus/physics/effects/rolling_resistance.hpp"

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "../../../support/slopes.hpp"
+#include "support/slopes.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace talus {

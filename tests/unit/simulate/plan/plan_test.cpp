@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "../../support/scenarios.hpp"
+#include "support/scenarios.hpp"
 
 namespace talus {
 namespace {

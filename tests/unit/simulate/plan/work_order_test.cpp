@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "../../support/scenes.hpp"
+#include "support/scenes.hpp"
 #include "talus/simulate/tally/source_reach.hpp"
 
 namespace talus {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "../../support/scenarios.hpp"
+#include "support/scenarios.hpp"
 
 namespace talus {
 namespace {

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "../../support/scenes.hpp"
+#include "support/scenes.hpp"
 
 namespace talus {
 namespace {

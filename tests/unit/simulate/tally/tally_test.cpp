@@ -11,7 +11,7 @@
 #include <set>
 #include <thread>
 
-#include "../../support/scenarios.hpp"
+#include "support/scenarios.hpp"
 
 namespace talus {
 namespace {

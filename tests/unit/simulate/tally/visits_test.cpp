@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "../../support/scenarios.hpp"
+#include "support/scenarios.hpp"
 #include "talus/physics/flight.hpp"
 #include "talus/simulate/plan/plan.hpp"
 
