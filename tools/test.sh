@@ -1,14 +1,38 @@
 #!/usr/bin/env bash
-# Runs every test: layers, core, files, command line, reference results; then the core again under sanitizers.
+# Runs every check: the tests of the release build (layers, core, files, command line, reference results); the core and
+# files again as clang builds them, with warnings as errors and invariants checked, and under sanitizers; equal bytes
+# from both compilers; formatting and clang-tidy.
 # The measured data and reference results are read from ../shared/data, or from the folder TALUS_DATA.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-if [ "${CI:-}" = true ] && [ ! -d "${TALUS_DATA:-../shared/data}/reference" ]; then
-  echo "tools/test.sh: no data at ${TALUS_DATA:-../shared/data}: CI must not skip the tests that need them" >&2
+data="${TALUS_DATA:-../shared/data}"
+if [ "${CI:-}" = true ] && [ ! -d "$data/reference" ]; then
+  echo "tools/test.sh: no data at $data: CI must not skip the tests that need them" >&2
   exit 1
 fi
-[ -z "${TALUS_DATA:-}" ] || cmake --preset release -DTALUS_DATA="$TALUS_DATA"
+stage() { printf '\n== %s (%d min %02d s so far)\n' "$1" $((SECONDS / 60)) $((SECONDS % 60)); }
+
+tools/install_packages.sh openmpi-bin python3-scipy clang clang-format clang-tidy libomp-dev
+stage "formatting"
+git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror
+stage "release: build"
+cmake --preset release ${TALUS_DATA:+-DTALUS_DATA="$TALUS_DATA"}
+cmake --build --preset release
+stage "release: tests"
 ctest --preset release -j 2
+stage "dev: build by clang, warnings are errors"
+cmake --preset dev ${TALUS_DATA:+-DTALUS_DATA="$TALUS_DATA"}
+cmake --build --preset dev
+stage "dev: tests of core and files"
+statistics="ScoreTest|Calibrate|FreePaths"  # long where nothing is optimised
+ctest --preset dev -j 2 -LE "slow|cli" -E "$statistics"
+stage "the same bytes from gcc with optimisation and from clang without"
+tools/scripts/checks/same_bytes.sh build/release/talus build/dev/talus
+stage "clang-tidy"
+tools/scripts/checks/tidy.sh build/dev 240
+stage "sanitizers: build"
 cmake --preset asan
 cmake --build --preset asan --target core_tests io_tests
-ctest --preset asan -j 2 -LE "slow|cli" -E "ScoreTest|Calibrate|FreePaths"  # statistics: long there
+stage "sanitizers: tests of core and files"
+ctest --preset asan -j 2 -LE "slow|cli" -E "$statistics"
+stage "done"

@@ -1,0 +1,8 @@
+#!/usr/bin/env bash
+# Whether two builds of the program write the same bytes: same_bytes.sh build/release/talus build/dev/talus
+set -euo pipefail
+here="$(cd "$(dirname "$0")" && pwd)"
+work="$(mktemp -d)"
+trap 'rm -rf "$work"' EXIT
+"$here/fingerprint.py" --brief --talus "$1" -o "$work/first.txt"
+"$here/fingerprint.py" --brief --talus "$2" -o "$work/second.txt" --against "$work/first.txt"
