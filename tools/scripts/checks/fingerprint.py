@@ -18,7 +18,7 @@ import sys
 import tempfile
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../.."))
-VOLATILE = {"cpu_seconds", "wall_seconds", "peak_memory_mb", "command", "version", "ranks", "threads", "date", "started", "seconds"}
+VOLATILE = {"plan", "cpu_seconds", "wall_seconds", "peak_memory_mb", "command", "version", "ranks", "threads", "date", "started", "seconds"}
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_btl_base_warn_component_unused": "0"}
 
 EFFECTS = """
@@ -63,11 +63,15 @@ def without_volatile(value):
     return [without_volatile(v) for v in value] if isinstance(value, list) else value
 
 
-def checksum(path):
+def checksum(path, folder):
+    """Of a file's bytes, the name of the temporary folder left out."""
     with open(path, "rb") as file:
-        data = file.read()
+        data = file.read().replace(folder.encode(), b"FOLDER")
     if path.endswith(".json"):
-        data = json.dumps(without_volatile(json.loads(data)), sort_keys=True).encode()
+        record = without_volatile(json.loads(data))
+        if path.endswith("part.json"):  # checksums of what is left out
+            record = {key: record[key] for key in ("part", "of", "rounds", "rounds_done", "units_done", "settings")}
+        data = json.dumps(record, sort_keys=True).encode()
     return hashlib.sha256(data).hexdigest()
 
 
@@ -157,8 +161,10 @@ class Outputs:
         found = {}
         for folder, _, names in os.walk(self.folder):
             for name in names:
+                if name.endswith(".bin"):  # what a part keeps: the order in which its threads came stands in it
+                    continue
                 path = os.path.join(folder, name)
-                found[os.path.relpath(path, self.folder)] = checksum(path)
+                found[os.path.relpath(path, self.folder)] = checksum(path, self.folder)
         return dict(sorted(found.items()))
 
 
