@@ -68,7 +68,7 @@ void StagedFiles::commit() {
   fs::remove(folder_ / record_, error);  // first: what lies there is from now on not complete
   for (const std::string& name : earlier_) fs::remove(folder_ / name, error);
   std::vector<std::string> names = files();
-  std::ranges::stable_partition(names, [this](const std::string& name) { return name != record_; });
+  std::stable_partition(names.begin(), names.end(), [this](const std::string& name) { return name != record_; });
   for (const std::string& name : names) {
     fs::rename(temporary_ / name, folder_ / name, error);
     if (error) throw std::runtime_error(name + ": cannot be given this name: " + error.message());
