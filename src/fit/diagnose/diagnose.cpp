@@ -73,7 +73,7 @@ class Diagnosing {
     Round round;
     round.residual = residual_of(base);
     advance(kTestShare);
-    const std::vector<Candidate> candidates = candidates_of(campaign_, base.model, base.fitting, found);
+    const std::vector<Candidate> candidates = candidates_of(campaign_, base.model, base.fitting, found, options_.rules);
     const Axis axis = axis_of(campaign_, base.fitting);
     ScoreTestOptions how;
     how.trials = options_.trials.test;
@@ -93,7 +93,8 @@ class Diagnosing {
       if (!found.empty() && (verdict.p_value >= level || round.trials.size() == kLaterFits)) continue;
       advance();
       const EffectVerdict placed = in_better_zone(base, verdict, candidates);
-      round.trials.push_back(fits_.effect(base, placed, together(campaign_, axis, candidates, placed.best.members)));
+      round.trials.push_back(fits_.effect(
+          base, placed, merged_candidate(campaign_, axis, candidates, placed.best.members, options_.rules)));
     }
     if (!noise) compete(base, round.trials, level, found.empty() ? kContenders : kLaterContenders);
     choose(base, round, noise);

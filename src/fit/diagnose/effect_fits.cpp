@@ -10,6 +10,8 @@
 namespace talus {
 namespace {
 
+constexpr double kNoticed = DiagnosisRules{}.noticed;
+
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;

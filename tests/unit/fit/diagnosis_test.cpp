@@ -214,7 +214,7 @@ TEST(ScoreTest, FindsTheSetOfWetDays) {
                                 [](const EffectVerdict& e) { return e.effect == "wet-ground"; });
   ASSERT_NE(wet, test.effects.end());
   EXPECT_LT(wet->p_value, 0.01);
-  EXPECT_EQ(together(c, Axis{}, list, wet->best.members).where, "days 1, 3");
+  EXPECT_EQ(merged_candidate(c, Axis{}, list, wet->best.members).where, "days 1, 3");
 }
 
 /// Two independent estimates of which only the second may be negative: the bounded optimum by hand.

@@ -1,10 +1,9 @@
 #pragma once
 #include "talus/fit/calibrate/calibrate.hpp"
+#include "talus/fit/diagnose/axis.hpp"
+#include "talus/fit/diagnose/diagnosis_rules.hpp"
 
 namespace talus {
-
-/// The amount of an effect that one would notice, in z: what the score test moves. The prior is four times as wide.
-inline constexpr double kNoticed = 0.25;
 
 /// Something that may be missing in a model: where it acts and the numbers that it adds. Off, at z = 0 of all its
 /// parameters, it changes nothing. docs/closing-the-loop.md, "Candidates".
@@ -19,38 +18,19 @@ struct Candidate {
   std::vector<int> days = {};           ///< of wet ground
 };
 
-/// Positions along the slope: the direction in plan in which the blocks of a campaign go, and how far.
-struct Axis {
-  Eigen::Vector2d origin, direction;  ///< [m, local], unit
-  double from = 0.0, to = 0.0;        ///< of the paths, along the direction from the origin [m]
-
-  double along(const Eigen::Vector2d& place) const { return (place - origin).dot(direction); }
-};
-
-/// From the mean release to the mean simulated stop.
-Axis axis_of(const Campaign& campaign, std::span<const BlockRuns> runs);
-
 /// The effects of the library and the anomalies that are not physics, with every place where they may act.
 ///
 /// @param runs     of the base model: says which zones are met and where the blocks go
 /// @param without  names of effects that the base model has already
 ///
 /// Candidates of one effect stand one after the other. Bands (undeclared-zone) are given as the cells of a ladder of
-/// `kBands` along the axis, in order, wet days one by one: the score test joins them, as their signatures add up.
+/// `bands` along the axis, in order, wet days one by one: the score test joins them, as their signatures add up.
 std::vector<Candidate> candidates_of(const Campaign& campaign, const Model& base, std::span<const BlockRuns> runs,
-                                     std::span<const std::string> without);
-
-inline constexpr int kBands = 12;  ///< of the ladder for undeclared zones
-inline constexpr int kLines = 16;  ///< places of an undeclared barrier
-
-/// A band of other ground across the axis, from one distance along it to another [m].
-Candidate band(const Campaign& campaign, const Axis& axis, double from, double to);
-/// A net across the axis.
-Candidate barrier(const Axis& axis, double width, double at);
+                                     std::span<const std::string> without, const DiagnosisRules& rules = {});
 
 /// The one candidate that several of one effect make: a band of neighbouring ones, or all of their days.
-Candidate together(const Campaign& campaign, const Axis& axis, std::span<const Candidate> list,
-                   std::span<const std::size_t> members);
+Candidate merged_candidate(const Campaign& campaign, const Axis& axis, std::span<const Candidate> list,
+                           std::span<const std::size_t> members, const DiagnosisRules& rules = {});
 
 /// The model with a candidate in place, at z of its parameters.
 Model with(const Model& base, const Candidate& candidate, const Eigen::VectorXd& z);

@@ -75,6 +75,7 @@ struct DiagnoseOptions {
   int most_effects = 3;
   double first_level = 0.05;            ///< of the score test, over all effects: the false alarms that are accepted
   double later_level = 0.01;            ///< once an effect is in: its form is itself a guess, which leaves a residual
+  DiagnosisRules rules;                 ///< numbers that no user sets
   std::function<bool(double)> proceed;  ///< told the share done, 0..1; false ends it. May be empty
 };
 
