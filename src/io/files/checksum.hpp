@@ -1,25 +1,25 @@
 #pragma once
-#include <array>
-#include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 
+struct evp_md_ctx_st;
+
 namespace talus::io {
 
-/// SHA-256 of bytes that come in pieces. Source: FIPS 180-4; its known answers are in the test.
+/// SHA-256 of bytes that come in pieces, by OpenSSL. Source: FIPS 180-4; its known answers are in the test.
 class Sha256 {
  public:
+  Sha256();
   void add(std::string_view bytes);
   /// 64 hexadecimal digits. Ends the sum: nothing may be added after it.
   std::string digits();
 
  private:
-  void block(const unsigned char* data);
-
-  std::array<std::uint32_t, 8> state_{0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
-                                      0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
-  std::array<unsigned char, 64> buffer_{};
-  std::uint64_t length_ = 0;  // bytes so far
+  struct Free {
+    void operator()(evp_md_ctx_st* context) const;
+  };
+  std::unique_ptr<evp_md_ctx_st, Free> context_;
 };
 
 /// Of bytes.
