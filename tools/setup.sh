@@ -5,7 +5,7 @@ cd "$(dirname "$0")/.."
 as_root=""
 [ "$(id -u)" = 0 ] || as_root="sudo"
 packages=(g++ cmake ninja-build libgdal-dev libproj-dev proj-data gdal-bin libeigen3-dev libboost-dev libnlopt-cxx-dev libcli11-dev
-  libtomlplusplus-dev nlohmann-json3-dev libgtest-dev libgmock-dev libbenchmark-dev libopenmpi-dev openmpi-bin python3 python3-gdal python3-numpy
+  libtomlplusplus-dev nlohmann-json3-dev libssl-dev libgtest-dev libgmock-dev libbenchmark-dev libopenmpi-dev openmpi-bin python3 python3-gdal python3-numpy
   python3-scipy python3-matplotlib)
 missing=()
 for package in "${packages[@]}"; do

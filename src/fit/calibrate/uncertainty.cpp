@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "local_model.hpp"
+#include "talus/base/sample.hpp"
 
 namespace talus {
 namespace {

@@ -6,7 +6,7 @@
 #include "campaign_tables.hpp"
 #include "io/gdal/dataset.hpp"
 #include "io/scenario/scenario_spec.hpp"
-#include "io/files/sha256.hpp"
+#include "io/files/checksum.hpp"
 #include "io/scenario/table_reader.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"

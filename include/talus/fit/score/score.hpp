@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "talus/base/sample.hpp"
 #include "talus/fit/campaign/observe.hpp"
 
 namespace talus {
@@ -75,11 +76,6 @@ std::size_t fewest_simulated_of(std::uint32_t trials);
 /// @param weight  by block of the campaign, >= 0
 double weighted_total(const Score& score, std::span<const double> weight);
 
-/// An interval that holds the middle 95 % of what a bootstrap gave.
-struct Interval {
-  double low = kNotGiven, high = kNotGiven;
-};
-
 /// 95 % interval of the total, and of each group, over which blocks happened to be released: percentiles of a
 /// bootstrap that draws blocks with replacement, the same blocks for all groups. The model is held fixed.
 struct ScoreIntervals {
@@ -109,8 +105,5 @@ Difference difference(const Score& before, const Score& after, std::size_t block
 
 /// Number of times that each of the blocks that have a row is drawn in bootstrap number `draw`. Size: blocks.
 std::vector<double> bootstrap_weights(const Score& score, std::size_t blocks, std::uint32_t draw, std::uint64_t seed);
-
-/// Quantile of values by linear interpolation between order statistics (type 7). `sorted` ascending, not empty.
-double quantile(std::span<const double> sorted, double share);
 
 }  // namespace talus
