@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "talus/fit/calibrate/calibrate.hpp"
+#include "talus/fit/calibrate/fit_problem.hpp"
 #include "talus/fit/calibrate/quadratic.hpp"
 
 namespace talus {
@@ -20,7 +20,7 @@ class LocalModel {
   /// Evaluations of one round.
   static int round_length(Eigen::Index parameters) { return std::max(60, 8 * static_cast<int>(parameters) + 10); }
   /// Covariance of the design of the first round.
-  static Eigen::MatrixXd first_spread(Eigen::Index parameters);
+  static Eigen::MatrixXd first_spread(Eigen::Index parameters, const SearchRules& rules);
   /// Places around the centre, normally distributed within the bounds. `first`: number of the first of them.
   static std::vector<Eigen::VectorXd> design(const FitProblem& problem, std::uint64_t seed,
                                              const Eigen::VectorXd& centre, const Eigen::MatrixXd& spread, int count,
@@ -54,11 +54,11 @@ class LocalModel {
   double prior_;
   Eigen::VectorXd centre_, low_, high_;  // low, high: bounds from the centre
   std::optional<QuadraticFit> model_;
-  Eigen::MatrixXd rows_;       // coefficients x row scores
-  Eigen::VectorXd total_;      // coefficients of the total
-  Eigen::VectorXd luck_;       // noise of each evaluation over noise_
-  Eigen::MatrixXd from_v_;     // gradient in z from that in the coordinates of the spread
-  Eigen::MatrixXd curvature_;  // in z, with the prior
+  Eigen::MatrixXd rows_;          // coefficients x row scores
+  Eigen::VectorXd total_;         // coefficients of the total
+  Eigen::VectorXd noise_factor_;  // noise of each evaluation over noise_
+  Eigen::MatrixXd from_v_;        // gradient in z from that in the coordinates of the spread
+  Eigen::MatrixXd curvature_;     // in z, with the prior
   double noise_ = 0.0;
 };
 

@@ -46,7 +46,7 @@ Uncertainty uncertainty_of(const FitProblem& problem, const FitOptions& options,
         out.interrupted = true;
         return out;
       }
-      const Trials own{options.trials, LocalModel::trials_of(kOwnDesigns + done++, options.trials)};
+      const TrialRange own{options.trials, LocalModel::trials_of(kOwnDesigns + done++, options.trials)};
       around.evaluations.push_back(evaluate(problem, options, z, own));
     }
     if (round + 1 < how.rounds) spread = LocalModel(problem, options, around, spread).next_spread();

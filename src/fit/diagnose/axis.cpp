@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "talus/fit/score/score.hpp"
+#include "talus/base/sample.hpp"
 
 namespace talus {
 

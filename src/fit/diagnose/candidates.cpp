@@ -3,6 +3,7 @@
 #include <set>
 
 #include "anomalies.hpp"
+#include "talus/base/sample.hpp"
 
 namespace talus {
 namespace {

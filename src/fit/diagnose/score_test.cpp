@@ -1,24 +1,21 @@
 #include "talus/fit/diagnose/score_test.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
 
 #include "talus/base/random.hpp"
-#include "talus/fit/calibrate/projection.hpp"
+#include "talus/fit/diagnose/projection.hpp"
+#include "talus/fit/diagnose/residual.hpp"
 
 namespace talus {
 namespace {
 
-constexpr double kNoticed = DiagnosisRules{}.noticed;
-
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double kStep = 0.5;     // by which a parameter of the base is moved [z]
-constexpr double kPriorSd = 1.0;  // of a parameter of the base [z]: what the data do not constrain does not move
 
 /// Mean residual of the trials of one block; zero where fewer than five were seen.
 VectorXd mean_residual(const ResidualSpace& space, std::size_t block, const BlockRuns& runs) {
@@ -160,22 +157,22 @@ void rank(const Verdict& verdict, EffectVerdict& effect) {
 }
 
 /// By how much a parameter of the base is moved: away from its upper bound [z].
-double step_of(const Parameter& parameter, double z) {
-  return parameter.value(z + kStep) < parameter.upper ? kStep : -kStep;
+double step_of(const Parameter& parameter, double z, double size) {
+  return parameter.value(z + size) < parameter.upper ? size : -size;
 }
 
 /// The directions of the base's parameters, then those of the candidates.
 void add_directions(Directions& directions, const TestedModel& base, std::span<const Candidate> candidates,
-                    const std::function<std::vector<BlockRuns>(const Model&)>& observed) {
+                    const DiagnosisRules& rules, const std::function<std::vector<BlockRuns>(const Model&)>& observed) {
   for (std::size_t i = 0; i < base.free.size(); ++i) {
     VectorXd moved = base.z;
-    moved[static_cast<Index>(i)] += step_of(base.free[i], base.z[static_cast<Index>(i)]);
+    moved[static_cast<Index>(i)] += step_of(base.free[i], base.z[static_cast<Index>(i)], rules.base_step);
     directions.add(observed(model_at(base.model, base.free, moved)));
   }
   for (const Candidate& candidate : candidates)
     for (std::size_t p = 0; p < candidate.tested; ++p) {
       VectorXd moved = VectorXd::Zero(static_cast<Index>(candidate.parameters.size()));
-      moved[static_cast<Index>(p)] = kNoticed;
+      moved[static_cast<Index>(p)] = rules.noticed;
       directions.add(observed(with(base.model, candidate, moved)));
     }
 }
@@ -213,9 +210,10 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
     if (options.proceed && !options.proceed()) throw FitInterrupted{};
     return observe(campaign, model, {options.trials, options.seed, 0, options.threads, rows, {}});
   };
-  const ResidualSpace space(campaign, base.runs);
+  const DiagnosisRules& rules = options.rules;
+  const ResidualSpace space(campaign, base.runs, rules);
   Directions directions(campaign, space, base.runs, observed(base.model), rows);
-  add_directions(directions, base, candidates, observed);
+  add_directions(directions, base, candidates, rules, observed);
   std::vector<MatrixXd> trials;
   MatrixXd measured;
   directions.score_all(trials, measured);
@@ -224,12 +222,14 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
 
   const auto n_base = static_cast<Index>(base.free.size());
   VectorXd steps(n_base);
-  for (Index i = 0; i < n_base; ++i) steps[i] = step_of(base.free[static_cast<std::size_t>(i)], base.z[i]);
+  for (Index i = 0; i < n_base; ++i)
+    steps[i] = step_of(base.free[static_cast<std::size_t>(i)], base.z[i], rules.base_step);
   ScoreTest test;
   std::vector<Projection> projections;
   std::vector<std::size_t> effect_of;
-  for (const TestedPlace& place : places_of(candidates, n_base, directions.size())) {
-    projections.emplace_back(place, covariance, steps, kStep * kStep / (kPriorSd * kPriorSd));
+  for (const TestedPlace& place : places_of(candidates, n_base, directions.size(), rules)) {
+    projections.emplace_back(place, covariance, steps,
+                             rules.base_step * rules.base_step / (rules.base_sd * rules.base_sd));
     Verdict verdict = projections.back().verdict(measured);
     verdict.members = place.members;
     const std::string& name = candidates[place.members.front()].effect;

@@ -25,7 +25,7 @@ Json number(double value) {
   return std::isnan(value) ? Json() : Json(rounded(value));
 }
 
-Json parameters_of(const Trial& trial) {
+Json parameters_of(const FittedCandidate& trial) {
   Json json = Json::object();
   for (std::size_t i = 0; i < trial.parameters.size(); ++i) json[trial.parameters[i].key] = number(trial.values[i]);
   return json;
@@ -43,14 +43,14 @@ Json residual_of(const std::vector<ResidualRow>& rows) {
   return list;
 }
 
-Json candidates_of(const Round& round, const std::vector<HoldoutError>& holdout) {
+Json candidates_of(const DiagnosisRound& round, const std::vector<HoldoutError>& holdout) {
   Json list = Json::array();
-  for (std::size_t i = 0; i < round.trials.size(); ++i) {
-    const Trial& t = round.trials[i];
+  for (std::size_t i = 0; i < round.candidates.size(); ++i) {
+    const FittedCandidate& t = round.candidates[i];
     list.push_back({{"effect", t.effect},
                     {"where", t.where},
                     {"parameters", parameters_of(t)},
-                    {"fitted_with_ground", t.joint},
+                    {"fitted_with_ground", t.with_ground},
                     {"fit", number(t.fitted.score.total)},
                     {"price", number(t.price)},
                     {"objective_gain", number(t.gain)},
@@ -82,14 +82,14 @@ HoldoutError error_of(const Score& before, const Score& after, std::size_t block
   return {before.total, after.total, reduction(before, after, blocks)};
 }
 
-bool found(const Round& round) {
+bool found(const DiagnosisRound& round) {
   return round.effect != "none" && round.effect != "unexplained";
 }
 
 /// Of an effect the share of the bootstraps in which it is the best. No probabilities of being right: of `none` the
 /// p-value of the test, of `unexplained` one less the smallest p-value that says so.
-double probability_of(const Round& round) {
-  if (found(round)) return round.trials.front().chosen_share;
+double probability_of(const DiagnosisRound& round) {
+  if (found(round)) return round.candidates.front().chosen_share;
   if (round.effect == "none") return round.p_value;
   return 1.0 - std::min(round.p_value, round.residual.empty() ? 1.0 : round.residual.front().corrected);
 }
@@ -100,11 +100,11 @@ void open_holdout(const Campaign& campaign, DiagnosisRecord& record) {
   const std::size_t blocks = campaign.blocks.size();
   const Score base = holdout_score(campaign, record.diagnosis.base.model, record);
   Score before = base;
-  for (const Round& round : record.diagnosis.rounds) {
+  for (const DiagnosisRound& round : record.diagnosis.rounds) {
     record.candidates.emplace_back();
     Score chosen = before;
-    for (std::size_t i = 0; i < round.trials.size(); ++i) {
-      const Score after = holdout_score(campaign, round.trials[i].fitted.model, record);
+    for (std::size_t i = 0; i < round.candidates.size(); ++i) {
+      const Score after = holdout_score(campaign, round.candidates[i].fitted.model, record);
       record.candidates.back().push_back(error_of(before, after, blocks));
       if (i == 0 && found(round)) chosen = after;
     }
@@ -117,10 +117,10 @@ void open_holdout(const Campaign& campaign, DiagnosisRecord& record) {
 
 std::string diagnosis_json(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
-  const Round& first = d.rounds.front();
+  const DiagnosisRound& first = d.rounds.front();
   Json effects = Json::array(), rounds = Json::array();
   for (std::size_t i = 0; i < d.rounds.size(); ++i) {
-    const Round& round = d.rounds[i];
+    const DiagnosisRound& round = d.rounds[i];
     Json turn{{"effect", round.effect}};
     if (found(round)) {
       effects.push_back(round.effect);

@@ -6,7 +6,7 @@
 
 #include "support/scenes.hpp"
 #include "talus/fit/diagnose/candidates.hpp"
-#include "talus/fit/calibrate/projection.hpp"
+#include "talus/fit/diagnose/projection.hpp"
 #include "talus/fit/diagnose/residual_table.hpp"
 #include "talus/fit/diagnose/score_test.hpp"
 

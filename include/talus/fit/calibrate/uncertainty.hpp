@@ -1,5 +1,5 @@
 #pragma once
-#include "talus/fit/calibrate/calibrate.hpp"
+#include "talus/fit/calibrate/fit_problem.hpp"
 
 namespace talus {
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "talus/fit/calibrate/calibrate.hpp"
+#include "talus/fit/calibrate/parameters.hpp"
 #include "talus/fit/diagnose/axis.hpp"
 #include "talus/fit/diagnose/diagnosis_rules.hpp"
 

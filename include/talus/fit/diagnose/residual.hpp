@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "talus/fit/campaign/observe.hpp"
+#include "talus/fit/diagnose/diagnosis_rules.hpp"
 
 namespace talus {
 
@@ -26,7 +27,7 @@ using Residual = Eigen::VectorXd;
 class ResidualSpace {
  public:
   /// @param runs  of the model; at least 20 trials of each fitting block. The campaign must outlive this.
-  ResidualSpace(const Campaign& campaign, const std::vector<BlockRuns>& runs);
+  ResidualSpace(const Campaign& campaign, const std::vector<BlockRuns>& runs, const DiagnosisRules& rules = {});
 
   const std::vector<Observable>& observables() const { return observables_; }
   /// Number of components of a residual: places first, then spreads.
@@ -64,6 +65,7 @@ class ResidualSpace {
   void correlate(const std::vector<BlockRuns>& runs);
 
   const Campaign& campaign_;
+  DiagnosisRules rules_;
   std::vector<Observable> observables_;
   std::vector<Eigen::Vector2d> forward_;                     // by block: towards its mean simulated stop, unit
   std::vector<std::vector<Sorted>> distributions_;           // by block and observable

@@ -26,7 +26,7 @@ const std::vector<Property>& properties();
 
 /// Every observable against every property, most significant first. Rows with fewer than ten blocks are left out.
 std::vector<ResidualRow> residual_table(const Campaign& campaign, const ResidualSpace& space,
-                                        const std::vector<bool>& rows);
+                                        const std::vector<bool>& rows, const DiagnosisRules& rules = {});
 
 /// Spearman's rank correlation of two lists of equal length; ties share their mean rank.
 double spearman(std::span<const double> a, std::span<const double> b);

@@ -1,17 +1,8 @@
 #pragma once
 #include "talus/fit/diagnose/candidates.hpp"
-#include "talus/fit/diagnose/residual.hpp"
+#include "talus/fit/diagnose/verdict.hpp"
 
 namespace talus {
-
-/// Whether a candidate, at one place, explains what a model leaves. docs/closing-the-loop.md, "The score test".
-struct Verdict {
-  std::vector<std::size_t> members;  ///< indices into the candidates: one, or neighbouring bands, or days
-  Eigen::VectorXd estimate;          ///< of its tested parameters, one step from zero [kNoticed in z]
-  Eigen::VectorXd ground;            ///< how far the base's own parameters would move along with it [z]
-  double statistic = 0.0;            ///< s' V^-1 s, the larger one of V by the model and V by the blocks
-  double p_value = 1.0;              ///< of this place alone
-};
 
 /// What the test says of an effect, at the best of its places.
 struct EffectVerdict {
@@ -43,7 +34,8 @@ struct ScoreTestOptions {
   std::uint32_t trials = 200;
   std::uint64_t seed = 1;
   int threads = 0;
-  int replicates = 2000;          ///< simulated data sets without an effect
+  int replicates = 2000;  ///< simulated data sets without an effect
+  DiagnosisRules rules;
   std::function<bool()> proceed;  ///< asked between simulations, by one thread; false ends it. May be empty
 };
 

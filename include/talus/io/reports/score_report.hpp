@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "talus/fit/score/score.hpp"
+#include "talus/fit/score/bootstrap.hpp"
 #include "talus/io/campaign/campaign_file.hpp"
 
 namespace talus::io {

@@ -1,7 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "talus/fit/diagnose/score_test.hpp"
+#include "talus/fit/diagnose/candidates.hpp"
+#include "talus/fit/diagnose/verdict.hpp"
 
 namespace talus {
 
@@ -14,7 +15,8 @@ struct TestedPlace {
 
 /// Every place of every candidate: alone; neighbouring bands joined; sets of days. The directions are those of the
 /// base's parameters, then the tested ones of each candidate in turn.
-std::vector<TestedPlace> places_of(std::span<const Candidate> candidates, Eigen::Index base, Eigen::Index directions);
+std::vector<TestedPlace> places_of(std::span<const Candidate> candidates, Eigen::Index base, Eigen::Index directions,
+                                   const DiagnosisRules& rules = {});
 
 /// The linear map from scores to one place's effective score: what the free parameters of the base explain is taken out
 /// of it by a regression on their scores.

@@ -1,9 +1,9 @@
+#include "talus/fit/score/bootstrap.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "talus/base/random.hpp"
-#include "talus/base/sample.hpp"
-#include "talus/fit/score/score.hpp"
 
 namespace talus {
 namespace {
