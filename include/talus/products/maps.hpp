@@ -10,7 +10,7 @@
 
 namespace talus {
 
-/// A result file: INTERFACE.md's name without its ending, and its bands.
+/// A result file: its name without the ending, and its bands. docs/products.md, "Rasters".
 struct Map {
   enum class Kind { Probability, Quantity, Count };  ///< Count: whole numbers, written as UInt32
   struct Band {

@@ -10,7 +10,8 @@
 namespace talus {
 namespace {
 
-/// The search of one fit. Keeps what its designs tried; a search lingers where its luck was good, and would mislead.
+/// The search of one fit. Keeps the evaluations of its designs; not those of BOBYQA, which dwells where noise lowered
+/// the objective.
 class Search {
  public:
   Search(const FitProblem& problem, const FitOptions& options) : problem_(problem), options_(options) {
@@ -49,8 +50,8 @@ class Search {
   }
 
  private:
-  static constexpr int kScreened = 6;                           // points to choose the starts from, per parameter
-  static constexpr std::uint32_t kComparisons = 3'000'000'000;  // trials from here on are those of comparisons
+  static constexpr int kScreened = 6;  // points per parameter among which the starts are chosen
+  static constexpr std::uint32_t kComparisons = 3'000'000'000;  // first trial of comparisons
 
   int search_length() const { return 6 * static_cast<int>(problem_.free.size()) + 10; }
   int design_length() const {
@@ -64,8 +65,8 @@ class Search {
     return evaluate(problem_, options_, z, trials);
   }
 
-  /// Goes to the best of some places, on luck that none of them was chosen by: of many noisy values the lowest is too
-  /// low, and nothing would ever be found better. @return by how much it is below the first of them
+  /// Moves to the best of some places, compared with trials that have chosen none of them: the lowest of many noisy
+  /// values is too low, and nothing would ever be found better. @return gain over the first of them
   double move_to_best(std::span<const Eigen::VectorXd> places) {
     const TrialRange fresh{options_.comparison_trials, kComparisons + options_.comparison_trials * compared_++};
     double first = 0.0;
@@ -79,7 +80,7 @@ class Search {
     return first - fit_.objective;
   }
 
-  /// One round of the local model: a design, and a step where that is an improvement. @return by how much
+  /// One round of the local model: a design, and a step where that is an improvement. @return the improvement
   double refine() {
     for (const Eigen::VectorXd& z :
          LocalModel::design(problem_, options_.seed, fit_.z, fit_.spread, design_length(), designed_))
@@ -98,7 +99,7 @@ class Search {
     return weigh_groups(score(problem_.campaign, observe(problem_.campaign, model, how), problem_.rows));
   }
 
-  /// Where the model that it starts from is.
+  /// The start of the fit, in z.
   Eigen::VectorXd origin() const {
     Eigen::VectorXd z(lower_.size());
     for (Eigen::Index i = 0; i < z.size(); ++i) {
@@ -133,7 +134,7 @@ class Search {
     return starts;
   }
 
-  /// The best that NLopt's BOBYQA finds from z.
+  /// The best place that NLopt's BOBYQA finds from z.
   Eigen::VectorXd descend(const Eigen::VectorXd& z) {
     const auto n = static_cast<unsigned>(problem_.free.size());
     // BOBYQA needs two parameters.

@@ -9,7 +9,7 @@
 namespace talus {
 namespace {
 
-constexpr std::uint32_t kOwnDesigns = 10'000;  // numbers of places that no search has used
+constexpr std::uint32_t kOwnDesigns = 10'000;  // places from this number on: no search uses them
 
 void summarise(std::span<const Parameter> free, Uncertainty& out) {
   const Eigen::Index n = out.draws.cols();
@@ -36,7 +36,7 @@ Uncertainty uncertainty_of(const FitProblem& problem, const FitOptions& options,
   const Eigen::Index n = std::ssize(problem.free);
   const int length = LocalModel::round_length(n);
   Fit around = fit;
-  around.evaluations.clear();  // the search lingers where its luck was good: what it saw would look too sharp
+  around.evaluations.clear();  // a search dwells where noise lowered the objective: the optimum would look too sharp
   Eigen::MatrixXd spread = fit.spread;
   std::uint32_t done = 0;
   for (int round = 0; round < how.rounds; ++round) {

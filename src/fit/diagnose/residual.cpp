@@ -13,7 +13,7 @@ bool blocks_broke(const Campaign& campaign) {
          }) >= 5;
 }
 
-/// What was measured of the fitting rows.
+/// Quantities that were measured of the fitting rows.
 std::vector<Observable> observables_of(const Campaign& campaign) {
   using Kind = Observable::Kind;
   std::vector<Observable> list;
@@ -140,7 +140,7 @@ ResidualSpace::Seen ResidualSpace::seen_measured(std::size_t b) const {
   return seen;
 }
 
-/// What would have been measured of a trial: a value that is missing of the block itself is missing of its trials, too.
+/// The measurements that a trial would have given: a value that is missing of the block is missing of its trials too.
 ResidualSpace::Seen ResidualSpace::seen_of_trial(std::size_t b, const BlockRuns& runs, std::size_t t) const {
   const MeasuredBlock& block = campaign_.blocks[b];
   const auto where_measured = [](double simulated, double measured) {

@@ -36,7 +36,8 @@ double p_of_correlation(double r, std::size_t n) {
 
 /// Whether more of the blocks with a large property cross than the model says: sum of (c - p) times the rank, among
 /// blocks that cross as often as was measured, over its standard deviation. A rank correlation would not do: blocks
-/// that seldom cross have a small residual whatever happens, so that it goes with whatever their chance goes with.
+/// that seldom cross have a small residual whatever happens, so that it is correlated with whatever their chance
+/// depends on.
 void add_crossing(std::vector<ResidualRow>& table, const std::string& name, const char* property,
                   const std::vector<double>& z, const std::vector<double>& variance, std::span<const double> of,
                   double fewest) {

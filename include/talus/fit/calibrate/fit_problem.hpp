@@ -5,7 +5,7 @@
 
 namespace talus {
 
-/// What one model scored, row by row.
+/// The score of one model, row by row.
 struct Evaluation {
   Eigen::VectorXd z;     ///< size: free parameters
   Eigen::VectorXd rows;  ///< as Score::rows of the fit
@@ -24,24 +24,24 @@ struct FitOptions {
   int threads = 0;
   double prior_weight = 0.28;              ///< see Fit::objective and docs/closing-the-loop.md; 0: no prior
   Eigen::MatrixXd spread;                  ///< covariance of the first round's places, in z; empty: a usual one
-  std::span<const Evaluation> known = {};  ///< of the same parameters and rows: the quadratic model learns from it
+  std::span<const Evaluation> known = {};  ///< evaluations of the same parameters and rows, for the quadratic model
   SearchRules rules;                       ///< numbers that no user sets
   std::function<bool(double)> proceed;     ///< told the share done, 0..1; false ends the fit. May be empty
 };
 
-/// The model that was found.
+/// The result of a fit.
 struct Fit {
   Model model;
   Eigen::VectorXd z;             ///< of the free parameters
   double objective = kNotGiven;  ///< total of the weighed groups + prior_weight / (blocks asked for) * sum of z^2
   Score score;                   ///< of the asked rows, with comparison_trials trials, its groups weighed
   Eigen::MatrixXd spread;        ///< covariance of z within which the objective is nearly as good
-  std::vector<Evaluation> evaluations;  ///< of the designs, and what was known: what the quadratic model learns from
+  std::vector<Evaluation> evaluations;  ///< of the designs, and those known before: data of the quadratic model
   int tried = 0;                        ///< places that were simulated, those of the searches and comparisons too
   bool interrupted = false;
 };
 
-/// What is fitted to what. The parts must outlive it.
+/// A model and the measurements that it is fitted to. The parts must outlive it.
 struct FitProblem {
   const Campaign& campaign;
   const Model& start;               ///< what is not free stays as it is there
@@ -56,7 +56,7 @@ struct TrialRange {
   std::uint32_t count, first = 0;
 };
 
-/// The objective at one point. Equal trials: compared on the same luck.
+/// The objective at one place. Two places with the same trials are compared with the same random numbers.
 Evaluation evaluate(const FitProblem& problem, const FitOptions& options, const Eigen::VectorXd& z,
                     const TrialRange& trials);
 

@@ -12,7 +12,7 @@ namespace talus {
 ///
 ///   log scale:    value = centre exp(sd z)          linear scale:  value = centre + sd z
 ///
-/// and takes z as standard normal beforehand: the weak prior.
+/// The prior of z is standard normal.
 struct Parameter {
   enum class Scale { Log, Linear };
 

@@ -48,11 +48,12 @@ struct DiagnosisRules {
   /// Gain by which a round of the quadratic model must lower the objective for another one [objective].
   double worth_a_round = 0.002;
   /// Gain that one more fitted number must bring, times the number of fitting blocks [objective]. Akaike's price, one
-  /// unit of log likelihood, in units of the score: near the optimum of a normal forecast the score rises by 0.56 of it.
+  /// unit of log likelihood, in units of the score: near the optimum of a normal forecast the score rises by 0.56 of
+  /// it.
   double price = 0.56;
   /// Effects fitted after the first round, at most [-]: with an effect in the model a fit takes several times as long.
   std::size_t later_fits = 6;
-  /// Effects whose fits go on, at most, in the first round and in later ones [-].
+  /// Effects whose fits are continued, at most, in the first round and in later ones [-].
   std::size_t contenders = 4, later_contenders = 2;
   /// Height above its minimum at which a first fit may have ended [objective]: an effect that is further behind cannot
   /// win any more.

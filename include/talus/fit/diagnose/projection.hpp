@@ -6,7 +6,7 @@
 
 namespace talus {
 
-/// Where an effect is tested: the candidates whose signatures are summed up, and which of all directions these are.
+/// A place where an effect is tested: the candidates whose signatures are summed up, and their directions.
 struct TestedPlace {
   std::vector<std::size_t> members;  ///< indices into the candidates; all of one effect
   Eigen::MatrixXd pick;              ///< directions x tested parameters
@@ -18,8 +18,8 @@ struct TestedPlace {
 std::vector<TestedPlace> places_of(std::span<const Candidate> candidates, Eigen::Index base, Eigen::Index directions,
                                    const DiagnosisRules& rules = {});
 
-/// The linear map from scores to one place's effective score: what the free parameters of the base explain is taken out
-/// of it by a regression on their scores.
+/// The linear map from scores to the effective score of one place: without the part that the free parameters of the
+/// base explain, by a regression on their scores.
 class Projection {
  public:
   /// @param covariance  of the scores of one data set under the model; directions x directions

@@ -9,7 +9,7 @@
 
 namespace talus {
 
-/// What is compared of a block, one number each. docs/closing-the-loop.md, "The residual".
+/// A quantity of a block that is compared: one number. docs/closing-the-loop.md, "The residual".
 struct Observable {
   enum class Kind { Runout, Lateral, Mass, Crossed, Speed, Jump, Spin, SampleSpeed, SampleSpin } kind;
   std::size_t screen = 0;  ///< of Crossed, Speed, Jump, Spin
@@ -33,7 +33,7 @@ class ResidualSpace {
   /// Number of components of a residual: places first, then spreads.
   Eigen::Index size() const { return 2 * static_cast<Eigen::Index>(observables_.size()); }
 
-  /// How often a block crosses the screen of an observable, simulated: in (0, 1).
+  /// Simulated share of a block's trials that cross the screen of an observable: in (0, 1).
   double crossing_share(std::size_t block, std::size_t observable) const {
     return crossing_share_[block * observables_.size() + observable];
   }
@@ -49,7 +49,7 @@ class ResidualSpace {
  private:
   /// Simulated values that were observed, ascending; fewer than ten: of no use.
   using Sorted = std::vector<double>;
-  /// What there is to see of one block, measured or of one trial. NaN: not seen.
+  /// Measurements of one block, or of one of its trials. NaN: not seen.
   struct Seen {
     Eigen::Vector2d way{kNotGiven, kNotGiven};  // from the place of release to the stop [m]
     double mass_share = kNotGiven;

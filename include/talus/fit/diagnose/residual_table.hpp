@@ -5,7 +5,7 @@
 
 namespace talus {
 
-/// How the residual of one observable goes with one property of the blocks.
+/// Dependence of the residual of one observable on one property of the blocks.
 struct ResidualRow {
   std::string observable;  ///< "runout", "speed S1", ...
   std::string covariate;   ///< "mean", "spread", "mass", "L1/L2", "L1/L3", "day", "release height", "east", "north"
@@ -16,7 +16,7 @@ struct ResidualRow {
   std::size_t blocks;
 };
 
-/// What a residual may go with.
+/// A property of the blocks on which a residual may depend.
 struct Property {
   const char* name;                                ///< as in ResidualRow::covariate
   const char* unit;                                ///< empty: none

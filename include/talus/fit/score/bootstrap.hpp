@@ -18,8 +18,8 @@ struct ScoreIntervals {
 };
 ScoreIntervals bootstrap(const Score& score, std::size_t blocks, std::uint32_t draws = 2000, std::uint64_t seed = 1);
 
-/// By how much a model lowers the total of another, as a share of the other's, with a 95 % interval over the blocks:
-/// 1 - after/before of the same bootstrap draws. Both must be scores of the same rows.
+/// Share by which one model lowers the total of another, with a 95 % interval over the blocks: 1 - after/before of the
+/// same bootstrap draws. Both must be scores of the same rows.
 struct Reduction {
   double share = kNotGiven;
   Interval interval;
@@ -27,8 +27,8 @@ struct Reduction {
 Reduction reduction(const Score& before, const Score& after, std::size_t blocks, std::uint32_t draws = 2000,
                     std::uint64_t seed = 1);
 
-/// The difference of two totals of the same rows, negative where `after` is the better one, over which blocks happened
-/// to be released.
+/// Difference of two totals of the same rows, negative where `after` is better; the draws vary which blocks were
+/// released.
 struct Difference {
   double mean = 0.0;
   Interval interval;          ///< 95 %

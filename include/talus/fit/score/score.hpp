@@ -23,7 +23,7 @@ double fair_crps(std::span<double> simulated, double measured);
 /// The same of places in plan, by their distances [m]. n >= 2. O(n^2).
 double fair_energy_score(std::span<const Eigen::Vector2d> simulated, const Eigen::Vector2d& measured);
 
-/// What is compared: one quantity at one place.
+/// The score of one group: one quantity at one place.
 struct GroupScore {
   std::string name;          ///< "stop", "mass", "crossed S1", "speed S1", "jump S1", "spin S1", "sample speed", ...
   double score;              ///< mean over its rows, as a share of the spread of the fitting rows [-]
@@ -51,7 +51,8 @@ inline constexpr std::size_t kFewestSimulated = 10;
 /// Fewest rows of a group that counts, and fewest fitting rows that give a spread.
 inline constexpr std::size_t kFewestRows = 5;
 
-/// Scores what was simulated against what was measured, exactly as INTERFACE.md says.
+/// Scores the simulations of the asked blocks against their measurements, as defined in docs/closing-the-loop.md, "The
+/// score".
 ///
 /// @param runs  by block of the campaign; those asked for must have been simulated
 /// @param ask   which blocks are scored, the fitting or the held-out ones; size: blocks
@@ -60,14 +61,14 @@ inline constexpr std::size_t kFewestRows = 5;
 Score score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
             std::size_t fewest_simulated = kFewestSimulated);
 
-/// The same with groups of n rows that count n / (n + 10): what a fit minimises. The mean of a group tells of its
-/// quantity, with a variance that all groups have, and of the luck of its rows, with one that falls with n. In the
-/// error all groups count alike, and five rows at a far screen would rule the search. docs/closing-the-loop.md,
+/// The score that a fit minimises: a group of n rows has the weight n / (n + 10). The mean of a group has a variance
+/// that all groups have, from its quantity, and one that falls with n, from the choice of its rows. In the error all
+/// groups count alike: five rows at a far screen would rule the search. docs/closing-the-loop.md,
 /// "Objective".
 Score weigh_groups(Score score);
 
 /// The fewest simulated values for a row in a search with so many trials: a tenth of them, as ten of a hundred are.
-/// With ten whatever the trials, a search with few would not see what only some of them reach.
+/// With ten whatever the trials, a search with few trials would not score a block that only some of them follow.
 std::size_t fewest_simulated_of(std::uint32_t trials);
 
 }  // namespace talus

@@ -10,7 +10,7 @@ struct HoldoutError {
   Reduction reduction;  ///< of `before`
 };
 
-/// All that `talus diagnose` found, with the held-out rows opened.
+/// Results of `talus diagnose`, with the errors on the held-out rows.
 struct DiagnosisRecord : FitRecord {
   DiagnoseOptions options;
   Diagnosis diagnosis;
@@ -21,7 +21,8 @@ struct DiagnosisRecord : FitRecord {
   double seconds = 0.0;
 };
 
-/// Simulates the held-out rows with every model of a diagnosis. Throws FitInterrupted when `options.proceed` says no.
+/// Simulates and scores the held-out rows with every model of a diagnosis. Throws FitInterrupted when `options.proceed`
+/// says no.
 void open_holdout(const Campaign& campaign, DiagnosisRecord& record);
 
 /// The text of diagnosis.json. Its keys: docs/closing-the-loop.md, "Diagnosis".
