@@ -1,5 +1,6 @@
 #pragma once
-#include "talus/fit/diagnose/candidates.hpp"
+#include "talus/fit/diagnose/axis.hpp"
+#include "talus/fit/diagnose/candidate.hpp"
 
 namespace talus {
 

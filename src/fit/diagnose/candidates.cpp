@@ -1,3 +1,5 @@
+#include "talus/fit/diagnose/candidates.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <set>

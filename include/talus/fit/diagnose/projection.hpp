@@ -1,7 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "talus/fit/diagnose/candidates.hpp"
+#include "talus/fit/diagnose/candidate.hpp"
+#include "talus/fit/diagnose/diagnosis_rules.hpp"
 #include "talus/fit/diagnose/verdict.hpp"
 
 namespace talus {
