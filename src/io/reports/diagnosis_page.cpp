@@ -134,14 +134,14 @@ std::string candidates_table(const DiagnosisRound& round, const std::vector<Hold
       "<table><tr><th>effect</th><th>where</th><th>parameters</th><th>p of the score test</th><th>objective lower "
       "by (fitting rows, 95 %)</th><th>held-out error after</th><th>reduction, 95 %</th></tr>\n";
   for (std::size_t i = 0; i < round.candidates.size(); ++i) {
-    const FittedCandidate& t = round.candidates[i];
+    const FittedCandidate& c = round.candidates[i];
     std::string numbers;
-    for (std::size_t k = 0; k < t.parameters.size(); ++k)
-      numbers += t.parameters[k].key + " = " + print("%.3g", t.values[k]) + unit_text(t.parameters[k]) + "<br>";
+    for (std::size_t k = 0; k < c.parameters.size(); ++k)
+      numbers += c.parameters[k].key + " = " + print("%.3g", c.values[k]) + unit_text(c.parameters[k]) + "<br>";
     const HoldoutError& e = holdout[i];
-    html += "<tr><td>" + t.effect + "</td><td>" + escaped(t.where) + "</td><td>" + numbers + "</td><td>" +
-            print("%.4f", t.p_value) + "</td><td>" +
-            print("%.3f (%.3f to %.3f)", t.gain, t.gain_interval.low, t.gain_interval.high) + "</td><td>" +
+    html += "<tr><td>" + c.effect + "</td><td>" + escaped(c.where) + "</td><td>" + numbers + "</td><td>" +
+            print("%.4f", c.p_value) + "</td><td>" +
+            print("%.3f (%.3f to %.3f)", c.gain, c.gain_interval.low, c.gain_interval.high) + "</td><td>" +
             value_text(e.after) + "</td><td>" + reduction_text(e.reduction) + "</td></tr>\n";
   }
   return html + "</table>\n";

@@ -25,9 +25,10 @@ Json number(double value) {
   return std::isnan(value) ? Json() : Json(rounded(value));
 }
 
-Json parameters_of(const FittedCandidate& trial) {
+Json parameters_of(const FittedCandidate& candidate) {
   Json json = Json::object();
-  for (std::size_t i = 0; i < trial.parameters.size(); ++i) json[trial.parameters[i].key] = number(trial.values[i]);
+  for (std::size_t i = 0; i < candidate.parameters.size(); ++i)
+    json[candidate.parameters[i].key] = number(candidate.values[i]);
   return json;
 }
 
@@ -46,22 +47,22 @@ Json residual_of(const std::vector<ResidualRow>& rows) {
 Json candidates_of(const DiagnosisRound& round, const std::vector<HoldoutError>& holdout) {
   Json list = Json::array();
   for (std::size_t i = 0; i < round.candidates.size(); ++i) {
-    const FittedCandidate& t = round.candidates[i];
-    list.push_back({{"effect", t.effect},
-                    {"where", t.where},
-                    {"parameters", parameters_of(t)},
-                    {"fitted_with_ground", t.with_ground},
-                    {"fit", number(t.fitted.score.total)},
-                    {"price", number(t.price)},
-                    {"objective_gain", number(t.gain)},
-                    {"objective_gain_ci95", {number(t.gain_interval.low), number(t.gain_interval.high)}},
-                    {"cross_validated_objective_gain", number(t.cross_validated)},
+    const FittedCandidate& c = round.candidates[i];
+    list.push_back({{"effect", c.effect},
+                    {"where", c.where},
+                    {"parameters", parameters_of(c)},
+                    {"fitted_with_ground", c.with_ground},
+                    {"fit", number(c.fitted.score.total)},
+                    {"price", number(c.price)},
+                    {"objective_gain", number(c.gain)},
+                    {"objective_gain_ci95", {number(c.gain_interval.low), number(c.gain_interval.high)}},
+                    {"cross_validated_objective_gain", number(c.cross_validated)},
                     {"holdout", number(holdout[i].after)},
                     {"holdout_reduction_ci95",
                      {number(holdout[i].reduction.interval.low), number(holdout[i].reduction.interval.high)}},
-                    {"chosen_share", number(t.chosen_share)},
-                    {"statistic", number(t.statistic)},
-                    {"p_value", number(t.p_value)}});
+                    {"chosen_share", number(c.chosen_share)},
+                    {"statistic", number(c.statistic)},
+                    {"p_value", number(c.p_value)}});
   }
   return list;
 }
