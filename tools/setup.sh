@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tools/install_packages.sh g++ cmake ninja-build libgdal-dev libproj-dev proj-data gdal-bin libeigen3-dev libboost-dev \
-  libnlopt-cxx-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libgtest-dev libgmock-dev libbenchmark-dev libopenmpi-dev \
+  libnlopt-cxx-dev libssl-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libgtest-dev libgmock-dev libbenchmark-dev libopenmpi-dev \
   python3 python3-gdal python3-numpy python3-matplotlib
 cmake --preset release
 cmake --build --preset release --target talus

@@ -27,8 +27,8 @@ BarrierDesign design_barrier(std::span<const double> speeds, std::span<const dou
                              const DesignFactors& factors) {
   BarrierDesign d{};
   const double reach = factors.trajectory * factors.topography;
-  d.speed_percentile = sample_quantile(sorted(speeds), factors.percentile);
-  d.height_percentile = sample_quantile(sorted(heights), factors.percentile);
+  d.speed_percentile = quantile(sorted(speeds), factors.percentile);
+  d.height_percentile = quantile(sorted(heights), factors.percentile);
   d.speed = d.speed_percentile * reach;
   d.mass = block.volume * block.density * factors.volume * factors.density;
   d.energy = 0.5 * d.mass * d.speed * d.speed;

@@ -52,9 +52,9 @@ ScreenSummary::Row ScreenSummary::row(std::size_t screen, std::size_t quantity) 
   return {sorted.size(),
           one.blocks,
           sum / static_cast<double>(sorted.size()),
-          sample_quantile(sorted, 0.50),
-          sample_quantile(sorted, 0.95),
-          sample_quantile(sorted, 0.99),
+          quantile(sorted, 0.50),
+          quantile(sorted, 0.95),
+          quantile(sorted, 0.99),
           sorted.back()};
 }
 

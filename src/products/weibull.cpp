@@ -62,7 +62,7 @@ Interval middle(const std::vector<Weibull>& draws, double confidence, Value valu
   for (const Weibull& law : draws) values.push_back(value(law));
   std::sort(values.begin(), values.end());
   const double tail = 0.5 * (1.0 - confidence);
-  return {sample_quantile(values, tail), sample_quantile(values, 1.0 - tail)};
+  return {quantile(values, tail), quantile(values, 1.0 - tail)};
 }
 
 /// Laws that n values with this fit may be of: the pivots of the simulated fits turned round.

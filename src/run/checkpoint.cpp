@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "checkpoint_file.hpp"
-#include "io/files/sha256.hpp"
+#include "io/files/checksum.hpp"
 #include "checkpoint_rows.hpp"
 #include "checkpoint_tally.hpp"
 #include "talus/base/error.hpp"

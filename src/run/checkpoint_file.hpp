@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "io/files/sha256.hpp"
+#include "io/files/checksum.hpp"
 
 namespace talus::io {
 

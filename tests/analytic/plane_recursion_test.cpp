@@ -8,9 +8,9 @@
 namespace talus {
 namespace {
 
-// In a vertical plane (psi_scale = 0, release down the dip) 3D is 2D. This is the model of PHYSICS.md 3-5 in (x, z) on
-// z = height - tan_b x, written anew with angles; it draws the engine's asperities, so that paths can be compared point
-// by point.
+// In a vertical plane (psi_scale = 0, release down the dip) 3D is 2D. This is the model of docs/physics.md, 3 to 5, in
+// (x, z) on z = height - tan_b x, written anew with angles; it draws the engine's asperities, so that paths can be
+// compared point by point.
 
 constexpr double kTanB = 0.78125;  // 38 degrees, exact in floats
 const Ground kFirmTalus{.theta_scale = 0.7, .shape_max = 1.5};

@@ -1,4 +1,4 @@
-"""talus profile: the 2D model, by hand, against PHYSICS.md's plane, and its files and faults."""
+"""talus profile: the 2D model, by hand, against the plane of docs/validation.md, and its files and faults."""
 import csv
 import math
 import os
@@ -98,7 +98,7 @@ class ByHand(Profile):
         self.assertGreater(((x > 59) & (x < 82)).mean(), 0.9)
 
     def test_the_plane_of_the_reference(self):
-        # PHYSICS.md 9: 38 degrees, Table 1, D 1.0-1.4 m, released 2 m above the ground, 140 m of height lower.
+        # docs/validation.md, "The plane": 38 degrees, Table 1, D 1.0-1.4 m, released 2 m above the ground, 140 m of height lower.
         x = 60.0 + 140.0 / TAN38
         self.nodes((0, 600), (600, 600 - 600 * TAN38))
         for rule, c, speed, p95, jump, jump95 in (("clamp", 0.25, 10.2, 17.3, 1.31, 2.80),

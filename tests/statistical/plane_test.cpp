@@ -9,10 +9,11 @@
 namespace talus {
 namespace {
 
-// PHYSICS.md 9: a plane of 38 degrees, psi 0, Table 1 preset, D ~ U(1.0, 1.4) m, released at rest 2 m above the ground;
-// the state "where the flight crosses the level 140 m below the release point's ground". Read as: over the contour line
-// of the plane on which the GROUND is 140 m lower than under the release; the jump is the vertical clearance there.
-// (The other reading, the block itself at that height, gives 11.5 m/s for 10.2 and 5.8 for 5.1, so it is not meant.)
+// docs/validation.md, "The plane": a plane of 38 degrees, psi 0, Table 1 preset, D ~ U(1.0, 1.4) m, released at rest 2
+// m above the ground; the state "where the flight crosses the level 140 m below the release point's ground". Read as:
+// over the contour line of the plane on which the GROUND is 140 m lower than under the release; the jump is the
+// vertical clearance there. (The other reading, the block itself at that height, gives 11.5 m/s for 10.2 and 5.8
+// for 5.1, so it is not meant.)
 
 constexpr std::uint32_t kBlocks = 20'000;
 constexpr double kStart = 60.0, kDrop = 140.0;
@@ -103,7 +104,7 @@ TEST(PlaneTable, WithinThreePercent) {
   }
 }
 
-TEST(PlaneScaling, SpeedGoesAsTheRootOfCAndJumpAsC) {  // PHYSICS.md 9: once the start is forgotten
+TEST(PlaneScaling, SpeedGoesAsTheRootOfCAndJumpAsC) {  // once the start is forgotten
   const Sample quarter = run(table1(), {0.25, Roughness::Clamp}, 6000),
                one = run(table1(), {1.0, Roughness::Clamp}, 6000);
   EXPECT_NEAR(Sample::mean(quarter.speed) / Sample::mean(one.speed), 2.0,

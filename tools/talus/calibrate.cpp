@@ -7,6 +7,7 @@
 #include "progress.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
+#include "talus/fit/calibrate/calibrate.hpp"
 #include "talus/io/reports/fit_report.hpp"
 #include "talus/io/campaign/model_file.hpp"
 #include "talus/simulate/scenario/presets.hpp"

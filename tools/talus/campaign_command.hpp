@@ -2,11 +2,11 @@
 #include "commands.hpp"
 #include "run_support.hpp"
 #include "talus/io/campaign/campaign_file.hpp"
-#include "talus/io/reports/fit_record.hpp"
 #include "talus/io/files/output_folder.hpp"
+#include "talus/io/reports/fit_record.hpp"
 #include "talus/io/reports/score_report.hpp"
 
-/// What `calibrate` and `diagnose` have in common: a campaign, a new folder, and how to tell of progress.
+/// Common options of `calibrate` and `diagnose`: a campaign, a new folder, the display of progress.
 struct CampaignCommand {
   std::string campaign, out, progress;
   bool overwrite = false, quiet = false;
@@ -24,11 +24,11 @@ struct OpenedCampaign {
   talus::io::LoadedCampaign loaded;
   talus::io::OutputFolder folder;
 
-  /// Reads the campaign, guards its files from being overwritten, says its warnings and fills the head of the report.
+  /// Reads the campaign, guards its files from being overwritten, prints its warnings and fills the head of the report.
   /// Throws InputError where nothing can be fitted to it.
   OpenedCampaign(const CampaignCommand& command, talus::io::FitRecord& record);
 
-  /// Says, and puts on record, where a fitted model scores as the climatology: a search can hide there.
+  /// Prints and records where a fitted model scores as the climatology: a search can hide there.
   static void warn_unseen(const CampaignCommand& command, talus::io::FitRecord& record, const std::string& rows,
                           const talus::Score& score);
 };

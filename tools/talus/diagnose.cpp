@@ -6,8 +6,9 @@
 #include "campaign_command.hpp"
 #include "progress.hpp"
 #include "talus/base/error.hpp"
-#include "talus/io/reports/diagnosis_report.hpp"
 #include "talus/io/campaign/model_file.hpp"
+#include "talus/fit/diagnose/diagnose.hpp"
+#include "talus/io/reports/diagnosis_page.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 
 namespace {
@@ -19,7 +20,7 @@ struct Options : CampaignCommand {
 void print_summary(const talus::io::DiagnosisRecord& record, const std::string& folder) {
   const talus::Diagnosis& d = record.diagnosis;
   for (std::size_t i = 0; i < d.rounds.size(); ++i) {
-    const talus::Round& round = d.rounds[i];
+    const talus::DiagnosisRound& round = d.rounds[i];
     std::printf("round %zu: %s", i + 1, round.effect.c_str());
     if (!round.where.empty()) std::printf(", %s", round.where.c_str());
     for (const std::string& other : round.alike)

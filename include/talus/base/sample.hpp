@@ -1,14 +1,20 @@
 #pragma once
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <span>
 
 namespace talus {
 
+/// A range of values that holds the true one with a stated confidence; NaN where nothing can be said.
+struct Interval {
+  double low = std::numeric_limits<double>::quiet_NaN(), high = std::numeric_limits<double>::quiet_NaN();
+};
+
 /// The value below which a share of a sample lies, linear between order statistics (Hyndman & Fan, type 7).
 ///
 /// @param sorted  ascending, not empty;  share: 0..1
-inline double sample_quantile(std::span<const double> sorted, double share) {
+inline double quantile(std::span<const double> sorted, double share) {
   const double place = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(place);
   const double above = sorted[std::min(below + 1, sorted.size() - 1)];

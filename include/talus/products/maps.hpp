@@ -4,12 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "talus/base/sample.hpp"
 #include "talus/simulate/scenario/scenario.hpp"
 #include "talus/simulate/tally/tally.hpp"
 
 namespace talus {
 
-/// A result file: INTERFACE.md's name without its ending, and its bands.
+/// A result file: its name without the ending, and its bands. docs/products.md, "Rasters".
 struct Map {
   enum class Kind { Probability, Quantity, Count };  ///< Count: whole numbers, written as UInt32
   struct Band {
@@ -37,9 +38,6 @@ std::vector<Map> make_maps(const Scenario& scenario, const Tally& tally);
 /// @param confidence  for instance 0.95
 /// Exactly 0 at no hit and 1 at all hits. Covers at least `confidence` for independent trials of one probability, and
 /// for trials stratified by source cell more still (Hoeffding 1956). docs/products.md, "Impact probability".
-struct Interval {
-  double low, high;
-};
 Interval probability_bounds(std::uint64_t hits, std::uint64_t trials, double confidence);
 
 }  // namespace talus

@@ -6,16 +6,12 @@
 #include <nlopt.hpp>
 
 #include "local_model.hpp"
-#include "talus/base/error.hpp"
-#include "talus/base/text.hpp"
-#include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace talus {
 namespace {
 
-constexpr double kReach = 2.5;  // bounds of a ground parameter, in sd from its start
-
-/// The search of one fit. Keeps what its designs tried; a search lingers where its luck was good, and would mislead.
+/// The search of one fit. Keeps the evaluations of its designs; not those of BOBYQA, which dwells where noise lowered
+/// the objective.
 class Search {
  public:
   Search(const FitProblem& problem, const FitOptions& options) : problem_(problem), options_(options) {
@@ -41,7 +37,8 @@ class Search {
         for (const Eigen::VectorXd& z : choose_starts()) places.push_back(descend(z));
       move_to_best(places);
       fit_.score = score_of(fit_.model);  // the local model needs its groups and rows
-      fit_.spread = options_.spread.size() > 0 ? options_.spread : LocalModel::first_spread(std::ssize(problem_.free));
+      fit_.spread = options_.spread.size() > 0 ? options_.spread
+                                               : LocalModel::first_spread(std::ssize(problem_.free), options_.rules);
       for (int round = 0; round < options_.rounds; ++round)
         if (refine() < options_.enough) break;
     } catch (const nlopt::forced_stop&) {  // `proceed` said no
@@ -53,25 +50,25 @@ class Search {
   }
 
  private:
-  static constexpr int kScreened = 6;                           // points to choose the starts from, per parameter
-  static constexpr std::uint32_t kComparisons = 3'000'000'000;  // trials from here on are those of comparisons
+  static constexpr int kScreened = 6;  // points per parameter among which the starts are chosen
+  static constexpr std::uint32_t kComparisons = 3'000'000'000;  // first trial of comparisons
 
   int search_length() const { return 6 * static_cast<int>(problem_.free.size()) + 10; }
   int design_length() const {
     return options_.design > 0 ? options_.design : LocalModel::round_length(std::ssize(problem_.free));
   }
 
-  Evaluation at(const Eigen::VectorXd& z, const Trials& trials) {
+  Evaluation at(const Eigen::VectorXd& z, const TrialRange& trials) {
     ++done_;
     if (options_.proceed && !options_.proceed(std::min(1.0, static_cast<double>(done_) / planned_)))
       throw nlopt::forced_stop();
     return evaluate(problem_, options_, z, trials);
   }
 
-  /// Goes to the best of some places, on luck that none of them was chosen by: of many noisy values the lowest is too
-  /// low, and nothing would ever be found better. @return by how much it is below the first of them
+  /// Moves to the best of some places, compared with trials that have chosen none of them: the lowest of many noisy
+  /// values is too low, and nothing would ever be found better. @return gain over the first of them
   double move_to_best(std::span<const Eigen::VectorXd> places) {
-    const Trials fresh{options_.comparison_trials, kComparisons + options_.comparison_trials * compared_++};
+    const TrialRange fresh{options_.comparison_trials, kComparisons + options_.comparison_trials * compared_++};
     double first = 0.0;
     fit_.objective = std::numeric_limits<double>::infinity();
     for (const Eigen::VectorXd& z : places) {
@@ -83,7 +80,7 @@ class Search {
     return first - fit_.objective;
   }
 
-  /// One round of the local model: a design, and a step where that is an improvement. @return by how much
+  /// One round of the local model: a design, and a step where that is an improvement. @return the improvement
   double refine() {
     for (const Eigen::VectorXd& z :
          LocalModel::design(problem_, options_.seed, fit_.z, fit_.spread, design_length(), designed_))
@@ -102,7 +99,7 @@ class Search {
     return weigh_groups(score(problem_.campaign, observe(problem_.campaign, model, how), problem_.rows));
   }
 
-  /// Where the model that it starts from is.
+  /// The start of the fit, in z.
   Eigen::VectorXd origin() const {
     Eigen::VectorXd z(lower_.size());
     for (Eigen::Index i = 0; i < z.size(); ++i) {
@@ -137,7 +134,7 @@ class Search {
     return starts;
   }
 
-  /// The best that NLopt's BOBYQA finds from z.
+  /// The best place that NLopt's BOBYQA finds from z.
   Eigen::VectorXd descend(const Eigen::VectorXd& z) {
     const auto n = static_cast<unsigned>(problem_.free.size());
     // BOBYQA needs two parameters.
@@ -173,87 +170,6 @@ class Search {
 };
 
 }  // namespace
-
-double Parameter::value(double z) const {
-  const double free = scale == Scale::Log ? centre * std::exp(sd * z) : centre + sd * z;
-  return std::clamp(free, lower, upper);
-}
-
-double Parameter::z(double value) const {
-  return scale == Scale::Log ? std::log(value / centre) / sd : (value - centre) / sd;
-}
-
-std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& start,
-                                         std::span<const std::string> keys, const std::vector<bool>& zones) {
-  static const std::vector<std::string> known{"theta_scale", "psi_scale", "En50", "Et50", "phi"};
-  std::vector<Parameter> parameters;
-  for (std::size_t zone = 0; zone < start.grounds.size(); ++zone)
-    for (const std::string& key : keys) {
-      const auto fields = ground_fields();
-      const auto field = std::find_if(fields.begin(), fields.end(), [&](const auto& f) { return f.key == key; });
-      if (field == fields.end() || std::find(known.begin(), known.end(), key) == known.end())
-        throw InputError("'" + key + "' is no parameter that can be fitted" + known_names(key, known));
-      if (std::ranges::count(keys, key) > 1) throw InputError("'" + key + "' is to be fitted twice: name it once");
-      if (!zones[zone]) continue;
-      Parameter p;
-      p.key = "ground.zones." + campaign.zone_names[zone] + "." + key;
-      p.unit = field->unit == "1" ? "" : std::string(field->unit);
-      p.scale = key == "phi" ? Parameter::Scale::Linear : Parameter::Scale::Log;
-      p.sd = key == "phi" ? 8.0 : 1.0;
-      p.centre = field->get(start.grounds[zone]);
-      if (p.scale == Parameter::Scale::Log) p.centre = std::max(p.centre, 0.01);
-      p.lower = field->min;
-      p.upper = field->max;
-      const double low = p.scale == Parameter::Scale::Log ? p.centre * std::exp(-kReach) : p.centre - kReach * p.sd;
-      const double high = p.scale == Parameter::Scale::Log ? p.centre * std::exp(kReach) : p.centre + kReach * p.sd;
-      p.lower = std::max(p.lower, low);
-      p.upper = std::min(p.upper, high);
-      p.get = [get = field->get, zone](const Model& model) { return get(model.grounds[zone]); };
-      p.set = [set = field->set, zone](Model& model, double value) { set(model.grounds[zone], value); };
-      parameters.push_back(std::move(p));
-    }
-  if (parameters.empty())
-    throw InputError(
-        "no zone is touched by enough of the simulated paths, so that nothing can be fitted: are the releases on the "
-        "slope?");
-  return parameters;
-}
-
-std::vector<bool> touched_zones(const Campaign& campaign, std::span<const BlockRuns> runs, double share) {
-  std::vector<double> hits(campaign.zone_names.size(), 0.0);
-  double trials = 0.0;
-  for (const BlockRuns& block : runs) {
-    trials += block.trials;
-    for (std::size_t zone = 0; zone < block.zone_hits.size(); ++zone)  // a band repeats the zones
-      hits[zone % hits.size()] += block.zone_hits[zone];
-  }
-  std::vector<bool> touched;
-  touched.reserve(hits.size());
-  for (const double count : hits) touched.push_back(count > 0.0 && count >= share * trials);
-  return touched;
-}
-
-Model model_at(const Model& start, std::span<const Parameter> free, const Eigen::VectorXd& z) {
-  Model model = start;
-  for (std::size_t i = 0; i < free.size(); ++i) free[i].set(model, free[i].value(z[static_cast<Eigen::Index>(i)]));
-  return model;
-}
-
-double FitProblem::prior(const FitOptions& options) const {
-  return options.prior_weight / static_cast<double>(std::count(rows.begin(), rows.end(), true));
-}
-
-Evaluation evaluate(const FitProblem& problem, const FitOptions& options, const Eigen::VectorXd& z,
-                    const Trials& trials) {
-  const ObserveOptions how{trials.count, options.seed, trials.first, options.threads, problem.rows, {}};
-  const Model model = model_at(problem.start, problem.free, z);
-  const Score s = weigh_groups(
-      score(problem.campaign, observe(problem.campaign, model, how), problem.rows, fewest_simulated_of(trials.count)));
-  Evaluation evaluation{z, Eigen::VectorXd(std::ssize(s.rows)), trials.count, s.total};
-  for (std::size_t r = 0; r < s.rows.size(); ++r) evaluation.rows[static_cast<Eigen::Index>(r)] = s.rows[r].score;
-  evaluation.objective += problem.prior(options) * z.squaredNorm();
-  return evaluation;
-}
 
 Fit fit_parameters(const Campaign& campaign, const Model& start, std::span<const Parameter> free,
                    const std::vector<bool>& rows, const FitOptions& options) {

@@ -6,17 +6,10 @@
 #include <cmath>
 
 #include "talus/base/random.hpp"
+#include "talus/fit/score/bootstrap.hpp"
 
 namespace talus {
 namespace {
-
-constexpr double kFirstReach = 0.3;            // standard deviation of the first design, in z
-constexpr double kNarrow = 0.05, kWide = 0.5;  // of the later ones, in any direction
-constexpr double kRise = 0.005;   // of the objective over one standard deviation of a design, where kWide allows it
-constexpr double kLocal = 3.0;    // squared distance, over what is typical of the design, up to which a place counts
-constexpr double kTrust = 2.0;    // a step stays within so many standard deviations
-constexpr double kNoise = 0.007;  // typical of a total: what the ridge starts from
-constexpr double kCurved = 0.03, kTwisted = 0.01;  // typical second derivatives per unit of the spread, for the ridge
 
 /// Weight of each row in the total, for weights of the blocks: the weighted mean over the groups of weighted means.
 Eigen::VectorXd row_weights(const Score& score, std::span<const double> block) {
@@ -60,26 +53,27 @@ LocalModel::LocalModel(const FitProblem& problem, const FitOptions& options, con
     low_[i] = problem.free[i].z(problem.free[i].lower) - centre_[i];
     high_[i] = problem.free[i].z(problem.free[i].upper) - centre_[i];
   }
-  const Eigen::MatrixXd root = spread.llt().matrixL();  // u = root v: the model is learnt in v, in which it is round
+  const Eigen::MatrixXd root =
+      spread.llt().matrixL();  // u = root v: the model is fitted in v, where the design is round
   const Eigen::MatrixXd inverse = root.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(n, n));
   Eigen::MatrixXd places(n, count), values(count, std::ssize(score_.rows));
   Eigen::VectorXd weights(count);
-  luck_.resize(count);
+  noise_factor_.resize(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const Evaluation& e = fit.evaluations[static_cast<std::size_t>(i)];
     places.col(i) = inverse * (e.z - centre_);
     values.row(i) = e.rows;
     const double away = places.col(i).squaredNorm() / static_cast<double>(n);  // 1 is typical of the design
     const double precision = static_cast<double>(e.trials) / options.trials;
-    weights[i] = away <= kLocal ? precision * std::exp(-0.5 * away) : 0.0;
-    luck_[i] = 1.0 / std::sqrt(precision);
+    weights[i] = away <= options.rules.local ? precision * std::exp(-0.5 * away) : 0.0;
+    noise_factor_[i] = 1.0 / std::sqrt(precision);
   }
   const Eigen::VectorXd ones = row_weights(score_, std::vector<double>(problem.campaign.blocks.size(), 1.0));
   const Eigen::VectorXd totals = values * ones;
   const auto used = static_cast<double>((weights.array() > 0.0).count());
-  noise_ = kNoise;
-  for (int pass = 0; pass < 3; ++pass) {  // the ridge hangs on the noise, and the noise, weakly, on the ridge
-    const double pure = noise_ / kCurved, mixed = noise_ / kTwisted;
+  noise_ = options.rules.first_noise;
+  for (int pass = 0; pass < 3; ++pass) {  // the ridge depends on the noise, and the noise, weakly, on the ridge
+    const double pure = noise_ / options.rules.curved, mixed = noise_ / options.rules.twisted;
     model_.emplace(places, weights, QuadraticFit::Ridge{pure * pure, mixed * mixed});
     total_ = model_->coefficients(totals);
     const Eigen::VectorXd rest = totals - model_->at_places(total_);
@@ -97,8 +91,8 @@ Eigen::MatrixXd LocalModel::curvature_of(const Eigen::VectorXd& total, double pr
   return curvature;
 }
 
-Eigen::MatrixXd LocalModel::first_spread(Eigen::Index parameters) {
-  return kFirstReach * kFirstReach * Eigen::MatrixXd::Identity(parameters, parameters);
+Eigen::MatrixXd LocalModel::first_spread(Eigen::Index parameters, const SearchRules& rules) {
+  return rules.first_reach * rules.first_reach * Eigen::MatrixXd::Identity(parameters, parameters);
 }
 
 std::vector<Eigen::VectorXd> LocalModel::design(const FitProblem& problem, std::uint64_t seed,
@@ -126,7 +120,7 @@ Eigen::VectorXd LocalModel::step(const Eigen::MatrixXd& spread) const {
 }
 
 Eigen::VectorXd LocalModel::optimum(std::span<const double> block_weights, const Eigen::MatrixXd& spread) const {
-  const Eigen::VectorXd trust = kTrust * spread.diagonal().cwiseSqrt();
+  const Eigen::VectorXd trust = options_.rules.trust * spread.diagonal().cwiseSqrt();
   const Eigen::VectorXd total = rows_ * row_weights(score_, block_weights);
   double blocks = 0.0, counted = 0.0;
   for (std::size_t b = 0; b < block_weights.size(); ++b)
@@ -139,16 +133,18 @@ Eigen::VectorXd LocalModel::optimum(std::span<const double> block_weights, const
 Eigen::VectorXd LocalModel::draw(std::uint32_t draw) const {
   const Eigen::VectorXd weights =
       row_weights(score_, bootstrap_weights(score_, problem_.campaign.blocks.size(), draw, options_.seed));
-  const Eigen::VectorXd luck = noise_ * normals(options_.seed, 1, draw, luck_.size()).cwiseProduct(luck_);
-  const Eigen::VectorXd slope = from_v_ * model_->gradient(rows_ * weights - total_ + model_->coefficients(luck)) -
+  const Eigen::VectorXd noise =
+      noise_ * normals(options_.seed, 1, draw, noise_factor_.size()).cwiseProduct(noise_factor_);
+  const Eigen::VectorXd slope = from_v_ * model_->gradient(rows_ * weights - total_ + model_->coefficients(noise)) -
                                 2.0 * prior_ * normals(options_.seed, 2, draw, low_.size());
   return centre_ + minimum_in_box(slope, curvature_, low_, high_);
 }
 
 Eigen::MatrixXd LocalModel::next_spread() const {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(curvature_);
-  const Eigen::VectorXd reach = (2.0 * kRise * axes.eigenvalues().cwiseInverse()).cwiseSqrt();
-  const Eigen::VectorXd variance = reach.cwiseMax(kNarrow).cwiseMin(kWide).cwiseAbs2();
+  const Eigen::VectorXd reach = (2.0 * options_.rules.rise * axes.eigenvalues().cwiseInverse()).cwiseSqrt();
+  const SearchRules& rules = options_.rules;
+  const Eigen::VectorXd variance = reach.cwiseMax(rules.least_reach).cwiseMin(rules.most_reach).cwiseAbs2();
   return axes.eigenvectors() * variance.asDiagonal() * axes.eigenvectors().transpose();
 }
 

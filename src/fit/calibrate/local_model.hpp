@@ -2,45 +2,45 @@
 #include <algorithm>
 #include <optional>
 
-#include "talus/fit/calibrate/calibrate.hpp"
+#include "talus/fit/calibrate/fit_problem.hpp"
 #include "talus/fit/calibrate/quadratic.hpp"
 
 namespace talus {
 
-/// A quadratic model of every row score around the optimum of a fit, least squares over the evaluations near it: where
-/// to step from there, and how far other blocks, another prior and other luck would move it.
+/// A quadratic model of every row score around the optimum of a fit, by least squares over the evaluations near it. It
+/// gives the next step, and how far other blocks, another prior and other random numbers would move the optimum.
 class LocalModel {
  public:
-  static constexpr std::uint32_t kDesigns = 2'000'000'000;  ///< trials from here on are those of designs
+  static constexpr std::uint32_t kDesigns = 2'000'000'000;  ///< first trial of designs
 
   /// @param fit     with a score whose groups are weighed as the objective's are
-  /// @param spread  covariance of the places it is learnt from; those far outside do not count
+  /// @param spread  covariance of the places it is fitted to; those far outside do not count
   LocalModel(const FitProblem& problem, const FitOptions& options, const Fit& fit, const Eigen::MatrixXd& spread);
 
-  /// Evaluations of one round.
+  /// Number of evaluations of one round.
   static int round_length(Eigen::Index parameters) { return std::max(60, 8 * static_cast<int>(parameters) + 10); }
   /// Covariance of the design of the first round.
-  static Eigen::MatrixXd first_spread(Eigen::Index parameters);
+  static Eigen::MatrixXd first_spread(Eigen::Index parameters, const SearchRules& rules);
   /// Places around the centre, normally distributed within the bounds. `first`: number of the first of them.
   static std::vector<Eigen::VectorXd> design(const FitProblem& problem, std::uint64_t seed,
                                              const Eigen::VectorXd& centre, const Eigen::MatrixXd& spread, int count,
                                              std::uint32_t first);
 
-  /// First trial of place number `place`: each has luck of its own, so that the model averages over it.
+  /// First trial of place number `place`: each place has trials of its own, so that the model averages over them.
   static std::uint32_t trials_of(std::uint32_t place, std::uint32_t trials) { return kDesigns + place * trials; }
 
-  /// Number of the first place, with so many trials each, whose luck none of those known has had.
+  /// Number of the first place, with so many trials each, whose trials none of the known evaluations has used.
   static std::uint32_t first_unused(std::span<const Evaluation> known, std::uint32_t trials);
 
   /// The minimum of the model, within the bounds and two standard deviations of the spread.
   Eigen::VectorXd step(const Eigen::MatrixXd& spread) const;
-  /// Where the optimum is for other weights of the blocks (size: blocks), within two standard deviations of the spread:
-  /// slopes and curvatures are those of the blocks that count, and so is the weight of the prior.
+  /// The optimum for other weights of the blocks (size: blocks), within two standard deviations of the spread: with the
+  /// slopes, curvatures and weight of the prior of the blocks that count.
   Eigen::VectorXd optimum(std::span<const double> block_weights, const Eigen::MatrixXd& spread) const;
-  /// Where draw number `draw` of the posterior sample has its optimum.
+  /// The optimum of draw number `draw` of the posterior sample.
   Eigen::VectorXd draw(std::uint32_t draw) const;
-  /// The covariance of the next design: as wide in each direction as the objective stays nearly as good, so that a
-  /// sharp direction does not drown the flat ones.
+  /// The covariance of the next design: in each direction as wide as the objective rises by `rules.rise`, so that a
+  /// sharp direction does not hide the flat ones.
   Eigen::MatrixXd next_spread() const;
   /// Standard deviation of a total around the model, for FitOptions::trials.
   double noise() const { return noise_; }
@@ -54,11 +54,11 @@ class LocalModel {
   double prior_;
   Eigen::VectorXd centre_, low_, high_;  // low, high: bounds from the centre
   std::optional<QuadraticFit> model_;
-  Eigen::MatrixXd rows_;       // coefficients x row scores
-  Eigen::VectorXd total_;      // coefficients of the total
-  Eigen::VectorXd luck_;       // noise of each evaluation over noise_
-  Eigen::MatrixXd from_v_;     // gradient in z from that in the coordinates of the spread
-  Eigen::MatrixXd curvature_;  // in z, with the prior
+  Eigen::MatrixXd rows_;          // coefficients x row scores
+  Eigen::VectorXd total_;         // coefficients of the total
+  Eigen::VectorXd noise_factor_;  // noise of each evaluation over noise_
+  Eigen::MatrixXd from_v_;        // gradient in z = this times the gradient in the coordinates of the spread
+  Eigen::MatrixXd curvature_;     // in z, with the prior
   double noise_ = 0.0;
 };
 

@@ -4,11 +4,12 @@
 #include <cmath>
 
 #include "local_model.hpp"
+#include "talus/base/sample.hpp"
 
 namespace talus {
 namespace {
 
-constexpr std::uint32_t kOwnDesigns = 10'000;  // numbers of places that no search has used
+constexpr std::uint32_t kOwnDesigns = 10'000;  // places from this number on: no search uses them
 
 void summarise(std::span<const Parameter> free, Uncertainty& out) {
   const Eigen::Index n = out.draws.cols();
@@ -35,7 +36,7 @@ Uncertainty uncertainty_of(const FitProblem& problem, const FitOptions& options,
   const Eigen::Index n = std::ssize(problem.free);
   const int length = LocalModel::round_length(n);
   Fit around = fit;
-  around.evaluations.clear();  // the search lingers where its luck was good: what it saw would look too sharp
+  around.evaluations.clear();  // a search dwells where noise lowered the objective: the optimum would look too sharp
   Eigen::MatrixXd spread = fit.spread;
   std::uint32_t done = 0;
   for (int round = 0; round < how.rounds; ++round) {
@@ -45,7 +46,7 @@ Uncertainty uncertainty_of(const FitProblem& problem, const FitOptions& options,
         out.interrupted = true;
         return out;
       }
-      const Trials own{options.trials, LocalModel::trials_of(kOwnDesigns + done++, options.trials)};
+      const TrialRange own{options.trials, LocalModel::trials_of(kOwnDesigns + done++, options.trials)};
       around.evaluations.push_back(evaluate(problem, options, z, own));
     }
     if (round + 1 < how.rounds) spread = LocalModel(problem, options, around, spread).next_spread();

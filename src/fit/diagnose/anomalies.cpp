@@ -27,18 +27,18 @@ void lay_band(Model& m, const Campaign& campaign, const Axis& axis, double from,
     std::copy_n(where.zones.begin(), n, where.zones.begin() + static_cast<std::ptrdiff_t>(n));
   };
   Effects& e = m.effects;
-  for (EffectArea* where : {&e.vegetation_drag.where, &e.forest_stems.where, &e.block_shape.where, &e.block_mass.where,
-                        &e.wet_ground.where, &e.soft_ground.where, &e.rolling_resistance.where, &e.fragmentation.where})
+  for (EffectArea* where :
+       {&e.vegetation_drag.where, &e.forest_stems.where, &e.block_shape.where, &e.block_mass.where, &e.wet_ground.where,
+        &e.soft_ground.where, &e.rolling_resistance.where, &e.fragmentation.where})
     twice(*where);
 }
 
 }  // namespace
 
-/// A parameter that is off at `off`, noticed at off + size, and searched on a linear scale.
 Parameter amount(std::string key, std::string unit, double off, double size, double lower, double upper,
                  std::function<double(const Model&)> get, std::function<void(Model&, double)> set) {
-  return {std::move(key),  std::move(unit), lower,         upper, Parameter::Scale::Linear, off,
-          size / kNoticed, std::move(get),  std::move(set)};
+  return {std::move(key), std::move(unit), lower,         upper, Parameter::Scale::Linear, off,
+          size,           std::move(get),  std::move(set)};
 }
 
 void add_biases(std::vector<Candidate>& list, const Campaign& campaign) {
@@ -66,29 +66,6 @@ void add_biases(std::vector<Candidate>& list, const Campaign& campaign) {
   if (!sampled) return;
   add(campaign.screens.size(), "samples", &Bias::speed, "speed");
   add(campaign.screens.size(), "samples", &Bias::spin, "spin");
-}
-
-Axis axis_of(const Campaign& campaign, std::span<const BlockRuns> runs) {
-  Eigen::Vector2d release = Eigen::Vector2d::Zero(), stop = release;
-  double stops = 0.0, released = 0.0;
-  for (const MeasuredBlock& block : campaign.blocks)
-    if (!block.holdout) release += Eigen::Vector2d(block.x, block.y), released += 1.0;
-  release /= released;
-  std::vector<Eigen::Vector2d> ends;
-  for (const BlockRuns& r : runs)
-    for (std::size_t t = 0; t < r.trials; ++t)
-      if (!std::isnan(r.x[t])) ends.emplace_back(r.x[t], r.y[t]);
-  for (const MeasuredBlock& block : campaign.blocks)
-    if (!block.holdout && block.stop) ends.push_back(*block.stop);
-  for (const Eigen::Vector2d& end : ends) stop += end, stops += 1.0;
-  Axis axis{release, Eigen::Vector2d::UnitX(), 0.0, 1.0};
-  if (stops == 0.0 || (stop / stops - release).norm() == 0.0) return axis;
-  axis.direction = (stop / stops - release).normalized();
-  std::vector<double> reached;
-  for (const Eigen::Vector2d& end : ends) reached.push_back(axis.along(end));
-  std::sort(reached.begin(), reached.end());
-  axis.to = std::max(1.0, quantile(reached, 0.95));
-  return axis;
 }
 
 Candidate band(const Campaign& campaign, const Axis& axis, double from, double to) {

@@ -1,8 +1,11 @@
+#include "talus/fit/diagnose/candidates.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "anomalies.hpp"
+#include "talus/base/sample.hpp"
 
 namespace talus {
 namespace {
@@ -116,10 +119,15 @@ void add_fragmentation(std::vector<Candidate>& list) {
                   [](Model&) {}});
 }
 
+/// Makes the priors so wide that the amount one would notice, at z = 1 until here, is at z = `noticed`.
+void widen_priors(Candidate& candidate, double noticed) {
+  for (Parameter& parameter : candidate.parameters) parameter.sd /= noticed;
+}
+
 }  // namespace
 
 std::vector<Candidate> candidates_of(const Campaign& campaign, const Model& base, std::span<const BlockRuns> runs,
-                                     std::span<const std::string> without) {
+                                     std::span<const std::string> without, const DiagnosisRules& rules) {
   const std::vector<Place> places = places_of(campaign, base, touched_zones(campaign, runs));
   const double mass = median_of(campaign, [](const MeasuredBlock& b) { return b.mass; });
   std::vector<Candidate> list;
@@ -148,21 +156,26 @@ std::vector<Candidate> candidates_of(const Campaign& campaign, const Model& base
   const Axis axis = axis_of(campaign, runs);
   const Grid& grid = campaign.surface.grid();
   const double width = grid.columns * grid.cell_x + grid.rows * grid.cell_y, length = axis.to - axis.from;
-  for (int i = 0; i < kBands && base.grounds.size() <= kMostZones / 2; ++i)  // a band repeats them
-    list.push_back(band(campaign, axis, axis.from + length * i / kBands, axis.from + length * (i + 1) / kBands));
-  for (int i = 1; i <= kLines; ++i) list.push_back(barrier(axis, width, axis.from + length * i / (kLines + 1)));
+  for (int i = 0; i < rules.bands && base.grounds.size() <= kMostZones / 2; ++i)  // a band repeats them
+    list.push_back(
+        band(campaign, axis, axis.from + length * i / rules.bands, axis.from + length * (i + 1) / rules.bands));
+  for (int i = 1; i <= rules.barrier_places; ++i)
+    list.push_back(barrier(axis, width, axis.from + length * i / (rules.barrier_places + 1)));
   std::erase_if(list, [&](const Candidate& c) { return std::ranges::find(without, c.effect) != without.end(); });
+  for (Candidate& candidate : list) widen_priors(candidate, rules.noticed);
   return list;
 }
 
-Candidate together(const Campaign& campaign, const Axis& axis, std::span<const Candidate> list,
-                   std::span<const std::size_t> members) {
+Candidate merged_candidate(const Campaign& campaign, const Axis& axis, std::span<const Candidate> list,
+                           std::span<const std::size_t> members, const DiagnosisRules& rules) {
   const Candidate &first = list[members.front()], &last = list[members.back()];
-  if (first.effect == "undeclared-zone") return band(campaign, axis, first.from, last.to);
-  if (first.effect != "wet-ground") return first;
+  const bool zone = first.effect == "undeclared-zone";
+  if (!zone && first.effect != "wet-ground") return first;
   std::vector<int> days;
   for (const std::size_t member : members) days.insert(days.end(), list[member].days.begin(), list[member].days.end());
-  return wet_on(std::move(days));
+  Candidate merged = zone ? band(campaign, axis, first.from, last.to) : wet_on(std::move(days));
+  widen_priors(merged, rules.noticed);
+  return merged;
 }
 
 Model with(const Model& base, const Candidate& candidate, const Eigen::VectorXd& z) {

@@ -8,50 +8,41 @@
 namespace talus {
 namespace {
 
-constexpr std::size_t kContenders = 4;       // whose fits go on: those that gain most
-constexpr std::size_t kLaterContenders = 2;  // after the first round all takes several times as long,
-constexpr std::size_t kLaterFits = 6;        // with an effect in place
-constexpr double kWorthNaming = 0.02;        // share of the objective that an effect takes away
-constexpr double kWorthUnseen = 0.01;        // the same of blocks that its fit has not seen
-constexpr double kNothing = 0.1;             // of what one would notice: so little of an effect explains nothing
-constexpr double kHalfWay = 0.5;             // of kWorthNaming: a gain from which on the fit may yet get there
-constexpr double kUnfinished = 0.02;         // [objective] that a first fit may still be above its minimum
-constexpr double kManyBlocks = 72.0;         // of fewer, more trials each
-constexpr double kGroundShare = 0.3, kTestShare = 0.05;  // of the time of a diagnosis, roughly
-constexpr double kMostOfOne = 4.0;                       // times as many, so that five blocks do not ask for thousands
+constexpr double kGroundShare = 0.3, kTestShare = 0.05;  // of the time of a diagnosis, roughly: for the progress
 
-double net(const Trial& trial) {
-  return trial.gain - trial.price;
+double net_gain(const FittedCandidate& candidate) {
+  return candidate.gain - candidate.price;
 }
 
 /// The work of one diagnosis.
-class Diagnosing {
+class DiagnosisLoop {
  public:
-  Diagnosing(const Campaign& campaign, const DiagnoseOptions& options)
+  DiagnosisLoop(const Campaign& campaign, const DiagnoseOptions& options)
       : campaign_(campaign),
         rows_(fitting_rows(campaign)),
         options_(options),
+        rules_(options_.rules),
         fits_(campaign, options_, rows_, [this](double share) { return proceeds(share); }) {
     const auto fitting = std::count(rows_.begin(), rows_.end(), true);
-    options_.trials = shared_out(options.trials, static_cast<std::size_t>(fitting));
+    options_.trials = raised_for_few_blocks(options.trials, static_cast<std::size_t>(fitting), rules_);
   }
 
   Diagnosis run(const Model& start) {
     Diagnosis d;
-    d.with_effects = fits_.ground(start);
+    d.with_effects = fits_.fit_ground(start);
     advance(kGroundShare);
     std::vector<std::string> found;
     for (int round = 0; round <= options_.most_effects; ++round) {
       const double level = round == 0 ? options_.first_level : options_.later_level;
       d.with_effects = fits_.begin_round(std::move(d.with_effects));
       if (round == 0) d.base = d.with_effects;
-      d.rounds.push_back(turn(d.with_effects, found, level, round < options_.most_effects));
-      const Round& last = d.rounds.back();
+      d.rounds.push_back(run_round(d.with_effects, found, level, round < options_.most_effects));
+      const DiagnosisRound& last = d.rounds.back();
       if (last.effect == "none" || last.effect == "unexplained") break;
       found.push_back(last.effect);
-      d.with_effects = d.rounds.back().trials.front().fitted;
+      d.with_effects = d.rounds.back().candidates.front().fitted;
     }
-    if (!found.empty()) d.base = fits_.again(std::move(d.base));
+    if (!found.empty()) d.base = fits_.simulated_anew(std::move(d.base));
     d.trials = options_.trials;
     return d;
   }
@@ -64,103 +55,114 @@ class Diagnosing {
     return !options_.proceed || options_.proceed(std::max(progress_, ground_));
   }
 
-  std::vector<ResidualRow> residual_of(const Fitted& fitted) const {
-    return residual_table(campaign_, ResidualSpace(campaign_, fitted.fitting), rows_);
+  std::vector<ResidualRow> residual_of(const FittedModel& fitted) const {
+    return residual_table(campaign_, ResidualSpace(campaign_, fitted.runs, rules_), rows_, rules_);
   }
 
-  /// @param base  what has been found so far
-  Round turn(const Fitted& base, const std::vector<std::string>& found, double level, bool more) {
-    Round round;
-    round.residual = residual_of(base);
-    advance(kTestShare);
-    const std::vector<Candidate> candidates = candidates_of(campaign_, base.model, base.fitting, found);
-    const Axis axis = axis_of(campaign_, base.fitting);
+  ScoreTest tested(const FittedModel& base, std::span<const Candidate> candidates) {
     ScoreTestOptions how;
     how.trials = options_.trials.test;
     how.seed = options_.seed;
     how.threads = options_.threads;
+    how.rules = rules_;
     how.proceed = [this] { return proceeds(); };
-    const ScoreTest test = score_test(campaign_, {base.model, base.free, base.z, base.fitting}, candidates, rows_, how);
+    return score_test(campaign_, {base.model, base.free, base.z, base.runs}, candidates, rows_, how);
+  }
+
+  /// @param base   the model with all that was found so far
+  /// @param found  effects that it has
+  /// @param level  p of the score test below which an effect may be chosen
+  /// @param more   whether another effect may be added
+  DiagnosisRound run_round(const FittedModel& base, const std::vector<std::string>& found, double level, bool more) {
+    DiagnosisRound round;
+    round.residual = residual_of(base);
+    advance(kTestShare);
+    const std::vector<Candidate> candidates = candidates_of(campaign_, base.model, base.runs, found, rules_);
+    const ScoreTest test = tested(base, candidates);
     round.p_value = test.p_value;
     const bool noise = test.p_value > level;
-    if (!more || (noise && !found.empty())) {  // nothing left, or as much as may be added
-      round.effect = what_is_left(round);
+    if (!more || (noise && !found.empty())) {
+      round.effect = verdict_without_effect(round);
       return round;
     }
-    round.trials.reserve(test.effects.size());
+    const Axis axis = axis_of(campaign_, base.runs);
+    round.candidates.reserve(test.effects.size());
     for (const EffectVerdict& verdict : test.effects) {
-      // All have been fitted in the first round; from then on those that may be chosen, the most significant first.
-      if (!found.empty() && (verdict.p_value >= level || round.trials.size() == kLaterFits)) continue;
+      // The first round fits all effects; later ones fit those that may be chosen, the most significant first.
+      if (!found.empty() && (verdict.p_value >= level || round.candidates.size() == rules_.later_fits)) continue;
       advance();
       const EffectVerdict placed = in_better_zone(base, verdict, candidates);
-      round.trials.push_back(fits_.effect(base, placed, together(campaign_, axis, candidates, placed.best.members)));
+      round.candidates.push_back(
+          fits_.fit_effect(base, placed, merged_candidate(campaign_, axis, candidates, placed.best.members, rules_)));
     }
-    if (!noise) compete(base, round.trials, level, found.empty() ? kContenders : kLaterContenders);
+    if (!noise) compete(base, round.candidates, level, found.empty() ? rules_.contenders : rules_.later_contenders);
     choose(base, round, noise);
     return round;
   }
 
-  /// The test, which is linear, may find a strong effect in the wrong zone: where the second best one is significant,
-  /// too, a look at both decides.
-  EffectVerdict in_better_zone(const Fitted& base, const EffectVerdict& verdict,
+  /// The test, which is linear, may find a strong effect in the wrong zone. Where the second best zone is significant
+  /// too, some amounts of the effect in each decide between them.
+  EffectVerdict in_better_zone(const FittedModel& base, const EffectVerdict& verdict,
                                const std::vector<Candidate>& candidates) const {
     EffectVerdict placed = verdict;
     if (verdict.second.members.empty() || verdict.second.p_value > options_.later_level) return placed;
     const Candidate& first = candidates[verdict.best.members.front()];
     const Candidate& second = candidates[verdict.second.members.front()];
     const bool in_zone = first.where == "everywhere" || first.where.starts_with("zone ");
-    if (in_zone && fits_.promise(base, verdict.second, second) < fits_.promise(base, verdict.best, first))
+    if (in_zone &&
+        fits_.least_objective(base, verdict.second, second) < fits_.least_objective(base, verdict.best, first))
       placed.best = verdict.second;
     return placed;
   }
 
-  /// The fits of those go on that may be chosen and gain most, or could yet; of those that may still win, with more
-  /// trials. In the first round the base's has had as many before.
-  void compete(const Fitted& base, std::vector<Trial>& trials, double level, std::size_t most) {
-    std::vector<Trial*> contenders;
-    for (Trial& t : trials)
-      if (t.p_value < level) contenders.push_back(&t);
-    drop_losers(contenders, most, -kUnfinished);
-    for (Trial* t : contenders) {
+  /// Continues the fits of the candidates that may be chosen and gain most, then those that may still win with more
+  /// trials, and cross-validates what is left. In the first round the fit of the base has been as long before.
+  void compete(const FittedModel& base, std::vector<FittedCandidate>& candidates, double level, std::size_t most) {
+    std::vector<FittedCandidate*> contenders;
+    for (FittedCandidate& c : candidates)
+      if (c.p_value < level) contenders.push_back(&c);
+    drop_losers(contenders, most, -rules_.unfinished);
+    for (FittedCandidate* c : contenders) {
       advance();
-      fits_.go_on(base, *t);
+      fits_.continue_fit(base, *c);
     }
-    drop_losers(contenders, most, kHalfWay * kWorthNaming * base.objective.total);
-    for (Trial* t : contenders) {
+    drop_losers(contenders, most, rules_.half_way * rules_.worth_naming * base.objective.total);
+    for (FittedCandidate* c : contenders) {
       advance();
-      fits_.polish(base, *t);
+      fits_.continue_with_more_trials(base, *c);
     }
     if (contenders.empty()) return;
     const double before = fits_.cross_validated(base);
-    for (Trial* t : contenders) t->cross_validated = before - fits_.cross_validated(t->fitted);
+    for (FittedCandidate* c : contenders) c->cross_validated = before - fits_.cross_validated(c->fitted);
   }
 
-  /// Leaves the few that gain most: those that gain so much at least and may yet win.
-  void drop_losers(std::vector<Trial*>& contenders, std::size_t most, double least) const {
+  /// Leaves at most `most` contenders: those that gain most, of which each gains at least `least` and may still win.
+  void drop_losers(std::vector<FittedCandidate*>& contenders, std::size_t most, double least) const {
     if (contenders.empty()) return;
     std::stable_sort(contenders.begin(), contenders.end(),
-                     [](const Trial* a, const Trial* b) { return net(*a) > net(*b); });
+                     [](const FittedCandidate* a, const FittedCandidate* b) { return net_gain(*a) > net_gain(*b); });
     contenders.resize(std::min(contenders.size(), most));
     const Score& best = contenders.front()->fitted.objective;
     const auto behind = [&](const Score& own) { return difference(best, own, campaign_.blocks.size()).interval.low; };
-    std::erase_if(contenders,
-                  [&](const Trial* t) { return t->gain < least || behind(t->fitted.objective) > kUnfinished; });
+    std::erase_if(contenders, [&](const FittedCandidate* c) {
+      return c->gain < least || behind(c->fitted.objective) > rules_.unfinished;
+    });
   }
 
-  /// Nothing explains the residual. It is there if the score test, or a row of the table, says so at the stricter
-  /// level.
-  std::string what_is_left(const Round& round) const {
+  /// The verdict of a round that names no effect: "unexplained" where the score test or a row of the residual table is
+  /// significant at the stricter level, else "none".
+  std::string verdict_without_effect(const DiagnosisRound& round) const {
     const bool in_table = !round.residual.empty() && round.residual.front().corrected < options_.later_level;
     return in_table || round.p_value <= options_.later_level ? "unexplained" : "none";
   }
 
-  /// How often each trial has the lowest error, drawing blocks with replacement.
-  void count_choices(const Fitted& base, std::vector<Trial>& trials) const {
+  /// Counts how often each candidate has the lowest error when blocks are drawn with replacement.
+  void count_choices(const FittedModel& base, std::vector<FittedCandidate>& candidates) const {
     std::vector<Difference> all;
-    all.reserve(trials.size());
-    for (const Trial& t : trials) {
-      all.push_back(difference(base.objective, t.fitted.objective, campaign_.blocks.size()));
-      for (double& draw : all.back().draws) draw += t.price;
+    all.reserve(candidates.size());
+    for (const FittedCandidate& c : candidates) {
+      all.push_back(difference(base.objective, c.fitted.objective, campaign_.blocks.size()));
+      for (double& draw : all.back().draws) draw += c.price;
     }
     if (all.empty()) return;
     const std::size_t draws = all.front().draws.size();
@@ -168,33 +170,37 @@ class Diagnosing {
       const auto best = std::min_element(all.begin(), all.end(), [draw](const Difference& a, const Difference& b) {
         return a.draws[draw] < b.draws[draw];
       });
-      trials[static_cast<std::size_t>(best - all.begin())].chosen_share += 1.0 / static_cast<double>(draws);
+      candidates[static_cast<std::size_t>(best - all.begin())].chosen_share += 1.0 / static_cast<double>(draws);
     }
   }
 
-  void choose(const Fitted& base, Round& round, bool noise) const {
-    count_choices(base, round.trials);
-    const Worth worth{kWorthNaming * base.objective.total, kWorthUnseen * base.objective.total};
-    const auto may = [&](const Trial& t) {
-      return t.amount > kNothing && t.gain > worth.fitted && t.unseen_gain() > worth.unseen;
-    };
-    std::stable_sort(round.trials.begin(), round.trials.end(), [&](const Trial& a, const Trial& b) {
-      if (may(a) != may(b)) return may(a);
-      return may(a) ? a.unseen_gain() > b.unseen_gain() : net(a) > net(b);
+  bool may_be_chosen(const FittedCandidate& candidate, const LeastGain& least) const {
+    return candidate.amount > rules_.least_amount && candidate.gain > least.fitted &&
+           candidate.unseen_gain() > least.unseen;
+  }
+
+  void choose(const FittedModel& base, DiagnosisRound& round, bool noise) const {
+    count_choices(base, round.candidates);
+    const LeastGain least{rules_.worth_naming * base.objective.total, rules_.worth_unseen * base.objective.total};
+    const auto may = [&](const FittedCandidate& c) { return may_be_chosen(c, least); };
+    std::stable_sort(round.candidates.begin(), round.candidates.end(),
+                     [&](const FittedCandidate& a, const FittedCandidate& b) {
+                       if (may(a) != may(b)) return may(a);
+                       return may(a) ? a.unseen_gain() > b.unseen_gain() : net_gain(a) > net_gain(b);
+                     });
+    const auto chosen = std::find_if(round.candidates.begin(), round.candidates.end(), [&](const FittedCandidate& c) {
+      return !noise && may(c) && fits_.confirmed(base, c, least);
     });
-    const auto chosen = std::find_if(round.trials.begin(), round.trials.end(), [&](const Trial& t) {
-      return !noise && may(t) && fits_.confirmed(base, t, worth);
-    });
-    if (chosen == round.trials.end()) {
-      round.effect = what_is_left(round);
+    if (chosen == round.candidates.end()) {
+      round.effect = verdict_without_effect(round);
       return;
     }
-    std::rotate(round.trials.begin(), chosen, chosen + 1);
-    const Trial& best = round.trials.front();
+    std::rotate(round.candidates.begin(), chosen, chosen + 1);
+    const FittedCandidate& best = round.candidates.front();
     round.effect = best.effect;
     round.where = best.where;
-    for (std::size_t i = 1; i < round.trials.size(); ++i) {
-      const Trial& other = round.trials[i];
+    for (std::size_t i = 1; i < round.candidates.size(); ++i) {
+      const FittedCandidate& other = round.candidates[i];
       if (!may(other)) continue;
       const Difference c = difference(other.fitted.objective, best.fitted.objective, campaign_.blocks.size());
       if (c.interval.high > 0.0) round.alike.push_back(other.effect);
@@ -204,21 +210,22 @@ class Diagnosing {
   const Campaign& campaign_;
   std::vector<bool> rows_;
   DiagnoseOptions options_;
+  const DiagnosisRules& rules_;
   EffectFits fits_;
   double progress_ = 0.0, ground_ = 0.0;
 };
 
 }  // namespace
 
-TrialsPerBlock shared_out(TrialsPerBlock trials, std::size_t blocks) {
-  const double more = std::clamp(kManyBlocks / static_cast<double>(blocks), 1.0, kMostOfOne);
+TrialsPerBlock raised_for_few_blocks(TrialsPerBlock trials, std::size_t blocks, const DiagnosisRules& rules) {
+  const double more = std::clamp(rules.many_blocks / static_cast<double>(blocks), 1.0, rules.most_of_one);
   for (std::uint32_t* count : {&trials.search, &trials.test, &trials.compare})
     *count = static_cast<std::uint32_t>(std::lround(more * *count));
   return trials;
 }
 
 Diagnosis diagnose(const Campaign& campaign, const Model& start, const DiagnoseOptions& options) {
-  return Diagnosing(campaign, options).run(start);
+  return DiagnosisLoop(campaign, options).run(start);
 }
 
 }  // namespace talus

@@ -6,6 +6,7 @@
 
 #include "fit/calibrate/local_model.hpp"
 #include "talus/base/random.hpp"
+#include "talus/fit/calibrate/calibrate.hpp"
 
 namespace talus {
 namespace {
@@ -14,39 +15,30 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t kFolds = 5;
-constexpr std::uint32_t kOrders = 5;      // in which the blocks are cut into folds: one may be unlucky
-constexpr double kWorthASearch = 0.1;     // p of the score test
-constexpr double kPrice = 0.56;           // by which one more fitted number must lower the error, times fitting blocks
-constexpr std::uint32_t kConfirming = 4;  // times as many trials as the scores
-constexpr double kWorthARound = 0.002;    // of the objective, by one round of the quadratic model
-/// Trials of a round, in units of those that compare fits: for the choice and its cross-validation, then the same to
-/// confirm it.
-constexpr std::uint32_t kTrialsOfRound = 1 + kOrders + kOrders + kConfirming;
-
-/// Where the search of a candidate starts: the estimate of the score test, kept within reason.
-VectorXd start_of(const Candidate& candidate, const Verdict& verdict) {
+/// Start of the fit of a candidate: the estimate of the score test, kept between a little and four times what one would
+/// notice.
+VectorXd start_of(const Candidate& candidate, const Verdict& verdict, double noticed) {
   VectorXd z = VectorXd::Zero(static_cast<Index>(candidate.parameters.size()));
   for (Index i = 0; i < verdict.estimate.size(); ++i) {
     const Parameter& p = candidate.parameters[static_cast<std::size_t>(i)];
     const double low = p.lower >= 0.0 ? 0.3 : -2.0;
-    z[i] = kNoticed * std::clamp(verdict.estimate[i], low, 4.0);
+    z[i] = noticed * std::clamp(verdict.estimate[i], low, 4.0);
   }
   return z;
 }
 
-/// As wide in the ground's parameters as its own fit left it; in those of the effect from none of it to twice as much.
-MatrixXd first_spread(const MatrixXd& ground, const VectorXd& effect) {
+/// Covariance of the first design: of the ground as its own fit left it, of the effect from none to twice its start.
+MatrixXd first_spread(const MatrixXd& ground, const VectorXd& effect, double noticed) {
   const Index n = ground.rows() + effect.size();
   MatrixXd spread = MatrixXd::Zero(n, n);
   spread.topLeftCorner(ground.rows(), ground.rows()) = ground;
-  spread.diagonal().tail(effect.size()) = (0.5 * effect).cwiseAbs().cwiseMax(0.5 * kNoticed).cwiseAbs2();
+  spread.diagonal().tail(effect.size()) = (0.5 * effect).cwiseAbs().cwiseMax(0.5 * noticed).cwiseAbs2();
   return spread;
 }
 
-/// What was tried without an effect was tried with nothing of it.
-std::vector<Evaluation> without_effect(const std::vector<Evaluation>& tried, Index effect) {
-  std::vector<Evaluation> padded = tried;
+/// Evaluations made before an effect was added, as evaluations with the effect at zero.
+std::vector<Evaluation> with_zero_effect(const std::vector<Evaluation>& evaluations, Index effect) {
+  std::vector<Evaluation> padded = evaluations;
   for (Evaluation& e : padded) {
     e.z.conservativeResize(e.z.size() + effect);
     e.z.tail(effect).setZero();
@@ -54,87 +46,98 @@ std::vector<Evaluation> without_effect(const std::vector<Evaluation>& tried, Ind
   return padded;
 }
 
+/// A model prepared for a candidate, with none of it.
+Model model_without(const FittedModel& base, const Candidate& candidate) {
+  return with(base.model, candidate, VectorXd::Zero(std::ssize(candidate.parameters)));
+}
+
+std::vector<Parameter> joined(std::vector<Parameter> ground, const std::vector<Parameter>& effect) {
+  ground.insert(ground.end(), effect.begin(), effect.end());
+  return ground;
+}
+
 }  // namespace
 
-ObserveOptions EffectFits::observing(std::uint32_t trials) const {
-  const std::uint32_t first = kUnseen + round_ * kTrialsOfRound * options_.trials.compare;
+/// Trials that one round uses, as a multiple of those that compare fits: for the choice and its cross-validation, then
+/// the same to confirm it.
+std::uint32_t EffectFits::trials_of_round() const {
+  return 1 + options_.rules.fold_orders + options_.rules.fold_orders + options_.rules.confirming;
+}
+
+ObserveOptions EffectFits::observe_options(std::uint32_t trials) const {
+  const std::uint32_t first = kUnseen + round_ * trials_of_round() * options_.trials.compare;
   return {trials, options_.seed, first, options_.threads, rows_, {}};
 }
 
-FitOptions EffectFits::fitting() const {
+FitOptions EffectFits::fit_options() const {
   FitOptions how;
   how.trials = options_.trials.search;
   how.comparison_trials = 4 * options_.trials.search;
   how.seed = options_.seed;
   how.threads = options_.threads;
+  how.rules = options_.rules.search;
   how.proceed = proceed_;
   return how;
 }
 
-Fitted EffectFits::better(Fitted fitted, Fitted longer) {
+FittedModel EffectFits::better_of(FittedModel fitted, FittedModel longer) {
   if (longer.objective.total < fitted.objective.total) return longer;
-  fitted.tried = std::move(longer.tried);
+  fitted.evaluations = std::move(longer.evaluations);
   return fitted;
 }
 
-Fitted EffectFits::again(Fitted fitted) const {
-  fitted.fitting = observe(campaign_, fitted.model, observing(options_.trials.compare));
-  fitted.score = score(campaign_, fitted.fitting, rows_);
+FittedModel EffectFits::simulated_anew(FittedModel fitted) const {
+  fitted.runs = observe(campaign_, fitted.model, observe_options(options_.trials.compare));
+  fitted.score = score(campaign_, fitted.runs, rows_);
   fitted.objective = weigh_groups(fitted.score);
   return fitted;
 }
 
-Fitted EffectFits::begin_round(Fitted base) {
+FittedModel EffectFits::begin_round(FittedModel base) {
   ++round_;
-  return again(std::move(base));
+  return simulated_anew(std::move(base));
 }
 
-/// Scored on luck that the search has not seen.
-Fitted EffectFits::finish(Fit&& fit, std::vector<Parameter> free) const {
+FittedModel EffectFits::fitted_model(Fit&& fit, std::vector<Parameter> free) const {
   if (fit.interrupted) throw FitInterrupted{};
-  Fitted out;
+  FittedModel out;
   out.model = std::move(fit.model);
   out.free = std::move(free);
   out.z = std::move(fit.z);
   out.spread = std::move(fit.spread);
-  out.tried = std::move(fit.evaluations);
-  return again(std::move(out));
+  out.evaluations = std::move(fit.evaluations);
+  return simulated_anew(std::move(out));
 }
 
-Fitted EffectFits::ground(const Model& start) const {
-  const std::vector<BlockRuns> runs = observe(campaign_, start, observing(options_.trials.search));
+FittedModel EffectFits::fit_ground(const Model& start) const {
+  const std::vector<BlockRuns> runs = observe(campaign_, start, observe_options(options_.trials.search));
   std::vector<Parameter> free = ground_parameters(campaign_, start, options_.keys, touched_zones(campaign_, runs));
-  FitOptions how = fitting();  // all that follows rests on this fit
+  FitOptions how = fit_options();  // all that follows rests on this fit
   how.trials *= 2;
   how.comparison_trials *= 2;
   Fit fit = fit_parameters(campaign_, start, free, rows_, how);
-  Fitted fitted = finish(std::move(fit), std::move(free));
-  FitOptions on = going_on(fitted);
+  FittedModel fitted = fitted_model(std::move(fit), std::move(free));
+  FitOptions on = continued_fit_options(fitted);
   on.trials = how.trials;
   on.comparison_trials = how.comparison_trials;
-  Fitted longer = refined(fitted, on);
-  return better(std::move(fitted), std::move(longer));
+  FittedModel longer = continued(fitted, on);
+  return better_of(std::move(fitted), std::move(longer));
 }
 
-/// A model without any of the effect, to which amounts of it may be added.
-Model EffectFits::without(const Fitted& base, const Candidate& candidate) {
-  return with(base.model, candidate, VectorXd::Zero(std::ssize(candidate.parameters)));
-}
-
-double EffectFits::promise(const Fitted& base, const Verdict& verdict, const Candidate& candidate) const {
-  std::vector<Parameter> free = base.free;
-  free.insert(free.end(), candidate.parameters.begin(), candidate.parameters.end());
-  const Model off = without(base, candidate);
-  return scan({campaign_, off, free, rows_}, fitting(), base, candidate, verdict).objective;
+double EffectFits::least_objective(const FittedModel& base, const Verdict& verdict, const Candidate& candidate) const {
+  const std::vector<Parameter> free = joined(base.free, candidate.parameters);
+  const Model off = model_without(base, candidate);
+  return best_start({campaign_, off, free, rows_}, fit_options(), base, candidate, verdict).objective;
 }
 
 /// The best of some places to start from: the effect in several amounts, each with the ground as it is and moved as the
 /// score test expects it to. An amount of zero, the base itself, is one of them.
-Evaluation EffectFits::scan(const FitProblem& problem, const FitOptions& how, const Fitted& base,
-                            const Candidate& candidate, const Verdict& verdict) const {
-  const VectorXd effect = start_of(candidate, verdict);
+Evaluation EffectFits::best_start(const FitProblem& problem, const FitOptions& how, const FittedModel& base,
+                                  const Candidate& candidate, const Verdict& verdict) const {
+  const double noticed = options_.rules.noticed;
+  const VectorXd effect = start_of(candidate, verdict, noticed);
   const Index ground = std::ssize(problem.free) - effect.size();
-  const double share = std::clamp(effect[0] / std::max(1e-9, kNoticed * std::abs(verdict.estimate[0])), 0.0, 1.0);
+  const double share = std::clamp(effect[0] / std::max(1e-9, noticed * std::abs(verdict.estimate[0])), 0.0, 1.0);
   Evaluation best;
   best.objective = std::numeric_limits<double>::infinity();
   for (const double amount : {0.0, 0.5, 1.0, 2.0, 4.0})
@@ -150,84 +153,86 @@ Evaluation EffectFits::scan(const FitProblem& problem, const FitOptions& how, co
   return best;
 }
 
-void EffectFits::adopt(Fitted&& fitted, Trial& trial) {
-  trial.fitted = std::move(fitted);
-  trial.values.clear();
-  for (const Parameter& p : trial.parameters) trial.values.push_back(p.get(trial.fitted.model));
-  const auto own = std::ssize(trial.parameters);
-  trial.amount = trial.fitted.z.tail(own).head(static_cast<Index>(trial.tested)).cwiseAbs().maxCoeff() / kNoticed;
+/// Gives a candidate its fit, with the values and the amount that follow from it.
+void EffectFits::take_fit(FittedModel&& fitted, FittedCandidate& candidate) const {
+  candidate.fitted = std::move(fitted);
+  candidate.values.clear();
+  for (const Parameter& p : candidate.parameters) candidate.values.push_back(p.get(candidate.fitted.model));
+  const VectorXd own = candidate.fitted.z.tail(std::ssize(candidate.parameters));
+  candidate.amount = own.head(static_cast<Index>(candidate.tested)).cwiseAbs().maxCoeff() / options_.rules.noticed;
 }
 
-void EffectFits::compare(const Fitted& base, Trial& trial) const {
-  const Difference c = difference(base.objective, trial.fitted.objective, campaign_.blocks.size());
-  trial.gain = -c.mean;
-  trial.gain_interval = {-c.interval.high, -c.interval.low};
+void EffectFits::measure_gain(const FittedModel& base, FittedCandidate& candidate) const {
+  const Difference c = difference(base.objective, candidate.fitted.objective, campaign_.blocks.size());
+  candidate.gain = -c.mean;
+  candidate.gain_interval = {-c.interval.high, -c.interval.low};
 }
 
-Trial EffectFits::effect(const Fitted& base, const EffectVerdict& verdict, const Candidate& candidate) const {
-  Trial trial;
-  trial.effect = candidate.effect;
-  trial.where = candidate.where;
-  trial.p_value = verdict.p_value;
-  trial.statistic = verdict.best.statistic;
-  trial.parameters = candidate.parameters;
-  trial.tested = candidate.tested;
+FittedCandidate EffectFits::fit_effect(const FittedModel& base, const EffectVerdict& verdict,
+                                       const Candidate& candidate) const {
+  const DiagnosisRules& rules = options_.rules;
+  FittedCandidate out;
+  out.effect = candidate.effect;
+  out.where = candidate.where;
+  out.p_value = verdict.p_value;
+  out.statistic = verdict.best.statistic;
+  out.parameters = candidate.parameters;
+  out.tested = candidate.tested;
   const auto asked = static_cast<double>(std::count(rows_.begin(), rows_.end(), true));
-  trial.price = kPrice * (static_cast<double>(candidate.parameters.size()) + candidate.searched) / asked;
-  trial.place_price = kPrice * candidate.searched / asked;
-  trial.joint = verdict.p_value < std::max(kWorthASearch, options_.first_level);  // what may be chosen is
-  std::vector<Parameter> free = trial.joint ? base.free : std::vector<Parameter>{};
-  free.insert(free.end(), candidate.parameters.begin(), candidate.parameters.end());
+  out.price = rules.price * (static_cast<double>(candidate.parameters.size()) + candidate.searched) / asked;
+  out.place_price = rules.price * candidate.searched / asked;
+  out.with_ground = verdict.p_value < std::max(rules.joint_level, options_.first_level);  // what may be chosen is
+  std::vector<Parameter> free = joined(out.with_ground ? base.free : std::vector<Parameter>{}, candidate.parameters);
   const Index added = std::ssize(candidate.parameters);
-  FitOptions how = fitting();
+  FitOptions how = fit_options();
   how.starts = 0;
   how.rounds = 2;
-  how.enough = kWorthARound;
-  how.design = trial.joint ? 4 * static_cast<int>(free.size()) : 20;
-  const Model off = without(base, candidate);
-  const VectorXd z = scan({campaign_, off, free, rows_}, how, base, candidate, verdict.best).z;
+  how.enough = rules.worth_a_round;
+  how.design = out.with_ground ? 4 * static_cast<int>(free.size()) : 20;
+  const Model off = model_without(base, candidate);
+  const VectorXd z = best_start({campaign_, off, free, rows_}, how, base, candidate, verdict.best).z;
   std::vector<Evaluation> known;
-  if (trial.joint) known = without_effect(base.tried, added);
+  if (out.with_ground) known = with_zero_effect(base.evaluations, added);
   how.known = known;
-  how.spread = first_spread(trial.joint ? base.spread : MatrixXd(0, 0), z.tail(added));
+  how.spread = first_spread(out.with_ground ? base.spread : MatrixXd(0, 0), z.tail(added), rules.noticed);
   Fit fit = fit_parameters(campaign_, model_at(off, free, z), free, rows_, how);
-  adopt(finish(std::move(fit), std::move(free)), trial);
-  compare(base, trial);
-  return trial;
+  take_fit(fitted_model(std::move(fit), std::move(free)), out);
+  measure_gain(base, out);
+  return out;
 }
 
-/// From where a fit ended, with what it has tried.
-Fitted EffectFits::refined(const Fitted& fitted, FitOptions how) const {
+/// A fit continued from where it ended, with its evaluations.
+FittedModel EffectFits::continued(const FittedModel& fitted, FitOptions how) const {
   how.starts = 0;
   how.spread = fitted.spread;
-  how.known = fitted.tried;
-  return finish(fit_parameters(campaign_, fitted.model, fitted.free, rows_, how), fitted.free);
+  how.known = fitted.evaluations;
+  return fitted_model(fit_parameters(campaign_, fitted.model, fitted.free, rows_, how), fitted.free);
 }
 
-FitOptions EffectFits::going_on(const Fitted& fitted) const {
-  FitOptions how = fitting();
+FitOptions EffectFits::continued_fit_options(const FittedModel& fitted) const {
+  FitOptions how = fit_options();
   how.rounds = 3;
-  how.enough = kWorthARound;
+  how.enough = options_.rules.worth_a_round;
   how.design = 6 * static_cast<int>(fitted.free.size());
   return how;
 }
 
-void EffectFits::go_on(const Fitted& base, Trial& trial) const {
-  continued(base, trial, going_on(trial.fitted));
+void EffectFits::continue_fit(const FittedModel& base, FittedCandidate& candidate) const {
+  continue_with(base, candidate, continued_fit_options(candidate.fitted));
 }
 
-void EffectFits::polish(const Fitted& base, Trial& trial) const {
-  FitOptions how = fitting();
+void EffectFits::continue_with_more_trials(const FittedModel& base, FittedCandidate& candidate) const {
+  FitOptions how = fit_options();
   how.trials *= 2;
   how.comparison_trials *= 2;
   how.rounds = 2;
-  continued(base, trial, how);
+  continue_with(base, candidate, how);
 }
 
-void EffectFits::continued(const Fitted& base, Trial& trial, const FitOptions& how) const {
-  Fitted longer = refined(trial.fitted, how);
-  adopt(better(std::move(trial.fitted), std::move(longer)), trial);
-  compare(base, trial);
+void EffectFits::continue_with(const FittedModel& base, FittedCandidate& candidate, const FitOptions& how) const {
+  FittedModel longer = continued(candidate.fitted, how);
+  take_fit(better_of(std::move(candidate.fitted), std::move(longer)), candidate);
+  measure_gain(base, candidate);
 }
 
 /// The fitting rows in a random order: neighbours in the file are often of one day or one kind.
@@ -243,49 +248,52 @@ std::vector<std::size_t> EffectFits::shuffled_rows(std::uint32_t number) const {
   return order;
 }
 
-double EffectFits::cross_validated(const Fitted& fitted, ObserveOptions how) const {
+double EffectFits::cross_validated(const FittedModel& fitted, ObserveOptions how) const {
   const FitProblem problem{campaign_, fitted.model, fitted.free, rows_};
-  const FitOptions options = fitting();
+  const FitOptions options = fit_options();
   Fit fit;
   fit.z = fitted.z;
   fit.score = fitted.objective;
-  fit.evaluations = fitted.tried;
+  fit.evaluations = fitted.evaluations;
   const LocalModel local(problem, options, fit, fitted.spread);
+  const std::uint32_t orders = options_.rules.fold_orders;
   double sum = 0.0;
-  for (std::uint32_t number = 0; number < kOrders; ++number, how.first_trial += how.trials)  // luck of its own
+  for (std::uint32_t number = 0; number < orders; ++number, how.first_trial += how.trials)  // trials of its own
     sum += error_in_folds(local, fitted, how, shuffled_rows(number));
-  return sum / kOrders;
+  return sum / orders;
 }
 
-double EffectFits::error_in_folds(const LocalModel& local, const Fitted& fitted, ObserveOptions how,
+double EffectFits::error_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
                                   const std::vector<std::size_t>& order) const {
+  const std::size_t folds = options_.rules.folds;
   std::vector<BlockRuns> runs(campaign_.blocks.size());
-  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+  for (std::size_t fold = 0; fold < folds; ++fold) {
     if (!proceed_(1.0)) throw FitInterrupted{};
     std::vector<double> others(runs.size(), 1.0);
     how.blocks.assign(runs.size(), false);
-    for (std::size_t i = fold; i < order.size(); i += kFolds) {
+    for (std::size_t i = fold; i < order.size(); i += folds) {
       others[order[i]] = 0.0;
       how.blocks[order[i]] = true;
     }
     const Model model = model_at(fitted.model, fitted.free, local.optimum(others, fitted.spread));
     std::vector<BlockRuns> seen = observe(campaign_, model, how);
-    for (std::size_t i = fold; i < order.size(); i += kFolds) runs[order[i]] = std::move(seen[order[i]]);
+    for (std::size_t i = fold; i < order.size(); i += folds) runs[order[i]] = std::move(seen[order[i]]);
   }
   return weigh_groups(score(campaign_, runs, rows_)).total;
 }
 
-bool EffectFits::confirmed(const Fitted& base, const Trial& trial, const Worth& worth) const {
-  ObserveOptions unseen = observing(options_.trials.compare);
-  unseen.first_trial += (1 + kOrders) * options_.trials.compare;  // after those of the choice and its cross-validation
-  if (cross_validated(base, unseen) - cross_validated(trial.fitted, unseen) - trial.place_price < worth.unseen)
+bool EffectFits::confirmed(const FittedModel& base, const FittedCandidate& candidate, const LeastGain& least) const {
+  const DiagnosisRules& rules = options_.rules;
+  ObserveOptions unseen = observe_options(options_.trials.compare);
+  unseen.first_trial += (1 + rules.fold_orders) * options_.trials.compare;  // after those of the choice
+  if (cross_validated(base, unseen) - cross_validated(candidate.fitted, unseen) - candidate.place_price < least.unseen)
     return false;
-  unseen.first_trial += kOrders * options_.trials.compare;
-  unseen.trials *= kConfirming;
-  const auto error = [&](const Fitted& fitted) {
+  unseen.first_trial += rules.fold_orders * options_.trials.compare;
+  unseen.trials *= rules.confirming;
+  const auto error = [&](const FittedModel& fitted) {
     return weigh_groups(score(campaign_, observe(campaign_, fitted.model, unseen), rows_)).total;
   };
-  return error(base) - error(trial.fitted) >= worth.fitted;
+  return error(base) - error(candidate.fitted) >= least.fitted;
 }
 
 }  // namespace talus

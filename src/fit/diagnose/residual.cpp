@@ -7,16 +7,13 @@
 namespace talus {
 namespace {
 
-constexpr std::size_t kFewestValues = 10;  // simulated ones, below which a rank says nothing
-constexpr double kShrink = 0.1;            // of the pooled correlation towards none
-
 bool blocks_broke(const Campaign& campaign) {
   return std::count_if(campaign.blocks.begin(), campaign.blocks.end(), [](const MeasuredBlock& b) {
            return !b.holdout && b.stop_mass && std::abs(*b.stop_mass / b.mass - 1.0) > 0.05;
          }) >= 5;
 }
 
-/// What was measured of the fitting rows.
+/// Quantities that were measured of the fitting rows.
 std::vector<Observable> observables_of(const Campaign& campaign) {
   using Kind = Observable::Kind;
   std::vector<Observable> list;
@@ -54,8 +51,8 @@ std::vector<Observable> observables_of(const Campaign& campaign) {
 }
 
 /// Phi^-1 of the rank of a value among sorted ones; ties count half.
-double rank_score(const std::vector<double>& sorted, double value) {
-  if (sorted.size() < kFewestValues || std::isnan(value)) return kNotGiven;
+double rank_score(const std::vector<double>& sorted, double value, std::size_t fewest) {
+  if (sorted.size() < fewest || std::isnan(value)) return kNotGiven;
   const auto [low, high] = std::equal_range(sorted.begin(), sorted.end(), value);
   const double below = static_cast<double>(low - sorted.begin()) + 0.5 * static_cast<double>(high - low);
   const auto n = static_cast<double>(sorted.size());
@@ -92,8 +89,8 @@ double normal_quantile(double share) {
   return -std::sqrt(2.0) * boost::math::erfc_inv(2.0 * share);
 }
 
-ResidualSpace::ResidualSpace(const Campaign& campaign, const std::vector<BlockRuns>& runs)
-    : campaign_(campaign), observables_(observables_of(campaign)) {
+ResidualSpace::ResidualSpace(const Campaign& campaign, const std::vector<BlockRuns>& runs, const DiagnosisRules& rules)
+    : campaign_(campaign), rules_(rules), observables_(observables_of(campaign)) {
   const std::size_t blocks = campaign.blocks.size(), n = observables_.size();
   distributions_.assign(blocks, std::vector<Sorted>(n));
   samples_.resize(blocks);
@@ -126,7 +123,7 @@ double ResidualSpace::sample_score(std::size_t block, const Observable& o, const
   int count = 0;
   const std::size_t which = o.kind == Observable::Kind::SampleSpeed ? 0 : 1;
   for (const std::size_t i : half_of(campaign_.blocks[block], o.late)) {
-    const double score = rank_score(samples_[block][i][which], values[i]);
+    const double score = rank_score(samples_[block][i][which], values[i], rules_.fewest_values);
     if (!std::isnan(score)) sum += score, ++count;
   }
   return count > 0 ? sum / count : kNotGiven;
@@ -143,7 +140,7 @@ ResidualSpace::Seen ResidualSpace::seen_measured(std::size_t b) const {
   return seen;
 }
 
-/// What would have been measured of a trial: a value that is missing of the block itself is missing of its trials, too.
+/// The measurements that a trial would have given: a value that is missing of the block is missing of its trials too.
 ResidualSpace::Seen ResidualSpace::seen_of_trial(std::size_t b, const BlockRuns& runs, std::size_t t) const {
   const MeasuredBlock& block = campaign_.blocks[b];
   const auto where_measured = [](double simulated, double measured) {
@@ -217,7 +214,7 @@ Residual ResidualSpace::residual(std::size_t b, const std::vector<double>& value
       r[place] = (values[o] - p) / std::sqrt(p * (1.0 - p));
       continue;
     }
-    const double z = rank_score(distributions_[b][o], values[o]);
+    const double z = rank_score(distributions_[b][o], values[o], rules_.fewest_values);
     r[place] = z;
     r[spread] = (z * z - 1.0) / std::sqrt(2.0);
   }
@@ -248,7 +245,7 @@ void ResidualSpace::correlate(const std::vector<BlockRuns>& runs) {
     for (Eigen::Index j = 0; j < size(); ++j)
       if (i != j && pooled(i, i) > 0.0 && pooled(j, j) > 0.0)
         correlation_(i, j) =
-            (1.0 - kShrink) * std::clamp(pooled(i, j) / std::sqrt(pooled(i, i) * pooled(j, j)), -1.0, 1.0);
+            (1.0 - rules_.shrink) * std::clamp(pooled(i, j) / std::sqrt(pooled(i, i) * pooled(j, j)), -1.0, 1.0);
 }
 
 Eigen::VectorXd ResidualSpace::whitened(const Residual& r) const {

@@ -10,9 +10,6 @@
 namespace talus {
 namespace {
 
-constexpr std::size_t kFewestBlocks = 10;
-constexpr double kFewestCrossings = 5.0;  // variance of the number that cross, below which it is not nearly normal
-
 std::vector<double> ranks(std::span<const double> values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -39,12 +36,14 @@ double p_of_correlation(double r, std::size_t n) {
 
 /// Whether more of the blocks with a large property cross than the model says: sum of (c - p) times the rank, among
 /// blocks that cross as often as was measured, over its standard deviation. A rank correlation would not do: blocks
-/// that seldom cross have a small residual whatever happens, so that it goes with whatever their chance goes with.
+/// that seldom cross have a small residual whatever happens, so that it is correlated with whatever their chance
+/// depends on.
 void add_crossing(std::vector<ResidualRow>& table, const std::string& name, const char* property,
-                  const std::vector<double>& z, const std::vector<double>& variance, std::span<const double> of) {
+                  const std::vector<double>& z, const std::vector<double>& variance, std::span<const double> of,
+                  double fewest) {
   const std::vector<double> rank = ranks(of);
   const double all = std::accumulate(variance.begin(), variance.end(), 0.0);
-  if (all < kFewestCrossings) return;
+  if (all < fewest) return;
   const double middle = std::inner_product(rank.begin(), rank.end(), variance.begin(), 0.0) / all;
   double sum = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < z.size(); ++i) {
@@ -108,7 +107,7 @@ double spearman(std::span<const double> a, std::span<const double> b) {
 }
 
 std::vector<ResidualRow> residual_table(const Campaign& campaign, const ResidualSpace& space,
-                                        const std::vector<bool>& rows) {
+                                        const std::vector<bool>& rows, const DiagnosisRules& rules) {
   std::vector<ResidualRow> table;
   for (std::size_t o = 0; o < space.observables().size(); ++o) {
     const std::string& name = space.observables()[o].name;
@@ -120,7 +119,7 @@ std::vector<ResidualRow> residual_table(const Campaign& campaign, const Residual
       const double z = space.of_measured(b)[static_cast<Eigen::Index>(o)];
       if (!std::isnan(z)) seen.push_back(b), all.push_back(z);
     }
-    if (seen.size() < kFewestBlocks) continue;
+    if (seen.size() < rules.fewest_blocks) continue;
     if (!crossing) add_moments(table, name, all);
     for (const Property& property : properties()) {
       std::vector<double> z, variance, of;  // of the blocks whose property is known
@@ -128,9 +127,9 @@ std::vector<ResidualRow> residual_table(const Campaign& campaign, const Residual
         const double value = property.of(campaign.blocks[seen[i]]), p = space.crossing_share(seen[i], o);
         if (!std::isnan(value)) z.push_back(all[i]), variance.push_back(p * (1.0 - p)), of.push_back(value);
       }
-      if (of.size() < kFewestBlocks || std::ranges::min(of) == std::ranges::max(of)) continue;
+      if (of.size() < rules.fewest_blocks || std::ranges::min(of) == std::ranges::max(of)) continue;
       if (crossing) {
-        add_crossing(table, name, property.name, z, variance, of);
+        add_crossing(table, name, property.name, z, variance, of, rules.fewest_crossings);
       } else {
         const double r = spearman(z, of);
         table.push_back({name, property.name, r, p_of_correlation(r, z.size()), 1.0, z.size()});

@@ -1,12 +1,14 @@
 #include "talus/fit/diagnose/score_test.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
 
 #include "talus/base/random.hpp"
-#include "talus/fit/calibrate/projection.hpp"
+#include "talus/fit/diagnose/projection.hpp"
+#include "talus/fit/diagnose/residual.hpp"
 
 namespace talus {
 namespace {
@@ -14,9 +16,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double kStep = 0.5;     // by which a parameter of the base is moved [z]
-constexpr double kPriorSd = 1.0;  // of a parameter of the base [z]: what the data do not constrain does not move
 
 /// Mean residual of the trials of one block; zero where fewer than five were seen.
 VectorXd mean_residual(const ResidualSpace& space, std::size_t block, const BlockRuns& runs) {
@@ -30,7 +29,7 @@ VectorXd mean_residual(const ResidualSpace& space, std::size_t block, const Bloc
   return sum;
 }
 
-/// What a signature may depend on, from block to block: a constant, mass, shape, place of release, and which day it is.
+/// Properties of the blocks that a signature may depend on: a constant, mass, shape, place of release, day.
 MatrixXd covariates_of(const Campaign& campaign, const std::vector<std::size_t>& blocks) {
   constexpr Index kContinuous = 7;
   std::set<int> days;
@@ -52,10 +51,11 @@ MatrixXd covariates_of(const Campaign& campaign, const std::vector<std::size_t>&
   return x;
 }
 
-/// All directions in which the model could move, seen through the residuals of the blocks.
+/// Signatures of all directions in which the model could move: how each changes the residuals of the blocks.
 class Directions {
  public:
-  /// @param unmoved  the base again, on the luck of the runs that will be added: what luck does is the same in both
+  /// @param unmoved  the base again, with the random numbers of the runs that will be added: their noise is the same in
+  /// both
   Directions(const Campaign& campaign, const ResidualSpace& space, const std::vector<BlockRuns>& base,
              const std::vector<BlockRuns>& unmoved, const std::vector<bool>& rows)
       : space_(space), base_(base) {
@@ -83,7 +83,8 @@ class Directions {
     return s;
   }
 
-  /// By block: the scores of its base trials, one column each. Of what was measured: one column per block.
+  /// @param trials    by block: the scores of its base trials, one column each
+  /// @param measured  the scores of the measurements, one column per block
   void score_all(std::vector<MatrixXd>& trials, MatrixXd& measured) const {
     measured = MatrixXd::Zero(size(), static_cast<Index>(blocks_.size()));
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
@@ -103,7 +104,7 @@ class Directions {
   const std::vector<BlockRuns>& base_;
   std::vector<std::size_t> blocks_;
   MatrixXd smoother_;
-  std::vector<VectorXd> rest_;        // by block: mean residual of the base itself: luck
+  std::vector<VectorXd> rest_;        // by block: mean residual of the base itself, which is noise
   std::vector<MatrixXd> signatures_;  // by direction: blocks x components
 };
 
@@ -143,12 +144,12 @@ void correct(ScoreTest& test, const std::vector<std::vector<double>>& simulated)
   test.p_value = p.all;
 }
 
-/// Beyond what a double can say both p-values are zero.
+/// Whether a is more significant; by the statistic where both p-values are too small for a double.
 bool more_significant(const Verdict& a, const Verdict& b) {
   return a.p_value != b.p_value ? a.p_value < b.p_value : a.statistic > b.statistic;
 }
 
-/// Puts a further place of an effect where it belongs: best, second, or nowhere.
+/// Keeps a further place of an effect if it is the best or the second best.
 void rank(const Verdict& verdict, EffectVerdict& effect) {
   if (more_significant(verdict, effect.best)) {
     effect.second = std::exchange(effect.best, verdict);
@@ -157,23 +158,23 @@ void rank(const Verdict& verdict, EffectVerdict& effect) {
   }
 }
 
-/// By how much a parameter of the base is moved: away from its upper bound [z].
-double step_of(const Parameter& parameter, double z) {
-  return parameter.value(z + kStep) < parameter.upper ? kStep : -kStep;
+/// The step of a parameter of the base, away from its upper bound [z].
+double step_of(const Parameter& parameter, double z, double size) {
+  return parameter.value(z + size) < parameter.upper ? size : -size;
 }
 
 /// The directions of the base's parameters, then those of the candidates.
 void add_directions(Directions& directions, const TestedModel& base, std::span<const Candidate> candidates,
-                    const std::function<std::vector<BlockRuns>(const Model&)>& observed) {
+                    const DiagnosisRules& rules, const std::function<std::vector<BlockRuns>(const Model&)>& observed) {
   for (std::size_t i = 0; i < base.free.size(); ++i) {
     VectorXd moved = base.z;
-    moved[static_cast<Index>(i)] += step_of(base.free[i], base.z[static_cast<Index>(i)]);
+    moved[static_cast<Index>(i)] += step_of(base.free[i], base.z[static_cast<Index>(i)], rules.base_step);
     directions.add(observed(model_at(base.model, base.free, moved)));
   }
   for (const Candidate& candidate : candidates)
     for (std::size_t p = 0; p < candidate.tested; ++p) {
       VectorXd moved = VectorXd::Zero(static_cast<Index>(candidate.parameters.size()));
-      moved[static_cast<Index>(p)] = kNoticed;
+      moved[static_cast<Index>(p)] = rules.noticed;
       directions.add(observed(with(base.model, candidate, moved)));
     }
 }
@@ -181,8 +182,7 @@ void add_directions(Directions& directions, const TestedModel& base, std::span<c
 }  // namespace
 
 Corrected corrected(std::span<const std::vector<double>> simulated, std::span<const double> measured) {
-  // How many sets have a p-value as small by one effect; between those of the same rank by different effects, the
-  // value.
+  // Number of sets with a p-value as small by one effect; the value decides between equal numbers of two effects.
   using Rarity = std::pair<double, double>;
   const std::size_t n = simulated.front().size();
   const auto sets = static_cast<double>(n + 1);
@@ -211,9 +211,10 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
     if (options.proceed && !options.proceed()) throw FitInterrupted{};
     return observe(campaign, model, {options.trials, options.seed, 0, options.threads, rows, {}});
   };
-  const ResidualSpace space(campaign, base.runs);
+  const DiagnosisRules& rules = options.rules;
+  const ResidualSpace space(campaign, base.runs, rules);
   Directions directions(campaign, space, base.runs, observed(base.model), rows);
-  add_directions(directions, base, candidates, observed);
+  add_directions(directions, base, candidates, rules, observed);
   std::vector<MatrixXd> trials;
   MatrixXd measured;
   directions.score_all(trials, measured);
@@ -222,12 +223,14 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
 
   const auto n_base = static_cast<Index>(base.free.size());
   VectorXd steps(n_base);
-  for (Index i = 0; i < n_base; ++i) steps[i] = step_of(base.free[static_cast<std::size_t>(i)], base.z[i]);
+  for (Index i = 0; i < n_base; ++i)
+    steps[i] = step_of(base.free[static_cast<std::size_t>(i)], base.z[i], rules.base_step);
   ScoreTest test;
   std::vector<Projection> projections;
   std::vector<std::size_t> effect_of;
-  for (const TestedPlace& place : places_of(candidates, n_base, directions.size())) {
-    projections.emplace_back(place, covariance, steps, kStep * kStep / (kPriorSd * kPriorSd));
+  for (const TestedPlace& place : places_of(candidates, n_base, directions.size(), rules)) {
+    projections.emplace_back(place, covariance, steps,
+                             rules.base_step * rules.base_step / (rules.base_sd * rules.base_sd));
     Verdict verdict = projections.back().verdict(measured);
     verdict.members = place.members;
     const std::string& name = candidates[place.members.front()].effect;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/base/sample.hpp"
 #include "talus/fit/score/score.hpp"
 
 namespace talus {

@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "campaign_tables.hpp"
+#include "io/files/checksum.hpp"
 #include "io/gdal/dataset.hpp"
 #include "io/scenario/scenario_spec.hpp"
-#include "io/files/sha256.hpp"
 #include "io/scenario/table_reader.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
@@ -17,7 +17,7 @@ namespace {
 
 using Kind = TomlValue::Kind;
 
-/// What campaign.toml says, before any other file is opened.
+/// Content of campaign.toml, before any other file is opened.
 struct CampaignSpec {
   std::string name, crs;
   NamedFile dem, zones, blocks, stops, passages, screens, samples;

@@ -52,7 +52,7 @@ std::string effects_text(Effects effects, const Campaign& campaign) {
   return text;
 }
 
-/// What is no physics and no scenario can take: as comments.
+/// Bands, barriers and biases as comments: no scenario can read them.
 std::string anomalies_text(const Model& model) {
   std::string text;
   for (const Net& net : model.nets)

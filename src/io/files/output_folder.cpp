@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "folder_lock.hpp"
-#include "sha256.hpp"
+#include "input_files.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/scratch.hpp"
 

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A value of the design as it is told: name, value, unit, where it comes from.
+/// A row of the table of design values: name, value, unit, origin.
 struct DesignRow {
   std::string name;
   double value;

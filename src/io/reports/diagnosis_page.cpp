@@ -1,10 +1,11 @@
+#include "talus/io/reports/diagnosis_page.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 
 #include "talus/base/version.hpp"
-#include "talus/io/reports/diagnosis_report.hpp"
 
 namespace talus::io {
 namespace {
@@ -109,8 +110,8 @@ std::string plot(const Points& points, const std::string& title, const std::stri
   return svg;
 }
 
-std::string plots(const Campaign& campaign, const Diagnosis& d) {
-  const ResidualSpace before(campaign, d.base.fitting), after(campaign, d.with_effects.fitting);
+std::string plots(const Campaign& campaign, const Diagnosis& d, const DiagnosisRules& rules) {
+  const ResidualSpace before(campaign, d.base.runs, rules), after(campaign, d.with_effects.runs, rules);
   std::string html;
   const std::vector<ResidualRow>& rows = d.rounds.front().residual;
   for (std::size_t i = 0; i < std::min(kPlots, rows.size()); ++i) {
@@ -128,19 +129,19 @@ std::string unit_text(const Parameter& parameter) {
   return parameter.unit.empty() || parameter.unit == "1" ? "" : " " + parameter.unit;
 }
 
-std::string candidates_table(const Round& round, const std::vector<HoldoutError>& holdout) {
+std::string candidates_table(const DiagnosisRound& round, const std::vector<HoldoutError>& holdout) {
   std::string html =
       "<table><tr><th>effect</th><th>where</th><th>parameters</th><th>p of the score test</th><th>objective lower "
       "by (fitting rows, 95 %)</th><th>held-out error after</th><th>reduction, 95 %</th></tr>\n";
-  for (std::size_t i = 0; i < round.trials.size(); ++i) {
-    const Trial& t = round.trials[i];
+  for (std::size_t i = 0; i < round.candidates.size(); ++i) {
+    const FittedCandidate& c = round.candidates[i];
     std::string numbers;
-    for (std::size_t k = 0; k < t.parameters.size(); ++k)
-      numbers += t.parameters[k].key + " = " + print("%.3g", t.values[k]) + unit_text(t.parameters[k]) + "<br>";
+    for (std::size_t k = 0; k < c.parameters.size(); ++k)
+      numbers += c.parameters[k].key + " = " + print("%.3g", c.values[k]) + unit_text(c.parameters[k]) + "<br>";
     const HoldoutError& e = holdout[i];
-    html += "<tr><td>" + t.effect + "</td><td>" + escaped(t.where) + "</td><td>" + numbers + "</td><td>" +
-            print("%.4f", t.p_value) + "</td><td>" +
-            print("%.3f (%.3f to %.3f)", t.gain, t.gain_interval.low, t.gain_interval.high) + "</td><td>" +
+    html += "<tr><td>" + c.effect + "</td><td>" + escaped(c.where) + "</td><td>" + numbers + "</td><td>" +
+            print("%.4f", c.p_value) + "</td><td>" +
+            print("%.3f (%.3f to %.3f)", c.gain, c.gain_interval.low, c.gain_interval.high) + "</td><td>" +
             value_text(e.after) + "</td><td>" + reduction_text(e.reduction) + "</td></tr>\n";
   }
   return html + "</table>\n";
@@ -158,7 +159,7 @@ std::string residual_rows(const std::vector<ResidualRow>& rows) {
   return html + "</table>\n";
 }
 
-std::string sentence(const Round& round) {
+std::string sentence(const DiagnosisRound& round) {
   const bool rare = round.p_value <= kRare || (!round.residual.empty() && round.residual.front().corrected <= kRare);
   if (round.effect == "none" && !rare) return "Nothing is left that differs from noise.";
   if (round.effect == "none")
@@ -204,13 +205,13 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
       "--level), else with "
       "the ground held. The objective is the error with groups of n rows that count n / (n + 10).</p>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i)
-    if (!d.rounds[i].trials.empty())
+    if (!d.rounds[i].candidates.empty())
       html += "<h3>Round " + std::to_string(i + 1) + (i > 0 ? ", with what was found before in the model" : "") +
               "</h3>\n" + candidates_table(d.rounds[i], record.candidates[i]);
   html +=
       "<h2>Residuals</h2>\n<p>Each point is a block; z is where its measurement lies among what the model "
       "simulates for it, as a standard normal number. Grey: 95 % of the points of a right model.</p>\n" +
-      plots(campaign, d) + "<h3>Before</h3>\n" + residual_rows(d.rounds.front().residual);
+      plots(campaign, d, record.options.rules) + "<h3>Before</h3>\n" + residual_rows(d.rounds.front().residual);
   if (d.rounds.size() > 1) html += "<h3>After</h3>\n" + residual_rows(d.rounds.back().residual);
   return html + "<p>" +
          print("talus %s, seed %llu, %.0f s.", std::string(version()).c_str(),

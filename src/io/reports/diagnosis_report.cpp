@@ -25,9 +25,10 @@ Json number(double value) {
   return std::isnan(value) ? Json() : Json(rounded(value));
 }
 
-Json parameters_of(const Trial& trial) {
+Json parameters_of(const FittedCandidate& candidate) {
   Json json = Json::object();
-  for (std::size_t i = 0; i < trial.parameters.size(); ++i) json[trial.parameters[i].key] = number(trial.values[i]);
+  for (std::size_t i = 0; i < candidate.parameters.size(); ++i)
+    json[candidate.parameters[i].key] = number(candidate.values[i]);
   return json;
 }
 
@@ -43,25 +44,25 @@ Json residual_of(const std::vector<ResidualRow>& rows) {
   return list;
 }
 
-Json candidates_of(const Round& round, const std::vector<HoldoutError>& holdout) {
+Json candidates_of(const DiagnosisRound& round, const std::vector<HoldoutError>& holdout) {
   Json list = Json::array();
-  for (std::size_t i = 0; i < round.trials.size(); ++i) {
-    const Trial& t = round.trials[i];
-    list.push_back({{"effect", t.effect},
-                    {"where", t.where},
-                    {"parameters", parameters_of(t)},
-                    {"fitted_with_ground", t.joint},
-                    {"fit", number(t.fitted.score.total)},
-                    {"price", number(t.price)},
-                    {"objective_gain", number(t.gain)},
-                    {"objective_gain_ci95", {number(t.gain_interval.low), number(t.gain_interval.high)}},
-                    {"cross_validated_objective_gain", number(t.cross_validated)},
+  for (std::size_t i = 0; i < round.candidates.size(); ++i) {
+    const FittedCandidate& c = round.candidates[i];
+    list.push_back({{"effect", c.effect},
+                    {"where", c.where},
+                    {"parameters", parameters_of(c)},
+                    {"fitted_with_ground", c.with_ground},
+                    {"fit", number(c.fitted.score.total)},
+                    {"price", number(c.price)},
+                    {"objective_gain", number(c.gain)},
+                    {"objective_gain_ci95", {number(c.gain_interval.low), number(c.gain_interval.high)}},
+                    {"cross_validated_objective_gain", number(c.cross_validated)},
                     {"holdout", number(holdout[i].after)},
                     {"holdout_reduction_ci95",
                      {number(holdout[i].reduction.interval.low), number(holdout[i].reduction.interval.high)}},
-                    {"chosen_share", number(t.chosen_share)},
-                    {"statistic", number(t.statistic)},
-                    {"p_value", number(t.p_value)}});
+                    {"chosen_share", number(c.chosen_share)},
+                    {"statistic", number(c.statistic)},
+                    {"p_value", number(c.p_value)}});
   }
   return list;
 }
@@ -82,14 +83,14 @@ HoldoutError error_of(const Score& before, const Score& after, std::size_t block
   return {before.total, after.total, reduction(before, after, blocks)};
 }
 
-bool found(const Round& round) {
+bool found(const DiagnosisRound& round) {
   return round.effect != "none" && round.effect != "unexplained";
 }
 
 /// Of an effect the share of the bootstraps in which it is the best. No probabilities of being right: of `none` the
 /// p-value of the test, of `unexplained` one less the smallest p-value that says so.
-double probability_of(const Round& round) {
-  if (found(round)) return round.trials.front().chosen_share;
+double probability_of(const DiagnosisRound& round) {
+  if (found(round)) return round.candidates.front().chosen_share;
   if (round.effect == "none") return round.p_value;
   return 1.0 - std::min(round.p_value, round.residual.empty() ? 1.0 : round.residual.front().corrected);
 }
@@ -100,11 +101,11 @@ void open_holdout(const Campaign& campaign, DiagnosisRecord& record) {
   const std::size_t blocks = campaign.blocks.size();
   const Score base = holdout_score(campaign, record.diagnosis.base.model, record);
   Score before = base;
-  for (const Round& round : record.diagnosis.rounds) {
+  for (const DiagnosisRound& round : record.diagnosis.rounds) {
     record.candidates.emplace_back();
     Score chosen = before;
-    for (std::size_t i = 0; i < round.trials.size(); ++i) {
-      const Score after = holdout_score(campaign, round.trials[i].fitted.model, record);
+    for (std::size_t i = 0; i < round.candidates.size(); ++i) {
+      const Score after = holdout_score(campaign, round.candidates[i].fitted.model, record);
       record.candidates.back().push_back(error_of(before, after, blocks));
       if (i == 0 && found(round)) chosen = after;
     }
@@ -117,10 +118,10 @@ void open_holdout(const Campaign& campaign, DiagnosisRecord& record) {
 
 std::string diagnosis_json(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
-  const Round& first = d.rounds.front();
+  const DiagnosisRound& first = d.rounds.front();
   Json effects = Json::array(), rounds = Json::array();
   for (std::size_t i = 0; i < d.rounds.size(); ++i) {
-    const Round& round = d.rounds[i];
+    const DiagnosisRound& round = d.rounds[i];
     Json turn{{"effect", round.effect}};
     if (found(round)) {
       effects.push_back(round.effect);

@@ -15,9 +15,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kCorrelated = 0.5;  // from here on a correlation is worth a line of the report
+constexpr double kCorrelated = 0.5;  // a stronger correlation has a line in the report
 
-/// Six significant digits: more would say more than is known.
+/// Rounded to six significant digits: more are noise.
 double rounded(double value) {
   std::array<char, 40> text{};
   std::snprintf(text.data(), text.size(), "%.6g", value);

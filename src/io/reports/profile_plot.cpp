@@ -39,7 +39,7 @@ std::vector<double> ticks(double low, double high, int wanted) {
   return out;
 }
 
-/// A pair of axes with what is drawn between them.
+/// A pair of axes and the drawing between them.
 class Panel {
  public:
   Panel(std::string& svg, double top, double height, Range x, Range y)

@@ -8,7 +8,7 @@
 #include "io/gdal/dataset.hpp"
 #include "hazard_stream.hpp"
 #include "io/scenario/scenario_spec.hpp"
-#include "io/files/sha256.hpp"
+#include "io/files/checksum.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/scratch.hpp"
 #include "talus/base/version.hpp"

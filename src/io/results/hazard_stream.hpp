@@ -3,7 +3,7 @@
 #include <string>
 
 #include "io/gdal/dataset.hpp"
-#include "io/files/sha256.hpp"
+#include "io/files/checksum.hpp"
 
 namespace talus::io {
 

@@ -7,7 +7,7 @@
 #include "effect_spec.hpp"
 #include "profile_line.hpp"
 #include "scenario_spec.hpp"
-#include "io/files/sha256.hpp"
+#include "io/files/checksum.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/presets.hpp"

@@ -5,7 +5,7 @@
 #include "io/gdal/dataset.hpp"
 #include "effect_spec.hpp"
 #include "scenario_spec.hpp"
-#include "io/files/sha256.hpp"
+#include "io/files/checksum.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/gdal/vectors.hpp"

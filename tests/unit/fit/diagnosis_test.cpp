@@ -6,7 +6,7 @@
 
 #include "support/scenes.hpp"
 #include "talus/fit/diagnose/candidates.hpp"
-#include "talus/fit/calibrate/projection.hpp"
+#include "talus/fit/diagnose/projection.hpp"
 #include "talus/fit/diagnose/residual_table.hpp"
 #include "talus/fit/diagnose/score_test.hpp"
 
@@ -214,7 +214,7 @@ TEST(ScoreTest, FindsTheSetOfWetDays) {
                                 [](const EffectVerdict& e) { return e.effect == "wet-ground"; });
   ASSERT_NE(wet, test.effects.end());
   EXPECT_LT(wet->p_value, 0.01);
-  EXPECT_EQ(together(c, Axis{}, list, wet->best.members).where, "days 1, 3");
+  EXPECT_EQ(merged_candidate(c, Axis{}, list, wet->best.members).where, "days 1, 3");
 }
 
 /// Two independent estimates of which only the second may be negative: the bounded optimum by hand.

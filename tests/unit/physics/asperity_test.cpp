@@ -42,7 +42,8 @@ double bound(double p, double f) {
   return 5.0 * std::sqrt(p * (1.0 - p) / kDraws) / f;
 }
 
-TEST(Asperity, ClampedBracket) {  // max(0, 0.5 + 0.5 N): mean (Phi(1) + phi(1)) / 2 = 0.542, P95 1.322 (PHYSICS.md 4.1)
+TEST(Asperity,
+     ClampedBracket) {  // max(0, 0.5 + 0.5 N): mean (Phi(1) + phi(1)) / 2 = 0.542, P95 1.322 (docs/physics.md 4)
   const auto x = tan_thetas(Roughness::Clamp);
   EXPECT_NEAR(mean(x), 0.5 * (1.0 - kShareBelow + kDensity), 5.0 * 0.43 / std::sqrt(kDraws));
   EXPECT_NEAR(quantile(x, 0.95), 0.5 + 0.5 * 1.6448536269514722, bound(0.95, 2.0 * 0.10313564));

@@ -9,9 +9,6 @@
 
 #include "support/scenes.hpp"
 
-#ifndef TALUS_SOURCE_DIR
-#define TALUS_SOURCE_DIR "/work/main"
-#endif
 #ifndef TALUS_TEST_CASES
 #define TALUS_TEST_CASES TALUS_SOURCE_DIR "/tests/cases"
 #endif

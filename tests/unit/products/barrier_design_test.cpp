@@ -70,7 +70,7 @@ TEST(Table4, RatioOfTheEnergyLevels) {
 }
 
 /// Two exceedances of a height fix a Weibull law: k = ln(ln p1 / ln p2) / ln(h1 / h2). Of Table 4's, mean and P95 are
-/// those of PHYSICS.md, section 9.
+/// those of docs/barrier.md, "Table 4 of the paper".
 TEST(Table4, JumpHeightsRecovered) {
   struct Row {
     double h1, p1, h2, p2, shape, scale, mean, p95;

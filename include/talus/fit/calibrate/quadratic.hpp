@@ -10,7 +10,7 @@ namespace talus {
 /// Linear in the values: the coefficients of many functions at the same places cost one factorisation.
 class QuadraticFit {
  public:
-  /// Added to the normal equations, so that few places do: second derivatives that the places do not show are none.
+  /// Added to the normal equations, so that few places are enough: second derivatives that they do not show are zero.
   struct Ridge {
     double pure, mixed;  ///< for u_i^2 and for u_i u_j: (noise of a value / typical second derivative)^2
   };
@@ -26,7 +26,7 @@ class QuadraticFit {
   Eigen::VectorXd at_places(const Eigen::VectorXd& coefficients) const { return features_ * coefficients; }
 
   Eigen::Index directions() const { return directions_; }
-  /// How many coefficients the values decide: all, less what the ridge holds back.
+  /// Number of coefficients that the values decide: all, less what the ridge holds back.
   double coefficients_used() const { return features_.cwiseProduct(solver_.transpose()).sum(); }
   /// g of a function; size: directions.
   Eigen::VectorXd gradient(const Eigen::VectorXd& coefficients) const { return coefficients.segment(1, directions_); }

@@ -1,15 +1,15 @@
 #pragma once
-#include "talus/fit/calibrate/calibrate.hpp"
+#include "talus/fit/calibrate/fit_problem.hpp"
 
 namespace talus {
 
-/// How well the parameters of a fit are known.
+/// Uncertainty of the parameters of a fit.
 struct Uncertainty {
   Eigen::MatrixXd draws;            ///< one z per row; size: draws x free parameters
   std::vector<Interval> intervals;  ///< 95 %, of the values in the units of the files
   std::vector<bool> identifiable;   ///< false: the interval covers most of what was possible before
   Eigen::MatrixXd correlation;      ///< of z over the draws; size: parameters x parameters
-  double noise = 0.0;               ///< of a total with FitOptions::trials, from the luck of the trials
+  double noise = 0.0;               ///< standard deviation of a total with FitOptions::trials, from its random numbers
   bool interrupted = false;
 };
 
@@ -23,14 +23,15 @@ struct UncertaintyOptions {
 };
 
 /// Posterior sample by randomised minimisation (randomise, then optimise): each draw takes the blocks anew with
-/// replacement, draws the centre of the prior from the prior, adds the luck of the trials, and moves the optimum of the
-/// fit to the new minimum within the bounds. The objective is a quadratic model of every row score around the optimum
-/// (`LocalModel`), so that a draw costs no simulation; it is learnt from what the fit tried and from rounds of designs
-/// as wide as the draws of the round before.
+/// replacement, draws the centre of the prior from the prior, adds the noise of the trials, and moves the optimum of
+/// the fit to the new minimum within the bounds. The objective is a quadratic model of every row score around the
+/// optimum
+/// (`LocalModel`), so that a draw costs no simulation; the model is fitted to rounds of designs, each as wide as the
+/// objective of the round before stays nearly as good.
 ///
 /// @param fit  of the same problem
 ///
-/// What it holds: which blocks were released, the prior, the simulation's luck. What it does not: that the model may be
+/// Includes: which blocks were released, the prior, the noise of the simulation. Leaves out: that the model may be
 /// wrong. docs/closing-the-loop.md, "Uncertainty".
 Uncertainty uncertainty_of(const FitProblem& problem, const FitOptions& options, const UncertaintyOptions& how,
                            const Fit& fit);

@@ -8,7 +8,7 @@
 
 namespace talus {
 
-/// What was measured of a block where it first crossed a screen. NaN: not measured, though it did cross.
+/// Measurements of a block at its first crossing of a screen. NaN: not measured, though it did cross.
 struct Passage {
   double speed = kNotGiven;  ///< in space [m/s]
   double jump = kNotGiven;   ///< vertical height of the centre above the terrain [m]
@@ -23,7 +23,7 @@ struct Sample {
   double spin = kNotGiven;           ///< [rad/s]; NaN: not measured
 };
 
-/// A block that was released, and what was measured of it.
+/// A block that was released, with its measurements.
 struct MeasuredBlock {
   std::string id;
   double x = 0.0, y = 0.0;       ///< nominal place of release [m, local]

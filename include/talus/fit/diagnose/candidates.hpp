@@ -1,34 +1,9 @@
 #pragma once
-#include "talus/fit/calibrate/calibrate.hpp"
+#include "talus/fit/diagnose/axis.hpp"
+#include "talus/fit/diagnose/candidate.hpp"
+#include "talus/fit/diagnose/diagnosis_rules.hpp"
 
 namespace talus {
-
-/// The amount of an effect that one would notice, in z: what the score test moves. The prior is four times as wide.
-inline constexpr double kNoticed = 0.25;
-
-/// Something that may be missing in a model: where it acts and the numbers that it adds. Off, at z = 0 of all its
-/// parameters, it changes nothing. docs/closing-the-loop.md, "Candidates".
-struct Candidate {
-  std::string effect;                   ///< as in diagnosis.json: "vegetation-drag", ..., "instrument-bias"
-  std::string where;                    ///< "everywhere", "zone meadow", "day 2", "screen S1 speed", "92 to 110 m"
-  std::vector<Parameter> parameters;    ///< one or two; those that need no test of their own come last
-  std::size_t tested = 1;               ///< how many of them the score test moves
-  std::function<void(Model&)> prepare;  ///< before the parameters are set: places and lines
-  double searched = 0.0;                ///< how many numbers of its place were chosen by the data: a price of its fit
-  double from = 0.0, to = 0.0;          ///< of a band: along the axis [m]
-  std::vector<int> days = {};           ///< of wet ground
-};
-
-/// Positions along the slope: the direction in plan in which the blocks of a campaign go, and how far.
-struct Axis {
-  Eigen::Vector2d origin, direction;  ///< [m, local], unit
-  double from = 0.0, to = 0.0;        ///< of the paths, along the direction from the origin [m]
-
-  double along(const Eigen::Vector2d& place) const { return (place - origin).dot(direction); }
-};
-
-/// From the mean release to the mean simulated stop.
-Axis axis_of(const Campaign& campaign, std::span<const BlockRuns> runs);
 
 /// The effects of the library and the anomalies that are not physics, with every place where they may act.
 ///
@@ -36,21 +11,13 @@ Axis axis_of(const Campaign& campaign, std::span<const BlockRuns> runs);
 /// @param without  names of effects that the base model has already
 ///
 /// Candidates of one effect stand one after the other. Bands (undeclared-zone) are given as the cells of a ladder of
-/// `kBands` along the axis, in order, wet days one by one: the score test joins them, as their signatures add up.
+/// `bands` along the axis, in order, wet days one by one: the score test joins them, because their signatures add up.
 std::vector<Candidate> candidates_of(const Campaign& campaign, const Model& base, std::span<const BlockRuns> runs,
-                                     std::span<const std::string> without);
+                                     std::span<const std::string> without, const DiagnosisRules& rules = {});
 
-inline constexpr int kBands = 12;  ///< of the ladder for undeclared zones
-inline constexpr int kLines = 16;  ///< places of an undeclared barrier
-
-/// A band of other ground across the axis, from one distance along it to another [m].
-Candidate band(const Campaign& campaign, const Axis& axis, double from, double to);
-/// A net across the axis.
-Candidate barrier(const Axis& axis, double width, double at);
-
-/// The one candidate that several of one effect make: a band of neighbouring ones, or all of their days.
-Candidate together(const Campaign& campaign, const Axis& axis, std::span<const Candidate> list,
-                   std::span<const std::size_t> members);
+/// Merges candidates of one effect into one: neighbouring bands, or days. Of any other effect the first is returned.
+Candidate merged_candidate(const Campaign& campaign, const Axis& axis, std::span<const Candidate> list,
+                           std::span<const std::size_t> members, const DiagnosisRules& rules = {});
 
 /// The model with a candidate in place, at z of its parameters.
 Model with(const Model& base, const Candidate& candidate, const Eigen::VectorXd& z);

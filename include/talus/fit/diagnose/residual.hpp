@@ -5,10 +5,11 @@
 #include <vector>
 
 #include "talus/fit/campaign/observe.hpp"
+#include "talus/fit/diagnose/diagnosis_rules.hpp"
 
 namespace talus {
 
-/// What is compared of a block, one number each. docs/closing-the-loop.md, "The residual".
+/// A quantity of a block that is compared: one number. docs/closing-the-loop.md, "The residual".
 struct Observable {
   enum class Kind { Runout, Lateral, Mass, Crossed, Speed, Jump, Spin, SampleSpeed, SampleSpin } kind;
   std::size_t screen = 0;  ///< of Crossed, Speed, Jump, Spin
@@ -26,13 +27,13 @@ using Residual = Eigen::VectorXd;
 class ResidualSpace {
  public:
   /// @param runs  of the model; at least 20 trials of each fitting block. The campaign must outlive this.
-  ResidualSpace(const Campaign& campaign, const std::vector<BlockRuns>& runs);
+  ResidualSpace(const Campaign& campaign, const std::vector<BlockRuns>& runs, const DiagnosisRules& rules = {});
 
   const std::vector<Observable>& observables() const { return observables_; }
   /// Number of components of a residual: places first, then spreads.
   Eigen::Index size() const { return 2 * static_cast<Eigen::Index>(observables_.size()); }
 
-  /// How often a block crosses the screen of an observable, simulated: in (0, 1).
+  /// Simulated share of a block's trials that cross the screen of an observable: in (0, 1).
   double crossing_share(std::size_t block, std::size_t observable) const {
     return crossing_share_[block * observables_.size() + observable];
   }
@@ -48,7 +49,7 @@ class ResidualSpace {
  private:
   /// Simulated values that were observed, ascending; fewer than ten: of no use.
   using Sorted = std::vector<double>;
-  /// What there is to see of one block, measured or of one trial. NaN: not seen.
+  /// Measurements of one block, or of one of its trials. NaN: not seen.
   struct Seen {
     Eigen::Vector2d way{kNotGiven, kNotGiven};  // from the place of release to the stop [m]
     double mass_share = kNotGiven;
@@ -64,6 +65,7 @@ class ResidualSpace {
   void correlate(const std::vector<BlockRuns>& runs);
 
   const Campaign& campaign_;
+  DiagnosisRules rules_;
   std::vector<Observable> observables_;
   std::vector<Eigen::Vector2d> forward_;                     // by block: towards its mean simulated stop, unit
   std::vector<std::vector<Sorted>> distributions_;           // by block and observable

@@ -5,7 +5,7 @@
 
 namespace talus {
 
-/// How the residual of one observable goes with one property of the blocks.
+/// Dependence of the residual of one observable on one property of the blocks.
 struct ResidualRow {
   std::string observable;  ///< "runout", "speed S1", ...
   std::string covariate;   ///< "mean", "spread", "mass", "L1/L2", "L1/L3", "day", "release height", "east", "north"
@@ -16,7 +16,7 @@ struct ResidualRow {
   std::size_t blocks;
 };
 
-/// What a residual may go with.
+/// A property of the blocks on which a residual may depend.
 struct Property {
   const char* name;                                ///< as in ResidualRow::covariate
   const char* unit;                                ///< empty: none
@@ -26,7 +26,7 @@ const std::vector<Property>& properties();
 
 /// Every observable against every property, most significant first. Rows with fewer than ten blocks are left out.
 std::vector<ResidualRow> residual_table(const Campaign& campaign, const ResidualSpace& space,
-                                        const std::vector<bool>& rows);
+                                        const std::vector<bool>& rows, const DiagnosisRules& rules = {});
 
 /// Spearman's rank correlation of two lists of equal length; ties share their mean rank.
 double spearman(std::span<const double> a, std::span<const double> b);

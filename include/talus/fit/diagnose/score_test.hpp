@@ -1,19 +1,10 @@
 #pragma once
 #include "talus/fit/diagnose/candidates.hpp"
-#include "talus/fit/diagnose/residual.hpp"
+#include "talus/fit/diagnose/verdict.hpp"
 
 namespace talus {
 
-/// Whether a candidate, at one place, explains what a model leaves. docs/closing-the-loop.md, "The score test".
-struct Verdict {
-  std::vector<std::size_t> members;  ///< indices into the candidates: one, or neighbouring bands, or days
-  Eigen::VectorXd estimate;          ///< of its tested parameters, one step from zero [kNoticed in z]
-  Eigen::VectorXd ground;            ///< how far the base's own parameters would move along with it [z]
-  double statistic = 0.0;            ///< s' V^-1 s, the larger one of V by the model and V by the blocks
-  double p_value = 1.0;              ///< of this place alone
-};
-
-/// What the test says of an effect, at the best of its places.
+/// Result of the test for an effect, at the best of its places.
 struct EffectVerdict {
   std::string effect;
   Verdict best;
@@ -32,8 +23,9 @@ struct Corrected {
   double all = 1.0;             ///< of the most unlikely effect
 };
 
-/// What was measured is one data set among the others: the model is as likely to have made it the most unlikely of them
-/// as any. Each effect counts alike, however many places its p-value is the smallest of.
+/// Corrects p-values for the number of places and effects. The measured data set is ranked among simulated ones: if the
+/// model is right, each of them is equally likely to be the rarest. All effects count alike, whatever their number of
+/// places.
 ///
 /// @param simulated  by effect and data set: the smallest p-value over its places
 /// @param measured   the same of what was measured, by effect
@@ -44,6 +36,7 @@ struct ScoreTestOptions {
   std::uint64_t seed = 1;
   int threads = 0;
   int replicates = 2000;          ///< simulated data sets without an effect
+  DiagnosisRules rules;           ///< its candidates, residual and steps
   std::function<bool()> proceed;  ///< asked between simulations, by one thread; false ends it. May be empty
 };
 
@@ -52,13 +45,13 @@ struct TestedModel {
   const Model& model;                  ///< fitted
   std::span<const Parameter> free;     ///< its fitted parameters
   const Eigen::VectorXd& z;            ///< of them
-  const std::vector<BlockRuns>& runs;  ///< of the asked blocks, on luck that the search has not seen
+  const std::vector<BlockRuns>& runs;  ///< of the asked blocks, with random numbers that the search has not used
 };
 
 /// Tests every candidate against the residual of a model, with the model's own parameters free to move along.
 ///
 /// The residual of each block is compared with the one that a small amount of the candidate would leave (simulated: its
-/// signature). What a change of the model's free parameters could imitate is taken out of it. The same is done with
+/// signature). The part that a change of the model's free parameters could imitate is taken out. The same is done with
 /// data sets drawn from the model itself, which gives the p-values: one trial per block stands in for the measurement.
 ///
 /// @param rows  the blocks that are used; size: blocks

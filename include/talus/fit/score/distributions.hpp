@@ -8,7 +8,7 @@ namespace talus {
 /// Shares at which distributions are compared.
 inline constexpr std::array<double, 5> kCompared{0.05, 0.25, 0.5, 0.75, 0.95};
 
-/// What was measured of one quantity against what was simulated, over all asked blocks.
+/// Measured and simulated values of one quantity, pooled over all asked blocks.
 struct Distribution {
   std::string name;                                              ///< "runout", "speed S1", "sample spin", ...
   std::string unit;                                              ///< "m", "m/s", "rad/s"
@@ -16,7 +16,7 @@ struct Distribution {
   std::array<double, kCompared.size()> measured{}, simulated{};  ///< quantiles
 };
 
-/// How many of the blocks crossed a screen.
+/// Share of the blocks that crossed a screen.
 struct CrossingShare {
   std::string screen;
   double measured = 0.0, simulated = 0.0;

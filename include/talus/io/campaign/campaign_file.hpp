@@ -7,7 +7,7 @@
 
 namespace talus::io {
 
-/// Measured data with what is to be told of their origin.
+/// A campaign with its origin: coordinate system, zone codes, input files, warnings.
 struct LoadedCampaign {
   Campaign campaign;
   GeoReference geo;

@@ -8,7 +8,7 @@
 
 namespace talus::io {
 
-/// Of one quantity: its law, and how often the design values are exceeded. In the units of the files.
+/// The law of one quantity and the probabilities that the design values are exceeded. In the units of the files.
 struct Reliability {
   struct Limit {
     std::string name;  ///< "h_i", "SEL"
@@ -20,12 +20,12 @@ struct Reliability {
   std::vector<Limit> limits;
 };
 
-/// All that `talus barrier` finds.
+/// Results of `talus barrier`.
 struct BarrierReport {
   std::string screen;
   double released = 0.0;      ///< trajectories of the run
   std::size_t crossings = 0;  ///< blocks that crossed the screen
-  std::string values;         ///< the fits are to: "simulated crossings", or the file of the observed ones
+  std::string values;         ///< data of the fits: "simulated crossings", or the file of the observed ones
   std::string block_from;     ///< "the largest that crosses", "--volume"
   DesignBlock block;
   DesignFactors factors;
@@ -43,7 +43,7 @@ std::string barrier_text(const BarrierReport& report);
 std::string barrier_json(const BarrierReport& report);
 std::string barrier_csv(const BarrierReport& report);
 
-/// "barrier_road": the name of the files without ending; what cannot stand in a file name becomes '_'.
+/// "barrier_road": the name of the files without ending; a character that a file name cannot have becomes '_'.
 std::string barrier_file_name(const std::string& screen);
 
 }  // namespace talus::io

@@ -6,7 +6,7 @@
 
 namespace talus::io {
 
-/// Where a fit comes from: at the head of every report.
+/// Origin of a fit: the head of every report.
 struct FitRecord {
   std::vector<std::string> command;
   std::vector<InputFile> inputs;

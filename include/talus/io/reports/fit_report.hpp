@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-#include "talus/fit/score/distributions.hpp"
 #include "talus/fit/calibrate/uncertainty.hpp"
+#include "talus/fit/score/distributions.hpp"
 #include "talus/io/reports/fit_record.hpp"
 #include "talus/io/reports/score_report.hpp"
 
@@ -15,7 +15,7 @@ struct BeforeAfter {
   Reduction reduction;
 };
 
-/// All that `talus calibrate` found.
+/// Results of `talus calibrate`.
 struct Calibration : FitRecord {
   FitOptions options;
   Model start;
@@ -24,7 +24,7 @@ struct Calibration : FitRecord {
   Fit fit;
   Uncertainty uncertainty;
   std::uint32_t score_trials = 100;
-  std::vector<BeforeAfter> errors;  ///< of the fitting and the held-out rows, with trials the search has not seen
+  std::vector<BeforeAfter> errors;  ///< of the fitting and the held-out rows, with trials that the search has not used
   Comparison comparison;            ///< of all blocks, after the fit
 };
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "talus/fit/score/score.hpp"
+#include "talus/fit/score/bootstrap.hpp"
 #include "talus/io/campaign/campaign_file.hpp"
 
 namespace talus::io {
@@ -21,15 +21,15 @@ struct ScoredRows {
 ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<const BlockRuns> runs,
                   const std::vector<bool>& ask);
 
-/// How the scores were made.
+/// Settings of the scores.
 struct ScoreSettings {
   std::string campaign;  ///< its name
   std::uint32_t trials = 100;
   std::uint64_t seed = 1;
 };
 
-/// One sentence for each group of which more than half of the rows score as the climatology: what a model leaves out
-/// altogether, it is not scored for, and a fit can hide there.
+/// One sentence for each group of which more than half of the rows score as the climatology: a model is not
+/// scored for what it leaves out altogether, and a fit can hide there.
 ///
 /// @param rows  "fit" or "holdout"
 std::vector<std::string> unseen_warnings(const std::string& rows, const Score& score);
@@ -39,7 +39,7 @@ std::string score_table(const ScoreSettings& settings, std::span<const ScoredRow
 /// The same as JSON. The text ends with a line end.
 std::string score_json(const ScoreSettings& settings, std::span<const ScoredRows> scores);
 
-/// Writes what was simulated, measurement error included, one row per block and trial: `stops.csv`
+/// Writes the simulated measurements, errors included, one row per block and trial: `stops.csv`
 /// (block,trial,end,x,y,mass_share), `passages.csv` (block,trial,screen,speed_ms,jump_height_m,angular_velocity_rads)
 /// and, where the campaign has samples, `samples.csv` (block,trial,sample,speed_ms,angular_velocity_rads). Numbers are
 /// the shortest that read back the same. Throws std::runtime_error.

@@ -145,7 +145,7 @@ TEST(LocalModel, GroupsPullByTheirWeights) {
   EXPECT_NEAR(LocalModel(problem, options, fit, spread).step(spread)[0], 0.6, 1e-4);
 }
 
-/// What a fit minimises is the score with its groups weighed, plus the prior: here 40 stops and few crossings.
+/// The objective is the score with its groups weighed, plus the prior: here 40 stops and few crossings.
 TEST(Evaluate, IsTheWeighedScoreAndThePrior) {
   Campaign c = campaign_on_slope(60);
   const Model start = model_of_slope();
@@ -171,7 +171,7 @@ TEST(Evaluate, IsTheWeighedScoreAndThePrior) {
   for (const GroupScore& g : fit.score.groups) EXPECT_DOUBLE_EQ(g.weight, g.rows / (g.rows + 10.0));
 }
 
-/// What is known of earlier fits is known from their trials: a later one sees others, whatever their numbers.
+/// A later fit uses other trials than those of the evaluations that it is given, whatever their numbers.
 TEST(Calibrate, LaterPlacesHaveLuckOfTheirOwn) {
   EXPECT_EQ(LocalModel::trials_of(7, 24), LocalModel::kDesigns + 168);
   std::vector<Evaluation> known(10, {Eigen::Vector2d::Zero(), {}, 48, 0.0});

@@ -51,7 +51,7 @@ TEST(Observe, LaterTrialsAreThoseOfALongerRun) {
   EXPECT_EQ(std::vector<double>(a[1].x.begin() + 40, a[1].x.end()), b[1].x);
 }
 
-/// What is measured of a path is what the engine says of that path, once the errors are zero.
+/// Without measurement errors the observations of a path are the engine's values.
 TEST(Observe, WithoutErrorsItIsThePath) {
   Campaign c = campaign_on_slope(3);
   c.error = {};

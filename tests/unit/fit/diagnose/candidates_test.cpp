@@ -25,7 +25,7 @@ std::vector<BlockRuns> fitting_runs(const Campaign& c, std::uint32_t trials) {
   return observe(c, model_of_slope(), {trials, 1, 0, 0, fitting_rows(c), {}});
 }
 
-/// All that tells candidates apart.
+/// Everything in which candidates differ.
 std::vector<std::string> described(const Campaign& c) {
   std::vector<std::string> list;
   const auto runs = fitting_runs(c, 20);

@@ -3,47 +3,48 @@
 #include <gtest/gtest.h>
 
 #include "support/campaigns.hpp"
+#include "talus/fit/diagnose/diagnose.hpp"
 
 namespace talus::test {
 namespace {
 
 TEST(Trials, AreSharedOutAmongFewBlocks) {
-  const TrialsPerBlock many = shared_out({24, 100, 200}, 144);
+  const TrialsPerBlock many = raised_for_few_blocks({24, 100, 200}, 144);
   EXPECT_EQ(many.search, 24U);  // never fewer than was asked for
   EXPECT_EQ(many.test, 100U);
   EXPECT_EQ(many.compare, 200U);
-  const TrialsPerBlock third = shared_out({24, 100, 200}, 24);  // 72 / 24 = 3 times as many
+  const TrialsPerBlock third = raised_for_few_blocks({24, 100, 200}, 24);  // 72 / 24 = 3 times as many
   EXPECT_EQ(third.search, 72U);
   EXPECT_EQ(third.test, 300U);
   EXPECT_EQ(third.compare, 600U);
-  EXPECT_EQ(shared_out({24, 100, 200}, 5).search, 96U) << "four times at most";
+  EXPECT_EQ(raised_for_few_blocks({24, 100, 200}, 5).search, 96U) << "four times at most";
 }
 
 TEST(EffectFits, ALongerFitIsTakenWhereItIsBetterAndTeachesWhereItIsNot) {
-  Fitted fitted, longer;
+  FittedModel fitted, longer;
   fitted.objective.total = 0.5;
   fitted.z = Eigen::VectorXd::Constant(1, 1.0);
-  fitted.tried.resize(1);
+  fitted.evaluations.resize(1);
   longer = fitted;
   longer.z[0] = 2.0;
-  longer.tried.resize(3);
+  longer.evaluations.resize(3);
   longer.objective.total = 0.4;
-  EXPECT_EQ(EffectFits::better(fitted, longer).z[0], 2.0);
+  EXPECT_EQ(EffectFits::better_of(fitted, longer).z[0], 2.0);
   longer.objective.total = 0.6;
-  const Fitted kept = EffectFits::better(fitted, longer);
+  const FittedModel kept = EffectFits::better_of(fitted, longer);
   EXPECT_EQ(kept.z[0], 1.0);
   EXPECT_EQ(kept.objective.total, 0.5);
-  EXPECT_EQ(kept.tried.size(), 3U);
+  EXPECT_EQ(kept.evaluations.size(), 3U);
 }
 
 /// A fit whose ground is half as rough again as the one that was fitted to the data, with as much tried around it.
-Fitted too_rough(const Campaign& campaign, const std::vector<bool>& rows, Fitted fitted) {
+FittedModel too_rough(const Campaign& campaign, const std::vector<bool>& rows, FittedModel fitted) {
   const Eigen::VectorXd aside = Eigen::VectorXd::Constant(1, std::log(1.5) / fitted.free[0].sd);
   fitted.z += aside;
   fitted.model = model_at(fitted.model, fitted.free, fitted.z);
-  for (Evaluation& e : fitted.tried) e.z += aside;  // its quadratic model then has its minimum there, too
-  fitted.fitting = observe(campaign, fitted.model, {50, 1, 0, 0, rows, {}});
-  fitted.score = score(campaign, fitted.fitting, rows);
+  for (Evaluation& e : fitted.evaluations) e.z += aside;  // its quadratic model then has its minimum there, too
+  fitted.runs = observe(campaign, fitted.model, {50, 1, 0, 0, rows, {}});
+  fitted.score = score(campaign, fitted.runs, rows);
   fitted.objective = weigh_groups(fitted.score);
   return fitted;
 }
@@ -57,24 +58,24 @@ TEST(EffectFits, WhatIsNoBetterIsNotConfirmed) {
   options.keys = {"theta_scale"};
   options.trials = {20, 20, 50};
   EffectFits fits(campaign, options, rows, [](double) { return true; });
-  const Fitted good = fits.ground(truth);
-  const Fitted bad = too_rough(campaign, rows, good);
+  const FittedModel good = fits.fit_ground(truth);
+  const FittedModel bad = too_rough(campaign, rows, good);
   ASSERT_GT(bad.objective.total, good.objective.total);
-  EXPECT_EQ(fits.again(good).objective.total, good.objective.total);
+  EXPECT_EQ(fits.simulated_anew(good).objective.total, good.objective.total);
   EXPECT_GT(fits.cross_validated(bad), fits.cross_validated(good));
-  Trial trial;
-  trial.fitted = good;
-  EXPECT_TRUE(fits.confirmed(bad, trial, {0.0, 0.0}));
-  EXPECT_FALSE(fits.confirmed(bad, trial, {1.0, 0.0})) << "not by so much on the rows that it is fitted to";
-  EXPECT_FALSE(fits.confirmed(bad, trial, {0.0, 1.0})) << "nor on those that it has not seen";
-  trial.place_price = 1.0;
-  EXPECT_FALSE(fits.confirmed(bad, trial, {0.0, 0.0})) << "its place costs more than it gains";
-  trial.place_price = 0.0;
-  trial.fitted = bad;
-  EXPECT_FALSE(fits.confirmed(good, trial, {0.0, 0.0}));
-  const Fitted anew = fits.begin_round(good), later = fits.begin_round(good);
+  FittedCandidate candidate;
+  candidate.fitted = good;
+  EXPECT_TRUE(fits.confirmed(bad, candidate, {0.0, 0.0}));
+  EXPECT_FALSE(fits.confirmed(bad, candidate, {1.0, 0.0})) << "not by so much on the rows that it is fitted to";
+  EXPECT_FALSE(fits.confirmed(bad, candidate, {0.0, 1.0})) << "nor on those that it has not seen";
+  candidate.place_price = 1.0;
+  EXPECT_FALSE(fits.confirmed(bad, candidate, {0.0, 0.0})) << "its place costs more than it gains";
+  candidate.place_price = 0.0;
+  candidate.fitted = bad;
+  EXPECT_FALSE(fits.confirmed(good, candidate, {0.0, 0.0}));
+  const FittedModel anew = fits.begin_round(good), later = fits.begin_round(good);
   EXPECT_EQ(anew.z, good.z);
-  EXPECT_NE(anew.objective.total, good.objective.total) << "luck of its own";
+  EXPECT_NE(anew.objective.total, good.objective.total) << "random numbers of its own";
   EXPECT_NE(later.objective.total, anew.objective.total);
 }
 

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "support/campaigns.hpp"
+#include "talus/fit/score/bootstrap.hpp"
 
 namespace talus::test {
 namespace {

@@ -9,7 +9,7 @@
 
 namespace talus {
 
-// PHYSICS.md section 7: Tables 1-3 of the paper.
+// docs/physics.md, "7 Parameter sets": Tables 1-3 of the paper.
 TEST(Presets, AreThoseOfThePaper) {
   struct Row {
     const char* name;

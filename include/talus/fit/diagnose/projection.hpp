@@ -1,11 +1,13 @@
 #pragma once
 #include <vector>
 
-#include "talus/fit/diagnose/score_test.hpp"
+#include "talus/fit/diagnose/candidate.hpp"
+#include "talus/fit/diagnose/diagnosis_rules.hpp"
+#include "talus/fit/diagnose/verdict.hpp"
 
 namespace talus {
 
-/// Where an effect is tested: the candidates whose signatures are summed up, and which of all directions these are.
+/// A place where an effect is tested: the candidates whose signatures are summed up, and their directions.
 struct TestedPlace {
   std::vector<std::size_t> members;  ///< indices into the candidates; all of one effect
   Eigen::MatrixXd pick;              ///< directions x tested parameters
@@ -14,10 +16,11 @@ struct TestedPlace {
 
 /// Every place of every candidate: alone; neighbouring bands joined; sets of days. The directions are those of the
 /// base's parameters, then the tested ones of each candidate in turn.
-std::vector<TestedPlace> places_of(std::span<const Candidate> candidates, Eigen::Index base, Eigen::Index directions);
+std::vector<TestedPlace> places_of(std::span<const Candidate> candidates, Eigen::Index base, Eigen::Index directions,
+                                   const DiagnosisRules& rules = {});
 
-/// The linear map from scores to one place's effective score: what the free parameters of the base explain is taken out
-/// of it by a regression on their scores.
+/// The linear map from scores to the effective score of one place: without the part that the free parameters of the
+/// base explain, by a regression on their scores.
 class Projection {
  public:
   /// @param covariance  of the scores of one data set under the model; directions x directions

@@ -1,8 +1,9 @@
+#include "talus/fit/score/bootstrap.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "talus/base/random.hpp"
-#include "talus/fit/score/score.hpp"
 
 namespace talus {
 namespace {
@@ -84,13 +85,6 @@ Difference difference(const Score& before, const Score& after, std::size_t block
   }
   d.interval = middle(d.draws);
   return d;
-}
-
-double quantile(std::span<const double> sorted, double share) {
-  const double place = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const double above = sorted[std::min(below + 1, sorted.size() - 1)];
-  return sorted[below] + (place - static_cast<double>(below)) * (above - sorted[below]);
 }
 
 }  // namespace talus

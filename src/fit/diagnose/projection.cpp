@@ -1,5 +1,6 @@
-#include "talus/fit/calibrate/projection.hpp"
+#include "talus/fit/diagnose/projection.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
@@ -11,13 +12,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t kMostJoined = 4;  // neighbouring bands
-constexpr std::size_t kFewDays = 6;     // up to here every set of days is tried, above only runs of them
-
 /// Sets of n days, by number, all days together excepted: that would be other ground.
-std::vector<std::vector<std::size_t>> sets_of_days(std::size_t n) {
+std::vector<std::vector<std::size_t>> sets_of_days(std::size_t n, std::size_t few) {
   std::vector<std::vector<std::size_t>> sets;
-  if (n <= kFewDays) {
+  if (n <= few) {
     for (unsigned mask = 1; mask + 1 < 1U << n; ++mask) {
       sets.emplace_back();
       for (std::size_t day = 0; day < n; ++day)
@@ -36,9 +34,9 @@ std::vector<std::vector<std::size_t>> sets_of_days(std::size_t n) {
 }
 
 /// Which of the n candidates of an effect are tested together.
-std::vector<std::vector<std::size_t>> groups_of(const std::string& effect, std::size_t n) {
-  if (effect == "wet-ground") return sets_of_days(n);
-  const std::size_t most = effect == "undeclared-zone" ? kMostJoined : 1;
+std::vector<std::vector<std::size_t>> groups_of(const std::string& effect, std::size_t n, const DiagnosisRules& rules) {
+  if (effect == "wet-ground") return sets_of_days(n, rules.few_days);
+  const std::size_t most = effect == "undeclared-zone" ? rules.most_joined : 1;
   std::vector<std::vector<std::size_t>> groups;
   for (std::size_t first = 0; first < n; ++first)
     for (std::size_t joined = 1; joined <= most && first + joined <= n; ++joined) {
@@ -72,7 +70,8 @@ std::vector<Index> free_in(unsigned mask, Index size) {
 
 }  // namespace
 
-std::vector<TestedPlace> places_of(std::span<const Candidate> candidates, Index base, Index directions) {
+std::vector<TestedPlace> places_of(std::span<const Candidate> candidates, Index base, Index directions,
+                                   const DiagnosisRules& rules) {
   std::vector<TestedPlace> places;
   Index next = base;
   for (std::size_t first = 0; first < candidates.size();) {
@@ -82,7 +81,7 @@ std::vector<TestedPlace> places_of(std::span<const Candidate> candidates, Index 
       direction.push_back(next);
       next += static_cast<Index>(candidates[end].tested);
     }
-    for (const std::vector<std::size_t>& group : groups_of(candidates[first].effect, end - first)) {
+    for (const std::vector<std::size_t>& group : groups_of(candidates[first].effect, end - first, rules)) {
       const Candidate& one = candidates[first + group.front()];
       TestedPlace place{{}, MatrixXd::Zero(directions, static_cast<Index>(one.tested)), {}};
       for (const std::size_t i : group) {

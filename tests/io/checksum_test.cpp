@@ -1,4 +1,4 @@
-#include "io/files/sha256.hpp"
+#include "io/files/checksum.hpp"
 
 #include "files.hpp"
 

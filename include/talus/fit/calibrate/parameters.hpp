@@ -1,0 +1,46 @@
+#pragma once
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "talus/fit/campaign/observe.hpp"
+
+namespace talus {
+
+/// A number of a model that is fitted. The search moves in z, its distance from `centre` in units of `sd`:
+///
+///   log scale:    value = centre exp(sd z)          linear scale:  value = centre + sd z
+///
+/// The prior of z is standard normal.
+struct Parameter {
+  enum class Scale { Log, Linear };
+
+  std::string key;                  ///< "ground.zones.talus.En50"
+  std::string unit;                 ///< "m3/s2"; empty where there is none
+  double lower = 0.0, upper = 0.0;  ///< bounds, in the units of the files; log scale: above 0
+  Scale scale = Scale::Log;
+  double centre = 1.0;  ///< of the prior, within the bounds
+  double sd = 1.0;      ///< of the prior: of the logarithm, or in the unit of the value
+  std::function<double(const Model&)> get;
+  std::function<void(Model&, double)> set;
+
+  double value(double z) const;
+  double z(double value) const;
+};
+
+/// The parameters `keys` of ground_fields() in the given zones, with the start as centre of the prior. theta_scale,
+/// psi_scale, En50 and Et50 on the log scale with sd 1 (a factor of e), phi on the linear one with sd 8 degrees; bounds
+/// 2.5 sd from the start, and those of the field. Throws InputError for a key that cannot be fitted, and
+/// where there is no such zone.
+std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& start,
+                                         std::span<const std::string> keys, const std::vector<bool>& zones);
+
+/// The zones that enough simulated paths of the asked blocks touch: at least `share` of them. Size: zones of the
+/// campaign; a zone counts with the bands of other ground that a model has laid over it.
+std::vector<bool> touched_zones(const Campaign& campaign, std::span<const BlockRuns> runs, double share = 0.05);
+
+/// A model with the free parameters at z.
+Model model_at(const Model& start, std::span<const Parameter> free, const Eigen::VectorXd& z);
+
+}  // namespace talus

@@ -1,0 +1,77 @@
+#pragma once
+#include "talus/fit/calibrate/fit_problem.hpp"
+#include "talus/fit/diagnose/diagnosis_rules.hpp"
+#include "talus/fit/diagnose/residual_table.hpp"
+#include "talus/fit/score/bootstrap.hpp"
+
+namespace talus {
+
+/// A model that has been fitted, with its free parameters.
+struct FittedModel {
+  Model model;
+  std::vector<Parameter> free;
+  Eigen::VectorXd z;                    ///< of the free parameters
+  std::vector<BlockRuns> runs;          ///< of the fitting rows, with random numbers that the search has not used
+  Score score;                          ///< of the runs
+  Score objective;                      ///< the same with its groups weighed: what effects are chosen by
+  Eigen::MatrixXd spread;               ///< covariance of z within which the objective is nearly as good
+  std::vector<Evaluation> evaluations;  ///< of this fit and those before it: what the next fit learns from
+};
+
+/// A candidate at its best place, fitted together with the parameters of the base.
+struct FittedCandidate {
+  std::string effect, where;
+  std::vector<Parameter> parameters;   ///< of the candidate itself
+  std::size_t tested = 0;              ///< how many of them the score test moves: with these at zero there is no effect
+  std::vector<double> values;          ///< fitted values of the parameters
+  bool with_ground = true;             ///< false: the ground was held, because the score test found nothing
+  double p_value = 1.0;                ///< of the score test, corrected for the places of the effect
+  double statistic = 0.0;              ///< of the score test
+  double gain = 0.0;                   ///< how much it lowers the objective of the fitting rows, without the prior
+  Interval gain_interval;              ///< 95 %, paired bootstrap over blocks
+  double price = 0.0;                  ///< gain that its fitted numbers and those of its place must bring
+  double place_price = 0.0;            ///< the part of the price for its place, which was chosen by all blocks
+  double cross_validated = kNotGiven;  ///< gain on blocks that its fit has not seen; NaN: not cross-validated
+  double amount = 0.0;                 ///< largest of its tested parameters, in units of what one would notice
+  double chosen_share = 0.0;           ///< share of the bootstraps in which it has the lowest objective of all
+  FittedModel fitted;
+
+  /// Gain on blocks that its fit has not seen, less the price of its place. NaN: not cross-validated.
+  double unseen_gain() const { return cross_validated - place_price; }
+};
+
+/// One turn of the loop.
+struct DiagnosisRound {
+  std::string effect = "none";  ///< what was found; "none", "unexplained"
+  std::string where;
+  std::vector<FittedCandidate> candidates;  ///< every effect at its best place, best first
+  std::vector<std::string> alike;           ///< effects that these data cannot tell apart from it
+  std::vector<ResidualRow> residual;        ///< of the fitting rows, before the effect is added
+  double p_value = 1.0;                     ///< that the residual is noise: score test over all effects and places
+};
+
+/// Trajectories of each block.
+struct TrialsPerBlock {
+  std::uint32_t search = 24, test = 100, compare = 200;
+};
+
+struct Diagnosis {
+  FittedModel base;                    ///< the ground alone, simulated with the random numbers of `with_effects`
+  std::vector<DiagnosisRound> rounds;  ///< the last one found "none" or "unexplained"
+  FittedModel with_effects;            ///< the last model; the base where nothing was found
+  TrialsPerBlock trials;               ///< that were simulated
+};
+
+struct DiagnoseOptions {
+  std::vector<std::string> keys{"theta_scale", "psi_scale", "En50", "Et50"};  ///< of the ground, fitted per zone
+  TrialsPerBlock trials;                                                      ///< of 72 blocks; of fewer, more
+  std::uint64_t seed = 1;
+  int threads = 0;
+  int most_effects = 3;
+  double first_level = 0.05;            ///< of the score test, over all effects: the false alarms that are accepted
+  double later_level = 0.01;            ///< after the first effect: its form is a guess, which leaves a residual
+  DiagnosisRules rules;                 ///< numbers that no user sets
+  std::function<bool(double)> proceed;  ///< told the share done, 0..1; false ends the diagnosis. May be empty
+};
+
+}  // namespace talus

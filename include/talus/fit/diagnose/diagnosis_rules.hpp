@@ -1,0 +1,87 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "talus/fit/calibrate/search_rules.hpp"
+
+namespace talus {
+
+/// Numbers that rule a diagnosis, the same for every campaign. Each comment says what the number is, its unit and why
+/// it has this value; where no reason is given, the value is a choice that has not been tuned.
+/// docs/closing-the-loop.md, "Rules", has them as a table.
+struct DiagnosisRules {
+  SearchRules search;  ///< of all its fits
+
+  // The residual
+  /// Simulated values below which the rank of a measured one is not used [-]: as few as a row of the score needs.
+  std::size_t fewest_values = 10;
+  /// Share of the pooled correlations that is taken away [-], so that the correlation matrix can be inverted safely.
+  double shrink = 0.1;
+  /// Blocks below which a row of the residual table is left out [-].
+  std::size_t fewest_blocks = 10;
+  /// Variance of the number of crossings below which a row is left out [-]: with less that number is not nearly normal.
+  double fewest_crossings = 5.0;
+
+  // The candidates
+  /// Amount of an effect that one would notice [z]. The score test moves a candidate by it; the prior of an effect,
+  /// of sd 1 in z, is then four times as wide.
+  double noticed = 0.25;
+  /// Bands of other ground along the slope [-].
+  int bands = 12;
+  /// Neighbouring bands that are joined, at most [-]: a third of the slope.
+  std::size_t most_joined = 4;
+  /// Places of an undeclared barrier along the slope [-].
+  int barrier_places = 16;
+  /// Days up to which every set of them is tried [-]: 62 sets of six. Of more days only runs are tried.
+  std::size_t few_days = 6;
+
+  // The score test
+  /// Amount by which a parameter of the base is moved for its signature [z].
+  double base_step = 0.5;
+  /// Standard deviation of a parameter of the base [z]: that of its prior, so that what the data do not constrain stays
+  /// in place.
+  double base_sd = 1.0;
+
+  // The fits
+  /// p of the score test below which an effect is fitted together with the ground [-]. What may be chosen always is.
+  double joint_level = 0.1;
+  /// Gain by which a round of the quadratic model must lower the objective for another one [objective].
+  double worth_a_round = 0.002;
+  /// Gain that one more fitted number must bring, times the number of fitting blocks [objective]. Akaike's price, one
+  /// unit of log likelihood, in units of the score: near the optimum of a normal forecast the score rises by 0.56 of
+  /// it.
+  double price = 0.56;
+  /// Effects fitted after the first round, at most [-]: with an effect in the model a fit takes several times as long.
+  std::size_t later_fits = 6;
+  /// Effects whose fits are continued, at most, in the first round and in later ones [-].
+  std::size_t contenders = 4, later_contenders = 2;
+  /// Height above its minimum at which a first fit may have ended [objective]: an effect that is further behind cannot
+  /// win any more.
+  double unfinished = 0.02;
+  /// Share of `worth_naming` from which on the longer fit of an effect may yet get there [-].
+  double half_way = 0.5;
+
+  // The choice
+  /// Share of the objective that an effect must take away on the fitting rows [-]: gains differ by 1 to 2 % from seed
+  /// to seed.
+  double worth_naming = 0.02;
+  /// The same share in cross-validation [-]: half, as each fold is fitted to fewer blocks and pays the price of its
+  /// numbers.
+  double worth_unseen = 0.01;
+  /// Least amount of an effect, in units of what one would notice [-]: less of it explains nothing.
+  double least_amount = 0.1;
+  /// Parts into which the blocks are cut in cross-validation [-].
+  std::size_t folds = 5;
+  /// Random orders in which the blocks are cut [-]: one order may be unlucky.
+  std::uint32_t fold_orders = 5;
+  /// Trials that confirm a choice, as a multiple of those that compare fits [-]: half their noise.
+  std::uint32_t confirming = 4;
+
+  // Few blocks
+  /// Fitting blocks for which the numbers of trials are meant [-]. Fewer blocks get more trials each.
+  double many_blocks = 72.0;
+  /// Multiple of the trials per block, at most [-], so that five blocks do not ask for thousands.
+  double most_of_one = 4.0;
+};
+
+}  // namespace talus

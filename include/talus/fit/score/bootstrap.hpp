@@ -1,0 +1,43 @@
+#pragma once
+#include "talus/base/sample.hpp"
+#include "talus/fit/score/score.hpp"
+
+namespace talus {
+
+/// The total of the rows of a score with weights, such as how often a bootstrap drew each block: the mean over groups
+/// of the weighted mean over their rows. A group of no weight does not count.
+///
+/// @param weight  by block of the campaign, >= 0
+double weighted_total(const Score& score, std::span<const double> weight);
+
+/// 95 % interval of the total, and of each group, over which blocks happened to be released: percentiles of a
+/// bootstrap that draws blocks with replacement, the same blocks for all groups. The model is held fixed.
+struct ScoreIntervals {
+  Interval total;
+  std::vector<Interval> groups;  ///< as Score::groups
+};
+ScoreIntervals bootstrap(const Score& score, std::size_t blocks, std::uint32_t draws = 2000, std::uint64_t seed = 1);
+
+/// Share by which one model lowers the total of another, with a 95 % interval over the blocks: 1 - after/before of the
+/// same bootstrap draws. Both must be scores of the same rows.
+struct Reduction {
+  double share = kNotGiven;
+  Interval interval;
+};
+Reduction reduction(const Score& before, const Score& after, std::size_t blocks, std::uint32_t draws = 2000,
+                    std::uint64_t seed = 1);
+
+/// Difference of two totals of the same rows, negative where `after` is better; the draws vary which blocks were
+/// released.
+struct Difference {
+  double mean = 0.0;
+  Interval interval;          ///< 95 %
+  std::vector<double> draws;  ///< of the bootstrap
+};
+Difference difference(const Score& before, const Score& after, std::size_t blocks, std::uint32_t draws = 1000,
+                      std::uint64_t seed = 1);
+
+/// Number of times that each of the blocks that have a row is drawn in bootstrap number `draw`. Size: blocks.
+std::vector<double> bootstrap_weights(const Score& score, std::size_t blocks, std::uint32_t draw, std::uint64_t seed);
+
+}  // namespace talus
