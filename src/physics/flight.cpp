@@ -43,7 +43,7 @@ Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool ground
     const double until = kBounded ? std::min(edge, longest - t) : edge;
     const double rise = v.z() - kGravity * t;
     const bool leaving = grounded && crossed == 0;  // on the surface and away from it, whatever rounding says
-    TALUS_EXPECT(leaving || !(z < patch.height(p, q) - 1e-3), "a block in flight is not below the ground");
+    TALUS_EXPECT(crossed == 0 || !(z < patch.height(p, q) - 1e-3), "a block that flies on is not below the ground");
     const double f0 = leaving ? 0.0 : std::max(z - patch.height(p, q), 0.0);
     const double slope = patch.east * rate_u + patch.north * rate_v + patch.twist * (p * rate_v + q * rate_u);
     const double f1 = leaving ? std::max(rise - slope, 0.0) : rise - slope;  // NaN stays NaN
