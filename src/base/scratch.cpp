@@ -17,6 +17,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "talus/base/expect.hpp"
+
 namespace talus::scratch {
 namespace {
 
@@ -50,6 +52,7 @@ class File {
 
   void* take(std::size_t bytes) {
     const std::lock_guard guard(mutex_);
+    TALUS_EXPECT(begin_ != nullptr && bytes % kGrain == 0, "the file is open and its pieces are aligned");
     std::vector<void*>& list = free_[bytes];
     if (!list.empty()) {
       void* const memory = list.back();
@@ -71,6 +74,7 @@ class File {
 
   void give_back(void* memory, std::size_t bytes) {
     const std::lock_guard guard(mutex_);
+    TALUS_EXPECT(bytes % kGrain == 0, "a piece comes back as it was taken");
     free_[bytes].push_back(memory);
   }
 

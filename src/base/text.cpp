@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "talus/base/expect.hpp"
+
 namespace talus {
 
 namespace {
@@ -33,6 +35,13 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+std::string printed(double value, std::chars_format format, int precision) {
+  std::array<char, 400> text;  // the longest double in fixed notation has 309 digits before the point
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value, format, precision);
+  TALUS_EXPECT(error == std::errc{}, "a number has room");
+  return {text.data(), end};
+}
+
 }  // namespace
 
 std::string text_of(double value) {
@@ -41,6 +50,44 @@ std::string text_of(double value) {
   const auto end = whole ? std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed).ptr
                          : std::to_chars(text.data(), text.data() + text.size(), value).ptr;
   return {text.data(), end};
+}
+
+std::string with_digits(double value, int digits) {
+  return printed(value, std::chars_format::general, digits);
+}
+
+std::string with_decimals(double value, int decimals) {
+  return printed(value, std::chars_format::fixed, decimals);
+}
+
+std::string padded(std::string text, std::size_t width) {
+  text.resize(std::max(width, text.size()), ' ');
+  return text;
+}
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text)
+    if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '&')
+      out += "&amp;";
+    else
+      out += c;
+  return out;
+}
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
+std::string csv_field(double value) {
+  return std::isfinite(value) ? with_digits(value, 6) : "";
 }
 
 std::string joined(std::span<const std::string> words) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/base/expect.hpp"
+
 namespace talus {
 namespace {
 
@@ -41,6 +43,7 @@ Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool ground
     const double until = kBounded ? std::min(edge, longest - t) : edge;
     const double rise = v.z() - kGravity * t;
     const bool leaving = grounded && crossed == 0;  // on the surface and away from it, whatever rounding says
+    TALUS_EXPECT(crossed == 0 || !(z < patch.height(p, q) - 1e-3), "a block that flies on is not below the ground");
     const double f0 = leaving ? 0.0 : std::max(z - patch.height(p, q), 0.0);
     const double slope = patch.east * rate_u + patch.north * rate_v + patch.twist * (p * rate_v + q * rate_u);
     const double f1 = leaving ? std::max(rise - slope, 0.0) : rise - slope;  // NaN stays NaN
@@ -49,6 +52,7 @@ Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool ground
     const bool landed = contact < kNever;
     const double dt = landed ? contact : until;
     if (!(dt < kNever)) break;  // NaN or no end: cannot happen above a finite patch, and must not loop
+    TALUS_EXPECT(dt > -1e-9, "a flight goes forward in time");
     t += dt;
     const double p_from = p, q_from = q;
     p = u0 + rate_u * t - at.column;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "talus/base/elementary.hpp"
+#include "talus/base/expect.hpp"
 
 namespace talus {
 namespace {
@@ -80,6 +81,9 @@ double friction_impulse(double slip, double impulse, double tan_phi) {
 
 Rebound rebound(const Vec3& velocity, const Vec3& spin, const Vec3& n, const Restitution& k, double arm,
                 double tan_phi) {
+  TALUS_EXPECT(std::abs(n.squaredNorm() - 1.0) < 1e-9, "the normal of a plane is a unit vector");
+  TALUS_EXPECT(k.normal >= 0.0 && k.normal <= 1.0 && k.tangential >= 0.0 && k.tangential <= 1.0, "momentum is lost");
+  TALUS_EXPECT(arm > 0.0, "the ground is met beside the centre");
   const double along_normal = velocity.dot(n), v_n = std::max(0.0, -along_normal);
   const Vec3 v_tan = velocity - along_normal * n;
   const Vec3 w_normal = spin.dot(n) * n;
@@ -88,8 +92,12 @@ Rebound rebound(const Vec3& velocity, const Vec3& spin, const Vec3& n, const Res
   const double slip = u.norm();
   const double impulse = (1.0 + k.normal) * v_n;
   const Vec3 friction = slip > 0.0 ? Vec3(friction_impulse(slip, impulse, tan_phi) / slip * u) : Vec3(Vec3::Zero());
-  return {k.tangential * v_tan - friction + k.normal * v_n * n,
-          k.tangential * w_tan + 2.5 / arm * n.cross(friction) + w_normal};
+  const Rebound after{k.tangential * v_tan - friction + k.normal * v_n * n,
+                      k.tangential * w_tan + 2.5 / arm * n.cross(friction) + w_normal};
+  TALUS_EXPECT(after.velocity.squaredNorm() + 0.4 * arm * arm * after.spin.squaredNorm() <=
+                   (1.0 + 1e-9) * (velocity.squaredNorm() + 0.4 * arm * arm * spin.squaredNorm()),
+               "energy never grows at an impact, by the law's moment of inertia");
+  return after;
 }
 
 // Flattened: the plain engine takes a tenth longer where its steps stay calls because effects call them too.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "slope.hpp"
+#include "talus/base/expect.hpp"
 #include "talus/physics/flight.hpp"
 
 namespace talus {
@@ -148,6 +149,7 @@ SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, Patch
     if (!(slope.press(motion.velocity.head<2>()) >= 0.0)) return SlideEnd::Takeoff;
 
     const Step step = next_step(slope, motion, diameter - slid, tolerance, stop_speed);
+    TALUS_EXPECT(step.motion.time >= motion.time, "a slide goes forward in time");
     double way = 0.5 * (step.motion.time - motion.time) * (speed + step.motion.velocity.norm());
     record_piece(path, slope, motion, step.motion);
     motion = step.motion;

@@ -1,14 +1,18 @@
 #include "talus/physics/trace.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
-#include "physics/effects/active_effects.hpp"
 #include "anchor.hpp"
 #include "barrier_watch.hpp"
+#include "physics/effects/active_effects.hpp"
+#include "talus/base/expect.hpp"
 
 namespace talus {
 namespace {
+
+[[maybe_unused]] constexpr double kPatchError = 1e-6;  // by which rounding may put a block beside its patch [patches]
 
 /// One block on its way: the state that its steps share. A step returns how the trajectory ended, or nothing.
 ///
@@ -63,12 +67,16 @@ class Walk {
   [[gnu::flatten]] std::optional<End> meet_the_ground() {
     decltype(auto) ground = effects_.ground(motion_.position, body_);
     Patch patch;
-    world_.surface.read(at_, patch);  // a block on the ground is on a patch that exists
+    const bool there = world_.surface.read(at_, patch);
+    TALUS_EXPECT(there, "a block on the ground is on a patch that exists");
     const double p = world_.surface.u_of(motion_.position.x()) - at_.column;
     const double q = world_.surface.v_of(motion_.position.y()) - at_.row;
     normal_ = normal_of(world_.surface.gradient(patch, p, q));
+    TALUS_EXPECT(std::abs(p - 0.5) < 0.5 + kPatchError && std::abs(q - 0.5) < 0.5 + kPatchError,
+                 "a block is above its patch");
     const Asperity asperity = asperities_.at(path_.impacts, ground);
     const Contact contact = effects_.impact(ground, body_, motion_, normal_, asperity);
+    TALUS_EXPECT(contact.velocity.allFinite() && contact.spin.allFinite(), "an impact ends in a finite motion");
     motion_.velocity = contact.velocity;
     motion_.spin = contact.spin;
     effects_.after_impact(normal_, body_, motion_, path_);
@@ -111,6 +119,8 @@ template <class Acting>
 void walk(const World& world, const Release& release, Path& path) {
   Walk<Acting> block(world, release, path);
   path.end = block.run();
+  TALUS_EXPECT(block.motion().time >= release.motion.time, "time goes on");
+  TALUS_EXPECT(block.body().mass <= release.body.mass, "a block does not gain mass");
   path.mass = block.body().mass;
   path.vertices.push_back({block.motion(), Event::End});
 }

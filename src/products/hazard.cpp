@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "talus/base/expect.hpp"
 #include "talus/products/maps.hpp"
 
 namespace talus {
@@ -41,6 +42,7 @@ Bounded annual_frequency(const WeightSums& counted, const WeightScale& scale) {
   }
   bounds.low = std::min(bounds.low, sum);
   bounds.high = std::max(bounds.high, sum);
+  TALUS_EXPECT(bounds.low >= 0.0, "a frequency is not below 0");
   return bounds;
 }
 

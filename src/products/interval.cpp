@@ -1,10 +1,12 @@
 #include <boost/math/special_functions/beta.hpp>
 
+#include "talus/base/expect.hpp"
 #include "talus/products/maps.hpp"
 
 namespace talus {
 
 Interval probability_bounds(std::uint64_t hits, std::uint64_t trials, double confidence) {
+  TALUS_EXPECT(hits <= trials, "no more hits than trials");
   const double tail = 0.5 * (1.0 - confidence);
   const double k = static_cast<double>(hits), n = static_cast<double>(trials);
   return {hits == 0 ? 0.0 : boost::math::ibeta_inv(k, n - k + 1.0, tail),

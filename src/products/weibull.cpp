@@ -4,6 +4,7 @@
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 
+#include "talus/base/expect.hpp"
 #include "talus/base/random.hpp"
 #include "talus/base/sample.hpp"
 
@@ -107,6 +108,7 @@ WeibullFit fit_weibull(std::span<const double> values, const BootstrapOptions& o
   std::vector<double> positive(values.begin(), values.end());
   std::erase_if(positive, [](double value) { return !(value > 0.0); });
   std::sort(positive.begin(), positive.end());
+  TALUS_EXPECT(positive.size() >= kFewestForWeibull, "a law is fitted to enough values");
   WeibullFit fit;
   fit.values = values.size();
   fit.zeros = values.size() - positive.size();

@@ -7,10 +7,12 @@
 #include <atomic>
 #include <cmath>
 #include <exception>
+#include <numeric>
 
+#include "talus/base/expect.hpp"
 #include "talus/simulate/plan/plan.hpp"
-#include "talus/simulate/plan/work_units.hpp"
 #include "talus/simulate/plan/work_order.hpp"
+#include "talus/simulate/plan/work_units.hpp"
 
 namespace talus {
 namespace {
@@ -121,13 +123,16 @@ class Simulation::Advance {
     add(totals_, mine);
   }
 
-  /// All workers are done. Whether all units of the process group are; else there is more to take. Throws what a worker threw.
+  /// All workers are done. Whether all units of the process group are; else there is more to take. Throws what a worker
+  /// threw.
   bool finish() {
     if (failure_) std::rethrow_exception(failure_);
     if (!units_.finish()) return false;
     run_.position_.unit = units_.end();
     add(run_.totals_, totals_);
     run_.totals_.interrupted = interrupted_;
+    TALUS_EXPECT(std::accumulate(totals_.ends.begin(), totals_.ends.end(), std::uint64_t{0}) == totals_.released,
+                 "each trajectory ended once");
     return true;
   }
 

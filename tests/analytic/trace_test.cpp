@@ -5,7 +5,7 @@
 #include <array>
 #include <limits>
 
-#include "support/scenes.hpp"
+#include "support/slopes.hpp"
 
 namespace talus {
 namespace {
@@ -21,13 +21,8 @@ struct Scene {
   EndRules rules = {};
 
   Path run(const Vec3& position, const Vec3& velocity, double diameter = 1.0, std::uint32_t block = 0) const {
-    Release release;
-    release.block = block;
-    release.body = block_of(diameter, 2700.0);
-    release.motion.position = position;
-    release.motion.velocity = velocity;
     Path path;
-    trace({surface, cover, impact, rules}, release, path);
+    trace({surface, cover, impact, rules}, test::block_at(position, velocity, diameter, block), path);
     return path;
   }
 };

@@ -14,7 +14,6 @@
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/results/run_record.hpp"
 #include "talus/io/results/style.hpp"
-#include "talus/io/results/write_crossings.hpp"
 #include "talus/io/results/write_rasters.hpp"
 
 namespace talus::io {
@@ -255,12 +254,6 @@ TEST_F(Write, TextOnAFullDiskIsAnError) {
   fs::create_symlink("/dev/full", folder_ / "run.json");
   EXPECT_THROW(write_text(folder_ / "run.json", "{}"), std::runtime_error);
   EXPECT_FALSE(fs::exists(fs::symlink_status(folder_ / "run.json")));
-}
-
-TEST(CsvField, QuotesWhereItMust) {
-  EXPECT_EQ(csv_field("road 3"), "road 3");
-  EXPECT_EQ(csv_field("a,b"), "\"a,b\"");
-  EXPECT_EQ(csv_field("a \"b\""), "\"a \"\"b\"\"\"");
 }
 
 TEST(RunRecord, LimitsAreJudgedByTheirShare) {

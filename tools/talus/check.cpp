@@ -11,8 +11,8 @@
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/gdal/crs.hpp"
-#include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/io/results/run_record.hpp"
+#include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/products/expected_cells.hpp"
 #include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/screens/screens.hpp"
@@ -81,12 +81,6 @@ void line(const char* what, const std::string& text) {
   std::printf("%-14s%s\n", what, text.c_str());
 }
 
-std::string number(double value, const char* format = "%.4g") {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
 std::string range_text(const talus::Range& range, const char* unit) {
   const std::string low = talus::text_of(range.low);
   return (range.low == range.high ? low : low + " to " + talus::text_of(range.high)) +
@@ -109,9 +103,10 @@ void print_terrain(const LoadedScenario& loaded) {
                       count_text(static_cast<std::uint64_t>(grid.rows)) + " cells of " + talus::text_of(geo.cell_x) +
                       " m x " + talus::text_of(geo.cell_y) + " m" +
                       (missing > 0 ? ", " + count_text(missing) + " of them without a height" : ""));
-  line("extent", number(geo.west, "%.3f") + " to " + number(geo.west + grid.columns * geo.cell_x, "%.3f") + " east, " +
-                     number(geo.north - grid.rows * geo.cell_y, "%.3f") + " to " + number(geo.north, "%.3f") +
-                     " north");
+  line("extent", talus::with_decimals(geo.west, 3) + " to " +
+                     talus::with_decimals(geo.west + grid.columns * geo.cell_x, 3) + " east, " +
+                     talus::with_decimals(geo.north - grid.rows * geo.cell_y, 3) + " to " +
+                     talus::with_decimals(geo.north, 3) + " north");
   line("system", talus::io::crs_name(geo.crs_wkt));
 }
 
@@ -124,10 +119,12 @@ void print_zones(const Scenario& scenario) {
     const std::string name =
         i < scenario.zone_names.size() && !scenario.zone_names[i].empty() ? scenario.zone_names[i] : "default";
     const talus::Ground& g = scenario.cover.grounds[i];
-    line(i == 0 ? "ground" : "", name + ": " + count_text(cells[i]) + " cells; theta_scale " + number(g.theta_scale) +
-                                     ", psi_scale " + number(g.psi_scale) + ", En50 " + number(g.En50) + ", Et50 " +
-                                     number(g.Et50) + ", phi " + number(std::atan(g.tan_phi) * 180.0 / talus::kPi) +
-                                     " deg, shape " + range_text({g.shape_min, g.shape_max}, ""));
+    line(i == 0 ? "ground" : "", name + ": " + count_text(cells[i]) + " cells; theta_scale " +
+                                     talus::with_digits(g.theta_scale, 4) + ", psi_scale " +
+                                     talus::with_digits(g.psi_scale, 4) + ", En50 " + talus::with_digits(g.En50, 4) +
+                                     ", Et50 " + talus::with_digits(g.Et50, 4) + ", phi " +
+                                     talus::with_digits(std::atan(g.tan_phi) * 180.0 / talus::kPi, 4) + " deg, shape " +
+                                     range_text({g.shape_min, g.shape_max}, ""));
   }
 }
 
@@ -151,7 +148,8 @@ void print_blocks(const Scenario& scenario) {
   line("thresholds", "energy " + list_text(scenario.output.energy_thresholds, "kJ") + "; height " +
                          list_text(scenario.output.height_thresholds, "m"));
   if (const auto weights = talus::AnnualWeights::of(scenario))
-    line("frequency", number(weights->scale().total) + " events per year; kept by energy, for talus hazard");
+    line("frequency",
+         talus::with_digits(weights->scale().total, 4) + " events per year; kept by energy, for talus hazard");
   if (!scenario.screens.empty()) line("screens", count_text(scenario.screens.size()));
   if (!scenario.barriers.empty()) line("barriers", count_text(scenario.barriers.list().size()));
 }
@@ -172,7 +170,7 @@ void print_estimate(const Scenario& scenario, unsigned threads) {
   const double write_seconds = seconds_to_write(scenario, size, processors);
   line("time", "about " + duration_text(trace_seconds + write_seconds) + " on " + std::to_string(processors) +
                    " processors, " + duration_text(write_seconds) + " of them to write (" +
-                   number(size.metres_per_path, "%.0f") + " m a trajectory; from a sample of " +
+                   talus::with_decimals(size.metres_per_path, 0) + " m a trajectory; from a sample of " +
                    count_text(sample.traced) + ")");
   line("cells", "about " + rounded_text(size.touched_cells) + " reached (" + count_text(sample.touched_cells) +
                     " by the sample)");
@@ -181,7 +179,8 @@ void print_estimate(const Scenario& scenario, unsigned threads) {
   line("disk", "about " + rounded_text(1e-6 * bytes_of_results(scenario, size)) + " MB of results, up to " +
                    rounded_text(1e-6 * bytes_at_work(scenario, size, processors)) + " MB more while it goes on");
   if (sample.left * 100 > sample.traced)
-    line("warning", number(100.0 * static_cast<double>(sample.left) / traced) + " % of the sample left the DEM");
+    line("warning",
+         talus::with_digits(100.0 * static_cast<double>(sample.left) / traced, 4) + " % of the sample left the DEM");
   if (static_cast<double>(sample.limits) > talus::io::kAllowedLimitShare * traced)
     line("warning", count_text(sample.limits) +
                         " of the sample ended at the limit of impacts or time; where more than 0.1 % do, the "

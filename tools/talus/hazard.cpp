@@ -10,10 +10,10 @@
 #include "run_support.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
-#include "talus/io/results/hazard_record.hpp"
-#include "talus/io/gdal/objects_file.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/files/staged_files.hpp"
+#include "talus/io/gdal/objects_file.hpp"
+#include "talus/io/results/hazard_record.hpp"
 #include "talus/io/results/weighting_file.hpp"
 #include "talus/products/hazard_maps.hpp"
 #include "write_maps.hpp"
@@ -29,12 +29,6 @@ struct Options {
   bool overwrite = false, quiet = false;
   Progress::Mode mode() const { return Progress::mode_of(quiet, progress == "machine"); }
 };
-
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
 
 /// The file that a run leaves where its sources have frequencies.
 fs::path tally_file(const fs::path& folder) {
@@ -175,8 +169,9 @@ int hazard(const Options& options) {
   staged.commit();
   if (options.quiet) return 0;
   for (const std::string& warning : record.warnings) say("warning", warning);
-  say("", count_text(record.cells) + " cells that something passes, " + number_text(record.header.rules.scale.total) +
-              " events per year; results are in " + fs::absolute(folder).lexically_normal().string());
+  say("", count_text(record.cells) + " cells that something passes, " +
+              talus::with_digits(record.header.rules.scale.total, 4) + " events per year; results are in " +
+              fs::absolute(folder).lexically_normal().string());
   return 0;
 }
 

@@ -17,9 +17,7 @@ int print_presets() {
   for (const talus::Preset& preset : talus::presets()) {
     std::printf("%-18s", std::string(preset.name).c_str());
     for (const auto& field : talus::ground_fields()) {
-      char text[32];
-      std::snprintf(text, sizeof text, "%.6g", field.get(preset.ground));
-      std::printf("%*s", static_cast<int>(field.key.size()) + 2, text);
+      std::printf("%*.6g", static_cast<int>(field.key.size()) + 2, field.get(preset.ground));
     }
     std::printf("  %s: %s\n", std::string(preset.source).c_str(), std::string(preset.where).c_str());
   }

@@ -78,9 +78,7 @@ std::uint64_t count_of(const talus::Totals& totals, talus::End end) {
 }
 
 std::string share_text(std::uint64_t part, std::uint64_t whole) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g %%", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
-  return text;
+  return talus::with_digits(100.0 * static_cast<double>(part) / static_cast<double>(whole), 3) + " %";
 }
 
 std::string ends_text(const talus::Totals& totals) {

@@ -7,6 +7,7 @@
 #include "progress.hpp"
 #include "run_support.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
 #include "talus/io/files/output_file.hpp"
 #include "talus/io/gdal/source_cells.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
@@ -23,17 +24,11 @@ struct Options {
   bool overwrite = false, quiet = false;
 };
 
-std::string number(double value, const char* format) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
 void summarise(const talus::io::SourceCells& found, const talus::Grid& grid, const std::string& threshold,
                const std::string& out) {
   say("", count_text(found.cells) + " of " + count_text(grid.cells()) + " cells are at least " + threshold +
-              " steep: " + number(found.plan_area * 1e-4, "%.4g ha in plan, ") +
-              number(found.true_area * 1e-4, "%.4g ha of ground"));
+              " steep: " + talus::with_digits(found.plan_area * 1e-4, 4) + " ha in plan, " +
+              talus::with_digits(found.true_area * 1e-4, 4) + " ha of ground");
   say("", "source_polygons (" + count_text(found.polygons) + ") and source_points (" + count_text(found.cells) +
               ") are in " + out + "; these are candidates by steepness alone: look at them before a run");
 }
@@ -41,7 +36,7 @@ void summarise(const talus::io::SourceCells& found, const talus::Grid& grid, con
 int find_sources(const Options& options) {
   if (options.slope)
     if (const auto rule = talus::fault_of(kSlope, *options.slope))
-      throw talus::InputError("flag --slope = " + number(*options.slope, "%.6g") + ": " + *rule);
+      throw talus::InputError("flag --slope = " + talus::with_digits(*options.slope, 6) + ": " + *rule);
   catch_signals();
   const auto keep_going = [] { return !interrupted(); };
   talus::io::OutputFile out(options.out, ".gpkg", options.overwrite);
@@ -52,13 +47,15 @@ int find_sources(const Options& options) {
   const talus::Grid& grid = terrain.heights.grid;
   const double cell = std::sqrt(grid.cell_x * grid.cell_y);
   const double slope = options.slope ? talus::radians(*options.slope) : talus::default_source_slope(cell);
-  const std::string threshold = number(talus::degrees(slope), "%.4g deg") +
-                                (options.slope ? "" : number(cell, " (the default for cells of %.4g m)"));
+  const std::string threshold =
+      talus::with_digits(talus::degrees(slope), 4) + " deg" +
+      (options.slope ? "" : " (the default for cells of " + talus::with_digits(cell, 4) + " m)");
   const talus::io::SourceCells found = talus::io::write_source_cells(out.temporary(), terrain, slope, keep_going);
   if (interrupted()) stop_interrupted();
   if (found.cells == 0)
     throw talus::InputError(options.dem + ": no cell is at least " + threshold + " steep, the steepest has " +
-                            number(talus::degrees(found.steepest), "%.4g deg") + "; give a smaller one with --slope");
+                            talus::with_digits(talus::degrees(found.steepest), 4) +
+                            " deg; give a smaller one with --slope");
   out.commit();
   if (!options.quiet) summarise(found, grid, threshold, options.out);
   return 0;

@@ -4,6 +4,8 @@
 #include <limits>
 #include <span>
 
+#include "talus/base/expect.hpp"
+
 namespace talus {
 
 /// A range of values that holds the true one with a stated confidence; NaN where nothing can be said.
@@ -15,6 +17,7 @@ struct Interval {
 ///
 /// @param sorted  ascending, not empty;  share: 0..1
 inline double quantile(std::span<const double> sorted, double share) {
+  TALUS_EXPECT(!sorted.empty() && share >= 0.0 && share <= 1.0, "a quantile is of a sample, for a share");
   const double place = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(place);
   const double above = sorted[std::min(below + 1, sorted.size() - 1)];

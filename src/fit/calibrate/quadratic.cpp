@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/base/expect.hpp"
+
 namespace talus {
 
 QuadraticFit::QuadraticFit(const Eigen::MatrixXd& places, const Eigen::VectorXd& weights, const Ridge& ridge)
     : directions_(places.rows()) {
+  TALUS_EXPECT(weights.size() == places.cols() && places.allFinite(), "each place has a weight");
   const Eigen::Index n = directions_, coefficients = 1 + n + n * (n + 1) / 2;
   features_.resize(places.cols(), coefficients);
   for (Eigen::Index i = 0; i < places.cols(); ++i) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/base/expect.hpp"
 #include "talus/base/random.hpp"
 
 namespace talus {
@@ -12,6 +13,7 @@ namespace {
 std::vector<double> weighted_groups(const Score& score, std::span<const double> weight) {
   std::vector<double> sum(score.groups.size(), 0.0), total(score.groups.size(), 0.0);
   for (const RowScore& row : score.rows) {
+    TALUS_EXPECT(row.group < sum.size() && row.block < weight.size(), "a row has a group and a block");
     sum[row.group] += weight[row.block] * row.score;
     total[row.group] += weight[row.block];
   }
@@ -42,6 +44,8 @@ double weighted_total(const Score& score, std::span<const double> weight) {
 std::vector<double> bootstrap_weights(const Score& score, std::size_t blocks, std::uint32_t draw, std::uint64_t seed) {
   std::vector<std::uint32_t> present;
   for (const RowScore& row : score.rows) present.push_back(row.block);
+  TALUS_EXPECT(std::all_of(present.begin(), present.end(), [blocks](std::uint32_t b) { return b < blocks; }),
+               "a row is of a block of the campaign");
   std::sort(present.begin(), present.end());
   present.erase(std::unique(present.begin(), present.end()), present.end());
   std::vector<double> weight(blocks, 0.0);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "talus/base/expect.hpp"
+
 namespace talus {
 namespace {
 
@@ -37,6 +39,7 @@ class Scorer {
       : campaign_(campaign), runs_(runs), ask_(ask), fewest_simulated_(fewest_simulated) {}
 
   Score result() {
+    TALUS_EXPECT(runs_.size() == campaign_.blocks.size() && ask_.size() == runs_.size(), "each block has its runs");
     stops();
     masses();
     for (std::size_t screen = 0; screen < campaign_.screens.size(); ++screen) passages(screen);

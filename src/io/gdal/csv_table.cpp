@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "talus/base/error.hpp"
+#include "talus/base/expect.hpp"
 #include "talus/base/text.hpp"
 
 namespace talus::io {
@@ -106,6 +107,7 @@ int CsvTable::column_of(const std::string& name) const {
 const std::string& CsvTable::text(const Row& row, const std::string& column) const {
   static const std::string none;
   const int index = column_of(column);
+  TALUS_EXPECT(row.cells.size() == columns_.size(), "a row has the cells of its table");
   return index < 0 ? none : row.cells[static_cast<std::size_t>(index)];
 }
 

@@ -8,7 +8,6 @@
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
-#include "talus/io/results/write_crossings.hpp"
 
 namespace talus::io {
 namespace {
@@ -72,12 +71,6 @@ Figures figures_of(const HazardCurve& curve, const ObjectHits& hits, bool on_map
   }
   for (const double t : years) add("energy_T" + text_of(t), curve.energy_once_in(t));
   return figures;
-}
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return std::isfinite(value) ? text : "";
 }
 
 }  // namespace
@@ -195,8 +188,8 @@ std::string curve_rows(const std::string& object, const HazardCurve& curve, cons
   std::string rows;
   for (std::size_t i = 0; i < curve.size(); ++i) {
     const Bounded f = curve.at(i);
-    rows += object + ',' + number(bins.edge(curve.first() + static_cast<int>(i)));
-    for (const double value : {f.value, f.low, f.high, 1.0 / f.value}) rows += ',' + number(value);
+    rows += object + ',' + csv_field(bins.edge(curve.first() + static_cast<int>(i)));
+    for (const double value : {f.value, f.low, f.high, 1.0 / f.value}) rows += ',' + csv_field(value);
     rows += '\n';
   }
   return rows;
@@ -219,13 +212,11 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
     for (const auto& [feature, share] : State::sources_of(hits[i])) {
       const std::string& given = loaded.scenario.features[feature].name;
       const std::string name = given.empty() ? std::to_string(feature) : given;
-      char percent[32];
-      std::snprintf(percent, sizeof percent, " %.3g %%", 100.0 * share);
-      sources += (sources.empty() ? "" : "; ") + name + percent;
-      from +=
-          object + ',' + csv_field(name) + ',' +
-          number(static_cast<double>(hits[i].by_feature.at(static_cast<std::uint32_t>(feature))) * rules.scale.unit) +
-          ',' + number(share) + '\n';
+      sources += (sources.empty() ? "" : "; ") + name + ' ' + with_digits(100.0 * share, 3) + " %";
+      from += object + ',' + csv_field(name) + ',' +
+              csv_field(static_cast<double>(hits[i].by_feature.at(static_cast<std::uint32_t>(feature))) *
+                        rules.scale.unit) +
+              ',' + csv_field(share) + '\n';
     }
     if (!writer) {
       writer = std::make_unique<ObjectsWriter>(folder / "objects.gpkg", loaded, *state_->features[i], figures);
@@ -235,7 +226,7 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
     }
     writer->write(*state_->features[i], *geometry_of(state_->parts[i], grid.west, grid.south), figures, sources);
     table += object;
-    for (const auto& [name, value] : figures) table += ',' + number(value);
+    for (const auto& [name, value] : figures) table += ',' + csv_field(value);
     table += ',' + csv_field(sources) + '\n';
     if (state_->on_map[i]) curves += curve_rows(object, curve, rules.bins);
   }

@@ -1,19 +1,15 @@
 #include "talus/io/reports/barrier_report.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <nlohmann/json.hpp>
 
+#include "io/files/json.hpp"
+#include "talus/base/text.hpp"
 #include "talus/base/vector.hpp"
 #include "talus/base/version.hpp"
-#include "talus/io/results/write_crossings.hpp"
 
 namespace talus::io {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// A row of the table of design values: name, value, unit, origin.
 struct DesignRow {
@@ -22,68 +18,58 @@ struct DesignRow {
   std::string unit, from;
 };
 
-std::string digits(double value, const char* format = "%.4g") {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), format, value);
-  return text.data();
-}
-
 std::string percent(double share) {
-  return digits(100.0 * share, "%.3g") + " %";
+  return with_digits(100.0 * share, 3) + " %";
 }
 
-std::string between(const Interval& i, double factor, const char* format) {
-  return "[" + digits(factor * i.low, format) + ", " + digits(factor * i.high, format) + "]";
+std::string between(const Interval& i, double factor) {
+  return "[" + with_digits(factor * i.low, 3) + ", " + with_digits(factor * i.high, 3) + "]";
 }
 
 std::vector<DesignRow> design_rows(const BarrierReport& r) {
   const BarrierDesign& d = r.design;
   const DesignFactors& f = r.factors;
-  const std::string rank = digits(100.0 * f.percentile),
-                    reach = " x gTr " + digits(f.trajectory) + " x gDp " + digits(f.topography);
+  const std::string rank = with_digits(100.0 * f.percentile, 4),
+                    reach = " x gTr " + with_digits(f.trajectory, 4) + " x gDp " + with_digits(f.topography, 4);
   const double diameter = std::cbrt(6.0 * r.block.volume / kPi);
   return {{"v" + rank, d.speed_percentile, "m/s", "of the crossings"},
           {"v_d", d.speed, "m/s", "v" + rank + reach},
-          {"V", r.block.volume, "m3", r.block_from + ", diameter " + digits(diameter) + " m"},
+          {"V", r.block.volume, "m3", r.block_from + ", diameter " + with_digits(diameter, 4) + " m"},
           {"m_d", d.mass, "kg",
-           "V x " + digits(r.block.density) + " kg/m3 x gVol " + digits(f.volume) + " x gG " + digits(f.density)},
+           "V x " + with_digits(r.block.density, 4) + " kg/m3 x gVol " + with_digits(f.volume, 4) + " x gG " +
+               with_digits(f.density, 4)},
           {"E_d", d.energy * 1e-3, "kJ", "1/2 m_d v_d^2"},
-          {"SEL", d.sel * 1e-3, "kJ", "E_d x gE " + digits(f.sel)},
-          {"MEL", d.mel * 1e-3, "kJ", "E_d x gE " + digits(f.mel)},
+          {"SEL", d.sel * 1e-3, "kJ", "E_d x gE " + with_digits(f.sel, 4)},
+          {"MEL", d.mel * 1e-3, "kJ", "E_d x gE " + with_digits(f.mel, 4)},
           {"h" + rank, d.height_percentile, "m", "of the crossings, vertical, ground to centre"},
-          {"f_min", d.freeboard, "m", "half the block, at least " + digits(f.freeboard) + " m"},
+          {"f_min", d.freeboard, "m", "half the block, at least " + with_digits(f.freeboard, 4) + " m"},
           {"h_i", d.height, "m", "h" + rank + reach + " + f_min"}};
 }
 
-std::string padded(std::string text, std::size_t width) {
-  text.resize(std::max(width, text.size() + 1), ' ');
-  return text;
+/// A cell of a column: its text and one blank at least.
+std::string cell(const std::string& text, std::size_t width) {
+  return padded(text + ' ', width);
 }
 
 std::string reliability_text(const Reliability& r) {
-  std::string text = "  " + padded(r.quantity, 14) + "Weibull shape " + digits(r.fit.law.shape, "%.3g") + " " +
-                     between(r.fit.shape, 1.0, "%.3g") + ", scale " + digits(r.fit.law.scale, "%.3g") + " " + r.unit +
-                     " " + between(r.fit.scale, 1.0, "%.3g") + "; A2 = " + digits(r.fit.distance, "%.3g") +
+  std::string text = "  " + cell(r.quantity, 14) + "Weibull shape " + with_digits(r.fit.law.shape, 3) + " " +
+                     between(r.fit.shape, 1.0) + ", scale " + with_digits(r.fit.law.scale, 3) + " " + r.unit + " " +
+                     between(r.fit.scale, 1.0) + "; A2 = " + with_digits(r.fit.distance, 3) +
                      (r.fit.accepted() ? " agrees" : " DEPARTS") + " (5 % limit 0.757)" +
                      (r.fit.zeros > 0 ? "; " + std::to_string(r.fit.zeros) + " of " + std::to_string(r.fit.values) +
                                             " are 0 and no part of the fit"
                                       : "") +
                      "\n";
   for (const Reliability::Limit& l : r.limits)
-    text += "    " + padded(l.name, 6) + padded(digits(l.value) + " " + r.unit, 14) + "exceeded by " +
-            padded(percent(l.exceeded.fitted) + " " + between(l.exceeded.fitted_bounds, 100.0, "%.3g"), 28) +
-            "of the law, " + percent(l.exceeded.observed) + " " + between(l.exceeded.observed_bounds, 100.0, "%.3g") +
-            " of the values\n";
+    text += "    " + cell(l.name, 6) + cell(with_digits(l.value, 4) + " " + r.unit, 14) + "exceeded by " +
+            cell(percent(l.exceeded.fitted) + " " + between(l.exceeded.fitted_bounds, 100.0), 28) + "of the law, " +
+            percent(l.exceeded.observed) + " " + between(l.exceeded.observed_bounds, 100.0) + " of the values\n";
   return text;
 }
 
 std::string stretch_text(const Stretch& s) {
-  return digits(s.width()) + " m, from " + digits(s.from) + " m to " + digits(s.to) + " m along the line (" +
-         percent(s.share) + " of the crossings)";
-}
-
-Json interval_of(const Interval& i) {
-  return Json::array({i.low, i.high});
+  return with_digits(s.width(), 4) + " m, from " + with_digits(s.from, 4) + " m to " + with_digits(s.to, 4) +
+         " m along the line (" + percent(s.share) + " of the crossings)";
 }
 
 Json stretch_of(const Stretch& s) {
@@ -96,17 +82,17 @@ Json reliability_of(const Reliability& r) {
     limits.push_back({{"name", l.name},
                       {"value", l.value},
                       {"weibull", l.exceeded.fitted},
-                      {"weibull_interval", interval_of(l.exceeded.fitted_bounds)},
+                      {"weibull_interval", json_of(l.exceeded.fitted_bounds, unrounded)},
                       {"share", l.exceeded.observed},
-                      {"share_interval", interval_of(l.exceeded.observed_bounds)}});
+                      {"share_interval", json_of(l.exceeded.observed_bounds, unrounded)}});
   return {{"quantity", r.quantity},
           {"unit", r.unit},
           {"values", r.fit.values},
           {"zeros", r.fit.zeros},
           {"shape", r.fit.law.shape},
-          {"shape_interval", interval_of(r.fit.shape)},
+          {"shape_interval", json_of(r.fit.shape, unrounded)},
           {"scale", r.fit.law.scale},
-          {"scale_interval", interval_of(r.fit.scale)},
+          {"scale_interval", json_of(r.fit.scale, unrounded)},
           {"anderson_darling", r.fit.distance},
           {"anderson_darling_5_percent", kAndersonDarling5},
           {"agrees", r.fit.accepted()},
@@ -119,13 +105,14 @@ std::string barrier_text(const BarrierReport& r) {
   std::string text = "screen " + r.screen + ": " + std::to_string(r.crossings) + " blocks cross it, " +
                      percent(static_cast<double>(r.crossings) / r.released) + " of those released\n\ndesign values\n";
   for (const DesignRow& row : design_rows(r))
-    text += "  " + padded(row.name, 8) + padded(digits(row.value) + " " + row.unit, 14) + row.from + "\n";
+    text += "  " + cell(row.name, 8) + cell(with_digits(row.value, 4) + " " + row.unit, 14) + row.from + "\n";
   text += "\nprobability that a block exceeds them, by " + r.values + " [95 %]\n";
   for (const Reliability& quantity : r.reliability) text += reliability_text(quantity);
   text +=
       "\nwidth for a containment of " + percent(r.containment) + "\n  shortest    " + stretch_text(r.shortest) + "\n";
-  text += "  by the map  " + (r.above ? stretch_text(*r.above) : std::string("none")) + ": bins of " + digits(r.bin) +
-          " m that more than " + percent(1.0 - r.containment) + " of the released blocks cross\n";
+  text += "  by the map  " + (r.above ? stretch_text(*r.above) : std::string("none")) + ": bins of " +
+          with_digits(r.bin, 4) + " m that more than " + percent(1.0 - r.containment) +
+          " of the released blocks cross\n";
   for (const std::string& note : r.notes) text += "\nnote: " + note + "\n";
   return text;
 }
@@ -157,14 +144,14 @@ std::string barrier_json(const BarrierReport& r) {
                          {"bin_m", r.bin},
                          {"by_impact_probability", r.above ? stretch_of(*r.above) : Json()}};
   json["notes"] = r.notes;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 std::string barrier_csv(const BarrierReport& r) {
   std::string text = "screen,name,value,unit,weibull,weibull_low,weibull_high,share,share_low,share_high\n";
   const std::string screen = csv_field(r.screen);
   for (const DesignRow& row : design_rows(r)) {
-    text += screen + ',' + row.name + ',' + digits(row.value, "%.6g") + ',' + row.unit;
+    text += screen + ',' + row.name + ',' + with_digits(row.value, 6) + ',' + row.unit;
     const Exceedance* exceeded = nullptr;
     for (const Reliability& quantity : r.reliability)
       for (const Reliability::Limit& limit : quantity.limits)
@@ -174,7 +161,7 @@ std::string barrier_csv(const BarrierReport& r) {
     else
       for (const double value : {exceeded->fitted, exceeded->fitted_bounds.low, exceeded->fitted_bounds.high,
                                  exceeded->observed, exceeded->observed_bounds.low, exceeded->observed_bounds.high})
-        text += ',' + digits(value, "%.6g");
+        text += ',' + with_digits(value, 6);
     text += '\n';
   }
   return text;

@@ -1,51 +1,28 @@
 #include "talus/io/reports/diagnosis_page.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "svg.hpp"
+#include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
 
 namespace talus::io {
 namespace {
 
 constexpr int kWidth = 330, kHeight = 190, kMargin = 34;  // of a plot [px]
+constexpr double kHighest = 3.5;                          // z at the rim of a plot
 constexpr std::size_t kPlots = 6;
 constexpr double kRare = 0.05;  // p below which noise is not the word for what is left
 
-template <class... Values>
-std::string print(const char* format, Values... values) {
-  std::array<char, 512> text{};
-  std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) switch (c) {
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '&':
-        out += "&amp;";
-        break;
-      default:
-        out += c;
-    }
-  return out;
-}
-
 std::string value_text(double value) {
-  return std::isnan(value) ? "-" : print("%.3f", value);
+  return std::isnan(value) ? "-" : with_decimals(value, 3);
 }
 
 std::string reduction_text(const Reduction& r) {
   if (std::isnan(r.share)) return "-";
-  return print("%.1f %% (%.1f to %.1f)", 100.0 * r.share, 100.0 * r.interval.low, 100.0 * r.interval.high);
+  return with_decimals(100.0 * r.share, 1) + " % (" + with_decimals(100.0 * r.interval.low, 1) + " to " +
+         with_decimals(100.0 * r.interval.high, 1) + ")";
 }
 
 /// The property of a block that a row of the residual table names; the number of the block where it names none.
@@ -85,29 +62,32 @@ Points points_of(const Campaign& campaign, const ResidualSpace& space, const Res
 
 /// A scatter plot of z against a property; the grey band holds 95 % of the points of a right model.
 std::string plot(const Points& points, const std::string& title, const std::string& below) {
-  std::string svg = print("<svg width='%d' height='%d' viewBox='0 0 %d %d'>", kWidth, kHeight, kWidth, kHeight);
   const double low = points.x.empty() ? 0.0 : *std::min_element(points.x.begin(), points.x.end());
   const double high = points.x.empty() ? 1.0 : *std::max_element(points.x.begin(), points.x.end());
-  const auto x_of = [&](double x) {
-    return kMargin + (kWidth - 2.0 * kMargin) * (high > low ? (x - low) / (high - low) : 0.5);
-  };
-  const auto y_of = [](double z) { return kHeight / 2.0 - std::clamp(z, -3.5, 3.5) * (kHeight / 2.0 - kMargin) / 3.5; };
-  svg += print("<rect x='%d' y='%.1f' width='%d' height='%.1f' fill='#eee'/>", kMargin, y_of(1.96),
-               kWidth - 2 * kMargin, y_of(-1.96) - y_of(1.96));
-  svg += print("<line x1='%d' x2='%d' y1='%.1f' y2='%.1f' stroke='#999'/>", kMargin, kWidth - kMargin, y_of(0.0),
-               y_of(0.0));
+  const double half = high > low ? 0.0 : 0.5;  // a single value lies in the middle
+  const Axis x{low - half, high + half, kMargin, kWidth - 2 * kMargin},
+      y{kHighest, -kHighest, kMargin, kHeight - 2 * kMargin};
+  Svg svg('\'', "");
+  svg.element("rect", {{"x", kMargin},
+                       {"y", y(1.96)},
+                       {"width", kWidth - 2 * kMargin},
+                       {"height", y(-1.96) - y(1.96)},
+                       {"fill", "#eee"}});
+  svg.element("line", {{"x1", kMargin}, {"x2", kWidth - kMargin}, {"y1", y(0.0)}, {"y2", y(0.0)}, {"stroke", "#999"}});
   for (std::size_t i = 0; i < points.x.size(); ++i)
-    svg += print("<circle cx='%.1f' cy='%.1f' r='2.6' fill='#1f5fa8' fill-opacity='0.7'/>", x_of(points.x[i]),
-                 y_of(points.z[i]));
+    svg.element("circle", {{"cx", x(points.x[i])},
+                           {"cy", y(std::clamp(points.z[i], -kHighest, kHighest))},
+                           {"r", 2.6},
+                           {"fill", "#1f5fa8"},
+                           {"fill-opacity", 0.7}});
   for (const double z : {-2.0, 0.0, 2.0})
-    svg += print("<text x='%d' y='%.1f' text-anchor='end'>%g</text>", kMargin - 4, y_of(z) + 4.0, z);
-  svg += print("<text x='%d' y='%d'>%.4g</text><text x='%d' y='%d' text-anchor='end'>%.4g</text>", kMargin,
-               kHeight - 18, low, kWidth - kMargin, kHeight - 18, high);
-  svg += "<text x='" + std::to_string(kWidth / 2) + "' y='14' text-anchor='middle' font-weight='bold'>" +
-         escaped(title) + "</text>";
-  svg += "<text x='" + std::to_string(kWidth / 2) + "' y='" + std::to_string(kHeight - 4) + "' text-anchor='middle'>" +
-         escaped(below) + "</text></svg>\n";
-  return svg;
+    svg.words({{"x", kMargin - 4}, {"y", y(z) + 4.0}, {"text-anchor", "end"}}, with_digits(z, 6));
+  svg.words({{"x", kMargin}, {"y", kHeight - 18}}, with_digits(low, 4));
+  svg.words({{"x", kWidth - kMargin}, {"y", kHeight - 18}, {"text-anchor", "end"}}, with_digits(high, 4));
+  svg.words({{"x", kWidth / 2}, {"y", 14}, {"text-anchor", "middle"}, {"font-weight", "bold"}}, title);
+  svg.words({{"x", kWidth / 2}, {"y", kHeight - 4}, {"text-anchor", "middle"}}, below);
+  const std::string width = std::to_string(kWidth), height = std::to_string(kHeight);
+  return svg.drawing({{"width", width}, {"height", height}, {"viewBox", "0 0 " + width + " " + height}});
 }
 
 std::string plots(const Campaign& campaign, const Diagnosis& d, const DiagnosisRules& rules) {
@@ -137,12 +117,12 @@ std::string candidates_table(const DiagnosisRound& round, const std::vector<Hold
     const FittedCandidate& c = round.candidates[i];
     std::string numbers;
     for (std::size_t k = 0; k < c.parameters.size(); ++k)
-      numbers += c.parameters[k].key + " = " + print("%.3g", c.values[k]) + unit_text(c.parameters[k]) + "<br>";
+      numbers += c.parameters[k].key + " = " + with_digits(c.values[k], 3) + unit_text(c.parameters[k]) + "<br>";
     const HoldoutError& e = holdout[i];
     html += "<tr><td>" + c.effect + "</td><td>" + escaped(c.where) + "</td><td>" + numbers + "</td><td>" +
-            print("%.4f", c.p_value) + "</td><td>" +
-            print("%.3f (%.3f to %.3f)", c.gain, c.gain_interval.low, c.gain_interval.high) + "</td><td>" +
-            value_text(e.after) + "</td><td>" + reduction_text(e.reduction) + "</td></tr>\n";
+            with_decimals(c.p_value, 4) + "</td><td>" + with_decimals(c.gain, 3) + " (" +
+            with_decimals(c.gain_interval.low, 3) + " to " + with_decimals(c.gain_interval.high, 3) + ")" +
+            "</td><td>" + value_text(e.after) + "</td><td>" + reduction_text(e.reduction) + "</td></tr>\n";
   }
   return html + "</table>\n";
 }
@@ -153,9 +133,8 @@ std::string residual_rows(const std::vector<ResidualRow>& rows) {
       "tr>\n";
   for (std::size_t i = 0; i < std::min<std::size_t>(12, rows.size()); ++i)
     html += "<tr><td>" + escaped(rows[i].observable) + "</td><td>" + rows[i].covariate + "</td><td>" +
-            print("%.2f</td><td>%.2g</td><td>%.2g</td><td>%zu", rows[i].statistic, rows[i].p_value, rows[i].corrected,
-                  rows[i].blocks) +
-            "</td></tr>\n";
+            with_decimals(rows[i].statistic, 2) + "</td><td>" + with_digits(rows[i].p_value, 2) + "</td><td>" +
+            with_digits(rows[i].corrected, 2) + "</td><td>" + std::to_string(rows[i].blocks) + "</td></tr>\n";
   return html + "</table>\n";
 }
 
@@ -188,7 +167,7 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
       escaped(campaign.name) + " lacks</h1>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i)
     html += "<p>Round " + std::to_string(i + 1) + ": " + sentence(d.rounds[i]) +
-            print(" (p that the residual is noise: %.4f)</p>\n", d.rounds[i].p_value);
+            " (p that the residual is noise: " + with_decimals(d.rounds[i].p_value, 4) + ")</p>\n";
   const HoldoutError& e = record.whole;
   html +=
       "<h2>Error before and after</h2>\n<table><tr><th></th><th>ground fitted</th><th>with what was found</th>"
@@ -213,10 +192,8 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
       "simulates for it, as a standard normal number. Grey: 95 % of the points of a right model.</p>\n" +
       plots(campaign, d, record.options.rules) + "<h3>Before</h3>\n" + residual_rows(d.rounds.front().residual);
   if (d.rounds.size() > 1) html += "<h3>After</h3>\n" + residual_rows(d.rounds.back().residual);
-  return html + "<p>" +
-         print("talus %s, seed %llu, %.0f s.", std::string(version()).c_str(),
-               static_cast<unsigned long long>(record.options.seed), record.seconds) +
-         "</p></body></html>\n";
+  return html + "<p>talus " + std::string(version()) + ", seed " + std::to_string(record.options.seed) + ", " +
+         with_decimals(record.seconds, 0) + " s.</p></body></html>\n";
 }
 
 }  // namespace talus::io

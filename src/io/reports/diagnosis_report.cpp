@@ -2,33 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "io/files/json.hpp"
 #include "talus/base/version.hpp"
 
 namespace talus::io {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::uint32_t kHoldoutTrials = 200;
 constexpr std::size_t kResidualRows = 20;
 constexpr double kOpening = 0.97;  // of the progress
 
-double rounded(double value) {
-  if (value == 0.0 || !std::isfinite(value)) return value;
-  const double scale = std::pow(10.0, 5.0 - std::floor(std::log10(std::abs(value))));
-  return std::round(value * scale) / scale;
-}
-
-Json number(double value) {
-  return std::isnan(value) ? Json() : Json(rounded(value));
-}
-
 Json parameters_of(const FittedCandidate& candidate) {
   Json json = Json::object();
   for (std::size_t i = 0; i < candidate.parameters.size(); ++i)
-    json[candidate.parameters[i].key] = number(candidate.values[i]);
+    json[candidate.parameters[i].key] = json_of(candidate.values[i]);
   return json;
 }
 
@@ -37,9 +25,9 @@ Json residual_of(const std::vector<ResidualRow>& rows) {
   for (std::size_t i = 0; i < std::min(kResidualRows, rows.size()); ++i)
     list.push_back({{"observable", rows[i].observable},
                     {"covariate", rows[i].covariate},
-                    {"statistic", number(rows[i].statistic)},
-                    {"p_value", number(rows[i].p_value)},
-                    {"p_corrected", number(rows[i].corrected)},
+                    {"statistic", json_of(rows[i].statistic)},
+                    {"p_value", json_of(rows[i].p_value)},
+                    {"p_corrected", json_of(rows[i].corrected)},
                     {"blocks", rows[i].blocks}});
   return list;
 }
@@ -52,17 +40,16 @@ Json candidates_of(const DiagnosisRound& round, const std::vector<HoldoutError>&
                     {"where", c.where},
                     {"parameters", parameters_of(c)},
                     {"fitted_with_ground", c.with_ground},
-                    {"fit", number(c.fitted.score.total)},
-                    {"price", number(c.price)},
-                    {"objective_gain", number(c.gain)},
-                    {"objective_gain_ci95", {number(c.gain_interval.low), number(c.gain_interval.high)}},
-                    {"cross_validated_objective_gain", number(c.cross_validated)},
-                    {"holdout", number(holdout[i].after)},
-                    {"holdout_reduction_ci95",
-                     {number(holdout[i].reduction.interval.low), number(holdout[i].reduction.interval.high)}},
-                    {"chosen_share", number(c.chosen_share)},
-                    {"statistic", number(c.statistic)},
-                    {"p_value", number(c.p_value)}});
+                    {"fit", json_of(c.fitted.score.total)},
+                    {"price", json_of(c.price)},
+                    {"objective_gain", json_of(c.gain)},
+                    {"objective_gain_ci95", json_of(c.gain_interval)},
+                    {"cross_validated_objective_gain", json_of(c.cross_validated)},
+                    {"holdout", json_of(holdout[i].after)},
+                    {"holdout_reduction_ci95", json_of(holdout[i].reduction.interval)},
+                    {"chosen_share", json_of(c.chosen_share)},
+                    {"statistic", json_of(c.statistic)},
+                    {"p_value", json_of(c.p_value)}});
   }
   return list;
 }
@@ -127,9 +114,9 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
       effects.push_back(round.effect);
       turn["where"] = round.where;
       turn["indistinguishable_from"] = round.alike;
-      turn["holdout"] = {{"before", number(record.rounds[i].before)}, {"after", number(record.rounds[i].after)}};
+      turn["holdout"] = {{"before", json_of(record.rounds[i].before)}, {"after", json_of(record.rounds[i].after)}};
     }
-    turn["p_value"] = number(round.p_value);
+    turn["p_value"] = json_of(round.p_value);
     if (i > 0) turn["candidates"] = candidates_of(round, record.candidates[i]);
     rounds.push_back(turn);
   }
@@ -138,35 +125,32 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
   Json json{{"effect", first.effect},
             {"effects", effects},
             {"where", first.where},
-            {"probability", number(probability_of(first))},
+            {"probability", json_of(probability_of(first))},
             {"indistinguishable_from", first.alike},
             {"rounds", rounds},
             {"error",
              {{"metric", "mean normalised score"},
-              {"fit", {{"before", number(d.base.score.total)}, {"after", number(d.with_effects.score.total)}}},
+              {"fit", {{"before", json_of(d.base.score.total)}, {"after", json_of(d.with_effects.score.total)}}},
               {"holdout",
-               {{"before", number(e.before)},
-                {"after", number(e.after)},
-                {"reduction", number(e.reduction.share)},
-                {"ci95", {number(e.reduction.interval.low), number(e.reduction.interval.high)}}}}}},
+               {{"before", json_of(e.before)},
+                {"after", json_of(e.after)},
+                {"reduction", json_of(e.reduction.share)},
+                {"ci95", json_of(e.reduction.interval)}}}}},
             {"candidates", candidates_of(first, record.candidates.front())},
             {"residual", residual_of(first.residual)},
             {"residual_after", residual_of(d.rounds.back().residual)},
             {"campaign", record.campaign},
             {"seed", record.options.seed},
             {"trials_per_block", {{"search", d.trials.search}, {"test", d.trials.test}, {"compare", d.trials.compare}}},
-            {"seconds", number(record.seconds)},
+            {"seconds", json_of(record.seconds)},
             {"talus", version()},
             {"command", record.command},
             {"warnings", record.warnings}};
   Json ground = Json::object();
-  for (const Parameter& p : d.base.free) ground[p.key] = number(p.get(d.base.model));
+  for (const Parameter& p : d.base.free) ground[p.key] = json_of(p.get(d.base.model));
   json["base_parameters"] = ground;
-  Json inputs = Json::array();
-  for (const InputFile& input : record.inputs)
-    inputs.push_back({{"role", input.role}, {"path", input.path}, {"sha256", input.sha256}});
-  json["inputs"] = inputs;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  json["inputs"] = json_of(record.inputs);
+  return json_text(json);
 }
 
 }  // namespace talus::io

@@ -1,11 +1,9 @@
 #include "talus/io/reports/fit_report.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <nlohmann/json.hpp>
 
+#include "io/files/json.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
 #include "talus/simulate/scenario/presets.hpp"
@@ -13,30 +11,7 @@
 namespace talus::io {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr double kCorrelated = 0.5;  // a stronger correlation has a line in the report
-
-/// Rounded to six significant digits: more are noise.
-double rounded(double value) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", value);
-  return std::strtod(text.data(), nullptr);
-}
-
-Json number(double value) {
-  return std::isnan(value) ? Json() : Json(rounded(value));
-}
-
-Json interval_of(const Interval& i) {
-  return Json::array({number(i.low), number(i.high)});
-}
-
-std::string shown(double value, const char* format = "%.3g") {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), format, value);
-  return text.data();
-}
 
 std::string rows_name(const std::string& rows) {
   return rows == "fit" ? "fitting" : "held-out";
@@ -48,14 +23,14 @@ Json parameters_of(const Calibration& c) {
     const Parameter& p = c.free[i];
     list.push_back({{"key", p.key},
                     {"unit", p.unit},
-                    {"start", number(p.get(c.start))},
-                    {"value", number(p.get(c.fit.model))},
-                    {"ci95", interval_of(c.uncertainty.intervals[i])},
+                    {"start", json_of(p.get(c.start))},
+                    {"value", json_of(p.get(c.fit.model))},
+                    {"ci95", json_of(c.uncertainty.intervals[i])},
                     {"identifiable", static_cast<bool>(c.uncertainty.identifiable[i])},
-                    {"bounds", Json::array({number(p.lower), number(p.upper)})},
+                    {"bounds", Json::array({json_of(p.lower), json_of(p.upper)})},
                     {"prior",
                      {{"scale", p.scale == Parameter::Scale::Log ? "log" : "linear"},
-                      {"centre", number(p.centre)},
+                      {"centre", json_of(p.centre)},
                       {"sd", p.sd}}}});
   }
   return list;
@@ -78,13 +53,13 @@ Json error_of(const Calibration& c) {
     Json groups = Json::array();
     for (std::size_t g = 0; g < e.after.score.groups.size(); ++g)
       groups.push_back({{"group", e.after.score.groups[g].name},
-                        {"before", number(e.before.score.groups[g].score)},
-                        {"after", number(e.after.score.groups[g].score)},
+                        {"before", json_of(e.before.score.groups[g].score)},
+                        {"after", json_of(e.after.score.groups[g].score)},
                         {"rows", e.after.score.groups[g].rows}});
-    error[e.after.rows] = {{"before", number(e.before.score.total)},
-                           {"after", number(e.after.score.total)},
-                           {"reduction", number(e.reduction.share)},
-                           {"ci95", interval_of(e.reduction.interval)},
+    error[e.after.rows] = {{"before", json_of(e.before.score.total)},
+                           {"after", json_of(e.after.score.total)},
+                           {"reduction", json_of(e.reduction.share)},
+                           {"ci95", json_of(e.reduction.interval)},
                            {"blocks", e.after.blocks},
                            {"groups", groups}};
   }
@@ -96,8 +71,8 @@ Json distributions_of(const Comparison& comparison) {
   for (const Distribution& d : comparison.distributions) {
     Json measured = Json::array(), simulated = Json::array();
     for (std::size_t i = 0; i < kCompared.size(); ++i) {
-      measured.push_back(number(d.measured[i]));
-      simulated.push_back(number(d.simulated[i]));
+      measured.push_back(json_of(d.measured[i]));
+      simulated.push_back(json_of(d.simulated[i]));
     }
     list.push_back({{"observable", d.name},
                     {"unit", d.unit},
@@ -109,8 +84,8 @@ Json distributions_of(const Comparison& comparison) {
   for (const CrossingShare& s : comparison.crossings)
     list.push_back({{"observable", "crossed " + s.screen},
                     {"unit", "share"},
-                    {"measured", number(s.measured)},
-                    {"simulated", number(s.simulated)}});
+                    {"measured", json_of(s.measured)},
+                    {"simulated", json_of(s.simulated)}});
   return list;
 }
 
@@ -120,9 +95,10 @@ std::string parameter_lines(const Calibration& c) {
     const Parameter& p = c.free[i];
     const Interval& interval = c.uncertainty.intervals[i];
     const bool known = c.uncertainty.identifiable[i];
-    text += "| " + p.key + (p.unit.empty() ? "" : " [" + p.unit + "]") + " | " + shown(p.get(c.start)) + " | " +
-            (known ? shown(p.get(c.fit.model)) : "(" + shown(p.get(c.fit.model)) + ")") + " | " + shown(interval.low) +
-            " to " + shown(interval.high) + " | " + (known ? "" : "not identifiable") + " |\n";
+    text += "| " + p.key + (p.unit.empty() ? "" : " [" + p.unit + "]") + " | " + with_digits(p.get(c.start), 3) +
+            " | " + (known ? with_digits(p.get(c.fit.model), 3) : "(" + with_digits(p.get(c.fit.model), 3) + ")") +
+            " | " + with_digits(interval.low, 3) + " to " + with_digits(interval.high, 3) + " | " +
+            (known ? "" : "not identifiable") + " |\n";
   }
   return text;
 }
@@ -133,8 +109,8 @@ std::string correlation_lines(const Calibration& c) {
     for (Eigen::Index j = 0; j < i; ++j)
       if (std::abs(c.uncertainty.correlation(i, j)) >= kCorrelated)
         text += "- " + c.free[static_cast<std::size_t>(j)].key + " and " + c.free[static_cast<std::size_t>(i)].key +
-                ": " + shown(c.uncertainty.correlation(i, j), "%.2f") + "\n";
-  return text.empty() ? "None of " + shown(kCorrelated) + " or more.\n" : text;
+                ": " + with_decimals(c.uncertainty.correlation(i, j), 2) + "\n";
+  return text.empty() ? "None of " + with_digits(kCorrelated, 3) + " or more.\n" : text;
 }
 
 std::string error_lines(const Calibration& c) {
@@ -147,14 +123,14 @@ std::string error_lines(const Calibration& c) {
     }
     text += "| group | before | after | rows |\n| --- | --- | --- | --- |\n";
     for (std::size_t g = 0; g < e.after.score.groups.size(); ++g)
-      text += "| " + e.after.score.groups[g].name + " | " + shown(e.before.score.groups[g].score, "%.3f") + " | " +
-              shown(e.after.score.groups[g].score, "%.3f") + " | " + std::to_string(e.after.score.groups[g].rows) +
+      text += "| " + e.after.score.groups[g].name + " | " + with_decimals(e.before.score.groups[g].score, 3) + " | " +
+              with_decimals(e.after.score.groups[g].score, 3) + " | " + std::to_string(e.after.score.groups[g].rows) +
               " |\n";
-    text += "| **mean** | **" + shown(e.before.score.total, "%.3f") + "** | **" + shown(e.after.score.total, "%.3f") +
-            "** | " + std::to_string(e.after.score.rows.size()) + " |\n\n";
-    text += "The fit lowers the error by " + shown(100.0 * e.reduction.share, "%.1f") +
-            " % (95 % interval over the blocks: " + shown(100.0 * e.reduction.interval.low, "%.1f") + " to " +
-            shown(100.0 * e.reduction.interval.high, "%.1f") + " %).\n\n";
+    text += "| **mean** | **" + with_decimals(e.before.score.total, 3) + "** | **" +
+            with_decimals(e.after.score.total, 3) + "** | " + std::to_string(e.after.score.rows.size()) + " |\n\n";
+    text += "The fit lowers the error by " + with_decimals(100.0 * e.reduction.share, 1) +
+            " % (95 % interval over the blocks: " + with_decimals(100.0 * e.reduction.interval.low, 1) + " to " +
+            with_decimals(100.0 * e.reduction.interval.high, 1) + " %).\n\n";
   }
   return text;
 }
@@ -166,12 +142,12 @@ std::string distribution_lines(const Comparison& comparison) {
     for (const bool measured : {true, false}) {
       text += "| " + (measured ? d.name + " [" + d.unit + "]" : std::string()) +
               (measured ? " | measured" : " | simulated");
-      for (const double value : measured ? d.measured : d.simulated) text += " | " + shown(value);
+      for (const double value : measured ? d.measured : d.simulated) text += " | " + with_digits(value, 3);
       text += " | " + std::to_string(measured ? d.measured_count : d.simulated_count) + " |\n";
     }
   for (const CrossingShare& s : comparison.crossings)
-    text += "\nCrossed " + s.screen + ": " + shown(100.0 * s.measured) + " % of the blocks, " +
-            shown(100.0 * s.simulated) + " % of the simulated ones.\n";
+    text += "\nCrossed " + s.screen + ": " + with_digits(100.0 * s.measured, 3) + " % of the blocks, " +
+            with_digits(100.0 * s.simulated, 3) + " % of the simulated ones.\n";
   return text;
 }
 
@@ -187,19 +163,17 @@ std::string calibration_json(const Calibration& c) {
             {"comparison_trials", c.options.comparison_trials},
             {"starts", c.options.starts},
             {"evaluations", c.fit.tried},
-            {"objective", number(c.fit.objective)},
+            {"objective", json_of(c.fit.objective)},
             {"prior_weight", c.options.prior_weight},
             {"parameters", parameters_of(c)},
             {"correlation", correlation_of(c)},
             {"not_fitted_zones", c.untouched},
             {"error", error_of(c)},
             {"distributions", distributions_of(c.comparison)}};
-  Json inputs = Json::array();
-  for (const InputFile& f : c.inputs) inputs.push_back({{"role", f.role}, {"path", f.path}, {"sha256", f.sha256}});
-  json["inputs"] = inputs;
+  json["inputs"] = json_of(c.inputs);
   json["warnings"] = c.warnings;
   json["files"] = {"calibration.json", "report.md", "fitted.toml"};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 std::string calibration_report(const Calibration& c) {
@@ -212,7 +186,7 @@ std::string calibration_report(const Calibration& c) {
   for (const std::string& zone : c.untouched)
     text += "Zone " + zone + ": too few simulated paths touch it; its parameters are those of the start, " +
             std::string(kDefaultPreset) + ".\n\n";
-  text += "## Correlations of " + shown(kCorrelated) + " or more\n\n" + correlation_lines(c) + "\n";
+  text += "## Correlations of " + with_digits(kCorrelated, 3) + " or more\n\n" + correlation_lines(c) + "\n";
   text += "## Error\n\nMean normalised score, " + std::to_string(c.score_trials) +
           " trials per block that the search has not seen. 0: the model says the very value; about 0.56: it knows the "
           "spread of the measurements and no more. Before: " +

@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 
+#include "svg.hpp"
+#include "talus/base/text.hpp"
 #include "talus/io/results/write_profile.hpp"
 
 namespace talus::io {
@@ -13,86 +13,54 @@ constexpr double kWidth = 960.0, kLeft = 70.0, kPlot = 860.0, kPanel = 130.0, kG
 constexpr double kFinest = 1.5;        // between the points of a line that is drawn
 constexpr double kMostHeight = 420.0;  // of the drawing of the profile, which has equal scales where it fits
 
-std::string number(double value, const char* format = "%.1f") {
-  char text[40];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '<' ? "&lt;" : c == '&' ? "&amp;" : c == '>' ? "&gt;" : std::string(1, c);
-  return out;
-}
-
-/// Places of about five ticks at 1, 2 or 5 times a power of ten.
-std::vector<double> ticks(double low, double high, int wanted) {
-  const double unit = std::pow(10.0, std::floor(std::log10((high - low) / wanted)));
-  double every = unit;
-  for (const double k : {1.0, 2.0, 5.0, 10.0})
-    if ((high - low) / (k * unit) <= wanted) {
-      every = k * unit;
-      break;
-    }
-  std::vector<double> out;
-  for (double at = std::ceil(low / every) * every; at <= high + 1e-9 * every; at += every) out.push_back(at);
-  return out;
-}
-
 /// A pair of axes and the drawing between them.
 class Panel {
  public:
-  Panel(std::string& svg, double top, double height, Range x, Range y)
-      : svg_(svg), top_(top), height_(height), x_(x), y_(y) {}
+  Panel(Svg& svg, double top, double height, Range x, Range y)
+      : svg_(svg), top_(top), height_(height), x_{x.low, x.high, kLeft, kPlot}, y_{y.high, y.low, top, height} {}
 
   void frame(const std::string& title, const std::string& x_label) const {
-    for (const double at : ticks(x_.low, x_.high, 8)) {
-      rule(x(at), top_, x(at), top_ + height_);
-      text(x(at), top_ + height_ + 14.0, "middle", number(at, "%g"));
+    for (const double at : ticks(x_.first, x_.last, 8)) {
+      rule(x_(at), top_, x_(at), top_ + height_);
+      text(x_(at), top_ + height_ + 14.0, "middle", with_digits(at, 6));
     }
-    for (const double at : ticks(y_.low, y_.high, height_ > 200.0 ? 8 : 4)) {
-      rule(kLeft, y(at), kLeft + kPlot, y(at));
-      text(kLeft - 6.0, y(at) + 4.0, "end", number(at, "%g"));
+    for (const double at : ticks(y_.last, y_.first, height_ > 200.0 ? 8 : 4)) {
+      rule(kLeft, y_(at), kLeft + kPlot, y_(at));
+      text(kLeft - 6.0, y_(at) + 4.0, "end", with_digits(at, 6));
     }
-    svg_ += "<rect class=\"frame\" x=\"" + number(kLeft) + "\" y=\"" + number(top_) + "\" width=\"" + number(kPlot) +
-            "\" height=\"" + number(height_) + "\"/>\n";
+    svg_.element("rect", {{"class", "frame"}, {"x", kLeft}, {"y", top_}, {"width", kPlot}, {"height", height_}});
     text(kLeft, top_ - 6.0, "start", title);
     text(kLeft + kPlot, top_ + height_ + 28.0, "end", x_label);
   }
 
   void line(const Points& points, const char* style) const {
-    svg_ += std::string("<polyline class=\"") + style + "\" points=\"";
+    std::string places;
     Eigen::Vector2d drawn(-1e9, 0.0);
     for (const Eigen::Vector2d& p : points) {
-      const Eigen::Vector2d at(x(p.x()), y(p.y()));
+      const Eigen::Vector2d at(x_(p.x()), y_(p.y()));
       if ((at - drawn).norm() < kFinest && &p != &points.back()) continue;
-      svg_ += number(at.x()) + "," + number(at.y()) + " ";
+      places += with_decimals(at.x(), 1) + "," + with_decimals(at.y(), 1) + " ";
       drawn = at;
     }
-    svg_ += "\"/>\n";
+    svg_.element("polyline", {{"class", style}, {"points", places}});
   }
 
   void mark(double at, const std::string& name) const {
-    svg_ += "<line class=\"screen\" x1=\"" + number(x(at)) + "\" x2=\"" + number(x(at)) + "\" y1=\"" + number(top_) +
-            "\" y2=\"" + number(top_ + height_) + "\"/>\n";
-    text(x(at) + 3.0, top_ + 12.0, "start", name);
+    svg_.element("line", {{"class", "screen"}, {"x1", x_(at)}, {"x2", x_(at)}, {"y1", top_}, {"y2", top_ + height_}});
+    text(x_(at) + 3.0, top_ + 12.0, "start", name);
   }
 
  private:
-  double x(double value) const { return kLeft + kPlot * (value - x_.low) / (x_.high - x_.low); }
-  double y(double value) const { return top_ + height_ * (y_.high - value) / (y_.high - y_.low); }
   void rule(double x1, double y1, double x2, double y2) const {
-    svg_ += "<line class=\"grid\" x1=\"" + number(x1) + "\" y1=\"" + number(y1) + "\" x2=\"" + number(x2) + "\" y2=\"" +
-            number(y2) + "\"/>\n";
+    svg_.element("line", {{"class", "grid"}, {"x1", x1}, {"y1", y1}, {"x2", x2}, {"y2", y2}});
   }
   void text(double at_x, double at_y, const char* anchor, const std::string& words) const {
-    svg_ += "<text x=\"" + number(at_x) + "\" y=\"" + number(at_y) + "\" text-anchor=\"" + anchor + "\">" +
-            escaped(words) + "</text>\n";
+    svg_.words({{"x", at_x}, {"y", at_y}, {"text-anchor", anchor}}, words);
   }
 
-  std::string& svg_;
+  Svg& svg_;
   double top_, height_;
-  Range x_, y_;
+  Axis x_, y_;
 };
 
 /// One number of every bin that is crossed, in the middle of the bin.
@@ -169,7 +137,7 @@ std::string profile_svg(const LoadedProfile& p, const ProfileResults& results, s
   for (const Eigen::Vector2d& node : profile.nodes) low = std::min(low, node.y()), high = std::max(high, node.y());
   const double margin = 0.03 * (high - low) + 1.0,
                height = std::clamp((high - low + 2.0 * margin) / (x.high - x.low) * kPlot, 120.0, kMostHeight);
-  std::string body;
+  Svg body;
   double top = 30.0;
   const Panel ground(body, top, height, x, {low - margin, high + margin});
   const std::vector<Screen>& screens = p.loaded.scenario.screens;
@@ -190,10 +158,12 @@ std::string profile_svg(const LoadedProfile& p, const ProfileResults& results, s
   const Panel reach(body, top, kPanel, {0.0, farthest}, {0.0, 1.0});
   reach.frame("share of the blocks that goes farther", "distance from the release (m)");
   reach.line(beyond(results.runout, p.bin), "beyond");
-  const std::string size = number(top + kPanel + kGap, "%.0f");
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + number(kWidth, "%.0f") + "\" height=\"" + size +
-         "\" viewBox=\"0 0 " + number(kWidth, "%.0f") + " " + size + "\">\n" + kStyle +
-         "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n" + body + "</svg>\n";
+  const std::string width = with_decimals(kWidth, 0), size = with_decimals(top + kPanel + kGap, 0);
+  return body.drawing({{"xmlns", "http://www.w3.org/2000/svg"},
+                       {"width", width},
+                       {"height", size},
+                       {"viewBox", "0 0 " + width + " " + size}},
+                      std::string(kStyle) + "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n");
 }
 
 }  // namespace talus::io

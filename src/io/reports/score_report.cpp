@@ -1,31 +1,23 @@
 #include "talus/io/reports/score_report.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <nlohmann/json.hpp>
 
+#include "io/files/json.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
-#include "talus/io/results/write_crossings.hpp"
 #include "talus/io/results/write_vectors.hpp"
 
 namespace talus::io {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string cell(double score, const Interval& interval, std::size_t rows) {
   if (std::isnan(score)) return "       -                        -";
-  std::array<char, 80> text{};
-  std::snprintf(text.data(), text.size(), "  %6.3f  %6.3f to %6.3f  %5zu", score, interval.low, interval.high, rows);
-  return text.data();
-}
-
-std::string padded(std::string text, std::size_t width) {
-  text.resize(std::max(width, text.size()), ' ');
-  return text;
+  const auto aligned = [](const std::string& text, std::size_t width) {
+    return std::string(width - std::min(width, text.size()), ' ') + text;
+  };
+  return "  " + aligned(with_decimals(score, 3), 6) + "  " + aligned(with_decimals(interval.low, 3), 6) + " to " +
+         aligned(with_decimals(interval.high, 3), 6) + "  " + aligned(std::to_string(rows), 5);
 }
 
 /// All groups of all the scores, in the order of the first that has them.
@@ -35,14 +27,6 @@ std::vector<std::string> group_names(std::span<const ScoredRows> scores) {
     for (const GroupScore& group : s.score.groups)
       if (std::find(names.begin(), names.end(), group.name) == names.end()) names.push_back(group.name);
   return names;
-}
-
-Json number(double value) {
-  return std::isnan(value) ? Json() : Json(std::round(value * 1e6) / 1e6);
-}
-
-Json interval_of(const Interval& interval) {
-  return Json::array({number(interval.low), number(interval.high)});
 }
 
 std::string field(double value) {
@@ -109,17 +93,17 @@ std::string score_json(const ScoreSettings& settings, std::span<const ScoredRows
     Json groups = Json::array();
     for (std::size_t g = 0; g < s.score.groups.size(); ++g)
       groups.push_back({{"group", s.score.groups[g].name},
-                        {"score", number(s.score.groups[g].score)},
-                        {"ci95", interval_of(s.intervals.groups[g])},
+                        {"score", json_of(s.score.groups[g].score, six_decimals)},
+                        {"ci95", json_of(s.intervals.groups[g], six_decimals)},
                         {"rows", s.score.groups[g].rows},
                         {"rows_as_climatology", s.score.groups[g].unseen}});
-    json[s.rows] = {{"score", number(s.score.total)},
-                    {"ci95", interval_of(s.intervals.total)},
+    json[s.rows] = {{"score", json_of(s.score.total, six_decimals)},
+                    {"ci95", json_of(s.intervals.total, six_decimals)},
                     {"blocks", s.blocks},
                     {"rows", s.score.rows.size()},
                     {"groups", groups}};
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 void write_runs(const std::filesystem::path& folder, const LoadedCampaign& loaded, std::span<const BlockRuns> runs) {

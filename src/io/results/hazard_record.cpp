@@ -1,7 +1,6 @@
 #include "talus/io/results/hazard_record.hpp"
 
-#include <nlohmann/json.hpp>
-
+#include "io/files/json.hpp"
 #include "io/scenario/table_reader.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/version.hpp"
@@ -9,7 +8,6 @@
 namespace talus::io {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Kind = TomlValue::Kind;
 
 constexpr Bounds kEnergy{"energies", "kJ", "between classes of intensity", 0.0, 1e9, Bounds::AboveMin};
@@ -87,7 +85,7 @@ std::string hazard_json(const HazardRecord& record) {
   if (!record.frequency_file.empty()) json["frequency"] = {{"file", record.frequency_file}, {"replayed", true}};
   json["warnings"] = record.warnings;
   json["files"] = record.files;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 }  // namespace talus::io

@@ -3,15 +3,13 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
+#include "io/files/json.hpp"
 #include "talus/base/version.hpp"
 #include "talus/simulate/tally/histogram.hpp"
 
 namespace talus::io {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Numbers as numbers, all else as text.
 Json value_of(const std::string& text) {
@@ -25,12 +23,6 @@ Json settings_of(const LoadedScenario& loaded) {
   Json list = Json::array();
   for (const Setting& s : loaded.settings)
     list.push_back({{"key", s.key}, {"value", value_of(s.value)}, {"unit", s.unit}, {"source", s.source}});
-  return list;
-}
-
-Json inputs_of(const LoadedScenario& loaded) {
-  Json list = Json::array();
-  for (const InputFile& f : loaded.inputs) list.push_back({{"role", f.role}, {"path", f.path}, {"sha256", f.sha256}});
   return list;
 }
 
@@ -167,7 +159,7 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   if (!scenario.screens.empty()) json["screens"] = screens_of(loaded);
   if (!scenario.barriers.empty()) json["barriers"] = barriers_of(scenario, totals);
   json["settings"] = settings_of(loaded);
-  json["inputs"] = inputs_of(loaded);
+  json["inputs"] = json_of(loaded.inputs);
   json["reprojections"] = reprojections_of(loaded);
   json["warnings"] = record.warnings;
   json["files"] = record.files;
@@ -176,7 +168,7 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   json["cpu_seconds"] = seconds(record.cpu);
   json["wall_seconds"] = seconds(record.wall);
   json["peak_memory_mb"] = std::round(peak_memory_mb() * 10.0) / 10.0;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 double peak_memory_mb() {

@@ -1,35 +1,13 @@
 #include "talus/io/results/write_crossings.hpp"
 
-#include <array>
 #include <cerrno>
-#include <charconv>
 #include <stdexcept>
 #include <system_error>
 
+#include "talus/base/expect.hpp"
+#include "talus/base/text.hpp"
+
 namespace talus::io {
-namespace {
-
-/// Appends a comma and the number.
-void add(std::string& line, double value, std::chars_format format, int precision) {
-  std::array<char, 400> text;  // the longest double in fixed notation has 309 digits before the point
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, format, precision).ptr;
-  line += ',';
-  line.append(text.data(), end);
-}
-
-void add(std::string& line, double value) {
-  add(line, value, std::chars_format::general, 6);
-}
-
-}  // namespace
-
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
-}
-
 CrossingsWriter::CrossingsWriter(const std::filesystem::path& file, const Scenario& scenario, const GeoReference& geo)
     : name_(file.filename().string()),
       file_(std::fopen(file.c_str(), "wb")),
@@ -43,12 +21,14 @@ CrossingsWriter::CrossingsWriter(const std::filesystem::path& file, const Scenar
 void CrossingsWriter::write(std::span<const Crossing> crossings) {
   std::string text;
   for (const Crossing& c : crossings) {
+    TALUS_EXPECT(c.screen < screens_.size(), "a crossing is of a screen of the scenario");
     const double energy = 0.5e-3 * c.mass * c.speed * c.speed;
     const double rotation = 0.5e-3 * Block{c.diameter, c.mass}.inertia() * c.spin * c.spin;
     text += std::to_string(c.source) + ',' + std::to_string(c.block) + ',' + screens_[c.screen];
-    for (const double value : {c.speed, energy, energy + rotation, c.height, c.spin, c.mass}) add(text, value);
-    add(text, west_ + c.x, std::chars_format::fixed, 3);
-    add(text, south_ + c.y, std::chars_format::fixed, 3);
+    for (const double value : {c.speed, energy, energy + rotation, c.height, c.spin, c.mass})
+      (text += ',') += with_digits(value, 6);
+    (text += ',') += with_decimals(west_ + c.x, 3);
+    (text += ',') += with_decimals(south_ + c.y, 3);
     text += '\n';
   }
   put(text);

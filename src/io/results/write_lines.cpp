@@ -1,24 +1,10 @@
 #include "talus/io/results/write_lines.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
 
-#include "talus/io/results/write_crossings.hpp"
+#include "talus/base/text.hpp"
 
 namespace talus::io {
-namespace {
-
-/// A comma and the number; nothing after the comma where there is none.
-std::string field(double value) {
-  std::array<char, 40> text{};
-  if (!std::isnan(value)) std::snprintf(text.data(), text.size(), "%.6g", value);
-  return "," + std::string(text.data());
-}
-
-}  // namespace
-
 std::string screens_summary_csv(const Scenario& scenario, const ScreenSummary& summary) {
   std::string text = "screen,quantity,unit,crossings,blocks,share_of_released,mean,p50,p95,p99,maximum\n";
   const auto released = static_cast<double>(scenario.released());
@@ -30,7 +16,7 @@ std::string screens_summary_csv(const Scenario& scenario, const ScreenSummary& s
               ',' + std::to_string(row.crossings) + ',' + std::to_string(row.blocks);
       for (const double value :
            {static_cast<double>(row.blocks) / released, row.mean, row.p50, row.p95, row.p99, row.maximum})
-        text += field(value);
+        text += ',' + csv_field(value);
       text += '\n';
     }
   return text;
@@ -42,8 +28,8 @@ std::string barriers_csv(const Scenario& scenario, const Totals& totals) {
     for (std::size_t k = 0; k < totals.barriers.parts(b).size(); ++k) {
       const BarrierCounts& part = totals.barriers.parts(b)[k];
       const double from = kBarrierPart * static_cast<double>(k);
-      text += csv_field(scenario.barriers.list()[b].id) + field(from) +
-              field(std::min(from + kBarrierPart, scenario.barriers.length(b)));
+      text += csv_field(scenario.barriers.list()[b].id) + ',' + csv_field(from) + ',' +
+              csv_field(std::min(from + kBarrierPart, scenario.barriers.length(b)));
       for (const std::uint64_t count : {part.hits(), part.caught, part.over, part.broken})
         text += ',' + std::to_string(count);
       text += '\n';

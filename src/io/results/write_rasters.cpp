@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "io/gdal/dataset.hpp"
+#include "talus/base/expect.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/files/output_folder.hpp"
 
@@ -92,6 +93,7 @@ void transfer(GDALRasterBand* band, GDALRWFlag direction, int row, int rows, T* 
 /// Asks the map for its rows, from the north, and writes them. False where it was ended.
 template <class T>
 bool fill(GDALDataset& file, const Map& map, const MapTarget& target) {
+  TALUS_EXPECT(file.GetRasterCount() == static_cast<int>(map.bands.size()), "a file has the bands of its map");
   const auto columns = static_cast<std::size_t>(target.columns);
   const std::size_t band_size = columns * kStripe;
   std::vector<double> row(map.bands.size() * columns);

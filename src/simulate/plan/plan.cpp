@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "talus/base/expect.hpp"
+
 namespace talus {
 namespace {
 
@@ -31,7 +33,9 @@ double diameter_at(const Blocks& blocks, double share_of_class, double share) {
 }  // namespace
 
 Release make_release(const Scenario& scenario, std::uint32_t source, std::uint32_t block) {
+  TALUS_EXPECT(source < scenario.sources.size(), "a release has a source cell");
   const SourceCell& cell = scenario.sources[source];
+  TALUS_EXPECT(cell.feature < scenario.features.size(), "a source cell belongs to a feature");
   const SourceFeature& feature = scenario.features[cell.feature];
   const Grid& grid = scenario.surface.grid();
   const Random random(scenario.seed, source, block, Purpose::Release);
@@ -47,6 +51,7 @@ Release make_release(const Scenario& scenario, std::uint32_t source, std::uint32
   release.source = source;
   release.block = block;
   release.body = block_of(diameter, scenario.blocks.density);
+  TALUS_EXPECT(release.body.mass > 0.0, "a block has a mass");
   release.body.axes = scenario.blocks.axes;
   release.day = scenario.day;
   release.motion.position = {x, y, scenario.surface.height(x, y).value_or(kNotGiven) + height};
@@ -63,6 +68,7 @@ bool is_recorded(const Scenario& scenario, std::uint32_t source, std::uint32_t b
   // The paths are the releases g at which floor(g K / N) steps up: K of N, evenly spread.
   const std::uint64_t wanted = scenario.output.paths, all = scenario.released();
   const std::uint64_t g = std::uint64_t{source} * scenario.trajectories + block;
+  TALUS_EXPECT(g < all, "a release is one of the plan");
   return (g + 1) * wanted / all > g * wanted / all;
 }
 

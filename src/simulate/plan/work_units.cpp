@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "talus/base/expect.hpp"
+
 namespace talus {
 
 ProcessGroup& alone() {
@@ -16,6 +18,7 @@ WorkUnits::WorkUnits(ProcessGroup& processes, const Range& range, std::uint64_t 
       chunks_((range.end + chunk - 1) / chunk),
       fixed_(fixed),
       closed_at_(chunks_) {
+  TALUS_EXPECT(chunk > 0 && range.first <= range.end, "there are units to hand out");
   const std::uint64_t first = range.first / chunk, size = static_cast<std::uint64_t>(processes.size());
   mine_ = first + (static_cast<std::uint64_t>(processes.rank()) + size - first % size) % size;
   processes_.set_counter(fixed ? 0 : first);
@@ -39,6 +42,7 @@ std::optional<WorkUnits::Taken> WorkUnits::next() {
     at_ = std::max(range_.first, chunk * chunk_);
     till_ = std::min(range_.end, (chunk + 1) * chunk_);
   }
+  TALUS_EXPECT(at_ >= range_.first && at_ < range_.end, "a unit is one of those asked for");
   return Taken{at_++, taken_++};
 }
 

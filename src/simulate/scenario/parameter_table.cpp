@@ -1,10 +1,10 @@
 #include "talus/simulate/scenario/parameter_table.hpp"
 
 #include <array>
-#include <cassert>
 #include <charconv>
 
 #include "talus/base/elementary.hpp"
+#include "talus/base/expect.hpp"
 #include "talus/base/text.hpp"
 
 namespace talus {
@@ -138,7 +138,7 @@ std::span<const Bounds> list_bounds() {
 const Bounds& bounds_of(std::string_view key) {
   for (const Bounds& bounds : kLists)
     if (bounds.key == key) return bounds;
-  assert(false && "no such key");
+  TALUS_EXPECT(false, "a key is one of the table");
   return kLists.front();
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/base/expect.hpp"
+
 namespace talus {
 
 BarrierTally::BarrierTally(const Barriers& barriers) {
@@ -13,6 +15,7 @@ BarrierTally::BarrierTally(const Barriers& barriers) {
 
 void BarrierTally::add(const Path& path) {
   for (const BarrierPassage& passage : path.barriers) {
+    TALUS_EXPECT(passage.barrier < parts_.size() && passage.along >= 0.0, "a passage is of a barrier of the scenario");
     std::vector<BarrierCounts>& parts = parts_[passage.barrier];
     BarrierCounts& part = parts[std::min(parts.size() - 1, static_cast<std::size_t>(passage.along / kBarrierPart))];
     (passage.how == Meeting::Over ? part.over : passage.how == Meeting::Caught ? part.caught : part.broken) += 1;
@@ -20,6 +23,7 @@ void BarrierTally::add(const Path& path) {
 }
 
 void BarrierTally::merge(const BarrierTally& other) {
+  TALUS_EXPECT(parts_.size() == other.parts_.size(), "what is added is of the same barriers");
   for (std::size_t i = 0; i < parts_.size(); ++i)
     for (std::size_t k = 0; k < parts_[i].size(); ++k) parts_[i][k].add(other.parts_[i][k]);
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "talus/base/expect.hpp"
 #include "talus/simulate/tally/tally.hpp"
 
 namespace talus {
@@ -18,7 +19,9 @@ void CellRecord::merge(const CellRecord& other) {
     maximum[q] = std::max(maximum[q], other.maximum[q]);
     sum[q] += other.sum[q];
     histogram[q].merge(other.histogram[q]);
+    TALUS_EXPECT(histogram[q].count() == passages, "each passage is in the histogram once");
   }
+  TALUS_EXPECT(deposits <= passages, "what comes to rest in a cell has come there");
 }
 
 void CellRecord::save(ByteWriter& out) const {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/base/expect.hpp"
+
 namespace talus {
 namespace {
 
@@ -62,6 +64,7 @@ void HazardCell::cover(int low, int high) {
 
 void HazardCell::add(const HazardRules& rules, std::span<const float> energies, std::span<const Stake> stakes) {
   if (energies.empty()) return;
+  TALUS_EXPECT(stakes.size() >= energies.size(), "each value has its stake");
   const auto [low, high] = std::ranges::minmax_element(energies);
   cover(rules.bins.of(*low), rules.bins.of(*high));
   const double scale = squares_per_unit(rules.scale);
@@ -69,6 +72,7 @@ void HazardCell::add(const HazardRules& rules, std::span<const float> energies, 
   for (std::size_t i = 0; i < energies.size(); ++i) {
     const Stake& stake = stakes[i];
     if (stake.weight == 0) continue;
+    TALUS_EXPECT(stake.weight > 0, "no event is taken back");
     Bin& bin = bins_[static_cast<std::size_t>(rules.bins.of(energies[i]) - first_)];
     const auto weight = static_cast<double>(stake.weight);
     bin.weight += stake.weight;

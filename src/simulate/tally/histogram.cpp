@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "talus/base/expect.hpp"
 #include "talus/base/scratch.hpp"
 
 namespace talus {
@@ -50,6 +51,7 @@ std::uint32_t LogHistogram::get(int bin) const {
 }
 
 void LogHistogram::put(int bin, std::uint32_t count) {
+  TALUS_EXPECT(bin >= 0 && bin < size_, "a bin is one of the histogram");
   if (width_ == 1 && count > 0xFFU) widen(2);
   if (width_ == 2 && count > 0xFFFFU) widen(4);
   if (width_ == 1) {
@@ -98,6 +100,7 @@ void LogHistogram::cover(int low_key, int high_key) {
 
 void LogHistogram::add_key(int key) {
   const int bin = std::max(0, key - first_);
+  TALUS_EXPECT(bin < size_, "there is room for a value");
   if (width_ == 1 && counts_[bin] < 0xFFU)
     ++counts_[bin];
   else
@@ -203,6 +206,7 @@ std::uint64_t LogHistogram::count() const {
 }
 
 double LogHistogram::percentile(double share) const {
+  TALUS_EXPECT(share >= 0.0 && share <= 1.0, "a share is 0 to 1");
   if (counts_ == nullptr && few_count_ > 0) {
     LogHistogram bins;
     bins.few_ = few_;

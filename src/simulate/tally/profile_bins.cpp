@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "span_maxima.hpp"
+#include "talus/base/expect.hpp"
 
 namespace talus {
 namespace {
@@ -45,6 +46,8 @@ ProfileBins::ProfileBins(int columns, double step, double width)
 void ProfileBins::add(const Path& path, double mass) {
   std::vector<Record> records(values_.size());
   for (const Span& span : path.spans) {  // within one column, so within one bin
+    TALUS_EXPECT(static_cast<std::size_t>(span.patch.column / columns_per_bin_) < records.size(),
+                 "a path stays on its profile");
     Record& record = records[static_cast<std::size_t>(span.patch.column / columns_per_bin_)];
     raise(record, span, {0.0F, span.height_from, span.rise_from}, {1.0F, span.height_to, span.rise_to});
   }

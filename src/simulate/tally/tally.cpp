@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "tally_region.hpp"
+#include "talus/base/expect.hpp"
 
 namespace talus {
 namespace {
@@ -125,6 +126,7 @@ void gather(const Group& group, const VisitBatch& batch, Tally::Values& values, 
     values.lists[1][n] = std::sqrt(speed_squared);
     values.lists[2][n++] = height;
   }
+  TALUS_EXPECT(n > 0, "a group of visits has a value");
   values.count = n;
 }
 
@@ -178,6 +180,7 @@ std::uint64_t Tally::add(const VisitBatch& batch) {
 
 std::uint64_t Tally::score(std::size_t index, const std::vector<Visit>& visits, const VisitBatch& batch) {
   scratch::keep_below_limit();
+  TALUS_EXPECT(index < region_count_, "a visit lies in a region of the tally");
   Region& region = regions_[index];
   const std::vector<Visit> sorted = sorted_by_cell(visits);
   std::vector<Group> groups;
@@ -186,6 +189,7 @@ std::uint64_t Tally::score(std::size_t index, const std::vector<Visit>& visits, 
     while (i < sorted.size() && sorted[i].cell == cell) ++i;
     groups.push_back({&sorted[first], &sorted[first] + (i - first), region.record_of(cell, thresholds())});
   }
+  TALUS_EXPECT(region.records.size() <= kRegionCells, "a cell has one record");
   std::uint64_t scored = 0;
   ReachOf reach(batch, index);
   Values values;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "talus/base/expect.hpp"
+
 namespace talus {
 namespace {
 
@@ -23,6 +25,7 @@ void merge(std::string_view bytes, Tally& tally) {
     ByteReader head(bytes);
     const auto region = head.get<std::uint64_t>(), length = head.get<std::uint64_t>();
     bytes.remove_prefix(2 * sizeof(std::uint64_t));
+    TALUS_EXPECT(region < tally.regions() && length <= bytes.size(), "processes have tallies of the same grid");
     ByteReader content(bytes.substr(0, length));
     tally.merge(region, content);
     bytes.remove_prefix(length);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "span_maxima.hpp"
+#include "talus/base/expect.hpp"
 
 namespace talus {
 
@@ -75,6 +76,8 @@ void VisitBatch::add(std::span<const Span> spans) {
 }
 
 Visit& VisitBatch::new_visit(int column, int row) {
+  TALUS_EXPECT(column >= 0 && row >= 0 && column / kRegionSide < regions_across_, "a visit lies in the grid");
+  TALUS_EXPECT(!trajectories_.empty() && trajectories_.size() <= 0x10000, "a visit is of a trajectory of the batch");
   column_ = column;
   row_ = row;
   const std::size_t index = static_cast<std::size_t>(row / kRegionSide) * static_cast<std::size_t>(regions_across_) +

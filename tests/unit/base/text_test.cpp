@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
 
@@ -19,6 +22,35 @@ TEST(TextOf, ReadsBackExactly) {
   for (double value : {1.0 / 3.0, 0.1 + 0.2, 1e-300, 1e300, 9007199254740991.0, std::numeric_limits<double>::max(),
                        123456.789, 1e15, 1e16, 5e-324})
     for (const double v : {value, -value}) EXPECT_EQ(std::strtod(text_of(v).c_str(), nullptr), v) << text_of(v);
+}
+
+TEST(WithDigits, IsAsPrintfWrites) {
+  std::array<char, 400> text{};
+  for (const double value : {0.0, -0.0, 0.125, 0.375, 2.5, 1.0 / 3.0, 999.95, 999999.5, 1e6, 123456789.0, 1e-5,
+                             4.9e-324, -17.25, 1e300, std::numeric_limits<double>::infinity(), std::nan("")})
+    for (const int digits : {1, 2, 3, 4, 6}) {
+      std::snprintf(text.data(), text.size(), "%.*g", digits, value);
+      EXPECT_EQ(with_digits(value, digits), text.data());
+      std::snprintf(text.data(), text.size(), "%.*f", digits - 1, value);
+      EXPECT_EQ(with_decimals(value, digits - 1), text.data());
+    }
+}
+
+TEST(CsvField, IsInQuotationMarksWhereItMust) {
+  EXPECT_EQ(csv_field("a b"), "a b");
+  EXPECT_EQ(csv_field("a,b"), "\"a,b\"");
+  EXPECT_EQ(csv_field("5\" pipe"), "\"5\"\" pipe\"");
+  EXPECT_EQ(csv_field(0.125), "0.125");
+  EXPECT_EQ(csv_field(std::nan("")), "");
+}
+
+TEST(Escaped, IsSafeBetweenTags) {
+  EXPECT_EQ(escaped("a < b && c > d"), "a &lt; b &amp;&amp; c &gt; d");
+}
+
+TEST(Padded, IsNeverCut) {
+  EXPECT_EQ(padded("ab", 4), "ab  ");
+  EXPECT_EQ(padded("abcde", 4), "abcde");
 }
 
 TEST(NearestName, IsTheOneWithFewestChanges) {

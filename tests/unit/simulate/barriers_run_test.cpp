@@ -4,12 +4,15 @@
 #include <cmath>
 #include <limits>
 
+#include "support/paths.hpp"
 #include "support/scenarios.hpp"
 #include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/simulate.hpp"
 
 namespace talus {
 namespace {
+
+using test::for_each_path;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -46,17 +49,6 @@ BarrierCounts sum_of(const Totals& totals) {
   BarrierCounts sum;
   for (std::size_t i = 0; i < totals.barriers.size(); ++i) sum.add(totals.barriers.sum(i));
   return sum;
-}
-
-template <class F>
-void for_each_path(const Scenario& s, F f) {
-  Path path;
-  for (std::uint32_t source = 0; source < s.sources.size(); ++source)
-    for (std::uint32_t block = 0; block < s.trajectories; ++block) {
-      const Release release = make_release(s, source, block);
-      trace(s.world(), release, path);
-      f(release, path);
-    }
 }
 
 class BarrierRun : public testing::TestWithParam<bool> {};

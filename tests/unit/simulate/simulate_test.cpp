@@ -8,11 +8,14 @@
 #include <stdexcept>
 #include <thread>
 
+#include "support/paths.hpp"
 #include "support/scenarios.hpp"
 #include "talus/simulate/plan/plan.hpp"
 
 namespace talus {
 namespace {
+
+using test::for_each_path;
 
 constexpr std::uint32_t kSources = 5, kTrajectories = 300;  // three units of work to a source
 
@@ -49,18 +52,6 @@ Sinks sinks_into(Collected& all) {
 
 constexpr auto index_of(End end) {
   return static_cast<std::size_t>(end);
-}
-
-/// Calls `f` with every release and its path, one after the other.
-template <class F>
-void for_each_path(const Scenario& s, F f) {
-  Path path;
-  for (std::uint32_t source = 0; source < s.sources.size(); ++source)
-    for (std::uint32_t block = 0; block < s.trajectories; ++block) {
-      const Release release = make_release(s, source, block);
-      trace(s.world(), release, path);
-      f(release, path);
-    }
 }
 
 void expect_same(const Totals& a, const Totals& b) {

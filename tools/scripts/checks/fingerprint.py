@@ -99,11 +99,7 @@ class Outputs:
         self.call("presets", keep="presets.txt")
         trajectories = "3" if self.options.brief else "50"
         self.call("run", "data/valley/scenario.toml", "-o", "valley", "-q", "--threads", "2", "--trajectories", trajectories)
-<<<<<<< HEAD
         self.call("trace", "valley/scenario.toml", "--source", "100", "--block", "2" if self.options.brief else "7", "-o", "path.gpkg", keep="trace.txt")
-=======
-        self.call("trace", "valley/scenario.toml", "--source", "100", "--block", "7", "-o", "path.gpkg", keep="trace.txt")
->>>>>>> h5
         self.call("barrier", "valley", "--screen", "road", keep="barrier.txt")
         self.call("sources", "--dem", "data/valley/dem.tif", "-o", "cells.gpkg", "--slope", "48", keep="sources.txt")
         self.call("profile", "data/profile/profile.toml", "-o", "profile", "-q")

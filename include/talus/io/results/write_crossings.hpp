@@ -36,7 +36,4 @@ class CrossingsWriter {
   double west_, south_;               // lower-left corner of the grid [m]
 };
 
-/// A text as a field of a CSV file: in quotes where it needs them.
-std::string csv_field(const std::string& text);
-
 }  // namespace talus::io
