@@ -8,8 +8,8 @@
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/fit/calibrate/calibrate.hpp"
-#include "talus/io/reports/fit_report.hpp"
 #include "talus/io/campaign/model_file.hpp"
+#include "talus/io/reports/fit_report.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 
 namespace {
@@ -68,7 +68,7 @@ void print_summary(const talus::io::Calibration& c, const std::string& folder) {
   for (const talus::io::BeforeAfter& e : c.errors) {
     if (std::isnan(e.after.score.total)) continue;  // no group has five rows: the report says so
     std::printf("error, %s rows (%zu blocks): %.3f before, %.3f after (lower by %.1f %%, 95 %%: %.1f to %.1f %%)\n",
-                e.after.rows == "fit" ? "fitting" : "held-out", e.after.blocks, e.before.score.total,
+                talus::io::rows_in_words(e.after.rows).c_str(), e.after.blocks, e.before.score.total,
                 e.after.score.total, 100.0 * e.reduction.share, 100.0 * e.reduction.interval.low,
                 100.0 * e.reduction.interval.high);
   }

@@ -64,9 +64,8 @@ Points points_of(const Campaign& campaign, const ResidualSpace& space, const Res
 std::string plot(const Points& points, const std::string& title, const std::string& below) {
   const double low = points.x.empty() ? 0.0 : *std::min_element(points.x.begin(), points.x.end());
   const double high = points.x.empty() ? 1.0 : *std::max_element(points.x.begin(), points.x.end());
-  const double half = high > low ? 0.0 : 0.5;  // a single value lies in the middle
-  const Axis x{low - half, high + half, kMargin, kWidth - 2 * kMargin},
-      y{kHighest, -kHighest, kMargin, kHeight - 2 * kMargin};
+  const auto share = [=](double value) { return high > low ? (value - low) / (high - low) : 0.5; };
+  const Axis x{0.0, 1.0, kMargin, kWidth - 2 * kMargin}, y{kHighest, -kHighest, kMargin, kHeight - 2 * kMargin};
   Svg svg('\'', "");
   svg.element("rect", {{"x", kMargin},
                        {"y", y(1.96)},
@@ -75,7 +74,7 @@ std::string plot(const Points& points, const std::string& title, const std::stri
                        {"fill", "#eee"}});
   svg.element("line", {{"x1", kMargin}, {"x2", kWidth - kMargin}, {"y1", y(0.0)}, {"y2", y(0.0)}, {"stroke", "#999"}});
   for (std::size_t i = 0; i < points.x.size(); ++i)
-    svg.element("circle", {{"cx", x(points.x[i])},
+    svg.element("circle", {{"cx", x(share(points.x[i]))},
                            {"cy", y(std::clamp(points.z[i], -kHighest, kHighest))},
                            {"r", 2.6},
                            {"fill", "#1f5fa8"},

@@ -13,10 +13,6 @@ namespace {
 
 constexpr double kCorrelated = 0.5;  // a stronger correlation has a line in the report
 
-std::string rows_name(const std::string& rows) {
-  return rows == "fit" ? "fitting" : "held-out";
-}
-
 Json parameters_of(const Calibration& c) {
   Json list = Json::array();
   for (std::size_t i = 0; i < c.free.size(); ++i) {
@@ -116,7 +112,7 @@ std::string correlation_lines(const Calibration& c) {
 std::string error_lines(const Calibration& c) {
   std::string text;
   for (const BeforeAfter& e : c.errors) {
-    text += "### " + rows_name(e.after.rows) + " rows (" + std::to_string(e.after.blocks) + " blocks)\n\n";
+    text += "### " + rows_in_words(e.after.rows) + " rows (" + std::to_string(e.after.blocks) + " blocks)\n\n";
     if (e.after.score.groups.empty()) {
       text += "No group has five rows: nothing can be said.\n\n";
       continue;

@@ -33,11 +33,11 @@ std::string field(double value) {
   return std::isnan(value) ? "" : text_of(value);
 }
 
-std::string in_words(const std::string& rows) {
+}  // namespace
+
+std::string rows_in_words(const std::string& rows) {
   return rows == "fit" ? "fitting" : "held-out";
 }
-
-}  // namespace
 
 ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<const BlockRuns> runs,
                   const std::vector<bool>& ask) {
@@ -52,7 +52,7 @@ std::vector<std::string> unseen_warnings(const std::string& rows, const Score& s
   for (const GroupScore& group : score.groups)
     if (2 * group.unseen > group.rows)
       warnings.push_back(group.name + ": " + std::to_string(group.unseen) + " of " + std::to_string(group.rows) + " " +
-                         in_words(rows) + " rows have fewer than " + std::to_string(kFewestSimulated) +
+                         rows_in_words(rows) + " rows have fewer than " + std::to_string(kFewestSimulated) +
                          " simulated values and score as the climatology: the model seldom does there what was "
                          "measured, and the score says nothing of it (more trials may help)");
   return warnings;
@@ -66,7 +66,7 @@ std::string score_table(const ScoreSettings& settings, std::span<const ScoredRow
   for (const std::string& name : names) width = std::max(width, name.size());
   text += padded("", width);
   for (const ScoredRows& s : scores)
-    text += padded("  " + in_words(s.rows) + " rows (" + std::to_string(s.blocks) + " blocks)", 33);
+    text += padded("  " + rows_in_words(s.rows) + " rows (" + std::to_string(s.blocks) + " blocks)", 33);
   text += "\n" + padded("group", width);
   for (std::size_t i = 0; i < scores.size(); ++i) text += "   score  95 % interval    rows";
   for (const std::string& name : names) {

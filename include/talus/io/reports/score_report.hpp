@@ -17,6 +17,9 @@ struct ScoredRows {
   ScoreIntervals intervals;
 };
 
+/// "fitting" or "held-out", for "fit" and "holdout".
+std::string rows_in_words(const std::string& rows);
+
 /// Scores the asked blocks and bootstraps over them.
 ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<const BlockRuns> runs,
                   const std::vector<bool>& ask);
