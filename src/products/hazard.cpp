@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "talus/products/maps.hpp"
+#include "talus/products/interval.hpp"
 
 namespace talus {
 namespace {

@@ -1,6 +1,6 @@
-#include <boost/math/special_functions/beta.hpp>
+#include "talus/products/interval.hpp"
 
-#include "talus/products/maps.hpp"
+#include <boost/math/special_functions/beta.hpp>
 
 namespace talus {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "progress.hpp"
+#include "talus/products/raster_table.hpp"
 #include "talus/simulate/simulate.hpp"
 #include "write_maps.hpp"
 
@@ -13,7 +14,7 @@ using talus::Scenario;
 
 // Measured on the valley and on the region of docs/performance.md.
 constexpr double kBase = 64e6;             // of the process [byte]
-constexpr double kHistogram = 3 * 40.0;    // of a touched cell [byte]
+constexpr double kHistogram = 40.0;        // of a quantity of a touched cell [byte]
 constexpr double kHazardCell = 640.0;      // annual frequencies of a touched cell [byte]: 32 bins, and what holds them
 constexpr double kRasterCell = 3.8;        // of a touched cell in a band of a compressed raster [byte]
 constexpr double kHazardFile = 77.0;       // of a touched cell [byte]
@@ -34,13 +35,16 @@ double thresholds(const Scenario& scenario) {
 }
 
 double bands(const Scenario& scenario) {
-  return 20.0 + thresholds(scenario);
+  const talus::RunCounts run = talus::counts_of(scenario);
+  std::size_t sum = 0;
+  for (const talus::RunRaster& raster : talus::run_rasters()) sum += bands_of(raster, run).size();
+  return static_cast<double>(sum);
 }
 
 }  // namespace
 
 double bytes_in_memory(const Scenario& scenario, const RunSize& size) {
-  const double cell = sizeof(talus::CellRecord) + kHistogram + 16.0 + 4.0 * thresholds(scenario) +
+  const double cell = sizeof(talus::CellRecord) + talus::kQuantities * kHistogram + 16.0 + 4.0 * thresholds(scenario) +
                       (size.with_hazard ? kHazardCell : 0.0);
   return kBase + size.touched_cells * cell;
 }
