@@ -9,7 +9,7 @@
 namespace talus {
 namespace {
 
-/// What fills the rows of a map: a rule for touched cells, and by band the value where nothing crosses.
+/// Fills the rows of a map: a rule for touched cells, and by band the value where nothing crosses.
 struct Filling {
   CellRule rule;
   std::vector<double> untouched;

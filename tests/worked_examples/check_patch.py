@@ -68,7 +68,7 @@ def compile_file(file, copy, commands):
         elif word in ("-o", "-c", "-include", "-Xclang"):  # a precompiled header is of the sources without the patch
             skip = word != "-c" and word != "-Xclang"
         else:
-            kept.append(word.replace(f"-I{ROOT}/", f"-I{copy}/"))
+            kept.append(word.replace(f"-I{ROOT}/", f"-I{copy}/").replace(f'"{ROOT}"', f'"{copy}"'))
     target = copy / (file.replace("/", "_") + ".o")
     result = subprocess.run([*kept, "-o", str(target), "-c", str(copy / file)], cwd=entry["directory"], capture_output=True, text=True)
     if result.returncode != 0:

@@ -32,7 +32,7 @@ using CellRule = std::function<void(const TouchedCell& cell, std::span<double> v
 /// A raster of a run.
 struct RunRaster {
   Map map;              ///< without values, and without the bands of thresholds
-  std::string meaning;  ///< what a value is, in the words of docs/products.md
+  std::string meaning;  ///< of a value, in the words of docs/products.md
   /// The rule for touched cells.
   std::function<CellRule(const RunCounts& run)> rule;
   /// By band, the value where nothing crosses. Not given: 0 of a probability or a count, nodata of a quantity.
@@ -47,7 +47,7 @@ const std::vector<RunRaster>& run_rasters();
 /// The bands of a raster; none where it is not written.
 std::vector<Map::Band> bands_of(const RunRaster& raster, const RunCounts& run);
 
-/// What the figures of a place follow from.
+/// A place, from which figures follow.
 struct HazardPlace {
   const HazardCurve& curve;
   const HazardMatrix& matrix;
@@ -57,7 +57,7 @@ struct HazardPlace {
 /// `placeholder`.
 struct HazardRaster {
   Map map;              ///< without values and classes
-  std::string meaning;  ///< what a value is, in the words of docs/hazard.md
+  std::string meaning;  ///< of a value, in the words of docs/hazard.md
   /// Appends the figures of a place, one per band, of the raster of number `i`.
   std::function<void(const HazardPlace& place, std::size_t i, std::vector<float>& figures)> figures;
   std::string placeholder{};  ///< "<kJ>", "<years>"; empty: a single raster
