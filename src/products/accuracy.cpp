@@ -4,7 +4,7 @@
 #include <unordered_map>
 
 #include "talus/base/scratch.hpp"
-#include "talus/products/maps.hpp"
+#include "talus/products/interval.hpp"
 
 namespace talus {
 

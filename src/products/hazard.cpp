@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "talus/base/expect.hpp"
-#include "talus/products/maps.hpp"
+#include "talus/products/interval.hpp"
 
 namespace talus {
 namespace {

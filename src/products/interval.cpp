@@ -1,7 +1,8 @@
+#include "talus/products/interval.hpp"
+
 #include <boost/math/special_functions/beta.hpp>
 
 #include "talus/base/expect.hpp"
-#include "talus/products/maps.hpp"
 
 namespace talus {
 

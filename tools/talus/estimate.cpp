@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "progress.hpp"
+#include "talus/products/raster_table.hpp"
 #include "talus/simulate/simulate.hpp"
 #include "write_maps.hpp"
 
@@ -13,9 +14,9 @@ using talus::Scenario;
 
 // Measured on the valley and on the region of docs/performance.md.
 constexpr double kBase = 64e6;             // of the process [byte]
-constexpr double kHistogram = 3 * 40.0;    // of a touched cell [byte]
+constexpr double kHistogram = 40.0;        // of a quantity of a touched cell [byte]
 constexpr double kHazardCell = 640.0;      // annual frequencies of a touched cell [byte]: 32 bins, and what holds them
-constexpr double kRasterCell = 3.8;        // of a touched cell in a band of a compressed raster [byte]
+constexpr double kRasterCell = 3.4;        // of a touched cell in a band of a compressed raster [byte]
 constexpr double kHazardFile = 77.0;       // of a touched cell [byte]
 constexpr double kStop = 172.0;            // a row of stops.gpkg [byte]
 constexpr double kPathPoint = 36.0;        // of trajectories.gpkg [byte]
@@ -24,8 +25,8 @@ constexpr double kKeptCell = 320.0;        // of a touched cell in the kept tall
 constexpr double kDraftBand = 16.0 / 3.0;  // of a cell, with overviews [byte]
 constexpr double kDraftBands = 5.0;        // of the largest maps
 constexpr double kLargeMap = 16e6;         // cells; from there on drafts are compressed, and empty cells take nothing
-constexpr double kEmptyCell = 2.1e-8;      // of the grid, per band, to write [s]
-constexpr double kTouchedCell = 1.8e-7;    // the same of a touched cell
+constexpr double kEmptyCell = 1.9e-8;      // of the grid, per band, to write [s]
+constexpr double kTouchedCell = 1.6e-7;    // the same of a touched cell
 constexpr double kWriteTrajectory = 5e-6;  // a row of stops.gpkg [s]
 constexpr double kWriteFiles = 0.6;        // to make all of them [s]
 
@@ -34,13 +35,16 @@ double thresholds(const Scenario& scenario) {
 }
 
 double bands(const Scenario& scenario) {
-  return 20.0 + thresholds(scenario);
+  const talus::RunCounts run = talus::counts_of(scenario);
+  std::size_t sum = 0;
+  for (const talus::RunRaster& raster : talus::run_rasters()) sum += bands_of(raster, run).size();
+  return static_cast<double>(sum);
 }
 
 }  // namespace
 
 double bytes_in_memory(const Scenario& scenario, const RunSize& size) {
-  const double cell = sizeof(talus::CellRecord) + kHistogram + 16.0 + 4.0 * thresholds(scenario) +
+  const double cell = sizeof(talus::CellRecord) + talus::kQuantities * kHistogram + 16.0 + 4.0 * thresholds(scenario) +
                       (size.with_hazard ? kHazardCell : 0.0);
   return kBase + size.touched_cells * cell;
 }

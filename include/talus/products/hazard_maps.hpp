@@ -6,6 +6,7 @@
 #include "talus/products/hazard.hpp"
 #include "talus/products/hazard_matrix.hpp"
 #include "talus/products/maps.hpp"
+#include "talus/products/raster_table.hpp"
 
 namespace talus {
 
@@ -44,13 +45,13 @@ class HazardSurvey {
   Grid grid_;
   HazardRules rules_;
   HazardMatrix matrix_;
+  std::vector<HazardMap> maps_;  // whose figures a cell has, one after the other
   std::vector<Row> rows_;
   std::vector<float> nothing_;  // figures of a cell that nothing passes
 };
 
-/// annual_frequency; return_period_<kJ> of each energy threshold; intensity_T<years> of each of the matrix's years, all
-/// with lower and upper 95 % bound; hazard_class: class, class at the lower and at the upper bounds, and 1 where those
-/// differ, so that it cannot be told with this many trajectories. The survey must outlive them.
+/// The maps of `hazard_rasters`, of each energy threshold and of each of the matrix's years. The survey must outlive
+/// them.
 ///
 /// NaN: a return period that is infinite, an energy that has no bound, and cells without terrain. What is rarer than
 /// the longest return period of the matrix counts in the class, but never makes one undecided: no number of

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "talus/products/maps.hpp"
+#include "talus/products/interval.hpp"
 
 namespace talus {
 

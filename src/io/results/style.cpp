@@ -1,11 +1,15 @@
 #include "talus/io/results/style.hpp"
 
+#include <cpl_minixml.h>
+#include <cpl_vsi.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <span>
+#include <memory>
+#include <regex>
+#include <stdexcept>
 #include <string_view>
-#include <vector>
 
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
@@ -14,68 +18,40 @@ namespace talus::io {
 namespace {
 
 constexpr std::size_t kColours = 6;
-using Palette = std::array<std::string_view, kColours>;
+using Colours = std::array<const char*, kColours>;
 
 // Six steps of matplotlib's plasma, viridis and cividis (CC0), from light to dark: of even steps in lightness, also for
 // the colour-blind.
-constexpr Palette kPlasma{"#f0f921", "#fca636", "#e16462", "#b12a90", "#6a00a8", "#0d0887"};
-constexpr Palette kViridis{"#fde725", "#7ad151", "#22a884", "#2a788e", "#414487", "#440154"};
-constexpr Palette kPlasmaDark{"#0d0887", "#6a00a8", "#b12a90", "#e16462", "#fca636", "#f0f921"};  // small is grave
+constexpr Colours kPlasma{"#f0f921", "#fca636", "#e16462", "#b12a90", "#6a00a8", "#0d0887"};
+constexpr Colours kPlasmaFromDark{"#0d0887", "#6a00a8", "#b12a90", "#e16462", "#fca636", "#f0f921"};
+constexpr Colours kViridis{"#fde725", "#7ad151", "#22a884", "#2a788e", "#414487", "#440154"};
+constexpr Colours kCividis{"#ffea46", "#cbba69", "#958f78", "#666970", "#31446b", "#00204d"};
 // The classes of the Swiss matrix: yellow and white, yellow, blue, red; further ones, should there be any, darker.
-constexpr Palette kClasses{"#fff9c4", "#ffd600", "#2979ff", "#d50000", "#7f0000", "#3e0000"};
-constexpr Palette kCividis{"#ffea46", "#cbba69", "#958f78", "#666970", "#31446b", "#00204d"};
+constexpr Colours kHazardClasses{"#fff9c4", "#ffd600", "#2979ff", "#d50000", "#7f0000", "#3e0000"};
 
-/// Classes up to each limit, and one above the last.
-struct Legend {
-  std::vector<double> limits;  // in the unit of the file
-  double factor;               // to the unit of the labels
-  std::string unit;            // of the labels; empty for none
-  const Palette* palette;
-  std::string_view band = {};  // shown; the first where empty
-};
-
-Legend legend_of(const Map& map) {
-  const std::string& unit = map.bands.front().unit;
-  if (unit == "1/year") return {{1e-4, 1e-3, 1e-2, 1e-1, 1.0}, 1.0, unit, &kPlasma};
-  if (unit == "years") return {{10, 30, 100, 300, 1000}, 1.0, unit, &kPlasmaDark};
-  if (unit == "class") return {{1, 2, 3, 4, 5}, 1.0, "", &kClasses};
-  if (map.kind == Map::Kind::Probability) return {{1e-4, 1e-3, 1e-2, 1e-1, 1.0}, 100.0, "%", &kPlasma};
-  if (map.kind == Map::Kind::Count) {
-    if (map.name == "sources") return {{1, 3, 10, 30, 100}, 1.0, "", &kCividis};
-    return {{1, 10, 100, 1000, 10000}, 1.0, "", &kCividis};
+const Colours& colours_of(Palette palette) {
+  switch (palette) {
+    case Palette::Plasma:
+      return kPlasma;
+    case Palette::PlasmaFromDark:
+      return kPlasmaFromDark;
+    case Palette::Viridis:
+      return kViridis;
+    case Palette::Cividis:
+      return kCividis;
+    case Palette::HazardClasses:
+      return kHazardClasses;
   }
-  if (unit == "kJ") return {{30, 100, 300, 1000, 3000}, 1.0, unit, &kPlasma, "P95"};
-  if (unit == "m/s") return {{5, 10, 15, 20, 30}, 1.0, unit, &kViridis, "P95"};
-  return {{0.5, 1, 2, 4, 8}, 1.0, unit, &kViridis, "P95"};
+  throw std::logic_error("a palette without colours");
 }
 
-std::size_t band_of(const Map& map, std::string_view name) {
+/// The number of the band that is shown, from 1.
+std::size_t shown_band(const Map& map) {
+  if (map.legend.band.empty()) return 1;
   const auto found =
-      std::find_if(map.bands.begin(), map.bands.end(), [name](const Map::Band& b) { return b.name == name; });
-  return found == map.bands.end() ? 0 : static_cast<std::size_t>(found - map.bands.begin());
-}
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&')
-      result += "&amp;";
-    else if (c == '<')
-      result += "&lt;";
-    else if (c == '>')
-      result += "&gt;";
-    else if (c == '"')
-      result += "&quot;";
-    else
-      result += c;
-  }
-  return result;
-}
-
-std::string item(std::string_view value, std::string_view label, std::string_view colour, int alpha) {
-  std::string line = "          <item value=\"";
-  line.append(value).append("\" label=\"").append(escaped(label)).append("\" color=\"").append(colour);
-  return line.append("\" alpha=\"").append(std::to_string(alpha)).append("\"/>\n");
+      std::ranges::find_if(map.bands, [&map](const Map::Band& band) { return band.name == map.legend.band; });
+  if (found == map.bands.end()) throw std::logic_error(map.name + " has no band " + map.legend.band);
+  return static_cast<std::size_t>(found - map.bands.begin()) + 1;
 }
 
 /// A limit in a label: never with an exponent.
@@ -85,67 +61,103 @@ std::string plain(double value) {
   return {digits.begin(), end};
 }
 
-/// The classes of a legend: an item is a class's upper limit, which belongs to it.
-std::string items_of(const Map& map, const Legend& legend) {
-  if (!map.classes.empty()) {
-    std::string named = item("0", map.classes[0], "#ffffff", 0);
-    for (std::size_t i = 1; i < map.classes.size(); ++i)
-      named += item(std::to_string(i), map.classes[i], (*legend.palette)[std::min(i, kColours) - 1], 255);
-    return named;
-  }
-  const std::string unit = legend.unit.empty() ? "" : " " + legend.unit;
+/// A class of the legend: its upper limit, which belongs to it.
+struct Item {
+  std::string value, label;
+  const char* colour;
+};
+
+std::vector<Item> named_items(const Map& map) {
+  const Colours& colours = colours_of(map.legend.palette);
+  std::vector<Item> items;
+  for (std::size_t i = 1; i < map.classes.size(); ++i)
+    items.push_back({std::to_string(i), map.classes[i], colours[std::min(i, kColours) - 1]});
+  return items;
+}
+
+std::vector<Item> items_by_limit(const Map& map, const std::string& unit) {
+  const Legend& legend = map.legend;
   const bool to_one = map.kind == Map::Kind::Probability;  // nothing is above 100 %
   const std::size_t classes = legend.limits.size() + (to_one ? 0 : 1);
-  std::string items = item("0", "0" + unit, "#ffffff", 0);  // nothing is there: not drawn
+  const Colours& colours = colours_of(legend.palette);
+  std::vector<Item> items;
   std::string below;
-  for (std::size_t i = 0; i < classes; ++i) {
-    const std::string_view colour = (*legend.palette)[i + kColours - classes];
-    if (i == legend.limits.size()) {
-      items += item("inf", "above " + below + unit, colour, 255);
-      break;
-    }
+  for (std::size_t i = 0; i < legend.limits.size(); ++i) {
     const std::string limit = plain(legend.limits[i] * legend.factor);
     const std::string label = below.empty() ? "up to " + limit : below + " to " + limit;
-    items += item(i + 1 == classes ? "inf" : text_of(legend.limits[i]), label + unit, colour, 255);
+    items.push_back(
+        {i + 1 == classes ? "inf" : text_of(legend.limits[i]), label + unit, colours[i + kColours - classes]});
     below = limit;
   }
+  if (!to_one) items.push_back({"inf", "above " + below + unit, colours.back()});
   return items;
+}
+
+/// An element of XML, to which attributes and elements are added.
+class Element {
+ public:
+  explicit Element(CPLXMLNode* node) : node_(node) {}
+
+  Element add(const char* name) const { return Element(CPLCreateXMLNode(node_, CXT_Element, name)); }
+  void add(const char* name, const char* text) const { CPLCreateXMLElementAndValue(node_, name, text); }
+  const Element& set(const char* attribute, const std::string& value) const {
+    CPLAddXMLAttributeAndValue(node_, attribute, value.c_str());
+    return *this;
+  }
+
+ private:
+  CPLXMLNode* node_;
+};
+
+void add_item(const Element& to, const Item& item, int alpha) {
+  to.add("item")
+      .set("value", item.value)
+      .set("label", item.label)
+      .set("color", item.colour)
+      .set("alpha", std::to_string(alpha));
+}
+
+void add_items(const Element& shader, const Map& map) {
+  const std::string unit = map.legend.unit.empty() ? "" : " " + map.legend.unit;
+  const bool named = !map.classes.empty();
+  add_item(shader, {"0", named ? map.classes[0] : "0" + unit, "#ffffff"}, 0);  // nothing is there: not drawn
+  for (const Item& item : named ? named_items(map) : items_by_limit(map, unit)) add_item(shader, item, 255);
+}
+
+void add_renderer(const Element& pipe, const Map& map) {
+  const std::string maximum = text_of(map.legend.limits.back());
+  const Element renderer = pipe.add("rasterrenderer");
+  renderer.set("type", "singlebandpseudocolor").set("band", std::to_string(shown_band(map))).set("opacity", "0.8");
+  renderer.set("alphaBand", "-1").set("nodataColor", "").set("classificationMin", "0");
+  renderer.set("classificationMax", maximum).add("rasterTransparency");
+  const Element origin = renderer.add("minMaxOrigin");
+  origin.add("limits", "None");
+  origin.add("extent", "WholeRaster");
+  origin.add("statAccuracy", "Estimated");
+  const Element shader = renderer.add("rastershader").add("colorrampshader");
+  shader.set("colorRampType", "DISCRETE").set("classificationMode", "1").set("clip", "0").set("minimumValue", "0");
+  shader.set("maximumValue", maximum);
+  add_items(shader, map);
 }
 
 }  // namespace
 
 std::string style_of(const Map& map) {
-  const Legend legend = legend_of(map);
-  const std::string band = std::to_string(band_of(map, legend.band) + 1);
-  const std::string maximum = text_of(legend.limits.back());
-  return "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n"
-         "<qgis version=\"3.22.0\" styleCategories=\"Symbology\">\n"
-         "  <pipe>\n"
-         "    <rasterrenderer type=\"singlebandpseudocolor\" band=\"" +
-         band +
-         "\" opacity=\"0.8\" alphaBand=\"-1\" "
-         "nodataColor=\"\" classificationMin=\"0\" classificationMax=\"" +
-         maximum +
-         "\">\n"
-         "      <rasterTransparency/>\n"
-         "      <minMaxOrigin>\n"
-         "        <limits>None</limits>\n"
-         "        <extent>WholeRaster</extent>\n"
-         "        <statAccuracy>Estimated</statAccuracy>\n"
-         "      </minMaxOrigin>\n"
-         "      <rastershader>\n"
-         "        <colorrampshader colorRampType=\"DISCRETE\" classificationMode=\"1\" clip=\"0\" minimumValue=\"0\" "
-         "maximumValue=\"" +
-         maximum + "\">\n" + items_of(map, legend) +
-         "        </colorrampshader>\n"
-         "      </rastershader>\n"
-         "    </rasterrenderer>\n"
-         "    <brightnesscontrast brightness=\"0\" contrast=\"0\"/>\n"
-         "    <huesaturation saturation=\"0\" grayscaleMode=\"0\" colorizeOn=\"0\"/>\n"
-         "    <rasterresampler maxOversampling=\"2\"/>\n"
-         "  </pipe>\n"
-         "  <blendMode>0</blendMode>\n"
-         "</qgis>\n";
+  if (map.legend.limits.empty()) throw std::logic_error(map.name + " has no legend");
+  const std::unique_ptr<CPLXMLNode, decltype(&CPLDestroyXMLNode)> type(
+      CPLCreateXMLNode(nullptr, CXT_Literal, "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>"),
+      CPLDestroyXMLNode);
+  CPLXMLNode* const root = CPLCreateXMLNode(nullptr, CXT_Element, "qgis");
+  CPLAddXMLSibling(type.get(), root);
+  const Element qgis(root);
+  const Element pipe = qgis.set("version", "3.22.0").set("styleCategories", "Symbology").add("pipe");
+  add_renderer(pipe, map);
+  pipe.add("brightnesscontrast").set("brightness", "0").set("contrast", "0");
+  pipe.add("huesaturation").set("saturation", "0").set("grayscaleMode", "0").set("colorizeOn", "0");
+  pipe.add("rasterresampler").set("maxOversampling", "2");
+  qgis.add("blendMode", "0");
+  const std::unique_ptr<char, decltype(&VSIFree)> text(CPLSerializeXMLTree(type.get()), VSIFree);
+  return std::regex_replace(text.get(), std::regex(" />"), "/>");  // the bytes of the styles there are
 }
 
 void write_style(const std::filesystem::path& folder, const Map& map) {

@@ -1,13 +1,48 @@
+#include "talus/simulate/tally/cell_record.hpp"
+
 #include <algorithm>
 
 #include "talus/base/expect.hpp"
-#include "talus/simulate/tally/tally.hpp"
 
 namespace talus {
+namespace {
 
-double CellRecord::mean(Quantity q) const {
-  const auto i = static_cast<std::size_t>(q);
-  return passages == 0 ? 0.0 : static_cast<double>(sum[i]) * kFixedPoint[i] / passages;
+std::int64_t fixed_point(float value, double units) {
+  return static_cast<std::int64_t>(static_cast<double>(value) * units + 0.5);
+}
+
+}  // namespace
+
+void CellValues::make_room(std::size_t n) {
+  if (keep_stakes && stakes.size() < n) stakes.resize(n);
+  if (lists.front().size() < n)
+    for (std::vector<float>& list : lists) list.resize(n);
+}
+
+double CellRecord::mean(Quantity quantity) const {
+  const double unit = kQuantityTable[index_of(quantity)].fixed_point;
+  return passages == 0 ? 0.0 : static_cast<double>(sum[quantity]) * unit / passages;
+}
+
+PerQuantity<float> CellRecord::add(const CellValues& values) {
+  passages += static_cast<std::uint32_t>(values.count);
+  PerQuantity<float> largest{};
+  for_each_quantity([&](auto q) {
+    constexpr double kUnits = 1.0 / kQuantityTable[q].fixed_point;
+    const float* const list = values.lists[q].data();
+    std::int64_t added = 0;
+    float most = 0.0F;
+#pragma omp simd reduction(+ : added) reduction(max : most)
+    for (std::size_t i = 0; i < values.count; ++i) {
+      added += fixed_point(list[i], kUnits);
+      most = std::max(most, list[i]);
+    }
+    sum[q] += added;
+    largest[q] = most;
+    maximum[q] = std::max(maximum[q], most);
+    histogram[q].add({list, values.count});
+  });
+  return largest;
 }
 
 void CellRecord::merge(const CellRecord& other) {
@@ -40,8 +75,8 @@ CellRecord CellRecord::restored(ByteReader& in) {
   record.passages = in.get<std::uint32_t>();
   record.deposits = in.get<std::uint32_t>();
   record.sources = in.get<std::uint32_t>();
-  record.maximum = in.get<std::array<float, kQuantities>>();
-  record.sum = in.get<std::array<std::int64_t, kQuantities>>();
+  record.maximum = in.get<PerQuantity<float>>();
+  record.sum = in.get<PerQuantity<std::int64_t>>();
   for (LogHistogram& h : record.histogram) h = LogHistogram::restored(in);
   return record;
 }

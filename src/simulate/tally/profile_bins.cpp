@@ -9,10 +9,7 @@
 namespace talus {
 namespace {
 
-/// The largest values of one trajectory in one bin.
-struct Record {
-  float speed_squared = -1.0F, height = 0.0F;  // below 0: it was not there
-};
+constexpr Maxima kNotThere{-1.0F, 0.0F};
 
 }  // namespace
 
@@ -44,20 +41,20 @@ ProfileBins::ProfileBins(int columns, double step, double width)
 }
 
 void ProfileBins::add(const Path& path, double mass) {
-  std::vector<Record> records(values_.size());
+  std::vector<Maxima> records(values_.size(), kNotThere);
   for (const Span& span : path.spans) {  // within one column, so within one bin
     TALUS_EXPECT(static_cast<std::size_t>(span.patch.column / columns_per_bin_) < records.size(),
                  "a path stays on its profile");
-    Record& record = records[static_cast<std::size_t>(span.patch.column / columns_per_bin_)];
+    Maxima& record = records[static_cast<std::size_t>(span.patch.column / columns_per_bin_)];
     raise(record, span, {0.0F, span.height_from, span.rise_from}, {1.0F, span.height_to, span.rise_to});
   }
   const std::lock_guard guard(mutex_);
   for (std::size_t i = 0; i < records.size(); ++i) {
-    const float v2 = records[i].speed_squared;
-    if (v2 < 0.0F) continue;
-    values_[i].speed.push_back(std::sqrt(v2));
-    values_[i].energy.push_back(static_cast<float>(0.5e-3 * mass * v2));
-    values_[i].height.push_back(records[i].height);
+    if (records[i].speed_squared < 0.0F) continue;
+    const auto value = [&](Quantity q) { return kQuantityTable[index_of(q)].value(records[i], mass); };
+    values_[i].speed.push_back(value(Quantity::Speed));
+    values_[i].energy.push_back(value(Quantity::Energy));
+    values_[i].height.push_back(value(Quantity::Height));
   }
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "talus/physics/path.hpp"
+#include "talus/simulate/tally/quantities.hpp"
 
 namespace talus {
 
@@ -15,17 +16,15 @@ inline Moment moment_of(const Span& span, float share) {
           span.rise_from + (span.rise_to - span.rise_from) * share};
 }
 
-/// Raises the maxima of a record (speed_squared, height) to those of a part of a span: the speed is largest at an end,
-/// the height at an end or, where it rises from the first and falls to the second, at the apex between.
-template <class Record>
-void raise(Record& record, const Span& span, const Moment& from, const Moment& to) {
+/// Raises maxima to those of a part of a span: the speed is largest at an end, the height at an end or, where it rises
+/// from the first and falls to the second, at the apex between.
+inline void raise(Maxima& maxima, const Span& span, const Moment& from, const Moment& to) {
   const float rise_squared = std::max(from.rise * from.rise, to.rise * to.rise);
   const float slope = span.height_to - span.height_from - span.bend;  // dh/ds = slope + 2 bend s
   const bool apex = slope + 2.0F * span.bend * from.share > 0.0F && slope + 2.0F * span.bend * to.share < 0.0F;
   const float top = span.height_from - 0.25F * slope * slope / span.bend;  // of no use where there is no apex
   const float highest = apex ? top : std::max(from.height, to.height);
-  record.speed_squared = std::max(record.speed_squared, span.plan_speed_squared + rise_squared);
-  record.height = std::max(record.height, highest);
+  maxima.raise({span.plan_speed_squared + rise_squared, highest});
 }
 
 }  // namespace talus

@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "tally_region.hpp"
 #include "talus/base/expect.hpp"
 
 namespace talus {
 namespace {
-
-std::int64_t fixed_point(float value, double units) {
-  return static_cast<std::int64_t>(static_cast<double>(value) * units + 0.5);
-}
 
 /// The largest float at or below each: a float exceeds a threshold just where it exceeds that.
 std::vector<float> floats_below(const std::vector<double>& thresholds) {
@@ -21,6 +18,12 @@ std::vector<float> floats_below(const std::vector<double>& thresholds) {
     const auto nearest = static_cast<float>(threshold);
     limits.push_back(nearest > threshold ? std::nextafter(nearest, -std::numeric_limits<float>::infinity()) : nearest);
   }
+  return limits;
+}
+
+PerQuantity<std::vector<float>> floats_below(const Thresholds& thresholds) {
+  PerQuantity<std::vector<float>> limits;
+  for (std::size_t q = 0; q < kQuantities; ++q) limits[q] = floats_below(thresholds[q]);
   return limits;
 }
 
@@ -87,8 +90,26 @@ bool of_one_block(const VisitBatch& batch, std::uint16_t first, std::uint16_t se
   return std::all_of(&all[first] + 1, &all[second] + 1, [](const VisitBatch::Trajectory& t) { return t.piece; });
 }
 
+/// The visits of one trajectory to a cell, made one.
+struct Passage {
+  Maxima largest;
+  std::uint32_t deposits = 0;
+};
+
+/// Takes the visits of the next trajectory from `visit` on; their impacts go to the record.
+Passage next_passage(const Visit*& visit, const Visit* end, CellRecord& record) {
+  const std::uint16_t trajectory = visit->trajectory;
+  Passage passage;
+  for (; visit != end && visit->trajectory == trajectory; ++visit) {
+    passage.largest.raise(*visit);
+    record.impacts += visit->impacts;
+    passage.deposits += visit->deposited;
+  }
+  return passage;
+}
+
 /// Makes one value of each trajectory's visits, its largest, and adds the counts of the group to the record.
-void gather(const Group& group, const VisitBatch& batch, Tally::Values& values, CellRecord& record, ReachOf& reach) {
+void gather(const Group& group, const VisitBatch& batch, CellValues& values, CellRecord& record, ReachOf& reach) {
   values.make_room(static_cast<std::size_t>(group.end - group.begin));
   std::size_t n = 0;
   std::uint32_t source = 0;
@@ -96,35 +117,27 @@ void gather(const Group& group, const VisitBatch& batch, Tally::Values& values, 
   bool rests = false;          // it, or a piece of it, has come to rest here
   for (const Visit* visit = group.begin; visit != group.end;) {
     const std::uint16_t trajectory = visit->trajectory;
-    float speed_squared = 0.0F, height = 0.0F;
-    std::uint32_t deposits = 0;
-    for (; visit != group.end && visit->trajectory == trajectory; ++visit) {
-      speed_squared = std::max(speed_squared, visit->speed_squared);
-      height = std::max(height, visit->height);
-      record.impacts += visit->impacts;
-      deposits += visit->deposited;
-    }
+    const Passage passage = next_passage(visit, group.end, record);
     const VisitBatch::Trajectory& of = batch.trajectories()[trajectory];
-    const auto energy = static_cast<float>(0.5e-3 * of.mass * speed_squared);
     if (of.piece && n > 0 && of_one_block(batch, previous, trajectory)) {  // one value of all that a block became
-      record.deposits += rests ? 0U : deposits;
-      rests = rests || deposits > 0;
-      values.lists[0][n - 1] = std::max(values.lists[0][n - 1], energy);
-      values.lists[1][n - 1] = std::max(values.lists[1][n - 1], std::sqrt(speed_squared));
-      values.lists[2][n - 1] = std::max(values.lists[2][n - 1], height);
+      record.deposits += rests ? 0U : passage.deposits;
+      rests = rests || passage.deposits > 0;
+      for_each_quantity([&](auto q) {
+        float& value = values.lists[q][n - 1];
+        value = std::max(value, kQuantityTable[q].value(passage.largest, of.mass));
+      });
       continue;
     }
     previous = trajectory;
-    record.deposits += deposits;
-    rests = deposits > 0;
+    record.deposits += passage.deposits;
+    rests = passage.deposits > 0;
     if (n == 0 || of.source != source) {
       source = of.source;
       record.sources += reach.first(trajectory, group.begin->cell) ? 1U : 0U;
     }
     if (values.keep_stakes) values.stakes[n] = of.stake;
-    values.lists[0][n] = energy;
-    values.lists[1][n] = std::sqrt(speed_squared);
-    values.lists[2][n++] = height;
+    for_each_quantity([&](auto q) { values.lists[q][n] = kQuantityTable[q].value(passage.largest, of.mass); });
+    ++n;
   }
   TALUS_EXPECT(n > 0, "a group of visits has a value");
   values.count = n;
@@ -134,17 +147,18 @@ void gather(const Group& group, const VisitBatch& batch, Tally::Values& values, 
 
 Tally::Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vector<double> height_thresholds)
     : grid_(grid),
-      energy_thresholds_(std::move(energy_thresholds)),
-      height_thresholds_(std::move(height_thresholds)),
-      energy_limits_(floats_below(energy_thresholds_)),
-      height_limits_(floats_below(height_thresholds_)),
+      thresholds_(thresholds_of(std::move(energy_thresholds), std::move(height_thresholds))),
+      limits_(floats_below(thresholds_)),
+      threshold_count_(std::accumulate(thresholds_.begin(), thresholds_.end(), std::size_t{0},
+                                       [](std::size_t sum, const auto& of) { return sum + of.size(); })),
       regions_across_((grid.columns + kRegionSide - 1) / kRegionSide),
       region_count_(static_cast<std::size_t>(regions_across_) *
                     static_cast<std::size_t>((grid.rows + kRegionSide - 1) / kRegionSide)),
       regions_(std::make_unique<Region[]>(region_count_)) {}
 
 void Tally::keep_hazard(AnnualWeights weights) {
-  hazard_ = std::make_unique<Hazard>(Hazard{{EnergyBins(energy_thresholds_), weights.scale()}, std::move(weights)});
+  hazard_ = std::make_unique<Hazard>(
+      Hazard{{EnergyBins(thresholds_[Quantity::Energy]), weights.scale()}, std::move(weights)});
 }
 
 void Tally::set_rounds(std::uint32_t rounds) {
@@ -187,12 +201,12 @@ std::uint64_t Tally::score(std::size_t index, const std::vector<Visit>& visits, 
   for (std::size_t i = 0; i < sorted.size();) {
     const std::size_t first = i, cell = sorted[i].cell;
     while (i < sorted.size() && sorted[i].cell == cell) ++i;
-    groups.push_back({&sorted[first], &sorted[first] + (i - first), region.record_of(cell, thresholds())});
+    groups.push_back({&sorted[first], &sorted[first] + (i - first), region.record_of(cell, threshold_count_)});
   }
   TALUS_EXPECT(region.records.size() <= kRegionCells, "a cell has one record");
   std::uint64_t scored = 0;
   ReachOf reach(batch, index);
-  Values values;
+  CellValues values;
   values.keep_stakes = hazard_ != nullptr;
   if (hazard_) region.hazards.resize(region.records.size());
   for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -201,37 +215,21 @@ std::uint64_t Tally::score(std::size_t index, const std::vector<Visit>& visits, 
       for (const LogHistogram& h : region.records[groups[i + 8].record].histogram) fetch(h.counts(), 128);
     CellRecord& record = region.records[groups[i].record];
     gather(groups[i], batch, values, record, reach);
-    add(record, region.exceedances.data() + groups[i].record * thresholds(), values);
-    if (hazard_) region.hazards[groups[i].record].add(hazard_->rules, values.of(0), values.stakes);
+    const PerQuantity<float> largest = record.add(values);
+    count_exceedances(region.exceedances.data() + groups[i].record * threshold_count_, values, largest);
+    if (hazard_) region.hazards[groups[i].record].add(hazard_->rules, values.of(Quantity::Energy), values.stakes);
     scored += values.count;
   }
   return scored;
 }
 
-void Tally::add(CellRecord& record, std::uint32_t* over, const Values& values) const {
-  record.passages += static_cast<std::uint32_t>(values.count);
-  std::array<float, kQuantities> largest{};
+void Tally::count_exceedances(std::uint32_t* over, const CellValues& values, const PerQuantity<float>& largest) const {
   for (std::size_t q = 0; q < kQuantities; ++q) {
-    std::int64_t sum = 0;
-    float most = 0.0F;
-#pragma omp simd reduction(+ : sum) reduction(max : most)
-    for (std::size_t i = 0; i < values.count; ++i) {
-      sum += fixed_point(values.lists[q][i], 1.0 / kFixedPoint[q]);
-      most = std::max(most, values.lists[q][i]);
-    }
-    record.sum[q] += sum;
-    largest[q] = most;
-    record.maximum[q] = std::max(record.maximum[q], largest[q]);
-    record.histogram[q].add(values.of(q));
-  }
-  const auto count_over = [&](const std::vector<float>& limits, Quantity of) {
-    const auto q = static_cast<std::size_t>(of);
+    const std::vector<float>& limits = limits_[q];
     for (std::size_t i = 0; i < limits.size() && largest[q] > limits[i]; ++i)  // ascending: the rest is not exceeded
-      over[i] += exceeding(values.of(q), limits[i]);
+      over[i] += exceeding({values.lists[q].data(), values.count}, limits[i]);
     over += limits.size();
-  };
-  count_over(energy_limits_, Quantity::Energy);
-  count_over(height_limits_, Quantity::Height);
+  }
 }
 
 const Tally::Region& Tally::region_of(int column, int row) const {
@@ -255,7 +253,57 @@ const HazardCell* Tally::hazard(int column, int row) const {
 
 const std::uint32_t* Tally::exceedances(int column, int row) const {
   const Region& region = region_of(column, row);
-  return region.exceedances.data() + (region.slot[cell_in_region(column, row)] - 1U) * thresholds();
+  return region.exceedances.data() + (region.slot[cell_in_region(column, row)] - 1U) * threshold_count_;
+}
+
+void Tally::save(std::size_t index, ByteWriter& out) const {
+  scratch::keep_below_limit();
+  const Region& region = regions_[index];
+  if (region.slot.empty()) return;
+  for (std::size_t cell = 0; cell < kRegionCells; ++cell) {
+    const std::uint16_t slot = region.slot[cell];
+    if (slot == 0) continue;
+    const std::size_t record = slot - 1U;
+    out.put(static_cast<std::uint16_t>(cell));
+    region.records[record].save(out);
+    for (std::size_t i = 0; i < threshold_count_; ++i) out.put(region.exceedances[record * threshold_count_ + i]);
+    if (hazard_) region.hazards[record].save(out);
+  }
+}
+
+void Tally::take(std::size_t index, ByteWriter& out) {
+  save(index, out);
+  Region& region = regions_[index];
+  region.slot = {}, region.exceedances = {};
+  region.records.clear(), region.hazards.clear();
+}
+
+void Tally::merge(std::size_t index, ByteReader& in) {
+  scratch::keep_below_limit();
+  Region& region = regions_[index];
+  while (!in.empty()) {
+    const auto cell = in.get<std::uint16_t>();
+    if (cell >= kRegionCells) throw std::out_of_range("a cell of the tally");
+    const std::size_t record = region.record_of(cell, threshold_count_);
+    region.records[record].merge(CellRecord::restored(in));
+    for (std::size_t i = 0; i < threshold_count_; ++i)
+      region.exceedances[record * threshold_count_ + i] += in.get<std::uint32_t>();
+    if (!hazard_) continue;
+    region.hazards.resize(region.records.size());
+    region.hazards[record].merge(HazardCell::restored(in));
+  }
+}
+
+std::vector<std::uint64_t> Tally::cells_by_passages(std::uint32_t most) const {
+  std::vector<std::uint64_t> cells(most + 1U);
+  for (std::size_t i = 0; i < region_count_; ++i)
+    for (const CellRecord& record : regions_[i].records) ++cells[std::min(record.passages, most)];
+  return cells;
+}
+
+std::uint64_t Tally::touched_cells() const {
+  return std::accumulate(&regions_[0], &regions_[0] + region_count_, std::uint64_t{0},
+                         [](std::uint64_t sum, const Region& region) { return sum + region.records.size(); });
 }
 
 }  // namespace talus

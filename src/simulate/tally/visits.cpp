@@ -87,7 +87,7 @@ Visit& VisitBatch::new_visit(int column, int row) {
     region_ = &regions_[index];
   }
   const auto cell = static_cast<std::uint16_t>(row % kRegionSide * kRegionSide + column % kRegionSide);
-  region_->push_back({cell, static_cast<std::uint16_t>(trajectories_.size() - 1), 0.0F, 0.0F, 0, 0});
+  region_->push_back({{}, cell, static_cast<std::uint16_t>(trajectories_.size() - 1), 0, 0});
   ++size_;
   return region_->back();
 }

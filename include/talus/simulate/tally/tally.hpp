@@ -1,37 +1,15 @@
 #pragma once
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <vector>
 
+#include "talus/simulate/tally/cell_record.hpp"
 #include "talus/simulate/tally/hazard_tally.hpp"
-#include "talus/simulate/tally/histogram.hpp"
 #include "talus/simulate/tally/source_reach.hpp"
 #include "talus/simulate/tally/visits.hpp"
 
 namespace talus {
-
-/// The three quantities that are kept per cell: of each trajectory its largest value in the cell.
-enum class Quantity { Energy, Speed, Height };  // translational kinetic [kJ], [m/s], vertical above the terrain [m]
-inline constexpr int kQuantities = 3;
-
-/// What is known of one cell. Only integer sums, maxima and histograms: equal bits in any order of the trajectories.
-struct CellRecord {
-  std::uint64_t impacts = 0;
-  std::uint32_t passages = 0, deposits = 0, sources = 0;
-  std::array<float, kQuantities> maximum{};
-  std::array<std::int64_t, kQuantities> sum{};  ///< fixed point, in units of kFixedPoint
-  std::array<LogHistogram, kQuantities> histogram;
-
-  double mean(Quantity q) const;
-  void merge(const CellRecord& other);
-  void save(ByteWriter& out) const;
-  static CellRecord restored(ByteReader& in);
-};
-
-/// Units of the sums: 2^-10 kJ, 2^-16 m/s, 2^-16 m.
-inline constexpr std::array<double, kQuantities> kFixedPoint{0x1p-10, 0x1p-16, 0x1p-16};
 
 /// Sums over trajectories, per cell, in memory bounded by the cells that any trajectory touched.
 ///
@@ -39,21 +17,6 @@ inline constexpr std::array<double, kQuantities> kFixedPoint{0x1p-10, 0x1p-16, 0
 /// when its cell is. Workers share the one tally: each locks the region it scores.
 class Tally {
  public:
-  /// By quantity: one value of each trajectory. A buffer that keeps its memory.
-  struct Values {
-    std::array<std::vector<float>, kQuantities> lists;
-    std::vector<Stake> stakes;  // of each value, where `keep_stakes`
-    bool keep_stakes = false;
-    std::size_t count = 0;
-
-    void make_room(std::size_t n) {
-      if (keep_stakes && stakes.size() < n) stakes.resize(n);
-      if (lists[0].size() < n)
-        for (std::vector<float>& list : lists) list.resize(n);
-    }
-    std::span<const float> of(std::size_t quantity) const { return {lists[quantity].data(), count}; }
-  };
-
   Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vector<double> height_thresholds);
   ~Tally();
   Tally(Tally&&) noexcept;
@@ -73,13 +36,12 @@ class Tally {
   std::uint64_t add(const VisitBatch& batch);
 
   const Grid& grid() const { return grid_; }
-  const std::vector<double>& energy_thresholds() const { return energy_thresholds_; }
-  const std::vector<double>& height_thresholds() const { return height_thresholds_; }
+  const Thresholds& thresholds() const { return thresholds_; }
 
   /// The record of a cell; nullptr where no trajectory was.
   const CellRecord* find(int column, int row) const;
-  /// Trajectories whose largest value in the cell exceeds each threshold: energies first, then heights. For cells that
-  /// `find` finds.
+  /// Trajectories whose largest value in the cell exceeds each threshold, quantity by quantity. For cells that `find`
+  /// finds.
   const std::uint32_t* exceedances(int column, int row) const;
   std::uint64_t touched_cells() const;
   /// How many cells have so many trajectories; 0, 1, 2, ... up to `most`, and there all with more.
@@ -103,13 +65,13 @@ class Tally {
   };
 
   const Region& region_of(int column, int row) const;
-  std::size_t thresholds() const { return energy_thresholds_.size() + height_thresholds_.size(); }
   std::uint64_t score(std::size_t index, const std::vector<Visit>& visits, const VisitBatch& batch);
-  void add(CellRecord& record, std::uint32_t* over, const Values& values) const;
+  void count_exceedances(std::uint32_t* over, const CellValues& values, const PerQuantity<float>& largest) const;
 
   Grid grid_;
-  std::vector<double> energy_thresholds_, height_thresholds_;
-  std::vector<float> energy_limits_, height_limits_;  // the same for values, which are floats
+  Thresholds thresholds_;
+  PerQuantity<std::vector<float>> limits_;  // the same for values, which are floats
+  std::size_t threshold_count_;             // of all quantities
   int regions_across_ = 0;
   std::size_t region_count_ = 0;
   std::unique_ptr<Hazard> hazard_;  // null: none is kept

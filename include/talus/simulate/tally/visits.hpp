@@ -7,17 +7,16 @@
 
 #include "talus/physics/path.hpp"
 #include "talus/simulate/scenario/frequency.hpp"
+#include "talus/simulate/tally/quantities.hpp"
 #include "talus/simulate/tally/source_reach.hpp"
 
 namespace talus {
 
 /// A trajectory on its way through a cell: the largest values on that way. A trajectory that comes back has several
 /// visits to a cell; they are made one when they are scored.
-struct Visit {
+struct Visit : Maxima {
   std::uint16_t cell;        ///< within its region: row * kRegionSide + column
   std::uint16_t trajectory;  ///< within its batch
-  float speed_squared;       ///< [m^2/s^2]
-  float height;              ///< vertical, above the terrain [m]
   std::uint32_t impacts : 31;
   std::uint32_t deposited : 1;
 };

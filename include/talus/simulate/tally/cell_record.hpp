@@ -1,0 +1,40 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "talus/simulate/scenario/frequency.hpp"
+#include "talus/simulate/tally/histogram.hpp"
+#include "talus/simulate/tally/quantities.hpp"
+
+namespace talus {
+
+/// The values of the trajectories that cross a cell: one of each trajectory and quantity. A buffer that keeps its
+/// memory.
+struct CellValues {
+  PerQuantity<std::vector<float>> lists;
+  std::vector<Stake> stakes;  ///< of each trajectory, where `keep_stakes`
+  bool keep_stakes = false;
+  std::size_t count = 0;
+
+  void make_room(std::size_t n);
+  std::span<const float> of(Quantity quantity) const { return {lists[quantity].data(), count}; }
+};
+
+/// What is known of one cell. Only integer sums, maxima and histograms: equal bits in any order of the trajectories.
+struct CellRecord {
+  std::uint64_t impacts = 0;
+  std::uint32_t passages = 0, deposits = 0, sources = 0;
+  PerQuantity<float> maximum{};
+  PerQuantity<std::int64_t> sum{};  ///< fixed point, in units of the table
+  PerQuantity<LogHistogram> histogram;
+
+  double mean(Quantity quantity) const;
+  /// Adds trajectories. Returns the largest value of each quantity among them.
+  PerQuantity<float> add(const CellValues& values);
+  void merge(const CellRecord& other);
+  void save(ByteWriter& out) const;
+  static CellRecord restored(ByteReader& in);
+};
+
+}  // namespace talus

@@ -1,0 +1,265 @@
+#include "talus/products/raster_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <unordered_map>
+
+#include "talus/base/text.hpp"
+#include "talus/products/interval.hpp"
+
+namespace talus {
+namespace {
+
+using Kind = Map::Kind;
+
+Legend percent_legend() {
+  return {{1e-4, 1e-3, 1e-2, 1e-1, 1.0}, 100.0, "%", Palette::Plasma};
+}
+
+Legend energy_legend(const std::string& band) {
+  return {{30, 100, 300, 1000, 3000}, 1.0, "kJ", Palette::Plasma, band};
+}
+
+Legend count_legend() {
+  return {{1, 10, 100, 1000, 10000}, 1.0, "", Palette::Cividis};
+}
+
+std::vector<Map::Band> bounded_bands(const std::string& name, const std::string& unit) {
+  return {{name, unit}, {"lower 95 % bound", unit}, {"upper 95 % bound", unit}};
+}
+
+CellRule impact_probability(const RunCounts& run) {
+  const std::uint64_t released = run.released;
+  auto known = std::make_shared<std::unordered_map<std::uint32_t, Interval>>();  // many cells have the same count
+  return [released, known](const TouchedCell& cell, std::span<double> values) {
+    const std::uint32_t passages = cell.record.passages;
+    const auto [it, fresh] = known->try_emplace(passages);
+    if (fresh) it->second = probability_bounds(passages, released, 0.95);
+    values[0] = static_cast<double>(passages) / static_cast<double>(released);
+    values[1] = it->second.low;
+    values[2] = it->second.high;
+  };
+}
+
+/// Where nothing crosses the upper bound is that of no hit in all trials.
+std::vector<double> no_impact(const RunCounts& run) {
+  return {0.0, 0.0, probability_bounds(0, run.released, 0.95).high};
+}
+
+CellRule reach_probability(const RunCounts& run) {
+  return [per_source = run.per_source](const TouchedCell& cell, std::span<double> values) {
+    values[0] = cell.record.passages / (cell.record.sources * per_source);
+  };
+}
+
+/// A raster of the share of trajectories that exceed each threshold of a quantity.
+RunRaster exceedance(Quantity quantity, const std::string& name, const std::string& what, const std::string& symbol) {
+  const auto rule = [quantity](const RunCounts& run) -> CellRule {
+    std::size_t first = 0;
+    for (std::size_t q = 0; q < index_of(quantity); ++q) first += run.thresholds[q].size();
+    return [first, released = static_cast<double>(run.released)](const TouchedCell& cell, std::span<double> values) {
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] = cell.exceedances[first + i] / released;
+    };
+  };
+  return {{name,
+           "Fraction of all released trajectories whose " + what + " in the cell exceeds the threshold",
+           Kind::Probability,
+           {},
+           percent_legend()},
+          "share of N whose " + what + " exceeds the threshold",
+          rule,
+          {},
+          quantity,
+          symbol};
+}
+
+/// A raster of the distribution of a quantity over the trajectories.
+RunRaster distribution(Quantity quantity, const std::string& meaning, Legend legend) {
+  const QuantityEntry& entry = kQuantityTable[index_of(quantity)];
+  const std::string unit(entry.unit);
+  const auto rule = [quantity](const RunCounts&) -> CellRule {
+    return [quantity](const TouchedCell& cell, std::span<double> values) {
+      const double maximum = cell.record.maximum[quantity];
+      const LogHistogram& histogram = cell.record.histogram[quantity];
+      values[0] = std::min(maximum, cell.record.mean(quantity));
+      values[1] = std::min(maximum, histogram.percentile(0.50));
+      values[2] = std::min(maximum, histogram.percentile(0.95));
+      values[3] = std::min(maximum, histogram.percentile(0.99));
+      values[4] = maximum;
+    };
+  };
+  return {{std::string(entry.name),
+           std::string(entry.title),
+           Kind::Quantity,
+           {{"mean", unit}, {"P50", unit}, {"P95", unit}, {"P99", unit}, {"maximum", unit}},
+           std::move(legend)},
+          meaning,
+          rule};
+}
+
+/// A raster of a whole number of the record.
+template <class Count>
+RunRaster count(const std::string& name, const std::string& title, const std::string& meaning, Legend legend,
+                Count CellRecord::*member) {
+  const auto rule = [member](const RunCounts&) -> CellRule {
+    return [member](const TouchedCell& cell, std::span<double> values) {
+      values[0] = static_cast<double>(cell.record.*member);
+    };
+  };
+  return {{name, title, Kind::Count, {{name, "count"}}, std::move(legend)}, meaning, rule};
+}
+
+std::vector<RunRaster> make_run_rasters() {
+  return {
+      {{"impact_probability", "Fraction of all released trajectories whose path crosses the cell", Kind::Probability,
+        bounded_bands("probability", "1"), percent_legend()},
+       "share of N whose path crosses the cell",
+       impact_probability,
+       no_impact},
+      {{"reach_probability",
+        "Fraction of the trajectories of those source cells of which at least one trajectory reaches the cell",
+        Kind::Probability,
+        {{"reach probability", "1"}},
+        percent_legend()},
+       "share of the trajectories of the source cells of which at least one trajectory reaches the cell",
+       reach_probability},
+      exceedance(Quantity::Energy, "energy_exceedance", "translational kinetic energy", "E"),
+      exceedance(Quantity::Height, "height_exceedance", "height above the terrain", "h"),
+      distribution(Quantity::Energy, "translational", energy_legend("P95")),
+      distribution(Quantity::Speed, "in space", {{5, 10, 15, 20, 30}, 1.0, "m/s", Palette::Viridis, "P95"}),
+      distribution(Quantity::Height, "vertical, terrain to centre; 0 while sliding",
+                   {{0.5, 1, 2, 4, 8}, 1.0, "m", Palette::Viridis, "P95"}),
+      count("passages", "Trajectories that cross the cell", "trajectories that cross the cell", count_legend(),
+            &CellRecord::passages),
+      count("impacts", "Impacts in the cell", "impacts in the cell, all bounces of all trajectories", count_legend(),
+            &CellRecord::impacts),
+      count("deposits", "Trajectories that stop in the cell, or are caught there",
+            "trajectories that stop in the cell, or are caught there", count_legend(), &CellRecord::deposits),
+      count("sources", "Source cells that reach the cell",
+            "source cells of which at least one trajectory reaches the cell",
+            {{1, 3, 10, 30, 100}, 1.0, "", Palette::Cividis}, &CellRecord::sources),
+  };
+}
+
+void push(std::vector<float>& figures, const Bounded& bounded) {
+  for (const double value : {bounded.value, bounded.low, bounded.high})
+    figures.push_back(static_cast<float>(std::isfinite(value) ? value : kNotGiven));
+}
+
+/// Class; class at the lower and at the upper bounds; 1 where those differ, so that it cannot be told with this many
+/// trajectories.
+void push_classes(const HazardPlace& place, std::vector<float>& figures) {
+  std::vector<Bounded> frequencies{place.curve.passage()};
+  for (const double energy : place.matrix.energies) frequencies.push_back(place.curve.exceedance_of(energy));
+  const auto side = [&](double Bounded::*member) {
+    std::vector<double> values;
+    for (const Bounded& f : frequencies) values.push_back(f.*member);
+    return values;
+  };
+  const std::vector<double> low = side(&Bounded::low), high = side(&Bounded::high);
+  const int here = class_of(place.matrix, side(&Bounded::value)), highest = class_of(place.matrix, high, false);
+  for (const int figure : {here, class_of(place.matrix, low), std::max(here, highest),
+                           static_cast<int>(class_of(place.matrix, low, false) != highest)})
+    figures.push_back(static_cast<float>(figure));
+}
+
+std::vector<HazardRaster> make_hazard_rasters() {
+  using Figures = std::vector<float>;
+  return {
+      {{"annual_frequency",
+        "Trajectories that pass the cell in a year",
+        Kind::Quantity,
+        bounded_bands("annual frequency", "1/year"),
+        {{1e-4, 1e-3, 1e-2, 1e-1, 1.0}, 1.0, "1/year", Palette::Plasma}},
+       "trajectories that pass the cell per year",
+       [](const HazardPlace& place, std::size_t, Figures& figures) { push(figures, place.curve.passage()); }},
+      {{"return_period_<kJ>",
+        "Years between trajectories that exceed <kJ> kJ in the cell",
+        Kind::Quantity,
+        bounded_bands("return period of E > <kJ> kJ", "years"),
+        {{10, 30, 100, 300, 1000}, 1.0, "years", Palette::PlasmaFromDark},
+        true},
+       "1 / frequency of exceeding the energy; one file per energy threshold",
+       [](const HazardPlace& place, std::size_t i, Figures& figures) {
+         push(figures, return_period(place.curve.exceedance(i)));
+       },
+       "<kJ>",
+       [](const HazardRules& rules, const HazardMatrix&) {
+         return std::vector<double>(rules.bins.thresholds().begin(), rules.bins.thresholds().end());
+       }},
+      {{"intensity_T<years>", "Translational kinetic energy that is exceeded once in <years> years in the cell",
+        Kind::Quantity, bounded_bands("energy once in <years> years", "kJ"), energy_legend("")},
+       "energy that is exceeded once in so many years",
+       [](const HazardPlace& place, std::size_t i, Figures& figures) {
+         push(figures, place.curve.energy_once_in(place.matrix.years[i]));
+       },
+       "<years>",
+       [](const HazardRules&, const HazardMatrix& matrix) { return matrix.years; }},
+      {{"hazard_class",
+        "Class of hazard by intensity and return period",
+        Kind::Count,
+        {{"class", "class"}, {"class at lower bound", "class"}, {"class at upper bound", "class"}, {"undecided", "1"}},
+        {{1, 2, 3, 4, 5}, 1.0, "", Palette::HazardClasses}},
+       "class of the matrix; `undecided` is 1 where the classes at the bounds differ",
+       [](const HazardPlace& place, std::size_t, Figures& figures) { push_classes(place, figures); },
+       {},
+       {},
+       true},
+  };
+}
+
+std::string replaced(std::string text, const std::string& part, const std::string& by) {
+  const std::size_t at = text.find(part);
+  return at == std::string::npos ? text : text.replace(at, part.size(), by);
+}
+
+Map with_number(Map map, const std::string& placeholder, double value) {
+  map.name = replaced(map.name, placeholder, text_of(value));
+  map.title = replaced(map.title, placeholder, text_of(value));
+  for (Map::Band& band : map.bands) band.name = replaced(band.name, placeholder, text_of(value));
+  return map;
+}
+
+}  // namespace
+
+RunCounts counts_of(const Scenario& scenario) {
+  return {scenario.released(), static_cast<double>(scenario.trajectories),
+          thresholds_of(scenario.output.energy_thresholds, scenario.output.height_thresholds)};
+}
+
+const std::vector<RunRaster>& run_rasters() {
+  static const std::vector<RunRaster> all = make_run_rasters();
+  return all;
+}
+
+std::vector<Map::Band> bands_of(const RunRaster& raster, const RunCounts& run) {
+  if (!raster.thresholds_of) return raster.map.bands;
+  const std::string unit(kQuantityTable[index_of(*raster.thresholds_of)].unit);
+  std::vector<Map::Band> bands;
+  for (const double threshold : run.thresholds[*raster.thresholds_of])
+    bands.push_back({"P(" + raster.threshold_symbol + " > " + text_of(threshold) + " " + unit + ")", "1"});
+  return bands;
+}
+
+const std::vector<HazardRaster>& hazard_rasters() {
+  static const std::vector<HazardRaster> all = make_hazard_rasters();
+  return all;
+}
+
+std::vector<HazardMap> hazard_maps_of(const HazardRules& rules, const HazardMatrix& matrix) {
+  std::vector<HazardMap> maps;
+  for (const HazardRaster& raster : hazard_rasters()) {
+    if (raster.placeholder.empty()) {
+      maps.push_back({&raster, 0, raster.map});
+      if (raster.has_classes) maps.back().map.classes = matrix.names;
+      continue;
+    }
+    const std::vector<double> numbers = raster.numbers(rules, matrix);
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      maps.push_back({&raster, i, with_number(raster.map, raster.placeholder, numbers[i])});
+  }
+  return maps;
+}
+
+}  // namespace talus

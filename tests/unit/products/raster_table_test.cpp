@@ -1,0 +1,128 @@
+// The table of rasters: that it is whole, that docs say what it says, and which bands a run has.
+#include "talus/products/raster_table.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+#include <stdexcept>
+
+namespace talus {
+namespace {
+
+const RunCounts kRun{100, 10.0, thresholds_of({30.0}, {1.0})};
+
+const RunRaster& raster_of(const std::string& name) {
+  for (const RunRaster& raster : run_rasters())
+    if (raster.map.name == name) return raster;
+  throw std::out_of_range("no raster " + name);
+}
+
+/// The values of a cell, of which `bands` are asked.
+std::vector<double> values_of(const std::string& name, const CellRecord& record, std::size_t bands) {
+  std::vector<double> values(bands);
+  raster_of(name).rule(kRun)({record, nullptr}, values);
+  return values;
+}
+
+/// The row of a page's tables that describes a file; empty where there is none.
+std::string row_of(const std::string& page, const std::string& name) {
+  std::ifstream file(std::string(TALUS_SOURCE_DIR) + "/docs/" + page);
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("| `" + name + ".tif` |")) return line;
+  return {};
+}
+
+void expect_described(const std::string& page, const Map& map, const std::vector<Map::Band>& bands,
+                      const std::string& meaning) {
+  const std::string row = row_of(page, map.name);
+  ASSERT_FALSE(row.empty()) << page << " has no row of " << map.name << ".tif";
+  EXPECT_THAT(row, testing::HasSubstr("| " + meaning + " |"));
+  EXPECT_FALSE(meaning.empty()) << map.name;
+  for (const Map::Band& band : bands) {
+    EXPECT_THAT(row, testing::HasSubstr("`" + band.name + "`"));
+    EXPECT_THAT(row, testing::ContainsRegex("[|,] " + band.unit + "[ ,]")) << "unit of " << band.name;
+  }
+}
+
+void expect_legend(const Map& map, const std::vector<Map::Band>& bands) {
+  const Legend& legend = map.legend;
+  ASSERT_FALSE(legend.limits.empty()) << map.name;
+  EXPECT_TRUE(std::ranges::is_sorted(legend.limits)) << map.name;
+  EXPECT_LE(legend.limits.size(), 5U) << "colours, of which one is above the last: " << map.name;
+  EXPECT_GT(legend.factor, 0.0) << map.name;
+  const bool shown =
+      legend.band.empty() || std::ranges::any_of(bands, [&](const auto& b) { return b.name == legend.band; });
+  EXPECT_TRUE(shown) << map.name << " has no band " << legend.band;
+  const std::string& unit = bands.front().unit;
+  const bool counted = unit == "count" || unit == "class";
+  EXPECT_EQ(legend.unit, counted ? "" : unit == "1" ? "%" : unit) << map.name;
+  EXPECT_EQ(legend.factor, unit == "1" ? 100.0 : 1.0) << map.name;
+}
+
+TEST(RasterTable, EveryRasterOfARunIsInTheDocsAndHasALegend) {
+  std::set<std::string> names;
+  for (const RunRaster& raster : run_rasters()) {
+    const std::vector<Map::Band> bands = bands_of(raster, kRun);
+    EXPECT_TRUE(names.insert(raster.map.name).second) << raster.map.name << " twice";
+    EXPECT_FALSE(bands.empty() || raster.map.title.empty() || !raster.rule) << raster.map.name;
+    expect_described("products.md", raster.map, bands, raster.meaning);
+    expect_legend(raster.map, bands);
+  }
+}
+
+TEST(RasterTable, EveryRasterOfTheHazardIsInTheDocsAndHasALegend) {
+  for (const HazardRaster& raster : hazard_rasters()) {
+    EXPECT_FALSE(raster.map.title.empty() || !raster.figures) << raster.map.name;
+    expect_described("hazard.md", raster.map, raster.map.bands, raster.meaning);
+    expect_legend(raster.map, raster.map.bands);
+  }
+}
+
+TEST(RasterTable, EveryQuantityHasARaster) {
+  for (const QuantityEntry& entry : kQuantityTable)
+    EXPECT_EQ(raster_of(std::string(entry.name)).map.bands.front().unit, entry.unit);
+}
+
+TEST(RasterTable, ABandForEachThreshold) {
+  const RunCounts run{100, 10.0, thresholds_of({0.5, 1000.0}, {})};
+  const std::vector<Map::Band> energies = bands_of(raster_of("energy_exceedance"), run);
+  ASSERT_EQ(energies.size(), 2U);
+  EXPECT_EQ(energies[0].name, "P(E > 0.5 kJ)");
+  EXPECT_EQ(energies[1].name, "P(E > 1000 kJ)");
+  EXPECT_TRUE(bands_of(raster_of("height_exceedance"), run).empty());
+  EXPECT_EQ(bands_of(raster_of("impact_probability"), run).size(), 3U);
+}
+
+TEST(RasterTable, ACellByHand) {  // 4 of 100 trajectories, of 2 source cells with 10 each
+  CellRecord cell;
+  cell.passages = 4;
+  cell.sources = 2;
+  cell.impacts = 6;
+  EXPECT_EQ(values_of("reach_probability", cell, 1)[0], 4.0 / 20.0);
+  EXPECT_EQ(values_of("impact_probability", cell, 3)[0], 4.0 / 100.0);
+  EXPECT_EQ(values_of("impacts", cell, 1)[0], 6.0);
+}
+
+TEST(RasterTable, HazardMapsHaveTheirNumber) {
+  const HazardRules rules{EnergyBins({30.0, 2.5}), {}};
+  HazardMatrix matrix;
+  matrix.years = {50.0};
+  std::vector<std::string> names;
+  for (const HazardMap& map : hazard_maps_of(rules, matrix)) names.push_back(map.map.name);
+  EXPECT_THAT(names, testing::UnorderedElementsAre("annual_frequency", "return_period_30", "return_period_2.5",
+                                                   "intensity_T50", "hazard_class"));
+  for (const HazardMap& map : hazard_maps_of(rules, matrix))
+    for (const Map::Band& band : map.map.bands) EXPECT_THAT(band.name, testing::Not(testing::HasSubstr("<")));
+}
+
+TEST(Quantities, OfACubicMetreOfRockAtTenMetresPerSecond) {  // 2700 kg: 135 kJ
+  const Maxima maxima{100.0F, 1.5F};
+  EXPECT_EQ(kQuantityTable[index_of(Quantity::Energy)].value(maxima, 2700.0), 135.0F);
+  EXPECT_EQ(kQuantityTable[index_of(Quantity::Speed)].value(maxima, 2700.0), 10.0F);
+  EXPECT_EQ(kQuantityTable[index_of(Quantity::Height)].value(maxima, 2700.0), 1.5F);
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,104 @@
+#!/usr/bin/python3
+"""Checks the worked example of a page of docs: the page shows the patch, and the patch applies, compiles and works.
+
+  check_patch.py PATCH PAGE --build FOLDER --compile FILES... [--link LIBRARIES...]
+
+PATCH is a unified diff with paths a/... and b/... from the root of the repository. PAGE is the page that shows it: its
+blocks ```diff, one after the other, are the patch, letter by letter. The sources are copied, the patch is applied to the
+copy, and FILES of the copy (those that it touches) are compiled as FOLDER/compile_commands.json says; a file that the
+patch adds, as its nearest neighbour. With --link the objects and LIBRARIES become a program, which is run: FILES then
+hold tests of GoogleTest, and LIBRARIES end with those of GoogleTest. Exit code 1 and a line for what is wrong.
+"""
+import argparse
+import difflib
+import json
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+COPIED = ("include", "src", "tests", "tools", "docs", "CMakeLists.txt", "CHANGELOG.md", "README.md")
+
+
+def wrong(text):
+    sys.exit(f"check_patch.py: {text}")
+
+
+def compare(patch, page):
+    shown = "".join(re.findall(r"^```diff\n(.*?)^```$", page.read_text(), re.DOTALL | re.MULTILINE))
+    difference = list(difflib.unified_diff(patch.read_text().splitlines(), shown.splitlines(), str(patch), str(page), lineterm=""))
+    if difference:
+        wrong(f"{page.name} does not show {patch.name}:\n" + "\n".join(difference[:20]))
+
+
+def patched_copy(patch, copy):
+    """The sources with the patch; a compiler takes a header beside a file first, so the copy must be whole."""
+    for name in COPIED:
+        source = ROOT / name
+        if source.is_dir():
+            shutil.copytree(source, copy / name, ignore=shutil.ignore_patterns("__pycache__", "pictures"))
+        else:
+            shutil.copy(source, copy / name)
+    environment = {**os.environ, "GIT_CEILING_DIRECTORIES": str(copy.parent)}  # else git looks for a repository around it
+    result = subprocess.run(["git", "apply", str(patch)], cwd=copy, env=environment, capture_output=True, text=True)
+    if result.returncode != 0:
+        wrong(f"{patch.name} does not apply; make it anew (git diff) and copy it into its page:\n{result.stderr}")
+
+
+def command_of(file, commands):
+    """How a file is compiled; one that is new, as the one with which it shares the most folders."""
+    def shared(entry):
+        parts = Path(entry["file"]).resolve().relative_to(ROOT).parts if Path(entry["file"]).resolve().is_relative_to(ROOT) else ()
+        return sum(1 for _ in zip(os.path.commonprefix([parts, Path(file).parts])))
+    return max(commands, key=shared)
+
+
+def compile_file(file, copy, commands):
+    entry = command_of(file, commands)
+    words, kept = shlex.split(entry["command"]), []
+    skip = False
+    for word in words:
+        if skip or word == entry["file"]:
+            skip = False
+        elif word in ("-o", "-c", "-include", "-Xclang"):  # a precompiled header is of the sources without the patch
+            skip = word != "-c" and word != "-Xclang"
+        else:
+            kept.append(word.replace(f"-I{ROOT}/", f"-I{copy}/").replace(f'"{ROOT}"', f'"{copy}"'))
+    target = copy / (file.replace("/", "_") + ".o")
+    result = subprocess.run([*kept, "-o", str(target), "-c", str(copy / file)], cwd=entry["directory"], capture_output=True, text=True)
+    if result.returncode != 0:
+        wrong(f"{file} with the patch does not compile:\n{result.stderr}")
+    return kept, target
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("patch", type=Path)
+    parser.add_argument("page", type=Path)
+    parser.add_argument("--build", type=Path, required=True, help="folder of the build, with compile_commands.json")
+    parser.add_argument("--compile", nargs="+", default=[], metavar="FILE", help="from the root of the repository")
+    parser.add_argument("--link", nargs="+", default=[], metavar="LIBRARY")
+    o = parser.parse_args()
+    compare(o.patch, o.page)
+    commands = json.loads((o.build / "compile_commands.json").read_text())
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder).resolve()
+        patched_copy(o.patch.resolve(), copy)
+        compiled = [compile_file(file, copy, commands) for file in o.compile]
+        if not o.link:
+            return
+        flags = [word for word in compiled[0][0] if not word.startswith(("-I", "-D", "-W"))]
+        objects = [str(target) for _, target in compiled]
+        program = copy / "check"
+        result = subprocess.run([*flags, *objects, *o.link, "-o", str(program)], capture_output=True, text=True)
+        if result.returncode != 0:
+            wrong(f"the objects with the patch do not link:\n{result.stderr}")
+        sys.exit(subprocess.run([str(program), "--gtest_brief=1"], cwd=copy).returncode)
+
+
+main()
