@@ -37,7 +37,8 @@ std::vector<std::vector<std::size_t>> sets_of_days(std::size_t n) {
 
 /// Which of the n candidates of an effect are tested together.
 std::vector<std::vector<std::size_t>> groups_of(const std::string& effect, std::size_t n) {
-  if (effect == "wet-ground") return sets_of_days(n);
+  const EffectEntry* entry = find_effect(effect);
+  if (entry != nullptr && entry->sought == Sought::OnDays) return sets_of_days(n);
   const std::size_t most = effect == "undeclared-zone" ? kMostJoined : 1;
   std::vector<std::vector<std::size_t>> groups;
   for (std::size_t first = 0; first < n; ++first)

@@ -16,21 +16,13 @@ struct Candidate {
   std::function<void(Model&)> prepare;  ///< before the parameters are set: places and lines
   double searched = 0.0;                ///< how many numbers of its place were chosen by the data: a price of its fit
   double from = 0.0, to = 0.0;          ///< of a band: along the axis [m]
-  std::vector<int> days = {};           ///< of wet ground
+  std::vector<int> days = {};           ///< of an effect that acts on days
 };
 
-/// Positions along the slope: the direction in plan in which the blocks of a campaign go, and how far.
-struct Axis {
-  Eigen::Vector2d origin, direction;  ///< [m, local], unit
-  double from = 0.0, to = 0.0;        ///< of the paths, along the direction from the origin [m]
+struct Axis;
 
-  double along(const Eigen::Vector2d& place) const { return (place - origin).dot(direction); }
-};
-
-/// From the mean release to the mean simulated stop.
-Axis axis_of(const Campaign& campaign, std::span<const BlockRuns> runs);
-
-/// The effects of the library and the anomalies that are not physics, with every place where they may act.
+/// The effects of the registry, undeclared zones and barriers and the bias of instruments, with every place where they
+/// may act.
 ///
 /// @param runs     of the base model: says which zones are met and where the blocks go
 /// @param without  names of effects that the base model has already
@@ -42,11 +34,6 @@ std::vector<Candidate> candidates_of(const Campaign& campaign, const Model& base
 
 inline constexpr int kBands = 12;  ///< of the ladder for undeclared zones
 inline constexpr int kLines = 16;  ///< places of an undeclared barrier
-
-/// A band of other ground across the axis, from one distance along it to another [m].
-Candidate band(const Campaign& campaign, const Axis& axis, double from, double to);
-/// A net across the axis.
-Candidate barrier(const Axis& axis, double width, double at);
 
 /// The one candidate that several of one effect make: a band of neighbouring ones, or all of their days.
 Candidate together(const Campaign& campaign, const Axis& axis, std::span<const Candidate> list,
