@@ -9,6 +9,7 @@
 #include "talus/fit/diagnose/candidates.hpp"
 #include "talus/fit/diagnose/residual_table.hpp"
 #include "talus/fit/diagnose/score_test.hpp"
+#include "talus/fit/diagnose/undeclared_places.hpp"
 
 namespace talus {
 namespace {
