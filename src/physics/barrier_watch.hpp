@@ -3,7 +3,7 @@
 
 #include "talus/physics/flight.hpp"
 #include "talus/physics/slide.hpp"
-#include "talus/physics/trace.hpp"
+#include "talus/physics/world.hpp"
 
 namespace talus {
 

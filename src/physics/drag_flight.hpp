@@ -1,10 +1,10 @@
 #pragma once
 #include <optional>
 
-#include "talus/physics/effects/drag.hpp"
-#include "talus/physics/effects/forest_stems.hpp"
+#include "talus/physics/effects/damped_fall.hpp"
+#include "talus/physics/effects/registry.hpp"
 #include "talus/physics/flight.hpp"
-#include "talus/physics/trace.hpp"
+#include "talus/physics/world.hpp"
 
 namespace talus {
 

@@ -103,13 +103,7 @@ Rebound rebound(const Vec3& velocity, const Vec3& spin, const Vec3& n, const Res
 // Flattened: the plain engine takes a tenth longer where its steps stay calls because effects call them too.
 [[gnu::flatten]] Contact impact(const ImpactModel& model, const Ground& ground, const Block& block,
                                 const Motion& before, const Vec3& normal, const Asperity& asperity) {
-  const RoughPlane plane = rough_plane(normal, before.velocity, met_by(model, asperity));
-  const double v_n = std::max(0.0, -before.velocity.dot(plane.normal));
-  const Restitution k = restitution(ground, model.deformation_coefficient * block.diameter * v_n * v_n);
-  const Rebound after =
-      rebound(before.velocity, before.spin, plane.normal, k, asperity.shape * block.radius(), ground.tan_phi);
-  const double into_slope = std::min(0.0, after.velocity.dot(normal));
-  return {after.velocity - into_slope * normal, after.spin, plane.psi_dropped};
+  return impact(model, ground, block, before, normal, asperity, NoChanges{});
 }
 
 }  // namespace talus

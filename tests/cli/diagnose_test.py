@@ -1,6 +1,7 @@
 """`talus diagnose` from a campaign to its report, on two synthetic campaigns and a measured one: few trials, the whole loop."""
 import json
 import os
+import re
 import unittest
 
 from support import Case
@@ -8,8 +9,10 @@ from support import Case
 ELM = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../data/elm/campaign.toml")
 CAMPAIGNS = os.path.join(os.environ.get("TALUS_DATA", ""), "campaigns")
 SHORT = ("--trials", "20", "--test-trials", "60")
-NAMES = {"none", "unexplained", "vegetation-drag", "forest-stems", "block-shape", "block-mass", "wet-ground", "soft-ground",
-         "rolling-resistance", "air-drag", "fragmentation", "undeclared-barrier", "undeclared-zone", "instrument-bias"}
+DOCS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../docs/effects.md")
+with open(DOCS, encoding="utf-8") as page:
+    EFFECTS = set(re.findall(r"^\| \[([a-z-]+)\]\(#\1\)", page.read(), re.MULTILINE))
+NAMES = EFFECTS | {"none", "unexplained", "undeclared-barrier", "undeclared-zone", "instrument-bias"}
 
 
 class Diagnose(Case):

@@ -164,5 +164,41 @@ TEST_F(Campaigns, AModelReadsBackTheSame) {
   faulty("[ground.zones.default]\nEn50 = -3\n", {"m.toml:2", "En50 = -3"});
 }
 
+TEST_F(Campaigns, AModelKeepsItsBarriersAndTheBiasOfItsInstruments) {
+  write_text("passages.csv", "id,screen,speed_ms,jump_height_m,angular_velocity_rads\na,S1,12.5,,3\n");
+  const LoadedCampaign loaded = read("passages = \"passages.csv\"\nscreens = \"screens.csv\"\n");
+  Model model = model_of_preset(loaded.campaign, "upper-talus-3d");
+  model.barriers = {{"undeclared \"wall\"", {{{-10.25, 30.0}, {120.0, 1.0 / 3.0}}}, 2.5, 1e300 * 1e300},
+                    {"net", {{{1.0, 2.0}, {3.0, 4.0}}}, 3.0, 250e3}};
+  model.bias.resize(2);
+  model.bias[0].jump = 0.125;
+  model.bias[1] = {-0.25, 0.0, 0.5};
+  const std::string text = model_text(model, loaded, "");
+  EXPECT_NE(text.find("from = [599989.75, 5200030]"), std::string::npos) << text;  // in the system of the DEM
+  const Model back = read_model(write_text("m.toml", text), loaded.campaign);
+  ASSERT_EQ(back.barriers.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(back.barriers[i].id, model.barriers[i].id);
+    EXPECT_EQ(back.barriers[i].height, model.barriers[i].height);
+    EXPECT_EQ(back.barriers[i].capacity, model.barriers[i].capacity);
+    for (std::size_t end = 0; end < 2; ++end)
+      EXPECT_LT((back.barriers[i].lines[0][end] - model.barriers[i].lines[0][end]).norm(), 1e-8);
+  }
+  ASSERT_EQ(back.bias.size(), 2U);
+  EXPECT_EQ(back.bias[0].jump, 0.125);
+  EXPECT_EQ(back.bias[1].speed, -0.25);
+  EXPECT_EQ(back.bias[1].spin, 0.5);
+  const auto faulty = [&](const std::string& lines, const std::vector<std::string>& parts) {
+    write_text("m.toml", lines);
+    expect_input_error([&] { read_model(path("m.toml"), loaded.campaign); }, parts);
+  };
+  faulty("[[instrument_bias]]\nscreen = \"S2\"\nspeed = 0.1\n", {"m.toml:1", "S2", "no such screen", "S1"});
+  faulty("[barriers]\nline = 3\n", {"m.toml:2", "barriers.line", "list of tables"});
+  faulty("[[barriers.line]]\nheight = 2\nfrom = [1, 2]\n", {"m.toml:1", "has no to"});
+  faulty("[[barriers.line]]\nheight = -2\nfrom = [1, 2]\nto = [3, 4]\n", {"m.toml:2", "height = -2", "0 to 100"});
+  faulty("[[barriers.line]]\nheight = 2\nfrom = [1]\nto = [3, 4]\n", {"m.toml:3", "must be [x, y]"});
+  faulty("[[barriers.line]]\nheight = 2\nfrom = [3, 4]\nto = [3, 4]\n", {"m.toml:4", "a barrier has a length"});
+}
+
 }  // namespace
 }  // namespace talus::io::test

@@ -81,6 +81,36 @@ TEST_F(ScenarioFile, AnIncludedEffectGivesWayToTheScenario) {
   EXPECT_EQ(origin(l, "effects.soft-ground.zones"), "scenario");
 }
 
+/// A barrier that `talus diagnose` found is one of the scenario; how instruments read is not.
+TEST_F(ScenarioFile, AnIncludedModelBringsItsBarriers) {
+  write_text("found.toml",
+             "[barriers]\nline = [{ id = \"undeclared-barrier\", height = 2.5, from = [600010, 5200020], to = "
+             "[600090, 5200030] }]\n[[instrument_bias]]\nspeed = 0.2\n");
+  const std::string head = std::string("include = \"found.toml\"\n") + kFiles + "[blocks]\ndiameter = 1.2\n";
+  const LoadedScenario l = load(head);
+  ASSERT_EQ(l.scenario.barriers.list().size(), 1U);
+  const Barrier& barrier = l.scenario.barriers.list()[0];
+  EXPECT_EQ(barrier.id, "undeclared-barrier");
+  EXPECT_EQ(barrier.height, 2.5);
+  EXPECT_TRUE(std::isinf(barrier.capacity));
+  EXPECT_EQ(barrier.lines[0][0], Eigen::Vector2d(10.0, 20.0));
+  EXPECT_EQ(barrier.lines[0][1], Eigen::Vector2d(90.0, 30.0));
+  EXPECT_EQ(origin(l, "barriers.line"), "include found.toml");
+  EXPECT_TRUE(std::any_of(l.warnings.begin(), l.warnings.end(), [](const std::string& line) {
+    return line.find("found.toml") != std::string::npos &&
+           line.find("[[instrument_bias]] is left out") != std::string::npos;
+  }));
+  const LoadedScenario again = load(l.complete_toml);
+  ASSERT_EQ(again.scenario.barriers.list().size(), 1U);
+  EXPECT_EQ(again.scenario.barriers.list()[0].lines, barrier.lines);
+  EXPECT_EQ(again.complete_toml, l.complete_toml);
+  const LoadedScenario own =
+      load(head + "[[barriers.line]]\nheight = 4\ncapacity = 100\nfrom = [600010, 5200020]\nto = [600020, 5200020]\n");
+  ASSERT_EQ(own.scenario.barriers.list().size(), 1U);
+  EXPECT_EQ(own.scenario.barriers.list()[0].capacity, 100e3);
+  refused(std::string(kFiles) + "[[instrument_bias]]\nspeed = 0.2\n", {"unknown key 'instrument_bias'"});
+}
+
 TEST_F(ScenarioFile, FaultsOfAnInclude) {
   const std::string head = std::string("include = \"fitted.toml\"\n") + kFiles + "[blocks]\ndiameter = 1.2\n";
   refused(head, {"scenario.toml:1", "include = 'fitted.toml'", "no such file"});

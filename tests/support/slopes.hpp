@@ -1,5 +1,6 @@
 #pragma once
 #include "scenes.hpp"
+#include "talus/physics/effects/registry.hpp"
 #include "talus/physics/trace.hpp"
 
 /// A world with effects on a plane, for the tests of the effects.

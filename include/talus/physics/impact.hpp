@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+
 #include "talus/base/random.hpp"
 #include "talus/physics/block.hpp"
 #include "talus/physics/ground.hpp"
@@ -99,13 +101,50 @@ struct Rebound {
 Rebound rebound(const Vec3& velocity, const Vec3& spin, const Vec3& n, const Restitution& k, double arm,
                 double tan_phi);
 
+/// The part of a vector along the plane of normal `n` is multiplied by a factor.
+inline void scale_along(Vec3& vector, const Vec3& n, double factor) {
+  const Vec3 across = vector.dot(n) * n;
+  vector = factor * (vector - across) + across;
+}
+
+/// An impact between step 5 and step 6: all that decided the rebound.
+struct ImpactMoment {
+  const Block& block;
+  const Vec3 &normal, &plane;  ///< of the smooth surface and of the rough plane, unit
+  double v_n;                  ///< speed into the rough plane [m/s], >= 0
+  Restitution k;
+};
+
+/// What effects change of the law. The law of PIERRE 2: nothing.
+struct NoChanges {
+  static void restitution(Restitution& /*k*/) {}
+  static void rebound(Rebound& /*after*/, const ImpactMoment& /*moment*/) {}
+};
+
 /// What happened at an impact, beside the new motion.
 struct Contact {
   Vec3 velocity, spin;  ///< after it; the velocity is never into the smooth surface (step 6)
   bool psi_dropped;
 };
 
-/// The whole law: steps 2-6 on a surface of normal `normal`.
+/// The impact law: steps 2-6 on a surface of normal `normal`. The only place where they follow each other.
+///
+/// @param changes  of effects: to the restitution after step 3, to the rebound after step 5. As NoChanges
+template <class Changes>
+Contact impact(const ImpactModel& model, const Ground& ground, const Block& block, const Motion& before,
+               const Vec3& normal, const Asperity& asperity, Changes&& changes) {
+  const RoughPlane plane = rough_plane(normal, before.velocity, met_by(model, asperity));  // step 2
+  const double v_n = std::max(0.0, -before.velocity.dot(plane.normal));                    // step 3
+  Restitution k = restitution(ground, model.deformation_coefficient * block.diameter * v_n * v_n);
+  changes.restitution(k);
+  const double arm = asperity.shape * block.radius();                                           // step 4
+  Rebound after = rebound(before.velocity, before.spin, plane.normal, k, arm, ground.tan_phi);  // step 5
+  changes.rebound(after, ImpactMoment{block, normal, plane.normal, v_n, k});
+  const double into_slope = std::min(0.0, after.velocity.dot(normal));  // step 6
+  return {after.velocity - into_slope * normal, after.spin, plane.psi_dropped};
+}
+
+/// The law without effects.
 Contact impact(const ImpactModel& model, const Ground& ground, const Block& block, const Motion& before,
                const Vec3& normal, const Asperity& asperity);
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "talus/physics/effects.hpp"
+#include "talus/physics/effects/rolling_resistance.hpp"
 #include "talus/physics/ground.hpp"
 #include "talus/physics/path.hpp"
 

@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cmath>
 #include <exception>
-#include <limits>
 
 #include "talus/simulate/scenario/presets.hpp"
 #include "talus/simulate/screens/screens.hpp"
@@ -49,31 +48,27 @@ class Instrument {
     const MeasuredBlock& block = campaign_.blocks[release.source];
     crossings_.clear();
     screens_.find(release, path, crossings_);
-    const Crossing* caught = first_catch();
-    until_ = caught ? caught->time : std::numeric_limits<double>::infinity();
-    stop(errors, path, release.body.mass, caught, trial, runs);
+    stop(errors, path, release.body.mass, trial, runs);
     passages(errors, trial, runs);
     samples(errors, block, path, trial, runs);
     runs.impacts[trial] = path.impacts;
-    runs.end[trial] = caught ? End::Caught : path.end;
+    runs.end[trial] = path.end;
     std::atomic_ref(runs.ends[static_cast<std::size_t>(runs.end[trial])]).fetch_add(1, std::memory_order_relaxed);
     count_zones(path, runs);
   }
 
  private:
-  void stop(const Errors& errors, const Path& path, double mass, const Crossing* caught, std::uint32_t trial,
-            BlockRuns& runs) const {
+  void stop(const Errors& errors, const Path& path, double mass, std::uint32_t trial, BlockRuns& runs) const {
     runs.mass_share[trial] = path.mass / mass;
-    if (!caught && path.end != End::Stopped && path.end != End::Caught) return;
+    if (path.end != End::Stopped && path.end != End::Caught) return;
     const auto error = errors.of_stop();
     const Vec3& end = path.vertices.back().motion.position;
-    runs.x[trial] = (caught ? caught->x : end.x()) + campaign_.error.position_m * error[0];
-    runs.y[trial] = (caught ? caught->y : end.y()) + campaign_.error.position_m * error[1];
+    runs.x[trial] = end.x() + campaign_.error.position_m * error[0];
+    runs.y[trial] = end.y() + campaign_.error.position_m * error[1];
   }
 
   void passages(const Errors& errors, std::uint32_t trial, BlockRuns& runs) const {
     for (const Crossing& crossing : crossings_) {
-      if (crossing.screen >= campaign_.screens.size() || crossing.time > until_) continue;
       const Bias bias = bias_of(crossing.screen);
       BlockRuns::AtScreen& screen = runs.screens[crossing.screen];
       if (!std::isnan(screen.speed[trial])) continue;  // only the first crossing counts
@@ -97,7 +92,7 @@ class Instrument {
               [&](std::size_t a, std::size_t b) { return block.samples[a].distance < block.samples[b].distance; });
     const Eigen::Vector2d origin(block.x, block.y);
     auto next = order_.begin();
-    for (std::size_t i = 1; i < path.vertices.size() && path.vertices[i].motion.time <= until_; ++i) {
+    for (std::size_t i = 1; i < path.vertices.size(); ++i) {
       const Vertex &from = path.vertices[i - 1], &to = path.vertices[i];
       const Eigen::Vector2d a = from.motion.position.head<2>() - origin, b = to.motion.position.head<2>() - origin;
       for (; next != order_.end() && b.norm() >= block.samples[*next].distance; ++next) {
@@ -129,16 +124,6 @@ class Instrument {
       if (hit_[zone]) std::atomic_ref(runs.zone_hits[zone]).fetch_add(1, std::memory_order_relaxed);
   }
 
-  /// The net that ends the path, if one does: it is crossed below its top and within its capacity.
-  const Crossing* first_catch() const {
-    for (const Crossing& c : crossings_) {
-      if (c.screen < campaign_.screens.size()) continue;
-      const Net& net = model_.nets[c.screen - campaign_.screens.size()];
-      if (c.height < net.height && 0.5e-3 * c.mass * c.speed * c.speed <= net.capacity) return &c;
-    }
-    return nullptr;
-  }
-
   Bias bias_of(std::size_t instrument) const { return model_.bias.empty() ? Bias{} : model_.bias[instrument]; }
 
   const Campaign& campaign_;
@@ -148,7 +133,6 @@ class Instrument {
   std::vector<Crossing> crossings_;
   std::vector<std::size_t> order_;
   std::vector<char> hit_;  // by zone, of the path
-  double until_ = 0.0;     // when a net ends the path [s]
 };
 
 void prepare(const Campaign& campaign, const MeasuredBlock& block, std::size_t zones, std::uint32_t trials,
@@ -180,13 +164,6 @@ std::vector<Unit> units_of(const Campaign& campaign, std::size_t zones, const Ob
   return units;
 }
 
-/// The screens of the campaign, then the nets.
-std::vector<Screen> lines_of(const Campaign& campaign, const Model& model) {
-  std::vector<Screen> lines = campaign.screens;
-  for (const Net& net : model.nets) lines.push_back({"net", {net.line}});
-  return lines;
-}
-
 }  // namespace
 
 Model model_of_preset(const Campaign& campaign, std::string_view preset) {
@@ -216,9 +193,14 @@ std::vector<BlockRuns> observe(const Campaign& campaign, const Model& model, con
   std::vector<BlockRuns> runs(campaign.blocks.size());
   const std::vector<Unit> units = units_of(campaign, model.grounds.size(), options, runs);
   const Cover cover{model.grounds, model.zones.values.empty() ? campaign.zones : model.zones};
-  const World world{campaign.surface, cover, model.impact, EndRules{}, model.effects.any() ? &model.effects : nullptr};
-  const std::vector<Screen> lines = lines_of(campaign, model);
-  const ScreenFinder screens(campaign.surface, lines);
+  const Barriers barriers(model.barriers);
+  const World world{campaign.surface,
+                    cover,
+                    model.impact,
+                    EndRules{},
+                    model.effects.any() ? &model.effects : nullptr,
+                    barriers.empty() ? nullptr : &barriers};
+  const ScreenFinder screens(campaign.surface, campaign.screens);
   std::exception_ptr failure;
   std::atomic<bool> stop{false};
 #pragma omp parallel num_threads(options.threads > 0 ? options.threads : omp_get_num_procs()) default(none) \

@@ -4,20 +4,13 @@
 #include <cmath>
 #include <set>
 
-#include "anomalies.hpp"
+#include "amount.hpp"
+#include "instrument_bias.hpp"
 #include "talus/base/sample.hpp"
+#include "talus/fit/diagnose/undeclared_places.hpp"
 
 namespace talus {
 namespace {
-
-template <class Effect>
-Parameter effect_amount(const char* key, const char* unit, double off, double size, double lower, double upper,
-                        Effect Effects::*effect, double Effect::*member) {
-  return amount(
-      std::string("effects.") + key, unit, off, size, lower, upper,
-      [=](const Model& m) { return m.effects.*effect.*member; },
-      [=](Model& m, double v) { m.effects.*effect.*member = v; });
-}
 
 constexpr std::size_t kMostZones = 256;  // that a raster of bytes can tell apart
 
@@ -48,75 +41,106 @@ std::vector<Place> places_of(const Campaign& campaign, const Model& base, const 
   return places;
 }
 
-/// Effects that act in a zone.
-template <class Effect>
-void add_placed(std::vector<Candidate>& list, const std::vector<Place>& places, const char* name,
-                Effect Effects::*effect, const std::vector<Parameter>& parameters) {
-  for (const Place& place : places)
-    list.push_back({name, place.name, parameters, parameters.size(),
-                    [effect, zones = place.zones](Model& m) { (m.effects.*effect).where.zones = zones; }});
+/// The medians of the blocks that may be fitted, which the registry's searches are multiples of.
+struct TypicalBlock {
+  double mass, diameter;  // [kg], [m]
+
+  double of(Typical typical) const {
+    return typical == Typical::BlockMass ? mass : typical == Typical::BlockDiameter ? diameter : 1.0;
+  }
+};
+
+TypicalBlock typical_block(const Campaign& campaign) {
+  return {median_of(campaign, [](const MeasuredBlock& b) { return b.mass; }),
+          median_of(campaign, [](const MeasuredBlock& b) { return equivalent_diameter(b.mass, b.density); })};
 }
 
-void add_shape_and_mass(std::vector<Candidate>& list, const Campaign& campaign) {
-  const bool shaped = std::any_of(campaign.blocks.begin(), campaign.blocks.end(),
-                                  [](const MeasuredBlock& b) { return !b.holdout && b.axes.x() > 1.05 * b.axes.z(); });
-  for (const double elongation : shaped ? std::vector<double>{0.0, 1.0} : std::vector<double>{})
-    list.push_back(
-        {"block-shape",
-         elongation > 0.0 ? "by L1/L2" : "by L1/L3",
-         {effect_amount("block-shape.lateral", "1", 0.0, 0.5, 0.0, 6.0, &Effects::block_shape, &BlockShape::lateral),
-          effect_amount("block-shape.loss", "1", 0.0, 0.1, 0.0, 2.0, &Effects::block_shape, &BlockShape::loss)},
-         2,
-         [elongation](Model& m) { m.effects.block_shape.elongation = elongation; }});
-  const double reference =
-      median_of(campaign, [](const MeasuredBlock& b) { return equivalent_diameter(b.mass, b.density); });
-  list.push_back(
-      {"block-mass",
-       "everywhere",
-       {effect_amount("block-mass.roughness", "1", 0.0, 0.4, -2.0, 2.0, &Effects::block_mass, &BlockMass::roughness),
-        effect_amount("block-mass.stiffness", "1", 0.0, 0.8, -3.0, 3.0, &Effects::block_mass, &BlockMass::stiffness)},
-       2,
-       [reference](Model& m) { m.effects.block_mass.reference_diameter = reference; }});
+/// The search of a number of an effect: of its inverse, or cut off at its bounds.
+Parameter parameter_of(const EffectEntry& entry, const EffectField& field, const TypicalBlock& typical) {
+  const SearchRange& range = *field.search;
+  const std::string table = "effects." + std::string(entry.name) + ".", key(entry.key_of(field));
+  if (!range.inverse_unit.empty())
+    return amount(
+        table + "1/" + key, std::string(range.inverse_unit), range.off, range.noticed, range.lower, range.upper,
+        [get = field.get](const Model& m) {
+          const double value = get(m.effects);
+          return value > 0.0 ? 1.0 / value : 0.0;
+        },
+        [set = field.set, most = field.max](Model& m, double v) { set(m.effects, v * most > 1.0 ? 1.0 / v : 0.0); });
+  const double scale = typical.of(range.times);
+  return amount(
+      table + key, std::string(field.unit), range.off, range.noticed * scale, std::max(field.min, range.lower * scale),
+      std::min(field.max, range.upper * scale), [get = field.get](const Model& m) { return get(m.effects); },
+      [set = field.set](Model& m, double v) { set(m.effects, v); });
 }
 
-Candidate wet_on(std::vector<int> days) {
+/// An effect at a place, its numbers searched as the registry says.
+Candidate candidate_of(const EffectEntry& entry, std::string where, const TypicalBlock& typical,
+                       std::function<void(Model&)> place) {
+  Candidate candidate{std::string(entry.name), std::move(where), {}, 0, {}};
+  std::vector<std::pair<void (*)(Effects&, double), double>> settings;
+  for (const EffectField& field : entry.fields()) {
+    if (field.search) candidate.parameters.push_back(parameter_of(entry, field, typical));
+    if (field.search && field.is_strength()) ++candidate.tested;
+    if (field.set_to != Typical::One) settings.emplace_back(field.set, typical.of(field.set_to));
+  }
+  candidate.prepare = [settings, place = std::move(place)](Model& m) {
+    for (const auto& [set, value] : settings) set(m.effects, value);
+    if (place) place(m);
+  };
+  return candidate;
+}
+
+Candidate on_days(const EffectEntry& entry, std::vector<int> days, const TypicalBlock& typical) {
   std::string where = days.size() > 1 ? "days" : "day";
   for (const int day : days) where += (day == days.front() ? " " : ", ") + std::to_string(day);
-  Candidate candidate{
-      "wet-ground",
-      std::move(where),
-      {effect_amount("wet-ground.softening", "1", 0.0, 0.7, 0.0, 4.0, &Effects::wet_ground, &WetGround::softening),
-       effect_amount("wet-ground.drag", "1", 0.0, 0.7, 0.0, 4.0, &Effects::wet_ground, &WetGround::drag)},
-      2,
-      [days](Model& m) { m.effects.wet_ground.days = days; },
-      1.0};
+  Candidate candidate =
+      candidate_of(entry, std::move(where), typical, [&entry, days](Model& m) { *entry.days(m.effects) = days; });
+  candidate.searched = 1.0;
   candidate.days = std::move(days);
   return candidate;
 }
 
-void add_days(std::vector<Candidate>& list, const Campaign& campaign) {
+/// The days of releases that are known, where there are several.
+std::set<int> days_of(const Campaign& campaign) {
   std::set<int> days;
   for (const MeasuredBlock& block : campaign.blocks)
     if (!block.holdout) days.insert(block.day);
   days.erase(0);  // not known
-  if (days.size() < 2) return;
-  for (const int day : days) list.push_back(wet_on({day}));
+  return days.size() < 2 ? std::set<int>{} : days;
 }
 
-void add_fragmentation(std::vector<Candidate>& list) {
-  list.push_back({"fragmentation",
-                  "everywhere",
-                  {amount(
-                       "effects.fragmentation.1/threshold", "kg/J", 0.0, 0.02, 0.0, 0.5,
-                       [](const Model& m) {
-                         const double threshold = m.effects.fragmentation.threshold;
-                         return threshold > 0.0 ? 1.0 / threshold : 0.0;
-                       },
-                       [](Model& m, double v) { m.effects.fragmentation.threshold = v > 0.0 ? 1.0 / v : 0.0; }),
-                   effect_amount("fragmentation.largest", "1", 0.7, 0.15, 0.5, 0.99, &Effects::fragmentation,
-                                 &Fragmentation::largest)},
-                  1,
-                  [](Model&) {}});
+bool some_are_no_spheres(const Campaign& campaign) {
+  return std::ranges::any_of(campaign.blocks,
+                             [](const MeasuredBlock& b) { return !b.holdout && b.axes.x() > 1.05 * b.axes.z(); });
+}
+
+/// An effect at each place, in each variant or on each day where it may act.
+void add_effect(std::vector<Candidate>& list, const EffectEntry& entry, const Campaign& campaign,
+                const std::vector<Place>& places) {
+  const TypicalBlock typical = typical_block(campaign);
+  if (entry.sought == Sought::Everywhere) list.push_back(candidate_of(entry, "everywhere", typical, {}));
+  if (entry.sought == Sought::InZones)
+    for (const Place& place : places)
+      list.push_back(candidate_of(entry, place.name, typical,
+                                  [&entry, zones = place.zones](Model& m) { entry.area(m.effects)->zones = zones; }));
+  if (entry.sought == Sought::OfShapes && some_are_no_spheres(campaign))
+    for (const EffectField& field : entry.fields())
+      for (const Variant& variant : field.variants)
+        if (!variant.where.empty())
+          list.push_back(candidate_of(entry, std::string(variant.where), typical,
+                                      [set = field.set, value = variant.value](Model& m) { set(m.effects, value); }));
+  if (entry.sought == Sought::OnDays)
+    for (const int day : days_of(campaign)) list.push_back(on_days(entry, {day}, typical));
+}
+
+/// The effects of the registry that are sought, in the order of their turns.
+std::vector<const EffectEntry*> sought_effects() {
+  std::vector<const EffectEntry*> entries;
+  for (const EffectEntry& entry : effect_entries())
+    if (entry.sought != Sought::Nowhere) entries.push_back(&entry);
+  std::ranges::stable_sort(entries, {}, &EffectEntry::turn);
+  return entries;
 }
 
 /// Makes the priors so wide that the amount one would notice, at z = 1 until here, is at z = `noticed`.
@@ -129,29 +153,8 @@ void widen_priors(Candidate& candidate, double noticed) {
 std::vector<Candidate> candidates_of(const Campaign& campaign, const Model& base, std::span<const BlockRuns> runs,
                                      std::span<const std::string> without, const DiagnosisRules& rules) {
   const std::vector<Place> places = places_of(campaign, base, touched_zones(campaign, runs));
-  const double mass = median_of(campaign, [](const MeasuredBlock& b) { return b.mass; });
   std::vector<Candidate> list;
-  add_placed(list, places, "vegetation-drag", &Effects::vegetation_drag,
-             {effect_amount("vegetation-drag.coefficient", "kg/s", 0.0, 0.1 * mass, 0.0, 3.0 * mass,
-                            &Effects::vegetation_drag, &VegetationDrag::coefficient)});
-  add_placed(list, places, "forest-stems", &Effects::forest_stems,
-             {effect_amount("forest-stems.density", "1/ha", 0.0, 100.0, 0.0, 3000.0, &Effects::forest_stems,
-                            &ForestStems::density)});
-  // M_E stays at 15 MN/m2: soil of 2 MN/m2, with a deeper scar, is as a drag five times larger.
-  add_placed(list, places, "soft-ground", &Effects::soft_ground,
-             {effect_amount("soft-ground.drag", "1", 0.0, 4.0, 0.0, 100.0, &Effects::soft_ground, &SoftGround::drag)});
-  add_placed(list, places, "rolling-resistance", &Effects::rolling_resistance,
-             {effect_amount("rolling-resistance.coefficient", "1", 0.0, 0.2, 0.0, 2.0, &Effects::rolling_resistance,
-                            &RollingResistance::coefficient)});
-  list.push_back(
-      {"air-drag",
-       "everywhere",
-       {effect_amount("air-drag.coefficient", "1", 0.0, 1.0, 0.0, 5.0, &Effects::air_drag, &AirDrag::coefficient)},
-       1,
-       [](Model&) {}});
-  add_shape_and_mass(list, campaign);
-  add_days(list, campaign);
-  add_fragmentation(list);
+  for (const EffectEntry* entry : sought_effects()) add_effect(list, *entry, campaign, places);
   add_biases(list, campaign);
   const Axis axis = axis_of(campaign, runs);
   const Grid& grid = campaign.surface.grid();
@@ -170,10 +173,11 @@ Candidate merged_candidate(const Campaign& campaign, const Axis& axis, std::span
                            std::span<const std::size_t> members, const DiagnosisRules& rules) {
   const Candidate &first = list[members.front()], &last = list[members.back()];
   const bool zone = first.effect == "undeclared-zone";
-  if (!zone && first.effect != "wet-ground") return first;
+  if (!zone && first.days.empty()) return first;
   std::vector<int> days;
   for (const std::size_t member : members) days.insert(days.end(), list[member].days.begin(), list[member].days.end());
-  Candidate merged = zone ? band(campaign, axis, first.from, last.to) : wet_on(std::move(days));
+  Candidate merged = zone ? band(campaign, axis, first.from, last.to)
+                          : on_days(*find_effect(first.effect), std::move(days), typical_block(campaign));
   widen_priors(merged, rules.noticed);
   return merged;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "effect_fits.hpp"
+#include "talus/fit/diagnose/undeclared_places.hpp"
 
 namespace talus {
 namespace {

@@ -5,6 +5,8 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 
+#include "talus/physics/effects/registry.hpp"
+
 namespace talus {
 namespace {
 
@@ -35,7 +37,8 @@ std::vector<std::vector<std::size_t>> sets_of_days(std::size_t n, std::size_t fe
 
 /// Which of the n candidates of an effect are tested together.
 std::vector<std::vector<std::size_t>> groups_of(const std::string& effect, std::size_t n, const DiagnosisRules& rules) {
-  if (effect == "wet-ground") return sets_of_days(n, rules.few_days);
+  const EffectEntry* entry = find_effect(effect);
+  if (entry != nullptr && entry->sought == Sought::OnDays) return sets_of_days(n, rules.few_days);
   const std::size_t most = effect == "undeclared-zone" ? rules.most_joined : 1;
   std::vector<std::vector<std::size_t>> groups;
   for (std::size_t first = 0; first < n; ++first)

@@ -1,9 +1,9 @@
 #include "talus/io/campaign/model_file.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 
+#include "io/scenario/barrier_keys.hpp"
 #include "io/scenario/scenario_spec.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
@@ -13,60 +13,62 @@
 namespace talus::io {
 namespace {
 
-bool is_on(const Effects& effects, std::string_view name) {
-  for (const auto& field : effect_fields())
-    if (field.key.starts_with(std::string(name) + ".") && !std::isnan(field.off) && field.get(effects) != field.off)
-      return true;
-  return false;
-}
-
 /// `zones = ["meadow"]`, where an effect does not act in all zones of the campaign.
-std::string zones_text(const EffectArea* extent, const Campaign& campaign) {
-  if (extent == nullptr || extent->zones.empty()) return {};
+std::string zones_text(const EffectArea* area, const Campaign& campaign) {
+  if (area == nullptr || area->zones.empty()) return {};
   std::vector<std::string> names;
   for (std::size_t i = 0; i < campaign.zone_names.size(); ++i)
-    if (extent->zones[i] != 0) names.push_back(toml_text(campaign.zone_names[i]));
+    if (area->zones[i] != 0) names.push_back(toml_text(campaign.zone_names[i]));
   return "zones = [" + joined(names) + "]\n";
 }
 
 /// The tables [effects.*] of a model, as the reader of [effects.*] takes them; empty where none is on.
-std::string effects_text(Effects effects, const Campaign& campaign) {
+std::string effects_text(const Effects& effects, const Campaign& campaign) {
   std::string text;
-  if (is_on(effects, "vegetation-drag") && is_on(effects, "forest-stems"))  // found one after the other
+  if (find_effect("vegetation-drag")->acts(effects) &&
+      find_effect("forest-stems")->acts(effects))  // one after the other
     text += "\n[effects]\nallow_both = true\n";
-  for (const std::string_view name : effect_names()) {
-    if (!is_on(effects, name)) continue;
-    text += "\n[effects." + std::string(name) + "]\n";
-    for (const auto& field : effect_fields()) {
-      if (!field.key.starts_with(std::string(name) + ".")) continue;
-      text += std::string(field.key.substr(name.size() + 1)) + " = " + text_of(field.get(effects));
+  for (const EffectEntry& entry : effect_entries()) {
+    if (!entry.acts(effects)) continue;
+    text += "\n[effects." + std::string(entry.name) + "]\n";
+    for (const EffectField& field : entry.fields()) {
+      text += std::string(entry.key_of(field)) + " = " + text_of(field.get(effects));
       text += field.unit == "1" ? "\n" : "  # " + std::string(field.unit) + "\n";
     }
-    if (name == "wet-ground") {
-      std::vector<std::string> days;
-      for (const int day : effects.wet_ground.days) days.push_back(std::to_string(day));
-      text += "days = [" + joined(days) + "]\n";
+    if (const std::vector<int>* days = entry.days(effects)) {
+      std::vector<std::string> words;
+      for (const int day : *days) words.push_back(std::to_string(day));
+      text += "days = [" + joined(words) + "]\n";
     }
-    text += zones_text(extent_of(effects, name), campaign);
+    text += zones_text(entry.area(effects), campaign);
   }
   return text;
 }
 
-/// Bands, barriers and biases as comments: no scenario can read them.
-std::string anomalies_text(const Model& model) {
+/// [barriers] of a model, in the coordinates of the DEM.
+std::string barriers_text(const Model& model, const Campaign& campaign) {
+  std::vector<BarrierLine> lines;
+  for (const Barrier& barrier : model.barriers) lines.push_back(line_of(barrier, campaign.surface.grid()));
+  return lines.empty() ? "" : "\n[barriers]\nline = " + barrier_lines_text(lines) + "  # m, kJ\n";
+}
+
+/// [[instrument_bias]] of a model: `talus score` takes it, a scenario says that it does not.
+std::string bias_text(const Model& model, const Campaign& campaign) {
   std::string text;
-  for (const Net& net : model.nets)
-    text += "\n# undeclared-barrier: " + text_of(net.height) + " m high, from (" + text_of(net.line.front().x()) +
-            ", " + text_of(net.line.front().y()) + ") to (" + text_of(net.line.back().x()) + ", " +
-            text_of(net.line.back().y()) + ") m from the lower left corner of the DEM\n";
-  for (std::size_t i = 0; i < model.bias.size(); ++i)
-    if (const Bias& b = model.bias[i]; b.speed != 0.0 || b.jump != 0.0 || b.spin != 0.0)
-      text += "\n# instrument-bias: instrument " + std::to_string(i + 1) + " reads speed " + text_of(b.speed) +
-              ", jump " + text_of(b.jump) + ", spin " + text_of(b.spin) + " too high (share of the value)\n";
-  if (!model.zones.values.empty())
-    text +=
-        "\n# undeclared-zone: a band of other ground, see diagnosis.json; the ground in it is not part of this file\n";
+  for (std::size_t i = 0; i < model.bias.size(); ++i) {
+    const Bias& b = model.bias[i];
+    if (b.speed == 0.0 && b.jump == 0.0 && b.spin == 0.0) continue;
+    text += "\n[[instrument_bias]]  # read too high, as a share of the value\n";
+    if (i < campaign.screens.size()) text += "screen = " + toml_text(campaign.screens[i].id) + "\n";
+    text += "speed = " + text_of(b.speed) + "\njump = " + text_of(b.jump) + "\nspin = " + text_of(b.spin) + "\n";
+  }
   return text;
+}
+
+/// What no file takes: a band of other ground has no name and no polygon.
+std::string band_text(const Model& model) {
+  if (model.zones.values.empty()) return {};
+  return "\n# undeclared-zone: a band of other ground, see diagnosis.json; the ground in it is not part of this file\n";
 }
 
 std::string ground_text(const Ground& ground) {
@@ -92,6 +94,18 @@ void check_places(const std::string& name, const EffectSpec& effect, const Campa
       faults.push_back(unknown + known_names(zone, campaign.zone_names));
 }
 
+/// The screen that a bias names, or the samples, which come after the screens.
+std::size_t instrument_of(const InstrumentBias& bias, const Campaign& campaign) {
+  if (bias.screen.empty()) return campaign.screens.size();
+  std::vector<std::string> known;
+  for (std::size_t i = 0; i < campaign.screens.size(); ++i) {
+    if (campaign.screens[i].id == bias.screen) return i;
+    known.push_back(campaign.screens[i].id);
+  }
+  throw InputError(bias.where + " screen = '" + bias.screen + "': the campaign has no such screen" +
+                   known_names(bias.screen, known));
+}
+
 }  // namespace
 
 Model read_model(const std::string& path, const Campaign& campaign) {
@@ -113,11 +127,16 @@ Model read_model(const std::string& path, const Campaign& campaign) {
     for (const ZoneSpec& zone : spec.zones)
       if (zone.name == campaign.zone_names[i]) model.grounds[i] = zone.ground;
   for (const auto& [name, effect] : spec.effects) {
-    EffectArea* extent = extent_of(model.effects, name);
-    if (extent == nullptr || effect.zones.empty()) continue;
+    EffectArea* area = find_effect(name)->area(model.effects);
+    if (area == nullptr || effect.zones.empty()) continue;
     for (const std::string& zone : campaign.zone_names)
-      extent->zones.push_back(std::count(effect.zones.begin(), effect.zones.end(), zone) > 0 ? 1 : 0);
+      area->zones.push_back(std::count(effect.zones.begin(), effect.zones.end(), zone) > 0 ? 1 : 0);
   }
+  for (const BarrierLine& line : spec.barrier_lines)
+    model.barriers.push_back(barrier_of(line, campaign.surface.grid()));
+  if (!spec.instrument_bias.empty()) model.bias.resize(campaign.screens.size() + 1);
+  for (const InstrumentBias& bias : spec.instrument_bias)
+    model.bias[instrument_of(bias, campaign)] = {bias.speed, bias.jump, bias.spin};
   return model;
 }
 
@@ -133,7 +152,9 @@ std::string model_text(const Model& model, const LoadedCampaign& loaded, const s
   }
   text += "\n[model]\ndeformation_coefficient = " + text_of(model.impact.deformation_coefficient) + "\n";
   text += std::string("roughness = \"") + (model.impact.roughness == Roughness::Clamp ? "clamp" : "resample") + "\"\n";
-  return text + effects_text(model.effects, loaded.campaign) + anomalies_text(model);
+  const Campaign& campaign = loaded.campaign;
+  return text + effects_text(model.effects, campaign) + barriers_text(model, campaign) + bias_text(model, campaign) +
+         band_text(model);
 }
 
 }  // namespace talus::io

@@ -14,32 +14,31 @@ using Kind = TomlValue::Kind;
 constexpr Bounds kDay{"days", "1", "number of a day", 0.0, 1e6, Bounds::Closed, true};
 
 /// "softening or drag".
-std::string strengths_of(const std::string& name) {
+std::string strengths_of(const EffectEntry& entry) {
   std::string keys;
-  for (const auto& field : effect_fields())
-    if (field.key.starts_with(name + ".") && !std::isnan(field.off))
-      keys += (keys.empty() ? "" : " or ") + std::string(field.key.substr(name.size() + 1));
+  for (const EffectField& field : entry.fields())
+    if (field.is_strength()) keys += (keys.empty() ? "" : " or ") + std::string(entry.key_of(field));
   return keys;
 }
 
 /// Reads the table of one effect.
 class EffectReader {
  public:
-  EffectReader(ScenarioSpec& spec, TableReader table, std::string name, const std::filesystem::path& base,
+  EffectReader(ScenarioSpec& spec, TableReader table, const EffectEntry& entry, const std::filesystem::path& base,
                const std::string& origin)
-      : spec_(spec), table_(std::move(table)), name_(std::move(name)), base_(base), origin_(origin) {}
+      : spec_(spec), table_(std::move(table)), entry_(entry), name_(entry.name), base_(base), origin_(origin) {}
 
   void read() {
     if (table_.value() == nullptr) return;
     EffectSpec& effect = spec_.effects[name_];
     effect.where = table_.file() + ":" + std::to_string(table_.value()->line) + ": [effects." + name_ + "]";
     const bool acts = numbers();
-    if (name_ == "wet-ground") days(effect);
-    if (extent_of(spec_.values.effects, name_) != nullptr) place(effect);
+    if (std::vector<int>* list = entry_.days(spec_.values.effects)) days(effect, *list);
+    if (entry_.area(spec_.values.effects) != nullptr) place(effect);
     const std::size_t faults = table_.faults().size();
     table_.finish();
     if (!acts && table_.faults().size() == faults)  // else the unknown key was meant for it
-      table_.faults().push_back(effect.where + " does nothing, must give " + strengths_of(name_) + ", or be left out");
+      table_.faults().push_back(effect.where + " does nothing, must give " + strengths_of(entry_) + ", or be left out");
   }
 
  private:
@@ -48,11 +47,10 @@ class EffectReader {
   /// Returns whether it acts: one of its strengths is given, here or by what the scenario includes.
   bool numbers() {
     bool strength = false;
-    for (const auto& field : effect_fields()) {
-      if (!field.key.starts_with(name_ + ".")) continue;
-      const std::string key(field.key.substr(name_.size() + 1));
+    for (const EffectField& field : entry_.fields()) {
+      const std::string key(entry_.key_of(field));
       const bool given_before = spec_.origins.contains("effects." + name_ + "." + key);
-      strength = strength || ((given_before || table_.value()->find(key) != nullptr) && !std::isnan(field.off));
+      strength = strength || ((given_before || table_.value()->find(key) != nullptr) && field.is_strength());
       if (const auto value = table_.number(key, field)) {
         field.set(spec_.values.effects, *value);
         given(key);
@@ -61,14 +59,13 @@ class EffectReader {
     return strength;
   }
 
-  void days(const EffectSpec& effect) {
+  void days(const EffectSpec& effect, std::vector<int>& list) {
     const auto days = table_.numbers("days", kDay);
-    std::vector<int>& wet = spec_.values.effects.wet_ground.days;
-    if (table_.value()->find("days") == nullptr && wet.empty())
-      table_.faults().push_back(effect.where + " has no days, must list the wet ones: days = [1, 2]");
+    if (table_.value()->find("days") == nullptr && list.empty())
+      table_.faults().push_back(effect.where + " has no days, must list those on which it acts: days = [1, 2]");
     if (!days) return;
-    wet.clear();  // what a scenario includes said others
-    for (const double day : *days) wet.push_back(static_cast<int>(day));
+    list.clear();  // what a scenario includes said others
+    for (const double day : *days) list.push_back(static_cast<int>(day));
     given("days");
   }
 
@@ -96,6 +93,7 @@ class EffectReader {
 
   ScenarioSpec& spec_;
   TableReader table_;
+  const EffectEntry& entry_;
   std::string name_;
   const std::filesystem::path& base_;
   const std::string& origin_;
@@ -104,8 +102,8 @@ class EffectReader {
 }  // namespace
 
 void read_effects(ScenarioSpec& spec, TableReader table, const std::filesystem::path& base, const std::string& origin) {
-  for (const std::string_view name : effect_names())
-    EffectReader(spec, table.table(std::string(name)), std::string(name), base, origin).read();
+  for (const EffectEntry& entry : effect_entries())
+    EffectReader(spec, table.table(std::string(entry.name)), entry, base, origin).read();
   if (const TomlValue* both = table.find("allow_both")) {
     if (both->kind != Kind::Boolean) table.fault("allow_both", *both, "must be true or false");
     spec.values.drag_and_stems = both->boolean;

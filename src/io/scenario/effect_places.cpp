@@ -37,18 +37,18 @@ Raster<std::uint8_t> read_mask(const std::string& name, const std::string& path,
 }  // namespace
 
 void load_effect_places(const ScenarioSpec& spec, const Terrain& terrain, Scenario& parts, LoadedScenario& out) {
-  for (const std::string_view effect_name : effect_names()) {
-    const std::string name(effect_name);
+  for (const EffectEntry& entry : effect_entries()) {
+    const std::string name(entry.name);
     const auto found = spec.effects.find(name);
-    talus::EffectArea* extent = extent_of(parts.effects, name);
-    if (found == spec.effects.end() || extent == nullptr) continue;
+    EffectArea* area = entry.area(parts.effects);
+    if (found == spec.effects.end() || area == nullptr) continue;
     const EffectSpec& effect = found->second;
     if (!effect.zones.empty()) {
-      extent->zones.assign(parts.zone_names.size(), 0);
+      area->zones.assign(parts.zone_names.size(), 0);
       for (std::size_t i = 0; i < parts.zone_names.size(); ++i)
-        extent->zones[i] = std::count(effect.zones.begin(), effect.zones.end(), parts.zone_names[i]) > 0 ? 1 : 0;
+        area->zones[i] = std::count(effect.zones.begin(), effect.zones.end(), parts.zone_names[i]) > 0 ? 1 : 0;
     }
-    if (!effect.file.path.empty()) extent->mask = read_mask(name, effect.file.path, terrain, out);
+    if (!effect.file.path.empty()) area->mask = read_mask(name, effect.file.path, terrain, out);
   }
 }
 

@@ -2,10 +2,10 @@
 #include <filesystem>
 #include <functional>
 
-#include "io/gdal/dataset.hpp"
+#include "barrier_keys.hpp"
 #include "effect_spec.hpp"
+#include "io/gdal/dataset.hpp"
 #include "scenario_spec.hpp"
-#include "io/files/checksum.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/gdal/vectors.hpp"
@@ -52,6 +52,17 @@ void load_ground(ScenarioSpec& spec, const Terrain& terrain, Scenario& parts, Lo
   parts.cover.zones = std::move(layer.zones);
   spec.ground_field = layer.field;
   take(out, layer);
+}
+
+/// The barriers of the layer, then those that the scenario names by their ends.
+void load_barriers(const ScenarioSpec& spec, const Terrain& terrain, Scenario& parts, LoadedScenario& out) {
+  BarrierLayer layer;
+  if (!spec.barriers.path.empty()) {
+    layer = read_barriers(spec.barriers.path, terrain);
+    take(out, layer);
+  }
+  for (const BarrierLine& line : spec.barrier_lines) layer.barriers.push_back(barrier_of(line, terrain.heights.grid));
+  parts.barriers = Barriers(std::move(layer.barriers));
 }
 
 // A run without any diameter is the most frequent fault of a first scenario: say all ways to give one.
@@ -139,12 +150,11 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
       parts.screens = std::move(screens.screens);
       take(out, screens);
     });
-  if (!spec.barriers.path.empty())
-    attempt([&] {
-      BarrierLayer barriers = read_barriers(spec.barriers.path, terrain);
-      parts.barriers = Barriers(std::move(barriers.barriers));
-      take(out, barriers);
-    });
+  attempt([&] { load_barriers(spec, terrain, parts, out); });
+  if (!spec.instrument_bias.empty())
+    out.warnings.push_back(spec.include.where +
+                           ": its [[instrument_bias]] is left out: it says how instruments of the "
+                           "campaign read, and belongs to no place");
   stop_at_faults(faults, all_faults);
   parts.features = std::move(sources.features);
   parts.sources = std::move(sources.cells);

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "barrier_keys.hpp"
 #include "effect_spec.hpp"
 #include "frequency_keys.hpp"
 #include "ground_keys.hpp"
@@ -39,6 +40,7 @@ class SpecReader {
     screens.finish();
     TableReader barriers = top.table("barriers");
     named_file(barriers, "file", spec_.barriers);
+    read_barrier_lines(spec_, barriers, origin_);
     barriers.finish();
     read_frequency(spec_, top.table("frequency"), origin_);
     top.finish();
@@ -62,6 +64,10 @@ class SpecReader {
     read_impact(model);
     model.finish();
     read_effects(spec_, top.table("effects"), base_, origin_);
+    TableReader barriers = top.table("barriers");
+    read_barrier_lines(spec_, barriers, origin_);
+    barriers.finish();
+    read_instrument_bias(spec_, top);
     top.finish();
   }
 

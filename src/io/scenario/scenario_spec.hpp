@@ -33,6 +33,21 @@ struct EffectSpec {
   NamedFile file;
 };
 
+/// A straight barrier that a scenario or a model names by its ends, in the coordinates of the DEM.
+struct BarrierLine {
+  std::string id;
+  double height = 0.0;    ///< [m]
+  double capacity = 0.0;  ///< [J]; infinite where none is given
+  Eigen::Vector2d from, to;
+};
+
+/// How much an instrument of a campaign reads too high, as a share of the value. No part of any place.
+struct InstrumentBias {
+  std::string where;   ///< "model.toml:12: [[instrument_bias]]", for messages
+  std::string screen;  ///< empty: the samples along the paths
+  double speed = 0.0, jump = 0.0, spin = 0.0;
+};
+
 /// What the file of a profile says of its terrain and places, beside what it shares with a scenario.
 struct ProfileSpec {
   NamedFile csv, line;  ///< a polyline; or a line over `ScenarioSpec::dem`
@@ -50,6 +65,8 @@ struct ScenarioSpec {
   ZoneSpec default_ground;
   std::vector<ZoneSpec> zones;                ///< in the order of the file
   std::map<std::string, EffectSpec> effects;  ///< by name
+  std::vector<BarrierLine> barrier_lines;
+  std::vector<InstrumentBias> instrument_bias;  ///< of a model that is included
   Range release_height = SourceFeature{}.release_height;
   std::optional<ProfileSpec> profile;          ///< of `talus profile`: there are no layers then
   Scenario values;                             ///< its settings; without terrain, sources and screens
@@ -78,7 +95,7 @@ void sort_by_line(std::vector<std::string>& faults, const std::string& file);
 void check_files(const std::vector<const NamedFile*>& files, std::vector<std::string>& faults);
 
 /// Reads what a scenario may include, and a model for a campaign: [ground] default, [ground.zones.*], the impact law in
-/// [model], [effects.*]. Any other key is a fault.
+/// [model], [effects.*], `line` of [barriers], [[instrument_bias]]. Any other key is a fault.
 ///
 /// @param name    of the file in messages
 /// @param origin  for the record: "include fitted.toml"

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "barrier_keys.hpp"
 #include "scenario_spec.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
@@ -91,6 +92,7 @@ class Lines {
     }
     file("screens", "file", spec.screens);
     file("barriers", "file", spec.barriers);
+    if (!spec.barrier_lines.empty()) add("barriers", "line", barrier_lines_text(spec.barrier_lines), "");
     frequency();
     effects();
   }
@@ -140,18 +142,15 @@ class Lines {
   void effects() {
     if (spec_.effects.empty()) return;
     add("effects", "allow_both", spec_.values.drag_and_stems ? "true" : "false", "");
-    for (const std::string_view name : effect_names()) {
-      const auto found = spec_.effects.find(std::string(name));
+    for (const EffectEntry& entry : effect_entries()) {
+      const auto found = spec_.effects.find(std::string(entry.name));
       if (found == spec_.effects.end()) continue;
       const std::string table = "effects." + found->first;
-      for (const auto& field : effect_fields())
-        if (field.key.starts_with(found->first + "."))
-          add(table, std::string(field.key.substr(name.size() + 1)), text_of(field.get(spec_.values.effects)),
-              field.unit == "1" ? "" : std::string(field.unit));
-      if (name == "wet-ground") {
-        const std::vector<int>& days = spec_.values.effects.wet_ground.days;
-        add(table, "days", list_text({days.begin(), days.end()}), "");
-      }
+      for (const EffectField& field : entry.fields())
+        add(table, std::string(entry.key_of(field)), text_of(field.get(spec_.values.effects)),
+            field.unit == "1" ? "" : std::string(field.unit));
+      if (const std::vector<int>* days = entry.days(spec_.values.effects))
+        add(table, "days", list_text({days->begin(), days->end()}), "");
       std::vector<std::string> zones;
       for (const std::string& zone : found->second.zones) zones.push_back(toml_text(zone));
       if (!zones.empty()) add(table, "zones", std::string("[") + joined(zones) + "]", "");

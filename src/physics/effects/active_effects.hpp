@@ -4,7 +4,7 @@
 #include "physics/drag_flight.hpp"
 #include "talus/physics/flight.hpp"
 #include "talus/physics/slide.hpp"
-#include "talus/physics/trace.hpp"
+#include "talus/physics/world.hpp"
 
 namespace talus {
 
@@ -37,9 +37,9 @@ class ActiveEffects {
  public:
   ActiveEffects(const World& world, const Release& release);
 
-  /// The ground of a place as this block meets it on this day: block-shape, block-mass, wet-ground.
+  /// The ground of a place as this block meets it on this day: `change_ground` of each effect that has one.
   Ground ground(const Vec3& place, const Block& body);
-  /// The impact law with block-shape, soft-ground and rolling-resistance, where `ground` was last asked for.
+  /// The impact law with `change_restitution` and `change_rebound` of each effect, where `ground` was last asked for.
   Contact impact(const Ground& ground, const Block& body, const Motion& motion, const Vec3& normal,
                  const Asperity& asperity);
   /// fragmentation: what the last impact breaks.
@@ -50,12 +50,17 @@ class ActiveEffects {
   SlideEnd slide(Motion& motion, PatchIndex& at, const Block& body, Path& path);
 
  private:
-  bool here(const EffectArea& where) const { return where.covers(zone_, x_, y_); }
+  template <class Effect>
+  bool here(const Effect& effect) const {
+    if constexpr (requires { effect.where; })
+      return effect.where.covers(zone_, x_, y_);
+    else
+      return true;
+  }
 
   const World& world_;
   const Effects& effects_;
   const Release& release_;
-  bool wet_;  // the day
   std::optional<DragFlight> drag_;
   std::uint8_t zone_ = 0;  // of the impact
   double x_ = 0.0, y_ = 0.0, break_energy_ = 0.0;

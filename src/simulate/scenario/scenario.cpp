@@ -4,8 +4,8 @@
 
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
-#include "talus/simulate/scenario/parameter_table.hpp"
 #include "talus/simulate/scenario/frequency.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace talus {
 
@@ -151,7 +151,7 @@ void check_frequency(const Scenario& s) {
   AnnualWeights::of(s);  // refuses what contradicts itself
 }
 
-void check_extent(const Scenario& s, const EffectArea& where, const std::string& effect) {
+void check_area(const Scenario& s, const EffectArea& where, const std::string& effect) {
   if (!where.zones.empty() && where.zones.size() != s.cover.grounds.size())
     throw InputError(effect + ": says of " + std::to_string(where.zones.size()) +
                      " zones whether it acts there, must be " + std::to_string(s.cover.grounds.size()));
@@ -179,9 +179,11 @@ void check_stands(const Scenario& s) {
 }
 
 void check_effects(Scenario& s) {
-  for (const auto& field : effect_fields()) check(field, field.get(s.effects), "effects." + std::string(field.key));
-  for (const std::string_view name : effect_names())
-    if (const EffectArea* where = extent_of(s.effects, name)) check_extent(s, *where, "effects." + std::string(name));
+  for (const EffectEntry& entry : effect_entries()) {
+    for (const EffectField& field : entry.fields())
+      check(field, field.get(s.effects), "effects." + std::string(field.key));
+    if (const EffectArea* where = entry.area(s.effects)) check_area(s, *where, "effects." + std::string(entry.name));
+  }
   check_stands(s);
 }
 

@@ -7,13 +7,6 @@
 
 namespace talus {
 
-/// A net that catches what crosses it low and slowly enough: a candidate of the diagnosis.
-struct Net {
-  std::vector<Eigen::Vector2d> line;  ///< in plan [m, local]
-  double height = 0.0;                ///< above the terrain [m]; 0: catches nothing
-  double capacity = 1e9;              ///< translational energy it holds [kJ]
-};
-
 /// How much an instrument reads too high, as a share of the true value.
 struct Bias {
   double speed = 0.0, jump = 0.0, spin = 0.0;
@@ -25,9 +18,9 @@ struct Model {
   std::vector<Ground> grounds;  ///< by zone: as Campaign::zone_names, or of `zones`
   ImpactModel impact;
   Effects effects;
-  Raster<std::uint8_t> zones;  ///< instead of the campaign's; empty: the campaign's
-  std::vector<Net> nets;
-  std::vector<Bias> bias;  ///< by screen, then that of the samples; empty: none
+  Raster<std::uint8_t> zones;     ///< instead of the campaign's; empty: the campaign's
+  std::vector<Barrier> barriers;  ///< that nobody declared; as those of a run
+  std::vector<Bias> bias;         ///< by screen, then that of the samples; empty: none
 };
 
 /// A model with the same ground in all zones of a campaign: the preset of this name, no effect.

@@ -5,7 +5,8 @@
 
 namespace talus {
 
-/// The effects of the library and the anomalies that are not physics, with every place where they may act.
+/// The effects of the registry, undeclared zones and barriers and the bias of instruments, with every place where they
+/// may act.
 ///
 /// @param runs     of the base model: says which zones are met and where the blocks go
 /// @param without  names of effects that the base model has already

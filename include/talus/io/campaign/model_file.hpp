@@ -7,12 +7,13 @@
 namespace talus::io {
 
 /// Reads a model for a campaign from `fitted.toml`: [ground] default, [ground.zones.NAME] with the names of the
-/// campaign's zones (default: the ground outside all), the impact law in [model], [effects.*]. A zone that the file
-/// does not name has the default ground. Throws InputError with file, line, key, value and what is allowed, also for a
-/// zone that the campaign lacks.
+/// campaign's zones (default: the ground outside all), the impact law in [model], [effects.*], [barriers] and
+/// [[instrument_bias]]. A zone that the file does not name has the default ground. Throws InputError with file, line,
+/// key, value and what is allowed, also for a zone or a screen that the campaign lacks.
 Model read_model(const std::string& path, const Campaign& campaign);
 
-/// A model as such a file, which reads back as exactly this and which a scenario can `include`.
+/// A model as such a file, which reads back as exactly this (places of barriers but for rounding) and which a scenario
+/// can `include`. A band of other ground is not part of it.
 ///
 /// @param heading  comment lines for the top, without the marks
 std::string model_text(const Model& model, const LoadedCampaign& loaded, const std::string& heading);

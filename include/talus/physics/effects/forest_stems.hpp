@@ -3,9 +3,18 @@
 
 #include "talus/base/random.hpp"
 #include "talus/physics/block.hpp"
-#include "talus/physics/effects.hpp"
+#include "talus/physics/effects/effect_area.hpp"
 
 namespace talus {
+
+/// Single stems, met at random.
+struct ForestStems {
+  double density = 0.0;         ///< [stems per hectare]; 0: off
+  double diameter = 0.3;        ///< DBH [m]
+  double height = 20.0;         ///< of the trees [m]
+  double species_factor = 1.0;  ///< of the energy a stem takes; 1: silver fir [-]
+  EffectArea where;
+};
 
 /// forest-stems. docs/effects.md, "forest-stems".
 

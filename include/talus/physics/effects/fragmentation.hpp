@@ -1,9 +1,16 @@
 #pragma once
 #include "talus/base/random.hpp"
-#include "talus/physics/effects.hpp"
+#include "talus/physics/effects/effect_area.hpp"
 #include "talus/physics/path.hpp"
 
 namespace talus {
+
+/// A block that breaks at a hard impact.
+struct Fragmentation {
+  double threshold = 0.0;  ///< energy lost across the plane, per mass, above which it breaks [J/kg]; 0: never
+  double largest = 0.5;    ///< share of the mass that the largest piece keeps, in [1/2, 1)
+  EffectArea where;
+};
 
 /// fragmentation. docs/effects.md, "fragmentation".
 

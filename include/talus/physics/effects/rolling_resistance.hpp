@@ -1,9 +1,19 @@
 #pragma once
 #include <algorithm>
 
-#include "talus/physics/effects.hpp"
+#include "talus/physics/effects/effect_area.hpp"
+#include "talus/physics/impact.hpp"
 
 namespace talus {
+
+/// Resistance to rolling, once the block hops no higher than a share of its radius.
+struct RollingResistance {
+  double coefficient = 0.0;  ///< mu_r [-]; 0: off
+  double hop = 0.5;          ///< highest hop that counts as rolling, in radii [-]
+  EffectArea where;
+
+  void change_rebound(Rebound& after, const ImpactMoment& moment) const;
+};
 
 /// Whether a block that leaves the ground is as good as rolling: its hop, v^2/(2 g cos beta), is a share of its radius.
 ///
@@ -23,6 +33,15 @@ inline bool is_rolling(const RollingResistance& effect, double away, double cos_
 inline double rolling_keeps(const RollingResistance& effect, double v_t, double impulse) {
   const double loss = 5.0 / 7.0 * effect.coefficient * impulse;
   return loss < v_t ? 1.0 - loss / v_t : 0.0;
+}
+
+inline void RollingResistance::change_rebound(Rebound& after, const ImpactMoment& moment) const {
+  const double away = std::max(0.0, after.velocity.dot(moment.normal));
+  if (!(coefficient > 0.0) || !is_rolling(*this, away, moment.normal.z(), moment.block.radius())) return;
+  const double v_t = (after.velocity - after.velocity.dot(moment.plane) * moment.plane).norm();
+  const double kept = rolling_keeps(*this, v_t, (1.0 + moment.k.normal) * moment.v_n);
+  scale_along(after.velocity, moment.plane, kept);
+  scale_along(after.spin, moment.plane, kept);
 }
 
 }  // namespace talus

@@ -1,8 +1,19 @@
 #pragma once
 #include "talus/physics/block.hpp"
-#include "talus/physics/effects.hpp"
+#include "talus/physics/effects/effect_area.hpp"
+#include "talus/physics/impact.hpp"
 
 namespace talus {
+
+/// Soft soil in which the block ploughs a scar.
+struct SoftGround {
+  double drag = 0.0;         ///< C_d of the soil [-]; 0: off
+  double stiffness = 15.0;   ///< M_E [MN/m^2]
+  double scar_length = 1.5;  ///< [m]
+  EffectArea where;
+
+  void change_rebound(Rebound& after, const ImpactMoment& moment) const;
+};
 
 inline constexpr double kSoilDensity = 1700.0;  ///< [kg/m^3]
 
@@ -19,5 +30,9 @@ double segment_area(double radius, double d);
 
 /// soft-ground: share of the tangential speed that is left after an impact, exp(-1/2 C_d rho A(d) L / m).
 double scar_keeps(const SoftGround& soft, const Block& block, double v_n);
+
+inline void SoftGround::change_rebound(Rebound& after, const ImpactMoment& moment) const {
+  if (drag > 0.0) scale_along(after.velocity, moment.plane, scar_keeps(*this, moment.block, moment.v_n));
+}
 
 }  // namespace talus

@@ -2,9 +2,21 @@
 #include <algorithm>
 
 #include "talus/base/elementary.hpp"
-#include "talus/physics/effects.hpp"
+#include "talus/physics/block.hpp"
+#include "talus/physics/effects/effect_area.hpp"
+#include "talus/physics/ground.hpp"
 
 namespace talus {
+
+/// Ground that is softer on wet days.
+struct WetGround {
+  double softening = 0.0;  ///< En50 is multiplied by exp(-softening) on a wet day [-]
+  double drag = 0.0;       ///< Et50 is multiplied by exp(-drag) on a wet day [-]
+  std::vector<int> days;   ///< the wet ones
+  EffectArea where;
+
+  void change_ground(Ground& ground, const Block& block, int day) const;
+};
 
 /// Whether a day is one of the wet ones.
 inline bool is_wet(const WetGround& effect, int day) {
@@ -19,6 +31,12 @@ inline double wet_stiffness(const WetGround& effect) {
 /// What Et50 is multiplied by on a wet day.
 inline double wet_hold(const WetGround& effect) {
   return exponential(-effect.drag);
+}
+
+inline void WetGround::change_ground(Ground& ground, const Block& /*block*/, int day) const {
+  if (!is_wet(*this, day)) return;
+  ground.En50 *= wet_stiffness(*this);
+  ground.Et50 *= wet_hold(*this);
 }
 
 }  // namespace talus

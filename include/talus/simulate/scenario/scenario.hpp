@@ -1,14 +1,13 @@
 #pragma once
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
+#include "talus/base/bounds.hpp"
+#include "talus/physics/effects/registry.hpp"
 #include "talus/physics/trace.hpp"
 
 namespace talus {
-
-inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
 
 /// A closed interval from which a value is drawn uniformly; one value where both ends are equal.
 struct Range {

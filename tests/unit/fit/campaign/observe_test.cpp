@@ -95,6 +95,31 @@ TEST(Observe, WithoutErrorsItIsThePath) {
   EXPECT_EQ(runs[1].ends[0] + runs[1].ends[1] + runs[1].ends[2] + runs[1].ends[3], ends);
 }
 
+/// A barrier of a model is one of a run: above its capacity it takes just that, and the block goes on with the rest.
+TEST(Observe, ABarrierThatBreaksTakesItsCapacity) {
+  Campaign c = campaign_on_slope(4);
+  c.error = {};
+  Model model = model_of_slope();
+  const auto free = observe(c, model, {50, 1, 0, 0, {}, {}});
+  constexpr double kCapacity = 2000.0;  // [J]
+  model.barriers.push_back({"weak", {{{89.999, 0.0}, {89.999, 140.0}}}, 1e6, kCapacity});
+  const auto braked = observe(c, model, {50, 1, 0, 0, {}, {}});
+  int passed = 0;
+  for (std::size_t b = 0; b < c.blocks.size(); ++b)
+    for (std::size_t t = 0; t < 50; ++t) {
+      const double before = free[b].screens[0].speed[t], after = braked[b].screens[0].speed[t];
+      if (std::isnan(before)) continue;
+      const double left = before * before - 2.0 * kCapacity / c.blocks[b].mass;  // of v^2, a millimetre farther down
+      if (left > 1.0) {
+        EXPECT_NEAR(after * after, left, 0.1) << b << ' ' << t;
+        ++passed;
+      } else if (left < -1.0) {
+        EXPECT_EQ(braked[b].end[t], End::Caught);
+      }
+    }
+  EXPECT_GT(passed, 20);
+}
+
 /// A free fall over an edge: at a distance r the speed follows from the energy.
 TEST(Observe, SampleOfAParabola) {
   Campaign c;

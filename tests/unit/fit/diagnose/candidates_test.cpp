@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "support/campaigns.hpp"
 #include "talus/fit/diagnose/residual.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace talus::test {
 namespace {
@@ -32,7 +35,7 @@ std::vector<std::string> described(const Campaign& c) {
   for (const Candidate& candidate : candidates_of(c, model_of_slope(), runs, {})) {
     Model m = with(model_of_slope(), candidate, Eigen::VectorXd::Ones(std::ssize(candidate.parameters)));
     list.push_back(candidate.effect + ' ' + candidate.where + ' ' + std::to_string(candidate.from));
-    if (!m.nets.empty()) list.back() += ' ' + std::to_string(m.nets[0].line[0].x());
+    if (!m.barriers.empty()) list.back() += ' ' + std::to_string(m.barriers[0].lines[0][0].x());
     list.back() += ' ' + std::to_string(m.effects.block_mass.reference_diameter);
   }
   return list;
@@ -67,6 +70,41 @@ TEST(Candidates, ADayThatIsNotGivenIsNoDay) {
   for (std::size_t b = 0; b < c.blocks.size(); b += 3) c.blocks[b].day = 0;
   for (const Candidate& candidate : candidates_of(c, model_of_slope(), fitting_runs(c, 20), {}))
     EXPECT_NE(candidate.where, "day 0");
+}
+
+/// At both ends of its search each number of an effect is one that a file may hold: what a fit writes is read again.
+TEST(Candidates, StayWithinTheBoundsOfTheRegistry) {
+  Campaign c = measured_campaign();
+  for (MeasuredBlock& b : c.blocks) b.mass = 5000.0, b.axes = {3.0, 2.0, 1.0};
+  std::set<std::string> seen;
+  for (const Candidate& candidate : candidates_of(c, model_of_slope(), fitting_runs(c, 20), {}))
+    for (std::size_t i = 0; i < candidate.parameters.size(); ++i)
+      for (const double value : {candidate.parameters[i].lower, candidate.parameters[i].upper, 1e-9}) {
+        Model m = model_of_slope();
+        candidate.prepare(m);
+        if (value >= candidate.parameters[i].lower) candidate.parameters[i].set(m, value);
+        for (const EffectEntry& entry : effect_entries())
+          for (const EffectField& field : entry.fields())
+            EXPECT_EQ(fault_of(field, field.get(m.effects)), std::nullopt) << field.key << ' ' << value;
+        seen.insert(candidate.effect);
+      }
+  for (const EffectEntry& entry : effect_entries())
+    EXPECT_TRUE(seen.contains(std::string(entry.name)) || entry.sought == Sought::Nowhere) << entry.name;
+}
+
+/// The order in which results list them, whatever the order of the registry. Those that are added stand anywhere.
+TEST(Candidates, StandInTheOrderOfTheirTurns) {
+  Campaign c = measured_campaign();
+  for (MeasuredBlock& b : c.blocks) b.axes = {3.0, 2.0, 1.0};
+  const std::vector<std::string> order{"vegetation-drag", "forest-stems",    "soft-ground",     "rolling-resistance",
+                                       "air-drag",        "block-shape",     "block-mass",      "wet-ground",
+                                       "fragmentation",   "instrument-bias", "undeclared-zone", "undeclared-barrier"};
+  std::vector<std::string> names;
+  for (const Candidate& candidate : candidates_of(c, model_of_slope(), fitting_runs(c, 20), {}))
+    if (std::ranges::find(order, candidate.effect) != order.end() &&
+        (names.empty() || names.back() != candidate.effect))
+      names.push_back(candidate.effect);
+  EXPECT_EQ(names, order);
 }
 
 TEST(Residual, OfATrialHasTheGapsOfItsBlock) {

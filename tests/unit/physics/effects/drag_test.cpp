@@ -1,8 +1,9 @@
-#include "talus/physics/effects/drag.hpp"
-
 #include <gtest/gtest.h>
 
 #include "support/slopes.hpp"
+#include "talus/physics/effects/air_drag.hpp"
+#include "talus/physics/effects/damped_fall.hpp"
+#include "talus/physics/effects/vegetation_drag.hpp"
 
 namespace talus {
 namespace {

@@ -1,25 +1,10 @@
 #pragma once
 #include "talus/base/elementary.hpp"
-#include "talus/physics/block.hpp"
-#include "talus/physics/effects.hpp"
+#include "talus/base/vector.hpp"
 
 namespace talus {
 
-/// vegetation-drag: share of the speed that is lost per second, c/m [1/s]; 0 from the top of the stand upwards.
-///
-/// @param clearance  height of the block above the ground [m]
-/// Source: Leine et al. (2014), as in RAMMS::Rockfall; docs/effects.md, "vegetation-drag".
-inline double vegetation_drag_rate(const VegetationDrag& drag, double mass, double clearance) {
-  return clearance < drag.height ? drag.coefficient / mass : 0.0;
-}
-
-inline constexpr double kAirDensity = 1.2;  ///< at 15 degrees and 200 m above the sea [kg/m^3]
-
-/// air-drag: share of the speed that is lost per metre, 1/2 rho C_d A / m [1/m], with the section A of the sphere.
-/// Source: the drag equation; docs/effects.md, "air-drag".
-inline double air_drag_rate(const AirDrag& drag, const Block& block) {
-  return 0.5 * kAirDensity * drag.coefficient * kPi * block.radius() * block.radius() / block.mass;
-}
+/// The flight that vegetation-drag and air-drag share. docs/effects.md, "Flight with drag".
 
 /// Both kinds of drag at a place: dv/dt = -(linear + quadratic |v|) v.
 struct DragRate {

@@ -1,7 +1,10 @@
-#include "anomalies.hpp"
+#include "talus/fit/diagnose/undeclared_places.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "amount.hpp"
 
 namespace talus {
 namespace {
@@ -26,47 +29,11 @@ void lay_band(Model& m, const Campaign& campaign, const Axis& axis, double from,
     where.zones.resize(2 * n);
     std::copy_n(where.zones.begin(), n, where.zones.begin() + static_cast<std::ptrdiff_t>(n));
   };
-  Effects& e = m.effects;
-  for (EffectArea* where :
-       {&e.vegetation_drag.where, &e.forest_stems.where, &e.block_shape.where, &e.block_mass.where, &e.wet_ground.where,
-        &e.soft_ground.where, &e.rolling_resistance.where, &e.fragmentation.where})
-    twice(*where);
+  for (const EffectEntry& entry : effect_entries())
+    if (EffectArea* area = entry.area(m.effects)) twice(*area);
 }
 
 }  // namespace
-
-Parameter amount(std::string key, std::string unit, double off, double size, double lower, double upper,
-                 std::function<double(const Model&)> get, std::function<void(Model&, double)> set) {
-  return {std::move(key), std::move(unit), lower,         upper, Parameter::Scale::Linear, off,
-          size,           std::move(get),  std::move(set)};
-}
-
-void add_biases(std::vector<Candidate>& list, const Campaign& campaign) {
-  const std::size_t instruments = campaign.screens.size() + 1;
-  const auto add = [&](std::size_t which, const std::string& name, double Bias::*quantity, const char* what) {
-    list.push_back({"instrument-bias",
-                    name + " " + what,
-                    {amount(
-                        "instrument-bias." + name + "." + what, "1", 0.0, 0.15, -0.6, 1.5,
-                        [=](const Model& m) { return m.bias.empty() ? 0.0 : m.bias[which].*quantity; },
-                        [=](Model& m, double v) { m.bias[which].*quantity = v; })},
-                    1,
-                    [=](Model& m) { m.bias.resize(std::max(m.bias.size(), instruments)); }});
-  };
-  for (std::size_t s = 0; s < campaign.screens.size(); ++s) {
-    const auto crossed = std::count_if(campaign.blocks.begin(), campaign.blocks.end(),
-                                       [s](const MeasuredBlock& b) { return !b.holdout && b.passages[s].has_value(); });
-    if (crossed < 5) continue;
-    add(s, "screen " + campaign.screens[s].id, &Bias::speed, "speed");
-    add(s, "screen " + campaign.screens[s].id, &Bias::jump, "jump");
-    add(s, "screen " + campaign.screens[s].id, &Bias::spin, "spin");
-  }
-  const bool sampled = std::any_of(campaign.blocks.begin(), campaign.blocks.end(),
-                                   [](const MeasuredBlock& b) { return !b.holdout && !b.samples.empty(); });
-  if (!sampled) return;
-  add(campaign.screens.size(), "samples", &Bias::speed, "speed");
-  add(campaign.screens.size(), "samples", &Bias::spin, "spin");
-}
 
 Candidate band(const Campaign& campaign, const Axis& axis, double from, double to) {
   const auto ratio = [](double Ground::*member) {
@@ -105,17 +72,17 @@ Candidate barrier(const Axis& axis, double width, double at) {
   const Eigen::Vector2d middle = axis.origin + at * axis.direction;
   const Eigen::Vector2d across(-axis.direction.y(), axis.direction.x());
   const std::vector<Eigen::Vector2d> line{middle - width * across, middle + width * across};
-  return {
-      "undeclared-barrier",
-      "at " + std::to_string(std::lround(at)) + " m",
-      {amount(
-          "undeclared-barrier.height", "m", 0.0, 1.0, 0.0, 10.0, [](const Model& m) { return m.nets.back().height; },
-          [](Model& m, double v) { m.nets.back().height = v; })},
-      1,
-      [line](Model& m) {
-        m.nets.push_back({line, 0.0, 1e9});
-      },
-      1.0};
+  return {"undeclared-barrier",
+          "at " + std::to_string(std::lround(at)) + " m",
+          {amount(
+              "undeclared-barrier.height", "m", 0.0, 1.0, 0.0, 10.0,
+              [](const Model& m) { return m.barriers.back().height; },
+              [](Model& m, double v) { m.barriers.back().height = v; })},
+          1,
+          [line](Model& m) {
+            m.barriers.push_back({"undeclared-barrier", {line}, 0.0, std::numeric_limits<double>::infinity()});
+          },
+          1.0};
 }
 
 }  // namespace talus

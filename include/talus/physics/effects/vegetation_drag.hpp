@@ -1,0 +1,21 @@
+#pragma once
+#include "talus/physics/effects/effect_area.hpp"
+
+namespace talus {
+
+/// Undergrowth and trees as a force c v against the motion, below the height of the stand.
+struct VegetationDrag {
+  double coefficient = 0.0;  ///< c [kg/s]; 0: off
+  double height = 10.0;      ///< of the stand [m]
+  EffectArea where;
+};
+
+/// vegetation-drag: share of the speed that is lost per second, c/m [1/s]; 0 from the top of the stand upwards.
+///
+/// @param clearance  height of the block above the ground [m]
+/// Source: Leine et al. (2014), as in RAMMS::Rockfall; docs/effects.md, "vegetation-drag".
+inline double vegetation_drag_rate(const VegetationDrag& drag, double mass, double clearance) {
+  return clearance < drag.height ? drag.coefficient / mass : 0.0;
+}
+
+}  // namespace talus

@@ -1,0 +1,9 @@
+#pragma once
+#include "talus/fit/diagnose/candidate.hpp"
+
+namespace talus {
+
+/// Candidates for each quantity of each instrument that saw at least five blocks: it reads too high or too low.
+void add_biases(std::vector<Candidate>& list, const Campaign& campaign);
+
+}  // namespace talus

@@ -1,0 +1,132 @@
+#include "talus/physics/effects/registry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
+
+namespace talus {
+namespace {
+
+std::string text_of_file(const std::string& path) {
+  std::ifstream file(std::string(TALUS_SOURCE_DIR) + "/" + path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// The part of a page from "## title" to the next one; empty where there is none.
+std::string section_of(const std::string& page, const std::string& title) {
+  const std::size_t begin = page.find("\n## " + title + "\n");
+  if (begin == std::string::npos) return {};
+  return page.substr(begin, page.find("\n## ", begin + 1) - begin);
+}
+
+/// The cells of the row of a table that begins with a key; none where there is no such row.
+std::vector<std::string> row_of(const std::string& section, const std::string& key) {
+  const std::size_t begin = section.find("\n| `" + key + "`");
+  if (begin == std::string::npos) return {};
+  std::istringstream row(section.substr(begin + 2, section.find('\n', begin + 1) - begin - 2));
+  std::vector<std::string> cells;
+  for (std::string cell; std::getline(row, cell, '|');) cells.push_back(cell);
+  return cells;
+}
+
+/// The numbers in a text like "above 0, at most 60".
+std::vector<double> numbers_in(const std::string& text) {
+  std::vector<double> numbers;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    char* end = nullptr;
+    const double value = std::strtod(word.c_str(), &end);
+    if (end != word.c_str()) numbers.push_back(value);
+  }
+  return numbers;
+}
+
+TEST(Registry, HasEachEffectOnce) {
+  Effects effects;
+  std::set<const void*> members;
+  std::set<std::string_view> names;
+  for_each_effect(effects, [&](auto& effect) { members.insert(&effect); });
+  for (const EffectEntry& entry : effect_entries()) names.insert(entry.name);
+  EXPECT_EQ(members.size(), registry::members_of<Effects>());
+  EXPECT_EQ(names.size(), members.size());
+}
+
+/// Each number of an entry is one of its own: setting it changes it, and no other.
+TEST(Registry, NumbersAreApart) {
+  for (const EffectEntry& entry : effect_entries())
+    for (const EffectField& field : entry.fields()) {
+      Effects effects;
+      const double value = field.get(effects) == field.max ? field.min : field.max;
+      field.set(effects, value);
+      for (const EffectEntry& other : effect_entries())
+        for (const EffectField& number : other.fields())
+          EXPECT_EQ(number.get(effects), &number == &field ? value : number.get(Effects{})) << field.key;
+    }
+}
+
+/// A default is allowed, and a strength is off by default.
+TEST(Registry, DefaultsAreAllowedAndOff) {
+  const Effects fresh;
+  EXPECT_FALSE(fresh.any());
+  for (const EffectEntry& entry : effect_entries()) {
+    EXPECT_FALSE(entry.acts(fresh)) << entry.name;
+    bool strength = false;
+    for (const EffectField& field : entry.fields()) {
+      EXPECT_GE(field.get(fresh), field.min) << field.key;
+      EXPECT_LE(field.get(fresh), field.max) << field.key;
+      strength = strength || field.is_strength();
+    }
+    EXPECT_TRUE(strength) << entry.name << " has no number that switches it off";
+  }
+}
+
+/// What the two candidate bounds of issue 19 broke: a search went to 5 where a file may say 3.
+TEST(Registry, SearchesStayWithinTheBounds) {
+  for (const EffectEntry& entry : effect_entries())
+    for (const EffectField& field : entry.fields()) {
+      if (!field.search || field.search->times != Typical::One || !field.search->inverse_unit.empty()) continue;
+      EXPECT_GE(field.search->lower, field.min) << field.key;
+      EXPECT_LE(field.search->upper, field.max) << field.key;
+    }
+}
+
+TEST(Registry, EachEffectHasItsSectionInTheDocs) {
+  const std::string page = text_of_file("docs/effects.md");
+  ASSERT_FALSE(page.empty());
+  for (const EffectEntry& entry : effect_entries()) {
+    const std::string name(entry.name), section = section_of(page, name);
+    EXPECT_NE(page.find("| [" + name + "](#" + name + ") |"), std::string::npos) << name << " is not in the table";
+    ASSERT_FALSE(section.empty()) << name << " has no section";
+    for (const EffectField& field : entry.fields()) {
+      const std::vector<std::string> row =
+          row_of(section, std::string(entry.key_of(field)));  // key, unit, bounds, default
+      ASSERT_GE(row.size(), 4U) << field.key << " has no row in the table of its section";
+      EXPECT_EQ(numbers_in(row[2]), (std::vector<double>{field.min, field.max})) << field.key;
+      EXPECT_EQ(row[2].find("above") != std::string::npos, field.ends == Bounds::AboveMin) << field.key;
+      ASSERT_FALSE(numbers_in(row[3]).empty()) << field.key;
+      EXPECT_EQ(numbers_in(row[3]).front(), field.get(Effects{})) << field.key;
+    }
+    if (entry.days_in != nullptr) {
+      EXPECT_NE(section.find("`days`"), std::string::npos) << name;
+    }
+  }
+}
+
+#ifndef TALUS_PATCHED_COPY
+/// docs/adding-an-effect.md shows the change that tests/CMakeLists.txt applies, compiles and runs.
+TEST(Registry, ThePageShowsTheWorkedExample) {
+  const std::string page = text_of_file("docs/adding-an-effect.md"),
+                    patch = text_of_file("tests/worked_examples/effect.patch");
+  ASSERT_FALSE(patch.empty());
+  EXPECT_NE(page.find("```diff\n" + patch + "```\n"), std::string::npos);
+}
+#endif
+
+}  // namespace
+}  // namespace talus
