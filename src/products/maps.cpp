@@ -5,7 +5,6 @@
 #include <memory>
 #include <unordered_map>
 
-#include "talus/base/scratch.hpp"
 
 namespace talus {
 namespace {
@@ -20,7 +19,7 @@ auto rows_of(const Scenario& scenario, const Tally& tally, std::size_t bands, do
     const auto columns = static_cast<std::size_t>(grid.columns);
     std::vector<double> cell(bands);
     for (int column = 0; column < grid.columns; ++column) {
-      if (column % kRegionSide == 0) scratch::keep_below_limit();  // a record in the file brings its neighbours
+      if (column % kRegionSide == 0) tally.memory().keep_below_limit();  // a record in the file brings its neighbours
       const CellRecord* record = tally.find(column, row);
       const bool terrain = !std::isnan(scenario.surface.heights().at(column, row));
       if (record != nullptr)

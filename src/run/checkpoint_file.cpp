@@ -9,7 +9,7 @@
 #include "talus/base/error.hpp"
 #include "talus/io/files/output_folder.hpp"
 
-namespace talus::io {
+namespace talus::run {
 
 CheckpointFileWriter::CheckpointFileWriter(const std::filesystem::path& file) : path_(file), file_(std::fopen(file.c_str(), "wb")) {
   if (!file_) fail();
@@ -61,4 +61,4 @@ void CheckpointFileReader::fail() const {
   throw InputError(path_.string() + ": is damaged or missing: it is not as Talus wrote it; run this part again");
 }
 
-}  // namespace talus::io
+}  // namespace talus::run

@@ -1,4 +1,5 @@
 #include "talus/io/results/hazard_file.hpp"
+#include "talus/io/scenario/plan_checksum.hpp"
 
 #include <gdal.h>
 

@@ -26,9 +26,6 @@ class Sha256 {
 /// Of bytes.
 std::string sha256_of_bytes(std::string_view bytes);
 
-/// The files that belong to one input: see `sha256_of_file`.
-std::vector<std::string> files_of_input(const std::string& path);
-
 /// Of a file's bytes; of a shapefile those of .shp, .dbf, .shx and .prj, one after the other, as far as they are there;
 /// of a VRT also those of the rasters that it is made of; of a folder those of its files in the order of their names.
 /// Empty where nothing can be read (a web service, say).

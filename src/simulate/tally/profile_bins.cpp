@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "span_maxima.hpp"
+#include "talus/simulate/scenario/scenario.hpp"
 
 namespace talus {
 namespace {

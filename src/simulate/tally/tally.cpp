@@ -130,7 +130,14 @@ void gather(const Group& group, const VisitBatch& batch, Tally::Values& values, 
 
 }  // namespace
 
-Tally::Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vector<double> height_thresholds)
+void Tally::EndRegions::operator()(Region* regions) const noexcept {
+  if (memory.has_limit()) return;
+  std::destroy_n(regions, count);
+  memory.release(regions, count * sizeof(Region));
+}
+
+Tally::Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vector<double> height_thresholds,
+             MemoryPolicy memory)
     : grid_(grid),
       energy_thresholds_(std::move(energy_thresholds)),
       height_thresholds_(std::move(height_thresholds)),
@@ -139,7 +146,10 @@ Tally::Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vecto
       regions_across_((grid.columns + kRegionSide - 1) / kRegionSide),
       region_count_(static_cast<std::size_t>(regions_across_) *
                     static_cast<std::size_t>((grid.rows + kRegionSide - 1) / kRegionSide)),
-      regions_(std::make_unique<Region[]>(region_count_)) {}
+      regions_(static_cast<Region*>(memory.allocate(region_count_ * sizeof(Region))), {memory, 0}) {
+  for (std::size_t& made = regions_.get_deleter().count; made < region_count_; ++made)
+    std::construct_at(&regions_[made], memory);
+}
 
 void Tally::keep_hazard(AnnualWeights weights) {
   hazard_ = std::make_unique<Hazard>(Hazard{{EnergyBins(energy_thresholds_), weights.scale()}, std::move(weights)});
@@ -153,9 +163,7 @@ void Tally::set_rounds(std::uint32_t rounds) {
   scale.trajectories *= rounds;
 }
 
-Tally::~Tally() {
-  if (scratch::is_limited()) static_cast<void>(regions_.release());  // else every record would be read once more
-}
+Tally::~Tally() = default;
 Tally::Tally(Tally&&) noexcept = default;
 
 std::uint64_t Tally::add(const VisitBatch& batch) {
@@ -177,7 +185,7 @@ std::uint64_t Tally::add(const VisitBatch& batch) {
 }
 
 std::uint64_t Tally::score(std::size_t index, const std::vector<Visit>& visits, const VisitBatch& batch) {
-  scratch::keep_below_limit();
+  memory().keep_below_limit();
   Region& region = regions_[index];
   const std::vector<Visit> sorted = sorted_by_cell(visits);
   std::vector<Group> groups;
@@ -190,7 +198,7 @@ std::uint64_t Tally::score(std::size_t index, const std::vector<Visit>& visits, 
   ReachOf reach(batch, index);
   Values values;
   values.keep_stakes = hazard_ != nullptr;
-  if (hazard_) region.hazards.resize(region.records.size());
+  if (hazard_) region.make_hazards();
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (i + 16 < groups.size()) fetch(&region.records[groups[i + 16].record], sizeof(CellRecord));
     if (i + 8 < groups.size())

@@ -7,7 +7,7 @@
 namespace talus {
 
 void Tally::save(std::size_t index, ByteWriter& out) const {
-  scratch::keep_below_limit();
+  memory().keep_below_limit();
   const Region& region = regions_[index];
   if (region.slot.empty()) return;
   for (std::size_t cell = 0; cell < kRegionCells; ++cell) {
@@ -29,7 +29,7 @@ void Tally::take(std::size_t index, ByteWriter& out) {
 }
 
 void Tally::merge(std::size_t index, ByteReader& in) {
-  scratch::keep_below_limit();
+  memory().keep_below_limit();
   Region& region = regions_[index];
   while (!in.empty()) {
     const auto cell = in.get<std::uint16_t>();
@@ -39,7 +39,7 @@ void Tally::merge(std::size_t index, ByteReader& in) {
     for (std::size_t i = 0; i < thresholds(); ++i)
       region.exceedances[record * thresholds() + i] += in.get<std::uint32_t>();
     if (!hazard_) continue;
-    region.hazards.resize(region.records.size());
+    region.make_hazards();
     region.hazards[record].merge(HazardCell::restored(in));
   }
 }

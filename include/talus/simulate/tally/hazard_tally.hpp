@@ -30,6 +30,9 @@ class HazardCell {
     bool operator==(const Bin&) const = default;
   };
 
+  HazardCell() = default;
+  explicit HazardCell(MemoryPolicy memory) : bins_(memory), overlaps_(memory) {}
+
   /// Adds trajectories in the order of their blocks, those of a stratum all at once.
   ///
   /// @param energies  of each its largest here [kJ]

@@ -24,6 +24,10 @@ struct CellRecord {
   std::array<std::int64_t, kQuantities> sum{};  ///< fixed point, in units of kFixedPoint
   std::array<LogHistogram, kQuantities> histogram;
 
+  CellRecord() = default;
+  explicit CellRecord(MemoryPolicy memory) {
+    for (LogHistogram& h : histogram) h = LogHistogram(memory);
+  }
   double mean(Quantity q) const;
   void merge(const CellRecord& other);
   void save(ByteWriter& out) const;
@@ -54,7 +58,9 @@ class Tally {
     std::span<const float> of(std::size_t quantity) const { return {lists[quantity].data(), count}; }
   };
 
-  Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vector<double> height_thresholds);
+  /// @param memory  where the records lie
+  Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vector<double> height_thresholds,
+        MemoryPolicy memory = {});
   ~Tally();
   Tally(Tally&&) noexcept;
 
@@ -73,6 +79,7 @@ class Tally {
   std::uint64_t add(const VisitBatch& batch);
 
   const Grid& grid() const { return grid_; }
+  MemoryPolicy memory() const { return regions_.get_deleter().memory; }
   const std::vector<double>& energy_thresholds() const { return energy_thresholds_; }
   const std::vector<double>& height_thresholds() const { return height_thresholds_; }
 
@@ -97,6 +104,12 @@ class Tally {
 
  private:
   struct Region;
+  /// Ends the regions. All of those in a scratch file ends with the file, unread.
+  struct EndRegions {
+    MemoryPolicy memory;
+    std::size_t count = 0;
+    void operator()(Region* regions) const noexcept;
+  };
   struct Hazard {
     HazardRules rules;
     AnnualWeights weights;
@@ -113,7 +126,7 @@ class Tally {
   int regions_across_ = 0;
   std::size_t region_count_ = 0;
   std::unique_ptr<Hazard> hazard_;  // null: none is kept
-  std::unique_ptr<Region[]> regions_;
+  std::unique_ptr<Region[], EndRegions> regions_;
 };
 
 }  // namespace talus
