@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "checkpoint_file.hpp"
-#include "io/files/sha256.hpp"
 #include "checkpoint_rows.hpp"
 #include "checkpoint_tally.hpp"
+#include "io/files/sha256.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/version.hpp"
-#include "talus/io/scenario/plan_checksum.hpp"
 #include "talus/io/files/output_folder.hpp"
+#include "talus/io/scenario/plan_checksum.hpp"
 
 namespace talus::run {
 
@@ -65,7 +65,8 @@ struct Checkpoint::Rows {
 Checkpoint::Checkpoint(fs::path folder, const LoadedScenario& loaded, ProcessGroup& processes)
     : folder_(std::move(folder)), plan_(plan_checksum(loaded)), loaded_(&loaded), processes_(&processes) {}
 
-Checkpoint::Checkpoint(const fs::path& folder, const LoadedScenario& loaded, const Part& part, const Rounds& asked, ProcessGroup& processes)
+Checkpoint::Checkpoint(const fs::path& folder, const LoadedScenario& loaded, const Part& part, const Rounds& asked,
+                       ProcessGroup& processes)
     : Checkpoint(folder, loaded, processes) {
   part_ = part;
   asked_ = asked;
@@ -77,7 +78,8 @@ Checkpoint::Checkpoint(Checkpoint&&) noexcept = default;
 Checkpoint& Checkpoint::operator=(Checkpoint&&) noexcept = default;
 Checkpoint::~Checkpoint() = default;
 
-Checkpoint Checkpoint::opened(const fs::path& folder, const LoadedScenario& loaded, bool to_go_on, ProcessGroup& processes) {
+Checkpoint Checkpoint::opened(const fs::path& folder, const LoadedScenario& loaded, bool to_go_on,
+                              ProcessGroup& processes) {
   Checkpoint checkpoint(folder, loaded, processes);
   checkpoint.read_manifest();
   if (to_go_on && processes.leads()) {
@@ -134,7 +136,8 @@ void Checkpoint::end_round(std::uint32_t round) {
 void Checkpoint::save(const Simulation& simulation, const Tally& tally) {
   const std::uint32_t next = generation_ + 1;
   const std::string before = numbered("rest", generation_);
-  const std::string name = numbered("tally", next, processes_->rank()), reach = numbered("reach", next, processes_->rank());
+  const std::string name = numbered("tally", next, processes_->rank()),
+                    reach = numbered("reach", next, processes_->rank());
   const std::vector<SavedFile> tallies = gathered({name, write_tally(folder_ / name, tally)});
   const std::vector<SavedFile> reaches = gathered({reach, write_reaches(folder_ / reach, simulation)});
   ByteWriter totals;
@@ -247,7 +250,8 @@ void Checkpoint::read_manifest() {
   const fs::path file = folder_ / kCheckpointManifest;
   std::ifstream stream(file, std::ios::binary);
   if (!stream.is_open())
-    throw InputError(folder_.string() + ": has no " + kCheckpointManifest + ", must be what talus run --part has written");
+    throw InputError(folder_.string() + ": has no " + kCheckpointManifest +
+                     ", must be what talus run --part has written");
   std::string plan;
   try {
     Json json = Json::parse(stream);

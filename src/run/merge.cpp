@@ -23,7 +23,7 @@ LoadedScenario scenario_of(const std::string& part, MemoryPolicy memory) {
   for (const fs::path& needed : {fs::path(part) / kCheckpointManifest, file})
     if (!fs::exists(needed))
       throw InputError(part + ": is no part of a run (it has no " + needed.filename().string() +
-                              "); give the folders that talus run --part I/N has written");
+                       "); give the folders that talus run --part I/N has written");
   io::RunFlags flags;
   flags.scenario = file.string();
   return io::load_scenario(flags, nullptr, {memory});
@@ -44,20 +44,19 @@ std::vector<Checkpoint> opened(const std::vector<std::string>& folders, const Lo
     const Part part = checkpoints[i].part();
     if (part.of != first.part().of)
       throw InputError(name + "is part " + name_of(part) + ", another one is " + name_of(first.part()) +
-                              "; must all be of one division");
+                       "; must all be of one division");
     if (i > 0 && part.number == checkpoints[i - 1].part().number)
       throw InputError(name + "is part " + name_of(part) + ", and so is " + checkpoints[i - 1].folder().string() +
-                              "; give each part once");
+                       "; give each part once");
     if (!checkpoints[i].between_rounds() || checkpoints[i].rounds() != first.rounds())
       throw InputError(name + "has " + std::to_string(checkpoints[i].rounds()) + " rounds, another part " +
-                              std::to_string(first.rounds()) + "; run all parts with the same --rounds");
+                       std::to_string(first.rounds()) + "; run all parts with the same --rounds");
   }
   if (checkpoints.size() != first.part().of) {
     std::uint32_t missing = 1;
     while (missing <= checkpoints.size() && checkpoints[missing - 1].part().number == missing) ++missing;
     throw InputError(std::to_string(checkpoints.size()) + " of " + std::to_string(first.part().of) +
-                            " parts are given, part " + std::to_string(missing) +
-                            " is the first that is not; give all");
+                     " parts are given, part " + std::to_string(missing) + " is the first that is not; give all");
   }
   return checkpoints;
 }

@@ -56,8 +56,7 @@ class Vectors {
       crossings_->finish();
       io::write_text(folder_ / "screens_summary.csv", io::screens_summary_csv(scenario_, summary_));
     }
-    if (!scenario_.barriers.empty())
-      io::write_text(folder_ / "barriers.csv", io::barriers_csv(scenario_, totals));
+    if (!scenario_.barriers.empty()) io::write_text(folder_ / "barriers.csv", io::barriers_csv(scenario_, totals));
   }
 
  private:

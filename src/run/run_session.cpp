@@ -102,8 +102,8 @@ void RunSession::read_plan(std::size_t memory, SharedMemory* shared) {
   check_number(plan_.rounds, plan_.loaded.scenario);
 }
 
-/// The outcome of the run or the part that `resume` finds done, as a scheduler may ask for it again; nothing where it is
-/// not. Throws InputError where what is there is a part of another plan.
+/// The outcome of the run or the part that `resume` finds done, as a scheduler may ask for it again; nothing where it
+/// is not. Throws InputError where what is there is a part of another plan.
 std::optional<Outcome> RunSession::outcome_of_done() {
   std::optional<Outcome> outcome;
   in_every_process(processes_, [&] {
@@ -219,7 +219,8 @@ Outcome RunSession::deliver_part() {
   folder_->commit_work();
   observer_.finish();
   observer_.message("part " + *request_.part + ": " + count_text(record_.totals.released) +
-                    " trajectories; results are in " + folder_->final_path().string() + "; talus merge joins the parts");
+                    " trajectories; results are in " + folder_->final_path().string() +
+                    "; talus merge joins the parts");
   return Outcome::Done;
 }
 
@@ -232,7 +233,8 @@ Outcome RunSession::deliver_results() {
   loaded.settings = tracing_->checkpoint().settings(rounds);
   io::set_rounds(loaded, rounds);
   try {
-    write_results({loaded, tracing_->checkpoints(), tracing_->tally(), folder_->temporary()}, observer_, watch_, record_);
+    write_results({loaded, tracing_->checkpoints(), tracing_->tally(), folder_->temporary()}, observer_, watch_,
+                  record_);
   } catch (const Interrupted&) {
     tracing_->interrupt_writing();
   }

@@ -15,8 +15,8 @@ namespace talus::run {
 /// The command line with --resume.
 std::string command_to_resume(const std::vector<std::string>& command);
 
-/// The trajectories of a session: traces all rounds, and saves what is done in the checkpoint now and then. Each process
-/// of the group has one, and all call the same of it.
+/// The trajectories of a session: traces all rounds, and saves what is done in the checkpoint now and then. Each
+/// process of the group has one, and all call the same of it.
 class Tracing {
  public:
   struct Means {

@@ -1,8 +1,8 @@
 #pragma once
 #include "commands.hpp"
 #include "talus/io/campaign/campaign_file.hpp"
-#include "talus/io/reports/fit_record.hpp"
 #include "talus/io/files/output_folder.hpp"
+#include "talus/io/reports/fit_record.hpp"
 #include "talus/io/reports/score_report.hpp"
 
 /// What `calibrate` and `diagnose` have in common: a campaign, a new folder, and how to tell of progress.

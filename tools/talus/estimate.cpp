@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "progress.hpp"
+#include "talus/run/write_maps.hpp"
+#include "talus/simulate/screens/screens.hpp"
 #include "talus/simulate/stop_row.hpp"
 #include "talus/simulate/tally/tally.hpp"
-#include "talus/simulate/screens/screens.hpp"
-#include "talus/run/write_maps.hpp"
 
 namespace {
 
@@ -65,7 +65,8 @@ double bytes_at_work(const Scenario& scenario, const RunSize& size, unsigned pro
 
 double seconds_to_write(const Scenario& scenario, const RunSize& size, unsigned processors) {
   const double rasters = bands(scenario) * (kEmptyCell * size.grid_cells + kTouchedCell * size.touched_cells);
-  return kWriteFiles + rasters / std::min(processors, unsigned{talus::run::kMapsAtOnce}) + kWriteTrajectory * size.trajectories;
+  return kWriteFiles + rasters / std::min(processors, unsigned{talus::run::kMapsAtOnce}) +
+         kWriteTrajectory * size.trajectories;
 }
 
 std::string rounded_text(double value) {

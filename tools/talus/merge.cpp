@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "commands.hpp"
-#include "commands.hpp"
 #include "terminal_observer.hpp"
 
 namespace {

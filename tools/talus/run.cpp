@@ -1,8 +1,7 @@
-#include "talus/run/run_session.hpp"
-
 #include <memory>
 
 #include "commands.hpp"
+#include "talus/run/run_session.hpp"
 #include "terminal_observer.hpp"
 
 namespace {
@@ -53,8 +52,7 @@ void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes) {
   command->add_option("--part", request.part, "I/N: only part I of N of the source cells, for talus merge");
   command->add_flag("--resume", request.resume, "go on with an interrupted run of the same command");
   command->add_option("--memory", request.memory, "such as 2G: what does not fit lies in a file beside the results");
-  command
-      ->add_option("--checkpoint", request.checkpoint, "seconds between two times that the work is kept on the disk")
+  command->add_option("--checkpoint", request.checkpoint, "seconds between two times that the work is kept on the disk")
       ->check(between(0.0, 1e6));
   command->add_option("--rounds", request.rounds.count, "how often the scenario's trajectories are traced")
       ->check(CLI::Range(1, 10'000));
@@ -75,5 +73,6 @@ void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes) {
       "  talus run scenario.toml -o result\n"
       "  talus run --dem dem.tif --sources cliffs.gpkg --diameter 1.2 --trajectories 100 -o result\n\n"
       "An option given here counts more than the scenario file. OUT/scenario.toml holds all settings.");
-  command->callback([&action, &processes, options] { action = [options, &processes] { return run(*options, processes); }; });
+  command->callback(
+      [&action, &processes, options] { action = [options, &processes] { return run(*options, processes); }; });
 }

@@ -52,8 +52,8 @@ class Checkpoint {
   bool empty() const { return generation_ == 0; }  ///< nothing was saved yet
   const std::filesystem::path& folder() const { return folder_; }
 
-  /// Receivers of rows: they write them where `save` finds them. Only the functions for rows are set: stops, and paths and crossings where
-  /// the scenario has them.
+  /// Receivers of rows: they write them where `save` finds them. Only the functions for rows are set: stops, and paths
+  /// and crossings where the scenario has them.
   Sinks sinks();
 
   /// The sum of the totals of all processes; at the leader.
@@ -62,8 +62,8 @@ class Checkpoint {
   /// A round is done: its rows can be replayed. It is not saved yet.
   void end_round(std::uint32_t round);
 
-  /// Saves all that was done so far, in place of what was saved before. Throws std::runtime_error: what was saved before
-  /// then still counts.
+  /// Saves all that was done so far, in place of what was saved before. Throws std::runtime_error: what was saved
+  /// before then still counts.
   void save(const Simulation& simulation, const Tally& tally);
 
   /// The saved totals; adds the saved tally to `tally`. Throws InputError where a file is damaged.

@@ -11,8 +11,8 @@ struct GroupInputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Runs `step` in every process of a group, and makes them agree on whether it failed: where it throws InputError in one
-/// of them, throws `GroupInputError` in all; in a single process, the InputError itself.
+/// Runs `step` in every process of a group, and makes them agree on whether it failed: where it throws InputError in
+/// one of them, throws `GroupInputError` in all; in a single process, the InputError itself.
 void in_every_process(ProcessGroup& processes, const std::function<void()>& step);
 
 }  // namespace talus::run

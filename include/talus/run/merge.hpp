@@ -16,8 +16,8 @@ struct MergeRequest {
   bool overwrite = false;
 };
 
-/// Joins the parts of a run: the results are those of one run, bit for bit. Throws InputError where the parts are not one
-/// whole; Interrupted.
+/// Joins the parts of a run: the results are those of one run, bit for bit. Throws InputError where the parts are not
+/// one whole; Interrupted.
 Outcome merge(const MergeRequest& request, Observer& observer);
 
 }  // namespace talus::run

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "talus/base/scratch.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/results/run_record.hpp"
 #include "talus/io/scenario/loaded_scenario.hpp"
-#include "talus/base/scratch.hpp"
 #include "talus/run/observer.hpp"
 #include "talus/run/stopwatch.hpp"
 #include "talus/simulate/plan/part.hpp"
@@ -53,7 +53,8 @@ class RunSession {
 
   /// Reads, traces and writes; or finds with `resume` that all is done.
   ///
-  /// Throws InputError (of several processes GroupInputError), Interrupted, which says how to go on, std::runtime_error.
+  /// Throws InputError (of several processes GroupInputError), Interrupted, which says how to go on,
+  /// std::runtime_error.
   Outcome run();
 
  private:
