@@ -13,7 +13,7 @@ class Staged : public test::Files {
  protected:
   std::vector<std::string> names() const {
     std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder_)) names.push_back(entry.path().filename().string());
+    for (const auto& entry : fs::directory_iterator(path(""))) names.push_back(entry.path().filename().string());
     return names;
   }
   const std::string pid_ = std::to_string(getpid());
