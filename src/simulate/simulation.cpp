@@ -9,8 +9,8 @@
 #include <exception>
 
 #include "talus/simulate/plan/plan.hpp"
-#include "talus/simulate/plan/work_units.hpp"
 #include "talus/simulate/plan/work_order.hpp"
+#include "talus/simulate/plan/work_units.hpp"
 
 namespace talus {
 namespace {
@@ -121,7 +121,8 @@ class Simulation::Advance {
     add(totals_, mine);
   }
 
-  /// All workers are done. Whether all units of the process group are; else there is more to take. Throws what a worker threw.
+  /// All workers are done. Whether all units of the process group are; else there is more to take. Throws what a worker
+  /// threw.
   bool finish() {
     if (failure_) std::rethrow_exception(failure_);
     if (!units_.finish()) return false;

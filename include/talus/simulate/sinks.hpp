@@ -8,9 +8,9 @@
 
 namespace talus {
 
-/// Receivers of the rows of a run while it goes on: unit of work by unit, always in the same order (source cells by place, the
-/// blocks of each by number) and from one thread at a time.
-/// A sink may throw: the run ends and the exception reaches the caller of `simulate`.
+/// Receivers of the rows of a run while it goes on: unit of work by unit, always in the same order (source cells by
+/// place, the blocks of each by number) and from one thread at a time. A sink may throw: the run ends and the exception
+/// reaches the caller of `simulate`.
 struct Sinks {
   std::function<void(std::uint64_t)> unit;  ///< the rows that follow are of this unit
   std::function<void(std::span<const StopRow>)> stops;

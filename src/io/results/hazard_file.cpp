@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "io/gdal/dataset.hpp"
 #include "hazard_stream.hpp"
+#include "io/gdal/dataset.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"

@@ -14,8 +14,8 @@ class FolderLock;
 /// A folder of results that appears under its name complete, or not at all.
 ///
 /// Everything is written into a hidden folder beside it, `.NAME.talus-PID` (`StagedPath`), so that a rename is all that
-/// `commit` has to do. Without `commit` (an exception, an interruption, a full disk) the hidden folder is removed, unless it is to
-/// be kept for a run that goes on.
+/// `commit` has to do. Without `commit` (an exception, an interruption, a full disk) the hidden folder is removed,
+/// unless it is to be kept for a run that goes on.
 class OutputFolder {
  public:
   /// What to do with the hidden folder of an interrupted run of this name. While a process has one, no other may
