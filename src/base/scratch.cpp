@@ -19,7 +19,7 @@
 
 #include "talus/base/expect.hpp"
 
-namespace talus::scratch {
+namespace talus {
 namespace {
 
 constexpr std::size_t kReserved = std::size_t{1} << 43U;  // addresses, not memory
@@ -29,26 +29,31 @@ constexpr std::size_t kPiece = 4096;                      // of larger ones
 constexpr std::size_t kSlab = std::size_t{1} << 16U;      // of which small pieces are cut
 constexpr double kNear = 0.85;                            // of the limit: what is not in the file needs room too
 
-std::atomic<bool> limited{false};
+/// The bytes that are really taken for so many.
+std::size_t rounded(std::size_t bytes) {
+  const std::size_t unit = bytes <= kSmall ? kGrain : kPiece;
+  return std::max(unit, (bytes + unit - 1) / unit * unit);
+}
 
-/// The file: pieces of it that are in use, and those that are free by their size.
-class File {
+}  // namespace
+
+/// The file in the address space: pieces of it that are in use, and those that are free by their size.
+class ScratchFile::Mapping {
  public:
-  void open(const std::string& folder, std::size_t limit) {
-    file_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-    if (file_ < 0) {  // a file system that knows none without a name
-      std::string name = folder + "/.talus-scratch-XXXXXX";
-      file_ = mkostemp(name.data(), O_CLOEXEC);
-      if (file_ >= 0) unlink(name.c_str());
-    }
+  Mapping(const std::string& folder, std::size_t limit) : limit_(limit) {
+    open(folder);
     status_ = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
     void* const reserved = mmap(nullptr, kReserved, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (file_ < 0 || status_ < 0 || reserved == MAP_FAILED)
-      throw std::runtime_error(folder +
-                               ": no file for --memory can be made there: " + std::system_category().message(errno));
-    begin_ = static_cast<char*>(reserved);
-    limit_ = limit;
+    if (reserved != MAP_FAILED) begin_ = static_cast<char*>(reserved);
+    if (file_ >= 0 && status_ >= 0 && begin_ != nullptr) return;
+    const int cause = errno;
+    close_all();
+    throw std::runtime_error(folder +
+                             ": no file for --memory can be made there: " + std::system_category().message(cause));
   }
+  ~Mapping() { close_all(); }
+  Mapping(const Mapping&) = delete;
+  Mapping& operator=(const Mapping&) = delete;
 
   void* take(std::size_t bytes) {
     const std::lock_guard guard(mutex_);
@@ -70,15 +75,13 @@ class File {
     return memory;
   }
 
-  bool holds(const void* memory) const { return begin_ != nullptr && memory >= begin_ && memory < begin_ + kReserved; }
-
   void give_back(void* memory, std::size_t bytes) {
     const std::lock_guard guard(mutex_);
     TALUS_EXPECT(bytes % kGrain == 0, "a piece comes back as it was taken");
     free_[bytes].push_back(memory);
   }
 
-  void keep_below_limit() noexcept {
+  void keep_below_limit() const noexcept {
     std::array<char, 128> text{};
     unsigned long pages = 0;
     if (pread(status_, text.data(), text.size() - 1, 0) <= 0 || std::sscanf(text.data(), "%*u %lu", &pages) != 1)
@@ -88,6 +91,20 @@ class File {
   }
 
  private:
+  void open(const std::string& folder) {
+    file_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (file_ >= 0) return;
+    std::string name = folder + "/.talus-scratch-XXXXXX";  // a file system that knows no files without a name
+    file_ = mkostemp(name.data(), O_CLOEXEC);
+    if (file_ >= 0) unlink(name.c_str());
+  }
+
+  void close_all() const {
+    if (begin_ != nullptr) munmap(begin_, kReserved);
+    for (const int file : {file_, status_})
+      if (file >= 0) close(file);
+  }
+
   char* extend(std::size_t bytes) {
     if (used_ + bytes > mapped_) {
       const std::size_t step = (used_ + bytes - mapped_ + kStep - 1) / kStep * kStep;
@@ -107,7 +124,7 @@ class File {
   }
 
   int file_ = -1, status_ = -1;
-  long page_ = sysconf(_SC_PAGESIZE);
+  const long page_ = sysconf(_SC_PAGESIZE);
   char* begin_ = nullptr;
   std::size_t limit_ = 0, used_ = 0;
   std::atomic<std::size_t> mapped_{0};
@@ -117,45 +134,35 @@ class File {
   std::mutex mutex_;
 };
 
-File& file() {
-  static File* const one = new File;  // never destroyed: containers may outlive whatever order there is
-  return *one;
+ScratchFile::ScratchFile(const std::string& folder, std::size_t bytes)
+    : mapping_(std::make_unique<Mapping>(folder, bytes)) {}
+
+ScratchFile::~ScratchFile() = default;
+
+void* ScratchFile::allocate(std::size_t bytes) {
+  return mapping_->take(rounded(bytes));
 }
 
-/// What is really taken for so many bytes.
-std::size_t rounded(std::size_t bytes) {
-  const std::size_t unit = bytes <= kSmall ? kGrain : kPiece;
-  return std::max(unit, (bytes + unit - 1) / unit * unit);
+void ScratchFile::release(void* memory, std::size_t bytes) noexcept {
+  if (memory != nullptr) mapping_->give_back(memory, rounded(bytes));
 }
 
-}  // namespace
-
-void set_limit(const std::string& folder, std::size_t bytes) {
-  file().open(folder, bytes);
-  limited = true;
+void ScratchFile::keep_below_limit() const noexcept {
+  mapping_->keep_below_limit();
 }
 
-bool is_limited() {
-  return limited.load(std::memory_order_relaxed);
-}
-
-void* allocate(std::size_t bytes) {
-  if (limited.load(std::memory_order_relaxed)) return file().take(rounded(bytes));
+void* MemoryPolicy::allocate(std::size_t bytes) const {
+  if (file_ != nullptr) return file_->allocate(bytes);
   void* const memory = std::malloc(bytes);
   if (memory == nullptr && bytes > 0) throw std::bad_alloc();
   return memory;
 }
 
-void release(void* memory, std::size_t bytes) noexcept {
-  if (memory == nullptr) return;
-  if (limited.load(std::memory_order_relaxed) && file().holds(memory))
-    file().give_back(memory, rounded(bytes));
+void MemoryPolicy::release(void* memory, std::size_t bytes) const noexcept {
+  if (file_ != nullptr)
+    file_->release(memory, bytes);
   else
     std::free(memory);
 }
 
-void keep_below_limit() noexcept {
-  if (limited.load(std::memory_order_relaxed)) file().keep_below_limit();
-}
-
-}  // namespace talus::scratch
+}  // namespace talus

@@ -9,15 +9,11 @@
 #include <cstdint>
 #include <stdexcept>
 #include <system_error>
-#include <vector>
 
 namespace talus {
 namespace {
 
 constexpr std::size_t kHead = 4096;  // holds whether it is filled, and lets what follows begin on a page
-
-std::string common_name;
-std::vector<std::string> names;  // that this process has asked for
 
 std::runtime_error failure(const std::string& what) {
   return std::runtime_error("memory that processes share " + what + ": " + std::system_category().message(errno) +
@@ -26,23 +22,8 @@ std::runtime_error failure(const std::string& what) {
 
 }  // namespace
 
-void SharedMemory::begin(const std::string& name) {
-  common_name = name;
-}
-
-void SharedMemory::end() noexcept {
-  for (const std::string& name : names) shm_unlink(name.c_str());
-  names.clear();
-  common_name.clear();
-}
-
-bool SharedMemory::is_on() {
-  return !common_name.empty();
-}
-
-SharedMemory::SharedMemory(std::size_t bytes) : length_(kHead + bytes) {
-  names.push_back("/" + common_name + "-" + std::to_string(names.size()));
-  file_ = shm_open(names.back().c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+SharedPiece::SharedPiece(const std::string& name, std::size_t bytes) : length_(kHead + bytes) {
+  file_ = shm_open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (file_ < 0) throw failure("cannot be opened");
   while (flock(file_, LOCK_EX) != 0)  // until whoever fills it is done, or gone
     if (errno != EINTR) throw failure("cannot be locked");
@@ -56,16 +37,25 @@ SharedMemory::SharedMemory(std::size_t bytes) : length_(kHead + bytes) {
   if (filled_) set_filled();
 }
 
-void SharedMemory::set_filled() {
+void SharedPiece::set_filled() {
   *static_cast<std::uint64_t*>(begin_) = 1;
   filled_ = true;
   flock(file_, LOCK_UN);
   mprotect(begin_, length_, PROT_READ);
 }
 
-SharedMemory::~SharedMemory() {
+SharedPiece::~SharedPiece() {
   if (begin_ != nullptr && begin_ != MAP_FAILED) munmap(begin_, length_);
   if (file_ >= 0) ::close(file_);
+}
+
+SharedMemory::~SharedMemory() {
+  for (const std::string& piece : pieces_) shm_unlink(piece.c_str());
+}
+
+std::shared_ptr<SharedPiece> SharedMemory::next(std::size_t bytes) {
+  pieces_.push_back("/" + name_ + "-" + std::to_string(pieces_.size()));
+  return std::make_shared<SharedPiece>(pieces_.back(), bytes);
 }
 
 }  // namespace talus

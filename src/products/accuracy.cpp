@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "talus/base/scratch.hpp"
 #include "talus/products/interval.hpp"
 
 namespace talus {
@@ -14,7 +13,7 @@ Accuracy accuracy_of(const Tally& tally, std::uint64_t released, double above) {
   const Grid& grid = tally.grid();
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
-      if (column % kRegionSide == 0) scratch::keep_below_limit();
+      if (column % kRegionSide == 0) tally.memory().keep_below_limit();
       const CellRecord* cell = tally.find(column, row);
       if (cell == nullptr) continue;
       const double probability = static_cast<double>(cell->passages) / static_cast<double>(released);

@@ -9,7 +9,8 @@
 
 #include "object_finder.hpp"
 #include "talus/simulate/plan/plan.hpp"
-#include "talus/simulate/simulate.hpp"
+#include "talus/simulate/plan/work_units.hpp"
+#include "talus/simulate/totals.hpp"
 
 namespace talus {
 namespace {

@@ -7,20 +7,22 @@
 #include <utility>
 
 #include "checkpoint_file.hpp"
-#include "io/files/checksum.hpp"
 #include "checkpoint_rows.hpp"
 #include "checkpoint_tally.hpp"
+#include "io/files/checksum.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/version.hpp"
-#include "talus/io/results/hazard_file.hpp"
 #include "talus/io/files/output_folder.hpp"
+#include "talus/io/scenario/plan_checksum.hpp"
 
-namespace talus::io {
+namespace talus::run {
 
 namespace fs = std::filesystem;
 
 namespace {
 
+using io::plan_checksum;
+using io::replace_text;
 using Json = nlohmann::ordered_json;
 constexpr int kFormat = 4;
 
@@ -63,7 +65,8 @@ struct Checkpoint::Rows {
 Checkpoint::Checkpoint(fs::path folder, const LoadedScenario& loaded, ProcessGroup& processes)
     : folder_(std::move(folder)), plan_(plan_checksum(loaded)), loaded_(&loaded), processes_(&processes) {}
 
-Checkpoint::Checkpoint(const fs::path& folder, const LoadedScenario& loaded, const Part& part, const Rounds& asked, ProcessGroup& processes)
+Checkpoint::Checkpoint(const fs::path& folder, const LoadedScenario& loaded, const Part& part, const Rounds& asked,
+                       ProcessGroup& processes)
     : Checkpoint(folder, loaded, processes) {
   part_ = part;
   asked_ = asked;
@@ -75,7 +78,8 @@ Checkpoint::Checkpoint(Checkpoint&&) noexcept = default;
 Checkpoint& Checkpoint::operator=(Checkpoint&&) noexcept = default;
 Checkpoint::~Checkpoint() = default;
 
-Checkpoint Checkpoint::opened(const fs::path& folder, const LoadedScenario& loaded, bool to_go_on, ProcessGroup& processes) {
+Checkpoint Checkpoint::opened(const fs::path& folder, const LoadedScenario& loaded, bool to_go_on,
+                              ProcessGroup& processes) {
   Checkpoint checkpoint(folder, loaded, processes);
   checkpoint.read_manifest();
   if (to_go_on && processes.leads()) {
@@ -129,12 +133,13 @@ void Checkpoint::end_round(std::uint32_t round) {
   units_done_ = 0;
 }
 
-void Checkpoint::keep(const Simulation& simulation, const Tally& tally) {
+void Checkpoint::save(const Simulation& simulation, const Tally& tally) {
   const std::uint32_t next = generation_ + 1;
   const std::string before = numbered("rest", generation_);
-  const std::string name = numbered("tally", next, processes_->rank()), reach = numbered("reach", next, processes_->rank());
-  const std::vector<KeptFile> tallies = gathered({name, write_tally(folder_ / name, tally)});
-  const std::vector<KeptFile> reaches = gathered({reach, write_reaches(folder_ / reach, simulation)});
+  const std::string name = numbered("tally", next, processes_->rank()),
+                    reach = numbered("reach", next, processes_->rank());
+  const std::vector<SavedFile> tallies = gathered({name, write_tally(folder_ / name, tally)});
+  const std::vector<SavedFile> reaches = gathered({reach, write_reaches(folder_ / reach, simulation)});
   ByteWriter totals;
   put_totals(totals_of_all(simulation.totals()), totals);
   close_rows(simulation.position().round);
@@ -146,21 +151,21 @@ void Checkpoint::keep(const Simulation& simulation, const Tally& tally) {
     CheckpointFileWriter rest(folder_ / numbered("rest", next));
     rest.put(totals.bytes());
     rest_sha256_ = rest.finish();
-    const std::vector<KeptFile> old_tallies = std::exchange(tallies_, tallies);
-    const std::vector<KeptFile> old_reaches = std::exchange(reaches_, reaches);
+    const std::vector<SavedFile> old_tallies = std::exchange(tallies_, tallies);
+    const std::vector<SavedFile> old_reaches = std::exchange(reaches_, reaches);
     write_manifest();
     std::error_code ignored;
     fs::remove(folder_ / before, ignored);
     for (const auto& old : {old_tallies, old_reaches})
-      for (const KeptFile& file : old) fs::remove(folder_ / file.name, ignored);
+      for (const SavedFile& file : old) fs::remove(folder_ / file.name, ignored);
   }
-  processes_->tell({});  // no process goes on before what it has traced is kept
+  processes_->tell({});  // no process goes on before what it has traced is saved
 }
 
 /// At the leader.
-std::vector<Checkpoint::KeptFile> Checkpoint::gathered(const KeptFile& mine) const {
+std::vector<Checkpoint::SavedFile> Checkpoint::gathered(const SavedFile& mine) const {
   const std::vector<std::string> names = processes_->gather(mine.name), sums = processes_->gather(mine.sha256);
-  std::vector<KeptFile> files;
+  std::vector<SavedFile> files;
   for (std::size_t i = 0; i < names.size(); ++i) files.push_back({names[i], sums[i]});
   return files;
 }
@@ -178,7 +183,7 @@ Totals Checkpoint::totals_of_all(const Totals& mine) const {
 }
 
 Totals Checkpoint::add_to(Tally& tally) const {
-  for (const KeptFile& file : tallies_) read_tally(folder_ / file.name, file.sha256, tally);
+  for (const SavedFile& file : tallies_) read_tally(folder_ / file.name, file.sha256, tally);
   const std::string bytes = checked(numbered("rest", generation_), rest_sha256_);
   ByteReader rest(bytes);
   return get_totals(loaded_->scenario.barriers, rest);
@@ -194,7 +199,7 @@ void Checkpoint::restore(Simulation& simulation, Tally& tally) const {
   Totals totals = get_totals(loaded_->scenario.barriers, rest), none;
   none.barriers = BarrierTally(loaded_->scenario.barriers);
   simulation.restore({rounds_, units_done_}, processes_->leads() ? totals : none);
-  for (const KeptFile& file : reaches_) read_reaches(folder_ / file.name, file.sha256, simulation);
+  for (const SavedFile& file : reaches_) read_reaches(folder_ / file.name, file.sha256, simulation);
 }
 
 void Checkpoint::replay(std::uint32_t round, const Sinks& sinks) const {
@@ -237,7 +242,7 @@ void Checkpoint::write_manifest() const {
             {"rest_sha256", rest_sha256_},
             {"rows", rows},
             {"settings", settings}};
-  json["sha256"] = sha256_of_bytes(text_of(json));  // of what stands before it
+  json["sha256"] = io::sha256_of_bytes(text_of(json));  // of what stands before it
   replace_text(folder_ / kCheckpointManifest, text_of(json));
 }
 
@@ -245,13 +250,14 @@ void Checkpoint::read_manifest() {
   const fs::path file = folder_ / kCheckpointManifest;
   std::ifstream stream(file, std::ios::binary);
   if (!stream.is_open())
-    throw InputError(folder_.string() + ": has no " + kCheckpointManifest + ", must be what talus run --part has written");
+    throw InputError(folder_.string() + ": has no " + kCheckpointManifest +
+                     ", must be what talus run --part has written");
   std::string plan;
   try {
     Json json = Json::parse(stream);
     const std::string sha256 = json.at("sha256");
     json.erase("sha256");
-    if (sha256 != sha256_of_bytes(text_of(json))) throw InputError("its checksum is another");
+    if (sha256 != io::sha256_of_bytes(text_of(json))) throw InputError("its checksum is another");
     if (json.at("format").get<int>() != kFormat || json.at("version").get<std::string>() != version())
       throw InputError("was written by Talus " + json.at("version").get<std::string>());
     plan = json.at("plan");
@@ -281,16 +287,17 @@ void Checkpoint::read_manifest() {
 void Checkpoint::remove_unnamed() const {
   std::vector<std::string> named{numbered("rest", generation_)};
   for (const auto& files : {tallies_, reaches_})
-    for (const KeptFile& file : files) named.push_back(file.name);
+    for (const SavedFile& file : files) named.push_back(file.name);
   for (const RowsFile& file : rows_files_) named.push_back(file.name);
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder_)) {
     const std::string name = entry.path().filename().string();
     const bool ours = name.starts_with("tally-") || name.starts_with("reach-") || name.starts_with("rest-") ||
-                      name.starts_with("rows-") || name.starts_with(".part.json.talus-") ||
-                      name.starts_with(".scenario.toml.talus-");
+                      name.starts_with("rows-") ||
+                      name.starts_with(io::StagedPath::hidden_prefix(kCheckpointManifest, ".json")) ||
+                      name.starts_with(io::StagedPath::hidden_prefix("scenario.toml", ".toml"));
     if (ours && std::ranges::count(named, name) == 0) fs::remove(entry.path(), ignored);
   }
 }
 
-}  // namespace talus::io
+}  // namespace talus::run

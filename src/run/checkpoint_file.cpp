@@ -9,9 +9,10 @@
 #include "talus/base/error.hpp"
 #include "talus/io/files/output_folder.hpp"
 
-namespace talus::io {
+namespace talus::run {
 
-CheckpointFileWriter::CheckpointFileWriter(const std::filesystem::path& file) : path_(file), file_(std::fopen(file.c_str(), "wb")) {
+CheckpointFileWriter::CheckpointFileWriter(const std::filesystem::path& file)
+    : path_(file), file_(std::fopen(file.c_str(), "wb")) {
   if (!file_) fail();
 }
 
@@ -28,7 +29,7 @@ std::string CheckpointFileWriter::finish() {
 
 void CheckpointFileWriter::fail() const {
   throw std::runtime_error(path_.filename().string() + ": cannot be written: " +
-                           cause_of_failure(path_.parent_path(), std::system_category().message(errno)));
+                           io::cause_of_failure(path_.parent_path(), std::system_category().message(errno)));
 }
 
 CheckpointFileReader::CheckpointFileReader(const std::filesystem::path& file, std::string sha256)
@@ -61,4 +62,4 @@ void CheckpointFileReader::fail() const {
   throw InputError(path_.string() + ": is damaged or missing: it is not as Talus wrote it; run this part again");
 }
 
-}  // namespace talus::io
+}  // namespace talus::run

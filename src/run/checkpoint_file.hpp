@@ -6,7 +6,9 @@
 
 #include "io/files/checksum.hpp"
 
-namespace talus::io {
+namespace talus::run {
+
+using io::Sha256;
 
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -54,4 +56,4 @@ class CheckpointFileReader {
   Sha256 sum_;
 };
 
-}  // namespace talus::io
+}  // namespace talus::run

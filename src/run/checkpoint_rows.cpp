@@ -2,7 +2,7 @@
 
 #include "talus/simulate/tally/bytes.hpp"
 
-namespace talus::io {
+namespace talus::run {
 namespace {
 
 template <class Row>
@@ -66,4 +66,4 @@ void replay_rows(const std::vector<std::unique_ptr<RowsReader>>& files, const Si
   }
 }
 
-}  // namespace talus::io
+}  // namespace talus::run

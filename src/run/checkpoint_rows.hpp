@@ -3,9 +3,9 @@
 #include <span>
 
 #include "checkpoint_file.hpp"
-#include "talus/simulate/simulate.hpp"
+#include "talus/simulate/sinks.hpp"
 
-namespace talus::io {
+namespace talus::run {
 
 /// Rows as `simulate` hands them out, in a file of a `Checkpoint`: kind, number, the rows as they lie in memory.
 class RowsWriter {
@@ -51,4 +51,4 @@ class RowsReader {
 /// Hands out the rows of files that hold different units, each its own in ascending order: all in ascending order.
 void replay_rows(const std::vector<std::unique_ptr<RowsReader>>& files, const Sinks& sinks);
 
-}  // namespace talus::io
+}  // namespace talus::run

@@ -4,7 +4,7 @@
 
 #include "checkpoint_file.hpp"
 
-namespace talus::io {
+namespace talus::run {
 
 namespace fs = std::filesystem;
 
@@ -88,4 +88,4 @@ void read_reaches(const fs::path& file, const std::string& sha256, Simulation& s
   in.finish();
 }
 
-}  // namespace talus::io
+}  // namespace talus::run

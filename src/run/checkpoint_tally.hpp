@@ -5,7 +5,7 @@
 #include "talus/simulate/simulation.hpp"
 #include "talus/simulate/tally/tally.hpp"
 
-namespace talus::io {
+namespace talus::run {
 
 /// Totals and tallies as a `Checkpoint` keeps them.
 void put_totals(const Totals& totals, ByteWriter& out);
@@ -21,4 +21,4 @@ void read_tally(const std::filesystem::path& file, const std::string& sha256, Ta
 std::string write_reaches(const std::filesystem::path& file, const Simulation& simulation);
 void read_reaches(const std::filesystem::path& file, const std::string& sha256, Simulation& simulation);
 
-}  // namespace talus::io
+}  // namespace talus::run

@@ -215,45 +215,6 @@ class Simulation::Advance {
   bool stopped_ = false, interrupted_ = false;
 };
 
-Reaches::~Reaches() {
-  for (auto& [place, entry] : open_) {
-    scratch::keep_below_limit();  // what lies in the file is read once more
-    entry.reach.reset();
-  }
-}
-
-std::shared_ptr<SourceReach> Reaches::of(std::uint32_t place) {
-  if (units_ == 1 && !keep_) return nullptr;
-  const std::lock_guard guard(mutex_);
-  const auto it = open_.try_emplace(place).first;
-  if (!it->second.reach) it->second.reach = std::make_shared<SourceReach>();
-  std::shared_ptr<SourceReach> reach = it->second.reach;
-  if (++it->second.asked == units_ && !keep_) open_.erase(it);
-  return reach;
-}
-
-void Reaches::save(const std::function<void(std::string_view)>& put) const {
-  ByteWriter out;
-  for (const auto& [place, entry] : open_) {
-    scratch::keep_below_limit();
-    out.clear();
-    out.put(place);
-    out.put(entry.asked);
-    entry.reach->save(out);
-    put(out.bytes());
-  }
-}
-
-void Reaches::restore(ByteReader& in, const std::function<bool(std::uint32_t)>& wanted) {
-  scratch::keep_below_limit();
-  const auto place = in.get<std::uint32_t>();
-  if (!wanted(place)) return;
-  Entry& entry = open_[place];
-  entry.asked = in.get<std::uint32_t>();
-  entry.reach = std::make_shared<SourceReach>();
-  entry.reach->restore(in);
-}
-
 Simulation::Simulation(const Scenario& scenario, const Part& part, bool further_rounds, Tally& tally,
                        const Sinks& sinks, ProcessGroup& processes)
     : scenario_(scenario),
@@ -267,7 +228,7 @@ Simulation::Simulation(const Scenario& scenario, const Part& part, bool further_
       units_(std::uint64_t{units_per_source_} * (part.end(scenario.sources.size()) - first_place_)),
       chunk_(1),
       further_rounds_(further_rounds),
-      reaches_(units_per_source_, further_rounds) {
+      reaches_(units_per_source_, further_rounds, tally.memory()) {
   totals_.barriers = BarrierTally(scenario.barriers);
   if (processes.size() == 1) return;
   const std::uint64_t fair = units_ / (64U * static_cast<std::uint64_t>(processes.size()));

@@ -1,5 +1,6 @@
 // Speed of the engine on one slope: talus-bench DEM SOURCES [Google Benchmark's options].
-// tools/scripts/studies/benchmark.py makes the slope that all figures are measured on, and compares with the sketch and the floor.
+// tools/scripts/studies/benchmark.py makes the slope that all figures are measured on, and compares with the sketch and
+// the floor.
 #include <benchmark/benchmark.h>
 
 #include <chrono>

@@ -5,8 +5,9 @@
 #include <fstream>
 
 #include "scenario_files.hpp"
-#include "talus/io/results/hazard_record.hpp"
 #include "talus/io/files/staged_files.hpp"
+#include "talus/io/results/hazard_record.hpp"
+#include "talus/io/scenario/plan_checksum.hpp"
 #include "talus/simulate/simulate.hpp"
 
 namespace talus::io {

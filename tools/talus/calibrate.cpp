@@ -1,3 +1,5 @@
+#include "talus/fit/calibrate/calibrate.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -7,7 +9,6 @@
 #include "progress.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
-#include "talus/fit/calibrate/calibrate.hpp"
 #include "talus/io/campaign/model_file.hpp"
 #include "talus/io/reports/fit_report.hpp"
 #include "talus/simulate/scenario/presets.hpp"

@@ -1,6 +1,5 @@
 #pragma once
 #include "commands.hpp"
-#include "run_support.hpp"
 #include "talus/io/campaign/campaign_file.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/reports/fit_record.hpp"

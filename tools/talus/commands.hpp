@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "talus/io/scenario/loaded_scenario.hpp"
+#include "talus/run/observer.hpp"
 #include "talus/simulate/plan/process_group.hpp"
 
 /// What the program does once the command line is understood; returns its exit code.
@@ -30,10 +31,8 @@ void add_merge(CLI::App& app, Action& action);
 /// The options that say which scenario is meant: those of `run` and `check`.
 void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags);
 
-/// The user has ended the program (Ctrl-C, SIGTERM): exit code 130.
-struct Interrupted : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+using talus::run::Interrupted;  // exit code 130
+using talus::run::stop_interrupted;
 
 /// From here on signals that end a program only set the flag that `interrupted` reads, so that no half result is left.
 void catch_signals();

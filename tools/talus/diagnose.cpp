@@ -1,3 +1,5 @@
+#include "talus/fit/diagnose/diagnose.hpp"
+
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -7,7 +9,6 @@
 #include "progress.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/campaign/model_file.hpp"
-#include "talus/fit/diagnose/diagnose.hpp"
 #include "talus/io/reports/diagnosis_page.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 

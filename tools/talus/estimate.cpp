@@ -5,8 +5,10 @@
 
 #include "progress.hpp"
 #include "talus/products/raster_table.hpp"
-#include "talus/simulate/simulate.hpp"
-#include "write_maps.hpp"
+#include "talus/run/write_maps.hpp"
+#include "talus/simulate/screens/screens.hpp"
+#include "talus/simulate/stop_row.hpp"
+#include "talus/simulate/tally/tally.hpp"
 
 namespace {
 
@@ -60,14 +62,15 @@ double bytes_of_results(const Scenario& scenario, const RunSize& size) {
 double bytes_at_work(const Scenario& scenario, const RunSize& size, unsigned processors) {
   const double kept = kKeptCell + 4.0 * thresholds(scenario) + (size.with_hazard ? kHazardCell : 0.0);
   const double cells = size.grid_cells > kLargeMap ? size.touched_cells : size.grid_cells;
-  const double drafts = kDraftBand * kDraftBands * std::min(processors, unsigned{kMapsAtOnce}) * cells;
+  const double drafts = kDraftBand * kDraftBands * std::min(processors, unsigned{talus::run::kMapsAtOnce}) * cells;
   return size.touched_cells * kept + std::max(size.touched_cells * kept, drafts) +
          size.trajectories * sizeof(talus::StopRow) + size.crossings * sizeof(talus::Crossing);
 }
 
 double seconds_to_write(const Scenario& scenario, const RunSize& size, unsigned processors) {
   const double rasters = bands(scenario) * (kEmptyCell * size.grid_cells + kTouchedCell * size.touched_cells);
-  return kWriteFiles + rasters / std::min(processors, unsigned{kMapsAtOnce}) + kWriteTrajectory * size.trajectories;
+  return kWriteFiles + rasters / std::min(processors, unsigned{talus::run::kMapsAtOnce}) +
+         kWriteTrajectory * size.trajectories;
 }
 
 std::string rounded_text(double value) {

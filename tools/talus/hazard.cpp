@@ -7,16 +7,18 @@
 
 #include "commands.hpp"
 #include "progress.hpp"
-#include "run_support.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/files/staged_files.hpp"
 #include "talus/io/gdal/objects_file.hpp"
+#include "talus/io/results/hazard_file.hpp"
 #include "talus/io/results/hazard_record.hpp"
 #include "talus/io/results/weighting_file.hpp"
+#include "talus/io/scenario/plan_checksum.hpp"
 #include "talus/products/hazard_maps.hpp"
-#include "write_maps.hpp"
+#include "talus/run/write_maps.hpp"
+#include "talus/simulate/simulate.hpp"
 
 namespace fs = std::filesystem;
 
@@ -159,9 +161,10 @@ int hazard(const Options& options) {
 
   progress.stage("writing the maps");
   const talus::Grid& grid = survey->grid();
-  write_maps(talus::make_hazard_maps(*survey),
-             {staged.temporary(), record.header.geo, grid.columns, grid.rows, [] { return !interrupted(); }},
-             options.threads > 0 ? options.threads : omp_get_num_procs());
+  talus::run::write_maps(
+      talus::make_hazard_maps(*survey),
+      {staged.temporary(), record.header.geo, grid.columns, grid.rows, [] { return !interrupted(); }},
+      options.threads > 0 ? options.threads : omp_get_num_procs());
   progress.finish();
   if (!options.objects.empty()) write_objects(options, staged.temporary(), record);
   record.files = staged.files();

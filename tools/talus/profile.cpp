@@ -6,18 +6,21 @@
 
 #include "commands.hpp"
 #include "progress.hpp"
-#include "run_results.hpp"
-#include "run_support.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/results/run_record.hpp"
 #include "talus/io/results/write_crossings.hpp"
 #include "talus/io/results/write_profile.hpp"
+#include "talus/run/stopwatch.hpp"
+#include "talus/run/summary.hpp"
+#include "talus/simulate/simulate.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 using talus::io::LoadedProfile;
+using talus::run::Stopwatch;
+using talus::run::warnings_of;
 
 constexpr std::uint32_t kDrawn = 60;  // paths in the drawing
 constexpr double kPathSpacing = 1.0;  // of the points of a flight that is written, at most [m]
@@ -82,7 +85,7 @@ class Readers {
 
 void summarise(const talus::Totals& totals, const talus::BinDistribution& runout, const std::string& folder) {
   const auto metres = [](double value) { return talus::text_of(std::round(value * 10.0) / 10.0); };
-  say("", count_text(totals.released) + " trajectories: " + ends_text(totals));
+  say("", count_text(totals.released) + " trajectories: " + talus::run::ends_text(totals));
   if (runout.count > 0)
     say("", "runout of those that stopped: mean " + metres(runout.mean) + " m, P50 " + metres(runout.p50) + ", P95 " +
                 metres(runout.p95) + ", P99 " + metres(runout.p99) + ", farthest " + metres(runout.max));
@@ -105,7 +108,7 @@ talus::io::ProfileResults simulate_and_write(const Options& options, const Loade
   progress.stage("writing the results");
   talus::io::ProfileResults results = readers.finish(profile, folder);
   talus::io::write_text(folder / "profile.toml", profile.loaded.complete_toml);
-  record.files = files_in(folder);
+  record.files = talus::io::files_in(folder);
   const Stopwatch::Lap written = watch.lap();
   record.cpu.simulate = simulated.cpu - record.totals.sink_cpu_seconds;
   record.cpu.write = written.cpu + record.totals.sink_cpu_seconds;
@@ -141,7 +144,7 @@ int run_profile(const Options& options) {
     for (const std::string& warning : warnings_of(record.totals)) say("warning", warning);
   if (!options.quiet) summarise(record.totals, results.runout.stopped, folder.final_path().string());
   if (!talus::io::too_many_limits(record.totals)) return 0;
-  say("error", limits_text(record.totals));
+  say("error", talus::run::limits_text(record.totals));
   return 1;
 }
 

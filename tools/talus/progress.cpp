@@ -80,9 +80,3 @@ std::string duration_text(double seconds) {
   if (min > 0) return std::to_string(min) + " min " + std::to_string(s) + " s";
   return std::to_string(s) + " s";
 }
-
-std::string count_text(std::uint64_t count) {
-  std::string text = std::to_string(count);
-  for (std::size_t i = text.size(); i > 3; i -= 3) text.insert(i - 3, " ");
-  return text;
-}

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string>
 
+#include "talus/run/summary.hpp"
+
 /// Tells on stderr how far a run is: one rewritten line on a terminal, else a line every ten seconds; or, for programs,
 /// `progress 42` with every whole percent.
 class Progress {
@@ -46,5 +48,4 @@ class Progress {
 
 /// "1 h 20 min", "3 min 10 s", "12 s".
 std::string duration_text(double seconds);
-/// 1234567 as "1 234 567".
-std::string count_text(std::uint64_t count);
+using talus::run::count_text;

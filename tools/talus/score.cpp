@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "commands.hpp"
-#include "run_support.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/campaign/model_file.hpp"
 #include "talus/io/files/output_folder.hpp"

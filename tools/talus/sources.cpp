@@ -5,7 +5,6 @@
 
 #include "commands.hpp"
 #include "progress.hpp"
-#include "run_support.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_file.hpp"

@@ -7,9 +7,9 @@
 #include "commands.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
-#include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/io/files/output_file.hpp"
 #include "talus/io/results/write_vectors.hpp"
+#include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/simulate.hpp"
 

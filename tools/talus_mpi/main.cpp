@@ -2,8 +2,8 @@
 
 #include "mpi_process_group.hpp"
 #include "program.hpp"
-#include "run_support.hpp"
 #include "talus/base/error.hpp"
+#include "talus/run/in_every_process.hpp"
 
 namespace {
 
@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
           if (processes.size() > 1) throw;  // of one process: the others do not know
           say("error", error.what());
           ended = kWrongInput;
-        } catch (const WrongForAll& error) {
+        } catch (const talus::run::GroupInputError& error) {
           if (processes.leads()) say("error", error.what());
           ended = kWrongInput;
         } catch (const Interrupted& error) {

@@ -11,9 +11,12 @@
 #include "talus/products/accuracy.hpp"
 #include "talus/simulate/simulation.hpp"
 
-namespace talus::io {
+namespace talus::run {
 
-/// What is written once the trajectories of a run, or of a part of it, are done; docs/regions.md, "Files of a part".
+using io::LoadedScenario;
+using io::Setting;
+
+/// The file that names all others of a checkpoint; docs/regions.md, "Files of a part".
 inline constexpr const char* kCheckpointManifest = "part.json";
 
 /// The work of a run, or of a part of it, on the disk: the tally, the rows of stops, crossings and paths, and how far
@@ -27,14 +30,14 @@ class Checkpoint {
   /// @param asked  how many rounds there will be: who goes on must ask for the same
   /// The processes of a process group share the folder: all must make it, and call all that writes.
   Checkpoint(const std::filesystem::path& folder, const LoadedScenario& loaded, const Part& part, const Rounds& asked,
-        ProcessGroup& processes = alone());
+             ProcessGroup& processes = alone());
 
-  /// What an earlier program left. Throws InputError where it is damaged; `InputError` too where it belongs to another
-  /// plan than `loaded`.
+  /// The checkpoint of an earlier program. Throws InputError where it is damaged or belongs to another plan than
+  /// `loaded`.
   ///
   /// @param to_go_on  what a killed program has left beside is removed
   static Checkpoint opened(const std::filesystem::path& folder, const LoadedScenario& loaded, bool to_go_on,
-                      ProcessGroup& processes = alone());
+                           ProcessGroup& processes = alone());
 
   Checkpoint(Checkpoint&&) noexcept;
   Checkpoint& operator=(Checkpoint&&) noexcept;
@@ -46,33 +49,34 @@ class Checkpoint {
   /// Those of the plan, as the program that began it had them; `trajectories` those of so many rounds.
   std::vector<Setting> settings(std::uint32_t rounds) const;
   bool between_rounds() const { return units_done_ == 0; }
-  bool empty() const { return generation_ == 0; }  ///< nothing was kept yet
+  bool empty() const { return generation_ == 0; }  ///< nothing was saved yet
   const std::filesystem::path& folder() const { return folder_; }
 
-  /// Where rows go to until they are kept. Only the functions for rows are set: stops, and paths and crossings where
-  /// the scenario has them.
+  /// Receivers of rows: they write them where `save` finds them. Only the functions for rows are set: stops, and paths
+  /// and crossings where the scenario has them.
   Sinks sinks();
 
-  /// The sum of what the processes of the process group have; at the leader.
+  /// The sum of the totals of all processes; at the leader.
   Totals totals_of_all(const Totals& mine) const;
 
-  /// A round is done. Its rows can be replayed; all is not yet kept.
+  /// A round is done: its rows can be replayed. It is not saved yet.
   void end_round(std::uint32_t round);
 
-  /// Keeps all that was done so far, in place of what was kept before. Throws std::runtime_error: what was kept before
-  /// then still counts.
-  void keep(const Simulation& simulation, const Tally& tally);
+  /// Saves all that was done so far, in place of what was saved before. Throws std::runtime_error: what was saved
+  /// before then still counts.
+  void save(const Simulation& simulation, const Tally& tally);
 
-  /// Totals of what was kept; adds its tally to `tally`. Throws InputError where a file is damaged.
+  /// The saved totals; adds the saved tally to `tally`. Throws InputError where a file is damaged.
   Totals add_to(Tally& tally) const;
-  /// Puts a simulation where the kept one was; its tally too. Of a process group whoever goes on: each process takes a share.
+  /// Puts a simulation and its tally where the saved ones were. Each process of a group takes a share, however many
+  /// there were.
   void restore(Simulation& simulation, Tally& tally) const;
-  /// Hands the kept rows of one round to sinks, in the order in which they came.
+  /// Hands the saved rows of one round to sinks, in the order in which they came.
   void replay(std::uint32_t round, const Sinks& sinks) const;
 
  private:
   struct Rows;
-  struct KeptFile {
+  struct SavedFile {
     std::string name, sha256;
   };
   struct RowsFile {
@@ -80,7 +84,7 @@ class Checkpoint {
     std::string name, sha256;
   };
   Checkpoint(std::filesystem::path folder, const LoadedScenario& loaded, ProcessGroup& processes);
-  std::vector<KeptFile> gathered(const KeptFile& mine) const;
+  std::vector<SavedFile> gathered(const SavedFile& mine) const;
   std::string checked(const std::string& name, const std::string& sha256) const;
   void close_rows(std::uint32_t round);
   void write_manifest() const;
@@ -99,9 +103,9 @@ class Checkpoint {
   std::uint32_t generation_ = 0;  // of the files; 0: none yet
   std::uint32_t round_ = 0;       // in work
   std::string rest_sha256_;
-  std::vector<KeptFile> tallies_, reaches_;  // one of each process
+  std::vector<SavedFile> tallies_, reaches_;  // one of each process
   std::vector<RowsFile> rows_files_;
   std::unique_ptr<Rows> rows_;  // that are being written
 };
 
-}  // namespace talus::io
+}  // namespace talus::run

@@ -1,55 +1,12 @@
 #pragma once
-#include <map>
-#include <memory>
-
-#include "talus/simulate/simulate.hpp"
+#include "talus/simulate/plan/part.hpp"
 #include "talus/simulate/plan/process_group.hpp"
+#include "talus/simulate/reaches.hpp"
+#include "talus/simulate/sinks.hpp"
+#include "talus/simulate/tally/tally.hpp"
+#include "talus/simulate/totals.hpp"
 
 namespace talus {
-
-/// The source cells that one program traces of a plan that several share: whole ones, those that follow each other in
-/// the order of work.
-struct Part {
-  std::uint32_t number = 1, of = 1;
-
-  /// The place of its first source cell, of so many in all; the next part's first is this part's end.
-  std::uint32_t first(std::size_t sources) const { return begin_of(number - 1, sources); }
-  std::uint32_t end(std::size_t sources) const { return begin_of(number, sources); }
-
- private:
-  std::uint32_t begin_of(std::uint32_t part, std::size_t sources) const {
-    return static_cast<std::uint32_t>(std::uint64_t{part} * sources / of);
-  }
-};
-
-/// Which cells the source cells have reached, where that must be known beyond one unit of work: a source cell counts
-/// once in a cell, however many units, rounds or sessions trace it. Source cells by their place in the order of work.
-class Reaches {
- public:
-  /// @param units  of work of a source cell, in one round;  @param keep  all, for further rounds
-  Reaches(std::uint32_t units, bool keep) : units_(units), keep_(keep) {}
-  ~Reaches();
-  Reaches(const Reaches&) = delete;
-  Reaches& operator=(const Reaches&) = delete;
-
-  /// Once per unit. Empty where one unit holds all of the source cell. Safe to call from several threads.
-  std::shared_ptr<SourceReach> of(std::uint32_t place);
-
-  /// Hands out what is known of each source cell, one after the other: all together may not fit into the memory.
-  void save(const std::function<void(std::string_view)>& put) const;
-  /// Adds what was saved of a source cell, where its place is one that `wanted` wants.
-  void restore(ByteReader& in, const std::function<bool(std::uint32_t)>& wanted);
-
- private:
-  struct Entry {
-    std::shared_ptr<SourceReach> reach;
-    std::uint32_t asked = 0;
-  };
-  std::uint32_t units_;
-  bool keep_;
-  std::mutex mutex_;
-  std::map<std::uint32_t, Entry> open_;
-};
 
 /// A run that can be paused, kept on the disk and gone on with: same bits wherever it pauses.
 ///

@@ -10,23 +10,23 @@
 
 namespace talus {
 
-/// The values of a raster: its own, or some that processes share.
+/// The values of a raster: its own, or memory that processes share.
 template <class T>
 class Cells {
  public:
   Cells() = default;
-  Cells(std::size_t size, T fill) {
+  Cells(std::size_t size, T fill, MemoryPolicy memory = {}) : own_(memory) {
     constexpr std::size_t kPiece = std::size_t{1} << 24U;
     own_.reserve(size);
     while (own_.size() < size) {  // piece by piece, so that a map larger than the memory can be made
       own_.resize(std::min(size, own_.size() + kPiece), fill);
-      scratch::keep_below_limit();
+      memory.keep_below_limit();
     }
     data_ = own_.data(), size_ = size;
   }
   template <class Iterator>
   Cells(Iterator begin, Iterator end) : own_(begin, end), data_(own_.data()), size_(own_.size()) {}
-  Cells(std::shared_ptr<SharedMemory> shared, std::size_t size)
+  Cells(std::shared_ptr<SharedPiece> shared, std::size_t size)
       : shared_(std::move(shared)), data_(static_cast<T*>(shared_->data())), size_(size) {}
   Cells(const Cells& other) : own_(other.own_), shared_(other.shared_), size_(other.size_) {
     data_ = shared_ ? other.data_ : own_.data();
@@ -48,6 +48,8 @@ class Cells {
   const T* end() const { return data_ + size_; }
   T& operator[](std::size_t i) { return data_[i]; }
   const T& operator[](std::size_t i) const { return data_[i]; }
+  /// Where the cells lie; of shared ones the heap, where what goes with them lies.
+  MemoryPolicy memory() const { return own_.get_allocator().memory; }
   bool operator==(const Cells& other) const { return std::equal(begin(), end(), other.begin(), other.end()); }
 
  private:
@@ -58,7 +60,7 @@ class Cells {
     std::swap(size_, other.size_);
   }
   ScratchVector<T> own_;
-  std::shared_ptr<SharedMemory> shared_;
+  std::shared_ptr<SharedPiece> shared_;
   T* data_ = nullptr;
   std::size_t size_ = 0;
 };
@@ -70,26 +72,33 @@ struct Raster {
   Cells<T> values;
 
   Raster() = default;
-  Raster(const Grid& g, T fill) : grid(g), values(g.cells(), fill) {}
+  Raster(const Grid& g, T fill, MemoryPolicy memory = {}) : grid(g), values(g.cells(), fill, memory) {}
   Raster(const Grid& g, const std::vector<T>& v) : grid(g), values(v.begin(), v.end()) {}
 
   T& at(int column, int row) { return values[grid.index(column, row)]; }
   const T& at(int column, int row) const { return values[grid.index(column, row)]; }
 };
 
-/// A raster that `read` fills: once on a machine where its processes share memory, else in each.
+/// Where the rasters of a scenario lie.
+struct RasterMemory {
+  MemoryPolicy policy;
+  SharedMemory* shared = nullptr;  ///< null: each process has its own
+};
+
+/// Makes the values of a raster, which `read` fills: once on a machine where its processes share memory, else in each.
 template <class T, class Read>
-void fill_shared(Raster<T>& raster, T before, Read read) {
-  if (!SharedMemory::is_on()) {
-    raster.values = Cells<T>(raster.grid.cells(), before);
+void fill_raster(Raster<T>& raster, T before, const RasterMemory& memory, Read read) {
+  const std::size_t cells = raster.grid.cells();
+  if (memory.shared == nullptr) {
+    raster.values = Cells<T>(cells, before, memory.policy);
     read();
     return;
   }
-  const auto memory = std::make_shared<SharedMemory>(raster.grid.cells() * sizeof(T));
-  raster.values = Cells<T>(memory, raster.grid.cells());
-  if (memory->is_filled()) return;
+  const auto piece = memory.shared->next(cells * sizeof(T));
+  raster.values = Cells<T>(piece, cells);
+  if (piece->is_filled()) return;
   read();
-  memory->set_filled();
+  piece->set_filled();
 }
 
 }  // namespace talus

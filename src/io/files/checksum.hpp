@@ -25,8 +25,8 @@ class Sha256 {
 /// Of bytes.
 std::string sha256_of_bytes(std::string_view bytes);
 
-/// Of the bytes of all files of an input (`files_of_input`) that are there, one after the other. Empty where nothing can be
-/// read (a web service, say).
+/// Of the bytes of all files of an input (`files_of_input`) that are there, one after the other. Empty where nothing
+/// can be read (a web service, say).
 std::string sha256_of_file(const std::string& path);
 
 }  // namespace talus::io

@@ -1,7 +1,5 @@
 #include "talus/io/files/output_file.hpp"
 
-#include <unistd.h>
-
 #include <system_error>
 
 #include "talus/base/error.hpp"
@@ -10,7 +8,10 @@ namespace talus::io {
 
 namespace fs = std::filesystem;
 
-OutputFile::OutputFile(const fs::path& path, const std::string& extension, bool overwrite) : final_(path) {
+namespace {
+
+/// The path, absolute. Throws InputError where a file cannot go there.
+fs::path checked(const fs::path& path, const std::string& extension, bool overwrite) {
   const std::string name = path.string();
   if (path.extension() != extension || path.stem().empty())
     throw InputError(name + ": the file must end in " + extension + ", for example result" + extension);
@@ -19,25 +20,24 @@ OutputFile::OutputFile(const fs::path& path, const std::string& extension, bool 
     throw InputError(
         name +
         ": the file is there already; give a new name, or --overwrite where the command has it, or remove it first");
-  const fs::path folder = fs::absolute(path).parent_path();
-  if (!fs::is_directory(folder))
+  if (!fs::is_directory(fs::absolute(path).parent_path()))
     throw InputError(name + ": there is no such folder for the file to go into; create it first");
-  temporary_ = folder / ("." + path.stem().string() + ".talus-" + std::to_string(getpid()) + extension);
+  return fs::absolute(path);
 }
 
-OutputFile::~OutputFile() {
-  std::error_code ignored;
-  fs::remove(temporary_, ignored);
-}
+}  // namespace
+
+OutputFile::OutputFile(const fs::path& path, const std::string& extension, bool overwrite)
+    : staged_(StagedPath::Kind::File, checked(path, extension, overwrite), extension) {}
 
 void OutputFile::protect(const fs::path& input) const {
   std::error_code none;
-  if (fs::equivalent(input, final_, none))
+  if (fs::equivalent(input, staged_.path(), none))
     throw InputError(input.string() + ": is the file that --overwrite would replace; give another name");
 }
 
 void OutputFile::commit() {
-  fs::rename(temporary_, final_);
+  if (const std::error_code error = staged_.commit()) throw fs::filesystem_error("rename", staged_.path(), error);
 }
 
 }  // namespace talus::io

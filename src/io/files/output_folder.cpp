@@ -1,9 +1,6 @@
 #include "talus/io/files/output_folder.hpp"
 
-#include <fcntl.h>
-#include <gdal.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -16,15 +13,11 @@
 #include "folder_lock.hpp"
 #include "input_files.hpp"
 #include "talus/base/error.hpp"
-#include "talus/base/scratch.hpp"
 
 namespace talus::io {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-/// Absolute, through symbolic links, without a slash at its end.
 fs::path full_name(const fs::path& path) {
   if (path.empty())
     throw InputError("--out: the name of the folder is empty; give a new folder, for example -o result");
@@ -35,6 +28,8 @@ fs::path full_name(const fs::path& path) {
   if (full.filename().empty()) throw InputError(path.string() + ": cannot be a folder of results; give a new folder");
   return full;
 }
+
+namespace {
 
 /// A mount point can neither be renamed nor replaced: better said before the run than after it.
 bool is_mount_point(const fs::path& folder) {
@@ -61,21 +56,18 @@ void refuse_taken_name(const fs::path& folder, bool overwrite) {
                    "calibration.json or diagnosis.json in this folder; give a new name, or remove the folder yourself");
 }
 
-fs::path make_temporary(const fs::path& folder) {
-  const fs::path parent = folder.parent_path();
+void make_hidden(StagedPath& staged) {
+  const std::string parent = staged.path().parent_path().string();
   if (!fs::is_directory(parent))
-    throw InputError(parent.string() + ": there is no such folder for the results to go into; create it first");
-  const std::string stem = "." + folder.filename().string() + ".talus-" + std::to_string(getpid());
-  for (int attempt = 0; attempt < 100; ++attempt) {
-    fs::path path = parent / (attempt == 0 ? stem : stem + "-" + std::to_string(attempt));
-    std::error_code error;
-    if (fs::create_directory(path, error)) return path;
-    if (error == std::errc::no_space_on_device) throw std::runtime_error(parent.string() + ": " + error.message());
-    if (error)
-      throw InputError(parent.string() + ": no folder can be made there (" + error.message() +
-                       "); give an output folder where you may write");
-  }
-  throw std::runtime_error(parent.string() + ": too many temporary folders of talus; remove " + stem + "*");
+    throw InputError(parent + ": there is no such folder for the results to go into; create it first");
+  const std::error_code error = staged.make_folder();
+  if (!error) return;
+  if (error == std::errc::no_space_on_device) throw std::runtime_error(parent + ": " + error.message());
+  if (error == std::errc::file_exists)
+    throw std::runtime_error(parent + ": too many temporary folders of talus; remove " +
+                             staged.hidden().filename().string() + "*");
+  throw InputError(parent + ": no folder can be made there (" + error.message() +
+                   "); give an output folder where you may write");
 }
 
 /// A hidden folder that no process has any more.
@@ -88,7 +80,7 @@ struct Left {
 /// The hidden folders that runs have left, the one that kept its work last at the end. All are locked by now. Throws
 /// InputError where a process still writes one.
 std::vector<Left> left_of(const fs::path& folder) {
-  const std::string stem = "." + folder.filename().string() + ".talus-";
+  const std::string stem = StagedPath::hidden_prefix(folder);
   std::vector<Left> found;
   if (!fs::is_directory(folder.parent_path())) return found;
   for (const auto& entry : fs::directory_iterator(folder.parent_path())) {
@@ -117,26 +109,27 @@ bool is_finished_map(const fs::path& file) {
 }  // namespace
 
 OutputFolder::OutputFolder(const fs::path& path, bool overwrite, Unfinished unfinished)
-    : final_(full_name(path)), overwrite_(overwrite), lock_(std::make_unique<FolderLock>()) {
+    : staged_(StagedPath::Kind::Folder, full_name(path)), overwrite_(overwrite), lock_(std::make_unique<FolderLock>()) {
+  const fs::path& final = final_path();
   std::vector<Left> left;
   try {
-    refuse_taken_name(final_, overwrite);
-    if (unfinished != Unfinished::Ignore) left = left_of(final_);
+    refuse_taken_name(final, overwrite);
+    if (unfinished != Unfinished::Ignore) left = left_of(final);
   } catch (const fs::filesystem_error& error) {
-    throw InputError(final_.string() + ": cannot be looked at (" + error.code().message() + "); give another folder");
+    throw InputError(final.string() + ": cannot be looked at (" + error.code().message() + "); give another folder");
   }
   const bool kept = !left.empty() && left.back().kept;
   if (unfinished == Unfinished::Refuse && kept && !overwrite)
-    throw InputError(final_.string() + ": an interrupted run of this name is kept in " + left.back().path.string() +
+    throw InputError(final.string() + ": an interrupted run of this name is kept in " + left.back().path.string() +
                      "; give --resume to go on with it, or --overwrite to begin anew");
-  temporary_ = make_temporary(final_);
+  make_hidden(staged_);
   std::error_code ignored;
   if (unfinished == Unfinished::Resume && kept) {
-    fs::remove(temporary_, ignored);
-    fs::rename(left.back().path, temporary_);
+    fs::remove(temporary(), ignored);
+    fs::rename(left.back().path, temporary());
     *lock_ = std::move(left.back().lock);
-    kept_ = true;  // what there is must not be lost; nor are others of that name removed
-    for (const auto& entry : fs::directory_iterator(temporary_))
+    keep();  // what there is must not be lost; nor are others of that name removed
+    for (const auto& entry : fs::directory_iterator(temporary()))
       if (entry.path().filename() != kWork && !is_finished_map(entry.path())) fs::remove_all(entry.path(), ignored);
     left.clear();
   } else if (unfinished != Unfinished::Ignore) {
@@ -145,20 +138,11 @@ OutputFolder::OutputFolder(const fs::path& path, bool overwrite, Unfinished unfi
   for (const Left& folder : left) fs::remove_all(folder.path, ignored);
 }
 
-OutputFolder::~OutputFolder() {
-  std::error_code ignored;
-  if (!committed_ && !kept_) fs::remove_all(temporary_, ignored);
-}
+OutputFolder::~OutputFolder() = default;
 
 void OutputFolder::hold_work() {
-  try {
-    fs::create_directories(work());
-    *lock_ = FolderLock::made_in(work());
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(temporary_, ignored);
-    throw;
-  }
+  fs::create_directories(work());
+  *lock_ = FolderLock::made_in(work());
 }
 
 void OutputFolder::protect(const fs::path& file) const {
@@ -166,70 +150,48 @@ void OutputFolder::protect(const fs::path& file) const {
     std::error_code error;
     const fs::path full = fs::weakly_canonical(part, error);
     if (error) continue;
-    const fs::path inside = full.lexically_relative(final_);
+    const fs::path inside = full.lexically_relative(final_path());
     if (!inside.empty() && *inside.begin() != "..")
       throw InputError(part + ": lies in the folder that --overwrite would replace; give another folder");
   }
 }
 
 void OutputFolder::commit() {
-  commit(temporary_);
+  commit(temporary());
   std::error_code ignored;
-  fs::remove_all(final_ / kWork, ignored);  // last: until here a run that is killed can go on
+  fs::remove_all(final_path() / kWork, ignored);  // last: until here a run that is killed can go on
 }
 
 void OutputFolder::commit_work() {
   std::error_code ignored;
   fs::remove(work() / FolderLock::kName, ignored);
   commit(work());
-  fs::remove_all(temporary_, ignored);
+  fs::remove_all(temporary(), ignored);
 }
 
 void OutputFolder::commit(const fs::path& folder) {
   try {
-    refuse_taken_name(final_, overwrite_);
+    refuse_taken_name(final_path(), overwrite_);
   } catch (const InputError& error) {  // somebody has filled it while this ran
-    kept_ = true;
-    throw InputError(std::string(error.what()) + "; the results are kept in " + temporary_.string());
+    keep();
+    throw InputError(std::string(error.what()) + "; the results are kept in " + temporary().string());
   }
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) synchronise(entry.path());
-  synchronise(folder);
+  synchronise_all(folder);  // before the earlier result is moved aside
   std::error_code error;
-  const fs::path aside = temporary_.string() + "-old";
-  const bool replace = overwrite_ && fs::exists(final_) && !fs::is_empty(final_);
-  if (replace) fs::rename(final_, aside, error);
+  const fs::path aside = temporary().string() + "-old";
+  const bool replace = overwrite_ && fs::exists(final_path()) && !fs::is_empty(final_path());
+  if (replace) fs::rename(final_path(), aside, error);
   if (!error) {
-    fs::rename(folder, final_, error);  // fails where somebody has filled it by now
+    error = StagedPath::give_name(folder, final_path());  // fails where somebody has filled it by now
     std::error_code ignored;
-    if (error && replace) fs::rename(aside, final_, ignored);
+    if (error && replace) fs::rename(aside, final_path(), ignored);
   }
   if (error) {
-    kept_ = true;
-    throw std::runtime_error(final_.string() + ": the results cannot be given this name (" + error.message() +
-                             "); they are kept in " + temporary_.string());
+    keep();
+    throw std::runtime_error(final_path().string() + ": the results cannot be given this name (" + error.message() +
+                             "); they are kept in " + temporary().string());
   }
-  committed_ = true;
-  synchronise(final_.parent_path());
   if (replace) fs::remove_all(aside, error);
-}
-
-void limit_memory(const fs::path& results, std::size_t bytes) {
-  const fs::path parent = full_name(results).parent_path();
-  if (!fs::is_directory(parent))
-    throw InputError(parent.string() + ": there is no such folder for the results to go into; create it first");
-  scratch::set_limit(parent.string(), bytes);
-  GDALSetCacheMax64(static_cast<GIntBig>(bytes / 16));
-}
-
-void synchronise(const fs::path& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return;
-  const int result = fsync(file);
-  const int cause = errno;
-  close(file);
-  if (result != 0 && cause != EINVAL && cause != ENOTSUP)
-    throw std::runtime_error(path.filename().string() +
-                             ": cannot be written: " + std::system_category().message(cause));
 }
 
 void write_text(const fs::path& file, std::string_view text) {
@@ -247,19 +209,18 @@ void write_text(const fs::path& file, std::string_view text) {
 }
 
 void replace_text(const fs::path& file, std::string_view text) {
-  const fs::path temporary =
-      file.parent_path() / ("." + file.filename().string() + ".talus-" + std::to_string(getpid()));
-  write_text(temporary, text);
-  synchronise(temporary);
-  std::error_code error;
-  fs::rename(temporary, file, error);
-  if (!error) {
-    synchronise(file.parent_path());
-    return;
-  }
-  std::error_code ignored;
-  fs::remove(temporary, ignored);
-  throw std::runtime_error(file.filename().string() + ": cannot be written: " + error.message());
+  StagedPath staged(StagedPath::Kind::File, file, file.extension().string());
+  write_text(staged.hidden(), text);
+  if (const std::error_code error = staged.commit())
+    throw std::runtime_error(file.filename().string() + ": cannot be written: " + error.message());
+}
+
+std::vector<std::string> files_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.is_regular_file()) names.push_back(entry.path().filename().string());
+  std::ranges::sort(names);
+  return names;
 }
 
 std::string cause_of_failure(const fs::path& folder, const std::string& messages) {

@@ -1,13 +1,12 @@
 #include "talus/io/files/staged_files.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "talus/base/error.hpp"
+#include "talus/io/files/output_folder.hpp"
 
 namespace talus::io {
 
@@ -31,7 +30,7 @@ std::vector<std::string> files_of(const fs::path& record) {
 }  // namespace
 
 StagedFiles::StagedFiles(const fs::path& folder, const std::string& record, bool overwrite)
-    : folder_(folder), record_(record) {
+    : folder_(folder), record_(record), staged_(StagedPath::Kind::Folder, folder / fs::path(record).stem()) {
   if (!fs::exists(folder / "run.json"))
     throw InputError(folder.string() + ": is no folder of results (it has no run.json); give the OUT of talus run");
   if (fs::exists(folder / record)) {
@@ -40,23 +39,14 @@ StagedFiles::StagedFiles(const fs::path& folder, const std::string& record, bool
                        " already; give --overwrite to replace it and its files");
     earlier_ = files_of(folder / record);
   }
-  temporary_ = folder / ("." + fs::path(record).stem().string() + ".talus-" + std::to_string(getpid()));
-  std::error_code error;
-  fs::remove_all(temporary_, error);  // of a process of the same number that was killed
-  if (!fs::create_directory(temporary_, error))
+  std::error_code ignored;
+  fs::remove_all(temporary(), ignored);  // of a process of the same number that was killed
+  if (const std::error_code error = staged_.make_folder())
     throw InputError(folder.string() + ": nothing can be written there (" + error.message() + ")");
 }
 
-StagedFiles::~StagedFiles() {
-  std::error_code ignored;
-  fs::remove_all(temporary_, ignored);
-}
-
 std::vector<std::string> StagedFiles::files() const {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(temporary_)) names.push_back(entry.path().filename().string());
-  std::ranges::sort(names);
-  return names;
+  return files_in(temporary());
 }
 
 void StagedFiles::commit() {
@@ -70,7 +60,7 @@ void StagedFiles::commit() {
   std::vector<std::string> names = files();
   std::stable_partition(names.begin(), names.end(), [this](const std::string& name) { return name != record_; });
   for (const std::string& name : names) {
-    fs::rename(temporary_ / name, folder_ / name, error);
+    error = StagedPath::give_name(temporary() / name, folder_ / name);
     if (error) throw std::runtime_error(name + ": cannot be given this name: " + error.message());
   }
 }

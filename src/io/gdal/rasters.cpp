@@ -7,7 +7,6 @@
 
 #include "dataset.hpp"
 #include "talus/base/error.hpp"
-#include "talus/base/scratch.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 
@@ -121,7 +120,7 @@ void read_heights(GDALRasterBand& band, const std::string& path, Terrain& terrai
   double lowest_other = std::numeric_limits<double>::infinity();
   for (int row = 0; row < grid.rows; ++row) {
     const std::vector<double>& heights = reader.row(row);
-    if (row % 64 == 0) scratch::keep_below_limit();
+    if (row % 64 == 0) terrain.heights.values.memory().keep_below_limit();
     float* out = terrain.heights.values.data() + grid.index(0, grid.rows - 1 - row);
     for (int column = 0; column < grid.columns; ++column) {
       const double height = heights[column];
@@ -153,7 +152,7 @@ MapExtent Terrain::extent() const {
   return {g.west, g.south, g.west + g.width(), g.south + g.height()};
 }
 
-Terrain read_terrain(const std::string& path) {
+Terrain read_terrain(const std::string& path, const RasterMemory& memory) {
   const Dataset dataset = open_dataset(path, GDAL_OF_RASTER);
   GdalMessages messages;
   if (dataset->GetRasterCount() < 1)
@@ -178,7 +177,8 @@ Terrain read_terrain(const std::string& path) {
     terrain.warnings.push_back(path + ": has " + std::to_string(dataset->GetRasterCount()) +
                                " bands: the first is taken as heights");
   terrain.heights.grid = grid;
-  fill_shared(terrain.heights, std::numeric_limits<float>::quiet_NaN(), [&] { read_heights(band, path, terrain); });
+  fill_raster(terrain.heights, std::numeric_limits<float>::quiet_NaN(), memory,
+              [&] { read_heights(band, path, terrain); });
   return terrain;
 }
 

@@ -217,7 +217,7 @@ void read_codes(GDALDataset& dataset, const ZoneRequest& request, const Terrain&
 
 ZoneLayer read_zones(const ZoneRequest& request, const Terrain& terrain) {
   ZoneLayer out;
-  out.zones = Raster<std::uint8_t>(terrain.heights.grid, 0);
+  out.zones = Raster<std::uint8_t>(terrain.heights.grid, 0, terrain.heights.values.memory());
   const Dataset dataset = open_dataset(request.path, GDAL_OF_RASTER | GDAL_OF_VECTOR);
   GdalMessages messages;
   const bool polygons = dataset->GetLayerCount() > 0 && (dataset->GetRasterCount() == 0 || !request.field.empty());

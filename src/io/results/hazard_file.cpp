@@ -5,13 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "io/gdal/dataset.hpp"
 #include "hazard_stream.hpp"
-#include "io/scenario/scenario_spec.hpp"
-#include "io/files/checksum.hpp"
+#include "io/gdal/dataset.hpp"
 #include "talus/base/error.hpp"
-#include "talus/base/scratch.hpp"
 #include "talus/base/version.hpp"
+#include "talus/io/scenario/plan_checksum.hpp"
 
 namespace talus::io {
 namespace {
@@ -92,24 +90,7 @@ HazardHeader get_header(HazardReader& in) {
   }
 }
 
-/// Machines may have the same files in other folders: what is in them counts, and what they are called.
-void strip_folder(NamedFile& file) {
-  const std::filesystem::path path(file.path);
-  if (path.is_absolute()) file.path = path.filename().string();
-}
-
 }  // namespace
-
-std::string plan_checksum(const LoadedScenario& loaded) {
-  ScenarioSpec spec = *loaded.spec;
-  for (NamedFile* file : {&spec.dem, &spec.sources, &spec.ground, &spec.screens, &spec.barriers}) strip_folder(*file);
-  for (auto& [name, effect] : spec.effects) strip_folder(effect.file);
-  Sha256 sum;
-  sum.add(toml_of(spec));
-  for (const InputFile& input : loaded.inputs)
-    if (input.role != "scenario" && input.role != "include") sum.add(input.role + input.sha256 + "\n");
-  return sum.digits();
-}
 
 void write_hazard(const std::filesystem::path& file, const LoadedScenario& loaded, const Tally& tally) {
   const Raster<float>& heights = loaded.scenario.surface.heights();
@@ -121,7 +102,7 @@ void write_hazard(const std::filesystem::path& file, const LoadedScenario& loade
   out.put(static_cast<std::uint32_t>(header.size()));
   out.put(header.data(), header.size());
   for (int row = grid.rows - 1; row >= 0; --row) {
-    scratch::keep_below_limit();
+    tally.memory().keep_below_limit();
     for (int column = 0; column < grid.columns; ++column) {
       const std::uint8_t touched = tally.hazard(column, row) != nullptr ? 2 : 0;
       out.put(static_cast<std::uint8_t>(touched + (std::isnan(heights.at(column, row)) ? 0 : 1)));

@@ -2,8 +2,8 @@
 #include <filesystem>
 #include <string>
 
-#include "io/gdal/dataset.hpp"
 #include "io/files/checksum.hpp"
+#include "io/gdal/dataset.hpp"
 
 namespace talus::io {
 

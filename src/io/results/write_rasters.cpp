@@ -26,21 +26,6 @@ int block_size(const MapTarget& target) {
   return size > 256 ? 512 : size > 128 ? 256 : 128;  // a small map is not filled up to a large block
 }
 
-/// Removes a file at the end of the scope.
-class Removed {
- public:
-  explicit Removed(fs::path path) : path_(std::move(path)) {}
-  ~Removed() {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
-  }
-  Removed(const Removed&) = delete;
-  Removed& operator=(const Removed&) = delete;
-
- private:
-  fs::path path_;
-};
-
 void require(bool good, const char* what) {
   if (!good) throw std::runtime_error(what);
 }
@@ -231,25 +216,22 @@ bool write_as(const Map& map, const MapTarget& target, const fs::path& draft, co
 
 bool write_map(const Map& map, const MapTarget& target) {
   start_gdal();
-  const fs::path file = target.folder / (map.name + ".tif");
-  const fs::path draft_path = target.folder / (map.name + ".draft.tif");
-  const fs::path part_path = target.folder / (map.name + ".part.tif");
-  const Removed draft(draft_path), part(part_path);
+  const StagedPath draft(StagedPath::Kind::File, target.folder / (map.name + "_draft.tif"), ".tif");  // gets no name
+  StagedPath staged(StagedPath::Kind::File, target.folder / (map.name + ".tif"), ".tif");
   GdalMessages messages;
   const auto fail = [&](const std::string& what) {
     throw std::runtime_error(map.name + ".tif: " + what + ": " + cause_of_failure(target.folder, messages.take()));
   };
   bool whole = false;
   try {
-    whole = map.kind == Map::Kind::Count ? write_as<std::uint32_t>(map, target, draft_path, part_path)
-                                         : write_as<float>(map, target, draft_path, part_path);
+    whole = map.kind == Map::Kind::Count ? write_as<std::uint32_t>(map, target, draft.hidden(), staged.hidden())
+                                         : write_as<float>(map, target, draft.hidden(), staged.hidden());
   } catch (const std::runtime_error& error) {
     fail(error.what());
   }
   if (!whole) return false;
   if (messages.failed()) fail("cannot be written");
-  synchronise(part_path);  // what has its name is whole, whenever the program is killed
-  fs::rename(part_path, file);
+  if (const std::error_code error = staged.commit()) fail("cannot be given its name: " + error.message());
   return true;
 }
 

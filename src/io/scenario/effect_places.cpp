@@ -14,7 +14,7 @@ namespace {
 Raster<std::uint8_t> read_mask(const std::string& name, const std::string& path, const Terrain& terrain,
                                LoadedScenario& out) {
   const Grid& grid = terrain.heights.grid;
-  Raster<std::uint8_t> mask(grid, 0);
+  Raster<std::uint8_t> mask(grid, 0, terrain.heights.values.memory());
   Layer layer("effects." + name, path, terrain);
   while (const Feature feature = layer.next()) {
     const Parts parts = layer.parts(*feature);

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/gdal/csv_table.hpp"
 #include "effect_spec.hpp"
+#include "io/files/checksum.hpp"
+#include "io/gdal/csv_table.hpp"
 #include "profile_line.hpp"
 #include "scenario_spec.hpp"
-#include "io/files/checksum.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/presets.hpp"

@@ -116,7 +116,7 @@ void check_files(const std::vector<const NamedFile*>& files, std::vector<std::st
   }
 }
 
-LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* all_faults) {
+LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* all_faults, const RasterMemory& memory) {
   std::vector<std::string> faults;
   ScenarioSpec spec = read_spec(flags, faults);
   check_files(spec, faults);
@@ -131,7 +131,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
       faults.emplace_back(error.what());
     }
   };
-  Terrain terrain = read_terrain(spec.dem.path);
+  Terrain terrain = read_terrain(spec.dem.path, memory);
   out.warnings = terrain.warnings;
   out.geo = terrain.geo;
   Scenario parts = spec.values;

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "talus/base/expect.hpp"
-#include "talus/base/scratch.hpp"
 
 namespace talus {
 namespace {
@@ -19,8 +18,8 @@ int key_of(float value) {
                           kShift);
 }
 
-unsigned char* zeros(std::size_t bytes) {
-  return static_cast<unsigned char*>(std::memset(scratch::allocate(bytes), 0, bytes));
+unsigned char* zeros(MemoryPolicy memory, std::size_t bytes) {
+  return static_cast<unsigned char*>(std::memset(memory.allocate(bytes), 0, bytes));
 }
 
 double edge_of(int key) {
@@ -30,7 +29,7 @@ double edge_of(int key) {
 }  // namespace
 
 LogHistogram::~LogHistogram() {
-  scratch::release(counts_, static_cast<std::size_t>(size_) * width_);
+  memory_.release(counts_, static_cast<std::size_t>(size_) * width_);
 }
 
 std::uint32_t LogHistogram::get(int bin) const {
@@ -65,8 +64,8 @@ void LogHistogram::put(int bin, std::uint32_t count) {
 }
 
 void LogHistogram::widen(std::uint8_t width) {
-  LogHistogram wide;
-  wide.counts_ = zeros(std::size_t{size_} * width);
+  LogHistogram wide(memory_);
+  wide.counts_ = zeros(memory_, std::size_t{size_} * width);
   wide.first_ = first_;
   wide.size_ = size_;
   wide.width_ = width;
@@ -83,8 +82,8 @@ void LogHistogram::cover(int low_key, int high_key) {
   }
   low = std::max(low, high - kSpan + 1);
   if (size_ > 0 && low == first_ && high == first_ + size_ - 1) return;
-  LogHistogram wide;
-  wide.counts_ = zeros(static_cast<std::size_t>(high - low + 1) * width_);
+  LogHistogram wide(memory_);
+  wide.counts_ = zeros(memory_, static_cast<std::size_t>(high - low + 1) * width_);
   wide.first_ = static_cast<std::uint16_t>(low);
   wide.size_ = static_cast<std::uint16_t>(high - low + 1);
   wide.width_ = width_;
@@ -194,7 +193,7 @@ LogHistogram LogHistogram::restored(ByteReader& in) {
   if ((h.width_ != 1 && h.width_ != 2 && h.width_ != 4) || h.size_ > kSpan ||
       counts.size() != static_cast<std::size_t>(h.size_) * h.width_)
     throw std::out_of_range("bins of a histogram");
-  h.counts_ = zeros(counts.size());
+  h.counts_ = zeros(h.memory_, counts.size());
   std::memcpy(h.counts_, counts.data(), counts.size());
   return h;
 }

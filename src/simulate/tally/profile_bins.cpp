@@ -5,6 +5,7 @@
 
 #include "span_maxima.hpp"
 #include "talus/base/expect.hpp"
+#include "talus/simulate/scenario/scenario.hpp"
 
 namespace talus {
 namespace {

@@ -145,7 +145,14 @@ void gather(const Group& group, const VisitBatch& batch, CellValues& values, Cel
 
 }  // namespace
 
-Tally::Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vector<double> height_thresholds)
+void Tally::EndRegions::operator()(Region* regions) const noexcept {
+  if (memory.has_limit()) return;
+  std::destroy_n(regions, count);
+  memory.release(regions, count * sizeof(Region));
+}
+
+Tally::Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vector<double> height_thresholds,
+             MemoryPolicy memory)
     : grid_(grid),
       thresholds_(thresholds_of(std::move(energy_thresholds), std::move(height_thresholds))),
       limits_(floats_below(thresholds_)),
@@ -154,7 +161,10 @@ Tally::Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vecto
       regions_across_((grid.columns + kRegionSide - 1) / kRegionSide),
       region_count_(static_cast<std::size_t>(regions_across_) *
                     static_cast<std::size_t>((grid.rows + kRegionSide - 1) / kRegionSide)),
-      regions_(std::make_unique<Region[]>(region_count_)) {}
+      regions_(static_cast<Region*>(memory.allocate(region_count_ * sizeof(Region))), {memory, 0}) {
+  for (std::size_t& made = regions_.get_deleter().count; made < region_count_; ++made)
+    std::construct_at(&regions_[made], memory);
+}
 
 void Tally::keep_hazard(AnnualWeights weights) {
   hazard_ = std::make_unique<Hazard>(
@@ -169,9 +179,7 @@ void Tally::set_rounds(std::uint32_t rounds) {
   scale.trajectories *= rounds;
 }
 
-Tally::~Tally() {
-  if (scratch::is_limited()) static_cast<void>(regions_.release());  // else every record would be read once more
-}
+Tally::~Tally() = default;
 Tally::Tally(Tally&&) noexcept = default;
 
 std::uint64_t Tally::add(const VisitBatch& batch) {
@@ -193,7 +201,7 @@ std::uint64_t Tally::add(const VisitBatch& batch) {
 }
 
 std::uint64_t Tally::score(std::size_t index, const std::vector<Visit>& visits, const VisitBatch& batch) {
-  scratch::keep_below_limit();
+  memory().keep_below_limit();
   TALUS_EXPECT(index < region_count_, "a visit lies in a region of the tally");
   Region& region = regions_[index];
   const std::vector<Visit> sorted = sorted_by_cell(visits);
@@ -208,7 +216,7 @@ std::uint64_t Tally::score(std::size_t index, const std::vector<Visit>& visits, 
   ReachOf reach(batch, index);
   CellValues values;
   values.keep_stakes = hazard_ != nullptr;
-  if (hazard_) region.hazards.resize(region.records.size());
+  if (hazard_) region.make_hazards();
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (i + 16 < groups.size()) fetch(&region.records[groups[i + 16].record], sizeof(CellRecord));
     if (i + 8 < groups.size())
@@ -257,7 +265,7 @@ const std::uint32_t* Tally::exceedances(int column, int row) const {
 }
 
 void Tally::save(std::size_t index, ByteWriter& out) const {
-  scratch::keep_below_limit();
+  memory().keep_below_limit();
   const Region& region = regions_[index];
   if (region.slot.empty()) return;
   for (std::size_t cell = 0; cell < kRegionCells; ++cell) {
@@ -279,7 +287,7 @@ void Tally::take(std::size_t index, ByteWriter& out) {
 }
 
 void Tally::merge(std::size_t index, ByteReader& in) {
-  scratch::keep_below_limit();
+  memory().keep_below_limit();
   Region& region = regions_[index];
   while (!in.empty()) {
     const auto cell = in.get<std::uint16_t>();
@@ -289,7 +297,7 @@ void Tally::merge(std::size_t index, ByteReader& in) {
     for (std::size_t i = 0; i < threshold_count_; ++i)
       region.exceedances[record * threshold_count_ + i] += in.get<std::uint32_t>();
     if (!hazard_) continue;
-    region.hazards.resize(region.records.size());
+    region.make_hazards();
     region.hazards[record].merge(HazardCell::restored(in));
   }
 }

@@ -8,6 +8,10 @@ namespace talus {
 
 /// The records of 64 x 64 cells. `slot` of a cell is its record's number plus one; 0 where there is none yet.
 struct Tally::Region {
+  explicit Region(MemoryPolicy policy)
+      : memory(policy), slot(policy), records(policy), exceedances(policy), hazards(policy) {}
+
+  MemoryPolicy memory;
   std::mutex mutex;
   ScratchVector<std::uint16_t> slot;  // empty: no cell was touched
   std::deque<CellRecord, ScratchAllocator<CellRecord>> records;
@@ -19,13 +23,18 @@ struct Tally::Region {
     if (slot.empty()) slot.resize(kRegionCells);
     std::uint16_t& number = slot[cell];
     if (number == 0) {
-      records.emplace_back();
+      records.emplace_back(memory);
       if (exceedances.size() == exceedances.capacity())  // in small steps: doubling would waste what it holds ready
         exceedances.reserve(exceedances.size() + 128 * thresholds);
       exceedances.resize(exceedances.size() + thresholds);
       number = static_cast<std::uint16_t>(records.size());
     }
     return number - 1U;
+  }
+
+  /// Gives each record its hazard.
+  void make_hazards() {
+    while (hazards.size() < records.size()) hazards.emplace_back(memory);
   }
 };
 

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <thread>
 
 #include "support/scenarios.hpp"
+#include "talus/simulate/simulate.hpp"
 
 namespace talus {
 namespace {
@@ -15,8 +17,8 @@ Scenario scenario() {
   return test::rough_slope(kSources, kTrajectories);
 }
 
-Tally tally_of(const Scenario& s) {
-  return {s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds};
+Tally tally_of(const Scenario& s, MemoryPolicy memory = {}) {
+  return {s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds, memory};
 }
 
 std::vector<std::string> bytes_of(const Tally& tally) {
@@ -161,6 +163,28 @@ TEST(Simulation, DamagedBytesAreNoTally) {
       EXPECT_THROW(other.merge(i, in), std::out_of_range) << i << ' ' << length;
     }
   }
+}
+
+TEST(Simulation, InAScratchFileItCountsTheSame) {
+  const Scenario s = scenario();
+  Tally expected = tally_of(s);
+  simulate(s, expected, {}, 2);
+  ScratchFile file(std::filesystem::temp_directory_path().string(), 1);  // every process is above this limit
+  {
+    Tally tally = tally_of(s, MemoryPolicy(&file));
+    const Sinks none;
+    Simulation simulation(s, {}, true, tally, none);
+    simulation.advance(2);
+    EXPECT_EQ(cells_of(tally), cells_of(expected));
+    const std::vector<std::string> saved = bytes_of(tally);
+    for (std::size_t i = 0; i < tally.regions(); ++i) {
+      ByteWriter taken;
+      tally.take(i, taken);
+      EXPECT_EQ(taken.bytes(), saved[i]);
+    }
+    EXPECT_EQ(tally.touched_cells(), 0U);
+  }
+  EXPECT_GT(expected.touched_cells(), 0U);
 }
 
 }  // namespace

@@ -2,25 +2,24 @@
 #include <filesystem>
 #include <string>
 
+#include "talus/io/files/staged_path.hpp"
+
 namespace talus::io {
 
 /// A single file of results that appears under its name complete, or not at all; `OutputFolder` is the same for
 /// folders.
 ///
-/// It is written beside its place as `.STEM.talus-PID.EXTENSION`, which `commit` renames. Without `commit` it is
-/// removed.
+/// It is written beside its place as `.STEM.talus-PID.EXTENSION` (`StagedPath`), which `commit` renames. Without
+/// `commit` it is removed.
 class OutputFile {
  public:
   /// @param extension  ".gpkg": what the name must end in
   /// @param overwrite  a file of this name may be replaced
   /// Throws InputError where the name does not end so, is taken, or the folder is not there.
   OutputFile(const std::filesystem::path& path, const std::string& extension, bool overwrite);
-  ~OutputFile();
-  OutputFile(const OutputFile&) = delete;
-  OutputFile& operator=(const OutputFile&) = delete;
 
   /// Where to write until `commit`.
-  const std::filesystem::path& temporary() const { return temporary_; }
+  const std::filesystem::path& temporary() const { return staged_.hidden(); }
 
   /// Throws InputError where `input` is the file that `commit` would replace.
   void protect(const std::filesystem::path& input) const;
@@ -29,7 +28,7 @@ class OutputFile {
   void commit();
 
  private:
-  std::filesystem::path final_, temporary_;
+  StagedPath staged_;
 };
 
 }  // namespace talus::io

@@ -3,6 +3,9 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "talus/io/files/staged_path.hpp"
 
 namespace talus::io {
 
@@ -10,9 +13,9 @@ class FolderLock;
 
 /// A folder of results that appears under its name complete, or not at all.
 ///
-/// Everything is written into a hidden folder beside it, `.NAME.talus-PID`, so that a rename is all that `commit` has
-/// to do. Without `commit` (an exception, an interruption, a full disk) the hidden folder is removed, unless it is to
-/// be kept for a run that goes on.
+/// Everything is written into a hidden folder beside it, `.NAME.talus-PID` (`StagedPath`), so that a rename is all that
+/// `commit` has to do. Without `commit` (an exception, an interruption, a full disk) the hidden folder is removed,
+/// unless it is to be kept for a run that goes on.
 class OutputFolder {
  public:
   /// What to do with the hidden folder of an interrupted run of this name. While a process has one, no other may
@@ -31,14 +34,14 @@ class OutputFolder {
   OutputFolder& operator=(const OutputFolder&) = delete;
 
   /// Where to write until `commit`.
-  const std::filesystem::path& temporary() const { return temporary_; }
+  const std::filesystem::path& temporary() const { return staged_.hidden(); }
   /// Where in it a run keeps its work while it goes on: what is looked for by `Unfinished`.
-  std::filesystem::path work() const { return temporary_ / kWork; }
+  std::filesystem::path work() const { return temporary() / kWork; }
   static constexpr const char* kWork = "unfinished";
   /// The hidden folder stays where there is no `commit`.
-  void keep() { kept_ = true; }
+  void keep() { staged_.keep(); }
   /// Absolute; what the user will find.
-  const std::filesystem::path& final_path() const { return final_; }
+  const std::filesystem::path& final_path() const { return staged_.path(); }
 
   /// Throws InputError where `file` lies in a folder that `commit` would replace: an input must not be deleted.
   void protect(const std::filesystem::path& file) const;
@@ -53,18 +56,14 @@ class OutputFolder {
   /// Makes `work`, and marks it as in use until this process ends, however that comes.
   void hold_work();
   void commit(const std::filesystem::path& folder);
-  std::filesystem::path final_, temporary_;
-  bool overwrite_, committed_ = false, kept_ = false;
+  StagedPath staged_;
+  bool overwrite_;
   std::unique_ptr<FolderLock> lock_;  // of `work`
 };
 
-/// From now on what grows with the map lies in a file beside the results as far as it does not fit into so many bytes.
-/// Before anything is read. Throws InputError where there is no folder for the results to go into.
-void limit_memory(const std::filesystem::path& results, std::size_t bytes);
-
-/// Waits until a file, or the entries of a folder, are on the disk: some file systems tell only now that it is full.
-/// Throws std::runtime_error.
-void synchronise(const std::filesystem::path& path);
+/// The absolute name of a folder of results, through symbolic links, without a slash at its end. Throws InputError
+/// where it can be none.
+std::filesystem::path full_name(const std::filesystem::path& path);
 
 /// Writes a text file. Throws std::runtime_error, one line with the file and the cause; no half file is left.
 void write_text(const std::filesystem::path& file, std::string_view text);
@@ -72,6 +71,9 @@ void write_text(const std::filesystem::path& file, std::string_view text);
 /// Writes a text file beside others of a finished folder: under a hidden name first, renamed when it is complete. What
 /// had the name before is replaced. Throws as `write_text`.
 void replace_text(const std::filesystem::path& file, std::string_view text);
+
+/// The names of the files in a folder, in the order of the alphabet.
+std::vector<std::string> files_in(const std::filesystem::path& folder);
 
 /// Why a library could not write into a folder: that the disk is full, where it is; else the first of its messages.
 std::string cause_of_failure(const std::filesystem::path& folder, const std::string& messages);

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "talus/io/files/staged_path.hpp"
+
 namespace talus::io {
 
 /// Files that are added to a folder of results: written into a hidden folder inside it, `.NAME.talus-PID`, and renamed
@@ -14,20 +16,18 @@ class StagedFiles {
   /// Throws InputError where `folder` is none of results, where they are there and `overwrite` is not given, or nothing
   /// can be written there.
   StagedFiles(const std::filesystem::path& folder, const std::string& record, bool overwrite);
-  ~StagedFiles();
-  StagedFiles(const StagedFiles&) = delete;
-  StagedFiles& operator=(const StagedFiles&) = delete;
 
   /// Where to write until `commit`.
-  const std::filesystem::path& temporary() const { return temporary_; }
+  const std::filesystem::path& temporary() const { return staged_.hidden(); }
   /// Names of what was written so far, in the order of the alphabet.
   std::vector<std::string> files() const;
   /// Removes the earlier files and gives the new ones their names. Throws std::runtime_error.
   void commit();
 
  private:
-  std::filesystem::path folder_, temporary_;
+  std::filesystem::path folder_;
   std::string record_;
+  StagedPath staged_;
   std::vector<std::string> earlier_;
 };
 

@@ -23,7 +23,7 @@ struct Terrain {
 /// Missing (NaN): nodata value, mask, alpha, NaN, infinity. Scale and offset of the band are applied. Throws
 /// InputError where it is rotated, upside down, without place or system, in degrees or feet, has less than 2 x 2 cells
 /// or none with a height, or holds heights outside [-500, 9000] m that are not declared as missing.
-Terrain read_terrain(const std::string& path);
+Terrain read_terrain(const std::string& path, const RasterMemory& memory = {});
 
 /// What a file says of the kinds of ground.
 struct ZoneLayer {

@@ -26,10 +26,6 @@ struct HazardRow {
   std::vector<std::pair<int, HazardCell>> touched;  ///< by column, from the west
 };
 
-/// SHA-256 of all settings of a scenario and of its input files, wherever these lie: equal where the same trajectories
-/// follow.
-std::string plan_checksum(const LoadedScenario& loaded);
-
 /// Writes the annual frequencies that a tally kept, compressed. docs/hazard.md, "What a run keeps".
 ///
 /// The bytes depend on the values only. Throws std::runtime_error on a full disk; no half file is left.

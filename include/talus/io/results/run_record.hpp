@@ -6,7 +6,7 @@
 
 #include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/products/accuracy.hpp"
-#include "talus/simulate/simulate.hpp"
+#include "talus/simulate/totals.hpp"
 
 namespace talus::io {
 

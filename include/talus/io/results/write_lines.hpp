@@ -2,7 +2,7 @@
 #include <string>
 
 #include "talus/products/screen_summary.hpp"
-#include "talus/simulate/simulate.hpp"
+#include "talus/simulate/totals.hpp"
 
 namespace talus::io {
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "talus/io/scenario/profile_file.hpp"
+#include "talus/simulate/screens/screens.hpp"
 #include "talus/simulate/tally/profile_bins.hpp"
 
 namespace talus::io {

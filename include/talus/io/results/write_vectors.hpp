@@ -4,7 +4,7 @@
 #include <span>
 
 #include "talus/io/scenario/loaded_scenario.hpp"
-#include "talus/simulate/simulate.hpp"
+#include "talus/simulate/stop_row.hpp"
 
 namespace talus::io {
 

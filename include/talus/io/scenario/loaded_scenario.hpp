@@ -64,7 +64,10 @@ struct RunFlags {
 
 /// Reads and checks everything. Throws InputError, one line; `all_faults` gets every fault of the settings (for
 /// `check`).
-LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* all_faults = nullptr);
+///
+/// @param memory  where the rasters lie
+LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* all_faults = nullptr,
+                             const RasterMemory& memory = {});
 
 /// Makes it the scenario whose blocks so many rounds of it trace. `settings` stay as they are.
 void set_rounds(LoadedScenario& loaded, std::uint32_t rounds);

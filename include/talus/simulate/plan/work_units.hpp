@@ -7,6 +7,9 @@
 
 namespace talus {
 
+/// Blocks of one source cell that a worker traces in one go, and that are one stratum of the hazard.
+inline constexpr std::uint32_t kBlocksPerUnit = 128;
+
 /// Hands out the units of work of a round, each once, to all threads of all processes that trace it.
 ///
 /// Processes take chunks of units that follow each other: whoever is free the next one. Or each chunk belongs to one
@@ -16,7 +19,7 @@ class WorkUnits {
   struct Range {
     std::uint64_t first, end;
   };
-  /// One of the units, and the how manieth it is that this process has taken.
+  /// A unit, and its index among the units taken by this process.
   struct Taken {
     std::uint64_t unit, number;
   };

@@ -29,6 +29,10 @@ struct CellRecord {
   PerQuantity<std::int64_t> sum{};  ///< fixed point, in units of the table
   PerQuantity<LogHistogram> histogram;
 
+  CellRecord() = default;
+  explicit CellRecord(MemoryPolicy memory) {
+    for (LogHistogram& h : histogram) h = LogHistogram(memory);
+  }
   double mean(Quantity quantity) const;
   /// Adds trajectories. Returns the largest value of each quantity among them.
   PerQuantity<float> add(const CellValues& values);

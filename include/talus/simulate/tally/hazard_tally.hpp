@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "talus/base/scratch.hpp"
+#include "talus/simulate/scenario/frequency.hpp"
 #include "talus/simulate/tally/bytes.hpp"
 #include "talus/simulate/tally/energy_bins.hpp"
-#include "talus/simulate/scenario/frequency.hpp"
 
 namespace talus {
 
@@ -29,6 +29,9 @@ class HazardCell {
     std::int64_t square = 0;  ///< sum of the squares of the weights, each rounded up [square_unit]
     bool operator==(const Bin&) const = default;
   };
+
+  HazardCell() = default;
+  explicit HazardCell(MemoryPolicy memory) : bins_(memory), overlaps_(memory) {}
 
   /// Adds trajectories in the order of their blocks, those of a stratum all at once.
   ///

@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "talus/base/scratch.hpp"
 #include "talus/simulate/tally/bytes.hpp"
 
 namespace talus {
@@ -21,6 +22,7 @@ class LogHistogram {
   static constexpr double kBinWidth = 0.0625;  ///< largest relative width of a bin
 
   LogHistogram() = default;
+  explicit LogHistogram(MemoryPolicy memory) : memory_(memory) {}
   LogHistogram(LogHistogram&& other) noexcept { swap(other); }
   LogHistogram& operator=(LogHistogram&& other) noexcept {
     swap(other);
@@ -49,6 +51,7 @@ class LogHistogram {
   static constexpr int kFew = 5;
 
   void swap(LogHistogram& other) noexcept {
+    std::swap(memory_, other.memory_);
     std::swap(counts_, other.counts_);
     std::swap(first_, other.first_);
     std::swap(size_, other.size_);
@@ -64,6 +67,7 @@ class LogHistogram {
   void spill(int low_key, int high_key);
   void widen(std::uint8_t width);
 
+  MemoryPolicy memory_;
   unsigned char* counts_ = nullptr;  // null while there are few values
   std::uint16_t first_ = 0;          // key of the lowest stored bin
   std::uint16_t size_ = 0;           // bins stored

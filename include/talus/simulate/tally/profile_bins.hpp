@@ -4,7 +4,7 @@
 #include <mutex>
 #include <vector>
 
-#include "talus/simulate/simulate.hpp"
+#include "talus/simulate/stop_row.hpp"
 
 namespace talus {
 

@@ -18,6 +18,8 @@ class SourceReach {
  public:
   using Cells = std::bitset<kRegionCells>;
 
+  explicit SourceReach(MemoryPolicy memory = {}) : regions_(Allocator(memory)) {}
+
   Cells& cells(std::size_t region) {
     const std::lock_guard guard(mutex_);
     return regions_[region];  // stays where it is while others come
@@ -27,10 +29,9 @@ class SourceReach {
   void restore(ByteReader& in);
 
  private:
+  using Allocator = ScratchAllocator<std::pair<const std::size_t, Cells>>;
   std::mutex mutex_;
-  std::unordered_map<std::size_t, Cells, std::hash<std::size_t>, std::equal_to<>,
-                     ScratchAllocator<std::pair<const std::size_t, Cells>>>
-      regions_;
+  std::unordered_map<std::size_t, Cells, std::hash<std::size_t>, std::equal_to<>, Allocator> regions_;
 };
 
 }  // namespace talus

@@ -17,7 +17,9 @@ namespace talus {
 /// when its cell is. Workers share the one tally: each locks the region it scores.
 class Tally {
  public:
-  Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vector<double> height_thresholds);
+  /// @param memory  where the records lie
+  Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vector<double> height_thresholds,
+        MemoryPolicy memory = {});
   ~Tally();
   Tally(Tally&&) noexcept;
 
@@ -36,6 +38,7 @@ class Tally {
   std::uint64_t add(const VisitBatch& batch);
 
   const Grid& grid() const { return grid_; }
+  MemoryPolicy memory() const { return regions_.get_deleter().memory; }
   const Thresholds& thresholds() const { return thresholds_; }
 
   /// The record of a cell; nullptr where no trajectory was.
@@ -59,6 +62,12 @@ class Tally {
 
  private:
   struct Region;
+  /// Ends the regions. All of those in a scratch file ends with the file, unread.
+  struct EndRegions {
+    MemoryPolicy memory;
+    std::size_t count = 0;
+    void operator()(Region* regions) const noexcept;
+  };
   struct Hazard {
     HazardRules rules;
     AnnualWeights weights;
@@ -75,7 +84,7 @@ class Tally {
   int regions_across_ = 0;
   std::size_t region_count_ = 0;
   std::unique_ptr<Hazard> hazard_;  // null: none is kept
-  std::unique_ptr<Region[]> regions_;
+  std::unique_ptr<Region[], EndRegions> regions_;
 };
 
 }  // namespace talus

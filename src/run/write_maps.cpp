@@ -1,26 +1,29 @@
-#include "write_maps.hpp"
+#include "talus/run/write_maps.hpp"
 
 #include <algorithm>
 #include <exception>
 
-#include "commands.hpp"
-#include "run_support.hpp"
 #include "talus/io/results/style.hpp"
+#include "talus/run/observer.hpp"
+
+namespace talus::run {
 
 // What is thrown may not leave the parallel region: the first failure is kept.
-void write_maps(const std::vector<talus::Map>& maps, const talus::io::MapTarget& target, int threads) {
+void write_maps(const std::vector<Map>& maps, const io::MapTarget& target, int threads) {
   std::exception_ptr failure;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(std::min(threads, kMapsAtOnce)) default(none) \
     shared(maps, target, failure)
-  for (const talus::Map& map : maps) {
+  for (const Map& map : maps) {
     try {
       const bool there = std::filesystem::exists(target.folder / (map.name + ".tif"));  // of a run that was killed
-      if (there || talus::io::write_map(map, target)) talus::io::write_style(target.folder, map);
+      if (there || io::write_map(map, target)) io::write_style(target.folder, map);
     } catch (...) {
 #pragma omp critical
       if (!failure) failure = std::current_exception();
     }
   }
   if (failure) std::rethrow_exception(failure);
-  if (interrupted()) stop_interrupted();
+  if (target.proceed && !target.proceed()) stop_interrupted();
 }
+
+}  // namespace talus::run

@@ -1,0 +1,88 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "talus/base/scratch.hpp"
+#include "talus/io/files/output_folder.hpp"
+#include "talus/io/results/run_record.hpp"
+#include "talus/io/scenario/loaded_scenario.hpp"
+#include "talus/run/observer.hpp"
+#include "talus/run/stopwatch.hpp"
+#include "talus/simulate/plan/part.hpp"
+#include "talus/simulate/plan/process_group.hpp"
+
+namespace talus::run {
+
+/// What `run` is asked for.
+struct RunRequest {
+  io::RunFlags flags;
+  std::string out;
+  std::optional<std::string> part;  ///< "I/N"; nothing: the whole run
+  Rounds rounds;
+  std::string memory;                ///< "2G"; empty: no limit
+  double checkpoint = 30.0;          ///< between two checkpoints, at least [s]
+  int threads = 0;                   ///< 0: all processors; of several processes one each
+  std::vector<std::string> command;  ///< the words that the program was called with
+  bool overwrite = false, resume = false;
+};
+
+/// How a run has ended that was not stopped by an exception.
+enum class Outcome { Done, TooManyLimits };
+
+/// What is traced, and how often.
+struct RunPlan {
+  io::LoadedScenario loaded;
+  Part part;
+  Rounds rounds;
+};
+
+class Tracing;
+
+/// A run from its files to its results: it owns the plan, where memory lies, the folder of the results and the
+/// checkpoint. Each process of a group has one, and all call the same of it.
+class RunSession {
+ public:
+  /// The observer and the processes must outlive it.
+  RunSession(RunRequest request, Observer& observer, ProcessGroup& processes = alone());
+  ~RunSession();
+  RunSession(const RunSession&) = delete;
+  RunSession& operator=(const RunSession&) = delete;
+
+  /// Reads, traces and writes; or finds with `resume` that all is done.
+  ///
+  /// Throws InputError (of several processes GroupInputError), Interrupted, which says how to go on,
+  /// std::runtime_error.
+  Outcome run();
+
+ private:
+  std::size_t check_request();
+  void load(std::size_t memory);
+  void read_plan(std::size_t memory, SharedMemory* shared);
+  std::optional<Outcome> outcome_of_done();
+  std::optional<Outcome> find_done() const;
+  void make_folder();
+  void warn_of_input();
+  void begin_record();
+  void trace();
+  void with_hint(const std::function<void()>& work);
+  Outcome deliver();
+  Outcome deliver_part();
+  Outcome deliver_results();
+  MemoryPolicy memory() const { return MemoryPolicy(scratch_.get()); }
+
+  RunRequest request_;
+  Observer& observer_;
+  ProcessGroup& processes_;
+  int threads_;
+  Stopwatch watch_;
+  std::unique_ptr<ScratchFile> scratch_;  // null without a limit of memory; outlives what lies in it
+  RunPlan plan_;
+  std::unique_ptr<io::OutputFolder> folder_;  // of the leader
+  std::unique_ptr<Tracing> tracing_;
+  io::RunRecord record_;
+};
+
+}  // namespace talus::run

@@ -1,0 +1,37 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "talus/physics/block.hpp"
+#include "talus/physics/path.hpp"
+
+namespace talus {
+
+/// The end of one trajectory.
+struct StopRow {
+  std::uint32_t source, block;
+  End end;
+  float diameter, mass;                           // of what came to rest: the largest piece where it broke [m], [kg]
+  float x_release, y_release;                     // [m, local]
+  double x, y, z;                                 // where it ended [m, local]
+  float seconds, max_speed, length, plan_length;  // [s], [m/s], [m], [m]
+  std::uint32_t impacts;
+};
+
+StopRow stop_row(const Release& release, const Path& path);
+
+/// A point of a recorded path, dense enough to draw.
+struct PathPoint {
+  double x, y, z, time;  // [m, local], [s]
+};
+
+/// A path written as a vector.
+struct RecordedPath {
+  StopRow stop;
+  std::vector<PathPoint> points;
+};
+
+/// A path as points: its vertices, and points of the parabolas between them at most `spacing` apart in plan [m].
+std::vector<PathPoint> points_of(const Path& path, double spacing);
+
+}  // namespace talus

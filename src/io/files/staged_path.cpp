@@ -1,0 +1,66 @@
+#include "talus/io/files/staged_path.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+
+namespace talus::io {
+
+namespace fs = std::filesystem;
+
+StagedPath::StagedPath(Kind kind, const fs::path& path, const std::string& extension)
+    : path_(path),
+      hidden_(path.parent_path() / (hidden_prefix(path, extension) + std::to_string(getpid()) + extension)),
+      owned_(kind == Kind::File) {}  // a folder of this name may be another's: see make_folder
+
+StagedPath::~StagedPath() {
+  std::error_code ignored;
+  if (owned_) fs::remove_all(hidden_, ignored);  // after `commit` nothing has this name
+}
+
+std::error_code StagedPath::make_folder() {
+  constexpr int kAttempts = 100;
+  const std::string first = hidden_.string();
+  std::error_code error;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (attempt > 0) hidden_ = first + "-" + std::to_string(attempt);
+    owned_ = fs::create_directory(hidden_, error);
+    if (owned_ || error) return error;
+  }
+  hidden_ = first;
+  return std::make_error_code(std::errc::file_exists);
+}
+
+std::error_code StagedPath::give_name(const fs::path& hidden, const fs::path& path) {
+  synchronise_all(hidden);
+  std::error_code error;
+  fs::rename(hidden, path, error);
+  if (!error) synchronise(fs::absolute(path).parent_path());
+  return error;
+}
+
+std::string StagedPath::hidden_prefix(const fs::path& path, const std::string& extension) {
+  const std::string name = path.filename().string();
+  return "." + name.substr(0, name.size() - extension.size()) + ".talus-";
+}
+
+void synchronise(const fs::path& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return;
+  const int result = fsync(file);
+  const int cause = errno;
+  close(file);
+  if (result != 0 && cause != EINVAL && cause != ENOTSUP)
+    throw std::runtime_error(path.filename().string() +
+                             ": cannot be written: " + std::system_category().message(cause));
+}
+
+void synchronise_all(const fs::path& path) {
+  if (fs::is_directory(path))
+    for (const auto& entry : fs::recursive_directory_iterator(path)) synchronise(entry.path());
+  synchronise(path);
+}
+
+}  // namespace talus::io

@@ -1,0 +1,40 @@
+#include "talus/run/memory_limit.hpp"
+
+#include <gdal.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/io/files/output_folder.hpp"
+#include "talus/run/write_maps.hpp"
+
+namespace talus::run {
+
+std::size_t memory_limit_of(const std::string& text, int threads) {
+  if (text.empty()) return 0;
+  double number = 0.0;
+  char unit = ' ', end = ' ';
+  const int read = std::sscanf(text.c_str(), "%lf%c%c", &number, &unit, &end);
+  const double factor = unit == 'G' ? 1e9 : unit == 'M' ? 1e6 : 0.0;
+  if (read != 2 || factor == 0.0 || !(number * factor <= 1e15))
+    throw InputError("--memory '" + text + "': must be a number with M or G (10^6 or 10^9 bytes), such as 500M or 2G");
+  const double least = std::max(140.0 + 30.0 * threads, 150.0 + 50.0 * std::min(threads, kMapsAtOnce));  // measured
+  if (!(number * factor >= 1e6 * least))
+    throw InputError("--memory '" + text + "' with " + std::to_string(threads) +
+                     (threads == 1 ? " thread: must be " : " threads: must be ") + text_of(least) +
+                     "M at least; give fewer --threads or more --memory");
+  return static_cast<std::size_t>(number * factor);
+}
+
+std::unique_ptr<ScratchFile> scratch_file_beside(const std::filesystem::path& results, std::size_t bytes) {
+  if (bytes == 0) return nullptr;
+  const std::filesystem::path parent = io::full_name(results).parent_path();
+  if (!std::filesystem::is_directory(parent))
+    throw InputError(parent.string() + ": there is no such folder for the results to go into; create it first");
+  GDALSetCacheMax64(static_cast<GIntBig>(bytes / 16));
+  return std::make_unique<ScratchFile>(parent.string(), bytes);
+}
+
+}  // namespace talus::run

@@ -1,0 +1,120 @@
+#include "talus/run/merge.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+
+#include "results.hpp"
+#include "talus/base/error.hpp"
+#include "talus/io/scenario/plan_checksum.hpp"
+#include "talus/run/memory_limit.hpp"
+#include "talus/run/write_maps.hpp"
+
+namespace talus::run {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using io::LoadedScenario;
+
+LoadedScenario scenario_of(const std::string& part, MemoryPolicy memory) {
+  const fs::path file = fs::path(part) / "scenario.toml";
+  for (const fs::path& needed : {fs::path(part) / kCheckpointManifest, file})
+    if (!fs::exists(needed))
+      throw InputError(part + ": is no part of a run (it has no " + needed.filename().string() +
+                       "); give the folders that talus run --part I/N has written");
+  io::RunFlags flags;
+  flags.scenario = file.string();
+  return io::load_scenario(flags, nullptr, {memory});
+}
+
+std::string name_of(const Part& part) {
+  return std::to_string(part.number) + "/" + std::to_string(part.of);
+}
+
+/// The parts in their order. Throws InputError where they are not one whole.
+std::vector<Checkpoint> opened(const std::vector<std::string>& folders, const LoadedScenario& loaded) {
+  std::vector<Checkpoint> checkpoints;
+  for (const std::string& folder : folders) checkpoints.push_back(Checkpoint::opened(folder, loaded, false));
+  std::ranges::sort(checkpoints, {}, [](const Checkpoint& checkpoint) { return checkpoint.part().number; });
+  const Checkpoint& first = checkpoints.front();
+  for (std::size_t i = 0; i < checkpoints.size(); ++i) {
+    const std::string name = checkpoints[i].folder().string() + ": ";
+    const Part part = checkpoints[i].part();
+    if (part.of != first.part().of)
+      throw InputError(name + "is part " + name_of(part) + ", another one is " + name_of(first.part()) +
+                       "; must all be of one division");
+    if (i > 0 && part.number == checkpoints[i - 1].part().number)
+      throw InputError(name + "is part " + name_of(part) + ", and so is " + checkpoints[i - 1].folder().string() +
+                       "; give each part once");
+    if (!checkpoints[i].between_rounds() || checkpoints[i].rounds() != first.rounds())
+      throw InputError(name + "has " + std::to_string(checkpoints[i].rounds()) + " rounds, another part " +
+                       std::to_string(first.rounds()) + "; run all parts with the same --rounds");
+  }
+  if (checkpoints.size() != first.part().of) {
+    std::uint32_t missing = 1;
+    while (missing <= checkpoints.size() && checkpoints[missing - 1].part().number == missing) ++missing;
+    throw InputError(std::to_string(checkpoints.size()) + " of " + std::to_string(first.part().of) +
+                     " parts are given, part " + std::to_string(missing) + " is the first that is not; give all");
+  }
+  return checkpoints;
+}
+
+void protect_inputs(const io::OutputFolder& folder, const MergeRequest& request, const LoadedScenario& loaded) {
+  for (const std::string& part : request.parts) folder.protect(fs::path(part) / kCheckpointManifest);
+  for (const io::InputFile& input : loaded.inputs) folder.protect(input.path);
+}
+
+io::RunRecord new_record(const MergeRequest& request, const LoadedScenario& loaded, int threads) {
+  io::RunRecord record;
+  record.command = request.command;
+  record.plan = io::plan_checksum(loaded);
+  record.warnings = loaded.warnings;
+  record.threads = threads;
+  record.parts = static_cast<std::uint32_t>(request.parts.size());
+  record.totals.barriers = BarrierTally(loaded.scenario.barriers);
+  return record;
+}
+
+}  // namespace
+
+Outcome merge(const MergeRequest& request, Observer& observer) {
+  Stopwatch watch;
+  const int threads = request.threads > 0 ? request.threads : omp_get_num_procs();
+  const std::unique_ptr<ScratchFile> scratch =
+      scratch_file_beside(request.out, memory_limit_of(request.memory, std::min(threads, kMapsAtOnce)));
+  const MemoryPolicy memory(scratch.get());
+  LoadedScenario loaded = scenario_of(request.parts.front(), memory);
+  const std::vector<Checkpoint> checkpoints = opened(request.parts, loaded);
+  io::OutputFolder folder(request.out, request.overwrite);
+  protect_inputs(folder, request, loaded);
+  const Scenario& scenario = loaded.scenario;
+  Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds, memory);
+  if (auto weights = AnnualWeights::of(scenario, checkpoints.front().asked().several()))
+    tally.keep_hazard(std::move(*weights));
+  io::RunRecord record = new_record(request, loaded, threads);
+  observer.begin(0);
+  for (const Checkpoint& checkpoint : checkpoints) {
+    if (observer.interrupted()) stop_interrupted();
+    add(record.totals, checkpoint.add_to(tally));
+  }
+  const std::uint32_t rounds = checkpoints.front().rounds();
+  if (rounds > 1) {
+    record.rounds = {rounds, {}, {}};
+    record.rounds.asked.count = rounds;
+    record.rounds.reached = accuracy_of(tally, record.totals.released, record.rounds.asked.above);
+  }
+  tally.set_rounds(rounds);
+  loaded.settings = checkpoints.front().settings(rounds);
+  io::set_rounds(loaded, rounds);
+  record.wall.read = watch.lap().wall;
+  record.cpu.simulate = record.totals.cpu_seconds - record.totals.sink_cpu_seconds;
+  write_results({loaded, checkpoints, tally, folder.temporary()}, observer, watch, record);
+  if (observer.interrupted()) stop_interrupted();
+  folder.commit();
+  summarise(record, loaded, 0, folder.final_path(), observer);
+  return judge_limits(record.totals, folder.final_path(), observer);
+}
+
+}  // namespace talus::run

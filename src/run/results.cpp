@@ -1,0 +1,149 @@
+#include "results.hpp"
+
+#include <malloc.h>
+
+#include <cstdio>
+#include <future>
+#include <optional>
+
+#include "talus/io/results/hazard_file.hpp"
+#include "talus/io/results/write_crossings.hpp"
+#include "talus/io/results/write_lines.hpp"
+#include "talus/io/results/write_vectors.hpp"
+#include "talus/products/maps.hpp"
+#include "talus/products/screen_summary.hpp"
+#include "talus/run/summary.hpp"
+#include "talus/run/write_maps.hpp"
+
+namespace talus::run {
+namespace {
+
+using io::LoadedScenario;
+
+/// The files of rows: stops, paths, crossings.
+class Vectors {
+ public:
+  Vectors(const LoadedScenario& loaded, const std::filesystem::path& folder, const Observer& observer)
+      : scenario_(loaded.scenario),
+        folder_(folder),
+        observer_(observer),
+        stops_(folder / "stops.gpkg", loaded),
+        summary_(scenario_.screens.size()) {
+    if (loaded.scenario.output.paths > 0)
+      paths_.emplace(folder / "trajectories.gpkg", loaded.geo, loaded.scenario.surface.grid());
+    if (!loaded.scenario.screens.empty()) crossings_.emplace(folder / "screens.csv", loaded.scenario, loaded.geo);
+  }
+
+  Sinks sinks() {
+    Sinks sinks;
+    sinks.stops = [this](std::span<const StopRow> rows) {
+      if (observer_.interrupted()) stop_interrupted();
+      stops_.write(rows);
+    };
+    if (paths_) sinks.paths = [this](const RecordedPath& path) { paths_->write(path); };
+    if (crossings_)
+      sinks.crossings = [this](std::span<const Crossing> rows) {
+        crossings_->write(rows);
+        summary_.add(rows);
+      };
+    return sinks;
+  }
+
+  void finish(const Totals& totals) {
+    stops_.finish();
+    if (paths_) paths_->finish();
+    if (crossings_) {
+      crossings_->finish();
+      io::write_text(folder_ / "screens_summary.csv", io::screens_summary_csv(scenario_, summary_));
+    }
+    if (!scenario_.barriers.empty()) io::write_text(folder_ / "barriers.csv", io::barriers_csv(scenario_, totals));
+  }
+
+ private:
+  const Scenario& scenario_;
+  std::filesystem::path folder_;
+  const Observer& observer_;
+  io::StopsWriter stops_;
+  std::optional<io::TrajectoriesWriter> paths_;
+  std::optional<io::CrossingsWriter> crossings_;
+  ScreenSummary summary_;
+};
+
+/// Writes the rows in the checkpoints, round by round and in each the parts in their order.
+void write_vectors(const ResultSource& source, const Totals& totals, const Observer& observer) {
+  Vectors vectors(source.loaded, source.folder, observer);
+  const Sinks sinks = vectors.sinks();
+  for (std::uint32_t round = 0; round < source.checkpoints.front().rounds(); ++round)
+    for (const Checkpoint& checkpoint : source.checkpoints) checkpoint.replay(round, sinks);
+  vectors.finish(totals);
+}
+
+/// "3 rounds: the largest relative half-width of 812 cells with a probability above 0.01 is 0.117".
+std::string rounds_text(const io::RoundsRecord& rounds) {
+  char text[160];
+  std::snprintf(
+      text, sizeof text,
+      "%u round%s: the largest relative 95 %% half-width of the %llu cells with a probability above %g is %.3g",
+      rounds.done, rounds.done == 1 ? "" : "s", static_cast<unsigned long long>(rounds.reached.cells),
+      rounds.asked.above, rounds.reached.half_width);
+  return text;
+}
+
+/// A warning where `--until-error` was not reached.
+std::vector<std::string> warnings_of(const io::RoundsRecord& rounds) {
+  if (rounds.done == 0 || !rounds.asked.until_error || rounds.reached_it()) return {};
+  if (rounds.reached.cells == 0)
+    return {"no cell has a probability above --above, so that --until-error asks nothing; give a smaller --above"};
+  return {"--until-error was not reached with " + std::to_string(rounds.done) + " rounds; give a larger --most-rounds"};
+}
+
+}  // namespace
+
+void write_results(const ResultSource& source, Observer& observer, Stopwatch& watch, io::RunRecord& record) {
+  malloc_trim(0);  // gives back what the workers' batches took, before the maps need room
+  const LoadedScenario& loaded = source.loaded;
+  const std::filesystem::path& folder = source.folder;
+  record.touched_cells = source.tally.touched_cells();
+  observer.stage("writing the results");
+  const auto vectors = [&] { write_vectors(source, record.totals, observer); };
+  const bool aside = record.threads > 1;
+  auto writing = std::async(aside ? std::launch::async : std::launch::deferred, vectors);
+  const Grid& grid = loaded.scenario.surface.grid();
+  write_maps(make_maps(loaded.scenario, source.tally),
+             {folder, loaded.geo, grid.columns, grid.rows, [&observer] { return !observer.interrupted(); }},
+             record.threads);
+  if (source.tally.weights() != nullptr) io::write_hazard(folder / io::kHazardFile, loaded, source.tally);
+  writing.get();
+  io::write_text(folder / "scenario.toml", loaded.complete_toml);
+  record.files = io::files_in(folder);
+  const Stopwatch::Lap written = watch.lap();
+  record.cpu.write = written.cpu + record.totals.sink_cpu_seconds;
+  record.wall.write = written.wall;
+  for (const std::string& warning : warnings_of(record.totals)) record.warnings.push_back(warning);
+  for (const std::string& warning : warnings_of(record.rounds)) record.warnings.push_back(warning);
+  io::write_text(folder / "run.json", io::run_json(record, loaded));
+  observer.finish();
+}
+
+void summarise(const io::RunRecord& record, const LoadedScenario& loaded, std::size_t told,
+               const std::filesystem::path& folder, Observer& observer) {
+  for (std::size_t i = told; i < record.warnings.size(); ++i) observer.warning(record.warnings[i]);
+  observer.message(count_text(record.totals.released) + " trajectories from " +
+                   count_text(loaded.scenario.sources.size()) + " source cells: " + ends_text(record.totals));
+  char seconds[96];
+  std::snprintf(seconds, sizeof seconds, "read %.1f s, simulated %.1f s, wrote %.1f s", record.wall.read,
+                record.wall.simulate, record.wall.write);
+  observer.message(count_text(record.touched_cells) + " cells reached; " + seconds);
+  if (record.rounds.done > 0) observer.message(rounds_text(record.rounds));
+  observer.message("results are in " + folder.string());
+}
+
+Outcome judge_limits(const Totals& totals, const std::filesystem::path& folder, Observer& observer) {
+  if (!io::too_many_limits(totals)) return Outcome::Done;
+  observer.error(limits_text(totals) + "; look at the first: talus trace " + (folder / "scenario.toml").string() +
+                 " --source " + std::to_string(totals.first_limit[0]) + " --block " +
+                 std::to_string(totals.first_limit[1]));
+  return Outcome::TooManyLimits;
+}
+
+}  // namespace talus::run

@@ -1,0 +1,22 @@
+#include "talus/simulate/totals.hpp"
+
+namespace talus {
+
+void add(Totals& totals, const Totals& part) {
+  constexpr auto kLimit = static_cast<std::size_t>(End::Limit);
+  if (part.ends[kLimit] > 0 && (totals.ends[kLimit] == 0 || part.first_limit < totals.first_limit))
+    totals.first_limit = part.first_limit;
+  for (std::size_t e = 0; e < kEnds; ++e) totals.ends[e] += part.ends[e];
+  totals.released += part.released;
+  totals.pieces += part.pieces;
+  totals.impacts += part.impacts;
+  totals.psi_dropped += part.psi_dropped;
+  totals.cells_scored += part.cells_scored;
+  totals.length_mm += part.length_mm;
+  totals.plan_length_mm += part.plan_length_mm;
+  totals.barriers.merge(part.barriers);
+  totals.sink_cpu_seconds += part.sink_cpu_seconds;
+  totals.cpu_seconds += part.cpu_seconds;
+}
+
+}  // namespace talus

@@ -1,0 +1,30 @@
+#pragma once
+#include <optional>
+
+#include "progress.hpp"
+#include "talus/run/run_session.hpp"
+
+/// Says on stderr what a session tells, and asks the signals whether the user has ended the program.
+class TerminalObserver : public talus::run::Observer {
+ public:
+  /// @param quiet  says nothing but errors
+  TerminalObserver(Progress::Mode mode, bool quiet) : mode_(mode), quiet_(quiet) {}
+
+  bool interrupted() const override;
+  void begin(std::uint64_t trajectories) override { progress_.emplace(mode_, trajectories); }
+  void begin_part(const std::string& part) override { progress_->begin(part); }
+  bool progress(double share) override { return progress_->update(share); }
+  void stage(const std::string& text) override { progress_->stage(text); }
+  void finish() override { progress_->finish(); }
+  void message(const std::string& text) override;
+  void warning(const std::string& text) override;
+  void error(const std::string& text) override;
+
+ private:
+  Progress::Mode mode_;
+  bool quiet_;
+  std::optional<Progress> progress_;
+};
+
+/// The exit code of a session that has ended so.
+int exit_code(talus::run::Outcome outcome);
