@@ -2,10 +2,10 @@
 
 #include <malloc.h>
 
-#include <cstdio>
 #include <future>
 #include <optional>
 
+#include "talus/base/text.hpp"
 #include "talus/io/results/hazard_file.hpp"
 #include "talus/io/results/write_crossings.hpp"
 #include "talus/io/results/write_lines.hpp"
@@ -80,13 +80,10 @@ void write_vectors(const ResultSource& source, const Totals& totals, const Obser
 
 /// "3 rounds: the largest relative half-width of 812 cells with a probability above 0.01 is 0.117".
 std::string rounds_text(const io::RoundsRecord& rounds) {
-  char text[160];
-  std::snprintf(
-      text, sizeof text,
-      "%u round%s: the largest relative 95 %% half-width of the %llu cells with a probability above %g is %.3g",
-      rounds.done, rounds.done == 1 ? "" : "s", static_cast<unsigned long long>(rounds.reached.cells),
-      rounds.asked.above, rounds.reached.half_width);
-  return text;
+  return std::to_string(rounds.done) + (rounds.done == 1 ? " round" : " rounds") +
+         ": the largest relative 95 % half-width of the " + std::to_string(rounds.reached.cells) +
+         " cells with a probability above " + with_digits(rounds.asked.above, 6) + " is " +
+         with_digits(rounds.reached.half_width, 3);
 }
 
 /// A warning where `--until-error` was not reached.
@@ -130,9 +127,9 @@ void summarise(const io::RunRecord& record, const LoadedScenario& loaded, std::s
   for (std::size_t i = told; i < record.warnings.size(); ++i) observer.warning(record.warnings[i]);
   observer.message(count_text(record.totals.released) + " trajectories from " +
                    count_text(loaded.scenario.sources.size()) + " source cells: " + ends_text(record.totals));
-  char seconds[96];
-  std::snprintf(seconds, sizeof seconds, "read %.1f s, simulated %.1f s, wrote %.1f s", record.wall.read,
-                record.wall.simulate, record.wall.write);
+  const std::string seconds = "read " + with_decimals(record.wall.read, 1) + " s, simulated " +
+                              with_decimals(record.wall.simulate, 1) + " s, wrote " +
+                              with_decimals(record.wall.write, 1) + " s";
   observer.message(count_text(record.touched_cells) + " cells reached; " + seconds);
   if (record.rounds.done > 0) observer.message(rounds_text(record.rounds));
   observer.message("results are in " + folder.string());

@@ -1,15 +1,13 @@
 #include "talus/run/summary.hpp"
 
-#include <cstdio>
+#include "talus/base/text.hpp"
 
 namespace talus::run {
 namespace {
 
 /// "3.14 %".
 std::string share_text(std::uint64_t part, std::uint64_t whole) {
-  char text[32];
   return with_digits(100.0 * static_cast<double>(part) / static_cast<double>(whole), 3) + " %";
-  return text;
 }
 
 }  // namespace

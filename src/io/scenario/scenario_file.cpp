@@ -4,6 +4,7 @@
 
 #include "barrier_keys.hpp"
 #include "effect_spec.hpp"
+#include "io/files/checksum.hpp"
 #include "io/gdal/dataset.hpp"
 #include "scenario_spec.hpp"
 #include "talus/base/error.hpp"

@@ -2,7 +2,7 @@
 
 #include "talus/base/sample.hpp"
 #include "talus/physics/impact.hpp"
-#include "talus/products/maps.hpp"
+#include "talus/products/interval.hpp"
 
 // What no input can bring about must not go by unseen. Only in a build that checks it: a Debug one, or
 // -DTALUS_CHECKED=ON.
