@@ -118,15 +118,5 @@ TEST(Registry, EachEffectHasItsSectionInTheDocs) {
   }
 }
 
-#ifndef TALUS_PATCHED_COPY
-/// docs/adding-an-effect.md shows the change that tests/CMakeLists.txt applies, compiles and runs.
-TEST(Registry, ThePageShowsTheWorkedExample) {
-  const std::string page = text_of_file("docs/adding-an-effect.md"),
-                    patch = text_of_file("tests/worked_examples/effect.patch");
-  ASSERT_FALSE(patch.empty());
-  EXPECT_NE(page.find("```diff\n" + patch + "```\n"), std::string::npos);
-}
-#endif
-
 }  // namespace
 }  // namespace talus
