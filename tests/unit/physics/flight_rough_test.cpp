@@ -119,7 +119,7 @@ TEST(FlightLength, IsTheArcLengthOfTheParabola) {
     PatchIndex at = surface.patch_at(20.0, 8.5);
     Path path;
     ASSERT_EQ(fly(surface, motion, at, true, path), Outcome::Landed);
-    const auto primitive = [&](double w) {
+    const auto primitive = [plan = plan](double w) {
       return 0.5 * (w * std::hypot(plan, w) + plan * plan * std::asinh(w / plan));
     };
     EXPECT_NEAR(path.length, 2.0 * primitive(up) / kGravity, 2e-3 * path.length);  // three Gauss points
