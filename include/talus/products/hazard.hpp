@@ -50,8 +50,7 @@ class HazardCurve {
   /// The energy that is exceeded once in `years` years [kJ], read from the curve and from its lower and upper bounds.
   ///
   /// 0 if passages are rarer than that. The upper bound is infinite if even the bound for no trajectory is more
-  /// frequent. Interpolated within a bin, linear in the logarithm of the energy: the error is less than the bin, 12.5
-  /// %.
+  /// frequent. Within a bin the curve is linear in the logarithm of the energy: the error is less than the bin, 12.5 %.
   Bounded energy_once_in(double years) const;
 
   int first() const { return first_; }               ///< bin of the lowest edge of the curve
