@@ -61,7 +61,7 @@ std::optional<Stretch> stretch_above(std::span<const double> places, double bin,
   for (auto first = s.begin(); first != s.end();) {
     const double from = std::floor(*first / bin) * bin;
     const auto end = std::lower_bound(first, s.end(), from + bin);
-    const auto next = std::max(end, first + 1);  // rounding must not leave it where it is
+    const auto next = std::max(end, first + 1);  // rounding must not stop the progress
     if (static_cast<double>(next - first) > probability * released) {
       if (!found) found = Stretch{from, from + bin, 0.0};
       found->to = from + bin;

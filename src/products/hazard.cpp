@@ -14,7 +14,7 @@ namespace {
 constexpr double kConfidence = 0.95, kTail = 0.5 * (1.0 - kConfidence);
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// How much the upper Poisson bound of a count is above it: 3.69 at 0. Of any count k >= 0, not only whole ones.
+/// Upper Poisson bound of a count k, less k: 3.69 at 0. For any k >= 0, not only whole numbers.
 double poisson_margin(double k) {
   return boost::math::gamma_p_inv(k + 1.0, 1.0 - kTail) - k;
 }
@@ -98,7 +98,8 @@ Bounded HazardCurve::exceedance_of(double energy) const {
   return {between(below.value, above.value), between(below.low, above.low), between(below.high, above.high)};
 }
 
-/// The curve falls: the last edge at which it is not below the frequency, by halving, and from there into the bin.
+/// The curve falls with the energy. Bisection finds the last edge where it is at least `frequency`; the energy is then
+/// interpolated in the bin above that edge.
 double HazardCurve::energy_of(double frequency, Side which) const {
   const std::size_t last = sums_.size() - 1;
   if (side(0, which) < frequency) return 0.0;

@@ -21,7 +21,7 @@ std::vector<float> HazardSurvey::figures_of(const HazardCell& cell) const {
   return figures;
 }
 
-// What is thrown may not leave the parallel region: the first failure is kept.
+// An exception must not leave the parallel region: the first one is stored, and thrown again after the region.
 void HazardSurvey::set_row(int row, std::vector<bool> terrain, std::span<const Cell> cells, int threads) {
   Row& to = rows_[static_cast<std::size_t>(row)];
   to = {std::move(terrain), {}, std::vector<float>(cells.size() * nothing_.size())};

@@ -25,7 +25,7 @@ auto rows_of(const Scenario& scenario, const Tally& tally, Filling filling) {
     const auto columns = static_cast<std::size_t>(grid.columns);
     std::vector<double> cell(filling.untouched.size());
     for (int column = 0; column < grid.columns; ++column) {
-      if (column % kRegionSide == 0) tally.memory().keep_below_limit();  // a record in the file brings its neighbours
+      if (column % kRegionSide == 0) tally.memory().keep_below_limit();  // reading a record loads its neighbours too
       const CellRecord* record = tally.find(column, row);
       const bool terrain = !std::isnan(scenario.surface.heights().at(column, row));
       if (record != nullptr)

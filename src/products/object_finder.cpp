@@ -33,7 +33,7 @@ ObjectFinder::ObjectFinder(const Surface& surface, std::span<const HazardObject>
   }
 }
 
-/// Makes an object known to the patches that a block of this radius may touch it from.
+/// Adds an object to the list of each patch from which a block of this radius may touch it.
 void ObjectFinder::enter(const HazardObject& object, double radius) {
   const auto number = static_cast<std::uint32_t>(shapes_.size() - 1);
   Eigen::AlignedBox2d box;
@@ -47,7 +47,7 @@ void ObjectFinder::enter(const HazardObject& object, double radius) {
             east = clamped(surface_.u_of(box.max().x() + radius), grid.columns - 1),
             south = clamped(surface_.v_of(box.min().y() - radius), grid.rows - 1),
             north = clamped(surface_.v_of(box.max().y() + radius), grid.rows - 1);
-  const double reach = radius + 0.5 * std::hypot(grid.cell_x, grid.cell_y);  // from the middle of a patch
+  const double reach = radius + 0.5 * std::hypot(grid.cell_x, grid.cell_y);  // from the centre of a patch
   for (int row = south; row <= north; ++row)
     for (int column = west; column <= east; ++column) {
       const Point middle(surface_.x_of(column + 0.5), surface_.y_of(row + 0.5));

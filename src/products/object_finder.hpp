@@ -11,13 +11,13 @@
 
 namespace talus {
 
-/// Finds which objects a path comes to. Patches that are near an object know it: most of a path asks nothing more.
+/// Finds which objects a path hits. Each patch has a list of the objects near it, so most patches need no further test.
 class ObjectFinder {
  public:
   /// @param radius  of the largest block [m]
   ObjectFinder(const Surface& surface, std::span<const HazardObject> objects, double radius);
 
-  /// Raises the energy of each object that the path comes to [kJ]; below 0 stands for none so far.
+  /// Raises the energy of each object that the path hits [kJ]; a negative energy means no hit so far.
   void raise(const Path& path, const Block& body, std::span<float> energies) const;
 
  private:
@@ -36,7 +36,7 @@ class ObjectFinder {
 
   const Surface& surface_;
   std::vector<Shape> shapes_;
-  Raster<std::int32_t> near_;  // by patch: 0, or one more than the list of objects that are near
+  Raster<std::int32_t> near_;  // by patch: 0, or 1 + the index of its list
   std::vector<std::vector<std::uint32_t>> lists_;
 };
 

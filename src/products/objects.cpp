@@ -24,7 +24,7 @@ double largest_radius(const Scenario& s) {
   return 0.5 * diameter;
 }
 
-/// All that the workers share.
+/// The state that the workers share.
 class Replay {
  public:
   Replay(const Scenario& scenario, const AnnualWeights& weights, std::span<const HazardObject> objects,
@@ -61,7 +61,7 @@ class Replay {
   }
 
  private:
-  /// The largest energy of one block at each object; -1 where it does not come to it.
+  /// The largest energy of one block at each object; -1 if it does not hit the object.
   void energies_of(const Release& release, Path& path, std::vector<float>& energies) const {
     std::ranges::fill(energies, -1.0F);
     const World world = scenario_.world();
@@ -112,7 +112,7 @@ class Replay {
   std::uint64_t units_;
   std::atomic<std::uint64_t> next_{0};
   std::atomic<bool> stop_{false};
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;  // guards the members below
   std::vector<ObjectHits> hits_;
   std::uint64_t done_ = 0;
   std::exception_ptr failure_;

@@ -42,7 +42,7 @@ CellRule impact_probability(const RunCounts& run) {
   };
 }
 
-/// Where nothing crosses the upper bound is that of no hit in all trials.
+/// If nothing crosses, the upper bound is that of no hit in all trials.
 std::vector<double> no_impact(const RunCounts& run) {
   return {0.0, 0.0, probability_bounds(0, run.released, 0.95).high};
 }
@@ -98,7 +98,7 @@ RunRaster distribution(Quantity quantity, const std::string& meaning, Legend leg
           rule};
 }
 
-/// A raster of a whole number of the record.
+/// A raster of one of the counts of the cell record.
 template <class Count>
 RunRaster count(const std::string& name, const std::string& title, const std::string& meaning, Legend legend,
                 Count CellRecord::*member) {
@@ -147,8 +147,8 @@ void push(std::vector<float>& figures, const Bounded& bounded) {
     figures.push_back(static_cast<float>(std::isfinite(value) ? value : kNotGiven));
 }
 
-/// Class; class at the lower and at the upper bounds; 1 where those differ, so that it cannot be told with this many
-/// trajectories.
+/// The class; the class at the lower and at the upper bounds; 1 if these two differ: this many trajectories do not
+/// decide the class.
 void push_classes(const HazardPlace& place, std::vector<float>& figures) {
   std::vector<Bounded> frequencies{place.curve.passage()};
   for (const double energy : place.matrix.energies) frequencies.push_back(place.curve.exceedance_of(energy));

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kMostSimulated = 2000;  // values of one bootstrap draw
 constexpr int kBits = 40;                     // of the shape
 
-/// Fits to logarithms of values, which are moved so that the largest is 0 and no power overflows.
+/// Fits to the logarithms of values. Shifts them so that the largest is 0: no power overflows.
 Weibull fit_to_logarithms(std::vector<double>& logs) {
   const double largest = *std::max_element(logs.begin(), logs.end());
   const auto n = static_cast<double>(logs.size());
@@ -35,7 +35,7 @@ Weibull fit_to_logarithms(std::vector<double>& logs) {
     const double first = s1 / s0;
     return std::make_pair(first - 1.0 / shape - mean, s2 / s0 - first * first + 1.0 / (shape * shape));
   };
-  const double guess = kPi / std::sqrt(6.0 * (square - mean * mean));  // by the variance of ln x
+  const double guess = kPi / std::sqrt(6.0 * (square - mean * mean));  // from the variance of ln x
   std::uintmax_t steps = 100;
   const double shape =
       boost::math::tools::newton_raphson_iterate(likelihood, guess, guess / 100.0, guess * 100.0, kBits, steps);
@@ -44,7 +44,7 @@ Weibull fit_to_logarithms(std::vector<double>& logs) {
   return {shape, std::exp(largest + std::log(sum / n) / shape)};
 }
 
-/// Fits to n values of the standard exponential distribution, which is Weibull (1, 1).
+/// Draws n values of the standard exponential distribution, which is Weibull (1, 1), and fits them.
 Weibull fit_to_standard(std::size_t n, std::uint32_t draw, std::uint64_t seed, std::vector<double>& logs) {
   const Random random(seed, 0, draw, Purpose::Bootstrap);
   logs.resize(n);
@@ -66,7 +66,7 @@ Interval middle(const std::vector<Weibull>& draws, double confidence, Value valu
   return {quantile(values, tail), quantile(values, 1.0 - tail)};
 }
 
-/// Laws that n values with this fit may be of: the pivots of the simulated fits turned round.
+/// Bootstrap sample of the law behind n values with this fit: the pivots of simulated fits, solved for shape and scale.
 std::vector<Weibull> laws_of(const Weibull& fit, std::size_t n, const BootstrapOptions& options) {
   const std::size_t simulated = std::min(n, kMostSimulated);
   const double shrink = std::sqrt(static_cast<double>(simulated) / static_cast<double>(n));

@@ -4,7 +4,7 @@ namespace talus {
 
 Reaches::~Reaches() {
   for (auto& [place, entry] : open_) {
-    memory_.keep_below_limit();  // what lies in the file is read once more
+    memory_.keep_below_limit();  // cells in the scratch file are read once more
     entry.reach.reset();
   }
 }

@@ -23,10 +23,10 @@ double thread_cpu_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// Of a chunk of work, at most, where several processes take them: so that none waits for long at the end.
+/// Most units of a chunk if several processes share the work: small chunks keep the wait at the end short.
 constexpr std::uint64_t kUnitsPerChunk = 32;
 
-/// What one unit of work (some blocks of one source) hands to the sinks.
+/// The rows of one unit of work (some blocks of one source cell) for the sinks.
 struct Rows {
   std::uint64_t unit;
   std::vector<StopRow> stops;
@@ -34,7 +34,7 @@ struct Rows {
   std::vector<RecordedPath> paths;
 };
 
-/// Hands the rows of the units to the sinks in the order in which they were taken, whichever worker finished them.
+/// Hands the rows to the sinks in the order in which the units were taken, whichever worker finishes first.
 class InOrder {
  public:
   explicit InOrder(const Sinks& sinks) : sinks_(sinks) {}
@@ -42,7 +42,7 @@ class InOrder {
   void finish(std::uint64_t number, Rows&& rows) {
     const std::lock_guard guard(mutex_);
     if (failed_) return;
-    failed_ = true;  // until all is handed out: no sink is called again after it has thrown
+    failed_ = true;  // until all rows are handed out: after an exception no sink is called again
     waiting_.emplace(number, std::move(rows));
     for (auto it = waiting_.begin(); it != waiting_.end() && it->first == next_; it = waiting_.erase(it), ++next_) {
       if (sinks_.unit) sinks_.unit(it->second.unit);
@@ -82,7 +82,7 @@ void add(Totals& totals, const Release& release, const Path& path) {
 
 }  // namespace
 
-/// One stretch of a simulation: all that the workers share.
+/// One call of `advance`: the state that its workers share.
 class Simulation::Advance {
  public:
   explicit Advance(Simulation& simulation)
@@ -94,7 +94,7 @@ class Simulation::Advance {
     totals_.barriers = BarrierTally(scenario_.barriers);
   }
 
-  /// Takes units until none is left. Nothing may leave an OpenMP region: the first exception is kept.
+  /// Takes units until none is left. No exception may leave an OpenMP region: the first one is stored.
   void work() noexcept {
     Totals mine;
     mine.barriers = BarrierTally(scenario_.barriers);
@@ -103,7 +103,7 @@ class Simulation::Advance {
       VisitBatch batch(scenario_.surface.grid());
       Path path;
       while (!failed_) {
-        const std::optional<WorkUnits::Taken> taken = units_.next();  // is done now, so that a pause leaves none out
+        const std::optional<WorkUnits::Taken> taken = units_.next();  // always completed: a pause leaves none out
         if (!taken) break;
         Rows rows = trace_unit(taken->unit, path, batch, mine);
         if (batch.full()) score(batch, mine);
@@ -123,8 +123,8 @@ class Simulation::Advance {
     add(totals_, mine);
   }
 
-  /// All workers are done. Whether all units of the process group are; else there is more to take. Throws what a worker
-  /// threw.
+  /// Called when all workers are done. True: all units of the process group are done. False: there are more to take.
+  /// Throws the exception of a worker.
   bool finish() {
     if (failure_) std::rethrow_exception(failure_);
     if (!units_.finish()) return false;
@@ -191,13 +191,13 @@ class Simulation::Advance {
       interrupted_ = !proceed && !(share_done() >= 1.0);
       stopped_ = !proceed || (sinks.pause && sinks.pause());
     } catch (...) {
-      stopped_ = true;  // before the lock is released: it is not called again
+      stopped_ = true;  // before the lock is released: no sink is called again
       throw;
     }
     if (stopped_) units_.stop();
   }
 
-  /// Of a process group as if all were as fast.
+  /// Share of the work done. Assumes that all processes of a group are equally fast.
   double share_done() const {
     const double done = static_cast<double>(done_) * run_.processes_.size() + static_cast<double>(run_.position_.unit);
     return std::min(1.0, done / static_cast<double>(run_.units_));
@@ -208,7 +208,7 @@ class Simulation::Advance {
   InOrder order_;
   WorkUnits units_;
   std::atomic<bool> failed_{false};
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;  // guards the members below
   std::uint64_t done_ = 0;
   Totals totals_;
   std::exception_ptr failure_;
@@ -232,7 +232,7 @@ Simulation::Simulation(const Scenario& scenario, const Part& part, bool further_
   totals_.barriers = BarrierTally(scenario.barriers);
   if (processes.size() == 1) return;
   const std::uint64_t fair = units_ / (64U * static_cast<std::uint64_t>(processes.size()));
-  const std::uint64_t sources = std::min(fair, kUnitsPerChunk) / units_per_source_;  // whole ones
+  const std::uint64_t sources = std::min(fair, kUnitsPerChunk) / units_per_source_;  // whole ones, per chunk
   chunk_ = std::max<std::uint64_t>(1, sources) * units_per_source_;
 }
 
@@ -245,7 +245,7 @@ void Simulation::advance(int threads) {
 }
 
 void Simulation::save_reaches(const std::function<void(std::string_view)>& put) const {
-  // Else chunks hold whole source cells, and all that were begun are done.
+  // Otherwise chunks hold whole source cells, and each chunk that was begun is done: there is nothing to save.
   if (processes_.size() == 1 || further_rounds_) reaches_.save(put);
 }
 

@@ -6,23 +6,23 @@
 
 namespace talus {
 
-/// How often the trajectories of a scenario are traced, each time with further random numbers.
+/// Rounds of a run. Each round traces all trajectories of the scenario again, with new random numbers.
 struct Rounds {
-  std::uint32_t count = 1;            ///< where nothing is asked of the error
-  std::optional<double> until_error;  ///< relative half-width of the impact probability
-  double above = 0.01;                ///< in all cells with a larger probability
-  std::uint32_t most = 100;           ///< rounds, whatever is reached
+  std::uint32_t count = 1;            ///< number of rounds, if no error is asked for
+  std::optional<double> until_error;  ///< add rounds until the relative half-width is at most this [-]
+  double above = 0.01;                ///< only cells with a larger impact probability are checked [-]
+  std::uint32_t most = 100;           ///< largest number of rounds, even if the error is not reached
   bool several() const { return count > 1 || until_error.has_value(); }
   bool operator==(const Rounds&) const = default;
 };
 
-/// How well the impact probability is known.
+/// Statistical error of the impact probability.
 struct Accuracy {
   double half_width = 0.0;  ///< largest relative half-width of the 95 % bounds: (upper - lower) / (2 p)
-  std::uint64_t cells = 0;  ///< of so many
+  std::uint64_t cells = 0;  ///< number of cells checked
 };
 
-/// Of the cells with a probability above `above`; 0 where there are none.
+/// The largest error among the cells with a probability above `above`; both numbers are 0 if there are none.
 Accuracy accuracy_of(const Tally& tally, std::uint64_t released, double above);
 
 }  // namespace talus

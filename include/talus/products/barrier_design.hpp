@@ -13,7 +13,7 @@ struct DesignFactors {
   double density = 1.00;     ///< gG, of the mass per volume [-]
   double sel = 1.00;         ///< gE of the serviceability energy level [-]
   double mel = 1.30;         ///< gE of the maximum energy level: 1.30 as the paper, 1.20 in UNI 11211-4 [-]
-  double freeboard = 0.5;    ///< least f_min [m]
+  double freeboard = 0.5;    ///< smallest f_min [m]
   double percentile = 0.95;  ///< of speed and jump height, 0..1
 };
 
@@ -23,7 +23,7 @@ struct DesignBlock {
   double density = 2700.0;  ///< rho [kg/m^3]
 };
 
-/// What a barrier must hold.
+/// Design values of a barrier.
 struct BarrierDesign {
   double speed_percentile, height_percentile;  ///< v95 [m/s], h95 [m]
   double speed;                                ///< v_d = v95 gTr gDp [m/s]
@@ -38,13 +38,14 @@ struct BarrierDesign {
 BarrierDesign design_barrier(std::span<const double> speeds, std::span<const double> heights, const DesignBlock& block,
                              const DesignFactors& factors);
 
-/// Fewest crossings of which a percentile is told: 1 / (1 - percentile), so that one value at least may lie above it.
+/// Fewest crossings from which a percentile is reported: 1 / (1 - percentile), so that at least one value may lie
+/// above it.
 std::size_t fewest_for_percentile(double percentile);
 
 /// A part of a line.
 struct Stretch {
   double from, to;  ///< distance from the start of the line [m]
-  double share;     ///< of the crossings that it holds [-]
+  double share;     ///< share of the crossings within it [-]
 
   double width() const { return to - from; }
 };
@@ -54,11 +55,12 @@ struct Stretch {
 /// @param places  distances along the line [m], not empty, any order;  containment: above 0, at most 1
 Stretch shortest_stretch(std::span<const double> places, double containment);
 
-/// The paper's rule: from the first to the last bin that more than a share of all released blocks cross.
+/// The paper's rule: the stretch from the first to the last bin that is crossed by more than the share `probability` of
+/// all released blocks.
 ///
 /// @param bin       width of the bins from the start of the line [m], > 0
-/// @param released  number of blocks of which the places are those that crossed
-/// @return          nothing where no bin is crossed by so many
+/// @param released  number of all released blocks; `places` has only those that crossed
+/// @return          nothing if no bin is crossed by so many
 std::optional<Stretch> stretch_above(std::span<const double> places, double bin, double released, double probability);
 
 }  // namespace talus

@@ -11,14 +11,14 @@ struct Bounded {
   double value = 0.0, low = 0.0, high = 0.0;
 };
 
-/// Weights of the trajectories that were counted.
+/// Sums of the weights of the trajectories that were counted.
 struct WeightSums {
   double sum = 0.0;      ///< [1/year]
   double squares = 0.0;  ///< sum of their squares [1/year^2]
   double overlap = 0.0;  ///< `HazardCell::overlaps`: the variance within the strata is squares - overlap [1/year^2]
 };
 
-/// The annual frequency of an event from the trajectories that made it, with 95 % bounds.
+/// The annual frequency of an event, from the trajectories that caused it, with 95 % bounds.
 ///
 ///   low = 0 at no trajectory, high = total at all of them; else, with w the largest weight, v = squares - overlap and
 ///   d(k) = upper Poisson bound of k, less k:
@@ -29,35 +29,34 @@ struct WeightSums {
 /// Source: Fay & Feuer, Statistics in Medicine 16 (1997), 791-801; docs/hazard.md, "Bounds".
 Bounded annual_frequency(const WeightSums& counted, const WeightScale& scale);
 
-/// The gamma interval of Fay & Feuer for a weighted sum of Poisson counts: 95 %, `largest` the largest weight that
-/// there could have been. Without the caps of `annual_frequency`.
+/// The 95 % gamma interval of Fay & Feuer for a weighted sum of Poisson counts, without the limits that
+/// `annual_frequency` adds. `largest` is the largest weight that any count can have.
 Bounded gamma_interval(double sum, double squares, double largest);
 
 /// Years between events [year]: 1 / frequency, bounds exchanged; infinity where the frequency is 0.
 Bounded return_period(const Bounded& frequency);
 
-/// How often each energy is exceeded in one place.
+/// Annual frequency of exceeding each energy, in one place.
 class HazardCurve {
  public:
   /// @param rules  of the run; must outlive the curve
   HazardCurve(const HazardRules& rules, const HazardCell& cell);
 
   Bounded passage() const;                          ///< events per year
-  Bounded exceedance(std::size_t threshold) const;  ///< of an energy threshold of the run, exact [1/year]
-  /// Of any energy [kJ]: exact at an edge of the bins, between two of them linear in its logarithm.
+  Bounded exceedance(std::size_t threshold) const;  ///< of an energy threshold of the run [1/year]; exact
+  /// Frequency of exceeding any energy [kJ]: exact at the edges of the bins, between them linear in the logarithm.
   Bounded exceedance_of(double energy) const;
 
-  /// The energy that is exceeded once in so many years [kJ], and the same of the curve's lower and upper bounds.
+  /// The energy that is exceeded once in `years` years [kJ], read from the curve and from its lower and upper bounds.
   ///
-  /// 0 where less often than that anything passes; infinity as upper bound where the bound for no trajectory is more
-  /// often. Interpolated within a bin, linear in the logarithm of the energy: the error is less than the bin, 12.5 %.
+  /// 0 if passages are rarer than that. The upper bound is infinite if even the bound for no trajectory is more
+  /// frequent. Within a bin the curve is linear in the logarithm of the energy: the error is less than the bin, 12.5 %.
   Bounded energy_once_in(double years) const;
 
   int first() const { return first_; }               ///< bin of the lowest edge of the curve
   std::size_t size() const { return sums_.size(); }  ///< bins of the curve
-  Bounded at(std::size_t i) const {
-    return annual_frequency(sums_[i], rules_.scale);
-  }  ///< at edge first() + i; 0 at size()
+  /// Frequency of exceeding edge first() + i; 0 at i = size().
+  Bounded at(std::size_t i) const { return annual_frequency(sums_[i], rules_.scale); }
 
  private:
   enum class Side { Value, Low, High };
@@ -66,8 +65,8 @@ class HazardCurve {
 
   const HazardRules& rules_;
   int first_;
-  std::vector<WeightSums> sums_;    // of each bin and all above it; last nothing
-  std::vector<WeightSums> levels_;  // passage, thresholds
+  std::vector<WeightSums> sums_;    // of each bin and all bins above it; the last is 0
+  std::vector<WeightSums> levels_;  // of passage, then of each threshold
 };
 
 }  // namespace talus

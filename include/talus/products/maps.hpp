@@ -10,16 +10,17 @@
 
 namespace talus {
 
-/// Colours of a legend, from light to dark; of `PlasmaFromDark` from dark to light, where small is grave.
+/// Colours of a legend, from light to dark. `PlasmaFromDark` is from dark to light: small values are the grave ones.
 enum class Palette { Plasma, PlasmaFromDark, Viridis, Cividis, HazardClasses };
 
-/// How a map is drawn: a colour up to each limit, and one above the last (of a probability none: its last limit is 1).
+/// How a map is drawn: one colour up to each limit, and one above the last limit. A probability has no colour above
+/// its last limit, which is 1.
 struct Legend {
   std::vector<double> limits;  ///< ascending, in the unit of the file
-  double factor;               ///< from there to the unit of the labels
+  double factor;               ///< from the unit of the file to the unit of the labels
   std::string unit;            ///< of the labels; empty for none
   Palette palette;
-  std::string band{};  ///< that is shown; the first where empty
+  std::string band{};  ///< name of the band that is shown; empty: the first
 };
 
 /// A result file: its name without its ending (docs/products.md), and its bands.
@@ -34,10 +35,10 @@ struct Map {
   Kind kind;
   std::vector<Band> bands;
   Legend legend;
-  bool smallest_in_overviews = false;  ///< of the cells under a pixel; else the largest
-  std::vector<std::string> classes{};  ///< names of the whole numbers 0, 1, ... where they stand for classes
+  bool smallest_in_overviews = false;  ///< overviews show the smallest cell of a pixel, else the largest
+  std::vector<std::string> classes{};  ///< names of the values 0, 1, ... if the values are classes
 
-  /// Fills row `row` (0 in the south): values[band * columns + column]; NaN where nothing can be said.
+  /// Fills row `row` (0 in the south): values[band * columns + column]; NaN means no value.
   std::function<void(int row, std::span<double> values)> fill_row{};
 };
 

@@ -8,14 +8,14 @@
 #include "talus/products/hazard_matrix.hpp"
 #include "talus/products/maps.hpp"
 
-/// The home of the rasters: one entry each. Values, files, legends, estimates of their size and the check of docs
-/// follow from it. How to add one: docs/adding-a-raster.md.
+/// The table of all rasters, one entry each. Values, files, legends, estimates of their size and the check of the docs
+/// follow from it. How to add a raster: docs/adding-a-raster.md.
 namespace talus {
 
-/// How many trajectories there are, and of what exceedances are counted.
+/// Numbers of trajectories of a run, and the thresholds whose exceedances are counted.
 struct RunCounts {
   std::uint64_t released;
-  double per_source;  ///< trajectories of a source cell
+  double per_source;  ///< trajectories per source cell
   Thresholds thresholds;
 };
 RunCounts counts_of(const Scenario& scenario);
@@ -23,7 +23,7 @@ RunCounts counts_of(const Scenario& scenario);
 /// A cell that a trajectory crosses.
 struct TouchedCell {
   const CellRecord& record;
-  const std::uint32_t* exceedances;  ///< of each threshold, quantity by quantity
+  const std::uint32_t* exceedances;  ///< number for each threshold, quantity by quantity
 };
 
 /// Writes one number per band.
@@ -33,32 +33,32 @@ using CellRule = std::function<void(const TouchedCell& cell, std::span<double> v
 struct RunRaster {
   Map map;              ///< without values, and without the bands of thresholds
   std::string meaning;  ///< of a value, in the words of docs/products.md
-  /// The rule for touched cells.
+  /// Makes the rule for touched cells.
   std::function<CellRule(const RunCounts& run)> rule;
-  /// By band, the value where nothing crosses. Not given: 0 of a probability or a count, nodata of a quantity.
+  /// Value of each band where nothing crosses. If empty: 0 for a probability or a count, nodata for a quantity.
   std::function<std::vector<double>(const RunCounts& run)> untouched{};
-  /// Has a band for each threshold of the quantity; without thresholds it is not written.
+  /// The raster has a band for each threshold of this quantity; without thresholds it is not written.
   std::optional<Quantity> thresholds_of{};
   std::string threshold_symbol{};  ///< of the quantity in the names of these bands: "E"
 };
 
 const std::vector<RunRaster>& run_rasters();
 
-/// The bands of a raster; none where it is not written.
+/// The bands of a raster; empty if it is not written.
 std::vector<Map::Band> bands_of(const RunRaster& raster, const RunCounts& run);
 
-/// A place, from which figures follow.
+/// A place and the matrix: the input of its figures.
 struct HazardPlace {
   const HazardCurve& curve;
   const HazardMatrix& matrix;
 };
 
-/// A raster of `talus hazard`. Where it has numbers there is a raster for each, in whose texts the number stands for
-/// `placeholder`.
+/// A raster of `talus hazard`. If it has `numbers`, one raster is written for each; the number replaces `placeholder`
+/// in the texts.
 struct HazardRaster {
   Map map;              ///< without values and classes
   std::string meaning;  ///< of a value, in the words of docs/hazard.md
-  /// Appends the figures of a place, one per band, of the raster of number `i`.
+  /// Appends the figures of a place for the raster of number `i`, one per band.
   std::function<void(const HazardPlace& place, std::size_t i, std::vector<float>& figures)> figures;
   std::string placeholder{};  ///< "<kJ>", "<years>"; empty: a single raster
   std::function<std::vector<double>(const HazardRules& rules, const HazardMatrix& matrix)> numbers{};
@@ -70,7 +70,7 @@ const std::vector<HazardRaster>& hazard_rasters();
 /// A map of the hazard of a run, without values.
 struct HazardMap {
   const HazardRaster* raster;
-  std::size_t i;  ///< of its number
+  std::size_t i;  ///< index of its number
   Map map;
 };
 

@@ -8,14 +8,14 @@
 
 namespace talus {
 
-/// What is told of the crossings of a screen, in the units of the files.
+/// A reported quantity of the crossings of a screen, in the unit of the files.
 struct ScreenQuantity {
   std::string_view name, unit;
   double (*of)(const Crossing&);
 };
 std::span<const ScreenQuantity> screen_quantities();
 
-/// The distributions of all crossings, by screen. Keeps 4 bytes per crossing and quantity.
+/// The distributions of all crossings, by screen. Stores 4 bytes per crossing and quantity.
 class ScreenSummary {
  public:
   explicit ScreenSummary(std::size_t screens) : screens_(screens) {}
@@ -26,7 +26,7 @@ class ScreenSummary {
     std::size_t crossings, blocks;  ///< blocks: every (source, block) once
     double mean, p50, p95, p99, maximum;
   };
-  /// Of one quantity, by its place in `screen_quantities`; NaN where nothing crossed.
+  /// Summary of one quantity, given by its index in `screen_quantities`; NaN if nothing crossed.
   Row row(std::size_t screen, std::size_t quantity) const;
 
  private:

@@ -9,24 +9,25 @@
 
 namespace talus {
 
-/// Which cells the source cells have reached, where that must be known beyond one unit of work: a source cell counts
-/// once in a cell, however many units, rounds or sessions trace it. Source cells by their place in the order of work.
+/// The cells that each source cell has reached, remembered beyond one unit of work: a source cell counts once in a
+/// cell, however many units, rounds or sessions trace it. A source cell is given by its place in the order of work.
 class Reaches {
  public:
-  /// @param units   of work of a source cell, in one round
-  /// @param keep    all, for further rounds
-  /// @param memory  where what is known lies
+  /// @param units   units of work per source cell in one round
+  /// @param keep    keeps the cells of all source cells, for further rounds
+  /// @param memory  where the cells are stored
   Reaches(std::uint32_t units, bool keep, MemoryPolicy memory) : units_(units), keep_(keep), memory_(memory) {}
   ~Reaches();
   Reaches(const Reaches&) = delete;
   Reaches& operator=(const Reaches&) = delete;
 
-  /// Once per unit. Empty where one unit holds all of the source cell. Safe to call from several threads.
+  /// Cells of one source cell; call it once per unit. Empty if one unit holds the whole source cell. Safe to call from
+  /// several threads.
   std::shared_ptr<SourceReach> of(std::uint32_t place);
 
-  /// Hands out what is known of each source cell, one after the other: all together may not fit into the memory.
+  /// Hands out the cells of each source cell, one after the other: all together may not fit into the memory.
   void save(const std::function<void(std::string_view)>& put) const;
-  /// Adds what was saved of a source cell, if `wanted(place)`.
+  /// Adds the saved cells of a source cell, if `wanted(place)`.
   void restore(ByteReader& in, const std::function<bool(std::uint32_t)>& wanted);
 
  private:

@@ -11,7 +11,7 @@ namespace talus {
 struct StopRow {
   std::uint32_t source, block;
   End end;
-  float diameter, mass;                           // of what came to rest: the largest piece where it broke [m], [kg]
+  float diameter, mass;                           // of the block, or of its largest piece if it broke [m], [kg]
   float x_release, y_release;                     // [m, local]
   double x, y, z;                                 // where it ended [m, local]
   float seconds, max_speed, length, plan_length;  // [s], [m/s], [m], [m]

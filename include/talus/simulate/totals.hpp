@@ -12,14 +12,14 @@ struct Totals {
   std::array<std::uint64_t, kEnds> ends{};  ///< by End
   std::uint64_t released = 0, pieces = 0, impacts = 0, psi_dropped = 0, cells_scored = 0;
   std::int64_t length_mm = 0, plan_length_mm = 0;
-  std::array<std::uint32_t, 2> first_limit{};  ///< smallest (source, block) that ended at a limit; see ends
+  std::array<std::uint32_t, 2> first_limit{};  ///< smallest (source, block) that ended at a limit, if any did
   bool interrupted = false;
   BarrierTally barriers;
-  double sink_cpu_seconds = 0.0;  ///< of `cpu_seconds`, spent in the sinks
+  double sink_cpu_seconds = 0.0;  ///< the part of `cpu_seconds` spent in the sinks
   double cpu_seconds = 0.0;       ///< of all threads
 };
 
-/// Adds what a part of a run has to its whole. The barriers must be the same.
+/// Adds the totals of a part of a run. The barriers must be the same.
 void add(Totals& totals, const Totals& part);
 
 }  // namespace talus

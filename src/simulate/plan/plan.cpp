@@ -7,8 +7,8 @@
 namespace talus {
 namespace {
 
-/// Volume of a share of the power law N(>= V) = A V^-b between two bounds, by its inverse. Equal bounds give that
-/// volume.
+/// Volume at a share, 0..1, of the power law N(>= V) = A V^-b between two bounds: the inverse of its distribution.
+/// Equal bounds give that volume.
 double volume_at(const VolumePowerLaw& law, double share) {
   const double low = std::pow(law.volume.low, -law.exponent), high = std::pow(law.volume.high, -law.exponent);
   return std::pow(low - share * (low - high), -1.0 / law.exponent);
@@ -65,7 +65,7 @@ std::size_t class_of_block(const Scenario& scenario, std::uint32_t source, std::
 }
 
 bool is_recorded(const Scenario& scenario, std::uint32_t source, std::uint32_t block) {
-  // The paths are the releases g at which floor(g K / N) steps up: K of N, evenly spread.
+  // Release g is recorded if floor(g K / N) steps up after it: K of N releases, evenly spread.
   const std::uint64_t wanted = scenario.output.paths, all = scenario.released();
   const std::uint64_t g = std::uint64_t{source} * scenario.trajectories + block;
   TALUS_EXPECT(g < all, "a release is one of the plan");

@@ -8,7 +8,7 @@
 namespace talus {
 namespace {
 
-/// The bits of a number on every second place.
+/// Spreads the bits of a number: bit i becomes bit 2 i.
 std::uint64_t spread(std::uint32_t number) {
   std::uint64_t bits = number;
   bits = (bits | bits << 16U) & 0x0000FFFF0000FFFFU;

@@ -24,7 +24,7 @@ WorkUnits::WorkUnits(ProcessGroup& processes, const Range& range, std::uint64_t 
   processes_.set_counter(fixed ? 0 : first);
 }
 
-/// The chunk that is to be traced next; `chunks_` or more where there is none.
+/// The next chunk for this process; `chunks_` or more if there is none.
 std::uint64_t WorkUnits::next_chunk() {
   if (!fixed_) return processes_.take(1);
   if (mine_ >= chunks_ || (!catching_up_ && processes_.take(0) >= ProcessGroup::kClosed)) return chunks_;
@@ -36,7 +36,7 @@ std::uint64_t WorkUnits::next_chunk() {
 std::optional<WorkUnits::Taken> WorkUnits::next() {
   const std::lock_guard guard(mutex_);
   processes_.attend();
-  while (at_ == till_) {  // of an empty range a chunk may be empty
+  while (at_ == till_) {  // a chunk of an empty range may be empty
     const std::uint64_t chunk = next_chunk();
     if (chunk >= chunks_) return std::nullopt;
     at_ = std::max(range_.first, chunk * chunk_);
@@ -63,7 +63,7 @@ bool WorkUnits::finish() {
   }
   const bool closed = processes_.largest(processes_.take(0)) >= ProcessGroup::kClosed;
   const auto size = static_cast<std::uint64_t>(processes_.size());
-  const std::uint64_t begun = mine_ >= size ? mine_ - size + 1 : 0;  // one beyond the last chunk that this one took
+  const std::uint64_t begun = mine_ >= size ? mine_ - size + 1 : 0;  // one beyond the last chunk that this process took
   if (closed) chunks_ = std::min(chunks_, std::max(range_.first / chunk_, processes_.largest(begun)));
   end_ = std::min(range_.end, chunk_ * chunks_);
   catching_up_ = true;

@@ -13,7 +13,7 @@ constexpr int kBits = 62;                    // of the sum over all trajectories
 constexpr int kRoundBits = 14;               // of the number of rounds
 constexpr std::int64_t kLeastWeight = 1024;  // below it the unit would change a weight by more than 0.05 %
 
-/// What says how often blocks fall.
+/// The inputs that give frequencies.
 struct Sources {
   bool features = false, classes = false, area = false, law = false;
   int count() const { return int{features} + int{classes} + int{area} + int{law}; }
@@ -75,7 +75,7 @@ double volume_of(double diameter) {
   return kPi / 6.0 * diameter * diameter * diameter;
 }
 
-/// Events per year of each class of blocks, of a power law N(>= V) = A V^-b.
+/// Events per year of each class of blocks, by the power law N(>= V) = A V^-b.
 std::vector<double> law_frequencies(const Scenario& s) {
   const FrequencyRules& rules = s.frequency;
   const VolumePowerLaw& law = s.blocks.power_law;
@@ -103,7 +103,7 @@ std::vector<double> law_frequencies(const Scenario& s) {
   return frequencies;
 }
 
-/// The share that each source cell has: of its feature's frequency, or of the whole; or its area.
+/// Area of each source cell, in plan or of its surface [m^2]. Frequencies are divided in proportion to it.
 std::vector<double> areas_of(const Scenario& s) {
   const Grid& grid = s.surface.grid();
   std::vector<double> areas(s.sources.size(), grid.cell_x * grid.cell_y);
@@ -131,7 +131,7 @@ std::vector<double> cell_frequencies(const Scenario& s, const Sources& found, do
   return cells;
 }
 
-/// How much more often than a mean block one of each class comes: its share of the events over its share of the blocks.
+/// Frequency of a block of each class relative to the mean: share of the events over share of the blocks.
 std::vector<double> class_factors(const Scenario& s, const std::vector<double>& frequencies) {
   const auto& classes = s.blocks.classes;
   if (frequencies.size() < 2) return {1.0};
@@ -191,7 +191,7 @@ std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, bool further_r
     squares += weight * weight * s.trajectories;
     scale.total += cell;
   }
-  if (!(scale.total > 0.0)) return std::nullopt;  // a field of zeros: not known
+  if (!(scale.total > 0.0)) return std::nullopt;  // a field of zeros counts as not given
   scale.unit = std::ldexp(power_of_two_above(most), -bits);
   scale.square_unit = std::ldexp(power_of_two_above(squares), -bits);
   out.weights_.reserve(cells.size() * factors.size());

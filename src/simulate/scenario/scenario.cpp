@@ -127,7 +127,7 @@ void check_thresholds(const std::vector<double>& values, const std::string& key)
   }
 }
 
-/// Of a screen or a barrier.
+/// Checks the lines of a screen or a barrier.
 template <class Line>
 void check_lines(const Line& of, const std::string& what) {
   for (const auto& line : of.lines)
@@ -148,7 +148,7 @@ void check_frequency(const Scenario& s) {
   if (!std::isnan(rules.per_area)) check(bounds_of("frequency.per_area"), rules.per_area, "frequency.per_area");
   if (!std::isnan(rules.scale)) check(bounds_of("frequency.power_law.A"), rules.scale, "frequency.power_law.A");
   if (!std::isnan(rules.scale)) check(bounds_of("frequency.power_law.b"), rules.exponent, "frequency.power_law.b");
-  AnnualWeights::of(s);  // refuses what contradicts itself
+  AnnualWeights::of(s);  // throws if frequencies contradict each other
 }
 
 void check_area(const Scenario& s, const EffectArea& where, const std::string& effect) {
@@ -160,7 +160,7 @@ void check_area(const Scenario& s, const EffectArea& where, const std::string& e
     throw InputError(effect + ": its mask is not on the grid of the DEM");
 }
 
-/// The energy that a stand takes must not be counted twice.
+/// Refuses two effects that would take the energy of the same stand twice.
 void check_stands(const Scenario& s) {
   const Effects& e = s.effects;
   if (s.drag_and_stems || !(e.vegetation_drag.coefficient > 0.0) || !(e.forest_stems.density > 0.0)) return;

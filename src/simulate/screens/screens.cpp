@@ -55,8 +55,9 @@ void ScreenFinder::find(const Release& release, const Path& path, std::vector<Cr
   }
 }
 
-/// A segment is crossed where its ends lie on different sides of it, its own end points belonging to one side only,
-/// so that a path through a vertex of the path or of the screen is counted once.
+/// A way crosses a segment if its ends lie on different sides of the segment, and the ends of the segment on different
+/// sides of the way. A point on the line itself counts to one fixed side, so that a path through a vertex of the path
+/// or of the screen is counted once.
 void ScreenFinder::cross(const Release& release, const Block& body, const Vertex& from, const Vertex& to,
                          std::vector<Crossing>& crossings) const {
   const Eigen::Vector2d a = from.motion.position.head<2>(), b = to.motion.position.head<2>(), way = b - a;

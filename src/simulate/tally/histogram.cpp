@@ -73,7 +73,7 @@ void LogHistogram::widen(std::uint8_t width) {
   swap(wide);
 }
 
-/// Makes room for the keys of a range. It grows by half doublings, so that it rarely does.
+/// Makes room for a range of keys. Grows in steps of half a doubling, so that it grows rarely.
 void LogHistogram::cover(int low_key, int high_key) {
   int low = low_key & ~7, high = high_key | 7;
   if (size_ > 0) {
@@ -106,7 +106,7 @@ void LogHistogram::add_key(int key) {
     put(bin, get(bin) + 1);
 }
 
-/// Turns the few values kept so far into counts, with room for the keys of a range.
+/// Turns the few values stored so far into counts, with room for a range of keys.
 void LogHistogram::spill(int low_key, int high_key) {
   const auto few = few_;
   const int n = few_count_;
@@ -137,7 +137,8 @@ void LogHistogram::add(std::span<const float> values) {
   count_all(values);
 }
 
-/// Counts values whose bins there is room for. From locals: a byte written to the counts might be any member's.
+/// Counts values whose bins have room. Local copies of the members are faster: the compiler must assume that a byte
+/// written to the counts may change any member.
 void LogHistogram::count_all(std::span<const float> values) {
   auto value = values.begin();
   if (width_ == 1) {

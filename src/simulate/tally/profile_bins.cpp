@@ -43,7 +43,7 @@ ProfileBins::ProfileBins(int columns, double step, double width)
 
 void ProfileBins::add(const Path& path, double mass) {
   std::vector<Maxima> records(values_.size(), kNotThere);
-  for (const Span& span : path.spans) {  // within one column, so within one bin
+  for (const Span& span : path.spans) {  // a span lies in one column, so in one bin
     TALUS_EXPECT(static_cast<std::size_t>(span.patch.column / columns_per_bin_) < records.size(),
                  "a path stays on its profile");
     Maxima& record = records[static_cast<std::size_t>(span.patch.column / columns_per_bin_)];

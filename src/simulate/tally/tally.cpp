@@ -11,7 +11,7 @@
 namespace talus {
 namespace {
 
-/// The largest float at or below each: a float exceeds a threshold just where it exceeds that.
+/// The largest float at or below each threshold: a float exceeds the threshold if and only if it exceeds this float.
 std::vector<float> floats_below(const std::vector<double>& thresholds) {
   std::vector<float> limits;
   for (const double threshold : thresholds) {
@@ -38,7 +38,7 @@ std::size_t cell_in_region(int column, int row) {
   return static_cast<std::size_t>(row % kRegionSide * kRegionSide + column % kRegionSide);
 }
 
-/// Counting sort: visits by cell, those of one cell in their order before.
+/// Counting sort of visits by cell; visits of one cell keep their order.
 std::vector<Visit> sorted_by_cell(const std::vector<Visit>& visits) {
   std::array<std::uint32_t, kRegionCells + 1> start{};
   for (const Visit& visit : visits) ++start[visit.cell + 1U];
@@ -54,18 +54,18 @@ struct Group {
   std::size_t record;
 };
 
-/// Asks the processor for memory that is needed soon: records lie anywhere, and waiting for them would rule the cost.
+/// Prefetches memory that is needed soon: records are scattered, and waiting for them would take most of the time.
 void fetch(const void* memory, std::size_t bytes) {
   for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(static_cast<const char*>(memory) + i, 1);
 }
 
-/// The cells of a region that the source of a trajectory has reached in other batches too.
+/// The cells of a region that the source cell of a trajectory has reached, in this batch or another.
 class ReachOf {
  public:
   ReachOf(const VisitBatch& batch, std::size_t region) : batch_(batch), region_(region) {}
 
-  /// Whether the source reaches the cell for the first time; it counts as reached from then on. Trajectories of one
-  /// source follow each other, so that within a group a source's first trajectory decides.
+  /// Whether the source cell reaches the cell for the first time; then marks it as reached. Trajectories of one source
+  /// cell follow each other, so only the first one in a group is tested.
   bool first(std::uint16_t trajectory, std::size_t cell) {
     const VisitBatch::Trajectory& t = batch_.trajectories()[trajectory];
     if (!t.reach) return true;
@@ -84,19 +84,19 @@ class ReachOf {
   SourceReach::Cells* cells_ = nullptr;
 };
 
-/// Whether two trajectories of a batch, `first` before `second`, are what one block became.
+/// Whether two trajectories of a batch, `first` before `second`, come from the same block.
 bool of_one_block(const VisitBatch& batch, std::uint16_t first, std::uint16_t second) {
   const auto& all = batch.trajectories();
   return std::all_of(&all[first] + 1, &all[second] + 1, [](const VisitBatch::Trajectory& t) { return t.piece; });
 }
 
-/// The visits of one trajectory to a cell, made one.
+/// The visits of one trajectory to a cell, joined.
 struct Passage {
   Maxima largest;
   std::uint32_t deposits = 0;
 };
 
-/// Takes the visits of the next trajectory from `visit` on; their impacts go to the record.
+/// Joins the visits of the next trajectory and moves `visit` past them; adds their impacts to the record.
 Passage next_passage(const Visit*& visit, const Visit* end, CellRecord& record) {
   const std::uint16_t trajectory = visit->trajectory;
   Passage passage;
@@ -108,18 +108,18 @@ Passage next_passage(const Visit*& visit, const Visit* end, CellRecord& record) 
   return passage;
 }
 
-/// Makes one value of each trajectory's visits, its largest, and adds the counts of the group to the record.
+/// Sets the values of each trajectory, the largest of its visits, and adds the counts of the group to the record.
 void gather(const Group& group, const VisitBatch& batch, CellValues& values, CellRecord& record, ReachOf& reach) {
   values.make_room(static_cast<std::size_t>(group.end - group.begin));
   std::size_t n = 0;
   std::uint32_t source = 0;
   std::uint16_t previous = 0;  // the trajectory of the last value
-  bool rests = false;          // it, or a piece of it, has come to rest here
+  bool rests = false;          // the trajectory, or a piece of it, has come to rest here
   for (const Visit* visit = group.begin; visit != group.end;) {
     const std::uint16_t trajectory = visit->trajectory;
     const Passage passage = next_passage(visit, group.end, record);
     const VisitBatch::Trajectory& of = batch.trajectories()[trajectory];
-    if (of.piece && n > 0 && of_one_block(batch, previous, trajectory)) {  // one value of all that a block became
+    if (of.piece && n > 0 && of_one_block(batch, previous, trajectory)) {  // all pieces of a block have one value
       record.deposits += rests ? 0U : passage.deposits;
       rests = rests || passage.deposits > 0;
       for_each_quantity([&](auto q) {

@@ -7,9 +7,9 @@
 namespace talus {
 namespace {
 
-constexpr std::size_t kAtATime = 64;  // regions: some 100 MB where every cell was reached
+constexpr std::size_t kAtATime = 64;  // regions: some 100 MB if every cell was reached
 
-/// Regions as bytes, one after the other: number, length, what `Tally::take` says.
+/// Appends a region as bytes: its number, its length, and the bytes of `Tally::take`.
 void append(std::string& bytes, std::size_t region, Tally& tally) {
   ByteWriter content;
   tally.take(region, content);

@@ -41,7 +41,7 @@ void VisitBatch::add(const Path& path, double mass, std::uint32_t source, std::s
     mass = broken.body.mass;
     piece = true;
   }
-  if (from < spans.size() || path.breaks.empty()) {  // else it stopped where it broke, on its way before
+  if (from < spans.size() || path.breaks.empty()) {  // otherwise it stopped where it broke: its last span is above
     begin({mass, source, std::move(reach), piece});
     add(spans.subspan(from));
   }
@@ -56,7 +56,7 @@ void VisitBatch::add(std::span<const Span> spans) {
     Visit& first = visit(span.patch.column + east_from, span.patch.row + north_from);
     if (east_from == east_to && north_from == north_to) {
       raise(first, span, start, end);
-    } else {  // the way leads through the middle of the patch into another cell; across a corner, through two
+    } else {  // the way crosses one or both middle lines of the patch, into one or two other cells
       const float p_turn = east_from == east_to ? 2.0F : (0.5F - span.p_from) / (span.p_to - span.p_from);
       const float q_turn = north_from == north_to ? 2.0F : (0.5F - span.q_from) / (span.q_to - span.q_from);
       Moment turn = moment_of(span, std::min(p_turn, q_turn));

@@ -4,12 +4,12 @@
 
 namespace talus {
 
-/// The source cells that one program traces of a plan that several share: whole ones, those that follow each other in
-/// the order of work.
+/// One part of a plan that several programs share. A part holds whole source cells that follow each other in the order
+/// of work.
 struct Part {
   std::uint32_t number = 1, of = 1;
 
-  /// The place of its first source cell, of so many in all; the next part's first is this part's end.
+  /// Place of its first source cell in the order of work, out of `sources` in all; the next part begins at `end`.
   std::uint32_t first(std::size_t sources) const { return begin_of(number - 1, sources); }
   std::uint32_t end(std::size_t sources) const { return begin_of(number, sources); }
 

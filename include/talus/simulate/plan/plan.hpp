@@ -3,11 +3,11 @@
 
 namespace talus {
 
-/// The release of block `block` (below scenario.trajectories) of source cell `source`: pure, no list is kept.
+/// The release of block `block` of source cell `source`: a pure function, no list of releases is stored.
 /// A block released where there is no terrain has a height of NaN and ends `left` at once.
 Release make_release(const Scenario& scenario, std::uint32_t source, std::uint32_t block);
 
-/// Which of `blocks.classes` the block is of; 0 where there are none.
+/// Index of the block's class in `blocks.classes`; 0 if there are no classes.
 std::size_t class_of_block(const Scenario& scenario, std::uint32_t source, std::uint32_t block);
 
 /// Whether the path of this block is one of the `scenario.output.paths` that are written as vectors: evenly spread

@@ -7,13 +7,13 @@
 
 namespace talus {
 
-/// Blocks of one source cell that a worker traces in one go, and that are one stratum of the hazard.
+/// Number of blocks in a unit of work: blocks of one source cell, traced by one worker; one stratum of the hazard.
 inline constexpr std::uint32_t kBlocksPerUnit = 128;
 
 /// Hands out the units of work of a round, each once, to all threads of all processes that trace it.
 ///
-/// Processes take chunks of units that follow each other: whoever is free the next one. Or each chunk belongs to one
-/// process, the same in every round, so that what this knows of its source cells stays with it.
+/// A chunk is a number of consecutive units. Either a free process takes the next chunk; or each chunk belongs to one
+/// process, the same in every round, and the cells that its source cells have reached stay with that process.
 class WorkUnits {
  public:
   struct Range {
@@ -24,21 +24,21 @@ class WorkUnits {
     std::uint64_t unit, number;
   };
 
-  /// All processes must make it.
+  /// All processes must construct it.
   ///
-  /// @param range  of the units that are to be traced
+  /// @param range  the units to trace
   /// @param chunk  chunks begin at multiples of this
   /// @param fixed  each chunk belongs to one process
   WorkUnits(ProcessGroup& processes, const Range& range, std::uint64_t chunk, bool fixed);
 
-  /// Nothing where none is left or asked for. From any thread.
+  /// The next unit; nothing if none is left, or after `stop`. From any thread.
   std::optional<Taken> next();
 
-  /// Nothing further is to be taken, by no process, than chunks that are begun. From any thread.
+  /// Lets all processes complete the chunks that they have begun, and take no more. From any thread.
   void stop();
 
-  /// All that this process has taken is done. Once it has returned true all before `end` is done, by whichever process;
-  /// until then go on taking. All processes must call it.
+  /// All processes must call it, each when it has done all units that it took. True: all units before `end` are done,
+  /// by whichever process. False: call `next` again until it returns nothing, then `finish`.
   bool finish();
   std::uint64_t end() const { return end_; }
 
@@ -52,13 +52,13 @@ class WorkUnits {
 
   ProcessGroup& processes_;
   Range range_;
-  std::uint64_t chunk_, chunks_;  // units of one; first one that is not wanted
+  std::uint64_t chunk_, chunks_;  // units of a chunk; the first chunk that is not wanted
   bool fixed_;
-  std::mutex mutex_;                 // guards what follows
-  std::uint64_t at_ = 0, till_ = 0;  // units of the chunk in work
+  std::mutex mutex_;                 // guards the members below
+  std::uint64_t at_ = 0, till_ = 0;  // units of the current chunk
   std::uint64_t taken_ = 0;
-  std::uint64_t mine_ = 0;   // next chunk of this process, where they are fixed
-  std::uint64_t closed_at_;  // chunk before which all were taken
+  std::uint64_t mine_ = 0;   // next chunk of this process, if chunks are fixed
+  std::uint64_t closed_at_;  // all chunks before this one were taken
   bool catching_up_ = false;
   std::uint64_t end_ = 0;
 };

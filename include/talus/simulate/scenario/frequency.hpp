@@ -5,20 +5,20 @@
 
 namespace talus {
 
-/// What one trajectory stands for in a year, and the group of trajectories that are drawn alike with it.
+/// The annual frequency that one trajectory stands for, and its stratum.
 struct Stake {
   std::int64_t weight = 0;    ///< events per year, in units of WeightScale::unit
-  std::uint64_t stratum = 0;  ///< some blocks of one source cell
-  std::uint32_t blocks = 0;   ///< of the stratum
+  std::uint64_t stratum = 0;  ///< number of the stratum: some blocks of one source cell
+  std::uint32_t blocks = 0;   ///< number of blocks in the stratum
 };
 
-/// What the weights of all trajectories of a run have in common.
+/// Units and limits of the weights, the same for all trajectories of a run.
 struct WeightScale {
   double unit = 0.0;               ///< [1/year], a power of two
   double square_unit = 0.0;        ///< of sums of squares [1/year^2], a power of two
   double total = 0.0;              ///< events per year of all trajectories
   std::int64_t largest = 0;        ///< weight of a trajectory [units]
-  std::uint64_t trajectories = 0;  ///< how many there are
+  std::uint64_t trajectories = 0;  ///< number of trajectories
   bool equal = true;               ///< all have the same weight
 
   double largest_weight() const { return static_cast<double>(largest) * unit; }  ///< [1/year]
@@ -29,17 +29,17 @@ struct WeightScale {
 /// equal in any order. The unit is a power of two, chosen so that the sum over all trajectories stays below 2^62; it
 /// follows from the scenario alone, so that parts of one plan have the same.
 ///
-/// A trajectory of a class that is drawn with the share p of n blocks stands for (events per year of cell and class)
-/// / (n p). docs/hazard.md, "Weights".
+/// A source cell releases n blocks, and a class has the share p of them. A trajectory of the class stands for
+/// (events per year of cell and class) / (n p). docs/hazard.md, "Weights".
 class AnnualWeights {
  public:
-  /// @param further_rounds  up to 10 000 rounds of the scenario's trajectories may be added up: leaves room for them
-  /// @return nothing where the scenario says no frequency, or 0 everywhere
-  /// Throws InputError where it says several that contradict each other, or some of what it would need; and where a
-  /// frequency is so small beside the others that the unit would change it by more than 0.05 %.
+  /// @param further_rounds  leaves room for the sum over up to 10 000 rounds
+  /// @return nothing if the scenario has no frequency, or 0 everywhere
+  /// Throws InputError if frequencies contradict each other or are incomplete, or if one is so small beside the others
+  /// that the unit would change it by more than 0.05 %.
   static std::optional<AnnualWeights> of(const Scenario& scenario, bool further_rounds = false);
 
-  /// Of block `block` of a source cell [units].
+  /// Weight of block `block` of a source cell [units].
   std::int64_t weight(const Scenario& scenario, std::uint32_t source, std::uint32_t block) const;
 
   const WeightScale& scale() const { return scale_; }
@@ -50,8 +50,8 @@ class AnnualWeights {
   WeightScale scale_;
 };
 
-/// Area of the surface in a cell [m^2]: the cell's own over the cosine of its slope, from the heights of its four
-/// neighbours (of one side, where the other has none).
+/// Area of the surface in a cell [m^2]: the area in plan over the cosine of the slope. The slope follows from the
+/// heights of the four neighbours; if one has no height, from the cell and the neighbour on the other side.
 double true_area(const Raster<float>& heights, int column, int row);
 
 }  // namespace talus

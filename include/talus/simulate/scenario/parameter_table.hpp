@@ -21,7 +21,7 @@ std::span<const Bounds> list_bounds();
 /// The entry of `list_bounds` of this key, which must be there.
 const Bounds& bounds_of(std::string_view key);
 
-/// What is wrong with a value: "must be 500 to 8000 kg/m3 (mass per volume of the rock)"; nothing where it is allowed.
+/// The rule that a value breaks, "must be 500 to 8000 kg/m3 (mass per volume of the rock)"; nothing if it is allowed.
 std::optional<std::string> fault_of(const Bounds& bounds, double value);
 
 }  // namespace talus

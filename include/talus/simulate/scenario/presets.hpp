@@ -14,7 +14,7 @@ struct Preset {
   std::string_view where;   ///< the ground that it was fitted to
 };
 
-/// The ground where nothing else is said.
+/// The ground of a scenario that names no other.
 inline constexpr std::string_view kDefaultPreset = "upper-talus-3d";
 
 /// All sets, in the order of the paper. The 2D sets have psi_scale = 0: they do not turn a block out of its plane.

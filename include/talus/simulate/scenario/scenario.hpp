@@ -16,7 +16,7 @@ struct Range {
   bool operator==(const Range&) const = default;
 };
 
-/// What the features of the source layer say of their blocks. NaN: the scenario's own value holds.
+/// A feature of the source layer, with the settings of its blocks. NaN: the value of the scenario holds.
 struct SourceFeature {
   std::string name;
   double frequency = kNotGiven;          ///< events per year of the whole feature
@@ -30,7 +30,7 @@ struct SourceCell {
   std::uint32_t feature = 0;  ///< index into Scenario::features
   double x = 0.0, y = 0.0;    ///< centre of the cell, or the point [m, local]
   bool point = false;         ///< released exactly there, not uniformly in the cell
-  double along = 0.0;         ///< of a point: uniformly over this length in x, half of it on either side [m]
+  double along = 0.0;         ///< of a point: releases are uniform in x over this length around it [m]
 };
 
 /// A class of block sizes, with its share of the blocks.
@@ -60,21 +60,21 @@ struct Screen {
   std::vector<std::vector<Eigen::Vector2d>> lines;  ///< [m, local]; more than one where the feature has parts
 };
 
-/// How often blocks fall, beside what features and classes of blocks say themselves. docs/hazard.md.
+/// Frequencies given for the whole scenario; features and classes of blocks may have their own. docs/hazard.md.
 struct FrequencyRules {
-  bool by_true_area = false;    ///< divided over source cells by the area of their surface, not equally
+  bool by_true_area = false;    ///< shares of source cells follow the area of their surface; else equal
   double per_area = kNotGiven;  ///< events per area and year [1/(m^2 year)]
   double scale = kNotGiven, exponent = kNotGiven;  ///< A [1/year] and b of N(>= V) = A V^-b, V in m^3
 };
 
-/// What is kept of the trajectories.
+/// Settings of the results.
 struct OutputSettings {
   std::vector<double> energy_thresholds{30.0, 300.0};    ///< translational [kJ], ascending
   std::vector<double> height_thresholds{1.0, 2.0, 4.0};  ///< vertical, above the terrain [m], ascending
   std::uint32_t paths = 500;                             ///< trajectories written as vectors
 };
 
-/// All that decides a run: built by `make_scenario`, then constant. Everything on one grid, in local metres.
+/// All settings and data of a run: built by `make_scenario`, then constant. Everything is on one grid, in local metres.
 struct Scenario {
   Surface surface{Raster<float>{}};
   Cover cover;
@@ -86,7 +86,7 @@ struct Scenario {
   Barriers barriers;
   ImpactModel impact;
   Effects effects;
-  bool drag_and_stems = false;  ///< vegetation-drag and forest-stems may act at one place
+  bool drag_and_stems = false;  ///< vegetation-drag and forest-stems may act at the same place
   int day = 0;                  ///< of the run, for effects that change with it
   EndRules rules;
   OutputSettings output;

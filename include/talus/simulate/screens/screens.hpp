@@ -17,7 +17,7 @@ struct Crossing {
   double incidence = 0.0;               ///< in plan, between the way and the normal of the line [rad], 0 to pi/2
 };
 
-/// Distance along a screen from its start, over all its lines, to the point of it that is nearest to a place [m].
+/// Distance from the start of a screen, along all its lines, to its point nearest to `place` [m].
 double place_along(const Screen& screen, const Eigen::Vector2d& place);
 
 /// Finds where paths cross the screens.

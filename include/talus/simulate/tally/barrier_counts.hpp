@@ -7,14 +7,14 @@
 
 namespace talus {
 
-/// What met a part of a barrier.
+/// Numbers of meetings of blocks with a part of a barrier.
 struct BarrierCounts {
   std::uint64_t over = 0, caught = 0, broken = 0;
   std::uint64_t hits() const { return caught + broken; }
   void add(const BarrierCounts& other) { over += other.over, caught += other.caught, broken += other.broken; }
 };
 
-/// Width of the parts of a barrier that are counted apart, from its start [m]; the last may be shorter.
+/// Length of the parts of a barrier that are counted separately, from its start [m]; the last may be shorter.
 inline constexpr double kBarrierPart = 5.0;
 
 /// The counts of all barriers, by place along each. Integer sums: equal in any order.
@@ -23,10 +23,10 @@ class BarrierTally {
   BarrierTally() = default;
   explicit BarrierTally(const Barriers& barriers);
   void add(const Path& path);
-  /// Of the same barriers.
+  /// @param other  a tally of the same barriers
   void merge(const BarrierTally& other);
   void save(ByteWriter& out) const;
-  /// Throws std::out_of_range where the bytes are of other barriers.
+  /// Throws std::out_of_range if the bytes are of other barriers.
   static BarrierTally restored(const Barriers& barriers, ByteReader& in);
 
   std::size_t size() const { return parts_.size(); }

@@ -10,8 +10,8 @@
 
 namespace talus {
 
-/// Plain values one after the other, as they lie in memory: what a run keeps on the disk for itself, on one kind of
-/// machine. Whoever stores them adds a checksum.
+/// Writes plain values one after the other, as they lie in memory. For files that a run writes for itself, on one kind
+/// of machine. The caller adds a checksum.
 class ByteWriter {
  public:
   template <class T>
@@ -33,7 +33,7 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Reads what a `ByteWriter` wrote, in the same order. Throws std::out_of_range where there is too little.
+/// Reads what a `ByteWriter` wrote, in the same order. Throws std::out_of_range if there are too few bytes.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : left_(bytes) {}

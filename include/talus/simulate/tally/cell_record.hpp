@@ -9,11 +9,10 @@
 
 namespace talus {
 
-/// The values of the trajectories that cross a cell: one of each trajectory and quantity. A buffer that keeps its
-/// memory.
+/// The values of the trajectories that cross a cell: one per trajectory and quantity. A buffer that keeps its memory.
 struct CellValues {
   PerQuantity<std::vector<float>> lists;
-  std::vector<Stake> stakes;  ///< of each trajectory, where `keep_stakes`
+  std::vector<Stake> stakes;  ///< of each trajectory, if `keep_stakes`
   bool keep_stakes = false;
   std::size_t count = 0;
 
@@ -21,7 +20,7 @@ struct CellValues {
   std::span<const float> of(Quantity quantity) const { return {lists[quantity].data(), count}; }
 };
 
-/// What is known of one cell. Only integer sums, maxima and histograms: equal bits in any order of the trajectories.
+/// The sums of one cell. Only integer sums, maxima and histograms: equal bits in any order of the trajectories.
 struct CellRecord {
   std::uint64_t impacts = 0;
   std::uint32_t passages = 0, deposits = 0, sources = 0;

@@ -5,16 +5,16 @@
 
 namespace talus {
 
-/// Bins of energy for hazard curves: 8 to each doubling, equally wide within it (6.7 to 12.5 %), cut once more at every
-/// threshold, so that what exceeds a threshold is a sum of whole bins.
+/// Bins of energy for hazard curves: 8 to each doubling, equally wide within it (6.7 to 12.5 %). Every threshold
+/// divides its bin, so that the exceedance of a threshold is a sum of whole bins.
 ///
-/// Bin i holds the energies from edge(i) to edge(i + 1); of those equal to an edge, a threshold itself is below it,
-/// every other above.
+/// Bin i holds the energies from edge(i) to edge(i + 1). An energy equal to an edge is in the bin above it; if the edge
+/// is a threshold, in the bin below.
 class EnergyBins {
  public:
-  static constexpr float kFloor = 0x1p-7F;         ///< [kJ]; what is smaller counts as this
-  static constexpr float kCeiling = 0x1p40F;       ///< [kJ]; what is larger counts as this
-  static constexpr double kRelativeWidth = 0.125;  ///< largest, of a bin
+  static constexpr float kFloor = 0x1p-7F;         ///< [kJ]; smaller energies count as this
+  static constexpr float kCeiling = 0x1p40F;       ///< [kJ]; larger energies count as this
+  static constexpr double kRelativeWidth = 0.125;  ///< largest relative width of a bin
 
   explicit EnergyBins(std::vector<double> thresholds = {});
 

@@ -9,7 +9,7 @@
 
 namespace talus {
 
-/// How the hazard of a run is kept: the same for all its cells.
+/// Energy bins and weight scale of the hazard, the same for all cells of a run.
 struct HazardRules {
   EnergyBins bins;
   WeightScale scale;
@@ -17,7 +17,7 @@ struct HazardRules {
   std::size_t levels() const { return 1 + bins.thresholds().size(); }  ///< passage, then each threshold
 };
 
-/// Annual frequency by energy in one place: of each trajectory its weight, once, in the bin of its largest energy
+/// Annual frequency by energy in one place: each trajectory adds its weight once, in the bin of its largest energy
 /// there.
 ///
 /// Whole numbers only: equal bits in any order. Only the bins from the smallest to the largest energy are stored, 16
@@ -33,27 +33,28 @@ class HazardCell {
   HazardCell() = default;
   explicit HazardCell(MemoryPolicy memory) : bins_(memory), overlaps_(memory) {}
 
-  /// Adds trajectories in the order of their blocks, those of a stratum all at once.
+  /// Adds trajectories in the order of their blocks; all trajectories of a stratum must come in one call.
   ///
-  /// @param energies  of each its largest here [kJ]
-  /// @param stakes    of each; as long as `energies` or longer
+  /// @param energies  largest energy of each trajectory here [kJ]
+  /// @param stakes    one per trajectory; may be longer than `energies`
   void add(const HazardRules& rules, std::span<const float> energies, std::span<const Stake> stakes);
   void merge(const HazardCell& other);
 
   int first() const { return first_; }  ///< bin of bins()[0]
   std::span<const Bin> bins() const { return bins_; }
 
-  /// By level, what the variance of independent trajectories has too much, because those of a stratum that pass are
-  /// drawn from a fixed number: sum over the strata of ((sum w)^2 - sum w^2) / (blocks - 1) [square_unit].
+  /// By level, the excess of the variance that independent trajectories would have. The true variance is smaller,
+  /// because the number of blocks of a stratum is fixed. Sum over the strata of ((sum w)^2 - sum w^2) / (blocks - 1)
+  /// [square_unit].
   std::span<const std::int64_t> overlaps() const { return overlaps_; }
 
-  /// From what was stored.
+  /// A cell with these contents.
   static HazardCell restored(int first, const std::vector<Bin>& bins, const std::vector<std::int64_t>& overlaps);
 
   void save(ByteWriter& out) const;
   static HazardCell restored(ByteReader& in);
 
-  bool operator==(const HazardCell& other) const;  ///< whatever room is held ready
+  bool operator==(const HazardCell& other) const;  ///< of the contents; reserved memory does not count
 
  private:
   void cover(int low, int high);
@@ -63,12 +64,12 @@ class HazardCell {
   ScratchVector<std::int64_t> overlaps_;
 };
 
-/// Sums the weights of one stratum in one place, by level, and gives what `HazardCell::overlaps` adds up.
+/// Sums the weights of one stratum in one place, by level: its share of `HazardCell::overlaps`.
 class StratumSums {
  public:
   explicit StratumSums(const HazardRules& rules) : rules_(rules), levels_(rules.levels()) {}
 
-  /// The next trajectory, of this stratum or a new one; the finished one is added to `overlaps`.
+  /// Adds a trajectory. If it begins a new stratum, first adds the finished stratum to `overlaps`.
   void add(const Stake& stake, float energy, ScratchVector<std::int64_t>& overlaps);
   void finish(ScratchVector<std::int64_t>& overlaps);
 

@@ -11,14 +11,14 @@ namespace talus {
 
 /// Counts of positive values in bins of equal relative width: 16 to each doubling, so that a bin is 3.2 to 6.25 % wide.
 ///
-/// The first few values are kept as they come (their bins), without memory of their own: most cells at the edge of a
-/// map see no more. Then only the bins from the smallest to the largest value are stored, as 8-bit counts that widen to
-/// 16 and 32 bits when one is full; at most the kSpan bins below the largest value are kept apart, what is smaller is
-/// counted in the lowest of them. The state depends on the values only, not on their order: merging is exact.
+/// The bins of the first few values are stored in the object, without further memory: most cells at the edge of a map
+/// have no more values. After them, counts are stored for the bins from the smallest to the largest value: 8-bit counts
+/// that widen to 16 and 32 bits when one is full. At most kSpan bins are stored, and smaller values count in the lowest
+/// one. The state depends on the values only, not on their order: merging is exact.
 class LogHistogram {
  public:
-  static constexpr int kSpan = 128;            ///< bins: the largest value down to 1/128 of it, and often less
-  static constexpr float kFloor = 0x1p-7F;     ///< what is smaller counts as this: 8 J, 8 mm/s or 8 mm
+  static constexpr int kSpan = 128;            ///< most bins: from the largest value down to 1/128 of it or less
+  static constexpr float kFloor = 0x1p-7F;     ///< smaller values count as this: 8 J, 8 mm/s or 8 mm
   static constexpr double kBinWidth = 0.0625;  ///< largest relative width of a bin
 
   LogHistogram() = default;
@@ -34,17 +34,17 @@ class LogHistogram {
   void merge(const LogHistogram& other);
 
   void save(ByteWriter& out) const;
-  /// What `save` wrote. Throws std::out_of_range where it cannot be that.
+  /// Reads what `save` wrote. Throws std::out_of_range if the bytes cannot be that.
   static LogHistogram restored(ByteReader& in);
 
   std::uint64_t count() const;
-  const void* counts() const { return counts_; }  ///< where they lie in memory, for the tally to fetch ahead
+  const void* counts() const { return counts_; }  ///< their address, for the tally to prefetch
 
   /// The value below which `share` of the counted values lie, interpolated within its bin.
   ///
-  /// Against the k-th smallest value, k = ceil(share n): in the same bin, so off by less than 6.25 %. Where that value
-  /// is below m = max(kFloor, largest / 128), only known to be so: the answer is below 1.0625 m. 0 where nothing was
-  /// counted.
+  /// The exact answer is the k-th smallest value, k = ceil(share n). The returned value is in the same bin: the error
+  /// is less than 6.25 %. If the exact answer is below m = max(kFloor, largest / 128), only this is known, and the
+  /// returned value is below 1.0625 * m. 0 if nothing was counted.
   double percentile(double share) const;
 
  private:

@@ -8,7 +8,7 @@
 
 namespace talus {
 
-/// Mean, percentiles and maximum of values; all 0 where there are none.
+/// Mean, percentiles and maximum of values; NaN if there are none.
 struct BinDistribution {
   std::uint64_t count = 0;
   double mean = 0.0, p50 = 0.0, p95 = 0.0, p99 = 0.0, max = 0.0;
@@ -17,7 +17,7 @@ struct BinDistribution {
 /// The percentile p is the k-th smallest value, k = ceil(p count). The same bits in any order of the values.
 BinDistribution distribution_of(std::vector<float> values);
 
-/// What happened in one bin of a profile. A trajectory counts once in a bin, with its largest value there.
+/// The motion in one bin of a profile. A trajectory counts once in a bin, with its largest value there.
 struct ProfileBin {
   double from = 0.0, to = 0.0;            ///< distance from the first node [m]
   BinDistribution speed, energy, height;  ///< [m/s], translational [kJ], vertical above the ground [m]
@@ -28,7 +28,7 @@ struct ProfileBin {
 /// Keeps every value: 12 bytes per trajectory and bin that it crosses.
 class ProfileBins {
  public:
-  /// @param columns  of the grid: those between the first and the last node, of `step` [m] each
+  /// @param columns  number of columns of the grid between the first and the last node, each `step` [m] wide
   /// @param width    [m], a whole multiple of `step`; the last bin may reach beyond the profile
   ProfileBins(int columns, double step, double width);
 
@@ -47,10 +47,10 @@ class ProfileBins {
   std::vector<Values> values_;
 };
 
-/// How far blocks went: the distance in x between release and stop.
+/// Runout of the blocks: distance in x between release and stop.
 struct Runout {
-  BinDistribution stopped;           ///< of the blocks that came to rest [m]
-  std::vector<std::uint64_t> stops;  ///< by bins of the distance, from 0
+  BinDistribution stopped;           ///< of the blocks that stopped or were caught [m]
+  std::vector<std::uint64_t> stops;  ///< number of these by bin of the distance, from 0
   std::uint64_t left = 0, released = 0;
 };
 

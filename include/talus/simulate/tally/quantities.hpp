@@ -8,7 +8,7 @@
 
 namespace talus {
 
-/// The largest values of the motion on a way, from which the quantities follow.
+/// The largest values of the motion on a piece of a path; the quantities follow from them.
 struct Maxima {
   float speed_squared = 0.0F;  ///< [m^2/s^2]
   float height = 0.0F;         ///< vertical, above the terrain [m]
@@ -19,7 +19,7 @@ struct Maxima {
   }
 };
 
-/// A quantity that is kept per cell: of each trajectory its largest value in the cell.
+/// A quantity of the cells: each trajectory counts with its largest value in the cell.
 struct QuantityEntry {
   std::string_view name;   ///< of its map
   std::string_view title;  ///< one line
@@ -31,7 +31,7 @@ struct QuantityEntry {
 /// The quantities, in the order of `kQuantityTable`.
 enum class Quantity : std::size_t { Energy, Speed, Height };
 
-/// The home of the quantities. Values, sums, histograms, exceedances, bytes on the disk and maps follow from it.
+/// The table of all quantities. Values, sums, histograms, exceedances, bytes on the disk and maps follow from it.
 /// docs/adding-a-raster.md.
 inline constexpr std::array kQuantityTable{
     QuantityEntry{"energy", "Translational kinetic energy", "kJ", 0x1p-10,
@@ -56,7 +56,7 @@ struct PerQuantity : std::array<T, kQuantities> {
   const T& operator[](Quantity quantity) const { return (*this)[index_of(quantity)]; }
 };
 
-/// Values whose exceedances are counted, by quantity, ascending; none of most.
+/// Thresholds whose exceedances are counted, by quantity, ascending. A quantity may have none.
 using Thresholds = PerQuantity<std::vector<double>>;
 
 inline Thresholds thresholds_of(std::vector<double> energies, std::vector<double> heights) {
@@ -66,8 +66,8 @@ inline Thresholds thresholds_of(std::vector<double> energies, std::vector<double
   return thresholds;
 }
 
-/// Calls `action` with the number of each quantity as a constant of the compiler: the loop is unrolled, and what the
-/// table says of the quantity is inlined.
+/// Calls `action` with the index of each quantity as a compile-time constant: the loop is unrolled and the table
+/// is inlined.
 template <class Action>
 constexpr void for_each_quantity(Action&& action) {
   [&]<std::size_t... q>(std::index_sequence<q...>) {

@@ -12,8 +12,8 @@ namespace talus {
 inline constexpr int kRegionSide = 64;
 inline constexpr int kRegionCells = kRegionSide * kRegionSide;
 
-/// Which cells the trajectories of one source cell have reached so far, by region. Needed only where several batches
-/// share a source; the cells of a region are guarded by the region's own lock in the tally.
+/// The cells that the trajectories of one source cell have reached so far, by region. Needed only if several batches
+/// share a source cell. The lock of a region in the tally also guards its cells here.
 class SourceReach {
  public:
   using Cells = std::bitset<kRegionCells>;
@@ -22,7 +22,7 @@ class SourceReach {
 
   Cells& cells(std::size_t region) {
     const std::lock_guard guard(mutex_);
-    return regions_[region];  // stays where it is while others come
+    return regions_[region];  // the reference stays valid when regions are added
   }
 
   void save(ByteWriter& out) const;

@@ -11,26 +11,26 @@
 
 namespace talus {
 
-/// Sums over trajectories, per cell, in memory bounded by the cells that any trajectory touched.
+/// Sums over trajectories, per cell. The memory grows with the number of touched cells only.
 ///
 /// The grid is cut into regions of 64 x 64 cells. A region is allocated when it is first touched, and a record in it
-/// when its cell is. Workers share the one tally: each locks the region it scores.
+/// when its cell is. All workers share one tally: each locks the region it scores.
 class Tally {
  public:
-  /// @param memory  where the records lie
+  /// @param memory  where the records are stored
   Tally(const Grid& grid, std::vector<double> energy_thresholds, std::vector<double> height_thresholds,
         MemoryPolicy memory = {});
   ~Tally();
   Tally(Tally&&) noexcept;
 
-  /// Keeps annual frequencies by energy too; before the first batch. Trajectories must then have their stakes.
+  /// Counts annual frequencies by energy too; call it before the first batch. Trajectories must then have stakes.
   void keep_hazard(AnnualWeights weights);
-  /// Says how many rounds of the scenario's trajectories were added: each then stands for so much less.
+  /// Sets the number of rounds that were added: the weight of each trajectory is divided by it.
   void set_rounds(std::uint32_t rounds);
   const AnnualWeights* weights() const { return hazard_ ? &hazard_->weights : nullptr; }
-  /// How the hazard of a cell is kept. Only where it is.
+  /// Only after `keep_hazard`.
   const HazardRules& hazard_rules() const { return hazard_->rules; }
-  /// The hazard of a cell; nullptr where no trajectory was, or none is kept.
+  /// The hazard of a cell; nullptr if no trajectory touched it, or without `keep_hazard`.
   const HazardCell* hazard(int column, int row) const;
 
   /// Scores a batch: each trajectory once in each cell it visits, with its largest values there. Safe to call from
@@ -41,28 +41,28 @@ class Tally {
   MemoryPolicy memory() const { return regions_.get_deleter().memory; }
   const Thresholds& thresholds() const { return thresholds_; }
 
-  /// The record of a cell; nullptr where no trajectory was.
+  /// The record of a cell; nullptr if no trajectory touched it.
   const CellRecord* find(int column, int row) const;
-  /// Trajectories whose largest value in the cell exceeds each threshold, quantity by quantity. For cells that `find`
-  /// finds.
+  /// Number of trajectories whose largest value in the cell exceeds each threshold, quantity by quantity. Only for
+  /// cells with a record.
   const std::uint32_t* exceedances(int column, int row) const;
   std::uint64_t touched_cells() const;
-  /// How many cells have so many trajectories; 0, 1, 2, ... up to `most`, and there all with more.
+  /// Number of touched cells with 0, 1, 2, ... trajectories; the last number is of `most` or more.
   std::vector<std::uint64_t> cells_by_passages(std::uint32_t most) const;
 
-  /// What is kept of a region, for a file; nothing where no trajectory was. Regions are numbered row by row from the
-  /// south-west; not while batches are added.
+  /// Writes the records of a region; nothing if no trajectory touched it. Regions are numbered row by row from the
+  /// south-west. Not while batches are added.
   std::size_t regions() const { return region_count_; }
   void save(std::size_t region, ByteWriter& out) const;
-  /// The same, and then nothing is kept of the region any more.
+  /// Writes the records of a region and deletes them.
   void take(std::size_t region, ByteWriter& out);
-  /// Adds what another tally of the same grid, thresholds and weights saved. Throws std::out_of_range where the bytes
+  /// Adds what another tally of the same grid, thresholds and weights saved. Throws std::out_of_range if the bytes
   /// cannot be that.
   void merge(std::size_t region, ByteReader& in);
 
  private:
   struct Region;
-  /// Ends the regions. All of those in a scratch file ends with the file, unread.
+  /// Destroys the regions. Those in a scratch file are dropped with the file, without reading them.
   struct EndRegions {
     MemoryPolicy memory;
     std::size_t count = 0;
@@ -79,11 +79,11 @@ class Tally {
 
   Grid grid_;
   Thresholds thresholds_;
-  PerQuantity<std::vector<float>> limits_;  // the same for values, which are floats
+  PerQuantity<std::vector<float>> limits_;  // the thresholds for values, which are floats
   std::size_t threshold_count_;             // of all quantities
   int regions_across_ = 0;
   std::size_t region_count_ = 0;
-  std::unique_ptr<Hazard> hazard_;  // null: none is kept
+  std::unique_ptr<Hazard> hazard_;  // null: hazard is not counted
   std::unique_ptr<Region[], EndRegions> regions_;
 };
 

@@ -4,13 +4,13 @@
 
 namespace talus {
 
-/// Each process of a process group has a tally of what it has traced. These bring them together; all must call them.
-/// The sums are of whole numbers: same bits in any order.
+// Each process of a process group has a tally of the trajectories that it traced. These functions join the tallies; all
+// processes must call them. The sums are of whole numbers: same bits in any order.
 
-/// Afterwards each region of the tally lies with one process, which owns it, and holds what all have counted there.
+/// Sends each region to the process that owns it. Afterwards this process has the sums of all processes there.
 void share_out(Tally& tally, ProcessGroup& processes);
 
-/// Afterwards the leader has all; the others have nothing.
+/// Sends everything to the leader. Afterwards the other tallies are empty.
 void collect(Tally& tally, ProcessGroup& processes);
 
 }  // namespace talus

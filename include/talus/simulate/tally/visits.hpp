@@ -12,8 +12,8 @@
 
 namespace talus {
 
-/// A trajectory on its way through a cell: the largest values on that way. A trajectory that comes back has several
-/// visits to a cell; they are made one when they are scored.
+/// One way of a trajectory through a cell, with the largest values on it. A trajectory that comes back has several
+/// visits to the cell; scoring joins them.
 struct Visit : Maxima {
   std::uint16_t cell;        ///< within its region: row * kRegionSide + column
   std::uint16_t trajectory;  ///< within its batch
@@ -21,26 +21,26 @@ struct Visit : Maxima {
   std::uint32_t deposited : 1;
 };
 
-/// The visits of a batch of trajectories, sorted by region of the grid while they come, so that the tally is
-/// written region by region and cell by cell instead of along each path.
+/// The visits of a batch of trajectories, collected by region of the grid: the tally is written region by region and
+/// cell by cell, not along each path.
 class VisitBatch {
  public:
   struct Trajectory {
     double mass;  // [kg]
     std::uint32_t source;
-    std::shared_ptr<SourceReach> reach;  // of a source that several batches share; else empty
-    bool piece = false;                  // of the trajectory before it: they count as one
-    Stake stake{};                       // where the run has frequencies
+    std::shared_ptr<SourceReach> reach;  // of a source cell that several batches share; else empty
+    bool piece = false;                  // counts as one with the trajectory before it
+    Stake stake{};                       // if the run has frequencies
   };
 
   explicit VisitBatch(const Grid& grid);
 
-  /// Reads a path. Within a cell the largest speed and clearance are exact, at no output step: both are closed forms
-  /// on each patch (the speed is largest at an end, the clearance at an end or at the apex).
-  /// What is left of a block that broke, and a path with `piece`, belong to the trajectory before: one in the tally.
+  /// Reads a path. Within a cell the largest speed and clearance are exact, not sampled: both are closed forms on each
+  /// patch (the speed is largest at an end, the clearance at an end or at the apex).
+  /// The rest of a block that broke, and a path with `piece`, count as one with the trajectory before them.
   void add(const Path& path, double mass, std::uint32_t source, std::shared_ptr<SourceReach> reach, bool piece = false);
 
-  /// What the trajectories stand for that are added from here on.
+  /// Sets the stake of the trajectories that are added from here on.
   void set_stake(const Stake& stake) { stake_ = stake; }
 
   bool full() const { return size_ >= kVisits || trajectories_.size() >= kTrajectories; }
@@ -66,7 +66,7 @@ class VisitBatch {
   Stake stake_;
   std::size_t size_ = 0;
   int column_ = -1, row_ = -1;            // cell of the current visit
-  std::vector<Visit>* region_ = nullptr;  // whose last element is the current visit
+  std::vector<Visit>* region_ = nullptr;  // its last element is the current visit
   std::size_t region_index_ = 0;
 };
 
