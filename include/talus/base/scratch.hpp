@@ -21,8 +21,7 @@ class ScratchFile {
   ScratchFile(const ScratchFile&) = delete;
   ScratchFile& operator=(const ScratchFile&) = delete;
 
-  /// @return memory aligned to 16 bytes. Throws std::bad_alloc; std::runtime_error if the disk is full. From any
-  /// thread.
+  /// @return  aligned to 16 bytes. Throws std::bad_alloc; std::runtime_error if the disk is full. From any thread.
   void* allocate(std::size_t bytes);
   /// @param bytes  the same number as at `allocate`
   void release(void* memory, std::size_t bytes) noexcept;
@@ -44,8 +43,7 @@ class MemoryPolicy {
   explicit MemoryPolicy(ScratchFile* file) : file_(file) {}
 
   bool has_limit() const { return file_ != nullptr; }
-  /// @return memory aligned to 16 bytes. Throws std::bad_alloc; std::runtime_error if the disk is full. From any
-  /// thread.
+  /// @return  aligned to 16 bytes. Throws std::bad_alloc; std::runtime_error if the disk is full. From any thread.
   void* allocate(std::size_t bytes) const;
   /// @param bytes  the same number as at `allocate`
   void release(void* memory, std::size_t bytes) const noexcept;
