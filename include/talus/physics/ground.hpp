@@ -20,7 +20,7 @@ struct Ground {
 /// The kinds of ground and their zones. A place has the ground of its cell.
 struct Cover {
   std::vector<Ground> grounds;  ///< at least one
-  Raster<std::uint8_t> zones;   ///< index into `grounds`; empty if there is only one ground
+  Raster<std::uint8_t> zones;   ///< index into `grounds`; empty if the ground is the same everywhere
 
   std::uint8_t zone_at(double x, double y) const {
     return zones.values.empty() ? std::uint8_t{0} : zones.at(zones.grid.column_of(x), zones.grid.row_of(y));

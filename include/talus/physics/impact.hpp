@@ -27,7 +27,7 @@ struct Asperity {
   double tan_theta = 0.0;  ///< longitudinal: the plane rises against the motion, >= 0 [-]
   double tan_psi = 0.0;    ///< transverse [-]
   double shape = 1.0;      ///< R_eff / R [-]
-  double heading = 0.0;    ///< random direction in plan [turns], (0, 1): used if neither velocity nor slope gives one
+  double heading = 0.0;    ///< random direction in plan [turns], [0, 1): used if neither velocity nor slope gives one
 };
 
 /// Step 1 and the random shape of step 4: the asperity at each impact, a pure function of the impact's number.

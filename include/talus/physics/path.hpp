@@ -33,7 +33,7 @@ struct Vertex {
 /// The motion between two successive vertices of a path: a parabola with constant spin, or a piece of sliding with
 /// constant acceleration.
 ///
-/// @param share  0 at `from`, 1 at `to`; of the time in flight, of the way in a slide
+/// @param share  of the time, 0 at `from`, 1 at `to`; also the share of the way in plan
 Motion motion_between(const Vertex& from, const Vertex& to, double share);
 
 /// The way across one patch, from `from` to `to` in patch coordinates. The clearance is quadratic in the share s of the
