@@ -31,7 +31,7 @@ struct Effects {
   RollingResistance rolling_resistance;
   Fragmentation fragmentation;
 
-  /// Whether any effect acts.
+  /// Whether one of them acts.
   bool any() const;
 };
 

@@ -24,7 +24,7 @@ inline bool is_rolling(const RollingResistance& effect, double away, double cos_
   return away * away < 2.0 * kGravity * cos_beta * effect.hop * radius;
 }
 
-/// rolling-resistance: share of the tangential speed, and of the spin in the plane, that is left after an impact.
+/// rolling-resistance: share of the tangential speed, and of the spin about axes in the plane, left after an impact.
 ///
 ///   1 - min(1, 5/7 mu_r P / v_t)
 ///
