@@ -1,6 +1,6 @@
 #include "talus/base/memory.hpp"
 
-#include <cstdlib>  // defines __GLIBC__ where it is the C library
+#include <cstdlib>  // defines __GLIBC__ if that is the C library
 
 #ifdef __GLIBC__
 #include <malloc.h>

@@ -23,13 +23,13 @@ namespace talus {
 namespace {
 
 constexpr std::size_t kReserved = std::size_t{1} << 43U;  // addresses, not memory
-constexpr std::size_t kStep = std::size_t{64} << 20U;     // by which the file grows
-constexpr std::size_t kGrain = 16, kSmall = 1024;         // up to kSmall in multiples of kGrain
-constexpr std::size_t kPiece = 4096;                      // of larger ones
-constexpr std::size_t kSlab = std::size_t{1} << 16U;      // of which small pieces are cut
-constexpr double kNear = 0.85;                            // of the limit: what is not in the file needs room too
+constexpr std::size_t kStep = std::size_t{64} << 20U;     // the file grows by this
+constexpr std::size_t kGrain = 16, kSmall = 1024;         // pieces up to kSmall are multiples of kGrain
+constexpr std::size_t kPiece = 4096;                      // larger pieces are multiples of this
+constexpr std::size_t kSlab = std::size_t{1} << 16U;      // small pieces are cut from slabs
+constexpr double kNear = 0.85;                            // share of the limit; data outside the file need room too
 
-/// The bytes that are really taken for so many.
+/// Size of the piece that is taken for a number of bytes.
 std::size_t rounded(std::size_t bytes) {
   const std::size_t unit = bytes <= kSmall ? kGrain : kPiece;
   return std::max(unit, (bytes + unit - 1) / unit * unit);
@@ -37,7 +37,7 @@ std::size_t rounded(std::size_t bytes) {
 
 }  // namespace
 
-/// The file in the address space: pieces of it that are in use, and those that are free by their size.
+/// The file, mapped into the address space, with lists of its free pieces by size.
 class ScratchFile::Mapping {
  public:
   Mapping(const std::string& folder, std::size_t limit) : limit_(limit) {
@@ -87,14 +87,14 @@ class ScratchFile::Mapping {
     if (pread(status_, text.data(), text.size() - 1, 0) <= 0 || std::sscanf(text.data(), "%*u %lu", &pages) != 1)
       return;
     if (static_cast<double>(pages) * static_cast<double>(page_) < kNear * static_cast<double>(limit_)) return;
-    madvise(begin_, mapped_, MADV_DONTNEED);  // of a shared file: its pages stay as they are, in the file
+    madvise(begin_, mapped_, MADV_DONTNEED);  // the mapping is shared, so the data stay in the file
   }
 
  private:
   void open(const std::string& folder) {
     file_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
     if (file_ >= 0) return;
-    std::string name = folder + "/.talus-scratch-XXXXXX";  // a file system that knows no files without a name
+    std::string name = folder + "/.talus-scratch-XXXXXX";  // for a file system without O_TMPFILE
     file_ = mkostemp(name.data(), O_CLOEXEC);
     if (file_ >= 0) unlink(name.c_str());
   }

@@ -13,7 +13,7 @@
 namespace talus {
 namespace {
 
-constexpr std::size_t kHead = 4096;  // holds whether it is filled, and lets what follows begin on a page
+constexpr std::size_t kHead = 4096;  // holds the mark 'filled'; the data begin on a new page
 
 std::runtime_error failure(const std::string& what) {
   return std::runtime_error("memory that processes share " + what + ": " + std::system_category().message(errno) +
@@ -25,7 +25,7 @@ std::runtime_error failure(const std::string& what) {
 SharedPiece::SharedPiece(const std::string& name, std::size_t bytes) : length_(kHead + bytes) {
   file_ = shm_open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (file_ < 0) throw failure("cannot be opened");
-  while (flock(file_, LOCK_EX) != 0)  // until whoever fills it is done, or gone
+  while (flock(file_, LOCK_EX) != 0)  // until the process that fills it is done, or has ended
     if (errno != EINTR) throw failure("cannot be locked");
   do errno = posix_fallocate(file_, 0, static_cast<off_t>(length_));
   while (errno == EINTR);

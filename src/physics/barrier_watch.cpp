@@ -14,7 +14,7 @@ double plan_length(const Vertex& from, const Vertex& to) {
   return (to.motion.position - from.motion.position).head<2>().norm();
 }
 
-/// Of the first share of the way between two vertices [m].
+/// Length in space of the first share of the way between two vertices [m].
 double length_of(const Vertex& from, const Vertex& to, double share) {
   if (from.event == Event::Slide) return share * (to.motion.position - from.motion.position).norm();
   return arc_length(from.motion.velocity, share * (to.motion.time - from.motion.time));
@@ -24,7 +24,7 @@ float mixed(float from, float to, float share) {
   return from + share * (to - from);
 }
 
-/// Keeps the first share of a span.
+/// Shortens a span to its first share.
 void shorten(Span& span, float share) {
   span.p_to = mixed(span.p_from, span.p_to, share);
   span.q_to = mixed(span.q_from, span.q_to, share);
@@ -87,8 +87,8 @@ Meeting BarrierWatch::look(std::size_t vertex, const Vertex& to, Motion& motion,
   return Meeting::Over;
 }
 
-/// The spans do not know their vertices: the cut lies in the one that the way in plan since the begin of the leg ends
-/// in.
+/// Spans hold no reference to their vertices. So the span with the cut is found by the length in plan from the start of
+/// the leg.
 void BarrierWatch::cut_off(std::size_t vertex, const Vertex& to, double share, Path& path) const {
   double way = 0.0, length = 0.0;
   for (std::size_t i = first_vertex_; i < vertex; ++i) {

@@ -7,18 +7,18 @@
 
 namespace talus {
 
-/// Looks for barriers on each leg of a path: a flight or a slide, as soon as it is in the path. Where one holds the
-/// block, or breaks, the leg is cut off there; nothing else changes a bit.
+/// Checks each leg of a path (a flight or a slide) for barriers, after it was added to the path. If a barrier catches
+/// the block or breaks, the leg is cut off at the barrier. A leg without this is unchanged to the last bit.
 class BarrierWatch {
  public:
   explicit BarrierWatch(const World& world) : world_(world) {}
 
-  /// Remembers where the leg begins: at vertex `first`, which is there or comes next.
+  /// Starts a leg at vertex `first`, which exists or is the next to be added.
   void begin(const Path& path, std::size_t first);
 
-  /// What a barrier does to the leg that ended at `motion`: Over where it is as it was. Else the path ends at the
-  /// barrier, and `motion` and `at` are there: Caught, at rest a millimetre before it; Broken, on the line with what is
-  /// left of the speed, the direction kept, a vertex of it in the path.
+  /// Checks the leg that ended at `motion`. Over: the leg is unchanged. Otherwise the path, `motion` and `at` end at
+  /// the barrier. Caught: the block is at rest, a millimetre before the line. Broken: the block is on the line, with
+  /// the rest of its speed in the same direction, and the path has a vertex there.
   Meeting look(Motion& motion, PatchIndex& at, const Block& body, Path& path);
 
  private:
@@ -28,11 +28,11 @@ class BarrierWatch {
   const World& world_;
   std::size_t first_vertex_ = 0, first_span_ = 0;
   double length_ = 0.0, plan_length_ = 0.0;                              // of the path before the leg [m]
-  std::uint32_t broken_ = std::numeric_limits<std::uint32_t>::max();     // segment that broke last, and where:
-  Eigen::Vector2d broken_at_ = Eigen::Vector2d::Constant(std::nan(""));  // the way on from there does not cross it
+  std::uint32_t broken_ = std::numeric_limits<std::uint32_t>::max();     // segment that broke last, and its place:
+  Eigen::Vector2d broken_at_ = Eigen::Vector2d::Constant(std::nan(""));  // the way from there does not cross it again
 };
 
-/// What a trajectory goes through where there are barriers: as `Acting`, its flights and slides watched.
+/// The engine with barriers: `Acting`, with a BarrierWatch on its flights and slides.
 template <class Acting>
 class BehindBarriers : public Acting {
  public:
@@ -62,7 +62,7 @@ class BehindBarriers : public Acting {
   }
 
  private:
-  static constexpr int kMostLegs = 10'000;  // barriers broken in one flight or slide
+  static constexpr int kMostLegs = 10'000;  // most barriers broken in one flight or slide
   BarrierWatch watch_;
 };
 

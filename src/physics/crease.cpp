@@ -5,13 +5,13 @@
 namespace talus {
 namespace {
 
-constexpr double kLargestShare = 0.25;  // of a cell, in one piece: the twist of the patches may open the crease
+constexpr double kLargestShare = 0.25;  // of a cell, per piece: the twist of the patches may end the crease
 
 /// The edge between two patches: a straight line in space.
 struct Edge {
   Vec3 direction;  // unit, towards north or east
-  double length;   // of a whole cell side along it, in space [m]
-  double share;    // of the block's place along it, 0..1
+  double length;   // of the whole edge, in space [m]
+  double share;    // position of the block along it, 0..1
 };
 
 Edge edge_between(const Slope& slope, const Slope& beyond, const Eigen::Vector2d& place) {
@@ -37,8 +37,8 @@ CreaseEnd slide_along_crease(const Slope& slope, const Slope& beyond, Motion& mo
   const Edge edge = edge_between(slope, beyond, place);
   const double speed = motion.velocity.norm(), ahead = motion.velocity.dot(edge.direction);
   double sign = ahead < 0.0 ? -1.0 : 1.0;
-  if (!(std::abs(ahead) > 1e-9 * speed)) {                  // none along it: downwards
-    if (edge.direction.z() == 0.0) return CreaseEnd::Held;  // level: nothing leads it to either side
+  if (!(std::abs(ahead) > 1e-9 * speed)) {                  // no velocity along the edge: downwards
+    if (edge.direction.z() == 0.0) return CreaseEnd::Held;  // level: nothing pulls it to either side
     sign = edge.direction.z() > 0.0 ? -1.0 : 1.0;
   }
   const double friction =
@@ -49,7 +49,7 @@ CreaseEnd slide_along_crease(const Slope& slope, const Slope& beyond, Motion& mo
   const double to_corner = edge.length * (sign > 0.0 ? 1.0 - edge.share : edge.share);
   const double way = std::min({to_corner, farthest, kLargestShare * edge.length});
   double duration = time_to_cover(way, speed, pull, 1.0);
-  if (pull < 0.0) duration = std::min(duration, speed / -pull);  // comes to rest before
+  if (pull < 0.0) duration = std::min(duration, speed / -pull);  // comes to rest earlier
   Motion next = motion;
   const double distance = std::clamp(duration * (speed + 0.5 * pull * duration), 0.0, to_corner);
   next.time += duration;

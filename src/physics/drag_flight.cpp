@@ -6,15 +6,15 @@
 namespace talus {
 namespace {
 
-constexpr double kLargestLoss = 0.04;    // of the speed to drag, in one piece
+constexpr double kLargestLoss = 0.04;    // share of the speed lost to drag in one piece
 constexpr double kShortestPiece = 0.01;  // [s]
-constexpr int kMostSteps = 1'000'000;    // of one flight; the time limit comes first
+constexpr int kMostSteps = 1'000'000;    // pieces of one flight; the time limit comes first
 
 double plan_squared(const Vec3& velocity) {
   return velocity.x() * velocity.x() + velocity.y() * velocity.y();
 }
 
-/// Speed in the middle of a piece, to first order: of the rate there, the error of a piece is of third order.
+/// Speed in the middle of a piece, to first order in time. With the rate there the error of a piece is of third order.
 double speed_in_the_middle(const Vec3& v, const DragRate& drag, double time) {
   return (v - 0.5 * time * (drag.at(v.norm()) * v + Vec3(0.0, 0.0, kGravity))).norm();
 }
@@ -43,13 +43,13 @@ DragFlight::Site DragFlight::site_of(const Motion& motion, const Block& body) co
 double DragFlight::longest_piece(const Site& site, const Motion& motion) const {
   const Grid& grid = world_.surface.grid();
   const double cell = std::min(grid.cell_x, grid.cell_y), speed = motion.velocity.norm();
-  const double over_a_cell = 2.0 * cell / (speed + std::sqrt(speed * speed + 2.0 * kGravity * cell));  // falling too
+  const double over_a_cell = 2.0 * cell / (speed + std::sqrt(speed * speed + 2.0 * kGravity * cell));  // in a fall
   const double rate = site.drag.at(speed + kGravity * over_a_cell);
   return std::max(kShortestPiece, std::min(over_a_cell, kLargestLoss / rate));
 }
 
-/// Where the block lands within the piece, the parabola was that of a longer one: it flies again with the time that it
-/// took, and what the time still differs by is of second order in the drag.
+/// If the block lands within the piece, the parabola was that of a longer piece. So it flies again, with the parabola
+/// for the time to the landing. The error left in this time is of second order in the drag.
 Outcome DragFlight::fly_piece(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path) {
   const Motion start = motion;
   const PatchIndex start_at = at;
@@ -77,7 +77,7 @@ Outcome DragFlight::fly_piece(Motion& motion, PatchIndex& at, bool grounded, con
   }
   if (rate > 0.0) {
     motion.velocity = DampedFall(rate, motion.time - start.time).velocity_after(start.velocity);
-    if (path.spans.size() > first_span) {  // the largest speed is that of the block, not of its parabola
+    if (path.spans.size() > first_span) {  // speeds at the ends are those of the block, not of its parabola
       path.spans[first_span].plan_speed_squared = static_cast<float>(plan_squared(start.velocity));
       path.spans[first_span].rise_from = static_cast<float>(start.velocity.z());
       path.spans.back().rise_to = static_cast<float>(motion.velocity.z());
@@ -105,7 +105,7 @@ bool DragFlight::in_a_stand(const PatchIndex& patch) const {
   return false;
 }
 
-/// A flight that touches no cell of a stand is the plain one; otherwise nothing has happened.
+/// The plain flight, if it touches no cell of a stand. Otherwise empty, and nothing is changed.
 std::optional<Outcome> DragFlight::fly_clear(Motion& motion, PatchIndex& at, bool grounded, Path& path) const {
   if (in_a_stand(at)) return std::nullopt;
   Motion landed = motion;

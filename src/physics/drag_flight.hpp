@@ -8,20 +8,21 @@
 
 namespace talus {
 
-/// Flight through vegetation, air and stems, in pieces of constant drag rate: the parabola over the patches that ends
-/// where the damped fall ends, then the velocity of the damped fall. docs/effects.md, "Flight with drag".
+/// Flight through vegetation, air and stems, in pieces of constant drag rate. In a piece the block follows the parabola
+/// that ends where the damped fall ends; then it gets the velocity of the damped fall. docs/effects.md, "Flight with
+/// drag".
 ///
-/// A piece is so short that the block goes at most one cell and drag takes at most 4 % of its speed. Linear drag is
-/// exact; of quadratic drag the rate is that of the middle of the piece, and the speed errs by less than 1e-3 of itself
-/// in it. A piece lasts 0.01 s at least, so that a block stuck in the bushes ends.
+/// In a piece the block moves at most one cell, and drag takes at most 4 % of its speed. Linear drag is exact.
+/// Quadratic drag has the rate of the middle of the piece; the relative error of the speed per piece is below 1e-3. A
+/// piece lasts at least 0.01 s, so that the number of pieces is limited for a block stuck in vegetation.
 class DragFlight {
  public:
   DragFlight(const World& world, const Release& release);
 
-  /// As the plain `fly`; `Aloft` where the time limit was reached in the air. Further parabolas get a vertex each.
+  /// Like the plain `fly`; `Aloft` if the time limit was reached in the air. Each further parabola gets a vertex.
   Outcome fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path);
 
-  /// Drag and stems of a slide, at its end.
+  /// Applies drag and stems of a slide, at its end.
   void after_slide(const Motion& before, Motion& motion, const Block& body);
 
  private:
@@ -31,7 +32,7 @@ class DragFlight {
   };
   Site site_of(const Motion& motion, const Block& body) const;
   double longest_piece(const Site& site, const Motion& motion) const;
-  bool in_a_stand(const PatchIndex& patch) const;  ///< one of its four cells
+  bool in_a_stand(const PatchIndex& patch) const;  ///< whether one of its four cells is
   std::optional<Outcome> fly_clear(Motion& motion, PatchIndex& at, bool grounded, Path& path) const;
   Outcome fly_piece(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path);
 

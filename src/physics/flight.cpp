@@ -10,12 +10,13 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// Times at which a straight line in plan meets the successive grid lines of one direction.
+/// Times at which a straight line in plan crosses the successive grid lines of one direction.
 struct Lines {
-  double next, every;  // [s], infinite where the line does not move in this direction
+  double next, every;  // [s], infinite if the line is parallel to these grid lines
   int step;            // -1 or +1
 
-  /// @param share  place within the patch, 0..1;  rate: patches per second
+  /// @param share  position in the patch, 0..1
+  /// @param rate   speed [patches/s]
   Lines(double share, double rate) : next(kNever), every(kNever), step(rate < 0.0 ? -1 : 1) {
     if (rate == 0.0) return;
     every = 1.0 / std::abs(rate);
@@ -23,7 +24,7 @@ struct Lines {
   }
 };
 
-/// @tparam kBounded  ends after `longest`; else there is no trace of it in the code
+/// @tparam kBounded  the flight ends after `longest`; if false, the compiler removes this check
 template <bool kBounded>
 Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path,
              [[maybe_unused]] double longest) {
@@ -42,7 +43,7 @@ Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool ground
     const double edge = std::min(columns.next, rows.next) - t;
     const double until = kBounded ? std::min(edge, longest - t) : edge;
     const double rise = v.z() - kGravity * t;
-    const bool leaving = grounded && crossed == 0;  // on the surface and away from it, whatever rounding says
+    const bool leaving = grounded && crossed == 0;  // on the surface and moving away from it, in spite of rounding
     TALUS_EXPECT(crossed == 0 || !(z < patch.height(p, q) - 1e-3), "a block that flies on is not below the ground");
     const double f0 = leaving ? 0.0 : std::max(z - patch.height(p, q), 0.0);
     const double slope = patch.east * rate_u + patch.north * rate_v + patch.twist * (p * rate_v + q * rate_u);

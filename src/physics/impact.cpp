@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kMaxRedraws = 200;  // P(N1 < -1) = 0.16 each: 200 in a row happen once in 1e160 impacts
 
-/// Direction of the motion in plan; straight down, the dip of the slope; on flat ground, drawn at random.
+/// Direction of the motion in plan. For a vertical motion, the dip direction; on flat ground, a random direction.
 Eigen::Vector2d heading_of(const Vec3& velocity, const Vec3& normal, double turn) {
   const double plan = std::sqrt(velocity.x() * velocity.x() + velocity.y() * velocity.y());
   if (plan > 1e-9 * std::abs(velocity.z())) return velocity.head<2>() * (1.0 / plan);
@@ -68,7 +68,7 @@ RoughPlane rough_plane(const Vec3& normal, const Vec3& velocity, const Asperity&
   }
   const bool psi_dropped = asperity.tan_psi != 0.0;
   if (velocity.dot(n1) <= 0.0) return {n1, psi_dropped};
-  return {normal, psi_dropped};  // a steep counter-slope: theta alone turns the plane out of the way
+  return {normal, psi_dropped};  // a steep counter-slope: with theta alone the block would move away from the plane
 }
 
 Restitution restitution(const Ground& ground, double deformation_energy) {
@@ -100,7 +100,7 @@ Rebound rebound(const Vec3& velocity, const Vec3& spin, const Vec3& n, const Res
   return after;
 }
 
-// Flattened: the plain engine takes a tenth longer where its steps stay calls because effects call them too.
+// Flattened (all calls inlined): otherwise the plain engine takes a tenth longer.
 [[gnu::flatten]] Contact impact(const ImpactModel& model, const Ground& ground, const Block& block,
                                 const Motion& before, const Vec3& normal, const Asperity& asperity) {
   return impact(model, ground, block, before, normal, asperity, NoChanges{});

@@ -14,10 +14,10 @@ using Vec2 = Eigen::Vector2d;
 
 constexpr int kMaxPieces = 1000;
 constexpr int kMaxHalvings = 20;
-constexpr int kMaxShort = 12;          // crossings of edges with hardly a way between them: the block is in a pit
+constexpr int kMaxShort = 12;          // successive crossings of edges with almost no way between: a pit
 constexpr double kLongestPiece = 1.0;  // [s]
 constexpr double kErrorShare = 1e-3;   // of the diameter, per piece
-constexpr double kRounding = 1e-9;     // of the speed: below it an edge does not fall away
+constexpr double kRounding = 1e-9;     // of the speed: below it the ground does not fall away at an edge
 
 /// A piece of constant acceleration.
 struct Piece {
@@ -25,7 +25,7 @@ struct Piece {
   double duration;
 };
 
-/// The longest piece from `place` that errs by less than `tolerance` and lasts at most `duration`.
+/// A long piece from `place` with an error of the position below `tolerance`; it lasts at most `duration`.
 Piece make_piece(const Slope& slope, const Vec2& place, const Vec2& v, double duration, double tolerance) {
   const Vec2 first = slope.acceleration(place, v);
   Piece piece{first, duration};
@@ -39,7 +39,7 @@ Piece make_piece(const Slope& slope, const Vec2& place, const Vec2& v, double du
   return piece;
 }
 
-/// The edge at which a piece leaves its patch: its time, and the step to the next patch.
+/// The edge at which a piece leaves its patch: the time, and the step to the next patch.
 struct Edge {
   double time;
   int columns = 0, rows = 0;
@@ -61,8 +61,8 @@ Edge edge_of(const Slope& slope, const Vec2& place, const Vec2& v, const Piece& 
   return edge;
 }
 
-/// Where the surface turns up the block turns with it and keeps its speed; where it falls away the velocity stays.
-/// Returns whether it falls away.
+/// Turns the velocity at an edge. If the surface rises, the block turns with it and keeps its speed; if the surface
+/// falls away, the velocity stays. Returns whether the surface falls away.
 bool turn(Vec3& velocity, const Vec3& normal) {
   const double speed = velocity.norm();
   const double away = velocity.dot(normal);
@@ -73,7 +73,7 @@ bool turn(Vec3& velocity, const Vec3& normal) {
   return false;
 }
 
-/// One piece of sliding, to the end of the piece or of the patch: where it leads, and over which edge if it meets one.
+/// Result of one piece of sliding, to the end of the piece or of the patch.
 struct Step {
   Motion motion;
   Edge edge;
@@ -86,7 +86,7 @@ Step next_step(const Slope& slope, const Motion& motion, double farthest, double
   const Vec3 force = along(slope.acceleration(place, v), gradient);
   const double pull = speed > 0.0 ? motion.velocity.dot(force) / speed : force.norm();
   double longest = time_to_cover(farthest, speed, pull, kLongestPiece);
-  if (pull < 0.0) {  // until friction holds it; on steep ground until it turns, where friction turns too
+  if (pull < 0.0) {  // until friction holds it; on steep ground until it turns back, because friction turns too
     const double left = gradient.norm() <= slope.tan_phi ? std::max(0.0, speed - stop_speed) : speed;
     longest = std::min(longest, left / -pull + 1e-9);
   }
@@ -135,7 +135,7 @@ SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, Patch
                double stop_speed, Path& path, const RollingResistance* resistance) {
   double slid = 0.0;
   const double tolerance = kErrorShare * diameter;
-  int short_crossings = 0;  // in succession, each less than the tolerance after the last
+  int short_crossings = 0;  // in succession, with less way than the tolerance between them
   PatchIndex came_from = at;
   for (int pieces = 0; pieces < kMaxPieces; ++pieces) {
     const std::uint8_t zone = cover.zone_at(motion.position.x(), motion.position.y());
@@ -156,7 +156,7 @@ SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, Patch
     if (step.crossed) {
       Slope beyond{surface, {at.column + step.edge.columns, at.row + step.edge.rows}, tan_phi};
       if (!beyond.read()) return SlideEnd::Left;
-      if (way < tolerance && beyond.at == came_from) {  // pressed back at once: along the crease
+      if (way < tolerance && beyond.at == came_from) {  // pressed back at once: slides along the crease
         const Motion before = motion;
         if (slide_along_crease(slope, beyond, motion, diameter - slid, path) == CreaseEnd::Held)
           return SlideEnd::Stopped;
@@ -171,7 +171,7 @@ SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, Patch
     if (slid >= diameter * (1.0 - 1e-6)) return SlideEnd::Asperity;
     if (way >= tolerance) short_crossings = 0;
     if (step.crossed && way < tolerance &&
-        ++short_crossings > kMaxShort) {  // a pit: nowhere to slide to; it rubs there for one diameter
+        ++short_crossings > kMaxShort) {  // a pit: it rubs there for the rest of one diameter
       motion.time += (diameter - slid) / std::max(stop_speed, motion.velocity.norm());
       return motion.velocity.norm() <= stop_speed ? SlideEnd::Stopped : SlideEnd::Asperity;
     }

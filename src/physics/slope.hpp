@@ -5,14 +5,14 @@
 
 namespace talus {
 
-/// The patch a block slides on, in metres: what the pieces of a slide need.
+/// The patch on which a block slides, in metres.
 struct Slope {
   const Surface& surface;
   PatchIndex at;
   double tan_phi;
   Patch patch{};
 
-  /// Reads the patch; false where there is none.
+  /// Reads the patch. Returns false if there is none.
   bool read() { return surface.read(at, patch); }
 
   double p_of(const Eigen::Vector2d& place) const { return surface.u_of(place.x()) - at.column; }
@@ -27,31 +27,35 @@ struct Slope {
   Eigen::Vector2d acceleration(const Eigen::Vector2d& place, const Eigen::Vector2d& v) const {
     return sliding_acceleration(gradient(place), twist(), v, tan_phi);
   }
-  /// How hard the surface presses back [m/s^2]: negative where the ground falls away faster than the free parabola.
+  /// Acceleration by which the surface presses the block, upwards [m/s^2]. Negative if the ground falls away below the
+  /// free parabola.
   double press(const Eigen::Vector2d& v) const { return kGravity + 2.0 * twist() * v.x() * v.y(); }
 };
 
-/// A velocity in plan as one along the surface.
+/// Velocity along the surface from a velocity in plan.
 inline Vec3 along(const Eigen::Vector2d& v, const Eigen::Vector2d& gradient) {
   return {v.x(), v.y(), v.dot(gradient)};
 }
 
-/// Writes a piece of sliding into the path: a vertex and a span. Pieces that take no time leave no trace.
+/// Adds a piece of sliding to the path: a vertex and a span. A piece that takes no time adds nothing.
 void record_piece(Path& path, const Slope& slope, const Motion& before, const Motion& after);
 
 /// Time in which a block of speed `s` and acceleration `a` covers a distance [s]; at most `longest`.
 double time_to_cover(double distance, double s, double a, double longest);
 
-/// What came of a piece along a crease.
+/// Result of a piece along a crease.
 enum class CreaseEnd { Moved, Held };
 
-/// Slides a block along the concave edge between two patches that both press it back onto the edge: the limit of
-/// crossing it to and fro. The block turns along the edge and keeps its speed; gravity acts along the edge, friction
-/// with the mean of the two slopes; on its way it goes at most to the end of the edge, and at most a quarter of a cell.
+/// Slides a block along the concave edge between two patches that both press it back onto the edge. This is the limit
+/// of crossing the edge to and fro. The block turns along the edge and keeps its speed. Gravity acts along the edge;
+/// friction is the mean of the two slopes. The piece ends at the end of the edge, or after a quarter of a cell.
+/// docs/physics.md, "Sliding".
 ///
-/// @param slope   the patch the block is in;  beyond: the patch on the other side of the edge
-/// @return        Held where the block rests and friction exceeds gravity along the edge, or has no velocity along a
-///                level one
+/// @param slope     the patch of the block
+/// @param beyond    the patch on the other side of the edge
+/// @param farthest  longest way [m]
+/// @return          Held if the block is at rest and friction exceeds gravity along the edge, or if it has no velocity
+///                  along a level edge
 CreaseEnd slide_along_crease(const Slope& slope, const Slope& beyond, Motion& motion, double farthest, Path& path);
 
 }  // namespace talus

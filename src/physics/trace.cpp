@@ -12,12 +12,12 @@
 namespace talus {
 namespace {
 
-[[maybe_unused]] constexpr double kPatchError = 1e-6;  // by which rounding may put a block beside its patch [patches]
+[[maybe_unused]] constexpr double kPatchError = 1e-6;  // of the place of a block in its patch, by rounding [patches]
 
-/// One block on its way: the state that its steps share. A step returns how the trajectory ended, or nothing.
+/// State of one block on its path, shared by all steps. A step returns the end of the trajectory, or nothing.
 ///
-/// @tparam Acting  the effects that act: Effectless, which leaves nothing of them in the code, or ActiveEffects;
-///                 either of them alone, or BehindBarriers
+/// @tparam Acting  Effectless (the compiler removes all code of effects) or ActiveEffects; either of them alone or in
+///                 BehindBarriers
 template <class Acting>
 class Walk {
  public:
@@ -62,8 +62,8 @@ class Walk {
     return std::nullopt;
   }
 
-  /// An impact where the block is. It stops there if it comes out slowly on ground no steeper than phi.
-  /// (Flattened, as the plain `fly` and `impact`, so that what effects call too is not left a call here.)
+  /// An impact at the place of the block. The block stops if it is slow after it, on ground no steeper than phi.
+  /// (Flattened, as the plain `fly` and `impact`: functions that effects also call are inlined here.)
   [[gnu::flatten]] std::optional<End> meet_the_ground() {
     decltype(auto) ground = effects_.ground(motion_.position, body_);
     Patch patch;
@@ -89,7 +89,7 @@ class Walk {
     return std::nullopt;
   }
 
-  /// Slides from where the block is; the part of its velocity across the surface is lost.
+  /// Slides from the place of the block; the part of its velocity normal to the surface is lost.
   SlideEnd slide_on() {
     motion_.velocity -= motion_.velocity.dot(normal_) * normal_;
     const SlideEnd end = effects_.slide(motion_, at_, body_, path_);

@@ -6,7 +6,7 @@
 namespace talus {
 namespace {
 
-constexpr int kMantissa = 24;  // bits of a float: whole multiples of a quantum up to 2^24 of them are exact
+constexpr int kMantissa = 24;  // bits of a float: up to 2^24 multiples of a quantum are exact
 
 }  // namespace
 
@@ -25,13 +25,13 @@ ExtrudedProfile extrude(const Profile& profile, double step) {
   ExtrudedProfile out;
   out.datum = 0.5 * (low->y() + high->y());
   const double quantum =
-      std::exp2(std::ceil(std::log2(0.5 * (high->y() - low->y()) + 1.0)) - kMantissa);  // 1 m of room for rounding
+      std::exp2(std::ceil(std::log2(0.5 * (high->y() - low->y()) + 1.0)) - kMantissa);  // 1 m: margin for rounding
   const auto column_of = [&](double x) { return std::llround((x - profile.from()) / step); };
 
   std::vector<long long> quanta{std::llround((profile.nodes.front().y() - out.datum) / quantum)};
   for (std::size_t i = 1; i < profile.nodes.size(); ++i) {
     const long long first = std::ssize(quanta) - 1;
-    const long long columns = std::max(1LL, column_of(profile.nodes[i].x()) - first);  // two nodes that round to one
+    const long long columns = std::max(1LL, column_of(profile.nodes[i].x()) - first);  // 1: two nodes in one column
     const double rise = (profile.nodes[i].y() - out.datum) / quantum - static_cast<double>(quanta.back());
     const long long each = std::llround(rise / static_cast<double>(columns));
     for (long long c = 0; c < columns; ++c) quanta.push_back(quanta.back() + each);

@@ -14,7 +14,7 @@ double horn_slope(const Raster<float>& heights, int column, int row) {
   const auto z = [&](int east, int north) { return static_cast<double>(heights.at(column + east, row + north)); };
   const double to_east = (z(1, 1) + 2.0 * z(1, 0) + z(1, -1)) - (z(-1, 1) + 2.0 * z(-1, 0) + z(-1, -1));
   const double to_north = (z(1, 1) + 2.0 * z(0, 1) + z(-1, 1)) - (z(1, -1) + 2.0 * z(0, -1) + z(-1, -1));
-  const double centre = 0.0 * z(0, 0);  // NaN where the cell itself is missing, which Horn's formula does not read
+  const double centre = 0.0 * z(0, 0);  // NaN if the cell itself is missing: Horn's formula does not read it
   return std::hypot(to_east / (8.0 * grid.cell_x), to_north / (8.0 * grid.cell_y)) + centre;
 }
 

@@ -4,26 +4,26 @@
 
 namespace talus {
 
-/// In place of a number that the input does not give.
+/// Stands for a number that the input does not give.
 inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
 
-/// A number of the input: what it is called, what it means and which values are allowed. In the units of the files.
+/// Name, meaning and allowed values of a number of the input, in the units of the files.
 struct Bounds {
-  std::string_view key;      ///< "blocks.density"; of a ground "En50"
-  std::string_view unit;     ///< "kg/m3"; "1" where there is none
+  std::string_view key;      ///< for instance "blocks.density"; for a number of a ground "En50"
+  std::string_view unit;     ///< for instance "kg/m3"; "1" if it has none
   std::string_view meaning;  ///< a few words, without a full stop
   double min, max;
-  enum Ends { Closed, AboveMin, Between } ends = Closed;  ///< AboveMin: not min itself; Between: neither end
+  enum Ends { Closed, AboveMin, Between } ends = Closed;  ///< AboveMin: min excluded; Between: both ends excluded
   bool whole = false;                                     ///< a whole number
 };
 
-/// A number of the input that is one number of `Owner`, in the units of the files: degrees, not radians.
-/// Its default is what a fresh `Owner` holds (of a ground: what the preset says).
+/// A number of the input that is stored in an `Owner`. `get` and `set` use the units of the files: degrees, not
+/// radians. Its default is the value in a new `Owner` (for a ground: the value of the preset).
 template <class Owner>
 struct Field : Bounds {
   double (*get)(const Owner&);
   void (*set)(Owner&, double);
-  double off = kNotGiven;  ///< the value at which it does nothing; NaN: it is no strength
+  double off = kNotGiven;  ///< the value at which an effect does nothing; NaN: the number has no such value
 };
 
 }  // namespace talus

@@ -8,9 +8,9 @@
 
 namespace talus {
 
-/// Natural logarithm and sine/cosine made of +, -, *, / only, so that the same program gives the same bits
-/// on every IEEE 754 machine; the C library's differ between processors with and without fused multiply-add.
-/// Without branches, so that a loop over them overlaps.
+/// Logarithm, exponential, power, sine and cosine made of +, -, *, / and rounding only, so that the same program gives
+/// the same bits on every IEEE 754 machine. Those of the C library differ between processors with and without fused
+/// multiply-add. The logarithm and the sine/cosine have no branches, so that the processor can overlap several calls.
 
 /// ln(x).
 ///
@@ -43,11 +43,11 @@ inline double exponential_rest(double x) {
   return first + x4 * (second + x4 * third);
 }
 
-/// e^x; exactly 1 at 0. Beyond +-700 the value at +-700. NaN gives NaN.
+/// e^x; exactly 1 at 0. Outside +-700 it returns the value at +-700. NaN gives NaN.
 ///
 /// Error: below 2 ulp for |x| <= 1, 4 ulp elsewhere. Source: Taylor polynomial on [-ln 2 / 2, ln 2 / 2].
 inline double exponential(double x) {
-  if (x == 0.0) return 1.0;  // an effect that is off
+  if (x == 0.0) return 1.0;  // exact for an effect that is off
   if (std::isnan(x)) return x;
   constexpr double kLn2High = 0x1.62e42fefa3800p-1, kLn2Low = 0x1.ef35793c76730p-45, kPerLn2 = 1.4426950408889634;
   const double bounded = std::clamp(x, -700.0, 700.0);
@@ -57,7 +57,7 @@ inline double exponential(double x) {
   return sum * std::bit_cast<double>((static_cast<std::int64_t>(k) + 1023) << 52U);
 }
 
-/// x^p of a positive normal x, p ln x within +-700; exactly 1 at p = 0. Error: below (4 + 2 |p ln x|) ulp.
+/// x^p for a positive normal x and p ln x within +-700; exactly 1 at p = 0. Error: below (4 + 2 |p ln x|) ulp.
 inline double power(double x, double p) {
   if (p == 0.0) return 1.0;
   return exponential(p * natural_log(x));
@@ -68,7 +68,7 @@ struct SineCosine {
   double cosine;
 };
 
-/// Sine and cosine of a part of a full turn: sin(2 pi u), cos(2 pi u).
+/// Sine and cosine of a fraction u of a full turn: sin(2 pi u), cos(2 pi u).
 ///
 /// @param turn  u in [0, 1]
 ///

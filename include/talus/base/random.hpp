@@ -10,7 +10,8 @@ namespace talus {
 using Words = std::array<std::uint32_t, 4>;
 
 /// Four 32-bit words of Philox4x32-10 for a counter and a key.
-/// Source: Salmon et al. (2011), "Parallel random numbers: as easy as 1, 2, 3"; known answers of Random123 in the test.
+/// Source: Salmon et al. (2011), "Parallel random numbers: as easy as 1, 2, 3"; the test has the known answers of
+/// Random123.
 inline Words philox4x32(Words counter, std::array<std::uint32_t, 2> key) {
   auto [c0, c1, c2, c3] = counter;
   auto [k0, k1] = key;
@@ -27,10 +28,10 @@ inline Words philox4x32(Words counter, std::array<std::uint32_t, 2> key) {
   return {c0, c1, c2, c3};
 }
 
-/// What a draw is for. A stream per purpose: an effect that is switched on never shifts the draws of the others.
+/// Purpose of a draw. Each purpose has its own stream: switching an effect on never shifts the draws of the others.
 enum class Purpose : std::uint32_t { Release = 0, Impact = 1, Stem = 2, Break = 3, Measurement = 100, Bootstrap = 101 };
 
-/// A number in the open interval (0, 1), evenly spaced by 2^-32: its logarithm is finite.
+/// A number in the open interval (0, 1), in steps of 2^-32. It is never 0, so its logarithm is finite.
 inline double uniform(std::uint32_t word) {
   return (static_cast<double>(word) + 0.5) * 0x1p-32;
 }
@@ -44,7 +45,7 @@ inline std::array<double, 2> normal_pair(std::uint32_t first, std::uint32_t seco
 
 /// The random numbers of one block: a pure function of (seed, source, block, purpose, draw), with no state.
 /// Results are therefore independent of threads, order and parts, and more blocks never change earlier ones.
-/// A piece that broke off a block (below 2^24; 0 is the block itself) has streams of its own.
+/// Each piece that broke off a block has its own streams. `piece` is below 2^24; 0 is the block itself.
 class Random {
  public:
   Random(std::uint64_t seed, std::uint32_t source, std::uint32_t block, Purpose purpose, std::uint32_t piece = 0)
@@ -53,8 +54,8 @@ class Random {
         block_(block),
         purpose_(piece << 8U | static_cast<std::uint32_t>(purpose)) {}
 
-  /// Four words of draw `part` of event number `event` (below 2^24), for instance of the block's 17th impact.
-  /// A rejection loop takes further parts (below 256) of its own event and cannot shift the next event.
+  /// Four random words of an event, for instance of the block's 17th impact. `event` is below 2^24, `part` below 256.
+  /// A rejection loop takes further parts of its own event and cannot shift the next event.
   Words words(std::uint32_t event, std::uint32_t part = 0) const {
     return philox4x32({event << 8U | part, purpose_, source_, block_}, key_);
   }

@@ -8,14 +8,16 @@
 
 namespace talus {
 
-/// A range of values that holds the true one with a stated confidence; NaN where nothing can be said.
+/// A confidence interval; NaN if it cannot be computed.
 struct Interval {
   double low = std::numeric_limits<double>::quiet_NaN(), high = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The value below which a share of a sample lies, linear between order statistics (Hyndman & Fan, type 7).
+/// Quantile of a sample: the value below which a share of it lies. Linear between order statistics (Hyndman & Fan, type
+/// 7).
 ///
-/// @param sorted  ascending, not empty;  share: 0..1
+/// @param sorted  the sample, ascending, not empty
+/// @param share   0..1
 inline double quantile(std::span<const double> sorted, double share) {
   TALUS_EXPECT(!sorted.empty() && share >= 0.0 && share <= 1.0, "a quantile is of a sample, for a share");
   const double place = share * static_cast<double>(sorted.size() - 1);

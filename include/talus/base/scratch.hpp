@@ -6,28 +6,27 @@
 
 namespace talus {
 
-/// A file without a name that takes the place of memory, of which only as much stays in the process's memory as a limit
-/// leaves. The system moves pages to the disk and back: whoever uses the memory sees no difference, and no bit of a
-/// result depends on it.
+/// A temporary file used as memory, so that a process can hold more data than its memory limit allows. The system moves
+/// pages to the disk and back: code that uses the memory sees no difference, and no bit of a result depends on it.
 ///
-/// All that lies in it ends with it: the file is unmapped as a whole. So its owner may drop it without a destructor of
-/// each record, which would fetch the record from the disk.
+/// The file is unmapped as a whole, with all data in it. So its owner may drop it without running the destructor of
+/// each record, which would read the record back from the disk.
 class ScratchFile {
  public:
-  /// @param folder  where the file is made
-  /// @param bytes   that the process should not hold more of, all together
-  /// Throws std::runtime_error where no such file can be made.
+  /// @param folder  folder of the file
+  /// @param bytes   memory limit of the whole process
+  /// Throws std::runtime_error if the file cannot be made.
   ScratchFile(const std::string& folder, std::size_t bytes);
   ~ScratchFile();
   ScratchFile(const ScratchFile&) = delete;
   ScratchFile& operator=(const ScratchFile&) = delete;
 
-  /// @return aligned to 16 bytes. Throws std::bad_alloc; std::runtime_error where the disk is full. From any thread.
+  /// @return  aligned to 16 bytes. Throws std::bad_alloc; std::runtime_error if the disk is full. From any thread.
   void* allocate(std::size_t bytes);
-  /// @param bytes  as it was allocated with
+  /// @param bytes  the same number as at `allocate`
   void release(void* memory, std::size_t bytes) noexcept;
-  /// Where the process comes near the limit: gives the pages of the file back to the system, which keeps what is in
-  /// them. From any thread.
+  /// If the process is near the limit, gives the memory of the file back to the system. The data stay in the file. From
+  /// any thread.
   void keep_below_limit() const noexcept;
 
  private:
@@ -35,8 +34,8 @@ class ScratchFile {
   std::unique_ptr<Mapping> mapping_;
 };
 
-/// Where lies what grows with the map (terrain, zones, tallies): on the heap, or in a scratch file where the run has a
-/// limit of memory. A handle, handed down by value; the file must outlive what uses it.
+/// Place of the data that grow with the map (terrain, zones, tallies): the heap, or a scratch file if the run has a
+/// memory limit. A handle, passed by value; the file must outlive everything that uses it.
 class MemoryPolicy {
  public:
   MemoryPolicy() = default;  ///< the heap
@@ -44,11 +43,11 @@ class MemoryPolicy {
   explicit MemoryPolicy(ScratchFile* file) : file_(file) {}
 
   bool has_limit() const { return file_ != nullptr; }
-  /// @return aligned to 16 bytes. Throws std::bad_alloc; std::runtime_error where the disk is full. From any thread.
+  /// @return  aligned to 16 bytes. Throws std::bad_alloc; std::runtime_error if the disk is full. From any thread.
   void* allocate(std::size_t bytes) const;
-  /// @param bytes  as it was allocated with
+  /// @param bytes  the same number as at `allocate`
   void release(void* memory, std::size_t bytes) const noexcept;
-  /// To be called now and then by whoever goes through many records, from any thread; costs nothing without a limit.
+  /// Call it from time to time in a loop over many records, from any thread; costs nothing without a limit.
   void keep_below_limit() const noexcept {
     if (file_ != nullptr) file_->keep_below_limit();
   }
@@ -58,7 +57,7 @@ class MemoryPolicy {
   ScratchFile* file_ = nullptr;
 };
 
-/// A memory policy for containers, which keep it when they are moved or swapped.
+/// Allocator of a container with a memory policy. The policy moves with the container, also in a swap.
 template <class T>
 struct ScratchAllocator {
   using value_type = T;
@@ -66,7 +65,7 @@ struct ScratchAllocator {
   using propagate_on_container_swap = std::true_type;
 
   ScratchAllocator() = default;
-  ScratchAllocator(MemoryPolicy policy) : memory(policy) {}  // NOLINT(google-explicit-constructor): as a handle is
+  ScratchAllocator(MemoryPolicy policy) : memory(policy) {}  // NOLINT(google-explicit-constructor): a handle
   template <class U>
   ScratchAllocator(const ScratchAllocator<U>& other) : memory(other.memory) {}  // NOLINT(google-explicit-constructor)
   T* allocate(std::size_t n) { return static_cast<T*>(memory.allocate(n * sizeof(T))); }

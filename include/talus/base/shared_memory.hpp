@@ -9,16 +9,19 @@ namespace talus {
 /// A piece of memory shared by all processes of one machine.
 class SharedPiece {
  public:
-  /// @param name  of the system, with a slash at its beginning. Throws std::runtime_error where the machine has no room
-  /// Waits while another process fills it.
+  /// Opens the piece, and waits while another process fills it.
+  ///
+  /// @param name  name of the piece in the system, with a slash in front
+  /// Throws std::runtime_error if the machine has no room.
   SharedPiece(const std::string& name, std::size_t bytes);
   ~SharedPiece();
   SharedPiece(const SharedPiece&) = delete;
   SharedPiece& operator=(const SharedPiece&) = delete;
 
   void* data() const { return data_; }
-  /// Whether another process has filled it; else this one must, and then call `set_filled`.
+  /// Whether the piece is filled. If not, this process must fill it and then call `set_filled`.
   bool is_filled() const { return filled_; }
+  /// Makes the piece read-only and lets the waiting processes go on.
   void set_filled();
 
  private:
@@ -28,11 +31,11 @@ class SharedPiece {
   bool filled_ = false;
 };
 
-/// Memory shared by all processes of one machine that give the same name. The first that asks for a piece fills it; the
-/// others wait for that, and only read. Each process must ask for the same pieces in the same order.
+/// Memory shared by all processes of one machine that give the same name. The first process that asks for a piece fills
+/// it; the others wait until it is filled, and only read. Each process must ask for the same pieces in the same order.
 ///
-/// It lives until all processes have what they want: then the names are given back, and the pieces remain while they
-/// are used.
+/// The destructor removes the names of the pieces. So an object must live until all processes have asked for all
+/// pieces. A piece itself remains while it is used.
 class SharedMemory {
  public:
   explicit SharedMemory(std::string name) : name_(std::move(name)) {}
@@ -40,12 +43,12 @@ class SharedMemory {
   SharedMemory(const SharedMemory&) = delete;
   SharedMemory& operator=(const SharedMemory&) = delete;
 
-  /// The next piece. Throws std::runtime_error where the machine has no room for it.
+  /// The next piece. Throws std::runtime_error if the machine has no room for it.
   std::shared_ptr<SharedPiece> next(std::size_t bytes);
 
  private:
   std::string name_;
-  std::vector<std::string> pieces_;  // that this process has asked for
+  std::vector<std::string> pieces_;  // names of those this process has asked for
 };
 
 }  // namespace talus

@@ -8,57 +8,61 @@
 
 namespace talus {
 
-/// A net or a wall: catches what crosses its line low and slowly enough. docs/barrier.md, "Barriers in the walk".
+/// A net or a wall: catches a block that crosses its line below the top and within its capacity. docs/barrier.md,
+/// "Barriers in the walk".
 struct Barrier {
   std::string id;
-  std::vector<std::vector<Eigen::Vector2d>> lines;  ///< in plan [m, local]; more than one where it has parts
-  double height = 0.0;                              ///< of the top above the ground at the line [m]; 0: catches nothing
-  double capacity = 0.0;                            ///< translational energy that it takes [J]; may be infinite
+  std::vector<std::vector<Eigen::Vector2d>> lines;  ///< in plan [m, local]; more than one if it has parts
+  double height = 0.0;                              ///< of the top above the ground at the line [m]; 0: off
+  double capacity = 0.0;                            ///< largest translational energy it can stop [J]; may be infinite
 };
 
-/// What became of a block where it crossed the line of a barrier.
+/// Result of crossing the line of a barrier.
 enum class Meeting : std::uint8_t {
-  Over,    ///< its centre passed at the top or above
+  Over,    ///< centre at the top or above
   Caught,  ///< below the top, within the capacity
-  Broken   ///< below the top, above the capacity: it goes on with the energy that is left
+  Broken   ///< below the top, above the capacity: it goes on with the rest of its energy
 };
 
-/// A block met a barrier.
+/// One meeting of a block and a barrier.
 struct BarrierPassage {
   std::uint32_t barrier;
   Meeting how;
   double along;  ///< distance along the barrier from its start, over all its lines [m]
 };
 
-/// @param clearance  of the block's centre above the ground [m];  energy: translational [J]
-/// NaN is caught.
+/// Result for a block that crosses the line of a barrier.
+///
+/// @param clearance  of the block's centre above the ground [m]; NaN counts as below the top
+/// @param energy     translational [J]; NaN counts as within the capacity
 Meeting meeting(const Barrier& barrier, double clearance, double energy);
 
-/// Share of the speed that is left of a block that broke through: sqrt((E - C) / E), in [0, 1].
+/// Share of the speed that a block has left after it broke a barrier: sqrt((E - C) / E), in [0, 1].
 ///
-/// @param energy  E [J], > capacity;  capacity: C [J], >= 0
+/// @param energy    E [J], > capacity
+/// @param capacity  C [J], >= 0
 double kept_speed(double energy, double capacity);
 
-/// All barriers, in boxes of a few segments each so that ways far from them are told at once.
+/// All barriers, with a bounding box around every few segments, so that a way far from them is sorted out quickly.
 class Barriers {
  public:
   explicit Barriers(std::vector<Barrier> barriers = {});
 
-  /// A way in plan crosses a segment of a barrier.
+  /// Crossing of a straight way in plan with a segment of a barrier.
   struct Cut {
-    double share;           ///< of the way
-    std::uint32_t segment;  ///< number of it, over all barriers
+    double share;           ///< of the way before the crossing, 0..1
+    std::uint32_t segment;  ///< its index, over all barriers
     std::uint32_t barrier;
-    double along;  ///< as BarrierPassage
+    double along;  ///< distance along the barrier [m], as in BarrierPassage
   };
-  /// The first crossing of the straight way from `a` to `b` after `last` (in the order of share, then segment); nothing
-  /// where there is none. A segment is crossed where the ends of the way lie on different sides of it; its own ends
-  /// belong to one side only, so that a way through a corner of a path or of a barrier crosses once.
+  /// The first crossing of the straight way from `a` to `b` after `last` (in the order of share, then segment); empty
+  /// if there is none. A way crosses a segment if its ends lie on different sides of it. A point on the line belongs to
+  /// one side only, so that a way through a corner of a path or of a barrier crosses once.
   std::optional<Cut> next(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const std::optional<Cut>& last) const;
 
   const std::vector<Barrier>& list() const { return barriers_; }
   bool empty() const { return barriers_.empty(); }
-  /// Of all lines of a barrier together [m].
+  /// Total length of all lines of a barrier [m].
   double length(std::size_t barrier) const { return lengths_[barrier]; }
 
  private:
@@ -69,7 +73,7 @@ class Barriers {
   };
   struct Box {
     Eigen::Vector2d low, high;
-    std::uint32_t first, end;  // segments in it
+    std::uint32_t first, end;  // its segments: from `first`, before `end`
   };
   std::vector<Barrier> barriers_;
   std::vector<double> lengths_;

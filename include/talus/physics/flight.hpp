@@ -7,22 +7,23 @@
 
 namespace talus {
 
-/// How a flight or a slide over the surface came to its end.
+/// How a flight ended.
 enum class Outcome {
   Landed,  ///< on the surface, in patch `at`
-  Left,    ///< over the edge of the terrain or above missing data
+  Left,    ///< beyond the edge of the terrain or above missing data
   Caught,  ///< in a barrier
-  Aloft    ///< still in the air: the longest time, or the time limit, was reached
+  Aloft    ///< still in the air: the longest time or the time limit was reached
 };
 
-/// Time of the first contact with the ground of a block whose clearance over a patch is f0 + f1 t + f2 t^2.
+/// Time of the first contact of a block with the ground. Its clearance over a patch is f0 + f1 t + f2 t^2.
 ///
-/// @param f0    clearance now [m], >= 0
-/// @param f1    rate [m/s];  f2: half the acceleration [m/s^2]
-/// @param until end of the time in the patch [s], may be infinite
-/// @return      time in [0, until] [s], or infinity where there is none
+/// @param f0     clearance now [m], >= 0
+/// @param f1     its rate [m/s]
+/// @param f2     half its acceleration [m/s^2]
+/// @param until  end of the time in the patch [s], may be infinite
+/// @return       time in [0, until] [s]; infinity if there is no contact
 ///
-/// Closed form, the smaller root of the quadratic that leads downwards. Error: 4 eps relative. NaN gives infinity.
+/// Closed form: the smallest root at which the clearance falls. Error: 4 eps relative. NaN gives infinity.
 inline double first_contact(double f0, double f1, double f2, double until) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const double last = f0 + until * (f1 + until * f2);
@@ -32,25 +33,26 @@ inline double first_contact(double f0, double f1, double f2, double until) {
   const double root = std::sqrt(discriminant);
   const double contact = f1 < 0.0 ? 2.0 * f0 / (root - f1) : f2 < 0.0 ? (f1 + root) / (-2.0 * f2) : kNever;
   if (contact <= until) return contact;
-  return f2 <= 0.0 && last < 0.0 ? until : kNever;  // below the ground at the end: only rounding puts it later
+  return f2 <= 0.0 && last < 0.0 ? until : kNever;  // below the ground at the end: rounding put the contact later
 }
 
-/// Length of a parabola in space [m], by three Gauss points on the speed (exact where the speed is a quintic in time).
+/// Length of a parabola in space [m], by three Gauss points on the speed (exact for polynomials up to degree 5).
 ///
-/// @param v  at its start [m/s];  duration [s]
+/// @param v         velocity at its start [m/s]
+/// @param duration  [s]
 double arc_length(const Vec3& v, double duration);
 
-/// Walks a free parabola over the patches under it until it meets the ground, by one quadratic per patch.
+/// Follows a free parabola patch by patch until it meets the ground, by one quadratic per patch.
 ///
-/// @param motion     state at the start; at the end: where it landed (exactly on the surface) or left
-/// @param at         patch of the start; at the end: of the landing
-/// @param grounded   the block starts on the surface of `at`, moving away from it
+/// @param motion     state at the start; on return at the end: landed (exactly on the surface) or left
+/// @param at         patch of the start; on return: of the end
+/// @param grounded   the block starts on the surface of `at` and moves away from it
 /// @param path       gets one `Span` per patch crossed
 ///
-/// Exact but for rounding; no time step. At most columns + rows patches. docs/physics.md, "Flight".
+/// Exact except for rounding; no time step. At most columns + rows patches. docs/physics.md, "Flight".
 Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path);
 
-/// The same for a piece of a flight: after at most `longest` [s], >= 0, it is `Aloft`.
+/// A piece of a flight, as above: ends `Aloft` after `longest` [s], >= 0, unless it landed or left before.
 Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path, double longest);
 
 }  // namespace talus

@@ -12,15 +12,15 @@ struct Ground {
   double theta_scale = 0.0;                 ///< longitudinal roughness [-]
   double psi_scale = 0.0;                   ///< transverse roughness [-]
   double En50 = 15.0;                       ///< D v_n^2 at which half of the normal momentum is kept [m^3/s^2]
-  double Et50 = 50.0;                       ///< the same, tangential [m^3/s^2]
+  double Et50 = 50.0;                       ///< D v_n^2 at which half of the tangential momentum is kept [m^3/s^2]
   double tan_phi = 0.57735026918962573;     ///< tangent of the friction angle phi [-]
   double shape_min = 1.0, shape_max = 1.0;  ///< range of the factor on the radius at impact [-]
 };
 
-/// The kinds of ground and where each one is. A place has the ground of the cell that holds it.
+/// The kinds of ground and their zones. A place has the ground of its cell.
 struct Cover {
   std::vector<Ground> grounds;  ///< at least one
-  Raster<std::uint8_t> zones;   ///< index into `grounds`; empty where one ground is everywhere
+  Raster<std::uint8_t> zones;   ///< index into `grounds`; empty if the ground is the same everywhere
 
   std::uint8_t zone_at(double x, double y) const {
     return zones.values.empty() ? std::uint8_t{0} : zones.at(zones.grid.column_of(x), zones.grid.row_of(y));

@@ -7,9 +7,9 @@
 
 namespace talus {
 
-/// docs/physics.md, "Impact", steps 1-6, in this order. Source: Mitchell & Hungr, PIERRE 2, Eqs. 1-6.
+/// The impact law: docs/physics.md, "Impact", steps 1-6, in this order. Source: Mitchell & Hungr, PIERRE 2, Eqs. 1-6.
 
-/// What to do with a negative roughness angle, which the paper does not allow.
+/// Rule for a negative roughness angle, which the paper does not allow.
 enum class Roughness {
   Clamp,    ///< set it to zero (default)
   Resample  ///< draw again: the true truncated normal distribution
@@ -19,24 +19,24 @@ enum class Roughness {
 struct ImpactModel {
   double deformation_coefficient = 0.25;  ///< c in E_d = c D v_n^2 [-]
   Roughness roughness = Roughness::Clamp;
-  bool in_plane = false;  ///< the 2D model: a heading that is drawn is east or west, so that y never changes
+  bool in_plane = false;  ///< the 2D model: a random heading is east or west, so that y never changes
 };
 
 /// The random part of one impact.
 struct Asperity {
-  double tan_theta = 0.0;  ///< rises against the motion, >= 0 [-]
-  double tan_psi = 0.0;    ///< sideways [-]
+  double tan_theta = 0.0;  ///< longitudinal: the plane rises against the motion, >= 0 [-]
+  double tan_psi = 0.0;    ///< transverse [-]
   double shape = 1.0;      ///< R_eff / R [-]
-  double heading = 0.0;    ///< a direction in plan, in turns [0, 1): used where neither velocity nor slope gives one
+  double heading = 0.0;    ///< random direction in plan [turns], [0, 1): used if neither velocity nor slope gives one
 };
 
-/// Step 1 and the draw of step 4: what a block meets at each of its impacts, a pure function of the impact's number.
-/// Kept eight impacts ahead, because the normal numbers of several impacts cost little more than those of one.
+/// Step 1 and the random shape of step 4: the asperity at each impact, a pure function of the impact's number.
+/// Drawn for eight impacts at a time: the normal numbers of several impacts cost little more than those of one.
 class Asperities {
  public:
   Asperities(const Random& random, Roughness rule) : random_(random), rule_(rule) {}
 
-  /// What the block meets at impact number `event`, on this ground.
+  /// The asperity at impact number `event`, on this ground.
   Asperity at(std::uint32_t event, const Ground& ground);
 
  private:
@@ -48,11 +48,11 @@ class Asperities {
   };
   Random random_;
   Roughness rule_;
-  std::uint32_t first_ = 0x80000000U;  // event of draws_[0], a multiple of kAhead; beyond all events: none drawn yet
+  std::uint32_t first_ = 0x80000000U;  // event of draws_[0], a multiple of kAhead; at first beyond all
   std::array<Draw, kAhead> draws_;
 };
 
-/// The asperity as the model meets it: the 2D model draws no heading but east or west.
+/// The asperity as the model uses it: in the 2D model the random heading is east or west.
 inline Asperity met_by(const ImpactModel& model, Asperity asperity) {
   if (model.in_plane) asperity.heading = asperity.heading < 0.5 ? 0.0 : 0.5;
   return asperity;
@@ -61,16 +61,16 @@ inline Asperity met_by(const ImpactModel& model, Asperity asperity) {
 /// The plane that a block meets instead of the smooth surface.
 struct RoughPlane {
   Vec3 normal;       ///< n', unit
-  bool psi_dropped;  ///< the sideways tilt turned the plane out of the way, so it was left out
+  bool psi_dropped;  ///< psi was left out, because with it the block would move away from the plane
 };
 
 /// Step 2: tilts the smooth normal by theta against the motion, then by psi about the plane's longitudinal tangent.
 ///
 /// @param normal    of the smooth surface, unit, upwards
-/// @param velocity  of the block [m/s], not away from the smooth surface
+/// @param velocity  of the block [m/s], not pointing away from the smooth surface
 RoughPlane rough_plane(const Vec3& normal, const Vec3& velocity, const Asperity& asperity);
 
-/// Share of the momentum that is kept: E_50 / (E_d + E_50), in (0, 1].
+/// Restitution factors, the share of the momentum that is kept: E_50 / (E_d + E_50), in (0, 1].
 struct Restitution {
   double normal, tangential;  // k_n, k_t
 };
@@ -78,7 +78,7 @@ struct Restitution {
 /// Step 3, Eq. 3, with the deformation energy E_d = c D v_n^2 [m^3/s^2].
 Restitution restitution(const Ground& ground, double deformation_energy);
 
-/// Impulse of friction on a sphere at an impact: it stops the slip, or reaches the Coulomb limit (step 5, Eqs. 4-6).
+/// Friction impulse on a sphere at an impact: it stops the slip, or reaches the Coulomb limit (step 5, Eqs. 4-6).
 ///
 ///   J = min(2/7 |u|, tan(phi) P)
 ///
@@ -95,19 +95,19 @@ struct Rebound {
   Vec3 velocity, spin;
 };
 
-/// Step 5 on a plane of normal `n`: the restitution factors, friction, and the spin it makes.
+/// Step 5 on a plane of normal `n`: applies the restitution factors and friction, which changes the spin.
 ///
 /// @param arm  R_eff, distance of the contact point from the centre [m], > 0
 Rebound rebound(const Vec3& velocity, const Vec3& spin, const Vec3& n, const Restitution& k, double arm,
                 double tan_phi);
 
-/// The part of a vector along the plane of normal `n` is multiplied by a factor.
+/// Multiplies the part of a vector along the plane of normal `n` by a factor.
 inline void scale_along(Vec3& vector, const Vec3& n, double factor) {
   const Vec3 across = vector.dot(n) * n;
   vector = factor * (vector - across) + across;
 }
 
-/// An impact between step 5 and step 6: all that decided the rebound.
+/// State of an impact between step 5 and step 6, for effects that change the rebound.
 struct ImpactMoment {
   const Block& block;
   const Vec3 &normal, &plane;  ///< of the smooth surface and of the rough plane, unit
@@ -115,21 +115,22 @@ struct ImpactMoment {
   Restitution k;
 };
 
-/// What effects change of the law. The law of PIERRE 2: nothing.
+/// Changes of the law by effects: none, as in PIERRE 2.
 struct NoChanges {
   static void restitution(Restitution& /*k*/) {}
   static void rebound(Rebound& /*after*/, const ImpactMoment& /*moment*/) {}
 };
 
-/// What happened at an impact, beside the new motion.
+/// Result of an impact.
 struct Contact {
-  Vec3 velocity, spin;  ///< after it; the velocity is never into the smooth surface (step 6)
+  Vec3 velocity, spin;  ///< after it; the velocity never points into the smooth surface (step 6)
   bool psi_dropped;
 };
 
-/// The impact law: steps 2-6 on a surface of normal `normal`. The only place where they follow each other.
+/// The impact law: steps 2-6 on a surface of normal `normal`. The only place that combines them.
 ///
-/// @param changes  of effects: to the restitution after step 3, to the rebound after step 5. As NoChanges
+/// @param changes  of effects, with the functions of NoChanges: to the restitution after step 3, to the rebound after
+///                 step 5
 template <class Changes>
 Contact impact(const ImpactModel& model, const Ground& ground, const Block& block, const Motion& before,
                const Vec3& normal, const Asperity& asperity, Changes&& changes) {
@@ -144,7 +145,7 @@ Contact impact(const ImpactModel& model, const Ground& ground, const Block& bloc
   return {after.velocity - into_slope * normal, after.spin, plane.psi_dropped};
 }
 
-/// The law without effects.
+/// The impact law without effects.
 Contact impact(const ImpactModel& model, const Ground& ground, const Block& block, const Motion& before,
                const Vec3& normal, const Asperity& asperity);
 

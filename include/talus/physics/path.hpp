@@ -7,47 +7,49 @@
 
 namespace talus {
 
-/// How a trajectory ended: exactly one of these each. docs/physics.md, "End of a trajectory".
+/// How a trajectory ended; each has exactly one end. docs/physics.md, "End of a trajectory".
 enum class End : std::uint8_t { Stopped, Left, Caught, Limit };
 inline constexpr int kEnds = 4;
 
-/// What begins at a vertex of a path.
+/// Event at a vertex of a path; it tells what follows.
 enum class Event : std::uint8_t {
   Release,  ///< the first flight
   Impact,   ///< a rebound; a flight or a slide follows
   Slide,    ///< a piece of sliding
   Takeoff,  ///< a flight after sliding, without an impact
-  Air,      ///< a further parabola of a flight that air or vegetation brakes
-  Stem,     ///< a flight after a stem was met
-  Barrier,  ///< a flight or a slide after a barrier was broken
-  End       ///< nothing: the last vertex
+  Air,      ///< a further parabola of a flight with drag
+  Stem,     ///< a flight after a stem was hit
+  Barrier,  ///< a flight or a slide after it broke a barrier
+  End       ///< the last vertex
 };
 
-/// A point of the path with the motion that leaves it. A flight follows its parabola to the next vertex with
-/// constant spin; a piece of sliding is short enough to be taken as straight in plan.
+/// A point of the path, with the motion after its event. A flight follows its parabola to the next vertex with constant
+/// spin; a piece of sliding is short enough to be taken as straight in plan.
 struct Vertex {
   Motion motion;
   Event event;
 };
 
-/// The motion a share of the way from one vertex of a path to the next: a parabola with constant spin, or a piece of
-/// sliding with constant acceleration.
+/// The motion between two successive vertices of a path: a parabola with constant spin, or a piece of sliding with
+/// constant acceleration.
+///
+/// @param share  of the time, 0 at `from`, 1 at `to`; also the share of the way in plan
 Motion motion_between(const Vertex& from, const Vertex& to, double share);
 
-/// The way across one patch, from `from` to `to` in its own coordinates, over a clearance that is quadratic in the
-/// share s of the way: height(s) = height_from + s ((height_to - height_from) - bend (1 - s)). A slide has no height.
+/// The way across one patch, from `from` to `to` in patch coordinates. The clearance is quadratic in the share s of the
+/// way: height(s) = height_from + s ((height_to - height_from) - bend (1 - s)). It is 0 in a slide.
 struct Span {
   PatchIndex patch;
   float p_from, q_from, p_to, q_to;    ///< patch coordinates [-]
   float height_from, height_to, bend;  ///< clearance above the ground [m]; bend is f2 dt^2
   float plan_speed_squared;            ///< [m^2/s^2]; for a slide 0
-  float rise_from, rise_to;            ///< vertical speed at the ends [m/s]; for a slide the speed itself
-  std::uint32_t impacts;               ///< at its end; more than one where the block could not move between them
+  float rise_from, rise_to;            ///< vertical speed at the ends [m/s]; for a slide the whole speed
+  std::uint32_t impacts;               ///< at its end; more than one if the block could not move between them
 };
 
-/// What is left of a block that broke, and from where on.
+/// The rest of a block after a break.
 struct Broken {
-  std::size_t vertex, span;  ///< the first of each that is its
+  std::size_t vertex, span;  ///< its first vertex and first span
   Block body;
 };
 
@@ -57,13 +59,13 @@ struct Path {
   std::vector<Span> spans;
   End end = End::Limit;
   std::uint32_t impacts = 0;
-  std::uint32_t psi_dropped = 0;         ///< impacts whose sideways tilt was left out
+  std::uint32_t psi_dropped = 0;         ///< impacts at which psi was left out
   double length = 0.0;                   ///< in space [m]
   double plan_length = 0.0;              ///< in plan [m]
   double mass = 0.0;                     ///< of the block at its end [kg]
   std::vector<Broken> breaks;            ///< in the order of time
-  std::vector<Release> pieces;           ///< what broke off; `trace_pieces` follows them
-  std::vector<BarrierPassage> barriers;  ///< that it met, in the order of time
+  std::vector<Release> pieces;           ///< pieces that broke off; `trace_pieces` follows them
+  std::vector<BarrierPassage> barriers;  ///< meetings with barriers, in the order of time
 
   void clear() {
     vertices.clear();

@@ -9,15 +9,15 @@ namespace talus {
 struct Effects;
 class Barriers;
 
-/// When a block counts as stopped, and the bounds of a trajectory. docs/physics.md, "End of a trajectory".
+/// Rules for the end of a trajectory, and its limits. docs/physics.md, "End of a trajectory".
 struct EndRules {
-  double stop_speed = 0.5;    ///< [m/s]
-  double trap_time = 5.0;     ///< within one diameter of a place for so long: trapped [s]
+  double stop_speed = 0.5;    ///< slower than this, a block can stop [m/s]
+  double trap_time = 5.0;     ///< a block that stays within one diameter for longer is trapped [s]
   double time_limit = 600.0;  ///< [s]
   std::uint32_t impact_limit = 100'000;
 };
 
-/// All that a block meets. The surface and the cover are on the same grid.
+/// Everything a block can meet. The surface and the cover are on the same grid.
 struct World {
   const Surface& surface;
   const Cover& cover;

@@ -4,10 +4,10 @@
 
 namespace talus {
 
-/// A regular north-up grid of cells: the only place where cells and metres meet.
+/// A regular north-up grid of cells: the only place that converts between cells and metres.
 ///
 /// Local coordinates are metres east and north of the grid's lower-left (south-west) corner. Column 0 is the western,
-/// row 0 the SOUTHERN one (files have the northern row first; `io` turns them over when it reads and writes).
+/// row 0 the SOUTHERN one (files have the northern row first; `io` reverses the rows when it reads and writes).
 struct Grid {
   int columns = 0, rows = 0;
   double cell_x = 1.0, cell_y = 1.0;  ///< width and height of a cell [m], > 0

@@ -8,20 +8,21 @@ namespace talus {
 
 /// Terrain of the 2D model: a polyline z(x).
 struct Profile {
-  std::vector<Eigen::Vector2d> nodes;  ///< (x, z) [m], x ascending; two at least
+  std::vector<Eigen::Vector2d> nodes;  ///< (x, z) [m], x ascending; at least two
 
   double from() const { return nodes.front().x(); }
   double to() const { return nodes.back().x(); }
-  /// Height at a place between `from` and `to` [m]; outside, that of the nearer end.
+  /// Height at x, between `from` and `to` [m]; outside, the height of the nearer end.
   double height(double x) const;
 };
 
-/// A profile as a surface that is constant across it: two rows of cells, on which the engine runs as on any DEM.
+/// A profile as a surface that is constant across it: two rows of cells. The engine treats it as any DEM.
 ///
-/// The centre of column c is at x = from + c step, so a node at a multiple of `step` from the first is met exactly and
-/// any other is moved by at most step / 2. Along a segment all columns rise by the same float, so that it is one plane
-/// to the last bit: a node's height is off by at most (columns of the segment) 2^(k - 25) m, where 2^k m is above half
-/// the relief + 1 m. That is 8 mm for a segment of 100 m in steps of 0.1 m and a relief of up to 500 m.
+/// The centre of column c is at x = from + c step. So a node at a multiple of `step` from the first node is exact in x,
+/// and any other is moved by at most step / 2. Along a segment all columns rise by the same float, so that the segment
+/// is one plane to the last bit. The error in the height of a node is at most (columns of the segment) 2^(k - 25) m,
+/// where 2^k m is above half the relief + 1 m. That is 8 mm for a segment of 100 m in steps of 0.1 m and a relief of up
+/// to 500 m.
 struct ExtrudedProfile {
   Raster<float> heights;  ///< above `datum` [m]; grid.west is `from` - step / 2, grid.south is -kProfileLine
   double datum = 0.0;     ///< [m]
@@ -30,7 +31,9 @@ struct ExtrudedProfile {
 /// y of the blocks on an extruded profile, half-way between its two rows [m, local].
 inline constexpr double kProfileLine = 1.0;
 
-/// @param step  [m], > 0; no two nodes are nearer to each other than this in x
+/// Makes the surface of a profile.
+///
+/// @param step  size of a cell along the profile [m], > 0; at most the smallest distance of two nodes in x
 ExtrudedProfile extrude(const Profile& profile, double step);
 
 }  // namespace talus

@@ -10,7 +10,7 @@
 
 namespace talus {
 
-/// The values of a raster: its own, or memory that processes share.
+/// The values of a raster, in its own memory or in memory shared by processes.
 template <class T>
 class Cells {
  public:
@@ -18,7 +18,7 @@ class Cells {
   Cells(std::size_t size, T fill, MemoryPolicy memory = {}) : own_(memory) {
     constexpr std::size_t kPiece = std::size_t{1} << 24U;
     own_.reserve(size);
-    while (own_.size() < size) {  // piece by piece, so that a map larger than the memory can be made
+    while (own_.size() < size) {  // in pieces, so that a map can be larger than the memory
       own_.resize(std::min(size, own_.size() + kPiece), fill);
       memory.keep_below_limit();
     }
@@ -48,7 +48,7 @@ class Cells {
   const T* end() const { return data_ + size_; }
   T& operator[](std::size_t i) { return data_[i]; }
   const T& operator[](std::size_t i) const { return data_[i]; }
-  /// Where the cells lie; of shared ones the heap, where what goes with them lies.
+  /// Memory policy of the cells; for shared cells the heap, which holds the data that belong to them.
   MemoryPolicy memory() const { return own_.get_allocator().memory; }
   bool operator==(const Cells& other) const { return std::equal(begin(), end(), other.begin(), other.end()); }
 
@@ -65,7 +65,7 @@ class Cells {
   std::size_t size_ = 0;
 };
 
-/// Values on a grid, row 0 in the south. What stands for a missing value is the reader's business (NaN for heights).
+/// Values on a grid, row 0 in the south. The reader of a file decides which value means "missing" (NaN for heights).
 template <class T>
 struct Raster {
   Grid grid;
@@ -79,13 +79,16 @@ struct Raster {
   const T& at(int column, int row) const { return values[grid.index(column, row)]; }
 };
 
-/// Where the rasters of a scenario lie.
+/// Memory for the rasters of a scenario.
 struct RasterMemory {
   MemoryPolicy policy;
   SharedMemory* shared = nullptr;  ///< null: each process has its own
 };
 
-/// Makes the values of a raster, which `read` fills: once on a machine where its processes share memory, else in each.
+/// Makes the values of a raster and fills them by `read`: once per machine if its processes share memory, else in each
+/// process.
+///
+/// @param before  value of the cells before `read`, if they are not shared
 template <class T, class Read>
 void fill_raster(Raster<T>& raster, T before, const RasterMemory& memory, Read read) {
   const std::size_t cells = raster.grid.cells();

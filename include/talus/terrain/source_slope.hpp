@@ -3,21 +3,21 @@
 
 namespace talus {
 
-/// Steepness of a cell by Horn's formula over its eight neighbours, as `gdaldem slope`, QGIS and ArcGIS have it.
+/// Steepness of a cell by Horn's formula over its eight neighbours, as in `gdaldem slope`, QGIS and ArcGIS.
 ///
-///   z_x = ((z_NE + 2 z_E + z_SE) - (z_NW + 2 z_W + z_SW)) / (8 dx), z_y alike
+///   z_x = ((z_NE + 2 z_E + z_SE) - (z_NW + 2 z_W + z_SW)) / (8 dx), z_y likewise
 ///
-/// @return tangent of the slope angle [m/m]; NaN where one of the nine heights is missing or off the grid
+/// @return tangent of the slope angle [m/m]; NaN if one of the nine heights is missing or off the grid
 /// Source: Horn (1981), "Hill shading and the reflectance map", Proc. IEEE 69(1).
 double horn_slope(const Raster<float>& heights, int column, int row);
 
-/// Steepness from which a cell counts as a candidate source where none is given [rad]:
+/// Default threshold of source cells: a cell at least this steep is a candidate source [rad].
 ///
 ///   55 deg * (cell / 1 m)^-0.075
 ///
 /// Coarse cells smooth cliffs away, so the threshold falls as they grow: 55 deg at 1 m, 48.7 at 5 m, 43.2 at 25 m.
 /// @param cell size of the cells [m], > 0
-/// Source: docs/sources.md, "The threshold", which says how well it is founded: an assumption.
+/// Source: docs/sources.md, "The threshold". It is an assumption; that section gives its basis.
 double default_source_slope(double cell);
 
 }  // namespace talus

@@ -8,7 +8,7 @@
 
 namespace talus {
 
-/// What a trajectory goes through where no effect acts: the plain engine.
+/// The plain engine, for a run without effects.
 class Effectless {
  public:
   Effectless(const World& world, const Release&) : world_(world) {}
@@ -32,21 +32,22 @@ class Effectless {
   const World& world_;
 };
 
-/// The same with effects. One that is at its off value changes no bit.
+/// The engine with effects, with the functions of Effectless. An effect at its off value changes no bit.
 class ActiveEffects {
  public:
   ActiveEffects(const World& world, const Release& release);
 
-  /// The ground of a place as this block meets it on this day: `change_ground` of each effect that has one.
+  /// The ground of a place for this block on this day, after `change_ground` of each effect that has one.
   Ground ground(const Vec3& place, const Block& body);
-  /// The impact law with `change_restitution` and `change_rebound` of each effect, where `ground` was last asked for.
+  /// The impact law with `change_restitution` and `change_rebound` of each effect, at the place of the last call of
+  /// `ground`.
   Contact impact(const Ground& ground, const Block& body, const Motion& motion, const Vec3& normal,
                  const Asperity& asperity);
-  /// fragmentation: what the last impact breaks.
+  /// fragmentation: breaks the block if the last impact was hard enough.
   void after_impact(const Vec3& normal, Block& body, Motion& motion, Path& path) const;
-  /// vegetation-drag, air-drag, forest-stems.
+  /// A flight with vegetation-drag, air-drag and forest-stems.
   Outcome fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path);
-  /// The same three, and rolling-resistance.
+  /// A slide with these three and rolling-resistance.
   SlideEnd slide(Motion& motion, PatchIndex& at, const Block& body, Path& path);
 
  private:
@@ -62,7 +63,7 @@ class ActiveEffects {
   const Effects& effects_;
   const Release& release_;
   std::optional<DragFlight> drag_;
-  std::uint8_t zone_ = 0;  // of the impact
+  std::uint8_t zone_ = 0;  // of the place of `ground`, as x_ and y_
   double x_ = 0.0, y_ = 0.0, break_energy_ = 0.0;
 };
 

@@ -18,12 +18,12 @@ double stem_share(double eccentricity) {
 Vec3 velocity_after_stem(const Vec3& velocity, double taken, double eccentricity) {
   const double speed_squared = velocity.squaredNorm();
   if (!(speed_squared > 0.0)) return velocity;
-  const double left = std::max(0.0, 1.0 - 2.0 * taken / speed_squared);  // of v^2
+  const double left = std::max(0.0, 1.0 - 2.0 * taken / speed_squared);  // share of v^2
   const double across = eccentricity, towards = std::sqrt(1.0 - across * across);
   const double towards_after = std::sqrt(std::max(0.0, towards * towards - (1.0 - left)));
   const double length = std::sqrt(across * across + towards_after * towards_after);
   if (!(length > 0.0)) return Vec3::Zero();
-  // The angle by which the way turns: from (towards, across) to (towards_after, across).
+  // Angle between the directions (towards, across) before and (towards_after, across) after.
   const double cosine = (towards * towards_after + across * across) / length;
   const double sine = across * (towards - towards_after) / length;
   const double kept = std::sqrt(left);

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kRankExponent = 1.2;  // of the power law of mass by rank: 3 / D_f with D_f = 2.5
 
-/// A direction within the cone around `axis`, evenly spread over its solid angle, and not into the surface.
+/// Random direction in the cone around `axis`, uniform over its solid angle. A direction into the surface is mirrored
+/// at the surface.
 Vec3 direction_in_cone(const Vec3& axis, const Vec3& normal, const Words& words) {
   const double narrowest = sine_cosine_of_turn(0.5 * kConeAngle / 360.0).cosine;
   const double cosine = 1.0 - uniform(words[0]) * (1.0 - narrowest), sine = std::sqrt(1.0 - cosine * cosine);

@@ -21,7 +21,7 @@ constexpr std::array<double, 12> kArcSine = [] {
   return series;
 }();
 
-/// asin(x) of 0 <= x <= sqrt(1/2): its series after halving the angle twice.
+/// asin(x) for 0 <= x <= sqrt(1/2), by its series after halving the angle twice.
 double arc_sine(double x) {
   for (int halving = 0; halving < 2; ++halving) x /= std::sqrt(2.0 + 2.0 * std::sqrt(1.0 - x * x));
   const double q = x * x;  // below 0.0381

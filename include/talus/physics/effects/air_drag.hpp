@@ -8,9 +8,9 @@ struct AirDrag {
   double coefficient = 0.0;  ///< C_d [-]; 0: off
 };
 
-inline constexpr double kAirDensity = 1.2;  ///< at 15 degrees and 200 m above the sea [kg/m^3]
+inline constexpr double kAirDensity = 1.2;  ///< at 15 degrees Celsius, 200 m above sea level [kg/m^3]
 
-/// air-drag: share of the speed that is lost per metre, 1/2 rho C_d A / m [1/m], with the section A of the sphere.
+/// air-drag: share of the speed lost per metre, 1/2 rho C_d A / m [1/m], with the cross-section A of the sphere.
 /// Source: the drag equation; docs/effects.md, "air-drag".
 inline double air_drag_rate(const AirDrag& drag, const Block& block) {
   return 0.5 * kAirDensity * drag.coefficient * kPi * block.radius() * block.radius() / block.mass;

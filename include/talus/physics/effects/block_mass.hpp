@@ -16,12 +16,12 @@ struct BlockMass {
   void change_ground(Ground& ground, const Block& block, int day) const;
 };
 
-/// block-mass: what theta_scale is multiplied by, (D0/D)^roughness. docs/effects.md, "block-mass".
+/// block-mass: factor on theta_scale, (D0/D)^roughness. docs/effects.md, "block-mass".
 inline double size_roughness(const BlockMass& effect, const Block& block) {
   return power(effect.reference_diameter / block.diameter, effect.roughness);
 }
 
-/// What En50 is multiplied by, (D/D0)^stiffness; stiffness 1 cancels the D of the deformation energy.
+/// Factor on En50, (D/D0)^stiffness. A stiffness of 1 cancels the D of the deformation energy.
 inline double size_stiffness(const BlockMass& effect, const Block& block) {
   return power(block.diameter / effect.reference_diameter, effect.stiffness);
 }

@@ -6,10 +6,10 @@
 
 namespace talus {
 
-/// Where an effect acts: everywhere, in some zones, or in the cells of a mask (polygons).
+/// Area where an effect acts: everywhere, in some zones, or in the cells of a mask (polygons).
 struct EffectArea {
-  std::vector<std::uint8_t> zones;  ///< by zone of the cover: 1 where it acts; empty: in all of them
-  Raster<std::uint8_t> mask;        ///< 1 where it acts; empty: everywhere
+  std::vector<std::uint8_t> zones;  ///< per zone of the cover: 1 if it acts there; empty: in all zones
+  Raster<std::uint8_t> mask;        ///< per cell: 1 if it acts there; empty: everywhere
 
   bool covers(std::uint8_t zone, double x, double y) const {
     return (zones.empty() || zones[zone] != 0) &&

@@ -11,63 +11,63 @@
 #include "talus/base/bounds.hpp"
 #include "talus/physics/effects/effect_area.hpp"
 
-/// The form of an entry of the registry of effects (registry.hpp). docs/adding-an-effect.md.
+/// Structure of an entry in the registry of effects (registry.hpp). docs/adding-an-effect.md.
 namespace talus {
 
 struct Effects;
 
-/// Where `talus diagnose` looks for an effect.
+/// Part of the data in which `talus diagnose` looks for an effect.
 enum class Sought {
   Nowhere,
   Everywhere,
   InZones,   ///< everywhere, and in each zone of the ground that the paths meet
-  OfShapes,  ///< in each of its variants, where some blocks are no spheres
-  OnDays     ///< on each day of releases, where there are several
+  OfShapes,  ///< in each of its variants, if some blocks are not spheres
+  OnDays     ///< on each day of releases, if there are several
 };
 
-/// What a number of a search is a multiple of: 1, or the median of the blocks of the campaign.
+/// Unit of the numbers of a search: 1, or the median of the blocks of the campaign.
 enum class Typical { One, BlockMass /* [kg] */, BlockDiameter /* [m] */ };
 
-/// How `talus diagnose` searches a number of an effect.
+/// Search of `talus diagnose` over a number of an effect.
 struct SearchRange {
-  double lower, upper;  ///< within the bounds of the number, if only by being cut off there
-  double noticed;       ///< the amount that one would notice
+  double lower, upper;  ///< limits of the search, cut at the bounds of the number
+  double noticed;       ///< smallest change that matters in practice
   Typical times = Typical::One;
-  double off = 0.0;                    ///< where the search starts
-  std::string_view inverse_unit = {};  ///< given: 1/number is searched, 0 where the number is 0
+  double off = 0.0;                    ///< value at which the search starts
+  std::string_view inverse_unit = {};  ///< if given, 1/number is searched; 0 stands for the number 0
 };
 
-/// A way to act that is tried beside others: the value of a number that is not searched.
+/// A fixed value of a number that is not searched. Each variant is tried.
 struct Variant {
-  std::string_view where;  ///< in the results of `diagnose`; empty: none
+  std::string_view where;  ///< its name in the results of `diagnose`; empty: no variant
   double value = 0.0;
 };
 
-/// A number of an effect, with its key in full: "vegetation-drag.coefficient".
+/// A number of an effect, with its full key: "vegetation-drag.coefficient".
 struct EffectField : Field<Effects> {
   std::optional<SearchRange> search;
-  Typical set_to = Typical::One;      ///< not One: a search sets it to this median
-  std::array<Variant, 2> variants{};  ///< a search tries each
+  Typical set_to = Typical::One;      ///< if not One, a search sets the number to this median
+  std::array<Variant, 2> variants{};  ///< a search tries each of them
 
   bool is_strength() const { return !std::isnan(off); }
 };
 
 inline constexpr std::size_t kMostFields = 8;
 
-/// All that the program knows of one effect, beside its physics: readers, writers, `diagnose` and tests use it.
+/// Description of one effect, without its physics. Readers, writers, `diagnose` and tests use it.
 struct EffectEntry {
   std::string_view name;  ///< in scenario, docs and diagnosis
   Sought sought;
-  int turn;  ///< its place among the candidates of `diagnose`: small numbers first
+  int turn;  ///< its rank among the candidates of `diagnose`: small numbers first
   std::array<EffectField, kMostFields> all_fields;
   std::size_t field_count;
   EffectArea* (*area_in)(Effects&);        ///< null: it acts everywhere
   std::vector<int>* (*days_in)(Effects&);  ///< null: it acts on all days
 
   std::span<const EffectField> fields() const { return std::span(all_fields).first(field_count); }
-  /// "coefficient".
+  /// Key without the name of the effect: "coefficient".
   std::string_view key_of(const EffectField& field) const { return field.key.substr(name.size() + 1); }
-  /// Whether one of its strengths is not at its off value.
+  /// Whether a strength of the effect differs from its off value.
   bool acts(const Effects& effects) const;
 
   EffectArea* area(Effects& effects) const { return area_in == nullptr ? nullptr : area_in(effects); }
@@ -76,7 +76,7 @@ struct EffectEntry {
   const std::vector<int>* days(const Effects& effects) const { return days(const_cast<Effects&>(effects)); }
 };
 
-/// An entry that knows its member of `Effects` at compile time.
+/// An entry that holds its member of `Effects` at compile time.
 template <auto effect>
 struct EntryOf : EffectEntry {
   static constexpr auto kMember = effect;
@@ -106,7 +106,7 @@ constexpr std::size_t members_of() {
     return n;
 }
 
-/// A number of an effect as the registry says it.
+/// A number of an effect, as written in the registry.
 template <auto member>
 struct Number {
   Bounds bounds;
@@ -121,13 +121,13 @@ template <auto member>
 constexpr Number<member> strength(const Bounds& bounds, const std::optional<SearchRange>& search) {
   return {bounds, 0.0, search};
 }
-/// A number that says how the effect acts.
+/// A number that controls how the effect acts, not how strongly.
 template <auto member>
 constexpr Number<member> manner(const Bounds& bounds) {
   return {bounds};
 }
 
-/// What a search reaches must be allowed in a file, else a fit writes one that no reader takes.
+/// Whether a search stays within the bounds. Otherwise a fit could write a file that cannot be read.
 constexpr bool within(const Bounds& bounds, const std::optional<SearchRange>& search) {
   return !search || search->times != Typical::One || !search->inverse_unit.empty() ||
          (bounds.min <= search->lower && search->upper <= bounds.max);
@@ -147,7 +147,7 @@ constexpr EffectField lift(const Number<member>& number) {
           number.variants};
 }
 
-/// The entry of one effect; throws, which is an error of the compiler, where it contradicts itself.
+/// Makes the entry of one effect. A contradiction in it throws, which is an error at compile time.
 template <auto effect, auto... members>
 consteval EntryOf<effect> entry(std::string_view name, Sought sought, int turn, const Number<members>&... numbers) {
   using Effect = EffectType<effect>;

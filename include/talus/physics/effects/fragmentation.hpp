@@ -7,35 +7,37 @@ namespace talus {
 
 /// A block that breaks at a hard impact.
 struct Fragmentation {
-  double threshold = 0.0;  ///< energy lost across the plane, per mass, above which it breaks [J/kg]; 0: never
+  double threshold = 0.0;  ///< it breaks if it loses more normal energy per mass than this [J/kg]; 0: never
   double largest = 0.5;    ///< share of the mass that the largest piece keeps, in [1/2, 1)
   EffectArea where;
 };
 
 /// fragmentation. docs/effects.md, "fragmentation".
 
-inline constexpr int kPiecesAtOnce = 4;        ///< most pieces that break off at one impact
-inline constexpr double kSmallestPiece = 1.0;  ///< [kg]: what would be smaller stays with its neighbour
-inline constexpr double kConeAngle = 50.0;     ///< opening of the cone in which pieces fly, side to side [deg]
-inline constexpr double kBreakKeeps = 0.99;    ///< share of the kinetic energy that is left
+inline constexpr int kPiecesAtOnce = 4;        ///< largest number of pieces that break off at one impact
+inline constexpr double kSmallestPiece = 1.0;  ///< [kg]; if a piece would be smaller, fewer pieces break off
+inline constexpr double kConeAngle = 50.0;     ///< full opening angle of the cone of directions [deg]
+inline constexpr double kBreakKeeps = 0.99;    ///< share of the translational energy that is kept
 
-/// Energy lost across the plane of an impact, per mass [J/kg]: 1/2 v_n^2 (1 - k_n^2).
+/// Energy of the motion normal to the plane that is lost at an impact, per mass [J/kg]: 1/2 v_n^2 (1 - k_n^2).
 inline double break_energy(double v_n, double k_n) {
   return 0.5 * v_n * v_n * (1.0 - k_n * k_n);
 }
 
-/// The masses of what a block breaks into: the first stays the block of the path. Their sum is the mass but for
-/// rounding. One mass only where no piece would reach kSmallestPiece.
+/// Masses of the pieces of a block [kg]: the first is the largest, which continues as the block of the path. Their sum
+/// is the mass of the block except for rounding. Only one mass if no piece would reach kSmallestPiece.
 ///
-/// @param most  pieces that may break off
+/// @param mass  of the block [kg]
+/// @param most  largest number of pieces that may break off
 std::vector<double> piece_masses(const Fragmentation& effect, double mass, std::uint32_t most);
 
 /// Breaks a block that has just rebounded.
 ///
-/// @param block    becomes the largest piece;  motion: its velocity is scaled by sqrt(kBreakKeeps)
 /// @param normal   of the smooth surface: no piece flies into it
-/// @param path     gets the pieces, each at the same place with the same spin, and the break
-/// @return         whether it broke
+/// @param block    becomes the largest piece
+/// @param motion   its velocity is multiplied by sqrt(kBreakKeeps)
+/// @param path     gets the break and the pieces, each with the same position and spin
+/// @return         whether the block broke
 bool break_up(const Fragmentation& effect, const Release& release, const Vec3& normal, Block& block, Motion& motion,
               Path& path);
 

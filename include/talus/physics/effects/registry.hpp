@@ -12,14 +12,14 @@
 #include "talus/physics/effects/vegetation_drag.hpp"
 #include "talus/physics/effects/wet_ground.hpp"
 
-/// The one list of what PIERRE 2 leaves out and Talus can add: docs/effects.md. A new effect has its line in `Effects`
-/// and its entry in `kEntries`; all else follows from them. docs/adding-an-effect.md.
+/// The list of all effects, which Talus adds to PIERRE 2: docs/effects.md. A new effect needs a line in `Effects` and
+/// an entry in `kEntries`; all else follows from them. docs/adding-an-effect.md.
 ///
-/// At an impact an effect acts by member functions of its struct, of which it has those that it needs:
+/// At an impact an effect acts by these member functions of its struct; it has only those that it needs:
 /// `change_ground(ground, block, day)`, `change_restitution(k, block)` and `change_rebound(after, moment)`.
 namespace talus {
 
-/// The parameters of each effect. A fresh one is off, and off is bit-identical to absent.
+/// The parameters of each effect. By default each effect is off; off is bit-identical to absent.
 struct Effects {
   VegetationDrag vegetation_drag;
   ForestStems forest_stems;
@@ -39,7 +39,7 @@ namespace registry {
 
 inline constexpr auto kAbove = Bounds::AboveMin;
 
-/// In the order in which files list them, and in which they change the ground and the rebound of one impact.
+/// The entries, in the order of the files. Effects change the ground and the rebound of one impact in the same order.
 inline constexpr std::tuple kEntries{
     entry<&Effects::vegetation_drag>(
         "vegetation-drag", Sought::InZones, 1,
@@ -84,7 +84,7 @@ inline constexpr std::tuple kEntries{
             SearchRange{.lower = 0.0, .upper = 4.0, .noticed = 0.7}),
         strength<&WetGround::drag>({"wet-ground.drag", "1", "Et50 is multiplied by exp(-drag) on a wet day", -5.0, 5.0},
                                    SearchRange{.lower = 0.0, .upper = 4.0, .noticed = 0.7})),
-    // M_E stays at 15 MN/m2 in a search: soil of 2 MN/m2, with a deeper scar, is as a drag five times larger.
+    // M_E stays at 15 MN/m2 in a search. Soil of 2 MN/m2, with a deeper scar, acts like a drag 5 times larger.
     entry<&Effects::soft_ground>(
         "soft-ground", Sought::InZones, 3,
         strength<&SoftGround::drag>({"soft-ground.drag", "1", "C_d of the soil on the ploughing block", 0.0, 50.0},
@@ -121,10 +121,10 @@ static_assert(members_of<Effects>() == std::tuple_size_v<decltype(kEntries)>,
 /// The entries of all effects.
 std::span<const EffectEntry> effect_entries();
 
-/// The entry of this name; null where there is none.
+/// The entry with this name; null if there is none.
 const EffectEntry* find_effect(std::string_view name);
 
-/// Calls visit(effect) with the parameters of each effect, in the order of the registry. Unrolled by the compiler.
+/// Calls visit(effect) with the parameters of each effect, in the order of the registry. The compiler unrolls the loop.
 template <class AllEffects, class Visit>
 void for_each_effect(AllEffects& effects, Visit visit) {
   std::apply([&](const auto&... entry) { (visit(effects.*entry.kMember), ...); }, registry::kEntries);

@@ -17,18 +17,18 @@ struct SoftGround {
 
 inline constexpr double kSoilDensity = 1700.0;  ///< [kg/m^3]
 
-/// Depth of the scar of an impact [m]: 0.1 M^(1/3) M_E^(-0.4) v^0.8, at most the radius. M_E in kN/m^2.
+/// Depth of the scar of an impact [m]: 0.1 m^(1/3) M_E^(-0.4) v_n^0.8, at most the radius; here M_E is in kN/m^2.
 ///
 /// @param v_n  speed into the ground [m/s], >= 0
 /// Source: Lu et al. (2019); docs/effects.md, "soft-ground".
 double scar_depth(const SoftGround& soft, const Block& block, double v_n);
 
-/// Area of a circle's segment of height d, 0 <= d <= radius [m^2].
+/// Area of a segment of a circle with height d, 0 <= d <= radius [m^2].
 ///
-/// Error: below 1e-14 of the area of the circle. Made of + - * / and square roots.
+/// Error: below 1e-14 of the area of the circle. Uses + - * / and square roots only.
 double segment_area(double radius, double d);
 
-/// soft-ground: share of the tangential speed that is left after an impact, exp(-1/2 C_d rho A(d) L / m).
+/// soft-ground: share of the tangential speed left after an impact, exp(-1/2 C_d rho A(d) L / m).
 double scar_keeps(const SoftGround& soft, const Block& block, double v_n);
 
 inline void SoftGround::change_rebound(Rebound& after, const ImpactMoment& moment) const {

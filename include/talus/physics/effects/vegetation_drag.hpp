@@ -10,7 +10,7 @@ struct VegetationDrag {
   EffectArea where;
 };
 
-/// vegetation-drag: share of the speed that is lost per second, c/m [1/s]; 0 from the top of the stand upwards.
+/// vegetation-drag: share of the speed lost per second, c/m [1/s]; 0 at the top of the stand and above.
 ///
 /// @param clearance  height of the block above the ground [m]
 /// Source: Leine et al. (2014), as in RAMMS::Rockfall; docs/effects.md, "vegetation-drag".

@@ -12,23 +12,23 @@ namespace talus {
 struct WetGround {
   double softening = 0.0;  ///< En50 is multiplied by exp(-softening) on a wet day [-]
   double drag = 0.0;       ///< Et50 is multiplied by exp(-drag) on a wet day [-]
-  std::vector<int> days;   ///< the wet ones
+  std::vector<int> days;   ///< the wet days
   EffectArea where;
 
   void change_ground(Ground& ground, const Block& block, int day) const;
 };
 
-/// Whether a day is one of the wet ones.
+/// Whether a day is wet.
 inline bool is_wet(const WetGround& effect, int day) {
   return std::find(effect.days.begin(), effect.days.end(), day) != effect.days.end();
 }
 
-/// wet-ground: what En50 is multiplied by on a wet day. docs/effects.md, "wet-ground".
+/// wet-ground: factor on En50 on a wet day. docs/effects.md, "wet-ground".
 inline double wet_stiffness(const WetGround& effect) {
   return exponential(-effect.softening);
 }
 
-/// What Et50 is multiplied by on a wet day.
+/// Factor on Et50 on a wet day.
 inline double wet_hold(const WetGround& effect) {
   return exponential(-effect.drag);
 }
