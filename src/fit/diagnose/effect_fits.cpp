@@ -181,8 +181,7 @@ FittedCandidate EffectFits::fit_effect(const FittedModel& base, const EffectVerd
   const auto asked = static_cast<double>(std::count(rows_.begin(), rows_.end(), true));
   out.price = rules.price * (static_cast<double>(candidate.parameters.size()) + candidate.searched) / asked;
   out.place_price = rules.price * candidate.searched / asked;
-  out.with_ground =
-      verdict.p_value < std::max(rules.joint_level, options_.first_level);  // always for effects that may be chosen
+  out.with_ground = verdict.p_value < std::max(rules.joint_level, options_.first_level);  // all that may be chosen
   std::vector<Parameter> free = joined(out.with_ground ? base.free : std::vector<Parameter>{}, candidate.parameters);
   const Index added = std::ssize(candidate.parameters);
   FitOptions how = fit_options();
@@ -259,8 +258,7 @@ double EffectFits::cross_validated(const FittedModel& fitted, ObserveOptions how
   const LocalModel local(problem, options, fit, fitted.spread);
   const std::uint32_t orders = options_.rules.fold_orders;
   double sum = 0.0;
-  for (std::uint32_t number = 0; number < orders;
-       ++number, how.first_trial += how.trials)  // each order has its own trials
+  for (std::uint32_t number = 0; number < orders; ++number, how.first_trial += how.trials)  // new trials for each
     sum += error_in_folds(local, fitted, how, shuffled_rows(number));
   return sum / orders;
 }

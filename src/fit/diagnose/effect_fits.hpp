@@ -18,7 +18,7 @@ struct LeastGain {
 /// known. docs/closing-the-loop.md, "Diagnosis".
 class EffectFits {
  public:
-  /// @param proceed called now and then with the share of the fit that is done; false: FitInterrupted is thrown
+  /// @param proceed  called now and then with the share of the fit that is done; false: FitInterrupted is thrown
   EffectFits(const Campaign& campaign, const DiagnoseOptions& options, const std::vector<bool>& rows,
              std::function<bool(double)> proceed)
       : campaign_(campaign), options_(options), rows_(rows), proceed_(std::move(proceed)) {}

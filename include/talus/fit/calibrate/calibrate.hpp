@@ -5,9 +5,9 @@ namespace talus {
 
 /// Fits the free parameters to the asked rows of a campaign.
 ///
-/// @param start model whose other parameters keep their values
+/// @param start  model whose other parameters keep their values
 /// @param free   at least one
-/// @param rows true for each block that is used; size: blocks. Spreads come from all fitting rows
+/// @param rows   true for each block that is used; size: blocks. Spreads come from all fitting rows
 ///
 /// Minimises the mean normalised score, its groups weighed (`weigh_groups`), plus the prior with NLopt's LN_BOBYQA
 /// (Powell 2009; quadratic models, no derivatives) from the start and from the best of a low-discrepancy set. The noise

@@ -22,7 +22,7 @@ struct FittedModel {
 struct FittedCandidate {
   std::string effect, where;
   std::vector<Parameter> parameters;   ///< of the candidate itself
-  std::size_t tested = 0;              ///< number of them that the score test moves; at zero they are no effect
+  std::size_t tested = 0;              ///< number of them that the score test moves; all at zero: no effect
   std::vector<double> values;          ///< fitted values of the parameters
   bool with_ground = true;             ///< false: the ground was held, because the score test found nothing
   double p_value = 1.0;                ///< of the score test, corrected for the places of the effect

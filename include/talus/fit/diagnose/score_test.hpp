@@ -28,7 +28,7 @@ struct Corrected {
 /// places.
 ///
 /// @param simulated  by effect and data set: the smallest p-value over its places
-/// @param measured by effect: the smallest p-value of the measured data over its places
+/// @param measured   by effect: the smallest p-value of the measured data over its places
 Corrected corrected(std::span<const std::vector<double>> simulated, std::span<const double> measured);
 
 struct ScoreTestOptions {

@@ -59,7 +59,7 @@ TEST(Effects, AtTheirOffValuesChangeNoBit) {
     ASSERT_TRUE(same_bits(plain.run(release_of(block)), acting.run(release_of(block)))) << block;
 }
 
-/// A strength that is at its off value changes no bit, and one that is on shows: else the engine does not know it.
+/// A strength at its off value changes no bit. One that is on changes a path; else the engine does not use it.
 TEST(Effects, EachStrengthActsAndItsOffValueTakesItAway) {
   for (const EffectEntry& entry : effect_entries())
     for (const EffectField& field : entry.fields()) {
