@@ -1,4 +1,4 @@
-"""Effects through `talus run`: where they act, what they change, that a run can be replayed."""
+"""Effects in `talus run`: they act in their places, change what they should, and a run can be replayed."""
 import unittest
 
 import numpy as np

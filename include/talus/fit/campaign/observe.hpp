@@ -67,7 +67,7 @@ struct ObserveOptions {
 /// Simulates every block of a campaign and measures the paths as the campaign did.
 ///
 /// @return one entry per block of the campaign, with trials = 0 for those not asked for (or not reached when `proceed`
-/// returned false)
+///         returned false)
 ///
 /// Common random numbers: the draws of (seed, block, trial), the place of release in its disc and the errors of the
 /// measurement among them, do not depend on the model, so that two models are compared with the same random numbers.
