@@ -41,13 +41,13 @@ class Loop(Case):
             self.assertEqual(found["probability"], found["rounds"][0]["p_value"])
             self.assertEqual((e["reduction"], found["where"], found["indistinguishable_from"]), (0, "", []))
         self.assertEqual(found["rounds"][-1]["effect"] in ("none", "unexplained"), True)
-        for round in found["rounds"][1:]:  # those of the first are at the top
+        for round in found["rounds"][1:]:  # the values of the first round are at the top
             self.assertNotIn(found["effect"], {c["effect"] for c in round["candidates"]})
         with open(f"{out}/report.html", encoding="utf-8") as file:
             page = file.read()
         self.assertIn("<svg", page)
         self.assertNotIn("http", page)  # self-contained
-        # What was found is a model that `score` reads.
+        # `score` reads the model that was found.
         self.run_well("score", campaign, "--parameters", f"{out}/with_effect.toml", "-q")
         return found
 

@@ -12,7 +12,7 @@
 namespace talus {
 namespace {
 
-constexpr std::size_t kMostZones = 256;  // that a raster of bytes can tell apart
+constexpr std::size_t kMostZones = 256;  // numbers that a raster of bytes can hold
 
 double median_of(const Campaign& campaign, const std::function<double(const MeasuredBlock&)>& value) {
   std::vector<double> values;

@@ -37,7 +37,7 @@ struct MeasuredBlock {
   std::string group;             ///< empty: none
   bool holdout = false;          ///< never enters a fit
 
-  std::optional<Eigen::Vector2d> stop;           ///< where it came to rest [m, local]
+  std::optional<Eigen::Vector2d> stop;           ///< place of rest [m, local]
   std::optional<double> stop_mass;               ///< mass that arrived there [kg]
   std::vector<std::optional<Passage>> passages;  ///< first crossing of each screen of the campaign; empty: none
   std::vector<Sample> samples;                   ///< in the order of the file

@@ -42,12 +42,12 @@ struct FittedCandidate {
 
 /// One turn of the loop.
 struct DiagnosisRound {
-  std::string effect = "none";  ///< what was found; "none", "unexplained"
+  std::string effect = "none";  ///< the one that was found, "none" or "unexplained"
   std::string where;
   std::vector<FittedCandidate> candidates;  ///< every effect at its best place, best first
   std::vector<std::string> alike;           ///< effects that these data cannot tell apart from it
   std::vector<ResidualRow> residual;        ///< of the fitting rows, before the effect is added
-  double p_value = 1.0;                     ///< that the residual is noise: score test over all effects and places
+  double p_value = 1.0;                     ///< of the score test over all effects and places
 };
 
 /// Trajectories of each block.
@@ -59,7 +59,7 @@ struct Diagnosis {
   FittedModel base;                    ///< the ground alone, simulated with the random numbers of `with_effects`
   std::vector<DiagnosisRound> rounds;  ///< the last one found "none" or "unexplained"
   FittedModel with_effects;            ///< the last model; the base if nothing was found
-  TrialsPerBlock trials;               ///< that were simulated
+  TrialsPerBlock trials;               ///< numbers that were simulated
 };
 
 struct DiagnoseOptions {
