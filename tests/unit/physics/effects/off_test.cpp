@@ -102,8 +102,7 @@ TEST(Effects, OutsideTheirPlaceChangeNoImpact) {  // flights are cut in pieces t
         if (field.is_strength()) field.set(e, field.off);  // acts everywhere
     }
   }
-  e.vegetation_drag.coefficient = e.forest_stems.density =
-      0.0;  // for vegetation drag see drag_test
+  e.vegetation_drag.coefficient = e.forest_stems.density = 0.0;  // for vegetation drag see drag_test
   for (std::uint32_t block = 0; block < 40; ++block)
     ASSERT_TRUE(same_bits(plain.run(release_of(block)), acting.run(release_of(block)))) << block;
 }
