@@ -1,4 +1,4 @@
-# ctest -R layers: every #include "talus/..." points to its own layer or to one below; only io opens files.
+# ctest -R layers: every #include "talus/..." points to its own layer or to one below; only io and run include headers for files.
 set(order base terrain physics simulate products fit io run)
 set(wrong "")
 foreach(layer IN LISTS order)

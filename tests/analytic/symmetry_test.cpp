@@ -13,7 +13,7 @@ using test::Numbers;
 
 constexpr Ground kUpperTalus{.theta_scale = 1.0, .psi_scale = 0.9, .shape_max = 1.5};
 
-/// One of the eight ways to put a square map on the table: k quarter turns, after a mirroring of x or not.
+/// One of the eight orientations of a square map: k quarter turns, with or without a mirroring of x before them.
 struct Placement {
   int quarters;
   bool mirrored;
@@ -56,7 +56,7 @@ struct Statistics {
   int stopped = 0;
 };
 
-/// Places of the scene are turned into the map, and what comes out is turned back.
+/// Paths of blocks in the turned map. Releases are turned into the map, the paths are turned back.
 std::vector<Path> trajectories(const Raster<float>& scene, const Placement& placement, std::uint64_t seed,
                                std::uint32_t count) {
   const Surface surface(placed(scene, placement));

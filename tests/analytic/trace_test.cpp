@@ -178,7 +178,7 @@ TEST(Start, NaNEndsAtOnce) {
   EXPECT_LT(scene.run({100.3, 99.1, nan}, Vec3::Zero()).vertices.size(), 10U);
 }
 
-/// Odd scenes: everything is finite, ends, and hangs together.
+/// Checks that a path in an odd scene is finite, ends and has no gaps.
 void expect_sound(const Scene& scene, const Path& path) {
   ASSERT_GE(path.vertices.size(), 2U);
   ASSERT_EQ(path.vertices.front().event, Event::Release);

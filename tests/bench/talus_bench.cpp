@@ -86,7 +86,8 @@ void trace_only(benchmark::State& state) {
   per(state, "ns_per_plan_m", static_cast<std::uint64_t>(s.plan_length));
 }
 
-/// Crosses the patches between two vertices along a straight line and reads each: no ground to meet, nothing kept.
+/// Crosses the patches between two vertices along a straight line and reads each. No contact with the ground is looked
+/// for, and nothing is stored.
 double walk(const Surface& surface, const Vertex& from, const Vertex& to) {
   const double u = surface.u_of(from.motion.position.x()), v = surface.v_of(from.motion.position.y());
   const double du = surface.u_of(to.motion.position.x()) - u, dv = surface.v_of(to.motion.position.y()) - v;

@@ -1,4 +1,4 @@
-"""Runs of one name at the same time, and runs that are asked for again: nothing is lost, and nobody works twice."""
+"""Two runs into one folder at the same time, and repeated runs: nothing is lost, and no work is done twice."""
 import os
 import shutil
 import signal
@@ -14,7 +14,7 @@ class Again(RunCase):
         return subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
 
     def killed(self, out, *more, percent=20):
-        """A run that was killed when so much of it was done."""
+        """Starts a run and kills it when `percent` of it is done."""
         process = self.start(out, "--progress=machine", *more)
         self.wait_for_progress(process, percent)
         process.kill()
@@ -23,7 +23,7 @@ class Again(RunCase):
     def test_two_runs_of_one_name(self):
         first = self.start("out", "--trajectories", "4000", "--progress=machine")
         self.wait_for_progress(first, 1)
-        for more in ([], ["--overwrite"], ["--resume"]):  # long before it has kept anything
+        for more in ([], ["--overwrite"], ["--resume"]):  # long before it has saved anything
             self.fails(2, "another process is writing it",
                        arguments=["run", self.path("s.toml"), "-o", self.path("out"), "-q", *more])
         first.send_signal(signal.SIGINT)
@@ -100,7 +100,7 @@ class Again(RunCase):
         self.assertEqual(self.unfinished("out"), [])
 
     def test_parts_of_other_folders(self):
-        """Machines may have the same files in other places; another content is another plan."""
+        """The same files in another place are the same plan, as on another machine; another content is another plan."""
         self.run_scenario("whole")
         self.run_scenario("part1", "--part", "1/2")
         os.mkdir(self.path("node"))

@@ -1,4 +1,4 @@
-"""Barriers: their design from the crossings of a run, and what they hold in the walk."""
+"""Barriers: their design from the crossings of a run, and their effect on the blocks of a run."""
 import csv
 import json
 import math

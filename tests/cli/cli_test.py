@@ -1,4 +1,4 @@
-"""What the program says and leaves behind where something is wrong: exit codes, one line, no half results."""
+"""Errors of the program: exit codes, messages of one line, no half results."""
 import os
 import re
 import resource
@@ -111,7 +111,7 @@ class Input(Case):
         self.assert_nothing_left(set(before))
 
     def test_check_foretells_within_a_factor_of_one_and_a_half(self):
-        """Cells, memory and disk of a run of which it traces an eighth at most. (Seconds: tools/scripts/studies/scaling.py.)"""
+        """Estimates of cells, memory and disk from an eighth of a run at most. (Seconds: tools/scripts/studies/scaling.py.)"""
         scenario = self.scenario("trajectories = 20000")
         text = self.run_well("check", scenario).stdout
         self.run_well("run", scenario, "-o", self.path("out"), "-q")
@@ -164,7 +164,7 @@ class Folder(Case):
 
 
 def limit_files(size):
-    """No file of the child may grow beyond `size` bytes: a full disk for those who have no disk to fill."""
+    """Limits each file of the child to `size` bytes, which acts like a full disk."""
     def apply():
         resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
     return apply

@@ -23,7 +23,7 @@ class Diagnose(Case):
 
 class Loop(Case):
     def diagnose(self, campaign, *options, untested=frozenset()):
-        """The whole loop. `untested`: candidates for which these data have no place."""
+        """Runs the whole loop. `untested`: effects that these data cannot test."""
         out = self.path("out")
         self.run_well("diagnose", campaign, "-o", out, "-q", *options, timeout=1200)
         with open(f"{out}/diagnosis.json", encoding="utf-8") as file:
@@ -41,13 +41,13 @@ class Loop(Case):
             self.assertEqual(found["probability"], found["rounds"][0]["p_value"])
             self.assertEqual((e["reduction"], found["where"], found["indistinguishable_from"]), (0, "", []))
         self.assertEqual(found["rounds"][-1]["effect"] in ("none", "unexplained"), True)
-        for round in found["rounds"][1:]:  # those of the first are at the top
+        for round in found["rounds"][1:]:  # the values of the first round are at the top
             self.assertNotIn(found["effect"], {c["effect"] for c in round["candidates"]})
         with open(f"{out}/report.html", encoding="utf-8") as file:
             page = file.read()
         self.assertIn("<svg", page)
         self.assertNotIn("http", page)  # self-contained
-        # What was found is a model that `score` reads.
+        # `score` reads the model that was found.
         self.run_well("score", campaign, "--parameters", f"{out}/with_effect.toml", "-q")
         return found
 
@@ -62,11 +62,11 @@ class Diagnosis(Loop):
 @unittest.skipUnless(os.path.isdir(CAMPAIGNS), "no campaigns at TALUS_DATA")
 class OfOthers(Loop):
     def test_nothing_hidden(self):
-        """With the default trials, which a false alarm must be judged by."""
+        """With the default number of trials, as a false alarm must be judged with it."""
         self.assertEqual(self.diagnose(f"{CAMPAIGNS}/alder/campaign.toml")["effect"], "none")
 
     def test_measured_blocks_of_a_quarry(self):
-        """One day only, and no instruments but the tape: nothing to test there."""
+        """Releases of one day, and only end points measured: neither days nor instruments can be tested."""
         found = self.diagnose(f"{CAMPAIGNS}/authume/campaign.toml", *SHORT, untested={"wet-ground", "instrument-bias"})  # 24 of its 48 blocks are fitted: a third of 72
         self.assertEqual(found["trials_per_block"], {"search": 60, "test": 180, "compare": 600})
         self.assertGreater(len(found["residual"]), 3)

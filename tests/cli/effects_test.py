@@ -1,4 +1,4 @@
-"""Effects through `talus run`: where they act, what they change, that a run can be replayed."""
+"""Effects in `talus run`: they act in their places, change what they should, and a run can be replayed."""
 import unittest
 
 import numpy as np
@@ -59,7 +59,7 @@ class Effects(Case):
         both = (plain[above] > 0) & (forest[above] > 0)
         np.testing.assert_allclose(forest[above][both], plain[above][both], rtol=0.02)
         # Blocks of 724 kg at 10 m/s have 36 kJ, a stem of 0.5 m takes up to 325 kJ: three of four hits stop them.
-        # One is met every 1e4 / (800 1.3) = 10 m. The slope is steeper than phi: they start anew.
+        # One is met every 1e4 / (800 1.3) = 10 m. The slope is steeper than phi, so stopped blocks start again.
         mean = [np.mean(v[inside][v[inside] > 0]) for v in (plain, forest)]
         self.assertLess(mean[1], 0.75 * mean[0])
         self.assert_replays("forest")

@@ -14,7 +14,7 @@ PRESET = '[ground]\ndefault = "forest-road-3d"\n'
 
 
 def reference():
-    """score.py, written by others from the same definition; nothing where it is not there."""
+    """score.py, which others wrote from the same definition; None without it."""
     path = os.path.join(CAMPAIGNS, "score.py")
     if not os.path.exists(path):
         return None
@@ -151,7 +151,7 @@ class OwnCampaign(Case):
         self.assertNotIn("held-out", done.stdout)
 
     def test_too_little_that_was_measured(self):
-        """No block to fit to, fewer than five, and thirty of which nothing was measured: one error each, and no folder."""
+        """No fitting block, fewer than five, and thirty without measurements: one error each, and no folder."""
         with open(self.path("blocks.csv"), encoding="utf-8") as file:
             head, *blocks = file.read().splitlines()
         for fitting in 0, 4:
@@ -165,7 +165,7 @@ class OwnCampaign(Case):
         self.assertFalse(os.path.exists(self.path("x")))
 
     def test_a_model_that_does_nothing_that_was_measured_is_said_to(self):
-        """No block gets to the screen: its speeds score as the climatology, which is not the model's doing."""
+        """No block gets to the screen: the speeds there are scored by the climatology, not by the model."""
         self.write("stuck.toml", "[ground.zones.default]\nEn50 = 0.1\nEt50 = 0.1\ntheta_scale = 2\nphi = 60\n")
         done = self.run_well("score", self.campaign, "--parameters", self.path("stuck.toml"), "--rows", "fit", "--json")
         groups = {g["group"]: g for g in json.loads(done.stdout)["fit"]["groups"]}

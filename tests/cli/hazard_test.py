@@ -107,7 +107,7 @@ class Hazard(Case):
         self.assertTrue(os.path.exists(self.path("out/intensity_T50.tif")), "what was there stays")
 
     def test_another_weighting(self):
-        """The same maps as of a run whose sources had these frequencies from the start."""
+        """The maps are those of a run whose sources had these frequencies from the start."""
         self.simulate()
         new = self.write("new.toml", "[features]\neast = 3.0\n")
         done = self.run_well("hazard", self.path("out"), "--frequency", new)

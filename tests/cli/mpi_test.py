@@ -1,4 +1,4 @@
-"""The same run by several processes: the bits of one, also where one of them dies. MPIRUN and TALUS_MPI name the programs."""
+"""A run by several processes gives the bits of one process, also if one of them dies. MPIRUN and TALUS_MPI name the programs."""
 import os
 import signal
 import subprocess
@@ -57,7 +57,7 @@ class Mpi(RunCase):
         self.assert_same("whole", "merged")
 
     def test_a_rank_that_dies(self):
-        """In one round and in several; gone on with by more ranks, and by one process."""
+        """In one round and in several; resumed by more ranks, and by one process."""
         self.write("s.toml", RUN.replace("trajectories = 40\n", "trajectories = 1000\n"))
         for rounds, after in (([], 4), ([], 0), (["--rounds", "2"], 3), (["--rounds", "2"], 0)):
             with self.subTest(rounds=rounds, after=after):
@@ -89,7 +89,7 @@ class Mpi(RunCase):
         self.fail("nothing was kept")
 
     def test_a_signal_to_the_leader(self):
-        """A signal to the leader alone, in the middle and when it begins to write: all end, with 130, or were done."""
+        """A signal to the leader alone, in the middle and when it begins to write: all processes end with 130, or had finished."""
         self.write("s.toml", RUN.replace("trajectories = 40\n", "trajectories = 400\n"))
         for percent in (40, 99):
             out = f"out{percent}"

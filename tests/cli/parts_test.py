@@ -1,4 +1,4 @@
-"""Parts and merge, rounds, interruption and resume: whatever way the work is cut, the bits are those of one run."""
+"""Parts and merge, rounds, interruption and resume: however the work is divided, the bits are those of one run."""
 import contextlib
 import os
 import random
@@ -27,7 +27,7 @@ class Parts(RunCase):
         self.run_scenario("one", "--trajectories", "120")
         for name in ("impact_probability", "reach_probability", "energy", "jump_height", "sources", "deposits"):
             self.assertEqual(self.hashes("whole")[name + ".tif"], self.hashes("one")[name + ".tif"], name)
-        self.run_well("hazard", self.path("merged"), "-q")  # evaluates what the rounds kept
+        self.run_well("hazard", self.path("merged"), "-q")  # evaluates what the rounds saved
 
     def test_what_cannot_be_merged(self):
         for i in (1, 2):
@@ -85,7 +85,7 @@ class Parts(RunCase):
                 self.wait_for_progress(process, luck.randint(5, 80))
             process.kill()
             process.communicate()
-            if attempt % 2 == 1:  # there is something to go on with
+            if attempt % 2 == 1:  # there is something to resume
                 self.assertTrue(any(os.path.exists(self.path(f"{n}/unfinished/part.json")) for n in self.unfinished(out)))
             self.run_scenario(out, "--resume", "--trajectories", "400", "--checkpoint", "0.05", "--threads", "1")
             self.assert_same("whole", out)
@@ -109,13 +109,13 @@ class Parts(RunCase):
         self.assertEqual(self.unfinished("out"), [])
 
     def test_killed_while_it_writes(self):
-        """The maps that were finished are not written again, and all is as if nothing had happened."""
+        """Finished maps are not written again, and the results are those of a run without interruption."""
         self.run_scenario("whole", "--trajectories", "400")
         for attempt in range(5):
             process = self.start(out := f"out{attempt}", "--checkpoint", "0")
             finished = []
             while process.poll() is None and not finished:
-                with contextlib.suppress(FileNotFoundError):  # it has just got its name
+                with contextlib.suppress(FileNotFoundError):  # the file has just been renamed
                     finished = [f"{self.path(n)}/{f}" for n in self.unfinished(out) for f in os.listdir(self.path(n))
                                 if f.endswith(".tif") and f.count(".") == 1]
             process.kill()
@@ -128,7 +128,7 @@ class Parts(RunCase):
         self.assert_same("whole", out)
 
     def test_a_killed_part_in_rounds(self):
-        """Killed in the second part of a run in rounds, gone on with, merged: the bits of one run."""
+        """A part of a run in rounds, killed and resumed, then merged with the other part: the bits of one run."""
         self.write("s.toml", RUN.replace("trajectories = 40\n", "trajectories = 150\n"))
         self.run_scenario("whole", "--rounds", "3")
         self.run_scenario("part1", "--rounds", "3", "--part", "1/2")
@@ -191,7 +191,7 @@ class Parts(RunCase):
         self.assertLess(rounds["relative_half_width"], 0.2)
         self.assertGreater(rounds["done"], 1)
         self.run_scenario("less", "--rounds", str(rounds["done"] - 1), "--above", "0.02")
-        self.assertGreaterEqual(self.record("less")["rounds"]["relative_half_width"], 0.2)  # it did not go on for nothing
+        self.assertGreaterEqual(self.record("less")["rounds"]["relative_half_width"], 0.2)  # the last round was needed
         self.run_scenario("cap", "--until-error", "0.001", "--most-rounds", "2")
         self.assertFalse(self.record("cap")["rounds"]["reached"])
         self.assertIn("--until-error was not reached", " ".join(self.record("cap")["warnings"]))

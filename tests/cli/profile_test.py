@@ -62,7 +62,7 @@ class ByHand(Profile):
             self.assertAlmostEqual(bin_30["energy_kj_" + statistic], 0.5e-3 * mass * (64.0 + (g * 2.5) ** 2), 2)
         self.assertEqual((bin_30["passages"], bin_30["share"], bin_30["x_to"]), (7.0, 1.0, 35.0))
         self.assertEqual(envelope[5.0]["passages"], 0.0)
-        self.assertTrue(math.isnan(envelope[5.0]["speed_ms_mean"]))  # where nothing passes nothing is known
+        self.assertTrue(math.isnan(envelope[5.0]["speed_ms_mean"]))  # NaN in bins that no block crosses
         bins = [fields for fields, _ in rows_of(self.path("out/profile.gpkg"), "bins")]
         self.assertIsNone(bins[1]["speed_ms_mean"])
         self.assertIsNotNone(bins[6]["speed_ms_mean"])

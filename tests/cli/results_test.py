@@ -1,4 +1,4 @@
-"""What a run leaves: the same bits for any number of threads, sums that add up, paths that can be replayed."""
+"""Results of a run: the same bits for any number of threads, sums that add up, paths that can be replayed."""
 import csv
 import hashlib
 import os

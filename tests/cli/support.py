@@ -143,7 +143,7 @@ trajectories = 50
 
 
 class RunCase(Case):
-    """Runs of that scenario, s.toml, and whether two of them are the same."""
+    """Runs the scenario RUN, s.toml, and compares two runs."""
 
     def setUp(self):
         super().setUp()
@@ -157,7 +157,7 @@ class RunCase(Case):
         self.write("s.toml", RUN)
 
     def wait_for_progress(self, process, percent):
-        """Until a program with --progress=machine has said so much or more: on a busy machine it skips lines."""
+        """Waits until a program with --progress=machine has reported `percent` or more: on a busy machine it skips lines."""
         self.addCleanup(process.kill)
         said = []
         for line in iter(process.stderr.readline, ""):

@@ -1,5 +1,5 @@
 #pragma once
-// Makes the files that the tests of the readers read, and says which InputError must come.
+// Makes files for the tests of the readers, and checks their InputErrors.
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
 #include <ogrsf_frmts.h>
@@ -135,7 +135,7 @@ inline std::string write_vector(const std::string& path, const std::string& syst
   return path;
 }
 
-/// The message of the InputError that a call must throw: one line that holds all `parts`.
+/// Checks that a call throws an InputError whose message is one line that holds all `parts`.
 inline void expect_input_error(const std::function<void()>& call, const std::vector<std::string>& parts) {
   try {
     call();

@@ -39,7 +39,7 @@ class HazardFile : public test::ScenarioFile {
         },
         {"other.gz: ", words});
   }
-  /// As gzip, with the library that reads it.
+  /// A text as gzip, packed by the library that reads it.
   std::string packed(const std::string& text) {
     VSILFILE* file = VSIFOpenL(("/vsigzip/" + path("packed.gz")).c_str(), "wb");
     VSIFWriteL(text.data(), 1, text.size(), file);

@@ -59,7 +59,7 @@ TEST_F(ScenarioFile, TheDefaultGroundHasACodeOfItsOwn) {
   const auto& cells = l.scenario.cover.zones.values;
   EXPECT_EQ(std::count(cells.begin(), cells.end(), 1), 1);
   EXPECT_EQ(std::count(cells.begin(), cells.end(), 0), 79);
-  const LoadedScenario again = load(l.complete_toml);  // what a run leaves can be run
+  const LoadedScenario again = load(l.complete_toml);  // the complete scenario of a run can be run again
   EXPECT_EQ(again.scenario.cover.zones.values, cells);
   EXPECT_EQ(again.complete_toml, l.complete_toml);
 }
@@ -81,7 +81,7 @@ TEST_F(ScenarioFile, AnIncludedEffectGivesWayToTheScenario) {
   EXPECT_EQ(origin(l, "effects.soft-ground.zones"), "scenario");
 }
 
-/// A barrier that `talus diagnose` found is one of the scenario; how instruments read is not.
+/// A barrier that `talus diagnose` found becomes one of the scenario; errors of instruments do not.
 TEST_F(ScenarioFile, AnIncludedModelBringsItsBarriers) {
   write_text("found.toml",
              "[barriers]\nline = [{ id = \"undeclared-barrier\", height = 2.5, from = [600010, 5200020], to = "

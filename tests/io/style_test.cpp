@@ -55,7 +55,7 @@ TEST(Style, XmlWithRisingClasses) {
   }
 }
 
-TEST(Style, ShownBands) {  // docs/products.md: of the quantities the P95
+TEST(Style, ShownBands) {  // docs/products.md: the P95 of each quantity
   for (const auto& [name, band] : {std::pair{"energy", "3"},
                                    {"velocity", "3"},
                                    {"jump_height", "3"},

@@ -1,4 +1,4 @@
-// What the writers leave in files: read back with GDAL, compared with what was given.
+// Files of the writers, read back with GDAL and compared with the values that were given.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -54,7 +54,7 @@ class Write : public testing::Test {
 
 constexpr int kColumns = 1101, kRows = 703;  // two overviews, and edges that are not whole blocks
 
-/// A value that tells where it is, from the south-west; nothing in a corner.
+/// A value that depends on its column, row (from the south) and band; NaN in the south-western corner.
 double value_at(int column, int row, std::size_t band) {
   if (column < 40 && row < 40) return std::nan("");
   return (column * 31 + row * 17) % 1009 + 2000.0 * static_cast<double>(band);

@@ -59,7 +59,7 @@ bool cross(const Path& path, double x, double ground, Sample& sample) {
   return false;
 }
 
-/// @param foot_drop  so far below the start [m] the plane gives way to a foot of 20 degrees, where blocks stop
+/// @param foot_drop  depth below the start at which a foot of 20 degrees begins, where blocks stop [m]
 Sample run(const Ground& ground, const ImpactModel& model, std::uint32_t blocks = kBlocks, double foot_drop = 1e9) {
   const Surface surface(test::terrain(test::grid_of(foot_drop < 1e9 ? 1000 : 130, 3, 2.0, 64.0), [&](double x, double) {
     const double drop = kTanB * (x - kStart);

@@ -39,7 +39,7 @@ inline Model model_of_slope() {
   return model;
 }
 
-/// Gives every block what trial 0 of another seed would have shown: measured data of a known model.
+/// Gives every block the observations of trial 0 of another seed: measured data of a known model.
 inline void measure(Campaign& c, const Model& model, std::uint64_t seed) {
   ObserveOptions once;
   once.trials = 1;

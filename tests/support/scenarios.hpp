@@ -39,7 +39,7 @@ inline Scenario rough_slope(std::uint32_t sources, std::uint32_t trajectories) {
   return s;
 }
 
-/// A stay in one cell with known values there: what `fly` would leave of a short flight at constant speed and height.
+/// The span of a short flight in one cell, at constant speed and height, as `fly` would make it.
 inline Span stay(int column, int row, float speed_squared, float height, std::uint32_t impacts = 0) {
   return {{column, row}, 0.125F, 0.125F, 0.25F, 0.25F, height, height, 0.0F, speed_squared, 0.0F, 0.0F, impacts};
 }
@@ -52,7 +52,7 @@ inline Path path_of(std::initializer_list<Span> spans, End end) {
 }
 
 /// Three sources of known frequencies high on a smooth plane of 45 degrees: every block slides or jumps straight down
-/// its own column, so that below a source its whole frequency passes, and where two lie in line their sum.
+/// its own column. A cell below one source has the frequency of the source, a cell below two in line the sum.
 inline Scenario three_sources() {
   Scenario s = scenario_on(terrain(grid_of(40, 40, 2.0, 2.0), [](double, double y) { return y; }));
   s.cover.grounds[0].theta_scale = 0.0;
@@ -66,7 +66,7 @@ inline Scenario three_sources() {
   return make_scenario(std::move(s));
 }
 
-/// All that is known of every cell is equal, bit for bit.
+/// Checks that the records of all cells are equal, bit for bit.
 inline void expect_same_records(const Tally& a, const Tally& b) {
   ASSERT_EQ(a.grid(), b.grid());
   EXPECT_EQ(a.touched_cells(), b.touched_cells());

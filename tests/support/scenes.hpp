@@ -7,12 +7,12 @@
 #include "talus/base/vector.hpp"
 #include "talus/terrain/raster.hpp"
 
-/// What several test files need: numbers of their own (never those of the engine), terrain from a formula, moments.
+/// Helpers of several tests: random numbers that are not the engine's, terrain from a formula, moments.
 namespace talus::test {
 
 constexpr double kEps = 2.220446049250313e-16;
 
-/// Random numbers that are the same on every platform and owe nothing to talus/base/random.hpp.
+/// Random numbers that are the same on every platform and do not use talus/base/random.hpp.
 class Numbers {
  public:
   explicit Numbers(std::uint64_t seed) : engine_(seed) {}

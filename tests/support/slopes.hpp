@@ -40,7 +40,7 @@ inline Release block_at(const Vec3& position, const Vec3& velocity, double diame
   return release;
 }
 
-/// Every number of two paths is the same, bit for bit.
+/// Whether all numbers of two paths are the same, bit for bit.
 inline bool same_bits(const Path& a, const Path& b) {
   if (a.vertices.size() != b.vertices.size() || a.end != b.end || a.impacts != b.impacts || a.length != b.length ||
       a.mass != b.mass || a.pieces.size() != b.pieces.size())

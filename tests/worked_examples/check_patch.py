@@ -51,7 +51,7 @@ def patched_copy(patch, copy):
 
 
 def command_of(file, commands):
-    """How a file is compiled; one that is new, as the one with which it shares the most folders."""
+    """The command that compiles a file. A new file is compiled like the one with which it shares the most folders."""
     def shared(entry):
         parts = Path(entry["file"]).resolve().relative_to(ROOT).parts if Path(entry["file"]).resolve().is_relative_to(ROOT) else ()
         return sum(1 for _ in zip(os.path.commonprefix([parts, Path(file).parts])))
@@ -65,7 +65,7 @@ def compile_file(file, copy, commands):
     for word in words:
         if skip or word == entry["file"]:
             skip = False
-        elif word in ("-o", "-c", "-include", "-Xclang"):  # a precompiled header is of the sources without the patch
+        elif word in ("-o", "-c", "-include", "-Xclang"):  # the precompiled header was made without the patch
             skip = word != "-c" and word != "-Xclang"
         else:
             kept.append(word.replace(f"-I{ROOT}/", f"-I{copy}/").replace(f'"{ROOT}"', f'"{copy}"'))

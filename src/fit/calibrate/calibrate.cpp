@@ -41,7 +41,7 @@ class Search {
                                                : LocalModel::first_spread(std::ssize(problem_.free), options_.rules);
       for (int round = 0; round < options_.rounds; ++round)
         if (refine() < options_.enough) break;
-    } catch (const nlopt::forced_stop&) {  // `proceed` said no
+    } catch (const nlopt::forced_stop&) {  // `proceed` returned false
       fit_.interrupted = true;
     }
     if (!fit_.interrupted) fit_.score = score_of(fit_.model);
@@ -65,8 +65,8 @@ class Search {
     return evaluate(problem_, options_, z, trials);
   }
 
-  /// Moves to the best of some places, compared with trials that have chosen none of them: the lowest of many noisy
-  /// values is too low, and nothing would ever be found better. @return gain over the first of them
+  /// Moves to the best of some places. They are compared with new trials: the lowest of many noisy values is too low,
+  /// and no other place could ever be better. @return gain over the first of them
   double move_to_best(std::span<const Eigen::VectorXd> places) {
     const TrialRange fresh{options_.comparison_trials, kComparisons + options_.comparison_trials * compared_++};
     double first = 0.0;
@@ -80,7 +80,7 @@ class Search {
     return first - fit_.objective;
   }
 
-  /// One round of the local model: a design, and a step where that is an improvement. @return the improvement
+  /// One round of the local model: a design, then a step if it is an improvement. @return the improvement
   double refine() {
     for (const Eigen::VectorXd& z :
          LocalModel::design(problem_, options_.seed, fit_.z, fit_.spread, design_length(), designed_))

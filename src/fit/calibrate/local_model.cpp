@@ -125,7 +125,7 @@ Eigen::VectorXd LocalModel::optimum(std::span<const double> block_weights, const
   double blocks = 0.0, counted = 0.0;
   for (std::size_t b = 0; b < block_weights.size(); ++b)
     if (problem_.rows[b]) blocks += 1.0, counted += block_weights[b];
-  const double prior = prior_ * blocks / counted;  // of as many blocks as count
+  const double prior = prior_ * blocks / counted;  // for the number of blocks that count
   const Eigen::VectorXd slope = from_v_ * model_->gradient(total) + 2.0 * prior * centre_;
   return centre_ + minimum_in_box(slope, curvature_of(total, prior), low_.cwiseMax(-trust), high_.cwiseMin(trust));
 }

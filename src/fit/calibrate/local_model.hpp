@@ -29,13 +29,13 @@ class LocalModel {
   /// First trial of place number `place`: each place has trials of its own, so that the model averages over them.
   static std::uint32_t trials_of(std::uint32_t place, std::uint32_t trials) { return kDesigns + place * trials; }
 
-  /// Number of the first place, with so many trials each, whose trials none of the known evaluations has used.
+  /// Number of the first place whose trials no known evaluation has used, with so many trials for each place.
   static std::uint32_t first_unused(std::span<const Evaluation> known, std::uint32_t trials);
 
   /// The minimum of the model, within the bounds and two standard deviations of the spread.
   Eigen::VectorXd step(const Eigen::MatrixXd& spread) const;
-  /// The optimum for other weights of the blocks (size: blocks), within two standard deviations of the spread: with the
-  /// slopes, curvatures and weight of the prior of the blocks that count.
+  /// The optimum for other weights of the blocks (size: blocks), within two standard deviations of the spread. Slopes,
+  /// curvatures and the weight of the prior are those of the blocks that count.
   Eigen::VectorXd optimum(std::span<const double> block_weights, const Eigen::MatrixXd& spread) const;
   /// The optimum of draw number `draw` of the posterior sample.
   Eigen::VectorXd draw(std::uint32_t draw) const;

@@ -64,7 +64,7 @@ std::vector<bool> touched_zones(const Campaign& campaign, std::span<const BlockR
   double trials = 0.0;
   for (const BlockRuns& block : runs) {
     trials += block.trials;
-    for (std::size_t zone = 0; zone < block.zone_hits.size(); ++zone)  // a band repeats the zones
+    for (std::size_t zone = 0; zone < block.zone_hits.size(); ++zone)  // a band adds a copy of each zone
       hits[zone % hits.size()] += block.zone_hits[zone];
   }
   std::vector<bool> touched;

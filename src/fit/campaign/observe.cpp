@@ -81,8 +81,8 @@ class Instrument {
     }
   }
 
-  /// The distance from a place is largest at an end of a straight piece: a sample's distance is first reached on the
-  /// first piece that ends beyond it.
+  /// On a straight piece the distance from a place is largest at one of the ends. So a sample's distance is first
+  /// reached on the first piece that ends beyond it.
   void samples(const Errors& errors, const MeasuredBlock& block, const Path& path, std::uint32_t trial,
                BlockRuns& runs) {
     if (block.samples.empty()) return;
@@ -98,7 +98,7 @@ class Instrument {
       for (; next != order_.end() && b.norm() >= block.samples[*next].distance; ++next) {
         const Eigen::Vector2d way = b - a;
         const double r = block.samples[*next].distance, length = way.squaredNorm(), along = way.dot(a);
-        const double inside = r * r - a.squaredNorm();  // not above 0: it is there at the start
+        const double inside = r * r - a.squaredNorm();  // <= 0: reached at the start of the piece
         const double share =
             inside > 0.0 ? std::min(1.0, (std::sqrt(along * along + length * inside) - along) / length) : 0.0;
         record(errors, *next, motion_between(from, to, share), runs.samples[*next], trial);

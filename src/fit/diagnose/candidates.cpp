@@ -12,7 +12,7 @@
 namespace talus {
 namespace {
 
-constexpr std::size_t kMostZones = 256;  // that a raster of bytes can tell apart
+constexpr std::size_t kMostZones = 256;  // numbers that a raster of bytes can hold
 
 double median_of(const Campaign& campaign, const std::function<double(const MeasuredBlock&)>& value) {
   std::vector<double> values;
@@ -22,7 +22,7 @@ double median_of(const Campaign& campaign, const std::function<double(const Meas
   return quantile(values, 0.5);
 }
 
-/// Where an effect that has an extent may act: everywhere, or in one of the zones that the paths meet.
+/// A place where an effect may act: everywhere, or one of the zones that the paths meet.
 struct Place {
   std::string name;
   std::vector<std::uint8_t> zones;  // as EffectArea::zones
@@ -35,13 +35,13 @@ std::vector<Place> places_of(const Campaign& campaign, const Model& base, const 
     if (!touched[zone]) continue;
     Place place{"zone " + campaign.zone_names[zone], std::vector<std::uint8_t>(base.grounds.size(), 0)};
     for (std::size_t i = zone; i < place.zones.size(); i += campaign.zone_names.size())
-      place.zones[i] = 1;  // and bands
+      place.zones[i] = 1;  // the copies of the zone in bands, too
     places.push_back(std::move(place));
   }
   return places;
 }
 
-/// The medians of the blocks that may be fitted, which the registry's searches are multiples of.
+/// Medians over the blocks that may be fitted. Searches of the registry may be multiples of them.
 struct TypicalBlock {
   double mass, diameter;  // [kg], [m]
 
@@ -55,7 +55,7 @@ TypicalBlock typical_block(const Campaign& campaign) {
           median_of(campaign, [](const MeasuredBlock& b) { return equivalent_diameter(b.mass, b.density); })};
 }
 
-/// The search of a number of an effect: of its inverse, or cut off at its bounds.
+/// The search of one number of an effect, cut off at its bounds, or of the number's inverse.
 Parameter parameter_of(const EffectEntry& entry, const EffectField& field, const TypicalBlock& typical) {
   const SearchRange& range = *field.search;
   const std::string table = "effects." + std::string(entry.name) + ".", key(entry.key_of(field));
@@ -159,7 +159,7 @@ std::vector<Candidate> candidates_of(const Campaign& campaign, const Model& base
   const Axis axis = axis_of(campaign, runs);
   const Grid& grid = campaign.surface.grid();
   const double width = grid.columns * grid.cell_x + grid.rows * grid.cell_y, length = axis.to - axis.from;
-  for (int i = 0; i < rules.bands && base.grounds.size() <= kMostZones / 2; ++i)  // a band repeats them
+  for (int i = 0; i < rules.bands && base.grounds.size() <= kMostZones / 2; ++i)  // a band adds a copy of each
     list.push_back(
         band(campaign, axis, axis.from + length * i / rules.bands, axis.from + length * (i + 1) / rules.bands));
   for (int i = 1; i <= rules.barrier_places; ++i)

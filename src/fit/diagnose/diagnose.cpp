@@ -50,7 +50,7 @@ class DiagnosisLoop {
 
  private:
   void advance(double share = 0.02) { progress_ = std::min(0.95, progress_ + share); }
-  /// @param share  of a fit; only that of the ground, the longest, is shown
+  /// @param share  of a fit; only the fit of the ground, the longest, is shown
   bool proceeds(double share = 1.0) {
     if (progress_ == 0.0) ground_ = std::max(ground_, kGroundShare * share);
     return !options_.proceed || options_.proceed(std::max(progress_, ground_));
@@ -137,7 +137,7 @@ class DiagnosisLoop {
     for (FittedCandidate* c : contenders) c->cross_validated = before - fits_.cross_validated(c->fitted);
   }
 
-  /// Leaves at most `most` contenders: those that gain most, of which each gains at least `least` and may still win.
+  /// Keeps at most `most` contenders, those with the largest net gains. Each gains at least `least` and may still win.
   void drop_losers(std::vector<FittedCandidate*>& contenders, std::size_t most, double least) const {
     if (contenders.empty()) return;
     std::stable_sort(contenders.begin(), contenders.end(),

@@ -15,8 +15,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Start of the fit of a candidate: the estimate of the score test, kept between a little and four times what one would
-/// notice.
+/// Start of the fit of a candidate: the estimate of the score test, limited to between a little and four times what one
+/// would notice.
 VectorXd start_of(const Candidate& candidate, const Verdict& verdict, double noticed) {
   VectorXd z = VectorXd::Zero(static_cast<Index>(candidate.parameters.size()));
   for (Index i = 0; i < verdict.estimate.size(); ++i) {
@@ -46,7 +46,7 @@ std::vector<Evaluation> with_zero_effect(const std::vector<Evaluation>& evaluati
   return padded;
 }
 
-/// A model prepared for a candidate, with none of it.
+/// A model prepared for a candidate, whose parameters are still zero.
 Model model_without(const FittedModel& base, const Candidate& candidate) {
   return with(base.model, candidate, VectorXd::Zero(std::ssize(candidate.parameters)));
 }
@@ -181,7 +181,7 @@ FittedCandidate EffectFits::fit_effect(const FittedModel& base, const EffectVerd
   const auto asked = static_cast<double>(std::count(rows_.begin(), rows_.end(), true));
   out.price = rules.price * (static_cast<double>(candidate.parameters.size()) + candidate.searched) / asked;
   out.place_price = rules.price * candidate.searched / asked;
-  out.with_ground = verdict.p_value < std::max(rules.joint_level, options_.first_level);  // what may be chosen is
+  out.with_ground = verdict.p_value < std::max(rules.joint_level, options_.first_level);  // all that may be chosen
   std::vector<Parameter> free = joined(out.with_ground ? base.free : std::vector<Parameter>{}, candidate.parameters);
   const Index added = std::ssize(candidate.parameters);
   FitOptions how = fit_options();
@@ -258,7 +258,7 @@ double EffectFits::cross_validated(const FittedModel& fitted, ObserveOptions how
   const LocalModel local(problem, options, fit, fitted.spread);
   const std::uint32_t orders = options_.rules.fold_orders;
   double sum = 0.0;
-  for (std::uint32_t number = 0; number < orders; ++number, how.first_trial += how.trials)  // trials of its own
+  for (std::uint32_t number = 0; number < orders; ++number, how.first_trial += how.trials)  // new trials for each
     sum += error_in_folds(local, fitted, how, shuffled_rows(number));
   return sum / orders;
 }

@@ -14,11 +14,11 @@ struct LeastGain {
 
 /// The fits of one diagnosis: of the ground, and of each effect on top of the model so far.
 ///
-/// Each fit keeps what it has simulated, and the next one learns from it: an effect is added to a ground whose
-/// neighbourhood is known. docs/closing-the-loop.md, "Diagnosis".
+/// Each fit passes its evaluations on to the next one, so that an effect is added to a ground whose neighbourhood is
+/// known. docs/closing-the-loop.md, "Diagnosis".
 class EffectFits {
  public:
-  /// @param proceed  asked now and then, told the share of the fit that is done; false: FitInterrupted is thrown
+  /// @param proceed  called now and then with the share of the fit that is done; false: FitInterrupted is thrown
   EffectFits(const Campaign& campaign, const DiagnoseOptions& options, const std::vector<bool>& rows,
              std::function<bool(double)> proceed)
       : campaign_(campaign), options_(options), rows_(rows), proceed_(std::move(proceed)) {}
@@ -44,11 +44,11 @@ class EffectFits {
   /// order is cut into folds; each fold is simulated with the minimum of the quadratic model of the other folds' rows.
   double cross_validated(const FittedModel& fitted) const {
     ObserveOptions unseen = observe_options(options_.trials.compare);
-    unseen.first_trial += options_.trials.compare;  // the first of them have chosen between fits
+    unseen.first_trial += options_.trials.compare;  // the trials before were used to choose between fits
     return cross_validated(fitted, unseen);
   }
-  /// Whether a candidate gains as much once more, on its rows and in cross-validation, with random numbers that have
-  /// chosen nothing: the best of several effects is partly the luckiest.
+  /// Whether a candidate gains as much again, on its rows and in cross-validation, with random numbers that no choice
+  /// has used: the gain of the best of several effects is partly chance.
   bool confirmed(const FittedModel& base, const FittedCandidate& candidate, const LeastGain& least) const;
   /// The fit with the lower objective, with the evaluations of both.
   static FittedModel better_of(FittedModel fitted, FittedModel longer);

@@ -3,7 +3,8 @@
 
 namespace talus {
 
-/// Candidates for each quantity of each instrument that saw at least five blocks: it reads too high or too low.
+/// Adds a candidate for each quantity of each instrument that saw at least five blocks: the instrument reads too high
+/// or too low.
 void add_biases(std::vector<Candidate>& list, const Campaign& campaign);
 
 }  // namespace talus

@@ -14,7 +14,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Sets of n days, by number, all days together excepted: that would be other ground.
+/// Sets of the days 0 to n - 1: all of them up to `few` days, of more days the runs of successive ones. The set of all
+/// days is left out: it would be other ground.
 std::vector<std::vector<std::size_t>> sets_of_days(std::size_t n, std::size_t few) {
   std::vector<std::vector<std::size_t>> sets;
   if (n <= few) {
@@ -35,7 +36,7 @@ std::vector<std::vector<std::size_t>> sets_of_days(std::size_t n, std::size_t fe
   return sets;
 }
 
-/// Which of the n candidates of an effect are tested together.
+/// Groups of the n candidates of an effect that are tested together.
 std::vector<std::vector<std::size_t>> groups_of(const std::string& effect, std::size_t n, const DiagnosisRules& rules) {
   const EffectEntry* entry = find_effect(effect);
   if (entry != nullptr && entry->sought == Sought::OnDays) return sets_of_days(n, rules.few_days);

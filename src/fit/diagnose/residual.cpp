@@ -140,7 +140,8 @@ ResidualSpace::Seen ResidualSpace::seen_measured(std::size_t b) const {
   return seen;
 }
 
-/// The measurements that a trial would have given: a value that is missing of the block is missing of its trials too.
+/// The measurements that a trial would have given. A value that was not measured of the block is missing in its trials,
+/// too.
 ResidualSpace::Seen ResidualSpace::seen_of_trial(std::size_t b, const BlockRuns& runs, std::size_t t) const {
   const MeasuredBlock& block = campaign_.blocks[b];
   const auto where_measured = [](double simulated, double measured) {

@@ -34,10 +34,10 @@ double p_of_correlation(double r, std::size_t n) {
   return two_sided(boost::math::cdf(boost::math::complement(boost::math::students_t(freedom), t)));
 }
 
-/// Whether more of the blocks with a large property cross than the model says: sum of (c - p) times the rank, among
-/// blocks that cross as often as was measured, over its standard deviation. A rank correlation would not do: blocks
-/// that seldom cross have a small residual whatever happens, so that it is correlated with whatever their chance
-/// depends on.
+/// Adds the test whether blocks with a large value of a property cross more often than the model says. The statistic is
+/// the sum of (c - p) times the rank over its standard deviation, given the measured number of crossings. A rank
+/// correlation is no test here: blocks that seldom cross have small residuals in any case, so residuals are correlated
+/// with everything that the chance of a crossing depends on.
 void add_crossing(std::vector<ResidualRow>& table, const std::string& name, const char* property,
                   const std::vector<double>& z, const std::vector<double>& variance, std::span<const double> of,
                   double fewest) {

@@ -182,7 +182,8 @@ void add_directions(Directions& directions, const TestedModel& base, std::span<c
 }  // namespace
 
 Corrected corrected(std::span<const std::vector<double>> simulated, std::span<const double> measured) {
-  // Number of sets with a p-value as small by one effect; the value decides between equal numbers of two effects.
+  // Number of data sets with a p-value of an effect as small, then that p-value: it decides between equal numbers of
+  // two effects.
   using Rarity = std::pair<double, double>;
   const std::size_t n = simulated.front().size();
   const auto sets = static_cast<double>(n + 1);

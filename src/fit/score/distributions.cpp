@@ -9,7 +9,7 @@
 namespace talus {
 namespace {
 
-/// Values of one quantity, both kinds; NaN are left out.
+/// Measured and simulated values of one quantity, without NaN.
 struct Values {
   std::vector<double> measured, simulated;
 

@@ -98,7 +98,7 @@ class Scorer {
     close("stop");
   }
 
-  /// Only where blocks broke: at least five that lost more than a twentieth of their mass.
+  /// Scores masses only where blocks broke: at least five changed their mass by more than a twentieth.
   void masses() {
     const auto share = [](const MeasuredBlock& b) { return b.stop_mass ? *b.stop_mass / b.mass : kNotGiven; };
     const auto changed = std::count_if(campaign_.blocks.begin(), campaign_.blocks.end(),
@@ -187,7 +187,7 @@ class Scorer {
     close(name);
   }
 
-  /// So few simulated values say nothing: then the spread of the fitting rows stands in for them.
+  /// CRPS of the simulated values or, where they are too few, of the values of the fitting rows.
   double crps_or_climatology(const std::vector<double>& simulated, std::vector<double>& climatology, double measured) {
     keep_finite(simulated, values_);
     return fair_crps(unseen() ? climatology : values_, measured);

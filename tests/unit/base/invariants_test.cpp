@@ -4,8 +4,7 @@
 #include "talus/physics/impact.hpp"
 #include "talus/products/interval.hpp"
 
-// What no input can bring about must not go by unseen. Only in a build that checks it: a Debug one, or
-// -DTALUS_CHECKED=ON.
+// A broken invariant ends the program, in builds that check invariants: Debug, or -DTALUS_CHECKED=ON.
 
 namespace talus {
 namespace {

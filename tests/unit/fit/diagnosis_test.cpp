@@ -40,7 +40,7 @@ Campaign slope_campaign(int blocks) {
   return c;
 }
 
-/// Takes one trial of the model's own as what was measured.
+/// Takes one trial of the model as the measurements.
 void measure(Campaign& c, const Model& model, std::uint64_t seed) {
   const auto runs = observe(c, model, {1, seed, 0, 0, {}, {}});
   for (std::size_t b = 0; b < c.blocks.size(); ++b) {

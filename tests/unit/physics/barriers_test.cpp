@@ -169,7 +169,7 @@ TEST(Barrier, NeverNegativeNeverNaN) {
   EXPECT_EQ(meeting(net(0.0, 0.0, kInfinity), 0.0, 1.0), Meeting::Over);  // sliding, under a net of no height
 }
 
-/// Twenty segments in three boxes, a zigzag: a way along it crosses each once, in its order, wherever it starts.
+/// Twenty segments in three boxes, a zigzag. A way along the line crosses each segment once, in order, from any start.
 TEST(Barriers, CrossingsComeInTheOrderOfTheWay) {
   Barrier zigzag{"z", {{}}, 1.0, 1.0};
   for (int i = 0; i <= 20; ++i) zigzag.lines[0].emplace_back(i, i % 2 == 0 ? -1.0 : 1.0);
@@ -188,7 +188,7 @@ TEST(Barriers, CrossingsComeInTheOrderOfTheWay) {
   }
 }
 
-/// Through a corner of the line, or of the path: once.
+/// A crossing through a corner of the line or of the path counts once.
 TEST(Barriers, CornersCountOnce) {
   const Barriers bend({Barrier{"b", {{{5.0, 0.0}, {5.0, 10.0}, {5.0, 20.0}}}, 1.0, 1.0}});
   const auto count = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {

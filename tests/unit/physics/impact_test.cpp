@@ -21,7 +21,7 @@ using test::Numbers;
 
 const double kTan30 = 1.0 / std::sqrt(3.0);
 
-/// Motion along the direction t of a plane of normal n: what the two-dimensional equations talk about.
+/// Motion along the direction t of a plane of normal n: the quantities of the two-dimensional equations.
 struct Flat {
   double v_t, rim;
 };

@@ -69,8 +69,8 @@ TEST(Table4, RatioOfTheEnergyLevels) {
   EXPECT_FALSE(agrees(1320.0, 1610.0));
 }
 
-/// Two exceedances of a height fix a Weibull law: k = ln(ln p1 / ln p2) / ln(h1 / h2). Of Table 4's, mean and P95 are
-/// those of docs/barrier.md, "Table 4 of the paper".
+/// Two exceedances of a height fix a Weibull law: k = ln(ln p1 / ln p2) / ln(h1 / h2). Mean and P95 of the laws of
+/// Table 4 are those in docs/barrier.md, "Table 4 of the paper".
 TEST(Table4, JumpHeightsRecovered) {
   struct Row {
     double h1, p1, h2, p2, shape, scale, mean, p95;

@@ -22,7 +22,7 @@ std::array<std::uint64_t, 5> cells_of(double all, double k, double mean) {
   share[4] = rest;
   std::array<std::uint64_t, 5> cells{};
   for (std::size_t n = 1; n < 5; ++n) cells[n] = static_cast<std::uint64_t>(std::llround(all * share[n]));
-  return cells;  // none of those that no trajectory reached: nobody sees them
+  return cells;  // cells that no trajectory reached are not counted
 }
 
 TEST(ExpectedCells, OfGammaRatesAreThoseOfTheNegativeBinomial) {

@@ -14,7 +14,7 @@ namespace {
 
 using test::three_sources;
 
-/// A curve with a given class in every field of the default matrix: the energy of an intensity, often enough.
+/// Each field of the default matrix gives its class: frequencies of the column, up to the intensity of the row.
 TEST(HazardMatrix, EveryField) {
   const HazardMatrix matrix;
   const std::vector<double> often{1.0 / 20, 1.0 / 60, 1.0 / 200, 1.0 / 900};  // in each column
@@ -76,7 +76,7 @@ double at(const std::vector<Map>& maps, const std::string& name, int column, int
   return kNotGiven;
 }
 
-/// Cells that are built to have one curve each, through the whole way to the map: one weight at 10, 100 or 1000 kJ.
+/// Cells with one curve each, from the tally to the map: one weight at 10, 100 or 1000 kJ.
 TEST(HazardMaps, ACurveForEveryFieldOfTheMatrix) {
   const double unit = 0x1p-40;
   const WeightScale scale{unit, 0x1p-60, 1.0, static_cast<std::int64_t>(0.05 / unit), 1000, false};

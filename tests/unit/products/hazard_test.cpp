@@ -160,7 +160,7 @@ TEST(AnnualFrequency, BoundsOfStrataCoverAtLeast95Percent) {
           << strata.what << ' ' << blocks;
 }
 
-/// What the strata are for: cells that nearly every block of some sources reaches are known much better.
+/// Strata make the bounds much narrower in cells that nearly every block of some sources reaches.
 TEST(AnnualFrequency, StrataMakeTheBoundsNarrower) {
   const HazardRules rules = rules_of(2000, true);
   const double w = rules.scale.largest_weight();  // 10 sources of 100 that always hit, 10 that never do

@@ -45,7 +45,8 @@ TEST(Objects, AreHitWithinTheRadiusOfTheBlock) {
   EXPECT_FALSE(hits[3].by_feature.contains(0));
 }
 
-/// A block falls through the yard of a house, 1 m from the walls: the hole of the polygon is not the house.
+/// A block that falls through the yard of a house, 1 m from the walls, is no hit: the hole of the polygon is not the
+/// house.
 TEST(Objects, AHoleIsNotThere) {
   const Scenario s = three_sources();
   const AnnualWeights weights = AnnualWeights::of(s).value();
@@ -58,7 +59,8 @@ TEST(Objects, AHoleIsNotThere) {
   EXPECT_EQ(per_year(weights.scale(), replay_objects(s, weights, std::vector{yard}, {}, 1)[0]), 0.0);
 }
 
-/// What crosses a cell is between what hits a house wholly inside it by more than a radius, and one that fills it.
+/// The number of blocks that cross a cell lies between two numbers of hits: of a house inside the cell, farther than a
+/// radius from its sides, and of a house that fills it.
 TEST(Objects, AgreeWithTheCells) {
   Scenario s = test::rough_slope(6, 60);
   for (SourceFeature& f : s.features) f.frequency = 1.0;

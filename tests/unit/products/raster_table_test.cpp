@@ -1,4 +1,4 @@
-// The table of rasters: that it is whole, that docs say what it says, and which bands a run has.
+// The table of rasters is complete and agrees with docs; the bands of a run follow from it.
 #include "talus/products/raster_table.hpp"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ const RunRaster& raster_of(const std::string& name) {
   throw std::out_of_range("no raster " + name);
 }
 
-/// The values of a cell, of which `bands` are asked.
+/// The values of a cell in `bands` bands.
 std::vector<double> values_of(const std::string& name, const CellRecord& record, std::size_t bands) {
   std::vector<double> values(bands);
   raster_of(name).rule(kRun)({record, nullptr}, values);

@@ -10,7 +10,7 @@
 namespace talus {
 namespace {
 
-/// By the inverse of the distribution, with numbers that are not the engine's.
+/// Values drawn by the inverse of the distribution, with random numbers that are not the engine's.
 std::vector<double> drawn(const Weibull& law, std::size_t n, test::Numbers& numbers) {
   std::vector<double> values(n);
   for (double& x : values) x = law.scale * std::pow(-std::log1p(-numbers.uniform(0.0, 1.0)), 1.0 / law.shape);
@@ -43,8 +43,8 @@ TEST(WeibullFit, ChangesWithTheUnitAsTheValuesDo) {
   EXPECT_NEAR(b.scale / a.scale, 1e200, 1e190);
 }
 
-/// The intervals cover what they say: of 400 data sets 95 %, within 3 standard errors of a binomial number (3.3 %).
-/// The law is that of the jumps in the paper's Table 4; 30 values, where the plain percentile bootstrap covers 90 %.
+/// The intervals cover the truth in 95 % of 400 data sets, within 3 standard errors of a binomial number (3.3 %). The
+/// law is that of the jumps in the paper's Table 4; 30 values, where the plain percentile bootstrap covers 90 %.
 TEST(WeibullFit, IntervalsCoverTheTruthAtTheStatedRate) {
   const Weibull truth{1.29, 1.44};
   constexpr int kSets = 400;

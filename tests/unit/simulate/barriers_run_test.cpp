@@ -1,4 +1,4 @@
-// Barriers in whole runs: what they leave of a rough slope, with and without effects.
+// Barriers in whole runs on a rough slope, with and without effects.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -65,8 +65,8 @@ TEST_P(BarrierRun, ZeroHeightChangesNoBit) {
   EXPECT_GT(sum.over, 0U);
 }
 
-/// Lines on the border of cells (x = 60), within them (61.3), and oblique: no cell wholly behind is crossed. Without
-/// the line most blocks get there.
+/// Lines on the border of cells (x = 60), within them (61.3), and oblique: no cell wholly behind a line is crossed.
+/// Without the line most blocks get there.
 TEST_P(BarrierRun, NothingBehindOneThatHoldsAll) {
   const Scenario s = slope(GetParam());
   for (const auto& [south, north] : {std::pair{60.0, 60.0}, {61.3, 61.3}, {50.0, 75.0}}) {
@@ -93,7 +93,7 @@ TEST_P(BarrierRun, NothingBehindOneThatHoldsAll) {
   }
 }
 
-/// What breaks a net loses its capacity and keeps its direction.
+/// A block that breaks a net loses the capacity of the net and keeps its direction.
 TEST_P(BarrierRun, BrokenLosesTheCapacity) {
   Scenario s = slope(GetParam());
   s.effects.fragmentation.threshold = 0.0;  // the mass stays

@@ -73,7 +73,7 @@ TEST(Pieces, AreTheSameForAnyNumberOfThreadsAndAllScored) {
         impacts += record->impacts;
         most = std::max<std::uint64_t>({most, record->passages, record->deposits});
       }
-  EXPECT_EQ(impacts, one.impacts);  // those of the pieces too
+  EXPECT_EQ(impacts, one.impacts);  // the impacts of the pieces, too
   EXPECT_LE(most, s.released());    // no trajectory counts twice in a cell
 
   double released = 0.0;

@@ -207,7 +207,7 @@ TEST(Simulate, ASinkThatThrowsEndsTheRun) {
         after += thrown ? 1 : 0;
         if (++calls < 3) return;
         thrown = true;
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));  // the others get in line behind it
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));  // the other threads queue behind it
         throw std::runtime_error("disk full");
       };
       Sinks sinks;
@@ -250,7 +250,7 @@ TEST(Simulate, ProgressReturningFalseInterrupts) {
     const Totals totals = simulate(s, tally, sinks, threads);
     EXPECT_TRUE(totals.interrupted);
     EXPECT_LT(totals.released, s.released());
-    ASSERT_EQ(all.stops.size(), totals.released);  // what was done is handed out, from the first release on
+    ASSERT_EQ(all.stops.size(), totals.released);  // all finished rows, from the first release on
     for (std::size_t i = 0; i < all.stops.size(); ++i)
       ASSERT_EQ(all.stops[i].source * kTrajectories + all.stops[i].block, i);
     std::uint64_t passages = 0;

@@ -31,7 +31,7 @@ std::vector<std::string> bytes_of(const Tally& tally) {
   return regions;
 }
 
-/// The counts and percentiles of every cell: what maps are made of.
+/// The counts and percentiles of every cell, from which maps are made.
 std::vector<double> cells_of(const Tally& tally) {
   std::vector<double> values;
   for (int row = 0; row < tally.grid().rows; ++row)
@@ -51,7 +51,7 @@ std::vector<double> cells_of(const Tally& tally) {
   return values;
 }
 
-/// What is on the disk between two programs.
+/// The state that is saved on disk between two programs.
 struct Kept {
   Simulation::Position position;
   Totals totals;

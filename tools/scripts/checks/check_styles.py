@@ -3,9 +3,9 @@
 
   tools/scripts/checks/check_styles.py FOLDER [--picture OUT.png]     needs: apt-get install python3-qgis qgis-providers fonts-dejavu-core
 
-Of each raster: QGIS reads it, takes the style, draws it; at each of some hundred cells the colour that is drawn is the one
-that the style's text has for the value in the cell, and nodata draws nothing. Vector results must load too. Exit code 1
-and a line for each fault. CI does not run it: QGIS is 1.3 GB.
+QGIS reads each raster, takes the style and draws it. At each of some hundred cells the drawn colour must be the one that
+the text of the style has for the value of the cell; nodata must draw nothing. Vector results must load too. Prints a line
+for each fault, with exit code 1. CI does not run it, because QGIS takes 1.3 GB.
 """
 import argparse
 import glob
@@ -43,7 +43,7 @@ def draw(layer, extent, width, height):
 
 
 def expected(value, opacity, items):
-    """What is seen on white for a value; None is nodata."""
+    """The colour on a white ground for a value; None is nodata."""
     colour = next((c for limit, c, drawn in items if value is not None and value <= limit and drawn), None)
     if value is not None and value <= items[0][0] and not items[0][2]:
         colour = None

@@ -1,5 +1,7 @@
 #!/usr/bin/python3
-"""Compare Talus with the reference scenes: an independent, time-stepping implementation of the same model.
+"""Compares Talus with the reference scenes of an independent, time-stepping implementation of the same model.
+
+  tools/scripts/checks/compare_reference.py --talus build/release/talus --data ../shared/data [--threads 1] [--trials-factor 1] [SCENE ...]
 
 Each scene's sources, ground and screens are written as a scenario, `talus run` is started, its results are compared:
 

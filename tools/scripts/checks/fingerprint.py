@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """Checksums of every output of the program, so that a redesign can show that it changed no byte.
 
-    fingerprint.py --talus build/release/talus --mpi build/release/talus-mpi -o after.txt [--against before.txt]
+  tools/scripts/checks/fingerprint.py --talus build/release/talus --mpi build/release/talus-mpi -o after.txt [--against before.txt]
 
 It runs the example valley (run, hazard with objects, barrier, sources, trace, effects, barriers), the profile, `gar` with 5 trajectories a
-source cell, calibrate, diagnose on tschamut with the fewest trials, two parts with merge, and two ranks. Of JSON records the
-figures of time and memory, the program's path and version are left out. --quick leaves out gar and tschamut, --brief all
-but the runs of the valley, with few trajectories, and the profile: for programs that are slow.
+source cell, calibrate, diagnose on tschamut with the fewest trials, two parts with merge, and two ranks. Time, memory, and
+the path and version of the program are left out of JSON records. --quick leaves out gar and tschamut. --brief, for slow
+programs, runs only the valley with few trajectories and the profile.
 Exit code 1 where a checksum differs from --against."""
 import argparse
 import hashlib
@@ -60,13 +60,13 @@ zones = ["talus"]
 def without_volatile(value):
     if isinstance(value, dict):
         if value.get("path", "").endswith("scenario.toml") and "FOLDER" in value["path"]:
-            return {"path": value["path"]}  # its checksum is that of the temporary folder's name, too
+            return {"path": value["path"]}  # its checksum also depends on the name of the temporary folder
         return {k: without_volatile(v) for k, v in value.items() if k not in VOLATILE}
     return [without_volatile(v) for v in value] if isinstance(value, list) else value
 
 
 def checksum(path, folder):
-    """Of a file's bytes, the name of the temporary folder left out."""
+    """Checksum of a file, without the name of the temporary folder."""
     with open(path, "rb") as file:
         data = file.read().replace(folder.encode(), b"FOLDER")
     if path.endswith(".json"):
@@ -163,7 +163,7 @@ class Outputs:
         found = {}
         for folder, _, names in os.walk(self.folder):
             for name in names:
-                if name.endswith(".bin"):  # what a part keeps: the order in which its threads came stands in it
+                if name.endswith(".bin"):  # saved by a part; depends on the order in which its threads came
                     continue
                 path = os.path.join(folder, name)
                 found[os.path.relpath(path, self.folder)] = checksum(path, self.folder)

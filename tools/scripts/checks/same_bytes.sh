@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Whether two builds of the program write the same bytes: same_bytes.sh build/release/talus build/dev/talus
+# Checks that two builds of the program write the same bytes:
+# tools/scripts/checks/same_bytes.sh build/release/talus build/dev/talus
 set -euo pipefail
 here="$(cd "$(dirname "$0")" && pwd)"
 work="$(mktemp -d)"

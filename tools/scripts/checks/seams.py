@@ -3,9 +3,9 @@
 
   tools/scripts/checks/seams.py RESULTS [passages.tif energy.tif ...]
 
-Talus tallies in square regions of 64 x 64 cells, counted from the south-west. It prints the
-sum of |a - b| over the sum of a + b of neighbours across the edges of the regions, and for the other 63 pairs of rows (or columns) of a
-region the mean of the same, its scatter (standard deviation) and the extremes. First bands only. Needs numpy and GDAL's python binding.
+Talus tallies in square regions of 64 x 64 cells, counted from the south-west. The relative difference of neighbours is the sum of
+|a - b| over the sum of a + b. Prints it across the edges of the regions, and beside it the mean, scatter (standard deviation) and
+extremes for the other 63 pairs of rows (or columns) of a region. First bands only. Needs numpy and GDAL's python binding.
 """
 import argparse
 import os

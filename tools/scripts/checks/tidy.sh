@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# clang-tidy on the sources that differ from the last release, those changed last first, as many as the time allows:
-# tidy.sh BUILD_FOLDER [SECONDS]. BUILD_FOLDER holds compile_commands.json of a build by clang. Before the first release all
-# sources differ. Says how many were left out.
+# Runs clang-tidy on the sources that differ from the last release (before the first one: on all), the latest changes first,
+# until the time is over: tools/scripts/checks/tidy.sh BUILD_FOLDER [SECONDS]. BUILD_FOLDER holds the compile_commands.json
+# of a build by clang. Prints how many sources were checked.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 build="$1" seconds="${2:-100000}"

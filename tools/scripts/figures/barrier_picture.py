@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draw what a barrier at a screen must hold, along the line: crossings, energy and jump height, with the design values.
+"""Draws crossings, energy and jump height along a screen, with the design values of a barrier there.
 
   tools/scripts/figures/barrier_picture.py OUT --screen ID -o picture.png [--bin 10]
 

@@ -8,7 +8,7 @@ OUT: the folder that `talus diagnose` wrote.
 import argparse
 import re
 
-WIDTH, HEIGHT = 330, 190  # of a plot, as in src/io/diagnosis_page.cpp
+WIDTH, HEIGHT = 330, 190  # of a plot, as in src/io/reports/diagnosis_page.cpp
 
 
 def main():

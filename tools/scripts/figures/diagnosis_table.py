@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""What the tables of docs/closing-the-loop.md are made from: prints what `talus diagnose CAMPAIGN/campaign.toml -o OUT/NAME` has found.
+"""Prints what `talus diagnose CAMPAIGNS/NAME/campaign.toml -o OUT/NAME` has found: the tables of docs/closing-the-loop.md.
 
   tools/scripts/figures/diagnosis_table.py CAMPAIGNS OUT NAME...
 
-CAMPAIGNS: the folder of the campaigns, such as ../shared/data/campaigns. Seconds are those of the clock. Prints what was found in each of them, beside what its truth.toml
-says where it has one, and then every candidate of the first round: its error on the held-out rows, by which share that is lower (95 %
-interval over blocks), and the p-value of its score test.
+CAMPAIGNS is the folder of the campaigns, such as ../shared/data/campaigns. For each campaign it prints the effect that was found, beside
+the one in its truth.toml if it has one, and the seconds by the clock. Then follows every candidate of the first round: its error on the
+held-out rows, the share by which this error is lower (95 % interval over blocks), and the p-value of its score test.
 """
 import json
 import os

@@ -1,17 +1,17 @@
 #!/usr/bin/python3
 """Draw a raster of results over the hillshade of its DEM, for reports and the README.
 
-  picture.py DEM [RASTER] -o out.png [--band 1] [--log] [--classes 0.001,0.01,0.1]
+  tools/scripts/figures/picture.py DEM [RASTER] -o out.png [--band 1] [--log] [--classes 0.001,0.01,0.1]
              [--title TEXT] [--unit TEXT] [--vectors paths.gpkg sources.shp ...]
              [--names none,low,high]
              [--crop XMIN YMIN XMAX YMAX] [--colours NAME] [--width INCHES] [--dpi 110]
 
-Nodata and zero are transparent.  --classes gives the lower bounds of the classes (a value
-below the first one is transparent); --names those of whole numbers from 0, in the colours of
-a hazard map, 0 being transparent.  For an impact probability they rise by factors.  --log
-is the continuous scale for such values, without classes.  Vectors in any CRS are brought to that of the
-DEM; polygons are outlined, many lines are drawn finer than few.  Without RASTER only the
-hillshade is drawn.  --crop is in the CRS of the DEM.
+Nodata and zero are transparent.  --classes gives the lower bounds of the classes; a value below the
+first one is transparent.  For an impact probability choose bounds that rise by factors.  --log is the
+continuous scale for such values, without classes.  --names gives the names of the whole numbers from 0
+in the colours of a hazard map; 0 is transparent.  Vectors in any CRS are brought to that of the DEM;
+polygons are outlined, many lines are drawn finer than few.  Without RASTER only the hillshade is drawn.
+--crop is in the CRS of the DEM.
 Needs numpy, matplotlib and GDAL's python binding (Debian: python3-numpy
 python3-matplotlib python3-gdal); with Pillow, which matplotlib needs, the PNG is quantised.
 """
@@ -192,5 +192,5 @@ def main():
 
 try:
     main()
-except RuntimeError as fault:  # GDAL says what and where
+except RuntimeError as fault:  # the message of GDAL says what is wrong and where
     raise SystemExit(f"picture.py: {fault}")

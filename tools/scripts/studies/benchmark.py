@@ -4,9 +4,10 @@
   tools/scripts/studies/benchmark.py [--bench build/release/tests/bench/talus-bench] [--shared ../shared] [--work DIR] [--repeats 3]
 
 Makes the slope (2 000 x 2 000 cells of 2 m, 1 000 sources) with shared/bench/make_slope.py, compiles shared/bench/sketch.cpp
-(an unoptimised sketch of the loop with counts and one maximum), runs it and talus-bench in turn and prints the medians of the
-rounds; of ratios, the median of each round's with the range. Two sketches at once show what the machine itself loses where two
-cores share caches, memory or a host. Figures of one machine; the ratios within one run are what can be compared. Needs g++, python3-numpy, python3-gdal.
+(an unoptimised sketch of the loop with counts and one maximum), and runs it and talus-bench in turn. Prints medians over the
+rounds; a ratio is formed within each round, and its median and range are printed. Two sketches at once show what the machine
+itself loses when two cores share caches, memory or a host. Compare the ratios of one run; the figures are those of one machine.
+Needs g++, python3-numpy, python3-gdal.
 """
 import argparse
 import json
@@ -20,7 +21,7 @@ import time
 
 
 def sketch_speed(folder):
-    """Plan metres per CPU-second of the sketch, in millions: its own clock is wall time, so scaled by wall / CPU of the process."""
+    """Million plan metres per CPU-second of the sketch. Its own clock is wall time, so it is scaled by wall / CPU of the process."""
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
     out = subprocess.run([f"{folder}/sketch", f"{folder}/dem.asc", f"{folder}/sources.csv", "10"], check=True,
                          capture_output=True, text=True).stdout
@@ -30,7 +31,7 @@ def sketch_speed(folder):
 
 
 def two_sketches(folder):
-    """What this machine gives to two programs at once that share nothing: wall seconds of one, twice, over those of two together."""
+    """Gain of two programs at once that share nothing, on this machine: twice the wall seconds of one over those of two together."""
     command = [f"{folder}/sketch", f"{folder}/dem.asc", f"{folder}/sources.csv", "10"]
 
     def seconds(programs):

@@ -1,16 +1,16 @@
 #!/usr/bin/python3
-"""How well `talus diagnose` finds what made a campaign: makes campaigns with the engine itself and diagnoses them.
+"""Measures how often `talus diagnose` is right: makes campaigns with the engine itself and diagnoses them.
 
   tools/scripts/studies/diagnosis_study.py [--talus build/release/talus] [--effects all] [--magnitudes 1,2,0.5] [--blocks 60,120]
                            [--none 20] [--trials 24] [--test-trials 100] [--most-effects 3] [--threads N]
                            [--jobs 1] [--work DIR] [--seed 1] [-o study.csv]
 
 Each campaign has a slope of its own (length, steepness, a gully, bumps), three zones, blocks of many sizes and shapes, three
-screens and four days. One effect of a known size acts (or none); one simulated trial per block, with errors of measurement, is
-what was "measured"; a third of the blocks is held out. Prints the confusion matrix, the false alarms and the power by magnitude,
-and the error on the held-out rows with the ground alone, with what was found, and with the model that made the data.
-The same engine makes and judges the data: this measures the statistics, not the physics. What is finished, with the same seed, options and
-program, is not run again.
+screens and four days. One effect of a known size acts (or none). One simulated trial per block, with errors of measurement,
+serves as the measurement. A third of the blocks is held out. Prints the confusion matrix, the false alarms and the power by
+magnitude, and the error on the held-out rows of three models: the ground alone, the model that was found, the model that made
+the data. The same engine makes and judges the data: this measures the statistics, not the physics. Campaigns that are finished,
+with the same seed, options and program, are not run again.
 """
 import argparse
 import csv
@@ -120,7 +120,7 @@ def rows(path):
 
 
 def make(talus, folder, effect, magnitude, count, seed):
-    """A campaign in `folder`: what one trial of the model in truth_model.toml would have been measured as."""
+    """A campaign in `folder`: the measurements of one trial of the model in truth_model.toml."""
     os.makedirs(folder, exist_ok=True)
     g = np.random.default_rng(seed)
     terrain(g, folder)
@@ -150,7 +150,7 @@ def run(command):
 
 
 def program(o):
-    """What tells one program from another."""
+    """The first digits of the checksum of the program."""
     with open(o.talus, "rb") as file:
         return hashlib.sha256(file.read()).hexdigest()[:12]
 
@@ -184,7 +184,7 @@ def one(o, effect, magnitude, count, k):
 
 def study(o):
     plan = []
-    for n in o.blocks:  # half of a study says something of everything
+    for n in o.blocks:  # so that half of a study has some of everything
         none = [("none", 1.0, n, k) for k in range(o.none)]
         some = [(e, m, n, 0) for m in o.magnitudes for e in o.effects]
         plan += [p for pair in itertools.zip_longest(some, none) for p in pair if p]

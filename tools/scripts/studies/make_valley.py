@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Write the example valley, data/valley: one side of an alpine valley that does not exist.
+"""Writes the example valley, data/valley: one side of an alpine valley that does not exist.
 
-  make_valley.py [OUTDIR] [--seed 11]
+  tools/scripts/studies/make_valley.py [OUTDIR] [--seed 11]
 
 From west to east: summit slope, two cliff bands cut by couloirs, talus at 33-37 degrees with fans,
 a forest road, meadow that flattens out, houses, stream, counter-slope.  The rock is a profile whose

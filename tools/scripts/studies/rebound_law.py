@@ -1,7 +1,7 @@
 """Measured single rebounds, and the impact law on their incoming states (for rebound_study.py; docs/rebounds.md).
 
-k_n, k_t are measured against the mean surface. So the law is simulated whole (roughness, shape, slip, step 6 of
-docs/physics.md, section 4) and its k_n, k_t are taken as the observer takes them, errors of the normal included.
+k_n and k_t are measured against the mean surface. So the whole law is simulated (roughness, shape, slip, step 6 of
+docs/physics.md, section 4), and its k_n and k_t are determined as the observer does, errors of the normal included.
 """
 import csv
 from types import SimpleNamespace

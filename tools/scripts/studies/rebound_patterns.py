@@ -1,4 +1,4 @@
-"""What the measured rebounds show beside what each law would show on the same incoming states (rebound_study.py)."""
+"""Patterns of the measured rebounds, beside those of each law on the same incoming states (for rebound_study.py)."""
 import numpy as np
 from scipy.stats import rankdata
 
@@ -12,7 +12,7 @@ def beside(values):
 
 
 def correlation(a, b, q):
-    """Of a and b (last axis: impacts), both freed of the orthonormal columns q."""
+    """Correlation of a and b (last axis: impacts), both freed of the orthonormal columns q."""
     a, b = (x - (x @ q) @ q.T for x in (a, b))
     return (a * b).sum(-1) / np.sqrt((a * a).sum(-1) * (b * b).sum(-1))
 
@@ -24,7 +24,7 @@ def partial(a, b, held):
 
 
 def wanted_tests(s):
-    """(a, b, what is held, its columns). Of the slab k_n and k_t are paired within cells of plate, drop and size."""
+    """(a, b, name of what is held, its columns). On the slab k_n and k_t are paired within cells of plate, drop and size."""
     ranks, slab = lambda *x: rankdata(np.array(x), axis=1).T, s.name == "limestone"
     d = (s.D,) if slab else ()
     rows = [(k, "angle", "v_n" + ", D" * slab, ranks(*d, s.vn)) for k in ("kn", "kt")]

@@ -1,4 +1,4 @@
-"""The picture of rebound_study.py: measured rebounds and what the law makes of the same incoming states."""
+"""The picture of rebound_study.py: measured rebounds, and those of the law from the same incoming states."""
 import io
 
 import matplotlib

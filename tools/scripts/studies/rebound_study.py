@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Measured single rebounds against the impact law (docs/rebounds.md): prints every figure, draws one picture.
+"""Compares measured single rebounds with the impact law (docs/rebounds.md): prints every figure, draws one picture.
 
-  rebound_study.py [--shared ../shared] [-o PICTURE.png] [--draws 60] [--repeats 2000] [--seed 3] [--in-plane]
+  tools/scripts/studies/rebound_study.py [--shared ../shared] [-o PICTURE.png] [--draws 60] [--repeats 2000] [--seed 3] [--in-plane]
 
 Reads SHARED/data/literature/wang2018_limestone_on_concrete.csv (75 drops on a concrete slab) and
 SHARED/data/chant_sura/contact_events.csv (17 usable contacts of 11 runs). Neither is in the repository.
-Exit code 77 where they are missing. One core, a few minutes.
+Exit code 77 if they are missing. One core, a few minutes.
 """
 import argparse
 import sys
@@ -38,7 +38,7 @@ def crps(sample, observed):
 
 
 def score(s, kn, kt):
-    """Of every impact: CRPS of v_n,out / v and v_t,out / v, summed."""
+    """CRPS of v_n,out / v plus CRPS of v_t,out / v, for every impact."""
     return (crps(kn * s.vn / s.speed, s.kn * s.vn / s.speed) + crps(kt * s.vt / s.speed, s.kt * s.vt / s.speed))
 
 

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""How the time of `talus run` grows with threads, ranks, trajectories, DEM size and cell size, and how well `talus check` foretells it.
+"""Measures how the time of `talus run` grows with threads, ranks, trajectories, DEM size and cell size, and how well `talus check` foretells it.
 
   tools/scripts/studies/scaling.py [--talus build/release/talus] [--talus-mpi build/release/talus-mpi] [--shared ../shared] [--work DIR]
                    [--repeats 3] [-o scaling.png]
 
 On the slope of shared/bench/make_slope.py (4 km x 4 km, 1 000 sources, upper-talus-3d, D = 1.2 m, 20 trajectories a source where
-nothing else is said). The cases of one table are run in turn, `--repeats` times; a figure is the median, a ratio the median of
-the ratios of each turn. Cost is processor seconds of tracing and tallying per trajectory metre (3D). Needs python3-numpy,
+nothing else is said). The cases of one table are run in turn, `--repeats` times. A figure is the median over the turns; a ratio
+is formed within each turn, then the median is taken. Cost is processor seconds of tracing and tallying per trajectory metre (3D). Needs python3-numpy,
 python3-gdal; with -o python3-matplotlib.
 """
 import argparse
@@ -47,7 +47,7 @@ def run(o, slope, threads=1, ranks=0, trajectories=20):
 
 
 def in_turn(o, cases):
-    """cases: name -> how to run it. All of them, turn by turn: name -> run.json of each turn."""
+    """Runs all cases (name -> how to run it), turn by turn. Returns name -> run.json of each turn."""
     records = {name: [] for name in cases}
     for _ in range(o.repeats):
         for name, how in cases.items():
@@ -69,13 +69,13 @@ def median(records, of):
 
 
 def ratio(one, other, of):
-    """Of two cases, turn by turn: median (smallest to largest)."""
+    """Ratio of two cases, formed in each turn: median (smallest to largest)."""
     ratios = sorted(of(a) / of(b) for a, b in zip(one, other))
     return f"{statistics.median(ratios):.2f} ({ratios[0]:.2f} to {ratios[-1]:.2f})"
 
 
 def table(title, records, first, of, unit, versus):
-    """Prints a row per case: the figure, and how many times the first case is of it, or it of the first."""
+    """Prints a row per case: the figure, and its ratio to the first case or the inverse of this ratio."""
     print(f"\n| {title} | {unit} | {versus} |\n| --- | --- | --- |")
     for name, turns in records.items():
         pair = (records[first], turns) if "faster" in versus else (turns, records[first])
@@ -90,7 +90,7 @@ def seconds_of(text):
 
 
 def foretold(o, cases):
-    """What `talus check` says beforehand, against what was, on one thread."""
+    """Compares what `talus check` foretells with the run itself, on one thread."""
     print("\n| run | memory MB: foretold, was | results MB | cells reached | time s |\n| --- | --- | --- | --- | --- |")
     for name, (slope, trajectories) in cases.items():
         text = subprocess.run([o.talus, "check", *slope.arguments(trajectories), "--threads", "1"], check=True, capture_output=True,

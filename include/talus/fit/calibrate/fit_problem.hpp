@@ -8,25 +8,25 @@ namespace talus {
 /// The score of one model, row by row.
 struct Evaluation {
   Eigen::VectorXd z;     ///< size: free parameters
-  Eigen::VectorXd rows;  ///< as Score::rows of the fit
+  Eigen::VectorXd rows;  ///< scores, in the order of Score::rows of the fit
   std::uint32_t trials;
   double objective;
 };
 
 struct FitOptions {
   std::uint32_t trials = 48;              ///< per block while it searches
-  std::uint32_t comparison_trials = 200;  ///< per block where the best of a few places is taken
-  int starts = 3;                         ///< of searches; 0: none, rounds of the quadratic model from the start
+  std::uint32_t comparison_trials = 200;  ///< per block when the best of a few places is chosen
+  int starts = 3;                         ///< number of searches; 0: only rounds of the quadratic model, from the start
   int rounds = 5;                         ///< of the quadratic model, at most
   int design = 0;                         ///< evaluations of each round; 0: by the number of parameters
   double enough = 0.0;                    ///< a round that lowers the objective by less is the last one
   std::uint64_t seed = 1;
   int threads = 0;
   double prior_weight = 0.28;              ///< see Fit::objective and docs/closing-the-loop.md; 0: no prior
-  Eigen::MatrixXd spread;                  ///< covariance of the first round's places, in z; empty: a usual one
+  Eigen::MatrixXd spread;                  ///< covariance of the first round's places, in z; empty: by `rules`
   std::span<const Evaluation> known = {};  ///< evaluations of the same parameters and rows, for the quadratic model
   SearchRules rules;                       ///< numbers that no user sets
-  std::function<bool(double)> proceed;     ///< told the share done, 0..1; false ends the fit. May be empty
+  std::function<bool(double)> proceed;     ///< receives the share done, 0..1; false ends the fit. May be empty
 };
 
 /// The result of a fit.
@@ -36,22 +36,22 @@ struct Fit {
   double objective = kNotGiven;  ///< total of the weighed groups + prior_weight / (blocks asked for) * sum of z^2
   Score score;                   ///< of the asked rows, with comparison_trials trials, its groups weighed
   Eigen::MatrixXd spread;        ///< covariance of z within which the objective is nearly as good
-  std::vector<Evaluation> evaluations;  ///< of the designs, and those known before: data of the quadratic model
-  int tried = 0;                        ///< places that were simulated, those of the searches and comparisons too
+  std::vector<Evaluation> evaluations;  ///< of the designs, and FitOptions::known: data of the quadratic model
+  int tried = 0;                        ///< number of simulated places, searches and comparisons included
   bool interrupted = false;
 };
 
 /// A model and the measurements that it is fitted to. The parts must outlive it.
 struct FitProblem {
   const Campaign& campaign;
-  const Model& start;               ///< what is not free stays as it is there
+  const Model& start;               ///< parameters that are not free keep its values
   std::span<const Parameter> free;  ///< at least one
   const std::vector<bool>& rows;    ///< blocks that are used; size: blocks
 
   double prior(const FitOptions& options) const;  ///< weight of z^2 in the objective
 };
 
-/// Which trials of every block are simulated.
+/// The trials of every block that are simulated.
 struct TrialRange {
   std::uint32_t count, first = 0;
 };

@@ -37,7 +37,7 @@ std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& 
                                          std::span<const std::string> keys, const std::vector<bool>& zones);
 
 /// The zones that enough simulated paths of the asked blocks touch: at least `share` of them. Size: zones of the
-/// campaign; a zone counts with the bands of other ground that a model has laid over it.
+/// campaign; an impact in a band of other ground counts for the zone under the band.
 std::vector<bool> touched_zones(const Campaign& campaign, std::span<const BlockRuns> runs, double share = 0.05);
 
 /// A model with the free parameters at z.

@@ -7,7 +7,7 @@ namespace talus {
 struct Uncertainty {
   Eigen::MatrixXd draws;            ///< one z per row; size: draws x free parameters
   std::vector<Interval> intervals;  ///< 95 %, of the values in the units of the files
-  std::vector<bool> identifiable;   ///< false: the interval covers most of what was possible before
+  std::vector<bool> identifiable;   ///< false: the interval covers most of the prior's
   Eigen::MatrixXd correlation;      ///< of z over the draws; size: parameters x parameters
   double noise = 0.0;               ///< standard deviation of a total with FitOptions::trials, from its random numbers
   bool interrupted = false;
@@ -25,14 +25,13 @@ struct UncertaintyOptions {
 /// Posterior sample by randomised minimisation (randomise, then optimise): each draw takes the blocks anew with
 /// replacement, draws the centre of the prior from the prior, adds the noise of the trials, and moves the optimum of
 /// the fit to the new minimum within the bounds. The objective is a quadratic model of every row score around the
-/// optimum
-/// (`LocalModel`), so that a draw costs no simulation; the model is fitted to rounds of designs, each as wide as the
-/// objective of the round before stays nearly as good.
+/// optimum (`LocalModel`), so that a draw costs no simulation. The model is fitted to rounds of designs; each is as
+/// wide as the range in which the previous round found the objective nearly as good.
 ///
 /// @param fit  of the same problem
 ///
-/// Includes: which blocks were released, the prior, the noise of the simulation. Leaves out: that the model may be
-/// wrong. docs/closing-the-loop.md, "Uncertainty".
+/// Includes the choice of the released blocks, the prior and the noise of the simulation. Leaves out that the model may
+/// be wrong. docs/closing-the-loop.md, "Uncertainty".
 Uncertainty uncertainty_of(const FitProblem& problem, const FitOptions& options, const UncertaintyOptions& how,
                            const Fit& fit);
 

@@ -8,7 +8,7 @@
 
 namespace talus {
 
-/// Measurements of a block at its first crossing of a screen. NaN: not measured, though it did cross.
+/// Measurements of a block at its first crossing of a screen. NaN: crossed, but not measured.
 struct Passage {
   double speed = kNotGiven;  ///< in space [m/s]
   double jump = kNotGiven;   ///< vertical height of the centre above the terrain [m]
@@ -37,13 +37,14 @@ struct MeasuredBlock {
   std::string group;             ///< empty: none
   bool holdout = false;          ///< never enters a fit
 
-  std::optional<Eigen::Vector2d> stop;           ///< where it came to rest [m, local]
-  std::optional<double> stop_mass;               ///< what arrived there [kg]
-  std::vector<std::optional<Passage>> passages;  ///< one per screen of the campaign: its first crossing; nothing: none
+  std::optional<Eigen::Vector2d> stop;           ///< place of rest [m, local]
+  std::optional<double> stop_mass;               ///< mass that arrived there [kg]
+  std::vector<std::optional<Passage>> passages;  ///< first crossing of each screen of the campaign; empty: none
   std::vector<Sample> samples;                   ///< in the order of the file
 };
 
-/// Standard deviations of the measurement, added to what is simulated before the two are compared. Normal errors.
+/// Standard deviations of the measurement. Normal errors of this size are added to the simulated values before they are
+/// compared with the measured ones.
 struct MeasurementError {
   double position_m = 0.0;                 ///< of each coordinate of a stop [m]
   double speed_fraction = 0.0;             ///< of a speed, relative to it [-]
@@ -51,13 +52,13 @@ struct MeasurementError {
   double angular_velocity_fraction = 0.0;  ///< of a spin, relative to it [-]
 };
 
-/// Measured data: the place, what was released, what was seen. Valid by construction: `io::read_campaign` builds it.
-/// docs/closing-the-loop.md, "Campaign".
+/// Measured data: the place, the released blocks, the observations. Valid by construction: `io::read_campaign` builds
+/// it. docs/closing-the-loop.md, "Campaign".
 struct Campaign {
   std::string name;
   Surface surface{Raster<float>{}};
   Raster<std::uint8_t> zones;           ///< index into zone_names; empty where one ground is everywhere
-  std::vector<std::string> zone_names;  ///< "default" (what no zone covers) first, then those of the campaign
+  std::vector<std::string> zone_names;  ///< "default" (ground outside all zones) first, then those of the campaign
   std::vector<MeasuredBlock> blocks;
   std::vector<Screen> screens;
   MeasurementError error;

@@ -7,19 +7,19 @@
 
 namespace talus {
 
-/// How much an instrument reads too high, as a share of the true value.
+/// Bias of an instrument: the share of the true value by which it reads too high [-].
 struct Bias {
   double speed = 0.0, jump = 0.0, spin = 0.0;
 };
 
-/// What is fitted and compared: the ground of each zone, the impact law and the effects on top of it; then what the
-/// campaign's files do not say of the place and of its instruments.
+/// A model of a campaign: the ground of each zone, the impact law and the effects. It may also have zones, barriers and
+/// errors of instruments that the campaign's files do not mention.
 struct Model {
   std::vector<Ground> grounds;  ///< by zone: as Campaign::zone_names, or of `zones`
   ImpactModel impact;
   Effects effects;
   Raster<std::uint8_t> zones;     ///< instead of the campaign's; empty: the campaign's
-  std::vector<Barrier> barriers;  ///< that nobody declared; as those of a run
+  std::vector<Barrier> barriers;  ///< undeclared ones; they act as those of a run
   std::vector<Bias> bias;         ///< by screen, then that of the samples; empty: none
 };
 
@@ -27,20 +27,20 @@ struct Model {
 /// Throws InputError for a name that is no preset.
 Model model_of_preset(const Campaign& campaign, std::string_view preset);
 
-/// What would have been measured of the simulated trajectories of one block, measurement error included.
-/// Arrays have one value per trial; NaN where nothing was seen.
+/// Simulated measurements of one block, measurement error included. Arrays have one value per trial; NaN where nothing
+/// was seen.
 struct BlockRuns {
   struct AtScreen {
     std::vector<double> speed, jump, spin;  ///< of the first crossing [m/s], [m], [rad/s]; NaN: not crossed
   };
   struct AtSample {
     std::vector<double> speed,
-        spin;  ///< where the path first reaches the sample's distance; NaN: it does not get there
+        spin;  ///< where the path first reaches the sample's distance; NaN: never
   };
 
   std::uint32_t trials = 0;                 ///< 0: the block was not asked for
-  std::vector<double> x, y;                 ///< where it came to rest [m, local]; NaN unless stopped or caught
-  std::vector<double> mass_share;           ///< of the mass, at the end [-]
+  std::vector<double> x, y;                 ///< place of rest [m, local]; NaN unless stopped or caught
+  std::vector<double> mass_share;           ///< share of the mass that is left at the end [-]
   std::vector<AtScreen> screens;            ///< by screen of the campaign
   std::vector<AtSample> samples;            ///< by sample of the block
   std::vector<std::uint32_t> impacts;       ///< by trial
@@ -49,29 +49,29 @@ struct BlockRuns {
   std::vector<std::uint32_t> zone_hits;     ///< trials with an impact in each zone
 };
 
-/// First trial of the luck that no search has seen: what a fitted model is scored with.
+/// First of the trials that score a fitted model: no search has used their random numbers.
 inline constexpr std::uint32_t kUnseen = 1'000'000'000;
 
-/// The user has ended a fit: a `proceed` said no.
+/// Thrown when a `proceed` returns false: the user has ended the fit.
 struct FitInterrupted {};
 
 struct ObserveOptions {
   std::uint32_t trials = 100;  ///< per block
   std::uint64_t seed = 1;
-  std::uint32_t first_trial = 0;  ///< number of the first one: other trials of the same seed are other trajectories
+  std::uint32_t first_trial = 0;  ///< number of the first trial; each number of a seed is another trajectory
   int threads = 0;                ///< 0: as many as the machine has
-  std::vector<bool> blocks;       ///< which ones; empty: all
-  std::function<bool()> proceed;  ///< asked now and then, from any thread; false ends the work. May be empty
+  std::vector<bool> blocks;       ///< true for those that are simulated; empty: all
+  std::function<bool()> proceed;  ///< called now and then, from any thread; false ends the work. May be empty
 };
 
 /// Simulates every block of a campaign and measures the paths as the campaign did.
 ///
 /// @return one entry per block of the campaign, with trials = 0 for those not asked for (or not reached when `proceed`
-///         said no)
+///         returned false)
 ///
 /// Common random numbers: the draws of (seed, block, trial), the place of release in its disc and the errors of the
-/// measurement among them, do not depend on the model, so that two models are compared on the same luck. The same bits
-/// for any number of threads and any choice of blocks. A screen's values are those of `screens.csv`.
+/// measurement among them, do not depend on the model, so that two models are compared with the same random numbers.
+/// The same bits for any number of threads and any choice of blocks. A screen's values are those of `screens.csv`.
 /// Precondition: model.grounds has one entry per zone.
 std::vector<BlockRuns> observe(const Campaign& campaign, const Model& model, const ObserveOptions& options);
 

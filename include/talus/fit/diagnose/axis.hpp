@@ -11,7 +11,7 @@ struct Axis {
   double along(const Eigen::Vector2d& place) const { return (place - origin).dot(direction); }
 };
 
-/// From the mean release to the mean simulated stop.
+/// The axis from the mean release to the mean simulated stop.
 Axis axis_of(const Campaign& campaign, std::span<const BlockRuns> runs);
 
 }  // namespace talus

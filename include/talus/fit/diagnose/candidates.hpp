@@ -8,7 +8,7 @@ namespace talus {
 /// The effects of the registry, undeclared zones and barriers and the bias of instruments, with every place where they
 /// may act.
 ///
-/// @param runs     of the base model: says which zones are met and where the blocks go
+/// @param runs     of the base model: the zones that are met and the ways of the blocks follow from them
 /// @param without  names of effects that the base model has already
 ///
 /// Candidates of one effect stand one after the other. Bands (undeclared-zone) are given as the cells of a ladder of

@@ -13,21 +13,21 @@ struct FittedModel {
   Eigen::VectorXd z;                    ///< of the free parameters
   std::vector<BlockRuns> runs;          ///< of the fitting rows, with random numbers that the search has not used
   Score score;                          ///< of the runs
-  Score objective;                      ///< the same with its groups weighed: what effects are chosen by
+  Score objective;                      ///< the same with its groups weighed; effects are chosen by it
   Eigen::MatrixXd spread;               ///< covariance of z within which the objective is nearly as good
-  std::vector<Evaluation> evaluations;  ///< of this fit and those before it: what the next fit learns from
+  std::vector<Evaluation> evaluations;  ///< of this fit and those before it; the next fit uses them
 };
 
 /// A candidate at its best place, fitted together with the parameters of the base.
 struct FittedCandidate {
   std::string effect, where;
   std::vector<Parameter> parameters;   ///< of the candidate itself
-  std::size_t tested = 0;              ///< how many of them the score test moves: with these at zero there is no effect
+  std::size_t tested = 0;              ///< number of them that the score test moves; all at zero: no effect
   std::vector<double> values;          ///< fitted values of the parameters
   bool with_ground = true;             ///< false: the ground was held, because the score test found nothing
   double p_value = 1.0;                ///< of the score test, corrected for the places of the effect
   double statistic = 0.0;              ///< of the score test
-  double gain = 0.0;                   ///< how much it lowers the objective of the fitting rows, without the prior
+  double gain = 0.0;                   ///< decrease of the objective of the fitting rows, without the prior
   Interval gain_interval;              ///< 95 %, paired bootstrap over blocks
   double price = 0.0;                  ///< gain that its fitted numbers and those of its place must bring
   double place_price = 0.0;            ///< the part of the price for its place, which was chosen by all blocks
@@ -42,12 +42,12 @@ struct FittedCandidate {
 
 /// One turn of the loop.
 struct DiagnosisRound {
-  std::string effect = "none";  ///< what was found; "none", "unexplained"
+  std::string effect = "none";  ///< the one that was found, "none" or "unexplained"
   std::string where;
   std::vector<FittedCandidate> candidates;  ///< every effect at its best place, best first
   std::vector<std::string> alike;           ///< effects that these data cannot tell apart from it
   std::vector<ResidualRow> residual;        ///< of the fitting rows, before the effect is added
-  double p_value = 1.0;                     ///< that the residual is noise: score test over all effects and places
+  double p_value = 1.0;                     ///< of the score test over all effects and places
 };
 
 /// Trajectories of each block.
@@ -58,8 +58,8 @@ struct TrialsPerBlock {
 struct Diagnosis {
   FittedModel base;                    ///< the ground alone, simulated with the random numbers of `with_effects`
   std::vector<DiagnosisRound> rounds;  ///< the last one found "none" or "unexplained"
-  FittedModel with_effects;            ///< the last model; the base where nothing was found
-  TrialsPerBlock trials;               ///< that were simulated
+  FittedModel with_effects;            ///< the last model; the base if nothing was found
+  TrialsPerBlock trials;               ///< numbers that were simulated
 };
 
 struct DiagnoseOptions {
@@ -71,7 +71,7 @@ struct DiagnoseOptions {
   double first_level = 0.05;            ///< of the score test, over all effects: the false alarms that are accepted
   double later_level = 0.01;            ///< after the first effect: its form is a guess, which leaves a residual
   DiagnosisRules rules;                 ///< numbers that no user sets
-  std::function<bool(double)> proceed;  ///< told the share done, 0..1; false ends the diagnosis. May be empty
+  std::function<bool(double)> proceed;  ///< receives the share done, 0..1; false ends the diagnosis. May be empty
 };
 
 }  // namespace talus

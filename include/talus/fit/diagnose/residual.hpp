@@ -39,15 +39,16 @@ class ResidualSpace {
   }
 
   Residual of_measured(std::size_t block) const;
-  /// Of a trial of any runs, as if it had been measured, with the gaps that the block's measurements have.
+  /// Residual of a trial of any runs, as if it had been measured. Values that were not measured of the block are
+  /// missing.
   Residual of_trial(std::size_t block, const BlockRuns& runs, std::size_t trial) const;
 
-  /// `residual` divided by the correlation of its components, pooled over all blocks: what is NaN stays out and
-  /// becomes zero.
+  /// `residual` divided by the correlation of its components, pooled over all blocks. Components that are NaN are left
+  /// out and become zero.
   Eigen::VectorXd whitened(const Residual& residual) const;
 
  private:
-  /// Simulated values that were observed, ascending; fewer than ten: of no use.
+  /// Simulated values that were observed, ascending; fewer than ten are not used.
   using Sorted = std::vector<double>;
   /// Measurements of one block, or of one of its trials. NaN: not seen.
   struct Seen {
@@ -72,7 +73,7 @@ class ResidualSpace {
   std::vector<std::vector<std::array<Sorted, 2>>> samples_;  // by block and sample: speed, spin
   std::vector<double> crossing_share_;                       // by block and observable
   Eigen::MatrixXd correlation_;
-  mutable std::map<std::vector<bool>, Eigen::MatrixXd> inverses_;  // by what is observed
+  mutable std::map<std::vector<bool>, Eigen::MatrixXd> inverses_;  // by the set of observed components
 };
 
 /// Quantile of the standard normal distribution; share in (0, 1). Source: boost::math.

@@ -19,8 +19,8 @@ struct ScoreTest {
 
 /// P-values among data sets that the model itself has made.
 struct Corrected {
-  std::vector<double> effects;  ///< by effect: the share of all sets, the measured one among them, that are as small
-  double all = 1.0;             ///< of the most unlikely effect
+  std::vector<double> effects;  ///< by effect: share of all sets, the measured one included, with one as small
+  double all = 1.0;             ///< the p-value of the most unlikely effect
 };
 
 /// Corrects p-values for the number of places and effects. The measured data set is ranked among simulated ones: if the
@@ -28,7 +28,7 @@ struct Corrected {
 /// places.
 ///
 /// @param simulated  by effect and data set: the smallest p-value over its places
-/// @param measured   the same of what was measured, by effect
+/// @param measured   by effect: the smallest p-value of the measured data over its places
 Corrected corrected(std::span<const std::vector<double>> simulated, std::span<const double> measured);
 
 struct ScoreTestOptions {
@@ -37,7 +37,7 @@ struct ScoreTestOptions {
   int threads = 0;
   int replicates = 2000;          ///< simulated data sets without an effect
   DiagnosisRules rules;           ///< its candidates, residual and steps
-  std::function<bool()> proceed;  ///< asked between simulations, by one thread; false ends it. May be empty
+  std::function<bool()> proceed;  ///< called between simulations, by one thread; false ends the test. May be empty
 };
 
 /// The model that is tested. The parts must outlive it.
@@ -56,7 +56,7 @@ struct TestedModel {
 ///
 /// @param rows  the blocks that are used; size: blocks
 ///
-/// Throws FitInterrupted when `proceed` says no.
+/// Throws FitInterrupted when `proceed` returns false.
 ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::span<const Candidate> candidates,
                      const std::vector<bool>& rows, const ScoreTestOptions& options);
 

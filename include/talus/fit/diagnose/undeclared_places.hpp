@@ -2,8 +2,8 @@
 #include "talus/fit/diagnose/axis.hpp"
 #include "talus/fit/diagnose/candidate.hpp"
 
-/// What a campaign does not say of its place: other ground in a band, a barrier. docs/closing-the-loop.md,
-/// "Candidates".
+/// Candidates for objects that a campaign does not declare: other ground in a band, a barrier.
+/// docs/closing-the-loop.md, "The candidates".
 namespace talus {
 
 /// A band of other ground across the axis, from one distance along it to another [m].

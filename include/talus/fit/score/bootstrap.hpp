@@ -10,8 +10,8 @@ namespace talus {
 /// @param weight  by block of the campaign, >= 0
 double weighted_total(const Score& score, std::span<const double> weight);
 
-/// 95 % interval of the total, and of each group, over which blocks happened to be released: percentiles of a
-/// bootstrap that draws blocks with replacement, the same blocks for all groups. The model is held fixed.
+/// 95 % intervals of the total and of each group for the choice of the released blocks: percentiles of a bootstrap that
+/// draws blocks with replacement, the same blocks for all groups. The model is held fixed.
 struct ScoreIntervals {
   Interval total;
   std::vector<Interval> groups;  ///< as Score::groups
@@ -27,8 +27,7 @@ struct Reduction {
 Reduction reduction(const Score& before, const Score& after, std::size_t blocks, std::uint32_t draws = 2000,
                     std::uint64_t seed = 1);
 
-/// Difference of two totals of the same rows, negative where `after` is better; the draws vary which blocks were
-/// released.
+/// Difference of two totals of the same rows, negative where `after` is better; the draws vary the released blocks.
 struct Difference {
   double mean = 0.0;
   Interval interval;          ///< 95 %

@@ -8,8 +8,8 @@
 
 namespace talus {
 
-/// The error of a model on measured data. docs/closing-the-loop.md, "The score". A score of 0 would be a model that
-/// says the very value; one that knows no more than the spread of the measurements has about 0.56.
+/// The error of a model on measured data. docs/closing-the-loop.md, "The score". A model that gives the measured value
+/// exactly scores 0; one that knows no more than the spread of the measurements scores about 0.56.
 
 /// Continuous ranked probability score of simulated values against a measured one, as a fair (unbiased) estimate:
 ///
@@ -20,7 +20,8 @@ namespace talus {
 /// Source: Ferro (2014), "Fair scores for ensemble forecasts".
 double fair_crps(std::span<double> simulated, double measured);
 
-/// The same of places in plan, by their distances [m]. n >= 2. O(n^2).
+/// Energy score of simulated places in plan against a measured one: `fair_crps` with their distances [m]. n >= 2.
+/// O(n^2).
 double fair_energy_score(std::span<const Eigen::Vector2d> simulated, const Eigen::Vector2d& measured);
 
 /// The score of one group: one quantity at one place.
@@ -29,7 +30,7 @@ struct GroupScore {
   double score;              ///< mean over its rows, as a share of the spread of the fitting rows [-]
   std::uint32_t rows;        ///< measurements that were scored: blocks
   double weight = 1.0;       ///< in the total
-  std::uint32_t unseen = 0;  ///< rows of too few simulated values: they score as the climatology, not as the model
+  std::uint32_t unseen = 0;  ///< rows with too few simulated values: scored by the climatology, not by the model
 };
 
 /// The score of one block in one group.
@@ -61,14 +62,14 @@ inline constexpr std::size_t kFewestRows = 5;
 Score score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
             std::size_t fewest_simulated = kFewestSimulated);
 
-/// The score that a fit minimises: a group of n rows has the weight n / (n + 10). The mean of a group has a variance
-/// that all groups have, from its quantity, and one that falls with n, from the choice of its rows. In the error all
-/// groups count alike: five rows at a far screen would rule the search. docs/closing-the-loop.md,
-/// "Objective".
+/// The score that a fit minimises: a group of n rows has the weight n / (n + 10). The variance of a group's mean has
+/// two parts: one from its quantity, alike for all groups, and one from the choice of its rows, which falls with n. In
+/// the reported error all groups count alike; in a search, five rows at a far screen would then decide.
+/// docs/closing-the-loop.md, "Objective".
 Score weigh_groups(Score score);
 
-/// The fewest simulated values for a row in a search with so many trials: a tenth of them, as ten of a hundred are.
-/// With ten whatever the trials, a search with few trials would not score a block that only some of them follow.
+/// Fewest simulated values with which a search of so many trials scores a row: a tenth of the trials, at most
+/// kFewestSimulated. With a fixed ten, a search with few trials would not score a row that only some of them reach.
 std::size_t fewest_simulated_of(std::uint32_t trials);
 
 }  // namespace talus

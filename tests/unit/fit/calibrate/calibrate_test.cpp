@@ -94,8 +94,8 @@ TEST(LocalModel, StepsToTheMinimumOfABowl) {
   EXPECT_NEAR(model.step(narrow).x(), 0.72, 1e-9);
 }
 
-/// Of the blocks that count alone are slope, curvature and the weight of the prior: of n blocks the minimum of
-/// k (z - 0.8)^2 + w / n z^2, with the mean k of those n.
+/// Slope, curvature and the weight of the prior come from the blocks that count. For n blocks the optimum is the
+/// minimum of k (z - 0.8)^2 + w / n z^2, with k the mean over these n.
 TEST(LocalModel, AFoldHasItsOwnCurvatureAndPrior) {
   const Campaign c = campaign_on_slope(6);
   const Model start = model_of_slope();
@@ -120,8 +120,8 @@ TEST(LocalModel, AFoldHasItsOwnCurvatureAndPrior) {
   EXPECT_NEAR(model.optimum(all, spread)[0], 0.8 * 0.25 / (0.25 + 0.028 / 4.0), 1e-3);
 }
 
-/// Two groups whose rows want to be at 1 and at 0, thirty of them and ten: the optimum is where the weights of the
-/// groups put it, for the weights that a fit gives them and for equal ones.
+/// Two groups: thirty rows with their minimum at 1 and ten with theirs at 0. The optimum follows from the weights of
+/// the groups, for those of a fit and for equal ones.
 TEST(LocalModel, GroupsPullByTheirWeights) {
   const Campaign c = campaign_on_slope(30);
   const Model start = model_of_slope();
@@ -171,7 +171,7 @@ TEST(Evaluate, IsTheWeighedScoreAndThePrior) {
   for (const GroupScore& g : fit.score.groups) EXPECT_DOUBLE_EQ(g.weight, g.rows / (g.rows + 10.0));
 }
 
-/// A later fit uses other trials than those of the evaluations that it is given, whatever their numbers.
+/// A later fit uses trials that no known evaluation has used, whatever the numbers of trials were.
 TEST(Calibrate, LaterPlacesHaveLuckOfTheirOwn) {
   EXPECT_EQ(LocalModel::trials_of(7, 24), LocalModel::kDesigns + 168);
   std::vector<Evaluation> known(10, {Eigen::Vector2d::Zero(), {}, 48, 0.0});
@@ -181,7 +181,7 @@ TEST(Calibrate, LaterPlacesHaveLuckOfTheirOwn) {
   EXPECT_EQ(LocalModel::first_unused({}, 24), 0U);
 }
 
-/// With one value in ten, the rows of a search with few trials count as those of one with many do.
+/// A row needs values of a tenth of the trials, and of at least two.
 TEST(FewestSimulated, ATenthOfTheTrials) {
   EXPECT_EQ(fewest_simulated_of(10), 2U);
   EXPECT_EQ(fewest_simulated_of(24), 3U);
@@ -189,9 +189,9 @@ TEST(FewestSimulated, ATenthOfTheTrials) {
   EXPECT_EQ(fewest_simulated_of(1000), 10U);
 }
 
-/// Data of a known model: the fit comes back to it from elsewhere, within what its interval says (from 24 such
-/// campaigns the root mean square error of theta_scale is 1.2, that of En50 0.9 of the standard deviations that the
-/// intervals stand for), and is the same for any number of threads.
+/// Data of a known model: a fit that starts elsewhere finds it within the fit's interval (in 24 such campaigns the root
+/// mean square error of theta_scale is 1.2, that of En50 0.9 of the standard deviations that the intervals stand for),
+/// and is the same for any number of threads.
 TEST(Calibrate, ComesBackToTheModelThatMadeTheData) {
   Campaign c = campaign_on_slope(60);
   Model truth = model_of_slope(), start = truth;
@@ -226,7 +226,7 @@ TEST(Calibrate, ComesBackToTheModelThatMadeTheData) {
   EXPECT_EQ(again.objective, fit.objective);
 }
 
-/// A parameter that the data cannot see keeps its prior: no confident number.
+/// A parameter without influence on the data keeps its prior and is called not identifiable.
 TEST(Calibrate, WhatTheDataDoNotSeeIsNotIdentifiable) {
   Campaign c = campaign_on_slope(40);
   const Model start = model_of_slope();

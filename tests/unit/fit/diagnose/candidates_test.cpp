@@ -72,7 +72,7 @@ TEST(Candidates, ADayThatIsNotGivenIsNoDay) {
     EXPECT_NE(candidate.where, "day 0");
 }
 
-/// At both ends of its search each number of an effect is one that a file may hold: what a fit writes is read again.
+/// A file may hold each number of an effect at both ends of its search, so that the file of a fit can be read again.
 TEST(Candidates, StayWithinTheBoundsOfTheRegistry) {
   Campaign c = measured_campaign();
   for (MeasuredBlock& b : c.blocks) b.mass = 5000.0, b.axes = {3.0, 2.0, 1.0};
@@ -92,7 +92,7 @@ TEST(Candidates, StayWithinTheBoundsOfTheRegistry) {
     EXPECT_TRUE(seen.contains(std::string(entry.name)) || entry.sought == Sought::Nowhere) << entry.name;
 }
 
-/// The order in which results list them, whatever the order of the registry. Those that are added stand anywhere.
+/// Results list the candidates in this order, whatever the order of the registry. New effects may stand anywhere.
 TEST(Candidates, StandInTheOrderOfTheirTurns) {
   Campaign c = measured_campaign();
   for (MeasuredBlock& b : c.blocks) b.axes = {3.0, 2.0, 1.0};
@@ -111,7 +111,7 @@ TEST(Residual, OfATrialHasTheGapsOfItsBlock) {
   Campaign c = measured_campaign();
   c.blocks[0].stop.reset();
   c.blocks[1].passages[0] = Passage{kNotGiven, 1.0, 5.0};
-  c.blocks[3].passages[0].reset();  // did not cross: of a trial that does, all is seen
+  c.blocks[3].passages[0].reset();  // did not cross; all quantities of a trial that does count as measured
   for (MeasuredBlock& b : c.blocks) b.samples[0].spin = kNotGiven;
   const auto runs = fitting_runs(c, 40);
   const ResidualSpace space(c, runs);

@@ -37,7 +37,7 @@ TEST(EffectFits, ALongerFitIsTakenWhereItIsBetterAndTeachesWhereItIsNot) {
   EXPECT_EQ(kept.evaluations.size(), 3U);
 }
 
-/// A fit whose ground is half as rough again as the one that was fitted to the data, with as much tried around it.
+/// A fit with the ground made half as rough again, and its evaluations moved with it.
 FittedModel too_rough(const Campaign& campaign, const std::vector<bool>& rows, FittedModel fitted) {
   const Eigen::VectorXd aside = Eigen::VectorXd::Constant(1, std::log(1.5) / fitted.free[0].sd);
   fitted.z += aside;

@@ -59,7 +59,7 @@ TEST(Effects, AtTheirOffValuesChangeNoBit) {
     ASSERT_TRUE(same_bits(plain.run(release_of(block)), acting.run(release_of(block)))) << block;
 }
 
-/// A strength that is at its off value changes no bit, and one that is on shows: else the engine does not know it.
+/// A strength at its off value changes no bit. One that is on changes a path; else the engine does not use it.
 TEST(Effects, EachStrengthActsAndItsOffValueTakesItAway) {
   for (const EffectEntry& entry : effect_entries())
     for (const EffectField& field : entry.fields()) {
@@ -102,7 +102,7 @@ TEST(Effects, OutsideTheirPlaceChangeNoImpact) {  // flights are cut in pieces t
         if (field.is_strength()) field.set(e, field.off);  // acts everywhere
     }
   }
-  e.vegetation_drag.coefficient = e.forest_stems.density = 0.0;  // those two: in the tests of drag
+  e.vegetation_drag.coefficient = e.forest_stems.density = 0.0;  // for vegetation drag see drag_test
   for (std::uint32_t block = 0; block < 40; ++block)
     ASSERT_TRUE(same_bits(plain.run(release_of(block)), acting.run(release_of(block)))) << block;
 }

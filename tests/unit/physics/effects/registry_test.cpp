@@ -57,7 +57,7 @@ TEST(Registry, HasEachEffectOnce) {
   EXPECT_EQ(names.size(), members.size());
 }
 
-/// Each number of an entry is one of its own: setting it changes it, and no other.
+/// Setting a number of an entry changes this number and no other.
 TEST(Registry, NumbersAreApart) {
   for (const EffectEntry& entry : effect_entries())
     for (const EffectField& field : entry.fields()) {
@@ -86,7 +86,7 @@ TEST(Registry, DefaultsAreAllowedAndOff) {
   }
 }
 
-/// What the two candidate bounds of issue 19 broke: a search went to 5 where a file may say 3.
+/// A search must not leave the bounds of a file. (Once a search went to 5 where a file may say 3.)
 TEST(Registry, SearchesStayWithinTheBounds) {
   for (const EffectEntry& entry : effect_entries())
     for (const EffectField& field : entry.fields()) {

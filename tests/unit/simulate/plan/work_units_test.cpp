@@ -9,11 +9,11 @@
 namespace talus {
 namespace {
 
-/// What the processes of a made-up team share: a counter, and a place where they wait for each other.
+/// Shared state of the processes of an imitated process group: a counter, and a place where they wait for each other.
 struct Meeting {
   explicit Meeting(int n) : size(n) {}
 
-  /// The smallest or largest of what they give.
+  /// The smallest or largest of the numbers that they give.
   std::uint64_t meet(std::uint64_t number, bool largest) {
     std::unique_lock lock(mutex);
     const std::uint64_t mine = turn;
@@ -38,7 +38,7 @@ struct Meeting {
   std::uint64_t turn = 0, result = 0;
 };
 
-/// A process of it: a thread.
+/// A process of the group, imitated by a thread.
 class Member : public ProcessGroup {
  public:
   Member(Meeting& meeting, int rank) : meeting_(meeting), rank_(rank) {}

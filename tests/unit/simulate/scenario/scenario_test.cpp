@@ -9,7 +9,7 @@
 
 namespace talus {
 
-// The least that is a scenario: 4 x 3 cells, one source, one size of block.
+// The smallest valid scenario: 4 x 3 cells, one source, one size of block.
 Scenario small() {
   Scenario s;
   s.surface = Surface(Raster<float>(Grid{4, 3, 2.0, 2.0, 0.0, 0.0}, 100.0F));

@@ -37,7 +37,7 @@ std::vector<Crossing> crossings_of(const Scenario& scenario, std::vector<Vertex>
   return crossings;
 }
 
-/// A path of flights through places in plan, a second each.
+/// A path of flights through places in plan, one second from place to place.
 std::vector<Vertex> through(const Line& places) {
   std::vector<Vertex> vertices;
   for (std::size_t i = 0; i < places.size(); ++i) {

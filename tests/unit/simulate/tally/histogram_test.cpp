@@ -33,7 +33,7 @@ void shuffle(Values& values, Numbers& numbers) {
   for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[numbers.bits() % i]);
 }
 
-/// The bound of the header, against the sorted values.
+/// Checks the error bound of the header against the sorted values.
 void expect_within_bound(Values values, const LogHistogram& histogram, const char* what) {
   std::sort(values.begin(), values.end());
   ASSERT_EQ(histogram.count(), values.size()) << what;
@@ -141,7 +141,7 @@ TEST(LogHistogram, PercentileIsMonotoneInTheShare) {
   }
 }
 
-/// Equal counts and equal bits of every percentile.
+/// Checks for equal counts and equal bits of every percentile.
 void expect_same(const LogHistogram& a, const LogHistogram& b, const char* what) {
   ASSERT_EQ(a.count(), b.count()) << what;
   for (int i = 0; i <= 200; ++i) {
@@ -151,7 +151,7 @@ void expect_same(const LogHistogram& a, const LogHistogram& b, const char* what)
   }
 }
 
-/// The values in another order, in other pieces, over some histograms that are merged in another order.
+/// The histogram of the values in another order and in other pieces, from several histograms merged in another order.
 LogHistogram split_and_merged(Values values, Numbers& numbers) {
   shuffle(values, numbers);
   std::vector<LogHistogram> parts(1 + numbers.bits() % 5);

@@ -29,7 +29,7 @@ struct Sample {  // one trajectory
   std::uint32_t source;
 };
 
-/// What is expected of one cell, by brute force: a value of each trajectory.
+/// The expected values of one cell, by brute force: one value for each trajectory.
 struct Expected {
   std::uint64_t impacts = 0, deposits = 0;
   std::set<std::uint32_t> sources;

@@ -24,7 +24,7 @@ struct Seen {
   int impacts = 0, deposits = 0, visits = 0;
 };
 
-/// What a batch holds of one path, by cell; several visits to a cell are made one.
+/// The visits of one path in a batch, by cell; several visits to a cell are joined.
 std::map<Cell, Seen> seen(const VisitBatch& batch, const Grid& grid) {
   const int across = (grid.columns + kRegionSide - 1) / kRegionSide;
   std::map<Cell, Seen> cells;
@@ -72,7 +72,7 @@ void add_lines(std::vector<double>& times, double from, double speed, double hal
     times.push_back(std::clamp((k * half_cell - from) / speed, 0.0, duration));
 }
 
-/// The same by brute force: the parabola sampled densely between the times at which it changes cell or patch.
+/// The visits by brute force: the parabola sampled densely between the times at which it changes cell or patch.
 std::map<Cell, Seen> sampled(const Surface& surface, const Vec3& start, const Vec3& v, double duration) {
   const Grid& grid = surface.grid();
   std::vector<double> times{0.0, duration};
