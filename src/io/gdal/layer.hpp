@@ -30,7 +30,7 @@ class Layer {
   /// Its geometries. Empty where it has none.
   Parts parts(const OGRFeature& feature);
 
-  /// Index of a field, whatever its case, also as a Shapefile cuts it; -1 where there is none.
+  /// Index of a field, in any case of letters, also if a Shapefile has cut its name; -1 if there is none.
   int field(const char* name) const;
   std::vector<std::string> field_names() const;
   const OGRFeatureDefn& fields() const { return *layer_->GetLayerDefn(); }
@@ -44,7 +44,7 @@ class Layer {
 
   const std::string& crs_wkt() const { return crs_wkt_; }
   const std::vector<Reprojection>& reprojections() const { return transformer_->used(); }
-  /// Of the opening, the geometries and the transformation.
+  /// Warnings of the opening, the geometries and the transformation.
   std::vector<std::string> warnings() const;
 
  private:
@@ -64,11 +64,11 @@ class Layer {
 };
 
 /// Calls `visit(column, row)` (row 0 in the south) for the cells of a geometry in local metres, row by row from the
-/// north-west: those whose centre it covers, or all that it touches.
+/// north-west: the cells whose centre it covers or, with `touched`, all that it touches.
 template <class Visit>
 void for_each_cell(const OGRGeometry& geometry, const Grid& grid, bool touched, Visit visit);
 
-/// A window of the grid with a mark for each cell that a geometry has. Rows from the north.
+/// A window of the grid, with a mark on each cell of a geometry. Rows from the north.
 struct CellMask {
   int column = 0, north_row = 0, columns = 0, rows = 0;  ///< north_row: row 0 in the south
   std::vector<std::uint8_t> marks;

@@ -31,8 +31,8 @@ struct ScoreSettings {
   std::uint64_t seed = 1;
 };
 
-/// One sentence for each group of which more than half of the rows score as the climatology: a model is not
-/// scored for what it leaves out altogether, and a fit can hide there.
+/// One warning for each group in which more than half of the rows score as the climatology. Such rows do not score the
+/// model, so that a fit can hide its errors there.
 ///
 /// @param rows  "fit" or "holdout"
 std::vector<std::string> unseen_warnings(const std::string& rows, const Score& score);

@@ -22,7 +22,7 @@ struct LoadedProfile {
 
 /// Reads and checks the file of a profile, docs/profile.md. Throws InputError, one line.
 ///
-/// @param flags  of these, scenario (the path), seed and trajectories
+/// @param flags  scenario (the path), seed and trajectories are used
 LoadedProfile load_profile(const RunFlags& flags);
 
 /// Reads a polyline: a CSV with the columns x and z, x ascending by at least `step`.
