@@ -15,7 +15,7 @@ class FolderLock {
   /// State of the lock that another process left in a folder.
   enum class Found { None, InUse, Free };
   /// @param lock  if it is free, this process holds it from now on
-  /// @param made  makes the lock in a folder without one
+  /// @param made  if true, makes the lock in a folder that has none
   static Found take(const std::filesystem::path& folder, bool made, FolderLock& lock);
 
   FolderLock() = default;

@@ -13,7 +13,7 @@ namespace talus::io {
 
 namespace {
 
-// Gives each zone of the file its index, and keeps in mind which ones were seen.
+// Gives each zone of the file its index, and records which zones were seen.
 class ZoneIndex {
  public:
   ZoneIndex(const ZoneRequest& request, bool raster)
@@ -112,7 +112,7 @@ class PixelFinder {
   std::array<double, 6> inverse_{};
 };
 
-// Reads single pixels, through copies of the parts of the file around the last ones.
+// Reads single pixels through a cache of the last tiles of the file.
 class PixelReader {
  public:
   PixelReader(GDALDataset& dataset, std::string path)

@@ -20,7 +20,7 @@ struct ZoneSpec {
   std::string name;
   std::string preset;
   Ground ground;
-  std::map<std::string, std::string> own;  ///< origin of each parameter that differs from the preset
+  std::map<std::string, std::string> own;  ///< origin of each parameter given beside the preset
   std::string code;                        ///< code of the zone in a raster; empty: its name
   std::vector<Range> intervals{};          ///< of x, on a profile [m]
 };

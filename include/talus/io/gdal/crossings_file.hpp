@@ -21,8 +21,8 @@ struct CrossingTable {
 ///
 /// Columns: screen must be there; id, source, block, speed_ms, energy_kj, jump_height_m, mass_kg, x, y are read if they
 /// are there. Other columns of the two tables are ignored. Energy is energy_kj, else 1/2 mass speed^2 if both are
-/// there. Only the first row of a block (same id, source, block and mass) counts: a barrier meets a block that rolls
-/// back only once. Throws InputError with line and column; a screen without rows gives empty lists.
+/// there. Only the first row of a block (same id, source, block and mass) counts: a block that rolls back meets a
+/// barrier only once. Throws InputError with line and column; a screen without rows gives empty lists.
 CrossingTable read_crossings(const std::string& path, const std::string& screen);
 
 }  // namespace talus::io
