@@ -32,7 +32,7 @@ class RowsWriter {
   CheckpointFileWriter file_;
 };
 
-/// Reads such a file, unit by unit. Throws InputError where it is damaged.
+/// Reads such a file, unit by unit. Throws InputError if it is damaged.
 class RowsReader {
  public:
   RowsReader(const std::filesystem::path& file, const std::string& sha256);

@@ -86,7 +86,7 @@ std::string rounds_text(const io::RoundsRecord& rounds) {
          with_digits(rounds.reached.half_width, 3);
 }
 
-/// A warning where `--until-error` was not reached.
+/// A warning if `--until-error` was not reached.
 std::vector<std::string> warnings_of(const io::RoundsRecord& rounds) {
   if (rounds.done == 0 || !rounds.asked.until_error || rounds.reached_it()) return {};
   if (rounds.reached.cells == 0)

@@ -8,7 +8,7 @@
 
 namespace {
 
-/// Throws InputError where no quantity was measured often enough to be fitted.
+/// Throws InputError if no quantity was measured often enough to be fitted.
 void require_measurements(const std::string& path, const talus::Campaign& campaign) {
   const std::vector<bool> rows = talus::fitting_rows(campaign);
   const talus::Model model = talus::model_of_preset(campaign, talus::kDefaultPreset);

@@ -41,7 +41,7 @@ bool interrupted();
 /// Words of the command line.
 const std::vector<std::string>& command_line();
 
-/// For options that are numbers with a fraction: from low to high, and a number. (CLI::Range lets "nan" through.)
+/// Check of an option with a fraction: a number from low to high. (CLI::Range lets "nan" through.)
 CLI::Validator between(double low, double high);
 
 /// Throws InputError if the seed is out of bounds. (A negative number arrives as a huge one.)

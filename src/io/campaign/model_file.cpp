@@ -22,7 +22,7 @@ std::string zones_text(const EffectArea* area, const Campaign& campaign) {
   return "zones = [" + joined(names) + "]\n";
 }
 
-/// The tables [effects.*] of a model, as the reader of [effects.*] takes them; empty where none is on.
+/// The tables [effects.*] of a model, as the reader of [effects.*] takes them; empty if none is on.
 std::string effects_text(const Effects& effects, const Campaign& campaign) {
   std::string text;
   if (find_effect("vegetation-drag")->acts(effects) &&

@@ -56,7 +56,7 @@ bool same_system(PJ_CONTEXT* context, const PJ* a, const PJ* b) {
          proj_is_equivalent_to_with_ctx(context, p.get(), q.get(), PJ_COMP_EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS) != 0;
 }
 
-// An operation between two systems for longitude/latitude or east/north; null where there is none.
+// An operation between two systems for longitude/latitude or east/north; null if there is none.
 Object make_operation(PJ_CONTEXT* context, const PJ* from, const PJ* to, PJ_AREA* area) {
   const Object operation(proj_create_crs_to_crs_from_pj(context, from, to, area, nullptr));
   return Object(operation ? proj_normalize_for_visualization(context, operation.get()) : nullptr);

@@ -24,7 +24,7 @@ class CsvTable {
   const std::vector<Row>& rows() const { return rows_; }
   bool has(const std::string& column) const { return column_of(column) >= 0; }
 
-  /// The text of a cell; empty where it is empty or the column is not there.
+  /// The text of a cell; empty if it is empty or the column is not there.
   const std::string& text(const Row& row, const std::string& column) const;
   /// The text of a cell that must not be empty.
   const std::string& name(const Row& row, const std::string& column) const;

@@ -41,17 +41,17 @@ struct DropFeature {
 using Feature = std::unique_ptr<OGRFeature, DropFeature>;
 
 /// Opens a file for reading. `kinds`: GDAL_OF_RASTER, GDAL_OF_VECTOR or both.
-/// Throws InputError where GDAL cannot.
+/// Throws InputError if GDAL cannot.
 Dataset open_dataset(const std::string& path, unsigned kinds);
 
-/// A dataset in memory, of zeros. Throws std::runtime_error where there is no memory for it.
+/// A dataset in memory, of zeros. Throws std::runtime_error if there is no memory for it.
 Dataset memory_dataset(int columns, int rows, GDALDataType type);
 
 /// The command that corrects the metadata of a raster: "gdal_edit.py -a_nodata 0 dem.tif"; for formats that cannot be
 /// edited, gdal_translate to a copy.
 std::string edit_command(const std::string& path, const std::string& option);
 
-/// Coordinate system as WKT; empty where there is none.
+/// Coordinate system as WKT; empty if there is none.
 std::string wkt_of(const OGRSpatialReference* system);
 
 }  // namespace talus::io

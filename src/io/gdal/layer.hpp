@@ -27,7 +27,7 @@ class Layer {
 
   /// The next feature; null at the end.
   Feature next();
-  /// Its geometries. Empty where it has none.
+  /// The geometries of a feature. Empty if it has none.
   Parts parts(const OGRFeature& feature);
 
   /// Index of a field, in any case of letters, also if a Shapefile has cut its name; -1 if there is none.
@@ -36,10 +36,10 @@ class Layer {
   const OGRFeatureDefn& fields() const { return *layer_->GetLayerDefn(); }
   /// "cliffs.shp: feature 12", for messages.
   std::string label(const OGRFeature& feature) const;
-  /// The value of a numeric field; nothing where it is NULL or the field is not there. Throws InputError where it is no
+  /// The value of a numeric field; nothing if it is NULL or the field is not there. Throws InputError if it is no
   /// number, or out of bounds.
   std::optional<double> number(const OGRFeature& feature, const char* name, const Bounds& bounds) const;
-  /// The value of a text or whole-number field; empty where it is NULL. Throws InputError for other fields.
+  /// The value of a text or whole-number field; empty if it is NULL. Throws InputError for other fields.
   std::string code(const OGRFeature& feature, int field) const;
 
   const std::string& crs_wkt() const { return crs_wkt_; }

@@ -28,7 +28,7 @@ HazardObject object_of(const Parts& parts) {
   return object;
 }
 
-/// The geometry of an object in map coordinates: a multipolygon or a multiline; a collection where it has both.
+/// The geometry of an object in map coordinates: a multipolygon or a multiline; a collection if it has both.
 std::unique_ptr<OGRGeometry> geometry_of(const Parts& parts, double west, double south) {
   std::unique_ptr<OGRGeometryCollection> all;
   if (parts.lines.empty())

@@ -120,7 +120,7 @@ class PixelReader {
         path_(std::move(path)),
         masked_((band_.GetMaskFlags() & GMF_ALL_VALID) == 0) {}
 
-  // NaN where there is nothing.
+  // The value of the pixel; NaN if there is none.
   double at(double column, double row) {
     if (!(column >= 0.0 && row >= 0.0 && column < band_.GetXSize() && row < band_.GetYSize()))
       return std::numeric_limits<double>::quiet_NaN();

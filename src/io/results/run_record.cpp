@@ -124,7 +124,7 @@ std::optional<std::string> status_of_result(const std::filesystem::path& folder,
                                             : !rounds.contains("asked") && rounds.at("done") == asked.count;
     return as_asked ? std::optional(std::move(status)) : std::nullopt;
   } catch (const Json::exception&) {
-    return std::nullopt;  // no such file, or another one
+    return std::nullopt;  // no such file, or not one of a run
   }
 }
 

@@ -56,7 +56,7 @@ std::uint32_t larger(std::uint32_t a, std::uint32_t b) {
   return std::max(a + 1U, b + 1U) - 1U;
 }  // kCountNodata + 1 is 0
 
-/// The smaller of two stored values; nodata only where both are.
+/// The smaller of two stored values; nodata only if both are.
 float smaller(float a, float b) {
   const auto nodata = static_cast<float>(kNodata);
   return a == nodata ? b : b == nodata ? a : std::min(a, b);

@@ -37,7 +37,7 @@ struct EffectSpec {
 struct BarrierLine {
   std::string id;
   double height = 0.0;    ///< [m]
-  double capacity = 0.0;  ///< [J]; infinite where none is given
+  double capacity = 0.0;  ///< [J]; infinite if none is given
   Eigen::Vector2d from, to;
 };
 

@@ -21,7 +21,7 @@ class OutputFile {
   /// Where to write until `commit`.
   const std::filesystem::path& temporary() const { return staged_.hidden(); }
 
-  /// Throws InputError where `input` is the file that `commit` would replace.
+  /// Throws InputError if `input` is the file that `commit` would replace.
   void protect(const std::filesystem::path& input) const;
 
   /// Gives the file its name. Throws std::filesystem::filesystem_error.

@@ -27,7 +27,7 @@ class OutputFolder {
   };
 
   /// @param overwrite  an earlier result of talus (it holds a run.json, part.json, calibration.json or diagnosis.json)
-  /// may be replaced. Throws InputError where the name is taken or nothing can be written there.
+  /// may be replaced. Throws InputError if the name is taken or nothing can be written there.
   OutputFolder(const std::filesystem::path& path, bool overwrite, Unfinished unfinished = Unfinished::Ignore);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
@@ -43,11 +43,11 @@ class OutputFolder {
   /// Absolute path of the folder after `commit`.
   const std::filesystem::path& final_path() const { return staged_.path(); }
 
-  /// Throws InputError where `file` lies in a folder that `commit` would replace: an input must not be deleted.
+  /// Throws InputError if `file` lies in a folder that `commit` would replace: an input must not be deleted.
   void protect(const std::filesystem::path& file) const;
 
   /// Brings all files to the disk and gives the folder its name, if that is still free or may be overwritten. An
-  /// earlier result is moved aside first, put back where the rename fails, and removed last. Throws std::runtime_error.
+  /// earlier result is moved aside first, put back if the rename fails, and removed last. Throws std::runtime_error.
   void commit();
   /// Makes `work` alone the folder of results, in one step, and removes the rest.
   void commit_work();

@@ -28,7 +28,7 @@ class StagedPath {
   /// Without `commit` the hidden file or folder stays.
   void keep() { owned_ = false; }
 
-  /// Brings all to the disk and gives it its name. Throws std::runtime_error where it cannot be written.
+  /// Brings all to the disk and gives it its name. Throws std::runtime_error if it cannot be written.
   /// @return the error if it cannot be given the name
   std::error_code commit() { return give_name(hidden_, path_); }
 

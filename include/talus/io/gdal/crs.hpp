@@ -8,7 +8,7 @@
 
 namespace talus::io {
 
-/// "EPSG:31287 (MGI / Austria Lambert)"; the name alone where it has no code.
+/// "EPSG:31287 (MGI / Austria Lambert)"; the name alone if it has no code.
 std::string crs_name(const std::string& wkt);
 
 /// A rectangle in a coordinate system [m].
@@ -31,11 +31,11 @@ struct LayerName {
 /// Checks that the coordinate system of the raster `path` is a plane one in metres, with heights in metres if it states
 /// their unit. Otherwise throws InputError with the way out. Local systems (engineering CRS) in metres are accepted.
 ///
-/// @return a warning where the map projection stretches distances by more than 1 % at the middle of the extent (more
-///         than 5 %, as Web Mercator does, is refused); nothing otherwise
+/// @return a warning if the map projection stretches distances by more than 1 % at the middle of the extent (more than
+/// 5 %, as Web Mercator does, is refused); nothing otherwise
 std::optional<std::string> check_metric(const std::string& path, const std::string& wkt, const MapExtent& extent);
 
-/// Brings places from one coordinate system into another by PROJ; nothing is done where both are the same.
+/// Transforms places from one coordinate system into another by PROJ; does nothing if both are the same.
 class Transformer {
  public:
   /// @param map  area for which PROJ chooses the best operation

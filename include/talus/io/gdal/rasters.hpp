@@ -8,7 +8,7 @@
 
 namespace talus::io {
 
-/// The terrain as it is in a file.
+/// The terrain of a file.
 struct Terrain {
   Raster<float> heights;  ///< [m], NaN where there is none
   GeoReference geo;
@@ -21,8 +21,8 @@ struct Terrain {
 /// Reads the first band of a DEM: anything GDAL reads, north-up, in a projected system in metres.
 ///
 /// Missing (NaN): nodata value, mask, alpha, NaN, infinity. Scale and offset of the band are applied. Throws
-/// InputError where it is rotated, upside down, without place or system, in degrees or feet, has less than 2 x 2 cells
-/// or none with a height, or holds heights outside [-500, 9000] m that are not declared as missing.
+/// InputError if it is rotated, upside down, without place or system, in degrees or feet, has less than 2 x 2 cells or
+/// none with a height, or holds heights outside [-500, 9000] m that are not declared as missing.
 Terrain read_terrain(const std::string& path, const RasterMemory& memory = {});
 
 /// Kinds of ground from a file.

@@ -20,11 +20,11 @@ struct SourceLayer {
 ///
 /// A polygon gives the cells whose centres it covers; if it covers none, the cells that it touches. A line gives the
 /// cells that it crosses, a point its place. A feature of several parts gives the cells of each part, but each cell
-/// once. Cells without terrain are left out (with a warning). Fields read where present, upper or lower case:
-/// frequency, diameter, diameter_min, diameter_max, height, vx, vy, vz, name; NULL counts as not given.
+/// once. Cells without terrain are left out (with a warning). These fields are read if they are there, in upper or
+/// lower case: frequency, diameter, diameter_min, diameter_max, height, vx, vy, vz, name; NULL counts as not given.
 ///
 /// @param release_height  for features without the field height [m]
-/// Throws InputError that names file, feature, field, value and what is allowed; also where no cell is left.
+/// Throws InputError that names file, feature, field, value and what is allowed; also if no cell is left.
 SourceLayer read_sources(const std::string& path, const Terrain& terrain, const Range& release_height);
 
 /// Screens (lines whose crossings are recorded) from a vector file.

@@ -21,9 +21,9 @@ struct MapTarget {
 /// Writes a map as the Cloud Optimized GeoTIFF `NAME.tif`, row by row in bounded memory: at most 128 rows at once.
 /// Needs the size of the uncompressed map on the disk while it writes.
 ///
-/// Overviews: a pixel has the LARGEST value of the cells under it (nodata only where all are), band by band. Averages
-/// or samples would thin out narrow paths, so that a hazard disappears from view when one zooms out. A return period
-/// has the SMALLEST value, for the same reason.
+/// Overviews: a pixel has the LARGEST value of the cells under it (nodata only if all are), band by band. Averages or
+/// samples would thin out narrow paths, so that a hazard disappears from view when one zooms out. A return period has
+/// the SMALLEST value, for the same reason.
 /// Counts above 4294967294 are written as that. The bytes depend on the values only: no dates, no number of threads.
 ///
 /// Several maps may be written at the same time, one per thread.

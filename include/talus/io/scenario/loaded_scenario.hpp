@@ -12,7 +12,7 @@ namespace talus::io {
 struct Setting {
   std::string key;    ///< "ground.zones.road.En50"
   std::string value;  ///< in the units of the file
-  std::string unit;   ///< "m3/s2"; empty where there is none
+  std::string unit;   ///< "m3/s2"; empty if there is none
   std::string
       source;  ///< "scenario", "flag --seed", "preset forest-road-3d", "default", "attribute diameter of cliffs.shp"
 };
