@@ -26,7 +26,7 @@ using io::replace_text;
 using Json = nlohmann::ordered_json;
 constexpr int kFormat = 4;
 
-/// "tally-3.bin"; of a further process of a process group "tally-3-1.bin".
+/// "tally-3.bin"; for a process of rank 1 "tally-3-1.bin".
 std::string numbered(const std::string& what, std::uint32_t number, int rank = 0) {
   return what + "-" + std::to_string(number) + (rank > 0 ? "-" + std::to_string(rank) : "") + ".bin";
 }
@@ -116,7 +116,7 @@ Sinks Checkpoint::sinks() {
   return sinks;
 }
 
-/// Of all processes: the leader knows their files then.
+/// Closes the files of rows of all processes. The leader gets their names.
 void Checkpoint::close_rows(std::uint32_t round) {
   Json mine;
   if (rows_) mine = {{"name", rows_->name}, {"sha256", rows_->writer.finish()}};
@@ -162,7 +162,7 @@ void Checkpoint::save(const Simulation& simulation, const Tally& tally) {
   processes_->tell({});  // no process goes on before what it has traced is saved
 }
 
-/// At the leader.
+/// Files of all processes, by rank. Only the leader gets them.
 std::vector<Checkpoint::SavedFile> Checkpoint::gathered(const SavedFile& mine) const {
   const std::vector<std::string> names = processes_->gather(mine.name), sums = processes_->gather(mine.sha256);
   std::vector<SavedFile> files;
@@ -204,7 +204,7 @@ void Checkpoint::restore(Simulation& simulation, Tally& tally) const {
 
 void Checkpoint::replay(std::uint32_t round, const Sinks& sinks) const {
   for (auto file = rows_files_.begin(); file != rows_files_.end();) {
-    std::vector<std::unique_ptr<RowsReader>> files;  // of one session of several processes
+    std::vector<std::unique_ptr<RowsReader>> files;  // of one save, one per process
     const RowsFile& first = *file;
     for (; file != rows_files_.end() && file->round == first.round && file->generation == first.generation; ++file)
       if (file->round == round) files.push_back(std::make_unique<RowsReader>(folder_ / file->name, file->sha256));
@@ -242,7 +242,7 @@ void Checkpoint::write_manifest() const {
             {"rest_sha256", rest_sha256_},
             {"rows", rows},
             {"settings", settings}};
-  json["sha256"] = io::sha256_of_bytes(text_of(json));  // of what stands before it
+  json["sha256"] = io::sha256_of_bytes(text_of(json));  // of the text without this line
   replace_text(folder_ / kCheckpointManifest, text_of(json));
 }
 

@@ -14,7 +14,7 @@ struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-/// Writes a file of a `Checkpoint` and its checksum; on the disk, not only on its way there, after `finish`. Throws
+/// Writes a file of a `Checkpoint` and computes its checksum. After `finish` the bytes are on the disk. Throws
 /// std::runtime_error with the name and the cause.
 class CheckpointFileWriter {
  public:
@@ -24,6 +24,7 @@ class CheckpointFileWriter {
   void put_value(const T& value) {
     put({reinterpret_cast<const char*>(&value), sizeof value});
   }
+  /// Waits until the bytes are on the disk.
   /// @return the checksum
   std::string finish();
 
@@ -34,11 +35,11 @@ class CheckpointFileWriter {
   Sha256 sum_;
 };
 
-/// Reads it again. Throws InputError where it is not what was written.
+/// Reads such a file. Throws InputError if its bytes are not those that were written.
 class CheckpointFileReader {
  public:
   CheckpointFileReader(const std::filesystem::path& file, std::string sha256);
-  /// The next bytes; empty at the end of the file, where `count` is 0 or nothing is left.
+  /// The next `count` bytes. Throws InputError if fewer are left.
   std::string get(std::size_t count);
   template <class T>
   bool get_value(T& value) {  // false at the end of the file

@@ -25,7 +25,7 @@ RowsReader::RowsReader(const std::filesystem::path& file, const std::string& sha
   if (!done() && kind_ != 'U') in_.fail();
 }
 
-/// What comes next; the number of a unit is read with it.
+/// Reads the kind of what comes next. For a unit reads its number, too.
 void RowsReader::read_kind() {
   if (!in_.get_value(kind_)) {
     kind_ = kEnd;

@@ -7,11 +7,12 @@
 
 namespace talus::run {
 
-/// Rows as `simulate` hands them out, in a file of a `Checkpoint`: kind, number, the rows as they lie in memory.
+/// Writes rows into a file of a `Checkpoint`, as `simulate` hands them out: their kind, their number, their bytes in
+/// memory.
 class RowsWriter {
  public:
   explicit RowsWriter(const std::filesystem::path& file) : file_(file) {}
-  /// The rows that follow are of this unit of work.
+  /// Begins a unit of work: the rows that follow belong to it.
   void put(std::uint64_t unit) {
     file_.put_value('U');
     file_.put_value(unit);
@@ -31,13 +32,13 @@ class RowsWriter {
   CheckpointFileWriter file_;
 };
 
-/// Reads such a file, unit by unit. Throws InputError where it is damaged.
+/// Reads such a file, unit by unit. Throws InputError if it is damaged.
 class RowsReader {
  public:
   RowsReader(const std::filesystem::path& file, const std::string& sha256);
   bool done() const { return kind_ == kEnd; }
-  std::uint64_t unit() const { return unit_; }  ///< whose rows come next
-  /// Hands them to those sinks that are set.
+  std::uint64_t unit() const { return unit_; }  ///< unit whose rows come next
+  /// Hands the rows of the unit to the sinks that are set.
   void hand_out(const Sinks& sinks);
 
  private:
@@ -48,7 +49,8 @@ class RowsReader {
   std::uint64_t unit_ = 0;
 };
 
-/// Hands out the rows of files that hold different units, each its own in ascending order: all in ascending order.
+/// Hands out the rows of several files in ascending order of their units. Each file has its own units, in ascending
+/// order.
 void replay_rows(const std::vector<std::unique_ptr<RowsReader>>& files, const Sinks& sinks);
 
 }  // namespace talus::run

@@ -33,7 +33,7 @@ std::string name_of(const Part& part) {
   return std::to_string(part.number) + "/" + std::to_string(part.of);
 }
 
-/// The parts in their order. Throws InputError where they are not one whole.
+/// The parts in their order. Throws InputError unless every part of one division is there once, with equal rounds.
 std::vector<Checkpoint> opened(const std::vector<std::string>& folders, const LoadedScenario& loaded) {
   std::vector<Checkpoint> checkpoints;
   for (const std::string& folder : folders) checkpoints.push_back(Checkpoint::opened(folder, loaded, false));

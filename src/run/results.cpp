@@ -20,7 +20,7 @@ namespace {
 
 using io::LoadedScenario;
 
-/// The files of rows: stops, paths, crossings.
+/// Writers of stops, paths and crossings.
 class Vectors {
  public:
   Vectors(const LoadedScenario& loaded, const std::filesystem::path& folder, const Observer& observer)
@@ -69,7 +69,7 @@ class Vectors {
   ScreenSummary summary_;
 };
 
-/// Writes the rows in the checkpoints, round by round and in each the parts in their order.
+/// Writes the rows of the checkpoints: round by round, in each round the parts in their order.
 void write_vectors(const ResultSource& source, const Totals& totals, const Observer& observer) {
   Vectors vectors(source.loaded, source.folder, observer);
   const Sinks sinks = vectors.sinks();
@@ -78,7 +78,7 @@ void write_vectors(const ResultSource& source, const Totals& totals, const Obser
   vectors.finish(totals);
 }
 
-/// "3 rounds: the largest relative half-width of 812 cells with a probability above 0.01 is 0.117".
+/// "3 rounds: the largest relative 95 % half-width of the 812 cells with a probability above 0.01 is 0.117".
 std::string rounds_text(const io::RoundsRecord& rounds) {
   return std::to_string(rounds.done) + (rounds.done == 1 ? " round" : " rounds") +
          ": the largest relative 95 % half-width of the " + std::to_string(rounds.reached.cells) +
@@ -86,7 +86,7 @@ std::string rounds_text(const io::RoundsRecord& rounds) {
          with_digits(rounds.reached.half_width, 3);
 }
 
-/// A warning where `--until-error` was not reached.
+/// A warning if `--until-error` was not reached.
 std::vector<std::string> warnings_of(const io::RoundsRecord& rounds) {
   if (rounds.done == 0 || !rounds.asked.until_error || rounds.reached_it()) return {};
   if (rounds.reached.cells == 0)
@@ -97,7 +97,7 @@ std::vector<std::string> warnings_of(const io::RoundsRecord& rounds) {
 }  // namespace
 
 void write_results(const ResultSource& source, Observer& observer, Stopwatch& watch, io::RunRecord& record) {
-  malloc_trim(0);  // gives back what the workers' batches took, before the maps need room
+  malloc_trim(0);  // frees the memory of the workers' batches before the maps need it
   const LoadedScenario& loaded = source.loaded;
   const std::filesystem::path& folder = source.folder;
   record.touched_cells = source.tally.touched_cells();

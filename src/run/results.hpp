@@ -8,7 +8,7 @@
 
 namespace talus::run {
 
-/// All that the results of a run are written from, and where to.
+/// Input of `write_results`, and the folder to write into.
 struct ResultSource {
   const io::LoadedScenario& loaded;
   std::span<const Checkpoint> checkpoints;  ///< one, or the parts in their order; all with the same number of rounds
@@ -19,11 +19,11 @@ struct ResultSource {
 /// Writes every result: maps from the tally, vectors from the rows in the checkpoints. Fills the record.
 void write_results(const ResultSource& source, Observer& observer, Stopwatch& watch, io::RunRecord& record);
 
-/// Says what was done, after the warnings from number `told` on.
+/// Reports what was done. Before that reports the warnings from index `told` on: the user knows the earlier ones.
 void summarise(const io::RunRecord& record, const io::LoadedScenario& loaded, std::size_t told,
                const std::filesystem::path& folder, Observer& observer);
 
-/// Says what went wrong where too many trajectories ended at a limit, and how to look into it.
+/// Reports an error if too many trajectories ended at a limit, with the command that replays the first one.
 Outcome judge_limits(const Totals& totals, const std::filesystem::path& folder, Observer& observer);
 
 }  // namespace talus::run

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// "I/N".
+/// The part from the text "I/N"; the whole run from none.
 Part part_of(const std::optional<std::string>& given) {
   Part part;
   if (!given) return part;
@@ -34,7 +34,7 @@ Part part_of(const std::optional<std::string>& given) {
   return part;
 }
 
-/// Blocks are numbered with 32 bits.
+/// Throws InputError for more than 1e9 blocks of a source cell: they are numbered with 32 bits.
 void check_number(const Rounds& rounds, const Scenario& scenario) {
   const std::uint32_t rounds_at_most = rounds.until_error ? rounds.most : rounds.count;
   if (std::uint64_t{scenario.trajectories} * rounds_at_most > 1'000'000'000)
@@ -84,8 +84,8 @@ std::size_t RunSession::check_request() {
   return memory;
 }
 
-/// Reads and checks, the leader first: it tells what is wrong, and the others of its machine need not read the terrain,
-/// which they share. With a limit of memory each has it in a file of its own.
+/// Reads and checks the input, the leader first: if it is wrong, only the leader has read it. The processes of a
+/// machine share one copy of the terrain. With a limit of memory each has a copy in a file of its own.
 void RunSession::load(std::size_t memory) {
   std::optional<SharedMemory> shared;
   const std::string name = "talus-" + std::to_string(getpid()) + "-" + std::to_string(std::time(nullptr));
@@ -102,8 +102,8 @@ void RunSession::read_plan(std::size_t memory, SharedMemory* shared) {
   check_number(plan_.rounds, plan_.loaded.scenario);
 }
 
-/// The outcome of the run or the part that `resume` finds done, as a scheduler may ask for it again; nothing where it
-/// is not. Throws InputError where what is there is a part of another plan.
+/// The outcome of a run or part that `resume` finds done: a scheduler may start it again. Nothing if it is not done.
+/// Throws InputError if the folder holds a part of another plan.
 std::optional<Outcome> RunSession::outcome_of_done() {
   std::optional<Outcome> outcome;
   in_every_process(processes_, [&] {
@@ -123,7 +123,7 @@ std::optional<Outcome> RunSession::find_done() const {
   if (!request_.part) {
     const auto status = io::status_of_result(request_.out, io::plan_checksum(plan_.loaded), plan_.rounds);
     if (!status) return {};
-    std::error_code ignored;  // a run that was killed at its very end may have left its checkpoint
+    std::error_code ignored;  // a run killed at its very end may have left its checkpoint
     fs::remove_all(fs::path(request_.out) / io::OutputFolder::kWork, ignored);
     return *status == io::kComplete ? Outcome::Done : Outcome::TooManyLimits;
   }
@@ -140,7 +140,7 @@ void RunSession::make_folder() {
     if (!processes_.leads()) return;
     folder_ = std::make_unique<io::OutputFolder>(request_.out, request_.overwrite,
                                                  request_.resume ? Unfinished::Resume : Unfinished::Refuse);
-    for (const io::InputFile& input : plan_.loaded.inputs)  // the scenario that the run itself left may be replaced
+    for (const io::InputFile& input : plan_.loaded.inputs)  // scenario.toml of an earlier run may be replaced
       if (fs::path(input.path) != folder_->final_path() / "scenario.toml") folder_->protect(input.path);
   });
 }
@@ -191,7 +191,7 @@ void RunSession::with_hint(const std::function<void()>& work) {
   }
 }
 
-/// The leader writes; the others wait to be told how it ended.
+/// The leader writes the results; the others wait until it tells them how that ended.
 Outcome RunSession::deliver() {
   if (request_.part) {
     tracing_->save_checkpoint();
@@ -214,7 +214,7 @@ Outcome RunSession::deliver() {
   return static_cast<Outcome>(ended);
 }
 
-/// Gives a part its name: its checkpoint is the result.
+/// Gives the folder of a part its name: the checkpoint is the result.
 Outcome RunSession::deliver_part() {
   folder_->commit_work();
   observer_.finish();
@@ -224,8 +224,8 @@ Outcome RunSession::deliver_part() {
   return Outcome::Done;
 }
 
-/// Writes the results of a whole run and gives them their name. OUT/scenario.toml, and so the plan from now on, has the
-/// trajectories of all rounds.
+/// Writes the results of a whole run and gives the folder its name. OUT/scenario.toml has the trajectories of all
+/// rounds; so has the plan from here on.
 Outcome RunSession::deliver_results() {
   io::LoadedScenario& loaded = plan_.loaded;
   const std::uint32_t rounds = tracing_->rounds_done();

@@ -36,7 +36,8 @@ Tracing::Tracing(const RunRequest& request, const RunPlan& plan, const Means& me
   sinks_.pause = [this] { return seconds_since_checkpoint() > request_.checkpoint; };
 }
 
-/// The checkpoint in the folder of the leader, which the others must see; a new one where there is none.
+/// Opens the checkpoint in the folder of the leader, or begins one. Throws InputError if a process does not see the
+/// folder or has read other files.
 std::vector<Checkpoint> Tracing::opened() const {
   const fs::path work = processes_.tell(folder_ != nullptr ? folder_->work().string() : "");
   const bool found =

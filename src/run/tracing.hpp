@@ -15,35 +15,37 @@ namespace talus::run {
 /// The command line with --resume.
 std::string command_to_resume(const std::vector<std::string>& command);
 
-/// The trajectories of a session: traces all rounds, and saves what is done in the checkpoint now and then. Each
-/// process of the group has one, and all call the same of it.
+/// Traces all rounds of a session and saves a checkpoint from time to time. Each process of a group has one; all call
+/// the same functions in the same order.
 class Tracing {
  public:
   struct Means {
-    io::OutputFolder* folder;  ///< of the results: the leader's; elsewhere null
+    io::OutputFolder* folder;  ///< of the results; null except in the leader
     Observer& observer;
     ProcessGroup& processes;
     MemoryPolicy memory;
   };
-  /// Goes on from the checkpoint in the folder, where there is one. The request and the plan must outlive it.
+  /// Resumes from the checkpoint in the folder, if there is one. The request and the plan must outlive it.
   Tracing(const RunRequest& request, const RunPlan& plan, const Means& means);
 
   Checkpoint& checkpoint() { return checkpoints_.front(); }
   std::span<const Checkpoint> checkpoints() const { return checkpoints_; }
   Tally& tally() { return tally_; }
   std::uint32_t rounds_done() const { return simulation_.position().round + (simulation_.round_done() ? 1U : 0U); }
-  std::uint64_t traced() const { return simulation_.totals().released; }  ///< by this process, and by the checkpoint
+  /// Trajectories traced by this process; in the leader with those of the checkpoint.
+  std::uint64_t traced() const { return simulation_.totals().released; }
 
-  /// Traces all rounds. Throws `Interrupted`, after what is done was saved.
+  /// Traces all rounds. If the user ends the program, saves the work and throws `Interrupted`.
   void trace(int threads);
-  /// The totals of all processes; at the leader.
+  /// Sum of the totals of all processes. Only the leader gets it.
   Totals totals();
   void save_checkpoint();
-  /// Where there is a checkpoint, what was traced since is saved, too.
+  /// Saves what was traced since the last checkpoint. Does nothing if none was saved yet.
   void save_rest();
-  /// The same while the leader writes the results: of a process group the last checkpoint must do.
+  /// Throws `Interrupted` while the leader writes the results. A single process saves its work first; a process group
+  /// resumes from the last checkpoint.
   [[noreturn]] void interrupt_writing();
-  /// The accuracy that `--until-error` asks about, so far; the tally is then shared out over the process group.
+  /// Accuracy reached so far, for `--until-error`. Shares out the tally over the process group.
   Accuracy accuracy();
 
  private:
@@ -52,7 +54,7 @@ class Tracing {
   double seconds_since_checkpoint() const { return std::chrono::duration<double>(Clock::now() - saved_at_).count(); }
   bool in_any_process(bool here) { return processes_.largest(here ? 1 : 0) > 0; }
   bool enough();
-  /// Saves what was traced and throws `Interrupted`, which says how to go on.
+  /// Saves what was traced and throws `Interrupted` with the command that resumes.
   [[noreturn]] void interrupt();
 
   using Clock = std::chrono::steady_clock;
@@ -62,7 +64,7 @@ class Tracing {
   Observer& observer_;
   ProcessGroup& processes_;
   Tally tally_;
-  std::vector<Checkpoint> checkpoints_;  // one
+  std::vector<Checkpoint> checkpoints_;  // exactly one
   Sinks sinks_;
   Simulation simulation_;
   Clock::time_point saved_at_ = Clock::now();

@@ -8,14 +8,15 @@
 
 namespace talus::run {
 
-// What is thrown may not leave the parallel region: the first failure is kept.
+// An exception must not leave the parallel region: the first one is kept and thrown after it.
 void write_maps(const std::vector<Map>& maps, const io::MapTarget& target, int threads) {
   std::exception_ptr failure;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(std::min(threads, kMapsAtOnce)) default(none) \
     shared(maps, target, failure)
   for (const Map& map : maps) {
     try {
-      const bool there = std::filesystem::exists(target.folder / (map.name + ".tif"));  // of a run that was killed
+      const bool there =
+          std::filesystem::exists(target.folder / (map.name + ".tif"));  // written before the run was killed
       if (there || io::write_map(map, target)) io::write_style(target.folder, map);
     } catch (...) {
 #pragma omp critical

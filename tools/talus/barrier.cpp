@@ -31,7 +31,7 @@ struct Options {
   bool quiet = false;
 };
 
-/// What the numbers on the command line may be.
+/// Throws InputError if a number on the command line is out of bounds.
 void check_numbers(const Options& o) {
   const auto factor = [](std::string_view key, std::string_view meaning) {
     return Bounds{key, "1", meaning, 1.0, 3.0};
@@ -62,7 +62,7 @@ const talus::Screen& screen_of(const RunSummary& run, const Options& o) {
   throw talus::InputError("--screen: the run has no screen '" + o.screen + "'" + talus::known_names(o.screen, ids));
 }
 
-/// The crossings of the run, as many as a percentile needs.
+/// The crossings of the run. Throws InputError if they are too few for the percentile.
 CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
   const fs::path file = fs::path(o.folder) / "screens.csv";
   if (run.screens.empty() || !fs::exists(file))
@@ -95,7 +95,7 @@ CrossingTable observed_crossings(const Options& o) {
   return crossings;
 }
 
-/// The fit of one quantity; nothing where the table does not hold it.
+/// Adds the fit of one quantity, if the table has it.
 void add_reliability(BarrierReport& report, const std::string& quantity, const std::string& unit,
                      std::vector<double> values, const std::vector<std::pair<std::string, double>>& limits,
                      std::uint64_t seed) {

@@ -15,19 +15,20 @@ struct CampaignCommand {
               int& threads);
 };
 
-/// Trials per block below which a search can hide a block behind the climatology: one that rarely stops is not scored.
+/// Trials per block below which a search can hide a block behind the climatology: a block that rarely stops is not
+/// scored.
 inline constexpr int kFewestSearchTrials = 20;
 
-/// A campaign that was read, and the folder that waits for its results.
+/// A campaign that was read, and the new folder for its results.
 struct OpenedCampaign {
   talus::io::LoadedCampaign loaded;
   talus::io::OutputFolder folder;
 
   /// Reads the campaign, guards its files from being overwritten, prints its warnings and fills the head of the report.
-  /// Throws InputError where nothing can be fitted to it.
+  /// Throws InputError if nothing can be fitted to it.
   OpenedCampaign(const CampaignCommand& command, talus::io::FitRecord& record);
 
-  /// Prints and records where a fitted model scores as the climatology: a search can hide there.
+  /// Prints and records the groups in which a fitted model scores as the climatology: a search can hide there.
   static void warn_unseen(const CampaignCommand& command, talus::io::FitRecord& record, const std::string& rows,
                           const talus::Score& score);
 };

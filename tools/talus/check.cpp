@@ -27,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kSampleSeconds = 1.5;
 
-/// What a sample of the trajectories tells of all of them.
+/// Sums over a sample of the trajectories.
 struct Sample {
   std::uint64_t traced = 0, touched_cells = 0, crossings = 0;
   std::vector<std::uint64_t> cells_by_passages;

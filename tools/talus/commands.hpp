@@ -10,11 +10,11 @@
 #include "talus/run/observer.hpp"
 #include "talus/simulate/plan/process_group.hpp"
 
-/// What the program does once the command line is understood; returns its exit code.
+/// The work of a subcommand; returns the exit code of the program.
 using Action = std::function<int()>;
 
-/// One subcommand each: adds its options to the program and sets `action` when it is called.
-/// @param processes  the processes that do it together; must outlive the action
+/// Each adds one subcommand with its options to the program. The subcommand sets `action` if the command line calls it.
+/// @param processes  processes that share the run; must outlive the action
 void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes);
 void add_check(CLI::App& app, Action& action);
 void add_profile(CLI::App& app, Action& action);
@@ -28,23 +28,23 @@ void add_sources(CLI::App& app, Action& action);
 void add_hazard(CLI::App& app, Action& action);
 void add_merge(CLI::App& app, Action& action);
 
-/// The options that say which scenario is meant: those of `run` and `check`.
+/// Adds the options of `run` and `check` that give the scenario.
 void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags);
 
 using talus::run::Interrupted;  // exit code 130
 using talus::run::stop_interrupted;
 
-/// From here on signals that end a program only set the flag that `interrupted` reads, so that no half result is left.
+/// Signals that end a program from now on only set the flag that `interrupted` reads, so that no half result is left.
 void catch_signals();
 bool interrupted();
 
-/// The words that the program was called with.
+/// Words of the command line.
 const std::vector<std::string>& command_line();
 
-/// For options that are numbers with a fraction: from low to high, and a number. (CLI::Range lets "nan" through.)
+/// Check of an option with a fraction: a number from low to high. (CLI::Range lets "nan" through.)
 CLI::Validator between(double low, double high);
 
-/// Throws InputError where a seed is none. (A negative number would else be a huge one.)
+/// Throws InputError if the seed is out of bounds. (A negative number arrives as a huge one.)
 void require_seed(std::uint64_t seed);
 
 /// "talus: KIND: TEXT" on stderr, in one line.

@@ -17,20 +17,20 @@ using talus::Scenario;
 // Measured on the valley and on the region of docs/performance.md.
 constexpr double kBase = 64e6;             // of the process [byte]
 constexpr double kHistogram = 40.0;        // of a quantity of a touched cell [byte]
-constexpr double kHazardCell = 640.0;      // annual frequencies of a touched cell [byte]: 32 bins, and what holds them
+constexpr double kHazardCell = 640.0;      // annual frequencies of a touched cell [byte]: 32 bins and their container
 constexpr double kRasterCell = 3.4;        // of a touched cell in a band of a compressed raster [byte]
 constexpr double kHazardFile = 77.0;       // of a touched cell [byte]
 constexpr double kStop = 172.0;            // a row of stops.gpkg [byte]
 constexpr double kPathPoint = 36.0;        // of trajectories.gpkg [byte]
 constexpr double kCrossing = 150.0;        // a row of screens.csv [byte]
-constexpr double kKeptCell = 320.0;        // of a touched cell in the kept tally [byte]
+constexpr double kKeptCell = 320.0;        // of a touched cell in the saved tally [byte]
 constexpr double kDraftBand = 16.0 / 3.0;  // of a cell, with overviews [byte]
 constexpr double kDraftBands = 5.0;        // of the largest maps
 constexpr double kLargeMap = 16e6;         // cells; from there on drafts are compressed, and empty cells take nothing
 constexpr double kEmptyCell = 1.9e-8;      // of the grid, per band, to write [s]
-constexpr double kTouchedCell = 1.6e-7;    // the same of a touched cell
+constexpr double kTouchedCell = 1.6e-7;    // of a touched cell, per band, to write [s]
 constexpr double kWriteTrajectory = 5e-6;  // a row of stops.gpkg [s]
-constexpr double kWriteFiles = 0.6;        // to make all of them [s]
+constexpr double kWriteFiles = 0.6;        // to create all files [s]
 
 double thresholds(const Scenario& scenario) {
   return static_cast<double>(scenario.output.energy_thresholds.size() + scenario.output.height_thresholds.size());

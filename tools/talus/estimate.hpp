@@ -3,18 +3,18 @@
 
 #include "talus/simulate/scenario/scenario.hpp"
 
-/// What a run will need, from a sample of its trajectories. docs/performance.md, "What check foretells".
+/// Time, memory and disk of a run, from a sample of its trajectories. docs/performance.md, "What check foretells".
 
-/// How large a run is.
+/// Size of a run.
 struct RunSize {
   double trajectories = 0.0, grid_cells = 0.0, touched_cells = 0.0, crossings = 0.0;
   double metres_per_path = 0.0;
   bool with_hazard = false;  ///< annual frequencies are kept
 };
 
-double bytes_in_memory(const talus::Scenario& scenario, const RunSize& size);  ///< beside the terrain and zones
+double bytes_in_memory(const talus::Scenario& scenario, const RunSize& size);  ///< without terrain and zones
 double bytes_of_results(const talus::Scenario& scenario, const RunSize& size);
-/// Kept for --resume, and drafts of the maps: beside the results, while it goes on.
+/// Bytes beside the results while the run goes on: saved work for --resume, and drafts of the maps.
 double bytes_at_work(const talus::Scenario& scenario, const RunSize& size, unsigned processors);
 double seconds_to_write(const talus::Scenario& scenario, const RunSize& size, unsigned processors);
 

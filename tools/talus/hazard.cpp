@@ -32,7 +32,7 @@ struct Options {
   Progress::Mode mode() const { return Progress::mode_of(quiet, progress == "machine"); }
 };
 
-/// The file that a run leaves where its sources have frequencies.
+/// The hazard file, which a run writes if its sources have frequencies.
 fs::path tally_file(const fs::path& folder) {
   const fs::path file = folder / talus::io::kHazardFile;
   if (fs::exists(file)) return file;
@@ -43,7 +43,7 @@ fs::path tally_file(const fs::path& folder) {
                              : ": is no folder of results (it has no run.json); give the OUT of talus run"));
 }
 
-/// Reads what the run kept and evaluates every cell.
+/// Reads the hazard file of the run and evaluates every cell.
 std::unique_ptr<talus::HazardSurvey> survey_of(const fs::path& file, int threads, Progress& progress,
                                                talus::io::HazardRecord& record) {
   std::unique_ptr<talus::HazardSurvey> survey;
@@ -119,7 +119,7 @@ std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, c
   return survey;
 }
 
-/// Runs the recorded plan again and writes what comes to each object.
+/// Runs the recorded plan again and writes the hazard of each object.
 void write_objects(const Options& options, const fs::path& folder, talus::io::HazardRecord& record) {
   const talus::io::LoadedScenario loaded = recorded_plan(options, record.header.plan);
   const talus::io::ObjectLayer layer(options.objects, loaded);
@@ -135,7 +135,7 @@ void write_objects(const Options& options, const fs::path& folder, talus::io::Ha
       [&progress](double share) { return progress.update(share) && !interrupted(); }, options.threads);
   if (interrupted() || hits.empty()) stop_interrupted();
   talus::HazardRules rules = record.header.rules;
-  rules.scale = weights->scale();  // a run in rounds has kept another
+  rules.scale = weights->scale();  // a run in rounds has recorded another
   layer.write(folder, loaded, rules, hits, record.matrix.years);
   progress.finish();
   record.objects_file = options.objects;

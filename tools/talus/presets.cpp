@@ -8,7 +8,7 @@
 
 namespace {
 
-/// One column per parameter of a ground, as `fields` names it; then where the set comes from.
+/// One column per parameter of a ground, as `fields` names it; then the source of the set.
 int print_presets() {
   std::printf("%-18s", "preset");
   for (const auto& field : talus::ground_fields())

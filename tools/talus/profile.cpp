@@ -23,7 +23,7 @@ using talus::run::Stopwatch;
 using talus::run::warnings_of;
 
 constexpr std::uint32_t kDrawn = 60;  // paths in the drawing
-constexpr double kPathSpacing = 1.0;  // of the points of a flight that is written, at most [m]
+constexpr double kPathSpacing = 1.0;  // largest distance between written points of a flight [m]
 
 struct Options {
   talus::io::RunFlags flags;
@@ -32,7 +32,7 @@ struct Options {
   bool overwrite = false, quiet = false;
 };
 
-/// Takes what `simulate` hands out to the files and the counters.
+/// Passes what `simulate` hands out to the files and the counters.
 class Readers {
  public:
   Readers(const LoadedProfile& profile, const fs::path& folder)

@@ -41,7 +41,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-/// What is wrong with the command line, with the way out: CLI11's message, where it has no better one.
+/// The message about a wrong command line, with the way out; CLI11's own message if there is no better one.
 std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands(nullptr)) commands.push_back(command->get_name());
@@ -79,8 +79,8 @@ void describe(CLI::App& app) {
 
 void begin_program(int argc, char** argv) {
   talus::keep_freed_memory();
-  std::signal(SIGPIPE, SIG_IGN);  // whoever reads the output may go: a write then fails, and results are tidied up
-  std::signal(SIGXFSZ, SIG_IGN);  // the same of a file that gets larger than is allowed
+  std::signal(SIGPIPE, SIG_IGN);  // if the reader of the output ends, a write fails and is handled
+  std::signal(SIGXFSZ, SIG_IGN);  // the same for a file above the allowed size
   words.assign(argv, argv + argc);
 }
 
@@ -134,7 +134,7 @@ CLI::Validator between(double low, double high) {
 void require_seed(std::uint64_t seed) {
   const auto fields = talus::scenario_fields();
   const auto bounds = std::find_if(fields.begin(), fields.end(), [](const auto& field) { return field.key == "seed"; });
-  if (const auto fault = talus::fault_of(*bounds, static_cast<double>(seed)))  // what was negative is huge
+  if (const auto fault = talus::fault_of(*bounds, static_cast<double>(seed)))  // a negative number has become huge
     throw talus::InputError("flag --seed = " + std::to_string(static_cast<std::int64_t>(seed)) + ": " + *fault);
 }
 

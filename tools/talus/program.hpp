@@ -1,17 +1,18 @@
 #pragma once
 #include "commands.hpp"
 
-/// What the programs talus and talus-mpi have in common.
+/// Common parts of the programs talus and talus-mpi.
 
 enum ExitCode { kDone = 0, kFailed = 1, kWrongInput = 2, kInterrupted = 130 };
 
 using AddCommand = std::function<void(CLI::App& app, Action& action)>;
 
-/// First of all: signals, and what `command_line` says.
+/// Sets up memory, signals and `command_line`. Call it first.
 void begin_program(int argc, char** argv);
 
-/// What the command line asks for; where that is --help, it has been given. Throws InputError.
+/// The action that the command line asks for. --help and --version are printed at once; their action does nothing more.
+/// Throws InputError.
 Action understood(int argc, char** argv, const std::vector<AddCommand>& commands);
 
-/// Runs it, and says what it throws.
+/// Runs `program`, reports what it throws, and returns the exit code.
 int exit_code_of(const std::function<int()>& program);

@@ -5,28 +5,29 @@
 
 #include "talus/run/summary.hpp"
 
-/// Tells on stderr how far a run is: one rewritten line on a terminal, else a line every ten seconds; or, for programs,
+/// Shows on stderr how far a run is: one rewritten line on a terminal, else a line every ten seconds; or, for programs,
 /// `progress 42` with every whole percent.
 class Progress {
  public:
   enum class Mode { Silent, Terminal, Lines, Machine };
 
-  /// Of the options; otherwise what suits stderr.
+  /// The mode of the options; without any, the one that suits stderr.
   static Mode mode_of(bool quiet, bool machine);
 
-  /// @param trajectories  of the whole run; 0: not known, no rate is shown
+  /// @param trajectories  number in the whole run; 0: not known, no rate is shown
   Progress(Mode mode, std::uint64_t trajectories);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// @param share  done, 0..1. Returns false where nobody reads any more what was asked for (a closed pipe).
+  /// @param share  of the work that is done, 0..1
+  /// @return false if nobody reads the requested output any more (a closed pipe)
   bool update(double share);
 
-  /// A part of the run begins, "round 3": shares and rates are from now on its own.
+  /// A part of the run begins, "round 3". From now on shares and rates are those of this part.
   void begin(const std::string& part);
 
-  /// What follows the trajectories: "writing the results".
+  /// A stage after the trajectories begins: "writing the results".
   void stage(const std::string& text);
 
   /// The whole run is done.
@@ -41,7 +42,7 @@ class Progress {
   Mode mode_;
   double trajectories_;
   Clock::time_point start_ = Clock::now(), shown_ = start_;
-  std::string part_;  // in front of the line
+  std::string part_;  // text in front of the line
   int percent_ = -1;
   bool on_line_ = false;  // something stands on the current line of the terminal
 };

@@ -12,7 +12,7 @@ struct Options {
   bool quiet = false;
 };
 
-/// Of several processes the leader alone says something.
+/// The observer of a process. Of several processes only the leader prints.
 TerminalObserver observer_of(const Options& options, const talus::ProcessGroup& processes) {
   const bool leads = processes.leads(), quiet = options.quiet || !leads;
   return {Progress::mode_of(quiet, options.progress == "machine" && leads), quiet};

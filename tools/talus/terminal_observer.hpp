@@ -4,10 +4,10 @@
 #include "progress.hpp"
 #include "talus/run/run_session.hpp"
 
-/// Says on stderr what a session tells, and asks the signals whether the user has ended the program.
+/// Prints the progress and messages of a session on stderr. A signal of the user ends the session.
 class TerminalObserver : public talus::run::Observer {
  public:
-  /// @param quiet  says nothing but errors
+  /// @param quiet  prints errors only
   TerminalObserver(Progress::Mode mode, bool quiet) : mode_(mode), quiet_(quiet) {}
 
   bool interrupted() const override;
@@ -26,5 +26,5 @@ class TerminalObserver : public talus::run::Observer {
   std::optional<Progress> progress_;
 };
 
-/// The exit code of a session that has ended so.
+/// The exit code for the outcome of a session.
 int exit_code(talus::run::Outcome outcome);

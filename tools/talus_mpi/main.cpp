@@ -7,7 +7,7 @@
 
 namespace {
 
-/// Understands the command line, the same in every process. Nothing where it is wrong, which the leader has said.
+/// Parses the command line, the same in every process. Nothing if it is wrong: the leader has reported that.
 Action action_of(int argc, char** argv, MpiProcessGroup& processes, int& code) {
   const auto run = [&processes](CLI::App& app, Action& action) { add_run(app, action, processes); };
   Action action;
@@ -18,7 +18,7 @@ Action action_of(int argc, char** argv, MpiProcessGroup& processes, int& code) {
   if (processes.leads()) {
     code = exit_code_of(understand);
   } else {
-    std::cout.setstate(std::ios::failbit);  // the leader gives the help
+    std::cout.setstate(std::ios::failbit);  // only the leader prints the help
     try {
       understand();
     } catch (const talus::InputError&) {
@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
         try {
           ended = action();
         } catch (const talus::InputError& error) {
-          if (processes.size() > 1) throw;  // of one process: the others do not know
+          if (processes.size() > 1) throw;  // thrown in one process: the others do not know
           say("error", error.what());
           ended = kWrongInput;
         } catch (const talus::run::GroupInputError& error) {

@@ -8,8 +8,8 @@
 
 namespace {
 
-constexpr std::size_t kPiece = std::size_t{1} << 28U;  // of a message: MPI counts with an int
-constexpr int kSpins = 2000;                           // before a process that waits sleeps
+constexpr std::size_t kPiece = std::size_t{1} << 28U;  // bytes of a message: MPI counts with an int
+constexpr int kSpins = 2000;                           // tests before a waiting process sleeps
 
 }  // namespace
 
@@ -26,7 +26,8 @@ MpiProcessGroup::~MpiProcessGroup() {
   MPI_Win_free(&window_);
 }
 
-/// Waits for all, and says so where the run was told to end meanwhile: another process may be gone for good.
+/// Waits for all requests. If the run is told to end meanwhile, the leader prints how to resume: another process may
+/// have ended for good.
 void MpiProcessGroup::wait(std::vector<MPI_Request>& requests) {
   for (int spins = 0;; ++spins) {
     int done = 0;

@@ -5,9 +5,10 @@
 
 #include "talus/simulate/plan/process_group.hpp"
 
-/// The ranks of MPI_COMM_WORLD. One may be made, between MPI_Init_thread (MPI_THREAD_SERIALIZED) and MPI_Finalize.
+/// The process group of all ranks of MPI_COMM_WORLD. At most one, between MPI_Init_thread (MPI_THREAD_SERIALIZED) and
+/// MPI_Finalize.
 ///
-/// Whoever waits sleeps: the leader writes the results with all processors while the others wait for it.
+/// A waiting process sleeps, so that the leader can write the results with all processors.
 class MpiProcessGroup : public talus::ProcessGroup {
  public:
   MpiProcessGroup();

@@ -16,26 +16,28 @@ namespace talus::run {
 using io::LoadedScenario;
 using io::Setting;
 
-/// The file that names all others of a checkpoint; docs/regions.md, "Files of a part".
+/// Manifest: names all other files of a checkpoint. docs/regions.md, "Files of a part".
 inline constexpr const char* kCheckpointManifest = "part.json";
 
-/// The work of a run, or of a part of it, on the disk: the tally, the rows of stops, crossings and paths, and how far
-/// it has come. From it an interrupted run goes on, and `talus merge` joins parts.
+/// Saved work of a run or of a part: the tally, the rows of stops, crossings and paths, and the position in the plan.
+/// An interrupted run resumes from it; `talus merge` joins the checkpoints of the parts.
 ///
-/// `part.json` names the files that belong to it, with their checksums, and is replaced last: whenever a program is
-/// killed, what it names is whole. What it doesn't name is removed.
+/// `part.json` names its files with their checksums. It is replaced last, so that the files it names are complete
+/// whenever the program is killed. Files that it does not name are removed.
 class Checkpoint {
  public:
-  /// A new one in an empty folder, for this part of the plan. Throws std::runtime_error.
-  /// @param asked  how many rounds there will be: who goes on must ask for the same
-  /// The processes of a process group share the folder: all must make it, and call all that writes.
+  /// Begins a checkpoint of `part` of the plan in an empty folder. Throws std::runtime_error.
+  /// @param asked  rounds that the run was asked for; a resumed run must ask for the same
+  /// The processes of a group share the folder: each of them constructs a Checkpoint and calls every function that
+  /// writes.
   Checkpoint(const std::filesystem::path& folder, const LoadedScenario& loaded, const Part& part, const Rounds& asked,
              ProcessGroup& processes = alone());
 
-  /// The checkpoint of an earlier program. Throws InputError where it is damaged or belongs to another plan than
+  /// Opens the checkpoint of an earlier program. Throws InputError if it is damaged or belongs to another plan than
   /// `loaded`.
   ///
-  /// @param to_go_on  what a killed program has left beside is removed
+  /// @param to_go_on  the run will be resumed: removes the files that a killed program left and the manifest does not
+  /// name
   static Checkpoint opened(const std::filesystem::path& folder, const LoadedScenario& loaded, bool to_go_on,
                            ProcessGroup& processes = alone());
 
@@ -45,33 +47,34 @@ class Checkpoint {
 
   const Part& part() const { return part_; }
   const Rounds& asked() const { return asked_; }
-  std::uint32_t rounds() const { return rounds_; }  ///< that are done
-  /// Those of the plan, as the program that began it had them; `trajectories` those of so many rounds.
+  std::uint32_t rounds() const { return rounds_; }  ///< rounds done
+  /// Settings of the program that began the run, with `trajectories` multiplied by `rounds`.
   std::vector<Setting> settings(std::uint32_t rounds) const;
   bool between_rounds() const { return units_done_ == 0; }
   bool empty() const { return generation_ == 0; }  ///< nothing was saved yet
   const std::filesystem::path& folder() const { return folder_; }
 
-  /// Receivers of rows: they write them where `save` finds them. Only the functions for rows are set: stops, and paths
-  /// and crossings where the scenario has them.
+  /// Sinks that write rows to the files of the checkpoint. Those for units and stops are set; those for paths and
+  /// crossings only if the scenario has them.
   Sinks sinks();
 
-  /// The sum of the totals of all processes; at the leader.
+  /// Sum of the totals of all processes. Only the leader gets it.
   Totals totals_of_all(const Totals& mine) const;
 
-  /// A round is done: its rows can be replayed. It is not saved yet.
+  /// Ends a round: closes its files of rows, so that they can be replayed. Does not save.
   void end_round(std::uint32_t round);
 
-  /// Saves all that was done so far, in place of what was saved before. Throws std::runtime_error: what was saved
-  /// before then still counts.
+  /// Saves all work done so far and replaces the earlier save. Throws std::runtime_error; the earlier save then stays
+  /// valid.
   void save(const Simulation& simulation, const Tally& tally);
 
-  /// The saved totals; adds the saved tally to `tally`. Throws InputError where a file is damaged.
+  /// Adds the saved tally to `tally`. Throws InputError if a file is damaged.
+  /// @return the saved totals
   Totals add_to(Tally& tally) const;
-  /// Puts a simulation and its tally where the saved ones were. Each process of a group takes a share, however many
-  /// there were.
+  /// Sets a simulation and its tally to the saved state. Each process of a group takes a share; the run that saved may
+  /// have had more processes or fewer.
   void restore(Simulation& simulation, Tally& tally) const;
-  /// Hands the saved rows of one round to sinks, in the order in which they came.
+  /// Hands the saved rows of one round to sinks, in the order in which they were traced.
   void replay(std::uint32_t round, const Sinks& sinks) const;
 
  private:
@@ -92,7 +95,7 @@ class Checkpoint {
   void remove_unnamed() const;
 
   std::filesystem::path folder_;
-  std::string plan_;  // its checksum
+  std::string plan_;  // checksum of the plan
   const LoadedScenario* loaded_;
   ProcessGroup* processes_;
   std::vector<Setting> settings_;
@@ -100,12 +103,12 @@ class Checkpoint {
   Rounds asked_;
   std::uint32_t rounds_ = 0;
   std::uint64_t units_done_ = 0;
-  std::uint32_t generation_ = 0;  // of the files; 0: none yet
-  std::uint32_t round_ = 0;       // in work
+  std::uint32_t generation_ = 0;  // number in the names of the saved files; 0: nothing is saved yet
+  std::uint32_t round_ = 0;       // round being traced
   std::string rest_sha256_;
-  std::vector<SavedFile> tallies_, reaches_;  // one of each process
+  std::vector<SavedFile> tallies_, reaches_;  // one per process
   std::vector<RowsFile> rows_files_;
-  std::unique_ptr<Rows> rows_;  // that are being written
+  std::unique_ptr<Rows> rows_;  // file being written
 };
 
 }  // namespace talus::run

@@ -8,15 +8,15 @@
 
 namespace talus::run {
 
-/// The limit that --memory says, such as "2G" or "500M", in bytes; 0 where the text is empty: no limit. Throws
-/// InputError where it is none, or less than what so many threads need to trace, or to write maps.
+/// Limit of memory [byte] from the text of --memory, such as "2G" or "500M". An empty text gives 0: no limit. Throws
+/// InputError if the text is no size, or if the limit is too small for `threads` threads to trace or to write maps.
 std::size_t memory_limit_of(const std::string& text, int threads);
 
-/// The file beside the results in which lies what grows with the map and does not fit into so many bytes; GDAL's cache
-/// gets a sixteenth of them. To be made before anything is read. Throws InputError where there is no folder for the
-/// results to go into.
+/// Makes the file that holds terrain, zones and tally beside the results, with at most `bytes` of memory for the
+/// process. Sets GDAL's cache to a sixteenth of `bytes`. Call it before anything is read. Throws InputError if the
+/// parent folder of the results is missing.
 ///
-/// @return null where `bytes` is 0
+/// @return null if `bytes` is 0
 std::unique_ptr<ScratchFile> scratch_file_beside(const std::filesystem::path& results, std::size_t bytes);
 
 }  // namespace talus::run

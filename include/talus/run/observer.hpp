@@ -10,11 +10,11 @@ struct Interrupted : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Throws `Interrupted`: nothing was written.
+/// Throws `Interrupted` with a message that nothing was written.
 [[noreturn]] void stop_interrupted();
 
-/// The outside world of a session: it is told how far the work is and what the user should know, and asked whether the
-/// user has ended the program. This one says nothing and never ends it. Of several processes each has its own.
+/// Link between a session and its user: receives progress and messages, and says whether the user has ended the
+/// program. This base class shows nothing and never ends the program. Each process of a group has its own observer.
 class Observer {
  public:
   virtual ~Observer() = default;
@@ -22,13 +22,15 @@ class Observer {
   virtual bool interrupted() const { return false; }
 
   /// The work begins.
-  /// @param trajectories  of the whole run; 0: not known
+  /// @param trajectories  number in the whole run; 0: not known
   virtual void begin(std::uint64_t /*trajectories*/) {}
-  /// A part of the work begins, "round 3": shares are from now on its own.
+  /// A part of the work begins, "round 3". From now on `progress` gets the share of this part.
   virtual void begin_part(const std::string& /*part*/) {}
-  /// @param share  done, 0..1. Returns false where nobody needs the results any more. From any thread, one at a time
+  /// @param share  of the work that is done, 0..1
+  /// @return false if nobody needs the results any more
+  /// Called from any thread, one at a time.
   virtual bool progress(double /*share*/) { return true; }
-  /// What follows the trajectories: "writing the results".
+  /// A stage after the trajectories begins: "writing the results".
   virtual void stage(const std::string& /*text*/) {}
   /// All work is done.
   virtual void finish() {}

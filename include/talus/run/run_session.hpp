@@ -16,23 +16,23 @@
 
 namespace talus::run {
 
-/// What `run` is asked for.
+/// Options of a run.
 struct RunRequest {
   io::RunFlags flags;
   std::string out;
   std::optional<std::string> part;  ///< "I/N"; nothing: the whole run
   Rounds rounds;
   std::string memory;                ///< "2G"; empty: no limit
-  double checkpoint = 30.0;          ///< between two checkpoints, at least [s]
-  int threads = 0;                   ///< 0: all processors; of several processes one each
-  std::vector<std::string> command;  ///< the words that the program was called with
+  double checkpoint = 30.0;          ///< least time between two checkpoints [s]
+  int threads = 0;                   ///< 0: all processors; with several processes one per process
+  std::vector<std::string> command;  ///< words of the command line
   bool overwrite = false, resume = false;
 };
 
-/// How a run has ended that was not stopped by an exception.
+/// End of a run that threw no exception.
 enum class Outcome { Done, TooManyLimits };
 
-/// What is traced, and how often.
+/// Scenario, part of it and rounds that a run traces.
 struct RunPlan {
   io::LoadedScenario loaded;
   Part part;
@@ -41,8 +41,8 @@ struct RunPlan {
 
 class Tracing;
 
-/// A run from its files to its results: it owns the plan, where memory lies, the folder of the results and the
-/// checkpoint. Each process of a group has one, and all call the same of it.
+/// A run from its input files to its results. Owns the plan, the scratch file, the folder of results and the
+/// checkpoint. Each process of a group has one; all call the same functions in the same order.
 class RunSession {
  public:
   /// The observer and the processes must outlive it.
@@ -51,9 +51,9 @@ class RunSession {
   RunSession(const RunSession&) = delete;
   RunSession& operator=(const RunSession&) = delete;
 
-  /// Reads, traces and writes; or finds with `resume` that all is done.
+  /// Reads, traces and writes. With `resume`, returns at once if the results are there already.
   ///
-  /// Throws InputError (of several processes GroupInputError), Interrupted, which says how to go on,
+  /// Throws InputError (GroupInputError with several processes), Interrupted with the command that resumes the run, or
   /// std::runtime_error.
   Outcome run();
 
@@ -78,9 +78,9 @@ class RunSession {
   ProcessGroup& processes_;
   int threads_;
   Stopwatch watch_;
-  std::unique_ptr<ScratchFile> scratch_;  // null without a limit of memory; outlives what lies in it
+  std::unique_ptr<ScratchFile> scratch_;  // null without a limit of memory; must outlive what it holds
   RunPlan plan_;
-  std::unique_ptr<io::OutputFolder> folder_;  // of the leader
+  std::unique_ptr<io::OutputFolder> folder_;  // null except in the leader
   std::unique_ptr<Tracing> tracing_;
   io::RunRecord record_;
 };

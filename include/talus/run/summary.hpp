@@ -7,12 +7,12 @@
 
 namespace talus::run {
 
-/// How the totals of a run are said.
+/// Texts about the totals of a run.
 
 /// 1234567 as "1 234 567".
 std::string count_text(std::uint64_t count);
 
-/// Trajectories that ended in this way.
+/// Number of trajectories that ended in this way.
 std::uint64_t count_of(const Totals& totals, End end);
 
 /// "12 stopped, 3 left the map, 0 caught, 0 at a limit".
@@ -21,7 +21,7 @@ std::string ends_text(const Totals& totals);
 /// "12 of 3 400 trajectories (0.353 %, allowed are 0.1 %) ended at the limit of impacts or time".
 std::string limits_text(const Totals& totals);
 
-/// Warnings of trajectories that left the DEM; none where they are few.
+/// Warnings about trajectories that left the DEM; empty if they are few.
 std::vector<std::string> warnings_of(const Totals& totals);
 
 }  // namespace talus::run

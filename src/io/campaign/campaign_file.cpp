@@ -96,7 +96,7 @@ class CampaignReader {
   CampaignSpec spec_;
 };
 
-/// The tables hold plain coordinates: they must be those of the DEM.
+/// Throws InputError if the coordinates of the tables are not in the system of the DEM.
 void check_crs(const std::string& path, const std::string& given, const Terrain& terrain) {
   if (given.empty()) return;
   GdalMessages messages;

@@ -108,7 +108,8 @@ class Tables {
     return {table.required(row, "x", kPlace) - grid.west, table.required(row, "y", kPlace) - grid.south};
   }
 
-  /// Of what was measured: one place far off would widen the spread that all errors are divided by.
+  /// Place of a measurement, which must be on the DEM: one place far off would widen the spread that divides all
+  /// errors.
   Eigen::Vector2d place_on_map(const CsvTable& table, const Row& row) const {
     const Eigen::Vector2d place = place_of(table, row);
     const Grid& grid = campaign_.surface.grid();

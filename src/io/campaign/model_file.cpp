@@ -13,7 +13,7 @@
 namespace talus::io {
 namespace {
 
-/// `zones = ["meadow"]`, where an effect does not act in all zones of the campaign.
+/// `zones = ["meadow"]`; empty for an effect that acts in all zones of the campaign.
 std::string zones_text(const EffectArea* area, const Campaign& campaign) {
   if (area == nullptr || area->zones.empty()) return {};
   std::vector<std::string> names;
@@ -22,11 +22,11 @@ std::string zones_text(const EffectArea* area, const Campaign& campaign) {
   return "zones = [" + joined(names) + "]\n";
 }
 
-/// The tables [effects.*] of a model, as the reader of [effects.*] takes them; empty where none is on.
+/// The tables [effects.*] of a model, as the reader of [effects.*] takes them; empty if none is on.
 std::string effects_text(const Effects& effects, const Campaign& campaign) {
   std::string text;
   if (find_effect("vegetation-drag")->acts(effects) &&
-      find_effect("forest-stems")->acts(effects))  // one after the other
+      find_effect("forest-stems")->acts(effects))  // else a scenario refuses them at one place
     text += "\n[effects]\nallow_both = true\n";
   for (const EffectEntry& entry : effect_entries()) {
     if (!entry.acts(effects)) continue;
@@ -52,7 +52,7 @@ std::string barriers_text(const Model& model, const Campaign& campaign) {
   return lines.empty() ? "" : "\n[barriers]\nline = " + barrier_lines_text(lines) + "  # m, kJ\n";
 }
 
-/// [[instrument_bias]] of a model: `talus score` takes it, a scenario says that it does not.
+/// [[instrument_bias]] of a model: `talus score` uses it, a scenario warns that it does not.
 std::string bias_text(const Model& model, const Campaign& campaign) {
   std::string text;
   for (std::size_t i = 0; i < model.bias.size(); ++i) {
@@ -65,7 +65,7 @@ std::string bias_text(const Model& model, const Campaign& campaign) {
   return text;
 }
 
-/// What no file takes: a band of other ground has no name and no polygon.
+/// A note about a band of other ground, which no file can hold: it has no name and no polygon.
 std::string band_text(const Model& model) {
   if (model.zones.values.empty()) return {};
   return "\n# undeclared-zone: a band of other ground, see diagnosis.json; the ground in it is not part of this file\n";
@@ -82,7 +82,7 @@ std::string ground_text(const Ground& ground) {
   return text + "shape = [" + text_of(ground.shape_min) + ", " + text_of(ground.shape_max) + "]\n";
 }
 
-/// A model for a campaign acts in the campaign's zones only.
+/// Adds a fault for an effect that acts outside the zones of the campaign.
 void check_places(const std::string& name, const EffectSpec& effect, const Campaign& campaign, const std::string& path,
                   std::vector<std::string>& faults) {
   if (!effect.file.path.empty())
@@ -94,7 +94,7 @@ void check_places(const std::string& name, const EffectSpec& effect, const Campa
       faults.push_back(unknown + known_names(zone, campaign.zone_names));
 }
 
-/// The screen that a bias names, or the samples, which come after the screens.
+/// Index of the instrument of a bias: a screen, or the samples, which come after the screens.
 std::size_t instrument_of(const InstrumentBias& bias, const Campaign& campaign) {
   if (bias.screen.empty()) return campaign.screens.size();
   std::vector<std::string> known;

@@ -22,11 +22,11 @@ class Sha256 {
   std::unique_ptr<evp_md_ctx_st, Free> context_;
 };
 
-/// Of bytes.
+/// SHA-256 of bytes.
 std::string sha256_of_bytes(std::string_view bytes);
 
-/// Of the bytes of all files of an input (`files_of_input`) that are there, one after the other. Empty where nothing
-/// can be read (a web service, say).
+/// SHA-256 of an input: of the bytes of its files (`files_of_input`), one after the other, without those that are not
+/// there. Empty if nothing can be read (a web service, say).
 std::string sha256_of_file(const std::string& path);
 
 }  // namespace talus::io

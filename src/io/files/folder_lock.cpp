@@ -32,7 +32,7 @@ FolderLock::Found FolderLock::take(const fs::path& folder, bool made, FolderLock
   struct stat held {
   }, named{};
   if (fstat(found.file_, &held) != 0 || stat(file.c_str(), &named) != 0 || held.st_ino != named.st_ino)
-    return Found::None;  // who had it has ended since, and the folder has another name or is gone
+    return Found::None;  // its process has just ended: the folder has another name or is gone
   lock = std::move(found);
   return Found::Free;
 }

@@ -5,17 +5,17 @@
 
 namespace talus::io {
 
-/// Marks a folder as in use until this process ends, however that comes: a lock of the system on a file in it.
+/// Marks a folder as in use until this process ends, even if it is killed, by a system lock on a file in it.
 class FolderLock {
  public:
-  /// The lock of a folder, made where there is none. Held from its first moment: nobody finds it free. Throws
-  /// std::runtime_error where the folder cannot be locked.
+  /// Makes the lock of a folder and holds it from the first moment: no other process ever finds it free. Throws
+  /// std::runtime_error if the folder cannot be locked.
   static FolderLock made_in(const std::filesystem::path& folder);
 
-  /// What another process may have left in a folder.
+  /// State of the lock that another process left in a folder.
   enum class Found { None, InUse, Free };
-  /// @param lock  where it is free, it is this process's from now on
-  /// @param made  a folder without a lock gets one
+  /// @param lock  if it is free, this process holds it from now on
+  /// @param made  if true, makes the lock in a folder that has none
   static Found take(const std::filesystem::path& folder, bool made, FolderLock& lock);
 
   FolderLock() = default;

@@ -37,7 +37,7 @@ std::vector<std::string> rasters_of_vrt(const std::string& path) {
   return files;
 }
 
-/// The files beside a .shp, spelt in capitals where there is none in small letters.
+/// The files beside a .shp, with names in capitals if there is none in small letters.
 std::vector<std::string> parts_of_shapefile(const std::string& path) {
   std::error_code none;
   std::vector<std::string> files;

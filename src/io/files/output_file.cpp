@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The path, absolute. Throws InputError where a file cannot go there.
+/// The absolute path. Throws InputError if no file can be written there.
 fs::path checked(const fs::path& path, const std::string& extension, bool overwrite) {
   const std::string name = path.string();
   if (path.extension() != extension || path.stem().empty())

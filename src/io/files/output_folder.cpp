@@ -31,7 +31,7 @@ fs::path full_name(const fs::path& path) {
 
 namespace {
 
-/// A mount point can neither be renamed nor replaced: better said before the run than after it.
+/// A mount point can neither be renamed nor replaced: this is reported before the run, not after it.
 bool is_mount_point(const fs::path& folder) {
   struct stat self {
   }, parent{};
@@ -70,15 +70,15 @@ void make_hidden(StagedPath& staged) {
                    "); give an output folder where you may write");
 }
 
-/// A hidden folder that no process has any more.
+/// A hidden folder whose process has ended.
 struct Left {
   fs::path path;
   FolderLock lock;
-  std::optional<fs::file_time_type> kept;  // when work was kept in it; nothing: never
+  std::optional<fs::file_time_type> kept;  // time of the last save; nothing: no work was saved
 };
 
-/// The hidden folders that runs have left, the one that kept its work last at the end. All are locked by now. Throws
-/// InputError where a process still writes one.
+/// The hidden folders that ended runs have left, in the order of their last save. This process holds their locks.
+/// Throws InputError if another process writes one.
 std::vector<Left> left_of(const fs::path& folder) {
   const std::string stem = StagedPath::hidden_prefix(folder);
   std::vector<Left> found;
@@ -89,11 +89,11 @@ std::vector<Left> left_of(const fs::path& folder) {
     const fs::path work = entry.path() / OutputFolder::kWork, manifest = work / "part.json";
     Left left{entry.path(), {}, {}};
     const FolderLock::Found state = FolderLock::take(work, fs::exists(manifest), left.lock);
-    const bool taken = !fs::exists(entry.path());  // a moment ago, by a process that goes on with it or is done
+    const bool taken = !fs::exists(entry.path());  // renamed a moment ago by another process
     if (state == FolderLock::Found::InUse || taken)
       throw InputError(folder.string() + ": another process is writing it (into " + name +
                        "); wait until it has ended, or give another name");
-    if (state == FolderLock::Found::None) continue;  // of a command that keeps nothing
+    if (state == FolderLock::Found::None) continue;  // of a command that saves no work
     if (fs::exists(manifest)) left.kept = fs::last_write_time(manifest);
     found.push_back(std::move(left));
   }
@@ -101,7 +101,7 @@ std::vector<Left> left_of(const fs::path& folder) {
   return found;
 }
 
-/// Whether it is a map that a run had finished when it was killed: `write_map` gives it this name last.
+/// Whether this is a map that a killed run had finished: `write_map` gives a map its name last.
 bool is_finished_map(const fs::path& file) {
   return file.extension() == ".tif" && !file.stem().has_extension();
 }
@@ -128,7 +128,7 @@ OutputFolder::OutputFolder(const fs::path& path, bool overwrite, Unfinished unfi
     fs::remove(temporary(), ignored);
     fs::rename(left.back().path, temporary());
     *lock_ = std::move(left.back().lock);
-    keep();  // what there is must not be lost; nor are others of that name removed
+    keep();  // saved work must not be lost; other folders of this name stay, too
     for (const auto& entry : fs::directory_iterator(temporary()))
       if (entry.path().filename() != kWork && !is_finished_map(entry.path())) fs::remove_all(entry.path(), ignored);
     left.clear();
@@ -159,7 +159,7 @@ void OutputFolder::protect(const fs::path& file) const {
 void OutputFolder::commit() {
   commit(temporary());
   std::error_code ignored;
-  fs::remove_all(final_path() / kWork, ignored);  // last: until here a run that is killed can go on
+  fs::remove_all(final_path() / kWork, ignored);  // last: until here a killed run can be resumed
 }
 
 void OutputFolder::commit_work() {
@@ -172,7 +172,7 @@ void OutputFolder::commit_work() {
 void OutputFolder::commit(const fs::path& folder) {
   try {
     refuse_taken_name(final_path(), overwrite_);
-  } catch (const InputError& error) {  // somebody has filled it while this ran
+  } catch (const InputError& error) {  // another process has made the folder meanwhile
     keep();
     throw InputError(std::string(error.what()) + "; the results are kept in " + temporary().string());
   }
@@ -182,7 +182,7 @@ void OutputFolder::commit(const fs::path& folder) {
   const bool replace = overwrite_ && fs::exists(final_path()) && !fs::is_empty(final_path());
   if (replace) fs::rename(final_path(), aside, error);
   if (!error) {
-    error = StagedPath::give_name(folder, final_path());  // fails where somebody has filled it by now
+    error = StagedPath::give_name(folder, final_path());  // fails if the folder has been made meanwhile
     std::error_code ignored;
     if (error && replace) fs::rename(aside, final_path(), ignored);
   }

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The files that a record names; itself where it names none.
+/// The files that a record names, and the record.
 std::vector<std::string> files_of(const fs::path& record) {
   std::vector<std::string> names;
   std::ifstream file(record);
@@ -40,7 +40,7 @@ StagedFiles::StagedFiles(const fs::path& folder, const std::string& record, bool
     earlier_ = files_of(folder / record);
   }
   std::error_code ignored;
-  fs::remove_all(temporary(), ignored);  // of a process of the same number that was killed
+  fs::remove_all(temporary(), ignored);  // left by a killed process of the same number
   if (const std::error_code error = staged_.make_folder())
     throw InputError(folder.string() + ": nothing can be written there (" + error.message() + ")");
 }
@@ -55,7 +55,7 @@ void StagedFiles::commit() {
       throw InputError((folder_ / name).string() + ": is there and none of the files of an earlier " + record_ +
                        ", so it is not replaced; move it, or give it another name");
   std::error_code error;
-  fs::remove(folder_ / record_, error);  // first: what lies there is from now on not complete
+  fs::remove(folder_ / record_, error);  // first: without it the files count as incomplete
   for (const std::string& name : earlier_) fs::remove(folder_ / name, error);
   std::vector<std::string> names = files();
   std::stable_partition(names.begin(), names.end(), [this](const std::string& name) { return name != record_; });

@@ -13,7 +13,7 @@ constexpr Bounds kHeight{"jump_height_m", "m", "height above the terrain", 0.0, 
 constexpr Bounds kMass{"mass_kg", "kg", "mass of the block", 0.0, 1e10, Bounds::AboveMin};
 constexpr Bounds kPlace{"x", "m", "map coordinate", -1e8, 1e8};
 
-/// What tells one block from another; empty where the table does not say.
+/// Key of the block of a row; empty if the table does not identify it.
 std::string block_of(const CsvTable& table, const CsvTable::Row& row) {
   const std::string name = table.text(row, "id") + ',' + table.text(row, "source") + ',' + table.text(row, "block");
   return name == ",," ? std::string() : name + ',' + table.text(row, "mass_kg");

@@ -56,7 +56,7 @@ bool same_system(PJ_CONTEXT* context, const PJ* a, const PJ* b) {
          proj_is_equivalent_to_with_ctx(context, p.get(), q.get(), PJ_COMP_EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS) != 0;
 }
 
-// An operation between two systems for longitude/latitude or east/north; null where there is none.
+// An operation between two systems for longitude/latitude or east/north; null if there is none.
 Object make_operation(PJ_CONTEXT* context, const PJ* from, const PJ* to, PJ_AREA* area) {
   const Object operation(proj_create_crs_to_crs_from_pj(context, from, to, area, nullptr));
   return Object(operation ? proj_normalize_for_visualization(context, operation.get()) : nullptr);
@@ -101,7 +101,7 @@ std::string example_system(PJ_CONTEXT* context, const PJ* system, const MapExten
   return "EPSG:" + std::to_string((place.xy.y < 0.0 ? 32700 : 32600) + zone);
 }
 
-// Metres on the earth per metre of the map, the farther from 1 of east and north; 1 where it cannot be told.
+// Metres on the earth per metre of the map, towards east or north, whichever is farther from 1; 1 if not known.
 double stretch(PJ_CONTEXT* context, const PJ* system, const MapExtent& e) {
   const Object operation = to_degrees(context, system);
   if (!operation) return 1.0;
@@ -183,7 +183,7 @@ std::optional<std::string> check_metric(const std::string& path, const std::stri
 
 namespace {
 
-// In degrees; without bounds where the map is not tied to the earth.
+// The area in degrees; without bounds if the map is not tied to the earth.
 Area area_of(PJ_CONTEXT* context, const MapArea& map) {
   Area box(proj_area_create());
   const Object system = plane_part(context, map.wkt);
@@ -209,7 +209,7 @@ struct Transformer::Projection {
   void note_operation();
 };
 
-// PROJ holds several operations and takes for each place the one that fits best: ask which.
+// Records the operation that PROJ used last: of several it uses the best one for each place.
 void Transformer::Projection::note_operation() {
   const Object last(proj_trans_get_last_used_operation(operation.get()));
   PJ* const p = last ? last.get() : operation.get();

@@ -17,20 +17,20 @@ class CsvTable {
   };
 
   /// @param known     columns that may be there; any other is refused
-  /// @param required  those that must be
-  /// Throws InputError where it cannot be read, has no header or rows of another length.
+  /// @param required  columns that must be there
+  /// Throws InputError if it cannot be read, has no header, or has rows of another length.
   CsvTable(std::string path, const std::vector<std::string>& known, const std::vector<std::string>& required);
 
   const std::vector<Row>& rows() const { return rows_; }
   bool has(const std::string& column) const { return column_of(column) >= 0; }
 
-  /// The text of a cell; empty where it is empty or the column is not there.
+  /// The text of a cell; empty if it is empty or the column is not there.
   const std::string& text(const Row& row, const std::string& column) const;
-  /// The same, which must not be empty.
+  /// The text of a cell that must not be empty.
   const std::string& name(const Row& row, const std::string& column) const;
   /// A number; nothing where the cell is empty or the column is not there.
   std::optional<double> number(const Row& row, const std::string& column, const Bounds& bounds) const;
-  /// The same, which must be there.
+  /// A number that must be there.
   double required(const Row& row, const std::string& column, const Bounds& bounds) const;
 
   /// Throws InputError "blocks.csv:12: mass_kg = -3: must be ...".

@@ -10,7 +10,7 @@ namespace talus::io {
 
 namespace {
 
-// Handlers that are pushed hold for one thread only: what GDAL's own threads say comes to the global one.
+// A pushed handler works for one thread only. Messages of GDAL's own threads go to the global handler.
 std::mutex thread_mutex;
 std::vector<std::string> thread_errors;
 
@@ -81,7 +81,7 @@ bool GdalMessages::failed() const {
 
 Dataset open_dataset(const std::string& path, unsigned kinds) {
   GdalMessages messages;
-  // A text table says nothing of its types and geometry: let GDAL guess them.
+  // A text table does not declare its types and geometry: GDAL has to guess them.
   const char* const csv[] = {"AUTODETECT_TYPE=YES",  "GEOM_POSSIBLE_NAMES=wkt,geometry,geom",
                              "X_POSSIBLE_NAMES=x",   "Y_POSSIBLE_NAMES=y",
                              "KEEP_GEOM_COLUMNS=NO", nullptr};

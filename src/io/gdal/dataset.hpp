@@ -12,7 +12,7 @@ namespace talus::io {
 /// keeps its messages off the screen. Every function of `io` that uses GDAL calls it first.
 void start_gdal();
 
-/// Collects what GDAL complains about, in this thread while the object lives, and in GDAL's own threads.
+/// Collects the messages of GDAL in this thread while the object lives, and those of GDAL's own threads.
 class GdalMessages {
  public:
   GdalMessages();
@@ -20,7 +20,7 @@ class GdalMessages {
   GdalMessages(const GdalMessages&) = delete;
   GdalMessages& operator=(const GdalMessages&) = delete;
 
-  /// All complaints in one line, "; " between them, and forgets them; `otherwise` where there was none.
+  /// Returns all messages in one line, joined by "; ", and clears them; `otherwise` if there was none.
   std::string take(const std::string& otherwise = "GDAL gives no reason");
 
   /// Whether an error (not a mere warning) is among them.
@@ -41,17 +41,17 @@ struct DropFeature {
 using Feature = std::unique_ptr<OGRFeature, DropFeature>;
 
 /// Opens a file for reading. `kinds`: GDAL_OF_RASTER, GDAL_OF_VECTOR or both.
-/// Throws InputError where GDAL cannot.
+/// Throws InputError if GDAL cannot.
 Dataset open_dataset(const std::string& path, unsigned kinds);
 
-/// A dataset in memory, of zeros. Throws std::runtime_error where there is no memory for it.
+/// A dataset in memory, of zeros. Throws std::runtime_error if there is no memory for it.
 Dataset memory_dataset(int columns, int rows, GDALDataType type);
 
-/// The command that mends what a raster says of itself: "gdal_edit.py -a_nodata 0 dem.tif"; for formats that cannot be
-/// edited a copy by gdal_translate.
+/// The command that corrects the metadata of a raster: "gdal_edit.py -a_nodata 0 dem.tif"; for formats that cannot be
+/// edited, gdal_translate to a copy.
 std::string edit_command(const std::string& path, const std::string& option);
 
-/// Coordinate system as WKT; empty where there is none.
+/// Coordinate system as WKT; empty if there is none.
 std::string wkt_of(const OGRSpatialReference* system);
 
 }  // namespace talus::io

@@ -7,7 +7,7 @@
 namespace talus::io {
 namespace {
 
-/// Options of GDAL that hold while the object lives, then what was set before holds again.
+/// Sets an option of GDAL while the object lives, and restores the earlier value.
 class Configured {
  public:
   Configured(const char* key, const char* value) : key_(key) {
@@ -65,7 +65,7 @@ OGRLayer* GeoPackage::add_layer(const char* name, OGRwkbGeometryType type, const
 }
 
 OGRLayer* GeoPackage::add_point_layer(const char* name, const std::vector<Column>& columns) {
-  const Configured date("OGR_CURRENT_DATE", kDate);  // what follows writes the dates of the layers before
+  const Configured date("OGR_CURRENT_DATE", kDate);  // the lines below write the dates of earlier layers
   points_ = create_layer(name, wkbPoint, columns);
   create_index(name);
   // GDAL's triggers would insert the points one by one.

@@ -24,8 +24,8 @@ class GeoPackage {
   /// A new layer, which gets its spatial index from `finish`.
   OGRLayer* add_layer(const char* name, OGRwkbGeometryType type, const std::vector<Column>& columns);
 
-  /// A new layer of points, of which there may be millions: its spatial index is packed while they come. All its
-  /// features must be given to `append`. At most one layer of this kind.
+  /// A new layer of points, of which there may be millions: its spatial index is packed while they are appended. All
+  /// its features must go through `append`. At most one layer of this kind.
   OGRLayer* add_point_layer(const char* name, const std::vector<Column>& columns);
 
   /// Appends a row, which gets the next number as its fid. The feature may be used again.

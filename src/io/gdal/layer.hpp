@@ -27,24 +27,24 @@ class Layer {
 
   /// The next feature; null at the end.
   Feature next();
-  /// Its geometries. Empty where it has none.
+  /// The geometries of a feature. Empty if it has none.
   Parts parts(const OGRFeature& feature);
 
-  /// Index of a field, whatever its case, also as a Shapefile cuts it; -1 where there is none.
+  /// Index of a field, in any case of letters, also if a Shapefile has cut its name; -1 if there is none.
   int field(const char* name) const;
   std::vector<std::string> field_names() const;
   const OGRFeatureDefn& fields() const { return *layer_->GetLayerDefn(); }
   /// "cliffs.shp: feature 12", for messages.
   std::string label(const OGRFeature& feature) const;
-  /// The value of a numeric field; nothing where it is NULL or the field is not there. Throws InputError where it is no
+  /// The value of a numeric field; nothing if it is NULL or the field is not there. Throws InputError if it is no
   /// number, or out of bounds.
   std::optional<double> number(const OGRFeature& feature, const char* name, const Bounds& bounds) const;
-  /// The value of a text or whole-number field; empty where it is NULL. Throws InputError for other fields.
+  /// The value of a text or whole-number field; empty if it is NULL. Throws InputError for other fields.
   std::string code(const OGRFeature& feature, int field) const;
 
   const std::string& crs_wkt() const { return crs_wkt_; }
   const std::vector<Reprojection>& reprojections() const { return transformer_->used(); }
-  /// Of the opening, the geometries and the transformation.
+  /// Warnings of the opening, the geometries and the transformation.
   std::vector<std::string> warnings() const;
 
  private:
@@ -64,11 +64,11 @@ class Layer {
 };
 
 /// Calls `visit(column, row)` (row 0 in the south) for the cells of a geometry in local metres, row by row from the
-/// north-west: those whose centre it covers, or all that it touches.
+/// north-west: the cells whose centre it covers or, with `touched`, all that it touches.
 template <class Visit>
 void for_each_cell(const OGRGeometry& geometry, const Grid& grid, bool touched, Visit visit);
 
-/// A window of the grid with a mark for each cell that a geometry has. Rows from the north.
+/// A window of the grid, with a mark on each cell of a geometry. Rows from the north.
 struct CellMask {
   int column = 0, north_row = 0, columns = 0, rows = 0;  ///< north_row: row 0 in the south
   std::vector<std::uint8_t> marks;

@@ -7,7 +7,7 @@
 namespace talus::io {
 namespace {
 
-/// The lines of a layer, feature by feature: what screens and barriers have in common.
+/// Reads the lines of a layer, feature by feature, for screens and barriers.
 class LineReader {
  public:
   /// @param meant  "lines that blocks may cross", for messages
@@ -44,7 +44,7 @@ class LineReader {
       off_map_.push_back(feature.GetFID());
   }
 
-  /// Says what is wrong with the layer as a whole, and what is to be told of it.
+  /// Throws InputError if the layer is empty. Fills the warnings and reprojections of `out`.
   template <class Out>
   void finish(Out& out) {
     if (features_ == 0) throw InputError(path_ + ": has no features, must be " + meant_);

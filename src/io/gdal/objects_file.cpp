@@ -28,7 +28,7 @@ HazardObject object_of(const Parts& parts) {
   return object;
 }
 
-/// The geometry of an object in map coordinates: a multipolygon or a multiline; a collection where it has both.
+/// The geometry of an object in map coordinates: a multipolygon or a multiline; a collection if it has both.
 std::unique_ptr<OGRGeometry> geometry_of(const Parts& parts, double west, double south) {
   std::unique_ptr<OGRGeometryCollection> all;
   if (parts.lines.empty())
@@ -51,10 +51,10 @@ std::unique_ptr<OGRGeometry> geometry_of(const Parts& parts, double west, double
   return all;
 }
 
-/// A figure of an object, with the name of its column. NaN and infinite: NULL, an empty field.
+/// Figures of an object, with the names of their columns. NaN and infinity are written as NULL or an empty field.
 using Figures = std::vector<std::pair<std::string, double>>;
 
-/// @param on_map  else nothing can be said of it
+/// @param on_map  false: the figures of the object are not known
 Figures figures_of(const HazardCurve& curve, const ObjectHits& hits, bool on_map, const std::vector<double>& thresholds,
                    const std::vector<double>& years) {
   Figures figures{{"trajectories", on_map ? static_cast<double>(hits.trajectories) : kNotGiven}};
@@ -83,7 +83,7 @@ struct ObjectLayer::State {
   std::vector<bool> on_map;
   std::vector<std::string> warnings;
 
-  /// Features that send anything to an object, the most first: index and share.
+  /// Features whose blocks reach an object, the largest share first: index and share.
   static std::vector<std::pair<std::size_t, double>> sources_of(const ObjectHits& hits) {
     std::int64_t sum = 0;
     for (const auto& [feature, weight] : hits.by_feature) sum += weight;
@@ -136,7 +136,7 @@ const std::vector<std::string>& ObjectLayer::warnings() const {
 
 namespace {
 
-/// The layer `objects`: attributes of the input that no figure has the name of, then the figures, then the sources.
+/// The layer `objects`: attributes of the input (without those named as a figure), figures, sources.
 class ObjectsWriter {
  public:
   ObjectsWriter(const std::filesystem::path& file, const LoadedScenario& loaded, OGRFeature& model,
@@ -180,7 +180,7 @@ class ObjectsWriter {
  private:
   GeoPackage file_;
   std::vector<std::string> names_;
-  std::vector<int> attributes_;  // of the input that are copied
+  std::vector<int> attributes_;  // attributes of the input that are copied
   OGRLayer* layer_ = nullptr;
 };
 

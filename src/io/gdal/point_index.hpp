@@ -11,8 +11,9 @@ namespace talus::io {
 /// packing: points sorted along a Hilbert curve, 51 to a node. Ten times as fast as inserting them one by one, as
 /// GDAL 3.6 does (GDAL 3.7 packs too).
 ///
-/// Points are sorted in runs of kRun, which bounds the memory; the trees of the runs lie over each other. The tables
-/// are those of https://www.sqlite.org/rtree.html, "Shadow tables", and src/ext/rtree/rtree.c of SQLite.
+/// Points are sorted in runs of kRun, which bounds the memory; the leaves of all runs share the upper levels of one
+/// tree. The tables are those of https://www.sqlite.org/rtree.html, "Shadow tables", and src/ext/rtree/rtree.c of
+/// SQLite.
 class PointIndex {
  public:
   using Execute = std::function<void(const std::string& sql)>;

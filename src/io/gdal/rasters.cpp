@@ -92,7 +92,7 @@ class HeightReader {
     return values_;
   }
 
-  // The value as it is in the file.
+  // The value of a height as stored in the file.
   double stored(double height) const { return (height - offset_) / scale_; }
 
  private:

@@ -16,7 +16,7 @@ namespace {
 
 constexpr char kPolygons[] = "source_polygons", kPoints[] = "source_points";
 
-/// The cells of a DEM that are steep enough, in one place: which, and how steep.
+/// Cells of a DEM: whether each is steep enough, and its slope.
 class Cells {
  public:
   Cells(const Terrain& terrain, double slope) : terrain_(terrain), threshold_(std::tan(slope)) {}
@@ -32,7 +32,7 @@ class Cells {
   double threshold_;
 };
 
-/// Marks the sources with 1 in a raster in memory, on local metres; fills what is known of all of them.
+/// Marks the sources with 1 in a raster in memory, in local metres; fills the sums in `found`.
 Dataset mark(const Cells& cells, SourceCells& found) {
   const Grid& grid = cells.grid();
   Dataset marks = memory_dataset(grid.columns, grid.rows, GDT_Byte);

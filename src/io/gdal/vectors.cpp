@@ -22,7 +22,7 @@ std::string extent_text(const MapExtent& e) {
   return "east " + metres(e.west) + " to " + metres(e.east) + ", north " + metres(e.south) + " to " + metres(e.north);
 }
 
-// What the fields of a feature say, and a record of it.
+// Reads the fields of a feature and records which were read.
 class AttributeReader {
  public:
   AttributeReader(const Layer& layer, const Range& release_height) : layer_(layer), release_height_(release_height) {}
@@ -125,7 +125,7 @@ std::vector<Cell> cells_of(const Parts& parts, const Grid& grid) {
   return cells;
 }
 
-// Puts features onto the terrain and keeps count of what is not on it.
+// Places features on the terrain and counts those that are not on it.
 class Placer {
  public:
   Placer(const Terrain& terrain, SourceLayer& out) : heights_(terrain.heights), out_(out) {}
@@ -190,7 +190,7 @@ class Placer {
     at_edge_ += at_edge(cell) ? 1U : 0U;
   }
 
-  /// Whether a cell with a height has a neighbour without one, so that there is no surface on some of it.
+  /// Whether a cell with a height has a neighbour without one, so that a part of the cell has no surface.
   bool at_edge(const Cell& cell) const {
     if (std::isnan(heights_.at(cell.column, cell.row))) return false;
     for (int row = cell.row - 1; row <= cell.row + 1; ++row)

@@ -13,7 +13,7 @@ namespace talus::io {
 
 namespace {
 
-// Gives each zone of the file its index, and keeps in mind which ones were seen.
+// Gives each zone of the file its index, and records which zones were seen.
 class ZoneIndex {
  public:
   ZoneIndex(const ZoneRequest& request, bool raster)
@@ -112,7 +112,7 @@ class PixelFinder {
   std::array<double, 6> inverse_{};
 };
 
-// Reads single pixels, through copies of the parts of the file around the last ones.
+// Reads single pixels through a cache of the last tiles of the file.
 class PixelReader {
  public:
   PixelReader(GDALDataset& dataset, std::string path)
@@ -120,7 +120,7 @@ class PixelReader {
         path_(std::move(path)),
         masked_((band_.GetMaskFlags() & GMF_ALL_VALID) == 0) {}
 
-  // NaN where there is nothing.
+  // The value of the pixel; NaN if there is none.
   double at(double column, double row) {
     if (!(column >= 0.0 && row >= 0.0 && column < band_.GetXSize() && row < band_.GetYSize()))
       return std::numeric_limits<double>::quiet_NaN();

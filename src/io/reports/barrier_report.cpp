@@ -46,7 +46,7 @@ std::vector<DesignRow> design_rows(const BarrierReport& r) {
           {"h_i", d.height, "m", "h" + rank + reach + " + f_min"}};
 }
 
-/// A cell of a column: its text and one blank at least.
+/// A cell of a column: its text and at least one blank.
 std::string cell(const std::string& text, std::size_t width) {
   return padded(text + ' ', width);
 }

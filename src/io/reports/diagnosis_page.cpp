@@ -13,7 +13,7 @@ namespace {
 constexpr int kWidth = 330, kHeight = 190, kMargin = 34;  // of a plot [px]
 constexpr double kHighest = 3.5;                          // z at the rim of a plot
 constexpr std::size_t kPlots = 6;
-constexpr double kRare = 0.05;  // p below which noise is not the word for what is left
+constexpr double kRare = 0.05;  // p-value below which the residual is not called noise
 
 std::string value_text(double value) {
   return std::isnan(value) ? "-" : with_decimals(value, 3);
@@ -25,7 +25,8 @@ std::string reduction_text(const Reduction& r) {
          with_decimals(100.0 * r.interval.high, 1) + ")";
 }
 
-/// The property of a block that a row of the residual table names; the number of the block where it names none.
+/// The value of a property of a block, named by a row of the residual table; the number of the block if there is none
+/// of this name.
 double property_of(const MeasuredBlock& b, const std::string& name, std::size_t number) {
   for (const Property& property : properties())
     if (name == property.name) return property.of(b);
@@ -60,7 +61,7 @@ Points points_of(const Campaign& campaign, const ResidualSpace& space, const Res
   return points;
 }
 
-/// A scatter plot of z against a property; the grey band holds 95 % of the points of a right model.
+/// A scatter plot of z against a property; the grey band holds 95 % of the points if the model is right.
 std::string plot(const Points& points, const std::string& title, const std::string& below) {
   const double low = points.x.empty() ? 0.0 : *std::min_element(points.x.begin(), points.x.end());
   const double high = points.x.empty() ? 1.0 : *std::max_element(points.x.begin(), points.x.end());

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kHoldoutTrials = 200;
 constexpr std::size_t kResidualRows = 20;
-constexpr double kOpening = 0.97;  // of the progress
+constexpr double kOpening = 0.97;  // progress when the held-out rows are scored
 
 Json parameters_of(const FittedCandidate& candidate) {
   Json json = Json::object();
@@ -74,8 +74,8 @@ bool found(const DiagnosisRound& round) {
   return round.effect != "none" && round.effect != "unexplained";
 }
 
-/// Of an effect the share of the bootstraps in which it is the best. No probabilities of being right: of `none` the
-/// p-value of the test, of `unexplained` one less the smallest p-value that says so.
+/// For an effect, the share of the bootstraps in which it is the best. For `none`, the p-value of the test. For
+/// `unexplained`, 1 minus the smallest p-value that shows it. None is a probability of being right.
 double probability_of(const DiagnosisRound& round) {
   if (found(round)) return round.candidates.front().chosen_share;
   if (round.effect == "none") return round.p_value;

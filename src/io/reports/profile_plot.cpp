@@ -10,8 +10,8 @@ namespace {
 using Points = std::vector<Eigen::Vector2d>;
 
 constexpr double kWidth = 960.0, kLeft = 70.0, kPlot = 860.0, kPanel = 130.0, kGap = 46.0;
-constexpr double kFinest = 1.5;        // between the points of a line that is drawn
-constexpr double kMostHeight = 420.0;  // of the drawing of the profile, which has equal scales where it fits
+constexpr double kFinest = 1.5;        // least distance between the points of a drawn line [px]
+constexpr double kMostHeight = 420.0;  // of the drawing of the profile [px]; its scales are equal if it fits
 
 /// A pair of axes and the drawing between them.
 class Panel {
@@ -63,7 +63,7 @@ class Panel {
   Axis x_, y_;
 };
 
-/// One number of every bin that is crossed, in the middle of the bin.
+/// One number of each bin that blocks cross, at the middle of the bin.
 template <class Get>
 Points along(const LoadedProfile& p, const std::vector<ProfileBin>& bins, Get get) {
   Points points;
@@ -82,7 +82,7 @@ void envelope(const Panel& panel, const LoadedProfile& p, const std::vector<Prof
   panel.line(along(p, bins, [=](const ProfileBin& b) { return (b.*quantity).mean; }), "mean");
 }
 
-/// The share of the blocks that goes farther than a distance, as stairs without steps: at the end of each bin.
+/// Share of the blocks that go farther than a distance, at the end of each bin; straight lines in between.
 Points beyond(const Runout& runout, double width) {
   Points points{{0.0, 1.0}};
   std::uint64_t stopped = 0;

@@ -20,7 +20,7 @@ std::string cell(double score, const Interval& interval, std::size_t rows) {
          aligned(with_decimals(interval.high, 3), 6) + "  " + aligned(std::to_string(rows), 5);
 }
 
-/// All groups of all the scores, in the order of the first that has them.
+/// Names of the groups of all scores, in the order in which they first appear.
 std::vector<std::string> group_names(std::span<const ScoredRows> scores) {
   std::vector<std::string> names;
   for (const ScoredRows& s : scores)

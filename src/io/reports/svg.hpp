@@ -12,7 +12,7 @@ struct Axis {
   double operator()(double value) const { return from + length * (value - first) / (last - first); }
 };
 
-/// Places of about so many ticks at 1, 2 or 5 times a power of ten.
+/// Places of about `wanted` ticks at 1, 2 or 5 times a power of ten.
 std::vector<double> ticks(double low, double high, int wanted);
 
 /// A drawing as text, element by element, for a file of its own or for a page.
@@ -35,7 +35,7 @@ class Svg {
   void element(std::string_view name, Attributes attributes);
   void words(Attributes attributes, std::string_view text);  ///< <text>
   /// The drawing: the <svg> element with all that was added.
-  /// @param head  what stands before it in the element, as a <style>
+  /// @param head  text before the elements, such as a <style>
   std::string drawing(Attributes attributes, std::string_view head = "") const;
 
  private:

@@ -73,7 +73,7 @@ HazardCell get_cell(HazardReader& in, const HazardRules& rules) {
   return HazardCell::restored(first, bins, overlaps);
 }
 
-/// The first line: mark, format, length of the header that follows.
+/// Reads the mark, the format, the length of the header, and the header.
 HazardHeader get_header(HazardReader& in) {
   std::string mark(std::strlen(kMark), ' ');
   in.get(mark.data(), mark.size());

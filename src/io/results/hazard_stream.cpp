@@ -69,7 +69,7 @@ HazardReader::~HazardReader() {
   if (stream_ != nullptr) VSIFCloseL(stream_);
 }
 
-/// Keeps what is left and reads on.
+/// Keeps the bytes that are left in the buffer and reads more.
 void HazardReader::fill() {
   buffer_.erase(0, next_);
   next_ = 0;

@@ -7,7 +7,7 @@
 
 namespace talus::io {
 
-/// Bytes into a gzip file, with a checksum at the end. Little-endian, as every machine that Talus runs on.
+/// Writes bytes into a gzip file, with a checksum at the end. Little-endian, as every machine that Talus runs on.
 class HazardWriter {
  public:
   explicit HazardWriter(const std::filesystem::path& file);
@@ -33,7 +33,7 @@ class HazardWriter {
   Sha256 sum_;
 };
 
-/// The bytes of such a file again. Throws InputError where they are not those that were written.
+/// Reads the bytes of such a file. Throws InputError if they are not those that were written.
 class HazardReader {
  public:
   explicit HazardReader(const std::filesystem::path& file);
@@ -48,7 +48,7 @@ class HazardReader {
     get(&number, sizeof number);
     return number;
   }
-  /// A number of things that follow, which cannot be more than `most`.
+  /// Reads a count. Throws InputError if it is above `most`.
   std::size_t get_count(std::size_t most);
   /// Compares the checksum.
   void finish();

@@ -11,7 +11,7 @@
 namespace talus::io {
 namespace {
 
-/// Numbers as numbers, all else as text.
+/// A value of a setting: a number as a number, anything else as text.
 Json value_of(const std::string& text) {
   double number = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -41,7 +41,7 @@ Json grid_of(const LoadedScenario& loaded) {
           {"west", geo.west},        {"north", geo.north}, {"crs_wkt", geo.crs_wkt}};
 }
 
-/// The lines as they lie on the map, to the millimetre: products of the folder find places along them.
+/// The screens in map coordinates, to the millimetre: products of the folder need places along them.
 Json screens_of(const LoadedScenario& loaded) {
   const double south = loaded.geo.north - loaded.scenario.surface.grid().rows * loaded.geo.cell_y;
   const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3; };
@@ -124,7 +124,7 @@ std::optional<std::string> status_of_result(const std::filesystem::path& folder,
                                             : !rounds.contains("asked") && rounds.at("done") == asked.count;
     return as_asked ? std::optional(std::move(status)) : std::nullopt;
   } catch (const Json::exception&) {
-    return std::nullopt;  // no such file, or another one
+    return std::nullopt;  // no such file, or not one of a run
   }
 }
 

@@ -20,8 +20,8 @@ namespace {
 constexpr std::size_t kColours = 6;
 using Colours = std::array<const char*, kColours>;
 
-// Six steps of matplotlib's plasma, viridis and cividis (CC0), from light to dark: of even steps in lightness, also for
-// the colour-blind.
+// Six colours each of matplotlib's plasma, viridis and cividis (CC0), from light to dark in even steps, also for the
+// colour-blind.
 constexpr Colours kPlasma{"#f0f921", "#fca636", "#e16462", "#b12a90", "#6a00a8", "#0d0887"};
 constexpr Colours kPlasmaFromDark{"#0d0887", "#6a00a8", "#b12a90", "#e16462", "#fca636", "#f0f921"};
 constexpr Colours kViridis{"#fde725", "#7ad151", "#22a884", "#2a788e", "#414487", "#440154"};
@@ -93,7 +93,7 @@ std::vector<Item> items_by_limit(const Map& map, const std::string& unit) {
   return items;
 }
 
-/// An element of XML, to which attributes and elements are added.
+/// An element of XML; adds attributes and elements to it.
 class Element {
  public:
   explicit Element(CPLXMLNode* node) : node_(node) {}
@@ -120,7 +120,7 @@ void add_item(const Element& to, const Item& item, int alpha) {
 void add_items(const Element& shader, const Map& map) {
   const std::string unit = map.legend.unit.empty() ? "" : " " + map.legend.unit;
   const bool named = !map.classes.empty();
-  add_item(shader, {"0", named ? map.classes[0] : "0" + unit, "#ffffff"}, 0);  // nothing is there: not drawn
+  add_item(shader, {"0", named ? map.classes[0] : "0" + unit, "#ffffff"}, 0);  // no value: not drawn
   for (const Item& item : named ? named_items(map) : items_by_limit(map, unit)) add_item(shader, item, 255);
 }
 
@@ -157,7 +157,7 @@ std::string style_of(const Map& map) {
   pipe.add("rasterresampler").set("maxOversampling", "2");
   qgis.add("blendMode", "0");
   const std::unique_ptr<char, decltype(&VSIFree)> text(CPLSerializeXMLTree(type.get()), VSIFree);
-  return std::regex_replace(text.get(), std::regex(" />"), "/>");  // the bytes of the styles there are
+  return std::regex_replace(text.get(), std::regex(" />"), "/>");  // the bytes of earlier versions
 }
 
 void write_style(const std::filesystem::path& folder, const Map& map) {

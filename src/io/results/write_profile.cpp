@@ -34,7 +34,7 @@ constexpr std::array<StopColumn, 9> kStops{{
     {"impacts", 1.0, [](const StopRow& r, const LoadedProfile&) { return static_cast<double>(r.impacts); }},
 }};
 
-/// The numbers of a bin, with their names: those of envelope.csv and of the layer `bins`.
+/// A number of a bin, with its name in envelope.csv and in the layer `bins`.
 struct Named {
   std::string name;
   double value;
@@ -63,7 +63,7 @@ std::string envelope_csv(const std::vector<ProfileBin>& bins, double start, std:
     const std::vector<Named> numbers = numbers_of(bin, start, released);
     if (text.empty())
       for (const Named& number : numbers) text += number.name + (&number == &numbers.back() ? "\n" : ",");
-    for (const Named& number : numbers)  // of a bin that nothing crosses nothing is known
+    for (const Named& number : numbers)  // empty for a bin that nothing crosses
       text += (std::isfinite(number.value) ? text_of(number.value) : "") + (&number == &numbers.back() ? "\n" : ",");
   }
   return text;

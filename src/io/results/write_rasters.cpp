@@ -36,7 +36,7 @@ GDALDriver* driver(const char* name) {
   return found;
 }
 
-/// Value of a cell as it stands in the file.
+/// Value of a cell as it is stored in the file.
 template <class T>
 T stored(double value);
 template <>
@@ -56,7 +56,7 @@ std::uint32_t larger(std::uint32_t a, std::uint32_t b) {
   return std::max(a + 1U, b + 1U) - 1U;
 }  // kCountNodata + 1 is 0
 
-/// The smaller of two stored values; nodata only where both are.
+/// The smaller of two stored values; nodata only if both are.
 float smaller(float a, float b) {
   const auto nodata = static_cast<float>(kNodata);
   return a == nodata ? b : b == nodata ? a : std::min(a, b);
@@ -75,7 +75,7 @@ void transfer(GDALRasterBand* band, GDALRWFlag direction, int row, int rows, T* 
           "cannot be written");
 }
 
-/// Asks the map for its rows, from the north, and writes them. False where it was ended.
+/// Asks the map for its rows, from the north, and writes them. False if `proceed` ended it.
 template <class T>
 bool fill(GDALDataset& file, const Map& map, const MapTarget& target) {
   TALUS_EXPECT(file.GetRasterCount() == static_cast<int>(map.bands.size()), "a file has the bands of its map");
@@ -98,7 +98,8 @@ bool fill(GDALDataset& file, const Map& map, const MapTarget& target) {
   return true;
 }
 
-/// Writes the overview `to`, half as wide and high as `from`: of the cells under a pixel the largest, or the smallest.
+/// Writes the overview `to`, half as wide and high as `from`: each pixel has the largest or the smallest of the values
+/// under it.
 template <class T>
 void halve(GDALRasterBand* from, GDALRasterBand* to, bool smallest) {
   const auto chosen = [smallest](T a, T b) { return smallest ? smaller(a, b) : larger(a, b); };
@@ -171,7 +172,7 @@ int CPL_STDCALL still_going(double, const char*, void* target) {
   return !proceed || proceed() ? TRUE : FALSE;
 }
 
-/// How the draft is compressed: a large map is mostly empty, and uncompressed would be tens of gigabytes.
+/// Compression of the draft: a large map is mostly empty, and without compression would take tens of gigabytes.
 const char* draft_compression(const MapTarget& target) {
   constexpr double kLarge = 16e6;  // cells
   const char* known = driver("GTiff")->GetMetadataItem(GDAL_DMD_CREATIONOPTIONLIST);
@@ -195,7 +196,8 @@ bool write_as(const Map& map, const MapTarget& target, const fs::path& draft, co
   add_overviews<T>(*dataset, block, map.smallest_in_overviews);
   dataset->FlushCache(false);
   const std::string size = "BLOCKSIZE=" + std::to_string(block);
-  // Level 6 would be a third slower and 3 % smaller. Blocks of nodata alone are left out: most of a large map.
+  // Level 6 would be a third slower and 3 % smaller. Blocks with nothing but nodata are left out: they are most of a
+  // large map.
   const char* const options[] = {"COMPRESS=DEFLATE",
                                  "LEVEL=3",
                                  "PREDICTOR=YES",
@@ -216,7 +218,7 @@ bool write_as(const Map& map, const MapTarget& target, const fs::path& draft, co
 
 bool write_map(const Map& map, const MapTarget& target) {
   start_gdal();
-  const StagedPath draft(StagedPath::Kind::File, target.folder / (map.name + "_draft.tif"), ".tif");  // gets no name
+  const StagedPath draft(StagedPath::Kind::File, target.folder / (map.name + "_draft.tif"), ".tif");  // never committed
   StagedPath staged(StagedPath::Kind::File, target.folder / (map.name + ".tif"), ".tif");
   GdalMessages messages;
   const auto fail = [&](const std::string& what) {

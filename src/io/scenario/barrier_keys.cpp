@@ -42,7 +42,7 @@ std::optional<BarrierLine> read_line(TableReader table) {
   return std::nullopt;
 }
 
-/// The tables of a list; where it is none, a fault.
+/// The tables of a list; null, with a fault, if it is not a list of tables.
 const std::vector<TomlValue>* tables_of(TableReader& table, const std::string& key) {
   const TomlValue* value = table.find(key);
   if (value == nullptr) return nullptr;
@@ -62,7 +62,7 @@ std::string place_text(const Eigen::Vector2d& place) {
 void read_barrier_lines(ScenarioSpec& spec, TableReader& barriers, const std::string& origin) {
   const std::vector<TomlValue>* tables = tables_of(barriers, "line");
   if (tables == nullptr) return;
-  spec.barrier_lines.clear();  // what a scenario includes said others
+  spec.barrier_lines.clear();  // replaces those of an included file
   for (const TomlValue& item : *tables)
     if (auto line = read_line({&item, barriers.full("line"), barriers.file(), barriers.faults()})) {
       if (line->id.empty()) line->id = "line " + std::to_string(spec.barrier_lines.size() + 1);

@@ -2,7 +2,7 @@
 #include "scenario_spec.hpp"
 #include "table_reader.hpp"
 
-/// What a model that `talus diagnose` wrote holds beside ground and effects. docs/scenario.md, "Barriers".
+/// Keys of a model from `talus diagnose`, beside ground and effects. docs/scenario.md, "Barriers".
 namespace talus::io {
 
 /// Reads `line` of [barriers] into spec.barrier_lines: straight barriers, their ends in the coordinates of the DEM.
@@ -11,10 +11,10 @@ void read_barrier_lines(ScenarioSpec& spec, TableReader& barriers, const std::st
 /// Reads [[instrument_bias]] of a model into spec.instrument_bias.
 void read_instrument_bias(ScenarioSpec& spec, TableReader& top);
 
-/// The value of `line` that reads back as these.
+/// The text of `line` that reads back as these lines.
 std::string barrier_lines_text(const std::vector<BarrierLine>& lines);
 
-/// A barrier on a grid, and back to the coordinates of the DEM.
+/// The barrier on a grid for a line in the coordinates of the DEM, and the inverse.
 Barrier barrier_of(const BarrierLine& line, const Grid& grid);
 BarrierLine line_of(const Barrier& barrier, const Grid& grid);
 

@@ -37,14 +37,14 @@ class EffectReader {
     if (entry_.area(spec_.values.effects) != nullptr) place(effect);
     const std::size_t faults = table_.faults().size();
     table_.finish();
-    if (!acts && table_.faults().size() == faults)  // else the unknown key was meant for it
+    if (!acts && table_.faults().size() == faults)  // else the unknown key may be a misspelt strength
       table_.faults().push_back(effect.where + " does nothing, must give " + strengths_of(entry_) + ", or be left out");
   }
 
  private:
   void given(const std::string& key) { spec_.origins["effects." + name_ + "." + key] = origin_; }
 
-  /// Returns whether it acts: one of its strengths is given, here or by what the scenario includes.
+  /// Returns whether the effect acts: one of its strengths is given, here or in an included file.
   bool numbers() {
     bool strength = false;
     for (const EffectField& field : entry_.fields()) {
@@ -64,7 +64,7 @@ class EffectReader {
     if (table_.value()->find("days") == nullptr && list.empty())
       table_.faults().push_back(effect.where + " has no days, must list those on which it acts: days = [1, 2]");
     if (!days) return;
-    list.clear();  // what a scenario includes said others
+    list.clear();  // replaces those of an included file
     for (const double day : *days) list.push_back(static_cast<int>(day));
     given("days");
   }
@@ -75,7 +75,7 @@ class EffectReader {
                          std::all_of(zones->items.begin(), zones->items.end(),
                                      [](const TomlValue& item) { return item.kind == Kind::Text; });
       if (!names) table_.fault("zones", *zones, "must be a list of names of [ground.zones], like [\"meadow\"]");
-      effect.zones.clear();  // what a scenario includes said others
+      effect.zones.clear();  // replaces those of an included file
       effect.file = {};
       for (const TomlValue& item : zones->items) effect.zones.push_back(item.text);
       effect.zones_where = table_.where("zones", *zones);

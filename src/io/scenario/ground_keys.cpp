@@ -53,7 +53,7 @@ void GroundReader::read(TableReader& ground) {
     const auto known = std::find_if(spec_.zones.begin(), spec_.zones.end(),
                                     [&zone = name](const ZoneSpec& z) { return z.name == zone; });
     ZoneSpec start = known == spec_.zones.end() ? spec_.default_ground : *known;
-    if (known == spec_.zones.end()) start.code.clear(), start.intervals.clear();  // the default ground's own
+    if (known == spec_.zones.end()) start.code.clear(), start.intervals.clear();  // they belong to the default ground
     start.name = name;
     read_zone(zones.table(name), std::move(start));
   }
@@ -91,7 +91,7 @@ void GroundReader::read_zone(TableReader table, ZoneSpec zone) {
     const ZoneSpec before = zone;
     if (set_preset(table, "preset", *preset, zone) && !(is_default && flag_))
       spec_.origins[is_default ? "ground.default" : table.full("preset")] = origin_;
-    if (is_default && flag_) zone = before;  // the flag wins; parameters of their own stay
+    if (is_default && flag_) zone = before;  // the preset of the flag wins; single parameters stay
   }
   if (on_profile_) {
     if (!is_default) zone.intervals = intervals_of(table);

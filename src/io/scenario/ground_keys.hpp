@@ -15,16 +15,17 @@ class GroundReader {
   GroundReader(ScenarioSpec& spec, std::string origin, std::vector<std::string>& faults)
       : spec_(spec), origin_(std::move(origin)), faults_(faults) {}
 
-  /// `default` and `zones`; a zone that is there already keeps what is not said again, unless a preset is named.
+  /// Reads `default` and `zones`. A zone that was read before keeps the parameters that are not given again, unless a
+  /// preset is given.
   void read(TableReader& ground);
 
-  /// The same on a profile: each zone has intervals of x [m], no code.
+  /// Reads them for a profile: each zone has intervals of x [m], no code.
   void read_on_profile(TableReader& ground) {
     on_profile_ = true;
     read(ground);
   }
 
-  /// A fault where zones are described and no file says where they are.
+  /// Adds a fault if zones are described and no file says where they are.
   void check_file(const TableReader& ground, const std::string& include);
 
  private:
@@ -33,7 +34,7 @@ class GroundReader {
   void store(ZoneSpec zone);
 
   ScenarioSpec& spec_;
-  bool on_profile_ = false, flag_ = false;  // flag_: the preset of the default ground is the command line's
+  bool on_profile_ = false, flag_ = false;  // flag_: the command line gave the preset of the default ground
   std::string origin_;
   std::vector<std::string>& faults_;
 };

@@ -8,7 +8,7 @@
 namespace talus::io {
 namespace {
 
-/// Machines may have the same files in other folders: what is in them counts, and what they are called.
+/// Removes the folder: machines may have the same files in other folders. Name and content count.
 void strip_folder(NamedFile& file) {
   const std::filesystem::path path(file.path);
   if (path.is_absolute()) file.path = path.filename().string();

@@ -18,7 +18,7 @@ namespace {
 constexpr double kMostColumns = 2e6;
 constexpr Bounds kX{"x", "m", "along the profile", -1e7, 1e7}, kZ{"z", "m", "height", -500.0, 9000.0};
 
-/// Where a place of the input must lie.
+/// Throws InputError if a place of the input is not on the profile.
 void check_inside(const Profile& profile, double x, const std::string& key) {
   if (x >= profile.from() && x <= profile.to()) return;
   throw InputError(key + " = " + text_of(x) + ": must be on the profile, " + text_of(profile.from()) + " to " +
@@ -76,7 +76,7 @@ void warn_of_presets(const ScenarioSpec& spec, std::vector<std::string>& warning
                          " is of the 3D model; its sideways roughness is left out");
 }
 
-/// The polyline, from whichever file.
+/// Reads the polyline: from a CSV, or from a line over a DEM.
 void read_terrain_of(const ScenarioSpec& spec, LoadedProfile& out) {
   const ProfileSpec& p = *spec.profile;
   if (!p.csv.path.empty()) {
@@ -162,7 +162,7 @@ LoadedProfile load_profile(const RunFlags& flags) {
     throw InputError(spec.scenario.where + ": no block diameter, must have one: give [blocks] diameter, in m");
   place_screens(spec, out.profile, grid.west, parts);
   place_zones(spec, out.profile, grid, parts);
-  load_effect_places(spec, Terrain{}, parts, loaded);  // zones only: no file is read
+  load_effect_places(spec, Terrain{}, parts, loaded);  // zones only: a profile has no files of polygons
   parts.surface = Surface(std::move(extruded.heights));
   loaded.scenario = make_scenario(std::move(parts));
   warn_of_presets(spec, loaded.warnings);

@@ -17,7 +17,7 @@ constexpr Bounds kStep{"step", "m", "spacing of the columns", 0.05, 10.0},
     kBin{"bin", "m", "width of the bins of the results", 0.05, 1000.0},
     kPlace{"x", "m", "place along the profile", -1e7, 1e7};
 
-/// Reads what only a profile has.
+/// Reads the keys that only a profile has.
 class ProfileReader {
  public:
   ProfileReader(ScenarioSpec& spec, const std::string& file, std::vector<std::string>& faults)
@@ -44,7 +44,7 @@ class ProfileReader {
     check_effects();
   }
 
-  /// What must be given: faults without a line, which come last.
+  /// Adds a fault for what is not given and must be. These faults have no line and come last.
   void check_given(const std::string& file) {
     const bool csv = !profile_.csv.path.empty(), dem = !spec_.dem.path.empty(), line = !profile_.line.path.empty();
     if (csv ? dem || line : !dem || !line)
@@ -101,7 +101,7 @@ class ProfileReader {
     table.finish();
   }
 
-  /// What turns a block out of the plane has no place in a model of two dimensions.
+  /// Adds a fault for an effect that turns a block out of the plane, and for polygons.
   void check_effects() {
     for (const auto& [name, effect] : spec_.effects) {
       if (name == "forest-stems" || name == "fragmentation")
@@ -117,7 +117,7 @@ class ProfileReader {
   std::filesystem::path base_;
 };
 
-/// No sideways tilt: that of a preset is left out, one that is asked for is a fault.
+/// Removes the sideways roughness of a preset. Adds a fault if the file gives one.
 void flatten(ZoneSpec& zone, const std::string& table, std::vector<std::string>& faults) {
   const auto own = zone.own.find("psi_scale");
   if (own != zone.own.end() && zone.ground.psi_scale != 0.0)

@@ -10,7 +10,7 @@
 namespace talus::io {
 namespace {
 
-/// Shares of the way from one place to another at which it crosses whole numbers, in one direction.
+/// Shares of the way between two values of one coordinate at which it crosses whole numbers.
 void crossings(double from, double to, std::vector<double>& shares) {
   if (from == to) return;
   const double low = std::min(from, to), high = std::max(from, to);

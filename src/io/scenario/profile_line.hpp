@@ -14,13 +14,13 @@ struct ProfileLine {
   std::vector<Eigen::Vector2d> plan;  ///< its vertices in local metres of the DEM
 };
 
-/// Samples the terrain along a line: where it crosses the lines between the cells' centres, at which the bilinear
-/// surface has its creases, and at its own vertices. Between two of these the profile is straight. Points nearer than
-/// `step` to the one before are left out. Throws InputError where there is no terrain under a part of it.
+/// Samples the terrain along a line: at its vertices, and where it crosses the lines between the centres of cells, the
+/// creases of the bilinear surface. Between two samples the profile is straight. Points nearer than `step` to the one
+/// before are left out. Throws InputError if a part of the line has no terrain under it.
 ProfileLine profile_along(const std::vector<Eigen::Vector2d>& plan, const Surface& surface, double step,
                           const std::string& name);
 
-/// Reads the one line of a vector file and samples it. Throws InputError where it is not one line.
+/// Reads the one line of a vector file and samples it. Throws InputError unless it is one line.
 ProfileLine read_profile_line(const std::string& path, const Terrain& terrain, double step, LoadedScenario& out);
 
 }  // namespace talus::io

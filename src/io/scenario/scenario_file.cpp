@@ -15,7 +15,7 @@ namespace talus::io {
 
 namespace {
 
-// Files that are not there, before any is opened.
+// Adds a fault for each file that is not there, before any is opened.
 void check_files(const ScenarioSpec& spec, std::vector<std::string>& faults) {
   std::vector<const NamedFile*> files{&spec.include, &spec.dem,     &spec.sources,
                                       &spec.ground,  &spec.screens, &spec.barriers};
@@ -124,7 +124,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
   stop_at_faults(faults, all_faults);
 
   LoadedScenario out;
-  const auto attempt = [&](const std::function<void()>& read) {  // where all faults are asked for, the next layer too
+  const auto attempt = [&](const std::function<void()>& read) {  // with `all_faults`, goes on with the next layer
     try {
       read();
     } catch (const InputError& error) {

@@ -46,7 +46,7 @@ class SpecReader {
     top.finish();
   }
 
-  /// What a profile has too.
+  /// Reads the keys that a profile has, too.
   void read_common(TableReader& top) {
     for (const char* key : {"seed", "trajectories", "day"}) scalar(top, key);
     read_blocks(top.table("blocks"));
@@ -54,7 +54,7 @@ class SpecReader {
     read_effects(spec_, top.table("effects"), base_, origin_);
   }
 
-  /// The keys of a model alone.
+  /// Reads the keys of a file that holds only a model.
   void read_model_keys(const TomlValue& root) {
     TableReader top(&root, "", file_, faults_);
     TableReader ground = top.table("ground");
@@ -74,13 +74,13 @@ class SpecReader {
  private:
   void given(const std::string& key) { spec_.origins[key] = origin_; }
 
-  /// What is included comes first: the scenario's own keys win.
+  /// Reads the included file first: the scenario's own keys override it.
   void read_include(TableReader& top) {
     const auto text = top.text("include");
     if (!text) return;
     named_file(top, "include", spec_.include);
     std::error_code none;
-    if (!std::filesystem::exists(spec_.include.path, none)) return;  // said later, with the other files
+    if (!std::filesystem::exists(spec_.include.path, none)) return;  // reported later, with the other files
     talus::io::read_model_keys(spec_, spec_.include.path, *text, "include " + *text, faults_);
   }
 

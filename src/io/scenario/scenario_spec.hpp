@@ -15,17 +15,17 @@ struct NamedFile {
   std::string where;  ///< "scenario.toml:3: dem = 'dem.tif'" or "flag --dem = 'dem.tif'", for messages
 };
 
-/// A kind of ground as the input says it.
+/// A kind of ground as the input describes it.
 struct ZoneSpec {
   std::string name;
   std::string preset;
   Ground ground;
-  std::map<std::string, std::string> own;  ///< origin of each parameter that is not the preset's
-  std::string code;                        ///< what stands for the zone in a raster; empty: its name
+  std::map<std::string, std::string> own;  ///< origin of each parameter given beside the preset
+  std::string code;                        ///< code of the zone in a raster; empty: its name
   std::vector<Range> intervals{};          ///< of x, on a profile [m]
 };
 
-/// An effect that the input names: where it acts. Its numbers are in `values`.
+/// Places where an effect of the input acts. Its numbers are in `values`.
 struct EffectSpec {
   std::string where;               ///< "scenario.toml:12: [effects.vegetation-drag]", for messages
   std::vector<std::string> zones;  ///< empty: in all
@@ -37,18 +37,18 @@ struct EffectSpec {
 struct BarrierLine {
   std::string id;
   double height = 0.0;    ///< [m]
-  double capacity = 0.0;  ///< [J]; infinite where none is given
+  double capacity = 0.0;  ///< [J]; infinite if none is given
   Eigen::Vector2d from, to;
 };
 
-/// How much an instrument of a campaign reads too high, as a share of the value. No part of any place.
+/// Share of the value by which an instrument of a campaign reads too high. It says nothing about the terrain.
 struct InstrumentBias {
   std::string where;   ///< "model.toml:12: [[instrument_bias]]", for messages
   std::string screen;  ///< empty: the samples along the paths
   double speed = 0.0, jump = 0.0, spin = 0.0;
 };
 
-/// What the file of a profile says of its terrain and places, beside what it shares with a scenario.
+/// Terrain and places of a profile. The keys that it shares with a scenario are in `ScenarioSpec`.
 struct ProfileSpec {
   NamedFile csv, line;  ///< a polyline; or a line over `ScenarioSpec::dem`
   double step = 0.1;    ///< of the columns [m]
@@ -58,7 +58,7 @@ struct ProfileSpec {
   double bin = 5.0;             ///< of the results [m]
 };
 
-/// All that a scenario file and the flags say, before any other file is opened.
+/// Content of a scenario file and the flags, before any other file is opened.
 struct ScenarioSpec {
   NamedFile scenario, include, dem, sources, ground, screens, barriers;
   std::string ground_field;
@@ -78,11 +78,11 @@ struct ScenarioSpec {
   }
 };
 
-/// Reads the scenario file, where there is one, and lays the flags over it. Faults of single settings are collected;
-/// what makes reading on senseless (no such file, no TOML) is thrown as InputError.
+/// Reads the scenario file, if one is given, and overrides it with the flags. Faults of single settings are collected.
+/// A fault that ends the reading (no such file, no TOML) is thrown as InputError.
 ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults);
 
-/// Reads the file of a profile as `read_spec` reads a scenario; `profile` of the result is there.
+/// Reads the file of a profile as `read_spec` reads a scenario; `profile` of the result is set.
 ScenarioSpec read_profile_spec(const RunFlags& flags, std::vector<std::string>& faults);
 
 class TableReader;
@@ -102,19 +102,20 @@ void check_files(const std::vector<const NamedFile*>& files, std::vector<std::st
 void read_model_keys(ScenarioSpec& spec, const std::string& path, const std::string& name, const std::string& origin,
                      std::vector<std::string>& faults);
 
-/// A path as it is given in the folder `base`; what is no file for the system (PG:..., WFS:...) is left to GDAL.
+/// The absolute path of a file given relative to `base`. Names that are no files (PG:..., WFS:...) stay as they are,
+/// for GDAL.
 std::string absolute_path(const std::string& given, const std::filesystem::path& base);
 
-/// The default ground: the flag's preset, else the default one.
+/// Sets the default ground to the preset of the flag, else to the default preset.
 void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults);
-/// Lays the other flags over what the scenario file says.
+/// Overrides the scenario file with the other flags.
 void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults);
 
 /// A key or text as TOML writes it.
 std::string toml_key(const std::string& name);
 std::string toml_text(const std::string& text);
 
-/// A scenario file that gives exactly this again, with every setting written out and absolute paths.
+/// The text of a scenario file that reads back as exactly this, with every setting written out and absolute paths.
 std::string toml_of(const ScenarioSpec& spec);
 
 /// Every setting with its value and origin, in the order of toml_of.

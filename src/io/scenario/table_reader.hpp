@@ -17,7 +17,7 @@ class TableReader {
   TableReader(const TomlValue* table, std::string name, std::string file, std::vector<std::string>& faults)
       : table_(table), name_(std::move(name)), file_(std::move(file)), faults_(faults) {}
 
-  /// The value of a key, which is known from now on; null where it is not there.
+  /// The value of a key; null if it is not there. Marks the key as known.
   const TomlValue* find(const std::string& key);
   /// A table inside this one.
   TableReader table(const std::string& key);

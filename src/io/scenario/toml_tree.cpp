@@ -24,7 +24,7 @@ void convert_table(const toml::table& table, TomlValue& value) {
             [](const auto& a, const auto& b) { return a.first->source().begin < b.first->source().begin; });
   for (const auto& [key, node] : entries) {
     TomlValue member = converted(*node);
-    member.line = static_cast<int>(key->source().begin.line);  // of a table reopened by another header: of its first
+    member.line = static_cast<int>(key->source().begin.line);  // of the first header, if a table has several
     value.members.push_back({std::string(key->str()), std::move(member)});
   }
 }

@@ -6,7 +6,7 @@ namespace talus::io {
 
 struct TomlMember;
 
-/// A value of a TOML file with its line: what the reader needs of toml++, which is slow to compile.
+/// A value of a TOML file with its line. Other files use this instead of toml++, which is slow to compile.
 struct TomlValue {
   enum class Kind { Boolean, Number, Text, List, Table, Date };
 

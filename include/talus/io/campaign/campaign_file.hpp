@@ -11,7 +11,7 @@ namespace talus::io {
 struct LoadedCampaign {
   Campaign campaign;
   GeoReference geo;
-  std::vector<std::string> zone_codes;  ///< by zone, as the zones' file has them; of "default" empty
+  std::vector<std::string> zone_codes;  ///< by zone, as in the file of zones; empty for "default"
   std::vector<InputFile> inputs;
   std::vector<std::string> warnings;  ///< one line each
 };

@@ -12,8 +12,8 @@ namespace talus::io {
 /// key, value and what is allowed, also for a zone or a screen that the campaign lacks.
 Model read_model(const std::string& path, const Campaign& campaign);
 
-/// A model as such a file, which reads back as exactly this (places of barriers but for rounding) and which a scenario
-/// can `include`. A band of other ground is not part of it.
+/// The text of such a file. It reads back as exactly this model, except that the places of barriers are rounded. A
+/// scenario can `include` it. A band of other ground is left out.
 ///
 /// @param heading  comment lines for the top, without the marks
 std::string model_text(const Model& model, const LoadedCampaign& loaded, const std::string& heading);

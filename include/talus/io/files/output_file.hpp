@@ -15,13 +15,13 @@ class OutputFile {
  public:
   /// @param extension  ".gpkg": what the name must end in
   /// @param overwrite  a file of this name may be replaced
-  /// Throws InputError where the name does not end so, is taken, or the folder is not there.
+  /// Throws InputError if the name has another extension or is taken, or if the folder is not there.
   OutputFile(const std::filesystem::path& path, const std::string& extension, bool overwrite);
 
   /// Where to write until `commit`.
   const std::filesystem::path& temporary() const { return staged_.hidden(); }
 
-  /// Throws InputError where `input` is the file that `commit` would replace.
+  /// Throws InputError if `input` is the file that `commit` would replace.
   void protect(const std::filesystem::path& input) const;
 
   /// Gives the file its name. Throws std::filesystem::filesystem_error.

@@ -15,19 +15,19 @@ class FolderLock;
 ///
 /// Everything is written into a hidden folder beside it, `.NAME.talus-PID` (`StagedPath`), so that a rename is all that
 /// `commit` has to do. Without `commit` (an exception, an interruption, a full disk) the hidden folder is removed,
-/// unless it is to be kept for a run that goes on.
+/// unless `keep` was called, so that the run can be resumed.
 class OutputFolder {
  public:
-  /// What to do with the hidden folder of an interrupted run of this name. While a process has one, no other may
-  /// begin a run of this name; what was killed before it kept anything is removed.
+  /// Treatment of the hidden folders that interrupted runs of this name have left. With `Refuse` and `Resume`, throws
+  /// InputError while another process writes one, and removes those without saved work.
   enum class Unfinished {
-    Ignore,  ///< this command leaves none
-    Refuse,  ///< InputError with the way out; where `overwrite` is given, it is removed
-    Resume   ///< it becomes this one's, where there is one, with the maps that it had finished
+    Ignore,  ///< this command saves no work: others are not looked at
+    Refuse,  ///< throws InputError with the way out; with `overwrite` removes them
+    Resume   ///< takes over the latest, if there is one, with its finished maps
   };
 
   /// @param overwrite  an earlier result of talus (it holds a run.json, part.json, calibration.json or diagnosis.json)
-  /// may be replaced. Throws InputError where the name is taken or nothing can be written there.
+  /// may be replaced. Throws InputError if the name is taken or nothing can be written there.
   OutputFolder(const std::filesystem::path& path, bool overwrite, Unfinished unfinished = Unfinished::Ignore);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
@@ -35,25 +35,25 @@ class OutputFolder {
 
   /// Where to write until `commit`.
   const std::filesystem::path& temporary() const { return staged_.hidden(); }
-  /// Where in it a run keeps its work while it goes on: what is looked for by `Unfinished`.
+  /// Folder inside it where a run saves its work. `Unfinished` looks for this folder.
   std::filesystem::path work() const { return temporary() / kWork; }
   static constexpr const char* kWork = "unfinished";
-  /// The hidden folder stays where there is no `commit`.
+  /// Without `commit` the hidden folder stays.
   void keep() { staged_.keep(); }
-  /// Absolute; what the user will find.
+  /// Absolute path of the folder after `commit`.
   const std::filesystem::path& final_path() const { return staged_.path(); }
 
-  /// Throws InputError where `file` lies in a folder that `commit` would replace: an input must not be deleted.
+  /// Throws InputError if `file` lies in a folder that `commit` would replace: an input must not be deleted.
   void protect(const std::filesystem::path& file) const;
 
   /// Brings all files to the disk and gives the folder its name, if that is still free or may be overwritten. An
-  /// earlier result is moved aside first, put back where the rename fails, and removed last. Throws std::runtime_error.
+  /// earlier result is moved aside first, put back if the rename fails, and removed last. Throws std::runtime_error.
   void commit();
-  /// The same of `work` alone, which becomes the folder of results in one step.
+  /// Makes `work` alone the folder of results, in one step, and removes the rest.
   void commit_work();
 
  private:
-  /// Makes `work`, and marks it as in use until this process ends, however that comes.
+  /// Makes `work` and marks it as in use until this process ends, even if it is killed.
   void hold_work();
   void commit(const std::filesystem::path& folder);
   StagedPath staged_;
@@ -61,21 +61,21 @@ class OutputFolder {
   std::unique_ptr<FolderLock> lock_;  // of `work`
 };
 
-/// The absolute name of a folder of results, through symbolic links, without a slash at its end. Throws InputError
-/// where it can be none.
+/// The absolute name of a folder of results, through symbolic links, without a slash at its end. Throws InputError if
+/// no folder can have this name.
 std::filesystem::path full_name(const std::filesystem::path& path);
 
 /// Writes a text file. Throws std::runtime_error, one line with the file and the cause; no half file is left.
 void write_text(const std::filesystem::path& file, std::string_view text);
 
-/// Writes a text file beside others of a finished folder: under a hidden name first, renamed when it is complete. What
-/// had the name before is replaced. Throws as `write_text`.
+/// Writes a text file beside others of a finished folder: under a hidden name first, renamed when it is complete. An
+/// earlier file of this name is replaced. Throws as `write_text`.
 void replace_text(const std::filesystem::path& file, std::string_view text);
 
 /// The names of the files in a folder, in the order of the alphabet.
 std::vector<std::string> files_in(const std::filesystem::path& folder);
 
-/// Why a library could not write into a folder: that the disk is full, where it is; else the first of its messages.
+/// Cause why a library could not write into a folder: "the disk is full" if it is, else the first of `messages`.
 std::string cause_of_failure(const std::filesystem::path& folder, const std::string& messages);
 
 }  // namespace talus::io

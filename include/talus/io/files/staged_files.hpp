@@ -11,9 +11,9 @@ namespace talus::io {
 /// one by one at the end, a record of them last. Without `commit` nothing changes.
 class StagedFiles {
  public:
-  /// @param record  file that names, in `files`, all that belong together: "hazard.json". Where it is there, the files
-  ///                that it names are replaced
-  /// Throws InputError where `folder` is none of results, where they are there and `overwrite` is not given, or nothing
+  /// @param record  file that names, in `files`, all that belong together: "hazard.json". If it is there, the files
+  /// that it names are replaced
+  /// Throws InputError if `folder` has no results, if the record is there and `overwrite` is not given, or if nothing
   /// can be written there.
   StagedFiles(const std::filesystem::path& folder, const std::string& record, bool overwrite);
 

@@ -5,7 +5,7 @@
 
 namespace talus::io {
 
-/// What a table says of the blocks that crossed one screen. Each list has the rows that hold its quantity.
+/// Blocks that crossed one screen, from a table. Each list has the rows that give its quantity.
 struct CrossingTable {
   std::vector<double> speed;            ///< [m/s]
   std::vector<double> energy;           ///< translational [J]
@@ -15,15 +15,14 @@ struct CrossingTable {
   std::size_t blocks = 0;
 };
 
-/// Reads crossings: `screens.csv` of a run, `passages.csv` of a campaign, or a table of one's own with columns of
-/// these.
+/// Reads crossings: `screens.csv` of a run, `passages.csv` of a campaign, or any table with columns of these.
 ///
 /// @param screen  rows of other screens are left out
 ///
-/// Columns: screen, and of id, source, block, speed_ms, energy_kj, jump_height_m, mass_kg, x, y those that are there
-/// (others of the two tables are allowed and not read). Energy is energy_kj, else 1/2 mass speed^2 where both are
-/// there. Of the rows of one block (same id, source, block and mass) the first counts: a block that rolls back would be
-/// met by a barrier once. Throws InputError with line and column; a screen without rows gives empty lists.
+/// Columns: screen must be there; id, source, block, speed_ms, energy_kj, jump_height_m, mass_kg, x, y are read if they
+/// are there. Other columns of the two tables are ignored. Energy is energy_kj, else 1/2 mass speed^2 if both are
+/// there. Only the first row of a block (same id, source, block and mass) counts: a block that rolls back meets a
+/// barrier only once. Throws InputError with line and column; a screen without rows gives empty lists.
 CrossingTable read_crossings(const std::string& path, const std::string& screen);
 
 }  // namespace talus::io

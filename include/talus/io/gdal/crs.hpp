@@ -8,7 +8,7 @@
 
 namespace talus::io {
 
-/// "EPSG:31287 (MGI / Austria Lambert)"; the name alone where it has no code.
+/// "EPSG:31287 (MGI / Austria Lambert)"; the name alone if it has no code.
 std::string crs_name(const std::string& wkt);
 
 /// A rectangle in a coordinate system [m].
@@ -22,24 +22,24 @@ struct MapArea {
   std::string wkt;
 };
 
-/// What is transformed, for the record and for messages.
+/// Layer that is transformed, for the record and for messages.
 struct LayerName {
   std::string role;  ///< "sources"
   std::string path;
 };
 
-/// Refuses, for the raster `path`, a coordinate system that is not a plane one in metres (heights too, where it says).
-/// A way out is part of each message. Local systems (engineering CRS) in metres are taken.
+/// Checks that the coordinate system of the raster `path` is a plane one in metres, with heights in metres if it states
+/// their unit. Otherwise throws InputError with the way out. Local systems (engineering CRS) in metres are accepted.
 ///
-/// @return a warning where the map projection stretches distances by more than 1 % at the middle of the extent (more
-///         than 5 %, as Web Mercator does, is refused); nothing otherwise
+/// @return a warning if the map projection stretches distances by more than 1 % at the middle of the extent (more than
+/// 5 %, as Web Mercator does, is refused); nothing otherwise
 std::optional<std::string> check_metric(const std::string& path, const std::string& wkt, const MapExtent& extent);
 
-/// Brings places from one coordinate system into another by PROJ; nothing is done where both are the same.
+/// Transforms places from one coordinate system into another by PROJ; does nothing if both are the same.
 class Transformer {
  public:
-  /// @param map  PROJ chooses the operation that is best there
-  /// Throws InputError where there is no way from one to the other.
+  /// @param map  area for which PROJ chooses the best operation
+  /// Throws InputError if there is no operation from one to the other.
   Transformer(LayerName layer, const std::string& from_wkt, const std::string& to_wkt, const MapArea& map);
   ~Transformer();
   Transformer(Transformer&&) noexcept;

@@ -13,7 +13,7 @@ namespace talus::io {
 /// Polygons and lines of a vector file with their attributes, in local metres.
 class ObjectLayer {
  public:
-  /// Reads them in any coordinate system. Throws InputError for points, features without geometry, and where all lie
+  /// Reads them in any coordinate system. Throws InputError for points, for features without geometry, and if all lie
   /// off the DEM.
   ObjectLayer(const std::string& path, const LoadedScenario& loaded);
   ~ObjectLayer();
@@ -22,7 +22,8 @@ class ObjectLayer {
   const std::vector<std::string>& warnings() const;
 
   /// Writes objects.gpkg (the geometries in the system of the DEM, their attributes, and the hazard), objects.csv (the
-  /// same as a table), objects_curves.csv (how often each energy is exceeded) and objects_sources.csv (from where).
+  /// same as a table), objects_curves.csv (how often each energy is exceeded) and objects_sources.csv (from which
+  /// sources).
   ///
   /// @param hits  by object
   /// @param years  periods of the columns energy_T<years>

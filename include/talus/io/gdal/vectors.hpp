@@ -6,28 +6,28 @@
 
 namespace talus::io {
 
-/// Where blocks are released, as a vector file says it.
+/// Places of release from a vector file.
 struct SourceLayer {
-  std::vector<SourceFeature> features;  ///< in the order of the file; those wholly off the map too
-  std::vector<SourceCell> cells;        ///< by feature; within one row by row from the north-west, then its points
+  std::vector<SourceFeature> features;  ///< in the order of the file, with those wholly off the map
+  std::vector<SourceCell> cells;        ///< by feature: its cells row by row from the north-west, then its points
   std::vector<std::int64_t> ids;        ///< of the features in the file, for messages
-  std::vector<Setting> attributes;      ///< what was read from the fields
+  std::vector<Setting> attributes;      ///< settings read from the fields
   std::vector<Reprojection> reprojections;
   std::vector<std::string> warnings;
 };
 
 /// Reads sources: polygons, lines, points, mixed or in collections, in any coordinate system.
 ///
-/// A polygon gives the cells whose centres it covers, and where that is none the cells that it touches; a line those
-/// that it crosses; a point itself. Each part of a feature by its own kind, each cell once per feature. Cells without
-/// terrain are left out (with a warning). Fields read where present, upper or lower case: frequency, diameter,
-/// diameter_min, diameter_max, height, vx, vy, vz, name; NULL is not given.
+/// A polygon gives the cells whose centres it covers; if it covers none, the cells that it touches. A line gives the
+/// cells that it crosses, a point its place. A feature of several parts gives the cells of each part, but each cell
+/// once. Cells without terrain are left out (with a warning). These fields are read if they are there, in upper or
+/// lower case: frequency, diameter, diameter_min, diameter_max, height, vx, vy, vz, name; NULL counts as not given.
 ///
-/// @param release_height  where the field height does not say it [m]
-/// Throws InputError that names file, feature, field, value and what is allowed; also where no cell is left.
+/// @param release_height  for features without the field height [m]
+/// Throws InputError that names file, feature, field, value and what is allowed; also if no cell is left.
 SourceLayer read_sources(const std::string& path, const Terrain& terrain, const Range& release_height);
 
-/// Lines whose crossings are recorded, as a vector file says it.
+/// Screens (lines whose crossings are recorded) from a vector file.
 struct ScreenLayer {
   std::vector<Screen> screens;
   std::vector<Reprojection> reprojections;
@@ -38,7 +38,7 @@ struct ScreenLayer {
 /// and the parts of a multiline, are one screen. A plain CSV with columns id,wkt is in the system of the DEM.
 ScreenLayer read_screens(const std::string& path, const Terrain& terrain);
 
-/// Barriers, as a vector file says it.
+/// Barriers from a vector file.
 struct BarrierLayer {
   std::vector<Barrier> barriers;
   std::vector<Reprojection> reprojections;

@@ -8,7 +8,8 @@
 
 namespace talus::io {
 
-/// The law of one quantity and the probabilities that the design values are exceeded. In the units of the files.
+/// Fitted distribution of one quantity, and the probabilities that design values are exceeded. In the units of the
+/// files.
 struct Reliability {
   struct Limit {
     std::string name;  ///< "h_i", "SEL"
@@ -32,8 +33,8 @@ struct BarrierReport {
   BarrierDesign design{};
   std::vector<Reliability> reliability;
   double containment = 0.99;
-  Stretch shortest{};            ///< of the line, holds `containment` of the crossings
-  double bin = 0.0;              ///< of the paper's rule [m]
+  Stretch shortest{};            ///< shortest stretch of the line that holds `containment` of the crossings
+  double bin = 0.0;              ///< width of a bin in the paper's rule [m]
   std::optional<Stretch> above;  ///< bins that more than 1 - containment of the released blocks cross
   std::vector<std::string> notes;
 };

@@ -21,8 +21,8 @@ struct DiagnosisRecord : FitRecord {
   double seconds = 0.0;
 };
 
-/// Simulates and scores the held-out rows with every model of a diagnosis. Throws FitInterrupted when `options.proceed`
-/// says no.
+/// Simulates and scores the held-out rows with every model of a diagnosis. Throws FitInterrupted if `options.proceed`
+/// returns false.
 void open_holdout(const Campaign& campaign, DiagnosisRecord& record);
 
 /// The text of diagnosis.json. Its keys: docs/closing-the-loop.md, "Diagnosis".

@@ -31,8 +31,8 @@ struct ScoreSettings {
   std::uint64_t seed = 1;
 };
 
-/// One sentence for each group of which more than half of the rows score as the climatology: a model is not
-/// scored for what it leaves out altogether, and a fit can hide there.
+/// One warning for each group in which more than half of the rows score as the climatology. Such rows do not score the
+/// model, so that a fit can hide its errors there.
 ///
 /// @param rows  "fit" or "holdout"
 std::vector<std::string> unseen_warnings(const std::string& rows, const Score& score);
@@ -44,8 +44,8 @@ std::string score_json(const ScoreSettings& settings, std::span<const ScoredRows
 
 /// Writes the simulated measurements, errors included, one row per block and trial: `stops.csv`
 /// (block,trial,end,x,y,mass_share), `passages.csv` (block,trial,screen,speed_ms,jump_height_m,angular_velocity_rads)
-/// and, where the campaign has samples, `samples.csv` (block,trial,sample,speed_ms,angular_velocity_rads). Numbers are
-/// the shortest that read back the same. Throws std::runtime_error.
+/// and, if the campaign has samples, `samples.csv` (block,trial,sample,speed_ms,angular_velocity_rads). Numbers are the
+/// shortest that read back the same. Throws std::runtime_error.
 void write_runs(const std::filesystem::path& folder, const LoadedCampaign& loaded, std::span<const BlockRuns> runs);
 
 }  // namespace talus::io

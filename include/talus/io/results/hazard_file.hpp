@@ -10,7 +10,7 @@ namespace talus::io {
 /// The name of the file in a folder of results.
 inline constexpr const char* kHazardFile = "hazard_tally.gz";
 
-/// What a run kept of its hazard, cells apart.
+/// Header of a hazard file: everything but the cells.
 struct HazardHeader {
   std::string version;  ///< of the program that wrote it
   std::string plan;     ///< `plan_checksum`
@@ -26,7 +26,7 @@ struct HazardRow {
   std::vector<std::pair<int, HazardCell>> touched;  ///< by column, from the west
 };
 
-/// Writes the annual frequencies that a tally kept, compressed. docs/hazard.md, "What a run keeps".
+/// Writes the annual frequencies of a tally, compressed. docs/hazard.md, "What a run keeps".
 ///
 /// The bytes depend on the values only. Throws std::runtime_error on a full disk; no half file is left.
 void write_hazard(const std::filesystem::path& file, const LoadedScenario& loaded, const Tally& tally);
@@ -34,8 +34,8 @@ void write_hazard(const std::filesystem::path& file, const LoadedScenario& loade
 /// Reads such a file, row by row in bounded memory, from the north.
 ///
 /// @param begin  called once before the rows
-/// Throws InputError, one line with the way out: where it is not there, is none, was written by a later version, or its
-/// bytes have changed (a checksum over all of them). The last is known at the end only.
+/// Throws InputError, one line with the way out: if the file is missing, is no hazard file, was written by a later
+/// version, or its bytes have changed. The checksum over all bytes is compared after the last row.
 HazardHeader read_hazard(const std::filesystem::path& file, const std::function<void(const HazardHeader&)>& begin,
                          const std::function<void(const HazardRow&)>& visit);
 

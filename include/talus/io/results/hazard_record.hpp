@@ -7,17 +7,17 @@
 
 namespace talus::io {
 
-/// Reads a matrix of classes from a TOML file: energies, years, classes, names; what is not given has the default.
-/// Throws InputError with file, line, key, value and what is allowed.
+/// Reads a matrix of classes from a TOML file: energies, years, classes, names; keys that are not given have the
+/// default. Throws InputError with file, line, key, value and what is allowed.
 HazardMatrix read_matrix(const std::string& path);
 
-/// What `talus hazard` did.
+/// Record of `talus hazard`.
 struct HazardRecord {
   std::vector<std::string> command;
   HazardHeader header;
   HazardMatrix matrix;
   std::string matrix_file;  ///< empty: the default
-  std::uint64_t cells = 0;  ///< that anything passes
+  std::uint64_t cells = 0;  ///< cells that any block passes
   std::string objects_file;
   std::string frequency_file;  ///< another weighting than the run's; empty: the run's
   bool replayed = false;       ///< the plan was run again, for the objects or the weighting

@@ -7,7 +7,7 @@
 
 namespace talus::io {
 
-/// What a finished run says of itself: the part of OUT/run.json that its products need.
+/// The part of OUT/run.json that products of a finished run need.
 struct RunSummary {
   double released = 0.0;        ///< trajectories
   double density = 0.0;         ///< of the rock [kg/m^3]
@@ -15,7 +15,7 @@ struct RunSummary {
   std::vector<Screen> screens;  ///< in map coordinates [m]
 };
 
-/// Reads OUT/run.json. Throws InputError where the folder is no result of `talus run`, or of one that kept no screens.
+/// Reads OUT/run.json. Throws InputError if it cannot be read or `talus run` has not written it.
 RunSummary read_run(const std::filesystem::path& folder);
 
 }  // namespace talus::io

@@ -18,17 +18,17 @@ struct StageSeconds {
   double read = 0.0, simulate = 0.0, write = 0.0;
 };
 
-/// The rounds of a run that was asked for several.
+/// Rounds of a run.
 struct RoundsRecord {
-  std::uint32_t done = 0;  ///< 0: it was not
+  std::uint32_t done = 0;  ///< 0: the run was not asked for rounds
   Rounds asked;
   Accuracy reached;
   bool reached_it() const { return asked.until_error && reached.cells > 0 && reached.half_width < *asked.until_error; }
 };
 
-/// What happened in a run.
+/// Record of a run.
 struct RunRecord {
-  std::vector<std::string> command;  ///< as it was called
+  std::vector<std::string> command;  ///< words of the command line
   Totals totals;
   std::vector<std::string> warnings;  ///< those of the input and those of the result
   std::vector<std::string> files;     ///< written beside run.json
@@ -37,7 +37,7 @@ struct RunRecord {
   int threads = 0;  ///< of all processes
   int ranks = 1;    ///< processes
   RoundsRecord rounds;
-  std::uint32_t parts = 1;  ///< that were joined
+  std::uint32_t parts = 1;  ///< number of parts that were joined
   std::string plan;         ///< `plan_checksum` of one round
 };
 
@@ -51,12 +51,12 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded);
 /// `status` of a run whose results are good.
 inline constexpr const char* kComplete = "complete";
 
-/// `status` of the results in a folder; nothing where it holds none of this plan and of so many rounds as were asked
-/// for.
+/// `status` of the results in a folder; nothing if the folder has no results of this plan with the rounds that were
+/// asked for.
 std::optional<std::string> status_of_result(const std::filesystem::path& folder, const std::string& plan,
                                             const Rounds& asked);
 
-/// The most memory that this process has held so far [MB]; 0 where the system does not tell.
+/// Largest memory of this process so far [MB]; 0 if the system does not report it.
 double peak_memory_mb();
 
 }  // namespace talus::io

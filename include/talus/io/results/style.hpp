@@ -9,8 +9,8 @@ namespace talus::io {
 /// The look of a map in QGIS (3.22 and later): the text of its `.qml`.
 ///
 /// One band in the discrete classes of the map's legend, with its unit. Zero and nodata are transparent. The colours go
-/// from light to dark, so that they are told apart in grey and by the colour-blind. A map without a legend, or whose
-/// legend shows a band that it has not, is a fault of ours: throws std::logic_error.
+/// from light to dark, so that they differ in grey and for the colour-blind. Throws std::logic_error if the map has no
+/// legend, or not the band that its legend shows.
 std::string style_of(const Map& map);
 
 /// Writes `NAME.qml` beside the raster, where QGIS finds it by itself. Throws std::runtime_error.

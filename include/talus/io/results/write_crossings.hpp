@@ -30,9 +30,9 @@ class CrossingsWriter {
   [[noreturn]] void fail() const;
   void put(const std::string& text);
 
-  std::string name_;  // of the file
+  std::string name_;  // name of the file
   std::unique_ptr<std::FILE, Close> file_;
-  std::vector<std::string> screens_;  // their ids as they stand in the file
+  std::vector<std::string> screens_;  // ids of the screens as written in the file
   double west_, south_;               // lower-left corner of the grid [m]
 };
 

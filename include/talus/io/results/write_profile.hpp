@@ -10,7 +10,7 @@
 
 namespace talus::io {
 
-/// What became of all blocks of a run on a profile.
+/// Results of all blocks of a run on a profile.
 struct ProfileResults {
   std::vector<ProfileBin> bins;
   Runout runout;

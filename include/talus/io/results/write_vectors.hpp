@@ -9,8 +9,8 @@
 namespace talus::io {
 
 /// Writers of what `simulate` hands out while it runs: rows go to the file as they come, memory does not grow with
-/// them. Called from one thread at a time, whichever. `finish` completes the file; without it what was written is
-/// worthless. All throw std::runtime_error, one line with the file and the cause (a full disk).
+/// them. Called from any thread, one at a time. `finish` completes the file; without it the file is worthless. All
+/// throw std::runtime_error, one line with the file and the cause (a full disk).
 
 /// Where every block ended: the layer `stops` of a GeoPackage, points in the system of the DEM.
 ///
@@ -37,7 +37,7 @@ class TrajectoriesWriter {
   ~TrajectoriesWriter();
   void write(const RecordedPath& path);
 
-  /// Adds the layer `vertices`, points ZM with the motion that leaves each vertex: time, speed_ms, vx, vy, vz, wx, wy,
+  /// Adds the layer `vertices`, points ZM with the motion just after each vertex: time, speed_ms, vx, vy, vz, wx, wy,
   /// wz, event. For `talus trace`.
   void write_vertices(const Path& path);
   void finish();
@@ -47,9 +47,9 @@ class TrajectoriesWriter {
   std::unique_ptr<State> state_;
 };
 
-/// What begins at a vertex, in words: release, impact, slide, takeoff, end.
+/// Name of what begins at a vertex: release, impact, slide, takeoff, end.
 const char* name_of(Event event);
-/// stopped, left, caught or limit.
+/// Name of the end of a trajectory: stopped, left, caught or limit.
 const char* name_of(End end);
 
 }  // namespace talus::io

@@ -12,7 +12,7 @@ namespace talus::io {
 struct Setting {
   std::string key;    ///< "ground.zones.road.En50"
   std::string value;  ///< in the units of the file
-  std::string unit;   ///< "m3/s2"; empty where there is none
+  std::string unit;   ///< "m3/s2"; empty if there is none
   std::string
       source;  ///< "scenario", "flag --seed", "preset forest-road-3d", "default", "attribute diameter of cliffs.shp"
 };
@@ -32,7 +32,7 @@ struct Reprojection {
   std::optional<double> accuracy_m;  ///< nothing: unknown
 };
 
-/// Where the grid lies on the earth: what the writers need.
+/// Place of the grid on the earth, for the writers.
 struct GeoReference {
   std::string crs_wkt;
   double west = 0.0, north = 0.0;     ///< upper-left corner in that system [m]
@@ -41,7 +41,7 @@ struct GeoReference {
 
 struct ScenarioSpec;
 
-/// A scenario with all that is to be told of its origin.
+/// A scenario with the record of its origin.
 struct LoadedScenario {
   Scenario scenario;
   GeoReference geo;
@@ -50,10 +50,10 @@ struct LoadedScenario {
   std::vector<InputFile> inputs;
   std::vector<Reprojection> reprojections;
   std::vector<std::string> warnings;         ///< one line each
-  std::shared_ptr<const ScenarioSpec> spec;  ///< what the file and the flags said; none of a profile
+  std::shared_ptr<const ScenarioSpec> spec;  ///< content of the file and the flags; null for a profile
 };
 
-/// What the command line says over or instead of a scenario file.
+/// Settings of the command line. They override a scenario file or replace it.
 struct RunFlags {
   std::string scenario;  ///< path of the TOML file; empty: from flags alone
   std::optional<std::string> dem, sources, preset;
@@ -65,11 +65,11 @@ struct RunFlags {
 /// Reads and checks everything. Throws InputError, one line; `all_faults` gets every fault of the settings (for
 /// `check`).
 ///
-/// @param memory  where the rasters lie
+/// @param memory  for the rasters
 LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* all_faults = nullptr,
                              const RasterMemory& memory = {});
 
-/// Makes it the scenario whose blocks so many rounds of it trace. `settings` stay as they are.
+/// Multiplies the trajectories by the number of rounds. Leaves `settings` as they are.
 void set_rounds(LoadedScenario& loaded, std::uint32_t rounds);
 
 }  // namespace talus::io

@@ -5,8 +5,8 @@
 
 namespace talus::io {
 
-/// SHA-256 of all settings of a scenario and of its input files, wherever these lie: equal where the same trajectories
-/// follow.
+/// SHA-256 of all settings of a scenario and of its input files, in whatever folder they are. Plans with equal
+/// checksums have the same trajectories.
 std::string plan_checksum(const LoadedScenario& loaded);
 
 }  // namespace talus::io

@@ -10,7 +10,7 @@ namespace talus::io {
 struct LoadedProfile {
   LoadedScenario
       loaded;          ///< on the extruded profile: `geo.west` + local x is x of the profile; y is 0; z above `datum`
-  Profile profile;     ///< x is the distance along the line where it was drawn over a DEM
+  Profile profile;     ///< x is the distance along the line if it was drawn over a DEM
   double datum = 0.0;  ///< of the heights in `loaded` [m]
   double step = 0.1, bin = 5.0;       ///< [m]
   std::vector<Eigen::Vector2d> plan;  ///< the line in map coordinates; empty for a polyline of x, z
@@ -22,7 +22,7 @@ struct LoadedProfile {
 
 /// Reads and checks the file of a profile, docs/profile.md. Throws InputError, one line.
 ///
-/// @param flags  of these, scenario (the path), seed and trajectories
+/// @param flags  scenario (the path), seed and trajectories are used
 LoadedProfile load_profile(const RunFlags& flags);
 
 /// Reads a polyline: a CSV with the columns x and z, x ascending by at least `step`.
