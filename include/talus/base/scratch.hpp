@@ -68,8 +68,10 @@ struct ScratchAllocator {
   ScratchAllocator(MemoryPolicy policy) : memory(policy) {}  // NOLINT(google-explicit-constructor): a handle
   template <class U>
   ScratchAllocator(const ScratchAllocator<U>& other) : memory(other.memory) {}  // NOLINT(google-explicit-constructor)
+  // NOLINTBEGIN(bugprone-sizeof-expression): of pointers, too, where a deque keeps some
   T* allocate(std::size_t n) { return static_cast<T*>(memory.allocate(n * sizeof(T))); }
   void deallocate(T* p, std::size_t n) noexcept { memory.release(p, n * sizeof(T)); }
+  // NOLINTEND(bugprone-sizeof-expression)
   template <class U>
   bool operator==(const ScratchAllocator<U>& other) const {
     return memory == other.memory;

@@ -20,8 +20,8 @@ struct BlockShape {
 
 /// Shape index of a block, from L1/L3 - 1 (elongation 0) to L1/L2 - 1 (elongation 1); 0 for a sphere [-].
 inline double shape_index(const BlockShape& shape, const Block& block) {
-  const double flat = block.axes[0] / block.axes[2] - 1.0, long_ = block.axes[0] / block.axes[1] - 1.0;
-  return flat + shape.elongation * (long_ - flat);
+  const double flat = block.axes[0] / block.axes[2] - 1.0, elongated = block.axes[0] / block.axes[1] - 1.0;
+  return flat + shape.elongation * (elongated - flat);
 }
 
 /// block-shape: factor on psi_scale. docs/effects.md, "block-shape".
