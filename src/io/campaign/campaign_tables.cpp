@@ -111,7 +111,7 @@ class Tables {
   /// Place of a measurement, which must be on the DEM: one place far off would widen the spread that divides all
   /// errors.
   Eigen::Vector2d place_on_map(const CsvTable& table, const Row& row) const {
-    const Eigen::Vector2d place = place_of(table, row);
+    Eigen::Vector2d place = place_of(table, row);
     const Grid& grid = campaign_.surface.grid();
     if (place.x() < 0.0 || place.y() < 0.0 || place.x() > grid.width() || place.y() > grid.height())
       table.refuse(row, "x",
