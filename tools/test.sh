@@ -29,7 +29,7 @@ ctest --preset dev -j 2 -LE "slow|cli" -E "$statistics"
 stage "the same bytes from gcc with optimisation and from clang without"
 tools/scripts/checks/same_bytes.sh build/release/talus build/dev/talus
 stage "clang-tidy"
-tools/scripts/checks/tidy.sh build/dev 240
+tools/scripts/checks/tidy.sh build/dev 150
 stage "sanitizers: build"
 cmake --preset asan
 cmake --build --preset asan --target core_tests io_tests
