@@ -158,12 +158,14 @@ std::string profile_svg(const LoadedProfile& p, const ProfileResults& results, s
   const Panel reach(body, top, kPanel, {0.0, farthest}, {0.0, 1.0});
   reach.frame("share of the blocks that goes farther", "distance from the release (m)");
   reach.line(beyond(results.runout, p.bin), "beyond");
+  std::string style(kStyle);
+  style += "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
   const std::string width = with_decimals(kWidth, 0), size = with_decimals(top + kPanel + kGap, 0);
   return body.drawing({{"xmlns", "http://www.w3.org/2000/svg"},
                        {"width", width},
                        {"height", size},
                        {"viewBox", "0 0 " + width + " " + size}},
-                      std::string(kStyle) + "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n");
+                      style);
 }
 
 }  // namespace talus::io
