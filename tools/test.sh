@@ -25,7 +25,7 @@ cmake --preset dev ${TALUS_DATA:+-DTALUS_DATA="$TALUS_DATA"}
 cmake --build --preset dev
 stage "dev: tests of core and files"
 statistics="ScoreTest|Calibrate|FreePaths"  # long where nothing is optimised
-ctest --preset dev -j 2 -LE "slow|cli" -E "$statistics"
+ctest --preset dev -j 2 -LE "slow|cli|example" -E "$statistics"
 stage "the same bytes from gcc with optimisation and from clang without"
 tools/scripts/checks/same_bytes.sh build/release/talus build/dev/talus
 stage "clang-tidy"
@@ -34,5 +34,5 @@ stage "sanitizers: build"
 cmake --preset asan
 cmake --build --preset asan --target core_tests io_tests
 stage "sanitizers: tests of core and files"
-ctest --preset asan -j 2 -LE "slow|cli" -E "$statistics"
+ctest --preset asan -j 2 -LE "slow|cli|example" -E "$statistics"
 stage "done"

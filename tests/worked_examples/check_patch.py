@@ -65,8 +65,8 @@ def compile_file(file, copy, commands):
     for word in words:
         if skip or word == entry["file"]:
             skip = False
-        elif word in ("-o", "-c", "-include", "-Xclang"):  # the precompiled header was made without the patch
-            skip = word != "-c" and word != "-Xclang"
+        elif word in ("-o", "-c", "-include", "-Xclang"):  # a precompiled header is of the sources without the patch
+            skip = word != "-c"  # clang's comes as `-Xclang -include-pch -Xclang FILE`
         else:
             kept.append(word.replace(f"-I{ROOT}/", f"-I{copy}/").replace(f'"{ROOT}"', f'"{copy}"'))
     target = copy / (file.replace("/", "_") + ".o")
