@@ -7,6 +7,7 @@
 #include "scenario_spec.hpp"
 #include "table_reader.hpp"
 #include "talus/base/text.hpp"
+#include "talus/physics/effects/registry.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 
 namespace talus::io {
@@ -104,7 +105,7 @@ class ProfileReader {
   /// Adds a fault for an effect that turns a block out of the plane, and for polygons.
   void check_effects() {
     for (const auto& [name, effect] : spec_.effects) {
-      if (name == "forest-stems" || name == "fragmentation")
+      if (find_effect(name)->leaves_plane)
         faults_.push_back(effect.where + ": leads blocks out of the plane of the profile, must be left out here");
       if (!effect.file.path.empty())
         faults_.push_back(effect.file.where + ": there are no polygons on a profile, must be zones");

@@ -63,6 +63,7 @@ struct EffectEntry {
   std::size_t field_count;
   EffectArea* (*area_in)(Effects&);        ///< null: it acts everywhere
   std::vector<int>* (*days_in)(Effects&);  ///< null: it acts on all days
+  bool leaves_plane;                       ///< it turns blocks sideways (`kLeavesPlane`): not for a profile
 
   std::span<const EffectField> fields() const { return std::span(all_fields).first(field_count); }
   /// Key without the name of the effect: "coefficient".
@@ -159,9 +160,14 @@ consteval EntryOf<effect> entry(std::string_view name, Sought sought, int turn, 
   };
   static_assert(members_of<Effect>() == sizeof...(members) + (kPlaced ? 1 : 0) + (kDated ? 1 : 0),
                 "each number of an effect must be in its entry; beside numbers it has `where` and `days` only");
-  EntryOf<effect> out{{name, sought, turn, {lift<effect>(numbers)...}, sizeof...(members), nullptr, nullptr}};
+  EntryOf<effect> out{{name, sought, turn, {lift<effect>(numbers)...}, sizeof...(members), nullptr, nullptr, false}};
   if constexpr (kPlaced) out.area_in = [](auto& e) -> EffectArea* { return &(e.*effect).where; };
   if constexpr (kDated) out.days_in = [](auto& e) -> std::vector<int>* { return &(e.*effect).days; };
+  out.leaves_plane = requires {
+    Effect::kLeavesPlane;
+  };
+  if (sought == Sought::InZones && !kPlaced) throw "an effect that is sought in zones must have `EffectArea where`";
+  if (sought == Sought::OnDays && !kDated) throw "an effect that is sought on days must have `std::vector<int> days`";
   const bool allowed = (within(numbers.bounds, numbers.search) && ...);
   if (!allowed) throw "a search goes beyond the bounds of its number";
   const bool named = (numbers.bounds.key.starts_with(name) && ...) && ((numbers.bounds.key[name.size()] == '.') && ...);

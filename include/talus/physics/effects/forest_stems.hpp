@@ -9,6 +9,7 @@ namespace talus {
 
 /// Single stems, met at random.
 struct ForestStems {
+  static constexpr bool kLeavesPlane = true;
   double density = 0.0;         ///< [stems per hectare]; 0: off
   double diameter = 0.3;        ///< DBH [m]
   double height = 20.0;         ///< of the trees [m]

@@ -7,6 +7,7 @@ namespace talus {
 
 /// A block that breaks at a hard impact.
 struct Fragmentation {
+  static constexpr bool kLeavesPlane = true;
   double threshold = 0.0;  ///< it breaks if it loses more normal energy per mass than this [J/kg]; 0: never
   double largest = 0.5;    ///< share of the mass that the largest piece keeps, in [1/2, 1)
   EffectArea where;
