@@ -1,4 +1,4 @@
-# ctest -R layers: every #include "talus/..." points to its own layer or to one below; only io and run include headers for files.
+# ctest -R layers: every #include of ours points to its own layer or to one below; only io and run include headers for files.
 set(order base terrain physics simulate products fit io run)
 set(wrong "")
 foreach(layer IN LISTS order)
@@ -7,7 +7,7 @@ foreach(layer IN LISTS order)
   foreach(file IN LISTS files)
     file(STRINGS ${file} lines REGEX "^#include")
     foreach(line IN LISTS lines)
-      if(line MATCHES "talus/([a-z]+)/")
+      if(line MATCHES "[\"/](base|terrain|physics|simulate|products|fit|io|run)/")
         list(FIND order ${CMAKE_MATCH_1} other)
         if(other GREATER height)
           string(APPEND wrong "\n  ${file}: ${line}")

@@ -75,10 +75,13 @@ class ScratchFile::Mapping {
     return memory;
   }
 
-  void give_back(void* memory, std::size_t bytes) {
+  void give_back(void* memory, std::size_t bytes) noexcept {
     const std::lock_guard guard(mutex_);
     TALUS_EXPECT(bytes % kGrain == 0, "a piece comes back as it was taken");
-    free_[bytes].push_back(memory);
+    try {
+      free_[bytes].push_back(memory);
+    } catch (const std::bad_alloc&) {  // nobody takes the piece again: it goes with the file
+    }
   }
 
   void keep_below_limit() const noexcept {

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <stdexcept>
 #include <system_error>
+#include <vector>
 
 #include "talus/base/error.hpp"
 #include "talus/io/files/output_folder.hpp"
@@ -32,18 +33,23 @@ void CheckpointFileWriter::fail() const {
                            io::cause_of_failure(path_.parent_path(), std::system_category().message(errno)));
 }
 
-CheckpointFileReader::CheckpointFileReader(const std::filesystem::path& file, std::string sha256)
-    : path_(file), sha256_(std::move(sha256)), file_(std::fopen(file.c_str(), "rb")) {
+CheckpointFileReader::CheckpointFileReader(const std::filesystem::path& file, const std::string& sha256)
+    : path_(file), file_(std::fopen(file.c_str(), "rb")) {
   std::error_code error;
   left_ = std::filesystem::file_size(file, error);
   if (!file_ || error) fail();
+  Sha256 sum;
+  std::vector<char> bytes(std::size_t{1} << 16U);
+  while (const std::size_t count = std::fread(bytes.data(), 1, bytes.size(), file_.get()))
+    sum.add({bytes.data(), count});
+  if (sum.digits() != sha256) fail();
+  std::rewind(file_.get());
 }
 
 bool CheckpointFileReader::read(void* to, std::size_t count) {
   if (left_ == 0) return false;
   if (count > left_ || std::fread(to, 1, count, file_.get()) != count) fail();
   left_ -= count;
-  sum_.add({static_cast<const char*>(to), count});
   return true;
 }
 
@@ -55,7 +61,7 @@ std::string CheckpointFileReader::get(std::size_t count) {
 }
 
 void CheckpointFileReader::finish() {
-  if (left_ > 0 || sum_.digits() != sha256_) fail();
+  if (left_ > 0) fail();
 }
 
 void CheckpointFileReader::fail() const {

@@ -35,26 +35,25 @@ class CheckpointFileWriter {
   Sha256 sum_;
 };
 
-/// Reads such a file. Throws InputError if its bytes are not those that were written.
+/// Reads such a file. Throws InputError if its bytes are not those that were written: the checksum is compared before
+/// the first byte is used.
 class CheckpointFileReader {
  public:
-  CheckpointFileReader(const std::filesystem::path& file, std::string sha256);
+  CheckpointFileReader(const std::filesystem::path& file, const std::string& sha256);
   /// The next `count` bytes. Throws InputError if fewer are left.
   std::string get(std::size_t count);
   template <class T>
   bool get_value(T& value) {  // false at the end of the file
     return read(&value, sizeof value);
   }
-  void finish();  ///< compares the checksum
+  void finish();  ///< throws InputError if bytes are left
   [[noreturn]] void fail() const;
 
  private:
   bool read(void* to, std::size_t count);
   std::filesystem::path path_;
-  std::string sha256_;
   std::unique_ptr<std::FILE, CloseFile> file_;
   std::uint64_t left_ = 0;
-  Sha256 sum_;
 };
 
 }  // namespace talus::run

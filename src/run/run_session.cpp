@@ -112,6 +112,7 @@ std::optional<Outcome> RunSession::outcome_of_done() {
   const auto largest = static_cast<int>(processes_.largest(outcome ? static_cast<std::uint64_t>(*outcome) + 1 : 0));
   if (largest == 0) return {};
   outcome = static_cast<Outcome>(largest - 1);
+  if (!processes_.leads()) return outcome;
   if (*outcome == Outcome::TooManyLimits)
     observer_.error("the run is done, but too many trajectories ended at a limit: " + request_.out);
   else

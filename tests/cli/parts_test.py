@@ -122,6 +122,7 @@ class Parts(RunCase):
             process.communicate()
             if self.unfinished(out):
                 break
+        self.assertTrue(finished, "no attempt was killed after its first map")
         written = os.stat(finished[0]).st_mtime_ns
         self.run_scenario(out, "--trajectories", "400", "--resume")
         self.assertEqual(os.stat(self.path(f"{out}/{os.path.basename(finished[0])}")).st_mtime_ns, written)

@@ -13,7 +13,8 @@ inline constexpr double kSlideSpeed = 0.1;
 ///
 /// @param path  cleared first; on return the whole trajectory
 ///
-/// A pure function of the world and the release: the same bits for every caller. Never throws; every loop is bounded.
+/// A pure function of the world and the release: the same bits for every caller. Every loop is bounded;
+/// throws nothing but std::bad_alloc.
 void trace(const World& world, const Release& release, Path& path);
 
 /// Follows the pieces that broke off a block, then the pieces of these pieces, in the order of breaking. At most

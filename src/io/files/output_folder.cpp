@@ -163,9 +163,9 @@ void OutputFolder::commit() {
 }
 
 void OutputFolder::commit_work() {
+  commit(work());  // with its lock: until it has its name no other process may take it
   std::error_code ignored;
-  fs::remove(work() / FolderLock::kName, ignored);
-  commit(work());
+  fs::remove(final_path() / FolderLock::kName, ignored);
   fs::remove_all(temporary(), ignored);
 }
 

@@ -128,7 +128,8 @@ constexpr Number<member> manner(const Bounds& bounds) {
   return {bounds};
 }
 
-/// Whether a search stays within the bounds. Otherwise a fit could write a file that cannot be read.
+/// Whether a search stays within the bounds. Otherwise a fit could write a file that cannot be read. A search in
+/// multiples of a median, or of the inverse, is cut off at the bounds by `candidates_of`.
 constexpr bool within(const Bounds& bounds, const std::optional<SearchRange>& search) {
   return !search || search->times != Typical::One || !search->inverse_unit.empty() ||
          (bounds.min <= search->lower && search->upper <= bounds.max);
