@@ -211,7 +211,7 @@ Outcome RunSession::deliver() {
     ended = kInterrupted;
   }
   ended = std::stoi(processes_.tell(std::to_string(ended)));
-  if (ended == kInterrupted) throw interruption;
+  if (ended == kInterrupted) throw Interrupted(interruption);
   return static_cast<Outcome>(ended);
 }
 
