@@ -49,7 +49,7 @@ bool Stems::go(double way, double diameter) {
 
 Vec3 Stems::hit(const Vec3& velocity, double mass) {
   const double capacity = capacity_ * stem_share(eccentricity_) / mass;
-  const Vec3 after = velocity_after_stem(velocity, std::min(0.5 * velocity.squaredNorm(), capacity), eccentricity_);
+  Vec3 after = velocity_after_stem(velocity, std::min(0.5 * velocity.squaredNorm(), capacity), eccentricity_);
   draw();
   return after;
 }
