@@ -25,7 +25,7 @@ struct Lines {
 };
 
 /// @tparam kBounded  the flight ends after `longest`; if false, the compiler removes this check
-template <bool kBounded>
+template <bool kBounded>  // NOLINTNEXTLINE(readability-function-size): 70 lines, one loop without calls
 Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path,
              [[maybe_unused]] double longest) {
   const Grid& grid = surface.grid();

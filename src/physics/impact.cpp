@@ -92,8 +92,8 @@ Rebound rebound(const Vec3& velocity, const Vec3& spin, const Vec3& n, const Res
   const double slip = u.norm();
   const double impulse = (1.0 + k.normal) * v_n;
   const Vec3 friction = slip > 0.0 ? Vec3(friction_impulse(slip, impulse, tan_phi) / slip * u) : Vec3(Vec3::Zero());
-  const Rebound after{k.tangential * v_tan - friction + k.normal * v_n * n,
-                      k.tangential * w_tan + 2.5 / arm * n.cross(friction) + w_normal};
+  Rebound after{k.tangential * v_tan - friction + k.normal * v_n * n,
+                k.tangential * w_tan + 2.5 / arm * n.cross(friction) + w_normal};
   TALUS_EXPECT(after.velocity.squaredNorm() + 0.4 * arm * arm * after.spin.squaredNorm() <=
                    (1.0 + 1e-9) * (velocity.squaredNorm() + 0.4 * arm * arm * spin.squaredNorm()),
                "energy never grows at an impact, by the law's moment of inertia");
