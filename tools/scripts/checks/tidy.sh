@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # clang-tidy on the sources of some folders, all where none is named: tidy.sh BUILD_FOLDER [FOLDER...]. BUILD_FOLDER holds
-# compile_commands.json of a build by clang. All sources take about 25 minutes on two processors.
+# compile_commands.json of a build by clang.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 build="$1"

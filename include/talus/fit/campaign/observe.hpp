@@ -71,7 +71,7 @@ struct ObserveOptions {
 ///
 /// Common random numbers: the draws of (seed, block, trial), the place of release in its disc and the errors of the
 /// measurement among them, do not depend on the model, so that two models are compared with the same random numbers.
-/// The same bits for any number of threads and any choice of blocks. A screen's values are those of `screens.csv`.
+/// Bits are equal for any number of threads and any choice of blocks. A screen's values are those of `screens.csv`.
 /// Precondition: model.grounds has one entry per zone.
 std::vector<BlockRuns> observe(const Campaign& campaign, const Model& model, const ObserveOptions& options);
 

@@ -65,7 +65,7 @@ struct DiagnosisRules {
   /// Share of the objective that an effect must take away on the fitting rows [-]: gains differ by 1 to 2 % from seed
   /// to seed.
   double worth_naming = 0.02;
-  /// The same share in cross-validation [-]: half, as each fold is fitted to fewer blocks and pays the price of its
+  /// Least share in cross-validation [-]: half, as each fold is fitted to fewer blocks and pays the price of its
   /// numbers.
   double worth_unseen = 0.01;
   /// Least amount of an effect, in units of what one would notice [-]: less of it explains nothing.
