@@ -167,5 +167,32 @@ TEST_F(HazardFile, StagedFilesReplaceOnlyTheirOwn) {
   EXPECT_EQ(left, 3U) << "run.json, hazard.json, b.tif";
 }
 
+/// Whatever stops a replacement halfway: of each file the earlier or the new one is still there.
+TEST_F(HazardFile, AStoppedReplacementLosesNoFile) {
+  const std::filesystem::path out(path("out"));
+  std::filesystem::create_directories(out / "b.tif" / "in the way");
+  std::ofstream(out / "run.json") << "{}";
+  std::ofstream(out / "a.tif") << "earlier";
+  std::ofstream(out / "c.tif") << "earlier";
+  std::ofstream(out / "hazard.json") << R"({"files": ["a.tif", "b.tif", "c.tif"]})";
+  std::filesystem::path hidden;
+  {
+    StagedFiles staged(out, "hazard.json", true);
+    hidden = staged.temporary();
+    for (const char* name : {"a.tif", "b.tif", "c.tif", "hazard.json"}) std::ofstream(hidden / name) << "new";
+    EXPECT_THROW(staged.commit(), std::runtime_error);  // b.tif cannot replace a folder
+  }
+  const auto text_of = [](const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    std::string text;
+    stream >> text;
+    return text;
+  };
+  EXPECT_EQ(text_of(out / "a.tif"), "new");
+  EXPECT_EQ(text_of(out / "c.tif"), "earlier");
+  for (const char* name : {"b.tif", "c.tif", "hazard.json"}) EXPECT_EQ(text_of(hidden / name), "new") << name;
+  EXPECT_FALSE(std::filesystem::exists(out / "hazard.json")) << "the files count as incomplete";
+}
+
 }  // namespace
 }  // namespace talus::io

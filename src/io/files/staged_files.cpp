@@ -54,15 +54,22 @@ void StagedFiles::commit() {
     if (fs::exists(folder_ / name) && std::ranges::count(earlier_, name) == 0)
       throw InputError((folder_ / name).string() + ": is there and none of the files of an earlier " + record_ +
                        ", so it is not replaced; move it, or give it another name");
-  std::error_code error;
-  fs::remove(folder_ / record_, error);  // first: without it the files count as incomplete
-  for (const std::string& name : earlier_) fs::remove(folder_ / name, error);
-  std::vector<std::string> names = files();
-  std::stable_partition(names.begin(), names.end(), [this](const std::string& name) { return name != record_; });
-  for (const std::string& name : names) {
-    error = StagedPath::give_name(temporary() / name, folder_ / name);
-    if (error) throw std::runtime_error(name + ": cannot be given this name: " + error.message());
-  }
+  const std::vector<std::string> names = files();
+  std::error_code ignored;
+  fs::remove(folder_ / record_, ignored);  // first: without it the files count as incomplete
+  for (const std::string& name : names)
+    if (name != record_) give_name(name);  // in place of an earlier file, which is there until then
+  for (const std::string& name : earlier_)
+    if (std::ranges::count(names, name) == 0) fs::remove(folder_ / name, ignored);
+  if (std::ranges::count(names, record_) > 0) give_name(record_);
+}
+
+void StagedFiles::give_name(const std::string& name) {
+  const std::error_code error = StagedPath::give_name(temporary() / name, folder_ / name);
+  if (!error) return;
+  staged_.keep();
+  throw std::runtime_error(name + ": cannot be given this name: " + error.message() + "; the new files are kept in " +
+                           temporary().string());
 }
 
 }  // namespace talus::io

@@ -21,10 +21,13 @@ class StagedFiles {
   const std::filesystem::path& temporary() const { return staged_.hidden(); }
   /// Names of what was written so far, in the order of the alphabet.
   std::vector<std::string> files() const;
-  /// Removes the earlier files and gives the new ones their names. Throws std::runtime_error.
+  /// Gives the new files their names, in place of earlier ones, and removes the earlier files that have no successor. A
+  /// program that is killed meanwhile leaves each file, earlier or new. Throws std::runtime_error; what has not got its
+  /// name yet then stays in `temporary`.
   void commit();
 
  private:
+  void give_name(const std::string& name);
   std::filesystem::path folder_;
   std::string record_;
   StagedPath staged_;
