@@ -92,6 +92,25 @@ TEST(Candidates, StayWithinTheBoundsOfTheRegistry) {
     EXPECT_TRUE(seen.contains(std::string(entry.name)) || entry.sought == Sought::Nowhere) << entry.name;
 }
 
+/// The search of vegetation-drag goes to 3 kg/s per kg of the median block, and no farther than 5000 kg/s, the bound of
+/// a file. docs/effects.md, "vegetation-drag".
+TEST(Candidates, SearchInMultiplesOfTheMedianBlock) {
+  Campaign c = measured_campaign();
+  for (const auto& [mass, most] : {std::pair{200.0, 600.0}, {1000.0, 3000.0}, {5000.0, 5000.0}}) {
+    for (MeasuredBlock& b : c.blocks) b.mass = b.holdout ? 1e5 : mass;
+    c.blocks[1].mass *= 10.0;  // the median does not see it
+    int found = 0;
+    for (const Candidate& candidate : candidates_of(c, model_of_slope(), fitting_runs(c, 20), {}))
+      for (const Parameter& p : candidate.parameters)
+        if (p.key == "effects.vegetation-drag.coefficient") {
+          ++found;
+          EXPECT_EQ(p.lower, 0.0);
+          EXPECT_NEAR(p.upper, most, 1e-9 * most) << mass;
+        }
+    EXPECT_GT(found, 0);
+  }
+}
+
 /// Results list the candidates in this order, whatever the order of the registry. New effects may stand anywhere.
 TEST(Candidates, StandInTheOrderOfTheirTurns) {
   Campaign c = measured_campaign();

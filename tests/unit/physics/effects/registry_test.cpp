@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -86,14 +88,41 @@ TEST(Registry, DefaultsAreAllowedAndOff) {
   }
 }
 
-/// A search must not leave the bounds of a file. (Once a search went to 5 where a file may say 3.)
-TEST(Registry, SearchesStayWithinTheBounds) {
+/// A search that leaves the bounds of a file does not compile, by this check. (Once a search went to 5 where a file may
+/// say 3.) A search in multiples of a median is cut off where it is made: test `Candidates`.
+TEST(Registry, RefusesASearchBeyondTheBounds) {
+  const Bounds bounds{"air-drag.coefficient", "1", "C_d", 0.0, 3.0};
+  EXPECT_TRUE(registry::within(bounds, std::nullopt));
+  EXPECT_TRUE(registry::within(bounds, SearchRange{.lower = 0.0, .upper = 3.0, .noticed = 1.0}));
+  EXPECT_FALSE(registry::within(bounds, SearchRange{.lower = 0.0, .upper = 5.0, .noticed = 1.0}));
+  EXPECT_FALSE(registry::within(bounds, SearchRange{.lower = -1.0, .upper = 3.0, .noticed = 1.0}));
+}
+
+/// "VegetationDrag" for "vegetation-drag": the name of the tests of an effect.
+std::string name_of_tests(std::string_view effect) {
+  std::string name;
+  bool capital = true;
+  for (const char c : effect) {
+    if (c != '-') name += capital ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+    capital = c == '-';
+  }
+  return name;
+}
+
+/// The text of the tests of single effects.
+std::string tests_of_effects() {
+  const std::string folder = "tests/unit/physics/effects";
+  std::string text;
+  for (const auto& file : std::filesystem::directory_iterator(std::string(TALUS_SOURCE_DIR) + "/" + folder))
+    text += text_of_file(folder + "/" + file.path().filename().string());
+  return text;
+}
+
+TEST(Registry, EachEffectHasTestsOfItsOwn) {
+  const std::string tests = tests_of_effects();
   for (const EffectEntry& entry : effect_entries())
-    for (const EffectField& field : entry.fields()) {
-      if (!field.search || field.search->times != Typical::One || !field.search->inverse_unit.empty()) continue;
-      EXPECT_GE(field.search->lower, field.min) << field.key;
-      EXPECT_LE(field.search->upper, field.max) << field.key;
-    }
+    EXPECT_NE(tests.find("\nTEST(" + name_of_tests(entry.name) + ", "), std::string::npos)
+        << entry.name << " has no TEST(" << name_of_tests(entry.name) << ", ...) in tests/unit/physics/effects";
 }
 
 TEST(Registry, EachEffectHasItsSectionInTheDocs) {
@@ -107,6 +136,7 @@ TEST(Registry, EachEffectHasItsSectionInTheDocs) {
       const std::vector<std::string> row =
           row_of(section, std::string(entry.key_of(field)));  // key, unit, bounds, default
       ASSERT_GE(row.size(), 4U) << field.key << " has no row in the table of its section";
+      EXPECT_EQ(row[1], " " + std::string(field.unit) + " ") << field.key;
       EXPECT_EQ(numbers_in(row[2]), (std::vector<double>{field.min, field.max})) << field.key;
       EXPECT_EQ(row[2].find("above") != std::string::npos, field.ends == Bounds::AboveMin) << field.key;
       ASSERT_FALSE(numbers_in(row[3]).empty()) << field.key;
