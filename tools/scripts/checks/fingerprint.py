@@ -128,7 +128,7 @@ class Outputs:
         self.append("data/valley/scenario.toml", "data/valley/nets.toml", barriers, few)
         self.append("data/valley/effects.toml", "data/valley/netseffects.toml", barriers)
 
-    def together(self):
+    def parts_rounds_ranks(self):
         scenario = ["data/valley/nets.toml", "-q"]
         for part in ("1/2", "2/2"):
             self.call("run", *scenario, "-o", f"part{part[0]}", "--part", part)
@@ -154,7 +154,7 @@ class Outputs:
         self.valley()
         if self.options.brief:
             return
-        self.together()
+        self.parts_rounds_ranks()
         self.measured()
         if not self.options.quick:
             self.gar()
