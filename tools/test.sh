@@ -32,7 +32,7 @@ stage "clang-tidy on the engine"  # on all sources before a release: tools/scrip
 tools/scripts/checks/tidy.sh build/dev src/base src/terrain src/physics
 stage "sanitizers: build"
 cmake --preset asan
-cmake --build --preset asan --target core_tests io_tests
+cmake --build --preset asan --target core_tests io_tests run_tests
 stage "sanitizers: tests of core and files"
 ctest --preset asan -j 2 -LE "slow|cli|example" -E "$statistics"
 stage "done"
