@@ -1,6 +1,6 @@
-#include <algorithm>
+#include "crease.hpp"
 
-#include "slope.hpp"
+#include <algorithm>
 
 namespace talus {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crease.hpp"
 #include "slope.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/physics/flight.hpp"

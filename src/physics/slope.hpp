@@ -43,19 +43,4 @@ void record_piece(Path& path, const Slope& slope, const Motion& before, const Mo
 /// Time in which a block of speed `s` and acceleration `a` covers a distance [s]; at most `longest`.
 double time_to_cover(double distance, double s, double a, double longest);
 
-/// Result of a piece along a crease.
-enum class CreaseEnd { Moved, Held };
-
-/// Slides a block along the concave edge between two patches that both press it back onto the edge. This is the limit
-/// of crossing the edge to and fro. The block turns along the edge and keeps its speed. Gravity acts along the edge;
-/// friction is the mean of the two slopes. The piece ends at the end of the edge, or after a quarter of a cell.
-/// docs/physics.md, "Sliding".
-///
-/// @param slope     the patch of the block
-/// @param beyond    the patch on the other side of the edge
-/// @param farthest  longest way [m]
-/// @return          Held if the block is at rest and friction exceeds gravity along the edge, or if it has no velocity
-///                  along a level edge
-CreaseEnd slide_along_crease(const Slope& slope, const Slope& beyond, Motion& motion, double farthest, Path& path);
-
 }  // namespace talus

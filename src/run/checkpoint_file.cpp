@@ -7,6 +7,7 @@
 #include <system_error>
 #include <vector>
 
+#include "io/gdal/cause_of_failure.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/files/output_folder.hpp"
 

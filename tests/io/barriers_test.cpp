@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "files.hpp"
-#include "talus/io/gdal/vectors.hpp"
+#include "talus/io/gdal/lines.hpp"
 
 namespace talus::io::test {
 

@@ -1,5 +1,5 @@
 #include "files.hpp"
-#include "talus/io/gdal/vectors.hpp"
+#include "talus/io/gdal/lines.hpp"
 
 namespace talus::io::test {
 

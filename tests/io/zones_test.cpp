@@ -1,3 +1,5 @@
+#include "talus/io/gdal/zones.hpp"
+
 #include <algorithm>
 
 #include "files.hpp"

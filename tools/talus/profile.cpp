@@ -8,6 +8,7 @@
 #include "progress.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
+#include "talus/io/reports/profile_plot.hpp"
 #include "talus/io/results/run_record.hpp"
 #include "talus/io/results/write_crossings.hpp"
 #include "talus/io/results/write_profile.hpp"

@@ -6,11 +6,12 @@
 #include "campaign_tables.hpp"
 #include "io/files/checksum.hpp"
 #include "io/gdal/dataset.hpp"
-#include "io/scenario/scenario_spec.hpp"
+#include "io/scenario/named_file.hpp"
 #include "io/scenario/table_reader.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
-#include "talus/io/gdal/vectors.hpp"
+#include "talus/io/gdal/lines.hpp"
+#include "talus/io/gdal/zones.hpp"
 
 namespace talus::io {
 namespace {

@@ -4,7 +4,9 @@
 #include <sstream>
 
 #include "io/scenario/barrier_keys.hpp"
-#include "io/scenario/scenario_spec.hpp"
+#include "io/scenario/scenario_flags.hpp"
+#include "io/scenario/scenario_keys.hpp"
+#include "io/scenario/scenario_text.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "talus/io/files/output_folder.hpp"
+#include "cause_of_failure.hpp"
 
 namespace talus::io {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "dataset.hpp"
 #include "point_index.hpp"
-#include "talus/io/scenario/loaded_scenario.hpp"
+#include "talus/io/origin/origin.hpp"
 
 namespace talus::io {
 

@@ -1,8 +1,9 @@
+#include "talus/io/gdal/lines.hpp"
+
 #include <algorithm>
 
 #include "layer.hpp"
 #include "talus/base/error.hpp"
-#include "talus/io/gdal/vectors.hpp"
 
 namespace talus::io {
 namespace {

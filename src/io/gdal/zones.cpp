@@ -1,3 +1,5 @@
+#include "talus/io/gdal/zones.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +9,6 @@
 #include "layer.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
-#include "talus/io/gdal/rasters.hpp"
 
 namespace talus::io {
 

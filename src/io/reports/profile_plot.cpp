@@ -1,8 +1,9 @@
+#include "talus/io/reports/profile_plot.hpp"
+
 #include <algorithm>
 
 #include "svg.hpp"
 #include "talus/base/text.hpp"
-#include "talus/io/results/write_profile.hpp"
 
 namespace talus::io {
 namespace {

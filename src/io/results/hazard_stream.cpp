@@ -4,6 +4,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "io/gdal/cause_of_failure.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/files/output_folder.hpp"
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "io/gdal/cause_of_failure.hpp"
 #include "io/gdal/dataset.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/base/version.hpp"

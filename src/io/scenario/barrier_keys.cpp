@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "scenario_text.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 

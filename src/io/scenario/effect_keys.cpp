@@ -1,7 +1,8 @@
+#include "effect_keys.hpp"
+
 #include <algorithm>
 #include <filesystem>
 
-#include "effect_spec.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 

@@ -1,6 +1,7 @@
+#include "effect_places.hpp"
+
 #include <algorithm>
 
-#include "effect_spec.hpp"
 #include "io/gdal/layer.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/gdal/rasters.hpp"

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "io/files/checksum.hpp"
-#include "scenario_spec.hpp"
+#include "scenario_text.hpp"
 
 namespace talus::io {
 namespace {

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "effect_spec.hpp"
+#include "effect_places.hpp"
 #include "io/files/checksum.hpp"
 #include "io/gdal/csv_table.hpp"
+#include "profile_keys.hpp"
 #include "profile_line.hpp"
-#include "scenario_spec.hpp"
+#include "scenario_text.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/presets.hpp"

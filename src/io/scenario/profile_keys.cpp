@@ -1,10 +1,13 @@
+#include "profile_keys.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
-#include "effect_spec.hpp"
+#include "effect_keys.hpp"
 #include "ground_keys.hpp"
-#include "scenario_spec.hpp"
+#include "scenario_flags.hpp"
+#include "scenario_keys.hpp"
 #include "table_reader.hpp"
 #include "talus/base/text.hpp"
 #include "talus/physics/effects/registry.hpp"

@@ -1,6 +1,7 @@
+#include "scenario_flags.hpp"
+
 #include <filesystem>
 
-#include "scenario_spec.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
@@ -24,13 +25,6 @@ void lay_flag(ScenarioSpec& spec, const char* key, double value, std::vector<std
 }
 
 }  // namespace
-
-std::string absolute_path(const std::string& given, const std::filesystem::path& base) {
-  const std::filesystem::path path = (base / given).lexically_normal();
-  std::error_code none;
-  if (!std::filesystem::exists(path, none) && given.find(':') != std::string::npos) return given;
-  return std::filesystem::absolute(path).lexically_normal().string();
-}
 
 void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults) {
   spec.default_ground = {"default", std::string(kDefaultPreset), find_preset(kDefaultPreset).ground, {}, {}};

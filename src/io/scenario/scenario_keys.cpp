@@ -1,14 +1,15 @@
+#include "scenario_keys.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
 #include "barrier_keys.hpp"
-#include "effect_spec.hpp"
+#include "effect_keys.hpp"
 #include "frequency_keys.hpp"
 #include "ground_keys.hpp"
-#include "scenario_spec.hpp"
-#include "table_reader.hpp"
+#include "scenario_flags.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 

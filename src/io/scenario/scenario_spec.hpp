@@ -1,19 +1,13 @@
 #pragma once
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "named_file.hpp"
 #include "talus/io/scenario/loaded_scenario.hpp"
 
 namespace talus::io {
-
-/// A file that the input names.
-struct NamedFile {
-  std::string path;   ///< absolute; empty: none
-  std::string where;  ///< "scenario.toml:3: dem = 'dem.tif'" or "flag --dem = 'dem.tif'", for messages
-};
 
 /// A kind of ground as the input describes it.
 struct ZoneSpec {
@@ -77,48 +71,5 @@ struct ScenarioSpec {
     return found == origins.end() ? "default" : found->second;
   }
 };
-
-/// Reads the scenario file, if one is given, and overrides it with the flags. Faults of single settings are collected.
-/// A fault that ends the reading (no such file, no TOML) is thrown as InputError.
-ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults);
-
-/// Reads the file of a profile as `read_spec` reads a scenario; `profile` of the result is set.
-ScenarioSpec read_profile_spec(const RunFlags& flags, std::vector<std::string>& faults);
-
-class TableReader;
-/// Reads the keys that a scenario and a profile share: seed, trajectories, day, [blocks], [model], [effects].
-void read_common_keys(ScenarioSpec& spec, TableReader& top, std::vector<std::string>& faults);
-
-/// Puts faults in the order of the lines of the file that they are in; those without a line first.
-void sort_by_line(std::vector<std::string>& faults, const std::string& file);
-/// Adds a fault for each file that is named and not there.
-void check_files(const std::vector<const NamedFile*>& files, std::vector<std::string>& faults);
-
-/// Reads what a scenario may include, and a model for a campaign: [ground] default, [ground.zones.*], the impact law in
-/// [model], [effects.*], `line` of [barriers], [[instrument_bias]]. Any other key is a fault.
-///
-/// @param name    of the file in messages
-/// @param origin  for the record: "include fitted.toml"
-void read_model_keys(ScenarioSpec& spec, const std::string& path, const std::string& name, const std::string& origin,
-                     std::vector<std::string>& faults);
-
-/// The absolute path of a file given relative to `base`. Names that are no files (PG:..., WFS:...) stay as they are,
-/// for GDAL.
-std::string absolute_path(const std::string& given, const std::filesystem::path& base);
-
-/// Sets the default ground to the preset of the flag, else to the default preset.
-void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults);
-/// Overrides the scenario file with the other flags.
-void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults);
-
-/// A key or text as TOML writes it.
-std::string toml_key(const std::string& name);
-std::string toml_text(const std::string& text);
-
-/// The text of a scenario file that reads back as exactly this, with every setting written out and absolute paths.
-std::string toml_of(const ScenarioSpec& spec);
-
-/// Every setting with its value and origin, in the order of toml_of.
-std::vector<Setting> settings_of(const ScenarioSpec& spec);
 
 }  // namespace talus::io

@@ -1,7 +1,8 @@
+#include "scenario_text.hpp"
+
 #include <algorithm>
 
 #include "barrier_keys.hpp"
-#include "scenario_spec.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "talus/base/expect.hpp"
+#include "talus/simulate/scenario/block_class.hpp"
 
 namespace talus {
 namespace {
@@ -12,17 +13,6 @@ namespace {
 double volume_at(const VolumePowerLaw& law, double share) {
   const double low = std::pow(law.volume.low, -law.exponent), high = std::pow(law.volume.high, -law.exponent);
   return std::pow(low - share * (low - high), -1.0 / law.exponent);
-}
-
-std::size_t class_at(const std::vector<BlockClass>& classes, double share) {
-  double total = 0.0;
-  for (const BlockClass& c : classes) total += c.weight;
-  double below = 0.0;
-  for (std::size_t i = 0; i + 1 < classes.size(); ++i) {
-    below += classes[i].weight;
-    if (share * total < below) return i;
-  }
-  return classes.empty() ? 0 : classes.size() - 1;
 }
 
 double diameter_at(const Blocks& blocks, double share_of_class, double share) {
@@ -57,11 +47,6 @@ Release make_release(const Scenario& scenario, std::uint32_t source, std::uint32
   release.motion.position = {x, y, scenario.surface.height(x, y).value_or(kNotGiven) + height};
   release.motion.velocity = feature.velocity;
   return release;
-}
-
-std::size_t class_of_block(const Scenario& scenario, std::uint32_t source, std::uint32_t block) {
-  const Random random(scenario.seed, source, block, Purpose::Release);
-  return class_at(scenario.blocks.classes, uniform(random.words(1)[0]));
 }
 
 bool is_recorded(const Scenario& scenario, std::uint32_t source, std::uint32_t block) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "talus/simulate/tally/source_reach.hpp"
+#include "talus/simulate/plan/region.hpp"
 
 namespace talus {
 namespace {

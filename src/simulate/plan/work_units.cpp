@@ -6,11 +6,6 @@
 
 namespace talus {
 
-ProcessGroup& alone() {
-  thread_local ProcessGroup one;  // simulations of several threads must not share its counter
-  return one;
-}
-
 WorkUnits::WorkUnits(ProcessGroup& processes, const Range& range, std::uint64_t chunk, bool fixed)
     : processes_(processes),
       range_(range),

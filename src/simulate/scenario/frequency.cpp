@@ -4,7 +4,7 @@
 
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
-#include "talus/simulate/plan/plan.hpp"
+#include "talus/simulate/scenario/block_class.hpp"
 
 namespace talus {
 namespace {

@@ -75,7 +75,4 @@ void replace_text(const std::filesystem::path& file, std::string_view text);
 /// The names of the files in a folder, in the order of the alphabet.
 std::vector<std::string> files_in(const std::filesystem::path& folder);
 
-/// Cause why a library could not write into a folder: "the disk is full" if it is, else the first of `messages`.
-std::string cause_of_failure(const std::filesystem::path& folder, const std::string& messages);
-
 }  // namespace talus::io

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "talus/io/scenario/loaded_scenario.hpp"
+#include "talus/io/origin/origin.hpp"
 
 namespace talus::io {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "talus/io/scenario/profile_file.hpp"
+#include "talus/products/profile_bins.hpp"
 #include "talus/simulate/screens/screens.hpp"
-#include "talus/simulate/tally/profile_bins.hpp"
 
 namespace talus::io {
 
@@ -32,10 +32,5 @@ class ProfileWriter {
   struct State;
   std::unique_ptr<State> state_;
 };
-
-/// A drawing of the results, SVG that needs no other file: the profile with some paths, the envelopes of speed, energy
-/// and jump height along it, and the share of the blocks that goes farther than a distance.
-std::string profile_svg(const LoadedProfile& profile, const ProfileResults& results,
-                        std::span<const RecordedPath> paths);
 
 }  // namespace talus::io

@@ -4,40 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "talus/io/origin/origin.hpp"
 #include "talus/simulate/scenario/scenario.hpp"
 
 namespace talus::io {
-
-/// A parameter as the run used it, for run.json.
-struct Setting {
-  std::string key;    ///< "ground.zones.road.En50"
-  std::string value;  ///< in the units of the file
-  std::string unit;   ///< "m3/s2"; empty if there is none
-  std::string
-      source;  ///< "scenario", "flag --seed", "preset forest-road-3d", "default", "attribute diameter of cliffs.shp"
-};
-
-/// A file that was read.
-struct InputFile {
-  std::string role;  ///< "dem", "sources", "ground", "screens", "scenario"
-  std::string path;  ///< absolute
-  std::string
-      sha256;  ///< of the file's bytes (a shapefile: of .shp, .dbf, .shx, .prj in this order, one after the other)
-};
-
-/// How a layer in another coordinate system was brought to the DEM's.
-struct Reprojection {
-  std::string role;
-  std::string operation;             ///< PROJ's name of the operation it chose
-  std::optional<double> accuracy_m;  ///< nothing: unknown
-};
-
-/// Place of the grid on the earth, for the writers.
-struct GeoReference {
-  std::string crs_wkt;
-  double west = 0.0, north = 0.0;     ///< upper-left corner in that system [m]
-  double cell_x = 1.0, cell_y = 1.0;  ///< [m], both > 0
-};
 
 struct ScenarioSpec;
 

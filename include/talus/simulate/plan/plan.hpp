@@ -7,9 +7,6 @@ namespace talus {
 /// A block released where there is no terrain has a height of NaN and ends `left` at once.
 Release make_release(const Scenario& scenario, std::uint32_t source, std::uint32_t block);
 
-/// Index of the block's class in `blocks.classes`; 0 if there are no classes.
-std::size_t class_of_block(const Scenario& scenario, std::uint32_t source, std::uint32_t block);
-
 /// Whether the path of this block is one of the `scenario.output.paths` that are written as vectors: evenly spread
 /// over all releases, whatever the number of threads.
 bool is_recorded(const Scenario& scenario, std::uint32_t source, std::uint32_t block);

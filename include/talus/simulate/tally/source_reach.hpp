@@ -4,13 +4,10 @@
 #include <unordered_map>
 
 #include "talus/base/scratch.hpp"
+#include "talus/simulate/plan/region.hpp"
 #include "talus/simulate/tally/bytes.hpp"
 
 namespace talus {
-
-/// The grid is scored in square regions of this many cells on a side.
-inline constexpr int kRegionSide = 64;
-inline constexpr int kRegionCells = kRegionSide * kRegionSide;
 
 /// The cells that the trajectories of one source cell have reached so far, by region. Needed only if several batches
 /// share a source cell. The lock of a region in the tally also guards its cells here.

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "support/scenes.hpp"
-#include "talus/simulate/tally/source_reach.hpp"
+#include "talus/simulate/plan/region.hpp"
 
 namespace talus {
 namespace {

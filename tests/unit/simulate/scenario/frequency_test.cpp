@@ -6,6 +6,7 @@
 #include "support/scenarios.hpp"
 #include "talus/base/error.hpp"
 #include "talus/simulate/plan/plan.hpp"
+#include "talus/simulate/scenario/block_class.hpp"
 
 namespace talus {
 namespace {

@@ -1,9 +1,9 @@
-#include "talus/simulate/tally/profile_bins.hpp"
+#include "talus/products/profile_bins.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "span_maxima.hpp"
+#include "simulate/tally/span_maxima.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/simulate/scenario/scenario.hpp"
 

@@ -1,10 +1,10 @@
-#include "talus/io/gdal/objects_file.hpp"
+#include "talus/io/results/objects_file.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "geopackage.hpp"
-#include "layer.hpp"
+#include "io/gdal/geopackage.hpp"
+#include "io/gdal/layer.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"

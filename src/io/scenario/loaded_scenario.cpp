@@ -1,15 +1,19 @@
+#include "talus/io/scenario/loaded_scenario.hpp"
+
 #include <algorithm>
 #include <filesystem>
 #include <functional>
 
 #include "barrier_keys.hpp"
-#include "effect_spec.hpp"
+#include "effect_places.hpp"
 #include "io/files/checksum.hpp"
-#include "io/gdal/dataset.hpp"
-#include "scenario_spec.hpp"
+#include "scenario_keys.hpp"
+#include "scenario_text.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/gdal/lines.hpp"
 #include "talus/io/gdal/vectors.hpp"
+#include "talus/io/gdal/zones.hpp"
 
 namespace talus::io {
 
@@ -102,20 +106,6 @@ void record_inputs(const ScenarioSpec& spec, LoadedScenario& out) {
 }
 
 }  // namespace
-
-void check_files(const std::vector<const NamedFile*>& files, std::vector<std::string>& faults) {
-  start_gdal();
-  for (const NamedFile* file : files) {
-    if (file->path.empty()) continue;
-    VSIStatBufL status;
-    std::error_code none;
-    const bool local = std::filesystem::path(file->path).is_absolute() && file->path.rfind("/vsi", 0) != 0;
-    if (local && !std::filesystem::exists(file->path, none))
-      faults.push_back(file->where + ": no such file (" + file->path + ")");
-    if (file->path.rfind("/vsi", 0) == 0 && VSIStatL(file->path.c_str(), &status) != 0)
-      faults.push_back(file->where + ": no such file");
-  }
-}
 
 LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* all_faults, const RasterMemory& memory) {
   std::vector<std::string> faults;

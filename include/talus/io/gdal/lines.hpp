@@ -1,0 +1,32 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "talus/io/gdal/rasters.hpp"
+#include "talus/simulate/scenario/scenario.hpp"
+
+namespace talus::io {
+
+/// Screens (lines whose crossings are recorded) from a vector file.
+struct ScreenLayer {
+  std::vector<Screen> screens;
+  std::vector<Reprojection> reprojections;
+  std::vector<std::string> warnings;
+};
+
+/// Reads screens: lines with a field `id` (text or whole number; else the number of the feature). Lines of the same id,
+/// and the parts of a multiline, are one screen. A plain CSV with columns id,wkt is in the system of the DEM.
+ScreenLayer read_screens(const std::string& path, const Terrain& terrain);
+
+/// Barriers from a vector file.
+struct BarrierLayer {
+  std::vector<Barrier> barriers;
+  std::vector<Reprojection> reprojections;
+  std::vector<std::string> warnings;
+};
+
+/// Reads barriers: lines with the fields `height` [m] and `capacity` [kJ], which must be there, and `id` as for
+/// screens. Each feature is one barrier.
+BarrierLayer read_barriers(const std::string& path, const Terrain& terrain);
+
+}  // namespace talus::io

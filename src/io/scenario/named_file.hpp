@@ -1,0 +1,21 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace talus::io {
+
+/// A file that the input names.
+struct NamedFile {
+  std::string path;   ///< absolute; empty: none
+  std::string where;  ///< "scenario.toml:3: dem = 'dem.tif'" or "flag --dem = 'dem.tif'", for messages
+};
+
+/// The absolute path of a file given relative to `base`. Names that are no files (PG:..., WFS:...) stay as they are,
+/// for GDAL.
+std::string absolute_path(const std::string& given, const std::filesystem::path& base);
+
+/// Adds a fault for each file that is named and not there.
+void check_files(const std::vector<const NamedFile*>& files, std::vector<std::string>& faults);
+
+}  // namespace talus::io

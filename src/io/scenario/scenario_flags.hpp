@@ -1,0 +1,15 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scenario_spec.hpp"
+
+namespace talus::io {
+
+/// Sets the default ground to the preset of the flag, else to the default preset.
+void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults);
+
+/// Overrides the scenario file with the other flags.
+void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults);
+
+}  // namespace talus::io
