@@ -7,20 +7,30 @@ namespace {
 
 constexpr double kLargestShare = 0.25;  // of a cell, per piece: the twist of the patches may end the crease
 
-/// The edge between two patches: a straight line in space.
+/// The edge between two patches, or the crease of one: a straight line in space.
 struct Edge {
   Vec3 direction;  // unit, towards north or east
   double length;   // of the whole edge, in space [m]
   double share;    // position of the block along it, 0..1
 };
 
+/// The crease of the patch, towards east.
+Edge crease_edge(const Slope& slope, const Eigen::Vector2d& place) {
+  const Grid& grid = slope.surface.grid();
+  const double sign = slope.crease == Crease::Rising ? 1.0 : -1.0;
+  const Vec3 direction(grid.cell_x, sign * grid.cell_y, slope.patch.east + sign * slope.patch.north);
+  const double length = direction.norm();
+  return {direction / length, length, slope.p_of(place)};
+}
+
 Edge edge_between(const Slope& slope, const Slope& beyond, const Eigen::Vector2d& place) {
+  if (slope.at == beyond.at) return crease_edge(slope, place);
   const Grid& grid = slope.surface.grid();
   const bool northward = slope.at.row == beyond.at.row;
   const bool far_side = northward ? beyond.at.column > slope.at.column : beyond.at.row > slope.at.row;
-  const double twist = far_side ? slope.patch.twist : 0.0;
+  const double twist = far_side ? slope.whole.twist : 0.0;  // at a corner the edge may belong to the other half
   const double plan = northward ? grid.cell_y : grid.cell_x;
-  const double rise = (northward ? slope.patch.north : slope.patch.east) + twist;
+  const double rise = (northward ? slope.whole.north : slope.whole.east) + twist;
   const double length = std::sqrt(plan * plan + rise * rise);
   const Vec3 direction = northward ? Vec3(0.0, plan, rise) : Vec3(plan, 0.0, rise);
   return {direction / length, length, northward ? slope.q_of(place) : slope.p_of(place)};

@@ -40,7 +40,7 @@ Piece make_piece(const Slope& slope, const Vec2& place, const Vec2& v, double du
   return piece;
 }
 
-/// The edge at which a piece leaves its patch: the time, and the step to the next patch.
+/// The edge at which a piece leaves its facet: the time, and the step to the next patch; no step at a crease.
 struct Edge {
   double time;
   int columns = 0, rows = 0;
@@ -59,7 +59,19 @@ Edge edge_of(const Slope& slope, const Vec2& place, const Vec2& v, const Piece& 
   meet(1.0 - p, -rate.x(), -bend.x(), 1, 0);
   meet(q, rate.y(), bend.y(), 0, -1);
   meet(1.0 - q, -rate.y(), -bend.y(), 0, 1);
+  if (slope.crease != Crease::None) {
+    const double inside = slope.north ? 1.0 : -1.0;
+    meet(inside * across(slope.crease, p, q), inside * rate_across(slope.crease, rate.x(), rate.y()),
+         inside * rate_across(slope.crease, bend.x(), bend.y()), 0, 0);
+  }
   return edge;
+}
+
+/// Reads the facet beyond an edge. Returns false if there is none.
+bool read_beyond(const Slope& slope, const Edge& edge, const Motion& motion, Slope& beyond) {
+  if (edge.columns == 0 && edge.rows == 0) return beyond.read(Facet{slope.at, !slope.north});
+  beyond.at = {slope.at.column + edge.columns, slope.at.row + edge.rows};
+  return beyond.read(motion.position.head<2>(), motion.velocity.head<2>());
 }
 
 /// Turns the velocity at an edge. If the surface rises, the block turns with it and keeps its speed; if the surface
@@ -74,7 +86,27 @@ bool turn(Vec3& velocity, const Vec3& normal) {
   return false;
 }
 
-/// Result of one piece of sliding, to the end of the piece or of the patch.
+/// Whether a block takes off at an edge, onto the facet `beyond`. On a creased surface a hop of less than `tolerance`
+/// is none: the block slides on. Else a block at the bottom of a pit of many facets would hop there without end.
+bool takes_off(Vec3& velocity, const Slope& beyond, const Vec2& place, double tolerance) {
+  const Vec3 normal = normal_of(beyond.gradient(place));
+  if (!turn(velocity, normal)) return false;
+  if (!beyond.surface.creased() || !(velocity.squaredNorm() < kGravity * tolerance)) return true;
+  velocity -= velocity.dot(normal) * normal;
+  return false;
+}
+
+/// The facet on which a slide starts. On a crease the block turns onto the half that it moves into.
+Facet first_facet(const Surface& surface, PatchIndex at, Motion& motion) {
+  Slope slope{surface, at, 0.0};
+  const Vec2 place = motion.position.head<2>();
+  if (!surface.creased() || !slope.read(place, motion.velocity.head<2>()) || slope.crease == Crease::None) return {at};
+  if (std::abs(across(slope.crease, slope.p_of(place), slope.q_of(place))) <= kOnCrease)
+    turn(motion.velocity, normal_of(slope.gradient(place)));
+  return slope.facet();
+}
+
+/// Result of one piece of sliding, to the end of the piece or of the facet.
 struct Step {
   Motion motion;
   Edge edge;
@@ -137,14 +169,14 @@ SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, Patch
   double slid = 0.0;
   const double tolerance = kErrorShare * diameter;
   int short_crossings = 0;  // in succession, with less way than the tolerance between them
-  PatchIndex came_from = at;
+  Facet on = first_facet(surface, at, motion), came_from = on;
   for (int pieces = 0; pieces < kMaxPieces; ++pieces) {
     const std::uint8_t zone = cover.zone_at(motion.position.x(), motion.position.y());
     const bool resists =
         resistance != nullptr && resistance->where.covers(zone, motion.position.x(), motion.position.y());
     const double tan_phi = cover.grounds[zone].tan_phi + (resists ? resistance->coefficient : 0.0);
     Slope slope{surface, at, tan_phi};
-    if (!slope.read()) return SlideEnd::Left;
+    if (!slope.read(on)) return SlideEnd::Left;
     const double speed = motion.velocity.norm();
     if (speed <= stop_speed && slope.gradient(motion.position.head<2>()).norm() <= tan_phi) return SlideEnd::Stopped;
     if (!(slope.press(motion.velocity.head<2>()) >= 0.0)) return SlideEnd::Takeoff;
@@ -155,17 +187,19 @@ SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, Patch
     record_piece(path, slope, motion, step.motion);
     motion = step.motion;
     if (step.crossed) {
-      Slope beyond{surface, {at.column + step.edge.columns, at.row + step.edge.rows}, tan_phi};
-      if (!beyond.read()) return SlideEnd::Left;
-      if (way < tolerance && beyond.at == came_from) {  // pressed back at once: slides along the crease
+      Slope beyond{surface, at, tan_phi};
+      if (!read_beyond(slope, step.edge, motion, beyond)) return SlideEnd::Left;
+      if (way < tolerance && beyond.facet() == came_from) {  // pressed back at once: slides along the crease
         const Motion before = motion;
         if (slide_along_crease(slope, beyond, motion, diameter - slid, path) == CreaseEnd::Held)
           return SlideEnd::Stopped;
         way += (motion.position - before.position).norm();
+        on = slope.facet_at(motion.position.head<2>());  // from a corner it may have slid along the other half
       } else {
-        came_from = at;
-        at = beyond.at;
-        if (turn(motion.velocity, normal_of(beyond.gradient(motion.position.head<2>())))) return SlideEnd::Takeoff;
+        came_from = on;
+        on = beyond.facet();
+        at = on.at;
+        if (takes_off(motion.velocity, beyond, motion.position.head<2>(), tolerance)) return SlideEnd::Takeoff;
       }
     }
     slid += way;

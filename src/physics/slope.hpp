@@ -5,15 +5,45 @@
 
 namespace talus {
 
-/// The patch on which a block slides, in metres.
+/// The smooth piece of the surface on which a block slides: a bilinear patch, or one half of a creased patch.
+struct Facet {
+  PatchIndex at;
+  bool north = false;  ///< of the crease; false if there is none
+  bool operator==(const Facet&) const = default;
+};
+
+/// A facet in metres, with its friction.
 struct Slope {
   const Surface& surface;
   PatchIndex at;
   double tan_phi;
-  Patch patch{};
+  Patch patch{}, whole{};  ///< of the facet; of the patch that it is a part of
+  Crease crease = Crease::None;
+  bool north = false;
 
-  /// Reads the patch. Returns false if there is none.
-  bool read() { return surface.read(at, patch); }
+  /// Reads the facet. Returns false if there is none.
+  bool read(const Facet& facet) {
+    at = facet.at;
+    if (!surface.read(at, whole)) return false;
+    crease = surface.crease(whole);
+    north = crease != Crease::None && facet.north;
+    patch = crease == Crease::None ? whole : half_of(whole, crease, north);
+    return true;
+  }
+  /// Reads the facet of patch `at` that a block enters at `place` with velocity `v`. Returns false if there is none.
+  bool read(const Eigen::Vector2d& place, const Eigen::Vector2d& v) {
+    if (!surface.read(at, whole)) return false;
+    crease = surface.crease(whole);
+    return read(Facet{
+        at, crease != Crease::None && on_northern_half(crease, p_of(place), q_of(place), v.x() * surface.per_cell_x(),
+                                                       v.y() * surface.per_cell_y())});
+  }
+  Facet facet() const { return {at, north}; }
+  /// The facet of this patch that holds a place; this one if the place is on the crease.
+  Facet facet_at(const Eigen::Vector2d& place) const {
+    const double side = crease == Crease::None ? 0.0 : across(crease, p_of(place), q_of(place));
+    return {at, std::abs(side) > kOnCrease ? side > 0.0 : north};
+  }
 
   double p_of(const Eigen::Vector2d& place) const { return surface.u_of(place.x()) - at.column; }
   double q_of(const Eigen::Vector2d& place) const { return surface.v_of(place.y()) - at.row; }

@@ -58,8 +58,8 @@ struct Statistics {
 
 /// Paths of blocks in the turned map. Releases are turned into the map, the paths are turned back.
 std::vector<Path> trajectories(const Raster<float>& scene, const Placement& placement, std::uint64_t seed,
-                               std::uint32_t count) {
-  const Surface surface(placed(scene, placement));
+                               std::uint32_t count, SurfaceKind kind = SurfaceKind::Bilinear) {
+  const Surface surface(placed(scene, placement), kind);
   const Cover cover{{kUpperTalus}, {}};
   std::vector<Path> paths(count);
   for (std::uint32_t block = 0; block < count; ++block) {
@@ -128,14 +128,30 @@ TEST(SceneSymmetry, QuarterTurnsAndMirroringChangeNoStatistic) {
     }
 }
 
-TEST(SceneSymmetry, AQuarterTurnTurnsEveryPath) {  // the same draws: the same path, until rounding has grown
+TEST(SceneSymmetry, HoldsOnACreasedSurfaceToo) {
+  const Raster<float> scene = valley();
+  constexpr std::uint32_t kBlocks = 4000;
+  const auto on_creases = [&](const Placement& placement, std::uint64_t seed) {
+    return statistics(trajectories(scene, placement, seed, kBlocks, SurfaceKind::Creased), placement);
+  };
+  const Statistics reference = on_creases({0, false}, 1);
+  const Statistics bilinear = statistics(trajectories(scene, {0, false}, 1, kBlocks), {0, false});
+  EXPECT_NE(reference.runout.mean(), bilinear.runout.mean());  // there are creases
+  for (const bool mirrored : {false, true})
+    for (int quarters = 0; quarters < 4; ++quarters)
+      expect_equal(reference, on_creases({quarters, mirrored}, 2 + quarters), mirrored ? "mirrored" : "turned");
+}
+
+class PathSymmetry : public testing::TestWithParam<SurfaceKind> {};
+
+TEST_P(PathSymmetry, AQuarterTurnTurnsEveryPath) {  // the same draws: the same path, until rounding has grown
   const Raster<float> scene = valley();
   constexpr std::uint32_t kBlocks = 400;
   const Eigen::Vector2d shift(1.3, 0.7);
-  const auto reference = trajectories(scene, {0, false, shift}, 1, kBlocks);
+  const auto reference = trajectories(scene, {0, false, shift}, 1, kBlocks, GetParam());
   for (int quarters = 1; quarters < 4; ++quarters) {
     const Placement placement{quarters, false, shift};
-    const auto turned = trajectories(scene, placement, 1, kBlocks);
+    const auto turned = trajectories(scene, placement, 1, kBlocks, GetParam());
     int same = 0;
     for (std::uint32_t block = 0; block < kBlocks; ++block) {
       bool close = true;
@@ -153,6 +169,8 @@ TEST(SceneSymmetry, AQuarterTurnTurnsEveryPath) {  // the same draws: the same p
     EXPECT_GT(same, 0.97 * kBlocks) << quarters;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Surfaces, PathSymmetry, testing::Values(SurfaceKind::Bilinear, SurfaceKind::Creased));
 
 TEST(SceneSymmetry, AnyTurnOfAPlaneTurnsEveryPath) {
   const auto run = [](double azimuth, std::uint32_t block) {  // dips towards the azimuth

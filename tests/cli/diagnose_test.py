@@ -63,7 +63,7 @@ class Diagnosis(Loop):
 class OfOthers(Loop):
     def test_nothing_hidden(self):
         """With the default number of trials, as a false alarm must be judged with it."""
-        self.assertEqual(self.diagnose(f"{CAMPAIGNS}/alder/campaign.toml")["effect"], "none")
+        self.assertEqual(self.diagnose(f"{CAMPAIGNS}/alder/campaign.toml", "--surface", "bilinear")["effect"], "none")
 
     def test_measured_blocks_of_a_quarry(self):
         """Releases of one day, and only end points measured: neither days nor instruments can be tested."""

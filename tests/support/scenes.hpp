@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -59,6 +60,22 @@ inline double height_between_centres(const Raster<float>& heights, double x, dou
   const double south = (1.0 - p) * heights.at(column, row) + p * heights.at(column + 1, row);
   const double north = (1.0 - p) * heights.at(column, row + 1) + p * heights.at(column + 1, row + 1);
   return (1.0 - q) * south + q * north;
+}
+
+/// The creased surface by its definition: in a patch whose lowest corner lies on a diagonal along which the bilinear
+/// patch rises from its higher end, the two triangles that meet in that diagonal; else the bilinear patch. A second
+/// implementation of the surface.
+inline double height_on_creases(const Raster<float>& heights, double x, double y) {
+  const double u = x / heights.grid.cell_x - 0.5, v = y / heights.grid.cell_y - 0.5;
+  const int column = static_cast<int>(std::floor(u)), row = static_cast<int>(std::floor(v));
+  const double p = u - column, q = v - row;
+  const double sw = heights.at(column, row), se = heights.at(column + 1, row), nw = heights.at(column, row + 1),
+               ne = heights.at(column + 1, row + 1), lowest = std::min({sw, se, nw, ne});
+  if (0.5 * (se + nw) > std::max(sw, ne) && lowest == std::min(sw, ne))  // by the weights of the corners of a triangle
+    return p >= q ? (1.0 - p) * sw + (p - q) * se + q * ne : (1.0 - q) * sw + (q - p) * nw + p * ne;
+  if (0.5 * (sw + ne) > std::max(se, nw) && lowest == std::min(se, nw))
+    return p + q <= 1.0 ? (1.0 - p - q) * sw + p * se + q * nw : (p + q - 1.0) * ne + (1.0 - p) * nw + (1.0 - q) * se;
+  return height_between_centres(heights, x, y);
 }
 
 /// Outward unit normal of a slope of an angle [degrees] that dips towards an azimuth in plan [radians from east].

@@ -30,6 +30,7 @@ void CampaignCommand::add_to(CLI::App& command, std::uint32_t& trials, std::vect
   command.add_option("campaign", campaign, "measured data: campaign.toml")->required();
   command.add_option("-o,--out", out, "new folder for the results")->required();
   command.add_flag("--overwrite", overwrite, "replace the folder if it holds an earlier result");
+  command.add_option("--surface", surface, "bilinear or creased (creased): heights between the cells' centres");
   command.add_option("--fit", keys, "parameters, in every zone: theta_scale,psi_scale,En50,Et50,phi")->delimiter(',');
   command.add_option("--trials", trials, "trajectories per block in the searches (" + std::to_string(trials) + ")")
       ->check(CLI::Range(kFewestSearchTrials, 10000));
@@ -42,7 +43,7 @@ void CampaignCommand::add_to(CLI::App& command, std::uint32_t& trials, std::vect
 }
 
 OpenedCampaign::OpenedCampaign(const CampaignCommand& command, talus::io::FitRecord& record)
-    : loaded(talus::io::read_campaign(command.campaign)), folder(command.out, command.overwrite) {
+    : loaded(talus::io::read_campaign(command.campaign, command.surface)), folder(command.out, command.overwrite) {
   for (const talus::io::InputFile& input : loaded.inputs) folder.protect(input.path);
   if (!command.quiet)
     for (const std::string& warning : loaded.warnings) say("warning", warning);
@@ -51,6 +52,8 @@ OpenedCampaign::OpenedCampaign(const CampaignCommand& command, talus::io::FitRec
   record.inputs = loaded.inputs;
   record.warnings = loaded.warnings;
   record.campaign = loaded.campaign.name;
+  record.surface = talus::name_of(loaded.campaign.surface.kind());
+  record.surface_from = loaded.surface_from;
 }
 
 void OpenedCampaign::warn_unseen(const CampaignCommand& command, talus::io::FitRecord& record, const std::string& rows,

@@ -8,6 +8,7 @@
 /// Common options of `calibrate` and `diagnose`: a campaign, a new folder, the display of progress.
 struct CampaignCommand {
   std::string campaign, out, progress;
+  std::optional<std::string> surface;
   bool overwrite = false, quiet = false;
 
   /// Adds the options, those of a search among them.

@@ -14,6 +14,7 @@ namespace {
 
 struct Options {
   std::string campaign, parameters, rows = "all", dump;
+  std::optional<std::string> surface;
   std::uint32_t trials = 100;
   std::uint64_t seed = 1;
   int threads = 0;
@@ -26,9 +27,9 @@ int score_model(const Options& options) {
   if (options.parameters.empty())
     throw talus::InputError(
         "score: no model is given: name it by --parameters fitted.toml (talus calibrate writes one)");
-  const talus::io::LoadedCampaign loaded = talus::io::read_campaign(options.campaign);
+  talus::io::LoadedCampaign loaded = talus::io::read_campaign(options.campaign, options.surface);
   const talus::Campaign& campaign = loaded.campaign;
-  const talus::Model model = talus::io::read_model(options.parameters, campaign);
+  const talus::Model model = talus::io::read_model(options.parameters, campaign, &loaded.warnings);
   if (!options.quiet)
     for (const std::string& warning : loaded.warnings) say("warning", warning);
   std::optional<talus::io::OutputFolder> dump;
@@ -61,7 +62,8 @@ int score_model(const Options& options) {
   if (!options.quiet)
     for (const talus::io::ScoredRows& s : scores)
       for (const std::string& warning : talus::io::unseen_warnings(s.rows, s.score)) say("warning", warning);
-  const talus::io::ScoreSettings settings{campaign.name, options.trials, options.seed};
+  const talus::io::ScoreSettings settings{campaign.name, options.trials, options.seed,
+                                          std::string(talus::name_of(campaign.surface.kind()))};
   const std::string text =
       options.json ? talus::io::score_json(settings, scores) : talus::io::score_table(settings, scores);
   if (dump) {
@@ -79,6 +81,8 @@ void add_score(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("score", "Say how far a model is from measured data, group by group");
   command->add_option("campaign", options->campaign, "measured data: campaign.toml")->required();
   command->add_option("--parameters", options->parameters, "the model: fitted.toml, as talus calibrate writes it");
+  command->add_option("--surface", options->surface,
+                      "bilinear or creased (creased): heights between the cells' centres");
   command->add_option("--trials", options->trials, "simulated trajectories per block (100)")
       ->check(CLI::Range(10, 100000));
   command->add_option("--seed", options->seed, "of the random numbers (1)");

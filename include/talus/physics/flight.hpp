@@ -42,14 +42,15 @@ inline double first_contact(double f0, double f1, double f2, double until) {
 /// @param duration  [s]
 double arc_length(const Vec3& v, double duration);
 
-/// Follows a free parabola patch by patch until it meets the ground, by one quadratic per patch.
+/// Follows a free parabola patch by patch until it meets the ground, by one quadratic per patch (two if it crosses
+/// a crease of the patch).
 ///
 /// @param motion     state at the start; on return at the end: landed (exactly on the surface) or left
 /// @param at         patch of the start; on return: of the end
 /// @param grounded   the block starts on the surface of `at` and moves away from it
-/// @param path       gets one `Span` per patch crossed
+/// @param path       gets one `Span` per patch crossed, two where it crosses a crease
 ///
-/// Exact except for rounding; no time step. At most columns + rows patches. docs/physics.md, "Flight".
+/// Exact except for rounding; no time step. At most 2 (columns + rows) pieces. docs/physics.md, "Flight".
 Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path);
 
 /// A piece of a flight, as above: ends `Aloft` after `longest` [s], >= 0, unless it landed or left before.

@@ -7,6 +7,7 @@
 #include "io/files/checksum.hpp"
 #include "io/gdal/dataset.hpp"
 #include "io/scenario/named_file.hpp"
+#include "io/scenario/surface_key.hpp"
 #include "io/scenario/table_reader.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
@@ -20,7 +21,8 @@ using Kind = TomlValue::Kind;
 
 /// Content of campaign.toml, before any other file is opened.
 struct CampaignSpec {
-  std::string name, crs;
+  std::string name, crs, surface_from = "default";
+  SurfaceKind surface = kDefaultSurface;
   NamedFile dem, zones, blocks, stops, passages, screens, samples;
   std::vector<std::string> zone_codes, zone_names;
   MeasurementError error;
@@ -31,11 +33,13 @@ class CampaignReader {
   explicit CampaignReader(const std::string& path)
       : path_(path), base_(std::filesystem::absolute(path).parent_path()) {}
 
-  CampaignSpec read() {
+  CampaignSpec read(const std::optional<std::string>& surface) {
     const TomlValue root = read_toml(path_, path_);
     TableReader top(&root, "", path_, faults_);
     spec_.name = top.text("name").value_or(base_.filename().string());
     spec_.crs = top.text("crs").value_or("");
+    use(read_surface(top), "campaign");
+    if (surface) use(surface_of_flag(*surface, faults_), "flag --surface");
     for (const auto& [key, file] : {std::pair{"dem", &spec_.dem},
                                     {"zones", &spec_.zones},
                                     {"blocks", &spec_.blocks},
@@ -64,6 +68,12 @@ class CampaignReader {
     file = {absolute_path(*text, base_), table.where(key, *table.value()->find(key))};
     std::error_code none;
     if (!std::filesystem::exists(file.path, none)) faults_.push_back(file.where + ": no such file (" + file.path + ")");
+  }
+
+  void use(const std::optional<SurfaceKind>& kind, const char* from) {
+    if (!kind) return;
+    spec_.surface = *kind;
+    spec_.surface_from = from;
   }
 
   void read_zone_names(TableReader table) {
@@ -118,8 +128,8 @@ void take_warnings(LoadedCampaign& out, const Part& part) {
 
 }  // namespace
 
-LoadedCampaign read_campaign(const std::string& path) {
-  const CampaignSpec spec = CampaignReader(path).read();
+LoadedCampaign read_campaign(const std::string& path, const std::optional<std::string>& surface) {
+  const CampaignSpec spec = CampaignReader(path).read(surface);
   LoadedCampaign out;
   Campaign& campaign = out.campaign;
   campaign.name = spec.name;
@@ -142,7 +152,8 @@ LoadedCampaign read_campaign(const std::string& path) {
     campaign.screens = std::move(screens.screens);
     take_warnings(out, screens);
   }
-  campaign.surface = Surface(std::move(terrain.heights));
+  campaign.surface = Surface(std::move(terrain.heights), spec.surface);
+  out.surface_from = spec.surface_from;
   read_tables({spec.blocks.path, spec.stops.path, spec.passages.path, spec.samples.path}, campaign, out.warnings);
   const std::pair<const char*, std::string> files[] = {
       {"campaign", std::filesystem::absolute(path).lexically_normal().string()},

@@ -110,7 +110,7 @@ std::size_t instrument_of(const InstrumentBias& bias, const Campaign& campaign) 
 
 }  // namespace
 
-Model read_model(const std::string& path, const Campaign& campaign) {
+Model read_model(const std::string& path, const Campaign& campaign, std::vector<std::string>* warnings) {
   ScenarioSpec spec;
   std::vector<std::string> faults;
   start_with_preset(spec, {}, faults);
@@ -121,6 +121,11 @@ Model read_model(const std::string& path, const Campaign& campaign) {
                        known_names(zone.name, campaign.zone_names));
   for (const auto& [name, effect] : spec.effects) check_places(name, effect, campaign, path, faults);
   if (!faults.empty()) throw InputError(faults.front());
+  if (warnings != nullptr && spec.model_surface.value_or(campaign.surface.kind()) != campaign.surface.kind())
+    warnings->push_back(path + ": was fitted on a " + std::string(name_of(*spec.model_surface)) +
+                        " surface, and the campaign is simulated on a " +
+                        std::string(name_of(campaign.surface.kind())) + " one: give --surface " +
+                        std::string(name_of(*spec.model_surface)) + ", or fit again");
   Model model;
   model.impact = spec.values.impact;
   model.effects = spec.values.effects;
@@ -146,6 +151,7 @@ std::string model_text(const Model& model, const LoadedCampaign& loaded, const s
   std::string text;
   std::istringstream lines(heading);
   for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
+  text += "\nsurface = " + toml_text(std::string(name_of(loaded.campaign.surface.kind()))) + "\n";
   for (std::size_t i = 0; i < loaded.campaign.zone_names.size(); ++i) {
     text += "\n[ground.zones." + toml_key(loaded.campaign.zone_names[i]) + "]\n";
     text += "preset = " + toml_text(std::string(kDefaultPreset)) + "\n";

@@ -193,7 +193,7 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
       plots(campaign, d, record.options.rules) + "<h3>Before</h3>\n" + residual_rows(d.rounds.front().residual);
   if (d.rounds.size() > 1) html += "<h3>After</h3>\n" + residual_rows(d.rounds.back().residual);
   return html + "<p>talus " + std::string(version()) + ", seed " + std::to_string(record.options.seed) + ", " +
-         with_decimals(record.seconds, 0) + " s.</p></body></html>\n";
+         record.surface + " surface, " + with_decimals(record.seconds, 0) + " s.</p></body></html>\n";
 }
 
 }  // namespace talus::io

@@ -140,6 +140,7 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
             {"residual", residual_of(first.residual)},
             {"residual_after", residual_of(d.rounds.back().residual)},
             {"campaign", record.campaign},
+            {"surface", {{"value", record.surface}, {"source", record.surface_from}}},
             {"seed", record.options.seed},
             {"trials_per_block", {{"search", d.trials.search}, {"test", d.trials.test}, {"compare", d.trials.compare}}},
             {"seconds", json_of(record.seconds)},

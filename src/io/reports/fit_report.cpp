@@ -154,6 +154,7 @@ std::string calibration_json(const Calibration& c) {
             {"version", version()},
             {"command", c.command},
             {"campaign", c.campaign},
+            {"surface", {{"value", c.surface}, {"source", c.surface_from}}},
             {"seed", c.options.seed},
             {"trials", c.options.trials},
             {"comparison_trials", c.options.comparison_trials},
@@ -173,7 +174,8 @@ std::string calibration_json(const Calibration& c) {
 }
 
 std::string calibration_report(const Calibration& c) {
-  std::string text = "# Calibration on " + c.campaign + "\n\n## Parameters\n\n" + parameter_lines(c) + "\n";
+  std::string text = "# Calibration on " + c.campaign + "\n\nOn the " + c.surface + " surface (" + c.surface_from +
+                     ").\n\n## Parameters\n\n" + parameter_lines(c) + "\n";
   text +=
       "Intervals: 400 fits to blocks drawn with replacement, each with its own draw of the prior (normal; of the "
       "logarithm where the scale is one, with a factor of e, around the start). **Not identifiable**: the interval is "

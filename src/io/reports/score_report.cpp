@@ -60,7 +60,8 @@ std::vector<std::string> unseen_warnings(const std::string& rows, const Score& s
 
 std::string score_table(const ScoreSettings& settings, std::span<const ScoredRows> scores) {
   std::string text = "campaign " + settings.campaign + ": " + std::to_string(settings.trials) +
-                     " trials per block, seed " + std::to_string(settings.seed) + "\n";
+                     " trials per block, seed " + std::to_string(settings.seed) + ", " + settings.surface +
+                     " surface\n";
   const std::vector<std::string> names = group_names(scores);
   std::size_t width = 24;
   for (const std::string& name : names) width = std::max(width, name.size());
@@ -88,7 +89,8 @@ std::string score_json(const ScoreSettings& settings, std::span<const ScoredRows
   Json json{{"campaign", settings.campaign},
             {"metric", "mean normalised score"},
             {"trials", settings.trials},
-            {"seed", settings.seed}};
+            {"seed", settings.seed},
+            {"surface", settings.surface}};
   for (const ScoredRows& s : scores) {
     Json groups = Json::array();
     for (std::size_t g = 0; g < s.score.groups.size(); ++g)

@@ -85,7 +85,7 @@ void read_terrain_of(const ScenarioSpec& spec, LoadedProfile& out) {
   } else {
     const Terrain terrain = read_terrain(spec.dem.path);
     out.loaded.warnings = terrain.warnings;
-    ProfileLine line = read_profile_line(p.line.path, terrain, p.step, out.loaded);
+    ProfileLine line = read_profile_line(p.line.path, terrain, spec, out.loaded);
     out.profile = std::move(line.profile);
     out.map = terrain.geo;
     const Grid& grid = terrain.heights.grid;

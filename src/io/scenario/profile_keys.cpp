@@ -8,6 +8,7 @@
 #include "ground_keys.hpp"
 #include "scenario_flags.hpp"
 #include "scenario_keys.hpp"
+#include "surface_key.hpp"
 #include "table_reader.hpp"
 #include "talus/base/text.hpp"
 #include "talus/physics/effects/registry.hpp"
@@ -31,6 +32,10 @@ class ProfileReader {
     named_file(top, "profile", profile_.csv);
     named_file(top, "dem", spec_.dem);
     named_file(top, "line", profile_.line);
+    if (const auto kind = read_surface(top)) {
+      spec_.surface = *kind;
+      given("surface");
+    }
     number(top, "step", kStep, profile_.step);
     read_common_keys(spec_, top, faults_);
     read_sources(top.table("sources"));
@@ -55,6 +60,8 @@ class ProfileReader {
       faults_.push_back(file +
                         ": no terrain, or more than one: give profile = \"FILE.csv\" (columns x, z), or "
                         "dem = \"FILE\" with line = \"FILE\"");
+    if (csv && spec_.origins.contains("surface"))
+      faults_.push_back(file + ": surface: is of a DEM, must be left out for a profile = \"FILE.csv\"");
     if (!spec_.origins.contains("sources.x"))
       faults_.push_back(file + ": no sources: give [sources] x = 60, or x = [50, 70], in m along the profile");
   }

@@ -39,6 +39,12 @@ ProfileLine profile_along(const std::vector<Eigen::Vector2d>& plan, const Surfac
     std::vector<double> shares{0.0, 1.0};
     crossings(surface.u_of(a.x()), surface.u_of(b.x()), shares);
     crossings(surface.v_of(a.y()), surface.v_of(b.y()), shares);
+    if (surface.creased()) {
+      const double u_a = surface.u_of(a.x()), v_a = surface.v_of(a.y()), u_b = surface.u_of(b.x()),
+                   v_b = surface.v_of(b.y());
+      crossings(v_a - u_a, v_b - u_b, shares);
+      crossings(v_a + u_a, v_b + u_b, shares);
+    }
     std::sort(shares.begin(), shares.end());
     for (const double share : shares)
       add(a + share * (b - a), before + share * length, i + 1 == plan.size() && share == 1.0);
@@ -48,7 +54,8 @@ ProfileLine profile_along(const std::vector<Eigen::Vector2d>& plan, const Surfac
   return out;
 }
 
-ProfileLine read_profile_line(const std::string& path, const Terrain& terrain, double step, LoadedScenario& out) {
+ProfileLine read_profile_line(const std::string& path, const Terrain& terrain, const ScenarioSpec& spec,
+                              LoadedScenario& out) {
   Layer layer("profile", path, terrain);
   std::vector<Eigen::Vector2d> plan;
   while (const Feature feature = layer.next()) {
@@ -63,7 +70,7 @@ ProfileLine read_profile_line(const std::string& path, const Terrain& terrain, d
   const auto& used = layer.reprojections();
   out.reprojections.insert(out.reprojections.end(), used.begin(), used.end());
   for (std::string& warning : layer.warnings()) out.warnings.push_back(std::move(warning));
-  return profile_along(plan, Surface(terrain.heights), step, path);
+  return profile_along(plan, Surface(terrain.heights, spec.surface), spec.profile->step, path);
 }
 
 }  // namespace talus::io

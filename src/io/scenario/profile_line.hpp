@@ -15,12 +15,14 @@ struct ProfileLine {
 };
 
 /// Samples the terrain along a line: at its vertices, and where it crosses the lines between the centres of cells, the
-/// creases of the bilinear surface. Between two samples the profile is straight. Points nearer than `step` to the one
-/// before are left out. Throws InputError if a part of the line has no terrain under it.
+/// edges of the patches; on a creased surface also where it crosses diagonals between centres. Between two samples the
+/// profile is straight. Points nearer than `step` to the one before are left out. Throws InputError if a part of the
+/// line has no terrain under it.
 ProfileLine profile_along(const std::vector<Eigen::Vector2d>& plan, const Surface& surface, double step,
                           const std::string& name);
 
 /// Reads the one line of a vector file and samples it. Throws InputError unless it is one line.
-ProfileLine read_profile_line(const std::string& path, const Terrain& terrain, double step, LoadedScenario& out);
+ProfileLine read_profile_line(const std::string& path, const Terrain& terrain, const ScenarioSpec& spec,
+                              LoadedScenario& out);
 
 }  // namespace talus::io

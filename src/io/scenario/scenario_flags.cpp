@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "surface_key.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
@@ -46,6 +47,11 @@ void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::strin
   if (flags.sources)
     spec.sources = {absolute_path(*flags.sources, here), "flag --sources = '" + *flags.sources + "'"},
     spec.origins["sources.file"] = "flag --sources";
+  if (flags.surface)
+    if (const auto kind = surface_of_flag(*flags.surface, faults)) {
+      spec.surface = *kind;
+      spec.origins["surface"] = "flag --surface";
+    }
   if (flags.trajectories) lay_flag(spec, "trajectories", *flags.trajectories, faults);
   if (flags.seed) lay_flag(spec, "seed", static_cast<double>(*flags.seed), faults);
   if (flags.diameter) {

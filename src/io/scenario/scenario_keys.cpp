@@ -10,6 +10,7 @@
 #include "frequency_keys.hpp"
 #include "ground_keys.hpp"
 #include "scenario_flags.hpp"
+#include "surface_key.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 
@@ -32,6 +33,7 @@ class SpecReader {
     TableReader top(&root, "", file_, faults_);
     read_include(top);
     named_file(top, "dem", spec_.dem);
+    surface(top);
     read_common(top);
     read_sources(top.table("sources"));
     read_ground(top.table("ground"));
@@ -58,6 +60,7 @@ class SpecReader {
   /// Reads the keys of a file that holds only a model.
   void read_model_keys(const TomlValue& root) {
     TableReader top(&root, "", file_, faults_);
+    spec_.model_surface = surface(top);
     TableReader ground = top.table("ground");
     GroundReader(spec_, origin_, faults_).read(ground);
     ground.finish();
@@ -90,6 +93,14 @@ class SpecReader {
     if (table.value() != nullptr && table.value()->find(key) != nullptr) given(table.full(key));
     if (!text) return;
     file = {absolute_path(*text, base_), table.where(key, *table.value()->find(key))};
+  }
+
+  std::optional<SurfaceKind> surface(TableReader& top) {
+    const auto kind = read_surface(top);
+    if (!kind) return kind;
+    spec_.surface = *kind;
+    given("surface");
+    return kind;
   }
 
   void scalar(TableReader& table, const std::string& key) {

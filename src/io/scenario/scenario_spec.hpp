@@ -55,6 +55,8 @@ struct ProfileSpec {
 /// Content of a scenario file and the flags, before any other file is opened.
 struct ScenarioSpec {
   NamedFile scenario, include, dem, sources, ground, screens, barriers;
+  SurfaceKind surface = kDefaultSurface;
+  std::optional<SurfaceKind> model_surface;  ///< on which an included model was fitted
   std::string ground_field;
   ZoneSpec default_ground;
   std::vector<ZoneSpec> zones;                ///< in the order of the file

@@ -71,6 +71,7 @@ class Lines {
   explicit Lines(const ScenarioSpec& spec) : spec_(spec) {
     file("", "dem", spec.dem);
     if (spec.profile) terrain(*spec.profile);
+    if (!spec.dem.path.empty()) add("", "surface", toml_text(std::string(name_of(spec.surface))), "");
     fields("");
     file("sources", "file", spec.sources);
     if (spec.profile) sources(*spec.profile);

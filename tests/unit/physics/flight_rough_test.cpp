@@ -13,10 +13,14 @@ struct Scene {
   Surface surface;
   Vec3 start = Vec3::Zero(), velocity = Vec3::Zero();
 
+  double height(double x, double y) const {
+    return surface.creased() ? test::height_on_creases(surface.heights(), x, y)
+                             : test::height_between_centres(surface.heights(), x, y);
+  }
   Vec3 place(double t) const { return start + t * velocity - Vec3(0, 0, 0.5 * kGravity * t * t); }
   double clearance(double t) const {
     const Vec3 p = place(t);
-    return p.z() - test::height_between_centres(surface.heights(), p.x(), p.y());
+    return p.z() - height(p.x(), p.y());
   }
   /// First time below the ground, by steps of `step` and bisection.
   double landing(double step) const {
@@ -28,25 +32,31 @@ struct Scene {
   }
 };
 
-Scene rough(Numbers& numbers, double cell_x, double cell_y) {
-  return {Surface(test::terrain(test::grid_of(80, 60, cell_x, cell_y), [&](double x, double) {
-    return 500.0 - 0.5 * x + numbers.uniform(0.0, 2.0 * cell_x);
-  }))};
+struct Cells {
+  double x, y;
+  SurfaceKind kind;
+};
+
+Scene rough(Numbers& numbers, const Cells& cells) {
+  return {
+      Surface(test::terrain(test::grid_of(80, 60, cells.x, cells.y),
+                            [&](double x, double) { return 500.0 - 0.5 * x + numbers.uniform(0.0, 2.0 * cells.x); }),
+              cells.kind)};
 }
 
 void throw_block(Scene& scene, Numbers& numbers) {
   const Grid& grid = scene.surface.grid();
   const double x = numbers.uniform(0.3, 0.7) * grid.width(), y = numbers.uniform(0.3, 0.7) * grid.height();
-  scene.start = {x, y, test::height_between_centres(scene.surface.heights(), x, y) + numbers.uniform(0.0, 4.0)};
+  scene.start = {x, y, scene.height(x, y) + numbers.uniform(0.0, 4.0)};
   const double fast = std::min(20.0, 0.1 * std::min(grid.width(), grid.height()));
   scene.velocity = {numbers.uniform(-fast, fast), numbers.uniform(-fast, fast), numbers.uniform(-3, 4)};
 }
 
-class RoughFlight : public testing::TestWithParam<std::pair<double, double>> {};
+class RoughFlight : public testing::TestWithParam<Cells> {};
 
 TEST_P(RoughFlight, LandsWhereSteppingAndBisectionLand) {
   Numbers numbers(11);
-  Scene scene = rough(numbers, GetParam().first, GetParam().second);
+  Scene scene = rough(numbers, GetParam());
   int grazed = 0, flights = 0;
   for (; flights < 1500; ++flights) {
     throw_block(scene, numbers);
@@ -69,8 +79,9 @@ TEST_P(RoughFlight, LandsWhereSteppingAndBisectionLand) {
 
 TEST_P(RoughFlight, SpansFollowEachOtherAndTheGroundAndAreNeverBelowIt) {
   Numbers numbers(12);
-  Scene scene = rough(numbers, GetParam().first, GetParam().second);
+  Scene scene = rough(numbers, GetParam());
   const Surface& surface = scene.surface;
+  int halves = 0;  // passages from one half of a patch to the other
   for (int i = 0; i < 500; ++i) {
     throw_block(scene, numbers);
     Motion motion{3.0, scene.start, scene.velocity, Vec3(1, 2, 3)};
@@ -96,7 +107,9 @@ TEST_P(RoughFlight, SpansFollowEachOtherAndTheGroundAndAreNeverBelowIt) {
         ASSERT_TRUE(share > -1e-5F && share < 1.0F + 1e-5F);
       if (k > 0) {  // one patch at a time, where and when the last one ended
         const Span& last = path.spans[k - 1];
-        ASSERT_EQ(std::abs(s.patch.column - last.patch.column) + std::abs(s.patch.row - last.patch.row), 1);
+        const int steps = std::abs(s.patch.column - last.patch.column) + std::abs(s.patch.row - last.patch.row);
+        ASSERT_TRUE(steps == 1 || (steps == 0 && surface.creased())) << steps;  // the other half of the patch
+        halves += 1 - steps;
         ASSERT_NEAR(1.0 * s.patch.column + s.p_from, 1.0 * last.patch.column + last.p_to, 1e-4);
         ASSERT_NEAR(1.0 * s.patch.row + s.q_from, 1.0 * last.patch.row + last.q_to, 1e-4);
         ASSERT_EQ(s.rise_from, last.rise_to);
@@ -107,10 +120,13 @@ TEST_P(RoughFlight, SpansFollowEachOtherAndTheGroundAndAreNeverBelowIt) {
     ASSERT_NEAR(t, motion.time - 3.0, 1e-5 * (1.0 + t));
     ASSERT_EQ(path.spans.back().patch, at);
   }
+  EXPECT_EQ(halves > 100, surface.creased());
 }
 
 INSTANTIATE_TEST_SUITE_P(Cells, RoughFlight,
-                         testing::Values(std::pair{0.5, 0.5}, std::pair{2.0, 3.0}, std::pair{25.0, 10.0}));
+                         testing::Values(Cells{0.5, 0.5, SurfaceKind::Bilinear}, Cells{2.0, 3.0, SurfaceKind::Bilinear},
+                                         Cells{25.0, 10.0, SurfaceKind::Bilinear},
+                                         Cells{2.0, 2.0, SurfaceKind::Creased}, Cells{2.0, 3.0, SurfaceKind::Creased}));
 
 TEST(FlightLength, IsTheArcLengthOfTheParabola) {
   const Surface surface(test::terrain(test::grid_of(100, 9, 2.0, 2.0), [](double, double) { return 0.0; }));

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "support/scenes.hpp"
+#include "talus/terrain/pits.hpp"
 
 namespace talus {
 namespace {
@@ -142,6 +143,131 @@ TEST(NormalOf, IsUnitUpwardsAndAcrossBothTangents) {
     ASSERT_NEAR(n.dot(Vec3(1, 0, slope.x())), 0.0, 1e-14);
     ASSERT_NEAR(n.dot(Vec3(0, 1, slope.y())), 0.0, 1e-14);
   }
+}
+
+Crease crease_at(const Surface& surface, int column, int row) {
+  Patch patch;
+  EXPECT_TRUE(surface.read({column, row}, patch));
+  return surface.crease(patch);
+}
+
+TEST(CreasedSurface, IsTwoTrianglesWhereABilinearPatchIsADamAndThePatchElsewhere) {
+  const Surface bilinear(rough(40, 30, 2.0, 0.5, 31)), surface(bilinear.heights(), SurfaceKind::Creased);
+  Numbers numbers(32);
+  int creased = 0, rising = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    const double x = numbers.uniform(1.0, 79.0), y = numbers.uniform(0.25, 14.75);
+    ASSERT_NEAR(*surface.height(x, y), test::height_on_creases(surface.heights(), x, y), 1e-10);
+    const PatchIndex at = surface.patch_at(x, y);
+    const Crease crease = crease_at(surface, at.column, at.row);
+    creased += crease != Crease::None ? 1 : 0;
+    rising += crease == Crease::Rising ? 1 : 0;
+    if (crease == Crease::None) {
+      ASSERT_EQ(*surface.height(x, y), *bilinear.height(x, y)) << x << ' ' << y;
+    }
+  }
+  EXPECT_GT(rising, creased / 3);
+  EXPECT_LT(rising, creased - creased / 3);
+}
+
+TEST(CreasedSurface, HasNoGapAtEdgesAndDiagonals) {
+  const Surface surface(rough(30, 30, 2.0, 2.0, 33), SurfaceKind::Creased);  // no slope above 71
+  Numbers numbers(34);
+  constexpr double kStep = 1e-7;
+  for (int i = 0; i < 100'000; ++i) {
+    const double along = numbers.uniform(0.0, 1.0);
+    const int column = static_cast<int>(numbers.uniform(1, 27)), row = static_cast<int>(numbers.uniform(1, 27));
+    const double places[4][2]{{0.0, along}, {along, 0.0}, {along, along}, {along, 1.0 - along}};
+    for (const auto& [p, q] : places) {
+      const double x = surface.x_of(column + p), y = surface.y_of(row + q);
+      for (const auto& [dx, dy] : {std::pair{kStep, 0.0}, {0.0, kStep}, {kStep, kStep}, {kStep, -kStep}})
+        ASSERT_NEAR(*surface.height(x + dx, y + dy), *surface.height(x - dx, y - dy), 300.0 * kStep);
+    }
+  }
+}
+
+TEST(CreasedSurface, TurnsAndMirrorsWithTheTerrain) {
+  const Raster<float> heights = rough(24, 24, 3.0, 3.0, 35);
+  const Surface surface(heights, SurfaceKind::Creased);
+  const auto placed = [&](bool swapped, bool west, bool south) {  // the eight orientations of a square
+    Raster<float> out = heights;
+    for (int row = 0; row < 24; ++row)
+      for (int column = 0; column < 24; ++column) {
+        const int c = west ? 23 - column : column, r = south ? 23 - row : row;
+        out.at(swapped ? r : c, swapped ? c : r) = heights.at(column, row);
+      }
+    return Surface(std::move(out), SurfaceKind::Creased);
+  };
+  Numbers numbers(36);
+  for (const bool swapped : {false, true})
+    for (const bool west : {false, true})
+      for (const bool south : {false, true}) {
+        const Surface other = placed(swapped, west, south);
+        for (int i = 0; i < 2000; ++i) {
+          const double x = numbers.uniform(1.5, 70.5), y = numbers.uniform(1.5, 70.5);
+          const double a = west ? 72.0 - x : x, b = south ? 72.0 - y : y;
+          ASSERT_NEAR(*other.height(swapped ? b : a, swapped ? a : b), *surface.height(x, y), 1e-9);
+        }
+      }
+}
+
+TEST(CreasedSurface, HasNoCreaseOnAPlaneAndOnACone) {
+  for (const double azimuth : {0.0, 0.3, 0.785398163397448, 1.1, 2.5, 4.0}) {
+    const auto plane = [&](double x, double y) {
+      return 1500.0 - 0.8 * (x * std::cos(azimuth) + y * std::sin(azimuth));
+    };
+    const auto cone = [&](double x, double y) { return 900.0 - 0.7 * std::hypot(x - 61.3 - azimuth, y - 59.9); };
+    for (const Surface& surface : {Surface(test::terrain(test::grid_of(60, 60, 2.0, 2.0), plane), SurfaceKind::Creased),
+                                   Surface(test::terrain(test::grid_of(60, 60, 2.0, 2.0), cone), SurfaceKind::Creased)})
+      for (int row = 0; row < 59; ++row)
+        for (int column = 0; column < 59; ++column)
+          ASSERT_EQ(crease_at(surface, column, row), Crease::None) << azimuth << ' ' << column << ' ' << row;
+  }
+}
+
+TEST(CreasedSurface, FallsFromEveryCellThatHasALowerDiagonalNeighbour) {
+  const Surface bilinear(rough(60, 60, 1.0, 1.0, 37)), creased(bilinear.heights(), SurfaceKind::Creased);
+  int dams = 0;
+  for (int row = 1; row < 59; ++row)
+    for (int column = 1; column < 59; ++column) {
+      if (!dammed(bilinear.heights(), column, row)) continue;
+      ++dams;
+      const auto lowest_around = [&](const Surface& surface) {  // on a small square
+        double lowest = 1e9;
+        for (const double dx : {-1e-3, 0.0, 1e-3})
+          for (const double dy : {-1e-3, 0.0, 1e-3})
+            if (dx != 0.0 || dy != 0.0) lowest = std::min(lowest, *surface.height(column + 0.5 + dx, row + 0.5 + dy));
+        return lowest;
+      };
+      EXPECT_GT(lowest_around(bilinear), bilinear.heights().at(column, row));
+      EXPECT_LT(lowest_around(creased), bilinear.heights().at(column, row));
+    }
+  EXPECT_GT(dams, 200);
+}
+
+TEST(CreasedSurface, MeetsABlockOnTheHalfThatItMovesInto) {
+  // A gully from the south-western corner down to the north-eastern one; the wall in the south-east is the steeper one.
+  const Raster<float> heights(Grid{2, 2, 2.0, 2.0, 0.0, 0.0}, {10.0F, 14.0F, 12.0F, 8.0F});
+  const Surface surface(heights, SurfaceKind::Creased);
+  Patch patch;
+  ASSERT_TRUE(surface.read({0, 0}, patch));
+  ASSERT_EQ(surface.crease(patch), Crease::Rising);
+  const auto gradient = [&](double p, double q, double vx, double vy) {
+    return surface.gradient(surface.facet(patch, p, q, {vx, vy, -1.0}), p, q);
+  };
+  const Eigen::Vector2d south_east(2.0, -3.0), north_west(-2.0, 1.0);  // of the planes through three corners
+  EXPECT_EQ(gradient(0.7, 0.2, -5.0, 5.0), south_east);
+  EXPECT_EQ(gradient(0.2, 0.7, 5.0, -5.0), north_west);
+  EXPECT_EQ(gradient(0.5, 0.5, 3.0, 2.9), south_east);
+  EXPECT_EQ(gradient(0.5, 0.5, 2.9, 3.0), north_west);
+  EXPECT_EQ(gradient(0.5, 0.5, 3.0, 3.0), Eigen::Vector2d(0.0, -1.0));  // along the crease: between the halves
+}
+
+TEST(SurfaceNames, ReadBack) {
+  EXPECT_EQ(surface_kind("bilinear"), SurfaceKind::Bilinear);
+  EXPECT_EQ(surface_kind("creased"), SurfaceKind::Creased);
+  EXPECT_EQ(surface_kind("smooth"), std::nullopt);
+  for (const auto name : kSurfaceNames) EXPECT_EQ(name_of(*surface_kind(name)), name);
 }
 
 }  // namespace

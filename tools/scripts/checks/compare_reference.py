@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Compares Talus with the reference scenes of an independent, time-stepping implementation of the same model.
 
-  tools/scripts/checks/compare_reference.py --talus build/release/talus --data ../shared/data [--threads 1] [--trials-factor 1] [SCENE ...]
+  tools/scripts/checks/compare_reference.py --talus build/release/talus --data ../shared/data [--threads 1] [--trials-factor 1] [--surface bilinear] [SCENE ...]
 
 Each scene's sources, ground and screens are written as a scenario, `talus run` is started, its results are compared:
 
@@ -21,6 +21,7 @@ Printed, not judged (verdict `-`): ratios of sums; `corner loss`, the share of p
 crossings, path length, impacts per trajectory; the rasters of `plane` (its path is the edge of two columns: added).
 
 Exit code 0: all passed; 1: some judged item failed (a failed run or a missing file is one); 2: usage.
+The reference has bilinear patches, so that the runs have them, too; --surface creased shows what creases change.
 With --trials-factor below 1 the shares and cells may fail by chance.
 """
 import argparse
@@ -108,7 +109,7 @@ def run_talus(scene, work, options):
         lines += ["[screens]", 'file = "screens.gpkg"']
     (work / "scenario.toml").write_text("\n".join(lines) + "\n")
     done = subprocess.run([str(options.talus.resolve()), "run", "scenario.toml", "-o", "out", "--overwrite",
-                           "--threads", str(options.threads), "-q"], cwd=work, capture_output=True, text=True)
+                           "--surface", options.surface, "--threads", str(options.threads), "-q"], cwd=work, capture_output=True, text=True)
     if done.returncode:
         raise RuntimeError(f"talus run ended with {done.returncode}: {done.stderr.strip()}")
 
@@ -252,6 +253,7 @@ def parse_arguments():
     parser.add_argument("--work", type=Path, help="keep scenarios and results here (default: a temporary folder)")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--trials-factor", type=float, default=1.0, help="times the reference's trajectories")
+    parser.add_argument("--surface", default="bilinear", help="of the terrain: bilinear, as that of the reference, or creased")
     parser.add_argument("--json", type=Path, help="write the table here, too")
     parser.add_argument("--no-run", action="store_true", help=argparse.SUPPRESS)  # compare WORK/SCENE/out as it is
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help="of " + ", ".join(SCENES) + " (default: all)")

@@ -89,7 +89,7 @@ def blocks(g, folder, count):
 
 def campaign_text(name, measured):
     tables = 'stops = "stops.csv"\npassages = "passages.csv"\n' if measured else ""
-    return (f'name = "{name}"\ncrs = "EPSG:2056"\ndem = "dem.tif"\nzones = "zones.tif"\nblocks = "blocks.csv"\n{tables}'
+    return (f'name = "{name}"\ncrs = "EPSG:2056"\nsurface = "bilinear"\ndem = "dem.tif"\nzones = "zones.tif"\nblocks = "blocks.csv"\n{tables}'
             'screens = "screens.csv"\n[zone_names]\n1 = "talus"\n2 = "meadow"\n3 = "rock"\n[measurement_error]\n'
             "position_m = 0.3\nspeed_fraction = 0.03\njump_height_m = 0.1\nangular_velocity_fraction = 0.05\n")
 

@@ -10,7 +10,9 @@ namespace talus::io {
 /// campaign's zones (default: the ground outside all), the impact law in [model], [effects.*], [barriers] and
 /// [[instrument_bias]]. A zone that the file does not name has the default ground. Throws InputError with file, line,
 /// key, value and what is allowed, also for a zone or a screen that the campaign lacks.
-Model read_model(const std::string& path, const Campaign& campaign);
+///
+/// @param warnings  gets one if the model was fitted on another surface than that of the campaign
+Model read_model(const std::string& path, const Campaign& campaign, std::vector<std::string>* warnings = nullptr);
 
 /// The text of such a file. It reads back as exactly this model, except that the places of barriers are rounded. A
 /// scenario can `include` it. A band of other ground is left out.

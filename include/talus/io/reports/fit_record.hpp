@@ -12,6 +12,7 @@ struct FitRecord {
   std::vector<InputFile> inputs;
   std::vector<std::string> warnings;
   std::string campaign;
+  std::string surface, surface_from;  ///< "creased"; "default", "campaign", "flag --surface"
 };
 
 }  // namespace talus::io

@@ -26,7 +26,7 @@ struct LoadedScenario {
 /// Settings of the command line. They override a scenario file or replace it.
 struct RunFlags {
   std::string scenario;  ///< path of the TOML file; empty: from flags alone
-  std::optional<std::string> dem, sources, preset;
+  std::optional<std::string> dem, sources, preset, surface;
   std::optional<double> diameter;  ///< [m]
   std::optional<std::uint32_t> trajectories;
   std::optional<std::uint64_t> seed;

@@ -1,0 +1,19 @@
+#pragma once
+#include <cstdint>
+
+#include "talus/terrain/raster.hpp"
+
+namespace talus {
+
+/// Whether a cell is lower than its four neighbours and higher than one of its diagonal ones: its way down is diagonal.
+/// A bilinear surface dams it, a creased one does not. A cell at the edge of the grid or beside missing heights is not.
+bool dammed(const Raster<float>& heights, int column, int row);
+
+/// Cells with a height, and the dammed ones among them.
+struct DamCount {
+  std::uint64_t dammed = 0, cells = 0;
+  double share() const { return cells > 0 ? static_cast<double>(dammed) / static_cast<double>(cells) : 0.0; }
+};
+DamCount count_dammed(const Raster<float>& heights);
+
+}  // namespace talus

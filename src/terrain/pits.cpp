@@ -1,0 +1,28 @@
+#include "talus/terrain/pits.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+
+bool dammed(const Raster<float>& heights, int column, int row) {
+  const Grid& grid = heights.grid;
+  if (column < 1 || row < 1 || column + 1 >= grid.columns || row + 1 >= grid.rows) return false;
+  const auto z = [&](int dx, int dy) { return heights.values[grid.index(column + dx, row + dy)]; };
+  const float here = z(0, 0);
+  if (!(here < z(-1, 0) && here < z(1, 0) && here < z(0, -1) && here < z(0, 1))) return false;
+  return z(-1, -1) < here || z(1, -1) < here || z(-1, 1) < here || z(1, 1) < here;
+}
+
+DamCount count_dammed(const Raster<float>& heights) {
+  DamCount count;
+  for (int row = 0; row < heights.grid.rows; ++row)
+    for (int column = 0; column < heights.grid.columns; ++column) {
+      if (std::isnan(heights.values[heights.grid.index(column, row)])) continue;
+      ++count.cells;
+      if (dammed(heights, column, row)) ++count.dammed;
+    }
+  return count;
+}
+
+}  // namespace talus

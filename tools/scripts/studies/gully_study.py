@@ -1,0 +1,250 @@
+#!/usr/bin/python3
+"""Measures what the surface between cell centres does to blocks in gullies: bilinear against creased patches.
+
+  tools/scripts/studies/gully_study.py --talus build/release/talus [--terrain ../shared/data/terrain] [TABLE ...]
+
+Tables (all where none is named; `terrain` needs --terrain):
+  v          a V gully (floor 35 degrees, walls 45) at 0, 20 and 45 degrees to the grid, thalweg through cell centres
+             and half a cell beside, cells of 5, 2 and 1 m: share of 200 blocks that stop within 300 m
+  round      a gully with a round bottom (radius of two cells and of four) at 0 to 45 degrees, 1000 blocks
+  staircase  slope from cell to cell down the thalweg of the sampled V at 20 degrees
+  terrain    gar, alr, mal: stops in dammed cells (lower than the four neighbours, higher than a diagonal one), in
+             true pits, path lengths and run-outs; from every n-th source cell of `talus sources`
+
+A block counts as stopped unless it passes; the gully is long enough that none leaves the terrain before. Blocks of
+1 m start 1 m above the thalweg, on the default ground (upper-talus-3d, phi 30 degrees).
+Needs numpy and GDAL's python binding (Debian: python3-numpy python3-gdal).
+"""
+import argparse
+import subprocess
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from osgeo import gdal, ogr, osr
+
+gdal.UseExceptions()
+ogr.UseExceptions()
+SURFACES = ("bilinear", "creased")
+LENGTH, BEFORE, SIDE = 300.0, 20.0, 60.0  # m: of the way, above the release, and on both sides of the thalweg
+CREATION = ("COMPRESS=DEFLATE",)
+
+
+def system():
+    crs = osr.SpatialReference()
+    crs.ImportFromEPSG(31287)
+    return crs
+
+
+def write_dem(path, heights, cell):
+    """Heights by row from the north; the lower-left corner is (0, 0) + 400 km."""
+    rows, columns = heights.shape
+    data = gdal.GetDriverByName("GTiff").Create(str(path), columns, rows, 1, gdal.GDT_Float32, CREATION)
+    data.SetGeoTransform((4e5, cell, 0, 4e5 + rows * cell, 0, -cell))
+    data.SetProjection(system().ExportToWkt())
+    data.GetRasterBand(1).SetNoDataValue(-9999)
+    data.GetRasterBand(1).WriteArray(heights.astype("f4"))
+
+
+def write_points(path, points, crs):
+    file = ogr.GetDriverByName("GPKG").CreateDataSource(str(path))
+    layer = file.CreateLayer("sources", crs, ogr.wkbPoint)
+    for x, y in points:
+        feature = ogr.Feature(layer.GetLayerDefn())
+        feature.SetGeometry(ogr.CreateGeometryFromWkt(f"POINT ({x!r} {y!r})"))
+        layer.CreateFeature(feature)
+
+
+def v_profile(_cell):
+    return lambda n: np.abs(n)
+
+
+def round_profile(radius):
+    """A circle that turns into walls of 45 degrees."""
+    edge = radius * np.sqrt(0.5)
+    return lambda n: np.where(np.abs(n) < edge, radius - np.sqrt(np.maximum(radius ** 2 - n ** 2, 0.0)),
+                              radius - edge + np.abs(n) - edge)
+
+
+class Gully:
+    """A straight gully: height -tan(35 deg) s + section(n), s along and n across the thalweg."""
+
+    def __init__(self, cell, degrees, offset, section):
+        self.cell, angle = cell, np.radians(degrees)
+        self.way = np.array([np.cos(angle), np.sin(angle)])
+        size = LENGTH + 2 * BEFORE + 10 * cell
+        corner = np.array([SIDE, SIDE]) if degrees else np.array([SIDE, SIDE])
+        extent = corner + size * self.way + SIDE
+        self.columns, self.rows = (np.ceil(extent / cell)).astype(int)
+        self.start = (np.floor(corner / cell) + 0.5) * cell + np.array([0.0, offset * cell])  # on the thalweg
+        x = (np.arange(self.columns) + 0.5) * cell
+        y = (np.arange(self.rows)[::-1] + 0.5) * cell
+        dx, dy = np.meshgrid(x - self.start[0], y - self.start[1])
+        along, across = dx * self.way[0] + dy * self.way[1], dy * self.way[0] - dx * self.way[1]
+        self.heights = 1000.0 - np.tan(np.radians(35.0)) * along + section(across)
+
+    def stopped(self, o, work, surface, blocks):
+        """Share of blocks that do not pass LENGTH."""
+        dem, points, out = work / "dem.tif", work / "points.gpkg", work / "out"
+        points.unlink(missing_ok=True)
+        write_dem(dem, self.heights, self.cell)
+        place = 4e5 + self.start
+        write_points(points, [place], system())
+        run(o, ["--dem", dem, "--sources", points, "--diameter", 1, "--trajectories", blocks, "--surface", surface], out)
+        ends = [(f.GetField("end"), f.geometry().GetX(), f.geometry().GetY()) for f in layer_of(out / "stops.gpkg")]
+        along = [(np.array([x, y]) - place) @ self.way for end, x, y in ends if end != "left"]
+        return sum(a < LENGTH for a in along) / len(ends)
+
+
+def run(o, options, out):
+    command = [o.talus, "run", *map(str, options), "-o", str(out), "--overwrite", "-q"]
+    command += ["--threads", str(o.threads)] if o.threads else []
+    subprocess.run(command, check=True)
+
+
+def layer_of(path):
+    file = ogr.Open(str(path))
+    layer = file.GetLayer(0)
+    while (feature := layer.GetNextFeature()) is not None:
+        yield feature
+
+
+def table(head, rows):
+    print("| " + " | ".join(head) + " |\n|" + " --- |" * len(head))
+    for row in rows:
+        print("| " + " | ".join(row) + " |", flush=True)
+    print()
+
+
+def percent(share):
+    return f"{100 * share:.1f} %"
+
+
+def v_table(o, work):
+    def rows():
+        for cell in (5, 2, 1):
+            for degrees in (0, 20, 45):
+                for offset, name in ((0.0, "through centres"), (0.5, "half a cell beside")):
+                    gully = Gully(cell, degrees, offset, v_profile(cell))
+                    yield [f"{cell} m", f"{degrees}", name] + [percent(gully.stopped(o, work, s, 200)) for s in SURFACES]
+    table(["cell", "degrees", "thalweg", *SURFACES], rows())
+
+
+def round_table(o, work):
+    def rows():
+        for cell in (5, 2):
+            for radius in (2, 4):
+                for degrees in (0, 10, 20, 30, 45):
+                    gully = Gully(cell, degrees, 0.0, round_profile(radius * cell))
+                    yield [f"{cell} m", f"{radius} cells", f"{degrees}"] + [percent(gully.stopped(o, work, s, 1000))
+                                                                        for s in SURFACES]
+    table(["cell", "radius", "degrees", *SURFACES], rows())
+
+
+def staircase_table(_o, _work):
+    """Steepest descent from cell to cell (eight neighbours) along the sampled thalweg."""
+    def rows():
+        for degrees in (0, 10, 20, 30, 45):
+            for name, section in (("V", v_profile(5)), ("round, 2 cells", round_profile(10.0)),
+                                  ("round, 4 cells", round_profile(20.0))):
+                steps = descent(Gully(5, degrees, 0.0, section))
+                flat = float((steps < 30.0).mean())
+                yield [f"{degrees}", name, f"{steps.min():.1f}", f"{steps.max():.1f}", percent(flat)]
+    table(["degrees", "bottom", "flattest step [deg]", "steepest [deg]", "steps below 30 deg"], rows())
+
+
+def descent(gully):
+    """Slopes of the steps of steepest descent down the gully, in degrees; a pit counts as 0."""
+    z = gully.heights.astype("f4").astype(float)
+    row, column = gully.rows - 1 - int(gully.start[1] // gully.cell), int(gully.start[0] // gully.cell)
+    steps = []
+    while 1 < row < gully.rows - 2 and 1 < column < gully.columns - 2 and len(steps) * gully.cell < LENGTH:
+        best = max(((z[row, column] - z[row + i, column + j]) / (gully.cell * np.hypot(i, j)), i, j)
+                   for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j)
+        steps.append(np.degrees(np.arctan(max(best[0], 0.0))))
+        if best[0] <= 0.0:
+            break
+        row, column = row + best[1], column + best[2]
+    return np.array(steps)
+
+
+def cells_of(z):
+    """Masks of the dammed cells and of the true pits."""
+    c = z[1:-1, 1:-1]
+    sides = [z[:-2, 1:-1], z[2:, 1:-1], z[1:-1, :-2], z[1:-1, 2:]]
+    corners = [z[:-2, :-2], z[:-2, 2:], z[2:, :-2], z[2:, 2:]]
+    low = np.logical_and.reduce([c < s for s in sides])
+    dammed, pits = low & np.logical_or.reduce([s < c for s in corners]), low & np.logical_and.reduce([c < s for s in corners])
+    return np.pad(dammed, 1), np.pad(pits, 1)
+
+
+def terrain_table(o, work):
+    def rows():
+        for name in ("gar", "alr", "mal"):
+            dem = Path(o.terrain) / f"{name}.tif"
+            points = every_nth_source(o, work, dem)
+            data = gdal.Open(str(dem))
+            z = data.ReadAsArray().astype("f4")
+            z[z == data.GetRasterBand(1).GetNoDataValue()] = np.nan
+            dammed, pits = cells_of(z)
+            before = None
+            for surface in SURFACES:
+                out = work / f"out_{name}_{surface}"
+                run(o, ["--dem", dem, "--sources", points, "--diameter", 1, "--trajectories", o.trajectories,
+                        "--surface", surface], out)
+                values = terrain_values(out, data.GetGeoTransform(), dammed, pits)
+                change = "" if before is None else [f" ({100 * (v / b - 1):+.1f} %)" for v, b in
+                                                    zip(values["lengths"], before["lengths"])]
+                yield [name, surface, f"{values['released']}", percent(values["stopped"]), percent(values["dammed"]),
+                       percent(values["pits"])] + [f"{v:.0f}{c}" for v, c in zip(values["lengths"], change or [""] * 4)]
+                before = values
+    table(["terrain", "surface", "blocks", "stopped", "of them in dammed cells", "in true pits", "mean path [m]",
+           "run-out: mean [m]", "median [m]", "95 % [m]"], rows())
+
+
+def every_nth_source(o, work, dem):
+    cells, points = work / "cells.gpkg", work / "points.gpkg"
+    for path in (cells, points):
+        path.unlink(missing_ok=True)
+    subprocess.run([o.talus, "sources", "--dem", str(dem), "-o", str(cells), "-q"], check=True)
+    file = ogr.Open(str(cells))
+    (layer,) = [la for la in (file.GetLayer(i) for i in range(file.GetLayerCount())) if la.GetGeomType() == ogr.wkbPoint]
+    places = [(f.geometry().GetX(), f.geometry().GetY()) for f in layer]
+    write_points(points, places[::max(1, len(places) // o.sources)], layer.GetSpatialRef())
+    return points
+
+
+def terrain_values(out, transform, dammed, pits):
+    west, width, _, north, _, height = transform
+    rows = [(f.GetField("end"), f.geometry().GetX(), f.geometry().GetY(), f.GetField("x_release"), f.GetField("y_release"),
+             f.GetField("length_m")) for f in layer_of(out / "stops.gpkg")]
+    x, y, x0, y0, length = np.array([r[1:] for r in rows]).T
+    stopped = np.array([r[0] in ("stopped", "trapped") for r in rows])
+    column, row = ((x - west) // width).astype(int)[stopped], ((y - north) // height).astype(int)[stopped]
+    runout = np.hypot(x - x0, y - y0)
+    return {"released": len(rows), "stopped": stopped.mean(), "dammed": dammed[row, column].mean(),
+            "pits": pits[row, column].mean(),
+            "lengths": (length.mean(), runout.mean(), np.median(runout), np.quantile(runout, 0.95))}
+
+
+TABLES = {"v": v_table, "round": round_table, "staircase": staircase_table, "terrain": terrain_table}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tables", nargs="*", metavar="TABLE", help=", ".join(TABLES))
+    parser.add_argument("--talus", default="build/release/talus")
+    parser.add_argument("--terrain", help="folder of gar.tif, alr.tif, mal.tif")
+    parser.add_argument("--sources", type=int, default=2000, help="source cells of a terrain")
+    parser.add_argument("--trajectories", type=int, default=8, help="per source cell of a terrain")
+    parser.add_argument("--threads", type=int, default=0)
+    o = parser.parse_args()
+    for name in o.tables or [t for t in TABLES if t != "terrain" or o.terrain]:
+        if name not in TABLES or (name == "terrain" and not o.terrain):
+            parser.error(f"{name}: must be one of {', '.join(TABLES)}; terrain needs --terrain")
+        with tempfile.TemporaryDirectory() as work:
+            TABLES[name](o, Path(work))
+
+
+if __name__ == "__main__":
+    main()
