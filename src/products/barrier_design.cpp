@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include "talus/base/sample.hpp"
 #include "talus/base/vector.hpp"
@@ -9,26 +11,98 @@
 namespace talus {
 namespace {
 
-std::vector<double> sorted(std::span<const double> values) {
-  std::vector<double> copy(values.begin(), values.end());
-  std::sort(copy.begin(), copy.end());
+std::vector<LineCrossing> along_the_line(std::span<const LineCrossing> crossings) {
+  std::vector<LineCrossing> copy(crossings.begin(), crossings.end());
+  std::ranges::stable_sort(copy, {}, &LineCrossing::along);
   return copy;
 }
 
-double share_within(const std::vector<double>& places, double from, double to) {
-  const auto inside =
-      std::upper_bound(places.begin(), places.end(), to) - std::lower_bound(places.begin(), places.end(), from);
-  return static_cast<double>(inside) / static_cast<double>(places.size());
+template <class Quantity>
+double percentile_of(std::span<const LineCrossing> crossings, double share, Quantity quantity) {
+  std::vector<double> values, weights;
+  for (const LineCrossing& crossing : crossings) {
+    values.push_back(std::invoke(quantity, crossing));
+    weights.push_back(crossing.weight);
+  }
+  return weighted_quantile(values, weights, share);
+}
+
+double weight_of(std::span<const LineCrossing> crossings) {
+  double sum = 0.0;
+  for (const LineCrossing& crossing : crossings) sum += crossing.weight;
+  return sum;
+}
+
+/// Share of the weight for which `wanted` is true.
+template <class Wanted>
+double share_where(std::span<const LineCrossing> crossings, Wanted wanted) {
+  double sum = 0.0;
+  for (const LineCrossing& crossing : crossings) sum += wanted(crossing) ? crossing.weight : 0.0;
+  return sum / weight_of(crossings);
+}
+
+double share_within(std::span<const LineCrossing> crossings, double from, double to) {
+  return share_where(crossings, [&](const LineCrossing& c) { return c.along >= from && c.along <= to; });
+}
+
+StretchDesign design_stretch(std::span<const LineCrossing> crossings, const Stretch& stretch,
+                             const DesignBlockRule& block, const DesignFactors& factors) {
+  StretchDesign s;
+  s.stretch = stretch;
+  s.crossings = crossings.size();
+  if (crossings.empty()) return s;
+  for (const LineCrossing& crossing : crossings) {
+    s.weight += crossing.weight;
+    s.squares += crossing.weight * crossing.weight;
+    s.largest_energy = std::max(s.largest_energy, crossing.energy());
+    s.largest_height = std::max(s.largest_height, crossing.height);
+  }
+  s.block = block.of(crossings);
+  s.effective = effective_number(crossings);
+  if (s.effective < static_cast<double>(fewest_for_percentile(factors.percentile)) - 1e-9) return s;
+  s.design = design_barrier(crossings, s.block, factors);
+  s.beyond = exceeded_by(crossings, *s.design);
+  return s;
 }
 
 }  // namespace
 
-BarrierDesign design_barrier(std::span<const double> speeds, std::span<const double> heights, const DesignBlock& block,
+double weighted_quantile(std::span<const double> values, std::span<const double> weights, double share) {
+  std::vector<std::pair<double, double>> sample;  // value, weight
+  for (std::size_t i = 0; i < values.size(); ++i) sample.emplace_back(values[i], weights[i]);
+  std::ranges::sort(sample);
+  std::vector<double> ascending;
+  double all = 0.0;
+  for (const auto& [value, weight] : sample) {
+    ascending.push_back(value);
+    all += weight;
+  }
+  if (std::ranges::all_of(weights, [&](double w) { return w == weights.front(); })) return quantile(ascending, share);
+  const double wanted = share * (all - 0.5 * (sample.front().second + sample.back().second));
+  double place = 0.0;  // from the middle of the first weight
+  for (std::size_t i = 1; i < sample.size(); ++i) {
+    const double way = 0.5 * (sample[i - 1].second + sample[i].second);
+    if (place + way >= wanted) return std::lerp(ascending[i - 1], ascending[i], (wanted - place) / way);
+    place += way;
+  }
+  return ascending.back();
+}
+
+double effective_number(std::span<const LineCrossing> crossings) {
+  double sum = 0.0, squares = 0.0;
+  for (const LineCrossing& crossing : crossings) {
+    sum += crossing.weight;
+    squares += crossing.weight * crossing.weight;
+  }
+  return squares > 0.0 ? sum * sum / squares : 0.0;
+}
+
+BarrierDesign design_barrier(std::span<const LineCrossing> crossings, const DesignBlock& block,
                              const DesignFactors& factors) {
   BarrierDesign d{};
   const double reach = factors.trajectory * factors.topography;
-  d.speed_percentile = quantile(sorted(speeds), factors.percentile);
-  d.height_percentile = quantile(sorted(heights), factors.percentile);
+  d.speed_percentile = percentile_of(crossings, factors.percentile, &LineCrossing::speed);
+  d.height_percentile = percentile_of(crossings, factors.percentile, &LineCrossing::height);
   d.speed = d.speed_percentile * reach;
   d.mass = block.volume * block.density * factors.volume * factors.density;
   d.energy = 0.5 * d.mass * d.speed * d.speed;
@@ -43,24 +117,30 @@ std::size_t fewest_for_percentile(double percentile) {
   return static_cast<std::size_t>(std::ceil(1.0 / (1.0 - percentile) - 1e-9));
 }
 
-Stretch shortest_stretch(std::span<const double> places, double containment) {
-  const std::vector<double> s = sorted(places);
-  const auto count = static_cast<double>(s.size());
-  const auto needed =
-      std::clamp<std::size_t>(static_cast<std::size_t>(std::ceil(containment * count - 1e-9)), 1, s.size());
-  std::size_t best = 0;
-  for (std::size_t first = 1; first + needed <= s.size(); ++first)
-    if (s[first + needed - 1] - s[first] < s[best + needed - 1] - s[best]) best = first;
-  const double from = s[best], to = s[best + needed - 1];
-  return {from, to, share_within(s, from, to)};
+Stretch shortest_stretch(std::span<const LineCrossing> crossings, double containment) {
+  const std::vector<LineCrossing> sorted = along_the_line(crossings);
+  const double all = weight_of(sorted),
+               needed = (containment - 1e-9) * all;  // rounding must not ask for one block more
+  Stretch best{sorted.front().along, sorted.back().along, 1.0};
+  double held = 0.0;  // from `first` to `last`, both included
+  for (std::size_t first = 0, last = 0; first < sorted.size(); ++first) {
+    while (last < sorted.size() && held < needed) held += sorted[last++].weight;
+    if (held < needed) break;
+    const double to = sorted[std::max(last, first + 1) - 1].along;
+    if (to - sorted[first].along < best.width()) best = {sorted[first].along, to, 1.0};
+    held -= sorted[first].weight;
+  }
+  best.share = share_within(sorted, best.from, best.to);
+  return best;
 }
 
-std::optional<Stretch> stretch_above(std::span<const double> places, double bin, double released, double probability) {
-  const std::vector<double> s = sorted(places);
+std::optional<Stretch> stretch_above(std::span<const LineCrossing> crossings, double bin, double released,
+                                     double probability) {
+  const std::vector<LineCrossing> s = along_the_line(crossings);
   std::optional<Stretch> found;
   for (auto first = s.begin(); first != s.end();) {
-    const double from = std::floor(*first / bin) * bin;
-    const auto end = std::lower_bound(first, s.end(), from + bin);
+    const double from = std::floor(first->along / bin) * bin;
+    const auto end = std::ranges::lower_bound(first, s.end(), from + bin, {}, &LineCrossing::along);
     const auto next = std::max(end, first + 1);  // rounding must not stop the progress
     if (static_cast<double>(next - first) > probability * released) {
       if (!found) found = Stretch{from, from + bin, 0.0};
@@ -70,6 +150,44 @@ std::optional<Stretch> stretch_above(std::span<const double> places, double bin,
   }
   if (found) found->share = share_within(s, found->from, found->to);
   return found;
+}
+
+std::vector<double> stretch_edges(std::span<const double> parts, double length) {
+  std::vector<double> edges{0.0};
+  double start = 0.0;
+  for (const double part : parts) {
+    const double pieces = std::max(1.0, std::ceil(part / length - 1e-9));
+    for (double i = 1.0; i <= pieces; i += 1.0) edges.push_back(start + part * (i / pieces));
+    start += part;
+  }
+  return edges;
+}
+
+DesignBlock DesignBlockRule::of(std::span<const LineCrossing> crossings) const {
+  if (volume) return {*volume, density};
+  return {std::ranges::max(crossings, {}, &LineCrossing::mass).mass / rock_density, density};
+}
+
+std::vector<StretchDesign> design_stretches(std::span<const LineCrossing> crossings, std::span<const double> edges,
+                                            const DesignBlockRule& block, const DesignFactors& factors) {
+  const std::vector<LineCrossing> s = along_the_line(crossings);
+  const double all = weight_of(s);
+  std::vector<StretchDesign> stretches;
+  auto first = s.begin();
+  for (std::size_t i = 1; i < edges.size(); ++i) {
+    const auto end =
+        i + 1 == edges.size() ? s.end() : std::ranges::lower_bound(first, s.end(), edges[i], {}, &LineCrossing::along);
+    const std::span<const LineCrossing> here(first, end);
+    stretches.push_back(design_stretch(here, {edges[i - 1], edges[i], weight_of(here) / all}, block, factors));
+    first = end;
+  }
+  return stretches;
+}
+
+DesignExceeded exceeded_by(std::span<const LineCrossing> crossings, const BarrierDesign& design) {
+  return {share_where(crossings, [&](const LineCrossing& c) { return c.height > design.height; }),
+          share_where(crossings, [&](const LineCrossing& c) { return c.energy() > design.sel; }),
+          share_where(crossings, [&](const LineCrossing& c) { return c.energy() > design.mel; })};
 }
 
 }  // namespace talus

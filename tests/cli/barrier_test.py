@@ -7,7 +7,7 @@ import unittest
 
 from osgeo import ogr
 
-from support import NORTH, WEST, Case, write_features
+from support import NORTH, WEST, Case, box, heights, write_dem, write_features
 
 SOUTH = NORTH - 300.0
 HEADER = ("source,block,screen,speed_ms,energy_kj,total_energy_kj,jump_height_m,angular_velocity_rads,mass_kg,x,y")
@@ -68,6 +68,45 @@ class Design(Case):
         self.assertAlmostEqual(float(rows["h_i"]["value"]), values["h_i"], 4)
         self.assertEqual(float(rows["h_i"]["share"]), 0.0)
 
+    def test_stretches(self):
+        """The line of 100 m in four of 25 m; the blocks cross from 10 to 30 m, the heaviest in the second."""
+        _, report, text = self.design("--stretch", "30")
+        rows = report["stretches"]
+        self.assertEqual([(r["from_m"], r["to_m"]) for r in rows], [(0, 25), (25, 50), (50, 75), (75, 100)])
+        self.assertEqual([r["crossings"] for r in rows], [75, 26, 0, 0])
+        self.assertAlmostEqual(sum(r["share"] for r in rows), 1.0, 12)
+        # the first: speeds 5.0 to 12.4, 3000 kg at 2500 kg/m3; the second: 12.5 to 15.0, 5000 kg
+        for row, speed, volume, height in ((rows[0], 5 + 0.1 * 0.95 * 74, 1.2, 0.01 * (1 + 0.95 * 74)),
+                                           (rows[1], 12.5 + 0.1 * 0.95 * 25, 2.0, 0.01 * (76 + 0.95 * 25))):
+            design = row["design"]
+            mass = volume * 2500 * 1.1
+            self.assertAlmostEqual(design["volume_m3"], volume, 9)
+            self.assertAlmostEqual(design["sel_kj"], 0.5e-3 * mass * (speed * 1.21)**2, 9)
+            self.assertAlmostEqual(design["h_i_m"], height * 1.21 + 0.5 * (6 * volume / math.pi)**(1 / 3), 9)
+        self.assertAlmostEqual(rows[1]["largest_energy_kj"], 0.5e-3 * 5000 * 15.0**2, 6)
+        self.assertIsNone(rows[2]["design"])
+        self.assertIn("nothing crosses the other 2 stretches", text)
+        self.assertIn("one design for the whole line is too low on 1 of its stretches", " ".join(report["notes"]))
+        self.assertIn("alike: the run knows no annual frequencies", report["weighting"])
+        self.assertIsNone(report["crossings_per_year"])
+        with open(self.path("out/barrier_road_stretches.csv"), encoding="utf-8") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual([row["crossings"] for row in table], ["75", "26", "0", "0"])
+        self.assertEqual(table[2]["sel_kj"], "")
+        self.assertAlmostEqual(float(table[1]["h_i_m"]), rows[1]["design"]["h_i_m"], 4)
+        few = self.design("--stretch", "10")[1]["stretches"]
+        self.assertEqual(sum(row["crossings"] for row in few), 101)
+        self.refused("--stretch = 0.5", arguments=["--screen", "road", "--stretch", "0.5"])
+
+    def test_the_coefficient_is_pointed_out(self):
+        """Notes of a run with the default c and with half of it."""
+        for c, said in ((0.25, True), (0.125, False)):
+            with open(self.path("out/run.json"), encoding="utf-8") as file:
+                record = json.load(file) | {"deformation_coefficient": c}
+            self.write("out/run.json", json.dumps(record))
+            notes = " ".join(self.design()[1]["notes"])
+            self.assertEqual("energies may be too low" in notes, said, notes)
+
     def test_options(self):
         values, _, _ = self.design("--gE", "1.2", "--percentile", "50", "--volume", "1", "--density", "2700")
         self.assertAlmostEqual(values["MEL"] / values["SEL"], 1.2, 12)
@@ -97,7 +136,8 @@ class Design(Case):
         first = self.content()
         self.design()
         self.assertEqual(self.content(), first)
-        self.assertEqual(sorted(first), ["barrier_road.csv", "barrier_road.json", "run.json", "screens.csv"])
+        self.assertEqual(sorted(first), ["barrier_road.csv", "barrier_road.json", "barrier_road_stretches.csv", "run.json",
+                                         "screens.csv"])
 
     def test_name_of_the_files(self):
         self.save([(0, i, "fe/nce", 5.0 + i, 1.0 + i, 3000.0, 1.0 + i) for i in range(20)])
@@ -145,6 +185,90 @@ class Design(Case):
         self.refused("no screens.csv")
         self.write("out/run.json", "{")
         self.refused("run.json", "cannot be understood")
+
+
+class Weights(Case):
+    """Two cliffs above one line: the eastern one, with larger blocks, falls fifty times less often."""
+
+    def setUp(self):
+        super().setUp()
+        self.sources(10.0, 0.2)
+        write_features(self.path("lines.gpkg"), "lines", [(line(150.0), ["road"])], [("id", ogr.OFTString)])
+        self.scenario = self.write("s.toml", 'dem = "dem.tif"\ntrajectories = 100\n[sources]\nfile = "sources.gpkg"\n'
+                                   '[blocks]\ndiameter = 1.0\n[screens]\nfile = "lines.gpkg"\n')
+
+    def sources(self, *frequencies):
+        fields = [("name", ogr.OFTString), ("diameter", ogr.OFTReal)]
+        fields += [("frequency", ogr.OFTReal)] if frequencies else []
+        values = [["west", 0.5], ["east", 1.5]]
+        values = [v + [f] for v, f in zip(values, frequencies)] if frequencies else values
+        write_features(self.path("sources.gpkg"), "sources",
+                       list(zip((box(60, 230, 20, 10), box(220, 230, 10, 10)), values)), fields)
+
+    def report(self, *arguments):
+        self.run_well("barrier", self.path("out"), "--screen", "road", *arguments)
+        with open(self.path("out/barrier_road.json"), encoding="utf-8") as file:
+            return json.load(file)
+
+    def crossings(self, west, east):
+        """Speed and events per year of the first crossing of each block; 8 cells of the western cliff, 4 of the eastern."""
+        with open(self.path("out/screens.csv"), encoding="utf-8") as file:
+            first = {(row["source"], row["block"]): row for row in reversed(list(csv.DictReader(file)))}
+        self.assertLess({int(source) for source, _ in first}, set(range(13)))
+        rows = [(float(row["speed_ms"]), (west / 800 if float(row["mass_kg"]) < 1000 else east / 400), row)
+                for row in first.values()]
+        return sorted(rows, key=lambda row: row[0])
+
+    def expect(self, report, west, east):
+        """Per year, and v95 between the values below and above which 95 % of the events are."""
+        rows = self.crossings(west, east)
+        total = sum(weight for _, weight, _ in rows)
+        self.assertAlmostEqual(report["crossings_per_year"]["value"] / total, 1.0, 9)
+        self.assertLess(report["crossings_per_year"]["low"], total)
+        self.assertGreater(report["crossings_per_year"]["high"], total)
+        below, bounds = 0.0, []
+        for speed, weight, _ in rows:
+            below += weight / total
+            bounds += [speed] if 0.94 < below < 0.96 else []
+        self.assertLessEqual(min(bounds), report["design"][0]["value"])
+        self.assertGreaterEqual(max(bounds), report["design"][0]["value"])
+        sel = next(row["value"] for row in report["design"] if row["name"] == "h_i")
+        above = sum(weight for _, weight, row in rows if float(row["jump_height_m"]) > sel)
+        limit = report["reliability"][0]["exceeded"][0]
+        self.assertAlmostEqual(limit["per_year"]["value"], above, 9)
+        self.assertAlmostEqual(limit["share_by_frequency"], above / total, 9)
+        self.assertAlmostEqual(sum(row["crossings_per_year"]["value"] for row in report["stretches"]) / total, 1.0, 9)
+        return total
+
+    def test_a_block_counts_by_its_frequency(self):
+        self.run_well("run", self.scenario, "-o", self.path("out"))
+        weighted = self.report()
+        self.assertIn("by the annual frequency of its source", weighted["weighting"])
+        self.expect(weighted, 10.0, 0.2)
+        self.assertLess(weighted["effective_crossings"], weighted["crossings"])
+        alike = self.report("--unweighted")
+        self.assertEqual(alike["effective_crossings"], alike["crossings"])
+        self.assertIsNone(alike["crossings_per_year"])
+        other = self.write("w.toml", "[features]\nwest = 0.1\neast = 5.0\n")
+        swapped = self.report("--frequency", other)
+        self.expect(swapped, 0.1, 5.0)
+        none = self.report("--frequency", self.write("z.toml", "[features]\nwest = 3.0\neast = 0.0\n"))
+        self.assertIn("are of sources with a frequency of 0 and count nothing", " ".join(none["notes"]))
+        self.assertAlmostEqual(none["design"][2]["value"], math.pi / 6 * 0.5**3, 4)  # the largest that ever falls
+        self.fails(2, "--unweighted", arguments=["barrier", self.path("out"), "--screen", "road", "--unweighted",
+                                                  "--frequency", other])
+        write_dem(self.path("dem.tif"), heights() + 1)
+        self.fails(2, "has changed since the run", "--unweighted",
+                   arguments=["barrier", self.path("out"), "--screen", "road"])
+        self.report("--unweighted")
+
+    def test_without_frequencies(self):
+        self.sources()
+        self.run_well("run", self.scenario, "-o", self.path("out"))
+        self.assertIn("alike: the run knows no annual frequencies", self.report()["weighting"])
+        other = self.write("w.toml", "[features]\nwest = 0.1\neast = 5.0\n")
+        self.fails(2, "--frequency", "no annual frequencies",
+                   arguments=["barrier", self.path("out"), "--screen", "road", "--frequency", other])
 
 
 class Walk(Case):

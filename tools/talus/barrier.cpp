@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "crossing_weights.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
@@ -23,12 +24,13 @@ using talus::io::CrossingTable;
 using talus::io::RunSummary;
 
 struct Options {
-  std::string folder, screen, observed;
+  std::string folder, screen, observed, frequency;
   talus::DesignFactors factors;
   double percentile = 95.0, containment = 99.0;  // [%]
   std::optional<double> volume, density;         // [m^3], [kg/m^3]
+  double stretch = 30.0;                         // longest [m]
   std::uint64_t seed = 1;
-  bool quiet = false;
+  bool unweighted = false, quiet = false;
 };
 
 /// Throws InputError if a number on the command line is out of bounds.
@@ -45,6 +47,7 @@ void check_numbers(const Options& o) {
       {{"--percentile", "%", "of speed and jump height", 0.0, 100.0, Bounds::Between}, o.percentile},
       {{"--containment", "%", "share of the crossings that the width holds", 0.0, 100.0, Bounds::AboveMin},
        o.containment},
+      {{"--stretch", "m", "longest stretch with a design of its own", 1.0, 1e6}, o.stretch},
       {{"--volume", "m3", "of the design block", 0.0, 65000.0, Bounds::AboveMin}, o.volume},
       {{"--density", "kg/m3", "mass per volume of the rock", 500.0, 8000.0}, o.density}};
   for (const auto& [bounds, value] : all)
@@ -62,7 +65,7 @@ const talus::Screen& screen_of(const RunSummary& run, const Options& o) {
   throw talus::InputError("--screen: the run has no screen '" + o.screen + "'" + talus::known_names(o.screen, ids));
 }
 
-/// The crossings of the run. Throws InputError if they are too few for the percentile.
+/// The crossings of the run.
 CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
   const fs::path file = fs::path(o.folder) / "screens.csv";
   if (run.screens.empty() || !fs::exists(file))
@@ -80,11 +83,6 @@ CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
       throw talus::InputError(file.string() +
                               ": has rows without speed, jump height, mass or place, must be as talus run "
                               "has written it; run the scenario again");
-  const std::size_t fewest = talus::fewest_for_percentile(0.01 * o.percentile);
-  if (crossings.blocks < fewest)
-    throw talus::InputError(file.string() + ": only " + std::to_string(crossings.blocks) + " blocks cross screen '" +
-                            o.screen + "', must be " + std::to_string(fewest) + " at least for percentile " +
-                            talus::text_of(o.percentile) + ": run more trajectories, or give a lower --percentile");
   return crossings;
 }
 
@@ -93,6 +91,63 @@ CrossingTable observed_crossings(const Options& o) {
   if (crossings.blocks == 0)
     throw talus::InputError(o.observed + ": has no row of screen '" + o.screen + "', must have one per observed block");
   return crossings;
+}
+
+/// The blocks at the line, without those that never fall. Throws InputError if they are too few for the percentile.
+std::vector<talus::LineCrossing> crossings_of(const CrossingTable& table, const RunSummary& run, const Options& o,
+                                              BarrierReport& report, Weighting& weighting) {
+  const talus::Screen& screen = screen_of(run, o);
+  std::vector<talus::LineCrossing> crossings;
+  for (std::size_t i = 0; i < table.blocks; ++i)
+    crossings.push_back(
+        {table.speed[i], table.height[i], table.mass[i], talus::place_along(screen, table.places[i]), 1.0});
+  weighting = weigh_crossings(crossings, table, {o.folder, o.frequency, o.unweighted});
+  const std::size_t never = std::erase_if(crossings, [](const auto& c) { return !(c.weight > 0.0); });
+  if (never > 0)
+    report.notes.push_back(std::to_string(never) +
+                           " of the crossings are of sources with a frequency of 0 and count "
+                           "nothing");
+  report.weighting = weighting.text;
+  report.effective = talus::effective_number(crossings);
+  const std::size_t fewest = talus::fewest_for_percentile(0.01 * o.percentile);
+  if (report.effective < static_cast<double>(fewest) - 1e-9)
+    throw talus::InputError((fs::path(o.folder) / "screens.csv").string() + ": only " +
+                            std::to_string(crossings.size()) + " blocks cross screen '" + o.screen + "'" +
+                            (weighting.scale ? ", which by their frequencies say as much as " +
+                                                   talus::with_digits(report.effective, 3) + " equal ones"
+                                             : "") +
+                            ", must be " + std::to_string(fewest) + " at least for percentile " +
+                            talus::text_of(o.percentile) + ": run more trajectories, or give a lower --percentile");
+  return crossings;
+}
+
+/// How often the crossings that `exceeds` accepts come: their share by weight, and per year.
+template <class Exceeds>
+void add_frequency(talus::io::Reliability::Limit& limit, std::span<const talus::LineCrossing> crossings,
+                   const Weighting& weighting, Exceeds exceeds) {
+  double all = 0.0, sum = 0.0, squares = 0.0;
+  for (const talus::LineCrossing& c : crossings) {
+    all += c.weight;
+    if (!exceeds(c, limit.value)) continue;
+    sum += c.weight;
+    squares += c.weight * c.weight;
+  }
+  limit.by_frequency = sum / all;
+  limit.per_year = weighting.per_year(sum, squares);
+}
+
+/// Adds to each design value how often a simulated block exceeds it.
+void add_frequencies(BarrierReport& report, std::span<const talus::LineCrossing> crossings,
+                     const Weighting& weighting) {
+  using Crossing = talus::LineCrossing;
+  for (talus::io::Reliability& r : report.reliability)
+    for (talus::io::Reliability::Limit& limit : r.limits)
+      if (r.unit == "m")
+        add_frequency(limit, crossings, weighting, [](const Crossing& c, double h) { return c.height > h; });
+      else if (r.unit == "m/s")
+        add_frequency(limit, crossings, weighting, [](const Crossing& c, double v) { return c.speed > v; });
+      else
+        add_frequency(limit, crossings, weighting, [](const Crossing& c, double kj) { return c.energy() > 1e3 * kj; });
 }
 
 /// Adds the fit of one quantity, if the table has it.
@@ -120,28 +175,61 @@ void add_reliability(BarrierReport& report, const std::string& quantity, const s
   talus::BootstrapOptions how;
   how.seed = seed;
   talus::io::Reliability r{quantity, unit, talus::fit_weibull(values, how), {}};
-  for (const auto& [name, limit] : limits) r.limits.push_back({name, limit, talus::exceedance(r.fit, values, limit)});
+  for (const auto& [name, limit] : limits)
+    r.limits.push_back({name, limit, talus::exceedance(r.fit, values, limit), {}, {}});
   report.reliability.push_back(std::move(r));
 }
 
-void add_design(BarrierReport& report, const CrossingTable& crossings, const RunSummary& run, const Options& o) {
+void add_design(BarrierReport& report, std::span<const talus::LineCrossing> crossings, const RunSummary& run,
+                const Options& o) {
   report.factors = o.factors;
   report.factors.percentile = 0.01 * o.percentile;
-  report.block.density = o.density.value_or(run.density);
+  const talus::DesignBlockRule rule{o.volume, o.density.value_or(run.density), run.density};
   report.block_from = o.volume ? "--volume" : "the largest that crosses";
-  report.block.volume =
-      o.volume.value_or(*std::max_element(crossings.mass.begin(), crossings.mass.end()) / run.density);
-  report.design = talus::design_barrier(crossings.speed, crossings.height, report.block, report.factors);
+  report.block = rule.of(crossings);
+  report.design = talus::design_barrier(crossings, report.block, report.factors);
+  report.longest = o.stretch;
+  std::vector<double> parts;
+  for (const auto& line : screen_of(run, o).lines) {
+    double length = 0.0;
+    for (std::size_t i = 1; i < line.size(); ++i) length += (line[i] - line[i - 1]).norm();
+    parts.push_back(length);
+  }
+  for (const talus::StretchDesign& s :
+       talus::design_stretches(crossings, talus::stretch_edges(parts, o.stretch), rule, report.factors))
+    report.stretches.push_back({s, {}});
+  if (const auto note = talus::io::stretch_note(report)) report.notes.push_back(*note);
 }
 
-void add_width(BarrierReport& report, const CrossingTable& crossings, const RunSummary& run, const Options& o) {
-  const talus::Screen& screen = screen_of(run, o);
-  std::vector<double> along;
-  for (const Eigen::Vector2d& place : crossings.places) along.push_back(talus::place_along(screen, place));
+void add_width(BarrierReport& report, std::span<const talus::LineCrossing> crossings, const RunSummary& run,
+               const Options& o) {
   report.containment = 0.01 * o.containment;
-  report.shortest = talus::shortest_stretch(along, report.containment);
+  report.shortest = talus::shortest_stretch(crossings, report.containment);
   report.bin = run.cell;
-  report.above = talus::stretch_above(along, run.cell, run.released, 1.0 - report.containment);
+  report.above = talus::stretch_above(crossings, run.cell, run.released, 1.0 - report.containment);
+}
+
+/// Adds how often blocks cross the line and each of its stretches.
+void add_crossings_per_year(BarrierReport& report, const Weighting& weighting) {
+  double sum = 0.0, squares = 0.0;
+  for (talus::io::StretchRow& row : report.stretches) {
+    row.per_year = weighting.per_year(row.values.weight, row.values.squares);
+    sum += row.values.weight;
+    squares += row.values.squares;
+  }
+  report.per_year = weighting.per_year(sum, squares);
+}
+
+/// A warning that the energies rest on c, where c is not lower than the default.
+void add_coefficient(BarrierReport& report, const Options& o) {
+  const auto c = talus::io::deformation_coefficient_of(o.folder);
+  if (!c || *c < talus::ImpactModel{}.deformation_coefficient) return;
+  report.notes.push_back("energies may be too low: c = " + talus::text_of(*c) +
+                         " (model.deformation_coefficient) is not given by the paper. On a stand-in for its slope c = "
+                         "0.25 gives SEL 33 to "
+                         "62 % and h_i 5 to 30 % below its Table 4. Compare with observed blocks (--observed); "
+                         "docs/barrier.md, \"The value "
+                         "of c\"");
 }
 
 int design(const Options& o) {
@@ -151,21 +239,27 @@ int design(const Options& o) {
   const CrossingTable crossings = simulated_crossings(run, o);
   const CrossingTable values = o.observed.empty() ? crossings : observed_crossings(o);
   BarrierReport report;
+  Weighting weighting;
+  add_coefficient(report, o);
+  const std::vector<talus::LineCrossing> blocks = crossings_of(crossings, run, o, report, weighting);
   report.screen = o.screen;
   report.released = run.released;
   report.crossings = crossings.blocks;
   report.values = o.observed.empty() ? "the simulated crossings" : "the observed crossings of " + o.observed;
-  add_design(report, crossings, run, o);
+  add_design(report, blocks, run, o);
+  add_crossings_per_year(report, weighting);
   std::vector<double> kilojoules = values.energy;
   for (double& energy : kilojoules) energy *= 1e-3;
   add_reliability(report, "jump height", "m", values.height, {{"h_i", report.design.height}}, o.seed);
   add_reliability(report, "speed", "m/s", values.speed, {{"v_d", report.design.speed}}, o.seed);
   add_reliability(report, "energy", "kJ", kilojoules,
                   {{"SEL", report.design.sel * 1e-3}, {"MEL", report.design.mel * 1e-3}}, o.seed);
-  add_width(report, crossings, run, o);
+  if (weighting.scale) add_frequencies(report, blocks, weighting);
+  add_width(report, blocks, run, o);
 
   const std::string name = talus::io::barrier_file_name(o.screen);
   talus::io::replace_text(fs::path(o.folder) / (name + ".csv"), talus::io::barrier_csv(report));
+  talus::io::replace_text(fs::path(o.folder) / (name + "_stretches.csv"), talus::io::stretches_csv(report));
   talus::io::replace_text(fs::path(o.folder) / (name + ".json"), talus::io::barrier_json(report));
   if (!o.quiet) std::fputs(talus::io::barrier_text(report).c_str(), stdout);
   return 0;
@@ -192,10 +286,16 @@ void add_barrier(CLI::App& app, Action& action) {
                       "of the design block [m3]; the largest that crosses where it is not given");
   command->add_option("--density", o->density, "of the design block [kg/m3]; the run's where it is not given");
   command->add_option("--containment", o->containment, "share of the crossings that the width holds [%]: 99 (default)");
+  command->add_option("--stretch", o->stretch,
+                      "longest stretch of the line with a design of its own [m]: 30 (default)");
+  command->add_option("--frequency", o->frequency,
+                      "another weighting (TOML: [frequency], [features]), as of talus hazard");
+  command->add_flag("--unweighted", o->unweighted, "count every block alike, also where the sources have frequencies");
   command->add_flag("-q,--quiet", o->quiet, "say nothing but errors");
   command->add_option("--seed", o->seed, "of the bootstrap: 1 (default)");
   command->footer(
       "Example:\n  talus barrier result --screen road --gTr 1.02 --gDp 1.02 --gVol 1.02\n\n"
-      "Writes barrier_ID.json and barrier_ID.csv into the folder. docs/barrier.md explains every value.");
+      "Writes barrier_ID.json, barrier_ID.csv and barrier_ID_stretches.csv into the folder. docs/barrier.md explains "
+      "every value.");
   command->callback([&action, o] { action = [o] { return design(*o); }; });
 }

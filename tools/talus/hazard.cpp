@@ -14,8 +14,7 @@
 #include "talus/io/results/hazard_file.hpp"
 #include "talus/io/results/hazard_record.hpp"
 #include "talus/io/results/objects_file.hpp"
-#include "talus/io/results/weighting_file.hpp"
-#include "talus/io/scenario/plan_checksum.hpp"
+#include "talus/io/results/recorded_plan.hpp"
 #include "talus/products/hazard_maps.hpp"
 #include "talus/run/write_maps.hpp"
 #include "talus/simulate/simulate.hpp"
@@ -73,15 +72,7 @@ std::vector<std::string> warnings_of(const talus::HazardMatrix& matrix, const ta
 
 /// The recorded plan, with the weighting that is asked for.
 talus::io::LoadedScenario recorded_plan(const Options& options, const std::string& plan) {
-  talus::io::RunFlags flags;
-  flags.scenario = (fs::path(options.folder) / "scenario.toml").string();
-  talus::io::LoadedScenario loaded = talus::io::load_scenario(flags);
-  if (talus::io::plan_checksum(loaded) != plan)
-    throw talus::InputError(flags.scenario +
-                            ": it, or a file that it names, has changed since the run, so that the run "
-                            "cannot be repeated; run again (the checksums are in run.json)");
-  if (!options.frequency.empty()) talus::io::apply_weighting(options.frequency, loaded.scenario);
-  return loaded;
+  return talus::io::recorded_plan(options.folder, plan, options.frequency);
 }
 
 /// Traces the recorded plan again with other weights and evaluates every cell.

@@ -23,6 +23,26 @@ struct DesignBlock {
   double density = 2700.0;  ///< rho [kg/m^3]
 };
 
+/// A block where it first crosses a line.
+struct LineCrossing {
+  double speed = 0.0;   ///< [m/s]
+  double height = 0.0;  ///< vertical, ground to centre [m]
+  double mass = 0.0;    ///< [kg]
+  double along = 0.0;   ///< distance from the start of the line [m]
+  double weight = 1.0;  ///< events per year that it stands for, or 1 for every block; > 0
+
+  double energy() const { return 0.5 * mass * speed * speed; }  ///< translational [J]
+};
+
+/// Quantile of a sample whose values count by weight: linear between the values, which stand at the middles of their
+/// weights, stretched so that the smallest is at 0 and the largest at 1. Equal weights give exactly `quantile`.
+///
+/// @param values, weights  of equal number, not empty, any order; weights > 0;  share: 0..1
+double weighted_quantile(std::span<const double> values, std::span<const double> weights, double share);
+
+/// Number of crossings of equal weight that say as much: (sum w)^2 / sum w^2. Source: Kish, Survey Sampling (1965).
+double effective_number(std::span<const LineCrossing> crossings);
+
 /// Design values of a barrier.
 struct BarrierDesign {
   double speed_percentile, height_percentile;  ///< v95 [m/s], h95 [m]
@@ -34,8 +54,8 @@ struct BarrierDesign {
   double height;                               ///< h_i = h95 gTr gDp + f_min, of the interception, vertical [m]
 };
 
-/// @param speeds   of the crossings [m/s];  heights: vertical, ground to centre [m]; none empty, any order
-BarrierDesign design_barrier(std::span<const double> speeds, std::span<const double> heights, const DesignBlock& block,
+/// @param crossings  not empty, any order; percentiles are by their weights
+BarrierDesign design_barrier(std::span<const LineCrossing> crossings, const DesignBlock& block,
                              const DesignFactors& factors);
 
 /// Fewest crossings from which a percentile is reported: 1 / (1 - percentile), so that at least one value may lie
@@ -50,17 +70,62 @@ struct Stretch {
   double width() const { return to - from; }
 };
 
-/// The shortest stretch that holds a share of the crossings.
+/// The shortest stretch that holds a share of the crossings, by their weights.
 ///
-/// @param places  distances along the line [m], not empty, any order;  containment: above 0, at most 1
-Stretch shortest_stretch(std::span<const double> places, double containment);
+/// @param crossings  not empty, any order;  containment: above 0, at most 1
+Stretch shortest_stretch(std::span<const LineCrossing> crossings, double containment);
 
 /// The paper's rule: the stretch from the first to the last bin that is crossed by more than the share `probability` of
-/// all released blocks.
+/// all released blocks. It may hold far fewer than 1 - probability of the crossings: its share says how many, by
+/// weight.
 ///
 /// @param bin       width of the bins from the start of the line [m], > 0
-/// @param released  number of all released blocks; `places` has only those that crossed
+/// @param released  number of all released blocks, each counting as one; `crossings` has only those that crossed
 /// @return          nothing if no bin is crossed by so many
-std::optional<Stretch> stretch_above(std::span<const double> places, double bin, double released, double probability);
+std::optional<Stretch> stretch_above(std::span<const LineCrossing> crossings, double bin, double released,
+                                     double probability);
+
+/// Edges of stretches along a line, from 0: each part of the line is cut into equal pieces, as few as are not longer
+/// than `length`.
+///
+/// @param parts  lengths of the parts of the line [m];  length: [m], > 0
+std::vector<double> stretch_edges(std::span<const double> parts, double length);
+
+/// Shares of the crossings that exceed a design, by their weights.
+struct DesignExceeded {
+  double height, sel, mel;  // [-]
+};
+
+/// Design of the barrier along one stretch of a line, by the crossings of this stretch alone.
+struct StretchDesign {
+  Stretch stretch;                       ///< with its share of the crossings of the whole line, by weight
+  std::size_t crossings = 0;             ///< blocks
+  double weight = 0.0, squares = 0.0;    ///< sum of their weights, and of the squares
+  double effective = 0.0;                ///< `effective_number`
+  double largest_energy = 0.0;           ///< of any crossing [J]
+  double largest_height = 0.0;           ///< of any crossing [m]
+  DesignBlock block;                     ///< given, or the largest that crosses here
+  std::optional<BarrierDesign> design;   ///< nothing where the crossings are too few for the percentile
+  std::optional<DesignExceeded> beyond;  ///< of the crossings of the stretch
+};
+
+/// The block to design for: its volume, or the largest that crosses.
+struct DesignBlockRule {
+  std::optional<double> volume;  ///< [m^3]
+  double density = 2700.0;       ///< of the design block [kg/m^3]
+  double rock_density = 2700.0;  ///< of the blocks that cross [kg/m^3]
+
+  DesignBlock of(std::span<const LineCrossing> crossings) const;
+};
+
+/// A design for each stretch between two edges. A crossing on an edge belongs to the stretch that begins there; what
+/// lies beyond the last edge, by rounding, to the last stretch.
+///
+/// A stretch has a design if its `effective_number` of crossings is enough for the percentile.
+std::vector<StretchDesign> design_stretches(std::span<const LineCrossing> crossings, std::span<const double> edges,
+                                            const DesignBlockRule& block, const DesignFactors& factors);
+
+/// Shares of the crossings above h_i (their height), SEL and MEL (their energy), by weight.
+DesignExceeded exceeded_by(std::span<const LineCrossing> crossings, const BarrierDesign& design);
 
 }  // namespace talus

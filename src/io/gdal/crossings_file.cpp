@@ -33,6 +33,8 @@ CrossingTable read_crossings(const std::string& path, const std::string& screen)
     const std::string block = block_of(table, row);
     if (!block.empty() && !seen.insert(block).second) continue;
     ++out.blocks;
+    out.source.push_back(table.text(row, "source"));
+    out.block.push_back(table.text(row, "block"));
     const auto speed = table.number(row, "speed_ms", kSpeed), energy = table.number(row, "energy_kj", kEnergy),
                height = table.number(row, "jump_height_m", kHeight), mass = table.number(row, "mass_kg", kMass),
                x = table.number(row, "x", kPlace), y = table.number(row, "y", kPlace);

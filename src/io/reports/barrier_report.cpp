@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/files/json.hpp"
-#include "talus/base/text.hpp"
+#include "barrier_stretches.hpp"
 #include "talus/base/vector.hpp"
 #include "talus/base/version.hpp"
 
@@ -17,10 +16,6 @@ struct DesignRow {
   double value;
   std::string unit, from;
 };
-
-std::string percent(double share) {
-  return with_digits(100.0 * share, 3) + " %";
-}
 
 std::string between(const Interval& i, double factor) {
   return "[" + with_digits(factor * i.low, 3) + ", " + with_digits(factor * i.high, 3) + "]";
@@ -51,6 +46,20 @@ std::string cell(const std::string& text, std::size_t width) {
   return padded(text + ' ', width);
 }
 
+/// "[0.9, 1.1]"
+std::string between(const Bounded& b) {
+  return between(Interval{b.low, b.high}, 1.0);
+}
+
+std::string frequency_text(const Reliability::Limit& l) {
+  if (!l.by_frequency || !l.per_year) return "";
+  std::string text = "          by frequency: " + percent(*l.by_frequency) + " of the crossings, ";
+  if (!(l.per_year->value > 0.0))
+    return text + "rarer than once in " + with_digits(1.0 / l.per_year->high, 3) + " years\n";
+  return text + "once in " + with_digits(1.0 / l.per_year->value, 3) + " years " + between(return_period(*l.per_year)) +
+         "\n";
+}
+
 std::string reliability_text(const Reliability& r) {
   std::string text = "  " + cell(r.quantity, 14) + "Weibull shape " + with_digits(r.fit.law.shape, 3) + " " +
                      between(r.fit.shape, 1.0) + ", scale " + with_digits(r.fit.law.scale, 3) + " " + r.unit + " " +
@@ -63,7 +72,8 @@ std::string reliability_text(const Reliability& r) {
   for (const Reliability::Limit& l : r.limits)
     text += "    " + cell(l.name, 6) + cell(with_digits(l.value, 4) + " " + r.unit, 14) + "exceeded by " +
             cell(percent(l.exceeded.fitted) + " " + between(l.exceeded.fitted_bounds, 100.0), 28) + "of the law, " +
-            percent(l.exceeded.observed) + " " + between(l.exceeded.observed_bounds, 100.0) + " of the values\n";
+            percent(l.exceeded.observed) + " " + between(l.exceeded.observed_bounds, 100.0) + " of the values\n" +
+            frequency_text(l);
   return text;
 }
 
@@ -84,7 +94,9 @@ Json reliability_of(const Reliability& r) {
                       {"weibull", l.exceeded.fitted},
                       {"weibull_interval", json_of(l.exceeded.fitted_bounds, unrounded)},
                       {"share", l.exceeded.observed},
-                      {"share_interval", json_of(l.exceeded.observed_bounds, unrounded)}});
+                      {"share_interval", json_of(l.exceeded.observed_bounds, unrounded)},
+                      {"share_by_frequency", l.by_frequency ? Json(*l.by_frequency) : Json()},
+                      {"per_year", l.per_year ? bounded_of(*l.per_year) : Json()}});
   return {{"quantity", r.quantity},
           {"unit", r.unit},
           {"values", r.fit.values},
@@ -103,14 +115,16 @@ Json reliability_of(const Reliability& r) {
 
 std::string barrier_text(const BarrierReport& r) {
   std::string text = "screen " + r.screen + ": " + std::to_string(r.crossings) + " blocks cross it, " +
-                     percent(static_cast<double>(r.crossings) / r.released) + " of those released\n\ndesign values\n";
+                     percent(static_cast<double>(r.crossings) / r.released) + " of those released";
+  if (r.per_year) text += "; " + with_digits(r.per_year->value, 3) + " per year " + between(*r.per_year);
+  text += "\nevery block counts " + r.weighting + "\n\ndesign values\n";
   for (const DesignRow& row : design_rows(r))
     text += "  " + cell(row.name, 8) + cell(with_digits(row.value, 4) + " " + row.unit, 14) + row.from + "\n";
   text += "\nprobability that a block exceeds them, by " + r.values + " [95 %]\n";
   for (const Reliability& quantity : r.reliability) text += reliability_text(quantity);
-  text +=
-      "\nwidth for a containment of " + percent(r.containment) + "\n  shortest    " + stretch_text(r.shortest) + "\n";
-  text += "  by the map  " + (r.above ? stretch_text(*r.above) : std::string("none")) + ": bins of " +
+  text += stretches_text(r);
+  text += "\nwidth\n  for a containment of " + percent(r.containment) + "  " + stretch_text(r.shortest) + "\n";
+  text += "  by the map                   " + (r.above ? stretch_text(*r.above) : std::string("none")) + ": bins of " +
           with_digits(r.bin, 4) + " m that more than " + percent(1.0 - r.containment) +
           " of the released blocks cross\n";
   for (const std::string& note : r.notes) text += "\nnote: " + note + "\n";
@@ -124,6 +138,9 @@ std::string barrier_json(const BarrierReport& r) {
   json["screen"] = r.screen;
   json["released"] = r.released;
   json["crossings"] = r.crossings;
+  json["weighting"] = r.weighting;
+  json["effective_crossings"] = r.effective;
+  json["crossings_per_year"] = r.per_year ? bounded_of(*r.per_year) : Json();
   json["factors"] = {{"gTr", r.factors.trajectory},
                      {"gDp", r.factors.topography},
                      {"gVol", r.factors.volume},
@@ -139,6 +156,8 @@ std::string barrier_json(const BarrierReport& r) {
   json["reliability_of"] = r.values;
   json["reliability"] = Json::array();
   for (const Reliability& quantity : r.reliability) json["reliability"].push_back(reliability_of(quantity));
+  json["longest_stretch_m"] = r.longest;
+  json["stretches"] = stretches_of(r);
   json["containment"] = {{"target", r.containment},
                          {"shortest", stretch_of(r.shortest)},
                          {"bin_m", r.bin},

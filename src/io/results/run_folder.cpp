@@ -28,6 +28,13 @@ Screen screen_of(const Json& json) {
 
 }  // namespace
 
+std::optional<double> deformation_coefficient_of(const std::filesystem::path& folder) {
+  std::ifstream stream(folder / "run.json", std::ios::binary);
+  const Json json = Json::parse(stream, nullptr, false);
+  if (!json.is_object() || !json.contains("deformation_coefficient")) return std::nullopt;
+  return json.at("deformation_coefficient").get<double>();
+}
+
 RunSummary read_run(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "run.json";
   std::ifstream stream(file, std::ios::binary);

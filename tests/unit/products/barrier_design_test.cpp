@@ -3,17 +3,26 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
+#include "talus/base/random.hpp"
+#include "talus/base/sample.hpp"
 #include "talus/products/weibull.hpp"
 
 namespace talus {
 namespace {
 
-/// 0, 1, ... 100: the percentiles are the numbers.
-std::vector<double> hundred(double unit) {
-  std::vector<double> values;
-  for (int i = 100; i >= 0; --i) values.push_back(unit * i);
-  return values;
+/// 0, 1, ... 100 times a unit: the percentiles are the numbers. All of 1 kg, at the start of the line.
+std::vector<LineCrossing> hundred(double speed_unit, double height_unit) {
+  std::vector<LineCrossing> crossings;
+  for (int i = 100; i >= 0; --i) crossings.push_back({speed_unit * i, height_unit * i, 1.0, 0.0, 1.0});
+  return crossings;
+}
+
+std::vector<LineCrossing> at_places(const std::vector<double>& places) {
+  std::vector<LineCrossing> crossings;
+  for (const double place : places) crossings.push_back({1.0, 1.0, 1.0, place, 1.0});
+  return crossings;
 }
 
 /// By hand: v95 = 0.2 * 95 = 19, v_d = 19 * 1.02 * 1.10 = 21.318 m/s; m_d = 2 * 2500 * 1.02 = 5100 kg;
@@ -24,7 +33,7 @@ TEST(DesignBarrier, ByHand) {
   factors.trajectory = 1.02;
   factors.topography = 1.10;
   factors.volume = 1.02;
-  const BarrierDesign d = design_barrier(hundred(0.2), hundred(0.04), {2.0, 2500.0}, factors);
+  const BarrierDesign d = design_barrier(hundred(0.2, 0.04), {2.0, 2500.0}, factors);
   EXPECT_NEAR(d.speed_percentile, 19.0, 1e-12);
   EXPECT_NEAR(d.height_percentile, 3.8, 1e-12);
   EXPECT_NEAR(d.speed, 21.318, 1e-12);
@@ -39,7 +48,7 @@ TEST(DesignBarrier, ByHand) {
 /// The freeboard of small blocks is half a metre: up to a diameter of 1 m, pi / 6 m3.
 TEST(DesignBarrier, FreeboardIsHalfAMetreAtLeast) {
   const auto freeboard = [](double volume) {
-    return design_barrier(hundred(0.2), hundred(0.0), {volume, 2700.0}, {}).freeboard;
+    return design_barrier(hundred(0.2, 0.0), {volume, 2700.0}, {}).freeboard;
   };
   EXPECT_EQ(freeboard(0.1), 0.5);
   EXPECT_NEAR(freeboard(8.0 * 3.14159265358979 / 6.0), 1.0, 1e-12);
@@ -47,7 +56,7 @@ TEST(DesignBarrier, FreeboardIsHalfAMetreAtLeast) {
 
 TEST(DesignBarrier, AnyPercentile) {
   DesignFactors factors{1.0, 1.0, 1.0, 1.0, 1.0, 1.2, 0.5, 0.975};
-  const BarrierDesign d = design_barrier(hundred(0.2), hundred(0.04), {2.0, 2500.0}, factors);
+  const BarrierDesign d = design_barrier(hundred(0.2, 0.04), {2.0, 2500.0}, factors);
   EXPECT_NEAR(d.speed, 19.5, 1e-12);
   EXPECT_NEAR(d.mel / d.sel, 1.2, 1e-12);
   EXPECT_EQ(fewest_for_percentile(0.95), 20U);
@@ -91,14 +100,14 @@ TEST(Table4, JumpHeightsRecovered) {
 TEST(ShortestStretch, LeavesOutTheFarOnes) {
   std::vector<double> places{500.0};
   for (int i = 0; i < 99; ++i) places.push_back(100.0 + i * 10.0 / 98.0);
-  const Stretch s = shortest_stretch(places, 0.99);
+  const Stretch s = shortest_stretch(at_places(places), 0.99);
   EXPECT_NEAR(s.from, 100.0, 1e-12);
   EXPECT_NEAR(s.to, 110.0, 1e-12);
   EXPECT_NEAR(s.share, 0.99, 1e-12);
   for (double& place : places) place = 600.0 - place;  // seen from the other end
-  EXPECT_NEAR(shortest_stretch(places, 0.99).from, 490.0, 1e-12);
-  EXPECT_NEAR(shortest_stretch(places, 1.0).width(), 400.0, 1e-12);
-  EXPECT_EQ(shortest_stretch(places, 1e-9).width(), 0.0);
+  EXPECT_NEAR(shortest_stretch(at_places(places), 0.99).from, 490.0, 1e-12);
+  EXPECT_NEAR(shortest_stretch(at_places(places), 1.0).width(), 400.0, 1e-12);
+  EXPECT_EQ(shortest_stretch(at_places(places), 1e-9).width(), 0.0);
 }
 
 /// Bins of 5 m of 1000 released blocks: 11 in the one from 10 m, 10 in that from 20 m, 12 in that from 30 m. Above
@@ -107,13 +116,144 @@ TEST(StretchAbove, ThePapersRule) {
   std::vector<double> places(11, 12.0);
   places.insert(places.end(), 10, 21.0);
   places.insert(places.end(), 12, 34.9);
-  const auto s = stretch_above(places, 5.0, 1000.0, 0.01);
+  const auto s = stretch_above(at_places(places), 5.0, 1000.0, 0.01);
   ASSERT_TRUE(s.has_value());
   EXPECT_EQ(s->from, 10.0);
   EXPECT_EQ(s->to, 35.0);
   EXPECT_EQ(s->share, 1.0);
-  EXPECT_EQ(stretch_above(places, 5.0, 1000.0, 0.0115)->from, 30.0);
-  EXPECT_FALSE(stretch_above(places, 5.0, 1000.0, 0.012).has_value());
+  EXPECT_EQ(stretch_above(at_places(places), 5.0, 1000.0, 0.0115)->from, 30.0);
+  EXPECT_FALSE(stretch_above(at_places(places), 5.0, 1000.0, 0.012).has_value());
+}
+
+/// 86 of 100 blocks cross in one bin of 5 m, the others one to a bin: the paper's rule finds that bin alone and says
+/// that it holds 86 %. The width for 99 % is seven times as long: from the bin to the 13th of 14 scattered blocks.
+TEST(StretchAbove, SaysHowLittleItHolds) {
+  std::vector<double> places(86, 2.0);
+  for (int i = 1; i <= 14; ++i) places.push_back(5.0 * i + 1.0);
+  const auto by_map = stretch_above(at_places(places), 5.0, 1000.0, 0.01);
+  ASSERT_TRUE(by_map.has_value());
+  EXPECT_EQ(by_map->width(), 5.0);
+  EXPECT_NEAR(by_map->share, 0.86, 1e-12);
+  const Stretch shortest = shortest_stretch(at_places(places), 0.99);
+  EXPECT_EQ(shortest.from, 2.0);
+  EXPECT_EQ(shortest.to, 66.0);
+  EXPECT_NEAR(shortest.share, 0.99, 1e-12);
+}
+
+/// Against all intervals between two crossings, places and weights at random, some at equal places.
+TEST(ShortestStretch, NoIntervalIsShorter) {
+  for (std::uint32_t round = 0; round < 200; ++round) {
+    const Random random(7, round, 0, Purpose::Impact);
+    std::vector<LineCrossing> crossings;
+    double all = 0.0;
+    for (std::uint32_t i = 0; i < 40; ++i) {
+      const auto words = random.words(i);
+      const double weight = round % 2 == 0 ? 1.0 : std::pow(uniform(words[0]), 3.0) + 1e-3;
+      crossings.push_back({1.0, 1.0, 1.0, std::floor(60.0 * uniform(words[1])) / 3.0, weight});
+      all += weight;
+    }
+    for (const double containment : {0.3, 0.8, 0.95, 0.99, 1.0}) {
+      double shortest = std::numeric_limits<double>::infinity();
+      for (const LineCrossing& a : crossings)
+        for (const LineCrossing& b : crossings) {
+          double held = 0.0;
+          for (const LineCrossing& c : crossings) held += c.along >= a.along && c.along <= b.along ? c.weight : 0.0;
+          if (held >= (containment - 1e-9) * all) shortest = std::min(shortest, b.along - a.along);
+        }
+      const Stretch found = shortest_stretch(crossings, containment);
+      EXPECT_EQ(found.width(), shortest) << round << ' ' << containment;
+      EXPECT_GE(found.share, containment - 1e-8) << round;
+    }
+  }
+}
+
+TEST(WeightedQuantile, EqualWeightsAreNone) {
+  const std::vector<double> values{3.0, 1.0, 4.0, 1.5, 9.0, 2.6}, sorted{1.0, 1.5, 2.6, 3.0, 4.0, 9.0};
+  for (const double weight : {1.0, 0.3, 7e-5})
+    for (const double share : {0.0, 0.2, 0.5, 0.77, 0.95, 1.0})
+      EXPECT_EQ(weighted_quantile(values, std::vector<double>(6, weight), share), quantile(sorted, share));
+}
+
+/// Numbers 1 ... n, each weighing itself: the share below x is (x / n)^2, so that the quantile is n sqrt(share).
+TEST(WeightedQuantile, OfADensityThatRises) {
+  std::vector<double> values;
+  for (int i = 1; i <= 10000; ++i) values.push_back(i);
+  for (const double share : {0.01, 0.25, 0.5, 0.95, 0.999})
+    EXPECT_NEAR(weighted_quantile(values, values, share), 1e4 * std::sqrt(share), 1.0);
+}
+
+/// A weight of 3 is three values: between the quantiles of the written-out sample one value below and above.
+TEST(WeightedQuantile, AWeightIsThatManyValues) {
+  std::vector<double> values, weights, written;
+  for (int i = 0; i < 200; ++i) {
+    values.push_back(std::fmod(i * 77.7, 31.0));
+    weights.push_back(1.0 + i % 4);
+    written.insert(written.end(), static_cast<std::size_t>(1 + i % 4), values.back());
+  }
+  std::sort(written.begin(), written.end());
+  for (const double share : {0.1, 0.5, 0.9, 0.95}) {
+    const double found = weighted_quantile(values, weights, share);
+    EXPECT_GE(found, quantile(written, share - 4.0 / 500.0));
+    EXPECT_LE(found, quantile(written, share + 4.0 / 500.0));
+  }
+}
+
+/// Kish: n equal weights are n; two weights of 1 and 3 are 16 / 10.
+TEST(EffectiveNumber, ByHand) {
+  std::vector<LineCrossing> crossings = at_places({1.0, 2.0});
+  EXPECT_EQ(effective_number(crossings), 2.0);
+  crossings[1].weight = 3.0;
+  EXPECT_NEAR(effective_number(crossings), 1.6, 1e-15);
+}
+
+/// A part of 100 m in pieces of 25 m, one of 10 m whole: no piece crosses from a part to the next.
+TEST(StretchEdges, EqualPiecesOfEachPart) {
+  EXPECT_EQ(stretch_edges(std::vector<double>{100.0, 10.0}, 30.0),
+            (std::vector<double>{0.0, 25.0, 50.0, 75.0, 100.0, 110.0}));
+  EXPECT_EQ(stretch_edges(std::vector<double>{90.0}, 30.0).size(), 4U);
+  EXPECT_EQ(stretch_edges(std::vector<double>{20.0}, 30.0), (std::vector<double>{0.0, 20.0}));
+}
+
+/// Two gullies: 60 slow blocks of 1000 kg, 40 fast ones of 4000 kg, and three on the way between. The design of a
+/// stretch is that of a line which only its blocks cross; the design of the whole line is too low for the second gully.
+TEST(DesignStretches, EachByItsOwnCrossings) {
+  std::vector<LineCrossing> slow, fast, all;
+  for (int i = 0; i < 60; ++i) slow.push_back({5.0 + 0.01 * i, 1.0, 1000.0, 10.0 + 0.1 * i, 1.0});
+  for (int i = 0; i < 40; ++i) fast.push_back({15.0 + 0.1 * i, 2.0, 4000.0, 80.0 + 0.1 * i, 1.0});
+  all = fast;
+  all.insert(all.end(), slow.begin(), slow.end());
+  for (const double place : {41.0, 45.0, 89.9999}) all.push_back({1.0, 0.1, 500.0, place, 1.0});
+  const DesignBlockRule rule{{}, 2500.0, 2500.0};
+  const auto found = design_stretches(all, stretch_edges(std::vector<double>{90.0}, 30.0), rule, {});
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0].crossings, 60U);
+  EXPECT_EQ(found[1].crossings, 2U);
+  EXPECT_EQ(found[2].crossings, 41U);
+  EXPECT_FALSE(found[1].design.has_value());
+  EXPECT_EQ(found[1].largest_energy, 250.0);
+  ASSERT_TRUE(found[0].design && found[2].design);
+  const BarrierDesign alone = design_barrier(slow, {1000.0 / 2500.0, 2500.0}, {});
+  EXPECT_EQ(found[0].design->sel, alone.sel);
+  EXPECT_EQ(found[0].design->height, alone.height);
+  EXPECT_EQ(found[0].stretch.share, 60.0 / 103.0);
+  EXPECT_EQ(found[2].largest_energy, 0.5 * 4000.0 * 18.9 * 18.9);
+  EXPECT_GT(found[2].design->sel, 4.0 * found[0].design->sel);
+  double share = 0.0;
+  for (const StretchDesign& s : found) share += s.stretch.share;
+  EXPECT_NEAR(share, 1.0, 1e-15);
+}
+
+/// Sources of small blocks that fall a hundred times as often: the weights, not the numbers, say what 95 % is.
+TEST(DesignStretches, RareBlocksCountAsRare) {
+  std::vector<LineCrossing> crossings;
+  for (int i = 0; i < 100; ++i) crossings.push_back({5.0, 0.5, 300.0, 1.0, 1.0});
+  for (int i = 0; i < 100; ++i) crossings.push_back({20.0, 3.0, 300.0, 1.0, 0.01});
+  const std::vector<double> edges{0.0, 2.0};
+  const auto weighted = design_stretches(crossings, edges, {}, {});
+  EXPECT_EQ(weighted[0].design->speed_percentile, 5.0);
+  EXPECT_NEAR(weighted[0].beyond->height, 1.0 / 101.0, 1e-12);
+  for (LineCrossing& crossing : crossings) crossing.weight = 1.0;
+  EXPECT_EQ(design_stretches(crossings, edges, {}, {})[0].design->speed_percentile, 20.0);
 }
 
 }  // namespace

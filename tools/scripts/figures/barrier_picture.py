@@ -4,7 +4,7 @@
   tools/scripts/figures/barrier_picture.py OUT --screen ID -o picture.png [--bin 10]
 
 OUT is a folder of `talus run` in which `talus barrier OUT --screen ID` has been run. Every block counts once, with its first
-crossing. Bins with fewer than 20 blocks show no percentile. Needs numpy and matplotlib.
+crossing. Bins with fewer than 20 blocks show no percentile. Grey: the designs by stretch. Needs numpy and matplotlib.
 """
 import argparse
 import csv
@@ -68,18 +68,27 @@ def main():
         groups = [values[which == i] for i in range(len(edges) - 1)]
         return np.array([np.percentile(g, 95) if len(g) >= FEWEST else np.nan for g in groups])
 
-    figure, (top, middle, low) = plt.subplots(3, 1, sharex=True, figsize=(8.2, 6.6))
+    figure, (top, middle, low) = plt.subplots(3, 1, sharex=True, figsize=(9.4, 6.6))
     share = np.histogram(place, edges)[0] / run["released"]
     top.stairs(100 * share, edges, fill=True, color="#5c7fa3")
     top.set_ylabel(f"blocks per {o.bin:g} m\n[% of all released]")
     stretch = report["containment"]["shortest"]
+
+    def by_stretch(axes, key, label):
+        for row in report["stretches"]:
+            if row["design"]:
+                axes.plot([row["from_m"], row["to_m"]], [row["design"][key]] * 2, color="#7d8790", linewidth=1.6, label=label)
+                label = None
+
     for axes in (top, middle, low):
         axes.axvspan(stretch["from_m"], stretch["to_m"], color="#f3ead2", zorder=0)
         axes.grid(color="#e3e3e3", linewidth=0.6)
+    by_stretch(middle, "sel_kj", "SEL by stretch")
     middle.stairs(p95(energy), edges, color="#b0127b", label="P95 of each bin", baseline=None)
     middle.axhline(design["SEL"], color="#20262c", label=f"SEL {design['SEL']:.0f} kJ")
     middle.axhline(design["MEL"], color="#20262c", linestyle="--", label=f"MEL {design['MEL']:.0f} kJ")
     middle.set_ylabel("translational\nenergy [kJ]")
+    by_stretch(low, "h_i_m", "h_i by stretch")
     low.stairs(p95(height), edges, color="#1f7a33", label="P95 of each bin", baseline=None)
     low.axhline(design["h_i"], color="#20262c", label=f"h_i {design['h_i']:.2f} m")
     low.set_ylabel("jump height [m]")
@@ -87,7 +96,7 @@ def main():
                    f"{100 * report['containment']['target']:g} % of the crossings")
     for axes in (middle, low):
         axes.set_ylim(bottom=0)
-        axes.legend(loc="upper right", fontsize=8)
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, frameon=False)
     figure.suptitle(f"{len(x):,} blocks cross '{o.screen}' of {run['released']:,}".replace(",", " "), fontsize=11)
     figure.tight_layout()
     figure.savefig(o.output, dpi=100)

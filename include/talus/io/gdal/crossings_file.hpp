@@ -12,6 +12,7 @@ struct CrossingTable {
   std::vector<double> height;           ///< vertical, ground to centre [m]
   std::vector<double> mass;             ///< [kg]
   std::vector<Eigen::Vector2d> places;  ///< in map coordinates [m]
+  std::vector<std::string> source, block;  ///< as the table names them, one for each of `blocks`
   std::size_t blocks = 0;
 };
 

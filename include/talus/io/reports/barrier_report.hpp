@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "talus/products/barrier_design.hpp"
+#include "talus/products/hazard.hpp"
 #include "talus/products/weibull.hpp"
 
 namespace talus::io {
@@ -15,19 +16,30 @@ struct Reliability {
     std::string name;  ///< "h_i", "SEL"
     double value;
     Exceedance exceeded;
+    std::optional<double> by_frequency;  ///< share of the crossings that exceed it, by their weights
+    std::optional<Bounded> per_year;     ///< crossings that exceed it [1/year]
   };
   std::string quantity, unit;  ///< "jump height", "m"
   WeibullFit fit;
   std::vector<Limit> limits;
 };
 
+/// Design along one stretch of the line.
+struct StretchRow {
+  StretchDesign values;
+  std::optional<Bounded> per_year;  ///< crossings [1/year]
+};
+
 /// Results of `talus barrier`.
 struct BarrierReport {
   std::string screen;
-  double released = 0.0;      ///< trajectories of the run
-  std::size_t crossings = 0;  ///< blocks that crossed the screen
-  std::string values;         ///< data of the fits: "simulated crossings", or the file of the observed ones
-  std::string block_from;     ///< "the largest that crosses", "--volume"
+  double released = 0.0;            ///< trajectories of the run
+  std::size_t crossings = 0;        ///< blocks that crossed the screen
+  std::string weighting;            ///< what each block counts: "alike: ...", "by the annual frequency ..."
+  double effective = 0.0;           ///< number of crossings of equal weight that say as much
+  std::optional<Bounded> per_year;  ///< crossings [1/year]; nothing without frequencies
+  std::string values;               ///< data of the fits: "simulated crossings", or the file of the observed ones
+  std::string block_from;           ///< "the largest that crosses", "--volume"
   DesignBlock block;
   DesignFactors factors;
   BarrierDesign design{};
@@ -36,6 +48,8 @@ struct BarrierReport {
   Stretch shortest{};            ///< shortest stretch of the line that holds `containment` of the crossings
   double bin = 0.0;              ///< width of a bin in the paper's rule [m]
   std::optional<Stretch> above;  ///< bins that more than 1 - containment of the released blocks cross
+  double longest = 30.0;         ///< of a stretch [m]
+  std::vector<StretchRow> stretches;
   std::vector<std::string> notes;
 };
 
@@ -43,6 +57,12 @@ struct BarrierReport {
 std::string barrier_text(const BarrierReport& report);
 std::string barrier_json(const BarrierReport& report);
 std::string barrier_csv(const BarrierReport& report);
+
+/// The stretches as a table, one row each.
+std::string stretches_csv(const BarrierReport& report);
+
+/// A sentence if some stretch needs more than the one design of the whole line.
+std::optional<std::string> stretch_note(const BarrierReport& report);
 
 /// "barrier_road": the name of the files without ending; a character that a file name cannot have becomes '_'.
 std::string barrier_file_name(const std::string& screen);

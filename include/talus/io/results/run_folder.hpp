@@ -1,11 +1,15 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "talus/simulate/scenario/scenario.hpp"
 
 namespace talus::io {
+
+/// The value of model.deformation_coefficient (c) in a run.json; nothing if it is not there.
+std::optional<double> deformation_coefficient_of(const std::filesystem::path& folder);
 
 /// The part of OUT/run.json that products of a finished run need.
 struct RunSummary {

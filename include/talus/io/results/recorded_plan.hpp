@@ -1,0 +1,17 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "talus/io/scenario/loaded_scenario.hpp"
+
+namespace talus::io {
+
+/// The plan of a finished run, read again from the scenario.toml in its folder.
+///
+/// @param plan       `plan_checksum` of the run
+/// @param weighting  file of another weighting (weighting_file.hpp); empty: that of the run
+/// Throws InputError if the scenario, or a file that it names, has changed since the run.
+LoadedScenario recorded_plan(const std::filesystem::path& folder, const std::string& plan,
+                             const std::string& weighting);
+
+}  // namespace talus::io

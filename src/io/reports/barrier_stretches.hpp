@@ -1,0 +1,26 @@
+#pragma once
+#include <string>
+
+#include "io/files/json.hpp"
+#include "talus/base/text.hpp"
+#include "talus/io/reports/barrier_report.hpp"
+
+namespace talus::io {
+
+/// "21.6 %"
+inline std::string percent(double share) {
+  return with_digits(100.0 * share, 3) + " %";
+}
+
+/// {"value", "low", "high"}
+inline Json bounded_of(const Bounded& b) {
+  return {{"value", b.value}, {"low", b.low}, {"high", b.high}};
+}
+
+/// The table of the stretches as text; empty without stretches.
+std::string stretches_text(const BarrierReport& report);
+
+/// The stretches as a list.
+Json stretches_of(const BarrierReport& report);
+
+}  // namespace talus::io

@@ -1,0 +1,69 @@
+#include "crossing_weights.hpp"
+
+#include <charconv>
+#include <filesystem>
+
+#include "talus/base/error.hpp"
+#include "talus/io/results/hazard_file.hpp"
+#include "talus/io/results/recorded_plan.hpp"
+#include "talus/simulate/scenario/frequency.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using talus::io::CrossingTable;
+
+std::uint32_t number_of(const std::string& text, const std::string& what) {
+  std::uint32_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw talus::InputError("screens.csv: " + what + " = '" + text +
+                            "', must be a number, as talus run has written it; run the scenario again");
+  return number;
+}
+
+/// Gives each crossing the events per year that its block stands for in the plan of the run.
+talus::WeightScale weigh(std::vector<talus::LineCrossing>& crossings, const CrossingTable& table,
+                         const talus::Scenario& scenario, const WeightingOptions& o) {
+  const auto weights = talus::AnnualWeights::of(scenario);
+  if (!weights) throw talus::InputError(o.frequency + ": no blocks fall with these frequencies; give one above 0");
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    const std::uint32_t source = number_of(table.source[i], "source"), block = number_of(table.block[i], "block");
+    if (source >= scenario.sources.size())
+      throw talus::InputError("screens.csv: source = " + table.source[i] + ", but the plan has " +
+                              std::to_string(scenario.sources.size()) + " source cells; run the scenario again");
+    crossings[i].weight = static_cast<double>(weights->weight(scenario, source, block)) * weights->scale().unit;
+  }
+  return weights->scale();
+}
+
+}  // namespace
+
+std::optional<talus::Bounded> Weighting::per_year(double sum, double squares) const {
+  if (!scale) return std::nullopt;
+  return talus::annual_frequency({sum, squares, 0.0}, *scale);
+}
+
+Weighting weigh_crossings(std::vector<talus::LineCrossing>& crossings, const CrossingTable& table,
+                          const WeightingOptions& o) {
+  if (o.unweighted) {
+    if (!o.frequency.empty()) throw talus::InputError("--unweighted: cannot be given with --frequency; leave out one");
+    return {"alike, as --unweighted asks", {}};
+  }
+  const fs::path file = fs::path(o.folder) / talus::io::kHazardFile;
+  if (!fs::exists(file)) {
+    if (o.frequency.empty()) return {"alike: the run knows no annual frequencies", {}};
+    throw talus::InputError("--frequency: the run in " + o.folder +
+                            " knows no annual frequencies that could be replaced; give the sources a field frequency, "
+                            "or the scenario [frequency], and run again");
+  }
+  const auto header = talus::io::read_hazard(
+      file, [](const talus::io::HazardHeader&) {}, [](const talus::io::HazardRow&) {});
+  try {
+    const auto loaded = talus::io::recorded_plan(o.folder, header.plan, o.frequency);
+    const auto scale = weigh(crossings, table, loaded.scenario, o);
+    return {"by the annual frequency " + (o.frequency.empty() ? "of its source" : "in " + o.frequency), scale};
+  } catch (const talus::InputError& error) {
+    throw talus::InputError(std::string(error.what()) + " (--unweighted counts every block alike)");
+  }
+}

@@ -1,0 +1,31 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "talus/io/gdal/crossings_file.hpp"
+#include "talus/products/barrier_design.hpp"
+#include "talus/products/hazard.hpp"
+
+/// What each crossing counts.
+struct Weighting {
+  std::string text;                         ///< "alike: ...", "by the annual frequency ..."
+  std::optional<talus::WeightScale> scale;  ///< nothing where all count alike
+
+  /// Crossings per year of which the sum of the weights and of their squares is known.
+  std::optional<talus::Bounded> per_year(double sum, double squares) const;
+};
+
+/// The weighting that is asked for.
+struct WeightingOptions {
+  std::string folder;     ///< of the run
+  std::string frequency;  ///< file of another weighting; empty: that of the run
+  bool unweighted = false;
+};
+
+/// Weighs the crossings of a run by the frequencies of their sources, where the run has some.
+///
+/// @param table  of the same crossings, in the same order
+/// Throws InputError if the plan of the run cannot be read again.
+Weighting weigh_crossings(std::vector<talus::LineCrossing>& crossings, const talus::io::CrossingTable& table,
+                          const WeightingOptions& options);
