@@ -113,6 +113,25 @@ struct Step {
   bool crossed;
 };
 
+/// Height that the block would reach if all its energy of motion, but that of its spin, were turned into height [m].
+double height_of_energy(const Motion& motion) {
+  return motion.position.z() + motion.velocity.squaredNorm() / (2.0 * kGravity);
+}
+
+/// Shortens a velocity to what a fall through this height gives: a piece is computed with one acceleration, and on
+/// twisted ground the speed at its end would otherwise come out too large.
+void slow_down(Vec3& velocity, double fall) {
+  const double most = 2.0 * kGravity * std::max(0.0, fall), squared = velocity.squaredNorm();
+  if (squared > most) velocity *= std::sqrt(most / squared);
+}
+
+Motion at_rest(Motion motion) {
+  motion.velocity = Vec3::Zero();
+  return motion;
+}
+
+/// One piece. It is shortened until its end is no higher than the energy of the block allows; if no piece is, the block
+/// comes to rest where it is.
 Step next_step(const Slope& slope, const Motion& motion, double farthest, double tolerance, double stop_speed) {
   const Vec2 place = motion.position.head<2>(), v = motion.velocity.head<2>(), gradient = slope.gradient(place);
   const double speed = motion.velocity.norm();
@@ -125,13 +144,27 @@ Step next_step(const Slope& slope, const Motion& motion, double farthest, double
   }
   const Piece piece = make_piece(slope, place, v, longest, tolerance);
   const Edge edge = edge_of(slope, place, v, piece);
-  const double dt = std::min(edge.time, piece.duration);
-  const Vec2 there = place + dt * v + 0.5 * dt * dt * piece.acceleration;
+  const auto place_after = [&](double t) -> Vec2 { return place + t * v + 0.5 * t * t * piece.acceleration; };
+  const double whole = std::min(edge.time, piece.duration), top = height_of_energy(motion);
+  double dt = whole;
+  for (int halving = 0; halving < kMaxHalvings && slope.height(place_after(dt)) > top; ++halving) dt *= 0.5;
+  const Vec2 there = place_after(dt);
   Motion next = motion;
   next.time += dt;
   next.position = {there.x(), there.y(), slope.height(there)};
   next.velocity = along(v + dt * piece.acceleration, slope.gradient(there));
-  return {next, edge, edge.time <= piece.duration};
+  slow_down(next.velocity, top - next.position.z());
+  if (next.position.z() > top) next = at_rest(motion);
+  return {next, edge, dt == whole && edge.time <= piece.duration};
+}
+
+/// Whether friction alone would hold the block at rest on one of two patches that meet at its place. Otherwise they
+/// hold it between them, as walls.
+SlideEnd rest_between(const Slope& one, const Slope& other, const Motion& motion) {
+  const auto holds = [&](const Slope& slope) {
+    return slope.gradient(motion.position.head<2>()).norm() <= slope.tan_phi;
+  };
+  return holds(one) || holds(other) ? SlideEnd::Stopped : SlideEnd::Trapped;
 }
 
 }  // namespace
@@ -183,6 +216,7 @@ SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, Patch
 
     const Step step = next_step(slope, motion, diameter - slid, tolerance, stop_speed);
     TALUS_EXPECT(step.motion.time >= motion.time, "a slide goes forward in time");
+    TALUS_EXPECT(height_of_energy(step.motion) <= height_of_energy(motion) + 1e-9, "a slide does not gain energy");
     double way = 0.5 * (step.motion.time - motion.time) * (speed + step.motion.velocity.norm());
     record_piece(path, slope, motion, step.motion);
     motion = step.motion;
@@ -192,7 +226,7 @@ SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, Patch
       if (way < tolerance && beyond.facet() == came_from) {  // pressed back at once: slides along the crease
         const Motion before = motion;
         if (slide_along_crease(slope, beyond, motion, diameter - slid, path) == CreaseEnd::Held)
-          return SlideEnd::Stopped;
+          return rest_between(slope, beyond, motion);
         way += (motion.position - before.position).norm();
         on = slope.facet_at(motion.position.head<2>());  // from a corner it may have slid along the other half
       } else {
@@ -208,7 +242,9 @@ SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, Patch
     if (step.crossed && way < tolerance &&
         ++short_crossings > kMaxShort) {  // a pit: it rubs there for the rest of one diameter
       motion.time += (diameter - slid) / std::max(stop_speed, motion.velocity.norm());
-      return motion.velocity.norm() <= stop_speed ? SlideEnd::Stopped : SlideEnd::Asperity;
+      if (motion.velocity.norm() > stop_speed) return SlideEnd::Asperity;
+      Slope here{surface, at, tan_phi};
+      return here.read() ? rest_between(slope, here, motion) : SlideEnd::Trapped;
     }
   }
   return SlideEnd::Asperity;

@@ -42,6 +42,7 @@ class Walk {
         const SlideEnd how = slide_on();
         if (how == SlideEnd::Left) return End::Left;
         if (how == SlideEnd::Stopped) return End::Stopped;
+        if (how == SlideEnd::Trapped) return End::Trapped;
         if (how == SlideEnd::Caught) return End::Caught;
         if (how == SlideEnd::Asperity) continue;
         path_.vertices.push_back({motion_, Event::Takeoff});
@@ -93,15 +94,33 @@ class Walk {
   SlideEnd slide_on() {
     motion_.velocity -= motion_.velocity.dot(normal_) * normal_;
     const SlideEnd end = effects_.slide(motion_, at_, body_, path_);
-    const bool over = end == SlideEnd::Left || end == SlideEnd::Caught;
-    return !over && anchor_.traps(motion_) ? SlideEnd::Stopped : end;
+    const bool goes_on = end == SlideEnd::Takeoff || end == SlideEnd::Asperity;
+    return end == SlideEnd::Trapped || (goes_on && anchor_.traps(motion_)) ? end_of_staying() : end;
   }
 
   /// Flies from the surface to the next contact.
   std::optional<End> fly_on() {
     if (const auto end = end_of(effects_.fly(motion_, at_, true, body_, path_))) return *end;
-    if (anchor_.traps(motion_)) return End::Stopped;
-    return std::nullopt;
+    if (!anchor_.traps(motion_)) return std::nullopt;
+    return end_of_staying() == SlideEnd::Stopped ? End::Stopped : End::Trapped;
+  }
+
+  /// How a block that does not get away ends. Walls hold it if the ground under it is steeper than phi, but does not
+  /// fall as steeply over the next two diameters downhill: then it is trapped. On other ground friction holds it, or
+  /// nearly so: it has stopped. docs/physics.md, "End of a trajectory".
+  SlideEnd end_of_staying() {
+    decltype(auto) ground = effects_.ground(motion_.position, body_);
+    Patch patch;
+    if (!world_.surface.read(at_, patch)) return SlideEnd::Stopped;
+    const double p = world_.surface.u_of(motion_.position.x()) - at_.column;
+    const double q = world_.surface.v_of(motion_.position.y()) - at_.row;
+    const Eigen::Vector2d gradient = world_.surface.gradient(patch, p, q);
+    if (gradient.norm() <= ground.tan_phi) return SlideEnd::Stopped;
+    const double reach = 2.0 * body_.diameter;
+    const Eigen::Vector2d below = motion_.position.head<2>() - reach * gradient.normalized();
+    const std::optional<double> height = world_.surface.height(below.x(), below.y());
+    const bool open = !height || motion_.position.z() - *height > reach * ground.tan_phi;
+    return open ? SlideEnd::Stopped : SlideEnd::Trapped;
   }
 
   const World& world_;

@@ -12,22 +12,22 @@ HazardSurvey::HazardSurvey(const Grid& grid, HazardRules rules, HazardMatrix mat
       matrix_(std::move(matrix)),
       maps_(hazard_maps_of(rules_, matrix_)),
       rows_(static_cast<std::size_t>(grid.rows)),
-      nothing_(figures_of({})) {}
+      nothing_(figures_of({0, {}, false})) {}
 
-std::vector<float> HazardSurvey::figures_of(const HazardCell& cell) const {
-  const HazardCurve curve(rules_, cell);
+std::vector<float> HazardSurvey::figures_of(const HazardAt& at) const {
+  const HazardCurve curve(rules_, at.cell);
   std::vector<float> figures;
-  for (const HazardMap& map : maps_) map.raster->figures({curve, matrix_}, map.i, figures);
+  for (const HazardMap& map : maps_) map.raster->figures({curve, matrix_, at.exit}, map.i, figures);
   return figures;
 }
 
 // An exception must not leave the parallel region: the first one is stored, and thrown again after the region.
-void HazardSurvey::set_row(int row, std::vector<bool> terrain, std::span<const Cell> cells, int threads) {
+void HazardSurvey::set_row(int row, std::vector<bool> terrain, std::span<const HazardAt> cells, int threads) {
   Row& to = rows_[static_cast<std::size_t>(row)];
   to = {std::move(terrain), {}, std::vector<float>(cells.size() * nothing_.size())};
-  for (const Cell& cell : cells) to.columns.push_back(cell.first);
+  for (const HazardAt& cell : cells) to.columns.push_back(cell.column);
   const auto evaluate = [&](std::size_t i) {
-    const std::vector<float> figures = figures_of(cells[i].second);
+    const std::vector<float> figures = figures_of(cells[i]);
     std::ranges::copy(figures, to.figures.begin() + static_cast<std::ptrdiff_t>(i * figures.size()));
   };
   std::exception_ptr failure;

@@ -73,7 +73,7 @@ void RunoutCounter::add(std::span<const StopRow> rows) {
   for (const StopRow& row : rows) {
     ++counts_.released;
     if (row.end == End::Left) ++counts_.left;
-    if (row.end != End::Stopped && row.end != End::Caught) continue;
+    if (!rests(row.end)) continue;
     const double distance = std::abs(row.x - row.x_release);
     distances_.push_back(static_cast<float>(distance));
     const auto bin = static_cast<std::size_t>(distance / width_);

@@ -134,8 +134,15 @@ std::vector<RunRaster> make_run_rasters() {
             &CellRecord::passages),
       count("impacts", "Impacts in the cell", "impacts in the cell, all bounces of all trajectories", count_legend(),
             &CellRecord::impacts),
-      count("deposits", "Trajectories that stop in the cell, or are caught there",
-            "trajectories that stop in the cell, or are caught there", count_legend(), &CellRecord::deposits),
+      count("deposits", "Trajectories that stop in the cell, or are trapped or caught there",
+            "trajectories that stop in the cell, or are trapped or caught there", count_legend(),
+            &CellRecord::deposits),
+      count("trapped", "Trajectories that are trapped in the cell, in a pit or between walls",
+            "trajectories that are trapped in the cell; `deposits` counts them too", count_legend(),
+            &CellRecord::trapped),
+      count("exits", "Trajectories that leave the DEM, or meet missing data, from the cell",
+            "trajectories that leave the DEM, or meet missing data, from the cell: the last one that they cross",
+            count_legend(), &CellRecord::exits),
       count("sources", "Source cells that reach the cell",
             "source cells of which at least one trajectory reaches the cell",
             {{1, 3, 10, 30, 100}, 1.0, "", Palette::Cividis}, &CellRecord::sources),
@@ -148,7 +155,7 @@ void push(std::vector<float>& figures, const Bounded& bounded) {
 }
 
 /// The class; the class at the lower and at the upper bounds; 1 if these two differ: this many trajectories do not
-/// decide the class.
+/// decide the class; 1 if paths leave the map here: it ends before the hazard does.
 void push_classes(const HazardPlace& place, std::vector<float>& figures) {
   std::vector<Bounded> frequencies{place.curve.passage()};
   for (const double energy : place.matrix.energies) frequencies.push_back(place.curve.exceedance_of(energy));
@@ -159,8 +166,9 @@ void push_classes(const HazardPlace& place, std::vector<float>& figures) {
   };
   const std::vector<double> low = side(&Bounded::low), high = side(&Bounded::high);
   const int here = class_of(place.matrix, side(&Bounded::value)), highest = class_of(place.matrix, high, false);
-  for (const int figure : {here, class_of(place.matrix, low), std::max(here, highest),
-                           static_cast<int>(class_of(place.matrix, low, false) != highest)})
+  for (const int figure :
+       {here, class_of(place.matrix, low), std::max(here, highest),
+        static_cast<int>(class_of(place.matrix, low, false) != highest), static_cast<int>(place.exit)})
     figures.push_back(static_cast<float>(figure));
 }
 
@@ -199,9 +207,15 @@ std::vector<HazardRaster> make_hazard_rasters() {
       {{"hazard_class",
         "Class of hazard by intensity and return period",
         Kind::Count,
-        {{"class", "class"}, {"class at lower bound", "class"}, {"class at upper bound", "class"}, {"undecided", "1"}},
+        {{"class", "class"},
+         {"class at lower bound", "class"},
+         {"class at upper bound", "class"},
+         {"undecided", "1"},
+         {"cut short", "1"}},
         {{1, 2, 3, 4, 5}, 1.0, "", Palette::HazardClasses}},
-       "class of the matrix; `undecided` is 1 where the classes at the bounds differ",
+       "class of the matrix; `undecided` is 1 where the classes at the bounds differ, `cut short` where paths leave "
+       "the "
+       "map",
        [](const HazardPlace& place, std::size_t, Figures& figures) { push_classes(place, figures); },
        {},
        {},

@@ -15,6 +15,7 @@ void put_totals(const Totals& totals, ByteWriter& out) {
     out.put(n);
   out.put(totals.length_mm);
   out.put(totals.plan_length_mm);
+  out.put(totals.left_weight);
   out.put(totals.first_limit);
   out.put(totals.sink_cpu_seconds);
   out.put(totals.cpu_seconds);
@@ -29,6 +30,7 @@ Totals get_totals(const Barriers& barriers, ByteReader& in) {
     *n = in.get<std::uint64_t>();
   totals.length_mm = in.get<std::int64_t>();
   totals.plan_length_mm = in.get<std::int64_t>();
+  totals.left_weight = in.get<std::int64_t>();
   totals.first_limit = in.get<decltype(totals.first_limit)>();
   totals.sink_cpu_seconds = in.get<double>();
   totals.cpu_seconds = in.get<double>();

@@ -20,7 +20,7 @@ namespace {
 
 using io::LoadedScenario;
 
-/// Writers of stops, paths and crossings.
+/// Writers of stops, exits, paths and crossings.
 class Vectors {
  public:
   Vectors(const LoadedScenario& loaded, const std::filesystem::path& folder, const Observer& observer)
@@ -28,6 +28,7 @@ class Vectors {
         folder_(folder),
         observer_(observer),
         stops_(folder / "stops.gpkg", loaded),
+        exits_(folder / "exits.gpkg", loaded),
         summary_(scenario_.screens.size()) {
     if (loaded.scenario.output.paths > 0)
       paths_.emplace(folder / "trajectories.gpkg", loaded.geo, loaded.scenario.surface.grid());
@@ -39,6 +40,7 @@ class Vectors {
     sinks.stops = [this](std::span<const StopRow> rows) {
       if (observer_.interrupted()) stop_interrupted();
       stops_.write(rows);
+      exits_.write(rows);
     };
     if (paths_) sinks.paths = [this](const RecordedPath& path) { paths_->write(path); };
     if (crossings_)
@@ -51,6 +53,7 @@ class Vectors {
 
   void finish(const Totals& totals) {
     stops_.finish();
+    exits_.finish();
     if (paths_) paths_->finish();
     if (crossings_) {
       crossings_->finish();
@@ -64,6 +67,7 @@ class Vectors {
   std::filesystem::path folder_;
   const Observer& observer_;
   io::StopsWriter stops_;
+  io::ExitsWriter exits_;
   std::optional<io::TrajectoriesWriter> paths_;
   std::optional<io::CrossingsWriter> crossings_;
   ScreenSummary summary_;
@@ -109,7 +113,8 @@ void write_results(const ResultSource& source, Observer& observer, Stopwatch& wa
   write_maps(make_maps(loaded.scenario, source.tally),
              {folder, loaded.geo, grid.columns, grid.rows, [&observer] { return !observer.interrupted(); }},
              record.threads);
-  if (source.tally.weights() != nullptr) io::write_hazard(folder / io::kHazardFile, loaded, source.tally);
+  if (source.tally.weights() != nullptr)
+    io::write_hazard(folder / io::kHazardFile, loaded, source.tally, record.totals.left_weight);
   writing.get();
   io::write_text(folder / "scenario.toml", loaded.complete_toml);
   record.files = io::files_in(folder);

@@ -1,6 +1,7 @@
 #include "talus/run/summary.hpp"
 
 #include "talus/base/text.hpp"
+#include "talus/io/results/run_record.hpp"
 
 namespace talus::run {
 namespace {
@@ -23,9 +24,10 @@ std::uint64_t count_of(const Totals& totals, End end) {
 }
 
 std::string ends_text(const Totals& totals) {
-  return count_text(count_of(totals, End::Stopped)) + " stopped, " + count_text(count_of(totals, End::Left)) +
-         " left the map, " + count_text(count_of(totals, End::Caught)) + " caught, " +
-         count_text(count_of(totals, End::Limit)) + " at a limit";
+  return count_text(count_of(totals, End::Stopped)) + " stopped, " + count_text(count_of(totals, End::Trapped)) +
+         " trapped, " + count_text(count_of(totals, End::Left)) + " left the map, " +
+         count_text(count_of(totals, End::Caught)) + " caught, " + count_text(count_of(totals, End::Limit)) +
+         " at a limit";
 }
 
 std::string limits_text(const Totals& totals) {
@@ -34,11 +36,21 @@ std::string limits_text(const Totals& totals) {
          share_text(limits, totals.released) + ", allowed are 0.1 %) ended at the limit of impacts or time";
 }
 
-std::vector<std::string> warnings_of(const Totals& totals) {
-  const std::uint64_t left = count_of(totals, End::Left);
-  if (static_cast<double>(left) <= 0.01 * static_cast<double>(totals.released)) return {};
-  return {share_text(left, totals.released) + " of the trajectories (" + count_text(left) +
-          ") left the DEM or met missing data: the maps do not show how far they go; a larger DEM would"};
+std::vector<std::string> warnings_of(const Totals& totals, const std::string& whole) {
+  std::vector<std::string> warnings;
+  const auto tell = [&](End end, double share, const std::string& text) {
+    const std::uint64_t count = count_of(totals, end);
+    if (static_cast<double>(count) > share * static_cast<double>(totals.released))
+      warnings.push_back(share_text(count, totals.released) + " of the " + whole + " (" + count_text(count) + ") " +
+                         text);
+  };
+  tell(End::Left, io::kWarnedLeftShare,
+       "left the DEM or met missing data: the maps do not show how far they go; a larger DEM would");
+  tell(
+      End::Trapped, io::kWarnedTrappedShare,
+      "were trapped in pits or between walls, on ground too steep to rest on: if the pits of the DEM are not real, the "
+      "maps end too early; talus check --pits shows the pits");
+  return warnings;
 }
 
 }  // namespace talus::run

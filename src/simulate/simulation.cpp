@@ -155,8 +155,11 @@ class Simulation::Advance {
     for (std::uint32_t block = begin; block < begin + count; ++block) {
       const Release release = make_release(scenario_, source, block);
       trace(world, release, path);
-      if (const AnnualWeights* weights = run_.tally_.weights())
-        batch.set_stake({weights->weight(scenario_, source, block), round * run_.units_ + unit, count});
+      if (const AnnualWeights* weights = run_.tally_.weights()) {
+        const std::int64_t weight = weights->weight(scenario_, source, block);
+        batch.set_stake({weight, round * run_.units_ + unit, count});
+        totals.left_weight += path.end == End::Left ? weight : 0;
+      }
       batch.add(path, release.body.mass, source, reach);
       add(totals, release, path);
       if (run_.sinks_.walked) run_.sinks_.walked(release, path);

@@ -24,6 +24,7 @@ StopRow stop_row(const Release& release, const Path& path) {
   row.z = end.position.z();
   row.seconds = static_cast<float>(end.time);
   row.max_speed = static_cast<float>(std::sqrt(fastest));
+  row.end_speed = static_cast<float>(end.velocity.norm());
   row.length = static_cast<float>(path.length);
   row.plan_length = static_cast<float>(path.plan_length);
   row.impacts = path.impacts;

@@ -95,7 +95,7 @@ Statistics statistics(const std::vector<Path>& paths, const Placement& placement
       spin = std::max(spin, v.motion.spin.norm());
     }
     s.speed.add(fastest), s.rise.add(steepest), s.spin.add(spin);
-    s.stopped += path.end == End::Stopped ? 1 : 0;
+    s.stopped += rests(path.end) ? 1 : 0;
   }
   return s;
 }

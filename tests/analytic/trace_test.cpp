@@ -4,6 +4,7 @@
 
 #include <array>
 #include <limits>
+#include <numeric>
 
 #include "support/slopes.hpp"
 
@@ -94,15 +95,63 @@ TEST(Trap, APitWithWallsSteeperThanPhiHoldsItsBlockAndTellsSo) {
     return 0.75 * std::max(std::abs(x - 61), std::abs(y - 61));
   }));
   const Scene scene{pit, {{kUpperTalus}, {}}, {}, {.impact_limit = 2000}};
-  int stopped = 0;
+  int stopped = 0, trapped = 0;
   for (std::uint32_t block = 0; block < 200; ++block) {
     const Path path = scene.run({70.0, 75.0, 20.0}, Vec3::Zero(), 0.8, block);
     stopped += path.end == End::Stopped ? 1 : 0;
+    trapped += path.end == End::Trapped ? 1 : 0;
     EXPECT_LT(path.vertices.back().motion.time, 120.0);
     EXPECT_LT(path.vertices.back().motion.position.z(), 20.0);  // lower than the release
     EXPECT_LT(path.vertices.size(), 5000U);
   }
-  EXPECT_EQ(stopped, 200);
+  EXPECT_EQ(stopped + trapped, 200);
+  EXPECT_GT(trapped, 180);  // the patch of a corner of the bottom is flat at its far end
+}
+
+/// On an open plane just steeper than phi a large block may go less than its diameter in `trap_time`, without any wall:
+/// that is no trap.
+TEST(Trap, ABlockThatCrawlsOnOpenGroundHasStopped) {
+  const double slope = std::tan(radians(30.5));
+  const Surface plane(
+      test::terrain(test::grid_of(200, 60, 4.0, 4.0), [&](double x, double) { return 2000.0 - slope * x; }));
+  const Scene scene{plane, {{kUpperTalus}, {}}};
+  int stopped = 0;
+  for (std::uint32_t block = 0; block < 200; ++block) {
+    const Path path = scene.run({20.0, 120.0, *plane.height(20.0, 120.0) + 2.0}, Vec3::Zero(), 4.0, block);
+    EXPECT_NE(path.end, End::Trapped) << block;
+    stopped += path.end == End::Stopped ? 1 : 0;
+  }
+  EXPECT_GT(stopped, 0);
+}
+
+/// A pit, a V and a hip whose sides all have one slope: the heights |x| and |y| are planes between cell centres. Where
+/// the sides are steeper than phi, the pit and the V trap every block and the hip holds none; else every block that
+/// stays has stopped, pit or not.
+TEST(Trap, IsAnEndOfItsOwnOnlyBetweenWallsSteeperThanPhi) {
+  enum class Shape { Pit, V, Hip };
+  for (const Shape shape : {Shape::Pit, Shape::V, Shape::Hip})
+    for (const double slope : {0.5, 0.75}) {  // tan(phi) = 0.577
+      const double side = shape == Shape::V ? slope : slope / std::sqrt(2.0);
+      const auto height = [&](double x, double y) {
+        const double across = side * std::abs(y - 61.0), along = side * std::abs(x - 61.0);
+        return 100.0 + (shape == Shape::Pit ? across + along : shape == Shape::V ? across : -across - along);
+      };
+      const Scene scene{Surface(test::terrain(test::grid_of(61, 61, 2.0, 2.0), height)), {{kUpperTalus}, {}}};
+      std::array<int, kEnds> ends{};
+      for (std::uint32_t block = 0; block < 100; ++block) {
+        const Path path = scene.run({65.0, 68.0, height(65.0, 68.0) + 2.0}, Vec3::Zero(), 0.8, block);
+        ++ends[static_cast<std::size_t>(path.end)];
+      }
+      const int stopped = ends[static_cast<std::size_t>(End::Stopped)],
+                trapped = ends[static_cast<std::size_t>(End::Trapped)],
+                left = ends[static_cast<std::size_t>(End::Left)];
+      EXPECT_EQ(stopped + trapped + left, 100) << static_cast<int>(shape);
+      EXPECT_EQ(trapped, slope > 0.577 && shape != Shape::Hip ? 100 : 0) << static_cast<int>(shape) << ' ' << slope;
+      if (slope > 0.577)
+        EXPECT_EQ(stopped, 0) << static_cast<int>(shape);
+      else if (shape != Shape::Hip)
+        EXPECT_EQ(stopped, 100) << static_cast<int>(shape);
+    }
 }
 
 TEST(Trap,
@@ -112,7 +161,7 @@ TEST(Trap,
     scene.rules.trap_time = patience;
     const Path path = scene.run({100.3, 99.1, 9.0}, Vec3::Zero());
     const double fall = std::sqrt(2.0 / kGravity), hops = std::ceil(patience / (2 * fall));
-    EXPECT_EQ(path.end, End::Stopped);
+    EXPECT_EQ(path.end, End::Stopped);  // on flat ground: what is held is not held by walls
     EXPECT_NEAR(path.vertices.back().motion.time, fall + hops * 2 * fall, 1e-9);
   }
 }
@@ -249,9 +298,11 @@ TEST(OddScenes, EveryPathEndsAndTheEndsAddUp) {
         ++released;
       }
     }
-  EXPECT_EQ(ends[0] + ends[1] + ends[2] + ends[3], released);
-  EXPECT_GT(ends[0], 200);
-  EXPECT_GT(ends[1], 50);
+  const auto count = [&ends](End end) { return ends[static_cast<std::size_t>(end)]; };
+  EXPECT_EQ(std::accumulate(ends.begin(), ends.end(), 0), released);
+  EXPECT_GT(count(End::Stopped), 50);
+  EXPECT_GT(count(End::Trapped), 50);
+  EXPECT_GT(count(End::Left), 50);
   EXPECT_EQ(ends[static_cast<std::size_t>(End::Limit)], 0);
 }
 

@@ -43,7 +43,7 @@ class AgainstTheReference(Case):
         measured = module.measured(folder)
         measured["err"] = {}  # the measurement error is in the values already
         mass = {b: float(row["mass_kg"]) for b, row in measured["blocks"].items()}
-        stops = [dict(block=r["block"], trial=r["trial"], x=r["x"], y=r["y"], stopped=str(int(r["end"] == "stopped")),
+        stops = [dict(block=r["block"], trial=r["trial"], x=r["x"], y=r["y"], stopped=str(int(r["end"] in ("stopped", "trapped"))),
                       caught=str(int(r["end"] == "caught")), mass_stop=float(r["mass_share"]) * mass[r["block"]])
                  for r in table(self.path(name) + "/stops.csv")]
         passages = [dict(block=r["block"], trial=r["trial"], screen=r["screen"], speed=r["speed_ms"],

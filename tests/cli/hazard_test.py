@@ -70,7 +70,7 @@ class Hazard(Case):
         hit = over > 0
         np.testing.assert_allclose(period[:, 18:26][hit] * over[hit], 1.0, rtol=1e-5)
         self.assertTrue(np.all(period[:, 18:26][~hit] == -9999))
-        self.assertEqual(bands_of(self.path("out/hazard_class.tif")).shape[0], 4)
+        self.assertEqual(bands_of(self.path("out/hazard_class.tif")).shape[0], 5)
         self.assertFalse([name for name in os.listdir(self.path("out")) if name.startswith(".")])
 
     def test_threads_change_no_byte(self):

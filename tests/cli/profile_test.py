@@ -164,7 +164,7 @@ class Files(Profile):
         self.assertEqual(fields["x"], stops[7]["x"])
         self.assertAlmostEqual(point.GetX(), stops[7]["x"], 3)
         self.assertAlmostEqual(point.GetY(), stops[7]["z"], 3)
-        stopped = [row["runout_m"] for row in stops if row["end"] == "stopped"]
+        stopped = [row["runout_m"] for row in stops if row["end"] in ("stopped", "trapped")]
         counts = np.histogram(stopped, bins=np.arange(0, 405, 5.0))[0]
         runout = self.rows("runout.csv")
         self.assertEqual([row["stopped"] for row in runout], list(counts[: len(runout)]))

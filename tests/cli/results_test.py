@@ -29,7 +29,7 @@ class Results(Case):
     def test_equal_bytes_for_any_number_of_threads_and_from_its_own_scenario(self):
         self.run_well(*self.arguments("one"), "--threads", "1")
         first, record = digests(self.path("one")), self.record("one")
-        self.assertEqual(len([name for name in first if name.endswith(".tif")]), 11)
+        self.assertEqual(len([name for name in first if name.endswith(".tif")]), 13)
         for key in CHANGING:
             record.pop(key)
         for threads in ("2", "7"):
@@ -57,7 +57,11 @@ class Results(Case):
             self.assertEqual(sum(s["end"] == end for s, _ in stops), count)
         self.assertEqual(sum(s["impacts"] for s, _ in stops), record["impacts"])
         self.assertAlmostEqual(sum(s["length_m"] for s, _ in stops), record["trajectory_metres"], delta=0.3)
-        self.assertEqual(bands_of(self.path("out/deposits.tif")).sum(), record["ends"]["stopped"] + record["ends"]["caught"])
+        ends = record["ends"]
+        self.assertEqual(list(ends), ["stopped", "trapped", "left", "caught", "limit"])
+        self.assertEqual(bands_of(self.path("out/deposits.tif")).sum(), ends["stopped"] + ends["trapped"] + ends["caught"])
+        self.assertEqual(bands_of(self.path("out/trapped.tif")).sum(), ends["trapped"])
+        self.assertEqual(bands_of(self.path("out/exits.tif")).sum(), ends["left"])
         self.assertEqual(bands_of(self.path("out/impacts.tif")).sum(), record["impacts"])
         passages = bands_of(self.path("out/passages.tif"))
         self.assertEqual(passages.sum(), record["cells_scored"])
@@ -73,7 +77,7 @@ class Results(Case):
         for stop, point in rows_of(self.path("out/stops.gpkg"), "stops"):
             self.assertEqual(stop["feature"], "cliff, east")
             self.assertTrue(0 <= stop["x_release"] - WEST - 140 <= 20 and 0 <= stop["y_release"] - NORTH + 70 <= 10)
-            if stop["end"] == "stopped":
+            if stop["end"] in ("stopped", "trapped"):
                 counted[int((NORTH - point.GetY()) // 5), int((point.GetX() - WEST) // 5)] += 1
         np.testing.assert_array_equal(bands_of(self.path("out/deposits.tif")), counted)
 

@@ -19,8 +19,8 @@ class HazardFile : public test::ScenarioFile {
  protected:
   HazardFile() : loaded_(of_law("[frequency]\npower_law = { A = 0.1, b = 0.5 }\n")) {
     tally_.keep_hazard(*AnnualWeights::of(loaded_.scenario));
-    simulate(loaded_.scenario, tally_, {}, 1);
-    write_hazard(path(kHazardFile), loaded_, tally_);
+    totals_ = simulate(loaded_.scenario, tally_, {}, 1);
+    write_hazard(path(kHazardFile), loaded_, tally_, totals_.left_weight);
   }
   LoadedScenario of_law(const std::string& rest) {
     return load(std::string(kFiles) + "[blocks]\ndiameter = { volume_min = 0.1, volume_max = 10, exponent = 0.5 }\n" +
@@ -49,12 +49,13 @@ class HazardFile : public test::ScenarioFile {
   }
 
   LoadedScenario loaded_;
+  Totals totals_;
   Tally tally_{loaded_.scenario.surface.grid(), loaded_.scenario.output.energy_thresholds,
                loaded_.scenario.output.height_thresholds};
 };
 
 TEST_F(HazardFile, ReadsBackWhatWasKept) {
-  std::uint64_t cells = 0;
+  std::uint64_t cells = 0, exits = 0;
   int rows = 0;
   const Raster<float>& heights = loaded_.scenario.surface.heights();
   const HazardHeader header = read_hazard(
@@ -63,8 +64,10 @@ TEST_F(HazardFile, ReadsBackWhatWasKept) {
         ++rows;
         for (int column = 0; column < heights.grid.columns; ++column)
           EXPECT_EQ(row.terrain[static_cast<std::size_t>(column)], !std::isnan(heights.at(column, row.row)));
-        for (const auto& [column, cell] : row.touched) {
+        for (const auto& [column, cell, exit] : row.touched) {
           ++cells;
+          exits += exit ? 1U : 0U;
+          EXPECT_EQ(exit, tally_.find(column, row.row)->exits > 0);
           ASSERT_NE(tally_.hazard(column, row.row), nullptr);
           EXPECT_EQ(cell, *tally_.hazard(column, row.row));
         }
@@ -78,11 +81,13 @@ TEST_F(HazardFile, ReadsBackWhatWasKept) {
   EXPECT_EQ(header.geo.crs_wkt, loaded_.geo.crs_wkt);
   EXPECT_EQ(header.geo.west, loaded_.geo.west);
   EXPECT_EQ(header.geo.north, loaded_.geo.north);
+  EXPECT_EQ(header.left_weight, totals_.left_weight);
+  EXPECT_EQ(exits > 0, totals_.left_weight > 0);
 }
 
 TEST_F(HazardFile, TheSameBytesAgain) {
   const std::string first = bytes();
-  write_hazard(path(kHazardFile), loaded_, tally_);
+  write_hazard(path(kHazardFile), loaded_, tally_, totals_.left_weight);
   EXPECT_EQ(bytes(), first);
 }
 
@@ -100,7 +105,8 @@ TEST_F(HazardFile, DamagedForeignOrLaterFilesAreRefused) {
   plain[plain.size() - 80] = static_cast<char>(plain[plain.size() - 80] ^ 1);  // packed well, but another number
   refused(packed(plain), "is damaged");
   refused(packed("something else altogether"), "is no file that talus run wrote");
-  refused(packed(std::string("talus-hazard") + std::string("\x02\0\0\0", 4)), "later version of Talus (format 2, this");
+  refused(packed(std::string("talus-hazard") + std::string("\x03\0\0\0", 4)), "later version of Talus (format 3, this");
+  refused(packed(std::string("talus-hazard") + std::string("\x01\0\0\0", 4)), "earlier version of Talus (format 1,");
   refused("", "is");
 }
 

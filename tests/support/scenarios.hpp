@@ -80,6 +80,8 @@ inline void expect_same_records(const Tally& a, const Tally& b) {
       ASSERT_EQ(left->passages, right->passages) << column << ' ' << row;
       ASSERT_EQ(left->impacts, right->impacts) << column << ' ' << row;
       ASSERT_EQ(left->deposits, right->deposits) << column << ' ' << row;
+      ASSERT_EQ(left->trapped, right->trapped) << column << ' ' << row;
+      ASSERT_EQ(left->exits, right->exits) << column << ' ' << row;
       ASSERT_EQ(left->sources, right->sources) << column << ' ' << row;
       ASSERT_EQ(left->sum, right->sum) << column << ' ' << row;
       ASSERT_EQ(left->maximum, right->maximum) << column << ' ' << row;

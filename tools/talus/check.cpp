@@ -10,14 +10,18 @@
 #include "progress.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/files/output_file.hpp"
 #include "talus/io/gdal/crs.hpp"
+#include "talus/io/gdal/pit_points.hpp"
 #include "talus/io/results/run_record.hpp"
 #include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/products/expected_cells.hpp"
+#include "talus/run/summary.hpp"
 #include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/screens/screens.hpp"
 #include "talus/simulate/tally/tally.hpp"
 #include "talus/simulate/tally/visits.hpp"
+#include "talus/terrain/pits.hpp"
 
 namespace {
 
@@ -27,12 +31,19 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kSampleSeconds = 1.5;
 
+struct Options {
+  talus::io::RunFlags flags;
+  std::string pits;
+  unsigned threads = 0;
+  bool overwrite = false, quiet = false;
+};
+
 /// Sums over a sample of the trajectories.
 struct Sample {
   std::uint64_t traced = 0, touched_cells = 0, crossings = 0;
   std::vector<std::uint64_t> cells_by_passages;
   double seconds = 0.0, length = 0.0;  // of one processor; in space [m]
-  std::uint64_t left = 0, limits = 0;
+  talus::Totals totals;                // only the ends
 };
 
 /// Traces and scores trajectories that are spread evenly over all releases (multiples of the golden ratio, modulo 1).
@@ -66,8 +77,8 @@ Sample trace_sample(const Scenario& scenario) {
     screens.find(release, path, crossings);
     sample.crossings += crossings.size();
     sample.length += path.length;
-    sample.left += path.end == talus::End::Left ? 1U : 0U;
-    sample.limits += path.end == talus::End::Limit ? 1U : 0U;
+    ++sample.totals.ends[static_cast<std::size_t>(path.end)];
+    ++sample.totals.released;
     sample.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   }
   tally.add(batch);
@@ -108,6 +119,11 @@ void print_terrain(const LoadedScenario& loaded) {
                      talus::with_decimals(geo.north - grid.rows * geo.cell_y, 3) + " to " +
                      talus::with_decimals(geo.north, 3) + " north");
   line("system", talus::io::crs_name(geo.crs_wkt));
+  const talus::PitSummary pits = talus::summary_of_pits(heights);
+  if (pits.count > 0)
+    line("pits", count_text(pits.count) + (pits.count == 1 ? " cell is" : " cells are") +
+                     " lower than all eight neighbours, by up to " + talus::with_digits(pits.deepest, 3) +
+                     " m; --pits maps them");
 }
 
 void print_zones(const Scenario& scenario) {
@@ -178,26 +194,37 @@ void print_estimate(const Scenario& scenario, unsigned threads) {
                      " MB; talus run --memory sets a limit");
   line("disk", "about " + rounded_text(1e-6 * bytes_of_results(scenario, size)) + " MB of results, up to " +
                    rounded_text(1e-6 * bytes_at_work(scenario, size, processors)) + " MB more while it goes on");
-  if (sample.left * 100 > sample.traced)
-    line("warning",
-         talus::with_digits(100.0 * static_cast<double>(sample.left) / traced, 4) + " % of the sample left the DEM");
-  if (static_cast<double>(sample.limits) > talus::io::kAllowedLimitShare * traced)
-    line("warning", count_text(sample.limits) +
+  for (const std::string& warning : talus::run::warnings_of(sample.totals, "sample")) line("warning", warning);
+  if (talus::io::too_many_limits(sample.totals))
+    line("warning", count_text(talus::run::count_of(sample.totals, talus::End::Limit)) +
                         " of the sample ended at the limit of impacts or time; where more than 0.1 % do, the "
                         "run ends with exit code 1");
 }
 
-int check(const talus::io::RunFlags& flags, unsigned threads, bool quiet) {
+void print_plan(const LoadedScenario& loaded, unsigned threads) {
+  print_terrain(loaded);
+  print_zones(loaded.scenario);
+  print_blocks(loaded.scenario);
+  print_estimate(loaded.scenario, threads);
+  for (const std::string& warning : loaded.warnings) line("warning", warning);
+}
+
+/// Writes the map of the pits, if it is asked for.
+void write_pits(const Options& options, const LoadedScenario& loaded) {
+  if (options.pits.empty()) return;
+  talus::io::OutputFile out(options.pits, ".gpkg", options.overwrite);
+  for (const talus::io::InputFile& input : loaded.inputs) out.protect(input.path);
+  talus::io::write_pits(out.temporary(), loaded.scenario.surface.heights(), loaded.geo);
+  out.commit();
+}
+
+int check(const Options& options) {
   std::vector<std::string> faults;
   try {
-    const LoadedScenario loaded = talus::io::load_scenario(flags, &faults);
-    if (faults.empty() && quiet) return 0;
+    const LoadedScenario loaded = talus::io::load_scenario(options.flags, &faults);
     if (faults.empty()) {
-      print_terrain(loaded);
-      print_zones(loaded.scenario);
-      print_blocks(loaded.scenario);
-      print_estimate(loaded.scenario, threads);
-      for (const std::string& warning : loaded.warnings) line("warning", warning);
+      write_pits(options, loaded);
+      if (!options.quiet) print_plan(loaded, options.threads);
       return 0;
     }
   } catch (const talus::InputError& error) {
@@ -210,19 +237,22 @@ int check(const talus::io::RunFlags& flags, unsigned threads, bool quiet) {
 }  // namespace
 
 void add_check(CLI::App& app, Action& action) {
-  const auto flags = std::make_shared<talus::io::RunFlags>();
-  const auto threads = std::make_shared<unsigned>(0U);
-  const auto quiet = std::make_shared<bool>(false);
-  CLI::App* command = app.add_subcommand("check", "Check a scenario and print the plan; writes nothing");
-  add_scenario_options(*command, *flags);
-  command->add_option("--threads", *threads, "of the run whose time is estimated; all processors where it is not given")
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("check", "Check a scenario and print the plan; writes nothing, but for --pits");
+  add_scenario_options(*command, options->flags);
+  CLI::Option* pits = command->add_option("--pits", options->pits,
+                                          "GeoPackage to write: the cells that are lower than all eight neighbours");
+  command->add_flag("--overwrite", options->overwrite, "replace the file of --pits if it is there")->needs(pits);
+  command
+      ->add_option("--threads", options->threads,
+                   "of the run whose time is estimated; all processors where it is not given")
       ->check(CLI::Range(1, 4096));
-  command->add_flag("-q,--quiet", *quiet, "say nothing but errors");
+  command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
   command->footer(
-      "Example:\n  talus check scenario.toml\n\nLists every fault of the settings and of the layers. Traces for at "
+      "Examples:\n  talus check scenario.toml\n  talus check scenario.toml --pits pits.gpkg\n\nLists every fault of "
+      "the settings and of the layers. Traces for at "
       "most two seconds to estimate the "
       "time.");
-  command->callback([&action, flags, threads, quiet] {
-    action = [flags, threads, quiet] { return check(*flags, *threads, *quiet); };
-  });
+  command->callback([&action, options] { action = [options] { return check(*options); }; });
 }

@@ -60,6 +60,16 @@ std::unique_ptr<talus::HazardSurvey> survey_of(const fs::path& file, int threads
   return survey;
 }
 
+/// A warning if the map is too small for the hazard.
+std::vector<std::string> warnings_of(const talus::io::HazardHeader& header) {
+  const double left = talus::io::left_per_year(header), all = header.rules.scale.total;
+  if (!(left > talus::io::kWarnedLeftShare * all)) return {};
+  return {talus::with_digits(left, 3) + " of the " + talus::with_digits(all, 3) + " events per year (" +
+          talus::with_digits(100.0 * left / all, 3) +
+          " %) leave the DEM or meet missing data: beyond the cells marked in band `cut short` of hazard_class.tif the "
+          "hazard goes on, and the map does not show it; run again with a larger DEM"};
+}
+
 std::vector<std::string> warnings_of(const talus::HazardMatrix& matrix, const talus::HazardRules& rules) {
   std::vector<std::string> warnings;
   for (const double energy : matrix.energies)
@@ -92,18 +102,21 @@ std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, c
   tally.keep_hazard(std::move(*weights));
   talus::Sinks sinks;
   sinks.progress = [&progress](double share) { return progress.update(share) && !interrupted(); };
-  if (talus::simulate(scenario, tally, sinks, options.threads).interrupted || interrupted()) stop_interrupted();
+  const talus::Totals totals = talus::simulate(scenario, tally, sinks, options.threads);
+  if (totals.interrupted || interrupted()) stop_interrupted();
   record.header.rules = tally.hazard_rules();
+  record.header.left_weight = totals.left_weight;
   record.frequency_file = options.frequency;
   record.replayed = true;
   auto survey = std::make_unique<talus::HazardSurvey>(record.header.grid, record.header.rules, record.matrix);
   const talus::Grid& grid = scenario.surface.grid();
   for (int row = 0; row < grid.rows; ++row) {
     std::vector<bool> terrain;
-    std::vector<talus::HazardSurvey::Cell> touched;
+    std::vector<talus::HazardAt> touched;
     for (int column = 0; column < grid.columns; ++column) {
       terrain.push_back(!std::isnan(scenario.surface.heights().at(column, row)));
-      if (const talus::HazardCell* cell = tally.hazard(column, row)) touched.emplace_back(column, *cell);
+      if (const talus::HazardCell* cell = tally.hazard(column, row))
+        touched.push_back({column, *cell, tally.find(column, row)->exits > 0});
     }
     survey->set_row(row, std::move(terrain), touched, options.threads);
   }
@@ -149,6 +162,7 @@ int hazard(const Options& options) {
                                                 : reweighted_survey(options, file, progress, record);
   record.cells = survey->cells();
   record.warnings = warnings_of(record.matrix, record.header.rules);
+  for (const std::string& warning : warnings_of(record.header)) record.warnings.push_back(warning);
 
   progress.stage("writing the maps");
   const talus::Grid& grid = survey->grid();

@@ -8,8 +8,13 @@
 namespace talus {
 
 /// How a trajectory ended; each has exactly one end. docs/physics.md, "End of a trajectory".
-enum class End : std::uint8_t { Stopped, Left, Caught, Limit };
-inline constexpr int kEnds = 4;
+enum class End : std::uint8_t { Stopped, Trapped, Left, Caught, Limit };
+inline constexpr int kEnds = 5;
+
+/// Whether the block stays where its path ended.
+constexpr bool rests(End end) {
+  return end == End::Stopped || end == End::Trapped || end == End::Caught;
+}
 
 /// Event at a vertex of a path; it tells what follows.
 enum class Event : std::uint8_t {

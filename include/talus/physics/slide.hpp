@@ -8,6 +8,7 @@ namespace talus {
 /// How a slide ended. docs/physics.md, "Sliding", rules (a) to (c).
 enum class SlideEnd {
   Stopped,   ///< (a) friction holds the block
+  Trapped,   ///< walls hold the block, on ground where friction alone would not
   Takeoff,   ///< (b) the ground falls away below the free parabola
   Asperity,  ///< (c) it has slid one diameter and meets the next asperity
   Caught,    ///< in a barrier

@@ -15,15 +15,12 @@ class HazardSurvey {
  public:
   HazardSurvey(const Grid& grid, HazardRules rules, HazardMatrix matrix);
 
-  /// A touched cell: its column, and the sums of the run there.
-  using Cell = std::pair<int, HazardCell>;
-
   /// Evaluates the cells of a row in parallel.
   ///
   /// @param terrain  by column, whether there is terrain; rows that are never set have none
   /// @param cells    from west to east
   /// @param threads  0: as many as the machine has
-  void set_row(int row, std::vector<bool> terrain, std::span<const Cell> cells, int threads = 0);
+  void set_row(int row, std::vector<bool> terrain, std::span<const HazardAt> cells, int threads = 0);
 
   const Grid& grid() const { return grid_; }
   const HazardRules& rules() const { return rules_; }
@@ -40,7 +37,7 @@ class HazardSurvey {
     std::vector<int> columns;
     std::vector<float> figures;
   };
-  std::vector<float> figures_of(const HazardCell& cell) const;  // the same number for every cell
+  std::vector<float> figures_of(const HazardAt& at) const;  // the same number for every cell
 
   Grid grid_;
   HazardRules rules_;

@@ -49,7 +49,7 @@ class ProfileBins {
 
 /// Runout of the blocks: distance in x between release and stop.
 struct Runout {
-  BinDistribution stopped;           ///< of the blocks that stopped or were caught [m]
+  BinDistribution stopped;           ///< of the blocks that stayed: stopped, trapped or caught [m]
   std::vector<std::uint64_t> stops;  ///< number of these by bin of the distance, from 0
   std::uint64_t left = 0, released = 0;
 };

@@ -51,6 +51,7 @@ std::vector<Map::Band> bands_of(const RunRaster& raster, const RunCounts& run);
 struct HazardPlace {
   const HazardCurve& curve;
   const HazardMatrix& matrix;
+  bool exit;  ///< paths leave the terrain from here
 };
 
 /// A raster of `talus hazard`. If it has `numbers`, one raster is written for each; the number replaces `placeholder`

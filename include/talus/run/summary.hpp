@@ -15,13 +15,15 @@ std::string count_text(std::uint64_t count);
 /// Number of trajectories that ended in this way.
 std::uint64_t count_of(const Totals& totals, End end);
 
-/// "12 stopped, 3 left the map, 0 caught, 0 at a limit".
+/// "12 stopped, 1 trapped, 3 left the map, 0 caught, 0 at a limit".
 std::string ends_text(const Totals& totals);
 
 /// "12 of 3 400 trajectories (0.353 %, allowed are 0.1 %) ended at the limit of impacts or time".
 std::string limits_text(const Totals& totals);
 
-/// Warnings about trajectories that left the DEM; empty if they are few.
-std::vector<std::string> warnings_of(const Totals& totals);
+/// Warnings about trajectories that left the DEM or were trapped; empty if they are few.
+///
+/// @param whole  name of what `totals` sums over
+std::vector<std::string> warnings_of(const Totals& totals, const std::string& whole = "trajectories");
 
 }  // namespace talus::run

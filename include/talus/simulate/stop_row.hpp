@@ -15,6 +15,7 @@ struct StopRow {
   float x_release, y_release;                     // [m, local]
   double x, y, z;                                 // where it ended [m, local]
   float seconds, max_speed, length, plan_length;  // [s], [m/s], [m], [m]
+  float end_speed;                                // at the end of the path [m/s]
   std::uint32_t impacts;
 };
 

@@ -60,7 +60,7 @@ class Instrument {
  private:
   void stop(const Errors& errors, const Path& path, double mass, std::uint32_t trial, BlockRuns& runs) const {
     runs.mass_share[trial] = path.mass / mass;
-    if (path.end != End::Stopped && path.end != End::Caught) return;
+    if (!rests(path.end)) return;
     const auto error = errors.of_stop();
     const Vec3& end = path.vertices.back().motion.position;
     runs.x[trial] = end.x() + campaign_.error.position_m * error[0];

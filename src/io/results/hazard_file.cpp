@@ -16,10 +16,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kMark = "talus-hazard";
-constexpr int kFormat = 1;
+/// Bits of the byte of a cell.
+constexpr unsigned kTerrain = 1, kTouched = 2, kExit = 4;
 
-Json json_of(const LoadedScenario& loaded, const HazardRules& rules) {
+constexpr const char* kMark = "talus-hazard";
+constexpr int kFormat = 2;
+
+Json json_of(const LoadedScenario& loaded, const HazardRules& rules, std::int64_t left_weight) {
   const Grid& grid = loaded.scenario.surface.grid();
   const WeightScale& scale = rules.scale;
   return {{"version", version()},
@@ -37,12 +40,14 @@ Json json_of(const LoadedScenario& loaded, const HazardRules& rules) {
           {"total", scale.total},
           {"largest", scale.largest},
           {"trajectories", scale.trajectories},
-          {"equal", scale.equal}};
+          {"equal", scale.equal},
+          {"left", left_weight}};
 }
 
 HazardHeader header_of(const std::string& text) {
   const Json json = Json::parse(text);
-  HazardHeader header{json.at("version"), json.at("plan"), {}, {}, {EnergyBins(json.at("energy_thresholds")), {}}};
+  HazardHeader header{json.at("version"), json.at("plan"), {}, {}, {EnergyBins(json.at("energy_thresholds")), {}},
+                      json.at("left")};
   Grid& grid = header.grid;
   grid.columns = json.at("columns");
   grid.rows = json.at("rows");
@@ -78,9 +83,10 @@ HazardHeader get_header(HazardReader& in) {
   std::string mark(std::strlen(kMark), ' ');
   in.get(mark.data(), mark.size());
   if (mark != kMark) throw InputError(in.name() + ": is no file that talus run wrote; give the folder of a run");
-  if (const auto format = in.get<std::int32_t>(); format > kFormat)
-    throw InputError(in.name() + ": was written by a later version of Talus (format " + std::to_string(format) +
-                     ", this one reads " + std::to_string(kFormat) + "); use that version, or run again");
+  if (const auto format = in.get<std::int32_t>(); format != kFormat)
+    throw InputError(in.name() + ": was written by " + (format > kFormat ? "a later" : "an earlier") +
+                     " version of Talus (format " + std::to_string(format) + ", this one reads " +
+                     std::to_string(kFormat) + "); use that version, or run again");
   std::string text(in.get_count(1U << 20U), ' ');
   in.get(text.data(), text.size());
   try {
@@ -92,20 +98,23 @@ HazardHeader get_header(HazardReader& in) {
 
 }  // namespace
 
-void write_hazard(const std::filesystem::path& file, const LoadedScenario& loaded, const Tally& tally) {
+void write_hazard(const std::filesystem::path& file, const LoadedScenario& loaded, const Tally& tally,
+                  std::int64_t left_weight) {
   const Raster<float>& heights = loaded.scenario.surface.heights();
   const Grid& grid = heights.grid;
   HazardWriter out(file);
   out.put(kMark, std::strlen(kMark));
   out.put(std::int32_t{kFormat});
-  const std::string header = json_of(loaded, tally.hazard_rules()).dump();
+  const std::string header = json_of(loaded, tally.hazard_rules(), left_weight).dump();
   out.put(static_cast<std::uint32_t>(header.size()));
   out.put(header.data(), header.size());
   for (int row = grid.rows - 1; row >= 0; --row) {
     tally.memory().keep_below_limit();
     for (int column = 0; column < grid.columns; ++column) {
-      const std::uint8_t touched = tally.hazard(column, row) != nullptr ? 2 : 0;
-      out.put(static_cast<std::uint8_t>(touched + (std::isnan(heights.at(column, row)) ? 0 : 1)));
+      const CellRecord* record = tally.find(column, row);
+      const unsigned state = (std::isnan(heights.at(column, row)) ? 0 : kTerrain) | (record != nullptr ? kTouched : 0) |
+                             (record != nullptr && record->exits > 0 ? kExit : 0);
+      out.put(static_cast<std::uint8_t>(state));
     }
     for (int column = 0; column < grid.columns; ++column)
       if (const HazardCell* cell = tally.hazard(column, row)) put_cell(out, *cell);
@@ -123,9 +132,10 @@ HazardHeader read_hazard(const std::filesystem::path& file, const std::function<
     in.get(states.data(), states.size());
     HazardRow cells;
     cells.row = row;
-    for (const std::uint8_t state : states) cells.terrain.push_back((state & 1U) != 0);
+    for (const std::uint8_t state : states) cells.terrain.push_back((state & kTerrain) != 0);
     for (std::size_t column = 0; column < states.size(); ++column)
-      if ((states[column] & 2U) != 0) cells.touched.emplace_back(static_cast<int>(column), get_cell(in, header.rules));
+      if ((states[column] & kTouched) != 0)
+        cells.touched.push_back({static_cast<int>(column), get_cell(in, header.rules), (states[column] & kExit) != 0});
     visit(cells);
   }
   in.finish();

@@ -72,6 +72,7 @@ std::string hazard_json(const HazardRecord& record) {
   json["command"] = record.command;
   json["run"] = {{"version", record.header.version}, {"plan", record.header.plan}};
   json["events_per_year"] = scale.total;
+  json["left_per_year"] = left_per_year(record.header);
   json["trajectories"] = scale.trajectories;
   json["equal_weights"] = scale.equal;
   json["largest_weight_per_year"] = scale.largest_weight();

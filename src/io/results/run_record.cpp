@@ -80,6 +80,7 @@ Json barriers_of(const Scenario& scenario, const Totals& totals) {
 Json ends_of(const Totals& totals) {
   const auto count = [&totals](End end) { return totals.ends[static_cast<std::size_t>(end)]; };
   return {{"stopped", count(End::Stopped)},
+          {"trapped", count(End::Trapped)},
           {"left", count(End::Left)},
           {"caught", count(End::Caught)},
           {"limit", count(End::Limit)}};

@@ -32,12 +32,22 @@ struct Place {
   double y(double local) const { return south + local; }
 };
 
+/// Name of the source's feature of each feature; without one its number from 0.
+std::vector<std::string> feature_names(const Scenario& scenario) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < scenario.features.size(); ++i)
+    names.push_back(scenario.features[i].name.empty() ? std::to_string(i) : scenario.features[i].name);
+  return names;
+}
+
 }  // namespace
 
 const char* name_of(End end) {
   switch (end) {
     case End::Stopped:
       return "stopped";
+    case End::Trapped:
+      return "trapped";
     case End::Left:
       return "left";
     case End::Caught:
@@ -72,7 +82,10 @@ const char* name_of(Event event) {
 
 struct StopsWriter::State {
   State(const std::filesystem::path& name, const LoadedScenario& loaded)
-      : file(name, loaded.geo), scenario(loaded.scenario), place(loaded.geo, loaded.scenario.surface.grid()) {
+      : file(name, loaded.geo),
+        scenario(loaded.scenario),
+        place(loaded.geo, loaded.scenario.surface.grid()),
+        names(feature_names(loaded.scenario)) {
     layer = file.add_point_layer("stops", {{"source", OFTInteger64},
                                            {"block", OFTInteger64},
                                            {"end", OFTString},
@@ -89,8 +102,6 @@ struct StopsWriter::State {
     feature.reset(OGRFeature::CreateFeature(layer->GetLayerDefn()));
     point = new OGRPoint(0.0, 0.0);
     feature->SetGeometryDirectly(point);
-    for (std::size_t i = 0; i < scenario.features.size(); ++i)
-      names.push_back(scenario.features[i].name.empty() ? std::to_string(i) : scenario.features[i].name);
   }
 
   void append(const StopRow& row) {
@@ -116,10 +127,10 @@ struct StopsWriter::State {
   GeoPackage file;
   const Scenario& scenario;
   Place place;
+  std::vector<std::string> names;  // of the features
   OGRLayer* layer = nullptr;
   Feature feature;
-  OGRPoint* point = nullptr;  // of the feature
-  std::vector<std::string> names;
+  OGRPoint* point = nullptr;  // of `feature`
 };
 
 StopsWriter::StopsWriter(const std::filesystem::path& file, const LoadedScenario& loaded)
@@ -132,6 +143,63 @@ void StopsWriter::write(std::span<const StopRow> rows) {
 }
 
 void StopsWriter::finish() {
+  state_->file.finish();
+}
+
+struct ExitsWriter::State {
+  State(const std::filesystem::path& name, const LoadedScenario& loaded)
+      : file(name, loaded.geo),
+        scenario(loaded.scenario),
+        place(loaded.geo, loaded.scenario.surface.grid()),
+        names(feature_names(loaded.scenario)) {
+    layer = file.add_point_layer("exits", {{"source", OFTInteger64},
+                                           {"block", OFTInteger64},
+                                           {"feature", OFTString},
+                                           {"diameter_m", OFTReal},
+                                           {"mass_kg", OFTReal},
+                                           {"z", OFTReal},
+                                           {"seconds", OFTReal},
+                                           {"speed_ms", OFTReal},
+                                           {"energy_kj", OFTReal}});
+    feature.reset(OGRFeature::CreateFeature(layer->GetLayerDefn()));
+  }
+
+  void append(const StopRow& row) {
+    const double speed = row.end_speed;
+    Fields fields(*feature);
+    fields.add(row.source);
+    fields.add(row.block);
+    fields.add(names[scenario.sources[row.source].feature].c_str());
+    fields.add(decimals(row.diameter, 1e4));
+    fields.add(decimals(row.mass, 1e3));
+    fields.add(row.z);
+    fields.add(decimals(row.seconds, 1e3));
+    fields.add(decimals(speed, 1e3));
+    fields.add(decimals(0.5e-3 * row.mass * speed * speed, 1e3));
+    const OGRPoint point(place.x(row.x), place.y(row.y));
+    feature->SetGeometry(&point);
+    file.append(layer, *feature);
+  }
+
+  GeoPackage file;
+  const Scenario& scenario;
+  Place place;
+  std::vector<std::string> names;  // of the features
+  OGRLayer* layer = nullptr;
+  Feature feature;
+};
+
+ExitsWriter::ExitsWriter(const std::filesystem::path& file, const LoadedScenario& loaded)
+    : state_(std::make_unique<State>(file, loaded)) {}
+ExitsWriter::~ExitsWriter() = default;
+
+void ExitsWriter::write(std::span<const StopRow> rows) {
+  const GdalMessages messages;
+  for (const StopRow& row : rows)
+    if (row.end == End::Left) state_->append(row);
+}
+
+void ExitsWriter::finish() {
   state_->file.finish();
 }
 

@@ -58,7 +58,8 @@ SlideEnd ActiveEffects::slide(Motion& motion, PatchIndex& at, const Block& body,
   const Motion before = motion;
   const SlideEnd end = talus::slide(world_.surface, world_.cover, motion, at, body.diameter, world_.rules.stop_speed,
                                     path, rolling.coefficient > 0.0 ? &rolling : nullptr);
-  if (drag_ && end != SlideEnd::Left && end != SlideEnd::Stopped) drag_->after_slide(before, motion, body);
+  const bool moves = end != SlideEnd::Left && end != SlideEnd::Stopped && end != SlideEnd::Trapped;
+  if (drag_ && moves) drag_->after_slide(before, motion, body);
   return end;
 }
 

@@ -87,7 +87,7 @@ constexpr std::array<Field<Scenario>, 10> kScenario{{
       kAbove},
      [](const Scenario& s) { return s.rules.stop_speed; },
      [](Scenario& s, double v) { s.rules.stop_speed = v; }},
-    {{"model.trap_time", "s", "a block that stays within one diameter for so long is trapped", 0.0, 3600.0, kAbove},
+    {{"model.trap_time", "s", "a block that stays within one diameter for so long ends there", 0.0, 3600.0, kAbove},
      [](const Scenario& s) { return s.rules.trap_time; },
      [](Scenario& s, double v) { s.rules.trap_time = v; }},
     {{"model.time_limit", "s", "longest trajectory", 0.0, 86400.0, kAbove},

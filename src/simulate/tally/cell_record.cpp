@@ -48,22 +48,23 @@ PerQuantity<float> CellRecord::add(const CellValues& values) {
 void CellRecord::merge(const CellRecord& other) {
   impacts += other.impacts;
   passages += other.passages;
-  deposits += other.deposits;
   sources += other.sources;
+  deposits += other.deposits;
+  trapped += other.trapped;
+  exits += other.exits;
   for (std::size_t q = 0; q < kQuantities; ++q) {
     maximum[q] = std::max(maximum[q], other.maximum[q]);
     sum[q] += other.sum[q];
     histogram[q].merge(other.histogram[q]);
     TALUS_EXPECT(histogram[q].count() == passages, "each passage is in the histogram once");
   }
+  TALUS_EXPECT(trapped <= deposits, "a trapped block stays");
   TALUS_EXPECT(deposits <= passages, "what comes to rest in a cell has come there");
 }
 
 void CellRecord::save(ByteWriter& out) const {
   out.put(impacts);
-  out.put(passages);
-  out.put(deposits);
-  out.put(sources);
+  for (const std::uint32_t count : {passages, sources, deposits, trapped, exits}) out.put(count);
   out.put(maximum);
   out.put(sum);
   for (const LogHistogram& h : histogram) h.save(out);
@@ -72,9 +73,8 @@ void CellRecord::save(ByteWriter& out) const {
 CellRecord CellRecord::restored(ByteReader& in) {
   CellRecord record;
   record.impacts = in.get<std::uint64_t>();
-  record.passages = in.get<std::uint32_t>();
-  record.deposits = in.get<std::uint32_t>();
-  record.sources = in.get<std::uint32_t>();
+  for (std::uint32_t* count : {&record.passages, &record.sources, &record.deposits, &record.trapped, &record.exits})
+    *count = in.get<std::uint32_t>();
   record.maximum = in.get<PerQuantity<float>>();
   record.sum = in.get<PerQuantity<std::int64_t>>();
   for (LogHistogram& h : record.histogram) h = LogHistogram::restored(in);

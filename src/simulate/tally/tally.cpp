@@ -90,10 +90,27 @@ bool of_one_block(const VisitBatch& batch, std::uint16_t first, std::uint16_t se
   return std::all_of(&all[first] + 1, &all[second] + 1, [](const VisitBatch::Trajectory& t) { return t.piece; });
 }
 
+/// How paths end in a cell.
+struct PathEnds {
+  bool deposited = false, trapped = false, left = false;
+};
+
+/// Adds the ends of a path to the record, except those that its block already has in this cell: all pieces of a block
+/// count once.
+void count_ends(const PathEnds& ends, PathEnds& of_block, CellRecord& record) {
+  const auto count = [](bool ended, bool& before, std::uint32_t& sum) {
+    sum += ended && !before ? 1U : 0U;
+    before = before || ended;
+  };
+  count(ends.deposited, of_block.deposited, record.deposits);
+  count(ends.trapped, of_block.trapped, record.trapped);
+  count(ends.left, of_block.left, record.exits);
+}
+
 /// The visits of one trajectory to a cell, joined.
 struct Passage {
   Maxima largest;
-  std::uint32_t deposits = 0;
+  PathEnds ends;
 };
 
 /// Joins the visits of the next trajectory and moves `visit` past them; adds their impacts to the record.
@@ -103,7 +120,9 @@ Passage next_passage(const Visit*& visit, const Visit* end, CellRecord& record) 
   for (; visit != end && visit->trajectory == trajectory; ++visit) {
     passage.largest.raise(*visit);
     record.impacts += visit->impacts;
-    passage.deposits += visit->deposited;
+    passage.ends.deposited |= visit->deposited != 0;
+    passage.ends.trapped |= visit->trapped != 0;
+    passage.ends.left |= visit->left != 0;
   }
   return passage;
 }
@@ -114,14 +133,13 @@ void gather(const Group& group, const VisitBatch& batch, CellValues& values, Cel
   std::size_t n = 0;
   std::uint32_t source = 0;
   std::uint16_t previous = 0;  // the trajectory of the last value
-  bool rests = false;          // the trajectory, or a piece of it, has come to rest here
+  PathEnds ends;               // of the block and its pieces, in this cell
   for (const Visit* visit = group.begin; visit != group.end;) {
     const std::uint16_t trajectory = visit->trajectory;
     const Passage passage = next_passage(visit, group.end, record);
     const VisitBatch::Trajectory& of = batch.trajectories()[trajectory];
     if (of.piece && n > 0 && of_one_block(batch, previous, trajectory)) {  // all pieces of a block have one value
-      record.deposits += rests ? 0U : passage.deposits;
-      rests = rests || passage.deposits > 0;
+      count_ends(passage.ends, ends, record);
       for_each_quantity([&](auto q) {
         float& value = values.lists[q][n - 1];
         value = std::max(value, kQuantityTable[q].value(passage.largest, of.mass));
@@ -129,8 +147,8 @@ void gather(const Group& group, const VisitBatch& batch, CellValues& values, Cel
       continue;
     }
     previous = trajectory;
-    record.deposits += passage.deposits;
-    rests = passage.deposits > 0;
+    ends = {};
+    count_ends(passage.ends, ends, record);
     if (n == 0 || of.source != source) {
       source = of.source;
       record.sources += reach.first(trajectory, group.begin->cell) ? 1U : 0U;

@@ -6,6 +6,11 @@
 #include "talus/base/expect.hpp"
 
 namespace talus {
+namespace {
+
+constexpr std::uint32_t kMostImpacts = (1U << 29U) - 1;  // of a visit: what its field holds
+
+}  // namespace
 
 VisitBatch::VisitBatch(const Grid& grid) : regions_across_((grid.columns + kRegionSide - 1) / kRegionSide) {}
 
@@ -45,7 +50,11 @@ void VisitBatch::add(const Path& path, double mass, std::uint32_t source, std::s
     begin({mass, source, std::move(reach), piece});
     add(spans.subspan(from));
   }
-  if (region_ != nullptr) region_->back().deposited = path.end == End::Stopped || path.end == End::Caught;
+  if (region_ == nullptr) return;
+  Visit& last = region_->back();
+  last.deposited = rests(path.end) ? 1 : 0;
+  last.trapped = path.end == End::Trapped ? 1 : 0;
+  last.left = path.end == End::Left ? 1 : 0;
 }
 
 void VisitBatch::add(std::span<const Span> spans) {
@@ -71,7 +80,7 @@ void VisitBatch::add(std::span<const Span> spans) {
       }
       raise(visit(span.patch.column + east_to, span.patch.row + north_to), span, turn, end);
     }
-    region_->back().impacts = (region_->back().impacts + span.impacts) & 0x7FFFFFFFU;
+    region_->back().impacts = (region_->back().impacts + span.impacts) & kMostImpacts;
   }
 }
 
@@ -87,7 +96,7 @@ Visit& VisitBatch::new_visit(int column, int row) {
     region_ = &regions_[index];
   }
   const auto cell = static_cast<std::uint16_t>(row % kRegionSide * kRegionSide + column % kRegionSide);
-  region_->push_back({{}, cell, static_cast<std::uint16_t>(trajectories_.size() - 1), 0, 0});
+  region_->push_back({{}, cell, static_cast<std::uint16_t>(trajectories_.size() - 1), 0, 0, 0, 0});
   ++size_;
   return region_->back();
 }

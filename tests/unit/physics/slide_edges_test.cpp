@@ -200,7 +200,7 @@ TEST(SlideInAGully, RunsAlongTheBottomInClosedForm) {
       EXPECT_NEAR((o.motion.position.x() - 50.3) * std::hypot(1.0, fall), way, 0.01) << fall << ' ' << v0;
       EXPECT_NEAR(o.motion.velocity.norm(), std::sqrt(std::max(0.0, v2)), 0.01);
       EXPECT_NEAR(o.motion.position.y(), 61.0, 1e-6);
-      EXPECT_EQ(o.end, v2 > 1e-9 ? SlideEnd::Asperity : SlideEnd::Stopped);
+      EXPECT_EQ(o.end, v2 > 1e-9 ? SlideEnd::Asperity : SlideEnd::Trapped);
     }
   }
 }

@@ -54,9 +54,9 @@ TEST(HazardMatrix, Faults) {
 HazardSurvey survey_of(const Scenario& s, const Tally& tally) {
   HazardSurvey survey(tally.grid(), tally.hazard_rules(), {});
   for (int row = 0; row < tally.grid().rows; ++row) {
-    std::vector<HazardSurvey::Cell> cells;
+    std::vector<HazardAt> cells;
     for (int column = 0; column < tally.grid().columns; ++column)
-      if (const HazardCell* cell = tally.hazard(column, row)) cells.emplace_back(column, *cell);
+      if (const HazardCell* cell = tally.hazard(column, row)) cells.push_back({column, *cell, false});
     survey.set_row(row, std::vector<bool>(static_cast<std::size_t>(tally.grid().columns), row != 39), cells, 2);
   }
   EXPECT_EQ(survey.cells(), tally.touched_cells());
@@ -84,19 +84,21 @@ TEST(HazardMaps, ACurveForEveryFieldOfTheMatrix) {
   const std::vector<double> often{1.0 / 20, 1.0 / 60, 1.0 / 200, 1.0 / 900};
   const int expected[3][4] = {{3, 2, 2, 1}, {4, 3, 3, 1}, {4, 4, 4, 1}};
   HazardSurvey survey(test::grid_of(12, 2, 2.0, 2.0), rules, {});
-  std::vector<HazardSurvey::Cell> cells;
+  std::vector<HazardAt> cells;
   for (int field = 0; field < 12; ++field) {
     const std::vector<float> energy{field < 4 ? 10.0F : field < 8 ? 100.0F : 1000.0F};
     const std::vector<Stake> stake{
         {static_cast<std::int64_t>(often[static_cast<std::size_t>(field % 4)] / unit), 0, 10}};
     HazardCell cell;
     cell.add(rules, energy, stake);
-    cells.emplace_back(field, cell);
+    cells.push_back({field, cell, field == 5});
   }
   survey.set_row(0, std::vector<bool>(12, true), cells, 1);
   const std::vector<Map> maps = make_hazard_maps(survey);
   for (int field = 0; field < 12; ++field)
     EXPECT_EQ(at(maps, "hazard_class", field, 0), expected[field / 4][field % 4]) << field;
+  for (int field = 0; field < 12; ++field)  // band 5: where paths leave the map
+    EXPECT_EQ(at(maps, "hazard_class", field, 0, 4), field == 5 ? 1.0 : 0.0) << field;
 }
 
 TEST(HazardMaps, ThreeSourcesOnAPlane) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "support/scenarios.hpp"
@@ -225,9 +226,13 @@ TEST(Maps, LawsOfASimulatedRun) {
     }
   }
   EXPECT_EQ(touched, tally.touched_cells());
-  double deposits = 0.0;
-  for (const double d : maps["deposits"][0]) deposits += d;
-  EXPECT_EQ(deposits, static_cast<double>(totals.ends[static_cast<std::size_t>(End::Stopped)]));
+  const auto sum = [&maps](const char* name) {
+    return std::accumulate(maps[name][0].begin(), maps[name][0].end(), 0.0);
+  };
+  const auto count = [&totals](End end) { return static_cast<double>(totals.ends[static_cast<std::size_t>(end)]); };
+  EXPECT_EQ(sum("deposits"), count(End::Stopped) + count(End::Trapped));
+  EXPECT_EQ(sum("trapped"), count(End::Trapped));
+  EXPECT_EQ(sum("exits"), count(End::Left));
 }
 
 }  // namespace

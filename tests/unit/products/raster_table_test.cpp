@@ -100,6 +100,12 @@ TEST(RasterTable, ACellByHand) {  // 4 of 100 trajectories, of 2 source cells wi
   cell.passages = 4;
   cell.sources = 2;
   cell.impacts = 6;
+  cell.deposits = 3;
+  cell.trapped = 2;
+  cell.exits = 1;
+  EXPECT_EQ(values_of("deposits", cell, 1)[0], 3.0);
+  EXPECT_EQ(values_of("trapped", cell, 1)[0], 2.0);
+  EXPECT_EQ(values_of("exits", cell, 1)[0], 1.0);
   EXPECT_EQ(values_of("reach_probability", cell, 1)[0], 4.0 / 20.0);
   EXPECT_EQ(values_of("impact_probability", cell, 3)[0], 4.0 / 100.0);
   EXPECT_EQ(values_of("impacts", cell, 1)[0], 6.0);

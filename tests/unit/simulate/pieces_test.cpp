@@ -33,6 +33,8 @@ TEST(Pieces, CountAsOneTrajectoryWithTheLargestValues) {
   const CellRecord* second = tally.find(4, 3);
   EXPECT_EQ(second->passages, 2U);
   EXPECT_EQ(second->deposits, 1U);  // two of its pieces lie here
+  EXPECT_EQ(second->trapped, 0U);
+  EXPECT_EQ(second->exits, 1U);
   EXPECT_EQ(second->sources, 1U);
   EXPECT_EQ(second->maximum[0], 90.0F);
   EXPECT_EQ(second->mean(Quantity::Energy), (90.0 + 50.0) / 2.0);

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 #include <thread>
 
@@ -98,7 +99,7 @@ TEST(Simulate, TotalsAndCellsAddUp) {
   const Scenario s = scenario();
   Tally tally = tally_of(s);
   const Totals totals = simulate(s, tally, {}, 2);
-  std::uint64_t passages = 0, impacts = 0, deposits = 0;
+  std::uint64_t passages = 0, impacts = 0, deposits = 0, trapped = 0, exits = 0;
   for (int row = 0; row < tally.grid().rows; ++row)
     for (int column = 0; column < tally.grid().columns; ++column) {
       const CellRecord* cell = tally.find(column, row);
@@ -106,13 +107,18 @@ TEST(Simulate, TotalsAndCellsAddUp) {
       passages += cell->passages;
       impacts += cell->impacts;
       deposits += cell->deposits;
+      trapped += cell->trapped;
+      exits += cell->exits;
       EXPECT_GE(cell->sources, 1U);
       EXPECT_LE(cell->sources, kSources);
       for (const LogHistogram& histogram : cell->histogram) EXPECT_EQ(histogram.count(), cell->passages);
     }
   EXPECT_EQ(totals.released, std::uint64_t{kSources} * kTrajectories);
-  EXPECT_EQ(totals.ends[0] + totals.ends[1] + totals.ends[2] + totals.ends[3], totals.released);
-  EXPECT_EQ(deposits, totals.ends[index_of(End::Stopped)] + totals.ends[index_of(End::Caught)]);
+  EXPECT_EQ(std::accumulate(totals.ends.begin(), totals.ends.end(), std::uint64_t{0}), totals.released);
+  EXPECT_EQ(deposits, totals.ends[index_of(End::Stopped)] + totals.ends[index_of(End::Trapped)] +
+                          totals.ends[index_of(End::Caught)]);
+  EXPECT_EQ(trapped, totals.ends[index_of(End::Trapped)]);
+  EXPECT_EQ(exits, totals.ends[index_of(End::Left)]);
   EXPECT_EQ(impacts, totals.impacts);
   EXPECT_EQ(passages, totals.cells_scored);
   EXPECT_FALSE(totals.interrupted);

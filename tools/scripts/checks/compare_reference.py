@@ -6,7 +6,7 @@
 Each scene's sources, ground and screens are written as a scenario, `talus run` is started, its results are compared:
 
 * Quantiles 5, 25, 50, 75, 95 % of speed, jump height and spin at every screen (all crossings), and of x, y and runout
-  (plan distance from the release) of *stopped* trajectories; for `slope` also source by source. Allowed: the larger of
+  (plan distance from the release) of *stopped* trajectories (Talus: stopped or trapped); for `slope` also source by source. Allowed: the larger of
   4 % of the reference's 5-95 % range and 3 combined bootstrap standard errors (200 draws of either sample; rows are
   drawn as if independent: nearly every trajectory crosses once, and the sources of a group are fixed, not sampled).
   Groups of under 1 000 rows in the reference are printed, not judged.
@@ -43,6 +43,7 @@ MIN_ROWS, DRAWS, TILE = 1000, 200, 16
 RANGE_LIMIT, SHARE_LIMIT, SIGN_LIMIT, CORRELATION_LIMIT = 4.0, 1.0, 2.0, 2.0  # %; the last: of 1 - correlation
 LONGEST_STEP = 0.003  # s, of the reference
 UPPER_TALUS_3D = {"theta_scale": 1.0, "psi_scale": 0.9, "En50": 15, "Et50": 50, "phi": 30, "shape": [1.0, 1.5]}
+AT_REST = ("stopped", "trapped")  # ends of Talus that the reference calls stopped
 SCREEN_COLUMNS = {"speed": "speed_ms", "jump": "jump_height_m", "omega": "angular_velocity_rads"}
 SOURCE_COLUMNS = ("id AS name, CAST(diameter_m AS float) AS diameter, CAST(release_height_m AS float) AS height,"
                   " CAST(vx AS float) AS vx, CAST(vy AS float) AS vy, CAST(vz AS float) AS vz")
@@ -177,7 +178,7 @@ def compare_points(scene, out, ref, stops):
             rows.append(Row(scene.name, screen + suffix, "crossings", a.sum(), b.sum(), "mean", *crossings))
             for name, column in SCREEN_COLUMNS.items():
                 rows += compare_quantiles(scene, screen + suffix, name, ref_screens[name][a], screens[column][b])
-        a, b = in_ref & (ref["stopped"] == 1), in_talus & (stops["end"] == "stopped")
+        a, b = in_ref & (ref["stopped"] == 1), in_talus & np.isin(stops["end"], AT_REST)
         for name, (of_ref, of_talus) in places.items():
             rows += compare_quantiles(scene, "stops" + suffix, name, of_ref[a], of_talus[b])
     return rows
@@ -188,7 +189,8 @@ def compare_ends(scene, out, ref, stops):
     sizes, terrain = (ref["x"].size, stops["x"].size), gdal.Open(str(scene.dem))
     rows, record = [], json.loads((out / "run.json").read_text())
     for end in ("stopped", "left", "caught", "limit"):
-        a, b = ref[end].mean() if end in ref.dtype.names else 0.0, (stops["end"] == end).mean()
+        ours = AT_REST if end == "stopped" else (end,)
+        a, b = ref[end].mean() if end in ref.dtype.names else 0.0, np.isin(stops["end"], ours).mean()
         rows.append(Row(scene.name, "ends", end, *sizes, "share", a, b, 100 * (b - a), SHARE_LIMIT))
     for key, column in (("trajectory_metres", "length"), ("impacts", "impacts")):
         a, b = ref[column].mean(), record[key] / sizes[1]

@@ -133,7 +133,7 @@ def make(talus, folder, effect, magnitude, count, seed):
     run([talus, "score", f"{folder}/plan.toml", "--parameters", f"{folder}/truth_model.toml", "--trials", "10", "--seed",
          str(1000 + seed), "--dump", f"{folder}/truth", "-q"])
     mass = {b["id"]: float(b["mass_kg"]) for b in rows(f"{folder}/blocks.csv")}
-    stops = [s for s in rows(f"{folder}/truth/stops.csv") if s["trial"] == "0" and s["end"] == "stopped"]
+    stops = [s for s in rows(f"{folder}/truth/stops.csv") if s["trial"] == "0" and s["end"] in ("stopped", "trapped")]
     write(f"{folder}/stops.csv", "id,x,y,mass_kg\n" + "".join(
         f"{s['block']},{s['x']},{s['y']},{float(s['mass_share']) * mass[s['block']]:.1f}\n" for s in stops))
     write(f"{folder}/passages.csv", "id,screen,speed_ms,jump_height_m,angular_velocity_rads\n" + "".join(

@@ -17,19 +17,27 @@ struct HazardHeader {
   Grid grid;
   GeoReference geo;
   HazardRules rules;
+  std::int64_t left_weight;  ///< events per year whose path leaves the terrain, in units of the weights
 };
+
+/// Events per year whose path leaves the terrain.
+inline double left_per_year(const HazardHeader& header) {
+  return static_cast<double>(header.left_weight) * header.rules.scale.unit;
+}
 
 /// A row of cells. Row 0 is the southern one.
 struct HazardRow {
   int row = 0;
-  std::vector<bool> terrain;                        ///< by column
-  std::vector<std::pair<int, HazardCell>> touched;  ///< by column, from the west
+  std::vector<bool> terrain;      ///< by column
+  std::vector<HazardAt> touched;  ///< by column, from the west
 };
 
 /// Writes the annual frequencies of a tally, compressed. docs/hazard.md, "What a run keeps".
 ///
+/// @param left_weight  Totals::left_weight of the run
 /// The bytes depend on the values only. Throws std::runtime_error on a full disk; no half file is left.
-void write_hazard(const std::filesystem::path& file, const LoadedScenario& loaded, const Tally& tally);
+void write_hazard(const std::filesystem::path& file, const LoadedScenario& loaded, const Tally& tally,
+                  std::int64_t left_weight);
 
 /// Reads such a file, row by row in bounded memory, from the north.
 ///

@@ -14,13 +14,30 @@ namespace talus::io {
 
 /// Where every block ended: the layer `stops` of a GeoPackage, points in the system of the DEM.
 ///
-/// Fields: source, block, end (stopped, left, caught, limit), feature (name of the source's feature, else its number
-/// from 0), diameter_m, mass_kg, x_release, y_release (map coordinates), z, seconds, max_speed_ms, length_m, impacts.
-/// The point and z in full precision, other numbers to three decimals (the diameter to four).
+/// Fields: source, block, end (stopped, trapped, left, caught, limit), feature (name of the source's feature, else its
+/// number from 0), diameter_m, mass_kg, x_release, y_release (map coordinates), z, seconds, max_speed_ms, length_m,
+/// impacts. The point and z in full precision, other numbers to three decimals (the diameter to four).
 class StopsWriter {
  public:
   StopsWriter(const std::filesystem::path& file, const LoadedScenario& loaded);
   ~StopsWriter();
+  void write(std::span<const StopRow> rows);
+  void finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Where paths left the terrain: the layer `exits` of a GeoPackage, points in the system of the DEM, one per row that
+/// ended so; without any the layer is empty.
+///
+/// Fields: source, block, feature, diameter_m, mass_kg, z, seconds as in the layer `stops`; speed_ms and energy_kj
+/// (translational) of the block there.
+class ExitsWriter {
+ public:
+  ExitsWriter(const std::filesystem::path& file, const LoadedScenario& loaded);
+  ~ExitsWriter();
   void write(std::span<const StopRow> rows);
   void finish();
 
@@ -49,7 +66,7 @@ class TrajectoriesWriter {
 
 /// Name of what begins at a vertex: release, impact, slide, takeoff, end.
 const char* name_of(Event event);
-/// Name of the end of a trajectory: stopped, left, caught or limit.
+/// Name of the end of a trajectory: stopped, trapped, left, caught or limit.
 const char* name_of(End end);
 
 }  // namespace talus::io

@@ -23,7 +23,10 @@ struct CellValues {
 /// The sums of one cell. Only integer sums, maxima and histograms: equal bits in any order of the trajectories.
 struct CellRecord {
   std::uint64_t impacts = 0;
-  std::uint32_t passages = 0, deposits = 0, sources = 0;
+  std::uint32_t passages = 0, sources = 0;
+  std::uint32_t deposits = 0;  ///< blocks that stay here
+  std::uint32_t trapped = 0;   ///< those of them that are trapped
+  std::uint32_t exits = 0;     ///< paths that leave the terrain from here
   PerQuantity<float> maximum{};
   PerQuantity<std::int64_t> sum{};  ///< fixed point, in units of the table
   PerQuantity<LogHistogram> histogram;

@@ -64,6 +64,13 @@ class HazardCell {
   ScratchVector<std::int64_t> overlaps_;
 };
 
+/// The hazard of a cell at its place in a row.
+struct HazardAt {
+  int column;
+  HazardCell cell;
+  bool exit;  ///< paths leave the terrain from here
+};
+
 /// Sums the weights of one stratum in one place, by level: its share of `HazardCell::overlaps`.
 class StratumSums {
  public:

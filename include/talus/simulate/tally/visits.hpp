@@ -17,8 +17,10 @@ namespace talus {
 struct Visit : Maxima {
   std::uint16_t cell;        ///< within its region: row * kRegionSide + column
   std::uint16_t trajectory;  ///< within its batch
-  std::uint32_t impacts : 31;
-  std::uint32_t deposited : 1;
+  std::uint32_t impacts : 29;
+  std::uint32_t deposited : 1;  ///< the path ends here: the block stays
+  std::uint32_t trapped : 1;    ///< it stays because it is trapped
+  std::uint32_t left : 1;       ///< the path leaves the terrain from here
 };
 
 /// The visits of a batch of trajectories, collected by region of the grid: the tally is written region by region and

@@ -69,7 +69,7 @@ TEST(Observe, WithoutErrorsItIsThePath) {
     Path path;
     trace(world, release, path);
     const Vec3& end = path.vertices.back().motion.position;
-    if (path.end == End::Stopped)
+    if (rests(path.end))
       EXPECT_EQ(runs[1].x[t], end.x());
     else
       EXPECT_TRUE(std::isnan(runs[1].x[t]));
@@ -92,7 +92,7 @@ TEST(Observe, WithoutErrorsItIsThePath) {
     }
     ends += 1;
   }
-  EXPECT_EQ(runs[1].ends[0] + runs[1].ends[1] + runs[1].ends[2] + runs[1].ends[3], ends);
+  EXPECT_EQ(std::accumulate(runs[1].ends.begin(), runs[1].ends.end(), std::uint64_t{0}), ends);
 }
 
 /// A barrier of a model is one of a run: above its capacity it takes just that, and the block goes on with the rest.

@@ -31,7 +31,7 @@ struct Sample {  // one trajectory
 
 /// The expected values of one cell, by brute force: one value for each trajectory.
 struct Expected {
-  std::uint64_t impacts = 0, deposits = 0;
+  std::uint64_t impacts = 0, deposits = 0, trapped = 0, exits = 0;
   std::set<std::uint32_t> sources;
   std::vector<float> energies, speeds, heights;
 };
@@ -76,8 +76,11 @@ Cells brute_force(const std::vector<Sample>& samples) {
       cell.heights.push_back(values.second);
     }
     const Span& last = sample.path.spans.back();
-    if (sample.path.end == End::Stopped || sample.path.end == End::Caught)
-      cells[{last.patch.column, last.patch.row}].deposits += 1;
+    Expected& at_end = cells[{last.patch.column, last.patch.row}];
+    const End end = sample.path.end;
+    at_end.deposits += end == End::Stopped || end == End::Trapped || end == End::Caught ? 1U : 0U;
+    at_end.trapped += end == End::Trapped ? 1U : 0U;
+    at_end.exits += end == End::Left ? 1U : 0U;
   }
   return cells;
 }
@@ -115,6 +118,8 @@ void expect_equals(const Tally& tally, const Cells& cells) {
       ASSERT_EQ(record->passages, cell.energies.size()) << column << ' ' << row;
       ASSERT_EQ(record->impacts, cell.impacts) << column << ' ' << row;
       ASSERT_EQ(record->deposits, cell.deposits) << column << ' ' << row;
+      ASSERT_EQ(record->trapped, cell.trapped) << column << ' ' << row;
+      ASSERT_EQ(record->exits, cell.exits) << column << ' ' << row;
       ASSERT_EQ(record->sources, cell.sources.size()) << column << ' ' << row;
       expect_values(*record, Quantity::Energy, cell.energies);
       expect_values(*record, Quantity::Speed, cell.speeds);
@@ -209,6 +214,27 @@ TEST(Tally, ARevisitIsOneValue) {  // by hand: 1000 kg; 20 m/s = 200 kJ is its l
   EXPECT_EQ(tally.exceedances(3, 4)[2], 0U);  // not > 300 kJ
   EXPECT_EQ(tally.find(4, 4)->deposits, 0U);
   EXPECT_EQ(tally.find(5, 4), nullptr);
+}
+
+TEST(Tally, TheLastCellCountsHowAPathEnds) {
+  VisitBatch batch(test::grid_of(130, 100, 2.0, 2.0));
+  for (const End end : {End::Stopped, End::Trapped, End::Trapped, End::Left, End::Left, End::Left, End::Limit})
+    batch.add(path_of({stay(4, 4, 1, 1), stay(3, 4, 1, 1)}, end), 1000.0, 0, nullptr);
+  Tally tally = new_tally();
+  tally.add(batch);
+  const CellRecord &last = *tally.find(3, 4), &before = *tally.find(4, 4);
+  EXPECT_EQ(last.deposits, 3U);
+  EXPECT_EQ(last.trapped, 2U);
+  EXPECT_EQ(last.exits, 3U);
+  EXPECT_EQ(before.deposits + before.trapped + before.exits, 0U);
+  ByteWriter saved;
+  last.save(saved);
+  ByteReader in(saved.bytes());
+  CellRecord twice = CellRecord::restored(in);
+  twice.merge(last);
+  EXPECT_EQ(twice.deposits, 6U);
+  EXPECT_EQ(twice.trapped, 4U);
+  EXPECT_EQ(twice.exits, 6U);
 }
 
 TEST(Tally, AThresholdItselfIsNotExceeded) {

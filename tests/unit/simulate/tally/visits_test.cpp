@@ -225,7 +225,7 @@ TEST(VisitBatch, ImpactsAndDepositsAreWhereTheyHappen) {
         if (vertex.event == Event::Impact) ++expected[{grid.column_of(p.x()), grid.row_of(p.y())}].impacts, ++impacts;
       }
       const Vec3& end = path.vertices.back().motion.position;
-      const bool stops = path.end == End::Stopped;
+      const bool stops = rests(path.end);
       if (stops) expected[{grid.column_of(end.x()), grid.row_of(end.y())}].deposits = 1, ++stopped;
       for (const auto& [cell, values] : seen(path, grid)) {
         ASSERT_EQ(values.impacts, expected[cell].impacts) << source << ' ' << block;

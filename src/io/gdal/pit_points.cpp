@@ -1,0 +1,28 @@
+#include "talus/io/gdal/pit_points.hpp"
+
+#include "geopackage.hpp"
+#include "talus/terrain/pits.hpp"
+
+namespace talus::io {
+
+void write_pits(const std::filesystem::path& file, const Raster<float>& heights, const GeoReference& geo) {
+  start_gdal();
+  const Grid& grid = heights.grid;
+  const double south = geo.north - grid.rows * geo.cell_y;
+  GeoPackage package(file, geo);
+  OGRLayer* layer = package.add_point_layer("pits", {{"depth_m", OFTReal}, {"z", OFTReal}});
+  const Feature feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
+  for (int row = grid.rows - 1; row >= 0; --row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const double depth = pit_depth(heights, column, row);
+      if (!(depth > 0.0)) continue;
+      feature->SetField(0, depth);
+      feature->SetField(1, double{heights.at(column, row)});
+      const OGRPoint point(geo.west + grid.centre_x(column), south + grid.centre_y(row));
+      feature->SetGeometry(&point);
+      package.append(layer, *feature);
+    }
+  package.finish();
+}
+
+}  // namespace talus::io

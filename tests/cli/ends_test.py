@@ -1,0 +1,130 @@
+"""How trajectories end: trapped between walls, out of the map; the maps, layers and warnings of it."""
+import json
+import os
+import unittest
+
+import numpy as np
+from osgeo import gdal, ogr
+
+from support import NORTH, WEST, Case, bands_of, box, heights, rows_of, write_dem, write_features
+
+EAST = (np.arange(60) + 0.5)[None, :] * 5.0  # of the cell centres, from the western edge [m]
+UP = (59.5 - np.arange(60))[:, None] * 5.0    # of the cell centres, from the southern edge [m]
+
+
+class Ends(Case):
+    def dem(self, z):
+        write_dem(self.path("dem.tif"), (z + 0.0 * EAST + 0.0 * UP).astype(np.float32))
+
+    def sources(self, x, y, frequency=None):
+        os.remove(self.path("sources.gpkg"))
+        write_features(self.path("sources.gpkg"), "sources", [(box(x, y, 20, 10), ["cliff", frequency])],
+                       [("name", ogr.OFTString), ("frequency", ogr.OFTReal)])
+
+    def test_a_valley_between_steep_walls_traps_every_block(self):
+        self.dem(1000.0 + 0.75 * np.abs(UP - 147.5))  # tan(30 degrees) = 0.577; the floor is level
+        self.sources(140, 200)
+        done = self.run_well(*self.arguments())
+        ends = self.record()["ends"]
+        self.assertEqual(ends, {"stopped": 0, "trapped": 400, "left": 0, "caught": 0, "limit": 0})
+        self.assertIn("0 stopped, 400 trapped, 0 left the map", done.stderr)
+        self.assertIn("100 % of the trajectories (400) were trapped in pits or between walls", done.stderr)
+        self.assertEqual({stop["end"] for stop, _ in rows_of(self.path("out/stops.gpkg"), "stops")}, {"trapped"})
+        trapped = bands_of(self.path("out/trapped.tif"))
+        np.testing.assert_array_equal(trapped, bands_of(self.path("out/deposits.tif")))
+        self.assertEqual(trapped.sum(), 400)
+        self.assertEqual(trapped[28:33].sum(), 400)  # on the floor
+        self.assertEqual(rows_of(self.path("out/exits.gpkg"), "exits"), [])
+        check = self.run_well("check", "--dem", self.path("dem.tif"), "--sources", self.path("sources.gpkg"), "--diameter", "0.8")
+        self.assertRegex(check.stdout, r"(?m)^warning +100 % of the sample \(\d+\) were trapped")
+
+    def test_no_block_stays_on_a_steep_plane(self):
+        self.dem(1000.0 + 1.0 * UP)
+        self.sources(140, 230, frequency=0.4)
+        done = self.run_well(*self.arguments())
+        record = self.record()
+        self.assertEqual(record["ends"], {"stopped": 0, "trapped": 0, "left": 400, "caught": 0, "limit": 0})
+        self.assertIn("100 % of the trajectories (400) left the DEM or met missing data", done.stderr)
+        exits = bands_of(self.path("out/exits.tif"))
+        self.assertEqual(exits.sum(), 400)
+        self.assertEqual(exits[-1].sum(), 400)  # the southern edge
+        rows = rows_of(self.path("out/exits.gpkg"), "exits")
+        stops = rows_of(self.path("out/stops.gpkg"), "stops")
+        self.assertEqual(len(rows), 400)
+        counted = np.zeros((60, 60), np.uint32)
+        for (row, point), (stop, end) in zip(rows, stops):
+            for key in ("source", "block", "feature", "diameter_m", "mass_kg", "z", "seconds"):
+                self.assertEqual(row[key], stop[key])
+            self.assertEqual((point.GetX(), point.GetY()), (end.GetX(), end.GetY()))
+            self.assertAlmostEqual(point.GetY(), NORTH - 297.5, 6)  # the last row of centres: beyond is no terrain
+            self.assertLess(row["speed_ms"], stop["max_speed_ms"] + 1e-3)
+            self.assertAlmostEqual(row["energy_kj"], 0.5e-3 * row["mass_kg"] * row["speed_ms"] ** 2, delta=1e-3 * row["energy_kj"])
+            counted[-1, int((point.GetX() - WEST) // 5)] += 1
+        np.testing.assert_array_equal(exits, counted)
+
+        done = self.run_well("hazard", self.path("out"))
+        self.assertIn("0.4 of the 0.4 events per year (100 %) leave the DEM", done.stderr)
+        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
+            self.assertAlmostEqual(json.load(file)["left_per_year"], 0.4, 9)
+        hazard = gdal.Open(self.path("out/hazard_class.tif"))
+        self.assertEqual(hazard.GetRasterBand(5).GetDescription(), "cut short")
+        np.testing.assert_array_equal(hazard.GetRasterBand(5).ReadAsArray() == 1, exits > 0)
+        again = self.write("again.toml", "[features]\ncliff = 0.1\n")  # other frequencies: traced again
+        done = self.run_well("hazard", self.path("out"), "--overwrite", "--frequency", again)
+        self.assertIn("0.1 of the 0.1 events per year (100 %) leave the DEM", done.stderr)
+
+    def test_missing_data_is_an_exit(self):
+        z = 1000.0 + 1.0 * UP + 0.0 * EAST
+        z[30, 28:36] = -9999.0
+        write_dem(self.path("dem.tif"), z.astype(np.float32), nodata=-9999.0)
+        self.run_well(*self.arguments())
+        exits = bands_of(self.path("out/exits.tif"))
+        self.assertGreater(exits[29].sum(), 100)  # the row above the hole
+        self.assertEqual(exits[exits != 4294967295].sum(), self.record()["ends"]["left"])
+
+    def test_counts_of_parts_add_up(self):
+        self.dem(1000.0 + np.where(EAST < 150.0, 0.75 * np.abs(UP - 147.5), 0.9 * UP))
+        self.sources(140, 230, frequency=0.4)
+        arguments = self.arguments("whole")
+        self.run_well(*arguments)
+        ends = self.record("whole")["ends"]
+        self.assertGreater(ends["trapped"], 50)
+        self.assertGreater(ends["left"], 50)
+        for part in ("1/3", "2/3", "3/3"):
+            self.run_well(*arguments[:-1], self.path("part" + part[0]), "--part", part)
+        self.run_well("merge", self.path("merged"), *(self.path(f"part{i}") for i in (1, 2, 3)))
+        self.assertEqual(self.record("merged")["ends"], ends)
+        for name in ("trapped.tif", "exits.tif", "exits.gpkg", "stops.gpkg", "deposits.tif", "hazard_tally.gz"):
+            with open(self.path("whole/" + name), "rb") as one, open(self.path("merged/" + name), "rb") as other:
+                self.assertEqual(one.read() == other.read(), True, name)
+
+    def test_check_maps_the_pits(self):
+        z = heights()
+        z[20, 30] = z[19:22, 29:32].min() - 2.5  # by 2.5 m, or by less where the bumps have lowered a neighbour
+        z[50, 10] -= 40.0
+        write_dem(self.path("dem.tif"), z)
+        arguments = ["check", "--dem", self.path("dem.tif"), "--sources", self.path("sources.gpkg"), "--diameter", "0.8"]
+        before = os.listdir(self.folder)
+        core = z[1:-1, 1:-1]
+        around = np.min([z[1 + j:59 + j, 1 + i:59 + i] for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j], axis=0)
+        depth = (around.astype(float) - core)[core < around]
+        said = self.run_well(*arguments).stdout
+        self.assertRegex(said, rf"(?m)^pits +{len(depth)} cells are lower than all eight neighbours, by up to ")
+        self.assert_nothing_left(before)
+        self.run_well(*arguments, "-q", "--pits", self.path("pits.gpkg"))
+        pits = rows_of(self.path("pits.gpkg"), "pits")
+        self.assertEqual(len(pits), len(depth))
+        np.testing.assert_allclose([pit["depth_m"] for pit, _ in pits], depth, rtol=1e-12)
+        places = {((point.GetX() - WEST) / 5.0, (NORTH - point.GetY()) / 5.0) for _, point in pits}
+        self.assertIn((30.5, 20.5), places)
+        self.assertIn((10.5, 50.5), places)
+        self.fails(2, "--overwrite", arguments=[*arguments, "--pits", self.path("pits.gpkg")])
+        self.run_well(*arguments, "--pits", self.path("pits.gpkg"), "--overwrite")
+        self.fails(2, ".gpkg", arguments=[*arguments, "--pits", self.path("pits.tif")])
+        self.fails(2, "sources.gpkg", "another name",
+                   arguments=[*arguments, "--pits", self.path("sources.gpkg"), "--overwrite"])
+        self.assert_nothing_left(before + ["pits.gpkg"])
+
+
+if __name__ == "__main__":
+    unittest.main()
