@@ -15,6 +15,7 @@ struct DamCount {
   double share() const { return cells > 0 ? static_cast<double>(dammed) / static_cast<double>(cells) : 0.0; }
 };
 DamCount count_dammed(const Raster<float>& heights);
+
 /// Height by which a cell lies below the lowest of its eight neighbours [m]; 0 if one of them is not higher, or has no
 /// height: a block could leave there. A cell with a depth above 0 is a true pit: no interpolation of the heights lets
 /// a block out of it.

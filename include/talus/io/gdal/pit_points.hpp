@@ -1,7 +1,7 @@
 #pragma once
 #include <filesystem>
 
-#include "talus/io/scenario/loaded_scenario.hpp"
+#include "talus/io/origin/origin.hpp"
 #include "talus/terrain/raster.hpp"
 
 namespace talus::io {
