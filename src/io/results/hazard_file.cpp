@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kMark = "talus-hazard";
-constexpr int kFormat = 1;
+constexpr int kFormat = 2;  // 1: without lengths
 
 Json json_of(const LoadedScenario& loaded, const HazardRules& rules) {
   const Grid& grid = loaded.scenario.surface.grid();
@@ -37,20 +37,30 @@ Json json_of(const LoadedScenario& loaded, const HazardRules& rules) {
           {"total", scale.total},
           {"largest", scale.largest},
           {"trajectories", scale.trajectories},
-          {"equal", scale.equal}};
+          {"equal", scale.equal},
+          {"largest_diameter", scale.largest_diameter},
+          {"passages_below", loaded.scenario.output.passages_below}};
 }
 
 HazardHeader header_of(const std::string& text) {
   const Json json = Json::parse(text);
-  HazardHeader header{json.at("version"), json.at("plan"), {}, {}, {EnergyBins(json.at("energy_thresholds")), {}}};
+  HazardHeader header{
+      json.at("version"), json.at("plan"), {}, {}, {EnergyBins(json.at("energy_thresholds")), {}}, true, 0.0};
   Grid& grid = header.grid;
   grid.columns = json.at("columns");
   grid.rows = json.at("rows");
   grid.cell_x = json.at("cell_x");
   grid.cell_y = json.at("cell_y");
   header.geo = {json.at("crs_wkt"), json.at("west"), json.at("north"), grid.cell_x, grid.cell_y};
-  header.rules.scale = {json.at("unit"),    json.at("square_unit"),  json.at("total"),
-                        json.at("largest"), json.at("trajectories"), json.at("equal")};
+  header.rules.scale = {json.at("unit"),
+                        json.at("square_unit"),
+                        json.at("total"),
+                        json.at("largest"),
+                        json.at("trajectories"),
+                        json.at("equal"),
+                        0.0};
+  header.rules.scale.largest_diameter = json.value("largest_diameter", 0.0);
+  header.passages_below = json.value("passages_below", 0.0);
   if (grid.columns < 1 || grid.rows < 1 || !(header.rules.scale.unit > 0.0)) throw std::out_of_range("a number");
   return header;
 }
@@ -61,16 +71,22 @@ void put_cell(HazardWriter& out, const HazardCell& cell) {
   for (const HazardCell::Bin& bin : cell.bins()) out.put(bin.weight), out.put(bin.square);
   out.put(static_cast<std::uint32_t>(cell.overlaps().size()));
   for (const std::int64_t overlap : cell.overlaps()) out.put(overlap);
+  out.put(static_cast<std::uint32_t>(cell.lengths().size()));
+  for (const WeightedLengths& sums : cell.lengths())
+    out.put(sums.length), out.put(sums.by_diameter), out.put(sums.squares);
 }
 
-HazardCell get_cell(HazardReader& in, const HazardRules& rules) {
+HazardCell get_cell(HazardReader& in, const HazardHeader& header) {
+  const HazardRules& rules = header.rules;
   const auto first = in.get<std::int32_t>();
   std::vector<HazardCell::Bin> bins(in.get_count(static_cast<std::size_t>(rules.bins.count())));
   if (first < 0 || first + static_cast<std::int64_t>(bins.size()) > rules.bins.count()) in.fail();
   for (HazardCell::Bin& bin : bins) bin = {in.get<std::int64_t>(), in.get<std::int64_t>()};
   std::vector<std::int64_t> overlaps(in.get_count(rules.levels()));
   for (std::int64_t& overlap : overlaps) overlap = in.get<std::int64_t>();
-  return HazardCell::restored(first, bins, overlaps);
+  std::vector<WeightedLengths> lengths(header.has_lengths ? in.get_count(rules.levels()) : 0);
+  for (WeightedLengths& sums : lengths) sums = {in.get<std::int64_t>(), in.get<std::int64_t>(), in.get<std::int64_t>()};
+  return HazardCell::restored(first, bins, overlaps, lengths);
 }
 
 /// Reads the mark, the format, the length of the header, and the header.
@@ -78,13 +94,16 @@ HazardHeader get_header(HazardReader& in) {
   std::string mark(std::strlen(kMark), ' ');
   in.get(mark.data(), mark.size());
   if (mark != kMark) throw InputError(in.name() + ": is no file that talus run wrote; give the folder of a run");
-  if (const auto format = in.get<std::int32_t>(); format > kFormat)
+  const auto format = in.get<std::int32_t>();
+  if (format > kFormat)
     throw InputError(in.name() + ": was written by a later version of Talus (format " + std::to_string(format) +
                      ", this one reads " + std::to_string(kFormat) + "); use that version, or run again");
   std::string text(in.get_count(1U << 20U), ' ');
   in.get(text.data(), text.size());
   try {
-    return header_of(text);
+    HazardHeader header = header_of(text);
+    header.has_lengths = format > 1;
+    return header;
   } catch (const std::exception&) {
     in.fail();
   }
@@ -125,7 +144,7 @@ HazardHeader read_hazard(const std::filesystem::path& file, const std::function<
     cells.row = row;
     for (const std::uint8_t state : states) cells.terrain.push_back((state & 1U) != 0);
     for (std::size_t column = 0; column < states.size(); ++column)
-      if ((states[column] & 2U) != 0) cells.touched.emplace_back(static_cast<int>(column), get_cell(in, header.rules));
+      if ((states[column] & 2U) != 0) cells.touched.emplace_back(static_cast<int>(column), get_cell(in, header));
     visit(cells);
   }
   in.finish();

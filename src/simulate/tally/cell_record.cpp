@@ -47,6 +47,8 @@ PerQuantity<float> CellRecord::add(const CellValues& values) {
 
 void CellRecord::merge(const CellRecord& other) {
   impacts += other.impacts;
+  length += other.length;
+  length_squares += other.length_squares;
   passages += other.passages;
   deposits += other.deposits;
   sources += other.sources;
@@ -61,6 +63,8 @@ void CellRecord::merge(const CellRecord& other) {
 
 void CellRecord::save(ByteWriter& out) const {
   out.put(impacts);
+  out.put(length);
+  out.put(length_squares);
   out.put(passages);
   out.put(deposits);
   out.put(sources);
@@ -72,6 +76,8 @@ void CellRecord::save(ByteWriter& out) const {
 CellRecord CellRecord::restored(ByteReader& in) {
   CellRecord record;
   record.impacts = in.get<std::uint64_t>();
+  record.length = in.get<std::int64_t>();
+  record.length_squares = in.get<std::int64_t>();
   record.passages = in.get<std::uint32_t>();
   record.deposits = in.get<std::uint32_t>();
   record.sources = in.get<std::uint32_t>();

@@ -17,6 +17,8 @@ struct HazardHeader {
   Grid grid;
   GeoReference geo;
   HazardRules rules;
+  bool has_lengths = true;      ///< false: written by an earlier version, without plan lengths
+  double passages_below = 0.0;  ///< `OutputSettings::passages_below`
 };
 
 /// A row of cells. Row 0 is the southern one.
