@@ -3,45 +3,122 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 
 namespace talus {
-HazardSurvey::HazardSurvey(const Grid& grid, HazardRules rules, HazardMatrix matrix)
-    : grid_(grid),
-      rules_(std::move(rules)),
-      matrix_(std::move(matrix)),
-      maps_(hazard_maps_of(rules_, matrix_)),
-      rows_(static_cast<std::size_t>(grid.rows)),
-      nothing_(figures_of({0, {}, false})) {}
+namespace {
 
-std::vector<float> HazardSurvey::figures_of(const HazardAt& at) const {
-  const HazardCurve curve(rules_, at.cell);
-  std::vector<float> figures;
-  for (const HazardMap& map : maps_) map.raster->figures({curve, matrix_, at.exit}, map.i, figures);
-  return figures;
-}
-
-// An exception must not leave the parallel region: the first one is stored, and thrown again after the region.
-void HazardSurvey::set_row(int row, std::vector<bool> terrain, std::span<const HazardAt> cells, int threads) {
-  Row& to = rows_[static_cast<std::size_t>(row)];
-  to = {std::move(terrain), {}, std::vector<float>(cells.size() * nothing_.size())};
-  for (const HazardAt& cell : cells) to.columns.push_back(cell.column);
-  const auto evaluate = [&](std::size_t i) {
-    const std::vector<float> figures = figures_of(cells[i]);
-    std::ranges::copy(figures, to.figures.begin() + static_cast<std::ptrdiff_t>(i * figures.size()));
-  };
+/// Calls `work` with 0 to `count` - 1 in parallel. An exception must not leave the parallel region: the first one is
+/// stored, and thrown again after the region.
+template <class Work>
+void in_parallel(std::size_t count, int threads, const Work& work) {
   std::exception_ptr failure;
 #pragma omp parallel for schedule(dynamic, 8) num_threads(threads > 0 ? threads : omp_get_num_procs()) default(none) \
-    shared(cells, evaluate, failure)
-  for (std::size_t i = 0; i < cells.size(); ++i) {
+    shared(count, work, failure)
+  for (std::size_t i = 0; i < count; ++i) {
     try {
-      evaluate(i);
+      work(i);
     } catch (...) {
 #pragma omp critical
       if (!failure) failure = std::current_exception();
     }
   }
   if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace
+
+HazardSurvey::HazardSurvey(const Grid& grid, HazardRules rules, HazardMatrix matrix, const ObjectWidth& object)
+    : grid_(grid),
+      rules_(std::move(rules)),
+      matrix_(std::move(matrix)),
+      object_(object),
+      seen_(std::max(object.width, std::sqrt(grid.cell_x * grid.cell_y))),
+      maps_(hazard_maps_of(rules_, matrix_, object_)),
+      rows_(static_cast<std::size_t>(grid.rows)),
+      nothing_(object.width > 0.0 ? figures_of(std::vector<PassageDensity>(rules_.levels()), false)
+                                  : figures_of({0, {}, false})) {}
+
+std::vector<float> HazardSurvey::figures_of(const HazardPlace& place) const {
+  std::vector<float> figures;
+  for (const HazardMap& map : maps_) map.raster->figures(place, map.i, figures);
+  return figures;
+}
+
+std::vector<float> HazardSurvey::figures_of(const HazardAt& at) const {
+  const HazardCurve curve(rules_, at.cell);
+  std::vector<Bounded> levels{curve.passage()};
+  for (std::size_t i = 0; i + 1 < rules_.levels(); ++i) levels.push_back(curve.exceedance(i));
+  return figures_of(HazardPlace{rules_, matrix_, at.exit, std::move(levels), &curve});
+}
+
+std::vector<float> HazardSurvey::figures_of(std::span<const PassageDensity> densities, bool exit) const {
+  std::vector<Bounded> levels;
+  for (const PassageDensity& density : densities)
+    levels.push_back(hits_of_object(density, rules_.scale, object_.width, seen_));
+  return figures_of(HazardPlace{rules_, matrix_, exit, std::move(levels)});
+}
+
+void HazardSurvey::set_row(int row, std::vector<bool> terrain, std::span<const HazardAt> cells, int threads) {
+  Row& to = rows_[static_cast<std::size_t>(row)];
+  to = {std::move(terrain), {}, {}, {}, {}};
+  for (const HazardAt& at : cells) to.columns.push_back(at.column);
+  if (object_.width > 0.0) {
+    for (const HazardAt& at : cells) {
+      to.exits.push_back(at.exit);
+      std::vector<PassageDensity> levels = densities_of(at.cell, rules_.scale, grid_.cell_x * grid_.cell_y);
+      levels.resize(rules_.levels());
+      to.densities.insert(to.densities.end(), levels.begin(), levels.end());
+    }
+    return;
+  }
+  to.figures.resize(cells.size() * nothing_.size());
+  in_parallel(cells.size(), threads, [&](std::size_t i) {
+    const std::vector<float> figures = figures_of(cells[i]);
+    std::ranges::copy(figures, to.figures.begin() + static_cast<std::ptrdiff_t>(i * figures.size()));
+  });
+}
+
+/// The places of a row where an object is hit, with their figures: each has the mean density of the disc around it.
+HazardSurvey::Row HazardSurvey::averaged(int row, std::span<const DiscCell> disc) const {
+  const std::size_t levels = rules_.levels(), columns = static_cast<std::size_t>(grid_.columns);
+  std::vector<PassageDensity> sums(columns * levels);
+  std::vector<bool> hit(columns), exit(columns);
+  for (const DiscCell& part : disc) {
+    if (row + part.row < 0 || row + part.row >= grid_.rows) continue;
+    const Row& from = rows_[static_cast<std::size_t>(row + part.row)];
+    for (std::size_t k = 0; k < from.columns.size(); ++k) {
+      const int column = from.columns[k] - part.column;
+      if (column < 0 || column >= grid_.columns || !(from.densities[k * levels].length > 0.0)) continue;
+      hit[static_cast<std::size_t>(column)] = true;
+      if (from.exits[k]) exit[static_cast<std::size_t>(column)] = true;
+      for (std::size_t level = 0; level < levels; ++level) {
+        PassageDensity& to = sums[static_cast<std::size_t>(column) * levels + level];
+        const PassageDensity& add = from.densities[k * levels + level];
+        to.length += part.share * add.length;
+        to.by_diameter += part.share * add.by_diameter;
+        to.squares += part.share * add.squares;
+      }
+    }
+  }
+  Row to;
+  to.terrain = rows_[static_cast<std::size_t>(row)].terrain;
+  for (std::size_t column = 0; column < to.terrain.size(); ++column) {
+    if (!hit[column] || !to.terrain[column]) continue;
+    to.columns.push_back(static_cast<int>(column));
+    const std::vector<float> figures = figures_of({&sums[column * levels], levels}, exit[column]);
+    to.figures.insert(to.figures.end(), figures.begin(), figures.end());
+  }
+  return to;
+}
+
+void HazardSurvey::finish(int threads) {
+  if (!(object_.width > 0.0)) return;
+  const std::vector<DiscCell> parts = disc(object_.width, grid_.cell_x, grid_.cell_y);
+  std::vector<Row> places(rows_.size());
+  in_parallel(rows_.size(), threads, [&](std::size_t row) { places[row] = averaged(static_cast<int>(row), parts); });
+  rows_ = std::move(places);
 }
 
 std::uint64_t HazardSurvey::cells() const {
@@ -66,7 +143,7 @@ void HazardSurvey::fill(int row, std::size_t first, std::size_t count, std::span
 std::vector<Map> make_hazard_maps(const HazardSurvey& survey) {
   std::vector<Map> maps;
   std::size_t next = 0;
-  for (HazardMap& of : hazard_maps_of(survey.rules(), survey.matrix())) {
+  for (HazardMap& of : hazard_maps_of(survey.rules(), survey.matrix(), survey.object())) {
     const std::size_t first = next, count = of.map.bands.size();
     next += count;
     of.map.fill_row = [&survey, first, count](int row, std::span<double> values) {

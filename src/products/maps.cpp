@@ -29,7 +29,7 @@ auto rows_of(const Scenario& scenario, const Tally& tally, Filling filling) {
       const CellRecord* record = tally.find(column, row);
       const bool terrain = !std::isnan(scenario.surface.heights().at(column, row));
       if (record != nullptr)
-        filling.rule({*record, tally.exceedances(column, row)}, cell);
+        filling.rule({*record, tally.exceedances(column, row), tally.lengths_above(column, row)}, cell);
       else if (terrain)
         std::ranges::copy(filling.untouched, cell.begin());
       else
@@ -43,7 +43,8 @@ auto rows_of(const Scenario& scenario, const Tally& tally, Filling filling) {
 }  // namespace
 
 std::vector<Map> make_maps(const Scenario& scenario, const Tally& tally) {
-  const RunCounts run{scenario.released(), static_cast<double>(scenario.trajectories), tally.thresholds()};
+  RunCounts run = counts_of(scenario);
+  run.thresholds = tally.thresholds();
   std::vector<Map> maps;
   for (const RunRaster& raster : run_rasters()) {
     Map map = raster.map;

@@ -15,15 +15,6 @@
 namespace talus {
 namespace {
 
-double largest_radius(const Scenario& s) {
-  double diameter = 0.0;
-  for (const BlockClass& c : s.blocks.classes) diameter = std::max(diameter, c.diameter.high);
-  diameter = std::max(diameter, std::cbrt(6.0 / kPi * s.blocks.power_law.volume.high));
-  for (const SourceFeature& f : s.features)
-    if (!std::isnan(f.diameter.high)) diameter = std::max(diameter, f.diameter.high);
-  return 0.5 * diameter;
-}
-
 /// The state that the workers share.
 class Replay {
  public:
@@ -32,7 +23,7 @@ class Replay {
       : scenario_(scenario),
         weights_(weights),
         rules_{EnergyBins(scenario.output.energy_thresholds), weights.scale()},
-        finder_(scenario.surface, objects, largest_radius(scenario)),
+        finder_(scenario.surface, objects, 0.5 * largest_diameter(scenario)),
         proceed_(proceed),
         per_source_((scenario.trajectories + kBlocksPerUnit - 1) / kBlocksPerUnit),
         units_(std::uint64_t{per_source_} * scenario.sources.size()),

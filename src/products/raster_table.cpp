@@ -5,13 +5,27 @@
 #include <memory>
 #include <unordered_map>
 
+#include "talus/base/expect.hpp"
 #include "talus/base/text.hpp"
 #include "talus/products/interval.hpp"
+#include "talus/products/passage_bounds.hpp"
 
 namespace talus {
 namespace {
 
 using Kind = Map::Kind;
+
+constexpr const char* kAnyHeightText = "at any height";
+
+std::string replaced(std::string text, const std::string& part, const std::string& by) {
+  const std::size_t at = text.find(part);
+  return at == std::string::npos ? text : text.replace(at, part.size(), by);
+}
+
+/// The words for the height at which passages count. @param below  [m]; 0: at any height
+std::string with_height(const std::string& text, double below) {
+  return below > 0.0 ? replaced(text, kAnyHeightText, "lower than " + text_of(below) + " m above the terrain") : text;
+}
 
 Legend percent_legend() {
   return {{1e-4, 1e-3, 1e-2, 1e-1, 1.0}, 100.0, "%", Palette::Plasma};
@@ -27,6 +41,30 @@ Legend count_legend() {
 
 std::vector<Map::Band> bounded_bands(const std::string& name, const std::string& unit) {
   return {{name, unit}, {"lower 95 % bound", unit}, {"upper 95 % bound", unit}};
+}
+
+/// Plan length per area and released block, with bounds; then above each energy threshold.
+CellRule passage_density(const RunCounts& run) {
+  const double longest = std::hypot(run.cell_x, run.cell_y), area = run.cell_x * run.cell_y;
+  const auto released = static_cast<double>(run.released);
+  return [=](const TouchedCell& cell, std::span<double> values) {
+    constexpr double kUnit = CellRecord::kLengthUnit;
+    const Bounded length = mean_length(static_cast<double>(cell.record.length) * kUnit,
+                                       static_cast<double>(cell.record.length_squares) * kUnit, longest, released);
+    values[0] = length.value / area;
+    values[1] = length.low / area;
+    values[2] = length.high / area;
+    for (std::size_t i = 3; i < values.size(); ++i)
+      values[i] = static_cast<double>(cell.lengths_above[i - 3]) * kUnit / (area * released);
+  };
+}
+
+/// If nothing crosses, the upper bound is that of 3.7 blocks straight through the cell.
+std::vector<double> no_passage(const RunCounts& run) {
+  std::vector<double> values(3 + run.thresholds[Quantity::Energy].size());
+  const double area = run.cell_x * run.cell_y;
+  values[2] = mean_length(0.0, 0.0, std::hypot(run.cell_x, run.cell_y), static_cast<double>(run.released)).high / area;
+  return values;
 }
 
 CellRule impact_probability(const RunCounts& run) {
@@ -63,7 +101,8 @@ RunRaster exceedance(Quantity quantity, const std::string& name, const std::stri
     };
   };
   return {{name,
-           "Fraction of all released trajectories whose " + what + " in the cell exceeds the threshold",
+           "Fraction of all released trajectories whose " + what +
+               " in the cell exceeds the threshold (in plan, at any height)",
            Kind::Probability,
            {},
            percent_legend()},
@@ -71,7 +110,7 @@ RunRaster exceedance(Quantity quantity, const std::string& name, const std::stri
           rule,
           {},
           quantity,
-          symbol};
+          "P(" + symbol + " > <limit>)"};
 }
 
 /// A raster of the distribution of a quantity over the trajectories.
@@ -112,20 +151,34 @@ RunRaster count(const std::string& name, const std::string& title, const std::st
 
 std::vector<RunRaster> make_run_rasters() {
   return {
-      {{"impact_probability", "Fraction of all released trajectories whose path crosses the cell", Kind::Probability,
-        bounded_bands("probability", "1"), percent_legend()},
+      {{"impact_probability",
+        "Fraction of all released trajectories whose path crosses the cell (in plan, at any height)", Kind::Probability,
+        bounded_bands("probability (in plan, at any height)", "1"), percent_legend()},
        "share of N whose path crosses the cell",
        impact_probability,
        no_impact},
       {{"reach_probability",
-        "Fraction of the trajectories of those source cells of which at least one trajectory reaches the cell",
+        "Fraction of the trajectories of those source cells of which at least one trajectory reaches the cell "
+        "(in plan, at any height)",
         Kind::Probability,
-        {{"reach probability", "1"}},
+        {{"reach probability (in plan, at any height)", "1"}},
         percent_legend()},
        "share of the trajectories of the source cells of which at least one trajectory reaches the cell",
        reach_probability},
       exceedance(Quantity::Energy, "energy_exceedance", "translational kinetic energy", "E"),
       exceedance(Quantity::Height, "height_exceedance", "height above the terrain", "h"),
+      {{"passage_density",
+        "Mean number of passages of a line 1 m wide per released block: plan length of the paths / (area of the cell x "
+        "released blocks)",
+        Kind::Quantity,
+        bounded_bands("passage density (in plan, at any height)", "1/m"),
+        {{1e-6, 1e-5, 1e-4, 1e-3, 1e-2}, 1.0, "1/m", Palette::Plasma}},
+       "plan length of the paths in the cell / (area of the cell x released blocks)",
+       passage_density,
+       no_passage,
+       Quantity::Energy,
+       "passage density of E > <limit> (in plan, at any height)",
+       true},
       distribution(Quantity::Energy, "translational", energy_legend("P95")),
       distribution(Quantity::Speed, "in space", {{5, 10, 15, 20, 30}, 1.0, "m/s", Palette::Viridis, "P95"}),
       distribution(Quantity::Height, "vertical, terrain to centre; 0 while sliding",
@@ -157,8 +210,8 @@ void push(std::vector<float>& figures, const Bounded& bounded) {
 /// The class; the class at the lower and at the upper bounds; 1 if these two differ: this many trajectories do not
 /// decide the class; 1 if paths leave the map here: it ends before the hazard does.
 void push_classes(const HazardPlace& place, std::vector<float>& figures) {
-  std::vector<Bounded> frequencies{place.curve.passage()};
-  for (const double energy : place.matrix.energies) frequencies.push_back(place.curve.exceedance_of(energy));
+  std::vector<Bounded> frequencies{place.levels[0]};
+  for (const double energy : place.matrix.energies) frequencies.push_back(place.exceedance_of(energy));
   const auto side = [&](double Bounded::*member) {
     std::vector<double> values;
     for (const Bounded& f : frequencies) values.push_back(f.*member);
@@ -176,21 +229,21 @@ std::vector<HazardRaster> make_hazard_rasters() {
   using Figures = std::vector<float>;
   return {
       {{"annual_frequency",
-        "Trajectories that pass the cell in a year",
+        "Mean number of blocks that pass the cell in a year, in plan, at any height",
         Kind::Quantity,
-        bounded_bands("annual frequency", "1/year"),
+        bounded_bands("annual frequency (in plan, at any height)", "1/year"),
         {{1e-4, 1e-3, 1e-2, 1e-1, 1.0}, 1.0, "1/year", Palette::Plasma}},
        "trajectories that pass the cell per year",
-       [](const HazardPlace& place, std::size_t, Figures& figures) { push(figures, place.curve.passage()); }},
+       [](const HazardPlace& place, std::size_t, Figures& figures) { push(figures, place.levels[0]); }},
       {{"return_period_<kJ>",
-        "Years between trajectories that exceed <kJ> kJ in the cell",
+        "Years between blocks of more than <kJ> kJ that pass the cell, in plan, at any height",
         Kind::Quantity,
         bounded_bands("return period of E > <kJ> kJ", "years"),
         {{10, 30, 100, 300, 1000}, 1.0, "years", Palette::PlasmaFromDark},
         true},
        "1 / frequency of exceeding the energy; one file per energy threshold",
        [](const HazardPlace& place, std::size_t i, Figures& figures) {
-         push(figures, return_period(place.curve.exceedance(i)));
+         push(figures, return_period(place.levels[i + 1]));
        },
        "<kJ>",
        [](const HazardRules& rules, const HazardMatrix&) {
@@ -200,12 +253,14 @@ std::vector<HazardRaster> make_hazard_rasters() {
         Kind::Quantity, bounded_bands("energy once in <years> years", "kJ"), energy_legend("")},
        "energy that is exceeded once in so many years",
        [](const HazardPlace& place, std::size_t i, Figures& figures) {
-         push(figures, place.curve.energy_once_in(place.matrix.years[i]));
+         push(figures, place.curve->energy_once_in(place.matrix.years[i]));
        },
        "<years>",
-       [](const HazardRules&, const HazardMatrix& matrix) { return matrix.years; }},
+       [](const HazardRules&, const HazardMatrix& matrix) { return matrix.years; },
+       false,
+       true},
       {{"hazard_class",
-        "Class of hazard by intensity and return period",
+        "Class of hazard of the cell by intensity and return period, in plan, at any height",
         Kind::Count,
         {{"class", "class"},
          {"class at lower bound", "class"},
@@ -223,11 +278,6 @@ std::vector<HazardRaster> make_hazard_rasters() {
   };
 }
 
-std::string replaced(std::string text, const std::string& part, const std::string& by) {
-  const std::size_t at = text.find(part);
-  return at == std::string::npos ? text : text.replace(at, part.size(), by);
-}
-
 Map with_number(Map map, const std::string& placeholder, double value) {
   map.name = replaced(map.name, placeholder, text_of(value));
   map.title = replaced(map.title, placeholder, text_of(value));
@@ -235,11 +285,24 @@ Map with_number(Map map, const std::string& placeholder, double value) {
   return map;
 }
 
+/// The texts of a map for an object of some width.
+Map of_object(Map map, const ObjectWidth& object) {
+  const std::string what = "an object " + text_of(object.width) + " m wide";
+  map.title = with_height(replaced(map.title, "the cell", what), object.below);
+  for (Map::Band& band : map.bands)
+    band.name = with_height(replaced(band.name, " (in plan", " of " + what + " (in plan"), object.below);
+  return map;
+}
+
 }  // namespace
 
 RunCounts counts_of(const Scenario& scenario) {
-  return {scenario.released(), static_cast<double>(scenario.trajectories),
-          thresholds_of(scenario.output.energy_thresholds, scenario.output.height_thresholds)};
+  return {scenario.released(),
+          static_cast<double>(scenario.trajectories),
+          thresholds_of(scenario.output.energy_thresholds, scenario.output.height_thresholds),
+          scenario.surface.grid().cell_x,
+          scenario.surface.grid().cell_y,
+          scenario.output.passages_below};
 }
 
 const std::vector<RunRaster>& run_rasters() {
@@ -248,11 +311,15 @@ const std::vector<RunRaster>& run_rasters() {
 }
 
 std::vector<Map::Band> bands_of(const RunRaster& raster, const RunCounts& run) {
-  if (!raster.thresholds_of) return raster.map.bands;
-  const std::string unit(kQuantityTable[index_of(*raster.thresholds_of)].unit);
-  std::vector<Map::Band> bands;
-  for (const double threshold : run.thresholds[*raster.thresholds_of])
-    bands.push_back({"P(" + raster.threshold_symbol + " > " + text_of(threshold) + " " + unit + ")", "1"});
+  std::vector<Map::Band> bands = raster.map.bands;
+  if (raster.thresholds_of) {
+    const std::string unit(kQuantityTable[index_of(*raster.thresholds_of)].unit);
+    const std::string band_unit = bands.empty() ? "1" : bands.front().unit;
+    for (const double threshold : run.thresholds[*raster.thresholds_of])
+      bands.push_back({replaced(raster.threshold_band, "<limit>", text_of(threshold) + " " + unit), band_unit});
+  }
+  if (raster.counts_lengths)
+    for (Map::Band& band : bands) band.name = with_height(band.name, run.passages_below);
   return bands;
 }
 
@@ -261,9 +328,18 @@ const std::vector<HazardRaster>& hazard_rasters() {
   return all;
 }
 
-std::vector<HazardMap> hazard_maps_of(const HazardRules& rules, const HazardMatrix& matrix) {
+Bounded HazardPlace::exceedance_of(double energy) const {
+  if (curve != nullptr) return curve->exceedance_of(energy);
+  const auto& thresholds = rules.bins.thresholds();
+  const auto known = std::ranges::find(thresholds, energy);
+  TALUS_EXPECT(known != thresholds.end(), "without a curve the limits of the matrix are thresholds");
+  return levels[static_cast<std::size_t>(known - thresholds.begin()) + 1];
+}
+
+std::vector<HazardMap> hazard_maps_of(const HazardRules& rules, const HazardMatrix& matrix, const ObjectWidth& object) {
   std::vector<HazardMap> maps;
   for (const HazardRaster& raster : hazard_rasters()) {
+    if (raster.needs_curve && object.width > 0.0) continue;
     if (raster.placeholder.empty()) {
       maps.push_back({&raster, 0, raster.map});
       if (raster.has_classes) maps.back().map.classes = matrix.names;
@@ -273,6 +349,8 @@ std::vector<HazardMap> hazard_maps_of(const HazardRules& rules, const HazardMatr
     for (std::size_t i = 0; i < numbers.size(); ++i)
       maps.push_back({&raster, i, with_number(raster.map, raster.placeholder, numbers[i])});
   }
+  if (object.width > 0.0)
+    for (HazardMap& map : maps) map.map = of_object(std::move(map.map), object);
   return maps;
 }
 

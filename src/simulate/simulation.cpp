@@ -100,7 +100,7 @@ class Simulation::Advance {
     mine.barriers = BarrierTally(scenario_.barriers);
     const double start = thread_cpu_seconds();
     try {
-      VisitBatch batch(scenario_.surface.grid());
+      VisitBatch batch(scenario_.surface.grid(), length_rules(scenario_.output));
       Path path;
       while (!failed_) {
         const std::optional<WorkUnits::Taken> taken = units_.next();  // always completed: a pause leaves none out
@@ -160,7 +160,7 @@ class Simulation::Advance {
         batch.set_stake({weight, round * run_.units_ + unit, count});
         totals.left_weight += path.end == End::Left ? weight : 0;
       }
-      batch.add(path, release.body.mass, source, reach);
+      batch.add(path, release.body, source, reach);
       add(totals, release, path);
       if (run_.sinks_.walked) run_.sinks_.walked(release, path);
       if (run_.sinks_.stops) rows.stops.push_back(stop_row(release, path));
@@ -169,7 +169,7 @@ class Simulation::Advance {
         rows.paths.push_back({stop_row(release, path), points_of(path, spacing())});
       if (!path.pieces.empty())
         trace_pieces(world, path, [&](const Release& piece, const Path& way) {
-          batch.add(way, piece.body.mass, source, reach, true);
+          batch.add(way, piece.body, source, reach, true);
           totals.pieces += 1;
           add_way(totals, way);
           if (run_.sinks_.crossings) run_.screens_.find(piece, way, rows.crossings);

@@ -6,7 +6,7 @@ import os
 import unittest
 
 import numpy as np
-from osgeo import ogr
+from osgeo import gdal, ogr
 
 from support import Case, bands_of, box, heights, rows_of, write_dem, write_features
 
@@ -180,6 +180,56 @@ class Hazard(Case):
                       "--threads", "1")
         again = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
         self.assertEqual(rows, again)
+
+    def titles(self, name):
+        """Title of a raster, and names of its bands."""
+        file = gdal.Open(self.path(name))
+        return [file.GetMetadataItem("TITLE")] + [file.GetRasterBand(b + 1).GetDescription() for b in range(file.RasterCount)]
+
+    def test_an_object_of_some_width(self):
+        self.simulate()
+        done = self.run_well("hazard", self.path("out"))
+        self.assertIn("hazard of a cell, 5 x 5 m", done.stderr)
+        self.assertIn("(in plan, at any height)", self.titles("out/annual_frequency.tif")[1])
+        sums = {}
+        for width in (4, 20):
+            done = self.run_well("hazard", self.path("out"), "--overwrite", "--width", str(width))
+            self.assertIn(f"an object {width} m wide", done.stderr)
+            for name in ("annual_frequency", "return_period_30", "hazard_class"):
+                self.assertIn(f"an object {width} m wide", self.titles(f"out/{name}.tif")[0])
+            self.assertFalse(os.path.exists(self.path("out/intensity_T30.tif")), "needs the whole curve")
+            value, lower, upper = bands_of(self.path("out/annual_frequency.tif"))
+            self.assertTrue(((lower <= value) & (value <= upper)).all())
+            sums[width] = value.sum()
+            with open(self.path("out/hazard.json"), encoding="utf-8") as file:
+                self.assertEqual(json.load(file)["object"], {"width_m": width, "passages_below_m": 0})
+        # Over all places an object of W is hit (W + D) times the length of all paths: D is 0.8 m. Rows at the edge lose a little.
+        self.assertAlmostEqual(sums[20] / sums[4], 20.8 / 4.8, delta=0.05)
+        self.run_well("hazard", self.path("out"), "--overwrite", "--width", "20", "-q", "--threads", "1")
+        self.assertTrue((bands_of(self.path("out/annual_frequency.tif"))[0] == value).all())
+
+    def test_width_refusals(self):
+        self.simulate()
+        for width in ("0", "-3", "wide", "2000", "nan"):
+            done = self.call("hazard", self.path("out"), "--width", width)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("must be above 0 and at most 1000 m", done.stderr)
+        matrix = self.write("m.toml", 'energies = [100]\nyears = [50]\nclasses = [[1, 0], [2, 1]]\n')
+        self.refused("must be one of the run's energy_thresholds", "hazard", self.path("out"), "--width", "10", "--matrix", matrix)
+
+    def test_only_passages_below_a_height(self):
+        """Over 0.5 m less is counted than over 1 km, which is as at any height."""
+        sums = {}
+        for below in (0, 0.5, 1000):
+            self.write("s.toml", RUN + f"[output]\npassages_below = {below}\n")
+            self.simulate(f"out{below}")
+            sums[below] = bands_of(self.path(f"out{below}/passage_density.tif"))
+        self.assertTrue((sums[0] == sums[1000]).all())
+        self.assertLess(sums[0.5][0].sum(), 0.9 * sums[0][0].sum())
+        self.assertTrue((sums[0.5] <= sums[0] * (1 + 1e-6) + 1e-12)[0].all())
+        self.assertIn("lower than 0.5 m above the terrain", self.titles("out0.5/passage_density.tif")[1])
+        self.run_well("hazard", self.path("out0.5"), "--width", "10", "-q")
+        self.assertIn("lower than 0.5 m above the terrain", self.titles("out0.5/annual_frequency.tif")[0])
 
     def test_objects_need_the_same_inputs(self):
         write_features(self.path("houses.gpkg"), "houses", [(box(105, 150, 10, 8), ["A"])], [("name", ogr.OFTString)])

@@ -29,7 +29,7 @@ class Results(Case):
     def test_equal_bytes_for_any_number_of_threads_and_from_its_own_scenario(self):
         self.run_well(*self.arguments("one"), "--threads", "1")
         first, record = digests(self.path("one")), self.record("one")
-        self.assertEqual(len([name for name in first if name.endswith(".tif")]), 13)
+        self.assertEqual(len([name for name in first if name.endswith(".tif")]), 14)
         for key in CHANGING:
             record.pop(key)
         for threads in ("2", "7"):
@@ -70,6 +70,11 @@ class Results(Case):
         np.testing.assert_allclose(probability[0], passages / 400, rtol=1e-6)
         self.assertTrue(((probability[1] <= probability[0]) & (probability[0] <= probability[2])).all())
         self.assertEqual(bands_of(self.path("out/sources.tif")).max(), 8)
+        density = bands_of(self.path("out/passage_density.tif")).astype(float)
+        np.testing.assert_allclose(density[0].sum() * 25 * 400, record["trajectory_metres_plan"], rtol=1e-4)
+        self.assertTrue(((density[1] <= density[0]) & (density[0] <= density[2])).all())
+        self.assertTrue(((density[4] <= density[3]) & (density[3] <= density[0] * (1 + 1e-6))).all(), "30 and 300 kJ")
+        self.assertTrue(((density[0] > 0) == (passages > 0)).all())
 
     def test_stops_lie_where_the_deposits_are(self):
         self.run_well(*self.arguments())

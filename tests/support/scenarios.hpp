@@ -84,6 +84,10 @@ inline void expect_same_records(const Tally& a, const Tally& b) {
       ASSERT_EQ(left->exits, right->exits) << column << ' ' << row;
       ASSERT_EQ(left->sources, right->sources) << column << ' ' << row;
       ASSERT_EQ(left->sum, right->sum) << column << ' ' << row;
+      ASSERT_EQ(left->length, right->length) << column << ' ' << row;
+      ASSERT_EQ(left->length_squares, right->length_squares) << column << ' ' << row;
+      for (std::size_t i = 0; i < a.thresholds()[Quantity::Energy].size(); ++i)
+        ASSERT_EQ(a.lengths_above(column, row)[i], b.lengths_above(column, row)[i]) << column << ' ' << row;
       ASSERT_EQ(left->maximum, right->maximum) << column << ' ' << row;
       for (std::size_t q = 0; q < kQuantities; ++q)
         for (const double share : {0.0, 0.1, 0.5, 0.9, 0.95, 0.99, 1.0})

@@ -52,7 +52,7 @@ Sample trace_sample(const Scenario& scenario) {
   talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
   const auto weights = talus::AnnualWeights::of(scenario);
   if (weights) tally.keep_hazard(*weights);
-  talus::VisitBatch batch(scenario.surface.grid());
+  talus::VisitBatch batch(scenario.surface.grid(), talus::length_rules(scenario.output));
   const talus::ScreenFinder screens(scenario);
   std::vector<talus::Crossing> crossings;
   talus::Path path;
@@ -67,9 +67,9 @@ Sample trace_sample(const Scenario& scenario) {
                             static_cast<std::uint32_t>(release_number % scenario.trajectories));
     talus::trace(world, release, path);
     if (weights) batch.set_stake({weights->weight(scenario, release.source, release.block), sample.traced, 1});
-    batch.add(path, release.body.mass, release.source, nullptr);
+    batch.add(path, release.body, release.source, nullptr);
     talus::trace_pieces(world, path, [&](const talus::Release& piece, const talus::Path& way) {
-      batch.add(way, piece.body.mass, release.source, nullptr, true);
+      batch.add(way, piece.body, release.source, nullptr, true);
     });
     if (batch.full()) tally.add(batch), batch.clear();
     ++sample.traced;

@@ -17,7 +17,7 @@ using talus::Scenario;
 // Measured on the valley and on the region of docs/performance.md.
 constexpr double kBase = 64e6;             // of the process [byte]
 constexpr double kHistogram = 40.0;        // of a quantity of a touched cell [byte]
-constexpr double kHazardCell = 640.0;      // annual frequencies of a touched cell [byte]: 32 bins and their container
+constexpr double kHazardCell = 760.0;      // annual frequencies of a touched cell [byte]: 32 bins, lengths, containers
 constexpr double kRasterCell = 3.4;        // of a touched cell in a band of a compressed raster [byte]
 constexpr double kHazardFile = 77.0;       // of a touched cell [byte]
 constexpr double kStop = 172.0;            // a row of stops.gpkg [byte]
@@ -47,6 +47,7 @@ double bands(const Scenario& scenario) {
 
 double bytes_in_memory(const Scenario& scenario, const RunSize& size) {
   const double cell = sizeof(talus::CellRecord) + talus::kQuantities * kHistogram + 16.0 + 4.0 * thresholds(scenario) +
+                      8.0 * static_cast<double>(scenario.output.energy_thresholds.size()) +
                       (size.with_hazard ? kHazardCell : 0.0);
   return kBase + size.touched_cells * cell;
 }

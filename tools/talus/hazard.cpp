@@ -25,6 +25,7 @@ namespace {
 
 struct Options {
   std::string folder, matrix, objects, frequency;
+  double width = 0.0;  // of the object [m]; 0: the cell
   int threads = 0;
   std::string progress;
   bool overwrite = false, quiet = false;
@@ -42,6 +43,15 @@ fs::path tally_file(const fs::path& folder) {
                              : ": is no folder of results (it has no run.json); give the OUT of talus run"));
 }
 
+/// What an object of some width needs: class limits that are thresholds of the run.
+void check_width(const talus::io::HazardHeader& header, const talus::HazardMatrix& matrix) {
+  for (const double energy : matrix.energies)
+    if (std::ranges::count(header.rules.bins.thresholds(), energy) == 0)
+      throw talus::InputError("--width: the matrix has a class limit of " + talus::text_of(energy) +
+                              " kJ, must be one of the run's energy_thresholds; add it to [output] "
+                              "energy_thresholds and run again, or leave out --width");
+}
+
 /// Reads the hazard file of the run and evaluates every cell.
 std::unique_ptr<talus::HazardSurvey> survey_of(const fs::path& file, int threads, Progress& progress,
                                                talus::io::HazardRecord& record) {
@@ -49,7 +59,9 @@ std::unique_ptr<talus::HazardSurvey> survey_of(const fs::path& file, int threads
   record.header = talus::io::read_hazard(
       file,
       [&](const talus::io::HazardHeader& h) {
-        survey = std::make_unique<talus::HazardSurvey>(h.grid, h.rules, record.matrix);
+        if (record.width > 0.0) check_width(h, record.matrix);
+        survey = std::make_unique<talus::HazardSurvey>(h.grid, h.rules, record.matrix,
+                                                       talus::ObjectWidth{record.width, h.passages_below});
       },
       [&](const talus::io::HazardRow& row) {
         if (interrupted()) stop_interrupted();
@@ -57,6 +69,7 @@ std::unique_ptr<talus::HazardSurvey> survey_of(const fs::path& file, int threads
         const int rows = survey->grid().rows;
         progress.update(static_cast<double>(rows - row.row) / rows);
       });
+  survey->finish(threads);
   return survey;
 }
 
@@ -90,6 +103,7 @@ std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, c
                                                        talus::io::HazardRecord& record) {
   record.header = talus::io::read_hazard(
       file, [](const talus::io::HazardHeader&) {}, [](const talus::io::HazardRow&) {});
+  if (record.width > 0.0) check_width(record.header, record.matrix);
   const talus::io::LoadedScenario loaded = recorded_plan(options, record.header.plan);
   const talus::Scenario& scenario = loaded.scenario;
   auto weights = talus::AnnualWeights::of(scenario);
@@ -108,7 +122,8 @@ std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, c
   record.header.left_weight = totals.left_weight;
   record.frequency_file = options.frequency;
   record.replayed = true;
-  auto survey = std::make_unique<talus::HazardSurvey>(record.header.grid, record.header.rules, record.matrix);
+  auto survey = std::make_unique<talus::HazardSurvey>(record.header.grid, record.header.rules, record.matrix,
+                                                      talus::ObjectWidth{record.width, record.header.passages_below});
   const talus::Grid& grid = scenario.surface.grid();
   for (int row = 0; row < grid.rows; ++row) {
     std::vector<bool> terrain;
@@ -120,6 +135,7 @@ std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, c
     }
     survey->set_row(row, std::move(terrain), touched, options.threads);
   }
+  survey->finish(options.threads);
   return survey;
 }
 
@@ -146,12 +162,22 @@ void write_objects(const Options& options, const fs::path& folder, talus::io::Ha
   record.replayed = true;
 }
 
+/// Says whose hazard the maps show.
+std::string object_text(const talus::io::HazardRecord& record) {
+  if (record.width > 0.0)
+    return "hazard of an object " + talus::text_of(record.width) + " m wide (and the diameter of the block)";
+  const talus::Grid& grid = record.header.grid;
+  return "hazard of a cell, " + talus::text_of(grid.cell_x) + " x " + talus::text_of(grid.cell_y) +
+         " m (larger cells are hit more often; --width 10 for an object 10 m wide, whatever the cell)";
+}
+
 int hazard(const Options& options) {
   catch_signals();
   const fs::path folder(options.folder), file = tally_file(folder);
   talus::io::HazardRecord record;
   record.command = command_line();
   record.matrix_file = options.matrix;
+  record.width = options.width;
   for (const std::string& input : {options.objects, options.frequency})
     if (!input.empty() && input.find(':') == std::string::npos && !fs::exists(input))  // PG:... is no file
       throw talus::InputError(input + ": there is no such file");
@@ -161,7 +187,7 @@ int hazard(const Options& options) {
   const auto survey = options.frequency.empty() ? survey_of(file, options.threads, progress, record)
                                                 : reweighted_survey(options, file, progress, record);
   record.cells = survey->cells();
-  record.warnings = warnings_of(record.matrix, record.header.rules);
+  if (record.width == 0.0) record.warnings = warnings_of(record.matrix, record.header.rules);
   for (const std::string& warning : warnings_of(record.header)) record.warnings.push_back(warning);
 
   progress.stage("writing the maps");
@@ -177,7 +203,7 @@ int hazard(const Options& options) {
   staged.commit();
   if (options.quiet) return 0;
   for (const std::string& warning : record.warnings) say("warning", warning);
-  say("", count_text(record.cells) + " cells that something passes, " +
+  say("", object_text(record) + ": " + count_text(record.cells) + " cells that something passes, " +
               talus::with_digits(record.header.rules.scale.total, 4) + " events per year; results are in " +
               fs::absolute(folder).lexically_normal().string());
   return 0;
@@ -196,6 +222,17 @@ void add_hazard(CLI::App& app, Action& action) {
                       "polygons or lines: how often each is hit, and from where; repeats the run");
   command->add_option("--frequency", options->frequency,
                       "another weighting (TOML: [frequency], [features]); repeats the run");
+  command
+      ->add_option(
+          "--width", options->width,
+          "m, of the object: frequency and class of an object of this width (and the diameter of the block) at "
+          "each place; else of the cell")
+      ->check([](const std::string& text) -> std::string {
+        char* end = nullptr;
+        const double value = std::strtod(text.c_str(), &end);
+        if (end != text.c_str() && *end == 0 && value > 0.0 && value <= 1000.0) return {};
+        return text + ": must be above 0 and at most 1000 m (width of the object; leave it out for the cell)";
+      });
   command->add_flag("--overwrite", options->overwrite, "replace the hazard maps that are there");
   command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
       ->check(CLI::Range(1, 4096));

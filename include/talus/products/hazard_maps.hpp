@@ -6,14 +6,18 @@
 #include "talus/products/hazard.hpp"
 #include "talus/products/hazard_matrix.hpp"
 #include "talus/products/maps.hpp"
+#include "talus/products/object_width.hpp"
 #include "talus/products/raster_table.hpp"
 
 namespace talus {
 
 /// The values (figures) of all hazard maps: some tens of numbers for each touched cell.
+///
+/// Either the object is the cell; or it has a width: then the passages of a disc of this diameter around the centre of
+/// each cell count, and `finish` must be called after the last row.
 class HazardSurvey {
  public:
-  HazardSurvey(const Grid& grid, HazardRules rules, HazardMatrix matrix);
+  HazardSurvey(const Grid& grid, HazardRules rules, HazardMatrix matrix, const ObjectWidth& object = {});
 
   /// Evaluates the cells of a row in parallel.
   ///
@@ -22,10 +26,14 @@ class HazardSurvey {
   /// @param threads  0: as many as the machine has
   void set_row(int row, std::vector<bool> terrain, std::span<const HazardAt> cells, int threads = 0);
 
+  /// Evaluates the places of an object of some width; nothing else. @param threads  0: as many as the machine has
+  void finish(int threads = 0);
+
   const Grid& grid() const { return grid_; }
+  const ObjectWidth& object() const { return object_; }
   const HazardRules& rules() const { return rules_; }
   const HazardMatrix& matrix() const { return matrix_; }
-  std::uint64_t cells() const;  ///< number of touched cells
+  std::uint64_t cells() const;  ///< number of touched cells, or of places where an object is hit
 
   /// Fills figures `first` to `first + count - 1` of each cell of a row: NaN without terrain; untouched cells have the
   /// figures of no passage.
@@ -36,12 +44,19 @@ class HazardSurvey {
     std::vector<bool> terrain;
     std::vector<int> columns;
     std::vector<float> figures;
+    std::vector<PassageDensity> densities;  // by cell and level, until `finish`
+    std::vector<bool> exits;                // by cell, until `finish`: paths leave the terrain from here
   };
   std::vector<float> figures_of(const HazardAt& at) const;  // the same number for every cell
+  std::vector<float> figures_of(std::span<const PassageDensity> levels, bool exit) const;
+  std::vector<float> figures_of(const HazardPlace& place) const;
+  Row averaged(int row, std::span<const DiscCell> disc) const;
 
   Grid grid_;
   HazardRules rules_;
   HazardMatrix matrix_;
+  ObjectWidth object_;
+  double seen_;                  // width of the place over which densities are averaged [m]
   std::vector<HazardMap> maps_;  // in the order of the figures of a cell
   std::vector<Row> rows_;
   std::vector<float> nothing_;  // figures of a cell that nothing passes

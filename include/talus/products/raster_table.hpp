@@ -7,6 +7,7 @@
 #include "talus/products/hazard.hpp"
 #include "talus/products/hazard_matrix.hpp"
 #include "talus/products/maps.hpp"
+#include "talus/products/object_width.hpp"
 
 /// The table of all rasters, one entry each. Values, files, legends, estimates of their size and the check of the docs
 /// follow from it. How to add a raster: docs/adding-a-raster.md.
@@ -17,13 +18,16 @@ struct RunCounts {
   std::uint64_t released;
   double per_source;  ///< trajectories per source cell
   Thresholds thresholds;
+  double cell_x = 1.0, cell_y = 1.0;  ///< size of a cell [m]
+  double passages_below = 0.0;        ///< only lower passages count in passage densities [m]; 0: at any height
 };
 RunCounts counts_of(const Scenario& scenario);
 
 /// A cell that a trajectory crosses.
 struct TouchedCell {
   const CellRecord& record;
-  const std::uint32_t* exceedances;  ///< number for each threshold, quantity by quantity
+  const std::uint32_t* exceedances;     ///< number for each threshold, quantity by quantity
+  const std::int64_t* lengths_above{};  ///< plan length above each energy threshold [CellRecord::kLengthUnit]
 };
 
 /// Writes one number per band.
@@ -31,15 +35,16 @@ using CellRule = std::function<void(const TouchedCell& cell, std::span<double> v
 
 /// A raster of a run.
 struct RunRaster {
-  Map map;              ///< without values, and without the bands of thresholds
+  Map map;              ///< without values; bands of thresholds come after its bands
   std::string meaning;  ///< of a value, in the words of docs/products.md
   /// Makes the rule for touched cells.
   std::function<CellRule(const RunCounts& run)> rule;
   /// Value of each band where nothing crosses. If empty: 0 for a probability or a count, nodata for a quantity.
   std::function<std::vector<double>(const RunCounts& run)> untouched{};
-  /// The raster has a band for each threshold of this quantity; without thresholds it is not written.
+  /// The raster has a band for each threshold of this quantity; without any band it is not written.
   std::optional<Quantity> thresholds_of{};
-  std::string threshold_symbol{};  ///< of the quantity in the names of these bands: "E"
+  std::string threshold_band{};  ///< name of these bands; <limit> stands for the threshold: "P(E > <limit>)"
+  bool counts_lengths = false;   ///< only passages below `RunCounts::passages_below` count
 };
 
 const std::vector<RunRaster>& run_rasters();
@@ -49,9 +54,14 @@ std::vector<Map::Band> bands_of(const RunRaster& raster, const RunCounts& run);
 
 /// A place and the matrix: the input of its figures.
 struct HazardPlace {
-  const HazardCurve& curve;
+  const HazardRules& rules;
   const HazardMatrix& matrix;
-  bool exit;  ///< paths leave the terrain from here
+  bool exit = false;                   ///< paths leave the terrain from here
+  std::vector<Bounded> levels;         ///< how often: passage, then each energy threshold [1/year]
+  const HazardCurve* curve = nullptr;  ///< over all energies; null for an object of some width
+
+  /// Frequency of exceeding an energy [kJ]; without a curve, of a threshold.
+  Bounded exceedance_of(double energy) const;
 };
 
 /// A raster of `talus hazard`. If it has `numbers`, one raster is written for each; the number replaces `placeholder`
@@ -64,6 +74,7 @@ struct HazardRaster {
   std::string placeholder{};  ///< "<kJ>", "<years>"; empty: a single raster
   std::function<std::vector<double>(const HazardRules& rules, const HazardMatrix& matrix)> numbers{};
   bool has_classes = false;  ///< values are classes of the matrix
+  bool needs_curve = false;  ///< there is none for an object of some width
 };
 
 const std::vector<HazardRaster>& hazard_rasters();
@@ -76,6 +87,7 @@ struct HazardMap {
 };
 
 /// The maps of all rasters and numbers, in the order in which they are written.
-std::vector<HazardMap> hazard_maps_of(const HazardRules& rules, const HazardMatrix& matrix);
+std::vector<HazardMap> hazard_maps_of(const HazardRules& rules, const HazardMatrix& matrix,
+                                      const ObjectWidth& object = {});
 
 }  // namespace talus

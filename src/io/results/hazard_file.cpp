@@ -41,21 +41,30 @@ Json json_of(const LoadedScenario& loaded, const HazardRules& rules, std::int64_
           {"largest", scale.largest},
           {"trajectories", scale.trajectories},
           {"equal", scale.equal},
-          {"left", left_weight}};
+          {"left", left_weight},
+          {"largest_diameter", scale.largest_diameter},
+          {"passages_below", loaded.scenario.output.passages_below}};
 }
 
 HazardHeader header_of(const std::string& text) {
   const Json json = Json::parse(text);
-  HazardHeader header{json.at("version"), json.at("plan"), {}, {}, {EnergyBins(json.at("energy_thresholds")), {}},
-                      json.at("left")};
+  HazardHeader header{
+      json.at("version"), json.at("plan"),          {}, {}, {EnergyBins(json.at("energy_thresholds")), {}},
+      json.at("left"),    json.at("passages_below")};
   Grid& grid = header.grid;
   grid.columns = json.at("columns");
   grid.rows = json.at("rows");
   grid.cell_x = json.at("cell_x");
   grid.cell_y = json.at("cell_y");
   header.geo = {json.at("crs_wkt"), json.at("west"), json.at("north"), grid.cell_x, grid.cell_y};
-  header.rules.scale = {json.at("unit"),    json.at("square_unit"),  json.at("total"),
-                        json.at("largest"), json.at("trajectories"), json.at("equal")};
+  header.rules.scale = {json.at("unit"),
+                        json.at("square_unit"),
+                        json.at("total"),
+                        json.at("largest"),
+                        json.at("trajectories"),
+                        json.at("equal"),
+                        0.0};
+  header.rules.scale.largest_diameter = json.at("largest_diameter");
   if (grid.columns < 1 || grid.rows < 1 || !(header.rules.scale.unit > 0.0)) throw std::out_of_range("a number");
   return header;
 }
@@ -66,6 +75,9 @@ void put_cell(HazardWriter& out, const HazardCell& cell) {
   for (const HazardCell::Bin& bin : cell.bins()) out.put(bin.weight), out.put(bin.square);
   out.put(static_cast<std::uint32_t>(cell.overlaps().size()));
   for (const std::int64_t overlap : cell.overlaps()) out.put(overlap);
+  out.put(static_cast<std::uint32_t>(cell.lengths().size()));
+  for (const WeightedLengths& sums : cell.lengths())
+    out.put(sums.length), out.put(sums.by_diameter), out.put(sums.squares);
 }
 
 HazardCell get_cell(HazardReader& in, const HazardRules& rules) {
@@ -75,7 +87,9 @@ HazardCell get_cell(HazardReader& in, const HazardRules& rules) {
   for (HazardCell::Bin& bin : bins) bin = {in.get<std::int64_t>(), in.get<std::int64_t>()};
   std::vector<std::int64_t> overlaps(in.get_count(rules.levels()));
   for (std::int64_t& overlap : overlaps) overlap = in.get<std::int64_t>();
-  return HazardCell::restored(first, bins, overlaps);
+  std::vector<WeightedLengths> lengths(in.get_count(rules.levels()));
+  for (WeightedLengths& sums : lengths) sums = {in.get<std::int64_t>(), in.get<std::int64_t>(), in.get<std::int64_t>()};
+  return HazardCell::restored(first, bins, overlaps, lengths);
 }
 
 /// Reads the mark, the format, the length of the header, and the header.

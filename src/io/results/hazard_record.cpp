@@ -81,6 +81,10 @@ std::string hazard_json(const HazardRecord& record) {
   json["energy_thresholds_kj"] = record.header.rules.bins.thresholds();
   json["matrix"] = json_of(record.matrix);
   json["matrix_file"] = record.matrix_file.empty() ? Json("default") : Json(record.matrix_file);
+  if (record.width > 0.0)
+    json["object"] = {{"width_m", record.width}, {"passages_below_m", record.header.passages_below}};
+  else
+    json["object"] = "cell";
   json["cells"] = record.cells;
   if (!record.objects_file.empty()) json["objects"] = {{"file", record.objects_file}, {"replayed", record.replayed}};
   if (!record.frequency_file.empty()) json["frequency"] = {{"file", record.frequency_file}, {"replayed", true}};

@@ -230,6 +230,10 @@ class SpecReader {
     scalar(table, "trajectories");
     thresholds(table, "energy_thresholds", spec_.values.output.energy_thresholds);
     thresholds(table, "height_thresholds", spec_.values.output.height_thresholds);
+    if (const auto value = table.number("passages_below", bounds_of("output.passages_below"))) {
+      spec_.values.output.passages_below = *value;
+      given("output.passages_below");
+    }
     table.finish();
   }
 

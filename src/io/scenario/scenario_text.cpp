@@ -91,6 +91,7 @@ class Lines {
     } else {
       add("output", "energy_thresholds", list_text(spec.values.output.energy_thresholds), "kJ");
       add("output", "height_thresholds", list_text(spec.values.output.height_thresholds), "m");
+      add("output", "passages_below", text_of(spec.values.output.passages_below), "m");
     }
     file("screens", "file", spec.screens);
     file("barriers", "file", spec.barriers);

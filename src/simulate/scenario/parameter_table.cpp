@@ -101,7 +101,7 @@ constexpr std::array<Field<Scenario>, 10> kScenario{{
      [](Scenario& s, double v) { s.output.paths = static_cast<std::uint32_t>(v); }},
 }};
 
-constexpr std::array<Bounds, 18> kLists{{
+constexpr std::array<Bounds, 19> kLists{{
     {"blocks.diameter", "m", "diameter of the sphere of equal volume", 0.01, 50.0},
     {"blocks.weight", "1", "share of a class of blocks, relative to the others", 0.0, 1e9, kAbove},
     {"blocks.frequency", "1/year", "events per year of a class of blocks", 0.0, 1e6},
@@ -114,6 +114,7 @@ constexpr std::array<Bounds, 18> kLists{{
     {"sources.velocity", "m/s", "component of the velocity at the release", -200.0, 200.0},
     {"output.energy_thresholds", "kJ", "translational kinetic energy", 0.01, 1e9},
     {"output.height_thresholds", "m", "vertical height above the terrain", 0.0, 1e4, kAbove},
+    {"output.passages_below", "m", "clearance below which a passage counts in passage densities; 0: any", 0.0, 1e4},
     {"barriers.height", "m", "of the top of a barrier above the ground", 0.0, 100.0},
     {"barriers.capacity", "kJ", "translational energy that a barrier takes", 0.0,
      std::numeric_limits<double>::infinity()},

@@ -47,6 +47,8 @@ PerQuantity<float> CellRecord::add(const CellValues& values) {
 
 void CellRecord::merge(const CellRecord& other) {
   impacts += other.impacts;
+  length += other.length;
+  length_squares += other.length_squares;
   passages += other.passages;
   sources += other.sources;
   deposits += other.deposits;
@@ -64,6 +66,8 @@ void CellRecord::merge(const CellRecord& other) {
 
 void CellRecord::save(ByteWriter& out) const {
   out.put(impacts);
+  out.put(length);
+  out.put(length_squares);
   for (const std::uint32_t count : {passages, sources, deposits, trapped, exits}) out.put(count);
   out.put(maximum);
   out.put(sum);
@@ -73,6 +77,8 @@ void CellRecord::save(ByteWriter& out) const {
 CellRecord CellRecord::restored(ByteReader& in) {
   CellRecord record;
   record.impacts = in.get<std::uint64_t>();
+  record.length = in.get<std::int64_t>();
+  record.length_squares = in.get<std::int64_t>();
   for (std::uint32_t* count : {&record.passages, &record.sources, &record.deposits, &record.trapped, &record.exits})
     *count = in.get<std::uint32_t>();
   record.maximum = in.get<PerQuantity<float>>();

@@ -13,6 +13,10 @@ double squares_per_unit(const WeightScale& scale) {
   return scale.unit * (scale.unit / scale.square_unit);
 }
 
+std::int64_t rounded(double value) {
+  return static_cast<std::int64_t>(value + 0.5);
+}
+
 }  // namespace
 
 void StratumSums::add(const Stake& stake, float energy, ScratchVector<std::int64_t>& overlaps) {
@@ -82,6 +86,21 @@ void HazardCell::add(const HazardRules& rules, std::span<const float> energies, 
   stratum.finish(overlaps_);
 }
 
+void HazardCell::add_lengths(const HazardRules& rules, std::span<const float> lengths, const Stake& stake,
+                             double diameter) {
+  if (stake.weight == 0) return;
+  if (lengths_.empty()) lengths_.resize(rules.levels());
+  const auto weight = static_cast<double>(stake.weight);
+  const double square = weight * weight * squares_per_unit(rules.scale);
+  for (std::size_t level = 0; level < lengths.size() && lengths[level] > 0.0F; ++level) {
+    const double length = lengths[level];
+    WeightedLengths& sums = lengths_[level];
+    sums.length += rounded(weight * length / WeightedLengths::kLengthUnit);
+    sums.by_diameter += rounded(weight * length * diameter / WeightedLengths::kDiameterUnit);
+    sums.squares += rounded(square * length / WeightedLengths::kLengthUnit);
+  }
+}
+
 void HazardCell::merge(const HazardCell& other) {
   if (other.bins_.empty()) return;
   cover(other.first_, other.first_ + static_cast<int>(other.bins_.size()) - 1);
@@ -92,13 +111,21 @@ void HazardCell::merge(const HazardCell& other) {
   }
   overlaps_.resize(std::max(overlaps_.size(), other.overlaps_.size()));
   for (std::size_t i = 0; i < other.overlaps_.size(); ++i) overlaps_[i] += other.overlaps_[i];
+  lengths_.resize(std::max(lengths_.size(), other.lengths_.size()));
+  for (std::size_t i = 0; i < other.lengths_.size(); ++i) {
+    lengths_[i].length += other.lengths_[i].length;
+    lengths_[i].by_diameter += other.lengths_[i].by_diameter;
+    lengths_[i].squares += other.lengths_[i].squares;
+  }
 }
 
-HazardCell HazardCell::restored(int first, const std::vector<Bin>& bins, const std::vector<std::int64_t>& overlaps) {
+HazardCell HazardCell::restored(int first, const std::vector<Bin>& bins, const std::vector<std::int64_t>& overlaps,
+                                const std::vector<WeightedLengths>& lengths) {
   HazardCell cell;
   cell.first_ = first;
   cell.bins_.assign(bins.begin(), bins.end());
   cell.overlaps_.assign(overlaps.begin(), overlaps.end());
+  cell.lengths_.assign(lengths.begin(), lengths.end());
   return cell;
 }
 
@@ -106,16 +133,18 @@ void HazardCell::save(ByteWriter& out) const {
   out.put(first_);
   out.put_all(std::span<const Bin>(bins_));
   out.put_all(std::span<const std::int64_t>(overlaps_));
+  out.put_all(std::span<const WeightedLengths>(lengths_));
 }
 
 HazardCell HazardCell::restored(ByteReader& in) {
   const auto first = in.get<int>();
   const auto bins = in.get_all<Bin>();
-  return restored(first, bins, in.get_all<std::int64_t>());
+  const auto overlaps = in.get_all<std::int64_t>();
+  return restored(first, bins, overlaps, in.get_all<WeightedLengths>());
 }
 
 bool HazardCell::operator==(const HazardCell& other) const {
-  return first_ == other.first_ && bins_ == other.bins_ && overlaps_ == other.overlaps_;
+  return first_ == other.first_ && bins_ == other.bins_ && overlaps_ == other.overlaps_ && lengths_ == other.lengths_;
 }
 
 }  // namespace talus

@@ -16,15 +16,19 @@ inline Moment moment_of(const Span& span, float share) {
           span.rise_from + (span.rise_to - span.rise_from) * share};
 }
 
-/// Raises maxima to those of a part of a span. The speed is largest at an end. The height is largest at an end, or at
-/// the apex if it rises from the first end and falls to the second.
-inline void raise(Maxima& maxima, const Span& span, const Moment& from, const Moment& to) {
-  const float rise_squared = std::max(from.rise * from.rise, to.rise * to.rise);
+/// The largest clearance on a part of a span [m]: at an end, or at the apex if the block rises from the first end and
+/// falls to the second.
+inline float highest(const Span& span, const Moment& from, const Moment& to) {
   const float slope = span.height_to - span.height_from - span.bend;  // dh/ds = slope + 2 bend s
   const bool apex = slope + 2.0F * span.bend * from.share > 0.0F && slope + 2.0F * span.bend * to.share < 0.0F;
   const float top = span.height_from - 0.25F * slope * slope / span.bend;  // used only if there is an apex
-  const float highest = apex ? top : std::max(from.height, to.height);
-  maxima.raise({span.plan_speed_squared + rise_squared, highest});
+  return apex ? top : std::max(from.height, to.height);
+}
+
+/// Raises maxima to those of a part of a span. The speed is largest at an end.
+inline void raise(Maxima& maxima, const Span& span, const Moment& from, const Moment& to) {
+  const float rise_squared = std::max(from.rise * from.rise, to.rise * to.rise);
+  maxima.raise({span.plan_speed_squared + rise_squared, highest(span, from, to)});
 }
 
 }  // namespace talus

@@ -1,6 +1,7 @@
 #include "talus/simulate/tally/tally.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -34,6 +35,10 @@ std::uint32_t exceeding(std::span<const float> values, float limit) {
   return count;
 }
 
+std::int64_t fixed_point(double length) {
+  return static_cast<std::int64_t>(length / CellRecord::kLengthUnit + 0.5);
+}
+
 std::size_t cell_in_region(int column, int row) {
   return static_cast<std::size_t>(row % kRegionSide * kRegionSide + column % kRegionSide);
 }
@@ -47,12 +52,6 @@ std::vector<Visit> sorted_by_cell(const std::vector<Visit>& visits) {
   for (const Visit& visit : visits) sorted[start[visit.cell]++] = visit;
   return sorted;
 }
-
-/// The visits of a batch to one cell.
-struct Group {
-  const Visit *begin, *end;
-  std::size_t record;
-};
 
 /// Prefetches memory that is needed soon: records are scattered, and waiting for them would take most of the time.
 void fetch(const void* memory, std::size_t bytes) {
@@ -107,6 +106,15 @@ void count_ends(const PathEnds& ends, PathEnds& of_block, CellRecord& record) {
   count(ends.left, of_block.left, record.exits);
 }
 
+/// The lengths of a visit [m]: all counted parts, then those above each threshold, as far as there are some.
+std::span<const float> lengths_of(const Visit& visit, std::span<const float> mixed, std::size_t levels,
+                                  std::array<float, 64>& buffer) {
+  if (visit.mixed) return mixed.subspan(std::bit_cast<std::uint32_t>(visit.length), levels);
+  const std::size_t count = 1U + visit.above;
+  for (std::size_t i = 0; i < count; ++i) buffer[i] = visit.length;
+  return {buffer.data(), count};
+}
+
 /// The visits of one trajectory to a cell, joined.
 struct Passage {
   Maxima largest;
@@ -127,22 +135,24 @@ Passage next_passage(const Visit*& visit, const Visit* end, CellRecord& record) 
   return passage;
 }
 
-/// Sets the values of each trajectory, the largest of its visits, and adds the counts of the group to the record.
-void gather(const Group& group, const VisitBatch& batch, CellValues& values, CellRecord& record, ReachOf& reach) {
-  values.make_room(static_cast<std::size_t>(group.end - group.begin));
+/// Sets the values of each trajectory, the largest of its visits, and adds the counts of the visits to the record.
+void gather(std::span<const Visit> visits, const VisitBatch& batch, CellValues& values, CellRecord& record,
+            ReachOf& reach) {
+  values.make_room(visits.size());
+  const Visit* const end = visits.data() + visits.size();
   std::size_t n = 0;
   std::uint32_t source = 0;
   std::uint16_t previous = 0;  // the trajectory of the last value
   PathEnds ends;               // of the block and its pieces, in this cell
-  for (const Visit* visit = group.begin; visit != group.end;) {
+  for (const Visit* visit = visits.data(); visit != end;) {
     const std::uint16_t trajectory = visit->trajectory;
-    const Passage passage = next_passage(visit, group.end, record);
+    const Passage passage = next_passage(visit, end, record);
     const VisitBatch::Trajectory& of = batch.trajectories()[trajectory];
     if (of.piece && n > 0 && of_one_block(batch, previous, trajectory)) {  // all pieces of a block have one value
       count_ends(passage.ends, ends, record);
       for_each_quantity([&](auto q) {
         float& value = values.lists[q][n - 1];
-        value = std::max(value, kQuantityTable[q].value(passage.largest, of.mass));
+        value = std::max(value, kQuantityTable[q].value(passage.largest, of.size.mass));
       });
       continue;
     }
@@ -151,10 +161,10 @@ void gather(const Group& group, const VisitBatch& batch, CellValues& values, Cel
     count_ends(passage.ends, ends, record);
     if (n == 0 || of.source != source) {
       source = of.source;
-      record.sources += reach.first(trajectory, group.begin->cell) ? 1U : 0U;
+      record.sources += reach.first(trajectory, visits.front().cell) ? 1U : 0U;
     }
     if (values.keep_stakes) values.stakes[n] = of.stake;
-    for_each_quantity([&](auto q) { values.lists[q][n] = kQuantityTable[q].value(passage.largest, of.mass); });
+    for_each_quantity([&](auto q) { values.lists[q][n] = kQuantityTable[q].value(passage.largest, of.size.mass); });
     ++n;
   }
   TALUS_EXPECT(n > 0, "a group of visits has a value");
@@ -162,6 +172,12 @@ void gather(const Group& group, const VisitBatch& batch, CellValues& values, Cel
 }
 
 }  // namespace
+
+/// The visits of a batch to one cell.
+struct Tally::Group {
+  std::span<const Visit> visits;
+  std::size_t record;
+};
 
 void Tally::EndRegions::operator()(Region* regions) const noexcept {
   if (memory.has_limit()) return;
@@ -204,7 +220,7 @@ std::uint64_t Tally::add(const VisitBatch& batch) {
   std::uint64_t scored = 0;
   std::vector<std::size_t> busy;  // regions that another worker holds: taken last
   for (const auto& [index, visits] : batch.regions()) {
-    if (visits.empty()) continue;
+    if (visits.visits.empty()) continue;
     const std::unique_lock lock(regions_[index].mutex, std::try_to_lock);
     if (lock.owns_lock())
       scored += score(index, visits, batch);
@@ -218,16 +234,18 @@ std::uint64_t Tally::add(const VisitBatch& batch) {
   return scored;
 }
 
-std::uint64_t Tally::score(std::size_t index, const std::vector<Visit>& visits, const VisitBatch& batch) {
+std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const VisitBatch& batch) {
   memory().keep_below_limit();
   TALUS_EXPECT(index < region_count_, "a visit lies in a region of the tally");
   Region& region = regions_[index];
-  const std::vector<Visit> sorted = sorted_by_cell(visits);
+  TALUS_EXPECT(batch.levels() <= 1 + energy_thresholds(), "a batch has no other thresholds than the tally");
+  const std::vector<Visit> sorted = sorted_by_cell(visits.visits);
+  const std::span<const Visit> all(sorted);
   std::vector<Group> groups;
-  for (std::size_t i = 0; i < sorted.size();) {
-    const std::size_t first = i, cell = sorted[i].cell;
-    while (i < sorted.size() && sorted[i].cell == cell) ++i;
-    groups.push_back({&sorted[first], &sorted[first] + (i - first), region.record_of(cell, threshold_count_)});
+  for (std::size_t i = 0; i < all.size();) {
+    const std::size_t first = i, cell = all[i].cell;
+    while (i < all.size() && all[i].cell == cell) ++i;
+    groups.push_back({all.subspan(first, i - first), region.record_of(cell, threshold_count_, energy_thresholds())});
   }
   TALUS_EXPECT(region.records.size() <= kRegionCells, "a cell has one record");
   std::uint64_t scored = 0;
@@ -239,14 +257,48 @@ std::uint64_t Tally::score(std::size_t index, const std::vector<Visit>& visits, 
     if (i + 16 < groups.size()) fetch(&region.records[groups[i + 16].record], sizeof(CellRecord));
     if (i + 8 < groups.size())
       for (const LogHistogram& h : region.records[groups[i + 8].record].histogram) fetch(h.counts(), 128);
+    if (i + 8 < groups.size()) {
+      const std::size_t soon = groups[i + 8].record;
+      fetch(region.lengths.data() + soon * energy_thresholds(), sizeof(std::int64_t));
+      if (hazard_) fetch(region.hazards[soon].lengths().data(), 128);
+    }
     CellRecord& record = region.records[groups[i].record];
-    gather(groups[i], batch, values, record, reach);
+    gather(groups[i].visits, batch, values, record, reach);
     const PerQuantity<float> largest = record.add(values);
     count_exceedances(region.exceedances.data() + groups[i].record * threshold_count_, values, largest);
     if (hazard_) region.hazards[groups[i].record].add(hazard_->rules, values.of(Quantity::Energy), values.stakes);
+    add_lengths(groups[i], visits.lengths, batch, region);
     scored += values.count;
   }
   return scored;
+}
+
+/// Adds the lengths of all visits. Squares are of the whole length of a block: its visits and pieces are not
+/// independent.
+void Tally::add_lengths(const Group& group, std::span<const float> mixed, const VisitBatch& batch,
+                        Region& region) const {
+  CellRecord& record = region.records[group.record];
+  std::int64_t* const above = region.lengths.data() + group.record * energy_thresholds();
+  std::array<float, 64> buffer;
+  std::uint16_t previous = group.visits.front().trajectory;
+  double of_block = 0.0;
+  std::int64_t length = 0, squares = 0;
+  for (const Visit& visit : group.visits) {
+    if (visit.trajectory != previous && !(batch.has_pieces() && of_one_block(batch, previous, visit.trajectory))) {
+      squares += fixed_point(of_block * of_block);
+      of_block = 0.0;
+    }
+    previous = visit.trajectory;
+    const std::span<const float> lengths = lengths_of(visit, mixed, batch.levels(), buffer);
+    of_block += lengths[0];
+    length += fixed_point(lengths[0]);
+    for (std::size_t i = 0; i + 1 < lengths.size(); ++i) above[i] += fixed_point(lengths[1 + i]);
+    if (!hazard_) continue;
+    const VisitBatch::Trajectory& of = batch.trajectories()[visit.trajectory];
+    region.hazards[group.record].add_lengths(hazard_->rules, lengths, of.stake, of.size.diameter);
+  }
+  record.length += length;
+  record.length_squares += squares + fixed_point(of_block * of_block);
 }
 
 void Tally::count_exceedances(std::uint32_t* over, const CellValues& values, const PerQuantity<float>& largest) const {
@@ -282,6 +334,11 @@ const std::uint32_t* Tally::exceedances(int column, int row) const {
   return region.exceedances.data() + (region.slot[cell_in_region(column, row)] - 1U) * threshold_count_;
 }
 
+const std::int64_t* Tally::lengths_above(int column, int row) const {
+  const Region& region = region_of(column, row);
+  return region.lengths.data() + (region.slot[cell_in_region(column, row)] - 1U) * energy_thresholds();
+}
+
 void Tally::save(std::size_t index, ByteWriter& out) const {
   memory().keep_below_limit();
   const Region& region = regions_[index];
@@ -293,6 +350,7 @@ void Tally::save(std::size_t index, ByteWriter& out) const {
     out.put(static_cast<std::uint16_t>(cell));
     region.records[record].save(out);
     for (std::size_t i = 0; i < threshold_count_; ++i) out.put(region.exceedances[record * threshold_count_ + i]);
+    for (std::size_t i = 0; i < energy_thresholds(); ++i) out.put(region.lengths[record * energy_thresholds() + i]);
     if (hazard_) region.hazards[record].save(out);
   }
 }
@@ -300,7 +358,7 @@ void Tally::save(std::size_t index, ByteWriter& out) const {
 void Tally::take(std::size_t index, ByteWriter& out) {
   save(index, out);
   Region& region = regions_[index];
-  region.slot = {}, region.exceedances = {};
+  region.slot = {}, region.exceedances = {}, region.lengths = {};
   region.records.clear(), region.hazards.clear();
 }
 
@@ -310,10 +368,12 @@ void Tally::merge(std::size_t index, ByteReader& in) {
   while (!in.empty()) {
     const auto cell = in.get<std::uint16_t>();
     if (cell >= kRegionCells) throw std::out_of_range("a cell of the tally");
-    const std::size_t record = region.record_of(cell, threshold_count_);
+    const std::size_t record = region.record_of(cell, threshold_count_, energy_thresholds());
     region.records[record].merge(CellRecord::restored(in));
     for (std::size_t i = 0; i < threshold_count_; ++i)
       region.exceedances[record * threshold_count_ + i] += in.get<std::uint32_t>();
+    for (std::size_t i = 0; i < energy_thresholds(); ++i)
+      region.lengths[record * energy_thresholds() + i] += in.get<std::int64_t>();
     if (!hazard_) continue;
     region.make_hazards();
     region.hazards[record].merge(HazardCell::restored(in));

@@ -1,60 +1,81 @@
 #include "talus/simulate/tally/visits.hpp"
 
 #include <algorithm>
+#include <bit>
 
+#include "span_length.hpp"
 #include "span_maxima.hpp"
 #include "talus/base/expect.hpp"
 
 namespace talus {
 namespace {
 
-constexpr std::uint32_t kMostImpacts = (1U << 29U) - 1;  // of a visit: what its field holds
+constexpr std::uint32_t kMostImpacts = (1U << 22U) - 1;  // of a visit: what its field holds
 
 }  // namespace
 
-VisitBatch::VisitBatch(const Grid& grid) : regions_across_((grid.columns + kRegionSide - 1) / kRegionSide) {}
+LengthRules length_rules(const OutputSettings& output) {
+  LengthRules rules{output.energy_thresholds};
+  if (output.passages_below > 0.0) rules.below = output.passages_below;
+  return rules;
+}
+
+VisitBatch::VisitBatch(const Grid& grid, LengthRules lengths)
+    : grid_(grid),
+      lengths_(std::move(lengths)),
+      limits_(lengths_.energies.size()),
+      here_(lengths_.levels()),
+      regions_across_((grid.columns + kRegionSide - 1) / kRegionSide) {}
 
 void VisitBatch::clear() {
   for (auto region = regions_.begin(); region != regions_.end();) {
-    if (region->second.empty()) {
+    if (region->second.visits.empty()) {
       region = regions_.erase(region);  // not visited by this batch: the work has moved on
     } else {
-      region->second.clear();  // keeps its memory for the next batch
+      region->second.visits.clear();  // keeps its memory for the next batch
+      region->second.lengths.clear();
       ++region;
     }
   }
   trajectories_.clear();
   size_ = 0;
+  pieces_ = false;
 }
 
 void VisitBatch::begin(Trajectory trajectory) {
+  close_visit();
   trajectories_.push_back(std::move(trajectory));
   trajectories_.back().stake = stake_;
+  pieces_ = pieces_ || trajectories_.back().piece;
+  for (std::size_t i = 0; i < limits_.size(); ++i)
+    limits_[i] = static_cast<float>(2e3 * lengths_.energies[i] / trajectories_.back().size.mass);
   column_ = row_ = -1;
   region_ = nullptr;
   region_index_ = static_cast<std::size_t>(-1);
 }
 
-void VisitBatch::add(const Path& path, double mass, std::uint32_t source, std::shared_ptr<SourceReach> reach,
+void VisitBatch::add(const Path& path, BlockSize size, std::uint32_t source, std::shared_ptr<SourceReach> reach,
                      bool piece) {
   const std::span<const Span> spans(path.spans);
   std::size_t from = 0;
   for (const Broken& broken : path.breaks) {
-    begin({mass, source, reach, piece});
+    begin({size, source, reach, piece});
     add(spans.subspan(from, broken.span - from));
     from = broken.span;
-    mass = broken.body.mass;
+    size = broken.body;
     piece = true;
   }
   if (from < spans.size() || path.breaks.empty()) {  // otherwise it stopped where it broke: its last span is above
-    begin({mass, source, std::move(reach), piece});
+    begin({size, source, std::move(reach), piece});
     add(spans.subspan(from));
   }
   if (region_ == nullptr) return;
-  Visit& last = region_->back();
+  Visit& last = region_->visits.back();
   last.deposited = rests(path.end) ? 1 : 0;
   last.trapped = path.end == End::Trapped ? 1 : 0;
   last.left = path.end == End::Left ? 1 : 0;
+  close_visit();
+  region_ = nullptr;
 }
 
 void VisitBatch::add(std::span<const Span> spans) {
@@ -62,31 +83,111 @@ void VisitBatch::add(std::span<const Span> spans) {
     const int east_from = span.p_from >= 0.5F, east_to = span.p_to >= 0.5F;
     const int north_from = span.q_from >= 0.5F, north_to = span.q_to >= 0.5F;
     const Moment start{0.0F, span.height_from, span.rise_from}, end{1.0F, span.height_to, span.rise_to};
+    const float length = plan_length(span);
+    const std::size_t level = level_of(span);
+    float* const pure = level < here_.size() ? &here_[level] : nullptr;
+    const auto count = [&](Visit& visit, const Moment& from, const Moment& to) {
+      raise(visit, span, from, to);
+      if (pure != nullptr)
+        *pure += length * (to.share - from.share);
+      else
+        lengthen(span, length, from, to);
+    };
     Visit& first = visit(span.patch.column + east_from, span.patch.row + north_from);
     if (east_from == east_to && north_from == north_to) {
-      raise(first, span, start, end);
+      count(first, start, end);
     } else {  // the way crosses one or both middle lines of the patch, into one or two other cells
       const float p_turn = east_from == east_to ? 2.0F : (0.5F - span.p_from) / (span.p_to - span.p_from);
       const float q_turn = north_from == north_to ? 2.0F : (0.5F - span.q_from) / (span.q_to - span.q_from);
       Moment turn = moment_of(span, std::min(p_turn, q_turn));
-      raise(first, span, start, turn);
+      count(first, start, turn);
       if (east_from != east_to && north_from != north_to) {
         const bool east_first = p_turn < q_turn;
         const Moment next = moment_of(span, std::max(p_turn, q_turn));
-        raise(visit(span.patch.column + (east_first ? east_to : east_from),
+        count(visit(span.patch.column + (east_first ? east_to : east_from),
                     span.patch.row + (east_first ? north_from : north_to)),
-              span, turn, next);
+              turn, next);
         turn = next;
       }
-      raise(visit(span.patch.column + east_to, span.patch.row + north_to), span, turn, end);
+      count(visit(span.patch.column + east_to, span.patch.row + north_to), turn, end);
     }
-    region_->back().impacts = (region_->back().impacts + span.impacts) & kMostImpacts;
+    Visit& last = region_->visits.back();
+    last.impacts = (last.impacts + span.impacts) & kMostImpacts;
   }
+}
+
+float VisitBatch::plan_length(const Span& span) const {
+  const float east = (span.p_to - span.p_from) * static_cast<float>(grid_.cell_x),
+              north = (span.q_to - span.q_from) * static_cast<float>(grid_.cell_y);
+  return std::sqrt(east * east + north * north);
+}
+
+/// The number of energy thresholds that a whole span is above, if it crosses none and all of it counts. Else a number
+/// that is no level.
+std::size_t VisitBatch::level_of(const Span& span) const {
+  constexpr auto kNone = static_cast<std::size_t>(-1);
+  const Moment start{0.0F, span.height_from, span.rise_from}, end{1.0F, span.height_to, span.rise_to};
+  if (lengths_.below < kAnyHeight && !(highest(span, start, end) < lengths_.below)) return kNone;
+  const SpeedRange speed = speed_range(span, start, end);
+  std::size_t level = 0;
+  while (level < limits_.size() && speed.low > limits_[level]) ++level;
+  return level < limits_.size() && speed.high > limits_[level] ? kNone : level;
+}
+
+/// Adds the length of a part of a span that crosses a limit to the current visit, by level.
+void VisitBatch::lengthen(const Span& span, float length, const Moment& from, const Moment& to) {
+  const bool low = !(lengths_.below < kAnyHeight) || highest(span, from, to) < lengths_.below;
+  const float share = to.share - from.share;
+  const SpeedRange speed = speed_range(span, from, to);
+  float above = low ? share : counted_share(span, -1.0F, from, to);
+  for (std::size_t level = 0; level < here_.size(); ++level) {
+    float next = 0.0F;  // share above the next threshold
+    if (level < limits_.size() && speed.high > limits_[level]) {
+      const float limit = limits_[level];
+      if (!low)
+        next = counted_share(span, limit, from, to);
+      else
+        next = speed.low > limit ? share : share_faster(span, limit, from, to);
+    }
+    here_[level] += length * std::max(0.0F, above - next);
+    if (!(next > 0.0F)) break;  // ascending: the rest is not exceeded
+    above = next;
+  }
+}
+
+/// Writes the lengths of the current visit into it.
+void VisitBatch::close_visit() {
+  if (region_ == nullptr) return;
+  Visit& visit = region_->visits.back();
+  std::size_t top = here_.size() - 1;
+  while (top > 0 && here_[top] == 0.0F) --top;
+  bool mixed = false;
+  for (std::size_t level = 0; level < top; ++level) mixed = mixed || here_[level] > 0.0F;
+  visit.mixed = mixed;
+  visit.above = top & 0x3FU;
+  visit.length = mixed ? std::bit_cast<float>(static_cast<std::uint32_t>(region_->lengths.size())) : here_[top];
+  if (mixed) {
+    for (std::size_t level = top; level-- > 0;) here_[level] += here_[level + 1];  // that level and all above it
+    region_->lengths.insert(region_->lengths.end(), here_.begin(), here_.end());
+  }
+  for (std::size_t level = 0; level <= top; ++level) here_[level] = 0.0F;
+}
+
+/// The share of a span between two moments on which the square of the speed is above `limit` and the clearance is
+/// small enough to count.
+float VisitBatch::counted_share(const Span& span, float limit, const Moment& from, const Moment& to) const {
+  std::array<Quadratic, 2> conditions{speed_squared_along(span), height_along(span)};
+  conditions[0].a -= limit;
+  Quadratic& h = conditions[1];
+  const bool limited = lengths_.below < kAnyHeight;
+  if (limited) h = {lengths_.below - h.a, -h.b, -h.c};
+  return static_cast<float>(share_above({conditions.data(), limited ? 2U : 1U}, from.share, to.share));
 }
 
 Visit& VisitBatch::new_visit(int column, int row) {
   TALUS_EXPECT(column >= 0 && row >= 0 && column / kRegionSide < regions_across_, "a visit lies in the grid");
   TALUS_EXPECT(!trajectories_.empty() && trajectories_.size() <= 0x10000, "a visit is of a trajectory of the batch");
+  close_visit();
   column_ = column;
   row_ = row;
   const std::size_t index = static_cast<std::size_t>(row / kRegionSide) * static_cast<std::size_t>(regions_across_) +
@@ -96,9 +197,9 @@ Visit& VisitBatch::new_visit(int column, int row) {
     region_ = &regions_[index];
   }
   const auto cell = static_cast<std::uint16_t>(row % kRegionSide * kRegionSide + column % kRegionSide);
-  region_->push_back({{}, cell, static_cast<std::uint16_t>(trajectories_.size() - 1), 0, 0, 0, 0});
+  region_->visits.push_back({{}, cell, static_cast<std::uint16_t>(trajectories_.size() - 1), 0, 0, 0, 0, 0, 0, 0.0F});
   ++size_;
-  return region_->back();
+  return region_->visits.back();
 }
 
 }  // namespace talus

@@ -22,7 +22,7 @@ HazardCell cell_of(const HazardRules& rules, const std::vector<float>& energies)
   HazardCell cell;
   for (const float energy : energies)
     cell.merge(
-        HazardCell::restored(rules.bins.of(energy), {{std::int64_t{1} << 30, std::int64_t{1} << 40}}, {0, 0, 0}));
+        HazardCell::restored(rules.bins.of(energy), {{std::int64_t{1} << 30, std::int64_t{1} << 40}}, {0, 0, 0}, {}));
   return cell;
 }
 

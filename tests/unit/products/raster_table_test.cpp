@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <set>
 #include <stdexcept>
@@ -121,6 +122,39 @@ TEST(RasterTable, HazardMapsHaveTheirNumber) {
                                                    "intensity_T50", "hazard_class"));
   for (const HazardMap& map : hazard_maps_of(rules, matrix))
     for (const Map::Band& band : map.map.bands) EXPECT_THAT(band.name, testing::Not(testing::HasSubstr("<")));
+}
+
+TEST(RasterTable, PassageDensityByHand) {  // 4 blocks of 100 cross 2 x 3 m, 12 m in all, 3 m of it above the threshold
+  RunCounts run{100, 10.0, thresholds_of({30.0}, {}), 2.0, 3.0};
+  CellRecord cell;
+  cell.passages = 4;
+  cell.length = 12 << 20;
+  cell.length_squares = 36 << 20;  // of 3 m each
+  const std::int64_t above = 3 << 20;
+  std::vector<double> values(4);
+  raster_of("passage_density").rule(run)({cell, nullptr, &above}, values);
+  EXPECT_EQ(values[0], 12.0 / (6.0 * 100.0));
+  EXPECT_EQ(values[3], 3.0 / (6.0 * 100.0));
+  EXPECT_NEAR(values[1], 3.0 * 1.0899 / 600.0, 1e-5) << "Garwood's lower bound of 4 counts";
+  EXPECT_GE(values[2], 3.0 * 9.0 / 600.0);
+  EXPECT_LE(values[2], 3.0 * 10.2416 / 600.0 * 1.07) << "the unit is the diagonal, 3.6 m, not the 3 m of each block";
+  EXPECT_NEAR(raster_of("passage_density").untouched(run)[2], std::hypot(2.0, 3.0) * 3.6889 / 600.0, 1e-6);
+  EXPECT_EQ(raster_of("passage_density").untouched(run).size(), 4U);
+  EXPECT_EQ(bands_of(raster_of("passage_density"), run)[0].name, "passage density (in plan, at any height)");
+  run.passages_below = 8.0;
+  EXPECT_EQ(bands_of(raster_of("passage_density"), run)[0].name,
+            "passage density (in plan, lower than 8 m above the terrain)");
+}
+
+TEST(RasterTable, MapsOfAnObjectSayItsWidth) {
+  const HazardRules rules{EnergyBins({30.0}), {}};
+  for (const HazardMap& map : hazard_maps_of(rules, {}, {10.0, 8.0})) {
+    EXPECT_THAT(map.map.title, testing::HasSubstr("an object 10 m wide")) << map.map.name;
+    EXPECT_THAT(map.map.title, testing::HasSubstr("lower than 8 m above the terrain")) << map.map.name;
+    EXPECT_THAT(map.map.name, testing::Not(testing::HasSubstr("intensity")));
+  }
+  for (const HazardMap& map : hazard_maps_of(rules, {}, {10.0, 0.0}))
+    EXPECT_THAT(map.map.title, testing::HasSubstr("at any height")) << map.map.name;
 }
 
 TEST(Quantities, OfACubicMetreOfRockAtTenMetresPerSecond) {  // 2700 kg: 135 kJ

@@ -17,7 +17,8 @@ struct HazardHeader {
   Grid grid;
   GeoReference geo;
   HazardRules rules;
-  std::int64_t left_weight;  ///< events per year whose path leaves the terrain, in units of the weights
+  std::int64_t left_weight = 0;  ///< events per year whose path leaves the terrain, in units of the weights
+  double passages_below = 0.0;   ///< `OutputSettings::passages_below`
 };
 
 /// Events per year whose path leaves the terrain.

@@ -18,6 +18,7 @@ struct HazardRecord {
   HazardMatrix matrix;
   std::string matrix_file;  ///< empty: the default
   std::uint64_t cells = 0;  ///< cells that any block passes
+  double width = 0.0;       ///< of the object [m]; 0: the cell
   std::string objects_file;
   std::string frequency_file;  ///< another weighting than the run's; empty: the run's
   bool replayed = false;       ///< the plan was run again, for the objects or the weighting

@@ -20,6 +20,7 @@ struct WeightScale {
   std::int64_t largest = 0;        ///< weight of a trajectory [units]
   std::uint64_t trajectories = 0;  ///< number of trajectories
   bool equal = true;               ///< all have the same weight
+  double largest_diameter = 0.0;   ///< of the blocks of the scenario [m]
 
   double largest_weight() const { return static_cast<double>(largest) * unit; }  ///< [1/year]
   bool operator==(const WeightScale&) const = default;
@@ -49,6 +50,9 @@ class AnnualWeights {
   std::vector<std::int64_t> weights_;  // by source cell and class
   WeightScale scale_;
 };
+
+/// Diameter of the largest block that a scenario can release [m].
+double largest_diameter(const Scenario& scenario);
 
 /// Area of the surface in a cell [m^2]: the area in plan over the cosine of the slope. The slope follows from the
 /// heights of the four neighbours; if one has no height, from the cell and the neighbour on the other side.

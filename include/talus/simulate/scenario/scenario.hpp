@@ -72,6 +72,7 @@ struct OutputSettings {
   std::vector<double> energy_thresholds{30.0, 300.0};    ///< translational [kJ], ascending
   std::vector<double> height_thresholds{1.0, 2.0, 4.0};  ///< vertical, above the terrain [m], ascending
   std::uint32_t paths = 500;                             ///< trajectories written as vectors
+  double passages_below = 0.0;  ///< only passages lower than this count in passage densities [m]; 0: at any height
 };
 
 /// All settings and data of a run: built by `make_scenario`, then constant. Everything is on one grid, in local metres.

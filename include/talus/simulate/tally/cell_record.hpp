@@ -22,7 +22,11 @@ struct CellValues {
 
 /// The sums of one cell. Only integer sums, maxima and histograms: equal bits in any order of the trajectories.
 struct CellRecord {
+  static constexpr double kLengthUnit = 0x1p-20;  ///< of the sums of lengths [m], and of their squares [m^2]
+
   std::uint64_t impacts = 0;
+  std::int64_t length = 0;          ///< in plan, of all passages together
+  std::int64_t length_squares = 0;  ///< sum over the blocks of the square of each one's length
   std::uint32_t passages = 0, sources = 0;
   std::uint32_t deposits = 0;  ///< blocks that stay here
   std::uint32_t trapped = 0;   ///< those of them that are trapped

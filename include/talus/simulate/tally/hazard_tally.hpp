@@ -17,6 +17,18 @@ struct HazardRules {
   std::size_t levels() const { return 1 + bins.thresholds().size(); }  ///< passage, then each threshold
 };
 
+/// Sums over the passages of a cell, each weighted by its annual frequency w: of its length L in plan, of L D with the
+/// diameter D of the block, and of w L. Sums of parts of paths: they add up over cells, whatever the size of the cells.
+struct WeightedLengths {
+  static constexpr double kLengthUnit = 0x1p10;    ///< [m]: a weight has up to 2^62 units, and the sums must fit
+  static constexpr double kDiameterUnit = 0x1p16;  ///< [m^2]
+
+  std::int64_t length = 0;       ///< [WeightScale::unit * kLengthUnit]
+  std::int64_t by_diameter = 0;  ///< [WeightScale::unit * kDiameterUnit]
+  std::int64_t squares = 0;      ///< [square_unit * kLengthUnit]
+  bool operator==(const WeightedLengths&) const = default;
+};
+
 /// Annual frequency by energy in one place: each trajectory adds its weight once, in the bin of its largest energy
 /// there.
 ///
@@ -31,13 +43,15 @@ class HazardCell {
   };
 
   HazardCell() = default;
-  explicit HazardCell(MemoryPolicy memory) : bins_(memory), overlaps_(memory) {}
+  explicit HazardCell(MemoryPolicy memory) : bins_(memory), overlaps_(memory), lengths_(memory) {}
 
   /// Adds trajectories in the order of their blocks; all trajectories of a stratum must come in one call.
   ///
   /// @param energies  largest energy of each trajectory here [kJ]
   /// @param stakes    one per trajectory; may be longer than `energies`
   void add(const HazardRules& rules, std::span<const float> energies, std::span<const Stake> stakes);
+  /// Adds a passage of a block: its lengths by level [m], the stake of the block and its diameter [m].
+  void add_lengths(const HazardRules& rules, std::span<const float> lengths, const Stake& stake, double diameter);
   void merge(const HazardCell& other);
 
   int first() const { return first_; }  ///< bin of bins()[0]
@@ -48,8 +62,12 @@ class HazardCell {
   /// [square_unit].
   std::span<const std::int64_t> overlaps() const { return overlaps_; }
 
+  /// By level: passage, then each threshold; empty if none was counted.
+  std::span<const WeightedLengths> lengths() const { return lengths_; }
+
   /// A cell with these contents.
-  static HazardCell restored(int first, const std::vector<Bin>& bins, const std::vector<std::int64_t>& overlaps);
+  static HazardCell restored(int first, const std::vector<Bin>& bins, const std::vector<std::int64_t>& overlaps,
+                             const std::vector<WeightedLengths>& lengths);
 
   void save(ByteWriter& out) const;
   static HazardCell restored(ByteReader& in);
@@ -62,6 +80,7 @@ class HazardCell {
   int first_ = 0;
   ScratchVector<Bin> bins_;
   ScratchVector<std::int64_t> overlaps_;
+  ScratchVector<WeightedLengths> lengths_;
 };
 
 /// The hazard of a cell at its place in a row.

@@ -46,6 +46,8 @@ class Tally {
   /// Number of trajectories whose largest value in the cell exceeds each threshold, quantity by quantity. Only for
   /// cells with a record.
   const std::uint32_t* exceedances(int column, int row) const;
+  /// Plan length above each energy threshold [CellRecord::kLengthUnit]. Only for cells with a record.
+  const std::int64_t* lengths_above(int column, int row) const;
   std::uint64_t touched_cells() const;
   /// Number of touched cells with 0, 1, 2, ... trajectories; the last number is of `most` or more.
   std::vector<std::uint64_t> cells_by_passages(std::uint32_t most) const;
@@ -62,6 +64,7 @@ class Tally {
 
  private:
   struct Region;
+  struct Group;
   /// Destroys the regions. Those in a scratch file are dropped with the file, without reading them.
   struct EndRegions {
     MemoryPolicy memory;
@@ -74,7 +77,9 @@ class Tally {
   };
 
   const Region& region_of(int column, int row) const;
-  std::uint64_t score(std::size_t index, const std::vector<Visit>& visits, const VisitBatch& batch);
+  std::uint64_t score(std::size_t index, const RegionVisits& visits, const VisitBatch& batch);
+  void add_lengths(const Group& group, std::span<const float> mixed, const VisitBatch& batch, Region& region) const;
+  std::size_t energy_thresholds() const { return thresholds_[Quantity::Energy].size(); }
   void count_exceedances(std::uint32_t* over, const CellValues& values, const PerQuantity<float>& largest) const;
 
   Grid grid_;

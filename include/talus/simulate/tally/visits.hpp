@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <unordered_map>
@@ -17,10 +18,40 @@ namespace talus {
 struct Visit : Maxima {
   std::uint16_t cell;        ///< within its region: row * kRegionSide + column
   std::uint16_t trajectory;  ///< within its batch
-  std::uint32_t impacts : 29;
+  std::uint32_t impacts : 22;
+  std::uint32_t above : 6;  ///< number of energy thresholds that its whole length is above; the others nothing of it
+  std::uint32_t mixed : 1;  ///< some threshold has a part of the length: see RegionVisits
   std::uint32_t deposited : 1;  ///< the path ends here: the block stays
   std::uint32_t trapped : 1;    ///< it stays because it is trapped
   std::uint32_t left : 1;       ///< the path leaves the terrain from here
+  float length;                 ///< counted, in plan [m]; if mixed, the bits are its index in RegionVisits::lengths
+};
+
+inline constexpr double kAnyHeight = std::numeric_limits<double>::infinity();
+
+/// Which parts of a path count in the lengths of a cell.
+struct LengthRules {
+  std::vector<double> energies{};  ///< thresholds of the translational energy [kJ], ascending
+  double below = kAnyHeight;       ///< only where the clearance is smaller [m]
+
+  std::size_t levels() const { return 1 + energies.size(); }  ///< all counted parts, then those above each threshold
+};
+LengthRules length_rules(const OutputSettings& output);
+
+struct Moment;
+
+/// The visits of a batch to one region of the grid.
+struct RegionVisits {
+  std::vector<Visit> visits;
+  std::vector<float> lengths;  ///< of mixed visits: all counted parts, then those above each threshold [m]
+};
+
+/// Mass and diameter of a block; a diameter is needed for hazard only.
+struct BlockSize {
+  BlockSize(double of_mass) : mass(of_mass) {}                                   // NOLINT: a mass is enough
+  BlockSize(const Block& block) : mass(block.mass), diameter(block.diameter) {}  // NOLINT
+  double mass;                                                                   ///< [kg]
+  double diameter = 0.0;                                                         ///< [m]
 };
 
 /// The visits of a batch of trajectories, collected by region of the grid: the tally is written region by region and
@@ -28,47 +59,61 @@ struct Visit : Maxima {
 class VisitBatch {
  public:
   struct Trajectory {
-    double mass;  // [kg]
+    BlockSize size;
     std::uint32_t source;
     std::shared_ptr<SourceReach> reach;  // of a source cell that several batches share; else empty
     bool piece = false;                  // counts as one with the trajectory before it
     Stake stake{};                       // if the run has frequencies
   };
 
-  explicit VisitBatch(const Grid& grid);
+  explicit VisitBatch(const Grid& grid, LengthRules lengths = {});
 
   /// Reads a path. Within a cell the largest speed and clearance are exact, not sampled: both are closed forms on each
-  /// patch (the speed is largest at an end, the clearance at an end or at the apex).
+  /// patch (the speed is largest at an end, the clearance at an end or at the apex). So are the lengths: a span is cut
+  /// at the borders of the cells, and where the energy or the clearance crosses its limit.
   /// The rest of a block that broke, and a path with `piece`, count as one with the trajectory before them.
-  void add(const Path& path, double mass, std::uint32_t source, std::shared_ptr<SourceReach> reach, bool piece = false);
+  void add(const Path& path, BlockSize size, std::uint32_t source, std::shared_ptr<SourceReach> reach,
+           bool piece = false);
 
   /// Sets the stake of the trajectories that are added from here on.
   void set_stake(const Stake& stake) { stake_ = stake; }
 
-  bool full() const { return size_ >= kVisits || trajectories_.size() >= kTrajectories; }
+  bool full() const { return size_ * sizeof(Visit) >= kBytes || trajectories_.size() >= kTrajectories; }
   void clear();
 
   const std::vector<Trajectory>& trajectories() const { return trajectories_; }
-  const std::unordered_map<std::size_t, std::vector<Visit>>& regions() const { return regions_; }
+  const std::unordered_map<std::size_t, RegionVisits>& regions() const { return regions_; }
+  std::size_t levels() const { return lengths_.levels(); }
+  bool has_pieces() const { return pieces_; }
 
  private:
-  static constexpr std::size_t kVisits = 7U << 17U;  // 14 MB
+  static constexpr std::size_t kBytes = 14U << 20U;  // of visits
   static constexpr std::size_t kTrajectories = 60'000;
 
   Visit& visit(int column, int row) {
-    return column == column_ && row == row_ ? region_->back() : new_visit(column, row);
+    return column == column_ && row == row_ ? region_->visits.back() : new_visit(column, row);
   }
   Visit& new_visit(int column, int row);
   void begin(Trajectory trajectory);
   void add(std::span<const Span> spans);
+  float plan_length(const Span& span) const;
+  void lengthen(const Span& span, float length, const Moment& from, const Moment& to);
+  std::size_t level_of(const Span& span) const;
+  void close_visit();
+  float counted_share(const Span& span, float limit, const Moment& from, const Moment& to) const;
 
+  Grid grid_;
+  LengthRules lengths_;
+  std::vector<float> limits_;  // square of the speed at each energy threshold, for the mass of the trajectory [m^2/s^2]
+  std::vector<float> here_;    // lengths of the current visit by the number of thresholds that they are above [m]
   int regions_across_;
-  std::unordered_map<std::size_t, std::vector<Visit>> regions_;
+  std::unordered_map<std::size_t, RegionVisits> regions_;
   std::vector<Trajectory> trajectories_;
   Stake stake_;
   std::size_t size_ = 0;
-  int column_ = -1, row_ = -1;            // cell of the current visit
-  std::vector<Visit>* region_ = nullptr;  // its last element is the current visit
+  bool pieces_ = false;
+  int column_ = -1, row_ = -1;      // cell of the current visit
+  RegionVisits* region_ = nullptr;  // its last visit is the current one
   std::size_t region_index_ = 0;
 };
 

@@ -28,8 +28,8 @@ struct Seen {
 std::map<Cell, Seen> seen(const VisitBatch& batch, const Grid& grid) {
   const int across = (grid.columns + kRegionSide - 1) / kRegionSide;
   std::map<Cell, Seen> cells;
-  for (const auto& [index, visits] : batch.regions())
-    for (const Visit& visit : visits) {
+  for (const auto& [index, region] : batch.regions())
+    for (const Visit& visit : region.visits) {
       const int region = static_cast<int>(index);
       Seen& cell = cells[{region % across * kRegionSide + visit.cell % kRegionSide,
                           region / across * kRegionSide + visit.cell / kRegionSide}];
@@ -271,7 +271,7 @@ TEST(VisitBatch, FillsUpAndClears) {
   EXPECT_LE(batch.trajectories().size(), 65'536U - 128U);  // numbers of 16 bits, one unit of work on top
   batch.clear();
   EXPECT_FALSE(batch.full());
-  for (const auto& [index, visits] : batch.regions()) EXPECT_TRUE(visits.empty()) << index;
+  for (const auto& [index, region] : batch.regions()) EXPECT_TRUE(region.visits.empty()) << index;
   Path back_and_forth;
   for (int i = 0; i < 1000; ++i) back_and_forth.spans.push_back(test::stay(i % 2, 1, 4, 1));
   std::size_t visits = 0;

@@ -1,0 +1,64 @@
+#include "talus/products/passage_bounds.hpp"
+
+#include <algorithm>
+#include <boost/math/special_functions/gamma.hpp>
+#include <cmath>
+#include <vector>
+
+namespace talus {
+namespace {
+
+constexpr double kTail = 0.025;
+constexpr double kStep = 0.05;     // of the logarithm of the shape
+constexpr double kLargest = 25.0;  // logarithm of the largest shape of the table: above it the quantile is the mean
+
+/// Quantiles over shape, by the logarithm of the shape.
+struct Table {
+  std::vector<double> low, high;
+  Table() {
+    for (int i = 0; kStep * i <= kLargest + kStep; ++i) {
+      const double shape = std::exp(kStep * i), width = 1.9599639845 / std::sqrt(shape);
+      const bool wide = shape < 1e6;  // above it the distribution is normal to 1e-6
+      low.push_back(wide ? boost::math::gamma_p_inv(shape, kTail) / shape : 1.0 - width);
+      high.push_back(wide ? boost::math::gamma_p_inv(shape, 1.0 - kTail) / shape : 1.0 + width);
+    }
+  }
+};
+
+double read(const std::vector<double>& values, double shape) {
+  const double at = std::clamp(std::log(shape), 0.0, kLargest) / kStep;
+  const auto i = static_cast<std::size_t>(at);
+  const double share = at - static_cast<double>(i);
+  return values[i] + share * (values[i + 1] - values[i]);
+}
+
+const Table& table() {
+  static const Table all;
+  return all;
+}
+
+}  // namespace
+
+double gamma_high(double shape) {
+  return read(table().high, shape);
+}
+
+double gamma_low(double shape) {
+  return shape < 1.0 - 1e-9 ? 0.0 : read(table().low, shape);
+}
+
+Bounded table_interval(double sum, double squares, double largest) {
+  const double above = sum + largest, spread = squares + largest * largest;
+  return {sum, sum > 0.0 ? sum * gamma_low(sum * sum / squares) : 0.0, above * gamma_high(above * above / spread)};
+}
+
+Bounded mean_length(double length, double squares, double longest, double released) {
+  Bounded bounds = table_interval(length, squares, longest);
+  const double counts = std::max(0.0, squares - length * length / released) / (longest * longest);
+  const double margin = longest * ((counts + 1.0) * gamma_high(counts + 1.0) - counts);
+  bounds.low = std::max(bounds.low, length > 0.0 ? length - margin : 0.0);
+  bounds.high = std::min(bounds.high, length + margin);
+  return {length / released, bounds.low / released, bounds.high / released};
+}
+
+}  // namespace talus
