@@ -14,6 +14,7 @@
 #include "talus/io/gdal/objects_file.hpp"
 #include "talus/io/results/hazard_file.hpp"
 #include "talus/io/results/hazard_record.hpp"
+#include "talus/io/results/run_record.hpp"
 #include "talus/io/results/weighting_file.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"
 #include "talus/products/hazard_maps.hpp"
