@@ -20,6 +20,9 @@ constexpr double kLongestPiece = 1.0;  // [s]
 constexpr double kErrorShare = 1e-3;   // of the diameter, per piece
 constexpr double kRounding = 1e-9;     // of the speed: below it the ground does not fall away at an edge
 
+/// A piece that ends so much higher, or faster by as much, has not gained energy [m].
+constexpr double kHeightRounding = 1e-10;
+
 /// A piece of constant acceleration.
 struct Piece {
   Vec2 acceleration;
@@ -125,13 +128,7 @@ void slow_down(Vec3& velocity, double fall) {
   if (squared > most) velocity *= std::sqrt(most / squared);
 }
 
-Motion at_rest(Motion motion) {
-  motion.velocity = Vec3::Zero();
-  return motion;
-}
-
-/// One piece. It is shortened until its end is no higher than the energy of the block allows; if no piece is, the block
-/// comes to rest where it is.
+/// One piece. It is shortened until its end is no higher than the energy of the block allows.
 Step next_step(const Slope& slope, const Motion& motion, double farthest, double tolerance, double stop_speed) {
   const Vec2 place = motion.position.head<2>(), v = motion.velocity.head<2>(), gradient = slope.gradient(place);
   const double speed = motion.velocity.norm();
@@ -145,7 +142,8 @@ Step next_step(const Slope& slope, const Motion& motion, double farthest, double
   const Piece piece = make_piece(slope, place, v, longest, tolerance);
   const Edge edge = edge_of(slope, place, v, piece);
   const auto place_after = [&](double t) -> Vec2 { return place + t * v + 0.5 * t * t * piece.acceleration; };
-  const double whole = std::min(edge.time, piece.duration), top = height_of_energy(motion);
+  const double whole = std::min(edge.time, piece.duration);
+  const double top = height_of_energy(motion) + kHeightRounding;
   double dt = whole;
   for (int halving = 0; halving < kMaxHalvings && slope.height(place_after(dt)) > top; ++halving) dt *= 0.5;
   const Vec2 there = place_after(dt);
@@ -154,7 +152,6 @@ Step next_step(const Slope& slope, const Motion& motion, double farthest, double
   next.position = {there.x(), there.y(), slope.height(there)};
   next.velocity = along(v + dt * piece.acceleration, slope.gradient(there));
   slow_down(next.velocity, top - next.position.z());
-  if (next.position.z() > top) next = at_rest(motion);
   return {next, edge, dt == whole && edge.time <= piece.duration};
 }
 

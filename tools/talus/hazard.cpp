@@ -15,6 +15,7 @@
 #include "talus/io/results/hazard_record.hpp"
 #include "talus/io/results/objects_file.hpp"
 #include "talus/io/results/recorded_plan.hpp"
+#include "talus/io/results/run_record.hpp"
 #include "talus/products/hazard_maps.hpp"
 #include "talus/run/write_maps.hpp"
 #include "talus/simulate/simulate.hpp"
