@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Design values of the paper's Table 4 on a stand-in for its slope, for values of c from 0.1 to 1.
 
-  tools/scripts/studies/table4_study.py [--talus build/release/talus] [--blocks 20000]
+  tools/scripts/studies/table4_study.py [--talus build/release/talus] [--blocks 20000] [--angle 38]
 
 The terrain of Vaujany is not published. The stand-in is the profile of data/profile: 38 degrees to a forest road 150 m below the
 release, then 34, then 15. Two models on it: `talus profile` with the sets of Table 1, and `talus run` on the same slope, 400 m wide
@@ -11,7 +11,7 @@ release, then 34, then 15. Two models on it: `talus profile` with the sets of Ta
     SEL = 1/2 V rho gVol (v95 gTr gDp)^2        h_i = h95 gTr gDp + 0.7 m
 
 with V of a block of 1.4 m, gVol = gDp = 1.02 (high confidence) and gTr = 1.02 or 1.10 (the paper leaves it open). Printed: each value
-with both gTr, and its difference from Table 4. Needs numpy and GDAL's python binding. Two minutes of one processor.
+with both gTr, and its difference from Table 4. --angle: another angle of the upper slope. Needs numpy and GDAL's python binding. Two minutes of one processor.
 """
 import argparse
 import csv
@@ -27,6 +27,7 @@ ROOT = Path(__file__).resolve().parents[3]
 COEFFICIENTS = (0.1, 0.15, 0.2, 0.25, 0.35, 0.5, 0.7, 1.0)
 TABLE4 = {("1", "2D"): (4.02, 1070), ("1", "3D"): (4.66, 1020), ("2", "2D"): (4.16, 1150), ("2", "3D"): (4.91, 1320)}  # m, kJ
 START, SCREENS, ROAD, CELL, WIDTH = 20.0, (110.0, 199.0), (212.0, 217.0), 2.0, 400.0  # m along the profile
+ANGLE = 38.0  # of the upper slope of data/profile [degrees]
 MASS = 2700 * math.pi / 6 * 1.4**3  # of the design block [kg]
 REACH, FREEBOARD, VOLUME = (1.02 * 1.02, 1.10 * 1.02), 0.7, 1.02  # gTr gDp; half the block [m]; gVol
 WEST, SOUTH = 2600000.0, 1200000.0
@@ -50,9 +51,18 @@ def first_crossings(path, screens):
     return [np.array(rows[name]).T for name in screens]
 
 
+def nodes_of(angle):
+    """x and z of the profile, its upper slope (0 to 212 m) turned to another angle [degrees]."""
+    nodes = np.genfromtxt(ROOT / "data/profile/slope.csv", delimiter=",", names=True)
+    sunk = ROAD[0] * (math.tan(math.radians(angle)) - math.tan(math.radians(ANGLE)))
+    return nodes["x"], np.where(nodes["x"] > 0, nodes["z"] - sunk, nodes["z"])
+
+
 def in_2d(o, work, c):
+    rows = [f"{x:.10g},{z:.10g}" for x, z in zip(*nodes_of(o.angle))]
+    (work / "slope.csv").write_text("x,z\n" + "\n".join(rows) + "\n", encoding="utf-8")
     (work / "profile.toml").write_text(
-        f'profile = "{ROOT / "data/profile/slope.csv"}"\ntrajectories = {o.blocks}\n[sources]\nx = {START}\nrelease_height = 2\n'
+        f'profile = "slope.csv"\ntrajectories = {o.blocks}\n[sources]\nx = {START}\nrelease_height = 2\n'
         f"[blocks]\ndiameter = [1.0, 1.4]\ndensity = 2700\n[model]\ndeformation_coefficient = {c}\n"
         f'[ground]\ndefault = "firm-talus-2d"\n[ground.zones.road]\nx = {list(ROAD)}\npreset = "forest-road-2d"\n'
         f"[screens]\nx = {list(SCREENS)}\n[output]\ntrajectories = 0\n", encoding="utf-8")
@@ -78,11 +88,11 @@ def strip(x_from, x_to):
     return f"POLYGON (({a} {low},{b} {low},{b} {high},{a} {high},{a} {low}))"
 
 
-def make_slope(work):
+def make_slope(work, angle):
     """The profile of the 2D model, drawn out across: east is down."""
-    nodes = np.genfromtxt(ROOT / "data/profile/slope.csv", delimiter=",", names=True)
-    columns, rows = int(nodes["x"][-1] / CELL), int(WIDTH / CELL)
-    z = np.interp((np.arange(columns) + 0.5) * CELL, nodes["x"], nodes["z"])
+    node_x, node_z = nodes_of(angle)
+    columns, rows = int(node_x[-1] / CELL), int(WIDTH / CELL)
+    z = np.interp((np.arange(columns) + 0.5) * CELL, node_x, node_z)
     dem = gdal.GetDriverByName("GTiff").Create(str(work / "dem.tif"), columns, rows, 1, gdal.GDT_Float64)
     dem.SetGeoTransform((WEST, CELL, 0, SOUTH + WIDTH, 0, -CELL))
     srs = osr.SpatialReference()
@@ -93,7 +103,7 @@ def make_slope(work):
     write_layer(work / "start.gpkg", [("start", f"POINT ({WEST + START} {SOUTH + WIDTH / 2})")], "name")
     write_layer(work / "screens.gpkg", [(f"{x:g}", f"LINESTRING ({WEST + x} {SOUTH + 2},{WEST + x} {SOUTH + WIDTH - 2})")
                                         for x in SCREENS], "id")
-    write_layer(work / "zones.gpkg", [("road", strip(*ROAD)), ("lower", strip(ROAD[1], nodes["x"][-1]))], "zone")
+    write_layer(work / "zones.gpkg", [("road", strip(*ROAD)), ("lower", strip(ROAD[1], node_x[-1]))], "zone")
 
 
 def in_3d(o, work, c):
@@ -116,13 +126,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--talus", type=Path, default=Path("build/release/talus"))
     parser.add_argument("--blocks", type=int, default=20000)
+    parser.add_argument("--angle", type=float, default=ANGLE, help="of the upper slope [degrees]: 30 to 45")
     o = parser.parse_args()
     o.talus = o.talus.resolve()
     print("screen model    c   blocks  mean v   v95    mean h   h95     SEL [kJ]: gTr 1.02, 1.10, Table 4         "
           "h_i [m]: gTr 1.02, 1.10, Table 4")
     with tempfile.TemporaryDirectory(prefix="talus-table4-") as folder:
         work = Path(folder)
-        make_slope(work)
+        make_slope(work, o.angle)
         for model, run in (("2D", in_2d), ("3D", in_3d)):
             for c in COEFFICIENTS:
                 for screen, (speeds, heights) in zip("12", run(o, work, c)):
