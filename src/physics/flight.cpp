@@ -1,6 +1,7 @@
 #include "talus/physics/flight.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "talus/base/expect.hpp"
@@ -31,130 +32,98 @@ struct Lines {
   }
 };
 
-/// A flight in patch coordinates: straight in plan, a parabola in height.
-struct Course {
-  Vec3 start, velocity;
-  double rate_u, rate_v, u0, v0;
-  float plan_speed_squared;
-
-  Course(const Surface& surface, const Motion& motion)
-      : start(motion.position),
-        velocity(motion.velocity),
-        rate_u(velocity.x() * surface.per_cell_x()),
-        rate_v(velocity.y() * surface.per_cell_y()),
-        u0(surface.u_of(start.x())),
-        v0(surface.v_of(start.y())),
-        plan_speed_squared(static_cast<float>(velocity.x() * velocity.x() + velocity.y() * velocity.y())) {}
-
-  double rise(double t) const { return velocity.z() - kGravity * t; }
-  double z(double t) const { return start.z() + t * (velocity.z() - 0.5 * kGravity * t); }
-};
-
-/// A moment of a flight: the time, the place in the current patch, the height.
-struct Moment {
-  double t, p, q, z;
-};
-
-/// Clearance of a flight over a patch from a moment on: f0 + f1 t + f2 t^2.
-struct Clearance {
-  double f0, f1, f2;
-};
-
-/// @param leaving  on the surface and moving away from it, in spite of rounding
-Clearance clearance_of(const Course& course, const Patch& patch, const Moment& now, bool leaving) {
-  const double f0 = leaving ? 0.0 : std::max(now.z - patch.height(now.p, now.q), 0.0);
-  const double slope = patch.east * course.rate_u + patch.north * course.rate_v +
-                       patch.twist * (now.p * course.rate_v + now.q * course.rate_u);
-  const double rise = course.rise(now.t) - slope;
-  return {f0, leaving ? std::max(rise, 0.0) : rise,  // NaN stays NaN
-          -0.5 * kGravity - patch.twist * course.rate_u * course.rate_v};
-}
-
 /// Replaces a creased patch by the half over which the block is. Returns the time until the block is over the other
 /// half [s]; infinite if it never is.
-double enter_half(Patch& patch, Crease crease, const Course& course, const Moment& now) {
-  const bool north = on_northern_half(crease, now.p, now.q, course.rate_u, course.rate_v);
-  const double rate = rate_across(crease, course.rate_u, course.rate_v);
+double enter_half(Patch& patch, Crease crease, double p, double q, double rate_u, double rate_v) {
+  const bool north = on_northern_half(crease, p, q, rate_u, rate_v);
+  const double rate = rate_across(crease, rate_u, rate_v);
   patch = half_of(patch, crease, north);
-  return (north ? rate < 0.0 : rate > 0.0) ? -across(crease, now.p, now.q) / rate : kNever;
+  return (north ? rate < 0.0 : rate > 0.0) ? -across(crease, p, q) / rate : kNever;
 }
 
-/// A piece of a flight over one plane or bilinear patch.
-struct Piece {
-  Moment from, to;
-  Clearance clearance;
-  double duration;
-  bool landed;
-};
-
-void record_span(Path& path, const Course& course, PatchIndex at, const Piece& piece) {
-  const auto& [f0, f1, f2] = piece.clearance;
-  const double dt = piece.duration;
-  Span& span = path.spans.emplace_back();
+/// The three parts of a span.
+void set_place(Span& span, PatchIndex at, const std::array<double, 4>& p_q) {
   span.patch = at;
-  span.p_from = static_cast<float>(piece.from.p);
-  span.q_from = static_cast<float>(piece.from.q);
-  span.p_to = static_cast<float>(piece.to.p);
-  span.q_to = static_cast<float>(piece.to.q);
-  span.height_from = static_cast<float>(f0);
-  span.height_to = piece.landed ? 0.0F : static_cast<float>(std::max(0.0, f0 + dt * (f1 + dt * f2)));
-  span.bend = static_cast<float>(f2 * dt * dt);
-  span.plan_speed_squared = course.plan_speed_squared;
-  span.rise_from = static_cast<float>(course.rise(piece.from.t));
-  span.rise_to = static_cast<float>(course.rise(piece.to.t));
+  span.p_from = static_cast<float>(p_q[0]);
+  span.q_from = static_cast<float>(p_q[1]);
+  span.p_to = static_cast<float>(p_q[2]);
+  span.q_to = static_cast<float>(p_q[3]);
 }
-
-/// Adds the length of a flight to the path and moves the block to its end.
-void finish(const Course& course, double duration, double z, Motion& motion, Path& path) {
-  const Vec3 &start = course.start, &v = course.velocity;
-  path.length += arc_length(v, duration);
-  path.plan_length += std::sqrt(v.x() * v.x() + v.y() * v.y()) * duration;
-  motion.time += duration;
-  motion.position = {start.x() + v.x() * duration, start.y() + v.y() * duration, z};
-  motion.velocity.z() = course.rise(duration);
+void set_height(Span& span, double from, double to, double bend) {
+  span.height_from = static_cast<float>(from);
+  span.height_to = static_cast<float>(to);
+  span.bend = static_cast<float>(bend);
+}
+void set_speed(Span& span, float plan_squared, double rise_from, double rise_to) {
+  span.plan_speed_squared = plan_squared;
+  span.rise_from = static_cast<float>(rise_from);
+  span.rise_to = static_cast<float>(rise_to);
 }
 
 /// @tparam kBounded  the flight ends after `longest`; if false, the compiler removes this check
 /// @tparam kCreased  patches may have creases
+///
+/// Where it keeps its numbers decides the speed of the program: start and velocity as copies, and no struct of them.
 template <bool kBounded, bool kCreased>
 Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path,
              [[maybe_unused]] double longest) {
-  const Course course(surface, motion);
-  Moment now{0.0, course.u0 - at.column, course.v0 - at.row, course.start.z()};
-  Lines columns(now.p, course.rate_u), rows(now.q, course.rate_v);
-  const int most = (kCreased ? 2 : 1) * (surface.grid().columns + surface.grid().rows + 2);
+  const Vec3 start = motion.position, v = motion.velocity;
+  const double rate_u = v.x() * surface.per_cell_x(), rate_v = v.y() * surface.per_cell_y();
+  const double u0 = surface.u_of(start.x()), v0 = surface.v_of(start.y());
+  const auto plan2 = static_cast<float>(v.x() * v.x() + v.y() * v.y());
+  Lines columns(u0 - at.column, rate_u), rows(v0 - at.row, rate_v);
+  double t = 0.0, p = u0 - at.column, q = v0 - at.row, z = start.z();
   Outcome outcome = Outcome::Left;
+  const int most = (kCreased ? 2 : 1) * (surface.grid().columns + surface.grid().rows + 2);
   for (int crossed = 0; crossed <= most; ++crossed) {
     Patch patch;
     if (!surface.read(at, patch)) break;
     double crease_after = kNever;
     if constexpr (kCreased)
       if (const Crease crease = crease_of(patch); crease != Crease::None) [[unlikely]]
-        crease_after = enter_half(patch, crease, course, now);
-    TALUS_EXPECT(crossed == 0 || !(now.z < patch.height(now.p, now.q) - 1e-3),
-                 "a block that flies on is not below the ground");
-    const double edge_after = std::min(columns.next, rows.next) - now.t;
-    const double ahead = kCreased ? std::min(edge_after, crease_after) : edge_after;
-    const double until = kBounded ? std::min(ahead, longest - now.t) : ahead;
-    const Clearance clearance = clearance_of(course, patch, now, grounded && crossed == 0);
-    const double contact = first_contact(clearance.f0, clearance.f1, clearance.f2, until);
+        crease_after = enter_half(patch, crease, p, q, rate_u, rate_v);
+    const double edge = std::min(columns.next, rows.next) - t;
+    const double ahead = kCreased ? std::min(edge, crease_after) : edge;
+    const double until = kBounded ? std::min(ahead, longest - t) : ahead;
+    const double rise = v.z() - kGravity * t;
+    const bool leaving = grounded && crossed == 0;  // on the surface and moving away from it, in spite of rounding
+    TALUS_EXPECT(crossed == 0 || !(z < patch.height(p, q) - 1e-3), "a block that flies on is not below the ground");
+    const double f0 = leaving ? 0.0 : std::max(z - patch.height(p, q), 0.0);
+    const double slope = patch.east * rate_u + patch.north * rate_v + patch.twist * (p * rate_v + q * rate_u);
+    const double f1 = leaving ? std::max(rise - slope, 0.0) : rise - slope;  // NaN stays NaN
+    const double f2 = -0.5 * kGravity - patch.twist * rate_u * rate_v;
+    const double contact = first_contact(f0, f1, f2, until);
     const bool landed = contact < kNever;
     const double dt = landed ? contact : until;
     if (!(dt < kNever)) break;  // NaN or no end: cannot happen above a finite patch, and must not loop
     TALUS_EXPECT(dt > -1e-9, "a flight goes forward in time");
-    const Moment from = now;
-    now.t += dt;
-    now.p = course.u0 + course.rate_u * now.t - at.column;
-    now.q = course.v0 + course.rate_v * now.t - at.row;
-    record_span(path, course, at, {from, now, clearance, dt, landed});
-    now.z = landed ? patch.height(now.p, now.q) : course.z(now.t);
-    if (landed) outcome = Outcome::Landed;
-    if (kBounded && !landed && until < ahead) outcome = Outcome::Aloft;
-    if (outcome != Outcome::Left) break;
-    if (kCreased && crease_after < edge_after) continue;  // over the other half of the same patch
-    columns.next <= rows.next ? columns.cross(at.column, now.p) : rows.cross(at.row, now.q);
+    t += dt;
+    const double p_from = p, q_from = q;
+    p = u0 + rate_u * t - at.column;
+    q = v0 + rate_v * t - at.row;
+    Span& span = path.spans.emplace_back();
+    set_place(span, at, {p_from, q_from, p, q});
+    set_height(span, f0, landed ? 0.0 : std::max(0.0, f0 + dt * (f1 + dt * f2)), f2 * dt * dt);
+    set_speed(span, plan2, rise, v.z() - kGravity * t);
+    if (landed) {
+      z = patch.height(p, q);
+      outcome = Outcome::Landed;
+      break;
+    }
+    if (kBounded && until < ahead) {
+      outcome = Outcome::Aloft;
+      break;
+    }
+    z = start.z() + t * (v.z() - 0.5 * kGravity * t);
+    if (kCreased && crease_after < edge) continue;  // over the other half of the same patch
+    columns.next <= rows.next ? columns.cross(at.column, p) : rows.cross(at.row, q);
   }
-  finish(course, now.t, outcome == Outcome::Landed ? now.z : course.z(now.t), motion, path);
+  path.length += arc_length(v, t);
+  path.plan_length += std::sqrt(v.x() * v.x() + v.y() * v.y()) * t;
+  motion.time += t;
+  motion.position = {start.x() + v.x() * t, start.y() + v.y() * t,
+                     outcome == Outcome::Landed ? z : start.z() + t * (v.z() - 0.5 * kGravity * t)};
+  motion.velocity.z() = v.z() - kGravity * t;
   return outcome;
 }
 

@@ -72,7 +72,8 @@ class Walk {
     TALUS_EXPECT(there, "a block on the ground is on a patch that exists");
     const double p = world_.surface.u_of(motion_.position.x()) - at_.column;
     const double q = world_.surface.v_of(motion_.position.y()) - at_.row;
-    normal_ = normal_of(world_.surface.gradient(world_.surface.facet(patch, p, q, motion_.velocity), p, q));
+    if (world_.surface.creased()) patch = world_.surface.facet(patch, p, q, motion_.velocity);
+    normal_ = normal_of(world_.surface.gradient(patch, p, q));
     TALUS_EXPECT(std::abs(p - 0.5) < 0.5 + kPatchError && std::abs(q - 0.5) < 0.5 + kPatchError,
                  "a block is above its patch");
     const Asperity asperity = asperities_.at(path_.impacts, ground);
