@@ -9,7 +9,7 @@ namespace talus {
 namespace {
 
 constexpr double kTail = 0.025;
-constexpr double kStep = 0.05;     // of the logarithm of the shape
+constexpr double kStep = 0.01;     // of the logarithm of the shape
 constexpr double kLargest = 25.0;  // logarithm of the largest shape of the table: above it the quantile is the mean
 
 /// Quantiles over shape, by the logarithm of the shape.

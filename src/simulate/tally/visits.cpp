@@ -129,9 +129,9 @@ std::size_t VisitBatch::level_of(const Span& span) const {
   const Moment start{0.0F, span.height_from, span.rise_from}, end{1.0F, span.height_to, span.rise_to};
   if (lengths_.below < kAnyHeight && !(highest(span, start, end) < lengths_.below)) return kNone;
   const SpeedRange speed = speed_range(span, start, end);
-  std::size_t level = 0;
-  while (level < limits_.size() && speed.low > limits_[level]) ++level;
-  return level < limits_.size() && speed.high > limits_[level] ? kNone : level;
+  std::size_t level = 0, highest_level = 0;
+  for (const float limit : limits_) level += speed.low > limit, highest_level += speed.high > limit;
+  return level == highest_level ? level : kNone;
 }
 
 /// Adds the length of a part of a span that crosses a limit to the current visit, by level.

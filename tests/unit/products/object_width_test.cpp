@@ -18,7 +18,7 @@ TEST(Disc, HasTheAreaOfADisc) {
       second += part.share * cell * cell * (part.column * part.column + part.row * part.row);
     }
     EXPECT_NEAR(sum, 1.0, 1e-12);
-    EXPECT_NEAR(second, 50.0, 5.0) << "R^2 / 2 is the mean square of the distance to the centre";
+    EXPECT_NEAR(second, 50.0, cell * cell / 3.0) << "R^2 / 2 is the mean square of the distance; a cell has its own";
   }
   EXPECT_EQ(disc(3.0, 5.0, 5.0).size(), 1U);
   EXPECT_EQ(disc(1e-9, 5.0, 5.0).size(), 1U);

@@ -23,8 +23,8 @@ TEST(TableInterval, OfEqualCountsIsGarwoods) {
 TEST(TableInterval, AgreesWithTheQuantilesOfTheLibrary) {
   for (double count = 1.0; count < 1e8; count *= 1.37) {
     const Bounded table = table_interval(count, count, 1.0), exact = gamma_interval(count, count, 1.0);
-    EXPECT_NEAR(table.high, exact.high, 2e-4 * exact.high) << count;
-    EXPECT_NEAR(table.low, exact.low, 5e-4 * exact.low) << count;
+    EXPECT_NEAR(table.high, exact.high, 1e-4 * exact.high) << count;
+    EXPECT_NEAR(table.low, exact.low, 1e-4 * exact.low) << count;
   }
 }
 

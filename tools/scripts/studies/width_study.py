@@ -103,11 +103,17 @@ def write_layer(path, kind, rows, fields):
     layer.CommitTransaction()
 
 
+def rows_of(path, read_row):
+    """What `read_row` returns for each feature of the first layer."""
+    file = ogr.Open(str(path))  # must outlive its layer
+    return [read_row(feature) for feature in file.GetLayer()]
+
+
 def write_points(o):
     """Release points of the valley's own run, `--points` of each source cell, with frequency and diameters."""
-    cliffs = {f["name"]: (f["frequency"], f["diameter_m"], f["diameter_1"]) for f in ogr.Open(str(VALLEY / "cliffs.shp")).GetLayer()}
+    cliffs = dict(rows_of(VALLEY / "cliffs.shp", lambda f: (f["name"], (f["frequency"], f["diameter_m"], f["diameter_1"]))))
     run(o, VALLEY / "scenario.toml", o.work / "base", "--trajectories", str(o.points))
-    released = [(f["feature"], f["x_release"], f["y_release"]) for f in ogr.Open(str(o.work / "base" / "stops.gpkg")).GetLayer()]
+    released = rows_of(o.work / "base" / "stops.gpkg", lambda f: (f["feature"], f["x_release"], f["y_release"]))
     count = {name: sum(name == n for n, _, _ in released) for name in cliffs}
     rows = []
     for name, x, y in released:
@@ -224,15 +230,14 @@ def print_objects(o, maps):
             line += [m.sum() / f.sum(), float(np.sqrt(np.mean(((m - f) / e) ** 2)))]
         print(f"| discs of {o.width:g} m, cells of {cell} m | {len(places)} | {line[0]:.3f} | {line[1]:.2f} | {line[2]:.3f} | {line[3]:.2f} |")
     print("\n| house | mean width (m) | hits per year | bounds | map | of it |\n| --- | --- | --- | --- | --- | --- |")
-    for feature in ogr.Open(str(VALLEY / "houses.gpkg")).GetLayer():
-        geometry = feature.GetGeometryRef()
-        width, centre = geometry.Boundary().Length() / math.pi, geometry.Centroid()
-        out = o.work / "cell2" / "seed1"
+    out = o.work / "cell2" / "seed1"
+    for name, length, x, y in rows_of(VALLEY / "houses.gpkg", lambda f: (f["name"], f.GetGeometryRef().Boundary().Length(), *f.GetGeometryRef().Centroid().GetPoint_2D())):
+        width = length / math.pi
         subprocess.run([o.talus, "hazard", str(out), "-q", "--overwrite", "--width", f"{width:.3f}", "--objects", str(VALLEY / "houses.gpkg")], check=True)
-        row = next(r for r in csv.DictReader(open(out / "objects.csv", encoding="utf-8")) if r["name"] == feature["name"])
-        value = read(out / "annual_frequency.tif")[int((1171040 - centre.GetY()) / 2), int((centre.GetX() - 2650000) / 2)]
+        row = next(r for r in csv.DictReader(open(out / "objects.csv", encoding="utf-8")) if r["name"] == name)
+        value = read(out / "annual_frequency.tif")[int((1171040 - y) / 2), int((x - 2650000) / 2)]
         f = float(row["frequency"])
-        print(f"| {feature['name']} | {width:.1f} | {f:.2e} | {float(row['frequency_lower']):.1e} to {float(row['frequency_upper']):.1e} | {value:.2e} | {value / f if f else float('nan'):.2f} |")
+        print(f"| {name} | {width:.1f} | {f:.2e} | {float(row['frequency_lower']):.1e} to {float(row['frequency_upper']):.1e} | {value:.2e} | {value / f if f else float('nan'):.2f} |")
 
 
 def draw(o, kept):
@@ -256,7 +261,7 @@ def main():
     ap.add_argument("--talus", default="build/release/talus")
     ap.add_argument("--work", type=Path, default=Path(tempfile.gettempdir()) / "width_study")
     ap.add_argument("--width", type=float, default=10)
-    ap.add_argument("--trajectories", type=int, default=50)
+    ap.add_argument("--trajectories", type=int, default=25)
     ap.add_argument("--points", type=int, default=4)
     ap.add_argument("--objects", type=int, default=80)
     ap.add_argument("-o", "--out")
