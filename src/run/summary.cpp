@@ -46,10 +46,9 @@ std::vector<std::string> warnings_of(const Totals& totals, const std::string& wh
   };
   tell(End::Left, io::kWarnedLeftShare,
        "left the DEM or met missing data: the maps do not show how far they go; a larger DEM would");
-  tell(
-      End::Trapped, io::kWarnedTrappedShare,
-      "were trapped in pits or between walls, on ground too steep to rest on: if the pits of the DEM are not real, the "
-      "maps end too early; talus check --pits shows the pits");
+  tell(End::Trapped, io::kWarnedTrappedShare,
+       "were trapped in pits or between walls, on ground too steep to rest on: where these are not in the real "
+       "terrain, the maps end too early; trapped.tif shows where, talus check --pits the pits of the DEM");
   return warnings;
 }
 
