@@ -241,7 +241,7 @@ SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, Patch
       motion.time += (diameter - slid) / std::max(stop_speed, motion.velocity.norm());
       if (motion.velocity.norm() > stop_speed) return SlideEnd::Asperity;
       Slope here{surface, at, tan_phi};
-      return here.read() ? rest_between(slope, here, motion) : SlideEnd::Trapped;
+      return here.read(on) ? rest_between(slope, here, motion) : SlideEnd::Trapped;
     }
   }
   return SlideEnd::Asperity;

@@ -115,7 +115,7 @@ class Walk {
     if (!world_.surface.read(at_, patch)) return SlideEnd::Stopped;
     const double p = world_.surface.u_of(motion_.position.x()) - at_.column;
     const double q = world_.surface.v_of(motion_.position.y()) - at_.row;
-    const Eigen::Vector2d gradient = world_.surface.gradient(patch, p, q);
+    const Eigen::Vector2d gradient = world_.surface.gradient(world_.surface.facet(patch, p, q, motion_.velocity), p, q);
     if (gradient.norm() <= ground.tan_phi) return SlideEnd::Stopped;
     const double reach = 2.0 * body_.diameter;
     const Eigen::Vector2d below = motion_.position.head<2>() - reach * gradient.normalized();
