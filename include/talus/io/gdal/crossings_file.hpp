@@ -7,11 +7,11 @@ namespace talus::io {
 
 /// Blocks that crossed one screen, from a table. Each list has the rows that give its quantity.
 struct CrossingTable {
-  std::vector<double> speed;            ///< [m/s]
-  std::vector<double> energy;           ///< translational [J]
-  std::vector<double> height;           ///< vertical, ground to centre [m]
-  std::vector<double> mass;             ///< [kg]
-  std::vector<Eigen::Vector2d> places;  ///< in map coordinates [m]
+  std::vector<double> speed;               ///< [m/s]
+  std::vector<double> energy;              ///< translational [J]
+  std::vector<double> height;              ///< vertical, ground to centre [m]
+  std::vector<double> mass;                ///< [kg]
+  std::vector<Eigen::Vector2d> places;     ///< in map coordinates [m]
   std::vector<std::string> source, block;  ///< as the table names them, one for each of `blocks`
   std::size_t blocks = 0;
 };
