@@ -156,8 +156,8 @@ std::vector<double> stretch_edges(std::span<const double> parts, double length) 
   std::vector<double> edges{0.0};
   double start = 0.0;
   for (const double part : parts) {
-    const double pieces = std::max(1.0, std::ceil(part / length - 1e-9));
-    for (double i = 1.0; i <= pieces; i += 1.0) edges.push_back(start + part * (i / pieces));
+    const int pieces = std::max(1, static_cast<int>(std::ceil(part / length - 1e-9)));
+    for (int i = 1; i <= pieces; ++i) edges.push_back(start + part * (static_cast<double>(i) / pieces));
     start += part;
   }
   return edges;

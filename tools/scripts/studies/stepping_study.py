@@ -3,7 +3,7 @@
 
   tools/scripts/studies/stepping_study.py [--talus build/release/talus] [--data ../shared/data] [--trajectories 20000]
 
-stepping_study.cpp, which shares no code with Talus, computes the model of docs/physics.md with steps of 5 to 1 ms: flights
+stepping_study.cc, which shares no code with Talus, computes the model of docs/physics.md with steps of 5 to 1 ms: flights
 exact at the ends of the steps (`parabola`), and flights by the semi-implicit method of Euler (`euler`). Printed per source: the
 95th percentile of the runout of stops with its standard error (bootstrap), impacts, seconds and metres of a trajectory, the
 share that reaches the lowest screen. Five minutes of one processor. Needs g++, numpy and GDAL's python binding.
@@ -28,7 +28,7 @@ METHODS = [("parabola", 5), ("parabola", 2.5), ("parabola", 1), ("euler", 2.5)] 
 
 
 def write_grid(scene, path):
-    """The scene as stepping_study.cpp reads it: rows from the south."""
+    """The scene as stepping_study.cc reads it: rows from the south."""
     dem, model = gdal.Open(str(scene.dem)), scene.model
     west, cell, _, north, _, down = dem.GetGeoTransform()
     heights, codes = dem.ReadAsArray()[::-1], sorted(model["zone"], key=int)
@@ -111,7 +111,7 @@ def main():
         work = Path(folder)
         print_rows(scene, "reference", *of_reference(scene))
         print_rows(scene, "talus", *of_talus(scene, work / "slope", o.talus, o.trajectories))
-        subprocess.run(["g++", "-O2", "-std=c++20", HERE / "stepping_study.cpp", "-o", work / "stepping"], check=True)
+        subprocess.run(["g++", "-O2", "-std=c++20", HERE / "stepping_study.cc", "-o", work / "stepping"], check=True)
         write_grid(scene, work / "slope.grid")
         for method, step in METHODS:
             print_rows(scene, f"{method} {step:g} ms", *stepped(work / "stepping", work / "slope.grid", scene, method, step, o.trajectories))
