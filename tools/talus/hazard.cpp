@@ -14,6 +14,7 @@
 #include "talus/io/gdal/objects_file.hpp"
 #include "talus/io/results/hazard_file.hpp"
 #include "talus/io/results/hazard_record.hpp"
+#include "talus/io/results/run_folder.hpp"
 #include "talus/io/results/weighting_file.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"
 #include "talus/products/hazard_maps.hpp"
@@ -158,6 +159,7 @@ int hazard(const Options& options) {
                                                 : reweighted_survey(options, file, progress, record);
   record.cells = survey->cells();
   record.warnings = warnings_of(record.matrix, record.header.rules);
+  for (std::string& warning : talus::io::size_warnings_of(folder)) record.warnings.push_back(std::move(warning));
 
   progress.stage("writing the maps");
   const talus::Grid& grid = survey->grid();

@@ -166,6 +166,7 @@ LoadedProfile load_profile(const RunFlags& flags) {
   parts.surface = Surface(std::move(extruded.heights));
   loaded.scenario = make_scenario(std::move(parts));
   warn_of_presets(spec, loaded.warnings);
+  warn_of_sizes(spec, loaded.scenario, loaded.warnings);
   loaded.complete_toml = toml_of(spec);
   loaded.settings = settings_of(spec);
   record_inputs(spec, loaded);

@@ -161,6 +161,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
   parts.sources = std::move(sources.cells);
   parts.surface = Surface(std::move(terrain.heights));
   out.scenario = make_scenario(std::move(parts));
+  warn_of_sizes(spec, out.scenario, out.warnings);
 
   out.complete_toml = toml_of(spec);
   out.settings = settings_of(spec);

@@ -111,6 +111,10 @@ void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::vector<st
 /// Overrides the scenario file with the other flags.
 void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults);
 
+/// Adds a warning if the blocks of a scenario have other sizes than those that the presets of its ground were fitted
+/// to. A ground whose theta_scale and En50 are both given beside the preset is the user's own.
+void warn_of_sizes(const ScenarioSpec& spec, const Scenario& scenario, std::vector<std::string>& warnings);
+
 /// A key or text as TOML writes it.
 std::string toml_key(const std::string& name);
 std::string toml_text(const std::string& text);
