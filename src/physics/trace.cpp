@@ -63,7 +63,8 @@ class Walk {
     return std::nullopt;
   }
 
-  /// An impact at the place of the block. The block stops if it is slow after it, on ground no steeper than phi.
+  /// An impact at the place of the block. The block stops if it is slow after it, on ground no steeper than phi, or if
+  /// an effect holds it.
   /// (Flattened, as the plain `fly` and `impact`: functions that effects also call are inlined here.)
   [[gnu::flatten]] std::optional<End> meet_the_ground() {
     decltype(auto) ground = effects_.ground(motion_.position, body_);
@@ -88,6 +89,7 @@ class Walk {
     path_.psi_dropped += contact.psi_dropped ? 1U : 0U;
     const bool fast = motion_.velocity.squaredNorm() >= world_.rules.stop_speed * world_.rules.stop_speed;
     if (!fast && normal_.head<2>().norm() <= ground.tan_phi * normal_.z()) return End::Stopped;
+    if (effects_.holds({ground, body_, motion_.velocity, normal_, asperity})) return End::Stopped;
     return std::nullopt;
   }
 

@@ -107,6 +107,15 @@ class Design(Case):
             notes = " ".join(self.design()[1]["notes"])
             self.assertEqual("energies may be too low" in notes, said, notes)
 
+    def test_sizes_of_the_run_are_said_again(self):
+        with open(self.path("out/run.json"), encoding="utf-8") as file:
+            run = json.load(file)
+        self.assertNotIn("block sizes", self.run_well("barrier", self.path("out"), "--screen", "road").stderr)
+        self.write("out/run.json", json.dumps(run | {"warnings": ["another", "block sizes: diameters are 0.3 m"]}))
+        done = self.run_well("barrier", self.path("out"), "--screen", "road")
+        self.assertEqual(done.stderr, "talus: warning: block sizes: diameters are 0.3 m\n")
+        self.assertEqual(self.run_well("barrier", self.path("out"), "--screen", "road", "-q").stderr, "")
+
     def test_options(self):
         values, _, _ = self.design("--gE", "1.2", "--percentile", "50", "--volume", "1", "--density", "2700")
         self.assertAlmostEqual(values["MEL"] / values["SEL"], 1.2, 12)

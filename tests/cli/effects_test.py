@@ -74,7 +74,8 @@ class Effects(Case):
                            "wet": "[effects.wet-ground]\nsoftening = 0.8\ndays = [2, 9]\n",
                            "soft": "[effects.soft-ground]\ndrag = 2\n",
                            "rolling": "[effects.rolling-resistance]\ncoefficient = 0.4\n",
-                           "air": "[effects.air-drag]\ncoefficient = 1\n"}.items():
+                           "air": "[effects.air-drag]\ncoefficient = 1\n",
+                           "rest": "[effects.rest-in-roughness]\nkappa = 1\n"}.items():
             with self.subTest(name):
                 self.run_scenario(name, text)
                 changed = digests(self.path(name))["velocity.tif"] != first
@@ -83,6 +84,35 @@ class Effects(Case):
         self.run_well("run", self.path("day.toml"), "-o", self.path("day"))
         self.assertNotEqual(digests(self.path("day"))["velocity.tif"], first)
         self.assert_replays("day")
+
+    def test_a_preset_gives_the_bits_of_its_numbers(self):
+        record = self.run_scenario("named", '[effects.block-mass]\npreset = "measured"\n')
+        own = [s for s in record["settings"] if s["key"].startswith("effects.block-mass.")]
+        self.assertTrue(all(s["source"].startswith("preset measured: ") for s in own), own)
+        numbers = "".join(f"{s['key'].rsplit('.', 1)[1]} = {s['value']}\n" for s in own)
+        self.run_scenario("numbers", "[effects.block-mass]\n" + numbers)
+        self.assertEqual(digests(self.path("named")), digests(self.path("numbers")))
+        self.run_scenario("plain", "")
+        self.assertNotEqual(digests(self.path("named"))["velocity.tif"], digests(self.path("plain"))["velocity.tif"])
+        self.assert_replays("named")
+
+    def sizes(self, diameter, *arguments):
+        """The warnings about sizes on stderr and in the record, of a run of one diameter."""
+        done = self.run_well(*self.arguments("sizes", str(diameter), "5"), "--overwrite", *arguments)
+        told = [line for line in done.stderr.splitlines() if line.startswith("talus: warning: block sizes: ")]
+        recorded = [w for w in self.record("sizes")["warnings"] if w.startswith("block sizes: ")]
+        self.assertEqual([line.removeprefix("talus: warning: ") for line in told], recorded)
+        return recorded
+
+    def test_sizes_outside_those_of_the_preset(self):
+        self.assertEqual(self.sizes(1.2), [])
+        (told,) = self.sizes(0.3)
+        self.assertIn("0.3 m", told)
+        self.assertIn("upper-talus-3d (1 to 1.4 m)", told)
+        self.assertIn("small blocks to run faster", told)
+        self.assertEqual(len(self.sizes(3, "--preset", "quarry-floor-2d")), 1)
+        plan = self.run_well("check", "--dem", self.path("dem.tif"), "--sources", self.path("sources.gpkg"), "--diameter", "0.3").stdout
+        self.assertEqual(plan.count("block sizes: "), 1)
 
     def test_broken_blocks_count_once_and_stops_hold_the_largest_piece(self):
         self.run_scenario("plain", "")
@@ -114,6 +144,8 @@ class Effects(Case):
                 "[effects.wet-ground]\ndrag = 1\n": ["has no days"],
                 '[effects.soft-ground]\ndrag = 1\nzones = ["moor"]\n': ["there is no zone 'moor'", "default"],
                 '[effects.soft-ground]\ndrag = 1\nfile = "no.gpkg"\n': ["effects.soft-ground.file", "no such file"],
+                '[effects.block-mass]\npreset = "mesured"\n': ["unknown preset 'mesured' of block-mass", "'measured'"],
+                "[effects.block-mass]\nreference_diameter = 2\n": ["must give roughness or stiffness, or preset"],
                 '[effects.air-drag]\ncoefficient = 1\nzones = ["default"]\n': ["unknown key 'zones'"],
         }.items():
             with self.subTest(text):

@@ -100,6 +100,20 @@ class OwnCampaign(Case):
             f"{r['block']},{r['screen']},{r['speed_ms']},{r['jump_height_m']}\n" for r in passages))
         self.campaign = self.write("campaign.toml", head + 'stops = "stops.csv"\npassages = "passages.csv"\n' + errors)
 
+    def test_calibrate_keeps_and_fits_effects(self):
+        start = self.write("start.toml", "[effects.rest-in-roughness]\nkappa = 0.5\n")
+        fast = ["--starts", "1", "--trials", "20", "-q", "--parameters", start]
+        self.run_well("calibrate", self.campaign, "-o", self.path("kept"), "--fit", "En50", *fast)
+        with open(self.path("kept/fitted.toml"), encoding="utf-8") as file:
+            self.assertIn("[effects.rest-in-roughness]\nkappa = 0.5\n", file.read())
+        self.run_well("calibrate", self.campaign, "-o", self.path("free"), "--fit", "effects.rest-in-roughness.kappa", *fast)
+        with open(self.path("free/calibration.json"), encoding="utf-8") as file:
+            record = json.load(file)
+        (kappa,) = record["parameters"]
+        self.assertEqual((kappa["key"], kappa["start"]), ("effects.rest-in-roughness.kappa", 0.5))
+        self.assertTrue(0 <= kappa["ci95"][0] <= kappa["ci95"][1] <= 3, kappa)
+        self.assertEqual(record["start_model"], start)
+
     def test_calibrate_lowers_the_error_and_writes_a_model_that_runs(self):
         before = os.listdir(self.folder)
         done = self.run_well("calibrate", self.campaign, "-o", self.path("fit"), "--fit", "theta_scale,En50", "--starts",
@@ -201,6 +215,9 @@ class OwnCampaign(Case):
         self.fails(2, "nowhere.toml", arguments=["calibrate", self.path("nowhere.toml"), "-o", self.path("x")])
         self.fails(2, "'E50'", "En50", arguments=["calibrate", self.campaign, "-o", self.path("x"), "--fit", "E50"])
         self.fails(2, "'En50'", "twice", arguments=["calibrate", self.campaign, "-o", self.path("x"), "--fit", "En50,En50"])
+        self.fails(2, "'effects.rest-in-roughness.kapa'", "did you mean 'effects.rest-in-roughness.kappa'",
+                   arguments=["calibrate", self.campaign, "-o", self.path("x"), "--fit", "effects.rest-in-roughness.kapa"])
+        self.fails(2, "says no days", arguments=["calibrate", self.campaign, "-o", self.path("x"), "--fit", "effects.wet-ground.drag"])
         for command in ["score", self.campaign, "--parameters", self.path("truth.toml")], ["calibrate", self.campaign, "-o", self.path("x")]:
             self.fails(2, "--seed", "9007199254740991", arguments=[*command, "--seed", "-1"])
         os.mkdir(self.path("taken"))

@@ -48,6 +48,7 @@ class Hazard(Case):
         self.simulate()
         done = self.run_well("hazard", self.path("out"))
         self.assertIn("0.52 events per year", done.stderr)
+        self.assertEqual(done.stderr.count("talus: warning: block sizes: "), 1)  # 0.8 m, the ground of 1 to 1.4 m
         with open(self.path("out/hazard.json"), encoding="utf-8") as file:
             record = json.load(file)
         for name in ("annual_frequency", "return_period_30", "return_period_300", "intensity_T30", "intensity_T100",

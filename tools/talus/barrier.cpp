@@ -237,6 +237,8 @@ int design(const Options& o) {
   check_numbers(o);
   const RunSummary run = talus::io::read_run(o.folder);
   const CrossingTable crossings = simulated_crossings(run, o);
+  if (!o.quiet)
+    for (const std::string& warning : run.size_warnings) say("warning", warning);
   const CrossingTable values = o.observed.empty() ? crossings : observed_crossings(o);
   BarrierReport report;
   Weighting weighting;

@@ -9,6 +9,8 @@
 #include "progress.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
+#include "talus/fit/calibrate/effect_parameters.hpp"
+#include "talus/fit/diagnose/diagnosis_rules.hpp"
 #include "talus/io/campaign/model_file.hpp"
 #include "talus/io/reports/fit_report.hpp"
 #include "talus/simulate/scenario/presets.hpp"
@@ -17,6 +19,7 @@ namespace {
 
 struct Options : CampaignCommand {
   std::vector<std::string> fit{"theta_scale", "psi_scale", "En50", "Et50"};
+  std::string parameters;  // file of the model from which the fit starts; empty: the default preset
   talus::FitOptions how;
 };
 
@@ -31,7 +34,8 @@ std::vector<talus::BlockRuns> runs_of(const talus::Campaign& campaign, const tal
   return runs;
 }
 
-/// Chooses what is fitted: the asked parameters of the zones that simulated paths touch.
+/// Chooses what is fitted: the asked parameters of the zones that simulated paths touch, then the asked numbers of
+/// effects.
 void choose_parameters(const talus::Campaign& campaign, const std::vector<std::string>& keys,
                        talus::io::Calibration& c) {
   const auto runs = runs_of(campaign, c.start, c, talus::fitting_rows(campaign));
@@ -41,7 +45,11 @@ void choose_parameters(const talus::Campaign& campaign, const std::vector<std::s
     const bool there = zone > 0 || cells.empty() || std::find(cells.begin(), cells.end(), 0) != cells.end();
     if (!touched[zone] && there) c.untouched.push_back(campaign.zone_names[zone]);
   }
-  c.free = talus::ground_parameters(campaign, c.start, keys, touched);
+  std::vector<std::string> of_ground, of_effects;
+  for (const std::string& key : keys) (key.starts_with("effects.") ? of_effects : of_ground).push_back(key);
+  if (!of_ground.empty()) c.free = talus::ground_parameters(campaign, c.start, of_ground, touched);
+  for (talus::Parameter& p : talus::effect_parameters(campaign, c.start, of_effects, talus::DiagnosisRules{}.noticed))
+    c.free.push_back(std::move(p));
 }
 
 /// Scores start and fit on both kinds of rows, with trials of their own.
@@ -84,7 +92,9 @@ int calibrate(const Options& options) {
   const talus::Campaign& campaign = opened.loaded.campaign;
   talus::io::OutputFolder& folder = opened.folder;
   c.options = options.how;
-  c.start = talus::model_of_preset(campaign, talus::kDefaultPreset);
+  c.start_name = options.parameters.empty() ? std::string(talus::kDefaultPreset) : options.parameters;
+  c.start = options.parameters.empty() ? talus::model_of_preset(campaign, talus::kDefaultPreset)
+                                       : talus::io::read_model(options.parameters, campaign);
   choose_parameters(campaign, options.fit, c);
   const std::vector<bool> rows = talus::fitting_rows(campaign);
   Progress progress(Progress::mode_of(options.quiet, options.progress == "machine"), 0);
@@ -117,9 +127,12 @@ void add_calibrate(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("calibrate", "Fit the parameters of the ground to measured data");
   options->add_to(*command, options->how.trials, options->fit, options->how.seed, options->how.threads);
+  command->add_option("--parameters", options->parameters,
+                      "model from which the fit starts, whose effects it keeps; else upper-talus-3d without effects");
   command->add_option("--starts", options->how.starts, "searches from different starts (3)")->check(CLI::Range(1, 50));
   command->footer(
       "Example:\n  talus calibrate campaign.toml -o result\n\n"
+      "--fit takes numbers of effects, too: --fit theta_scale,effects.rest-in-roughness.kappa\n"
       "OUT: fitted.toml (the model: for talus score, and to include in a scenario), report.md, calibration.json.");
   command->callback([&action, options] { action = [options] { return calibrate(*options); }; });
 }

@@ -15,6 +15,7 @@
 #include "talus/io/results/hazard_record.hpp"
 #include "talus/io/results/objects_file.hpp"
 #include "talus/io/results/recorded_plan.hpp"
+#include "talus/io/results/run_folder.hpp"
 #include "talus/io/results/run_record.hpp"
 #include "talus/products/hazard_maps.hpp"
 #include "talus/run/write_maps.hpp"
@@ -190,6 +191,7 @@ int hazard(const Options& options) {
   record.cells = survey->cells();
   if (record.width == 0.0) record.warnings = warnings_of(record.matrix, record.header.rules);
   for (const std::string& warning : warnings_of(record.header)) record.warnings.push_back(warning);
+  for (std::string& warning : talus::io::size_warnings_of(folder)) record.warnings.push_back(std::move(warning));
 
   progress.stage("writing the maps");
   const talus::Grid& grid = survey->grid();

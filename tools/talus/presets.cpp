@@ -8,6 +8,30 @@
 
 namespace {
 
+/// The diameters that each set was fitted to.
+void print_sizes() {
+  std::printf("\n%-18s  diameters fitted [m]\n", "preset");
+  for (const talus::Preset& preset : talus::presets()) {
+    const talus::FittedSizes& sizes = preset.sizes;
+    const std::string range = sizes.known() ? talus::text_of(sizes.smallest) + " to " + talus::text_of(sizes.largest)
+                                            : std::string("not known");
+    std::printf("%-18s  %-10s  %s\n", std::string(preset.name).c_str(), range.c_str(),
+                std::string(sizes.source).c_str());
+  }
+}
+
+/// The sets of effects, as a scenario names them, with their numbers.
+void print_effect_presets() {
+  std::printf("\n");
+  for (const talus::EffectPreset& preset : talus::effect_presets()) {
+    std::printf("[effects.%s] preset = \"%s\":", std::string(preset.effect).c_str(), std::string(preset.name).c_str());
+    for (const talus::EffectField& field : talus::find_effect(preset.effect)->fields())
+      std::printf(" %s %s%s", std::string(talus::find_effect(preset.effect)->key_of(field)).c_str(),
+                  talus::text_of(field.get(preset.numbers)).c_str(), field.unit == "m" ? " m" : "");
+    std::printf("; %s\n", std::string(preset.source).c_str());
+  }
+}
+
 /// One column per parameter of a ground, as `fields` names it; then the source of the set.
 int print_presets() {
   std::printf("%-18s", "preset");
@@ -21,6 +45,8 @@ int print_presets() {
     }
     std::printf("  %s: %s\n", std::string(preset.source).c_str(), std::string(preset.where).c_str());
   }
+  print_sizes();
+  print_effect_presets();
   std::printf(
       "\nTables of Mitchell and Hungr's paper on PIERRE 2. Units: En50, Et50 m3/s2, phi degrees; the others have "
       "none.\n"
@@ -32,7 +58,8 @@ int print_presets() {
 }  // namespace
 
 void add_presets(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("presets", "Print the parameter sets of the paper");
+  CLI::App* command = app.add_subcommand(
+      "presets", "Print the parameter sets of the paper and the block sizes that they were fitted to");
   command->footer("Example:\n  talus presets");
   command->callback([&action] { action = print_presets; });
 }

@@ -115,6 +115,14 @@ struct ImpactMoment {
   Restitution k;
 };
 
+/// State of a block after an impact, for effects that hold it there.
+struct ImpactEnd {
+  const Ground& ground;
+  const Block& block;
+  const Vec3 &velocity, &normal;  ///< after the impact [m/s]; of the smooth surface, unit
+  const Asperity& asperity;       ///< that the block has met
+};
+
 /// Changes of the law by effects: none, as in PIERRE 2.
 struct NoChanges {
   static void restitution(Restitution& /*k*/) {}

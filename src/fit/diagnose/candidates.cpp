@@ -1,26 +1,16 @@
 #include "talus/fit/diagnose/candidates.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
-#include "amount.hpp"
 #include "instrument_bias.hpp"
-#include "talus/base/sample.hpp"
+#include "talus/fit/calibrate/effect_parameters.hpp"
 #include "talus/fit/diagnose/undeclared_places.hpp"
 
 namespace talus {
 namespace {
 
 constexpr std::size_t kMostZones = 256;  // numbers that a raster of bytes can hold
-
-double median_of(const Campaign& campaign, const std::function<double(const MeasuredBlock&)>& value) {
-  std::vector<double> values;
-  for (const MeasuredBlock& block : campaign.blocks)
-    if (!block.holdout) values.push_back(value(block));
-  std::sort(values.begin(), values.end());
-  return quantile(values, 0.5);
-}
 
 /// A place where an effect may act: everywhere, or one of the zones that the paths meet.
 struct Place {
@@ -41,46 +31,13 @@ std::vector<Place> places_of(const Campaign& campaign, const Model& base, const 
   return places;
 }
 
-/// Medians over the blocks that may be fitted. Searches of the registry may be multiples of them.
-struct TypicalBlock {
-  double mass, diameter;  // [kg], [m]
-
-  double of(Typical typical) const {
-    return typical == Typical::BlockMass ? mass : typical == Typical::BlockDiameter ? diameter : 1.0;
-  }
-};
-
-TypicalBlock typical_block(const Campaign& campaign) {
-  return {median_of(campaign, [](const MeasuredBlock& b) { return b.mass; }),
-          median_of(campaign, [](const MeasuredBlock& b) { return equivalent_diameter(b.mass, b.density); })};
-}
-
-/// The search of one number of an effect, cut off at its bounds, or of the number's inverse.
-Parameter parameter_of(const EffectEntry& entry, const EffectField& field, const TypicalBlock& typical) {
-  const SearchRange& range = *field.search;
-  const std::string table = "effects." + std::string(entry.name) + ".", key(entry.key_of(field));
-  if (!range.inverse_unit.empty())
-    return amount(
-        table + "1/" + key, std::string(range.inverse_unit), range.off, range.noticed, range.lower, range.upper,
-        [get = field.get](const Model& m) {
-          const double value = get(m.effects);
-          return value > 0.0 ? 1.0 / value : 0.0;
-        },
-        [set = field.set, most = field.max](Model& m, double v) { set(m.effects, v * most > 1.0 ? 1.0 / v : 0.0); });
-  const double scale = typical.of(range.times);
-  return amount(
-      table + key, std::string(field.unit), range.off, range.noticed * scale, std::max(field.min, range.lower * scale),
-      std::min(field.max, range.upper * scale), [get = field.get](const Model& m) { return get(m.effects); },
-      [set = field.set](Model& m, double v) { set(m.effects, v); });
-}
-
 /// An effect at a place, its numbers searched as the registry says.
 Candidate candidate_of(const EffectEntry& entry, std::string where, const TypicalBlock& typical,
                        std::function<void(Model&)> place) {
   Candidate candidate{std::string(entry.name), std::move(where), {}, 0, {}};
   std::vector<std::pair<void (*)(Effects&, double), double>> settings;
   for (const EffectField& field : entry.fields()) {
-    if (field.search) candidate.parameters.push_back(parameter_of(entry, field, typical));
+    if (field.search) candidate.parameters.push_back(effect_parameter(entry, field, typical));
     if (field.search && field.is_strength()) ++candidate.tested;
     if (field.set_to != Typical::One) settings.emplace_back(field.set, typical.of(field.set_to));
   }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "amount.hpp"
+#include "fit/calibrate/amount.hpp"
 
 namespace talus {
 

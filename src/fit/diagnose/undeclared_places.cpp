@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "amount.hpp"
+#include "fit/calibrate/amount.hpp"
 
 namespace talus {
 namespace {

@@ -159,6 +159,7 @@ std::string calibration_json(const Calibration& c) {
             {"trials", c.options.trials},
             {"comparison_trials", c.options.comparison_trials},
             {"starts", c.options.starts},
+            {"start_model", c.start_name},
             {"evaluations", c.fit.tried},
             {"objective", json_of(c.fit.objective)},
             {"prior_weight", c.options.prior_weight},
@@ -183,13 +184,13 @@ std::string calibration_report(const Calibration& c) {
       "The intervals hold if the model is right; they do not say that it is.\n\n";
   for (const std::string& zone : c.untouched)
     text += "Zone " + zone + ": too few simulated paths touch it; its parameters are those of the start, " +
-            std::string(kDefaultPreset) + ".\n\n";
+            c.start_name + ".\n\n";
   text += "## Correlations of " + with_digits(kCorrelated, 3) + " or more\n\n" + correlation_lines(c) + "\n";
   text += "## Error\n\nMean normalised score, " + std::to_string(c.score_trials) +
           " trials per block that the search has not seen. 0: the model says the very value; about 0.56: it knows the "
           "spread of the measurements and no more. Before: " +
-          std::string(kDefaultPreset) +
-          " everywhere. Held-out rows took no part in the fit. What was minimised is the same with groups of n rows "
+          c.start_name + (c.start_name == kDefaultPreset ? " everywhere" : "") +
+          ". Held-out rows took no part in the fit. What was minimised is the same with groups of n rows "
           "that count n / (n + 10).\n\n" +
           error_lines(c);
   text +=

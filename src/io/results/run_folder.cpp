@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "talus/base/error.hpp"
+#include "talus/simulate/scenario/block_sizes.hpp"
 
 namespace talus::io {
 namespace {
@@ -24,6 +25,14 @@ Screen screen_of(const Json& json) {
     if (places.size() < 2) throw InputError("screen '" + screen.id + "' has a line of less than two places");
   }
   return screen;
+}
+
+std::vector<std::string> size_warnings_of(const Json& run) {
+  std::vector<std::string> found;
+  for (const Json& warning : run.value("warnings", Json::array()))
+    if (warning.is_string() && warning.get<std::string>().starts_with(kSizeWarning))
+      found.push_back(warning.get<std::string>());
+  return found;
 }
 
 }  // namespace
@@ -48,11 +57,18 @@ RunSummary read_run(const std::filesystem::path& folder) {
     run.density = setting_of(json, "blocks.density");
     run.cell = json.at("grid").at("cell_x_m").get<double>();
     for (const Json& screen : json.value("screens", Json::array())) run.screens.push_back(screen_of(screen));
+    run.size_warnings = size_warnings_of(json);
   } catch (const std::exception& error) {
     throw InputError(file.string() + ": cannot be understood (" + error.what() +
                      "), must be as talus run has written it; run the scenario again");
   }
   return run;
+}
+
+std::vector<std::string> size_warnings_of(const std::filesystem::path& folder) {
+  std::ifstream stream(folder / "run.json", std::ios::binary);
+  const Json json = Json::parse(stream, nullptr, false);
+  return json.is_object() ? size_warnings_of(json) : std::vector<std::string>{};
 }
 
 }  // namespace talus::io

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
+#include "talus/simulate/scenario/presets.hpp"
 
 namespace talus::io {
 
@@ -33,17 +35,35 @@ class EffectReader {
     if (table_.value() == nullptr) return;
     EffectSpec& effect = spec_.effects[name_];
     effect.where = table_.file() + ":" + std::to_string(table_.value()->line) + ": [effects." + name_ + "]";
-    const bool acts = numbers();
+    const bool preset = has_presets(name_) && take_preset();
+    const bool acts = numbers() || preset;
     if (std::vector<int>* list = entry_.days(spec_.values.effects)) days(effect, *list);
     if (entry_.area(spec_.values.effects) != nullptr) place(effect);
     const std::size_t faults = table_.faults().size();
     table_.finish();
     if (!acts && table_.faults().size() == faults)  // else the unknown key may be a misspelt strength
-      table_.faults().push_back(effect.where + " does nothing, must give " + strengths_of(entry_) + ", or be left out");
+      table_.faults().push_back(effect.where + " does nothing, must give " + strengths_of(entry_) +
+                                (has_presets(name_) ? ", or preset" : "") + ", or be left out");
   }
 
  private:
   void given(const std::string& key) { spec_.origins["effects." + name_ + "." + key] = origin_; }
+
+  /// Sets the numbers to those of the preset; numbers beside it come after. Returns whether one is named.
+  bool take_preset() {
+    const auto name = table_.text("preset");
+    if (!name) return false;
+    try {
+      const EffectPreset& preset = find_preset(name_, *name);
+      for (const EffectField& field : entry_.fields()) {
+        field.set(spec_.values.effects, field.get(preset.numbers));
+        spec_.origins["effects." + std::string(field.key)] = "preset " + *name + ": " + std::string(preset.source);
+      }
+    } catch (const InputError& error) {
+      table_.fault("preset", *table_.value()->find("preset"), error.what());
+    }
+    return true;
+  }
 
   /// Returns whether the effect acts: one of its strengths is given, here or in an included file.
   bool numbers() {

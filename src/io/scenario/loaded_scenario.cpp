@@ -9,6 +9,7 @@
 #include "io/files/checksum.hpp"
 #include "scenario_keys.hpp"
 #include "scenario_text.hpp"
+#include "size_warning.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/gdal/lines.hpp"
@@ -179,6 +180,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
   parts.surface = Surface(std::move(terrain.heights), spec.surface);
   warn_of_dams(parts.surface, out.warnings);
   out.scenario = make_scenario(std::move(parts));
+  warn_of_sizes(spec, out.scenario, out.warnings);
 
   out.complete_toml = toml_of(spec);
   out.settings = settings_of(spec);

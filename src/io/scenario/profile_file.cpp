@@ -9,6 +9,7 @@
 #include "profile_keys.hpp"
 #include "profile_line.hpp"
 #include "scenario_text.hpp"
+#include "size_warning.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/presets.hpp"
@@ -167,6 +168,7 @@ LoadedProfile load_profile(const RunFlags& flags) {
   parts.surface = Surface(std::move(extruded.heights));
   loaded.scenario = make_scenario(std::move(parts));
   warn_of_presets(spec, loaded.warnings);
+  warn_of_sizes(spec, loaded.scenario, loaded.warnings);
   loaded.complete_toml = toml_of(spec);
   loaded.settings = settings_of(spec);
   record_inputs(spec, loaded);

@@ -49,6 +49,14 @@ void ActiveEffects::after_impact(const Vec3& normal, Block& body, Motion& motion
     break_up(effect, release_, normal, body, motion, path);
 }
 
+bool ActiveEffects::holds(const ImpactEnd& end) const {
+  bool held = false;
+  for_each_effect(effects_, [&](const auto& effect) {
+    if constexpr (requires { effect.holds(end); }) held = held || (here(effect) && effect.holds(end));
+  });
+  return held;
+}
+
 Outcome ActiveEffects::fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path) {
   return drag_ ? drag_->fly(motion, at, grounded, body, path) : talus::fly(world_.surface, motion, at, grounded, path);
 }

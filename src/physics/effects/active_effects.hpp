@@ -21,6 +21,7 @@ class Effectless {
     return talus::impact(world_.impact, ground, body, motion, normal, asperity);
   }
   static void after_impact(const Vec3&, Block&, Motion&, Path&) {}
+  static bool holds(const ImpactEnd&) { return false; }
   Outcome fly(Motion& motion, PatchIndex& at, bool grounded, const Block&, Path& path) const {
     return talus::fly(world_.surface, motion, at, grounded, path);
   }
@@ -45,6 +46,8 @@ class ActiveEffects {
                  const Asperity& asperity);
   /// fragmentation: breaks the block if the last impact was hard enough.
   void after_impact(const Vec3& normal, Block& body, Motion& motion, Path& path) const;
+  /// Whether `holds` of an effect keeps the block at the place of the last call of `ground`.
+  bool holds(const ImpactEnd& end) const;
   /// A flight with vegetation-drag, air-drag and forest-stems.
   Outcome fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path);
   /// A slide with these three and rolling-resistance.

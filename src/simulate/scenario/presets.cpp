@@ -1,5 +1,6 @@
 #include "talus/simulate/scenario/presets.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -20,16 +21,37 @@ Ground ground_of(double theta_scale, double psi_scale, double en50, double shape
   return ground;
 }
 
+constexpr FittedSizes kVaujany{1.0, 1.4, "the paper's simulations of Vaujany"};
+constexpr FittedSizes kVaujanyOnly{1.0, 1.4, "not stated in 2D; the paper's simulations of Vaujany in 3D"};
+constexpr FittedSizes kVaujanyEhime{
+    0.4, 1.4, "not stated; Ehime 0.12 to 2.06 t (Ushiro et al. 2006), Vaujany as the paper simulates it in 3D"};
+constexpr FittedSizes kQuarry{kNotGiven, kNotGiven, "not stated; not known of the quarries"};
+
 // Mitchell & Hungr, PIERRE 2.
 const std::array<Preset, 7>& all() {
   static const std::array<Preset, 7> presets{{
-      {"firm-talus-2d", ground_of(0.7, 0.0, 15.0, 1.5), "Table 1", "firm talus, Vaujany and Ehime, in 2D"},
-      {"forest-road-2d", ground_of(0.4, 0.0, 15.0, 1.5), "Table 1", "forest road, in 2D"},
-      {"quarry-face-2d", ground_of(0.65, 0.0, 5.0, 1.0), "Table 2", "face of a quarry, in 2D"},
-      {"quarry-floor-2d", ground_of(0.35, 0.0, 5.0, 1.0), "Table 2", "floor of a quarry, in 2D"},
-      {"upper-talus-3d", ground_of(1.0, 0.9, 15.0, 1.5), "Table 3", "upper talus, Vaujany, in 3D"},
-      {"forest-road-3d", ground_of(0.4, 0.3, 15.0, 1.5), "Table 3", "forest road, Vaujany, in 3D"},
-      {"lower-talus-3d", ground_of(1.5, 1.0, 15.0, 1.5), "Table 3", "lower talus, Vaujany, in 3D"},
+      {"firm-talus-2d", ground_of(0.7, 0.0, 15.0, 1.5), "Table 1", "firm talus, Vaujany and Ehime, in 2D",
+       kVaujanyEhime},
+      {"forest-road-2d", ground_of(0.4, 0.0, 15.0, 1.5), "Table 1", "forest road, in 2D", kVaujanyOnly},
+      {"quarry-face-2d", ground_of(0.65, 0.0, 5.0, 1.0), "Table 2", "face of a quarry, in 2D", kQuarry},
+      {"quarry-floor-2d", ground_of(0.35, 0.0, 5.0, 1.0), "Table 2", "floor of a quarry, in 2D", kQuarry},
+      {"upper-talus-3d", ground_of(1.0, 0.9, 15.0, 1.5), "Table 3", "upper talus, Vaujany, in 3D", kVaujany},
+      {"forest-road-3d", ground_of(0.4, 0.3, 15.0, 1.5), "Table 3", "forest road, Vaujany, in 3D", kVaujany},
+      {"lower-talus-3d", ground_of(1.5, 1.0, 15.0, 1.5), "Table 3", "lower talus, Vaujany, in 3D", kVaujany},
+  }};
+  return presets;
+}
+
+// Exponents: docs/effects.md, "block-mass"; tools/scripts/studies/size_study.py prints them. D0 is the middle of the
+// sizes of the 3D sets of the paper, at which these sets stay as they are.
+const std::array<EffectPreset, 1>& all_of_effects() {
+  static const std::array<EffectPreset, 1> presets{{
+      {"block-mass", "measured", "fitted to Tschamut and Authume, blocks of 0.3 to 1.1 m",
+       [] {
+         Effects effects;
+         effects.block_mass = {.roughness = 0.7, .stiffness = 1.5, .reference_diameter = 1.2, .where = {}};
+         return effects;
+       }()},
   }};
   return presets;
 }
@@ -47,6 +69,24 @@ const Preset& find_preset(std::string_view name) {
     names.emplace_back(preset.name);
   }
   throw InputError("unknown preset '" + std::string(name) + "'" + known_names(name, names));
+}
+
+std::span<const EffectPreset> effect_presets() {
+  return all_of_effects();
+}
+
+bool has_presets(std::string_view effect) {
+  return std::ranges::any_of(all_of_effects(), [&](const EffectPreset& p) { return p.effect == effect; });
+}
+
+const EffectPreset& find_preset(std::string_view effect, std::string_view name) {
+  std::vector<std::string> names;
+  for (const EffectPreset& preset : all_of_effects()) {
+    if (preset.effect != effect) continue;
+    if (preset.name == name) return preset;
+    names.emplace_back(preset.name);
+  }
+  throw InputError("unknown preset '" + std::string(name) + "' of " + std::string(effect) + known_names(name, names));
 }
 
 }  // namespace talus

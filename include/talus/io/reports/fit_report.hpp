@@ -19,6 +19,7 @@ struct BeforeAfter {
 struct Calibration : FitRecord {
   FitOptions options;
   Model start;
+  std::string start_name;  ///< a preset, everywhere, or the file of a model
   std::vector<Parameter> free;
   std::vector<std::string> untouched;  ///< zones whose parameters stayed, because too few simulated paths touch them
   Fit fit;

@@ -7,6 +7,7 @@
 #include "talus/physics/effects/effect_entry.hpp"
 #include "talus/physics/effects/forest_stems.hpp"
 #include "talus/physics/effects/fragmentation.hpp"
+#include "talus/physics/effects/rest_in_roughness.hpp"
 #include "talus/physics/effects/rolling_resistance.hpp"
 #include "talus/physics/effects/soft_ground.hpp"
 #include "talus/physics/effects/vegetation_drag.hpp"
@@ -16,7 +17,8 @@
 /// an entry in `kEntries`; all else follows from them. docs/adding-an-effect.md.
 ///
 /// At an impact an effect acts by these member functions of its struct; it has only those that it needs:
-/// `change_ground(ground, block, day)`, `change_restitution(k, block)` and `change_rebound(after, moment)`.
+/// `change_ground(ground, block, day)`, `change_restitution(k, block)`, `change_rebound(after, moment)` and
+/// `holds(end)`.
 namespace talus {
 
 /// The parameters of each effect. By default each effect is off; off is bit-identical to absent.
@@ -30,6 +32,7 @@ struct Effects {
   SoftGround soft_ground;
   RollingResistance rolling_resistance;
   Fragmentation fragmentation;
+  RestInRoughness rest_in_roughness;
 
   /// Whether one of them acts.
   bool any() const;
@@ -111,6 +114,11 @@ inline constexpr std::tuple kEntries{
         Number<&Fragmentation::largest>{
             .bounds = {"fragmentation.largest", "1", "share of the mass that the largest piece keeps", 0.5, 0.99},
             .search = SearchRange{.lower = 0.5, .upper = 0.99, .noticed = 0.15, .off = 0.7}}),
+    entry<&Effects::rest_in_roughness>(
+        "rest-in-roughness", Sought::InZones, 10,
+        strength<&RestInRoughness::kappa>(
+            {"rest-in-roughness.kappa", "1", "height that a block must be able to climb, in D tan(theta)", 0.0, 10.0},
+            SearchRange{.lower = 0.0, .upper = 3.0, .noticed = 0.3})),
 };
 
 static_assert(members_of<Effects>() == std::tuple_size_v<decltype(kEntries)>,

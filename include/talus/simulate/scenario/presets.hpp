@@ -1,10 +1,22 @@
 #pragma once
+#include <cmath>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include "talus/physics/effects/registry.hpp"
 #include "talus/physics/ground.hpp"
 
 namespace talus {
+
+/// Diameters of the blocks that a parameter set was fitted to [m]. NaN: not known.
+struct FittedSizes {
+  double smallest, largest;
+  std::string_view source;  ///< where the paper, or the literature about its site, says so
+
+  bool known() const { return !std::isnan(smallest); }
+};
 
 /// A parameter set of the paper. docs/physics.md, "Parameter sets".
 struct Preset {
@@ -12,6 +24,7 @@ struct Preset {
   Ground ground;
   std::string_view source;  ///< the table of the paper
   std::string_view where;   ///< the ground that it was fitted to
+  FittedSizes sizes;
 };
 
 /// The ground of a scenario that names no other.
@@ -22,5 +35,21 @@ std::span<const Preset> presets();
 
 /// The set of this name. Throws InputError with the nearest name and all names.
 const Preset& find_preset(std::string_view name);
+
+/// A parameter set of an effect. docs/effects.md, in the section of the effect.
+struct EffectPreset {
+  std::string_view effect, name;  ///< "block-mass", "measured"
+  std::string_view source;        ///< where its numbers come from
+  Effects numbers;                ///< those of this effect count
+};
+
+/// All sets of effects.
+std::span<const EffectPreset> effect_presets();
+
+/// Whether there are sets of this effect.
+bool has_presets(std::string_view effect);
+
+/// The set of this name of an effect. Throws InputError with the nearest name and all names.
+const EffectPreset& find_preset(std::string_view effect, std::string_view name);
 
 }  // namespace talus

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "talus/base/error.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace talus {
 
@@ -41,6 +42,29 @@ TEST(Presets, AnUnknownOneNamesAll) {
     EXPECT_NE(message.find("did you mean 'upper-talus-3d'?"), std::string::npos) << message;
     for (const Preset& preset : presets()) EXPECT_NE(message.find(preset.name), std::string::npos) << message;
   }
+}
+
+/// The paper's simulations of Vaujany have 1.0 to 1.4 m; of the quarries it says nothing.
+TEST(Presets, SayTheSizesThatTheyWereFittedTo) {
+  for (const Preset& preset : presets()) {
+    const bool quarry = preset.name.starts_with("quarry");
+    EXPECT_EQ(preset.sizes.known(), !quarry) << preset.name;
+    EXPECT_FALSE(preset.sizes.source.empty()) << preset.name;
+    if (!quarry) EXPECT_EQ(preset.sizes.largest, 1.4) << preset.name;
+    if (preset.name.ends_with("3d")) EXPECT_EQ(preset.sizes.smallest, 1.0) << preset.name;
+  }
+}
+
+TEST(Presets, OfEffectsAreOffInTheOtherEffectsAndAllowed) {
+  for (const EffectPreset& preset : effect_presets()) {
+    EXPECT_TRUE(has_presets(preset.effect));
+    for (const EffectEntry& entry : effect_entries()) {
+      EXPECT_EQ(entry.acts(preset.numbers), entry.name == preset.effect) << preset.name;
+      for (const EffectField& field : entry.fields())
+        EXPECT_EQ(fault_of(field, field.get(preset.numbers)), std::nullopt) << field.key;
+    }
+  }
+  EXPECT_FALSE(has_presets("soft-ground"));
 }
 
 }  // namespace talus

@@ -1,5 +1,5 @@
 #pragma once
-#include "talus/fit/diagnose/candidate.hpp"
+#include "talus/fit/calibrate/parameters.hpp"
 
 namespace talus {
 

@@ -1,0 +1,13 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scenario_spec.hpp"
+
+namespace talus::io {
+
+/// Adds a warning if the blocks of a scenario have other sizes than those that the presets of its ground were fitted
+/// to. A ground whose theta_scale and En50 are both given beside the preset is the user's own.
+void warn_of_sizes(const ScenarioSpec& spec, const Scenario& scenario, std::vector<std::string>& warnings);
+
+}  // namespace talus::io

@@ -1,0 +1,60 @@
+#include "talus/simulate/scenario/block_sizes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace talus {
+namespace {
+
+Scenario of_diameter(double low, double high) {
+  Scenario scenario;
+  scenario.features = {SourceFeature{}};
+  scenario.blocks.classes = {BlockClass{{low, high}}};
+  return scenario;
+}
+
+std::string warning(const Scenario& scenario, std::string_view preset = "upper-talus-3d") {
+  const std::vector<const Preset*> presets{&find_preset(preset), &find_preset(preset)};
+  return size_warning(scenario, presets);
+}
+
+TEST(BlockSizes, OfClassesFeaturesAndPowerLaws) {
+  Scenario scenario = of_diameter(0.5, 0.7);
+  scenario.blocks.classes.push_back({{2.0, 3.0}});
+  EXPECT_EQ(diameters_of(scenario), (Range{0.5, 3.0}));
+  scenario.features[0].diameter = {1.0, 1.1};  // all features have their own: the classes are not used
+  EXPECT_EQ(diameters_of(scenario), (Range{1.0, 1.1}));
+  scenario.features.push_back({});
+  EXPECT_EQ(diameters_of(scenario), (Range{0.5, 3.0}));
+  scenario.blocks.classes.clear();
+  scenario.blocks.power_law.volume = {kPi / 6.0, 8.0 * kPi / 6.0};  // spheres of 1 and 2 m
+  EXPECT_NEAR(diameters_of(scenario).low, 1.0, 1e-15);
+  EXPECT_NEAR(diameters_of(scenario).high, 2.0, 1e-15);
+}
+
+TEST(BlockSizes, WarnsOutsideAndNotInside) {
+  EXPECT_EQ(warning(of_diameter(1.0, 1.4)), "");
+  EXPECT_EQ(warning(of_diameter(1.2, 1.2)), "");
+  for (const Scenario& scenario : {of_diameter(0.99, 1.2), of_diameter(1.2, 1.41), of_diameter(0.3, 4.0)}) {
+    const std::string text = warning(scenario);
+    EXPECT_TRUE(text.starts_with(kSizeWarning)) << text;
+    EXPECT_NE(text.find("upper-talus-3d (1 to 1.4 m)"), std::string::npos) << text;
+    EXPECT_EQ(text.find("upper-talus-3d"), text.rfind("upper-talus-3d")) << "once: " << text;
+    EXPECT_NE(text.find("small blocks to run faster"), std::string::npos) << text;
+  }
+  EXPECT_NE(warning(of_diameter(0.3, 4.0)).find("diameters are 0.3 to 4 m"), std::string::npos);
+}
+
+TEST(BlockSizes, SaysWhatIsNotKnownWhatBreaksAndWhatIsScaled) {
+  EXPECT_NE(warning(of_diameter(1.2, 1.2), "quarry-face-2d").find("quarry-face-2d (not known)"), std::string::npos);
+  Scenario scenario = of_diameter(1.2, 1.2);
+  scenario.effects.block_mass.roughness = 0.5;
+  EXPECT_EQ(warning(scenario), "");
+  scenario.effects.fragmentation.threshold = 100.0;
+  const std::string text = warning(scenario);
+  EXPECT_NE(text.find("of pieces less"), std::string::npos) << text;
+  EXPECT_NE(text.find("[effects.block-mass] changes"), std::string::npos) << text;
+  EXPECT_EQ(text.find("small blocks to run faster"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace talus
