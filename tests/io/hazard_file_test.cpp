@@ -100,7 +100,7 @@ TEST_F(HazardFile, DamagedForeignOrLaterFilesAreRefused) {
   plain[plain.size() - 80] = static_cast<char>(plain[plain.size() - 80] ^ 1);  // packed well, but another number
   refused(packed(plain), "is damaged");
   refused(packed("something else altogether"), "is no file that talus run wrote");
-  refused(packed(std::string("talus-hazard") + std::string("\x02\0\0\0", 4)), "later version of Talus (format 2, this");
+  refused(packed(std::string("talus-hazard") + std::string("\x03\0\0\0", 4)), "later version of Talus (format 3, this");
   refused("", "is");
 }
 
