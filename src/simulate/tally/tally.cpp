@@ -279,6 +279,7 @@ void Tally::add_lengths(const Group& group, std::span<const float> mixed, const 
                         Region& region) const {
   CellRecord& record = region.records[group.record];
   std::int64_t* const above = region.lengths.data() + group.record * energy_thresholds();
+  HazardCell* const hazard = hazard_ ? &region.hazards[group.record] : nullptr;
   std::array<float, 64> buffer;
   std::uint16_t previous = group.visits.front().trajectory;
   double of_block = 0.0;
@@ -293,9 +294,9 @@ void Tally::add_lengths(const Group& group, std::span<const float> mixed, const 
     of_block += lengths[0];
     length += fixed_point(lengths[0]);
     for (std::size_t i = 0; i + 1 < lengths.size(); ++i) above[i] += fixed_point(lengths[1 + i]);
-    if (!hazard_) continue;
+    if (hazard == nullptr) continue;
     const VisitBatch::Trajectory& of = batch.trajectories()[visit.trajectory];
-    region.hazards[group.record].add_lengths(hazard_->rules, lengths, of.stake, of.size.diameter);
+    hazard->add_lengths(hazard_->rules, lengths, of.stake, of.size.diameter);
   }
   record.length += length;
   record.length_squares += squares + fixed_point(of_block * of_block);

@@ -9,9 +9,10 @@ cells of each grid. The blocks start at the same points on each grid: `--points`
 valley, as point sources, each with its share of the frequency of its cliff. Each run is repeated with another seed: that
 is the noise to compare with. Places are the centres of the 5 m cells (within 0.7 m on the others) that blocks reach.
 
-Table 1: how many of these places have the same class on two maps, with --width and without. Table 2: the frequency of
-passages and of passages above 300 kJ, as a ratio of the means over all places, and the spread of the differences in units
-of the standard errors (1 is noise alone). Table 3: against `--objects`: discs of that width, and the houses of the valley
+Table 1, with --width and without: how many of these places have the same class on two maps; the same of those where the
+class is decided on both (band 4 of hazard_class.tif is 0), and of the whole map; the frequency of passages and of passages
+above 300 kJ, as a ratio of the means over all places, and the spread of the differences in units of the standard errors (1
+is noise alone). Table 2: against `--objects`: discs of that width, and the houses of the valley
 with their mean width (perimeter / pi).
 Needs python3-numpy, python3-gdal; with -o python3-matplotlib.
 """
@@ -163,6 +164,7 @@ class Maps:
         subprocess.run([o.talus, "hazard", str(out), "-q", "--overwrite", *options, *more], check=True)
         self.out = out
         self.classes = at_places(read(out / "hazard_class.tif"), cell)
+        self.decided = at_places(read(out / "hazard_class.tif", 4), cell) == 0
         self.value, self.error = [], []
         for name, invert in (("annual_frequency", False), ("return_period_300", True)):
             value, low, high = (at_places(read(out / f"{name}.tif", band), cell) for band in (1, 2, 3))
@@ -175,7 +177,9 @@ class Maps:
 def compare(one, other):
     """Share of the reached places with the same class, and by quantity the ratio of means and the spread."""
     reached = (one.classes > 0) | (other.classes > 0)
-    figures = [np.mean(one.classes[reached] == other.classes[reached]), int(reached.sum())]
+    same, decided = one.classes == other.classes, reached & one.decided & other.decided
+    figures = [np.mean(same[reached]), int(reached.sum()), np.mean(same[decided]), int(decided.sum()),
+               np.mean(same[np.isfinite(one.classes) & np.isfinite(other.classes)])]
     for quantity in range(2):
         f, g = one.value[quantity], other.value[quantity]
         e = np.hypot(one.error[quantity], other.error[quantity])
@@ -189,13 +193,13 @@ def print_comparisons(o):
     for width in (o.width, 0):
         maps = {(cell, seed): Maps(o, cell, seed, width) for cell in CELLS for seed in SEEDS}
         kept[width] = maps
-        print(f"\n| {'object of %g m' % width if width else 'the cell as object'} | same class | places | frequency: ratio | spread "
-              "| above 300 kJ: ratio | spread |\n| --- | --- | --- | --- | --- | --- | --- |")
+        print(f"\n| {'object of %g m' % width if width else 'the cell as object'} | same class | places | same where decided | places "
+              "| same, whole map | frequency: ratio | spread | above 300 kJ: ratio | spread |\n" + "| --- " * 10 + "|")
         pairs = [((a, 1), (b, 1)) for a, b in ((1, 2), (2, 5), (1, 5))] + [((c, 1), (c, 2)) for c in CELLS]
         for (a, s), (b, t) in pairs:
-            same, places, ratio, spread, ratio300, spread300 = compare(maps[a, s], maps[b, t])
+            same, places, sure, told, whole, ratio, spread, ratio300, spread300 = compare(maps[a, s], maps[b, t])
             what = f"{a} m and {b} m" if a != b else f"{a} m, two seeds"
-            print(f"| {what} | {100 * same:.1f} % | {places} | {ratio:.3f} | {spread:.2f} | {ratio300:.3f} | {spread300:.2f} |")
+            print(f"| {what} | {100 * same:.1f} % | {places} | {100 * sure:.1f} % | {told} | {100 * whole:.1f} % | {ratio:.3f} | {spread:.2f} | {ratio300:.3f} | {spread300:.2f} |")
     return kept
 
 
