@@ -132,8 +132,8 @@ TEST(Candidates, OffChangesNoBit) {
     const auto same = observe(c, off, {20, 1, 0, 0, {}, {}});
     for (std::size_t b = 0; b < runs.size(); ++b)
       for (std::size_t t = 0; t < 20; ++t) {
-        const auto same_bits = [&](const std::vector<double>& a, const std::vector<double>& b) {
-          return a[t] == b[t] || (std::isnan(a[t]) && std::isnan(b[t]));
+        const auto same_bits = [&](const std::vector<double>& one, const std::vector<double>& other) {
+          return one[t] == other[t] || (std::isnan(one[t]) && std::isnan(other[t]));
         };
         ASSERT_TRUE(same_bits(same[b].x, runs[b].x) && same_bits(same[b].y, runs[b].y) &&
                     same_bits(same[b].screens[0].speed, runs[b].screens[0].speed) &&

@@ -72,7 +72,7 @@ TEST(HitsOfObject, AddUpOverAllPlacesAcrossAFlow) {
     for (int block = 0; block < 5; ++block)
       passed.add_lengths(rules, std::vector<float>{static_cast<float>(cell), static_cast<float>(cell), 0.0F},
                          {scale.largest, 0, 10}, 2.0);
-    const std::vector<HazardSurvey::Cell> cells{{side / 2, passed}};
+    const std::vector<HazardAt> cells{{side / 2, passed, false}};
     for (int row = 0; row < side; ++row)
       survey.set_row(row, std::vector<bool>(static_cast<std::size_t>(side), true), cells);
     survey.finish(2);

@@ -28,8 +28,8 @@ struct Seen {
 std::map<Cell, Seen> seen(const VisitBatch& batch, const Grid& grid) {
   const int across = (grid.columns + kRegionSide - 1) / kRegionSide;
   std::map<Cell, Seen> cells;
-  for (const auto& [index, region] : batch.regions())
-    for (const Visit& visit : region.visits) {
+  for (const auto& [index, visits_of_region] : batch.regions())
+    for (const Visit& visit : visits_of_region.visits) {
       const int region = static_cast<int>(index);
       Seen& cell = cells[{region % across * kRegionSide + visit.cell % kRegionSide,
                           region / across * kRegionSide + visit.cell / kRegionSide}];
