@@ -90,9 +90,10 @@ HazardSurvey::Row HazardSurvey::averaged(int row, std::span<const DiscCell> disc
     const Row& from = rows_[static_cast<std::size_t>(row + part.row)];
     for (std::size_t k = 0; k < from.columns.size(); ++k) {
       const int column = from.columns[k] - part.column;
-      if (column < 0 || column >= grid_.columns || !(from.densities[k * levels].length > 0.0)) continue;
-      hit[static_cast<std::size_t>(column)] = true;
+      if (column < 0 || column >= grid_.columns) continue;
       if (from.exits[k]) exit[static_cast<std::size_t>(column)] = true;
+      if (!(from.densities[k * levels].length > 0.0)) continue;
+      hit[static_cast<std::size_t>(column)] = true;
       for (std::size_t level = 0; level < levels; ++level) {
         PassageDensity& to = sums[static_cast<std::size_t>(column) * levels + level];
         const PassageDensity& add = from.densities[k * levels + level];
@@ -105,7 +106,7 @@ HazardSurvey::Row HazardSurvey::averaged(int row, std::span<const DiscCell> disc
   Row to;
   to.terrain = rows_[static_cast<std::size_t>(row)].terrain;
   for (std::size_t column = 0; column < to.terrain.size(); ++column) {
-    if (!hit[column] || !to.terrain[column]) continue;
+    if (!(hit[column] || exit[column]) || !to.terrain[column]) continue;
     to.columns.push_back(static_cast<int>(column));
     const std::vector<float> figures = figures_of({&sums[column * levels], levels}, exit[column]);
     to.figures.insert(to.figures.end(), figures.begin(), figures.end());

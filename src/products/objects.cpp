@@ -10,6 +10,7 @@
 #include "object_finder.hpp"
 #include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/plan/work_units.hpp"
+#include "talus/simulate/scenario/block_sizes.hpp"
 #include "talus/simulate/totals.hpp"
 
 namespace talus {
@@ -23,7 +24,7 @@ class Replay {
       : scenario_(scenario),
         weights_(weights),
         rules_{EnergyBins(scenario.output.energy_thresholds), weights.scale()},
-        finder_(scenario.surface, objects, 0.5 * largest_diameter(scenario)),
+        finder_(scenario.surface, objects, 0.5 * diameters_of(scenario).high),
         proceed_(proceed),
         per_source_((scenario.trajectories + kBlocksPerUnit - 1) / kBlocksPerUnit),
         units_(std::uint64_t{per_source_} * scenario.sources.size()),

@@ -38,7 +38,8 @@ struct Gully {
       trace({terrain, cover, {}, {}}, test::block_at({start().x(), start().y(), height}, Vec3::Zero(), 1.0, block),
             path);
       const Eigen::Vector2d end = path.vertices.back().motion.position.head<2>();
-      stopped += path.end == End::Stopped && (end - start()).dot(way()) < kWay ? 1 : 0;
+      const bool stays = path.end == End::Stopped || path.end == End::Trapped;
+      stopped += stays && (end - start()).dot(way()) < kWay ? 1 : 0;
     }
     return 1.0 * stopped / kBlocks;
   }

@@ -94,7 +94,9 @@ int calibrate(const Options& options) {
   c.options = options.how;
   c.start_name = options.parameters.empty() ? std::string(talus::kDefaultPreset) : options.parameters;
   c.start = options.parameters.empty() ? talus::model_of_preset(campaign, talus::kDefaultPreset)
-                                       : talus::io::read_model(options.parameters, campaign);
+                                       : talus::io::read_model(options.parameters, campaign, &c.warnings);
+  if (!options.quiet)
+    for (const std::string& warning : c.warnings) say("warning", warning);
   choose_parameters(campaign, options.fit, c);
   const std::vector<bool> rows = talus::fitting_rows(campaign);
   Progress progress(Progress::mode_of(options.quiet, options.progress == "machine"), 0);

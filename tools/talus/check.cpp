@@ -216,6 +216,7 @@ void write_pits(const Options& options, const LoadedScenario& loaded) {
   for (const talus::io::InputFile& input : loaded.inputs) out.protect(input.path);
   talus::io::write_pits(out.temporary(), loaded.scenario.surface.heights(), loaded.geo);
   out.commit();
+  if (!options.quiet) std::printf("written: %s\n", options.pits.c_str());
 }
 
 int check(const Options& options) {

@@ -57,9 +57,9 @@ Weighting weigh_crossings(std::vector<talus::LineCrossing>& crossings, const Cro
                             " knows no annual frequencies that could be replaced; give the sources a field frequency, "
                             "or the scenario [frequency], and run again");
   }
-  const auto header = talus::io::read_hazard(
-      file, [](const talus::io::HazardHeader&) {}, [](const talus::io::HazardRow&) {});
   try {
+    const auto header = talus::io::read_hazard(
+        file, [](const talus::io::HazardHeader&) {}, [](const talus::io::HazardRow&) {});
     const auto loaded = talus::io::recorded_plan(o.folder, header.plan, o.frequency);
     const auto scale = weigh(crossings, table, loaded.scenario, o);
     return {"by the annual frequency " + (o.frequency.empty() ? "of its source" : "in " + o.frequency), scale};

@@ -17,13 +17,14 @@ using talus::Scenario;
 // Measured on the valley and on the region of docs/performance.md.
 constexpr double kBase = 64e6;             // of the process [byte]
 constexpr double kHistogram = 40.0;        // of a quantity of a touched cell [byte]
-constexpr double kHazardCell = 760.0;      // annual frequencies of a touched cell [byte]: 32 bins, lengths, containers
+constexpr double kHazardCell = 664.0;      // annual frequencies of a touched cell [byte]: 32 bins, containers
+constexpr double kHazardLevel = 24.0;      // the same: lengths of all passages, and above each energy threshold [byte]
 constexpr double kRasterCell = 3.4;        // of a touched cell in a band of a compressed raster [byte]
 constexpr double kHazardFile = 77.0;       // of a touched cell [byte]
 constexpr double kStop = 172.0;            // a row of stops.gpkg [byte]
 constexpr double kPathPoint = 36.0;        // of trajectories.gpkg [byte]
 constexpr double kCrossing = 150.0;        // a row of screens.csv [byte]
-constexpr double kKeptCell = 320.0;        // of a touched cell in the saved tally [byte]
+constexpr double kKeptCell = 344.0;        // of a touched cell in the saved tally [byte]
 constexpr double kDraftBand = 16.0 / 3.0;  // of a cell, with overviews [byte]
 constexpr double kDraftBands = 5.0;        // of the largest maps
 constexpr double kLargeMap = 16e6;         // cells; from there on drafts are compressed, and empty cells take nothing
@@ -34,6 +35,16 @@ constexpr double kWriteFiles = 0.6;        // to create all files [s]
 
 double thresholds(const Scenario& scenario) {
   return static_cast<double>(scenario.output.energy_thresholds.size() + scenario.output.height_thresholds.size());
+}
+
+/// Annual frequencies of a touched cell [byte].
+double hazard_bytes(const Scenario& scenario) {
+  return kHazardCell + kHazardLevel * static_cast<double>(1 + scenario.output.energy_thresholds.size());
+}
+
+/// Lengths of paths above the energy thresholds, of a touched cell [byte].
+double length_bytes(const Scenario& scenario) {
+  return 8.0 * static_cast<double>(scenario.output.energy_thresholds.size());
 }
 
 double bands(const Scenario& scenario) {
@@ -47,8 +58,7 @@ double bands(const Scenario& scenario) {
 
 double bytes_in_memory(const Scenario& scenario, const RunSize& size) {
   const double cell = sizeof(talus::CellRecord) + talus::kQuantities * kHistogram + 16.0 + 4.0 * thresholds(scenario) +
-                      8.0 * static_cast<double>(scenario.output.energy_thresholds.size()) +
-                      (size.with_hazard ? kHazardCell : 0.0);
+                      length_bytes(scenario) + (size.with_hazard ? hazard_bytes(scenario) : 0.0);
   return kBase + size.touched_cells * cell;
 }
 
@@ -61,7 +71,8 @@ double bytes_of_results(const Scenario& scenario, const RunSize& size) {
 }
 
 double bytes_at_work(const Scenario& scenario, const RunSize& size, unsigned processors) {
-  const double kept = kKeptCell + 4.0 * thresholds(scenario) + (size.with_hazard ? kHazardCell : 0.0);
+  const double kept = kKeptCell + 4.0 * thresholds(scenario) + length_bytes(scenario) +
+                      (size.with_hazard ? hazard_bytes(scenario) : 0.0);
   const double cells = size.grid_cells > kLargeMap ? size.touched_cells : size.grid_cells;
   const double drafts = kDraftBand * kDraftBands * std::min(processors, unsigned{talus::run::kMapsAtOnce}) * cells;
   return size.touched_cells * kept + std::max(size.touched_cells * kept, drafts) +

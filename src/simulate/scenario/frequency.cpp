@@ -5,6 +5,7 @@
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/block_class.hpp"
+#include "talus/simulate/scenario/block_sizes.hpp"
 
 namespace talus {
 namespace {
@@ -150,15 +151,6 @@ double power_of_two_above(double value) {
 
 }  // namespace
 
-double largest_diameter(const Scenario& s) {
-  double diameter = 0.0;
-  for (const BlockClass& c : s.blocks.classes) diameter = std::max(diameter, c.diameter.high);
-  diameter = std::max(diameter, std::cbrt(6.0 / kPi * s.blocks.power_law.volume.high));
-  for (const SourceFeature& f : s.features)
-    if (!std::isnan(f.diameter.high)) diameter = std::max(diameter, f.diameter.high);
-  return diameter;
-}
-
 double true_area(const Raster<float>& heights, int column, int row) {
   const Grid& grid = heights.grid;
   const auto slope = [&](int dx, int dy, double step) {
@@ -193,7 +185,7 @@ std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, bool further_r
   WeightScale& scale = out.scale_;
   out.classes_ = factors.size();
   scale.trajectories = s.released();
-  scale.largest_diameter = largest_diameter(s);
+  scale.largest_diameter = diameters_of(s).high;
   double most = 0.0, squares = 0.0;  // bounds of the sums over all trajectories
   for (const double cell : cells) {
     const double weight = cell * largest_factor / s.trajectories;

@@ -97,13 +97,12 @@ void HazardCell::add_lengths(const HazardRules& rules, std::span<const float> le
     WeightedLengths& sums = lengths_[level];
     sums.length += rounded(weight * length / WeightedLengths::kLengthUnit);
     sums.by_diameter += rounded(weight * length * diameter / WeightedLengths::kDiameterUnit);
-    sums.squares += rounded(square * length / WeightedLengths::kLengthUnit);
+    sums.squares += static_cast<std::int64_t>(std::ceil(square * length / WeightedLengths::kLengthUnit));
   }
 }
 
 void HazardCell::merge(const HazardCell& other) {
-  if (other.bins_.empty()) return;
-  cover(other.first_, other.first_ + static_cast<int>(other.bins_.size()) - 1);
+  if (!other.bins_.empty()) cover(other.first_, other.first_ + static_cast<int>(other.bins_.size()) - 1);
   for (std::size_t i = 0; i < other.bins_.size(); ++i) {
     Bin& bin = bins_[i + static_cast<std::size_t>(other.first_ - first_)];
     bin.weight += other.bins_[i].weight;

@@ -111,9 +111,18 @@ void VisitBatch::add(std::span<const Span> spans) {
       }
       count(visit(span.patch.column + east_to, span.patch.row + north_to), turn, end);
     }
-    Visit& last = region_->visits.back();
-    last.impacts = (last.impacts + span.impacts) & kMostImpacts;
+    add_impacts(span.impacts);
   }
+}
+
+/// Adds impacts to the current visit; what its field cannot hold goes to further visits of the same cell.
+void VisitBatch::add_impacts(std::uint32_t impacts) {
+  Visit* last = &region_->visits.back();
+  for (; impacts > kMostImpacts - last->impacts; last = &new_visit(column_, row_)) {
+    impacts -= kMostImpacts - last->impacts;
+    last->impacts = kMostImpacts;
+  }
+  last->impacts = (last->impacts + impacts) & kMostImpacts;
 }
 
 float VisitBatch::plan_length(const Span& span) const {
@@ -169,6 +178,7 @@ void VisitBatch::close_visit() {
   if (mixed) {
     for (std::size_t level = top; level-- > 0;) here_[level] += here_[level + 1];  // that level and all above it
     region_->lengths.insert(region_->lengths.end(), here_.begin(), here_.end());
+    size_ += (here_.size() * sizeof(float) + sizeof(Visit) - 1) / sizeof(Visit);  // their memory, in visits
   }
   for (std::size_t level = 0; level <= top; ++level) here_[level] = 0.0F;
 }

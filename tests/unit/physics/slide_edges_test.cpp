@@ -145,7 +145,7 @@ TEST(SlideAlongACrease, GoesDownTheThalwegAsOnAPlaneOfItsSlope) {
   EXPECT_NEAR(o.motion.position.x(), 41.0 + way * std::cos(beta) * std::sqrt(0.5), 1e-3);
   EXPECT_NEAR(o.motion.position.y(), o.motion.position.x(), 1e-6);
   EXPECT_EQ(slide_from(diagonal_gully(SurfaceKind::Bilinear), 0.3, {41.0, 41.0}, {0.1, 0.1}, way).end,
-            SlideEnd::Stopped);
+            SlideEnd::Trapped);
   EXPECT_EQ(slide_from(surface, 0.3, {41.0, 41.0}, {0.1, 0.1}, way).end, SlideEnd::Asperity);
 }
 

@@ -74,7 +74,7 @@ TEST(Simulate, IsTheSumOfItsPaths) {
   Totals expected;
   std::map<std::uint32_t, std::shared_ptr<SourceReach>> reaches;
   for_each_path(s, [&](const Release& release, const Path& path) {
-    VisitBatch batch(s.surface.grid());
+    VisitBatch batch(s.surface.grid(), length_rules(s.output));
     std::shared_ptr<SourceReach>& reach = reaches[release.source];
     if (!reach) reach = std::make_shared<SourceReach>();
     batch.add(path, release.body.mass, release.source, reach);

@@ -29,7 +29,7 @@ struct ScoreSettings {
   std::string campaign;  ///< its name
   std::uint32_t trials = 100;
   std::uint64_t seed = 1;
-  std::string surface = "bilinear";  ///< of the campaign's terrain
+  std::string surface;  ///< of the campaign's terrain
 };
 
 /// One warning for each group in which more than half of the rows score as the climatology. Such rows do not score the

@@ -51,9 +51,6 @@ class AnnualWeights {
   WeightScale scale_;
 };
 
-/// Diameter of the largest block that a scenario can release [m].
-double largest_diameter(const Scenario& scenario);
-
 /// Area of the surface in a cell [m^2]: the area in plan over the cosine of the slope. The slope follows from the
 /// heights of the four neighbours; if one has no height, from the cell and the neighbour on the other side.
 double true_area(const Raster<float>& heights, int column, int row);

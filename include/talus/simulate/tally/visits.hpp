@@ -96,6 +96,7 @@ class VisitBatch {
   Visit& new_visit(int column, int row);
   void begin(Trajectory trajectory);
   void add(std::span<const Span> spans);
+  void add_impacts(std::uint32_t impacts);
   float plan_length(const Span& span) const;
   void lengthen(const Span& span, float length, const Moment& from, const Moment& to);
   std::size_t level_of(const Span& span) const;
