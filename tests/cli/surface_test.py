@@ -1,0 +1,71 @@
+"""The key and the flag `surface`, from the input to the record, and the warning of dammed cells."""
+import json
+import unittest
+
+import numpy as np
+
+from support import NORTH, WEST, Case, RunCase, heights, write_dem
+
+
+class Surface(RunCase):
+    def setting(self, out):
+        return next((s["value"], s["source"]) for s in self.record(out)["settings"] if s["key"] == "surface")
+
+    def test_default_key_and_flag(self):
+        self.run_scenario("default")
+        self.assertEqual(self.setting("default"), ("creased", "default"))
+        with open(self.path("s.toml"), encoding="utf-8") as file:
+            self.write("s.toml", 'surface = "bilinear"\n' + file.read())
+        self.run_scenario("key")
+        self.assertEqual(self.setting("key"), ("bilinear", "scenario"))
+        self.run_scenario("flag", "--surface", "creased")
+        self.assertEqual(self.setting("flag"), ("creased", "flag --surface"))
+        self.assertEqual(self.hashes("flag")["stops.gpkg"], self.hashes("default")["stops.gpkg"])
+        self.run_well("run", self.path("key/scenario.toml"), "-o", self.path("again"), "-q")  # the complete scenario holds it
+        self.assertEqual(self.hashes("again")["stops.gpkg"], self.hashes("key")["stops.gpkg"])
+        for command in ("run", "check"):
+            out = ["-o", self.path("x")] if command == "run" else []
+            self.fails(2, "--surface = 'flat'", "'bilinear' or 'creased'", arguments=[command, self.path("s.toml"), "--surface", "flat", *out])
+        self.write("wrong.toml", 'surface = "smooth"\n')
+        self.fails(2, "wrong.toml:1", "surface = 'smooth'", "'bilinear' or 'creased'",
+                   arguments=["run", self.path("wrong.toml"), "--dem", self.path("dem.tif"), "--sources", self.path("sources.gpkg"), "-o", self.path("x")])
+
+    def test_parts_of_different_surfaces_do_not_merge(self):
+        self.run_scenario("one", "--part", "1/2")
+        self.run_scenario("two", "--part", "2/2", "--surface", "bilinear")
+        self.fails(2, "another plan", arguments=["merge", self.path("m"), self.path("one"), self.path("two")])
+
+    def test_dammed_cells_are_counted(self):
+        """A V gully at 45 degrees to the grid: each cell of its thalweg is dammed."""
+        row, column = np.mgrid[0:60, 0:60]
+        along, across = (row + column) * 5 / np.sqrt(2), np.abs(row - column) * 5 / np.sqrt(2)
+        write_dem(self.path("dem.tif"), (1000 - 0.7 * along + across).astype(np.float32))
+        for surface, word in (("bilinear", "dams them"), ("creased", "staircases")):
+            done = self.run_well("check", self.path("s.toml"), "--surface", surface)
+            line = next(line for line in (done.stdout + done.stderr).splitlines() if "only diagonally" in line)
+            self.assertIn("58 cells of the DEM (1.6 %)", line)
+            self.assertIn(word, line)
+        write_dem(self.path("dem.tif"), heights())
+        self.assertNotIn("only diagonally", self.run_well("check", self.path("s.toml")).stdout)
+
+
+class OfACampaign(Case):
+    def test_a_model_tells_on_which_surface_it_was_fitted(self):
+        blocks = "".join(f"b{i},{WEST + 60 + 5 * i},{NORTH - 40},1,{400 + 20 * i}\n" for i in range(20))
+        self.write("blocks.csv", "id,x,y,release_height_m,mass_kg\n" + blocks)
+        self.write("c.toml", 'dem = "dem.tif"\nblocks = "blocks.csv"\nsurface = "bilinear"\n')
+        self.write("m.toml", 'surface = "creased"\n[ground]\ndefault = "upper-talus-3d"\n')
+        score = ["score", self.path("c.toml"), "--parameters", self.path("m.toml"), "--trials", "10"]
+        done = self.run_well(*score, "--dump", self.path("dump"))
+        self.assertIn("fitted on a creased surface", done.stderr)
+        self.assertIn("bilinear surface", done.stdout)
+        done = self.run_well(*score, "--surface", "creased", "--json", "--dump", self.path("dump2"))
+        self.assertNotIn("fitted on", done.stderr)
+        self.assertEqual(json.loads(done.stdout)["surface"], "creased")
+        self.fails(2, "--surface = 'flat'", arguments=[*score, "--surface", "flat"])
+        self.write("s.toml", 'include = "m.toml"\ndem = "dem.tif"\nsurface = "bilinear"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1\n')
+        self.assertIn("was fitted on a creased surface", self.run_well("check", self.path("s.toml")).stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
