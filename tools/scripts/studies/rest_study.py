@@ -47,8 +47,8 @@ def holdout_error(o, campaign, kappa, seed):
     out, file = os.path.join(o.work, name), os.path.join(campaign, "campaign.toml")
     start = write(os.path.join(o.work, name + ".toml"), f"[effects.rest-in-roughness]\nkappa = {kappa:g}\n" if kappa else "")
     if not os.path.exists(os.path.join(out, "fitted.toml")):
-        talus(o, "calibrate", file, "-o", out, "--parameters", start, "--surface", SURFACE, "--seed", seed, "--trials", o.trials, "--starts", o.starts,
-              "--threads", o.threads, "-q")
+        talus(o, "calibrate", file, "-o", out, "--parameters", start, "--surface", SURFACE, "--seed", seed, "--trials", o.trials,
+              "--starts", o.starts, "--threads", o.threads, "-q")
     scored = json.loads(talus(o, "score", file, "--parameters", os.path.join(out, "fitted.toml"), "--surface", SURFACE, "--rows", "holdout",
                               "--trials", 400, "--seed", 1000, "--threads", o.threads, "--json", "-q"))
     return scored["holdout"]["score"]
@@ -98,7 +98,8 @@ def ways(o, name, diameter, effects, start):
     """Ways in plan down the plane of the blocks that stop on it [m]; speed and jump height of those that cross the screen."""
     from osgeo import ogr
     out = os.path.join(o.work, name)
-    scenario = write(out + ".toml", f'dem = "plane.tif"\nsurface = "{SURFACE}"\ntrajectories = {o.blocks}\n[sources]\nfile = "top.gpkg"\nrelease_height = 2\n'
+    scenario = write(out + ".toml", f'dem = "plane.tif"\nsurface = "{SURFACE}"\ntrajectories = {o.blocks}\n'
+                     f'[sources]\nfile = "top.gpkg"\nrelease_height = 2\n'
                      f"[blocks]\ndiameter = {diameter}\n[output]\ntrajectories = 0\n"
                      f'[screens]\nfile = "screen.gpkg"\n{effects}')
     talus(o, "run", scenario, "-o", out, "--overwrite", "-q", "--threads", o.threads, allowed=(0, 1))  # 1: many creep to the limit

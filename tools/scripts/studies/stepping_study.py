@@ -4,9 +4,10 @@
   tools/scripts/studies/stepping_study.py [--talus build/release/talus] [--data ../shared/data] [--trajectories 20000]
 
 stepping_study.cc, which shares no code with Talus, computes the model of docs/physics.md with steps of 5 to 1 ms, on
-bilinear patches as Talus here: flights exact at the ends of the steps (`parabola`), and flights by the semi-implicit method of Euler (`euler`). Printed per source: the
-95th percentile of the runout of stops with its standard error (bootstrap), impacts, seconds and metres of a trajectory, the
-share that reaches the lowest screen. Five minutes of one processor. Needs g++, numpy and GDAL's python binding.
+bilinear patches as Talus here: flights exact at the ends of the steps (`parabola`), and flights by the semi-implicit
+method of Euler (`euler`). Printed per source: the 95th percentile of the runout of stops with its standard error
+(bootstrap), impacts, seconds and metres of a trajectory, the share that reaches the lowest screen. Five minutes of one
+processor. Needs g++, numpy and GDAL's python binding.
 """
 import argparse
 import math
