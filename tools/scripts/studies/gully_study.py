@@ -73,7 +73,7 @@ class Gully:
         self.cell, angle = cell, np.radians(degrees)
         self.way = np.array([np.cos(angle), np.sin(angle)])
         size = LENGTH + 2 * BEFORE + 10 * cell
-        corner = np.array([SIDE, SIDE]) if degrees else np.array([SIDE, SIDE])
+        corner = np.array([SIDE, SIDE])
         extent = corner + size * self.way + SIDE
         self.columns, self.rows = (np.ceil(extent / cell)).astype(int)
         self.start = (np.floor(corner / cell) + 0.5) * cell + np.array([0.0, offset * cell])  # on the thalweg

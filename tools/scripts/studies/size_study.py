@@ -9,7 +9,7 @@ its 95 % interval and the error on the held-out rows, with the size law and with
 campaigns are joined afterwards: mean by inverse variance (sd: a quarter of 3.92 of the interval, over the seeds their mean), with
 the chi-square of their difference. With --grid the roughness exponent is held at each value, the ground is fitted anew, and the
 errors on the fitting and held-out rows are printed and summed: a profile that needs no normal distribution.
-Fits that are there (in --work) are not made again.
+All on bilinear patches (`--surface bilinear`), as the table of docs/effects.md. Fits that are there (in --work) are not made again.
 """
 import argparse
 import json
@@ -19,7 +19,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from rest_study import talus, write
+from rest_study import SURFACE, talus, write
 
 GROUND = "theta_scale,psi_scale,En50,Et50"
 
@@ -30,14 +30,14 @@ def calibrated(o, campaign, name, numbers, free, seed):
     text = "[effects.block-mass]\n" + "".join(f"{k} = {v:g}\n" for k, v in numbers.items()) if numbers else ""
     if not os.path.exists(os.path.join(out, "fitted.toml")):
         keys = ",".join([GROUND] + [f"effects.block-mass.{key}" for key in free])
-        talus(o, "calibrate", os.path.join(campaign, "campaign.toml"), "-o", out, "--parameters", write(out + ".toml", text), "--fit", keys,
-              "--seed", seed, "--trials", o.trials, "--starts", o.starts, "--threads", o.threads, "-q")
+        talus(o, "calibrate", os.path.join(campaign, "campaign.toml"), "-o", out, "--parameters", write(out + ".toml", text), "--surface", SURFACE,
+              "--fit", keys, "--seed", seed, "--trials", o.trials, "--starts", o.starts, "--threads", o.threads, "-q")
     return out
 
 
 def errors_of(o, campaign, out):
     scored = json.loads(talus(o, "score", os.path.join(campaign, "campaign.toml"), "--parameters", os.path.join(out, "fitted.toml"),
-                              "--trials", 400, "--seed", 1000, "--threads", o.threads, "--json", "-q"))
+                              "--surface", SURFACE, "--trials", 400, "--seed", 1000, "--threads", o.threads, "--json", "-q"))
     return scored["fit"]["score"], scored["holdout"]["score"]
 
 

@@ -3,10 +3,11 @@
 
   tools/scripts/studies/table4_study.py [--talus build/release/talus] [--blocks 20000] [--angle 38]
 
-The terrain of Vaujany is not published. The stand-in is the profile of data/profile: 38 degrees to a forest road 150 m below the
-release, then 34, then 15. Two models on it: `talus profile` with the sets of Table 1, and `talus run` on the same slope, 400 m wide
-(2 m cells, no channel), with those of Table 3. Blocks of 1.0 to 1.4 m, 2700 kg/m3, released at rest 2 m above the ground; screens
-70 m and 140 m below the release (the paper does not give their places). v95 and h95 are of the first crossings;
+The terrain of Vaujany is not published. The stand-in is the profile of data/profile: 38 degrees to a forest road 150 m
+below the release, then 34, then 15. Two models on it: `talus profile` with the sets of Table 1, and `talus run` on the
+same slope, 400 m wide (2 m cells, no channel), with those of Table 3. That slope has equal rows, so no patch of it has
+a crease: the surface does not matter. Blocks of 1.0 to 1.4 m, 2700 kg/m3, released at rest 2 m above the ground;
+screens 70 m and 140 m below the release (the paper does not give their places). v95 and h95 are of the first crossings;
 
     SEL = 1/2 V rho gVol (v95 gTr gDp)^2        h_i = h95 gTr gDp + 0.7 m
 

@@ -4,10 +4,11 @@
   tools/scripts/studies/width_study.py [--talus build/release/talus] [--work DIR] [--width 10] [--trajectories 50]
                    [--points 4] [--objects 80] [-o width_study.png]
 
-The terrain is that of data/valley: its surface, bilinear between the centres of its 4 m cells, read at the centres of the
-cells of each grid. The blocks start at the same points on each grid: `--points` release points of each source cell of the
-valley, as point sources, each with its share of the frequency of its cliff. Each run is repeated with another seed: that
-is the noise to compare with. Places are the centres of the 5 m cells (within 0.7 m on the others) that blocks reach.
+The terrain is that of data/valley: its surface, bilinear between the centres of its 4 m cells, read at the centres of
+the cells of each grid. The runs have bilinear patches, too: creases would lie elsewhere on each grid. The blocks start
+at the same points on each grid: `--points` release points of each source cell of the valley, as point sources, each
+with its share of the frequency of its cliff. Each run is repeated with another seed: that is the noise to compare with.
+Places are the centres of the 5 m cells (within 0.7 m on the others) that blocks reach.
 
 Table 1, with --width and without: how many of these places have the same class on two maps; the same of those where the
 class is decided on both (band 4 of hazard_class.tif is 0), and of the whole map; the frequency of passages and of passages
@@ -33,6 +34,7 @@ VALLEY = Path(__file__).resolve().parents[3] / "data" / "valley"
 CELLS = (1, 2, 5)
 SEEDS = (1, 2)
 SCENARIO = """dem = "dem.tif"
+surface = "bilinear"
 seed = {seed}
 trajectories = {trajectories}
 [sources]
