@@ -20,6 +20,7 @@ inline Campaign campaign_on_slope(std::size_t blocks) {
   for (std::size_t i = 0; i < blocks; ++i) {
     MeasuredBlock b;
     b.id = "b" + std::to_string(i);
+    b.stream = stream_of_name(b.id);
     b.x = 8.0;
     b.y = 30.0 + 70.0 * static_cast<double>(i) / static_cast<double>(blocks);
     b.mass = 500.0 + 20.0 * static_cast<double>(i);

@@ -58,10 +58,8 @@ void score_both(const talus::Campaign& campaign, talus::io::Calibration& c) {
   const auto before = runs_of(campaign, c.start, c, all), after = runs_of(campaign, c.fit.model, c, all);
   for (const auto& [name, rows] :
        {std::pair{"fit", talus::fitting_rows(campaign)}, std::pair{"holdout", talus::holdout_rows(campaign)}}) {
-    talus::io::BeforeAfter e{
-        talus::io::scored(name, campaign, before, rows), talus::io::scored(name, campaign, after, rows), {}};
-    e.reduction = talus::reduction(e.before.score, e.after.score, campaign.blocks.size());
-    c.errors.push_back(std::move(e));
+    c.errors.push_back(talus::io::compared(campaign, talus::io::scored(name, campaign, before, rows),
+                                           talus::io::scored(name, campaign, after, rows)));
   }
   c.comparison = talus::compare(campaign, after, all);
 }
@@ -80,6 +78,7 @@ void print_summary(const talus::io::Calibration& c, const std::string& folder) {
                 talus::io::rows_in_words(e.after.rows).c_str(), e.after.blocks, e.before.score.total,
                 e.after.score.total, 100.0 * e.reduction.share, 100.0 * e.reduction.interval.low,
                 100.0 * e.reduction.interval.high);
+    std::fputs(talus::io::judgement_lines(e.after).c_str(), stdout);
   }
   std::printf("written: %s\n", folder.c_str());
 }
@@ -109,7 +108,7 @@ int calibrate(const Options& options) {
   c.uncertainty = talus::uncertainty_of({campaign, c.start, c.free, rows}, c.options, {}, c.fit);
   if (c.uncertainty.interrupted) stop_interrupted();
   score_both(campaign, c);
-  for (const talus::io::BeforeAfter& e : c.errors) opened.warn_unseen(options, c, e.after.rows, e.after.score);
+  for (const talus::io::BeforeAfter& e : c.errors) OpenedCampaign::warn(options, c, e.after);
 
   talus::io::write_text(folder.temporary() / "calibration.json", talus::io::calibration_json(c));
   talus::io::write_text(folder.temporary() / "report.md", talus::io::calibration_report(c));

@@ -56,9 +56,9 @@ OpenedCampaign::OpenedCampaign(const CampaignCommand& command, talus::io::FitRec
   record.surface_from = loaded.surface_from;
 }
 
-void OpenedCampaign::warn_unseen(const CampaignCommand& command, talus::io::FitRecord& record, const std::string& rows,
-                                 const talus::Score& score) {
-  for (const std::string& warning : talus::io::unseen_warnings(rows, score)) {
+void OpenedCampaign::warn(const CampaignCommand& command, talus::io::FitRecord& record,
+                          const talus::io::ScoredRows& scored) {
+  for (const std::string& warning : talus::io::score_warnings(scored)) {
     if (!command.quiet) say("warning", warning);
     record.warnings.push_back(warning);
   }

@@ -29,7 +29,7 @@ struct OpenedCampaign {
   /// Throws InputError if nothing can be fitted to it.
   OpenedCampaign(const CampaignCommand& command, talus::io::FitRecord& record);
 
-  /// Prints and records the groups in which a fitted model scores as the climatology: a search can hide there.
-  static void warn_unseen(const CampaignCommand& command, talus::io::FitRecord& record, const std::string& rows,
-                          const talus::Score& score);
+  /// Prints and records the groups in which a fitted model scores as the climatology, where a search can hide, and the
+  /// quantities that it scatters too much or too little.
+  static void warn(const CampaignCommand& command, talus::io::FitRecord& record, const talus::io::ScoredRows& scored);
 };

@@ -8,6 +8,7 @@
 #include "campaign_command.hpp"
 #include "progress.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
 #include "talus/io/campaign/model_file.hpp"
 #include "talus/io/reports/diagnosis_page.hpp"
 #include "talus/simulate/scenario/presets.hpp"
@@ -17,6 +18,14 @@ namespace {
 struct Options : CampaignCommand {
   talus::DiagnoseOptions how;
 };
+
+void print_error(const char* what, const talus::io::HoldoutError& e) {
+  if (std::isnan(e.before))
+    std::printf("%s: there are none\n", what);
+  else
+    std::printf("%s: %.3f before, %.3f after (lower by %.1f %%, 95 %%: %.1f to %.1f %%)\n", what, e.before, e.after,
+                100.0 * e.reduction.share, 100.0 * e.reduction.interval.low, 100.0 * e.reduction.interval.high);
+}
 
 void print_summary(const talus::io::DiagnosisRecord& record, const std::string& folder) {
   const talus::Diagnosis& d = record.diagnosis;
@@ -29,13 +38,15 @@ void print_summary(const talus::io::DiagnosisRecord& record, const std::string& 
     std::printf(" (p of noise %.4f)\n", round.p_value);
   }
   std::printf("error, fitting rows: %.3f before, %.3f after\n", d.base.score.total, d.with_effects.score.total);
-  const talus::io::HoldoutError& e = record.whole;
-  if (std::isnan(e.before))
+  if (std::isnan(record.whole.before)) {
     std::printf("error, held-out rows: nothing can be said, no group has five rows\n");
-  else
-    std::printf("error, held-out rows: %.3f before, %.3f after (lower by %.1f %%, 95 %%: %.1f to %.1f %%)\n", e.before,
-                e.after, 100.0 * e.reduction.share, 100.0 * e.reduction.interval.low,
-                100.0 * e.reduction.interval.high);
+  } else {
+    const std::vector<std::string> small = talus::io::small_groups(record);
+    if (!small.empty()) print_error("error, held-out rows, groups of ten rows and more", record.headline);
+    print_error("error, held-out rows", record.whole);
+    if (!small.empty()) std::printf("  few rows: %s\n", talus::joined(small).c_str());
+  }
+  for (const talus::io::BeforeAfter& e : record.errors) std::fputs(talus::io::judgement_lines(e.after).c_str(), stdout);
   std::printf("written: %s\n", folder.c_str());
 }
 
@@ -71,8 +82,7 @@ int diagnose(const Options& options) {
   } catch (const talus::FitInterrupted&) {
     stop_interrupted();
   }
-  OpenedCampaign::warn_unseen(options, record, "fit", record.diagnosis.with_effects.score);
-  OpenedCampaign::warn_unseen(options, record, "holdout", record.holdout);
+  for (const talus::io::BeforeAfter& e : record.errors) OpenedCampaign::warn(options, record, e.after);
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write_results(opened.folder, opened.loaded, record);
   opened.folder.commit();

@@ -61,7 +61,7 @@ int score_model(const Options& options) {
                             (options.rows == "all" ? "" : ", or ask for --rows all"));
   if (!options.quiet)
     for (const talus::io::ScoredRows& s : scores)
-      for (const std::string& warning : talus::io::unseen_warnings(s.rows, s.score)) say("warning", warning);
+      for (const std::string& warning : talus::io::score_warnings(s)) say("warning", warning);
   const talus::io::ScoreSettings settings{campaign.name, options.trials, options.seed,
                                           std::string(talus::name_of(campaign.surface.kind()))};
   const std::string text =

@@ -132,7 +132,7 @@ Eigen::VectorXd LocalModel::optimum(std::span<const double> block_weights, const
 
 Eigen::VectorXd LocalModel::draw(std::uint32_t draw) const {
   const Eigen::VectorXd weights =
-      row_weights(score_, bootstrap_weights(score_, problem_.campaign.blocks.size(), draw, options_.seed));
+      row_weights(score_, bootstrap_weights(streams_of(problem_.campaign), draw, options_.seed));
   const Eigen::VectorXd noise =
       noise_ * normals(options_.seed, 1, draw, noise_factor_.size()).cwiseProduct(noise_factor_);
   const Eigen::VectorXd slope = from_v_ * model_->gradient(rows_ * weights - total_ + model_->coefficients(noise)) -

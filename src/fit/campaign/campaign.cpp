@@ -16,6 +16,12 @@ std::vector<bool> holdout_rows(const Campaign& campaign) {
   return rows;
 }
 
+std::vector<std::uint32_t> streams_of(const Campaign& campaign) {
+  std::vector<std::uint32_t> streams;
+  for (const MeasuredBlock& block : campaign.blocks) streams.push_back(block.stream);
+  return streams;
+}
+
 Block body_of(const MeasuredBlock& block) {
   return {equivalent_diameter(block.mass, block.density), block.mass, block.axes};
 }

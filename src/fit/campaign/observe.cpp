@@ -14,13 +14,13 @@ namespace talus {
 namespace {
 
 constexpr std::uint32_t kTrialsPerUnit = 32;
-constexpr std::uint32_t kSampleEvents = 0x10000;  // above those of the screens
+constexpr std::uint32_t kScreenEvents = 0x800000;  // above those of the samples; 23 bits for the screen's name
 
 /// Standard normal numbers of the measurement of one trial: four for each thing that is measured.
 class Errors {
  public:
-  Errors(std::uint64_t seed, std::uint32_t block, std::uint32_t trial)
-      : random_(seed, block, trial, Purpose::Measurement) {}
+  explicit Errors(const Release& release)
+      : random_(release.seed, release.source, release.block, Purpose::Measurement) {}
 
   std::array<double, 4> at(std::uint32_t event) const {
     const Words w = random_.words(event);
@@ -28,10 +28,9 @@ class Errors {
     return {a[0], a[1], b[0], b[1]};
   }
   std::array<double, 4> of_stop() const { return at(0); }
-  std::array<double, 4> of_screen(std::uint32_t screen) const { return at(1 + screen); }
-  std::array<double, 4> of_sample(std::size_t sample) const {
-    return at(kSampleEvents + static_cast<std::uint32_t>(sample));
-  }
+  /// @param stream  of the screen's name: its place in the file does not matter
+  std::array<double, 4> of_screen(std::uint32_t stream) const { return at(kScreenEvents | stream % kScreenEvents); }
+  std::array<double, 4> of_sample(std::size_t sample) const { return at(1 + static_cast<std::uint32_t>(sample)); }
 
  private:
   Random random_;
@@ -41,11 +40,13 @@ class Errors {
 class Instrument {
  public:
   Instrument(const Campaign& campaign, const Model& model, const Cover& cover, const ScreenFinder& screens)
-      : campaign_(campaign), model_(model), cover_(cover), screens_(screens), hit_(cover.grounds.size()) {}
+      : campaign_(campaign), model_(model), cover_(cover), screens_(screens), hit_(cover.grounds.size()) {
+    for (const Screen& screen : campaign.screens) screen_streams_.push_back(stream_of_name(screen.id));
+  }
 
-  void measure(const Release& release, const Path& path, std::uint32_t trial, BlockRuns& runs) {
-    const Errors errors(release.seed, release.source, release.block);
-    const MeasuredBlock& block = campaign_.blocks[release.source];
+  void measure(const MeasuredBlock& block, const Release& release, const Path& path, std::uint32_t trial,
+               BlockRuns& runs) {
+    const Errors errors(release);
     crossings_.clear();
     screens_.find(release, path, crossings_);
     stop(errors, path, release.body.mass, trial, runs);
@@ -72,7 +73,7 @@ class Instrument {
       const Bias bias = bias_of(crossing.screen);
       BlockRuns::AtScreen& screen = runs.screens[crossing.screen];
       if (!std::isnan(screen.speed[trial])) continue;  // only the first crossing counts
-      const auto error = errors.of_screen(crossing.screen);
+      const auto error = errors.of_screen(screen_streams_[crossing.screen]);
       screen.speed[trial] = crossing.speed * (1.0 + bias.speed) * (1.0 + campaign_.error.speed_fraction * error[0]);
       screen.jump[trial] =
           std::max(0.0, crossing.height * (1.0 + bias.jump) + campaign_.error.jump_height_m * error[1]);
@@ -130,6 +131,7 @@ class Instrument {
   const Model& model_;
   const Cover& cover_;
   const ScreenFinder& screens_;
+  std::vector<std::uint32_t> screen_streams_;
   std::vector<Crossing> crossings_;
   std::vector<std::size_t> order_;
   std::vector<char> hit_;  // by zone, of the path
@@ -174,13 +176,13 @@ Model model_of_preset(const Campaign& campaign, std::string_view preset) {
 
 Release release_of(const Campaign& campaign, std::uint32_t block, std::uint64_t seed, std::uint32_t trial) {
   const MeasuredBlock& measured = campaign.blocks[block];
-  const Words words = Random(seed, block, trial, Purpose::Release).words(0);
+  const Words words = Random(seed, measured.stream, trial, Purpose::Release).words(0);
   const SineCosine direction = sine_cosine_of_turn(uniform(words[0]));
   const double radius = measured.release_radius * std::sqrt(uniform(words[1]));
   const double x = measured.x + radius * direction.cosine, y = measured.y + radius * direction.sine;
   Release release;
   release.seed = seed;
-  release.source = block;
+  release.source = measured.stream;
   release.block = trial;
   release.body = body_of(measured);
   release.motion.position = {x, y, campaign.surface.height(x, y).value_or(kNotGiven) + measured.release_height};
@@ -215,7 +217,7 @@ std::vector<BlockRuns> observe(const Campaign& campaign, const Model& model, con
         for (std::uint32_t trial = unit.first; trial < unit.end; ++trial) {
           const Release release = release_of(campaign, unit.block, options.seed, options.first_trial + trial);
           trace(world, release, path);
-          instrument.measure(release, path, trial, runs[unit.block]);
+          instrument.measure(campaign.blocks[unit.block], release, path, trial, runs[unit.block]);
         }
         if (options.proceed && !options.proceed()) stop = true;
       } catch (...) {  // nothing may leave a parallel region

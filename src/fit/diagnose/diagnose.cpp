@@ -21,6 +21,7 @@ class DiagnosisLoop {
   DiagnosisLoop(const Campaign& campaign, const DiagnoseOptions& options)
       : campaign_(campaign),
         rows_(fitting_rows(campaign)),
+        streams_(streams_of(campaign)),
         options_(options),
         rules_(options_.rules),
         fits_(campaign, options_, rows_, [this](double share) { return proceeds(share); }) {
@@ -144,7 +145,7 @@ class DiagnosisLoop {
                      [](const FittedCandidate* a, const FittedCandidate* b) { return net_gain(*a) > net_gain(*b); });
     contenders.resize(std::min(contenders.size(), most));
     const Score& best = contenders.front()->fitted.objective;
-    const auto behind = [&](const Score& own) { return difference(best, own, campaign_.blocks.size()).interval.low; };
+    const auto behind = [&](const Score& own) { return difference(best, own, streams_).interval.low; };
     std::erase_if(contenders, [&](const FittedCandidate* c) {
       return c->gain < least || behind(c->fitted.objective) > rules_.unfinished;
     });
@@ -162,7 +163,7 @@ class DiagnosisLoop {
     std::vector<Difference> all;
     all.reserve(candidates.size());
     for (const FittedCandidate& c : candidates) {
-      all.push_back(difference(base.objective, c.fitted.objective, campaign_.blocks.size()));
+      all.push_back(difference(base.objective, c.fitted.objective, streams_));
       for (double& draw : all.back().draws) draw += c.price;
     }
     if (all.empty()) return;
@@ -203,13 +204,14 @@ class DiagnosisLoop {
     for (std::size_t i = 1; i < round.candidates.size(); ++i) {
       const FittedCandidate& other = round.candidates[i];
       if (!may(other)) continue;
-      const Difference c = difference(other.fitted.objective, best.fitted.objective, campaign_.blocks.size());
+      const Difference c = difference(other.fitted.objective, best.fitted.objective, streams_);
       if (c.interval.high > 0.0) round.alike.push_back(other.effect);
     }
   }
 
   const Campaign& campaign_;
   std::vector<bool> rows_;
+  std::vector<std::uint32_t> streams_;
   DiagnoseOptions options_;
   const DiagnosisRules& rules_;
   EffectFits fits_;

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "fit/calibrate/local_model.hpp"
-#include "talus/base/random.hpp"
 #include "talus/fit/calibrate/calibrate.hpp"
+#include "talus/fit/campaign/block_draws.hpp"
 
 namespace talus {
 namespace {
@@ -163,7 +163,7 @@ void EffectFits::take_fit(FittedModel&& fitted, FittedCandidate& candidate) cons
 }
 
 void EffectFits::measure_gain(const FittedModel& base, FittedCandidate& candidate) const {
-  const Difference c = difference(base.objective, candidate.fitted.objective, campaign_.blocks.size());
+  const Difference c = difference(base.objective, candidate.fitted.objective, streams_of(campaign_));
   candidate.gain = -c.mean;
   candidate.gain_interval = {-c.interval.high, -c.interval.low};
 }
@@ -235,13 +235,12 @@ void EffectFits::continue_with(const FittedModel& base, FittedCandidate& candida
   measure_gain(base, candidate);
 }
 
-/// The fitting rows in a random order: neighbours in the file are often of one day or one kind.
+/// The fitting rows in a random order: neighbours are often of one day or one kind.
 std::vector<std::size_t> EffectFits::shuffled_rows(std::uint32_t number) const {
-  std::vector<std::pair<std::uint32_t, std::size_t>> keyed;
-  for (std::size_t b = 0; b < rows_.size(); ++b) {
-    const Random random(options_.seed, static_cast<std::uint32_t>(b), kUnseen, Purpose::Bootstrap);
-    if (rows_[b]) keyed.emplace_back(random.words(number)[0], b);
-  }
+  std::vector<std::pair<double, std::size_t>> keyed;
+  for (std::size_t b = 0; b < rows_.size(); ++b)
+    if (rows_[b])
+      keyed.emplace_back(draw_of_block(options_.seed, campaign_.blocks[b].stream, number, BlockDraw::Order), b);
   std::sort(keyed.begin(), keyed.end());
   std::vector<std::size_t> order;
   for (const auto& [key, block] : keyed) order.push_back(block);

@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "talus/base/random.hpp"
+#include "talus/fit/campaign/block_draws.hpp"
 #include "talus/fit/diagnose/projection.hpp"
 #include "talus/fit/diagnose/residual.hpp"
 
@@ -60,7 +60,7 @@ class Directions {
              const std::vector<BlockRuns>& unmoved, const std::vector<bool>& rows)
       : space_(space), base_(base) {
     for (std::size_t b = 0; b < rows.size(); ++b)
-      if (rows[b] && base[b].trials > 0) blocks_.push_back(b);
+      if (rows[b] && base[b].trials > 0) blocks_.push_back(b), streams_.push_back(campaign.blocks[b].stream);
     const MatrixXd x = covariates_of(campaign, blocks_);
     smoother_ = x * (x.transpose() * x + 1e-6 * MatrixXd::Identity(x.cols(), x.cols())).ldlt().solve(x.transpose());
     for (const std::size_t b : blocks_) rest_.push_back(mean_residual(space, b, unmoved[b]));
@@ -74,6 +74,7 @@ class Directions {
   }
 
   Index size() const { return static_cast<Index>(signatures_.size()); }
+  std::span<const std::uint32_t> streams() const { return streams_; }
 
   /// Scores of a residual of block number i, by direction.
   VectorXd scores(std::size_t i, const VectorXd& whitened) const {
@@ -103,6 +104,7 @@ class Directions {
   const ResidualSpace& space_;
   const std::vector<BlockRuns>& base_;
   std::vector<std::size_t> blocks_;
+  std::vector<std::uint32_t> streams_;  // of the blocks
   MatrixXd smoother_;
   std::vector<VectorXd> rest_;        // by block: mean residual of the base itself, which is noise
   std::vector<MatrixXd> signatures_;  // by direction: blocks x components
@@ -110,11 +112,12 @@ class Directions {
 
 /// The score of every direction in data set number `replicate`: one trial of each block stands in for what was
 /// measured.
-MatrixXd drawn(const std::vector<MatrixXd>& trials, std::uint64_t seed, int replicate) {
+MatrixXd drawn(const std::vector<MatrixXd>& trials, std::span<const std::uint32_t> streams, std::uint64_t seed,
+               std::uint32_t replicate) {
   MatrixXd scores(trials.front().rows(), static_cast<Index>(trials.size()));
   for (std::size_t b = 0; b < trials.size(); ++b) {
-    const Random random(seed, static_cast<std::uint32_t>(replicate), static_cast<std::uint32_t>(b), Purpose::Bootstrap);
-    const double place = uniform(random.words(0)[0]) * static_cast<double>(trials[b].cols());
+    const double place =
+        draw_of_block(seed, streams[b], replicate, BlockDraw::Trial) * static_cast<double>(trials[b].cols());
     scores.col(static_cast<Index>(b)) = trials[b].col(static_cast<Index>(place));
   }
   return scores;
@@ -123,11 +126,13 @@ MatrixXd drawn(const std::vector<MatrixXd>& trials, std::uint64_t seed, int repl
 /// The smallest p-value over the places of each effect, in data sets drawn from the model.
 std::vector<std::vector<double>> smallest_drawn(std::size_t effects, const std::vector<Projection>& projections,
                                                 const std::vector<std::size_t>& effect_of,
-                                                const std::vector<MatrixXd>& trials, const ScoreTestOptions& options) {
-  const auto n = static_cast<std::size_t>(options.replicates);
+                                                const std::vector<MatrixXd>& trials,
+                                                std::span<const std::uint32_t> streams,
+                                                const ScoreTestOptions& options) {
+  const auto n = static_cast<std::uint32_t>(options.replicates);
   std::vector<std::vector<double>> smallest(effects, std::vector<double>(n, 1.0));
-  for (std::size_t replicate = 0; replicate < n; ++replicate) {
-    const MatrixXd scores = drawn(trials, options.seed, static_cast<int>(replicate));
+  for (std::uint32_t replicate = 0; replicate < n; ++replicate) {
+    const MatrixXd scores = drawn(trials, streams, options.seed, replicate);
     for (std::size_t i = 0; i < projections.size(); ++i) {
       double& best = smallest[effect_of[i]][replicate];
       best = std::min(best, projections[i].verdict(scores).p_value);
@@ -243,7 +248,7 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
       rank(verdict, *effect);
     effect_of.push_back(static_cast<std::size_t>(effect - test.effects.begin()));
   }
-  correct(test, smallest_drawn(test.effects.size(), projections, effect_of, trials, options));
+  correct(test, smallest_drawn(test.effects.size(), projections, effect_of, trials, directions.streams(), options));
   std::sort(test.effects.begin(), test.effects.end(), [](const EffectVerdict& a, const EffectVerdict& b) {
     return a.p_value != b.p_value ? a.p_value < b.p_value : more_significant(a.best, b.best);
   });

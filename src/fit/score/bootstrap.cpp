@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "talus/base/expect.hpp"
-#include "talus/base/random.hpp"
+#include "talus/fit/campaign/block_draws.hpp"
 
 namespace talus {
 namespace {
@@ -41,27 +41,20 @@ double weighted_total(const Score& score, std::span<const double> weight) {
   return total_of(score, weighted_groups(score, weight));
 }
 
-std::vector<double> bootstrap_weights(const Score& score, std::size_t blocks, std::uint32_t draw, std::uint64_t seed) {
-  std::vector<std::uint32_t> present;
-  for (const RowScore& row : score.rows) present.push_back(row.block);
-  TALUS_EXPECT(std::all_of(present.begin(), present.end(), [blocks](std::uint32_t b) { return b < blocks; }),
-               "a row is of a block of the campaign");
-  std::sort(present.begin(), present.end());
-  present.erase(std::unique(present.begin(), present.end()), present.end());
-  std::vector<double> weight(blocks, 0.0);
-  const Random random(seed, 0, draw, Purpose::Bootstrap);
-  for (std::uint32_t i = 0; i < present.size(); ++i) {
-    const double share = uniform(random.words(i / 4)[i % 4]);
-    weight[present[static_cast<std::size_t>(share * static_cast<double>(present.size()))]] += 1.0;
-  }
+std::vector<double> bootstrap_weights(std::span<const std::uint32_t> streams, std::uint32_t draw, std::uint64_t seed) {
+  std::vector<double> weight;
+  weight.reserve(streams.size());
+  for (const std::uint32_t stream : streams)
+    weight.push_back(-natural_log(draw_of_block(seed, stream, draw, BlockDraw::Weight)));
   return weight;
 }
 
-ScoreIntervals bootstrap(const Score& score, std::size_t blocks, std::uint32_t draws, std::uint64_t seed) {
+ScoreIntervals bootstrap(const Score& score, std::span<const std::uint32_t> streams, std::uint32_t draws,
+                         std::uint64_t seed) {
   std::vector<double> totals;
   std::vector<std::vector<double>> groups(score.groups.size());
   for (std::uint32_t draw = 0; draw < draws; ++draw) {
-    const std::vector<double> values = weighted_groups(score, bootstrap_weights(score, blocks, draw, seed));
+    const std::vector<double> values = weighted_groups(score, bootstrap_weights(streams, draw, seed));
     totals.push_back(total_of(score, values));
     for (std::size_t g = 0; g < values.size(); ++g) groups[g].push_back(values[g]);
   }
@@ -70,21 +63,21 @@ ScoreIntervals bootstrap(const Score& score, std::size_t blocks, std::uint32_t d
   return intervals;
 }
 
-Reduction reduction(const Score& before, const Score& after, std::size_t blocks, std::uint32_t draws,
-                    std::uint64_t seed) {
+Reduction reduction(const Score& before, const Score& after, std::span<const std::uint32_t> streams,
+                    std::uint32_t draws, std::uint64_t seed) {
   std::vector<double> shares;
   for (std::uint32_t draw = 0; draw < draws; ++draw) {
-    const std::vector<double> weight = bootstrap_weights(before, blocks, draw, seed);
+    const std::vector<double> weight = bootstrap_weights(streams, draw, seed);
     shares.push_back(1.0 - weighted_total(after, weight) / weighted_total(before, weight));
   }
   return {1.0 - after.total / before.total, middle(std::move(shares))};
 }
 
-Difference difference(const Score& before, const Score& after, std::size_t blocks, std::uint32_t draws,
-                      std::uint64_t seed) {
+Difference difference(const Score& before, const Score& after, std::span<const std::uint32_t> streams,
+                      std::uint32_t draws, std::uint64_t seed) {
   Difference d{after.total - before.total, {}, {}};
   for (std::uint32_t draw = 0; draw < draws; ++draw) {
-    const std::vector<double> weight = bootstrap_weights(before, blocks, draw, seed);
+    const std::vector<double> weight = bootstrap_weights(streams, draw, seed);
     d.draws.push_back(weighted_total(after, weight) - weighted_total(before, weight));
   }
   d.interval = middle(d.draws);

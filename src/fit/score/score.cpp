@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "fitting_values.hpp"
 #include "talus/base/expect.hpp"
 
 namespace talus {
@@ -11,35 +12,16 @@ namespace {
 
 constexpr double kHalfWeight = 10.0;  // rows with which a group counts half in a fit
 
-double mean_of(std::span<const double> values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
-/// Variance of the values themselves (n, not n - 1).
-double variance_of(std::span<const double> values) {
-  const double mean = mean_of(values);
-  double sum = 0.0;
-  for (const double value : values) sum += (value - mean) * (value - mean);
-  return sum / static_cast<double>(values.size());
-}
-
-void keep_finite(std::span<const double> values, std::vector<double>& out) {
-  out.clear();
-  for (const double value : values)
-    if (!std::isnan(value)) out.push_back(value);
-}
-
 /// Scores the rows of one campaign group by group.
 class Scorer {
  public:
   Scorer(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
          std::size_t fewest_simulated)
-      : campaign_(campaign), runs_(runs), ask_(ask), fewest_simulated_(fewest_simulated) {}
+      : campaign_(campaign), runs_(runs), ask_(ask), climatology_(runs.empty()), fewest_simulated_(fewest_simulated) {}
 
   Score result() {
-    TALUS_EXPECT(runs_.size() == campaign_.blocks.size() && ask_.size() == runs_.size(), "each block has its runs");
+    TALUS_EXPECT(climatology_ || runs_.size() == campaign_.blocks.size(), "each block has its runs");
+    TALUS_EXPECT(ask_.size() == campaign_.blocks.size(), "each block is asked for or not");
     stops();
     masses();
     for (std::size_t screen = 0; screen < campaign_.screens.size(); ++screen) passages(screen);
@@ -75,25 +57,27 @@ class Scorer {
   }
 
   void stops() {
-    std::vector<Eigen::Vector2d> climatology;
+    FittingValues<Eigen::Vector2d> fitting;
     std::vector<double> x, y;
-    for (const MeasuredBlock& block : campaign_.blocks)
-      if (!block.holdout && block.stop) {
-        climatology.push_back(*block.stop);
-        x.push_back(block.stop->x());
-        y.push_back(block.stop->y());
-      }
-    if (climatology.size() < 2) return;
+    for (std::uint32_t b = 0; b < campaign_.blocks.size(); ++b) {
+      const MeasuredBlock& block = campaign_.blocks[b];
+      if (block.holdout || !block.stop) continue;
+      fitting.add(b, *block.stop);
+      x.push_back(block.stop->x());
+      y.push_back(block.stop->y());
+    }
+    if (fitting.size() < 2) return;
     const double spread = std::sqrt(variance_of(x) + variance_of(y));
     if (!(spread > 0.0)) return;
     std::vector<Eigen::Vector2d> places;
     for_asked([&](std::uint32_t b, const MeasuredBlock& block) {
       if (!block.stop) return;
       places.clear();
-      for (std::uint32_t t = 0; t < runs_[b].trials; ++t)
+      if (climatology_) fitting.of_others(b, places);
+      for (std::uint32_t t = 0; !climatology_ && t < runs_[b].trials; ++t)
         if (!std::isnan(runs_[b].x[t])) places.emplace_back(runs_[b].x[t], runs_[b].y[t]);
-      const bool unseen = places.size() < fewest_simulated_;
-      row(b, fair_energy_score(unseen ? climatology : places, *block.stop) / spread, unseen);
+      const bool unseen = too_few(places.size());
+      row(b, fair_energy_score(unseen ? fitting.values : places, *block.stop) / spread, unseen);
     });
     close("stop");
   }
@@ -101,9 +85,10 @@ class Scorer {
   /// Scores masses only where blocks broke: at least five changed their mass by more than a twentieth.
   void masses() {
     const auto share = [](const MeasuredBlock& b) { return b.stop_mass ? *b.stop_mass / b.mass : kNotGiven; };
-    const auto changed = std::count_if(campaign_.blocks.begin(), campaign_.blocks.end(),
-                                       [&](const MeasuredBlock& b) { return std::abs(share(b) - 1.0) > 0.05; });
-    if (changed < static_cast<std::ptrdiff_t>(kFewestRows)) return;
+    std::size_t changed = 0;  // of the fitting and the asked rows: others must not decide what is fitted
+    for (std::size_t b = 0; b < campaign_.blocks.size(); ++b)
+      if ((ask_[b] || !campaign_.blocks[b].holdout) && std::abs(share(campaign_.blocks[b]) - 1.0) > 0.05) ++changed;
+    if (changed < kFewestRows) return;
     one_value(
         "mass", share, [this](std::uint32_t b) -> const std::vector<double>& { return runs_[b].mass_share; }, 2);
   }
@@ -125,23 +110,25 @@ class Scorer {
     value("spin", &Passage::spin, &BlockRuns::AtScreen::spin);
   }
 
-  /// Brier score of the share of trials that crossed, over p (1 - p) of the fitting rows.
+  /// Fair Brier score of the share of trials that crossed, over p (1 - p) of the fitting rows.
   void crossings(const std::string& name, std::size_t screen) {
+    const auto crossed = [screen](const MeasuredBlock& b) { return b.passages[screen].has_value(); };
     double fitting = 0.0, hits = 0.0;
     std::size_t asked = 0, asked_hits = 0;
     for (std::size_t b = 0; b < campaign_.blocks.size(); ++b) {
-      const MeasuredBlock& block = campaign_.blocks[b];
-      const bool hit = block.passages[screen].has_value();
-      if (!block.holdout) fitting += 1.0, hits += hit ? 1.0 : 0.0;
+      const bool hit = crossed(campaign_.blocks[b]);
+      if (!campaign_.blocks[b].holdout) fitting += 1.0, hits += hit ? 1.0 : 0.0;
       if (ask_[b]) ++asked, asked_hits += hit ? 1 : 0;
     }
     const double p = hits / fitting, spread = p * (1.0 - p);
     if (!(spread > 0.0) || std::min(asked_hits, asked - asked_hits) < kFewestRows) return;
     for_asked([&](std::uint32_t b, const MeasuredBlock& block) {
-      keep_finite(runs_[b].screens[screen].speed, values_);
-      const double share = static_cast<double>(values_.size()) / std::max(1.0, static_cast<double>(runs_[b].trials));
-      const double miss = share - (block.passages[screen] ? 1.0 : 0.0);
-      row(b, miss * miss / spread);
+      const bool hit = crossed(block);
+      const double own = block.holdout ? 0.0 : 1.0;  // left out of its own climatology
+      if (!climatology_) keep_finite(runs_[b].screens[screen].speed, values_);
+      const double score = climatology_ ? fair_brier_score(hits - (hit ? own : 0.0), fitting - own, hit)
+                                        : fair_brier_score(static_cast<double>(values_.size()), runs_[b].trials, hit);
+      row(b, score / spread);
     });
     close(name);
   }
@@ -149,38 +136,42 @@ class Scorer {
   /// A group of one number per block.
   void one_value(const std::string& name, const std::function<double(const MeasuredBlock&)>& measured,
                  const std::function<const std::vector<double>&(std::uint32_t)>& simulated, std::size_t fewest) {
-    std::vector<double> climatology;
-    for (const MeasuredBlock& block : campaign_.blocks)
-      if (!block.holdout && !std::isnan(measured(block))) climatology.push_back(measured(block));
-    if (climatology.size() < fewest) return;
-    const double spread = std::sqrt(variance_of(climatology));
+    FittingValues<double> fitting;
+    for (std::uint32_t b = 0; b < campaign_.blocks.size(); ++b)
+      if (!campaign_.blocks[b].holdout && !std::isnan(measured(campaign_.blocks[b])))
+        fitting.add(b, measured(campaign_.blocks[b]));
+    if (fitting.size() < fewest) return;
+    const double spread = std::sqrt(variance_of(fitting.values));
     if (!(spread > 0.0)) return;
     for_asked([&](std::uint32_t b, const MeasuredBlock& block) {
       const double y = measured(block);
       if (std::isnan(y)) return;
-      const double score = crps_or_climatology(simulated(b), climatology, y) / spread;
-      row(b, score, unseen());
+      bool unseen = false;
+      const double score = crps(b, climatology_ ? kNoValues : simulated(b), fitting, y, unseen) / spread;
+      row(b, score, unseen);
     });
     close(name);
   }
 
   /// States along the path: several of a block, which counts once, with their mean.
   void samples(const char* name, double Sample::*measured, std::vector<double> BlockRuns::AtSample::*simulated) {
-    std::vector<double> climatology;
-    for (const MeasuredBlock& block : campaign_.blocks)
-      for (const Sample& sample : block.samples)
-        if (!block.holdout && !std::isnan(sample.*measured)) climatology.push_back(sample.*measured);
-    if (climatology.size() < kFewestRows) return;
-    const double spread = std::sqrt(variance_of(climatology));
+    FittingValues<double> fitting;
+    for (std::uint32_t b = 0; b < campaign_.blocks.size(); ++b)
+      for (const Sample& sample : campaign_.blocks[b].samples)
+        if (!campaign_.blocks[b].holdout && !std::isnan(sample.*measured)) fitting.add(b, sample.*measured);
+    if (fitting.size() < kFewestRows) return;
+    const double spread = std::sqrt(variance_of(fitting.values));
     if (!(spread > 0.0)) return;
     for_asked([&](std::uint32_t b, const MeasuredBlock& block) {
       double sum = 0.0;
       int count = 0, not_seen = 0;
       for (std::size_t i = 0; i < block.samples.size(); ++i) {
         if (std::isnan(block.samples[i].*measured)) continue;
-        sum += crps_or_climatology(runs_[b].samples[i].*simulated, climatology, block.samples[i].*measured);
+        bool unseen = false;
+        sum += crps(b, climatology_ ? kNoValues : runs_[b].samples[i].*simulated, fitting, block.samples[i].*measured,
+                    unseen);
         ++count;
-        not_seen += unseen() ? 1 : 0;
+        not_seen += unseen ? 1 : 0;
       }
       if (count > 0) row(b, sum / count / spread, not_seen == count);
     });
@@ -188,15 +179,23 @@ class Scorer {
   }
 
   /// CRPS of the simulated values or, where they are too few, of the values of the fitting rows.
-  double crps_or_climatology(const std::vector<double>& simulated, std::vector<double>& climatology, double measured) {
-    keep_finite(simulated, values_);
-    return fair_crps(unseen() ? climatology : values_, measured);
+  double crps(std::uint32_t block, const std::vector<double>& simulated, const FittingValues<double>& fitting,
+              double measured, bool& unseen) {
+    if (climatology_)
+      fitting.of_others(block, values_);
+    else
+      keep_finite(simulated, values_);
+    unseen = too_few(values_.size());
+    if (unseen) values_ = fitting.values;
+    return fair_crps(values_, measured);
   }
-  bool unseen() const { return values_.size() < fewest_simulated_; }  // of the values scored last
+  bool too_few(std::size_t simulated) const { return !climatology_ && simulated < fewest_simulated_; }
 
+  static inline const std::vector<double> kNoValues{};
   const Campaign& campaign_;
   std::span<const BlockRuns> runs_;
   const std::vector<bool>& ask_;
+  const bool climatology_;  // not the runs are scored, but the measurements of the other fitting rows
   const std::size_t fewest_simulated_;
   std::vector<RowScore> rows_;  // of the group under way
   std::vector<double> values_;
@@ -205,30 +204,34 @@ class Scorer {
 
 }  // namespace
 
-double fair_crps(std::span<double> simulated, double measured) {
-  std::sort(simulated.begin(), simulated.end());
-  const auto n = static_cast<double>(simulated.size());
-  double distance = 0.0, pairs = 0.0;  // pairs: sum over i < j of x_j - x_i, by the rank of each value
-  for (std::size_t i = 0; i < simulated.size(); ++i) {
-    distance += std::abs(simulated[i] - measured);
-    pairs += (2.0 * static_cast<double>(i) - (n - 1.0)) * simulated[i];
-  }
-  return distance / n - pairs / (n * (n - 1.0));
-}
-
-double fair_energy_score(std::span<const Eigen::Vector2d> simulated, const Eigen::Vector2d& measured) {
-  const auto n = static_cast<double>(simulated.size());
-  double distance = 0.0, pairs = 0.0;
-  for (std::size_t i = 0; i < simulated.size(); ++i) {
-    distance += (simulated[i] - measured).norm();
-    for (std::size_t j = 0; j < i; ++j) pairs += (simulated[i] - simulated[j]).norm();
-  }
-  return distance / n - pairs / (n * (n - 1.0));
-}
-
 Score score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
             std::size_t fewest_simulated) {
   return Scorer(campaign, runs, ask, fewest_simulated).result();
+}
+
+Score score_of_climatology(const Campaign& campaign, const std::vector<bool>& ask) {
+  return Scorer(campaign, {}, ask, kFewestSimulated).result();
+}
+
+Score of_large_groups(const Score& score, std::uint32_t fewest) {
+  Score large;
+  std::vector<std::uint32_t> number(score.groups.size(), 0);  // of each group among those that are left
+  double sum = 0.0, weights = 0.0;
+  for (std::size_t g = 0; g < score.groups.size(); ++g) {
+    const GroupScore& group = score.groups[g];
+    if (group.rows < fewest) continue;
+    number[g] = static_cast<std::uint32_t>(large.groups.size());
+    large.groups.push_back(group);
+    sum += group.weight * group.score;
+    weights += group.weight;
+  }
+  for (RowScore row : score.rows) {
+    if (score.groups[row.group].rows < fewest) continue;
+    row.group = number[row.group];
+    large.rows.push_back(row);
+  }
+  if (!large.groups.empty()) large.total = sum / weights;
+  return large;
 }
 
 Score weigh_groups(Score score) {

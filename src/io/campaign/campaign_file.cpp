@@ -150,6 +150,7 @@ LoadedCampaign read_campaign(const std::string& path, const std::optional<std::s
   if (!spec.screens.path.empty()) {
     ScreenLayer screens = read_screens(spec.screens.path, terrain);
     campaign.screens = std::move(screens.screens);
+    std::ranges::sort(campaign.screens, {}, &Screen::id);  // the order in the file changes nothing
     take_warnings(out, screens);
   }
   campaign.surface = Surface(std::move(terrain.heights), spec.surface);

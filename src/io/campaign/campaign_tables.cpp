@@ -1,7 +1,9 @@
 #include "campaign_tables.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <unordered_map>
 
 #include "io/gdal/csv_table.hpp"
@@ -37,6 +39,7 @@ class Tables {
     if (!files_.stops.empty()) read_stops();
     if (!files_.passages.empty()) read_passages();
     if (!files_.samples.empty()) read_samples();
+    order();
   }
 
  private:
@@ -50,6 +53,7 @@ class Tables {
     for (const Row& row : table.rows()) {
       MeasuredBlock block;
       block.id = table.name(row, "id");
+      block.stream = stream_of_name(block.id);
       const auto [earlier, fresh] = lines_.try_emplace(block.id, row.line);
       if (!fresh) table.refuse(row, "id", "is there already in line " + std::to_string(earlier->second));
       indices_[block.id] = campaign_.blocks.size();
@@ -181,6 +185,17 @@ class Tables {
       sample.spin = table.number(row, "angular_velocity_rads", kSpin).value_or(kNotGiven);
       block.samples.push_back(sample);
     }
+  }
+
+  /// Puts the blocks in the order of their ids and their samples in that of the distance, so that the order of rows in
+  /// the files changes nothing.
+  void order() {
+    std::ranges::sort(campaign_.blocks, {}, &MeasuredBlock::id);
+    const auto nearest_first = [](const Sample& s) {
+      const auto known = [](double value) { return std::isnan(value) ? -1.0 : value; };
+      return std::tuple(s.distance, s.x, s.y, known(s.speed), known(s.spin));
+    };
+    for (MeasuredBlock& block : campaign_.blocks) std::ranges::sort(block.samples, {}, nearest_first);
   }
 
   const CampaignFiles& files_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coverage_report.hpp"
+#include "evidence.hpp"
 #include "svg.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
@@ -97,11 +99,63 @@ std::string plots(const Campaign& campaign, const Diagnosis& d, const DiagnosisR
   for (std::size_t i = 0; i < std::min(kPlots, rows.size()); ++i) {
     const bool by_block = rows[i].covariate == "mean" || rows[i].covariate == "spread";
     const std::string title = rows[i].observable + " against " + (by_block ? "block" : rows[i].covariate);
-    const std::string across = by_block ? "number of the block" : labelled(rows[i].covariate);
+    const std::string across = by_block ? "number of the block, in the order of the ids" : labelled(rows[i].covariate);
     html += "<p>" + plot(points_of(campaign, before, rows[i]), title + ", before", across);
     if (d.rounds.size() > 1) html += plot(points_of(campaign, after, rows[i]), title + ", after", across);
     html += "</p>\n";
   }
+  return html;
+}
+
+/// The error before and after, beside the climatology's, in all and by group.
+std::string errors_html(const DiagnosisRecord& record) {
+  const Diagnosis& d = record.diagnosis;
+  const auto row = [](const std::string& rows, double before, double after, const Reduction* reduction) {
+    return "<tr><td>" + rows + "</td><td>" + value_text(before) + "</td><td>" + value_text(after) + "</td><td>" +
+           (reduction != nullptr ? reduction_text(*reduction) : "") + "</td></tr>\n";
+  };
+  std::string html =
+      "<h2>Error before and after</h2>\n<table><tr><th></th><th>ground fitted</th><th>with what was found</th>"
+      "<th>reduction, 95 %</th></tr>\n";
+  const std::vector<std::string> small = small_groups(record);
+  if (!small.empty())
+    html += row("<b>held-out rows (never fitted), groups of " + std::to_string(kHeadlineRows) + " rows and more</b>",
+                record.headline.before, record.headline.after, &record.headline.reduction);
+  html += row(small.empty() ? "<b>held-out rows (never fitted)</b>" : "held-out rows, all groups", record.whole.before,
+              record.whole.after, &record.whole.reduction);
+  html += row("fitting rows", d.base.score.total, d.with_effects.score.total, nullptr) + "</table>\n";
+  html +=
+      "<p>Mean normalised score: 0 says the very value, about 0.56 knows no more than the spread of the "
+      "measurements. Climatology: the measurements of the fitting blocks (of a fitting block those of the others) in "
+      "the place of a model.</p>\n";
+  for (const BeforeAfter& e : record.errors)
+    for (const std::string& sentence : {skill_sentence(e.after), tail_before_after(e)})
+      if (!sentence.empty()) html += "<p>" + escaped(sentence) + "</p>\n";
+  for (const BeforeAfter& e : record.errors) html += groups_html(e) + "<br>\n";
+  if (!small.empty())
+    html += "<p>* fewer than " + std::to_string(kHeadlineRows) + " rows: one block may rule the group.</p>\n";
+  return html;
+}
+
+/// How the measured values lie among the simulated ones.
+std::string spread_html(const DiagnosisRecord& record) {
+  std::string html =
+      "<h2>Calibration of the spread</h2>\n<p>Measured values below percentiles of the values simulated for the same "
+      "block: 5, 50 and 95 % in a right model (in brackets what 95 % of right models give; *: no right model). Below, "
+      "the "
+      "blocks by the rank of their measurement among the simulated values, in tenths: high at both ends where the "
+      "model "
+      "scatters too little, in the middle where it scatters too much. Grey: 95 % of the bars of a right model.</p>\n";
+  for (const BeforeAfter& e : record.errors)
+    for (const ScoredRows* scored : {&e.before, &e.after}) {
+      const bool after = scored == &e.after;
+      if (scored->coverage.empty() || (!after && record.diagnosis.rounds.size() < 2)) continue;
+      html += "<h3>" + std::string(e.after.rows == "fit" ? "Fitting" : "Held-out") + " rows, " +
+              (record.diagnosis.rounds.size() < 2 ? "ground fitted"
+               : after                            ? "with what was found"
+                                                  : "ground alone") +
+              "</h3>\n" + coverage_html(scored->coverage) + rank_histograms(scored->coverage);
+    }
   return html;
 }
 
@@ -168,17 +222,9 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
   for (std::size_t i = 0; i < d.rounds.size(); ++i)
     html += "<p>Round " + std::to_string(i + 1) + ": " + sentence(d.rounds[i]) +
             " (p that the residual is noise: " + with_decimals(d.rounds[i].p_value, 4) + ")</p>\n";
-  const HoldoutError& e = record.whole;
-  html +=
-      "<h2>Error before and after</h2>\n<table><tr><th></th><th>ground fitted</th><th>with what was found</th>"
-      "<th>reduction, 95 %</th></tr>\n";
-  html += "<tr><td>fitting rows</td><td>" + value_text(d.base.score.total) + "</td><td>" +
-          value_text(d.with_effects.score.total) + "</td><td></td></tr>\n";
-  html += "<tr><td>held-out rows (never fitted)</td><td>" + value_text(e.before) + "</td><td>" + value_text(e.after) +
-          "</td><td>" + reduction_text(e.reduction) +
-          "</td></tr></table>\n<p>Mean normalised score: 0 says the very value, about 0.56 knows no more than the "
-          "spread of the measurements.</p>\n";
+  html += errors_html(record);
   for (const std::string& warning : record.warnings) html += "<p>Warning: " + escaped(warning) + "</p>\n";
+  html += spread_html(record);
   html +=
       "<h2>Candidates</h2>\n<p>Each at its best place, fitted together with the ground where p is below 0.1 (or "
       "--level), else with "

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/files/json.hpp"
+#include "evidence.hpp"
 #include "talus/base/version.hpp"
 
 namespace talus::io {
@@ -54,20 +54,20 @@ Json candidates_of(const DiagnosisRound& round, const std::vector<HoldoutError>&
   return list;
 }
 
-Score holdout_score(const Campaign& campaign, const Model& model, const DiagnosisRecord& record) {
+std::vector<BlockRuns> holdout_runs(const Campaign& campaign, const Model& model, const DiagnosisRecord& record) {
   if (record.options.proceed && !record.options.proceed(kOpening)) throw FitInterrupted{};
   ObserveOptions how;
   how.trials = kHoldoutTrials;
   how.seed = record.options.seed + 1;
   how.threads = record.options.threads;
   how.blocks = holdout_rows(campaign);
-  return score(campaign, observe(campaign, model, how), how.blocks);
+  return observe(campaign, model, how);
 }
 
-HoldoutError error_of(const Score& before, const Score& after, std::size_t blocks) {
+HoldoutError error_of(const Score& before, const Score& after, std::span<const std::uint32_t> streams) {
   if (before.rows.empty() || std::isnan(before.total) || std::isnan(after.total))
     return {before.total, after.total, {}};
-  return {before.total, after.total, reduction(before, after, blocks)};
+  return {before.total, after.total, reduction(before, after, streams)};
 }
 
 bool found(const DiagnosisRound& round) {
@@ -85,22 +85,35 @@ double probability_of(const DiagnosisRound& round) {
 }  // namespace
 
 void open_holdout(const Campaign& campaign, DiagnosisRecord& record) {
-  const std::size_t blocks = campaign.blocks.size();
-  const Score base = holdout_score(campaign, record.diagnosis.base.model, record);
-  Score before = base;
-  for (const DiagnosisRound& round : record.diagnosis.rounds) {
+  const std::vector<std::uint32_t> streams = streams_of(campaign);
+  const std::vector<bool> rows = holdout_rows(campaign), fitting = fitting_rows(campaign);
+  const Diagnosis& d = record.diagnosis;
+  const auto scored_holdout = [&](const std::vector<BlockRuns>& runs) {
+    return scored("holdout", campaign, runs, rows);
+  };
+  ScoredRows base = scored_holdout(holdout_runs(campaign, d.base.model, record)), last = base;
+  for (const DiagnosisRound& round : d.rounds) {
     record.candidates.emplace_back();
-    Score chosen = before;
+    const Score before = last.score;
     for (std::size_t i = 0; i < round.candidates.size(); ++i) {
-      const Score after = holdout_score(campaign, round.candidates[i].fitted.model, record);
-      record.candidates.back().push_back(error_of(before, after, blocks));
-      if (i == 0 && found(round)) chosen = after;
+      const std::vector<BlockRuns> runs = holdout_runs(campaign, round.candidates[i].fitted.model, record);
+      record.candidates.back().push_back(error_of(before, score(campaign, runs, rows), streams));
+      if (i == 0 && found(round)) last = scored_holdout(runs);
     }
-    record.rounds.push_back(error_of(before, chosen, blocks));
-    before = chosen;
+    record.rounds.push_back(error_of(before, last.score, streams));
   }
-  record.whole = error_of(base, before, blocks);
-  record.holdout = std::move(before);
+  record.whole = error_of(base.score, last.score, streams);
+  record.headline = error_of(of_large_groups(base.score), of_large_groups(last.score), streams);
+  record.errors.push_back(compared(campaign, scored("fit", campaign, d.base.runs, fitting),
+                                   scored("fit", campaign, d.with_effects.runs, fitting)));
+  record.errors.push_back(compared(campaign, std::move(base), std::move(last)));
+}
+
+std::vector<std::string> small_groups(const DiagnosisRecord& record) {
+  std::vector<std::string> names;
+  for (const GroupScore& group : record.errors.back().after.score.groups)
+    if (group.rows < kHeadlineRows) names.push_back(group.name + " (" + std::to_string(group.rows) + " rows)");
+  return names;
 }
 
 std::string diagnosis_json(const DiagnosisRecord& record) {
@@ -135,7 +148,18 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
                {{"before", json_of(e.before)},
                 {"after", json_of(e.after)},
                 {"reduction", json_of(e.reduction.share)},
-                {"ci95", json_of(e.reduction.interval)}}}}},
+                {"ci95", json_of(e.reduction.interval)}}},
+              {"headline",
+               {{"rows", "holdout"},
+                {"fewest_rows_of_a_group", kHeadlineRows},
+                {"left_out", small_groups(record)},
+                {"before", json_of(record.headline.before)},
+                {"after", json_of(record.headline.after)},
+                {"reduction", json_of(record.headline.reduction.share)},
+                {"ci95", json_of(record.headline.reduction.interval)}}}}},
+            {"evidence", evidence_json(record.errors, "ground", "found")},
+            {"tail", tail_json(record.errors)},
+            {"coverage", coverage_json(record.errors)},
             {"candidates", candidates_of(first, record.candidates.front())},
             {"residual", residual_of(first.residual)},
             {"residual_after", residual_of(d.rounds.back().residual)},

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/files/json.hpp"
+#include "evidence.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
 #include "talus/simulate/scenario/presets.hpp"
@@ -51,11 +51,15 @@ Json error_of(const Calibration& c) {
       groups.push_back({{"group", e.after.score.groups[g].name},
                         {"before", json_of(e.before.score.groups[g].score)},
                         {"after", json_of(e.after.score.groups[g].score)},
+                        {"climatology", json_of(e.after.climatology.groups[g].score)},
                         {"rows", e.after.score.groups[g].rows}});
     error[e.after.rows] = {{"before", json_of(e.before.score.total)},
                            {"after", json_of(e.after.score.total)},
                            {"reduction", json_of(e.reduction.share)},
                            {"ci95", json_of(e.reduction.interval)},
+                           {"climatology", json_of(e.after.climatology.total)},
+                           {"skill", json_of(e.after.skill.share)},
+                           {"skill_ci95", json_of(e.after.skill.interval)},
                            {"blocks", e.after.blocks},
                            {"groups", groups}};
   }
@@ -117,16 +121,18 @@ std::string error_lines(const Calibration& c) {
       text += "No group has five rows: nothing can be said.\n\n";
       continue;
     }
-    text += "| group | before | after | rows |\n| --- | --- | --- | --- |\n";
+    text += "| group | before | after | climatology | rows |\n| --- | --- | --- | --- | --- |\n";
     for (std::size_t g = 0; g < e.after.score.groups.size(); ++g)
       text += "| " + e.after.score.groups[g].name + " | " + with_decimals(e.before.score.groups[g].score, 3) + " | " +
-              with_decimals(e.after.score.groups[g].score, 3) + " | " + std::to_string(e.after.score.groups[g].rows) +
+              with_decimals(e.after.score.groups[g].score, 3) + " | " +
+              with_decimals(e.after.climatology.groups[g].score, 3) + " | " + rows_text(e.after.score.groups[g]) +
               " |\n";
     text += "| **mean** | **" + with_decimals(e.before.score.total, 3) + "** | **" +
-            with_decimals(e.after.score.total, 3) + "** | " + std::to_string(e.after.score.rows.size()) + " |\n\n";
+            with_decimals(e.after.score.total, 3) + "** | **" + with_decimals(e.after.climatology.total, 3) + "** | " +
+            std::to_string(e.after.score.rows.size()) + " |\n\n";
     text += "The fit lowers the error by " + with_decimals(100.0 * e.reduction.share, 1) +
             " % (95 % interval over the blocks: " + with_decimals(100.0 * e.reduction.interval.low, 1) + " to " +
-            with_decimals(100.0 * e.reduction.interval.high, 1) + " %).\n\n";
+            with_decimals(100.0 * e.reduction.interval.high, 1) + " %).\n\n" + judgement_markdown(e);
   }
   return text;
 }
@@ -167,6 +173,8 @@ std::string calibration_json(const Calibration& c) {
             {"correlation", correlation_of(c)},
             {"not_fitted_zones", c.untouched},
             {"error", error_of(c)},
+            {"tail", tail_json(c.errors)},
+            {"coverage", coverage_json(c.errors)},
             {"distributions", distributions_of(c.comparison)}};
   json["inputs"] = json_of(c.inputs);
   json["warnings"] = c.warnings;

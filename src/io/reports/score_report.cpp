@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/files/json.hpp"
+#include "coverage_report.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/results/write_vectors.hpp"
@@ -11,13 +11,14 @@
 namespace talus::io {
 namespace {
 
-std::string cell(double score, const Interval& interval, std::size_t rows) {
+/// @param few  whether a group has so few rows that it stays out of a headline
+std::string cell(double score, const Interval& interval, std::size_t rows, bool few = false) {
   if (std::isnan(score)) return "       -                        -";
   const auto aligned = [](const std::string& text, std::size_t width) {
     return std::string(width - std::min(width, text.size()), ' ') + text;
   };
   return "  " + aligned(with_decimals(score, 3), 6) + "  " + aligned(with_decimals(interval.low, 3), 6) + " to " +
-         aligned(with_decimals(interval.high, 3), 6) + "  " + aligned(std::to_string(rows), 5);
+         aligned(with_decimals(interval.high, 3), 6) + "  " + aligned((few ? "*" : "") + std::to_string(rows), 5);
 }
 
 /// Names of the groups of all scores, in the order in which they first appear.
@@ -27,6 +28,39 @@ std::vector<std::string> group_names(std::span<const ScoredRows> scores) {
     for (const GroupScore& group : s.score.groups)
       if (std::find(names.begin(), names.end(), group.name) == names.end()) names.push_back(group.name);
   return names;
+}
+
+/// What the table does not say: marks, skill, the tail, the spread.
+std::string notes_of(std::span<const ScoredRows> scores) {
+  std::string text;
+  for (const ScoredRows& s : scores)
+    if (std::ranges::any_of(s.score.groups, [](const GroupScore& g) { return g.rows < kHeadlineRows; })) {
+      text += "* fewer than " + std::to_string(kHeadlineRows) + " rows: one block may rule the group\n";
+      break;
+    }
+  for (const ScoredRows& s : scores) text += judgement_lines(s);
+  return text;
+}
+
+/// Score of a group of the climatology; NaN if there is no such group.
+double score_of(const Score& score, const std::string& group) {
+  const auto found = std::ranges::find(score.groups, group, &GroupScore::name);
+  return found == score.groups.end() ? kNotGiven : found->score;
+}
+
+Json climatology_json(const ScoredRows& s) {
+  return {{"score", json_of(s.climatology.total, six_decimals)},
+          {"ci95", json_of(s.climatology_interval, six_decimals)},
+          {"skill", json_of(s.skill.share, six_decimals)},
+          {"skill_ci95", json_of(s.skill.interval, six_decimals)}};
+}
+
+Json tail_json(const ScoredRows& s) {
+  return {{"beyond_m", json_of(s.tail_begin)},
+          {"score", json_of(s.tail.total, six_decimals)},
+          {"ci95", json_of(s.tail_interval, six_decimals)},
+          {"climatology", json_of(s.tail_climatology.total, six_decimals)},
+          {"rows", s.tail.rows.size()}};
 }
 
 std::string field(double value) {
@@ -41,21 +75,68 @@ std::string rows_in_words(const std::string& rows) {
 
 ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<const BlockRuns> runs,
                   const std::vector<bool>& ask) {
-  ScoredRows out{
-      rows, static_cast<std::size_t>(std::count(ask.begin(), ask.end(), true)), score(campaign, runs, ask), {}};
-  out.intervals = bootstrap(out.score, campaign.blocks.size());
+  const std::vector<std::uint32_t> streams = streams_of(campaign);
+  ScoredRows out;
+  out.rows = rows;
+  out.blocks = static_cast<std::size_t>(std::count(ask.begin(), ask.end(), true));
+  out.score = score(campaign, runs, ask);
+  out.intervals = bootstrap(out.score, streams);
+  out.climatology = score_of_climatology(campaign, ask);
+  out.climatology_interval = bootstrap(out.climatology, streams).total;
+  out.skill = reduction(out.climatology, out.score, streams);
+  out.tail_begin = tail_begin(campaign);
+  out.tail = tail_score(campaign, runs, ask);
+  out.tail_interval = bootstrap(out.tail, streams).total;
+  out.tail_climatology = tail_score_of_climatology(campaign, ask);
+  out.coverage = coverage(campaign, runs, ask);
   return out;
 }
 
-std::vector<std::string> unseen_warnings(const std::string& rows, const Score& score) {
+BeforeAfter compared(const Campaign& campaign, ScoredRows before, ScoredRows after) {
+  const std::vector<std::uint32_t> streams = streams_of(campaign);
+  const Reduction whole = reduction(before.score, after.score, streams);
+  const Reduction tail = reduction(before.tail, after.tail, streams);
+  return {std::move(before), std::move(after), whole, tail};
+}
+
+std::string skill_sentence(const ScoredRows& s) {
+  if (std::isnan(s.skill.share)) return {};
+  const std::string errors =
+      with_decimals(s.score.total, 3) + " against the climatology's " + with_decimals(s.climatology.total, 3);
+  const std::string interval = " (95 %: " + with_decimals(100.0 * s.skill.interval.low, 1) + " to " +
+                               with_decimals(100.0 * s.skill.interval.high, 1) + " %)";
+  const std::string rows = rows_in_words(s.rows) + " rows: ";
+  if (!(s.skill.share > 0.0))
+    return rows + "no skill: " + errors + ": the measurements of the " + (s.rows == "fit" ? "other " : "") +
+           "fitting blocks, without any model, are as near";
+  return rows + "skill " + with_decimals(100.0 * s.skill.share, 1) + " %" + interval + ": " + errors +
+         (s.skill.interval.low > 0.0 ? "" : "; no skill is not ruled out");
+}
+
+std::string tail_sentence(const ScoredRows& s) {
+  if (s.tail.groups.empty()) return {};
+  return rows_in_words(s.rows) + " rows: run-out beyond " + with_digits(s.tail_begin, 3) +
+         " m: " + with_decimals(s.tail.total, 3) + " against the climatology's " +
+         with_decimals(s.tail_climatology.total, 3) + (s.tail.total < s.tail_climatology.total ? "" : ": no skill");
+}
+
+std::vector<std::string> score_warnings(const ScoredRows& s) {
   std::vector<std::string> warnings;
-  for (const GroupScore& group : score.groups)
+  for (const GroupScore& group : s.score.groups)
     if (2 * group.unseen > group.rows)
       warnings.push_back(group.name + ": " + std::to_string(group.unseen) + " of " + std::to_string(group.rows) + " " +
-                         rows_in_words(rows) + " rows have fewer than " + std::to_string(kFewestSimulated) +
+                         rows_in_words(s.rows) + " rows have fewer than " + std::to_string(kFewestSimulated) +
                          " simulated values and score as the climatology: the model seldom does there what was "
                          "measured, and the score says nothing of it (more trials may help)");
+  for (std::string& warning : coverage_warnings(s)) warnings.push_back(std::move(warning));
   return warnings;
+}
+
+std::string judgement_lines(const ScoredRows& s) {
+  std::string text;
+  for (const std::string& sentence : {skill_sentence(s), tail_sentence(s)})
+    if (!sentence.empty()) text += sentence + "\n";
+  return text + coverage_lines(s);
 }
 
 std::string score_table(const ScoreSettings& settings, std::span<const ScoredRows> scores) {
@@ -76,13 +157,19 @@ std::string score_table(const ScoreSettings& settings, std::span<const ScoredRow
       const auto& groups = s.score.groups;
       const auto found = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.name == name; });
       const auto index = static_cast<std::size_t>(found - groups.begin());
-      text +=
-          found == groups.end() ? padded("       -", 33) : cell(found->score, s.intervals.groups[index], found->rows);
+      text += found == groups.end()
+                  ? padded("       -", 33)
+                  : cell(found->score, s.intervals.groups[index], found->rows, found->rows < kHeadlineRows);
     }
   }
   text += "\n" + padded("mean normalised score", width);
   for (const ScoredRows& s : scores) text += cell(s.score.total, s.intervals.total, s.score.rows.size());
-  return text + "\n";
+  text += "\n" + padded("climatology", width);
+  for (const ScoredRows& s : scores)
+    text += cell(s.climatology.total, s.climatology_interval, s.climatology.rows.size());
+  text += "\n" + padded("run-out tail", width);
+  for (const ScoredRows& s : scores) text += cell(s.tail.total, s.tail_interval, s.tail.rows.size());
+  return text + "\n" + notes_of(scores);
 }
 
 std::string score_json(const ScoreSettings& settings, std::span<const ScoredRows> scores) {
@@ -97,12 +184,16 @@ std::string score_json(const ScoreSettings& settings, std::span<const ScoredRows
       groups.push_back({{"group", s.score.groups[g].name},
                         {"score", json_of(s.score.groups[g].score, six_decimals)},
                         {"ci95", json_of(s.intervals.groups[g], six_decimals)},
+                        {"climatology", json_of(score_of(s.climatology, s.score.groups[g].name), six_decimals)},
                         {"rows", s.score.groups[g].rows},
                         {"rows_as_climatology", s.score.groups[g].unseen}});
     json[s.rows] = {{"score", json_of(s.score.total, six_decimals)},
                     {"ci95", json_of(s.intervals.total, six_decimals)},
                     {"blocks", s.blocks},
                     {"rows", s.score.rows.size()},
+                    {"climatology", climatology_json(s)},
+                    {"tail", tail_json(s)},
+                    {"coverage", json_of(s.coverage)},
                     {"groups", groups}};
   }
   return json_text(json);

@@ -28,6 +28,7 @@ Campaign slope_campaign(int blocks) {
   for (int i = 0; i < blocks; ++i) {
     MeasuredBlock b;
     b.id = "b" + std::to_string(i);
+    b.stream = stream_of_name(b.id);
     b.x = numbers.uniform(40.0, 80.0);
     b.y = numbers.uniform(185.0, 200.0);
     b.velocity = {0.0, -1.0, 0.0};

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "talus/base/name_stream.hpp"
 #include "talus/physics/block.hpp"
 #include "talus/simulate/scenario/scenario.hpp"
 
@@ -26,6 +27,7 @@ struct Sample {
 /// A block that was released, with its measurements.
 struct MeasuredBlock {
   std::string id;
+  std::uint32_t stream = 0;      ///< of its random numbers: stream_of_name(id), else blocks have the same luck
   double x = 0.0, y = 0.0;       ///< nominal place of release [m, local]
   double release_height = 1.0;   ///< of the centre above the terrain [m]
   double release_radius = 0.0;   ///< the place of release is uniform in a disc of this radius around (x, y) [m]
@@ -40,7 +42,7 @@ struct MeasuredBlock {
   std::optional<Eigen::Vector2d> stop;           ///< place of rest [m, local]
   std::optional<double> stop_mass;               ///< mass that arrived there [kg]
   std::vector<std::optional<Passage>> passages;  ///< first crossing of each screen of the campaign; empty: none
-  std::vector<Sample> samples;                   ///< in the order of the file
+  std::vector<Sample> samples;                   ///< nearest to the release first
 };
 
 /// Standard deviations of the measurement. Normal errors of this size are added to the simulated values before they are
@@ -59,8 +61,8 @@ struct Campaign {
   Surface surface{Raster<float>{}};
   Raster<std::uint8_t> zones;           ///< index into zone_names; empty where one ground is everywhere
   std::vector<std::string> zone_names;  ///< "default" (ground outside all zones) first, then those of the campaign
-  std::vector<MeasuredBlock> blocks;
-  std::vector<Screen> screens;
+  std::vector<MeasuredBlock> blocks;    ///< in the order of their ids, whatever that of the file is
+  std::vector<Screen> screens;          ///< in the order of their ids
   MeasurementError error;
 };
 
@@ -68,6 +70,8 @@ struct Campaign {
 std::vector<bool> fitting_rows(const Campaign& campaign);
 /// The blocks that are held out.
 std::vector<bool> holdout_rows(const Campaign& campaign);
+/// The random streams of the blocks, for draws over blocks. Size: blocks.
+std::vector<std::uint32_t> streams_of(const Campaign& campaign);
 
 /// The body of a measured block: a sphere of its mass and density, with its axes.
 Block body_of(const MeasuredBlock& block);

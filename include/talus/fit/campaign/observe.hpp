@@ -69,10 +69,10 @@ struct ObserveOptions {
 /// @return one entry per block of the campaign, with trials = 0 for those not asked for (or not reached when `proceed`
 ///         returned false)
 ///
-/// Common random numbers: the draws of (seed, block, trial), the place of release in its disc and the errors of the
-/// measurement among them, do not depend on the model, so that two models are compared with the same random numbers.
-/// Bits are equal for any number of threads and any choice of blocks. A screen's values are those of `screens.csv`.
-/// Precondition: model.grounds has one entry per zone.
+/// Common random numbers: the draws of (seed, stream of the block, trial), the place of release in its disc and the
+/// errors of the measurement among them, do not depend on the model, so that two models are compared with the same
+/// random numbers. Bits are equal for any number of threads, any order and any choice of blocks. A screen's values are
+/// those of `screens.csv`. Precondition: model.grounds has one entry per zone.
 std::vector<BlockRuns> observe(const Campaign& campaign, const Model& model, const ObserveOptions& options);
 
 /// The release of one trial of a block, as `observe` makes it. A place without terrain gives a height of NaN.

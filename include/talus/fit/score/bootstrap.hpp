@@ -1,4 +1,6 @@
 #pragma once
+#include <span>
+
 #include "talus/base/sample.hpp"
 #include "talus/fit/score/score.hpp"
 
@@ -10,13 +12,22 @@ namespace talus {
 /// @param weight  by block of the campaign, >= 0
 double weighted_total(const Score& score, std::span<const double> weight);
 
-/// 95 % intervals of the total and of each group for the choice of the released blocks: percentiles of a bootstrap that
-/// draws blocks with replacement, the same blocks for all groups. The model is held fixed.
+/// Weights of the blocks in bootstrap number `draw`: standard exponential numbers (the Bayesian bootstrap, Rubin 1981).
+/// The weight of a block depends on its stream alone, so that a block more or less, or another order, changes no other
+/// weight. The variance of a mean of n values is that of the values over n + 1; drawing with replacement gives n.
+/// Counts would do as well, but at small n they leave groups without any block.
+///
+/// @param streams  of the blocks (`streams_of`); blocks of one stream have one weight. The result has their size
+std::vector<double> bootstrap_weights(std::span<const std::uint32_t> streams, std::uint32_t draw, std::uint64_t seed);
+
+/// 95 % intervals of the total and of each group for the choice of the released blocks: percentiles of a bootstrap
+/// (`bootstrap_weights`) with the same weights for all groups. The model is held fixed.
 struct ScoreIntervals {
   Interval total;
   std::vector<Interval> groups;  ///< as Score::groups
 };
-ScoreIntervals bootstrap(const Score& score, std::size_t blocks, std::uint32_t draws = 2000, std::uint64_t seed = 1);
+ScoreIntervals bootstrap(const Score& score, std::span<const std::uint32_t> streams, std::uint32_t draws = 2000,
+                         std::uint64_t seed = 1);
 
 /// Share by which one model lowers the total of another, with a 95 % interval over the blocks: 1 - after/before of the
 /// same bootstrap draws. Both must be scores of the same rows.
@@ -24,8 +35,8 @@ struct Reduction {
   double share = kNotGiven;
   Interval interval;
 };
-Reduction reduction(const Score& before, const Score& after, std::size_t blocks, std::uint32_t draws = 2000,
-                    std::uint64_t seed = 1);
+Reduction reduction(const Score& before, const Score& after, std::span<const std::uint32_t> streams,
+                    std::uint32_t draws = 2000, std::uint64_t seed = 1);
 
 /// Difference of two totals of the same rows, negative where `after` is better; the draws vary the released blocks.
 struct Difference {
@@ -33,10 +44,7 @@ struct Difference {
   Interval interval;          ///< 95 %
   std::vector<double> draws;  ///< of the bootstrap
 };
-Difference difference(const Score& before, const Score& after, std::size_t blocks, std::uint32_t draws = 1000,
-                      std::uint64_t seed = 1);
-
-/// Number of times that each of the blocks that have a row is drawn in bootstrap number `draw`. Size: blocks.
-std::vector<double> bootstrap_weights(const Score& score, std::size_t blocks, std::uint32_t draw, std::uint64_t seed);
+Difference difference(const Score& before, const Score& after, std::span<const std::uint32_t> streams,
+                      std::uint32_t draws = 1000, std::uint64_t seed = 1);
 
 }  // namespace talus

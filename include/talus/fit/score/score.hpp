@@ -5,24 +5,12 @@
 
 #include "talus/base/sample.hpp"
 #include "talus/fit/campaign/observe.hpp"
+#include "talus/fit/score/fair_scores.hpp"
 
 namespace talus {
 
 /// The error of a model on measured data. docs/closing-the-loop.md, "The score". A model that gives the measured value
 /// exactly scores 0; one that knows no more than the spread of the measurements scores about 0.56.
-
-/// Continuous ranked probability score of simulated values against a measured one, as a fair (unbiased) estimate:
-///
-///   mean |x_i - y| - 1/2 sum_ij |x_i - x_j| / (n (n - 1))
-///
-/// @param simulated  n >= 2 values, in any order and unit; sorted on return
-/// @return           in the same unit; may be slightly negative. O(n log n)
-/// Source: Ferro (2014), "Fair scores for ensemble forecasts".
-double fair_crps(std::span<double> simulated, double measured);
-
-/// Energy score of simulated places in plan against a measured one: `fair_crps` with their distances [m]. n >= 2.
-/// O(n^2).
-double fair_energy_score(std::span<const Eigen::Vector2d> simulated, const Eigen::Vector2d& measured);
 
 /// The score of one group: one quantity at one place.
 struct GroupScore {
@@ -61,6 +49,16 @@ inline constexpr std::size_t kFewestRows = 5;
 /// Spreads, p and the climatology come from the fitting rows (holdout = false) alone, whatever `ask` is.
 Score score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
             std::size_t fewest_simulated = kFewestSimulated);
+
+/// The score of the climatology on the same rows: of each block the measurements of the other fitting rows stand in for
+/// simulated values. A model without skill does no better.
+Score score_of_climatology(const Campaign& campaign, const std::vector<bool>& ask);
+
+/// Rows from which on a group counts in a headline: of fewer, one block may rule the total.
+inline constexpr std::uint32_t kHeadlineRows = 10;
+
+/// The score without its groups of fewer rows.
+Score of_large_groups(const Score& score, std::uint32_t fewest = kHeadlineRows);
 
 /// The score that a fit minimises: a group of n rows has the weight n / (n + 10). The variance of a group's mean has
 /// two parts: one from its quantity, alike for all groups, and one from the choice of its rows, which falls with n. In

@@ -1,6 +1,7 @@
 #pragma once
 #include "talus/fit/diagnose/diagnosis.hpp"
 #include "talus/io/reports/fit_record.hpp"
+#include "talus/io/reports/score_report.hpp"
 
 namespace talus::io {
 
@@ -14,16 +15,20 @@ struct HoldoutError {
 struct DiagnosisRecord : FitRecord {
   DiagnoseOptions options;
   Diagnosis diagnosis;
+  std::vector<BeforeAfter> errors;                    ///< of the fitting and the held-out rows: base, last model
   HoldoutError whole;                                 ///< base against the last model
+  HoldoutError headline;                              ///< the same, of the groups with ten held-out rows and more
   std::vector<HoldoutError> rounds;                   ///< each effect found, against the model before it
   std::vector<std::vector<HoldoutError>> candidates;  ///< as DiagnosisRound::candidates
-  Score holdout;                                      ///< of the last model
   double seconds = 0.0;
 };
 
-/// Simulates and scores the held-out rows with every model of a diagnosis. Throws FitInterrupted if `options.proceed`
-/// returns false.
+/// Simulates and scores the held-out rows with every model of a diagnosis, and judges the first and the last model on
+/// the rows of both kinds. Throws FitInterrupted if `options.proceed` returns false.
 void open_holdout(const Campaign& campaign, DiagnosisRecord& record);
+
+/// Names of the groups of fewer than ten held-out rows, with their rows: they stay out of the headline.
+std::vector<std::string> small_groups(const DiagnosisRecord& record);
 
 /// The text of diagnosis.json. Its keys: docs/closing-the-loop.md, "Diagnosis".
 std::string diagnosis_json(const DiagnosisRecord& record);

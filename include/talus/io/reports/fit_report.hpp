@@ -9,12 +9,6 @@
 
 namespace talus::io {
 
-/// The score of the model before and after a fit, on rows of one kind.
-struct BeforeAfter {
-  ScoredRows before, after;
-  Reduction reduction;
-};
-
 /// Results of `talus calibrate`.
 struct Calibration : FitRecord {
   FitOptions options;

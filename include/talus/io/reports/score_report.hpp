@@ -5,22 +5,38 @@
 #include <vector>
 
 #include "talus/fit/score/bootstrap.hpp"
+#include "talus/fit/score/coverage.hpp"
+#include "talus/fit/score/tail.hpp"
 #include "talus/io/campaign/campaign_file.hpp"
 
 namespace talus::io {
 
-/// The score of some blocks of a campaign, with intervals.
+/// The score of some blocks of a campaign, with intervals, and what it is to be judged by.
 struct ScoredRows {
   std::string rows;  ///< "fit" or "holdout"
   std::size_t blocks = 0;
   Score score;
   ScoreIntervals intervals;
+  Score climatology;  ///< of the same rows
+  Interval climatology_interval;
+  Reduction skill;          ///< by which the model lowers the climatology's error
+  double tail_begin = 0.0;  ///< run-out beyond which the tail is scored [m]
+  Score tail, tail_climatology;
+  Interval tail_interval;
+  std::vector<Coverage> coverage;
+};
+
+/// The score of the model before and after a fit, on rows of one kind.
+struct BeforeAfter {
+  ScoredRows before, after;
+  Reduction reduction;
+  Reduction tail_reduction;
 };
 
 /// "fitting" or "held-out", for "fit" and "holdout".
 std::string rows_in_words(const std::string& rows);
 
-/// Scores the asked blocks and bootstraps over them.
+/// Scores the asked blocks and the climatology, bootstraps over them, and counts their ranks.
 ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<const BlockRuns> runs,
                   const std::vector<bool>& ask);
 
@@ -32,11 +48,22 @@ struct ScoreSettings {
   std::string surface;  ///< of the campaign's terrain
 };
 
-/// One warning for each group in which more than half of the rows score as the climatology. Such rows do not score the
-/// model, so that a fit can hide its errors there.
-///
-/// @param rows  "fit" or "holdout"
-std::vector<std::string> unseen_warnings(const std::string& rows, const Score& score);
+/// Compares the scores of two models on the same rows.
+BeforeAfter compared(const Campaign& campaign, ScoredRows before, ScoredRows after);
+
+/// One warning for each group in which more than half of the rows score as the climatology (such rows do not score the
+/// model, so that a fit can hide its errors there), and for each share of measured values below a simulated percentile
+/// that a right model does not give.
+std::vector<std::string> score_warnings(const ScoredRows& scored);
+
+/// Whether the model beats the climatology, in words: "no skill: ..." where it does not. Empty where nothing was
+/// scored.
+std::string skill_sentence(const ScoredRows& scored);
+/// The error in the far run-outs in words. Empty where it was not scored.
+std::string tail_sentence(const ScoredRows& scored);
+
+/// Both, and the counts of the spread, as lines for the terminal.
+std::string judgement_lines(const ScoredRows& scored);
 
 /// The scores as a table for people: one line per group, the rows beside the score.
 std::string score_table(const ScoreSettings& settings, std::span<const ScoredRows> scores);

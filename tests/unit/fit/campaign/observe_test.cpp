@@ -41,6 +41,23 @@ TEST(Observe, SameBitsForAnyNumberOfThreadsAndChoiceOfBlocks) {
   }
 }
 
+/// The random numbers of a block follow from its id, and those of its measurement at a screen from the screen's.
+TEST(Observe, SameBitsWhateverStandsBeside) {
+  const Campaign c = campaign_on_slope(7);
+  Campaign other = c;
+  std::ranges::reverse(other.blocks);
+  other.blocks.erase(other.blocks.begin() + 2);
+  other.blocks.back().id = "renamed";
+  other.screens.insert(other.screens.begin(), {"S0", {{{80.0, 0.0}, {80.0, 140.0}}}});
+  ObserveOptions options;
+  options.trials = 20;
+  const auto a = observe(c, model_of_slope(), options);
+  auto b = observe(other, model_of_slope(), options);
+  for (BlockRuns& runs : b) runs.screens.erase(runs.screens.begin());
+  expect_same(a[1], b[4]);
+  expect_same(a[6], b[0]);
+}
+
 TEST(Observe, LaterTrialsAreThoseOfALongerRun) {
   const Campaign c = campaign_on_slope(2);
   ObserveOptions all, last;

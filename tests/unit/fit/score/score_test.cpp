@@ -168,8 +168,12 @@ TEST_F(Scores, MissingValuesDropTheRowOfTheirQuantityOnly) {
 
 TEST_F(Scores, CrossedIsABrierScore) {
   double sum = 0.0;
-  for (std::size_t b = 0; b < 24; ++b)
-    if (!campaign_.blocks[b].holdout) sum += std::pow(13.0 / 20.0 - (b % 2 == 0 ? 1.0 : 0.0), 2);
+  for (std::size_t b = 0; b < 24; ++b) {
+    if (campaign_.blocks[b].holdout) continue;
+    std::vector<double> trials;  // 13 ones, 7 zeros: the Brier score is their CRPS
+    for (int t = 0; t < 20; ++t) trials.push_back(t % 3 != 0 ? 1.0 : 0.0);
+    sum += crps_by_integral(trials, b % 2 == 0 ? 1.0 : 0.0);
+  }
   EXPECT_NEAR(group(score(campaign_, runs_, fitting_rows(campaign_)), "crossed S1", 16), sum / 16.0 / 0.25, 1e-12);
 }
 
@@ -221,12 +225,65 @@ TEST_F(Scores, MassOnlyWhereBlocksBroke) {
 TEST_F(Scores, EqualWeightsGiveTheTotalAndTheBootstrapHoldsIt) {
   const Score s = score(campaign_, runs_, fitting_rows(campaign_));
   EXPECT_NEAR(weighted_total(s, std::vector<double>(24, 2.0)), s.total, 1e-13);
-  const ScoreIntervals i = bootstrap(s, 24);
+  const ScoreIntervals i = bootstrap(s, streams_of(campaign_));
   EXPECT_LT(i.total.low, s.total);
   EXPECT_GT(i.total.high, s.total);
-  const std::vector<double> w = bootstrap_weights(s, 24, 7, 1);
-  EXPECT_EQ(std::accumulate(w.begin(), w.end(), 0.0), 16.0);
-  for (std::size_t b = 2; b < 24; b += 3) EXPECT_EQ(w[b], 0.0);  // held out: not drawn
+}
+
+/// Each fitting row against the others: on average half of the mean distance of two measurements, and of a crossing
+/// that h of n blocks made h (n - h) / (n (n - 1)).
+TEST_F(Scores, OfTheClimatology) {
+  std::vector<double> speed;
+  for (const MeasuredBlock& b : campaign_.blocks)
+    if (!b.holdout && b.passages[0]) speed.push_back(b.passages[0]->speed);
+  double distance = 0.0;
+  for (const double a : speed)
+    for (const double b : speed) distance += std::abs(a - b) / (8.0 * 7.0);
+  const Score s = score_of_climatology(campaign_, fitting_rows(campaign_));
+  EXPECT_NEAR(group(s, "speed S1", 8), 0.5 * distance / spread(speed), 1e-12);
+  EXPECT_NEAR(group(s, "crossed S1", 16), 8.0 * 8.0 / (16.0 * 15.0) / 0.25, 1e-12);
+  const Score model = score(campaign_, runs_, fitting_rows(campaign_));
+  ASSERT_EQ(model.groups.size(), s.groups.size());
+  for (std::size_t g = 0; g < s.groups.size(); ++g) {
+    EXPECT_EQ(model.groups[g].name, s.groups[g].name);
+    EXPECT_EQ(model.groups[g].rows, s.groups[g].rows) << "on the same rows";
+  }
+}
+
+/// Of a held-out row it is that of all fitting rows, which is what a row without simulated values scores.
+TEST_F(Scores, OfTheClimatologyOnHeldOutRows) {
+  std::vector<Eigen::Vector2d> fitting;
+  std::vector<double> x, y;
+  for (const MeasuredBlock& b : campaign_.blocks)
+    if (!b.holdout) fitting.push_back(*b.stop), x.push_back(b.stop->x()), y.push_back(b.stop->y());
+  const Score s = score_of_climatology(campaign_, holdout_rows(campaign_));
+  double sum = 0.0;
+  for (const MeasuredBlock& b : campaign_.blocks)
+    if (b.holdout) sum += fair_energy_score(fitting, *b.stop);
+  EXPECT_NEAR(group(s, "stop", 8), sum / 8.0 / std::hypot(spread(x), spread(y)), 1e-12);
+}
+
+TEST_F(Scores, OfHeldOutBlocksDoNotDecideWhatIsFitted) {
+  for (MeasuredBlock& b : campaign_.blocks) b.stop_mass = (b.holdout ? 0.3 : 0.97) * b.mass;
+  for (const GroupScore& g : score(campaign_, runs_, fitting_rows(campaign_)).groups) EXPECT_NE(g.name, "mass");
+  campaign_.blocks[0].stop_mass = 0.96 * campaign_.blocks[0].mass;  // a spread, though no block broke
+  const Score held_out = score(campaign_, runs_, holdout_rows(campaign_));
+  EXPECT_TRUE(std::ranges::any_of(held_out.groups, [](const auto& g) { return g.name == "mass"; }));
+}
+
+TEST(LargeGroups, KeepTheirRows) {
+  Score s;
+  s.groups = {{"few", 0.9, 9}, {"stop", 0.4, 10}, {"speed S", 0.6, 12}};
+  for (std::uint32_t group = 0; group < 3; ++group)
+    for (std::uint32_t row = 0; row < s.groups[group].rows; ++row)
+      s.rows.push_back({group, row, s.groups[group].score});
+  const Score large = of_large_groups(s);
+  ASSERT_EQ(large.groups.size(), 2U);
+  EXPECT_EQ(large.groups[0].name, "stop");
+  EXPECT_NEAR(large.total, 0.5, 1e-12);
+  EXPECT_EQ(large.rows.size(), 22U);
+  EXPECT_NEAR(weighted_total(large, std::vector<double>(12, 1.0)), 0.5, 1e-12);
+  EXPECT_TRUE(std::isnan(of_large_groups(s, 13).total));
 }
 
 /// Groups of 30 and 10 rows with errors of 0.4 and 0.8 count 30/40 and 10/20: (0.3 + 0.4) / 1.25. The rows stay as they
@@ -243,22 +300,70 @@ TEST(WeighGroups, ByWhatTheirRowsTell) {
   EXPECT_TRUE(std::isnan(weigh_groups({}).total));
 }
 
-/// The standard error of a mean of normal values is known: the percentile interval must be near 2 x 1.96 of it.
+std::vector<std::uint32_t> streams(std::uint32_t blocks) {
+  std::vector<std::uint32_t> list;
+  for (std::uint32_t b = 0; b < blocks; ++b) list.push_back(stream_of_name("block " + std::to_string(b)));
+  return list;
+}
+
+/// A score of one group: one row of each block.
+Score score_of_rows(const std::vector<double>& values) {
+  Score s;
+  s.groups = {{"g", 0.0, static_cast<std::uint32_t>(values.size())}};
+  for (std::uint32_t b = 0; b < values.size(); ++b) s.rows.push_back({0, b, values[b]});
+  for (const double value : values) s.groups[0].score += value / static_cast<double>(values.size());
+  s.total = s.groups[0].score;
+  return s;
+}
+
+/// Rubin (1981): the variance of the mean of n values is that of the values over n + 1, for any n. Five standard errors
+/// of a variance of so many draws, with the kurtosis of the draws below 6.
+TEST(Bootstrap, VarianceOfAMeanIsRubins) {
+  Numbers numbers(12);
+  constexpr std::uint32_t kDraws = 20'000;
+  for (const std::size_t n : {5U, 24U}) {
+    std::vector<double> values(n);
+    for (double& v : values) v = numbers.normal();
+    const Score s = score_of_rows(values);
+    double variance = 0.0;
+    for (const double v : values) variance += (v - s.total) * (v - s.total) / static_cast<double>(n);
+    Moments draws;
+    for (const double d :
+         difference(score_of_rows(std::vector<double>(n, 0.0)), s, streams(static_cast<std::uint32_t>(n)), kDraws)
+             .draws)
+      draws.add(d);
+    const double expected = variance / (static_cast<double>(n) + 1.0);
+    EXPECT_NEAR(draws.mean(), s.total, 5.0 * std::sqrt(expected / kDraws)) << n;
+    EXPECT_NEAR(draws.squares / draws.count - draws.mean() * draws.mean(), expected,
+                5.0 * expected * std::sqrt(5.0 / kDraws))
+        << n;
+  }
+}
+
+/// The percentile interval of a mean of many values is 2 x 1.96 standard errors wide.
 TEST(Bootstrap, WidthOfTheIntervalOfAMean) {
   Numbers numbers(12);
-  Score s;
-  s.groups = {{"g", 0.0, 400}};
+  std::vector<double> values(400);
+  for (double& v : values) v = numbers.normal();
+  const Score s = score_of_rows(values);
   double squares = 0.0;
-  for (std::uint32_t b = 0; b < 400; ++b) {
-    s.rows.push_back({0, b, numbers.normal()});
-    s.groups[0].score += s.rows.back().score / 400.0;
-    squares += s.rows.back().score * s.rows.back().score;
-  }
-  s.total = s.groups[0].score;
+  for (const double v : values) squares += v * v;
   const double error = std::sqrt(squares / 400.0 - s.total * s.total) / 20.0;
-  const Interval i = bootstrap(s, 400, 4000).total;
+  const Interval i = bootstrap(s, streams(400), 4000).total;
   EXPECT_NEAR(i.high - i.low, 2.0 * 1.96 * error, 0.06 * 3.92 * error);
-  EXPECT_NEAR(reduction(s, s, 400).share, 0.0, 1e-15);
+  EXPECT_NEAR(reduction(s, s, streams(400)).share, 0.0, 1e-15);
+}
+
+/// The weight of a block follows from its stream: neither its place nor another block changes it.
+TEST(Bootstrap, WeightsGoByTheStream) {
+  std::vector<std::uint32_t> ids = streams(5);
+  const std::vector<double> before = bootstrap_weights(ids, 7, 3);
+  std::ranges::reverse(ids);
+  ids.push_back(99);
+  const std::vector<double> after = bootstrap_weights(ids, 7, 3);
+  for (std::size_t b = 0; b < 5; ++b) EXPECT_EQ(after[4 - b], before[b]);
+  EXPECT_NE(bootstrap_weights(ids, 8, 3)[0], after[0]);
+  EXPECT_NE(bootstrap_weights(ids, 7, 4)[0], after[0]);
 }
 
 }  // namespace

@@ -1,0 +1,23 @@
+#pragma once
+#include "talus/base/random.hpp"
+
+namespace talus {
+
+/// What a random number of a measured block decides, apart from its trajectories.
+enum class BlockDraw : std::uint32_t {
+  Weight,     ///< of the block in a bootstrap
+  Trial,      ///< that stands in for the block's measurement
+  Order,      ///< in which blocks are cut into folds
+  RankOfTie,  ///< between the simulated values beside a measured one
+};
+
+/// A random number of one block, in (0, 1). It depends on the block's stream alone: other blocks, and the order of all,
+/// change nothing.
+///
+/// @param stream  MeasuredBlock::stream
+/// @param number  of the draw: a bootstrap, a data set, an order
+inline double draw_of_block(std::uint64_t seed, std::uint32_t stream, std::uint32_t number, BlockDraw what) {
+  return uniform(Random(seed, stream, number, Purpose::Bootstrap).words(static_cast<std::uint32_t>(what))[0]);
+}
+
+}  // namespace talus

@@ -1,0 +1,114 @@
+#include "talus/fit/score/coverage.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
+#include <cmath>
+
+#include "fitting_values.hpp"
+#include "talus/base/holm.hpp"
+#include "talus/fit/campaign/block_draws.hpp"
+#include "talus/fit/score/score.hpp"
+#include "talus/fit/score/tail.hpp"
+
+namespace talus {
+namespace {
+
+/// Ranks of one observable.
+class Ranks {
+ public:
+  Ranks(std::string observable, std::uint64_t seed) : seed_(seed), number_(stream_of_name(observable)) {
+    coverage_.observable = std::move(observable);
+  }
+
+  /// @param simulated  NaN where nothing was seen
+  void add(const MeasuredBlock& block, double measured, std::span<const double> simulated) {
+    if (std::isnan(measured)) return;
+    keep_finite(simulated, values_);
+    if (values_.size() < kFewestSimulated) {
+      ++coverage_.unseen;
+      return;
+    }
+    const double rank =
+        random_rank(values_, measured, draw_of_block(seed_, block.stream, number_, BlockDraw::RankOfTie));
+    ++coverage_.rows;
+    ++coverage_.ranks[std::min(kRankClasses - 1, static_cast<std::size_t>(rank * kRankClasses))];
+    for (std::size_t i = 0; i < kCoverageShares.size(); ++i)
+      if (rank < kCoverageShares[i]) ++coverage_.below[i].count;
+  }
+
+  void add_to(std::vector<Coverage>& list) {
+    if (coverage_.rows < kFewestRows) return;
+    for (std::size_t i = 0; i < kCoverageShares.size(); ++i) test(coverage_.below[i], kCoverageShares[i]);
+    coverage_.expected_in_class = middle_of(boost::math::binomial(coverage_.rows, 1.0 / kRankClasses));
+    list.push_back(std::move(coverage_));
+  }
+
+ private:
+  void test(ShareBelow& below, double share) const {
+    const boost::math::binomial right(coverage_.rows, share);
+    const double at_most = boost::math::cdf(right, below.count);
+    const double at_least =
+        below.count == 0 ? 1.0 : boost::math::cdf(boost::math::complement(right, below.count - 1.0));
+    below.p_value = std::min(1.0, 2.0 * std::min(at_most, at_least));
+    below.expected = middle_of(right);
+  }
+
+  static Interval middle_of(const boost::math::binomial& counts) {
+    return {boost::math::quantile(counts, 0.025), boost::math::quantile(counts, 0.975)};
+  }
+
+  Coverage coverage_;
+  std::uint64_t seed_;
+  std::uint32_t number_;
+  std::vector<double> values_;
+};
+
+void add_screen(std::vector<Coverage>& list, const Campaign& campaign, std::span<const BlockRuns> runs,
+                const std::vector<bool>& ask, std::size_t screen, std::uint64_t seed) {
+  const auto add = [&](const char* name, double Passage::*measured, std::vector<double> BlockRuns::AtScreen::*values) {
+    Ranks ranks(name + campaign.screens[screen].id, seed);
+    for (std::size_t b = 0; b < campaign.blocks.size(); ++b) {
+      const auto& passage = campaign.blocks[b].passages[screen];
+      if (ask[b] && passage) ranks.add(campaign.blocks[b], (*passage).*measured, runs[b].screens[screen].*values);
+    }
+    ranks.add_to(list);
+  };
+  add("speed ", &Passage::speed, &BlockRuns::AtScreen::speed);
+  add("jump ", &Passage::jump, &BlockRuns::AtScreen::jump);
+  add("spin ", &Passage::spin, &BlockRuns::AtScreen::spin);
+}
+
+void correct(std::vector<Coverage>& list) {
+  std::vector<double> p;
+  for (const Coverage& c : list)
+    for (const ShareBelow& below : c.below) p.push_back(below.p_value);
+  const std::vector<double> corrected = holm(p);
+  auto next = corrected.begin();
+  for (Coverage& c : list)
+    for (ShareBelow& below : c.below) below.corrected = *next++;
+}
+
+}  // namespace
+
+double random_rank(std::span<const double> simulated, double measured, double draw) {
+  double below = 0.0, equal = 0.0;
+  for (const double value : simulated) {
+    if (value < measured) below += 1.0;
+    if (value == measured) equal += 1.0;
+  }
+  return (below + draw * (equal + 1.0)) / (static_cast<double>(simulated.size()) + 1.0);
+}
+
+std::vector<Coverage> coverage(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
+                               std::uint64_t seed) {
+  std::vector<Coverage> list;
+  Ranks runout("runout", seed);
+  for (std::size_t b = 0; b < campaign.blocks.size(); ++b)
+    if (ask[b]) runout.add(campaign.blocks[b], runout_of(campaign.blocks[b]), runouts_of(campaign.blocks[b], runs[b]));
+  runout.add_to(list);
+  for (std::size_t s = 0; s < campaign.screens.size(); ++s) add_screen(list, campaign, runs, ask, s, seed);
+  correct(list);
+  return list;
+}
+
+}  // namespace talus

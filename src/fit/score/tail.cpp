@@ -1,0 +1,83 @@
+#include "talus/fit/score/tail.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fitting_values.hpp"
+#include "talus/base/sample.hpp"
+
+namespace talus {
+namespace {
+
+FittingValues<double> fitting_runouts(const Campaign& campaign) {
+  FittingValues<double> fitting;
+  for (std::uint32_t b = 0; b < campaign.blocks.size(); ++b)
+    if (!campaign.blocks[b].holdout && campaign.blocks[b].stop) fitting.add(b, runout_of(campaign.blocks[b]));
+  return fitting;
+}
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return kNotGiven;
+  std::sort(values.begin(), values.end());
+  return quantile(values, 0.5);
+}
+
+/// @param runs  empty: the climatology is scored
+Score scored(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask) {
+  const FittingValues<double> fitting = fitting_runouts(campaign);
+  if (fitting.size() < kFewestRows) return {};
+  const double begin = median_of(fitting.values);
+  std::vector<double> beyond = fitting.values, values;
+  for (double& value : beyond) value = std::max(value, begin);
+  const double spread = std::sqrt(variance_of(beyond));
+  if (!(spread > 0.0)) return {};
+  Score out;
+  GroupScore group{"runout tail", 0.0, 0};
+  for (std::uint32_t b = 0; b < campaign.blocks.size(); ++b) {
+    const MeasuredBlock& block = campaign.blocks[b];
+    if (!ask[b] || !block.stop) continue;
+    if (runs.empty())
+      fitting.of_others(b, values);
+    else
+      keep_finite(runouts_of(block, runs[b]), values);
+    const bool unseen = !runs.empty() && values.size() < kFewestSimulated;
+    if (unseen) values = fitting.values;
+    const double score = fair_tail_crps(values, runout_of(block), begin) / spread;
+    out.rows.push_back({0, b, score, unseen});
+    group.score += score;
+    group.unseen += unseen ? 1 : 0;
+    ++group.rows;
+  }
+  if (group.rows < kFewestRows) return {};
+  out.total = group.score /= group.rows;
+  out.groups.push_back(std::move(group));
+  return out;
+}
+
+}  // namespace
+
+double runout_of(const MeasuredBlock& block) {
+  return block.stop ? std::hypot(block.stop->x() - block.x, block.stop->y() - block.y) : kNotGiven;
+}
+
+std::vector<double> runouts_of(const MeasuredBlock& block, const BlockRuns& runs) {
+  std::vector<double> values;
+  values.reserve(runs.trials);
+  for (std::uint32_t t = 0; t < runs.trials; ++t)
+    values.push_back(std::hypot(runs.x[t] - block.x, runs.y[t] - block.y));
+  return values;
+}
+
+double tail_begin(const Campaign& campaign) {
+  return median_of(fitting_runouts(campaign).values);
+}
+
+Score tail_score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask) {
+  return scored(campaign, runs, ask);
+}
+
+Score tail_score_of_climatology(const Campaign& campaign, const std::vector<bool>& ask) {
+  return scored(campaign, {}, ask);
+}
+
+}  // namespace talus

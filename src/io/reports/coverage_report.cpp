@@ -1,0 +1,161 @@
+#include "coverage_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "svg.hpp"
+#include "talus/base/text.hpp"
+
+namespace talus::io {
+namespace {
+
+constexpr int kWidth = 210, kHeight = 130, kMargin = 26;  // of a histogram [px]
+
+std::string percent(double share) {
+  return with_decimals(100.0 * share, 0);
+}
+
+std::string name_of_share(std::size_t i) {
+  return "P" + percent(kCoverageShares[i]);
+}
+
+bool wrong(const ShareBelow& below) {
+  return below.corrected < kWrongSpread;
+}
+
+/// "12 % (2 to 10)", with a star where no right model gives it.
+std::string share_text(const Coverage& c, std::size_t i) {
+  const ShareBelow& below = c.below[i];
+  return percent(c.share(i)) + " % (" + percent(below.expected.low / c.rows) + " to " +
+         percent(below.expected.high / c.rows) + ")" + (wrong(below) ? " *" : "");
+}
+
+/// A table with `cell` between the cells of a row and `line` around the rows.
+template <class Row>
+void for_rows(const std::vector<Coverage>& list, Row row) {
+  for (const Coverage& c : list) {
+    std::vector<std::string> cells{c.observable, std::to_string(c.rows)};
+    for (std::size_t i = 0; i < kCoverageShares.size(); ++i) cells.push_back(share_text(c, i));
+    row(cells);
+  }
+}
+
+std::string histogram(const Coverage& c) {
+  const Interval& expected = c.expected_in_class;
+  const double highest = std::max<double>(*std::ranges::max_element(c.ranks), expected.high);
+  const Axis x{0.0, kRankClasses, kMargin, kWidth - 2 * kMargin};
+  const Axis y{highest, 0.0, kMargin, kHeight - 2 * kMargin};
+  Svg svg('\'', "");
+  svg.element("rect", {{"x", kMargin},
+                       {"y", y(expected.high)},
+                       {"width", kWidth - 2 * kMargin},
+                       {"height", y(expected.low) - y(expected.high)},
+                       {"fill", "#ddd"}});
+  for (std::size_t i = 0; i < kRankClasses; ++i)
+    svg.element("rect", {{"x", x(static_cast<double>(i)) + 1.0},
+                         {"y", y(c.ranks[i])},
+                         {"width", x(1.0) - x(0.0) - 2.0},
+                         {"height", y(0.0) - y(c.ranks[i])},
+                         {"fill", "#1f5fa8"},
+                         {"fill-opacity", 0.7}});
+  svg.words({{"x", kWidth / 2}, {"y", 14}, {"text-anchor", "middle"}, {"font-weight", "bold"}}, c.observable);
+  svg.words({{"x", kMargin - 4}, {"y", y(highest) + 8.0}, {"text-anchor", "end"}}, with_decimals(highest, 0));
+  svg.words({{"x", kMargin}, {"y", kHeight - 10}}, "nearer, less");
+  svg.words({{"x", kWidth - kMargin}, {"y", kHeight - 10}, {"text-anchor", "end"}}, "farther, more");
+  const std::string width = std::to_string(kWidth), height = std::to_string(kHeight);
+  return svg.drawing({{"width", width}, {"height", height}, {"viewBox", "0 0 " + width + " " + height}});
+}
+
+/// What a wrong share says of the model.
+std::string meaning(std::size_t i, bool too_many) {
+  if (i == 0) return too_many ? "the model's low values are not low enough" : "the model's low values are too low";
+  if (i + 1 == kCoverageShares.size())
+    return too_many ? "the model's high values are too high" : "the model's high values are not high enough";
+  return too_many ? "the model gives too much" : "the model gives too little";
+}
+
+}  // namespace
+
+std::string coverage_lines(const ScoredRows& scored) {
+  if (scored.coverage.empty()) return {};
+  std::string text = rows_in_words(scored.rows) +
+                     " rows: measured values below the simulated percentiles (in brackets 95 % of right models; *: no "
+                     "right model)\n" +
+                     padded("", 24) + " rows  below P5            below P50           below P95\n";
+  for_rows(scored.coverage, [&text](const std::vector<std::string>& cells) {
+    text += padded(cells[0], 24) + std::string(5 - std::min<std::size_t>(5, cells[1].size()), ' ') + cells[1];
+    for (std::size_t i = 2; i < cells.size(); ++i)
+      text += "  " + (i + 1 < cells.size() ? padded(cells[i], 18) : cells[i]);
+    text += "\n";
+  });
+  return text;
+}
+
+std::string coverage_markdown(const std::vector<Coverage>& list) {
+  std::string text =
+      "| observable | rows | below P5 (expected) | below P50 | below P95 | blocks by rank, in tenths |\n| --- | --- | "
+      "--- | "
+      "--- | --- | --- |\n";
+  std::size_t next = 0;
+  for_rows(list, [&](const std::vector<std::string>& cells) {
+    for (const std::string& cell : cells) text += "| " + cell + " ";
+    text += "|";
+    for (const std::uint32_t count : list[next++].ranks) text += " " + std::to_string(count);
+    text += " |\n";
+  });
+  return text;
+}
+
+std::string coverage_html(const std::vector<Coverage>& list) {
+  std::string text =
+      "<table><tr><th>observable</th><th>rows</th><th>below the simulated P5 (expected)</th><th>below "
+      "P50</th><th>below "
+      "P95</th></tr>\n";
+  for_rows(list, [&text](const std::vector<std::string>& cells) {
+    text += "<tr>";
+    for (const std::string& cell : cells) text += "<td>" + escaped(cell) + "</td>";
+    text += "</tr>\n";
+  });
+  return text + "</table>\n";
+}
+
+Json json_of(const std::vector<Coverage>& list) {
+  Json out = Json::array();
+  for (const Coverage& c : list) {
+    Json entry{{"observable", c.observable}, {"rows", c.rows}, {"rows_without_rank", c.unseen}};
+    Json expected = Json::object(), p = Json::object();
+    for (std::size_t i = 0; i < kCoverageShares.size(); ++i) {
+      entry[name_of_share(i)] = json_of(c.share(i));
+      expected[name_of_share(i)] =
+          json_of(Interval{c.below[i].expected.low / c.rows, c.below[i].expected.high / c.rows});
+      p[name_of_share(i)] = json_of(c.below[i].corrected);
+    }
+    entry["expected"] = expected;
+    entry["p_corrected"] = p;
+    entry["ranks"] = c.ranks;
+    out.push_back(std::move(entry));
+  }
+  return out;
+}
+
+std::string rank_histograms(const std::vector<Coverage>& list) {
+  std::string html = "<p>";
+  for (const Coverage& c : list) html += histogram(c);
+  return html + "</p>\n";
+}
+
+std::vector<std::string> coverage_warnings(const ScoredRows& scored) {
+  std::vector<std::string> warnings;
+  for (const Coverage& c : scored.coverage)
+    for (std::size_t i = 0; i < kCoverageShares.size(); ++i) {
+      if (!wrong(c.below[i])) continue;
+      const bool too_many = c.share(i) > kCoverageShares[i];
+      warnings.push_back(c.observable + ": " + percent(c.share(i)) + " % of " + std::to_string(c.rows) + " " +
+                         rows_in_words(scored.rows) + " rows lie below the simulated " + name_of_share(i) + ", " +
+                         percent(kCoverageShares[i]) + " % should: " + meaning(i, too_many) + " (p " +
+                         with_digits(c.below[i].corrected, 2) + " after correction)");
+    }
+  return warnings;
+}
+
+}  // namespace talus::io

@@ -1,0 +1,24 @@
+#pragma once
+#include <string>
+
+#include "io/files/json.hpp"
+#include "talus/io/reports/score_report.hpp"
+
+/// Calibration of the spread in words, numbers and pictures. docs/closing-the-loop.md, "Calibration of the spread".
+namespace talus::io {
+
+/// Lines for the terminal: per observable the shares below the simulated P5, P50 and P95, with what a right model
+/// gives. Empty where nothing was counted.
+std::string coverage_lines(const ScoredRows& scored);
+/// The same as a Markdown table.
+std::string coverage_markdown(const std::vector<Coverage>& list);
+/// The same as JSON, with the histogram of ranks.
+Json json_of(const std::vector<Coverage>& list);
+/// The same as an HTML table.
+std::string coverage_html(const std::vector<Coverage>& list);
+/// Warnings, one for each share that a right model does not give.
+std::vector<std::string> coverage_warnings(const ScoredRows& scored);
+/// Histograms of ranks as drawings, one per observable; the grey band holds 95 % of the bars of a right model.
+std::string rank_histograms(const std::vector<Coverage>& list);
+
+}  // namespace talus::io

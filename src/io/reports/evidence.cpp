@@ -1,0 +1,108 @@
+#include "evidence.hpp"
+
+#include <cmath>
+
+#include "coverage_report.hpp"
+#include "talus/base/text.hpp"
+
+namespace talus::io {
+namespace {
+
+std::string percent(double share) {
+  return with_decimals(100.0 * share, 1);
+}
+
+std::string score_text(double score) {
+  return std::isnan(score) ? "-" : with_decimals(score, 3);
+}
+
+/// The error of one model on rows of both kinds, group by group.
+Json entry_of(const char* name, std::span<const BeforeAfter> errors, const Score& (*score)(const BeforeAfter&)) {
+  Json entry{{"model", name}};
+  for (const BeforeAfter& e : errors) {
+    Json groups = Json::array();
+    for (const GroupScore& group : score(e).groups)
+      groups.push_back({{"group", group.name}, {"error", json_of(group.score)}, {"rows", group.rows}});
+    entry[e.after.rows] = {{"error", json_of(score(e).total)}, {"rows", score(e).rows.size()}, {"groups", groups}};
+  }
+  return entry;
+}
+
+const Score& of_climatology(const BeforeAfter& e) {
+  return e.after.climatology;
+}
+const Score& of_before(const BeforeAfter& e) {
+  return e.before.score;
+}
+const Score& of_after(const BeforeAfter& e) {
+  return e.after.score;
+}
+
+}  // namespace
+
+std::string rows_text(const GroupScore& group) {
+  return std::to_string(group.rows) + (group.rows < kHeadlineRows ? " *" : "");
+}
+
+Json coverage_json(std::span<const BeforeAfter> errors) {
+  Json before = Json::object(), after = Json::object();
+  for (const BeforeAfter& e : errors) {
+    before[e.before.rows] = json_of(e.before.coverage);
+    after[e.after.rows] = json_of(e.after.coverage);
+  }
+  return {{"before", before}, {"after", after}};
+}
+
+Json tail_json(std::span<const BeforeAfter> errors) {
+  Json json{{"observable", "runout"},
+            {"beyond_m", json_of(errors.empty() ? kNotGiven : errors.front().after.tail_begin)}};
+  for (const BeforeAfter& e : errors)
+    json[e.after.rows] = {{"before", json_of(e.before.tail.total)},
+                          {"after", json_of(e.after.tail.total)},
+                          {"reduction", json_of(e.tail_reduction.share)},
+                          {"ci95", json_of(e.tail_reduction.interval)},
+                          {"climatology", json_of(e.after.tail_climatology.total)},
+                          {"rows", e.after.tail.rows.size()}};
+  return json;
+}
+
+Json evidence_json(std::span<const BeforeAfter> errors, const char* before, const char* after) {
+  return Json::array({entry_of("climatology", errors, of_climatology), entry_of(before, errors, of_before),
+                      entry_of(after, errors, of_after)});
+}
+
+std::string tail_before_after(const BeforeAfter& e) {
+  if (e.after.tail.groups.empty()) return {};
+  return "Run-out beyond " + with_digits(e.after.tail_begin, 3) + " m, " + rows_in_words(e.after.rows) +
+         " rows: error " + score_text(e.before.tail.total) + " before, " + score_text(e.after.tail.total) +
+         " after (lower by " + percent(e.tail_reduction.share) + " %, 95 %: " + percent(e.tail_reduction.interval.low) +
+         " to " + percent(e.tail_reduction.interval.high) + " %), climatology " +
+         score_text(e.after.tail_climatology.total) + ".";
+}
+
+std::string judgement_markdown(const BeforeAfter& e) {
+  std::string text;
+  for (const std::string& sentence : {skill_sentence(e.after), tail_before_after(e)})
+    if (!sentence.empty()) text += sentence + (sentence.ends_with('.') ? "" : ".") + "\n\n";
+  if (e.after.coverage.empty()) return text;
+  return text +
+         "Measured values below the simulated P5, P50 and P95, after the fit (expected of 95 % of right models; *: "
+         "of none):\n\n" +
+         coverage_markdown(e.after.coverage) + "\n";
+}
+
+std::string groups_html(const BeforeAfter& e) {
+  std::string html = "<table><tr><th>group, " + rows_in_words(e.after.rows) +
+                     " rows</th><th>before</th><th>after</th><th>climatology</th><th>rows</th></tr>\n";
+  for (std::size_t g = 0; g < e.after.score.groups.size(); ++g) {
+    const GroupScore& group = e.after.score.groups[g];
+    html += "<tr><td>" + escaped(group.name) + "</td><td>" + score_text(e.before.score.groups[g].score) + "</td><td>" +
+            score_text(group.score) + "</td><td>" + score_text(e.after.climatology.groups[g].score) + "</td><td>" +
+            rows_text(group) + "</td></tr>\n";
+  }
+  return html + "<tr><td><b>mean</b></td><td>" + score_text(e.before.score.total) + "</td><td>" +
+         score_text(e.after.score.total) + "</td><td>" + score_text(e.after.climatology.total) + "</td><td>" +
+         std::to_string(e.after.score.rows.size()) + "</td></tr></table>\n";
+}
+
+}  // namespace talus::io

@@ -1,0 +1,178 @@
+#include "talus/fit/score/coverage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/campaigns.hpp"
+#include "talus/fit/score/tail.hpp"
+
+namespace talus::test {
+namespace {
+
+/// A measured value from the distribution of the simulated ones is as likely below each percentile as its name says,
+/// whatever their number: with many ties, too. Five standard errors.
+TEST(RandomRank, IsUniformForAMeasurementOfTheModel) {
+  Numbers numbers(21);
+  constexpr double kDraws = 40'000.0;
+  for (const std::size_t n : {10U, 23U}) {
+    for (const bool ties : {false, true}) {
+      std::vector<double> x(n);
+      const auto draw = [&] { return ties ? std::floor(3.0 * numbers.uniform(0.0, 1.0)) : numbers.normal(); };
+      std::array<double, 3> below{};
+      for (double k = 0.0; k < kDraws; k += 1.0) {
+        for (double& value : x) value = draw();
+        const double rank = random_rank(x, draw(), numbers.uniform(0.0, 1.0));
+        ASSERT_TRUE(rank > 0.0 && rank < 1.0);
+        for (std::size_t i = 0; i < 3; ++i) below[i] += rank < kCoverageShares[i] ? 1.0 / kDraws : 0.0;
+      }
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double p = kCoverageShares[i];
+        EXPECT_NEAR(below[i], p, 5.0 * std::sqrt(p * (1.0 - p) / kDraws)) << n << ties;
+      }
+    }
+  }
+}
+
+/// Blocks that one model measured, each with its simulated values.
+class CoverageOf : public testing::Test {
+ protected:
+  static constexpr std::size_t kBlocks = 120;
+  CoverageOf() : campaign_(campaign_on_slope(kBlocks)) {
+    measure(campaign_, model_of_slope(), 5);
+    for (MeasuredBlock& b : campaign_.blocks) b.holdout = false;
+    runs_ = observe(campaign_, model_of_slope(), {60, 1, 0, 0, {}, {}});
+    all_.assign(kBlocks, true);
+  }
+
+  /// Moves every simulated run-out to `middle + factor (run-out - middle)`, seen from the place of release.
+  void stretch(double factor) {
+    for (std::size_t b = 0; b < kBlocks; ++b) {
+      const MeasuredBlock& block = campaign_.blocks[b];
+      const std::vector<double> runouts = runouts_of(block, runs_[b]);
+      double middle = 0.0, count = 0.0;
+      for (const double r : runouts)
+        if (!std::isnan(r)) middle += r, count += 1.0;
+      middle /= count;
+      for (std::size_t t = 0; t < runouts.size(); ++t) {
+        const double share = (middle + factor * (runouts[t] - middle)) / runouts[t];
+        runs_[b].x[t] = block.x + share * (runs_[b].x[t] - block.x);
+        runs_[b].y[t] = block.y + share * (runs_[b].y[t] - block.y);
+      }
+    }
+  }
+
+  Campaign campaign_;
+  std::vector<BlockRuns> runs_;
+  std::vector<bool> all_;
+};
+
+TEST_F(CoverageOf, ARightModelIsNotSaidToBeWrong) {
+  const std::vector<Coverage> list = coverage(campaign_, runs_, all_);
+  ASSERT_EQ(list.front().observable, "runout");
+  ASSERT_EQ(list.size(), 4U);  // and speed, jump, spin of the screen
+  for (const Coverage& c : list) {
+    EXPECT_GE(c.rows, 60U);
+    EXPECT_EQ(std::accumulate(c.ranks.begin(), c.ranks.end(), 0U), c.rows);
+    for (const ShareBelow& below : c.below) {
+      EXPECT_GT(below.corrected, kWrongSpread) << c.observable << ' ' << below.count;
+      EXPECT_GE(below.corrected, below.p_value);
+    }
+  }
+}
+
+TEST_F(CoverageOf, TooLittleScatterShowsAtBothEnds) {
+  stretch(0.4);
+  const Coverage c = coverage(campaign_, runs_, all_).front();
+  EXPECT_GT(c.share(0), 0.15);
+  EXPECT_LT(c.share(2), 0.85);
+  EXPECT_LT(c.below[0].corrected, kWrongSpread);
+  EXPECT_LT(c.below[2].corrected, kWrongSpread);
+  EXPECT_GT(c.ranks.front() + c.ranks.back(), kBlocks / 3);
+}
+
+TEST_F(CoverageOf, TooMuchScatterLeavesTheEndsEmpty) {
+  stretch(3.0);
+  const Coverage c = coverage(campaign_, runs_, all_).front();
+  EXPECT_LT(c.ranks.front() + c.ranks.back(), kBlocks / 12);
+  EXPECT_LT(std::min(c.below[0].p_value, c.below[2].p_value), 0.05);
+}
+
+/// Of 20 rows none lies below P5 with a probability of 0.95^20 = 0.358, one or none 0.736; three or more 0.0755, so
+/// that counts of 0 to 3 hold 95 % (0.984).
+TEST(CoverageTest, IsTheExactBinomialOne) {
+  Campaign c = campaign_on_slope(20);
+  std::vector<BlockRuns> runs(20);
+  for (std::size_t b = 0; b < 20; ++b) {
+    c.blocks[b].holdout = false;
+    c.blocks[b].stop = Eigen::Vector2d(c.blocks[b].x + (b < 3 ? 1.0 : 60.0), c.blocks[b].y);  // three before all others
+    runs[b].trials = 50;
+    runs[b].screens.resize(1);
+    for (int t = 0; t < 50; ++t) {
+      runs[b].x.push_back(c.blocks[b].x + 35.0 + t);
+      runs[b].y.push_back(c.blocks[b].y);
+    }
+  }
+  const Coverage coverage_of = coverage(c, runs, std::vector<bool>(20, true)).front();
+  EXPECT_EQ(coverage_of.below[0].count, 3U);
+  EXPECT_NEAR(coverage_of.below[0].p_value, 2.0 * 0.07548367, 1e-7);
+  EXPECT_EQ(coverage_of.below[0].expected.low, 0.0);
+  EXPECT_EQ(coverage_of.below[0].expected.high, 3.0);
+  EXPECT_EQ(coverage_of.below[2].count, 20U);
+  EXPECT_NEAR(coverage_of.below[2].p_value, 2.0 * 0.35848592, 1e-7);
+}
+
+/// A block of which too few trials stopped has no rank.
+TEST_F(CoverageOf, ABlockWithFewValuesIsLeftOut) {
+  std::fill_n(runs_[3].x.begin(), 51, kNotGiven);
+  const Coverage whole = coverage(campaign_, observe(campaign_, model_of_slope(), {60, 1, 0, 0, {}, {}}), all_).front();
+  const Coverage c = coverage(campaign_, runs_, all_).front();
+  EXPECT_EQ(c.rows, whole.rows - 1);
+  EXPECT_EQ(c.unseen, whole.unseen + 1);
+}
+
+/// The tail of a climatology: with leave-one-out the mean fair score is half of the mean distance of two values, cut
+/// off at the median.
+TEST_F(CoverageOf, TailOfTheClimatologyIsHalfOfTheMeanDistance) {
+  std::vector<double> far;
+  for (const MeasuredBlock& b : campaign_.blocks)
+    if (b.stop) far.push_back(std::max(runout_of(b), tail_begin(campaign_)));
+  double distance = 0.0, mean = 0.0, square = 0.0;
+  const auto n = static_cast<double>(far.size());
+  for (const double a : far) {
+    for (const double b : far) distance += std::abs(a - b) / (n * (n - 1.0));
+    mean += a / n;
+  }
+  for (const double a : far) square += (a - mean) * (a - mean) / n;
+  const Score tail = tail_score_of_climatology(campaign_, all_);
+  EXPECT_EQ(tail.rows.size(), far.size());
+  EXPECT_NEAR(tail.total, 0.5 * distance / std::sqrt(square), 1e-12);
+  EXPECT_LT(tail_score(campaign_, runs_, all_).total, 0.9);
+}
+
+/// Runs whose far stops are pulled back miss the tail and nothing else.
+TEST_F(CoverageOf, AModelThatStopsShortIsWrongInTheTail) {
+  const double before = tail_score(campaign_, runs_, all_).total;
+  for (std::size_t b = 0; b < kBlocks; ++b) {
+    const MeasuredBlock& block = campaign_.blocks[b];
+    const std::vector<double> runouts = runouts_of(block, runs_[b]);
+    for (std::size_t t = 0; t < runouts.size(); ++t) {
+      const double share = std::min(1.0, tail_begin(campaign_) / runouts[t]);
+      runs_[b].x[t] = block.x + share * (runs_[b].x[t] - block.x);
+      runs_[b].y[t] = block.y + share * (runs_[b].y[t] - block.y);
+    }
+  }
+  // All values are at the threshold then: the score is the mean distance of the measured ones from it.
+  double expected = 0.0, mean = 0.0, square = 0.0, n = 0.0;
+  for (const MeasuredBlock& b : campaign_.blocks)
+    if (b.stop) expected += std::max(0.0, runout_of(b) - tail_begin(campaign_)), n += 1.0;
+  mean = expected / n;
+  for (const MeasuredBlock& b : campaign_.blocks)
+    if (b.stop) square += std::pow(std::max(0.0, runout_of(b) - tail_begin(campaign_)) - mean, 2) / n;
+  EXPECT_NEAR(tail_score(campaign_, runs_, all_).total, mean / std::sqrt(square), 1e-9);
+  EXPECT_GT(mean / std::sqrt(square), before);
+}
+
+}  // namespace
+}  // namespace talus::test
