@@ -52,7 +52,7 @@ class AgainstTheReference(Case):
         simulated = module.simulated(measured, stops, passages, 1)
         fit = measured["fit"]
         for rows, ask in (("fit", fit), ("holdout", set(measured["blocks"]) - fit)):
-            _, groups, counts = module.error(measured, simulated, ask)
+            _, groups, counts = module.error(measured, simulated, ask, fair_crossed=True)
             ours = {g["group"]: g for g in result[rows]["groups"] if not g["group"].startswith("sample")}
             self.assertEqual(set(ours), set(groups))
             self.assertGreaterEqual(len(groups), 1)

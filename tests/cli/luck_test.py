@@ -28,7 +28,7 @@ class Luck(Case):
                          if r["trial"] == "0"]
         place = {b[0]: (float(b[1]), float(b[2])) for b in self.blocks}
         self.samples = [[b, repr(place[b][0]), repr(place[b][1] - r), repr(0.2 * r + int(b[1:]) % 5)] for b in place for r in (20, 40)]
-        self.tables(self.path("."), self.blocks, self.stops, self.passages, self.samples)
+        self.tables(self.path("."), *self.own())
 
     def rows(self, name):
         with open(self.path(name), encoding="utf-8") as file:
@@ -46,26 +46,31 @@ class Luck(Case):
             file.write(f'name = "own"\ndem = "{self.path("dem.tif")}"\n{names}[measurement_error]\nposition_m = 0.3\n'
                        "speed_fraction = 0.03\njump_height_m = 0.1\nangular_velocity_fraction = 0.05\n")
 
-    def shuffled(self):
-        """The same campaign with the rows of every table in another order."""
+    def shuffled(self, tables):
+        """A campaign with the rows of every table in another order."""
         mixed = random.Random(4)
-        tables = [mixed.sample(t, len(t)) for t in (self.blocks, self.stops, self.passages, self.samples)]
         self.screens.reverse()
-        self.tables(self.path("shuffled"), *tables)
+        self.tables(self.path("shuffled"), *[mixed.sample(t, len(t)) for t in tables])
         self.screens.reverse()
         return self.path("shuffled/campaign.toml")
+
+    def own(self):
+        return self.blocks, self.stops, self.passages, self.samples
 
     def other_holdout(self):
         """The fitting rows as before; half of the held-out blocks are gone, and others stand before, between and after."""
         gone = {b[0] for b in self.blocks if b[6] == "1" and int(b[0][1:]) % 2 == 0}
-        keep = [[r for r in t if r[0] not in gone] for t in (self.blocks, self.stops, self.passages, self.samples)]
+        keep = [[r for r in t if r[0] not in gone] for t in self.own()]
         for k, name in enumerate(("a0", "b05", "b0x", "b3x", "z9", "z91", "z92")):
             x, y = WEST + 90 + 10 * k, NORTH - 60
             keep[0].insert(5 * k, [name, str(x), str(y), "3", str(9000 + k), "7", "1"])
             keep[1].insert(k, [name, str(x - 20), str(y - 90 - 5 * k)])
             keep[2].append([name, "S2", str(25 + k), "4"])
             keep[3].insert(0, [name, str(x), str(y - 30), str(22 + k)])
-        self.tables(self.path("other"), *keep)
+        return keep
+
+    def with_other_holdout(self):
+        self.tables(self.path("other"), *self.other_holdout())
         return self.path("other/campaign.toml")
 
     def scored(self, campaign, *options):
@@ -74,8 +79,8 @@ class Luck(Case):
 
     def test_score(self):
         first = self.scored(self.path("campaign.toml"), "--threads", "1")
-        self.assertEqual(self.scored(self.shuffled(), "--threads", "2"), first)
-        other = self.scored(self.other_holdout())
+        self.assertEqual(self.scored(self.shuffled(self.own()), "--threads", "2"), first)
+        other = self.scored(self.with_other_holdout())
         self.assertEqual(other["fit"], first["fit"])
         self.assertNotEqual(other["holdout"], first["holdout"])
 
@@ -110,8 +115,8 @@ class Luck(Case):
     def test_calibrate(self):
         options = ("--fit", "En50,theta_scale", "--starts", "1")
         first = self.record("calibrate", self.path("campaign.toml"), "first", *options, "--threads", "1")
-        self.assertEqual(self.record("calibrate", self.shuffled(), "shuffled-out", *options, "--threads", "2"), first)
-        other = self.record("calibrate", self.other_holdout(), "other-out", *options)
+        self.assertEqual(self.record("calibrate", self.shuffled(self.own()), "shuffled-out", *options, "--threads", "2"), first)
+        other = self.record("calibrate", self.with_other_holdout(), "other-out", *options)
         self.assertNotEqual(other["error"]["holdout"], first["error"]["holdout"])
         self.assertEqual(self.without_holdout(other), self.without_holdout(first))
 
@@ -120,8 +125,7 @@ class Luck(Case):
         options = ("--fit", "theta_scale", "--test-trials", "20", "--most-effects", "1")
         first = self.record("diagnose", self.path("campaign.toml"), "first", *options, "--threads", "1")
         self.assertGreater(len(first["candidates"]), 8)
-        self.assertEqual(self.record("diagnose", self.shuffled(), "shuffled-out", *options, "--threads", "2"), first)
-        other = self.record("diagnose", self.other_holdout(), "other-out", *options)
+        other = self.record("diagnose", self.shuffled(self.other_holdout()), "other-out", *options, "--threads", "2")
         self.assertEqual(self.without_holdout(other), self.without_holdout(first))
 
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "fit/calibrate/amount.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace talus {
 namespace {
@@ -33,6 +34,13 @@ void lay_band(Model& m, const Campaign& campaign, const Axis& axis, double from,
     if (EffectArea* area = entry.area(m.effects)) twice(*area);
 }
 
+/// Multiplies a parameter of a ground, within the bounds of the files.
+void multiply(Ground& ground, std::string_view key, double factor) {
+  const auto fields = ground_fields();
+  const auto field = std::ranges::find(fields, key, [](const auto& f) { return f.key; });
+  field->set(ground, std::clamp(factor * field->get(ground), field->min, field->max));
+}
+
 }  // namespace
 
 Candidate band(const Campaign& campaign, const Axis& axis, double from, double to) {
@@ -51,15 +59,17 @@ Candidate band(const Campaign& campaign, const Axis& axis, double from, double t
                  const std::size_t n = m.grounds.size() / 2;
                  for (std::size_t zone = 0; zone < n; ++zone) {
                    m.grounds[n + zone] = m.grounds[zone];
-                   m.grounds[n + zone].En50 *= std::exp(-v);
-                   m.grounds[n + zone].Et50 *= std::exp(-v);
+                   multiply(m.grounds[n + zone], "En50", std::exp(-v));
+                   multiply(m.grounds[n + zone], "Et50", std::exp(-v));
                  }
                }),
            amount("undeclared-zone.roughness", "1", 0.0, 0.7, -3.0, 3.0, ratio(&Ground::theta_scale),
                   [](Model& m, double v) {
                     const std::size_t n = m.grounds.size() / 2;
-                    for (std::size_t zone = 0; zone < n; ++zone)
-                      m.grounds[n + zone].theta_scale = m.grounds[zone].theta_scale * std::exp(v);
+                    for (std::size_t zone = 0; zone < n; ++zone) {
+                      m.grounds[n + zone].theta_scale = m.grounds[zone].theta_scale;
+                      multiply(m.grounds[n + zone], "theta_scale", std::exp(v));
+                    }
                   })},
           2,
           [&campaign, axis, from, to](Model& m) { lay_band(m, campaign, axis, from, to); },

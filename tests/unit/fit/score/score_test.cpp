@@ -218,7 +218,9 @@ TEST_F(Scores, MassOnlyWhereBlocksBroke) {
   };
   for (MeasuredBlock& b : campaign_.blocks) b.stop_mass = b.mass * 0.96;
   EXPECT_FALSE(has_mass());
-  for (std::size_t b = 0; b < 5; ++b) campaign_.blocks[b].stop_mass = 0.3 * campaign_.blocks[b].mass;
+  for (std::size_t b = 0; b < 6; ++b) campaign_.blocks[b].stop_mass = 0.3 * campaign_.blocks[b].mass;
+  EXPECT_FALSE(has_mass());  // two of the six are held out
+  campaign_.blocks[6].stop_mass = 0.3 * campaign_.blocks[6].mass;
   EXPECT_TRUE(has_mass());
 }
 
