@@ -45,7 +45,17 @@ class Loop(Case):
             self.assertNotIn(found["effect"], {c["effect"] for c in round["candidates"]})
         with open(f"{out}/report.html", encoding="utf-8") as file:
             page = file.read()
+        for when in found["coverage"].values():
+            for rows in ("fit", "holdout"):
+                self.assertEqual(when[rows][0]["observable"], "runout")
+                self.assertTrue(all(0 <= c[p] <= 1 for c in when[rows] for p in ("P5", "P50", "P95")))
+        self.assertEqual(len(found["evidence"]), 3)
+        climatology = found["evidence"][0]
+        self.assertEqual(climatology["model"], "climatology")
+        self.assertEqual([g["rows"] for g in climatology["holdout"]["groups"]],
+                         [g["rows"] for g in found["evidence"][2]["holdout"]["groups"]])
         self.assertIn("<svg", page)
+        self.assertIn("Calibration of the spread", page)
         self.assertNotIn("http", page)  # self-contained
         # `score` reads the model that was found.
         self.run_well("score", campaign, "--parameters", f"{out}/with_effect.toml", "-q")

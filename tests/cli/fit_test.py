@@ -59,6 +59,12 @@ class AgainstTheReference(Case):
             for group, score in groups.items():
                 self.assertAlmostEqual(ours[group]["score"], score, delta=1e-6, msg=f"{name} {rows} {group}")
                 self.assertEqual(ours[group]["rows"], counts[group])
+        # The climatology of a held-out row is what score.py gives a row without simulated values.
+        held_out = set(measured["blocks"]) - fit
+        _, groups, _ = module.error(measured, module.simulated(measured, [], [], 1), held_out)
+        ours = {g["group"]: g["climatology"] for g in result["holdout"]["groups"]}
+        for group in set(groups) - {g for g in groups if g.startswith("crossed")}:
+            self.assertAlmostEqual(ours[group], groups[group], delta=1e-6, msg=f"{name} climatology {group}")
 
     def test_screens_and_stops(self):
         self.compare("alder", 40)
@@ -136,7 +142,7 @@ class OwnCampaign(Case):
         self.assertEqual(len(result["correlation"]), 2)
         with open(self.path("fit/report.md"), encoding="utf-8") as file:
             report = file.read()
-        for word in ("95 % interval", "Held-out rows", "runout", "speed S1", "Crossed S1"):
+        for word in ("95 % interval", "Held-out rows", "runout", "speed S1", "Crossed S1", "climatology", "below P95", "Run-out beyond"):
             self.assertIn(word, report)
 
         scored = self.run_well("score", self.campaign, "--parameters", self.path("fit/fitted.toml"), "--json")
@@ -163,6 +169,25 @@ class OwnCampaign(Case):
         done = self.run_well("score", self.campaign, "--parameters", self.path("truth.toml"), "--rows", "fit")
         self.assertRegex(done.stdout, r"stop +\d\.\d{3} +\d\.\d{3} to +\d\.\d{3} +30\n")
         self.assertNotIn("held-out", done.stdout)
+        self.assertRegex(done.stdout, r"\nclimatology +\d\.\d{3} +\d\.\d{3} to +\d\.\d{3} +\d+\n")
+        self.assertRegex(done.stdout, r"\nfitting rows: skill \d")
+        self.assertRegex(done.stdout, r"\nrunout +30  +\d+ % \(0 to 1\d\) +\d+ % \(\d+ to \d+\) +\d+ % \(\d+ to 100\)\n")
+        self.assertNotIn("warning", done.stderr)  # the model that made the data scatters as they do
+
+    def test_a_model_that_scatters_too_little_is_said_to(self):
+        """Where each rebound loses nearly all, blocks of one kind stop near one another."""
+        self.write("damped.toml", "[ground.zones.default]\ntheta_scale = 0.3\nEn50 = 0.5\nEt50 = 5\n")
+        done = self.run_well("score", self.campaign, "--parameters", self.path("damped.toml"), "--json")
+        fit = json.loads(done.stdout)["fit"]
+        runout = next(c for c in fit["coverage"] if c["observable"] == "runout")
+        self.assertLess(min(runout["p_corrected"].values()), 0.01)
+        self.assertEqual(sum(runout["ranks"]), runout["rows"])
+        self.assertRegex(done.stderr, r"warning: runout: \d+ % of 30 fitting rows lie below the simulated P\d+, \d+ % should")
+        text = self.run_well("score", self.campaign, "--parameters", self.path("damped.toml")).stdout
+        self.assertRegex(text, r"\nrunout .* \*\n")
+        if fit["score"] >= fit["climatology"]["score"]:
+            self.assertIn("fitting rows: no skill:", text)
+        self.assertLess(fit["tail"]["climatology"], fit["tail"]["score"])
 
     def test_too_little_that_was_measured(self):
         """No fitting block, fewer than five, and thirty without measurements: one error each, and no folder."""
