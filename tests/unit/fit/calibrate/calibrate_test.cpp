@@ -189,9 +189,8 @@ TEST(FewestSimulated, ATenthOfTheTrials) {
   EXPECT_EQ(fewest_simulated_of(1000), 10U);
 }
 
-/// Data of a known model: a fit that starts elsewhere finds it within the fit's interval (in 24 such campaigns the root
-/// mean square error of theta_scale is 1.2, that of En50 0.9 of the standard deviations that the intervals stand for),
-/// and is the same for any number of threads.
+/// Data of a known model: a fit that starts elsewhere lowers the error nearly as far as the truth does, and is the same
+/// for any number of threads.
 TEST(Calibrate, ComesBackToTheModelThatMadeTheData) {
   Campaign c = campaign_on_slope(60);
   Model truth = model_of_slope(), start = truth;
@@ -212,18 +211,44 @@ TEST(Calibrate, ComesBackToTheModelThatMadeTheData) {
   const double best = score(c, observe(c, truth, other), rows).total;
   EXPECT_LT(after, before - 0.05);
   EXPECT_LT(after, best + 0.02);
-  const Uncertainty u = uncertainty_of({c, start, free, rows}, options, {1, 200}, fit);
-  for (std::size_t i = 0; i < 2; ++i) {
-    const double sd = std::log(u.intervals[i].high / u.intervals[i].low) / (2.0 * 1.96);
-    EXPECT_LT(std::abs(std::log(free[i].get(fit.model) / free[i].get(truth))), 5.0 * sd) << free[i].key;
-    EXPECT_LT(sd, 1.0) << free[i].key;
-  }
-  EXPECT_NEAR(u.correlation(0, 0), 1.0, 1e-12);
 
   options.threads = 1;
   const Fit again = fit_parameters(c, start, free, rows, options);
   EXPECT_EQ(again.z, fit.z);
   EXPECT_EQ(again.objective, fit.objective);
+}
+
+/// The interval of a fit holds the truth and is narrower than the prior, whose sd is 1: in the median of three
+/// campaigns, as the quadratic model of a fit this short is now and then far off. (Of 32 such campaigns one has an
+/// interval wider than the prior, and of their 64 errors three are above 3 of its standard deviations.)
+TEST(Calibrate, TheIntervalHoldsTheTruth) {
+  std::array<std::vector<double>, 2> sds, errors;
+  for (const std::uint64_t seed : {77U, 78U, 79U}) {
+    Campaign c = campaign_on_slope(60);
+    Model truth = model_of_slope(), start = truth;
+    measure(c, truth, seed);
+    start.grounds[0].theta_scale = 0.6;
+    start.grounds[0].En50 = 6.0;
+    const std::vector<Parameter> free = two_parameters(c, start);
+    FitOptions options;
+    options.trials = 20;
+    options.comparison_trials = 40;
+    options.rounds = 1;
+    const std::vector<bool> rows = fitting_rows(c);
+    const Fit fit = fit_parameters(c, start, free, rows, options);
+    const Uncertainty u = uncertainty_of({c, start, free, rows}, options, {1, 200}, fit);
+    for (std::size_t i = 0; i < 2; ++i) {
+      sds[i].push_back(std::log(u.intervals[i].high / u.intervals[i].low) / (2.0 * 1.96));
+      errors[i].push_back(std::abs(std::log(free[i].get(fit.model) / free[i].get(truth))) / sds[i].back());
+    }
+    EXPECT_NEAR(u.correlation(0, 0), 1.0, 1e-12);
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    std::ranges::sort(sds[i]);
+    std::ranges::sort(errors[i]);
+    EXPECT_LT(sds[i][1], 1.0);
+    EXPECT_LT(errors[i][1], 3.0);
+  }
 }
 
 /// A parameter without influence on the data keeps its prior and is called not identifiable.
