@@ -23,14 +23,14 @@ bool wrong(const ShareBelow& below) {
   return below.corrected < kWrongSpread;
 }
 
-/// "12 % (2 to 10)", with a star where no right model gives it.
+/// "12 % (2 to 10)", with a star where a right model hardly gives it.
 std::string share_text(const Coverage& c, std::size_t i) {
   const ShareBelow& below = c.below[i];
   return percent(c.share(i)) + " % (" + percent(below.expected.low / c.rows) + " to " +
          percent(below.expected.high / c.rows) + ")" + (wrong(below) ? " *" : "");
 }
 
-/// A table with `cell` between the cells of a row and `line` around the rows.
+/// Calls `row` with the cells of each observable: its name, its rows, its shares.
 template <class Row>
 void for_rows(const std::vector<Coverage>& list, Row row) {
   for (const Coverage& c : list) {
@@ -79,8 +79,8 @@ std::string meaning(std::size_t i, bool too_many) {
 std::string coverage_lines(const ScoredRows& scored) {
   if (scored.coverage.empty()) return {};
   std::string text = rows_in_words(scored.rows) +
-                     " rows: measured values below the simulated percentiles (in brackets 95 % of right models; *: no "
-                     "right model)\n" +
+                     " rows: measured values below the simulated percentiles (in brackets 95 % of right models; *: "
+                     "hardly a right model, p < 0.01 after correction)\n" +
                      padded("", 24) + " rows  below P5            below P50           below P95\n";
   for_rows(scored.coverage, [&text](const std::vector<std::string>& cells) {
     text += padded(cells[0], 24) + std::string(5 - std::min<std::size_t>(5, cells[1].size()), ' ') + cells[1];
@@ -93,9 +93,8 @@ std::string coverage_lines(const ScoredRows& scored) {
 
 std::string coverage_markdown(const std::vector<Coverage>& list) {
   std::string text =
-      "| observable | rows | below P5 (expected) | below P50 | below P95 | blocks by rank, in tenths |\n| --- | --- | "
-      "--- | "
-      "--- | --- | --- |\n";
+      "| observable | rows | below P5 (expected) | below P50 | below P95 | blocks by rank, in tenths |\n"
+      "| --- | --- | --- | --- | --- | --- |\n";
   std::size_t next = 0;
   for_rows(list, [&](const std::vector<std::string>& cells) {
     for (const std::string& cell : cells) text += "| " + cell + " ";

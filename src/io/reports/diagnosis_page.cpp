@@ -141,7 +141,8 @@ std::string errors_html(const DiagnosisRecord& record) {
 std::string spread_html(const DiagnosisRecord& record) {
   std::string html =
       "<h2>Calibration of the spread</h2>\n<p>Measured values below percentiles of the values simulated for the same "
-      "block: 5, 50 and 95 % in a right model (in brackets what 95 % of right models give; *: no right model). Below, "
+      "block: 5, 50 and 95 % in a right model (in brackets what 95 % of right models give; *: hardly a right model). "
+      "Below, "
       "the "
       "blocks by the rank of their measurement among the simulated values, in tenths: high at both ends where the "
       "model "

@@ -86,8 +86,9 @@ std::string judgement_markdown(const BeforeAfter& e) {
     if (!sentence.empty()) text += sentence + (sentence.ends_with('.') ? "" : ".") + "\n\n";
   if (e.after.coverage.empty()) return text;
   return text +
-         "Measured values below the simulated P5, P50 and P95, after the fit (expected of 95 % of right models; *: "
-         "of none):\n\n" +
+         "Measured values below the simulated P5, P50 and P95, after the fit (in brackets 95 % of right models; *: "
+         "hardly "
+         "a right model):\n\n" +
          coverage_markdown(e.after.coverage) + "\n";
 }
 
