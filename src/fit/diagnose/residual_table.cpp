@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "talus/fit/diagnose/permutation.hpp"
+
 namespace talus {
 namespace {
 
@@ -73,11 +75,10 @@ void add_moments(std::vector<ResidualRow>& table, const std::string& name, const
 void correct(std::vector<ResidualRow>& table) {
   std::sort(table.begin(), table.end(),
             [](const ResidualRow& a, const ResidualRow& b) { return a.p_value < b.p_value; });
-  double largest = 0.0;
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    largest = std::max(largest, std::min(1.0, table[i].p_value * static_cast<double>(table.size() - i)));
-    table[i].corrected = largest;
-  }
+  std::vector<double> p_values;
+  for (const ResidualRow& row : table) p_values.push_back(row.p_value);
+  const std::vector<double> after = holm(p_values);
+  for (std::size_t i = 0; i < table.size(); ++i) table[i].corrected = after[i];
 }
 
 }  // namespace
