@@ -21,9 +21,10 @@ struct Options : CampaignCommand {
 /// The families that these data can test, or that cannot name anything.
 void print_families(const talus::DiagnosisRound& round) {
   for (const talus::FamilyTest& family : round.families) {
-    if (!std::isnan(family.p_value))
-      std::printf("  %s: p %.4f, corrected %.4f%s%s\n", family.name.c_str(), family.p_value, family.p_corrected,
-                  family.may_name ? "" : "; ", family.may_name ? "" : family.note.c_str());
+    if (!std::isnan(family.p_corrected))
+      std::printf("  %s: p %.4f, corrected %.4f\n", family.name.c_str(), family.p_value, family.p_corrected);
+    else if (!family.may_name && !std::isnan(family.p_value))
+      std::printf("  %s: p %.4f; %s\n", family.name.c_str(), family.p_value, family.note.c_str());
     else if (!family.may_name)
       std::printf("  %s: %s\n", family.name.c_str(), family.note.c_str());
   }

@@ -132,7 +132,8 @@ std::vector<FamilyTest> test_families(const FamilyInput& input, const FamilyOpti
                                    day(input, energy, options), by_score_test(kInstrument, input),
                                    dispersion(input, options)};
   std::vector<double> p_values;
-  for (const FamilyTest& family : families) p_values.push_back(family.p_value);
+  for (const FamilyTest& family : families)  // a test that can name nothing takes no part of the level
+    p_values.push_back(family.may_name ? family.p_value : kNotGiven);
   const std::vector<double> after = holm(p_values);
   for (std::size_t i = 0; i < families.size(); ++i) families[i].p_corrected = after[i];
   return families;

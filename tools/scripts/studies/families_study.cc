@@ -118,15 +118,14 @@ void refitted(const Campaign& campaign, const Model& model, const std::vector<Bl
   Campaign c = campaign;
   std::vector<bool> used(c.blocks.size(), false);
   for (const std::size_t b : rows) used[b] = true;
-  std::vector<bool> touched(model.grounds.size(), false);
-  touched[0] = true;
-  const auto free = ground_parameters(c, model, std::vector<std::string>{"theta_scale", "En50", "Et50"}, touched);
+  const auto free =
+      ground_parameters(c, model, std::vector<std::string>{"theta_scale", "Et50"}, touched_zones(c, truth));
   int property[2] = {0, 0}, dispersion[2] = {0, 0};
   double variance[2] = {0.0, 0.0};
   for (int set = 0; set < sets; ++set) {
     measure(c, truth, static_cast<std::uint32_t>(set));
     FitOptions how;
-    how.trials = 24, how.comparison_trials = 100, how.starts = 1, how.rounds = 2, how.seed = 100 + set, how.threads = 1;
+    how.trials = 24, how.comparison_trials = 100, how.starts = 0, how.rounds = 3, how.seed = 100 + set, how.threads = 1;
     const Fit fit = fit_parameters(c, model, free, used, how);
     const Model* models[2] = {&model, &fit.model};
     for (int k = 0; k < 2; ++k) {
@@ -143,6 +142,7 @@ void refitted(const Campaign& campaign, const Model& model, const std::vector<Bl
       variance[k] += w.rows.front().statistic / sets;
     }
   }
+  std::printf("%zu parameters of the ground, %zu blocks\n", free.size(), rows.size());
   for (int k = 0; k < 2; ++k)
     std::printf("%s: p <= 0.05 of %d sets: property %d, dispersion %d; mean variance of the run-out's z %.3f\n",
                 k == 0 ? "the model that made the data" : "the ground fitted to each set", sets, property[k],

@@ -20,8 +20,8 @@ struct FamilyTest {
   std::string name;                  ///< "block property", "place", "day", "instrument", "dispersion"
   std::vector<std::string> members;  ///< effects that may be named if the family is significant
   double p_value = kNotGiven;        ///< NaN: these data cannot test it
-  double p_corrected = kNotGiven;    ///< for the number of families that were tested (Holm)
-  bool may_name = true;              ///< false: it can be significant, but its members cannot be told from chance
+  double p_corrected = kNotGiven;    ///< for the number of families that can name something (Holm); NaN of the others
+  bool may_name = true;              ///< false: no p-value would be small enough for its members to be named
   bool own_test = false;             ///< not the score tests of its members, so that all of them may be chosen
   std::string note;                  ///< why it was not tested or cannot name; how its p-value was found
   std::vector<FamilyPart> parts;
