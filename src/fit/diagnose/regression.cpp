@@ -96,7 +96,7 @@ std::vector<Slope> slopes(const VectorXd& y, const MatrixXd& x, std::span<const 
   const Index freedom = freedom_of(strata, basis_of(columns).cols());
   std::vector<Slope> list;
   for (Index j = 0; j < columns.cols(); ++j) {
-    MatrixXd others = freedom < 1 ? MatrixXd(MatrixXd::Zero(columns.rows(), columns.cols())) : columns;
+    MatrixXd others = columns;
     others.col(j).setZero();
     const MatrixXd known = basis_of(others);
     const VectorXd own = columns.col(j) - known * (known.transpose() * columns.col(j));

@@ -31,10 +31,8 @@ RegressionTest regression_test(const Eigen::VectorXd& y, const Eigen::MatrixXd& 
 
 /// A property in the regression on all of them.
 struct Slope {
-  /// With y, both without strata and without the other properties, -1..1. Where the properties leave no freedom the
-  /// others stay in.
-  double correlation = 0.0;
-  double p_value = 1.0;  ///< of t, two-sided; NaN where no freedom is left
+  double correlation = 0.0;  ///< with y, both without strata and without the other properties, -1..1
+  double p_value = 1.0;      ///< of t, two-sided; NaN where no freedom is left
 };
 /// By column of `x`; correlation NaN for columns that do not count.
 std::vector<Slope> slopes(const Eigen::VectorXd& y, const Eigen::MatrixXd& x, std::span<const std::size_t> strata);
