@@ -27,6 +27,18 @@ void print_error(const char* what, const talus::io::HoldoutError& e) {
                 100.0 * e.reduction.share, 100.0 * e.reduction.interval.low, 100.0 * e.reduction.interval.high);
 }
 
+/// The families that these data can test, or that cannot name anything.
+void print_families(const talus::DiagnosisRound& round) {
+  for (const talus::FamilyTest& family : round.families) {
+    if (!std::isnan(family.p_corrected))
+      std::printf("  %s: p %.4f, corrected %.4f\n", family.name.c_str(), family.p_value, family.p_corrected);
+    else if (!family.may_name && !std::isnan(family.p_value))
+      std::printf("  %s: p %.4f; %s\n", family.name.c_str(), family.p_value, family.note.c_str());
+    else if (!family.may_name)
+      std::printf("  %s: %s\n", family.name.c_str(), family.note.c_str());
+  }
+}
+
 void print_summary(const talus::io::DiagnosisRecord& record, const std::string& folder) {
   const talus::Diagnosis& d = record.diagnosis;
   for (std::size_t i = 0; i < d.rounds.size(); ++i) {
@@ -36,6 +48,7 @@ void print_summary(const talus::io::DiagnosisRecord& record, const std::string& 
     for (const std::string& other : round.alike)
       std::printf("%s %s", &other == &round.alike.front() ? "; not to be told apart from" : ",", other.c_str());
     std::printf(" (p of noise %.4f)\n", round.p_value);
+    print_families(round);
   }
   std::printf("error, fitting rows: %.3f before, %.3f after\n", d.base.score.total, d.with_effects.score.total);
   if (std::isnan(record.whole.before)) {
@@ -102,7 +115,7 @@ void add_diagnose(CLI::App& app, Action& action) {
   command->add_option("--test-trials", how.trials.test, "trajectories per block in the tests (100)")
       ->check(CLI::Range(20, 10000));
   command->add_option("--most-effects", how.most_effects, "that are added, one a round (3)")->check(CLI::Range(1, 9));
-  command->add_option("--level", how.first_level, "of significance, over all effects and places (0.05)")
+  command->add_option("--level", how.first_level, "of significance, over all families of effects (0.05)")
       ->check(between(0.0001, 0.5));
   command->footer(
       "Where fewer than 72 blocks are fitted, each gets more trajectories, so that there are as many in all; at most "

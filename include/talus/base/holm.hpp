@@ -1,18 +1,20 @@
 #pragma once
 #include <algorithm>
-#include <numeric>
+#include <cmath>
 #include <span>
 #include <vector>
 
 namespace talus {
 
 /// P-values corrected for their number, in the order given: the share of false alarms among all of them stays below the
-/// level. Source: Holm (1979), "A simple sequentially rejective multiple test procedure".
+/// level, however they depend on each other. NaN stays NaN and does not count.
+/// Source: Holm (1979), "A simple sequentially rejective multiple test procedure".
 inline std::vector<double> holm(std::span<const double> p_values) {
-  std::vector<std::size_t> order(p_values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < p_values.size(); ++i)
+    if (!std::isnan(p_values[i])) order.push_back(i);
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return p_values[i]; });
-  std::vector<double> corrected(p_values.size());
+  std::vector<double> corrected(p_values.begin(), p_values.end());
   double largest = 0.0;
   for (std::size_t i = 0; i < order.size(); ++i) {
     largest = std::max(largest, std::min(1.0, p_values[order[i]] * static_cast<double>(order.size() - i)));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "effect_fits.hpp"
+#include "talus/fit/diagnose/families.hpp"
 #include "talus/fit/diagnose/undeclared_places.hpp"
 
 namespace talus {
@@ -81,8 +82,9 @@ class DiagnosisLoop {
     advance(kTestShare);
     const std::vector<Candidate> candidates = candidates_of(campaign_, base.model, base.runs, found, rules_);
     const ScoreTest test = tested(base, candidates);
-    round.p_value = test.p_value;
-    const bool noise = test.p_value > level;
+    round.families = tested_families(base, test);
+    round.p_value = smallest_corrected(round.families);
+    const bool noise = round.p_value > level;
     if (!more || (noise && !found.empty())) {
       round.effect = verdict_without_effect(round);
       return round;
@@ -90,16 +92,31 @@ class DiagnosisLoop {
     const Axis axis = axis_of(campaign_, base.runs);
     round.candidates.reserve(test.effects.size());
     for (const EffectVerdict& verdict : test.effects) {
+      const std::string family = admitted(round.families, verdict, level);
       // The first round fits all effects; later ones fit those that may be chosen, the most significant first.
-      if (!found.empty() && (verdict.p_value >= level || round.candidates.size() == rules_.later_fits)) continue;
+      if (!found.empty() && (family.empty() || round.candidates.size() == rules_.later_fits)) continue;
       advance();
       const EffectVerdict placed = in_better_zone(base, verdict, candidates);
-      round.candidates.push_back(
-          fits_.fit_effect(base, placed, merged_candidate(campaign_, axis, candidates, placed.best.members, rules_)));
+      round.candidates.push_back(fits_.fit_effect(
+          base, placed, merged_candidate(campaign_, axis, candidates, placed.best.members, rules_), family));
     }
-    if (!noise) compete(base, round.candidates, level, found.empty() ? rules_.contenders : rules_.later_contenders);
+    if (!noise) compete(base, round.candidates, found.empty() ? rules_.contenders : rules_.later_contenders);
     choose(base, round, noise);
     return round;
+  }
+
+  std::vector<FamilyTest> tested_families(const FittedModel& base, const ScoreTest& test) const {
+    FamilyOptions how;
+    how.seed = options_.seed;
+    how.rules = rules_;
+    return test_families({campaign_, ResidualSpace(campaign_, base.runs, rules_), base.runs, rows_, test}, how);
+  }
+
+  /// The family by which an effect may be chosen; empty: it may not. Where the test of the family does not rest on the
+  /// score tests of its members, all of them may; else those that are significant themselves.
+  static std::string admitted(std::span<const FamilyTest> families, const EffectVerdict& verdict, double level) {
+    const FamilyTest* family = admitting(families, verdict.effect, level);
+    return family != nullptr && (family->own_test || verdict.p_value < level) ? family->name : "";
   }
 
   /// The test, which is linear, may find a strong effect in the wrong zone. Where the second best zone is significant
@@ -119,10 +136,10 @@ class DiagnosisLoop {
 
   /// Continues the fits of the candidates that may be chosen and gain most, then those that may still win with more
   /// trials, and cross-validates what is left. In the first round the fit of the base has been as long before.
-  void compete(const FittedModel& base, std::vector<FittedCandidate>& candidates, double level, std::size_t most) {
+  void compete(const FittedModel& base, std::vector<FittedCandidate>& candidates, std::size_t most) {
     std::vector<FittedCandidate*> contenders;
     for (FittedCandidate& c : candidates)
-      if (c.p_value < level) contenders.push_back(&c);
+      if (!c.family.empty()) contenders.push_back(&c);
     drop_losers(contenders, most, -rules_.unfinished);
     for (FittedCandidate* c : contenders) {
       advance();
@@ -151,7 +168,7 @@ class DiagnosisLoop {
     });
   }
 
-  /// The verdict of a round that names no effect: "unexplained" where the score test or a row of the residual table is
+  /// The verdict of a round that names no effect: "unexplained" where a family or a row of the residual table is
   /// significant at the stricter level, else "none".
   std::string verdict_without_effect(const DiagnosisRound& round) const {
     const bool in_table = !round.residual.empty() && round.residual.front().corrected < options_.later_level;

@@ -169,7 +169,7 @@ void EffectFits::measure_gain(const FittedModel& base, FittedCandidate& candidat
 }
 
 FittedCandidate EffectFits::fit_effect(const FittedModel& base, const EffectVerdict& verdict,
-                                       const Candidate& candidate) const {
+                                       const Candidate& candidate, const std::string& family) const {
   const DiagnosisRules& rules = options_.rules;
   FittedCandidate out;
   out.effect = candidate.effect;
@@ -181,7 +181,8 @@ FittedCandidate EffectFits::fit_effect(const FittedModel& base, const EffectVerd
   const auto asked = static_cast<double>(std::count(rows_.begin(), rows_.end(), true));
   out.price = rules.price * (static_cast<double>(candidate.parameters.size()) + candidate.searched) / asked;
   out.place_price = rules.price * candidate.searched / asked;
-  out.with_ground = verdict.p_value < std::max(rules.joint_level, options_.first_level);  // all that may be chosen
+  out.family = family;
+  out.with_ground = !family.empty();
   std::vector<Parameter> free = joined(out.with_ground ? base.free : std::vector<Parameter>{}, candidate.parameters);
   const Index added = std::ssize(candidate.parameters);
   FitOptions how = fit_options();

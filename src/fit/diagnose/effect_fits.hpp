@@ -31,9 +31,12 @@ class EffectFits {
   /// The ground alone, fitted as `calibrate` does, then for some rounds more: what this fit misses looks like an
   /// effect.
   FittedModel fit_ground(const Model& start) const;
-  /// An effect at its best place, fitted from the estimate of the score test; together with the ground where the test
-  /// finds anything in it.
-  FittedCandidate fit_effect(const FittedModel& base, const EffectVerdict& verdict, const Candidate& candidate) const;
+  /// An effect at its best place, fitted from the estimate of the score test; together with the ground where it may be
+  /// chosen.
+  ///
+  /// @param family  by which it may be chosen; empty: it may not
+  FittedCandidate fit_effect(const FittedModel& base, const EffectVerdict& verdict, const Candidate& candidate,
+                             const std::string& family) const;
   /// The least objective over some amounts of an effect, to compare its places.
   double least_objective(const FittedModel& base, const Verdict& verdict, const Candidate& candidate) const;
   /// Continues the fit of an effect; keeps the result where it is better.

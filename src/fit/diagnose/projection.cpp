@@ -1,9 +1,12 @@
 #include "talus/fit/diagnose/projection.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <numbers>
 
 #include "talus/physics/effects/registry.hpp"
 
@@ -50,19 +53,35 @@ std::vector<std::vector<std::size_t>> groups_of(const std::string& effect, std::
   return groups;
 }
 
-/// Share of chi-bar-squared above the statistic: each of `bounded` estimates is inside its bound half of the time.
-double tail_of(double statistic, Index freedom, int bounded) {
-  if (!(statistic > 0.0)) return 1.0;
+/// Shares of the data sets without an effect in which none, one, ... of the bounded estimates are inside their bounds.
+/// Exact for one, for two of any correlation, and for more that are uncorrelated. Source: Shapiro (1988), section 5.
+std::vector<double> inside_shares(int bounded, double correlation) {
+  if (bounded == 2) {
+    const double none = std::acos(std::clamp(correlation, -1.0, 1.0)) / (2.0 * std::numbers::pi);
+    return {none, 0.5, 0.5 - none};
+  }
   const boost::math::binomial inside(bounded, 0.5);
+  std::vector<double> shares;
+  for (int k = 0; k <= bounded; ++k) shares.push_back(boost::math::pdf(inside, k));
+  return shares;
+}
+
+}  // namespace
+
+double chi_bar_tail(double statistic, Index freedom, int bounded, double correlation) {
+  if (!(statistic > 0.0)) return 1.0;
+  const std::vector<double> shares = inside_shares(bounded, correlation);
   double tail = 0.0;
   for (int k = 0; k <= bounded; ++k) {
     const auto f = static_cast<double>(freedom - bounded + k);
     if (f > 0.0)
-      tail += boost::math::pdf(inside, k) *
+      tail += shares[static_cast<std::size_t>(k)] *
               boost::math::cdf(boost::math::complement(boost::math::chi_squared(f), statistic));
   }
   return tail;
 }
+
+namespace {
 
 /// Indices of the parameters that the bits of `mask` leave free.
 std::vector<Index> free_in(unsigned mask, Index size) {
@@ -110,6 +129,14 @@ Projection::Projection(const TestedPlace& place, const MatrixXd& covariance, con
   map_ = place.pick.transpose() - imitated;
   information_ = map_ * covariance * map_.transpose();
   information_.diagonal().array() += 1e-9;
+  std::vector<Index> bounded;
+  for (std::size_t i = 0; i < one_sided_.size(); ++i)
+    if (one_sided_[i]) bounded.push_back(static_cast<Index>(i));
+  if (bounded.size() != 2) return;
+  const MatrixXd covariance_of_estimates = information_.inverse();
+  bounded_correlation_ =
+      covariance_of_estimates(bounded[0], bounded[1]) /
+      std::sqrt(covariance_of_estimates(bounded[0], bounded[0]) * covariance_of_estimates(bounded[1], bounded[1]));
 }
 
 Verdict Projection::verdict(const MatrixXd& scores) const {
@@ -135,7 +162,7 @@ Verdict Projection::verdict(const MatrixXd& scores) const {
   }
   v.ground = steps_.cwiseProduct(map_.leftCols(steps_.size()).transpose() * v.estimate);
   const auto bounded = static_cast<int>(std::count(one_sided_.begin(), one_sided_.end(), true));
-  v.p_value = tail_of(v.statistic, s.size(), bounded);
+  v.p_value = chi_bar_tail(v.statistic, s.size(), bounded, bounded_correlation_);
   return v;
 }
 

@@ -141,11 +141,14 @@ std::vector<std::vector<double>> smallest_drawn(std::size_t effects, const std::
   return smallest;
 }
 
-void correct(ScoreTest& test, const std::vector<std::vector<double>>& simulated) {
+void correct(ScoreTest& test, std::vector<std::vector<double>> simulated) {
   std::vector<double> measured;
   for (const EffectVerdict& effect : test.effects) measured.push_back(effect.best.p_value);
   const Corrected p = corrected(simulated, measured);
-  for (std::size_t e = 0; e < test.effects.size(); ++e) test.effects[e].p_value = p.effects[e];
+  for (std::size_t e = 0; e < test.effects.size(); ++e) {
+    test.effects[e].p_value = p.effects[e];
+    test.effects[e].drawn = std::move(simulated[e]);
+  }
   test.p_value = p.all;
 }
 
@@ -243,7 +246,7 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
     auto effect = std::find_if(test.effects.begin(), test.effects.end(),
                                [&](const EffectVerdict& e) { return e.effect == name; });
     if (effect == test.effects.end())
-      effect = test.effects.insert(effect, {name, verdict, {}, 1.0});
+      effect = test.effects.insert(effect, {name, verdict, {}, 1.0, {}});
     else
       rank(verdict, *effect);
     effect_of.push_back(static_cast<std::size_t>(effect - test.effects.begin()));

@@ -182,6 +182,25 @@ std::string candidates_table(const DiagnosisRound& round, const std::vector<Hold
   return html + "</table>\n";
 }
 
+/// The tests of the families, with what each found.
+std::string families_table(const DiagnosisRound& round) {
+  std::string html =
+      "<table><tr><th>family</th><th>p</th><th>corrected</th><th>effects in it</th><th>what was compared (p of it "
+      "alone)</th><th></th></tr>\n";
+  for (const FamilyTest& family : round.families) {
+    std::string members, parts;
+    for (const std::string& member : family.members) members += member + "<br>";
+    for (const FamilyPart& part : family.parts)
+      parts += escaped(part.name) + ": " + part.statistic + " " + with_decimals(part.value, 2) +
+               (std::isnan(part.p_value) ? "" : " (" + with_digits(part.p_value, 2) + ")") + "<br>";
+    html += "<tr><td>" + family.name + "</td><td>" +
+            (std::isnan(family.p_value) ? "not tested" : with_digits(family.p_value, 2)) + "</td><td>" +
+            (std::isnan(family.p_corrected) ? "" : with_digits(family.p_corrected, 2)) + "</td><td>" + members +
+            "</td><td>" + parts + "</td><td>" + escaped(family.note) + "</td></tr>\n";
+  }
+  return html + "</table>\n";
+}
+
 std::string residual_rows(const std::vector<ResidualRow>& rows) {
   std::string html =
       "<table><tr><th>observable</th><th>against</th><th>statistic</th><th>p</th><th>corrected</th><th>blocks</th></"
@@ -191,6 +210,22 @@ std::string residual_rows(const std::vector<ResidualRow>& rows) {
             with_decimals(rows[i].statistic, 2) + "</td><td>" + with_digits(rows[i].p_value, 2) + "</td><td>" +
             with_digits(rows[i].corrected, 2) + "</td><td>" + std::to_string(rows[i].blocks) + "</td></tr>\n";
   return html + "</table>\n";
+}
+
+/// The families that are significant, and those that could not name anything.
+std::string families_sentence(const DiagnosisRound& round) {
+  std::string text;
+  for (const FamilyTest& family : round.families) {
+    if (family.p_corrected <= kRare)
+      text += (text.empty() ? " What is left depends on: " : ", ") + ("<b>" + family.name) + "</b> (p " +
+              with_digits(family.p_corrected, 2) + " corrected)";
+  }
+  if (!text.empty()) text += ".";
+  for (const FamilyTest& family : round.families)
+    if (!family.may_name)
+      text += " " + escaped(family.note) + (std::isnan(family.p_value) ? "" : ", p " + with_digits(family.p_value, 2)) +
+              ".";
+  return text;
 }
 
 std::string sentence(const DiagnosisRound& round) {
@@ -222,13 +257,19 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
       escaped(campaign.name) + " lacks</h1>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i)
     html += "<p>Round " + std::to_string(i + 1) + ": " + sentence(d.rounds[i]) +
-            " (p that the residual is noise: " + with_decimals(d.rounds[i].p_value, 4) + ")</p>\n";
+            " (p that the residual is noise: " + with_decimals(d.rounds[i].p_value, 4) + ")." +
+            families_sentence(d.rounds[i]) + "</p>\n";
   html += errors_html(record);
   for (const std::string& warning : record.warnings) html += "<p>Warning: " + escaped(warning) + "</p>\n";
   html += spread_html(record);
   html +=
-      "<h2>Candidates</h2>\n<p>Each at its best place, fitted together with the ground where p is below 0.1 (or "
-      "--level), else with "
+      "<h2>Families</h2>\n<p>Effects that leave the same kind of trace are tested together, by one test of few degrees "
+      "of freedom. Only an effect of a significant family may be named.</p>\n";
+  for (std::size_t i = 0; i < d.rounds.size(); ++i)
+    html += "<h3>Round " + std::to_string(i + 1) + "</h3>\n" + families_table(d.rounds[i]);
+  html +=
+      "<h2>Candidates</h2>\n<p>Each at its best place, fitted together with the ground where it may be named, else "
+      "with "
       "the ground held. The objective is the error with groups of n rows that count n / (n + 10).</p>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i)
     if (!d.rounds[i].candidates.empty())

@@ -5,6 +5,7 @@
 
 #include "evidence.hpp"
 #include "talus/base/version.hpp"
+#include "talus/fit/diagnose/families.hpp"
 
 namespace talus::io {
 namespace {
@@ -32,6 +33,26 @@ Json residual_of(const std::vector<ResidualRow>& rows) {
   return list;
 }
 
+Json families_of(const DiagnosisRound& round) {
+  Json list = Json::array();
+  for (const FamilyTest& family : round.families) {
+    Json parts = Json::array();
+    for (const FamilyPart& part : family.parts)
+      parts.push_back({{"name", part.name},
+                       {"statistic", part.statistic},
+                       {"value", json_of(part.value)},
+                       {"p_value", json_of(part.p_value)}});
+    list.push_back({{"name", family.name},
+                    {"p_value", json_of(family.p_value)},
+                    {"p_corrected", json_of(family.p_corrected)},
+                    {"members", family.members},
+                    {"may_name", family.may_name},
+                    {"note", family.note},
+                    {"parts", parts}});
+  }
+  return list;
+}
+
 Json candidates_of(const DiagnosisRound& round, const std::vector<HoldoutError>& holdout) {
   Json list = Json::array();
   for (std::size_t i = 0; i < round.candidates.size(); ++i) {
@@ -39,6 +60,8 @@ Json candidates_of(const DiagnosisRound& round, const std::vector<HoldoutError>&
     list.push_back({{"effect", c.effect},
                     {"where", c.where},
                     {"parameters", parameters_of(c)},
+                    {"family", family_of(c.effect)},
+                    {"may_be_chosen", !c.family.empty()},
                     {"fitted_with_ground", c.with_ground},
                     {"fit", json_of(c.fitted.score.total)},
                     {"price", json_of(c.price)},
@@ -130,7 +153,10 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
       turn["holdout"] = {{"before", json_of(record.rounds[i].before)}, {"after", json_of(record.rounds[i].after)}};
     }
     turn["p_value"] = json_of(round.p_value);
-    if (i > 0) turn["candidates"] = candidates_of(round, record.candidates[i]);
+    if (i > 0) {
+      turn["families"] = families_of(round);
+      turn["candidates"] = candidates_of(round, record.candidates[i]);
+    }
     rounds.push_back(turn);
   }
   if (effects.empty()) effects.push_back(first.effect);
@@ -160,6 +186,7 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
             {"evidence", evidence_json(record.errors, "ground", "found")},
             {"tail", tail_json(record.errors)},
             {"coverage", coverage_json(record.errors)},
+            {"families", families_of(first)},
             {"candidates", candidates_of(first, record.candidates.front())},
             {"residual", residual_of(first.residual)},
             {"residual_after", residual_of(d.rounds.back().residual)},

@@ -5,10 +5,11 @@ namespace talus {
 
 /// What a random number of a measured block decides, apart from its trajectories.
 enum class BlockDraw : std::uint32_t {
-  Weight,     ///< of the block in a bootstrap
-  Trial,      ///< that stands in for the block's measurement
-  Order,      ///< in which blocks are cut into folds
-  RankOfTie,  ///< between the simulated values beside a measured one
+  Weight,       ///< of the block in a bootstrap
+  Trial,        ///< that stands in for the block's measurement
+  Order,        ///< in which blocks are cut into folds
+  RankOfTie,    ///< between the simulated values beside a measured one
+  Permutation,  ///< its place among the blocks that hand each other their values
 };
 
 /// A random number of one block, in (0, 1). It depends on the block's stream alone: other blocks, and the order of all,

@@ -1,6 +1,7 @@
 #pragma once
 #include "talus/fit/calibrate/fit_problem.hpp"
 #include "talus/fit/diagnose/diagnosis_rules.hpp"
+#include "talus/fit/diagnose/family_test.hpp"
 #include "talus/fit/diagnose/residual_table.hpp"
 #include "talus/fit/score/bootstrap.hpp"
 
@@ -24,8 +25,9 @@ struct FittedCandidate {
   std::vector<Parameter> parameters;   ///< of the candidate itself
   std::size_t tested = 0;              ///< number of them that the score test moves; all at zero: no effect
   std::vector<double> values;          ///< fitted values of the parameters
-  bool with_ground = true;             ///< false: the ground was held, because the score test found nothing
+  bool with_ground = true;             ///< false: the ground was held, because it may not be chosen
   double p_value = 1.0;                ///< of the score test, corrected for the places of the effect
+  std::string family;                  ///< by which it may be chosen; empty: it may not
   double statistic = 0.0;              ///< of the score test
   double gain = 0.0;                   ///< decrease of the objective of the fitting rows, without the prior
   Interval gain_interval;              ///< 95 %, paired bootstrap over blocks
@@ -47,7 +49,8 @@ struct DiagnosisRound {
   std::vector<FittedCandidate> candidates;  ///< every effect at its best place, best first
   std::vector<std::string> alike;           ///< effects that these data cannot tell apart from it
   std::vector<ResidualRow> residual;        ///< of the fitting rows, before the effect is added
-  double p_value = 1.0;                     ///< of the score test over all effects and places
+  std::vector<FamilyTest> families;         ///< all, in a fixed order
+  double p_value = 1.0;                     ///< the smallest of the families' corrected ones
 };
 
 /// Trajectories of each block.
@@ -68,7 +71,7 @@ struct DiagnoseOptions {
   std::uint64_t seed = 1;
   int threads = 0;
   int most_effects = 3;
-  double first_level = 0.05;            ///< of the score test, over all effects: the false alarms that are accepted
+  double first_level = 0.05;            ///< over all families: the false alarms that are accepted
   double later_level = 0.01;            ///< after the first effect: its form is a guess, which leaves a residual
   DiagnosisRules rules;                 ///< numbers that no user sets
   std::function<bool(double)> proceed;  ///< receives the share done, 0..1; false ends the diagnosis. May be empty

@@ -42,9 +42,14 @@ struct DiagnosisRules {
   /// in place.
   double base_sd = 1.0;
 
+  // The families
+  /// Arrangements of a permutation test, the measured one included [-]: a p of 0.01 is then known to 0.001.
+  std::size_t arrangements = 10000;
+  /// Different rocks below which no property of the block can be named [-]: with five there are 120 arrangements, of
+  /// which the best is no rarer than 0.008, four families corrected no rarer than 0.03.
+  std::size_t fewest_rocks = 6;
+
   // The fits
-  /// p of the score test below which an effect is fitted together with the ground [-]. What may be chosen always is.
-  double joint_level = 0.1;
   /// Gain by which a round of the quadratic model must lower the objective for another one [objective].
   double worth_a_round = 0.002;
   /// Gain that one more fitted number must bring, times the number of fitting blocks [objective]. Akaike's price, one

@@ -32,8 +32,8 @@ class Projection {
   ///
   /// The estimate is the best one within its bounds. The statistic is the larger of two: with the variance that the
   /// model gives, and with that of the blocks' own contributions, so that a model which scatters too much does not hide
-  /// an effect. Its distribution is taken as a mixture of chi squared ones, as for bounds on uncorrelated estimates:
-  /// p-values that are reported come from data sets of the model, which go through the same choice.
+  /// an effect. Its distribution is taken as chi-bar squared (chi_bar_tail): p-values that are reported come from data
+  /// sets of the model, which go through the same choice.
   Verdict verdict(const Eigen::MatrixXd& scores) const;
 
  private:
@@ -41,6 +41,16 @@ class Projection {
   Eigen::MatrixXd information_;
   Eigen::VectorXd steps_;
   std::vector<bool> one_sided_;
+  double bounded_correlation_ = 0.0;  // of the estimates, if two are bounded
 };
+
+/// Probability that s' I^-1 s of the best estimates within their bounds is above `statistic` if there is no effect: a
+/// mixture of chi squared distributions (chi-bar squared).
+///
+/// @param freedom      number of estimates
+/// @param bounded      those that cannot be below zero
+/// @param correlation  of the estimates (not of their scores), if two are bounded: the weights are then exact. Of three
+///                     and more they are those of uncorrelated ones.
+double chi_bar_tail(double statistic, Eigen::Index freedom, int bounded, double correlation);
 
 }  // namespace talus

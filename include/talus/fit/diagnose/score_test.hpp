@@ -8,8 +8,9 @@ namespace talus {
 struct EffectVerdict {
   std::string effect;
   Verdict best;
-  Verdict second;        ///< the next best place; without members where there is no other
-  double p_value = 1.0;  ///< corrected for the number of its places, from simulated data sets
+  Verdict second;             ///< the next best place; without members where there is no other
+  double p_value = 1.0;       ///< corrected for the number of its places, from simulated data sets
+  std::vector<double> drawn;  ///< by simulated data set: the smallest p-value over its places
 };
 
 struct ScoreTest {
@@ -27,7 +28,8 @@ struct Corrected {
 /// model is right, each of them is equally likely to be the rarest. All effects count alike, whatever their number of
 /// places.
 ///
-/// @param simulated  by effect and data set: the smallest p-value over its places
+/// @param simulated  by effect and data set: the smallest p-value over its places; or any number that is smaller the
+///                   rarer, with which those of different effects can be compared
 /// @param measured   by effect: the smallest p-value of the measured data over its places
 Corrected corrected(std::span<const std::vector<double>> simulated, std::span<const double> measured);
 

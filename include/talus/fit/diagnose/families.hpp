@@ -1,0 +1,35 @@
+#pragma once
+#include "talus/fit/diagnose/family_test.hpp"
+#include "talus/fit/diagnose/residual.hpp"
+#include "talus/fit/diagnose/score_test.hpp"
+
+namespace talus {
+
+/// What the tests of families need of a fitted model.
+struct FamilyInput {
+  const Campaign& campaign;
+  const ResidualSpace& space;
+  const std::vector<BlockRuns>& runs;  ///< of which `space` was made
+  const std::vector<bool>& rows;       ///< the blocks that are used
+  const ScoreTest& score_test;         ///< of the same model
+};
+
+struct FamilyOptions {
+  int replicates = 2000;  ///< simulated data sets
+  std::uint64_t seed = 1;
+  DiagnosisRules rules;
+};
+
+/// Tests of all families, in a fixed order, with Holm's correction.
+std::vector<FamilyTest> test_families(const FamilyInput& input, const FamilyOptions& options);
+
+/// Name of the family to which an effect belongs.
+std::string family_of(const std::string& effect);
+
+/// The smallest corrected p-value; 1 where no family was tested.
+double smallest_corrected(std::span<const FamilyTest> families);
+
+/// The family, significant at `level`, by which an effect may be chosen; nullptr: none.
+const FamilyTest* admitting(std::span<const FamilyTest> families, const std::string& effect, double level);
+
+}  // namespace talus

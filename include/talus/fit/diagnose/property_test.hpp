@@ -1,0 +1,39 @@
+#pragma once
+#include "talus/fit/campaign/campaign.hpp"
+#include "talus/fit/diagnose/diagnosis_rules.hpp"
+#include "talus/fit/diagnose/regression.hpp"
+
+namespace talus {
+
+/// Test whether a number per block depends on the block: its shape, its mass.
+struct PropertyTest {
+  bool tested = false;  ///< false: too few blocks, or all are alike
+  RegressionTest regression;
+  std::vector<std::string> names;  ///< of the properties: "log L1/L2", "log L1/L3", "log mass"
+  std::vector<Slope> slopes;       ///< by property
+  std::size_t blocks = 0, rocks = 0, sites = 0;
+  bool by_rock = false;  ///< rocks were released several times: they change places, not their releases
+};
+
+/// Regresses `energy` on log L1/L2, log L1/L3 and log mass with an intercept for each site. Groups are sites where
+/// different rocks were released in one of them; where each group is one rock, its intercept would take all that a rock
+/// can show, and there is one intercept for all.
+///
+/// @param energy  by block of the campaign (EnergyComponent); NaN: not used
+PropertyTest property_test(const Campaign& campaign, const std::vector<double>& energy, const DiagnosisRules& rules,
+                           std::uint64_t seed);
+
+/// Test whether a number per block depends on the day of release.
+struct DayTest {
+  bool tested = false;  ///< false: fewer than two days, or none with others in the same group
+  RegressionTest regression;
+  std::vector<int> days;
+  std::vector<double> means;  ///< by day: of the energy, without the means of the groups
+  std::size_t blocks = 0;
+};
+
+/// The factor of the day, with an intercept for each group, permuted within groups.
+DayTest day_test(const Campaign& campaign, const std::vector<double>& energy, const DiagnosisRules& rules,
+                 std::uint64_t seed);
+
+}  // namespace talus

@@ -1,0 +1,159 @@
+#include "talus/fit/diagnose/families.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "talus/base/holm.hpp"
+#include "talus/fit/diagnose/dispersion.hpp"
+#include "talus/fit/diagnose/energy_component.hpp"
+#include "talus/fit/diagnose/property_test.hpp"
+#include "talus/physics/effects/registry.hpp"
+
+namespace talus {
+namespace {
+
+constexpr const char *kProperty = "block property", *kPlace = "place", *kDay = "day", *kInstrument = "instrument",
+                     *kDispersion = "dispersion";
+
+std::string count_word(std::size_t n) {
+  static constexpr std::array<const char*, 6> kWords{"no", "one", "two", "three", "four", "five"};
+  return n < kWords.size() ? kWords[n] : std::to_string(n);
+}
+
+std::string rocks_word(std::size_t n) {
+  return count_word(n) + (n == 1 ? " rock" : " rocks");
+}
+
+/// How the permutations were counted, for the reports.
+std::string permutations_note(const PermutationTest& test, const char* what) {
+  return std::string(test.exact ? "p from all " : "p from ") + std::to_string(test.arrangements) +
+         " arrangements of the " + what;
+}
+
+/// A family with a test of its own.
+FamilyTest family_with_members(const char* name, std::vector<std::string> members) {
+  FamilyTest family;
+  family.name = name;
+  family.members = std::move(members);
+  family.own_test = true;
+  return family;
+}
+
+FamilyTest block_property(const FamilyInput& in, const std::vector<double>& energy, const FamilyOptions& options) {
+  FamilyTest family = family_with_members(kProperty, {"block-shape", "block-mass"});
+  const PropertyTest test = property_test(in.campaign, energy, options.rules, options.seed);
+  family.may_name = test.rocks >= options.rules.fewest_rocks;
+  if (!family.may_name) family.note = rocks_word(test.rocks) + ": a property of the block cannot be named from them";
+  if (!test.tested) {
+    if (family.may_name) family.note = "fewer than ten blocks";
+    return family;
+  }
+  family.p_value = test.regression.permuted.p_value;
+  if (test.by_rock)
+    family.note += std::string(family.note.empty() ? "" : "; ") +
+                   permutations_note(test.regression.permuted, "rocks, not of their releases");
+  else
+    family.note = permutations_note(test.regression.permuted, test.sites > 1 ? "blocks within their sites" : "blocks");
+  for (std::size_t i = 0; i < test.slopes.size(); ++i)
+    if (!std::isnan(test.slopes[i].correlation))
+      family.parts.push_back(
+          {test.names[i], "partial correlation", test.slopes[i].correlation, test.slopes[i].p_value});
+  return family;
+}
+
+FamilyTest day(const FamilyInput& in, const std::vector<double>& energy, const FamilyOptions& options) {
+  FamilyTest family = family_with_members(kDay, {"wet-ground"});
+  const DayTest test = day_test(in.campaign, energy, options.rules, options.seed);
+  if (!test.tested) {
+    family.note = "releases of several days within one group are needed";
+    return family;
+  }
+  family.p_value = test.regression.permuted.p_value;
+  family.note = permutations_note(test.regression.permuted, "blocks within their groups");
+  for (std::size_t i = 0; i < test.days.size(); ++i)
+    family.parts.push_back({"day " + std::to_string(test.days[i]), "mean", test.means[i], kNotGiven});
+  return family;
+}
+
+/// The most significant member, corrected within the family.
+FamilyTest by_score_test(const char* name, const FamilyInput& in) {
+  FamilyTest family;
+  family.name = name;
+  std::vector<std::vector<double>> drawn;
+  std::vector<double> measured;
+  for (const EffectVerdict& effect : in.score_test.effects) {
+    if (family_of(effect.effect) != name) continue;
+    family.members.push_back(effect.effect);
+    family.parts.push_back({effect.effect, "statistic", effect.best.statistic, effect.p_value});
+    drawn.push_back(effect.drawn);
+    measured.push_back(effect.best.p_value);
+  }
+  if (measured.empty()) {
+    family.note = "no candidate: nothing was measured that one could change";
+    return family;
+  }
+  family.p_value = corrected(drawn, measured).all;
+  family.note = "p from " + std::to_string(drawn.front().size()) + " data sets drawn from the model";
+  return family;
+}
+
+FamilyTest dispersion(const FamilyInput& in, const FamilyOptions& options) {
+  FamilyTest family = family_with_members(kDispersion, {"rest-in-roughness"});
+  const DispersionTest test =
+      dispersion_test(in.campaign, in.space, in.runs, in.rows, options.replicates, options.seed);
+  if (!test.tested) {
+    family.note = "fewer than ten blocks beyond the number of groups";
+    return family;
+  }
+  family.p_value = test.p_value;
+  family.note = "p from " + std::to_string(options.replicates) + " data sets drawn from the model";
+  for (const DispersionRow& row : test.rows)
+    family.parts.push_back({row.what, row.what.ends_with("P95") ? "share" : "variance", row.statistic, row.p_value});
+  return family;
+}
+
+}  // namespace
+
+std::string family_of(const std::string& effect) {
+  if (effect == "instrument-bias") return kInstrument;
+  if (effect == "block-mass") return kProperty;
+  const EffectEntry* entry = find_effect(effect);
+  if (entry != nullptr && entry->sought == Sought::OfShapes) return kProperty;
+  if (entry != nullptr && entry->sought == Sought::OnDays) return kDay;
+  return kPlace;
+}
+
+std::vector<FamilyTest> test_families(const FamilyInput& input, const FamilyOptions& options) {
+  const EnergyComponent component(input.space, input.runs);
+  std::vector<double> energy(input.rows.size(), kNotGiven);
+  for (std::size_t b = 0; b < energy.size(); ++b)
+    if (input.rows[b] && input.runs[b].trials > 0) energy[b] = component.of_measured(b);
+  std::vector<FamilyTest> families{block_property(input, energy, options), by_score_test(kPlace, input),
+                                   day(input, energy, options), by_score_test(kInstrument, input),
+                                   dispersion(input, options)};
+  std::vector<double> p_values;
+  for (const FamilyTest& family : families)  // a test that can name nothing takes no part of the level
+    p_values.push_back(family.may_name ? family.p_value : kNotGiven);
+  const std::vector<double> after = holm(p_values);
+  for (std::size_t i = 0; i < families.size(); ++i) families[i].p_corrected = after[i];
+  return families;
+}
+
+double smallest_corrected(std::span<const FamilyTest> families) {
+  double smallest = 1.0;
+  for (const FamilyTest& family : families)
+    if (family.p_corrected < smallest) smallest = family.p_corrected;
+  return smallest;
+}
+
+const FamilyTest* admitting(std::span<const FamilyTest> families, const std::string& effect, double level) {
+  const FamilyTest* found = nullptr;
+  for (const FamilyTest& family : families)
+    if (family.may_name && family.p_corrected <= level &&
+        std::ranges::find(family.members, effect) != family.members.end() && (found == nullptr || family.own_test))
+      found = &family;
+  return found;
+}
+
+}  // namespace talus

@@ -1,0 +1,70 @@
+#include "talus/fit/diagnose/projection.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "support/scenes.hpp"
+
+namespace talus::test {
+namespace {
+
+/// Share of data sets without an effect whose statistic is above a value, by simulation: two estimates of this
+/// correlation and variance 1, neither below zero.
+double simulated_tail(double correlation, double value, int sets) {
+  Numbers numbers(17);
+  const Eigen::Matrix2d covariance{{1.0, correlation}, {correlation, 1.0}}, information = covariance.inverse();
+  int above = 0;
+  for (int set = 0; set < sets; ++set) {
+    const double a = numbers.normal(), b = numbers.normal();
+    const Eigen::Vector2d estimate(a, correlation * a + std::sqrt(1.0 - correlation * correlation) * b);
+    const Eigen::Vector2d score = information * estimate;
+    double statistic = 0.0;
+    if (estimate.minCoeff() > 0.0)
+      statistic = score.dot(estimate);
+    else
+      for (int i = 0; i < 2; ++i)
+        statistic = std::max(statistic, std::pow(std::max(0.0, score[i]), 2) / information(i, i));
+    above += statistic > value;
+  }
+  return static_cast<double>(above) / sets;
+}
+
+TEST(ChiBar, OfTwoCorrelatedEstimatesIsWhatSimulationGives) {
+  constexpr int kSets = 200'000;
+  for (const double correlation : {-0.9, -0.5, 0.0, 0.6, 0.9})
+    for (const double value : {0.5, 3.0, 5.0}) {
+      const double p = chi_bar_tail(value, 2, 2, correlation);
+      EXPECT_NEAR(simulated_tail(correlation, value, kSets), p, 5.0 * std::sqrt(p * (1.0 - p) / kSets))
+          << correlation << ' ' << value;
+    }
+  // The weights of uncorrelated estimates would be off by far more.
+  EXPECT_GT(chi_bar_tail(3.0, 2, 2, 0.9) / chi_bar_tail(3.0, 2, 2, 0.0), 1.25);
+  EXPECT_LT(chi_bar_tail(3.0, 2, 2, -0.9) / chi_bar_tail(3.0, 2, 2, 0.0), 0.75);
+}
+
+TEST(ChiBar, AtItsLimits) {
+  const double one = std::erfc(std::sqrt(1.5)), two = std::exp(-1.5);  // chi squared above 3
+  EXPECT_NEAR(chi_bar_tail(3.0, 2, 0, 0.0), two, 1e-12);
+  EXPECT_NEAR(chi_bar_tail(3.0, 1, 1, 0.0), 0.5 * one, 1e-12);
+  EXPECT_NEAR(chi_bar_tail(3.0, 2, 1, 0.7), 0.5 * one + 0.5 * two, 1e-12) << "the free one takes its part with it";
+  EXPECT_NEAR(chi_bar_tail(3.0, 2, 2, -1.0), 0.5 * one, 1e-12) << "never both inside";
+  EXPECT_NEAR(chi_bar_tail(3.0, 2, 2, 1.0), 0.5 * one + 0.5 * two, 1e-12);
+  EXPECT_EQ(chi_bar_tail(0.0, 2, 2, 0.3), 1.0);
+}
+
+/// Two estimates with the information of a covariance of scores of 0.6 between them: the estimates have -0.6.
+TEST(ChiBar, TheProjectionUsesTheCorrelationOfTheEstimates) {
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
+  covariance(1, 2) = covariance(2, 1) = 0.6;
+  TestedPlace place{{0}, Eigen::MatrixXd::Identity(3, 3).rightCols(2), {true, true}};
+  const Projection projection(place, covariance, Eigen::VectorXd::Ones(1), 1.0);
+  Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(3, 2);
+  scores.bottomRows(2).setOnes();
+  const Verdict v = projection.verdict(scores);
+  EXPECT_NEAR(v.p_value, chi_bar_tail(v.statistic, 2, 2, -0.6), 1e-6);
+}
+
+}  // namespace
+}  // namespace talus::test
