@@ -92,6 +92,8 @@ class Lines {
       add("output", "energy_thresholds", list_text(spec.values.output.energy_thresholds), "kJ");
       add("output", "height_thresholds", list_text(spec.values.output.height_thresholds), "m");
       add("output", "passages_below", text_of(spec.values.output.passages_below), "m");
+      add("output", "energy_total", spec.values.output.energy_total ? "true" : "false", "");
+      add("output", "bounds", spec.values.output.bounds ? "true" : "false", "");
     }
     file("screens", "file", spec.screens);
     file("barriers", "file", spec.barriers);

@@ -25,10 +25,14 @@ inline float highest(const Span& span, const Moment& from, const Moment& to) {
   return apex ? top : std::max(from.height, to.height);
 }
 
-/// Raises maxima to those of a part of a span. The speed is largest at an end.
+/// The largest square of the speed on a part of a span [m^2/s^2]: at an end.
+inline float largest_speed_squared(const Span& span, const Moment& from, const Moment& to) {
+  return span.plan_speed_squared + std::max(from.rise * from.rise, to.rise * to.rise);
+}
+
+/// Raises maxima to those of a part of a span.
 inline void raise(Maxima& maxima, const Span& span, const Moment& from, const Moment& to) {
-  const float rise_squared = std::max(from.rise * from.rise, to.rise * to.rise);
-  maxima.raise({span.plan_speed_squared + rise_squared, highest(span, from, to)});
+  maxima.raise({largest_speed_squared(span, from, to), highest(span, from, to)});
 }
 
 }  // namespace talus

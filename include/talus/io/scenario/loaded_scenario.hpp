@@ -30,6 +30,7 @@ struct RunFlags {
   std::optional<double> diameter;  ///< [m]
   std::optional<std::uint32_t> trajectories;
   std::optional<std::uint64_t> seed;
+  bool energy_total = false, bounds = false;
 };
 
 /// Reads and checks everything. Throws InputError, one line; `all_faults` gets every fault of the settings (for
