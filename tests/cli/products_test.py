@@ -99,13 +99,13 @@ class EnergyTotal(Case):
         y = NORTH - 130.0  # between rows 25 and 26
         write_features(self.path("screens.gpkg"), "screens", [(f"LINESTRING ({WEST} {y},{WEST + 300} {y})", ["line"])],
                        [("id", ogr.OFTString)])
-        points = [(f"POINT ({WEST + 12.5 + 10 * i} {NORTH - 52.5})", []) for i in range(28)]
+        points = [(f"POINT ({WEST + 12.5 + 10 * i} {NORTH - 22.5})", []) for i in range(28)]
         write_features(self.path("points.gpkg"), "points", points)
         self.write("s.toml", 'dem = "dem.tif"\ntrajectories = 1\n[sources]\nfile = "points.gpkg"\n[blocks]\ndiameter = 1.1\n'
                              '[screens]\nfile = "screens.gpkg"\n[output]\nenergy_total = true\n')
         self.run_well("run", self.path("s.toml"), "-o", self.path("out"))
         total, energy = (bands_of(self.path(f"out/{name}.tif"))[4] for name in ("energy_total", "energy"))
-        passages, compared = bands_of(self.path("out/passages.tif")), 0
+        passages, compared, spinning = bands_of(self.path("out/passages.tif")), 0, 0
         with open(self.path("out/screens.csv"), newline="", encoding="utf-8") as file:
             for row in csv.DictReader(file):
                 column = int((float(row["x"]) - WEST) // 5)
@@ -114,9 +114,10 @@ class EnergyTotal(Case):
                 self.assertAlmostEqual(total[25, column] / float(row["total_energy_kj"]), 1.0, delta=1e-5)
                 self.assertAlmostEqual(energy[25, column] / float(row["energy_kj"]), 1.0, delta=1e-5)
                 self.assertGreater(total[26, column], float(row["total_energy_kj"]))
-                self.assertGreater(float(row["total_energy_kj"]), 1.001 * float(row["energy_kj"]))
                 compared += 1
+                spinning += float(row["total_energy_kj"]) > float(row["energy_kj"]) + 1.0
         self.assertGreater(compared, 15)
+        self.assertGreater(spinning, compared / 2)  # otherwise this says nothing of the rotation
 
     def test_is_never_below_the_translational_energy(self):
         self.run_well(*self.arguments(), "--energy-total")

@@ -45,7 +45,7 @@ double at_most(std::uint64_t k, std::uint64_t n, double p) {
 }
 
 TEST(PercentileRanks, AreTheDefinition) {
-  for (const std::uint64_t n : {1U, 2U, 7U, 30U, 71U, 72U, 200U, 368U, 1500U})
+  for (std::uint64_t n = 1; n <= 3000; n += n < 400 ? 1 : 13)
     for (const double share : {0.5, 0.95, 0.99}) {
       const Ranks ranks = percentile_ranks(n, share);
       if (ranks.low > 0) {
