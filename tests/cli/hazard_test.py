@@ -231,18 +231,15 @@ class Hazard(Case):
         self.assertFalse(os.path.exists(self.path("out/hazard_curves.tif")), "not asked for")
 
     def test_lines_have_a_width(self):
-        def line(y):
-            geometry = ogr.Geometry(ogr.wkbLineString)
-            geometry.AddPoint_2D(20, y), geometry.AddPoint_2D(280, y)
-            return geometry
-        write_features(self.path("roads.gpkg"), "roads", [(line(150), ["road", 6.0]), (line(150), ["path", None])],
+        line = "LINESTRING (2600020 1200150, 2600280 1200150)"
+        write_features(self.path("roads.gpkg"), "roads", [(line, ["road", 6.0]), (line, ["path", None])],
                        [("name", ogr.OFTString), ("width", ogr.OFTReal)])
         self.simulate()
         found = {}
         for width in ("0", "6", "20"):
             more = [] if width == "0" else ["--width", width]
             done = self.run_well("hazard", self.path("out"), "--objects", self.path("roads.gpkg"), "--overwrite", *more)
-            self.assertIn("1 lines are as wide as their field width says; 1 lines without it are " + width + " m wide", done.stderr)
+            self.assertIn("lines: 1 as wide as their field width says, 1 without that field " + width + " m wide", done.stderr)
             found[width] = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
         without_name = lambda row: {k: v for k, v in row.items() if k not in ("name", "width")}
         self.assertEqual(without_name(found["6"]["path"]), without_name(found["6"]["road"]))
@@ -251,7 +248,7 @@ class Hazard(Case):
         for row in (found["0"]["path"], found["20"]["path"]):
             self.assertLessEqual(row["entry_30"], row["frequency_30"])
         self.assertGreaterEqual(found["20"]["path"]["frequency_30"], found["0"]["path"]["frequency_30"])
-        write_features(self.path("bad.gpkg"), "roads", [(line(150), ["road", -6.0])],
+        write_features(self.path("bad.gpkg"), "roads", [(line, ["road", -6.0])],
                        [("name", ogr.OFTString), ("width", ogr.OFTReal)])
         self.refused("field width = -6", "hazard", self.path("out"), "--objects", self.path("bad.gpkg"), "--overwrite")
 
