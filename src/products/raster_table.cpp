@@ -359,6 +359,16 @@ void push_classes(const HazardPlace& place, std::vector<float>& figures) {
     figures.push_back(static_cast<float>(figure));
 }
 
+/// The frequency of exceeding each of `energies_of_curves`.
+void push_curve(const HazardPlace& place, std::vector<float>& figures) {
+  if (place.curve == nullptr) {
+    for (const Bounded& level : place.levels) figures.push_back(static_cast<float>(level.value));
+    return;
+  }
+  for (const CurveEnergy& of : curve_energies(place.rules.bins))
+    figures.push_back(static_cast<float>(place.curve->frequency_from(of.bin)));
+}
+
 std::vector<HazardRaster> make_hazard_rasters() {
   using Figures = std::vector<float>;
   return {
@@ -409,6 +419,18 @@ std::vector<HazardRaster> make_hazard_rasters() {
        {},
        {},
        true},
+      {{"hazard_curves",
+        "Mean number of blocks above an energy that pass the cell in a year, in plan, at any height",
+        Kind::Quantity,
+        {{"annual frequency of E > <kJ> kJ (in plan, at any height)", "1/year"}},
+        {{1e-4, 1e-3, 1e-2, 1e-1, 1.0}, 1.0, "1/year", Palette::Plasma}},
+       "trajectories above the energy per year; one band per energy; with `--curves`",
+       [](const HazardPlace& place, std::size_t, Figures& figures) { push_curve(place, figures); },
+       {},
+       {},
+       false,
+       false,
+       energies_of_curves},
   };
 }
 
@@ -416,6 +438,14 @@ Map with_number(Map map, const std::string& placeholder, double value) {
   map.name = replaced(map.name, placeholder, text_of(value));
   map.title = replaced(map.title, placeholder, text_of(value));
   for (Map::Band& band : map.bands) band.name = replaced(band.name, placeholder, text_of(value));
+  return map;
+}
+
+/// A map with a copy of its only band for each energy [kJ].
+Map with_bands(Map map, const std::vector<double>& energies) {
+  const Map::Band band = map.bands.front();
+  map.bands.clear();
+  for (const double energy : energies) map.bands.push_back({replaced(band.name, "<kJ>", text_of(energy)), band.unit});
   return map;
 }
 
@@ -479,10 +509,26 @@ Bounded HazardPlace::exceedance_of(double energy) const {
   return levels[static_cast<std::size_t>(known - thresholds.begin()) + 1];
 }
 
-std::vector<HazardMap> hazard_maps_of(const HazardRules& rules, const HazardMatrix& matrix, const ObjectWidth& object) {
+std::vector<double> energies_of_curves(const HazardRules& rules, const ObjectWidth& object) {
+  std::vector<double> energies{0.0};
+  if (object.width > 0.0) {
+    energies.insert(energies.end(), rules.bins.thresholds().begin(), rules.bins.thresholds().end());
+    return energies;
+  }
+  energies.clear();
+  for (const CurveEnergy& of : curve_energies(rules.bins)) energies.push_back(of.energy);
+  return energies;
+}
+
+std::vector<HazardMap> hazard_maps_of(const HazardRules& rules, const HazardMatrix& matrix, const ObjectWidth& object,
+                                      bool curves) {
   std::vector<HazardMap> maps;
   for (const HazardRaster& raster : hazard_rasters()) {
     if (raster.needs_curve && object.width > 0.0) continue;
+    if (raster.band_energies) {
+      if (curves) maps.push_back({&raster, 0, with_bands(raster.map, raster.band_energies(rules, object))});
+      continue;
+    }
     if (raster.placeholder.empty()) {
       maps.push_back({&raster, 0, raster.map});
       if (raster.has_classes) maps.back().map.classes = matrix.names;

@@ -81,6 +81,8 @@ struct HazardRaster {
   std::function<std::vector<double>(const HazardRules& rules, const HazardMatrix& matrix)> numbers{};
   bool has_classes = false;  ///< values are classes of the matrix
   bool needs_curve = false;  ///< there is none for an object of some width
+  /// If given: one raster with a band for each of these energies, <kJ> in its name; only on request.
+  std::function<std::vector<double>(const HazardRules& rules, const ObjectWidth& object)> band_energies{};
 };
 
 const std::vector<HazardRaster>& hazard_rasters();
@@ -92,8 +94,11 @@ struct HazardMap {
   Map map;
 };
 
-/// The maps of all rasters and numbers, in the order in which they are written.
+/// The energies of the bands of `hazard_curves` [kJ]: of an object of some width only 0 and the thresholds are known.
+std::vector<double> energies_of_curves(const HazardRules& rules, const ObjectWidth& object);
+
+/// The maps of all rasters and numbers, in the order in which they are written. @param curves  hazard curves too
 std::vector<HazardMap> hazard_maps_of(const HazardRules& rules, const HazardMatrix& matrix,
-                                      const ObjectWidth& object = {});
+                                      const ObjectWidth& object = {}, bool curves = false);
 
 }  // namespace talus

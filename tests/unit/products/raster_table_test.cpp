@@ -201,6 +201,23 @@ TEST(RasterTable, MapsOfAnObjectSayItsWidth) {
     EXPECT_THAT(map.map.title, testing::HasSubstr("at any height")) << map.map.name;
 }
 
+TEST(RasterTable, HazardCurvesHaveABandPerEnergy) {
+  const HazardRules rules{EnergyBins({2.5, 64.0}), {}};
+  const auto names = [&](const ObjectWidth& object) {
+    std::vector<std::string> of;
+    for (const HazardMap& map : hazard_maps_of(rules, {}, object, true))
+      if (map.map.name == "hazard_curves")
+        for (const Map::Band& band : map.map.bands) of.push_back(band.name);
+    return of;
+  };
+  EXPECT_EQ(names({}).size(), 1U + 18U + 1U) << "0, powers of two from 1 to 131 072, and 2.5; 64 is one of them";
+  EXPECT_EQ(names({})[3], "annual frequency of E > 2.5 kJ (in plan, at any height)");
+  EXPECT_THAT(names({10.0, 0.0}),
+              testing::ElementsAre("annual frequency of E > 0 kJ of an object 10 m wide (in plan, at any height)",
+                                   "annual frequency of E > 2.5 kJ of an object 10 m wide (in plan, at any height)",
+                                   "annual frequency of E > 64 kJ of an object 10 m wide (in plan, at any height)"));
+}
+
 TEST(Quantities, OfACubicMetreOfRockAtTenMetresPerSecond) {  // 2700 kg: 135 kJ
   const Maxima maxima{100.0F, 1.5F};
   EXPECT_EQ(kQuantityTable[index_of(Quantity::Energy)].value(maxima, 2700.0), 135.0F);
