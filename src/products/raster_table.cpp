@@ -510,13 +510,11 @@ Bounded HazardPlace::exceedance_of(double energy) const {
 }
 
 std::vector<double> energies_of_curves(const HazardRules& rules, const ObjectWidth& object) {
-  std::vector<double> energies{0.0};
-  if (object.width > 0.0) {
-    energies.insert(energies.end(), rules.bins.thresholds().begin(), rules.bins.thresholds().end());
-    return energies;
-  }
-  energies.clear();
-  for (const CurveEnergy& of : curve_energies(rules.bins)) energies.push_back(of.energy);
+  const auto& thresholds = rules.bins.thresholds();
+  std::vector<double> energies;
+  for (const CurveEnergy& of : curve_energies(rules.bins))
+    if (!(object.width > 0.0) || of.energy == 0.0 || std::ranges::count(thresholds, of.energy) > 0)
+      energies.push_back(of.energy);
   return energies;
 }
 

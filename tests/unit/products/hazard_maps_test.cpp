@@ -106,16 +106,17 @@ TEST(HazardMaps, ACurveForEveryFieldOfTheMatrix) {
     EXPECT_EQ(values[values.size() - 12 + field], field == 5 ? 1.0 : 0.0) << field;
 }
 
-/// A cell passed at 10, 100 and 1000 kJ, once in 20, 100 and 500 years: its curve is a staircase.
-TEST(HazardMaps, HazardCurveOfThreeEnergies) {
+/// A cell passed with six energies, of which four lie beside 30 and 64 kJ: its curve is a staircase.
+TEST(HazardMaps, HazardCurveOfSixEnergies) {
   const double unit = 0x1p-40;
   const WeightScale scale{unit, 0x1p-60, 1.0, static_cast<std::int64_t>(0.05 / unit), 1000, false};
   const HazardRules rules{EnergyBins({30.0, 300.0}), scale};
+  const std::vector<float> passed{10.0F, 29.9F, 30.1F, 63.9F, 64.1F, 1000.0F};
+  const std::vector<double> often{0.05, 0.02, 0.01, 0.005, 0.002, 0.001};
   HazardCell cell;
   std::vector<Stake> stakes;
-  for (const double years : {20.0, 100.0, 500.0})
-    stakes.push_back({static_cast<std::int64_t>(1.0 / years / unit), 0, 10});
-  cell.add(rules, std::vector<float>{10.0F, 100.0F, 1000.0F}, stakes);
+  for (const double f : often) stakes.push_back({static_cast<std::int64_t>(f / unit), 0, 10});
+  cell.add(rules, passed, stakes);
   HazardSurvey survey(test::grid_of(2, 1, 2.0, 2.0), rules, {}, {}, true);
   survey.set_row(0, {true, true}, std::vector<HazardAt>{{0, cell, false}}, 1);
   const std::vector<Map> maps = make_hazard_maps(survey);
@@ -127,9 +128,9 @@ TEST(HazardMaps, HazardCurveOfThreeEnergies) {
   std::vector<double> values(2 * energies.size());
   map->fill_row(0, values);
   for (std::size_t i = 0; i < energies.size(); ++i) {
-    const double e = energies[i];
-    const double expected = (e < 10.0 ? 0.05 : 0.0) + (e < 100.0 ? 0.01 : 0.0) + (e < 1000.0 ? 0.002 : 0.0);
-    EXPECT_NEAR(values[2 * i], expected, 1e-8) << e;
+    double expected = 0.0;
+    for (std::size_t k = 0; k < passed.size(); ++k) expected += passed[k] > energies[i] ? often[k] : 0.0;
+    EXPECT_NEAR(values[2 * i], expected, 1e-8) << energies[i];
     EXPECT_EQ(values[2 * i + 1], 0.0) << "nothing passes the other cell";
   }
   for (const HazardMap& other : hazard_maps_of(rules, {}))
