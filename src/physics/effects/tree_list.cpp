@@ -84,13 +84,24 @@ std::optional<TreeMeeting> TreeList::first_on(const PlanWay& way, double diamete
   const double most = 0.5 * (thickest_ + diameter) + kTouch;
   const Eigen::Vector2d reach(most, most);
   TreeMeeting first{0, kNever, 0.0};
+  // The largest index of the trees that were met at this very place, whose edge it is; -1 if there is none. Trees with
+  // one edge are met in the order of their indices, each once, however many they are.
+  const auto met_here = [&](std::uint32_t index) {
+    std::int64_t last = touched.contains(index) ? std::int64_t{index} : -1;
+    in_box(way.from - reach, way.from + reach, [&](std::uint32_t other) {
+      const double radius = 0.5 * (trees_[other].diameter + diameter);
+      if (std::abs(outside(trees_[other].place - way.from, radius)) <= 2.0 * radius * kTouch && touched.contains(other))
+        last = std::max(last, std::int64_t{other});
+    });
+    return last;
+  };
   const auto meet = [&](std::uint32_t index) {
     const Tree& tree = trees_[index];
     const Eigen::Vector2d axis = tree.place - way.from;
     const double radius = 0.5 * (tree.diameter + diameter);
     const double to = way_to_disc(axis, way.heading, radius);
     if (!(to <= way.length) || to > first.way || (to == first.way && index > first.tree)) return;
-    if (outside(axis, radius) <= 2.0 * radius * kTouch && touched.contains(index)) return;
+    if (outside(axis, radius) <= 2.0 * radius * kTouch && index <= met_here(index)) return;
     first = {index, to, std::clamp(offset_to_the_left(way.heading, axis) / radius, -1.0, 1.0)};
   };
   // Part by part, so that the box of a long way across the grid stays narrow.
