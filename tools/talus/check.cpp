@@ -206,6 +206,7 @@ void print_estimate(const Scenario& scenario, unsigned threads) {
 void print_plan(const LoadedScenario& loaded, unsigned threads) {
   print_terrain(loaded);
   print_zones(loaded.scenario);
+  for (const std::string& note : loaded.notes) line("read", note);
   print_blocks(loaded.scenario);
   print_estimate(loaded.scenario, threads);
   for (const std::string& warning : loaded.warnings) line("warning", warning);
