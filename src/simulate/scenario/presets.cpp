@@ -49,13 +49,13 @@ const std::array<Preset, 15>& all() {
       {"forest-road-3d", ground_of(0.4, 0.3, 15.0, 1.5), "Table 3", "forest road, Vaujany, in 3D", kVaujany},
       {"lower-talus-3d", ground_of(1.5, 1.0, 15.0, 1.5), "Table 3", "lower talus, Vaujany, in 3D", kVaujany},
       {"rockyfor3d-0", swallowing_ground(), kRockyfor3d, "soil type 0: river, swamp", kGuess},
-      {"rockyfor3d-1", ground_of(0.4, 0.3, 0.33, 1.5), kRockyfor3d, "soil type 1: fine soil, deep", kGuess},
-      {"rockyfor3d-2", ground_of(0.4, 0.3, 0.52, 1.5), kRockyfor3d, "soil type 2: fine soil, shallow", kGuess},
-      {"rockyfor3d-3", ground_of(1.0, 0.9, 0.84, 1.5), kRockyfor3d, "soil type 3: scree, compact soil", kGuess},
-      {"rockyfor3d-4", ground_of(1.0, 0.9, 1.32, 1.5), kRockyfor3d, "soil type 4: talus", kGuess},
-      {"rockyfor3d-5", ground_of(0.65, 0.6, 2.0, 1.5), kRockyfor3d, "soil type 5: bedrock, thin cover", kGuess},
-      {"rockyfor3d-6", ground_of(0.65, 0.6, 3.87, 1.5), kRockyfor3d, "soil type 6: bedrock", kGuess},
-      {"rockyfor3d-7", ground_of(0.4, 0.3, 1.01, 1.5), kRockyfor3d, "soil type 7: asphalt road", kGuess},
+      {"rockyfor3d-1", ground_of(0.4, 0.3, 1.82, 1.5), kRockyfor3d, "soil type 1: fine soil, deep", kGuess},
+      {"rockyfor3d-2", ground_of(0.4, 0.3, 2.5, 1.5), kRockyfor3d, "soil type 2: fine soil, shallow", kGuess},
+      {"rockyfor3d-3", ground_of(1.0, 0.9, 3.25, 1.5), kRockyfor3d, "soil type 3: scree, compact soil", kGuess},
+      {"rockyfor3d-4", ground_of(1.0, 0.9, 4.07, 1.5), kRockyfor3d, "soil type 4: talus", kGuess},
+      {"rockyfor3d-5", ground_of(0.65, 0.6, 4.96, 1.5), kRockyfor3d, "soil type 5: bedrock, thin cover", kGuess},
+      {"rockyfor3d-6", ground_of(0.65, 0.6, 6.94, 1.5), kRockyfor3d, "soil type 6: bedrock", kGuess},
+      {"rockyfor3d-7", ground_of(0.4, 0.3, 3.57, 1.5), kRockyfor3d, "soil type 7: asphalt road", kGuess},
   }};
   return presets;
 }

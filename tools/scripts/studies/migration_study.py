@@ -4,8 +4,8 @@
   tools/scripts/studies/migration_study.py [--diameter 1.0] [--from 1] [--to 15] [--talus build/release/talus]
 
 Normal restitution of Rockyfor3D: k = Rn / (1 + (v/9)^2), v in m/s. Of PIERRE 2: k = En50 / (c D v^2 + En50), c = 0.25.
-En50 has the least squares in k over the speeds, in steps of 0.01 m/s. Residual: root of the mean square, and the largest. At v = 0 the
-one law is Rn and the other 1, so no En50 makes them equal. With --talus the En50 is compared with the preset of that program.
+En50 has the least squares in the speed after the rebound, v k, over v in steps of 0.01 m/s: hard blows count, slow ones hardly. Residuals of v k
+[m/s] and of k: root of the mean square, and the largest. At v = 0 the one law is Rn and the other 1, so no En50 makes them equal. With --talus the En50 is compared with the preset of that program.
 The second table: theta_scale of a roughness MOH, from the angle at which a sphere meets a step of this height.
 """
 import argparse
@@ -30,10 +30,10 @@ def pierre(en50, v, diameter):
 
 def fitted(rn, v, diameter):
     """En50 of least squares, by a golden section in its logarithm."""
-    k = rockyfor3d(rn, v)
+    after = v * rockyfor3d(rn, v)
 
     def error(x):
-        return np.mean((pierre(math.exp(x), v, diameter) - k) ** 2)
+        return np.mean((v * pierre(math.exp(x), v, diameter) - after) ** 2)
 
     low, high, g = math.log(1e-3), math.log(1e3), (math.sqrt(5) - 1) / 2
     for _ in range(100):
@@ -66,13 +66,13 @@ def main():
     v = np.arange(o.low, o.high + 0.005, 0.01)
     known = presets_of(o.talus) if o.talus else {}
     print(f"D = {o.diameter:g} m, v_n = {o.low:g} to {o.high:g} m/s\n")
-    print("type   Rn   En50   preset   rms  largest   k at 2, 5, 10 m/s: Rockyfor3D, Talus")
+    print("type   Rn   En50   preset   v k: rms  largest   k: rms  largest   k at 2, 5, 10 m/s: Rockyfor3D, Talus")
     for soil, rn in RN.items():
         en50 = fitted(rn, v, o.diameter)
         rest = pierre(en50, v, o.diameter) - rockyfor3d(rn, v)
         pairs = "  ".join(f"{rockyfor3d(rn, x):.2f} {pierre(en50, x, o.diameter):.2f}" for x in (2, 5, 10))
-        print(f"{soil:4d} {rn:4.2f} {en50:6.2f} {known.get(f'rockyfor3d-{soil}', float('nan')):8.2f} {math.sqrt(np.mean(rest ** 2)):5.2f} "
-              f"{abs(rest).max():8.2f}   {pairs}")
+        print(f"{soil:4d} {rn:4.2f} {en50:6.2f} {known.get(f'rockyfor3d-{soil}', float('nan')):8.2f} {math.sqrt(np.mean((v * rest) ** 2)):10.2f} "
+              f"{abs(v * rest).max():8.2f} {math.sqrt(np.mean(rest ** 2)):8.2f} {abs(rest).max():8.2f}   {pairs}")
     print("\nMOH [m]  theta_scale   Rt of Rockyfor3D (no penetration)")
     for moh in (0.0, 0.01, 0.03, 0.05, 0.1, 0.15, 0.2):
         print(f"{moh:7.2f} {theta_scale(moh, o.diameter):12.2f} {1 / (1 + moh / (o.diameter / 2)):12.2f}")
