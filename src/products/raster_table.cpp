@@ -369,6 +369,25 @@ void push_curve(const HazardPlace& place, std::vector<float>& figures) {
     figures.push_back(static_cast<float>(place.curve->frequency_from(of.bin)));
 }
 
+/// The classes of the matrix.
+HazardRaster class_raster() {
+  return {{"hazard_class",
+           "Class of hazard of the cell by intensity and return period, in plan, at any height",
+           Kind::Count,
+           {{"class", "class"},
+            {"class at lower bound", "class"},
+            {"class at upper bound", "class"},
+            {"undecided", "1"},
+            {"cut short", "1"}},
+           {{1, 2, 3, 4, 5}, 1.0, "", Palette::HazardClasses}},
+          "class of the matrix; `undecided` is 1 where the classes at the bounds differ, `cut short` where paths leave "
+          "the map",
+          [](const HazardPlace& place, std::size_t, std::vector<float>& figures) { push_classes(place, figures); },
+          {},
+          {},
+          true};
+}
+
 std::vector<HazardRaster> make_hazard_rasters() {
   using Figures = std::vector<float>;
   return {
@@ -403,22 +422,7 @@ std::vector<HazardRaster> make_hazard_rasters() {
        [](const HazardRules&, const HazardMatrix& matrix) { return matrix.years; },
        false,
        true},
-      {{"hazard_class",
-        "Class of hazard of the cell by intensity and return period, in plan, at any height",
-        Kind::Count,
-        {{"class", "class"},
-         {"class at lower bound", "class"},
-         {"class at upper bound", "class"},
-         {"undecided", "1"},
-         {"cut short", "1"}},
-        {{1, 2, 3, 4, 5}, 1.0, "", Palette::HazardClasses}},
-       "class of the matrix; `undecided` is 1 where the classes at the bounds differ, `cut short` where paths leave "
-       "the "
-       "map",
-       [](const HazardPlace& place, std::size_t, Figures& figures) { push_classes(place, figures); },
-       {},
-       {},
-       true},
+      class_raster(),
       {{"hazard_curves",
         "Mean number of blocks above an energy that pass the cell in a year, in plan, at any height",
         Kind::Quantity,

@@ -129,6 +129,25 @@ class Forests(Case):
         self.run_forest("layer", 'trees = "trees.gpkg"\nheight = 25\n')
         self.assertEqual(results(self.path("layer")), results(self.path("trees")))
 
+    def test_trees_of_an_included_file_stay_or_are_replaced_but_never_vanish(self):
+        self.trees("trees.csv", rows_of_trees())
+        self.write("stand.toml", '[effects.forest-stems]\ntrees = "trees.csv"\n')
+
+        def scenario(keys):
+            return 'include = "stand.toml"\n' + HEAD + keys
+
+        for keys in ("diameter = 0.5\n", 'zones = ["default"]\n', 'file = "sources.gpkg"\n'):
+            self.write("s.toml", scenario(keys))
+            self.fails(2, keys.split(" ")[0], "must not come with the trees of an included file",
+                       arguments=["run", self.path("s.toml"), "-o", self.path("none")])
+        self.write("s.toml", scenario(""))
+        self.assertIn(f"{len(rows_of_trees())} trees", self.run_well("run", self.path("s.toml"), "-o", self.path("kept")).stderr)
+        self.assert_replays("kept")
+        self.write("s.toml", scenario("density = 600\ndiameter = 0.25\n"))
+        self.assertNotIn(" trees,", self.run_well("run", self.path("s.toml"), "-o", self.path("stand")).stderr)
+        self.run_forest("uniform", "density = 600\ndiameter = 0.25\n")
+        self.assertEqual(results(self.path("stand")), results(self.path("uniform")))
+
     def test_parts_are_joined_and_a_changed_forest_is_refused(self):
         self.trees("trees.csv", rows_of_trees())
         keys = 'trees = "trees.csv"\n'
@@ -152,6 +171,9 @@ class Forests(Case):
             self.assertIn(words, told)
         plan = self.run_well("check", self.path("left.toml")).stdout
         self.assertIn("forest-stems: 1 trees", plan)
+        self.write("trees.csv", f"x,y,diameter,species\n{WEST + 100},{NORTH - 100},0.3,conifer\n{WEST + 100},{NORTH - 90},0.3,\n")
+        self.assertIn("1 features have no species: taken as silver fir",
+                      self.run_forest("unknown", 'trees = "trees.csv"\n', "--overwrite"))
 
     def test_wrong_input_gets_one_clear_error(self):
         self.raster("negative.tif", np.full((CELLS, CELLS), -5.0))

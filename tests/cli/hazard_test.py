@@ -252,6 +252,14 @@ class Hazard(Case):
                        [("name", ogr.OFTString), ("width", ogr.OFTReal)])
         self.refused("field width = -6", "hazard", self.path("out"), "--objects", self.path("bad.gpkg"), "--overwrite")
 
+    def test_the_width_of_a_polygon_is_not_read(self):
+        house = "POLYGON ((2600100 1200140, 2600120 1200140, 2600120 1200160, 2600100 1200160, 2600100 1200140))"
+        write_features(self.path("houses.gpkg"), "houses", [(house, ["house", "6 m"])],
+                       [("name", ogr.OFTString), ("width", ogr.OFTString)])
+        self.simulate()
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"), "--overwrite")
+        self.assertIn("the field width of 1 polygons is not used", done.stderr)
+
     def test_width_refusals(self):
         self.simulate()
         for width in ("0", "-3", "wide", "2000", "nan"):

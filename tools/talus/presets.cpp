@@ -49,7 +49,7 @@ int print_presets() {
   print_effect_presets();
   std::printf(
       "\nTables of Mitchell and Hungr's paper on PIERRE 2; rockyfor3d-N is a first guess for soil type N of "
-      "Rockyfor3D,\nwhich no data support and which damps far more than the paper's sets: docs/migration.md.\n"
+      "Rockyfor3D,\nwhich no data support and which damps more than the paper's sets: docs/migration.md.\n"
       "Units: En50, Et50 m3/s2, phi degrees; the others have none.\n"
       "Where no preset is named, %s holds.\n",
       std::string(talus::kDefaultPreset).c_str());

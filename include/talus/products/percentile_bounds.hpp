@@ -17,7 +17,7 @@ struct Ranks {
 ///   low  = the largest l with P(B <= l - 1) <= 2.5 %,   high = the smallest h with P(B >= h) <= 2.5 %
 ///
 /// for B binomial of n trials of the share. `low` is 0 if not even the smallest value is a bound, `high` if not even
-/// the largest is: of P95 it needs 73 values, of P99 368. docs/products.md, "Bounds of percentiles".
+/// the largest is: of P95 it needs 72 values, of P99 368. docs/products.md, "Bounds of percentiles".
 Ranks percentile_ranks(std::uint64_t n, double share);
 
 /// The bounds of a percentile from the histogram of the values: the outer edges of the bins of the two ranks.

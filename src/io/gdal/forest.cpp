@@ -255,9 +255,12 @@ class TreeReader {
     return value;
   }
 
-  double species_of(const OGRFeature& feature) const {
+  double species_of(const OGRFeature& feature) {
     const std::string name = species_ < 0 ? "" : layer_.code(feature, species_);
-    if (name.empty()) return 1.0;
+    if (name.empty()) {
+      if (species_ >= 0) ++without_species_;
+      return 1.0;
+    }
     if (const auto factor = factor_of_species(name)) return *factor;
     throw InputError(layer_.label(feature) + ": unknown species '" + name + "'" +
                      known_names(name, names_of_species()));
@@ -287,6 +290,7 @@ class TreeReader {
     warn(off_, "trees stand off the DEM or where it has no height: not used");
     warn(without_diameter_, "trees have no diameter: not used");
     warn(without_place_, "features have no geometry: not used");
+    warn(without_species_, "features have no species: taken as silver fir");
     warn(twice_, "trees stand at the very place of an earlier one: not used");
     std::vector<std::string> unused;
     for (const std::string& name : layer_.field_names())
@@ -305,7 +309,7 @@ class TreeReader {
   std::vector<Tree> trees_;
   std::set<std::pair<double, double>> places_;
   Spread diameters_;
-  std::uint64_t features_ = 0, off_ = 0, without_diameter_ = 0, without_place_ = 0, twice_ = 0;
+  std::uint64_t features_ = 0, off_ = 0, without_diameter_ = 0, without_place_ = 0, twice_ = 0, without_species_ = 0;
 };
 
 }  // namespace

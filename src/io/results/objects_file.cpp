@@ -123,9 +123,13 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
     state_->on_map.push_back(box.MaxX >= 0.0 && box.MinX <= grid.width() && box.MaxY >= 0.0 &&
                              box.MinY <= grid.height());
     if (!state_->on_map.back()) off += (off.empty() ? "" : ", ") + state_->names.back();
-    const std::optional<double> width = layer.number(*feature, "width", kWidth);
-    if (!parts.lines.empty()) (width ? state_->lines_of_their_width : state_->lines_of_given_width) += 1;
-    if (parts.lines.empty() && width) ++state_->polygons_with_width;
+    std::optional<double> width;
+    if (!parts.lines.empty()) {
+      width = layer.number(*feature, "width", kWidth);
+      (width ? state_->lines_of_their_width : state_->lines_of_given_width) += 1;
+    } else if (const int field = layer.field("width"); field >= 0 && feature->IsFieldSetAndNotNull(field) != 0) {
+      ++state_->polygons_with_width;
+    }
     state_->objects.push_back(object_of(parts, width.value_or(line_width)));
     state_->parts.push_back(std::move(parts));
     state_->features.push_back(std::move(feature));

@@ -66,15 +66,26 @@ class EffectReader {
     return true;
   }
 
+  /// A fault for each of these keys beside a list of trees.
+  void not_with_trees(std::initializer_list<const char*> keys, const std::string& why) {
+    for (const char* key : keys)
+      if (const TomlValue* value = table_.value()->find(key)) table_.fault(key, *value, why);
+  }
+
   /// Reads a list of trees. Returns whether one is given, here or in an included file.
   bool trees(EffectSpec& effect) {
     if (const auto file = table_.text("trees")) {
       effect.maps = {{"trees", {absolute_path(*file, base_), table_.where("trees", *table_.value()->find("trees"))}}};
       effect.zones.clear(), effect.file = {};  // replaces those of an included file
       given("trees");
-      for (const char* other : {"density", "diameter", "zones", "file"})
-        if (const TomlValue* value = table_.value()->find(other))
-          table_.fault(other, *value, "must not come with trees: the trees of the list are all that stands");
+      not_with_trees({"density", "diameter", "zones", "file"},
+                     "must not come with trees: the trees of the list are all that stands");
+    } else if (effect.maps.contains("trees") && table_.value()->find("density") != nullptr) {
+      effect.maps.erase("trees");  // a stand replaces the trees of an included file
+    } else if (effect.maps.contains("trees")) {
+      not_with_trees({"diameter", "zones", "file"},
+                     "must not come with the trees of an included file: the trees of that list are all that stands; "
+                     "give density, too, for a stand instead");
     }
     return effect.maps.contains("trees");
   }
@@ -83,7 +94,6 @@ class EffectReader {
   bool raster(EffectSpec& effect, const std::string& key) {
     const TomlValue* value = table_.value()->find(key);
     if (value == nullptr) return false;
-    effect.maps.erase("trees");  // of an included file
     effect.maps.erase(key);
     if (value->kind != Kind::Text) return false;
     if (const auto file = table_.text(key)) effect.maps[key] = {absolute_path(*file, base_), table_.where(key, *value)};

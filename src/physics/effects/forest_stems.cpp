@@ -14,7 +14,8 @@ const Grid& grid_of(const ForestMap& map) {
 }
 
 /// Calls visit(stand, from, to) for the parts of a way that have one stand each [m], in order, until it returns false.
-/// Cells with the same stand make one part, so that equal cells act like one stand, bit for bit.
+/// Cells with the same stand make one part, so that equal cells act like one stand of the same
+/// (32-bit) numbers, bit for bit.
 template <class Visit>
 void for_each_stand(const ForestStems& forest, const PlanWay& way, Visit visit) {
   const Grid& grid = grid_of(*forest.map);

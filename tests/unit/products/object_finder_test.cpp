@@ -67,6 +67,28 @@ TEST(ObjectFinder, ALineIsAsWideAsItsWidth) {
   EXPECT_NEAR(contact_with(road, flight()).largest, 0.125, 1e-7);
 }
 
+TEST(ObjectFinder,
+     AWideLineIsItsRectangleAlsoInPatchesFarFromItsAxis) {  // 24 m wide: the path begins 9 m from the axis
+  const Surface surface(test::terrain(test::grid_of(12, 4, 4.0, 10.0), [](double, double) { return 0.0; }));
+  HazardObject road{{}, {{{24.0, -5.0}, {24.0, 45.0}}}};
+  road.line_width = 24.0;
+  for (int column = 0; column < 11; ++column) {  // one flight through each patch: from x = 4 column + 2, 4 m long
+    Span span = flight();
+    span.patch = {column, 0};
+    const Path path = test::path_of({span}, End::Stopped);
+    const auto met = [&](const HazardObject& object) {
+      const std::vector<HazardObject> objects{object};
+      std::vector<ObjectContact> contacts(1);
+      ObjectFinder(surface, objects, 0.5).add(path, block(), contacts);
+      return contacts[0];
+    };
+    const ObjectContact of_line = met(road), of_wall = met(wall(12.0, 36.0));
+    EXPECT_NEAR(of_line.entry, of_wall.entry, 1e-7) << column;
+    EXPECT_NEAR(of_line.largest, of_wall.largest, 1e-7) << column;
+    EXPECT_EQ(of_line.largest >= 0.0F, 4 * column + 6 >= 11.5 && 4 * column + 2 <= 36.5) << column;
+  }
+}
+
 TEST(ObjectFinder, EntryIsTheFirstTouchOfThePath) {  // inside a large object from the start; then a faster span
   Span faster = flight();
   faster.plan_speed_squared = 400.0F;
