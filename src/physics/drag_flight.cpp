@@ -14,6 +14,24 @@ double plan_squared(const Vec3& velocity) {
   return velocity.x() * velocity.x() + velocity.y() * velocity.y();
 }
 
+/// The way in plan of a motion, if it goes on with the same heading.
+PlanWay plan_way(const Motion& start, double length) {
+  const Eigen::Vector2d velocity = start.velocity.head<2>();
+  const double speed = velocity.norm();
+  PlanWay way{start.position.head<2>(), Eigen::Vector2d::Zero(), length};
+  if (speed > 0.0) way.heading = velocity / speed;
+  return way;
+}
+
+/// The straight way in plan between two places.
+PlanWay way_between(const Vec3& from, const Vec3& to) {
+  const Eigen::Vector2d way = (to - from).head<2>();
+  const double length = way.norm();
+  PlanWay out{from.head<2>(), Eigen::Vector2d::Zero(), length};
+  if (length > 0.0) out.heading = way / length;
+  return out;
+}
+
 /// Speed in the middle of a piece, to first order in time. With the rate there the error of a piece is of third order.
 double speed_in_the_middle(const Vec3& v, const DragRate& drag, double time) {
   return (v - 0.5 * time * (drag.at(v.norm()) * v + Vec3(0.0, 0.0, kGravity))).norm();
@@ -36,8 +54,24 @@ DragFlight::Site DragFlight::site_of(const Motion& motion, const Block& body) co
   const std::uint8_t zone = world_.cover.zone_at(x, y);
   if (effects_.vegetation_drag.where.covers(zone, x, y))
     site.drag.linear = vegetation_drag_rate(effects_.vegetation_drag, body.mass, clearance);
-  site.stems = stems_ && clearance < effects_.forest_stems.height && effects_.forest_stems.where.covers(zone, x, y);
+  const ForestStems& forest = effects_.forest_stems;
+  site.stems = stems_ && (stems_->of_list() || (clearance < forest.height && forest.where.covers(zone, x, y)));
   return site;
+}
+
+bool DragFlight::below_the_tops(const Vec3& position) const {
+  const std::optional<double> ground = world_.surface.height(position.x(), position.y());
+  return ground && position.z() - *ground < effects_.forest_stems.height;
+}
+
+/// Ends a way in plan inside a stand: if it has led to a stem, the block hits it. Returns whether.
+bool DragFlight::meet_stem(const PlanWay& gone, const Block& body, Motion& motion) {
+  if (stems_->of_list() && !below_the_tops(motion.position)) {
+    stems_->pass_over();
+    return false;
+  }
+  motion.velocity = stems_->hit(gone, motion.velocity, body.mass);
+  return true;
 }
 
 double DragFlight::longest_piece(const Site& site, const Motion& motion) const {
@@ -57,7 +91,10 @@ Outcome DragFlight::fly_piece(Motion& motion, PatchIndex& at, bool grounded, con
   const double length = path.length, plan_length = path.plan_length;
   const Site site = site_of(motion, body);
   double time = longest_piece(site, motion);
-  if (site.stems) time = std::min(time, stems_->way_left(body.diameter) / std::sqrt(plan_squared(motion.velocity)));
+  if (site.stems) {
+    const double speed = std::sqrt(plan_squared(motion.velocity));
+    time = std::min(time, stems_->way_left(plan_way(start, speed * time), body.diameter) / speed);
+  }
   const double rate = site.drag.any() ? site.drag.at(speed_in_the_middle(start.velocity, site.drag, time)) : 0.0;
 
   Vec3 began = DampedFall(rate, time).parabola(start.velocity);
@@ -84,11 +121,9 @@ Outcome DragFlight::fly_piece(Motion& motion, PatchIndex& at, bool grounded, con
     }
   }
   if (!site.stems) return outcome;
-  const double way = (motion.position - start.position).head<2>().norm();
-  if (stems_->go(way, body.diameter) && outcome == Outcome::Aloft) {
-    motion.velocity = stems_->hit(motion.velocity, body.mass);
+  const PlanWay gone = plan_way(start, (motion.position - start.position).head<2>().norm());
+  if (stems_->go(gone, body.diameter) && outcome == Outcome::Aloft && meet_stem(gone, body, motion))
     path.vertices.push_back({motion, Event::Stem});
-  }
   return outcome;
 }
 
@@ -100,35 +135,40 @@ bool DragFlight::in_a_stand(const PatchIndex& patch) const {
       const double x = (column + 0.5) * grid.cell_x, y = (row + 0.5) * grid.cell_y;
       const std::uint8_t zone = world_.cover.zone_at(x, y);
       if (effects_.vegetation_drag.coefficient > 0.0 && effects_.vegetation_drag.where.covers(zone, x, y)) return true;
-      if (stems_ && effects_.forest_stems.where.covers(zone, x, y)) return true;
+      if (stems_ && !stems_->of_list() && has_stand(effects_.forest_stems, zone, x, y)) return true;
     }
   return false;
 }
 
-/// The plain flight, if it touches no cell of a stand. Otherwise empty, and nothing is changed.
-std::optional<Outcome> DragFlight::fly_clear(Motion& motion, PatchIndex& at, bool grounded, Path& path) const {
+/// The plain flight, if it touches no cell of a stand and no listed tree. Otherwise empty, and nothing is changed.
+std::optional<Outcome> DragFlight::fly_clear(Motion& motion, PatchIndex& at, bool grounded, const Block& body,
+                                             Path& path) {
   if (in_a_stand(at)) return std::nullopt;
   Motion landed = motion;
   PatchIndex landed_at = at;
   const std::size_t first_span = path.spans.size();
   const double length = path.length, plan_length = path.plan_length;
   const Outcome outcome = talus::fly(world_.surface, landed, landed_at, grounded, path);
-  for (std::size_t i = first_span; i < path.spans.size(); ++i)
-    if (in_a_stand(path.spans[i].patch)) {
-      path.spans.resize(first_span), path.length = length, path.plan_length = plan_length;
-      return std::nullopt;
-    }
+  const double way = (landed.position - motion.position).head<2>().norm();
+  bool met = stems_ && stems_->of_list() && stems_->way_left(plan_way(motion, way), body.diameter) <= way;
+  for (std::size_t i = first_span; !met && i < path.spans.size(); ++i) met = in_a_stand(path.spans[i].patch);
+  if (met) {
+    path.spans.resize(first_span), path.length = length, path.plan_length = plan_length;
+    return std::nullopt;
+  }
   motion = landed, at = landed_at;
   return outcome;
 }
 
 Outcome DragFlight::fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path) {
-  if (effects_.air_drag.coefficient == 0.0)
-    if (const auto outcome = fly_clear(motion, at, grounded, path)) return *outcome;
+  bool may_be_clear = effects_.air_drag.coefficient == 0.0;
   for (int pieces = 0; pieces < kMostSteps && motion.time < world_.rules.time_limit; ++pieces) {
+    if (may_be_clear)
+      if (const auto outcome = fly_clear(motion, at, grounded, body, path)) return *outcome;
     const Outcome outcome = fly_piece(motion, at, grounded, body, path);
     if (outcome != Outcome::Aloft) return outcome;
     grounded = false;
+    may_be_clear = may_be_clear && stems_ && stems_->of_list() && path.vertices.back().event == Event::Stem;
   }
   return Outcome::Aloft;
 }
@@ -137,8 +177,10 @@ void DragFlight::after_slide(const Motion& before, Motion& motion, const Block& 
   const Site site = site_of(before, body);
   if (site.drag.any())
     motion.velocity *= exponential(-site.drag.at(motion.velocity.norm()) * (motion.time - before.time));
-  if (site.stems && stems_->go((motion.position - before.position).head<2>().norm(), body.diameter))
-    motion.velocity = stems_->hit(motion.velocity, body.mass);
+  if (!site.stems) return;
+  const PlanWay gone = way_between(before.position, motion.position);
+  stems_->way_left(gone, body.diameter);
+  if (stems_->go(gone, body.diameter)) meet_stem(gone, body, motion);
 }
 
 }  // namespace talus

@@ -33,7 +33,9 @@ class DragFlight {
   Site site_of(const Motion& motion, const Block& body) const;
   double longest_piece(const Site& site, const Motion& motion) const;
   bool in_a_stand(const PatchIndex& patch) const;  ///< whether one of its four cells is
-  std::optional<Outcome> fly_clear(Motion& motion, PatchIndex& at, bool grounded, Path& path) const;
+  bool below_the_tops(const Vec3& position) const;
+  bool meet_stem(const PlanWay& gone, const Block& body, Motion& motion);
+  std::optional<Outcome> fly_clear(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path);
   Outcome fly_piece(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path);
 
   const World& world_;

@@ -39,6 +39,7 @@ class Walk {
 
   End run() {
     path_.vertices.push_back({motion_, Event::Release});
+    path_.spins.push_back({0, motion_.spin.norm()});
     if (const auto end = end_of(effects_.fly(motion_, at_, false, body_, path_))) return *end;
     anchor_.set(motion_);
     while (path_.impacts < world_.rules.impact_limit && motion_.time < world_.rules.time_limit) {
@@ -90,6 +91,7 @@ class Walk {
     motion_.spin = contact.spin;
     effects_.after_impact(normal_, body_, motion_, path_);
     path_.vertices.push_back({motion_, Event::Impact});
+    path_.spins.push_back({path_.spans.size(), motion_.spin.norm()});
     path_.spans.back().impacts += 1;
     path_.impacts += 1;
     path_.psi_dropped += contact.psi_dropped ? 1U : 0U;

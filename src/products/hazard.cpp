@@ -12,6 +12,7 @@ namespace talus {
 namespace {
 
 constexpr double kConfidence = 0.95, kTail = 0.5 * (1.0 - kConfidence);
+constexpr float kLargestOfCurves = 0x1p17F;  // [kJ]: 100 t at 50 m/s
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Upper Poisson bound of a count k, less k: 3.69 at 0. For any k >= 0, not only whole numbers.
@@ -48,6 +49,16 @@ Bounded annual_frequency(const WeightSums& counted, const WeightScale& scale) {
 
 Bounded return_period(const Bounded& frequency) {
   return {1.0 / frequency.value, 1.0 / frequency.high, 1.0 / frequency.low};
+}
+
+std::vector<CurveEnergy> curve_energies(const EnergyBins& bins) {
+  std::vector<CurveEnergy> energies{{0.0, 0}};
+  for (float energy = 1.0F; energy <= kLargestOfCurves; energy *= 2.0F) energies.push_back({energy, bins.of(energy)});
+  for (std::size_t i = 0; i < bins.thresholds().size(); ++i) energies.push_back({bins.thresholds()[i], bins.above(i)});
+  std::ranges::sort(energies, {}, &CurveEnergy::energy);
+  const auto twice = std::ranges::unique(energies, {}, [](const CurveEnergy& of) { return of.energy; });
+  energies.erase(twice.begin(), twice.end());
+  return energies;
 }
 
 HazardCurve::HazardCurve(const HazardRules& rules, const HazardCell& cell)
@@ -96,6 +107,11 @@ Bounded HazardCurve::exceedance_of(double energy) const {
   const Bounded above = at(i + 1);
   const auto between = [share](double a, double b) { return a + (b - a) * share; };
   return {between(below.value, above.value), between(below.low, above.low), between(below.high, above.high)};
+}
+
+double HazardCurve::frequency_from(int bin) const {
+  const auto i = static_cast<std::size_t>(std::max(0, bin - first_));
+  return side(std::min(i, sums_.size() - 1), Side::Value);
 }
 
 /// The curve falls with the energy. Bisection finds the last edge where it is at least `frequency`; the energy is then

@@ -29,13 +29,15 @@ void in_parallel(std::size_t count, int threads, const Work& work) {
 
 }  // namespace
 
-HazardSurvey::HazardSurvey(const Grid& grid, HazardRules rules, HazardMatrix matrix, const ObjectWidth& object)
+HazardSurvey::HazardSurvey(const Grid& grid, HazardRules rules, HazardMatrix matrix, const ObjectWidth& object,
+                           bool curves)
     : grid_(grid),
       rules_(std::move(rules)),
       matrix_(std::move(matrix)),
       object_(object),
+      curves_(curves),
       seen_(std::max(object.width, std::sqrt(grid.cell_x * grid.cell_y))),
-      maps_(hazard_maps_of(rules_, matrix_, object_)),
+      maps_(hazard_maps_of(rules_, matrix_, object_, curves_)),
       rows_(static_cast<std::size_t>(grid.rows)),
       nothing_(object.width > 0.0 ? figures_of(std::vector<PassageDensity>(rules_.levels()), false)
                                   : figures_of({0, {}, false})) {}
@@ -144,7 +146,7 @@ void HazardSurvey::fill(int row, std::size_t first, std::size_t count, std::span
 std::vector<Map> make_hazard_maps(const HazardSurvey& survey) {
   std::vector<Map> maps;
   std::size_t next = 0;
-  for (HazardMap& of : hazard_maps_of(survey.rules(), survey.matrix(), survey.object())) {
+  for (HazardMap& of : hazard_maps_of(survey.rules(), survey.matrix(), survey.object(), survey.curves())) {
     const std::size_t first = next, count = of.map.bands.size();
     next += count;
     of.map.fill_row = [&survey, first, count](int row, std::span<double> values) {

@@ -14,4 +14,10 @@ Interval probability_bounds(std::uint64_t hits, std::uint64_t trials, double con
           hits == trials ? 1.0 : boost::math::ibeta_inv(k + 1.0, n - k, 1.0 - tail)};
 }
 
+Interval bounds_of_reached(std::uint64_t hits, std::uint64_t sources, std::uint64_t trials) {
+  TALUS_EXPECT(sources >= 1 && sources <= hits, "each source cell that reaches a place hits it");
+  const double low = hits == sources ? 0.0 : probability_bounds(hits - sources, sources * (trials - 1), 0.95).low;
+  return {low, probability_bounds(hits, sources * trials, 0.95).high};
+}
+
 }  // namespace talus

@@ -29,7 +29,9 @@ auto rows_of(const Scenario& scenario, const Tally& tally, Filling filling) {
       const CellRecord* record = tally.find(column, row);
       const bool terrain = !std::isnan(scenario.surface.heights().at(column, row));
       if (record != nullptr)
-        filling.rule({*record, tally.exceedances(column, row), tally.lengths_above(column, row)}, cell);
+        filling.rule({*record, tally.exceedances(column, row), tally.lengths_above(column, row),
+                      tally.energy_total(column, row)},
+                     cell);
       else if (terrain)
         std::ranges::copy(filling.untouched, cell.begin());
       else
@@ -50,7 +52,10 @@ std::vector<Map> make_maps(const Scenario& scenario, const Tally& tally) {
     Map map = raster.map;
     map.bands = bands_of(raster, run);
     if (map.bands.empty()) continue;
-    map.fill_row = rows_of(scenario, tally, {raster.rule(run), untouched_values(raster, run, map.bands.size())});
+    if (raster.of_scenario)
+      map.fill_row = raster.of_scenario(scenario);
+    else
+      map.fill_row = rows_of(scenario, tally, {raster.rule(run), untouched_values(raster, run, map.bands.size())});
     maps.push_back(std::move(map));
   }
   return maps;

@@ -3,55 +3,74 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "talus/physics/span_speed.hpp"
+
 namespace talus {
+namespace {
 
-namespace bg = boost::geometry;
-
-double ObjectFinder::Shape::distance(const Segment& segment) const {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Polygon& polygon : polygons) least = std::min(least, bg::distance(segment, polygon));
-  for (const Line& line : lines) least = std::min(least, bg::distance(segment, line));
-  return least;
-}
-
-ObjectFinder::ObjectFinder(const Surface& surface, std::span<const HazardObject> objects, double radius)
-    : surface_(surface), near_(surface.grid(), 0) {
-  const auto append = [](auto& to, const HazardObject::Ring& ring) {
-    for (const Eigen::Vector2d& p : ring) bg::append(to, Point(p.x(), p.y()));
-  };
-  for (const HazardObject& object : objects) {
-    Shape& shape = shapes_.emplace_back();
-    for (const auto& rings : object.polygons) {
-      Polygon& polygon = shape.polygons.emplace_back();
-      polygon.inners().resize(rings.size() - 1);
-      append(polygon.outer(), rings[0]);
-      for (std::size_t i = 1; i < rings.size(); ++i) append(polygon.inners()[i - 1], rings[i]);
-      bg::correct(polygon);
+/// Whether a point lies within the outer ring and in no hole: rays to the east cross the rings an odd number of times.
+bool contains(const std::vector<HazardObject::Ring>& rings, const Eigen::Vector2d& p) {
+  bool inside = false;
+  for (const HazardObject::Ring& ring : rings)
+    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+      const Eigen::Vector2d &a = ring[i], &b = ring[j];
+      if ((a.y() > p.y()) == (b.y() > p.y())) continue;
+      if (p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
     }
-    for (const HazardObject::Ring& line : object.lines) append(shape.lines.emplace_back(), line);
-    enter(object, radius);
-  }
+  return inside;
 }
 
-/// Adds an object to the list of each patch from which a block of this radius may touch it.
-void ObjectFinder::enter(const HazardObject& object, double radius) {
-  const auto number = static_cast<std::uint32_t>(shapes_.size() - 1);
+std::optional<Touch> touch_of_line(const Way& way, const HazardObject::Ring& points, double distance) {
+  std::optional<Touch> touch;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i)
+    touch = hull(touch, touch_of(way, points[i], points[i + 1], distance));
+  return touch;
+}
+
+Eigen::AlignedBox2d box_of(const HazardObject& object) {
   Eigen::AlignedBox2d box;
   for (const auto& rings : object.polygons)
     for (const Eigen::Vector2d& p : rings[0]) box.extend(p);
   for (const HazardObject::Ring& line : object.lines)
     for (const Eigen::Vector2d& p : line) box.extend(p);
+  return box;
+}
+
+}  // namespace
+
+std::optional<Touch> touch_of(const Way& way, const HazardObject& object, double radius) {
+  std::optional<Touch> touch;
+  for (const auto& rings : object.polygons) {
+    for (const HazardObject::Ring& ring : rings) touch = hull(touch, touch_of_line(way, ring, radius));
+    if (contains(rings, way.from)) touch = hull(touch, Touch{0.0, 0.0});
+    if (contains(rings, way.to)) touch = hull(touch, Touch{1.0, 1.0});
+  }
+  for (const HazardObject::Ring& line : object.lines)
+    touch = hull(touch, touch_of_line(way, line, radius + 0.5 * object.line_width));
+  return touch;
+}
+
+ObjectFinder::ObjectFinder(const Surface& surface, std::span<const HazardObject> objects, double radius)
+    : surface_(surface), objects_(objects), near_(surface.grid(), 0) {
+  for (std::uint32_t object = 0; object < objects.size(); ++object) enter(object, radius);
+}
+
+/// Adds an object to the list of each patch from which a block of this radius may touch it.
+void ObjectFinder::enter(std::uint32_t number, double radius) {
+  const HazardObject& object = objects_[number];
+  const Eigen::AlignedBox2d box = box_of(object);
+  const double margin = radius + 0.5 * object.line_width;
   const Grid& grid = surface_.grid();
   const auto clamped = [](double value, int last) { return static_cast<int>(std::clamp(value, 0.0, double(last))); };
-  const int west = clamped(surface_.u_of(box.min().x() - radius), grid.columns - 1),
-            east = clamped(surface_.u_of(box.max().x() + radius), grid.columns - 1),
-            south = clamped(surface_.v_of(box.min().y() - radius), grid.rows - 1),
-            north = clamped(surface_.v_of(box.max().y() + radius), grid.rows - 1);
+  const int west = clamped(surface_.u_of(box.min().x() - margin), grid.columns - 1),
+            east = clamped(surface_.u_of(box.max().x() + margin), grid.columns - 1),
+            south = clamped(surface_.v_of(box.min().y() - margin), grid.rows - 1),
+            north = clamped(surface_.v_of(box.max().y() + margin), grid.rows - 1);
   const double reach = radius + 0.5 * std::hypot(grid.cell_x, grid.cell_y);  // from the centre of a patch
   for (int row = south; row <= north; ++row)
     for (int column = west; column <= east; ++column) {
-      const Point middle(surface_.x_of(column + 0.5), surface_.y_of(row + 0.5));
-      if (shapes_[number].distance({middle, middle}) > reach) continue;
+      const Eigen::Vector2d middle(surface_.x_of(column + 0.5), surface_.y_of(row + 0.5));
+      if (!touch_of({middle, middle}, object, reach)) continue;
       std::int32_t& list = near_.at(column, row);
       if (list == 0) {
         lists_.emplace_back();
@@ -61,32 +80,38 @@ void ObjectFinder::enter(const HazardObject& object, double radius) {
     }
 }
 
-void ObjectFinder::raise(std::span<const Span> spans, const Block& body, std::span<float> energies) const {
+void ObjectFinder::add(std::span<const Span> spans, const Block& body, std::span<ObjectContact> contacts) const {
   for (const Span& span : spans) {
     if (!near_.grid.contains(span.patch.column, span.patch.row)) continue;
     const std::int32_t list = near_.at(span.patch.column, span.patch.row);
     if (list == 0) continue;
-    const float rise_squared = std::max(span.rise_from * span.rise_from, span.rise_to * span.rise_to);
-    const auto energy = static_cast<float>(0.5e-3 * body.mass * (span.plan_speed_squared + rise_squared));
     const auto place = [&](float p, float q) {
-      return Point(surface_.x_of(span.patch.column + double{p}), surface_.y_of(span.patch.row + double{q}));
+      return Eigen::Vector2d(surface_.x_of(span.patch.column + double{p}), surface_.y_of(span.patch.row + double{q}));
     };
-    const Segment way(place(span.p_from, span.q_from), place(span.p_to, span.q_to));
-    for (const std::uint32_t object : lists_[static_cast<std::size_t>(list) - 1])
-      if (energy > energies[object] && shapes_[object].distance(way) <= body.radius()) energies[object] = energy;
+    const Way way{place(span.p_from, span.q_from), place(span.p_to, span.q_to)};
+    const auto energy = [&](double share) {
+      return static_cast<float>(0.5e-3 * body.mass * speed_squared_at(span, share));
+    };
+    for (const std::uint32_t object : lists_[static_cast<std::size_t>(list) - 1]) {
+      const std::optional<Touch> touch = touch_of(way, objects_[object], body.radius());
+      if (!touch) continue;
+      ObjectContact& contact = contacts[object];
+      if (contact.entry < 0.0F) contact.entry = energy(touch->first);
+      contact.largest = std::max({contact.largest, energy(touch->first), energy(touch->last)});
+    }
   }
 }
 
-void ObjectFinder::raise(const Path& path, const Block& body, std::span<float> energies) const {
+void ObjectFinder::add(const Path& path, const Block& body, std::span<ObjectContact> contacts) const {
   const std::span<const Span> spans(path.spans);
   std::size_t from = 0;
   Block block = body;
   for (const Broken& broken : path.breaks) {
-    raise(spans.subspan(from, broken.span - from), block, energies);
+    add(spans.subspan(from, broken.span - from), block, contacts);
     from = broken.span;
     block = broken.body;
   }
-  raise(spans.subspan(from), block, energies);
+  add(spans.subspan(from), block, contacts);
 }
 
 }  // namespace talus

@@ -1,43 +1,47 @@
 #pragma once
-#include <boost/geometry.hpp>
-#include <boost/geometry/geometries/linestring.hpp>
-#include <boost/geometry/geometries/point_xy.hpp>
-#include <boost/geometry/geometries/polygon.hpp>
-#include <boost/geometry/geometries/segment.hpp>
+#include <algorithm>
+#include <span>
 #include <vector>
 
 #include "talus/physics/path.hpp"
 #include "talus/products/objects.hpp"
+#include "touch.hpp"
 
 namespace talus {
 
-/// Finds which objects a path hits. Each patch has a list of the objects near it, so most patches need no further test.
+/// Energies of a block at an object [kJ]; negative: it does not meet it.
+struct ObjectContact {
+  float largest = -1.0F;  ///< on the part of its path that touches the object
+  float entry = -1.0F;    ///< where it first touches the object
+
+  /// Adds what another piece of the same block meets: the larger energies count.
+  void raise(const ObjectContact& piece) {
+    largest = std::max(largest, piece.largest);
+    entry = std::max(entry, piece.entry);
+  }
+};
+
+/// Finds which objects a path meets, and with which energy. Each patch has a list of the objects near it, so most
+/// patches need no further test.
 class ObjectFinder {
  public:
   /// @param radius  of the largest block [m]
   ObjectFinder(const Surface& surface, std::span<const HazardObject> objects, double radius);
 
-  /// Raises the energy of each object that the path hits [kJ]; a negative energy means no hit so far.
-  void raise(const Path& path, const Block& body, std::span<float> energies) const;
+  /// Adds what a path meets.
+  void add(const Path& path, const Block& body, std::span<ObjectContact> contacts) const;
 
  private:
-  using Point = boost::geometry::model::d2::point_xy<double>;
-  using Segment = boost::geometry::model::segment<Point>;
-  using Polygon = boost::geometry::model::polygon<Point>;
-  using Line = boost::geometry::model::linestring<Point>;
-  struct Shape {
-    std::vector<Polygon> polygons;
-    std::vector<Line> lines;
-    double distance(const Segment& segment) const;
-  };
-
-  void enter(const HazardObject& object, double radius);
-  void raise(std::span<const Span> spans, const Block& body, std::span<float> energies) const;
+  void enter(std::uint32_t object, double radius);
+  void add(std::span<const Span> spans, const Block& body, std::span<ObjectContact> contacts) const;
 
   const Surface& surface_;
-  std::vector<Shape> shapes_;
+  std::span<const HazardObject> objects_;
   Raster<std::int32_t> near_;  // by patch: 0, or 1 + the index of its list
   std::vector<std::vector<std::uint32_t>> lists_;
 };
+
+/// The part of a way, from its first to its last share, on which a block of a radius touches an object in plan.
+std::optional<Touch> touch_of(const Way& way, const HazardObject& object, double radius);
 
 }  // namespace talus

@@ -53,36 +53,41 @@ class Replay {
   }
 
  private:
-  /// The largest energy of one block at each object; -1 if it does not hit the object.
-  void energies_of(const Release& release, Path& path, std::vector<float>& energies) const {
-    std::ranges::fill(energies, -1.0F);
+  /// What one block meets at each object.
+  void contacts_of(const Release& release, Path& path, std::vector<ObjectContact>& contacts) const {
+    std::ranges::fill(contacts, ObjectContact{});
     const World world = scenario_.world();
     trace(world, release, path);
-    finder_.raise(path, release.body, energies);
-    if (!path.pieces.empty())
-      trace_pieces(world, path,
-                   [&](const Release& piece, const Path& way) { finder_.raise(way, piece.body, energies); });
+    finder_.add(path, release.body, contacts);
+    if (path.pieces.empty()) return;
+    trace_pieces(world, path, [&](const Release& piece, const Path& way) {
+      std::vector<ObjectContact> of_piece(contacts.size());
+      finder_.add(way, piece.body, of_piece);
+      for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i].raise(of_piece[i]);
+    });
   }
 
   void trace_unit(std::uint64_t unit, std::vector<ObjectHits>& hits) const {
     const auto source = static_cast<std::uint32_t>(unit / per_source_);
     const auto first = static_cast<std::uint32_t>(unit % per_source_) * kBlocksPerUnit;
     const std::uint32_t end = std::min(scenario_.trajectories, first + kBlocksPerUnit);
-    std::vector<std::vector<float>> energies(hits.size());
+    std::vector<std::vector<float>> largest(hits.size()), entry(hits.size());
     std::vector<std::vector<Stake>> stakes(hits.size());
-    std::vector<float> here(hits.size());
+    std::vector<ObjectContact> here(hits.size());
     Path path;
     for (std::uint32_t block = first; block < end; ++block) {
-      energies_of(make_release(scenario_, source, block), path, here);
+      contacts_of(make_release(scenario_, source, block), path, here);
       for (std::size_t i = 0; i < hits.size(); ++i) {
-        if (here[i] < 0.0F) continue;
-        energies[i].push_back(here[i]);
+        if (here[i].largest < 0.0F) continue;
+        largest[i].push_back(here[i].largest);
+        entry[i].push_back(here[i].entry);
         stakes[i].push_back({weights_.weight(scenario_, source, block), unit, end - first});
       }
     }
     for (std::size_t i = 0; i < hits.size(); ++i) {
-      hits[i].cell.add(rules_, energies[i], stakes[i]);
-      hits[i].trajectories += energies[i].size();
+      hits[i].largest.add(rules_, largest[i], stakes[i]);
+      hits[i].entry.add(rules_, entry[i], stakes[i]);
+      hits[i].trajectories += largest[i].size();
       for (const Stake& stake : stakes[i])
         if (stake.weight > 0) hits[i].by_feature[scenario_.sources[source].feature] += stake.weight;
     }
@@ -114,7 +119,8 @@ class Replay {
 }  // namespace
 
 void ObjectHits::merge(const ObjectHits& other) {
-  cell.merge(other.cell);
+  largest.merge(other.largest);
+  entry.merge(other.entry);
   for (const auto& [feature, weight] : other.by_feature) by_feature[feature] += weight;
   trajectories += other.trajectories;
 }

@@ -52,7 +52,8 @@ Bounded table_interval(double sum, double squares, double largest) {
   return {sum, sum > 0.0 ? sum * gamma_low(sum * sum / squares) : 0.0, above * gamma_high(above * above / spread)};
 }
 
-Bounded mean_length(double length, double squares, double longest, double released) {
+Bounded mean_length(double length, double squares, double straight, double released) {
+  const double longest = length > 0.0 ? std::max(straight, squares / length) : straight;
   Bounded bounds = table_interval(length, squares, longest);
   const double counts = std::max(0.0, squares - length * length / released) / (longest * longest);
   const double margin = longest * ((counts + 1.0) * gamma_high(counts + 1.0) - counts);

@@ -1,6 +1,7 @@
 #include "talus/products/raster_table.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <unordered_map>
@@ -9,6 +10,8 @@
 #include "talus/base/text.hpp"
 #include "talus/products/interval.hpp"
 #include "talus/products/passage_bounds.hpp"
+#include "talus/products/percentile_bounds.hpp"
+#include "talus/products/release_cells.hpp"
 
 namespace talus {
 namespace {
@@ -16,6 +19,7 @@ namespace {
 using Kind = Map::Kind;
 
 constexpr const char* kAnyHeightText = "at any height";
+constexpr const char* kUpperP95 = "P95 upper 95 % bound";
 
 std::string replaced(std::string text, const std::string& part, const std::string& by) {
   const std::size_t at = text.find(part);
@@ -33,6 +37,14 @@ Legend percent_legend() {
 
 Legend energy_legend(const std::string& band) {
   return {{30, 100, 300, 1000, 3000}, 1.0, "kJ", Palette::Plasma, band};
+}
+
+Legend speed_legend(const std::string& band) {
+  return {{5, 10, 15, 20, 30}, 1.0, "m/s", Palette::Viridis, band};
+}
+
+Legend height_legend(const std::string& band) {
+  return {{0.5, 1, 2, 4, 8}, 1.0, "m", Palette::Viridis, band};
 }
 
 Legend count_legend() {
@@ -67,16 +79,32 @@ std::vector<double> no_passage(const RunCounts& run) {
   return values;
 }
 
+/// Values of a function that is expensive and often called again with the same argument.
+template <class Value>
+class Known {
+ public:
+  template <class Function>
+  const Value& of(std::uint64_t argument, Function&& function) {
+    if (values_.size() >= kMost) values_.clear();
+    const auto [it, fresh] = values_.try_emplace(argument);
+    if (fresh) it->second = function();
+    return it->second;
+  }
+
+ private:
+  static constexpr std::size_t kMost = 100'000;
+  std::unordered_map<std::uint64_t, Value> values_;
+};
+
 CellRule impact_probability(const RunCounts& run) {
   const std::uint64_t released = run.released;
-  auto known = std::make_shared<std::unordered_map<std::uint32_t, Interval>>();  // many cells have the same count
+  auto known = std::make_shared<Known<Interval>>();
   return [released, known](const TouchedCell& cell, std::span<double> values) {
     const std::uint32_t passages = cell.record.passages;
-    const auto [it, fresh] = known->try_emplace(passages);
-    if (fresh) it->second = probability_bounds(passages, released, 0.95);
+    const Interval& bounds = known->of(passages, [&] { return probability_bounds(passages, released, 0.95); });
     values[0] = static_cast<double>(passages) / static_cast<double>(released);
-    values[1] = it->second.low;
-    values[2] = it->second.high;
+    values[1] = bounds.low;
+    values[2] = bounds.high;
   };
 }
 
@@ -85,9 +113,21 @@ std::vector<double> no_impact(const RunCounts& run) {
   return {0.0, 0.0, probability_bounds(0, run.released, 0.95).high};
 }
 
+/// If nothing crosses, the upper bound is that of one source cell without a hit.
+std::vector<double> not_reached(const RunCounts& run) {
+  return {0.0, 0.0, probability_bounds(0, static_cast<std::uint64_t>(run.per_source), 0.95).high};
+}
+
 CellRule reach_probability(const RunCounts& run) {
-  return [per_source = run.per_source](const TouchedCell& cell, std::span<double> values) {
+  auto known = std::make_shared<Known<Interval>>();
+  return [per_source = run.per_source, known](const TouchedCell& cell, std::span<double> values) {
+    const std::uint64_t passages = cell.record.passages, sources = cell.record.sources;
+    const Interval& bounds = known->of(sources << 32U | passages, [&] {
+      return bounds_of_reached(passages, sources, static_cast<std::uint64_t>(per_source));
+    });
     values[0] = cell.record.passages / (cell.record.sources * per_source);
+    values[1] = bounds.low;
+    values[2] = bounds.high;
   };
 }
 
@@ -96,9 +136,24 @@ RunRaster exceedance(Quantity quantity, const std::string& name, const std::stri
   const auto rule = [quantity](const RunCounts& run) -> CellRule {
     std::size_t first = 0;
     for (std::size_t q = 0; q < index_of(quantity); ++q) first += run.thresholds[q].size();
-    return [first, released = static_cast<double>(run.released)](const TouchedCell& cell, std::span<double> values) {
-      for (std::size_t i = 0; i < values.size(); ++i) values[i] = cell.exceedances[first + i] / released;
+    auto known = std::make_shared<Known<Interval>>();
+    return [first, known, released = run.released](const TouchedCell& cell, std::span<double> values) {
+      const std::size_t thresholds = values.size() / 3;
+      for (std::size_t i = 0; i < thresholds; ++i) {
+        const std::uint32_t hits = cell.exceedances[first + i];
+        const Interval& bounds = known->of(hits, [&] { return probability_bounds(hits, released, 0.95); });
+        values[i] = hits / static_cast<double>(released);
+        values[thresholds + 2 * i] = bounds.low;
+        values[thresholds + 2 * i + 1] = bounds.high;
+      }
     };
+  };
+  const auto untouched = [quantity](const RunCounts& run) {
+    const std::size_t thresholds = run.thresholds[quantity].size();
+    std::vector<double> values(3 * thresholds);
+    for (std::size_t i = 0; i < thresholds; ++i)
+      values[thresholds + 2 * i + 1] = probability_bounds(0, run.released, 0.95).high;
+    return values;
   };
   return {{name,
            "Fraction of all released trajectories whose " + what +
@@ -108,9 +163,24 @@ RunRaster exceedance(Quantity quantity, const std::string& name, const std::stri
            percent_legend()},
           "share of N whose " + what + " exceeds the threshold",
           rule,
-          {},
+          untouched,
           quantity,
-          "P(" + symbol + " > <limit>)"};
+          "P(" + symbol + " > <limit>)",
+          false,
+          true};
+}
+
+/// Mean, percentiles and maximum of the values of a cell.
+void put_distribution(double mean, const LogHistogram& histogram, double maximum, std::span<double> values) {
+  values[0] = std::min(maximum, mean);
+  values[1] = std::min(maximum, histogram.percentile(0.50));
+  values[2] = std::min(maximum, histogram.percentile(0.95));
+  values[3] = std::min(maximum, histogram.percentile(0.99));
+  values[4] = maximum;
+}
+
+std::vector<Map::Band> distribution_bands(const std::string& unit) {
+  return {{"mean", unit}, {"P50", unit}, {"P95", unit}, {"P99", unit}, {"maximum", unit}};
 }
 
 /// A raster of the distribution of a quantity over the trajectories.
@@ -119,22 +189,67 @@ RunRaster distribution(Quantity quantity, const std::string& meaning, Legend leg
   const std::string unit(entry.unit);
   const auto rule = [quantity](const RunCounts&) -> CellRule {
     return [quantity](const TouchedCell& cell, std::span<double> values) {
-      const double maximum = cell.record.maximum[quantity];
-      const LogHistogram& histogram = cell.record.histogram[quantity];
-      values[0] = std::min(maximum, cell.record.mean(quantity));
-      values[1] = std::min(maximum, histogram.percentile(0.50));
-      values[2] = std::min(maximum, histogram.percentile(0.95));
-      values[3] = std::min(maximum, histogram.percentile(0.99));
-      values[4] = maximum;
+      put_distribution(cell.record.mean(quantity), cell.record.histogram[quantity], cell.record.maximum[quantity],
+                       values);
     };
   };
-  return {{std::string(entry.name),
-           std::string(entry.title),
-           Kind::Quantity,
-           {{"mean", unit}, {"P50", unit}, {"P95", unit}, {"P99", unit}, {"maximum", unit}},
-           std::move(legend)},
-          meaning,
-          rule};
+  return {
+      {std::string(entry.name), std::string(entry.title), Kind::Quantity, distribution_bands(unit), std::move(legend)},
+      meaning,
+      rule};
+}
+
+/// A raster that is written only if the run asks for it.
+RunRaster on_request(bool RunCounts::*request, RunRaster raster) {
+  raster.request = request;
+  return raster;
+}
+
+/// The raster of the energy with rotation.
+RunRaster energy_total() {
+  const auto rule = [](const RunCounts&) -> CellRule {
+    return [](const TouchedCell& cell, std::span<double> values) {
+      const EnergyTotal& total = *cell.energy_total;
+      put_distribution(total.mean(), total.histogram, total.maximum, values);
+    };
+  };
+  return on_request(&RunCounts::energy_total, {{"energy_total", "Kinetic energy, translation and rotation",
+                                                Kind::Quantity, distribution_bands("kJ"), energy_legend("P95")},
+                                               "translational and rotational",
+                                               rule});
+}
+
+/// A raster of the bounds of the percentiles of a quantity.
+RunRaster percentile_bounds_of(Quantity quantity, Legend legend) {
+  constexpr std::array kShares{0.50, 0.95, 0.99};
+  const QuantityEntry& entry = kQuantityTable[index_of(quantity)];
+  const std::string unit(entry.unit);
+  std::vector<Map::Band> bands;
+  for (const char* const name : {"P50", "P95", "P99"})
+    for (const char* const side : {" lower 95 % bound", " upper 95 % bound"})
+      bands.push_back({std::string(name) + side, unit});
+  const auto rule = [quantity, kShares](const RunCounts&) -> CellRule {
+    auto known = std::make_shared<Known<std::array<Ranks, 3>>>();
+    return [=](const TouchedCell& cell, std::span<double> values) {
+      const std::uint64_t n = cell.record.passages;
+      const auto& ranks = known->of(n, [&] {
+        return std::array{percentile_ranks(n, kShares[0]), percentile_ranks(n, kShares[1]),
+                          percentile_ranks(n, kShares[2])};
+      });
+      for (std::size_t i = 0; i < kShares.size(); ++i) {
+        const Interval bounds =
+            percentile_bounds(cell.record.histogram[quantity], ranks[i], cell.record.maximum[quantity]);
+        values[2 * i] = bounds.low;
+        values[2 * i + 1] = bounds.high;
+      }
+    };
+  };
+  const std::string name(entry.name);
+  return on_request(&RunCounts::bounds,
+                    {{name + "_bounds", std::string(entry.title) + ": 95 % bounds of the percentiles", Kind::Quantity,
+                      std::move(bands), std::move(legend)},
+                     "95 % bounds of the percentiles of `" + name + ".tif`",
+                     rule});
 }
 
 /// A raster of one of the counts of the cell record.
@@ -149,6 +264,22 @@ RunRaster count(const std::string& name, const std::string& title, const std::st
   return {{name, title, Kind::Count, {{name, "count"}}, std::move(legend)}, meaning, rule};
 }
 
+/// The raster of the release cells.
+RunRaster release() {
+  const auto rows = [](const Scenario& scenario) {
+    return [cells = ReleaseCells(scenario)](int row, std::span<double> values) { cells.fill_row(row, values); };
+  };
+  RunRaster raster{{"release",
+                    "Trajectories released from the cell: the sources as the run took them",
+                    Kind::Count,
+                    {{"released", "count"}},
+                    count_legend()},
+                   "trajectories released from the cell",
+                   {}};
+  raster.of_scenario = rows;
+  return raster;
+}
+
 std::vector<RunRaster> make_run_rasters() {
   return {
       {{"impact_probability",
@@ -160,11 +291,10 @@ std::vector<RunRaster> make_run_rasters() {
       {{"reach_probability",
         "Fraction of the trajectories of those source cells of which at least one trajectory reaches the cell "
         "(in plan, at any height)",
-        Kind::Probability,
-        {{"reach probability (in plan, at any height)", "1"}},
-        percent_legend()},
+        Kind::Probability, bounded_bands("reach probability (in plan, at any height)", "1"), percent_legend()},
        "share of the trajectories of the source cells of which at least one trajectory reaches the cell",
-       reach_probability},
+       reach_probability,
+       not_reached},
       exceedance(Quantity::Energy, "energy_exceedance", "translational kinetic energy", "E"),
       exceedance(Quantity::Height, "height_exceedance", "height above the terrain", "h"),
       {{"passage_density",
@@ -180,9 +310,12 @@ std::vector<RunRaster> make_run_rasters() {
        "passage density of E > <limit> (in plan, at any height)",
        true},
       distribution(Quantity::Energy, "translational", energy_legend("P95")),
-      distribution(Quantity::Speed, "in space", {{5, 10, 15, 20, 30}, 1.0, "m/s", Palette::Viridis, "P95"}),
-      distribution(Quantity::Height, "vertical, terrain to centre; 0 while sliding",
-                   {{0.5, 1, 2, 4, 8}, 1.0, "m", Palette::Viridis, "P95"}),
+      energy_total(),
+      distribution(Quantity::Speed, "in space", speed_legend("P95")),
+      distribution(Quantity::Height, "vertical, terrain to centre; 0 while sliding", height_legend("P95")),
+      percentile_bounds_of(Quantity::Energy, energy_legend(kUpperP95)),
+      percentile_bounds_of(Quantity::Speed, speed_legend(kUpperP95)),
+      percentile_bounds_of(Quantity::Height, height_legend(kUpperP95)),
       count("passages", "Trajectories that cross the cell", "trajectories that cross the cell", count_legend(),
             &CellRecord::passages),
       count("impacts", "Impacts in the cell", "impacts in the cell, all bounces of all trajectories", count_legend(),
@@ -196,6 +329,7 @@ std::vector<RunRaster> make_run_rasters() {
       count("exits", "Trajectories that leave the DEM, or meet missing data, from the cell",
             "trajectories that leave the DEM, or meet missing data, from the cell: the last one that they cross",
             count_legend(), &CellRecord::exits),
+      release(),
       count("sources", "Source cells that reach the cell",
             "source cells of which at least one trajectory reaches the cell",
             {{1, 3, 10, 30, 100}, 1.0, "", Palette::Cividis}, &CellRecord::sources),
@@ -223,6 +357,35 @@ void push_classes(const HazardPlace& place, std::vector<float>& figures) {
        {here, class_of(place.matrix, low), std::max(here, highest),
         static_cast<int>(class_of(place.matrix, low, false) != highest), static_cast<int>(place.exit)})
     figures.push_back(static_cast<float>(figure));
+}
+
+/// The frequency of exceeding each of `energies_of_curves`.
+void push_curve(const HazardPlace& place, std::vector<float>& figures) {
+  if (place.curve == nullptr) {
+    for (const Bounded& level : place.levels) figures.push_back(static_cast<float>(level.value));
+    return;
+  }
+  for (const CurveEnergy& of : curve_energies(place.rules.bins))
+    figures.push_back(static_cast<float>(place.curve->frequency_from(of.bin)));
+}
+
+/// The classes of the matrix.
+HazardRaster class_raster() {
+  return {{"hazard_class",
+           "Class of hazard of the cell by intensity and return period, in plan, at any height",
+           Kind::Count,
+           {{"class", "class"},
+            {"class at lower bound", "class"},
+            {"class at upper bound", "class"},
+            {"undecided", "1"},
+            {"cut short", "1"}},
+           {{1, 2, 3, 4, 5}, 1.0, "", Palette::HazardClasses}},
+          "class of the matrix; `undecided` is 1 where the classes at the bounds differ, `cut short` where paths leave "
+          "the map",
+          [](const HazardPlace& place, std::size_t, std::vector<float>& figures) { push_classes(place, figures); },
+          {},
+          {},
+          true};
 }
 
 std::vector<HazardRaster> make_hazard_rasters() {
@@ -259,22 +422,19 @@ std::vector<HazardRaster> make_hazard_rasters() {
        [](const HazardRules&, const HazardMatrix& matrix) { return matrix.years; },
        false,
        true},
-      {{"hazard_class",
-        "Class of hazard of the cell by intensity and return period, in plan, at any height",
-        Kind::Count,
-        {{"class", "class"},
-         {"class at lower bound", "class"},
-         {"class at upper bound", "class"},
-         {"undecided", "1"},
-         {"cut short", "1"}},
-        {{1, 2, 3, 4, 5}, 1.0, "", Palette::HazardClasses}},
-       "class of the matrix; `undecided` is 1 where the classes at the bounds differ, `cut short` where paths leave "
-       "the "
-       "map",
-       [](const HazardPlace& place, std::size_t, Figures& figures) { push_classes(place, figures); },
+      class_raster(),
+      {{"hazard_curves",
+        "Mean number of blocks above an energy that pass the cell in a year, in plan, at any height",
+        Kind::Quantity,
+        {{"annual frequency of E > <kJ> kJ (in plan, at any height)", "1/year"}},
+        {{1e-4, 1e-3, 1e-2, 1e-1, 1.0}, 1.0, "1/year", Palette::Plasma}},
+       "trajectories above the energy per year; one band per energy; with `--curves`",
+       [](const HazardPlace& place, std::size_t, Figures& figures) { push_curve(place, figures); },
        {},
        {},
-       true},
+       false,
+       false,
+       energies_of_curves},
   };
 }
 
@@ -282,6 +442,14 @@ Map with_number(Map map, const std::string& placeholder, double value) {
   map.name = replaced(map.name, placeholder, text_of(value));
   map.title = replaced(map.title, placeholder, text_of(value));
   for (Map::Band& band : map.bands) band.name = replaced(band.name, placeholder, text_of(value));
+  return map;
+}
+
+/// A map with a copy of its only band for each energy [kJ].
+Map with_bands(Map map, const std::vector<double>& energies) {
+  const Map::Band band = map.bands.front();
+  map.bands.clear();
+  for (const double energy : energies) map.bands.push_back({replaced(band.name, "<kJ>", text_of(energy)), band.unit});
   return map;
 }
 
@@ -302,7 +470,9 @@ RunCounts counts_of(const Scenario& scenario) {
           thresholds_of(scenario.output.energy_thresholds, scenario.output.height_thresholds),
           scenario.surface.grid().cell_x,
           scenario.surface.grid().cell_y,
-          scenario.output.passages_below};
+          scenario.output.passages_below,
+          scenario.output.energy_total,
+          scenario.output.bounds};
 }
 
 const std::vector<RunRaster>& run_rasters() {
@@ -311,12 +481,19 @@ const std::vector<RunRaster>& run_rasters() {
 }
 
 std::vector<Map::Band> bands_of(const RunRaster& raster, const RunCounts& run) {
+  if (raster.request != nullptr && !(run.*raster.request)) return {};
   std::vector<Map::Band> bands = raster.map.bands;
   if (raster.thresholds_of) {
     const std::string unit(kQuantityTable[index_of(*raster.thresholds_of)].unit);
     const std::string band_unit = bands.empty() ? "1" : bands.front().unit;
     for (const double threshold : run.thresholds[*raster.thresholds_of])
       bands.push_back({replaced(raster.threshold_band, "<limit>", text_of(threshold) + " " + unit), band_unit});
+  }
+  if (raster.threshold_bounds) {
+    const std::vector<Map::Band> values = bands;
+    for (const Map::Band& band : values)
+      for (const char* const side : {" lower 95 % bound", " upper 95 % bound"})
+        bands.push_back({band.name + side, band.unit});
   }
   if (raster.counts_lengths)
     for (Map::Band& band : bands) band.name = with_height(band.name, run.passages_below);
@@ -336,10 +513,24 @@ Bounded HazardPlace::exceedance_of(double energy) const {
   return levels[static_cast<std::size_t>(known - thresholds.begin()) + 1];
 }
 
-std::vector<HazardMap> hazard_maps_of(const HazardRules& rules, const HazardMatrix& matrix, const ObjectWidth& object) {
+std::vector<double> energies_of_curves(const HazardRules& rules, const ObjectWidth& object) {
+  const auto& thresholds = rules.bins.thresholds();
+  std::vector<double> energies;
+  for (const CurveEnergy& of : curve_energies(rules.bins))
+    if (!(object.width > 0.0) || of.energy == 0.0 || std::ranges::count(thresholds, of.energy) > 0)
+      energies.push_back(of.energy);
+  return energies;
+}
+
+std::vector<HazardMap> hazard_maps_of(const HazardRules& rules, const HazardMatrix& matrix, const ObjectWidth& object,
+                                      bool curves) {
   std::vector<HazardMap> maps;
   for (const HazardRaster& raster : hazard_rasters()) {
     if (raster.needs_curve && object.width > 0.0) continue;
+    if (raster.band_energies) {
+      if (curves) maps.push_back({&raster, 0, with_bands(raster.map, raster.band_energies(rules, object))});
+      continue;
+    }
     if (raster.placeholder.empty()) {
       maps.push_back({&raster, 0, raster.map});
       if (raster.has_classes) maps.back().map.classes = matrix.names;

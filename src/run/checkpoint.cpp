@@ -24,7 +24,7 @@ namespace {
 using io::plan_checksum;
 using io::replace_text;
 using Json = nlohmann::ordered_json;
-constexpr int kFormat = 5;
+constexpr int kFormat = 6;
 
 /// "tally-3.bin"; for a process of rank 1 "tally-3-1.bin".
 std::string numbered(const std::string& what, std::uint32_t number, int rank = 0) {

@@ -93,6 +93,7 @@ Outcome merge(const MergeRequest& request, Observer& observer) {
   Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds, memory);
   if (auto weights = AnnualWeights::of(scenario, checkpoints.front().asked().several()))
     tally.keep_hazard(std::move(*weights));
+  if (scenario.output.energy_total) tally.keep_energy_total();
   io::RunRecord record = new_record(request, loaded, threads);
   observer.begin(0);
   for (const Checkpoint& checkpoint : checkpoints) {

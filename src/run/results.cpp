@@ -40,6 +40,7 @@ class Vectors {
     sinks.stops = [this](std::span<const StopRow> rows) {
       if (observer_.interrupted()) stop_interrupted();
       stops_.write(rows);
+      energy_lines_.add(rows);
       exits_.write(rows);
     };
     if (paths_) sinks.paths = [this](const RecordedPath& path) { paths_->write(path); };
@@ -50,6 +51,8 @@ class Vectors {
       };
     return sinks;
   }
+
+  const EnergyLines& energy_lines() const { return energy_lines_; }
 
   void finish(const Totals& totals) {
     stops_.finish();
@@ -71,15 +74,24 @@ class Vectors {
   std::optional<io::TrajectoriesWriter> paths_;
   std::optional<io::CrossingsWriter> crossings_;
   ScreenSummary summary_;
+  EnergyLines energy_lines_;
 };
 
-/// Writes the rows of the checkpoints: round by round, in each round the parts in their order.
-void write_vectors(const ResultSource& source, const Totals& totals, const Observer& observer) {
+/// Writes the rows of the checkpoints: round by round, in each round the parts in their order. Returns the energy-line
+/// angles.
+EnergyLines write_vectors(const ResultSource& source, const Totals& totals, const Observer& observer) {
   Vectors vectors(source.loaded, source.folder, observer);
   const Sinks sinks = vectors.sinks();
   for (std::uint32_t round = 0; round < source.checkpoints.front().rounds(); ++round)
     for (const Checkpoint& checkpoint : source.checkpoints) checkpoint.replay(round, sinks);
   vectors.finish(totals);
+  return vectors.energy_lines();
+}
+
+/// "energy line from release to stop: median 33.5 deg, 5 % below 31.4 deg, least 28.9 deg".
+std::string energy_line_text(const EnergyLines& lines) {
+  return "energy line from release to stop: median " + with_decimals(lines.percentile(0.5), 1) + " deg, 5 % below " +
+         with_decimals(lines.percentile(0.05), 1) + " deg, least " + with_decimals(lines.least(), 1) + " deg";
 }
 
 /// "3 rounds: the largest relative 95 % half-width of the 812 cells with a probability above 0.01 is 0.117".
@@ -106,7 +118,7 @@ void write_results(const ResultSource& source, Observer& observer, Stopwatch& wa
   const std::filesystem::path& folder = source.folder;
   record.touched_cells = source.tally.touched_cells();
   observer.stage("writing the results");
-  const auto vectors = [&] { write_vectors(source, record.totals, observer); };
+  const auto vectors = [&] { return write_vectors(source, record.totals, observer); };
   const bool aside = record.threads > 1;
   auto writing = std::async(aside ? std::launch::async : std::launch::deferred, vectors);
   const Grid& grid = loaded.scenario.surface.grid();
@@ -115,7 +127,7 @@ void write_results(const ResultSource& source, Observer& observer, Stopwatch& wa
              record.threads);
   if (source.tally.weights() != nullptr)
     io::write_hazard(folder / io::kHazardFile, loaded, source.tally, record.totals.left_weight);
-  writing.get();
+  record.energy_lines = writing.get();
   io::write_text(folder / "scenario.toml", loaded.complete_toml);
   record.files = io::files_in(folder);
   const Stopwatch::Lap written = watch.lap();
@@ -132,6 +144,7 @@ void summarise(const io::RunRecord& record, const LoadedScenario& loaded, std::s
   for (std::size_t i = told; i < record.warnings.size(); ++i) observer.warning(record.warnings[i]);
   observer.message(count_text(record.totals.released) + " trajectories from " +
                    count_text(loaded.scenario.sources.size()) + " source cells: " + ends_text(record.totals));
+  if (record.energy_lines.count() > 0) observer.message(energy_line_text(record.energy_lines));
   const std::string seconds = "read " + with_decimals(record.wall.read, 1) + " s, simulated " +
                               with_decimals(record.wall.simulate, 1) + " s, wrote " +
                               with_decimals(record.wall.write, 1) + " s";

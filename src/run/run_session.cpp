@@ -147,6 +147,7 @@ void RunSession::make_folder() {
 }
 
 void RunSession::warn_of_input() {
+  for (const std::string& note : plan_.loaded.notes) observer_.message(note);
   for (const std::string& warning : plan_.loaded.warnings) observer_.warning(warning);
   const std::size_t sources = plan_.loaded.scenario.sources.size();
   if (request_.part && plan_.part.first(sources) == plan_.part.end(sources))

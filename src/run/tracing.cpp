@@ -31,6 +31,7 @@ Tracing::Tracing(const RunRequest& request, const RunPlan& plan, const Means& me
       simulation_(plan.loaded.scenario, plan.part, plan.rounds.several(), tally_, sinks_, processes_) {
   if (auto weights = AnnualWeights::of(plan.loaded.scenario, plan.rounds.several()))
     tally_.keep_hazard(std::move(*weights));
+  if (plan.loaded.scenario.output.energy_total) tally_.keep_energy_total();
   in_every_process(processes_, [this] { checkpoint().restore(simulation_, tally_); });
   sinks_.progress = [this](double share) { return observer_.progress(share) && !observer_.interrupted(); };
   sinks_.pause = [this] { return seconds_since_checkpoint() > request_.checkpoint; };

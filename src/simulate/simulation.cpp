@@ -101,6 +101,7 @@ class Simulation::Advance {
     const double start = thread_cpu_seconds();
     try {
       VisitBatch batch(scenario_.surface.grid(), length_rules(scenario_.output));
+      if (run_.tally_.keeps_energy_total()) batch.keep_energy_total();
       Path path;
       while (!failed_) {
         const std::optional<WorkUnits::Taken> taken = units_.next();  // always completed: a pause leaves none out

@@ -3,7 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/base/bounds.hpp"
+
 namespace talus {
+
+double energy_line_angle(const Vec3& from, const Vec3& to) {
+  const double drop = from.z() - to.z(), distance = std::hypot(to.x() - from.x(), to.y() - from.y());
+  return drop == 0.0 && distance == 0.0 ? kNotGiven : std::atan2(drop, distance);
+}
 
 StopRow stop_row(const Release& release, const Path& path) {
   const Motion& end = path.vertices.back().motion;
@@ -19,6 +26,7 @@ StopRow stop_row(const Release& release, const Path& path) {
   row.mass = static_cast<float>(path.mass);
   row.x_release = static_cast<float>(release.motion.position.x());
   row.y_release = static_cast<float>(release.motion.position.y());
+  row.energy_line = static_cast<float>(energy_line_angle(release.motion.position, end.position));
   row.x = end.position.x();
   row.y = end.position.y();
   row.z = end.position.z();

@@ -209,6 +209,57 @@ class Hazard(Case):
         self.run_well("hazard", self.path("out"), "--overwrite", "--width", "20", "-q", "--threads", "1")
         self.assertTrue((bands_of(self.path("out/annual_frequency.tif"))[0] == value).all())
 
+    def test_hazard_curves(self):
+        """At 0 and at the thresholds they are the other maps, they fall with the energy, and with --width they are its maps."""
+        self.simulate()
+        for width in ([], ["--width", "10"]):
+            self.run_well("hazard", self.path("out"), "--curves", "--overwrite", "-q", *width)
+            with open(self.path("out/hazard.json"), encoding="utf-8") as file:
+                energies = json.load(file)["curve_energies_kj"]
+            curves = bands_of(self.path("out/hazard_curves.tif"))
+            self.assertEqual(len(energies), curves.shape[0])
+            terrain = curves[0] != -9999
+            self.assertTrue((curves[:-1] >= curves[1:])[:, terrain].all())
+            np.testing.assert_array_equal(curves[0], bands_of(self.path("out/annual_frequency.tif"))[0])
+            for energy in (30, 300):
+                period = bands_of(self.path(f"out/return_period_{energy}.tif"))[0]
+                curve = curves[energies.index(energy)]
+                self.assertTrue(((period == -9999) == (curve <= 0)).all())
+                np.testing.assert_allclose(curve[curve > 0], 1 / period[curve > 0], rtol=1e-6)
+        self.assertEqual(energies, [0, 30, 300, 500] if len(energies) == 4 else [0, 30, 300])
+        self.run_well("hazard", self.path("out"), "--overwrite", "-q")
+        self.assertFalse(os.path.exists(self.path("out/hazard_curves.tif")), "not asked for")
+
+    def test_lines_have_a_width(self):
+        line = "LINESTRING (2600020 1200150, 2600280 1200150)"
+        write_features(self.path("roads.gpkg"), "roads", [(line, ["road", 6.0]), (line, ["path", None])],
+                       [("name", ogr.OFTString), ("width", ogr.OFTReal)])
+        self.simulate()
+        found = {}
+        for width in ("0", "6", "20"):
+            more = [] if width == "0" else ["--width", width]
+            done = self.run_well("hazard", self.path("out"), "--objects", self.path("roads.gpkg"), "--overwrite", *more)
+            self.assertIn("lines: 1 as wide as their field width says, 1 without that field " + width + " m wide", done.stderr)
+            found[width] = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
+        without_name = lambda row: {k: v for k, v in row.items() if k not in ("name", "width")}
+        self.assertEqual(without_name(found["6"]["path"]), without_name(found["6"]["road"]))
+        self.assertEqual(found["0"]["road"], found["20"]["road"])
+        self.assertGreaterEqual(found["20"]["path"]["trajectories"], found["0"]["path"]["trajectories"])
+        for row in (found["0"]["path"], found["20"]["path"]):
+            self.assertLessEqual(row["entry_30"], row["frequency_30"])
+        self.assertGreaterEqual(found["20"]["path"]["frequency_30"], found["0"]["path"]["frequency_30"])
+        write_features(self.path("bad.gpkg"), "roads", [(line, ["road", -6.0])],
+                       [("name", ogr.OFTString), ("width", ogr.OFTReal)])
+        self.refused("field width = -6", "hazard", self.path("out"), "--objects", self.path("bad.gpkg"), "--overwrite")
+
+    def test_the_width_of_a_polygon_is_not_read(self):
+        house = "POLYGON ((2600100 1200140, 2600120 1200140, 2600120 1200160, 2600100 1200160, 2600100 1200140))"
+        write_features(self.path("houses.gpkg"), "houses", [(house, ["house", "6 m"])],
+                       [("name", ogr.OFTString), ("width", ogr.OFTString)])
+        self.simulate()
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"), "--overwrite")
+        self.assertIn("the field width of 1 polygons is not used", done.stderr)
+
     def test_width_refusals(self):
         self.simulate()
         for width in ("0", "-3", "wide", "2000", "nan"):

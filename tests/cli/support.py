@@ -139,6 +139,8 @@ file = "screens.gpkg"
 file = "nets.gpkg"
 [output]
 trajectories = 50
+energy_total = true
+bounds = true
 """
 
 

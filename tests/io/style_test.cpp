@@ -15,7 +15,7 @@ namespace {
 /// Every map of a run and of a hazard, without values.
 std::vector<Map> all_maps() {
   std::vector<Map> maps;
-  const RunCounts run{100, 10.0, thresholds_of({30.0, 300.0}, {1.0})};
+  const RunCounts run{100, 10.0, thresholds_of({30.0, 300.0}, {1.0}), 1.0, 1.0, 0.0, true, true};
   for (const RunRaster& raster : run_rasters()) {
     maps.push_back(raster.map);
     maps.back().bands = bands_of(raster, run);

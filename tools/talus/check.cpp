@@ -52,7 +52,9 @@ Sample trace_sample(const Scenario& scenario) {
   talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
   const auto weights = talus::AnnualWeights::of(scenario);
   if (weights) tally.keep_hazard(*weights);
+  if (scenario.output.energy_total) tally.keep_energy_total();
   talus::VisitBatch batch(scenario.surface.grid(), talus::length_rules(scenario.output));
+  if (scenario.output.energy_total) batch.keep_energy_total();
   const talus::ScreenFinder screens(scenario);
   std::vector<talus::Crossing> crossings;
   talus::Path path;
@@ -204,6 +206,7 @@ void print_estimate(const Scenario& scenario, unsigned threads) {
 void print_plan(const LoadedScenario& loaded, unsigned threads) {
   print_terrain(loaded);
   print_zones(loaded.scenario);
+  for (const std::string& note : loaded.notes) line("read", note);
   print_blocks(loaded.scenario);
   print_estimate(loaded.scenario, threads);
   for (const std::string& warning : loaded.warnings) line("warning", warning);

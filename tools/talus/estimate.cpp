@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include "progress.hpp"
 #include "talus/products/raster_table.hpp"
@@ -19,6 +21,7 @@ constexpr double kBase = 64e6;             // of the process [byte]
 constexpr double kHistogram = 40.0;        // of a quantity of a touched cell [byte]
 constexpr double kHazardCell = 664.0;      // annual frequencies of a touched cell [byte]: 32 bins, containers
 constexpr double kHazardLevel = 24.0;      // the same: lengths of all passages, and above each energy threshold [byte]
+constexpr double kKeptTotal = 90.0;        // of the energy with rotation of a touched cell in the saved tally [byte]
 constexpr double kRasterCell = 3.4;        // of a touched cell in a band of a compressed raster [byte]
 constexpr double kHazardFile = 77.0;       // of a touched cell [byte]
 constexpr double kStop = 172.0;            // a row of stops.gpkg [byte]
@@ -26,7 +29,6 @@ constexpr double kPathPoint = 36.0;        // of trajectories.gpkg [byte]
 constexpr double kCrossing = 150.0;        // a row of screens.csv [byte]
 constexpr double kKeptCell = 344.0;        // of a touched cell in the saved tally [byte]
 constexpr double kDraftBand = 16.0 / 3.0;  // of a cell, with overviews [byte]
-constexpr double kDraftBands = 5.0;        // of the largest maps
 constexpr double kLargeMap = 16e6;         // cells; from there on drafts are compressed, and empty cells take nothing
 constexpr double kEmptyCell = 1.9e-8;      // of the grid, per band, to write [s]
 constexpr double kTouchedCell = 1.6e-7;    // of a touched cell, per band, to write [s]
@@ -47,18 +49,38 @@ double length_bytes(const Scenario& scenario) {
   return 8.0 * static_cast<double>(scenario.output.energy_thresholds.size());
 }
 
-double bands(const Scenario& scenario) {
+/// The energy with rotation of a touched cell [byte].
+double total_bytes(const Scenario& scenario) {
+  return scenario.output.energy_total ? sizeof(talus::EnergyTotal) + kHistogram : 0.0;
+}
+
+/// Number of bands of each raster that is written, the largest first.
+std::vector<std::size_t> numbers_of_bands(const Scenario& scenario) {
   const talus::RunCounts run = talus::counts_of(scenario);
-  std::size_t sum = 0;
-  for (const talus::RunRaster& raster : talus::run_rasters()) sum += bands_of(raster, run).size();
-  return static_cast<double>(sum);
+  std::vector<std::size_t> numbers;
+  for (const talus::RunRaster& raster : talus::run_rasters()) numbers.push_back(bands_of(raster, run).size());
+  std::ranges::sort(numbers, std::greater<>());
+  return numbers;
+}
+
+double bands(const Scenario& scenario) {
+  const std::vector<std::size_t> numbers = numbers_of_bands(scenario);
+  return static_cast<double>(std::accumulate(numbers.begin(), numbers.end(), std::size_t{0}));
+}
+
+/// Bands of the largest rasters that are written at the same time.
+double draft_bands(const Scenario& scenario, unsigned processors) {
+  const std::vector<std::size_t> numbers = numbers_of_bands(scenario);
+  const auto at_once = std::min<std::ptrdiff_t>(processors, talus::run::kMapsAtOnce);
+  return static_cast<double>(std::accumulate(numbers.begin(), numbers.begin() + at_once, std::size_t{0}));
 }
 
 }  // namespace
 
 double bytes_in_memory(const Scenario& scenario, const RunSize& size) {
   const double cell = sizeof(talus::CellRecord) + talus::kQuantities * kHistogram + 16.0 + 4.0 * thresholds(scenario) +
-                      length_bytes(scenario) + (size.with_hazard ? hazard_bytes(scenario) : 0.0);
+                      length_bytes(scenario) + total_bytes(scenario) +
+                      (size.with_hazard ? hazard_bytes(scenario) : 0.0);
   return kBase + size.touched_cells * cell;
 }
 
@@ -72,9 +94,10 @@ double bytes_of_results(const Scenario& scenario, const RunSize& size) {
 
 double bytes_at_work(const Scenario& scenario, const RunSize& size, unsigned processors) {
   const double kept = kKeptCell + 4.0 * thresholds(scenario) + length_bytes(scenario) +
+                      (scenario.output.energy_total ? kKeptTotal : 0.0) +
                       (size.with_hazard ? hazard_bytes(scenario) : 0.0);
   const double cells = size.grid_cells > kLargeMap ? size.touched_cells : size.grid_cells;
-  const double drafts = kDraftBand * kDraftBands * std::min(processors, unsigned{talus::run::kMapsAtOnce}) * cells;
+  const double drafts = kDraftBand * draft_bands(scenario, processors) * cells;
   return size.touched_cells * kept + std::max(size.touched_cells * kept, drafts) +
          size.trajectories * sizeof(talus::StopRow) + size.crossings * sizeof(talus::Crossing);
 }

@@ -30,7 +30,7 @@ struct Options {
   double width = 0.0;  // of the object [m]; 0: the cell
   int threads = 0;
   std::string progress;
-  bool overwrite = false, quiet = false;
+  bool curves = false, overwrite = false, quiet = false;
   Progress::Mode mode() const { return Progress::mode_of(quiet, progress == "machine"); }
 };
 
@@ -62,8 +62,8 @@ std::unique_ptr<talus::HazardSurvey> survey_of(const fs::path& file, int threads
       file,
       [&](const talus::io::HazardHeader& h) {
         if (record.width > 0.0) check_width(h, record.matrix);
-        survey = std::make_unique<talus::HazardSurvey>(h.grid, h.rules, record.matrix,
-                                                       talus::ObjectWidth{record.width, h.passages_below});
+        survey = std::make_unique<talus::HazardSurvey>(
+            h.grid, h.rules, record.matrix, talus::ObjectWidth{record.width, h.passages_below}, record.curves);
       },
       [&](const talus::io::HazardRow& row) {
         if (interrupted()) stop_interrupted();
@@ -125,7 +125,8 @@ std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, c
   record.frequency_file = options.frequency;
   record.replayed = true;
   auto survey = std::make_unique<talus::HazardSurvey>(record.header.grid, record.header.rules, record.matrix,
-                                                      talus::ObjectWidth{record.width, record.header.passages_below});
+                                                      talus::ObjectWidth{record.width, record.header.passages_below},
+                                                      record.curves);
   const talus::Grid& grid = scenario.surface.grid();
   for (int row = 0; row < grid.rows; ++row) {
     std::vector<bool> terrain;
@@ -144,8 +145,9 @@ std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, c
 /// Runs the recorded plan again and writes the hazard of each object.
 void write_objects(const Options& options, const fs::path& folder, talus::io::HazardRecord& record) {
   const talus::io::LoadedScenario loaded = recorded_plan(options, record.header.plan);
-  const talus::io::ObjectLayer layer(options.objects, loaded);
+  const talus::io::ObjectLayer layer(options.objects, loaded, options.width);
   for (const std::string& warning : layer.warnings()) record.warnings.push_back(warning);
+  if (!options.quiet && !layer.lines_text().empty()) say("", options.objects + ": " + layer.lines_text());
   if (!options.quiet)
     say("", "repeats the run for the objects: " + count_text(loaded.scenario.released()) +
                 " trajectories of the recorded plan, with the same bits");
@@ -180,6 +182,7 @@ int hazard(const Options& options) {
   record.command = command_line();
   record.matrix_file = options.matrix;
   record.width = options.width;
+  record.curves = options.curves;
   for (const std::string& input : {options.objects, options.frequency})
     if (!input.empty() && input.find(':') == std::string::npos && !fs::exists(input))  // PG:... is no file
       throw talus::InputError(input + ": there is no such file");
@@ -221,8 +224,10 @@ void add_hazard(CLI::App& app, Action& action) {
   command->add_option("folder", options->folder, "OUT of a run whose sources have frequencies")->required();
   command->add_option("--matrix", options->matrix,
                       "classes by intensity and return period (TOML); else 30, 300 kJ and 30, 100, 300 years");
-  command->add_option("--objects", options->objects,
-                      "polygons or lines: how often each is hit, and from where; repeats the run");
+  command->add_option(
+      "--objects", options->objects,
+      "polygons or lines (as wide as their field width, else --width, else 0 m): how often each is hit, "
+      "with which energy, and from where; repeats the run");
   command->add_option("--frequency", options->frequency,
                       "another weighting (TOML: [frequency], [features]); repeats the run");
   command
@@ -236,6 +241,9 @@ void add_hazard(CLI::App& app, Action& action) {
         if (end != text.c_str() && *end == 0 && value > 0.0 && value <= 1000.0) return {};
         return text + ": must be above 0 and at most 1000 m (width of the object; leave it out for the cell)";
       });
+  command->add_flag("--curves", options->curves,
+                    "hazard_curves.tif: how often each energy is exceeded, a band per energy (0, 1, 2, 4, ... kJ and "
+                    "the thresholds; with --width the thresholds)");
   command->add_flag("--overwrite", options->overwrite, "replace the hazard maps that are there");
   command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
       ->check(CLI::Range(1, 4096));
@@ -245,7 +253,8 @@ void add_hazard(CLI::App& app, Action& action) {
   command->footer(
       "Examples:\n  talus hazard result\n  talus hazard result --objects houses.gpkg --overwrite\n\nWrites into the "
       "folder: annual_frequency.tif, return_period_<kJ>.tif, "
-      "intensity_T<years>.tif,\nhazard_class.tif, hazard.json. Nothing is simulated again, but for --frequency "
+      "intensity_T<years>.tif,\nhazard_class.tif, hazard.json; with --curves hazard_curves.tif. Nothing is simulated "
+      "again, but for --frequency "
       "and --objects, which "
       "adds objects.gpkg, objects.csv,\nobjects_curves.csv and "
       "objects_sources.csv.");

@@ -48,8 +48,9 @@ int print_presets() {
   print_sizes();
   print_effect_presets();
   std::printf(
-      "\nTables of Mitchell and Hungr's paper on PIERRE 2. Units: En50, Et50 m3/s2, phi degrees; the others have "
-      "none.\n"
+      "\nTables of Mitchell and Hungr's paper on PIERRE 2; rockyfor3d-N is a first guess for soil type N of "
+      "Rockyfor3D,\nwhich no data support and which damps more than the paper's sets: docs/migration.md.\n"
+      "Units: En50, Et50 m3/s2, phi degrees; the others have none.\n"
       "Where no preset is named, %s holds.\n",
       std::string(talus::kDefaultPreset).c_str());
   return 0;
@@ -59,7 +60,7 @@ int print_presets() {
 
 void add_presets(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
-      "presets", "Print the parameter sets of the paper and the block sizes that they were fitted to");
+      "presets", "Print the parameter sets, their sources and the block sizes that they were fitted to");
   command->footer("Example:\n  talus presets");
   command->callback([&action] { action = print_presets; });
 }

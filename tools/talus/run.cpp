@@ -37,6 +37,8 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags) {
   command.add_option("--diameter", flags.diameter, "of the blocks [m]");
   command.add_option("--trajectories", flags.trajectories, "per source cell");
   command.add_option("--seed", flags.seed, "of the random numbers");
+  command.add_flag("--energy-total", flags.energy_total, "also energy_total.tif: the energy with rotation");
+  command.add_flag("--bounds", flags.bounds, "also 95 % bounds of the percentiles: energy_bounds.tif and others");
 }
 
 void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes) {

@@ -11,6 +11,8 @@ struct Block {
 
   double radius() const { return 0.5 * diameter; }
   double inertia() const { return 0.4 * mass * radius() * radius(); }  ///< [kg m^2]
+  /// Energy of the rotation, 1/2 I w^2 [kJ]. @param spin  w, angular velocity [rad/s]
+  double rotational_energy(double spin) const { return 0.5e-3 * inertia() * spin * spin; }
 };
 
 /// A block from its equivalent diameter [m] and its density [kg/m^3].

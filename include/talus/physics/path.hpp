@@ -52,6 +52,12 @@ struct Span {
   std::uint32_t impacts;               ///< at its end; more than one if the block could not move between them
 };
 
+/// The spin of a block from one of its spans on: it is constant between impacts.
+struct SpinFrom {
+  std::size_t span;  ///< index of the first span
+  double spin;       ///< angular velocity [rad/s]
+};
+
 /// The rest of a block after a break.
 struct Broken {
   std::size_t vertex, span;  ///< its first vertex and first span
@@ -62,6 +68,7 @@ struct Broken {
 struct Path {
   std::vector<Vertex> vertices;
   std::vector<Span> spans;
+  std::vector<SpinFrom> spins;  ///< in the order of time
   End end = End::Limit;
   std::uint32_t impacts = 0;
   std::uint32_t psi_dropped = 0;         ///< impacts at which psi was left out
@@ -75,6 +82,7 @@ struct Path {
   void clear() {
     vertices.clear();
     spans.clear();
+    spins.clear();
     end = End::Limit;
     impacts = psi_dropped = 0;
     length = plan_length = mass = 0.0;

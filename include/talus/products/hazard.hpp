@@ -36,6 +36,16 @@ Bounded gamma_interval(double sum, double squares, double largest);
 /// Years between events [year]: 1 / frequency, bounds exchanged; infinity where the frequency is 0.
 Bounded return_period(const Bounded& frequency);
 
+/// An energy at which hazard curves are given.
+struct CurveEnergy {
+  double energy;  ///< [kJ]
+  int bin;        ///< the first bin above it
+};
+
+/// The energies of the hazard curves, ascending: 0 (all passages), 1, 2, 4, ... 131 072 kJ and the thresholds of the
+/// run. All are edges of bins, so that no value is interpolated.
+std::vector<CurveEnergy> curve_energies(const EnergyBins& bins);
+
 /// Annual frequency of exceeding each energy, in one place.
 class HazardCurve {
  public:
@@ -46,6 +56,8 @@ class HazardCurve {
   Bounded exceedance(std::size_t threshold) const;  ///< of an energy threshold of the run [1/year]; exact
   /// Frequency of exceeding any energy [kJ]: exact at the edges of the bins, between them linear in the logarithm.
   Bounded exceedance_of(double energy) const;
+  /// Frequency of the energies of a bin of the run and of all bins above it, without bounds [1/year]; exact.
+  double frequency_from(int bin) const;
 
   /// The energy that is exceeded once in `years` years [kJ], read from the curve and from its lower and upper bounds.
   ///

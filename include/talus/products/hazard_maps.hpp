@@ -17,7 +17,9 @@ namespace talus {
 /// each cell count, and `finish` must be called after the last row.
 class HazardSurvey {
  public:
-  HazardSurvey(const Grid& grid, HazardRules rules, HazardMatrix matrix, const ObjectWidth& object = {});
+  /// @param curves  frequencies by energy too: some twenty more numbers for each touched cell
+  HazardSurvey(const Grid& grid, HazardRules rules, HazardMatrix matrix, const ObjectWidth& object = {},
+               bool curves = false);
 
   /// Evaluates the cells of a row in parallel.
   ///
@@ -31,6 +33,7 @@ class HazardSurvey {
 
   const Grid& grid() const { return grid_; }
   const ObjectWidth& object() const { return object_; }
+  bool curves() const { return curves_; }
   const HazardRules& rules() const { return rules_; }
   const HazardMatrix& matrix() const { return matrix_; }
   std::uint64_t cells() const;  ///< number of touched cells, or of places where an object is hit
@@ -56,6 +59,7 @@ class HazardSurvey {
   HazardRules rules_;
   HazardMatrix matrix_;
   ObjectWidth object_;
+  bool curves_;
   double seen_;                  // width of the place over which densities are averaged [m]
   std::vector<HazardMap> maps_;  // in the order of the figures of a cell
   std::vector<Row> rows_;

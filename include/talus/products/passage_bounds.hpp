@@ -17,13 +17,16 @@ Bounded table_interval(double sum, double squares, double largest);
 ///
 /// @param length   sum over the blocks [m]
 /// @param squares  sum of the squares of the length of each block [m^2]
-/// @param longest  straight way through the cell [m]: the unit of the bound where nothing was counted
+/// @param straight  way through the cell [m], the longest of a straight path: the unit where nothing was counted
 ///
+///   longest = max(straight, squares / length)             blocks that wander stay longer: the mean over their length
 ///   v = squares - length^2 / released                     the sum of the squares of the differences to the mean
 ///   low  = max(gamma interval, length - longest d(v / longest^2)) / released
 ///   high = min(gamma interval, length + longest d(v / longest^2)) / released
 ///
-/// with d(k) the upper Poisson bound of k, less k. Blocks are taken as one sample; strata can only narrow it.
-Bounded mean_length(double length, double squares, double longest, double released);
+/// with d(k) the upper Poisson bound of k, less k. Blocks are taken as one sample; strata can only narrow it. Two 95 %
+/// intervals are cut with each other, and still cover 95 %: shown by simulation in the tests, not proven. Lengths far
+/// above `straight` with a heavy tail are not covered, nor are they seen by fewer than about ten blocks.
+Bounded mean_length(double length, double squares, double straight, double released);
 
 }  // namespace talus

@@ -18,8 +18,9 @@ struct RunCounts {
   std::uint64_t released;
   double per_source;  ///< trajectories per source cell
   Thresholds thresholds;
-  double cell_x = 1.0, cell_y = 1.0;  ///< size of a cell [m]
-  double passages_below = 0.0;        ///< only lower passages count in passage densities [m]; 0: at any height
+  double cell_x = 1.0, cell_y = 1.0;          ///< size of a cell [m]
+  double passages_below = 0.0;                ///< only lower passages count in passage densities [m]; 0: at any height
+  bool energy_total = false, bounds = false;  ///< the rasters that are written on request
 };
 RunCounts counts_of(const Scenario& scenario);
 
@@ -28,6 +29,7 @@ struct TouchedCell {
   const CellRecord& record;
   const std::uint32_t* exceedances;     ///< number for each threshold, quantity by quantity
   const std::int64_t* lengths_above{};  ///< plan length above each energy threshold [CellRecord::kLengthUnit]
+  const EnergyTotal* energy_total{};    ///< null if it is not kept
 };
 
 /// Writes one number per band.
@@ -37,14 +39,18 @@ using CellRule = std::function<void(const TouchedCell& cell, std::span<double> v
 struct RunRaster {
   Map map;              ///< without values; bands of thresholds come after its bands
   std::string meaning;  ///< of a value, in the words of docs/products.md
-  /// Makes the rule for touched cells.
+  /// Makes the rule for touched cells; empty for a raster that the scenario alone gives.
   std::function<CellRule(const RunCounts& run)> rule;
   /// Value of each band where nothing crosses. If empty: 0 for a probability or a count, nodata for a quantity.
   std::function<std::vector<double>(const RunCounts& run)> untouched{};
   /// The raster has a band for each threshold of this quantity; without any band it is not written.
   std::optional<Quantity> thresholds_of{};
-  std::string threshold_band{};  ///< name of these bands; <limit> stands for the threshold: "P(E > <limit>)"
-  bool counts_lengths = false;   ///< only passages below `RunCounts::passages_below` count
+  std::string threshold_band{};   ///< name of these bands; <limit> stands for the threshold: "P(E > <limit>)"
+  bool counts_lengths = false;    ///< only passages below `RunCounts::passages_below` count
+  bool threshold_bounds = false;  ///< two bands with bounds for each band of a threshold come after these
+  /// Makes the function that fills the rows of a raster that the scenario alone gives.
+  std::function<std::function<void(int row, std::span<double> values)>(const Scenario& scenario)> of_scenario{};
+  bool RunCounts::*request{};  ///< the raster is written only if this is set
 };
 
 const std::vector<RunRaster>& run_rasters();
@@ -75,6 +81,8 @@ struct HazardRaster {
   std::function<std::vector<double>(const HazardRules& rules, const HazardMatrix& matrix)> numbers{};
   bool has_classes = false;  ///< values are classes of the matrix
   bool needs_curve = false;  ///< there is none for an object of some width
+  /// If given: one raster with a band for each of these energies, <kJ> in its name; only on request.
+  std::function<std::vector<double>(const HazardRules& rules, const ObjectWidth& object)> band_energies{};
 };
 
 const std::vector<HazardRaster>& hazard_rasters();
@@ -86,8 +94,11 @@ struct HazardMap {
   Map map;
 };
 
-/// The maps of all rasters and numbers, in the order in which they are written.
+/// The energies of the bands of `hazard_curves` [kJ]: of an object of some width only 0 and the thresholds are known.
+std::vector<double> energies_of_curves(const HazardRules& rules, const ObjectWidth& object);
+
+/// The maps of all rasters and numbers, in the order in which they are written. @param curves  hazard curves too
 std::vector<HazardMap> hazard_maps_of(const HazardRules& rules, const HazardMatrix& matrix,
-                                      const ObjectWidth& object = {});
+                                      const ObjectWidth& object = {}, bool curves = false);
 
 }  // namespace talus

@@ -90,6 +90,9 @@ void check_places(const std::string& name, const EffectSpec& effect, const Campa
   if (!effect.file.path.empty())
     faults.push_back(path + ": [effects." + name + "] file = \"" + effect.file.path +
                      "\": a campaign knows only its own zones: name them by zones = [...]");
+  for (const auto& [key, map] : effect.maps)
+    faults.push_back(path + ": [effects." + name + "] " + key + " = \"" + map.path +
+                     "\": a campaign takes no map of a forest: give numbers");
   const std::string unknown = path + ": [effects." + name + "] zones: the campaign has no such zone";
   for (const std::string& zone : effect.zones)
     if (std::find(campaign.zone_names.begin(), campaign.zone_names.end(), zone) == campaign.zone_names.end())

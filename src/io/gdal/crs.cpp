@@ -138,6 +138,11 @@ void check_heights(PJ_CONTEXT* context, const std::string& path, const std::stri
 
 }  // namespace
 
+std::string extent_text(const MapExtent& e) {
+  const auto metres = [](double value) { return text_of(std::round(value * 10.0) / 10.0); };
+  return "east " + metres(e.west) + " to " + metres(e.east) + ", north " + metres(e.south) + " to " + metres(e.north);
+}
+
 std::string crs_name(const std::string& wkt) {
   const Context context = make_context();
   const Object object(proj_create(context.get(), wkt.c_str()));

@@ -17,11 +17,6 @@ std::string file_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
-std::string extent_text(const MapExtent& e) {
-  const auto metres = [](double value) { return text_of(std::round(value * 10.0) / 10.0); };
-  return "east " + metres(e.west) + " to " + metres(e.east) + ", north " + metres(e.south) + " to " + metres(e.north);
-}
-
 // Reads the fields of a feature and records which were read.
 class AttributeReader {
  public:

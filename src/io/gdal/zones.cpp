@@ -7,6 +7,7 @@
 #include <map>
 
 #include "layer.hpp"
+#include "pixels.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 
@@ -95,84 +96,6 @@ void read_polygons(const ZoneRequest& request, const Terrain& terrain, ZoneLayer
   index.warn_unseen(out.warnings);
   out.reprojections = layer.reprojections();
   for (std::string& line : layer.warnings()) out.warnings.push_back(std::move(line));
-}
-
-// The pixel of a raster that holds a place.
-class PixelFinder {
- public:
-  PixelFinder(GDALDataset& dataset, const std::string& path) {
-    std::array<double, 6> place{};
-    if (dataset.GetGeoTransform(place.data()) != CE_None || GDALInvGeoTransform(place.data(), inverse_.data()) == 0)
-      throw InputError(path + ": does not say where it lies (no geotransform): georeference it with " +
-                       edit_command(path, "-a_ullr WEST NORTH EAST SOUTH"));
-  }
-  double column(double x, double y) const { return std::floor(inverse_[0] + inverse_[1] * x + inverse_[2] * y); }
-  double row(double x, double y) const { return std::floor(inverse_[3] + inverse_[4] * x + inverse_[5] * y); }
-
- private:
-  std::array<double, 6> inverse_{};
-};
-
-// Reads single pixels through a cache of the last tiles of the file.
-class PixelReader {
- public:
-  PixelReader(GDALDataset& dataset, std::string path)
-      : band_(*dataset.GetRasterBand(1)),
-        path_(std::move(path)),
-        masked_((band_.GetMaskFlags() & GMF_ALL_VALID) == 0) {}
-
-  // The value of the pixel; NaN if there is none.
-  double at(double column, double row) {
-    if (!(column >= 0.0 && row >= 0.0 && column < band_.GetXSize() && row < band_.GetYSize()))
-      return std::numeric_limits<double>::quiet_NaN();
-    const int x = static_cast<int>(column), y = static_cast<int>(row);
-    const std::pair<int, int> key{y / kSide, x / kSide};
-    if (tile_ == nullptr || key != key_) {
-      if (tiles_.size() > kTiles && !tiles_.contains(key)) tiles_.clear();
-      const auto [found, fresh] = tiles_.try_emplace(key);
-      if (fresh) read(key.second * kSide, key.first * kSide, found->second);
-      key_ = key;
-      tile_ = found->second.data();
-    }
-    return tile_[static_cast<std::size_t>(y % kSide) * kSide + static_cast<std::size_t>(x % kSide)];
-  }
-
- private:
-  static constexpr int kSide = 256;
-  static constexpr std::size_t kTiles = 64;  // 32 MB
-
-  void read(int x, int y, std::vector<double>& values) {
-    values.resize(std::size_t{kSide} * kSide);
-    const int columns = std::min(kSide, band_.GetXSize() - x), rows = std::min(kSide, band_.GetYSize() - y);
-    const GSpacing line = kSide * sizeof(double);
-    if (band_.RasterIO(GF_Read, x, y, columns, rows, values.data(), columns, rows, GDT_Float64, 0, line, nullptr) !=
-            CE_None ||
-        (masked_ && band_.GetMaskBand()->RasterIO(GF_Read, x, y, columns, rows, mask_.data(), columns, rows, GDT_Byte,
-                                                  0, kSide, nullptr) != CE_None))
-      throw InputError(path_ + ": cannot be read: " + messages_.take());
-    if (!masked_) return;
-    for (std::size_t k = 0; k < values.size(); ++k)
-      if (mask_[k] == 0) values[k] = std::numeric_limits<double>::quiet_NaN();
-  }
-
-  GDALRasterBand& band_;
-  std::string path_;
-  bool masked_;
-  std::map<std::pair<int, int>, std::vector<double>> tiles_;  // by row and column of tiles
-  std::pair<int, int> key_{-1, -1};
-  const double* tile_ = nullptr;
-  std::vector<std::uint8_t> mask_ = std::vector<std::uint8_t>(std::size_t{kSide} * kSide);
-  GdalMessages messages_;
-};
-
-// Visits the cells in squares, so that a zone raster in any direction is read part by part.
-template <class Visit>
-void in_squares(const Grid& grid, Visit visit) {
-  constexpr int kSide = 256;
-  for (int top = grid.rows; top > 0; top -= kSide)
-    for (int left = 0; left < grid.columns; left += kSide)
-      for (int row = top - 1; row >= std::max(0, top - kSide); --row)
-        for (int column = left; column < std::min(grid.columns, left + kSide); ++column) visit(column, row);
 }
 
 void read_codes(GDALDataset& dataset, const ZoneRequest& request, const Terrain& terrain, ZoneLayer& out) {

@@ -4,6 +4,7 @@
 #include "io/scenario/table_reader.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/version.hpp"
+#include "talus/products/raster_table.hpp"
 
 namespace talus::io {
 namespace {
@@ -85,6 +86,8 @@ std::string hazard_json(const HazardRecord& record) {
     json["object"] = {{"width_m", record.width}, {"passages_below_m", record.header.passages_below}};
   else
     json["object"] = "cell";
+  if (record.curves)
+    json["curve_energies_kj"] = energies_of_curves(record.header.rules, {record.width, record.header.passages_below});
   json["cells"] = record.cells;
   if (!record.objects_file.empty()) json["objects"] = {{"file", record.objects_file}, {"replayed", record.replayed}};
   if (!record.frequency_file.empty()) json["frequency"] = {{"file", record.frequency_file}, {"replayed", true}};

@@ -18,8 +18,12 @@ HazardObject::Ring ring_of(const OGRSimpleCurve& curve) {
   return ring;
 }
 
-HazardObject object_of(const Parts& parts) {
+constexpr Bounds kWidth{"width", "m", "of a line", 0.0, 1000.0};
+
+/// @param line_width  of lines without a field `width` [m]
+HazardObject object_of(const Parts& parts, double line_width) {
   HazardObject object;
+  object.line_width = line_width;
   for (const OGRPolygon& polygon : parts.polygons) {
     auto& rings = object.polygons.emplace_back();
     for (const OGRLinearRing* ring : polygon) rings.push_back(ring_of(*ring));
@@ -55,8 +59,9 @@ std::unique_ptr<OGRGeometry> geometry_of(const Parts& parts, double west, double
 using Figures = std::vector<std::pair<std::string, double>>;
 
 /// @param on_map  false: the figures of the object are not known
-Figures figures_of(const HazardCurve& curve, const ObjectHits& hits, bool on_map, const std::vector<double>& thresholds,
-                   const std::vector<double>& years) {
+Figures figures_of(const HazardRules& rules, const ObjectHits& hits, bool on_map, const std::vector<double>& years) {
+  const HazardCurve curve(rules, hits.largest), entry(rules, hits.entry);
+  const std::vector<double>& thresholds = rules.bins.thresholds();
   Figures figures{{"trajectories", on_map ? static_cast<double>(hits.trajectories) : kNotGiven}};
   const auto add = [&figures, on_map](const std::string& name, const Bounded& b) {
     figures.emplace_back(name, on_map ? b.value : kNotGiven);
@@ -68,6 +73,7 @@ Figures figures_of(const HazardCurve& curve, const ObjectHits& hits, bool on_map
   for (std::size_t i = 0; i < thresholds.size(); ++i) {
     add("frequency_" + text_of(thresholds[i]), curve.exceedance(i));
     figures.emplace_back("return_period_" + text_of(thresholds[i]), return_period(curve.exceedance(i)).value);
+    add("entry_" + text_of(thresholds[i]), entry.exceedance(i));
   }
   for (const double t : years) add("energy_T" + text_of(t), curve.energy_once_in(t));
   return figures;
@@ -82,6 +88,8 @@ struct ObjectLayer::State {
   std::vector<HazardObject> objects;
   std::vector<bool> on_map;
   std::vector<std::string> warnings;
+  double line_width = 0.0;
+  std::size_t lines_of_their_width = 0, lines_of_given_width = 0, polygons_with_width = 0;
 
   /// Features whose blocks reach an object, the largest share first: index and share.
   static std::vector<std::pair<std::size_t, double>> sources_of(const ObjectHits& hits) {
@@ -95,7 +103,8 @@ struct ObjectLayer::State {
   }
 };
 
-ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded) : state_(std::make_unique<State>()) {
+ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, double line_width)
+    : state_(std::make_unique<State>()) {
   Terrain terrain;
   terrain.geo = loaded.geo;
   terrain.heights.grid = loaded.scenario.surface.grid();
@@ -114,7 +123,14 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded) 
     state_->on_map.push_back(box.MaxX >= 0.0 && box.MinX <= grid.width() && box.MaxY >= 0.0 &&
                              box.MinY <= grid.height());
     if (!state_->on_map.back()) off += (off.empty() ? "" : ", ") + state_->names.back();
-    state_->objects.push_back(object_of(parts));
+    std::optional<double> width;
+    if (!parts.lines.empty()) {
+      width = layer.number(*feature, "width", kWidth);
+      (width ? state_->lines_of_their_width : state_->lines_of_given_width) += 1;
+    } else if (const int field = layer.field("width"); field >= 0 && feature->IsFieldSetAndNotNull(field) != 0) {
+      ++state_->polygons_with_width;
+    }
+    state_->objects.push_back(object_of(parts, width.value_or(line_width)));
     state_->parts.push_back(std::move(parts));
     state_->features.push_back(std::move(feature));
   }
@@ -122,6 +138,10 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded) 
   if (std::ranges::count(state_->on_map, true) == 0)
     throw InputError(path + ": lies wholly off the DEM: is the coordinate system of the layer the right one?");
   if (!off.empty()) state_->warnings.push_back(path + ": objects wholly off the DEM, of which nothing is told: " + off);
+  if (state_->polygons_with_width > 0)
+    state_->warnings.push_back(path + ": the field width of " + std::to_string(state_->polygons_with_width) +
+                               " polygons is not used: it is for lines; a polygon is what it covers");
+  state_->line_width = line_width;
   for (std::string& line : layer.warnings()) state_->warnings.push_back(std::move(line));
 }
 
@@ -132,6 +152,17 @@ const std::vector<HazardObject>& ObjectLayer::objects() const {
 }
 const std::vector<std::string>& ObjectLayer::warnings() const {
   return state_->warnings;
+}
+
+std::string ObjectLayer::lines_text() const {
+  const State& s = *state_;
+  std::string text;
+  if (s.lines_of_their_width > 0) text = std::to_string(s.lines_of_their_width) + " as wide as their field width says";
+  if (s.lines_of_given_width > 0)
+    text += (text.empty() ? "" : ", ") + std::to_string(s.lines_of_given_width) + " without that field " +
+            text_of(s.line_width) + " m wide" +
+            (s.line_width > 0.0 ? " (--width)" : " (a field width, or --width, makes them wider)");
+  return text.empty() ? text : "lines: " + text;
 }
 
 namespace {
@@ -200,13 +231,12 @@ std::string curve_rows(const std::string& object, const HazardCurve& curve, cons
 void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenario& loaded, const HazardRules& rules,
                         const std::vector<ObjectHits>& hits, const std::vector<double>& years) const {
   const Grid& grid = loaded.scenario.surface.grid();
-  const auto& thresholds = rules.bins.thresholds();
   std::unique_ptr<ObjectsWriter> writer;
   std::string table, curves = "object,energy_kj,frequency,lower,upper,return_period\n",
                      from = "object,feature,frequency,share\n";
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    const HazardCurve curve(rules, hits[i].cell);
-    const Figures figures = figures_of(curve, hits[i], state_->on_map[i], thresholds, years);
+    const HazardCurve curve(rules, hits[i].largest);
+    const Figures figures = figures_of(rules, hits[i], state_->on_map[i], years);
     const std::string object = csv_field(state_->names[i]);
     std::string sources;
     for (const auto& [feature, share] : State::sources_of(hits[i])) {

@@ -86,6 +86,13 @@ Json ends_of(const Totals& totals) {
           {"limit", count(End::Limit)}};
 }
 
+Json json_of(const EnergyLines& lines) {
+  return {{"stops", lines.count()},
+          {"least", lines.least()},
+          {"p5", lines.percentile(0.05)},
+          {"p50", lines.percentile(0.50)}};
+}
+
 Json rounds_of(const RoundsRecord& rounds) {
   Json json{{"done", rounds.done},
             {"above_probability", rounds.asked.above},
@@ -151,6 +158,7 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
     json["first_limit"] = {{"source", totals.first_limit[0]}, {"block", totals.first_limit[1]}};
   json["trajectory_metres"] = static_cast<double>(totals.length_mm) * 1e-3;
   json["trajectory_metres_plan"] = static_cast<double>(totals.plan_length_mm) * 1e-3;
+  if (record.energy_lines.count() > 0) json["energy_line_deg"] = json_of(record.energy_lines);
   json["impacts"] = totals.impacts;
   json["psi_dropped"] = totals.psi_dropped;
   json["cells_scored"] = totals.cells_scored;

@@ -17,6 +17,10 @@ class Fields {
   explicit Fields(OGRFeature& feature) : feature_(feature) {}
   void add(std::uint32_t value) { feature_.SetField(next_++, static_cast<GIntBig>(value)); }
   void add(double value) { feature_.SetField(next_++, value); }
+  void add_or_null(double value) {
+    std::isnan(value) ? feature_.SetFieldNull(next_) : feature_.SetField(next_, value);
+    ++next_;
+  }
   void add(const char* value) { feature_.SetField(next_++, value); }
 
  private:
@@ -98,7 +102,8 @@ struct StopsWriter::State {
                                            {"seconds", OFTReal},
                                            {"max_speed_ms", OFTReal},
                                            {"length_m", OFTReal},
-                                           {"impacts", OFTInteger64}});
+                                           {"impacts", OFTInteger64},
+                                           {"energy_line_deg", OFTReal}});
     feature.reset(OGRFeature::CreateFeature(layer->GetLayerDefn()));
     point = new OGRPoint(0.0, 0.0);
     feature->SetGeometryDirectly(point);
@@ -119,6 +124,7 @@ struct StopsWriter::State {
     fields.add(decimals(row.max_speed, 1e3));
     fields.add(decimals(row.length, 1e3));
     fields.add(row.impacts);
+    fields.add_or_null(decimals(row.energy_line * 180.0 / kPi, 1e3));
     point->setX(place.x(row.x));
     point->setY(place.y(row.y));
     file.append(layer, *feature);

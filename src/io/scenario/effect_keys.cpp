@@ -36,7 +36,8 @@ class EffectReader {
     EffectSpec& effect = spec_.effects[name_];
     effect.where = table_.file() + ":" + std::to_string(table_.value()->line) + ": [effects." + name_ + "]";
     const bool preset = has_presets(name_) && take_preset();
-    const bool acts = numbers() || preset;
+    const bool listed = entry_.mapped && trees(effect);
+    const bool acts = numbers(effect) || listed || preset;
     if (std::vector<int>* list = entry_.days(spec_.values.effects)) days(effect, *list);
     if (entry_.area(spec_.values.effects) != nullptr) place(effect);
     const std::size_t faults = table_.faults().size();
@@ -65,13 +66,50 @@ class EffectReader {
     return true;
   }
 
+  /// A fault for each of these keys beside a list of trees.
+  void not_with_trees(std::initializer_list<const char*> keys, const std::string& why) {
+    for (const char* key : keys)
+      if (const TomlValue* value = table_.value()->find(key)) table_.fault(key, *value, why);
+  }
+
+  /// Reads a list of trees. Returns whether one is given, here or in an included file.
+  bool trees(EffectSpec& effect) {
+    if (const auto file = table_.text("trees")) {
+      effect.maps = {{"trees", {absolute_path(*file, base_), table_.where("trees", *table_.value()->find("trees"))}}};
+      effect.zones.clear(), effect.file = {};  // replaces those of an included file
+      given("trees");
+      not_with_trees({"density", "diameter", "zones", "file"},
+                     "must not come with trees: the trees of the list are all that stands");
+    } else if (effect.maps.contains("trees") && table_.value()->find("density") != nullptr) {
+      effect.maps.erase("trees");  // a stand replaces the trees of an included file
+    } else if (effect.maps.contains("trees")) {
+      not_with_trees({"diameter", "zones", "file"},
+                     "must not come with the trees of an included file: the trees of that list are all that stands; "
+                     "give density, too, for a stand instead");
+    }
+    return effect.maps.contains("trees");
+  }
+
+  /// Reads the name of a raster in place of a number. Returns whether there is one.
+  bool raster(EffectSpec& effect, const std::string& key) {
+    const TomlValue* value = table_.value()->find(key);
+    if (value == nullptr) return false;
+    effect.maps.erase(key);
+    if (value->kind != Kind::Text) return false;
+    if (const auto file = table_.text(key)) effect.maps[key] = {absolute_path(*file, base_), table_.where(key, *value)};
+    given(key);
+    return true;
+  }
+
   /// Returns whether the effect acts: one of its strengths is given, here or in an included file.
-  bool numbers() {
+  bool numbers(EffectSpec& effect) {
     bool strength = false;
+    const bool listed = table_.value()->find("trees") != nullptr;
     for (const EffectField& field : entry_.fields()) {
       const std::string key(entry_.key_of(field));
       const bool given_before = spec_.origins.contains("effects." + name_ + "." + key);
       strength = strength || ((given_before || table_.value()->find(key) != nullptr) && field.is_strength());
+      if (field.by_cell && !listed && raster(effect, key)) continue;
       if (const auto value = table_.number(key, field)) {
         field.set(spec_.values.effects, *value);
         given(key);

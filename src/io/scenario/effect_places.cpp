@@ -4,6 +4,7 @@
 
 #include "io/gdal/layer.hpp"
 #include "talus/base/error.hpp"
+#include "talus/io/gdal/forest.hpp"
 #include "talus/io/gdal/rasters.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 
@@ -35,6 +36,21 @@ Raster<std::uint8_t> read_mask(const std::string& name, const std::string& path,
   return mask;
 }
 
+/// Adds the forest of rasters or trees to the effect.
+void load_forest(const std::map<std::string, NamedFile>& maps, const Terrain& terrain, Scenario& parts,
+                 LoadedScenario& out) {
+  const auto path = [&](const char* key) {
+    const auto found = maps.find(key);
+    return found == maps.end() ? std::string() : found->second.path;
+  };
+  ForestLayer layer =
+      read_forest({path("density"), path("diameter"), path("trees")}, parts.effects.forest_stems, terrain);
+  parts.effects.forest_stems = std::move(layer.forest);
+  out.notes.push_back("forest-stems: " + layer.note);
+  out.reprojections.insert(out.reprojections.end(), layer.reprojections.begin(), layer.reprojections.end());
+  out.warnings.insert(out.warnings.end(), layer.warnings.begin(), layer.warnings.end());
+}
+
 }  // namespace
 
 void load_effect_places(const ScenarioSpec& spec, const Terrain& terrain, Scenario& parts, LoadedScenario& out) {
@@ -50,6 +66,7 @@ void load_effect_places(const ScenarioSpec& spec, const Terrain& terrain, Scenar
         area->zones[i] = std::count(effect.zones.begin(), effect.zones.end(), parts.zone_names[i]) > 0 ? 1 : 0;
     }
     if (!effect.file.path.empty()) area->mask = read_mask(name, effect.file.path, terrain, out);
+    if (!effect.maps.empty()) load_forest(effect.maps, terrain, parts, out);
   }
 }
 

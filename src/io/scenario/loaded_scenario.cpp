@@ -25,7 +25,10 @@ namespace {
 void check_files(const ScenarioSpec& spec, std::vector<std::string>& faults) {
   std::vector<const NamedFile*> files{&spec.include, &spec.dem,     &spec.sources,
                                       &spec.ground,  &spec.screens, &spec.barriers};
-  for (const auto& [name, effect] : spec.effects) files.push_back(&effect.file);
+  for (const auto& [name, effect] : spec.effects) {
+    files.push_back(&effect.file);
+    for (const auto& [key, map] : effect.maps) files.push_back(&map);
+  }
   check_files(files, faults);
 }
 
@@ -127,7 +130,10 @@ void record_inputs(const ScenarioSpec& spec, LoadedScenario& out) {
   std::vector<std::pair<std::string, const NamedFile*>> files{
       {"scenario", &spec.scenario}, {"include", &spec.include}, {"dem", &spec.dem},          {"sources", &spec.sources},
       {"ground", &spec.ground},     {"screens", &spec.screens}, {"barriers", &spec.barriers}};
-  for (const auto& [name, effect] : spec.effects) files.emplace_back("effects." + name, &effect.file);
+  for (const auto& [name, effect] : spec.effects) {
+    files.emplace_back("effects." + name, &effect.file);
+    for (const auto& [key, map] : effect.maps) files.emplace_back("effects." + name + "." + key, &map);
+  }
   for (const auto& [role, file] : files)
     if (!file->path.empty()) out.inputs.push_back({role, file->path, sha256_of_file(file->path)});
 }

@@ -19,7 +19,10 @@ void strip_folder(NamedFile& file) {
 std::string plan_checksum(const LoadedScenario& loaded) {
   ScenarioSpec spec = *loaded.spec;
   for (NamedFile* file : {&spec.dem, &spec.sources, &spec.ground, &spec.screens, &spec.barriers}) strip_folder(*file);
-  for (auto& [name, effect] : spec.effects) strip_folder(effect.file);
+  for (auto& [name, effect] : spec.effects) {
+    strip_folder(effect.file);
+    for (auto& [key, map] : effect.maps) strip_folder(map);
+  }
   Sha256 sum;
   sum.add(toml_of(spec));
   for (const InputFile& input : loaded.inputs)

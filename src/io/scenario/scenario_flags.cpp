@@ -54,6 +54,14 @@ void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::strin
     }
   if (flags.trajectories) lay_flag(spec, "trajectories", *flags.trajectories, faults);
   if (flags.seed) lay_flag(spec, "seed", static_cast<double>(*flags.seed), faults);
+  if (flags.energy_total) {
+    spec.values.output.energy_total = true;
+    spec.origins["output.energy_total"] = "flag --energy-total";
+  }
+  if (flags.bounds) {
+    spec.values.output.bounds = true;
+    spec.origins["output.bounds"] = "flag --bounds";
+  }
   if (flags.diameter) {
     if (const auto rule = fault_of(bounds_of("blocks.diameter"), *flags.diameter))
       faults.push_back("flag --diameter = " + text_of(*flags.diameter) + ": " + *rule);

@@ -234,7 +234,20 @@ class SpecReader {
       spec_.values.output.passages_below = *value;
       given("output.passages_below");
     }
+    truth(table, "energy_total", spec_.values.output.energy_total);
+    truth(table, "bounds", spec_.values.output.bounds);
     table.finish();
+  }
+
+  void truth(TableReader& table, const std::string& key, bool& out) {
+    const TomlValue* const value = table.find(key);
+    if (value == nullptr) return;
+    if (value->kind != Kind::Boolean) {
+      table.fault(key, *value, "must be true or false");
+      return;
+    }
+    out = value->boolean;
+    given("output." + key);
   }
 
   void thresholds(TableReader& table, const std::string& key, std::vector<double>& out) {

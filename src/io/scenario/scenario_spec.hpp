@@ -19,12 +19,13 @@ struct ZoneSpec {
   std::vector<Range> intervals{};          ///< of x, on a profile [m]
 };
 
-/// Places where an effect of the input acts. Its numbers are in `values`.
+/// Places where an effect of the input acts, and its maps. Its numbers are in `values`.
 struct EffectSpec {
   std::string where;               ///< "scenario.toml:12: [effects.vegetation-drag]", for messages
   std::vector<std::string> zones;  ///< empty: in all
   std::string zones_where;
   NamedFile file;
+  std::map<std::string, NamedFile> maps;  ///< by key: rasters in place of numbers; "trees"
 };
 
 /// A straight barrier that a scenario or a model names by its ends, in the coordinates of the DEM.

@@ -92,6 +92,8 @@ class Lines {
       add("output", "energy_thresholds", list_text(spec.values.output.energy_thresholds), "kJ");
       add("output", "height_thresholds", list_text(spec.values.output.height_thresholds), "m");
       add("output", "passages_below", text_of(spec.values.output.passages_below), "m");
+      add("output", "energy_total", spec.values.output.energy_total ? "true" : "false", "");
+      add("output", "bounds", spec.values.output.bounds ? "true" : "false", "");
     }
     file("screens", "file", spec.screens);
     file("barriers", "file", spec.barriers);
@@ -149,15 +151,27 @@ class Lines {
       const auto found = spec_.effects.find(std::string(entry.name));
       if (found == spec_.effects.end()) continue;
       const std::string table = "effects." + found->first;
-      for (const EffectField& field : entry.fields())
-        add(table, std::string(entry.key_of(field)), text_of(field.get(spec_.values.effects)),
-            field.unit == "1" ? "" : std::string(field.unit));
+      effect_numbers(entry, found->second, table);
       if (const std::vector<int>* days = entry.days(spec_.values.effects))
         add(table, "days", list_text({days->begin(), days->end()}), "");
       std::vector<std::string> zones;
       for (const std::string& zone : found->second.zones) zones.push_back(toml_text(zone));
       if (!zones.empty()) add(table, "zones", std::string("[") + joined(zones) + "]", "");
       file(table, "file", found->second.file);
+    }
+  }
+
+  /// The numbers of an effect, or the rasters or the trees in place of them.
+  void effect_numbers(const EffectEntry& entry, const EffectSpec& effect, const std::string& table) {
+    const auto trees = effect.maps.find("trees");
+    if (trees != effect.maps.end()) file(table, "trees", trees->second);
+    for (const EffectField& field : entry.fields()) {
+      const std::string key(entry.key_of(field));
+      const auto raster = effect.maps.find(key);
+      if (raster != effect.maps.end())
+        file(table, key, raster->second);
+      else if (!field.by_cell || trees == effect.maps.end())
+        add(table, key, text_of(field.get(spec_.values.effects)), field.unit == "1" ? "" : std::string(field.unit));
     }
   }
 

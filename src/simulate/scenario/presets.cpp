@@ -26,10 +26,20 @@ constexpr FittedSizes kVaujanyOnly{1.0, 1.4, "not stated in 2D; the paper's simu
 constexpr FittedSizes kVaujanyEhime{
     0.4, 1.4, "not stated; Ehime 0.12 to 2.06 t (Ushiro et al. 2006), Vaujany as the paper simulates it in 3D"};
 constexpr FittedSizes kQuarry{kNotGiven, kNotGiven, "not stated; not known of the quarries"};
+constexpr FittedSizes kGuess{kNotGiven, kNotGiven, "none: a first guess, from the Rn of Rockyfor3D at 1 m"};
+constexpr std::string_view kRockyfor3d = "migration.md";
 
-// Mitchell & Hungr, PIERRE 2.
-const std::array<Preset, 7>& all() {
-  static const std::array<Preset, 7> presets{{
+/// Ground that keeps next to nothing of a blow: water, swamp.
+Ground swallowing_ground() {
+  Ground ground = ground_of(0.0, 0.0, 0.01, 1.0);
+  ground.Et50 = 0.01;
+  return ground;
+}
+
+// Mitchell & Hungr, PIERRE 2; then a first guess for the soil types of Rockyfor3D: docs/migration.md, and
+// tools/scripts/studies/migration_study.py, which prints the En50.
+const std::array<Preset, 15>& all() {
+  static const std::array<Preset, 15> presets{{
       {"firm-talus-2d", ground_of(0.7, 0.0, 15.0, 1.5), "Table 1", "firm talus, Vaujany and Ehime, in 2D",
        kVaujanyEhime},
       {"forest-road-2d", ground_of(0.4, 0.0, 15.0, 1.5), "Table 1", "forest road, in 2D", kVaujanyOnly},
@@ -38,6 +48,14 @@ const std::array<Preset, 7>& all() {
       {"upper-talus-3d", ground_of(1.0, 0.9, 15.0, 1.5), "Table 3", "upper talus, Vaujany, in 3D", kVaujany},
       {"forest-road-3d", ground_of(0.4, 0.3, 15.0, 1.5), "Table 3", "forest road, Vaujany, in 3D", kVaujany},
       {"lower-talus-3d", ground_of(1.5, 1.0, 15.0, 1.5), "Table 3", "lower talus, Vaujany, in 3D", kVaujany},
+      {"rockyfor3d-0", swallowing_ground(), kRockyfor3d, "soil type 0: river, swamp", kGuess},
+      {"rockyfor3d-1", ground_of(0.4, 0.3, 1.82, 1.5), kRockyfor3d, "soil type 1: fine soil, deep", kGuess},
+      {"rockyfor3d-2", ground_of(0.4, 0.3, 2.5, 1.5), kRockyfor3d, "soil type 2: fine soil, shallow", kGuess},
+      {"rockyfor3d-3", ground_of(1.0, 0.9, 3.25, 1.5), kRockyfor3d, "soil type 3: scree, compact soil", kGuess},
+      {"rockyfor3d-4", ground_of(1.0, 0.9, 4.07, 1.5), kRockyfor3d, "soil type 4: talus", kGuess},
+      {"rockyfor3d-5", ground_of(0.65, 0.6, 4.96, 1.5), kRockyfor3d, "soil type 5: bedrock, thin cover", kGuess},
+      {"rockyfor3d-6", ground_of(0.65, 0.6, 6.94, 1.5), kRockyfor3d, "soil type 6: bedrock", kGuess},
+      {"rockyfor3d-7", ground_of(0.4, 0.3, 3.57, 1.5), kRockyfor3d, "soil type 7: asphalt road", kGuess},
   }};
   return presets;
 }

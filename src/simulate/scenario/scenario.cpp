@@ -160,16 +160,27 @@ void check_area(const Scenario& s, const EffectArea& where, const std::string& e
     throw InputError(effect + ": its mask is not on the grid of the DEM");
 }
 
+/// The cells in which a tree of a list stands; empty without a list.
+std::vector<bool> cells_with_trees(const ForestStems& forest, const Grid& grid) {
+  if (!forest.lists_trees()) return {};
+  std::vector<bool> cells(grid.cells());
+  for (const Tree& tree : forest.map->trees.trees())
+    cells[grid.index(grid.column_of(tree.place.x()), grid.row_of(tree.place.y()))] = true;
+  return cells;
+}
+
 /// Refuses two effects that would take the energy of the same stand twice.
 void check_stands(const Scenario& s) {
   const Effects& e = s.effects;
   if (s.drag_and_stems || !(e.vegetation_drag.coefficient > 0.0) || !(e.forest_stems.density > 0.0)) return;
   const Grid& grid = s.surface.grid();
+  const std::vector<bool> trees = cells_with_trees(e.forest_stems, grid);
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
       const double x = grid.centre_x(column), y = grid.centre_y(row);
       const std::uint8_t zone = s.cover.zone_at(x, y);
-      if (e.vegetation_drag.where.covers(zone, x, y) && e.forest_stems.where.covers(zone, x, y))
+      const bool stems = trees.empty() ? has_stand(e.forest_stems, zone, x, y) : trees[grid.index(column, row)];
+      if (stems && e.vegetation_drag.where.covers(zone, x, y))
         throw InputError(
             "effects: vegetation-drag and forest-stems act at the same place (the cell at " + talus::text_of(x) +
             " m, " + talus::text_of(y) +
@@ -178,12 +189,27 @@ void check_stands(const Scenario& s) {
     }
 }
 
+/// Checks that the map of a forest fits the terrain.
+void check_forest(const Scenario& s) {
+  const ForestStems& forest = s.effects.forest_stems;
+  if (forest.map == nullptr) return;
+  for (const Raster<float>* raster : {&forest.map->density, &forest.map->diameter})
+    if (!raster->values.empty() &&
+        (!(raster->grid == s.surface.grid()) || raster->values.size() != raster->grid.cells()))
+      throw InputError("effects.forest-stems: its raster is not on the grid of the DEM");
+  const Grid& grid = s.surface.grid();
+  for (const Tree& tree : forest.map->trees.trees())
+    if (!grid.contains(grid.column_of(tree.place.x()), grid.row_of(tree.place.y())) || !(tree.diameter > 0.0))
+      throw InputError("effects.forest-stems: a tree stands off the terrain, or has no diameter");
+}
+
 void check_effects(Scenario& s) {
   for (const EffectEntry& entry : effect_entries()) {
     for (const EffectField& field : entry.fields())
       check(field, field.get(s.effects), "effects." + std::string(field.key));
     if (const EffectArea* where = entry.area(s.effects)) check_area(s, *where, "effects." + std::string(entry.name));
   }
+  check_forest(s);
   check_stands(s);
 }
 

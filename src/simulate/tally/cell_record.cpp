@@ -11,12 +11,64 @@ std::int64_t fixed_point(float value, double units) {
   return static_cast<std::int64_t>(static_cast<double>(value) * units + 0.5);
 }
 
+/// Sum, in fixed point, and largest of some values.
+struct Sums {
+  std::int64_t sum = 0;
+  float largest = 0.0F;
+};
+
+inline Sums sums_of(std::span<const float> values, double units) {
+  std::int64_t sum = 0;
+  float most = 0.0F;
+#pragma omp simd reduction(+ : sum) reduction(max : most)
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    sum += fixed_point(values[i], units);
+    most = std::max(most, values[i]);
+  }
+  return {sum, most};
+}
+
+constexpr double kTotalUnit = kQuantityTable[index_of(Quantity::Energy)].fixed_point;
+
 }  // namespace
 
 void CellValues::make_room(std::size_t n) {
   if (keep_stakes && stakes.size() < n) stakes.resize(n);
+  if (keep_totals && totals.size() < n) totals.resize(n);
   if (lists.front().size() < n)
     for (std::vector<float>& list : lists) list.resize(n);
+}
+
+double EnergyTotal::mean() const {
+  const std::uint64_t count = histogram.count();
+  return count == 0 ? 0.0 : static_cast<double>(sum) * kTotalUnit / static_cast<double>(count);
+}
+
+void EnergyTotal::add(std::span<const float> values) {
+  const Sums sums = sums_of(values, 1.0 / kTotalUnit);
+  sum += sums.sum;
+  maximum = std::max(maximum, sums.largest);
+  histogram.add(values);
+}
+
+void EnergyTotal::merge(const EnergyTotal& other) {
+  maximum = std::max(maximum, other.maximum);
+  sum += other.sum;
+  histogram.merge(other.histogram);
+}
+
+void EnergyTotal::save(ByteWriter& out) const {
+  out.put(maximum);
+  out.put(sum);
+  histogram.save(out);
+}
+
+EnergyTotal EnergyTotal::restored(ByteReader& in) {
+  EnergyTotal total;
+  total.maximum = in.get<float>();
+  total.sum = in.get<std::int64_t>();
+  total.histogram = LogHistogram::restored(in);
+  return total;
 }
 
 double CellRecord::mean(Quantity quantity) const {
@@ -29,18 +81,12 @@ PerQuantity<float> CellRecord::add(const CellValues& values) {
   PerQuantity<float> largest{};
   for_each_quantity([&](auto q) {
     constexpr double kUnits = 1.0 / kQuantityTable[q].fixed_point;
-    const float* const list = values.lists[q].data();
-    std::int64_t added = 0;
-    float most = 0.0F;
-#pragma omp simd reduction(+ : added) reduction(max : most)
-    for (std::size_t i = 0; i < values.count; ++i) {
-      added += fixed_point(list[i], kUnits);
-      most = std::max(most, list[i]);
-    }
-    sum[q] += added;
-    largest[q] = most;
-    maximum[q] = std::max(maximum[q], most);
-    histogram[q].add({list, values.count});
+    const std::span<const float> list(values.lists[q].data(), values.count);
+    const Sums sums = sums_of(list, kUnits);
+    sum[q] += sums.sum;
+    largest[q] = sums.largest;
+    maximum[q] = std::max(maximum[q], sums.largest);
+    histogram[q].add(list);
   });
   return largest;
 }

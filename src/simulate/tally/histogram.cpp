@@ -207,26 +207,36 @@ std::uint64_t LogHistogram::count() const {
 
 double LogHistogram::percentile(double share) const {
   TALUS_EXPECT(share >= 0.0 && share <= 1.0, "a share is 0 to 1");
-  if (counts_ == nullptr && few_count_ > 0) {
-    LogHistogram bins;
-    bins.few_ = few_;
-    bins.few_count_ = few_count_;
-    bins.spill(few_[0], few_[0]);
-    return bins.percentile(share);
-  }
   const std::uint64_t total = count();
   if (total == 0) return 0.0;
   const double rank = std::clamp(std::ceil(share * static_cast<double>(total)), 1.0, static_cast<double>(total));
+  const Bin bin = bin_of(rank);
+  return bin.low + (bin.high - bin.low) * (rank - bin.below - 0.5) / bin.count;
+}
+
+/// The few values as counts.
+LogHistogram LogHistogram::spilled() const {
+  LogHistogram bins;
+  bins.few_ = few_;
+  bins.few_count_ = few_count_;
+  bins.spill(few_[0], few_[0]);
+  return bins;
+}
+
+LogHistogram::Bin LogHistogram::bin_of(double k) const {
+  if (counts_ == nullptr && few_count_ > 0) return spilled().bin_of(k);
   double below = 0.0;
   for (int bin = 0; bin < size_; ++bin) {
     const double here = get(bin);
-    if (here > 0.0 && below + here >= rank) {
-      const double low = edge_of(first_ + bin), high = edge_of(first_ + bin + 1);
-      return low + (high - low) * (rank - below - 0.5) / here;
+    if (here > 0.0 && below + here >= k) {
+      const int key = first_ + bin;
+      const bool collected = (bin == 0 && size_ == kSpan) || key == key_of(kFloor);
+      return {edge_of(key), edge_of(key + 1), below, here, collected};
     }
     below += here;
   }
-  return edge_of(first_ + size_);
+  TALUS_EXPECT(false, "a histogram holds the value of each rank");
+  return {};
 }
 
 }  // namespace talus

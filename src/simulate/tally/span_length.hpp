@@ -8,19 +8,6 @@
 
 namespace talus {
 
-/// a + b s + c s^2 of the share s of a span.
-struct Quadratic {
-  double a, b, c;
-};
-
-/// The square of the speed along a span [m^2/s^2]. In flight the vertical speed is linear in the share; in a slide of
-/// constant acceleration the square of the speed is.
-inline Quadratic speed_squared_along(const Span& span) {
-  const double from = span.rise_from, to = span.rise_to;
-  if (span.plan_speed_squared == 0.0F) return {from * from, to * to - from * from, 0.0};
-  return {span.plan_speed_squared + from * from, 2.0 * from * (to - from), (to - from) * (to - from)};
-}
-
 /// The clearance along a span [m].
 inline Quadratic height_along(const Span& span) {
   const double bend = span.bend;
@@ -58,7 +45,7 @@ struct SpeedRange {
 };
 
 inline SpeedRange speed_range(const Span& span, const Moment& from, const Moment& to) {
-  if (span.plan_speed_squared == 0.0F) {  // a slide: its rise is the whole speed
+  if (is_slide(span)) {
     const float first = span.rise_from * span.rise_from, change = span.rise_to * span.rise_to - first;
     const float a = first + from.share * change, b = first + to.share * change;
     return {std::min(a, b), std::max(a, b)};
@@ -72,7 +59,7 @@ inline SpeedRange speed_range(const Span& span, const Moment& from, const Moment
 /// In flight it is below the limit while the vertical speed lies between -r and r.
 inline float share_faster(const Span& span, float limit, const Moment& from, const Moment& to) {
   const float share = to.share - from.share;
-  if (span.plan_speed_squared == 0.0F) {
+  if (is_slide(span)) {
     const SpeedRange speed = speed_range(span, from, to);
     return share * (speed.high - limit) / (speed.high - speed.low);
   }

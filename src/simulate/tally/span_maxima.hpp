@@ -1,19 +1,21 @@
 #pragma once
 #include <algorithm>
+#include <cmath>
 
-#include "talus/physics/path.hpp"
+#include "talus/physics/span_speed.hpp"
 #include "talus/simulate/tally/quantities.hpp"
 
 namespace talus {
 
-/// The motion at a share of the way along a span.
+/// The motion at a share of the way along a span. `rise`: vertical speed of a flight, speed of a slide.
 struct Moment {
   float share, height, rise;
 };
 
 inline Moment moment_of(const Span& span, float share) {
-  return {share, span.height_from + share * (span.height_to - span.height_from - span.bend * (1.0F - share)),
-          span.rise_from + (span.rise_to - span.rise_from) * share};
+  const float height = span.height_from + share * (span.height_to - span.height_from - span.bend * (1.0F - share));
+  if (is_slide(span)) return {share, height, static_cast<float>(std::sqrt(speed_squared_at(span, share)))};
+  return {share, height, span.rise_from + (span.rise_to - span.rise_from) * share};
 }
 
 /// The largest clearance on a part of a span [m]: at an end, or at the apex if the block rises from the first end and
@@ -25,10 +27,14 @@ inline float highest(const Span& span, const Moment& from, const Moment& to) {
   return apex ? top : std::max(from.height, to.height);
 }
 
-/// Raises maxima to those of a part of a span. The speed is largest at an end.
+/// The largest square of the speed on a part of a span [m^2/s^2]: at an end.
+inline float largest_speed_squared(const Span& span, const Moment& from, const Moment& to) {
+  return span.plan_speed_squared + std::max(from.rise * from.rise, to.rise * to.rise);
+}
+
+/// Raises maxima to those of a part of a span.
 inline void raise(Maxima& maxima, const Span& span, const Moment& from, const Moment& to) {
-  const float rise_squared = std::max(from.rise * from.rise, to.rise * to.rise);
-  maxima.raise({span.plan_speed_squared + rise_squared, highest(span, from, to)});
+  maxima.raise({largest_speed_squared(span, from, to), highest(span, from, to)});
 }
 
 }  // namespace talus

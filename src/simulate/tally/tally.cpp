@@ -43,13 +43,14 @@ std::size_t cell_in_region(int column, int row) {
   return static_cast<std::size_t>(row % kRegionSide * kRegionSide + column % kRegionSide);
 }
 
-/// Counting sort of visits by cell; visits of one cell keep their order.
-std::vector<Visit> sorted_by_cell(const std::vector<Visit>& visits) {
+/// Counting sort by the cells of visits of values that belong to them; those of one cell keep their order.
+template <class Value>
+std::vector<Value> sorted_by_cell(const std::vector<Value>& values, const std::vector<Visit>& visits) {
   std::array<std::uint32_t, kRegionCells + 1> start{};
   for (const Visit& visit : visits) ++start[visit.cell + 1U];
   for (std::size_t cell = 0; cell < kRegionCells; ++cell) start[cell + 1] += start[cell];
-  std::vector<Visit> sorted(visits.size());
-  for (const Visit& visit : visits) sorted[start[visit.cell]++] = visit;
+  std::vector<Value> sorted(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) sorted[start[visits[i].cell]++] = values[i];
   return sorted;
 }
 
@@ -171,6 +172,23 @@ void gather(std::span<const Visit> visits, const VisitBatch& batch, CellValues& 
   values.count = n;
 }
 
+/// Sets the energy with rotation of each trajectory, the largest of its visits, as `gather` the other values.
+void gather_totals(std::span<const Visit> visits, std::span<const float> squares, const VisitBatch& batch,
+                   std::vector<float>& totals) {
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < visits.size();) {
+    const std::uint16_t trajectory = visits[i].trajectory;
+    const bool piece = n > 0 && batch.has_pieces() && of_one_block(batch, visits[i - 1].trajectory, trajectory);
+    Maxima largest;
+    for (; i < visits.size() && visits[i].trajectory == trajectory; ++i)
+      largest.speed_squared = std::max(largest.speed_squared, squares[i]);
+    const double mass = batch.trajectories()[trajectory].size.mass;
+    const float total = kQuantityTable[index_of(Quantity::Energy)].value(largest, mass);
+    totals[n - (piece ? 1 : 0)] = piece ? std::max(totals[n - 1], total) : total;
+    n += piece ? 0 : 1;
+  }
+}
+
 }  // namespace
 
 /// The visits of a batch to one cell.
@@ -239,7 +257,10 @@ std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const 
   TALUS_EXPECT(index < region_count_, "a visit lies in a region of the tally");
   Region& region = regions_[index];
   TALUS_EXPECT(batch.levels() <= 1 + energy_thresholds(), "a batch has no other thresholds than the tally");
-  const std::vector<Visit> sorted = sorted_by_cell(visits.visits);
+  TALUS_EXPECT(visits.totals.size() == (keep_total_ ? visits.visits.size() : 0), "each visit has its total energy");
+  const std::vector<Visit> sorted = sorted_by_cell(visits.visits, visits.visits);
+  std::vector<float> sorted_totals;
+  if (keep_total_) sorted_totals = sorted_by_cell(visits.totals, visits.visits);
   const std::span<const Visit> all(sorted);
   std::vector<Group> groups;
   for (std::size_t i = 0; i < all.size();) {
@@ -252,7 +273,9 @@ std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const 
   ReachOf reach(batch, index);
   CellValues values;
   values.keep_stakes = hazard_ != nullptr;
+  values.keep_totals = keep_total_;
   if (hazard_) region.make_hazards();
+  if (keep_total_) region.make_totals();
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (i + 16 < groups.size()) fetch(&region.records[groups[i + 16].record], sizeof(CellRecord));
     if (i + 8 < groups.size())
@@ -261,9 +284,15 @@ std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const 
       const std::size_t soon = groups[i + 8].record;
       fetch(region.lengths.data() + soon * energy_thresholds(), sizeof(std::int64_t));
       if (hazard_) fetch(region.hazards[soon].lengths().data(), 128);
+      if (keep_total_) fetch(region.totals[soon].histogram.counts(), 128);
     }
     CellRecord& record = region.records[groups[i].record];
     gather(groups[i].visits, batch, values, record, reach);
+    if (keep_total_) {
+      const auto first = static_cast<std::size_t>(groups[i].visits.data() - sorted.data());
+      gather_totals(groups[i].visits, std::span(sorted_totals).subspan(first), batch, values.totals);
+      region.totals[groups[i].record].add({values.totals.data(), values.count});
+    }
     const PerQuantity<float> largest = record.add(values);
     count_exceedances(region.exceedances.data() + groups[i].record * threshold_count_, values, largest);
     if (hazard_) region.hazards[groups[i].record].add(hazard_->rules, values.of(Quantity::Energy), values.stakes);
@@ -330,6 +359,12 @@ const HazardCell* Tally::hazard(int column, int row) const {
   return slot == 0 ? nullptr : &region.hazards[slot - 1U];
 }
 
+const EnergyTotal* Tally::energy_total(int column, int row) const {
+  if (!keep_total_) return nullptr;
+  const Region& region = region_of(column, row);
+  return &region.totals[region.slot[cell_in_region(column, row)] - 1U];
+}
+
 const std::uint32_t* Tally::exceedances(int column, int row) const {
   const Region& region = region_of(column, row);
   return region.exceedances.data() + (region.slot[cell_in_region(column, row)] - 1U) * threshold_count_;
@@ -352,6 +387,7 @@ void Tally::save(std::size_t index, ByteWriter& out) const {
     region.records[record].save(out);
     for (std::size_t i = 0; i < threshold_count_; ++i) out.put(region.exceedances[record * threshold_count_ + i]);
     for (std::size_t i = 0; i < energy_thresholds(); ++i) out.put(region.lengths[record * energy_thresholds() + i]);
+    if (keep_total_) region.totals[record].save(out);
     if (hazard_) region.hazards[record].save(out);
   }
 }
@@ -360,7 +396,7 @@ void Tally::take(std::size_t index, ByteWriter& out) {
   save(index, out);
   Region& region = regions_[index];
   region.slot = {}, region.exceedances = {}, region.lengths = {};
-  region.records.clear(), region.hazards.clear();
+  region.records.clear(), region.totals.clear(), region.hazards.clear();
 }
 
 void Tally::merge(std::size_t index, ByteReader& in) {
@@ -375,6 +411,10 @@ void Tally::merge(std::size_t index, ByteReader& in) {
       region.exceedances[record * threshold_count_ + i] += in.get<std::uint32_t>();
     for (std::size_t i = 0; i < energy_thresholds(); ++i)
       region.lengths[record * energy_thresholds() + i] += in.get<std::int64_t>();
+    if (keep_total_) {
+      region.make_totals();
+      region.totals[record].merge(EnergyTotal::restored(in));
+    }
     if (!hazard_) continue;
     region.make_hazards();
     region.hazards[record].merge(HazardCell::restored(in));

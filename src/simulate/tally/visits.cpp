@@ -34,6 +34,7 @@ void VisitBatch::clear() {
     } else {
       region->second.visits.clear();  // keeps its memory for the next batch
       region->second.lengths.clear();
+      region->second.totals.clear();
       ++region;
     }
   }
@@ -60,14 +61,14 @@ void VisitBatch::add(const Path& path, BlockSize size, std::uint32_t source, std
   std::size_t from = 0;
   for (const Broken& broken : path.breaks) {
     begin({size, source, reach, piece});
-    add(spans.subspan(from, broken.span - from));
+    add(path, from, broken.span);
     from = broken.span;
     size = broken.body;
     piece = true;
   }
   if (from < spans.size() || path.breaks.empty()) {  // otherwise it stopped where it broke: its last span is above
     begin({size, source, std::move(reach), piece});
-    add(spans.subspan(from));
+    add(path, from, spans.size());
   }
   if (region_ == nullptr) return;
   Visit& last = region_->visits.back();
@@ -76,6 +77,34 @@ void VisitBatch::add(const Path& path, BlockSize size, std::uint32_t source, std
   last.left = path.end == End::Left ? 1 : 0;
   close_visit();
   region_ = nullptr;
+}
+
+/// Adds the spans [from, to) of a path, for the energy with rotation spin by spin.
+void VisitBatch::add(const Path& path, std::size_t from, std::size_t to) {
+  const std::span<const Span> spans(path.spans);
+  if (!keep_total_) {
+    add(spans.subspan(from, to - from));
+    return;
+  }
+  const BlockSize& size = trajectories_.back().size;
+  const Block body{size.diameter, size.mass};
+  auto spin = std::ranges::upper_bound(path.spins, from, {}, &SpinFrom::span);  // the first one after `from`
+  while (from < to) {
+    rotation_ = spin == path.spins.begin()
+                    ? 0.0F
+                    : static_cast<float>(2e3 / body.mass * body.rotational_energy(std::prev(spin)->spin));
+    const std::size_t until = spin == path.spins.end() ? to : std::min(to, spin->span);
+    add(spans.subspan(from, until - from));
+    from = until;
+    while (spin != path.spins.end() && spin->span <= from) ++spin;
+  }
+}
+
+/// Raises the energy with rotation of the current visit to its largest value on a part of a span: the speed is largest
+/// at an end, the spin is constant.
+void VisitBatch::raise_total(const Span& span, const Moment& from, const Moment& to) {
+  float& total = region_->totals.back();
+  total = std::max(total, rotation_ + largest_speed_squared(span, from, to));
 }
 
 void VisitBatch::add(std::span<const Span> spans) {
@@ -88,6 +117,7 @@ void VisitBatch::add(std::span<const Span> spans) {
     float* const pure = level < here_.size() ? &here_[level] : nullptr;
     const auto count = [&](Visit& visit, const Moment& from, const Moment& to) {
       raise(visit, span, from, to);
+      if (keep_total_) raise_total(span, from, to);
       if (pure != nullptr)
         *pure += length * (to.share - from.share);
       else
@@ -208,6 +238,7 @@ Visit& VisitBatch::new_visit(int column, int row) {
   }
   const auto cell = static_cast<std::uint16_t>(row % kRegionSide * kRegionSide + column % kRegionSide);
   region_->visits.push_back({{}, cell, static_cast<std::uint16_t>(trajectories_.size() - 1), 0, 0, 0, 0, 0, 0, 0.0F});
+  if (keep_total_) region_->totals.push_back(0.0F);
   ++size_;
   return region_->visits.back();
 }

@@ -106,6 +106,37 @@ TEST(HazardMaps, ACurveForEveryFieldOfTheMatrix) {
     EXPECT_EQ(values[values.size() - 12 + field], field == 5 ? 1.0 : 0.0) << field;
 }
 
+/// A cell passed with six energies, of which four lie beside 30 and 64 kJ: its curve is a staircase.
+TEST(HazardMaps, HazardCurveOfSixEnergies) {
+  const double unit = 0x1p-40;
+  const WeightScale scale{unit, 0x1p-60, 1.0, static_cast<std::int64_t>(0.05 / unit), 1000, false};
+  const HazardRules rules{EnergyBins({30.0, 300.0}), scale};
+  const std::vector<float> passed{10.0F, 29.9F, 30.1F, 63.9F, 64.1F, 1000.0F};
+  const std::vector<double> often{0.05, 0.02, 0.01, 0.005, 0.002, 0.001};
+  HazardCell cell;
+  std::vector<Stake> stakes;
+  for (const double f : often) stakes.push_back({static_cast<std::int64_t>(f / unit), 0, 10});
+  cell.add(rules, passed, stakes);
+  HazardSurvey survey(test::grid_of(2, 1, 2.0, 2.0), rules, {}, {}, true);
+  survey.set_row(0, {true, true}, std::vector<HazardAt>{{0, cell, false}}, 1);
+  const std::vector<Map> maps = make_hazard_maps(survey);
+  const auto map = std::ranges::find(maps, "hazard_curves", &Map::name);
+  ASSERT_NE(map, maps.end());
+  const std::vector<double> energies = energies_of_curves(rules, {});
+  EXPECT_THAT(energies, testing::IsSupersetOf({0.0, 1.0, 8.0, 16.0, 30.0, 64.0, 128.0, 300.0, 131072.0}));
+  ASSERT_EQ(map->bands.size(), energies.size());
+  std::vector<double> values(2 * energies.size());
+  map->fill_row(0, values);
+  for (std::size_t i = 0; i < energies.size(); ++i) {
+    double expected = 0.0;
+    for (std::size_t k = 0; k < passed.size(); ++k) expected += passed[k] > energies[i] ? often[k] : 0.0;
+    EXPECT_NEAR(values[2 * i], expected, 1e-8) << energies[i];
+    EXPECT_EQ(values[2 * i + 1], 0.0) << "nothing passes the other cell";
+  }
+  for (const HazardMap& other : hazard_maps_of(rules, {}))
+    EXPECT_NE(other.map.name, "hazard_curves") << "not asked for";
+}
+
 TEST(HazardMaps, ThreeSourcesOnAPlane) {
   const Scenario s = three_sources();
   Tally tally(s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds);

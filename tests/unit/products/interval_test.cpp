@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "support/scenes.hpp"
+
 namespace talus {
 namespace {
 
@@ -66,6 +68,48 @@ TEST(ProbabilityBounds,
   EXPECT_NEAR(bounds.low, p - 1.959964 * error, 0.01 * error);
   EXPECT_NEAR(bounds.high, p + 1.959964 * error, 0.01 * error);
   EXPECT_NEAR(probability_bounds(0, 1'000'000'000, 0.95).high, -std::log(0.025) / n, 1e-6 * 3.69 / n);
+}
+
+/// Share of 4000 repetitions in which the bounds hold the mean probability of the source cells that hit.
+struct Coverage {
+  double of_bounds, of_simple_lower_bound;
+};
+Coverage coverage_of_reached(int sources, std::uint64_t trials, double probability) {
+  constexpr int kRepetitions = 4000;
+  test::Numbers numbers(5);
+  int covered = 0, simple = 0;
+  for (int repetition = 0; repetition < kRepetitions; ++repetition) {
+    std::uint64_t hits = 0, reaching = 0;
+    double sum = 0.0;
+    for (int source = 0; source < sources; ++source) {
+      const double p = probability * (source % 4 == 0 ? 2.0 : 0.5);
+      std::uint64_t mine = 0;
+      for (std::uint64_t i = 0; i < trials; ++i) mine += numbers.uniform(0.0, 1.0) < p ? 1 : 0;
+      if (mine == 0) continue;
+      hits += mine, ++reaching, sum += p;
+    }
+    const double truth = reaching > 0 ? sum / static_cast<double>(reaching) : 0.0;
+    const Interval bounds = reaching > 0 ? bounds_of_reached(hits, reaching, trials) : Interval{0.0, 1.0};
+    covered += bounds.low <= truth && truth <= bounds.high ? 1 : 0;
+    simple += reaching == 0 || probability_bounds(hits, reaching * trials, 0.95).low <= truth ? 1 : 0;
+  }
+  return {covered / double{kRepetitions}, simple / double{kRepetitions}};
+}
+
+TEST(BoundsOfReached, CoverTheSourceCellsThatWereChosenByTheirHits) {
+  for (const int sources : {1, 5, 60})
+    for (const std::uint64_t trials : {1U, 10U, 100U})
+      for (const double p : {0.001, 0.02, 0.4})
+        EXPECT_GE(coverage_of_reached(sources, trials, p).of_bounds, 0.95 - 2.5 * std::sqrt(0.95 * 0.05 / 4000))
+            << sources << ' ' << trials << ' ' << p;
+  EXPECT_LT(coverage_of_reached(60, 10, 0.001).of_simple_lower_bound, 0.9) << "a bound that forgets the choice fails";
+}
+
+TEST(BoundsOfReached, ByHand) {
+  EXPECT_EQ(bounds_of_reached(3, 3, 100).low, 0.0) << "the hits only say which source cells there are";
+  EXPECT_EQ(bounds_of_reached(10, 1, 10).high, 1.0);
+  EXPECT_NEAR(bounds_of_reached(11, 1, 11).low, 0.6915, 5e-5) << "ten of ten further trials";
+  EXPECT_NEAR(bounds_of_reached(1, 1, 10).high, 0.4450, 5e-5);
 }
 
 }  // namespace

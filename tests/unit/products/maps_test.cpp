@@ -76,16 +76,19 @@ TEST(Maps, NamesAndBandsOfTheDocs) {
   const Scenario s = small();
   const Tally tally = by_hand(s);
   const std::map<std::string, std::size_t> expected{{"impact_probability", 3},
-                                                    {"reach_probability", 1},
-                                                    {"energy_exceedance", 2},
-                                                    {"height_exceedance", 1},
+                                                    {"reach_probability", 3},
+                                                    {"energy_exceedance", 6},
+                                                    {"height_exceedance", 3},
                                                     {"energy", 5},
                                                     {"velocity", 5},
                                                     {"jump_height", 5},
                                                     {"passages", 1},
                                                     {"impacts", 1},
                                                     {"deposits", 1},
-                                                    {"sources", 1}};
+                                                    {"sources", 1},
+                                                    {"release", 1},
+                                                    {"energy_total", 0},
+                                                    {"energy_bounds", 0}};
   std::map<std::string, std::size_t> found;
   for (const Map& map : make_maps(s, tally)) {
     found[map.name] = map.bands.size();
@@ -110,6 +113,8 @@ TEST(Maps, ProbabilitiesByHand) {
   EXPECT_NEAR(maps["impact_probability"][2][at(1, 1)], 0.3789, 5e-5);
   EXPECT_EQ(maps["reach_probability"][0][at(1, 1)], 3.0 / 10.0);  // source 0 alone reaches it
   EXPECT_EQ(maps["reach_probability"][0][at(2, 1)], 3.0 / 20.0);
+  EXPECT_EQ(maps["release"][0][at(1, 1)], 20.0);
+  EXPECT_EQ(maps["release"][0][at(2, 1)], 0.0);
   EXPECT_EQ(maps["energy_exceedance"][0][at(1, 1)], 2.0 / 20.0);  // 18 and 32 above 10 kJ
   EXPECT_EQ(maps["energy_exceedance"][1][at(1, 1)], 0.0);
   EXPECT_EQ(maps["energy_exceedance"][0][at(2, 1)], 2.0 / 20.0);  // 72 and 50
@@ -153,7 +158,9 @@ TEST(Maps, PercentilesOfAHundredTrajectories) {  // 2000 kg: energies 1.06^0 to 
   Tally tally(s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds);
   VisitBatch batch(tally.grid());
   const auto value = [](int i) { return static_cast<float>(std::pow(1.06, i)); };
-  for (int i = 0; i < 100; ++i) batch.add(path_of({stay(1, 1, value(i), value(i))}, End::Left), 2000.0, 0, nullptr);
+  for (int i = 0; i < 100; ++i)
+    batch.add(path_of({stay(1, 1, value(i), value(i))}, End::Left), 2000.0, static_cast<std::uint32_t>(i / 50),
+              nullptr);
   tally.add(batch);
   auto maps = all_maps(s, tally);
   for (const char* name : {"energy", "jump_height"}) {
@@ -177,8 +184,11 @@ TEST(Maps, NothingCrossedAndNoTerrain) {
       const double untouched = bands[band][at(4, 0)];
       if (quantities.contains(name))
         EXPECT_TRUE(std::isnan(untouched)) << name << ' ' << band;
-      else if (name == "impact_probability" && band == 2)
-        EXPECT_NEAR(untouched, 0.1684, 5e-5);           // 0 of 20 (tables)
+      else if ((name == "impact_probability" && band == 2) ||
+               (name == "energy_exceedance" && band % 2 == 1 && band > 2) || (name == "height_exceedance" && band == 2))
+        EXPECT_NEAR(untouched, 0.1684, 5e-5);  // 0 of 20 (tables)
+      else if (name == "reach_probability" && band == 2)
+        EXPECT_NEAR(untouched, 0.3085, 5e-5);           // 0 of the 10 of one source cell
       else if (name == "passage_density" && band == 2)  // 0 of 20 ways as long as the diagonal: -ln 0.025 of them
         EXPECT_NEAR(untouched, 3.688879 * longest / (s.surface.grid().cell_x * s.surface.grid().cell_y * 20.0), 1e-5);
       else
@@ -212,11 +222,17 @@ TEST(Maps, LawsOfASimulatedRun) {
     ASSERT_GE(probability[2][cell], p);
     ASSERT_GE(reach[0][cell], p);
     ASSERT_LE(reach[0][cell], 1.0);
+    ASSERT_LE(reach[1][cell], reach[0][cell]);
+    ASSERT_GE(reach[2][cell], reach[0][cell]);
     for (const char* name : {"energy_exceedance", "height_exceedance"}) {
       double above = p;
-      for (const auto& band : maps[name]) {
-        ASSERT_LE(band[cell], above) << name;
-        above = band[cell];
+      const Bands& bands = maps[name];
+      const std::size_t thresholds = bands.size() / 3;
+      for (std::size_t i = 0; i < thresholds; ++i) {
+        ASSERT_LE(bands[i][cell], above) << name;
+        above = bands[i][cell];
+        ASSERT_LE(bands[thresholds + 2 * i][cell], above) << name;
+        ASSERT_GE(bands[thresholds + 2 * i + 1][cell], above) << name;
       }
     }
     if (p == 0.0) continue;

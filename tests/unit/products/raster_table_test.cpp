@@ -12,7 +12,7 @@
 namespace talus {
 namespace {
 
-const RunCounts kRun{100, 10.0, thresholds_of({30.0}, {1.0})};
+const RunCounts kRun{100, 10.0, thresholds_of({30.0}, {1.0}), 1.0, 1.0, 0.0, true, true};
 
 const RunRaster& raster_of(const std::string& name) {
   for (const RunRaster& raster : run_rasters())
@@ -67,7 +67,8 @@ TEST(RasterTable, EveryRasterOfARunIsInTheDocsAndHasALegend) {
   for (const RunRaster& raster : run_rasters()) {
     const std::vector<Map::Band> bands = bands_of(raster, kRun);
     EXPECT_TRUE(names.insert(raster.map.name).second) << raster.map.name << " twice";
-    EXPECT_FALSE(bands.empty() || raster.map.title.empty() || !raster.rule) << raster.map.name;
+    EXPECT_FALSE(bands.empty() || raster.map.title.empty()) << raster.map.name;
+    EXPECT_NE(raster.rule == nullptr, raster.of_scenario == nullptr) << raster.map.name;
     expect_described("products.md", raster.map, bands, raster.meaning);
     expect_legend(raster.map, bands);
   }
@@ -89,9 +90,11 @@ TEST(RasterTable, EveryQuantityHasARaster) {
 TEST(RasterTable, ABandForEachThreshold) {
   const RunCounts run{100, 10.0, thresholds_of({0.5, 1000.0}, {})};
   const std::vector<Map::Band> energies = bands_of(raster_of("energy_exceedance"), run);
-  ASSERT_EQ(energies.size(), 2U);
+  ASSERT_EQ(energies.size(), 6U);
   EXPECT_EQ(energies[0].name, "P(E > 0.5 kJ)");
   EXPECT_EQ(energies[1].name, "P(E > 1000 kJ)");
+  EXPECT_EQ(energies[2].name, "P(E > 0.5 kJ) lower 95 % bound");
+  EXPECT_EQ(energies[5].name, "P(E > 1000 kJ) upper 95 % bound");
   EXPECT_TRUE(bands_of(raster_of("height_exceedance"), run).empty());
   EXPECT_EQ(bands_of(raster_of("impact_probability"), run).size(), 3U);
 }
@@ -107,9 +110,50 @@ TEST(RasterTable, ACellByHand) {  // 4 of 100 trajectories, of 2 source cells wi
   EXPECT_EQ(values_of("deposits", cell, 1)[0], 3.0);
   EXPECT_EQ(values_of("trapped", cell, 1)[0], 2.0);
   EXPECT_EQ(values_of("exits", cell, 1)[0], 1.0);
-  EXPECT_EQ(values_of("reach_probability", cell, 1)[0], 4.0 / 20.0);
+  EXPECT_EQ(values_of("reach_probability", cell, 3)[0], 4.0 / 20.0);
   EXPECT_EQ(values_of("impact_probability", cell, 3)[0], 4.0 / 100.0);
   EXPECT_EQ(values_of("impacts", cell, 1)[0], 6.0);
+}
+
+TEST(RasterTable, BoundsOfExceedancesByHand) {  // 5 and 0 of 10 trajectories: Geigy Scientific Tables
+  RunCounts run{10, 10.0, thresholds_of({30.0, 300.0}, {})};
+  const std::uint32_t over[] = {5, 0};
+  std::vector<double> values(6);
+  raster_of("energy_exceedance").rule(run)({CellRecord(), over}, values);
+  EXPECT_EQ(values[0], 0.5);
+  EXPECT_EQ(values[1], 0.0);
+  EXPECT_NEAR(values[2], 0.1871, 5e-5);
+  EXPECT_NEAR(values[3], 0.8129, 5e-5);
+  EXPECT_EQ(values[4], 0.0);
+  EXPECT_NEAR(values[5], 0.3085, 5e-5);
+  const std::vector<double> untouched = raster_of("energy_exceedance").untouched(run);
+  ASSERT_EQ(untouched.size(), 6U);
+  EXPECT_EQ(untouched[2], 0.0);
+  EXPECT_NEAR(untouched[5], 0.3085, 5e-5);
+}
+
+TEST(RasterTable, WhatIsWrittenOnRequestOnly) {
+  RunCounts run = kRun;
+  run.energy_total = run.bounds = false;
+  for (const char* name : {"energy_total", "energy_bounds", "velocity_bounds", "jump_height_bounds"}) {
+    EXPECT_TRUE(bands_of(raster_of(name), run).empty()) << name;
+    EXPECT_FALSE(bands_of(raster_of(name), kRun).empty()) << name;
+  }
+}
+
+TEST(RasterTable, PercentileBoundsByHand) {  // 10 values: the median lies between the 2nd and the 9th
+  CellRecord cell;
+  CellValues values;
+  values.make_room(10);
+  values.count = 10;
+  for (std::size_t i = 0; i < 10; ++i)
+    for (auto& list : values.lists) list[i] = static_cast<float>(16 * (i + 1));  // 16, 32, ... are edges of bins
+  cell.add(values);
+  const std::vector<double> bounds = values_of("energy_bounds", cell, 6);
+  EXPECT_EQ(bounds[0], 32.0);
+  EXPECT_EQ(bounds[1], 152.0) << "144 is in the bin from 144 to 152";
+  EXPECT_EQ(bounds[2], 128.0) << "P95: P(at most 7 of 10 below it) = 1.15 %, at most 8: 8.6 %; so the 8th";
+  EXPECT_TRUE(std::isnan(bounds[3])) << "too few for an upper bound";
 }
 
 TEST(RasterTable, HazardMapsHaveTheirNumber) {
@@ -155,6 +199,23 @@ TEST(RasterTable, MapsOfAnObjectSayItsWidth) {
   }
   for (const HazardMap& map : hazard_maps_of(rules, {}, {10.0, 0.0}))
     EXPECT_THAT(map.map.title, testing::HasSubstr("at any height")) << map.map.name;
+}
+
+TEST(RasterTable, HazardCurvesHaveABandPerEnergy) {
+  const HazardRules rules{EnergyBins({2.5, 64.0}), {}};
+  const auto names = [&](const ObjectWidth& object) {
+    std::vector<std::string> of;
+    for (const HazardMap& map : hazard_maps_of(rules, {}, object, true))
+      if (map.map.name == "hazard_curves")
+        for (const Map::Band& band : map.map.bands) of.push_back(band.name);
+    return of;
+  };
+  EXPECT_EQ(names({}).size(), 1U + 18U + 1U) << "0, powers of two from 1 to 131 072, and 2.5; 64 is one of them";
+  EXPECT_EQ(names({})[3], "annual frequency of E > 2.5 kJ (in plan, at any height)");
+  EXPECT_THAT(names({10.0, 0.0}),
+              testing::ElementsAre("annual frequency of E > 0 kJ of an object 10 m wide (in plan, at any height)",
+                                   "annual frequency of E > 2.5 kJ of an object 10 m wide (in plan, at any height)",
+                                   "annual frequency of E > 64 kJ of an object 10 m wide (in plan, at any height)"));
 }
 
 TEST(Quantities, OfACubicMetreOfRockAtTenMetresPerSecond) {  // 2700 kg: 135 kJ

@@ -2,19 +2,23 @@
 """Shows that the hazard of an object of some width does not depend on the cell: the valley at cells of 1, 2 and 5 m.
 
   tools/scripts/studies/width_study.py [--talus build/release/talus] [--work DIR] [--width 10] [--trajectories 50]
-                   [--points 4] [--objects 80] [-o width_study.png]
+                   [--points 4] [--objects 400] [--own-terrain] [-o width_study.png]
 
 The terrain is that of data/valley: its surface, bilinear between the centres of its 4 m cells, read at the centres of
-the cells of each grid. The runs have bilinear patches, too: creases would lie elsewhere on each grid. The blocks start
-at the same points on each grid: `--points` release points of each source cell of the valley, as point sources, each
+cells of 5 m; the surface between these is then read at the centres of the cells of each grid. So the grids of 1 m and 5 m have
+the same surface (each patch of 1 m lies in one of 5 m), and that of 2 m nearly so; with `--own-terrain` each grid reads the
+valley itself, and the coarser is smoother. The runs have bilinear patches: creases would lie elsewhere on each grid. The blocks
+start at the same points on each grid: `--points` release points of each source cell of the valley, as point sources, each
 with its share of the frequency of its cliff. Each run is repeated with another seed: that is the noise to compare with.
 Places are the centres of the 5 m cells (within 0.7 m on the others) that blocks reach.
 
 Table 1, with --width and without: how many of these places have the same class on two maps; the same of those where the
-class is decided on both (band 4 of hazard_class.tif is 0), and of the whole map; the frequency of passages and of passages
-above 300 kJ, as a ratio of the means over all places, and the spread of the differences in units of the standard errors (1
-is noise alone). Table 2: against `--objects`: discs of that width, and the houses of the valley
-with their mean width (perimeter / pi).
+class is decided on both (band 4 of hazard_class.tif is 0); of those of class low or higher on one of them, and of the whole map,
+with `none` and `residual` taken as one (`residual` is any passage rarer than all years of the matrix: more blocks always find
+further such places); the frequency of passages and of passages above 300 kJ, as a ratio of the means over all places, and the
+spread of the differences in units of the standard errors (1 is noise alone). Table 2: against `--objects`, discs of that width at
+`--objects` random places: the map against all hits, and above 300 kJ against the energy where the block enters the disc and the
+largest while it touches it.
 Needs python3-numpy, python3-gdal; with -o python3-matplotlib.
 """
 import argparse
@@ -70,18 +74,23 @@ def system():
     return srs
 
 
-def write_dem(folder, cell):
-    """The surface between the cell centres of the valley, at the centres of other cells."""
-    ds = gdal.Open(str(VALLEY / "dem.tif"))
-    west, size, _, north, _, _ = ds.GetGeoTransform()
-    z = ds.ReadAsArray().astype(float)
-    z[z == ds.GetRasterBand(1).GetNoDataValue()] = np.nan
+def read_between(z, size, cell):
+    """The bilinear surface between the centres of cells of one size, at the centres of cells of another."""
     rows, columns = (int(n * size / cell) for n in z.shape)
     v, u = ((np.arange(n) + 0.5) * cell / size - 0.5 for n in (rows, columns))
     r, c = (np.clip(a.astype(int), 0, n - 2) for a, n in ((v, z.shape[0]), (u, z.shape[1])))
     q, p = np.clip(v - r, 0, 1)[:, None], np.clip(u - c, 0, 1)[None, :]
     at = lambda dr, dc: z[np.ix_(r + dr, c + dc)]
-    out = (1 - q) * ((1 - p) * at(0, 0) + p * at(0, 1)) + q * ((1 - p) * at(1, 0) + p * at(1, 1))
+    return (1 - q) * ((1 - p) * at(0, 0) + p * at(0, 1)) + q * ((1 - p) * at(1, 0) + p * at(1, 1))
+
+
+def write_dem(folder, cell, own_terrain):
+    ds = gdal.Open(str(VALLEY / "dem.tif"))
+    west, size, _, north, _, _ = ds.GetGeoTransform()
+    z = ds.ReadAsArray().astype(float)
+    z[z == ds.GetRasterBand(1).GetNoDataValue()] = np.nan
+    out = read_between(z, size, cell) if own_terrain else read_between(read_between(z, size, 5), 5, cell)
+    rows, columns = out.shape
     file = gdal.GetDriverByName("GTiff").Create(str(folder / "dem.tif"), columns, rows, 1, gdal.GDT_Float32)
     file.SetGeoTransform((west, cell, 0, north, 0, -cell))
     file.SetProjection(ds.GetProjection())
@@ -137,7 +146,7 @@ def make_runs(o):
     for cell in CELLS:
         folder = o.work / f"cell{cell}"
         folder.mkdir(exist_ok=True)
-        write_dem(folder, cell)
+        write_dem(folder, cell, o.own_terrain)
         for seed in SEEDS:
             scenario = folder / f"seed{seed}.toml"
             scenario.write_text(SCENARIO.format(seed=seed, trajectories=o.trajectories, valley=VALLEY))
@@ -176,12 +185,19 @@ class Maps:
             self.error.append((high - low) / 3.92)
 
 
+def same_but_for_residual(one, other):
+    """Share of the same class, `none` and `residual` as one: of the places above these, their number, and the whole map."""
+    c, d = np.maximum(one.classes, 1), np.maximum(other.classes, 1)  # NaN stays
+    hazard, known = (c > 1) | (d > 1), np.isfinite(c) & np.isfinite(d)
+    return np.mean((c == d)[hazard]), int(hazard.sum()), np.mean((c == d)[known])
+
+
 def compare(one, other):
     """Share of the reached places with the same class, and by quantity the ratio of means and the spread."""
     reached = (one.classes > 0) | (other.classes > 0)
     same, decided = one.classes == other.classes, reached & one.decided & other.decided
     figures = [np.mean(same[reached]), int(reached.sum()), np.mean(same[decided]), int(decided.sum()),
-               np.mean(same[np.isfinite(one.classes) & np.isfinite(other.classes)])]
+               *same_but_for_residual(one, other)]
     for quantity in range(2):
         f, g = one.value[quantity], other.value[quantity]
         e = np.hypot(one.error[quantity], other.error[quantity])
@@ -196,12 +212,12 @@ def print_comparisons(o):
         maps = {(cell, seed): Maps(o, cell, seed, width) for cell in CELLS for seed in SEEDS}
         kept[width] = maps
         print(f"\n| {'object of %g m' % width if width else 'the cell as object'} | same class | places | same where decided | places "
-              "| same, whole map | frequency: ratio | spread | above 300 kJ: ratio | spread |\n" + "| --- " * 10 + "|")
+              "| low or higher | places | whole map, residual as none | frequency: ratio | spread | above 300 kJ: ratio | spread |\n" + "| --- " * 12 + "|")
         pairs = [((a, 1), (b, 1)) for a, b in ((1, 2), (2, 5), (1, 5))] + [((c, 1), (c, 2)) for c in CELLS]
         for (a, s), (b, t) in pairs:
-            same, places, sure, told, whole, ratio, spread, ratio300, spread300 = compare(maps[a, s], maps[b, t])
+            same, places, sure, told, low, lows, whole, ratio, spread, ratio300, spread300 = compare(maps[a, s], maps[b, t])
             what = f"{a} m and {b} m" if a != b else f"{a} m, two seeds"
-            print(f"| {what} | {100 * same:.1f} % | {places} | {100 * sure:.1f} % | {told} | {100 * whole:.1f} % | {ratio:.3f} | {spread:.2f} | {ratio300:.3f} | {spread300:.2f} |")
+            print(f"| {what} | {100 * same:.1f} % | {places} | {100 * sure:.1f} % | {told} | {100 * low:.1f} % | {lows} | {100 * whole:.1f} % | {ratio:.3f} | {spread:.2f} | {ratio300:.3f} | {spread300:.2f} |")
     return kept
 
 
@@ -221,29 +237,20 @@ def write_discs(o, maps):
 def objects_of(out):
     rows = list(csv.DictReader(open(out / "objects.csv", encoding="utf-8")))
     number = lambda row, key: float(row[key] or "nan")
-    return [[(number(r, k), (number(r, k + "_upper") - number(r, k + "_lower")) / 3.92) for k in ("frequency", "frequency_300")] for r in rows]
+    return [[(number(r, k), (number(r, k + "_upper") - number(r, k + "_lower")) / 3.92) for k in ("frequency", "entry_300", "frequency_300")] for r in rows]
 
 
 def print_objects(o, maps):
     places = write_discs(o, maps)
-    print("\n| objects against the map | objects | hits: ratio of the sums | spread | above 300 kJ: ratio | spread |\n| --- | --- | --- | --- | --- | --- |")
+    print("\n| objects against the map | objects | hits: ratio of the sums | spread | above 300 kJ at entry: ratio | spread | above 300 kJ at most: ratio | spread |\n| --- | --- | --- | --- | --- | --- | --- | --- |")
     for cell in CELLS:
         here = Maps(o, cell, 1, o.width, "--objects", str(o.work / "discs.gpkg"))
         hit, line = objects_of(here.out), []
-        for quantity in range(2):
-            pairs = [(here.value[quantity][p], h[quantity][0], h[quantity][1]) for p, h in zip(places, hit)]
-            m, f, e = np.transpose([p for p in pairs if np.isfinite(p).all() and p[1] > 0])
-            line += [m.sum() / f.sum(), float(np.sqrt(np.mean(((m - f) / e) ** 2)))]
-        print(f"| discs of {o.width:g} m, cells of {cell} m | {len(places)} | {line[0]:.3f} | {line[1]:.2f} | {line[2]:.3f} | {line[3]:.2f} |")
-    print("\n| house | mean width (m) | hits per year | bounds | map | of it |\n| --- | --- | --- | --- | --- | --- |")
-    out = o.work / "cell2" / "seed1"
-    for name, length, x, y in rows_of(VALLEY / "houses.gpkg", lambda f: (f["name"], f.GetGeometryRef().Boundary().Length(), *f.GetGeometryRef().Centroid().GetPoint_2D())):
-        width = length / math.pi
-        subprocess.run([o.talus, "hazard", str(out), "-q", "--overwrite", "--width", f"{width:.3f}", "--objects", str(VALLEY / "houses.gpkg")], check=True)
-        row = next(r for r in csv.DictReader(open(out / "objects.csv", encoding="utf-8")) if r["name"] == name)
-        value = read(out / "annual_frequency.tif")[int((1171040 - y) / 2), int((x - 2650000) / 2)]
-        f = float(row["frequency"])
-        print(f"| {name} | {width:.1f} | {f:.2e} | {float(row['frequency_lower']):.1e} to {float(row['frequency_upper']):.1e} | {value:.2e} | {value / f if f else float('nan'):.2f} |")
+        for quantity, column in ((0, 0), (1, 1), (1, 2)):
+            pairs = [(here.value[quantity][p], h[column][0], h[column][1]) for p, h in zip(places, hit)]
+            m, f, e = np.transpose([p for p in pairs if np.isfinite(p).all()])
+            line += [m.sum() / f.sum(), float(np.sqrt(np.mean(((m - f) / e)[f > 0] ** 2)))]
+        print(f"| discs of {o.width:g} m, cells of {cell} m | {len(places)} | {line[0]:.3f} | {line[1]:.2f} | {line[2]:.3f} | {line[3]:.2f} | {line[4]:.3f} | {line[5]:.2f} |")
 
 
 def draw(o, kept):
@@ -269,7 +276,8 @@ def main():
     ap.add_argument("--width", type=float, default=10)
     ap.add_argument("--trajectories", type=int, default=25)
     ap.add_argument("--points", type=int, default=4)
-    ap.add_argument("--objects", type=int, default=80)
+    ap.add_argument("--objects", type=int, default=400)
+    ap.add_argument("--own-terrain", action="store_true", help="each grid reads the 4 m terrain itself")
     ap.add_argument("-o", "--out")
     o = ap.parse_args()
     o.work.mkdir(parents=True, exist_ok=True)

@@ -16,6 +16,9 @@ struct MapExtent {
   double west, south, east, north;
 };
 
+/// "east 0 to 300, north 0 to 300.5".
+std::string extent_text(const MapExtent& extent);
+
 /// A rectangle and its system.
 struct MapArea {
   MapExtent extent;

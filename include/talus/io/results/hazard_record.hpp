@@ -19,6 +19,7 @@ struct HazardRecord {
   std::string matrix_file;  ///< empty: the default
   std::uint64_t cells = 0;  ///< cells that any block passes
   double width = 0.0;       ///< of the object [m]; 0: the cell
+  bool curves = false;      ///< hazard_curves.tif was asked for
   std::string objects_file;
   std::string frequency_file;  ///< another weighting than the run's; empty: the run's
   bool replayed = false;       ///< the plan was run again, for the objects or the weighting

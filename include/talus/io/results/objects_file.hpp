@@ -13,13 +13,17 @@ namespace talus::io {
 /// Polygons and lines of a vector file with their attributes, in local metres.
 class ObjectLayer {
  public:
-  /// Reads them in any coordinate system. Throws InputError for points, for features without geometry, and if all lie
-  /// off the DEM.
-  ObjectLayer(const std::string& path, const LoadedScenario& loaded);
+  /// Reads them in any coordinate system. Throws InputError for points, for features without geometry, for a field
+  /// `width` that is no width, and if all lie off the DEM.
+  ///
+  /// @param line_width  of lines without a field `width` [m]
+  ObjectLayer(const std::string& path, const LoadedScenario& loaded, double line_width = 0.0);
   ~ObjectLayer();
 
   const std::vector<HazardObject>& objects() const;
   const std::vector<std::string>& warnings() const;
+  /// How wide the lines are, in words; empty if there are none.
+  std::string lines_text() const;
 
   /// Writes objects.gpkg (the geometries in the system of the DEM, their attributes, and the hazard), objects.csv (the
   /// same as a table), objects_curves.csv (how often each energy is exceeded) and objects_sources.csv (from which

@@ -6,6 +6,7 @@
 
 #include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/products/accuracy.hpp"
+#include "talus/products/energy_lines.hpp"
 #include "talus/simulate/totals.hpp"
 
 namespace talus::io {
@@ -35,6 +36,7 @@ struct RunRecord {
   std::vector<std::string> warnings;  ///< those of the input and those of the result
   std::vector<std::string> files;     ///< written beside run.json
   std::uint64_t touched_cells = 0;
+  EnergyLines energy_lines;
   StageSeconds cpu, wall;
   int threads = 0;  ///< of all processes
   int ranks = 1;    ///< processes

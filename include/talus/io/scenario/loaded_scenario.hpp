@@ -19,6 +19,7 @@ struct LoadedScenario {
   std::vector<Setting> settings;
   std::vector<InputFile> inputs;
   std::vector<Reprojection> reprojections;
+  std::vector<std::string> notes;            ///< what was read, for `run` and `check`; one line each
   std::vector<std::string> warnings;         ///< one line each
   std::shared_ptr<const ScenarioSpec> spec;  ///< content of the file and the flags; null for a profile
 };
@@ -30,6 +31,7 @@ struct RunFlags {
   std::optional<double> diameter;  ///< [m]
   std::optional<std::uint32_t> trajectories;
   std::optional<std::uint64_t> seed;
+  bool energy_total = false, bounds = false;
 };
 
 /// Reads and checks everything. Throws InputError, one line; `all_faults` gets every fault of the settings (for

@@ -48,6 +48,7 @@ struct EffectField : Field<Effects> {
   std::optional<SearchRange> search;
   Typical set_to = Typical::One;      ///< if not One, a search sets the number to this median
   std::array<Variant, 2> variants{};  ///< a search tries each of them
+  bool by_cell = false;               ///< may be a raster instead
 
   bool is_strength() const { return !std::isnan(off); }
 };
@@ -64,6 +65,7 @@ struct EffectEntry {
   EffectArea* (*area_in)(Effects&);        ///< null: it acts everywhere
   std::vector<int>* (*days_in)(Effects&);  ///< null: it acts on all days
   bool leaves_plane;                       ///< it turns blocks sideways (`kLeavesPlane`): not for a profile
+  bool mapped;                             ///< it can have a map of rasters or trees
 
   std::span<const EffectField> fields() const { return std::span(all_fields).first(field_count); }
   /// Key without the name of the effect: "coefficient".
@@ -115,7 +117,15 @@ struct Number {
   std::optional<SearchRange> search = {};
   Typical set_to = Typical::One;
   std::array<Variant, 2> variants = {};
+  bool by_cell = false;
 };
+
+/// A number that may be a raster instead.
+template <auto member>
+constexpr Number<member> by_cell(Number<member> number) {
+  number.by_cell = true;
+  return number;
+}
 
 /// A strength: a number whose value 0 switches it off.
 template <auto member>
@@ -146,7 +156,8 @@ constexpr EffectField lift(const Number<member>& number) {
            [](auto& e, double value) { e.*effect.*member = value; }, number.off},
           number.search,
           number.set_to,
-          number.variants};
+          number.variants,
+          number.by_cell};
 }
 
 /// Makes the entry of one effect. A contradiction in it throws, which is an error at compile time.
@@ -158,10 +169,14 @@ consteval EntryOf<effect> entry(std::string_view name, Sought sought, int turn, 
   }
   , kDated = requires(Effect & e) {
     e.days;
+  }
+  , kMapped = requires(Effect & e) {
+    e.map;
   };
-  static_assert(members_of<Effect>() == sizeof...(members) + (kPlaced ? 1 : 0) + (kDated ? 1 : 0),
-                "each number of an effect must be in its entry; beside numbers it has `where` and `days` only");
-  EntryOf<effect> out{{name, sought, turn, {lift<effect>(numbers)...}, sizeof...(members), nullptr, nullptr, false}};
+  static_assert(members_of<Effect>() == sizeof...(members) + (kPlaced ? 1 : 0) + (kDated ? 1 : 0) + (kMapped ? 1 : 0),
+                "each number of an effect must be in its entry; beside numbers it has `where`, `days` and `map` only");
+  EntryOf<effect> out{
+      {name, sought, turn, {lift<effect>(numbers)...}, sizeof...(members), nullptr, nullptr, false, kMapped}};
   if constexpr (kPlaced) out.area_in = [](auto& e) -> EffectArea* { return &(e.*effect).where; };
   if constexpr (kDated) out.days_in = [](auto& e) -> std::vector<int>* { return &(e.*effect).days; };
   out.leaves_plane = requires {

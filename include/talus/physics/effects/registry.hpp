@@ -53,9 +53,10 @@ inline constexpr std::tuple kEntries{
             {"vegetation-drag.height", "m", "of the stand above the ground", 0.0, 60.0, kAbove})),
     entry<&Effects::forest_stems>(
         "forest-stems", Sought::InZones, 2,
-        strength<&ForestStems::density>({"forest-stems.density", "1/ha", "stems per hectare", 0.0, 10000.0},
-                                        SearchRange{.lower = 0.0, .upper = 3000.0, .noticed = 100.0}),
-        manner<&ForestStems::diameter>({"forest-stems.diameter", "m", "of the stems at breast height", 0.01, 3.0}),
+        by_cell(strength<&ForestStems::density>({"forest-stems.density", "1/ha", "stems per hectare", 0.0, 10000.0},
+                                                SearchRange{.lower = 0.0, .upper = 3000.0, .noticed = 100.0})),
+        by_cell(
+            manner<&ForestStems::diameter>({"forest-stems.diameter", "m", "of the stems at breast height", 0.01, 3.0})),
         manner<&ForestStems::height>({"forest-stems.height", "m", "of the trees above the ground", 0.0, 60.0, kAbove}),
         manner<&ForestStems::species_factor>(
             {"forest-stems.species_factor", "1", "of the energy that a stem takes", 0.0, 10.0, kAbove})),

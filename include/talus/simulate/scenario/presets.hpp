@@ -18,11 +18,12 @@ struct FittedSizes {
   bool known() const { return !std::isnan(smallest); }
 };
 
-/// A parameter set of the paper. docs/physics.md, "Parameter sets".
+/// A parameter set of the paper (docs/physics.md, "Parameter sets"), or a first guess for the ground of another program
+/// (docs/migration.md).
 struct Preset {
   std::string_view name;  ///< "upper-talus-3d"
   Ground ground;
-  std::string_view source;  ///< the table of the paper
+  std::string_view source;  ///< the table of the paper, or the page of the docs
   std::string_view where;   ///< the ground that it was fitted to
   FittedSizes sizes;
 };
@@ -30,7 +31,8 @@ struct Preset {
 /// The ground of a scenario that names no other.
 inline constexpr std::string_view kDefaultPreset = "upper-talus-3d";
 
-/// All sets, in the order of the paper. The 2D sets have psi_scale = 0: they do not turn a block out of its plane.
+/// All sets, in the order of the paper, then those of other programs. The 2D sets have psi_scale = 0: they do not turn
+/// a block out of its plane.
 std::span<const Preset> presets();
 
 /// The set of this name. Throws InputError with the nearest name and all names.

@@ -73,6 +73,8 @@ struct OutputSettings {
   std::vector<double> height_thresholds{1.0, 2.0, 4.0};  ///< vertical, above the terrain [m], ascending
   std::uint32_t paths = 500;                             ///< trajectories written as vectors
   double passages_below = 0.0;  ///< only passages lower than this count in passage densities [m]; 0: at any height
+  bool energy_total = false;    ///< the energy with rotation is kept per cell
+  bool bounds = false;          ///< bounds of percentiles are written
 };
 
 /// All settings and data of a run: built by `make_scenario`, then constant. Everything is on one grid, in local metres.

@@ -13,11 +13,27 @@ namespace talus {
 struct CellValues {
   PerQuantity<std::vector<float>> lists;
   std::vector<Stake> stakes;  ///< of each trajectory, if `keep_stakes`
-  bool keep_stakes = false;
+  std::vector<float> totals;  ///< energy with rotation of each trajectory [kJ], if `keep_totals`
+  bool keep_stakes = false, keep_totals = false;
   std::size_t count = 0;
 
   void make_room(std::size_t n);
   std::span<const float> of(Quantity quantity) const { return {lists[quantity].data(), count}; }
+};
+
+/// The energy with rotation of the trajectories that cross a cell. Kept on request, beside the record of the cell.
+struct EnergyTotal {
+  float maximum = 0.0F;  ///< [kJ]
+  std::int64_t sum = 0;  ///< fixed point, in units of the energy of the table of quantities
+  LogHistogram histogram;
+
+  EnergyTotal() = default;
+  explicit EnergyTotal(MemoryPolicy memory) : histogram(memory) {}
+  double mean() const;
+  void add(std::span<const float> values);
+  void merge(const EnergyTotal& other);
+  void save(ByteWriter& out) const;
+  static EnergyTotal restored(ByteReader& in);
 };
 
 /// The sums of one cell. Only integer sums, maxima and histograms: equal bits in any order of the trajectories.

@@ -47,6 +47,16 @@ class LogHistogram {
   /// returned value is below 1.0625 * m. 0 if nothing was counted.
   double percentile(double share) const;
 
+  /// A bin with what it holds.
+  struct Bin {
+    double low = 0.0, high = 0.0;  ///< edges: low <= value < high
+    double below = 0.0;            ///< number of values in lower bins
+    double count = 0.0;
+    bool lowest = false;  ///< the values in it may also be smaller than `low`
+  };
+  /// The bin of the k-th smallest value. @param k  1 to count()
+  Bin bin_of(double k) const;
+
  private:
   static constexpr int kFew = 5;
 
@@ -66,6 +76,7 @@ class LogHistogram {
   void cover(int low_key, int high_key);
   void spill(int low_key, int high_key);
   void widen(std::uint8_t width);
+  LogHistogram spilled() const;
 
   MemoryPolicy memory_;
   unsigned char* counts_ = nullptr;  // null while there are few values

@@ -25,6 +25,12 @@ class Tally {
 
   /// Counts annual frequencies by energy too; call it before the first batch. Trajectories must then have stakes.
   void keep_hazard(AnnualWeights weights);
+  /// Keeps the energy with rotation per cell, too; call it before the first batch. Batches must then keep it.
+  void keep_energy_total() { keep_total_ = true; }
+  bool keeps_energy_total() const { return keep_total_; }
+  /// The energy with rotation of a cell with a record; nullptr without `keep_energy_total`.
+  const EnergyTotal* energy_total(int column, int row) const;
+
   /// Sets the number of rounds that were added: the weight of each trajectory is divided by it.
   void set_rounds(std::uint32_t rounds);
   const AnnualWeights* weights() const { return hazard_ ? &hazard_->weights : nullptr; }
@@ -88,6 +94,7 @@ class Tally {
   std::size_t threshold_count_;             // of all quantities
   int regions_across_ = 0;
   std::size_t region_count_ = 0;
+  bool keep_total_ = false;
   std::unique_ptr<Hazard> hazard_;  // null: hazard is not counted
   std::unique_ptr<Region[], EndRegions> regions_;
 };

@@ -44,6 +44,7 @@ struct Moment;
 struct RegionVisits {
   std::vector<Visit> visits;
   std::vector<float> lengths;  ///< of mixed visits: all counted parts, then those above each threshold [m]
+  std::vector<float> totals;   ///< largest `total` of each visit [m^2/s^2]; empty if it is not kept
 };
 
 /// Mass and diameter of a block; a diameter is needed for hazard only.
@@ -75,6 +76,9 @@ class VisitBatch {
   void add(const Path& path, BlockSize size, std::uint32_t source, std::shared_ptr<SourceReach> reach,
            bool piece = false);
 
+  /// Keeps the largest energy with rotation of each visit, too; call it before the first path.
+  void keep_energy_total() { keep_total_ = true; }
+
   /// Sets the stake of the trajectories that are added from here on.
   void set_stake(const Stake& stake) { stake_ = stake; }
 
@@ -84,6 +88,7 @@ class VisitBatch {
   const std::vector<Trajectory>& trajectories() const { return trajectories_; }
   const std::unordered_map<std::size_t, RegionVisits>& regions() const { return regions_; }
   std::size_t levels() const { return lengths_.levels(); }
+  bool keeps_energy_total() const { return keep_total_; }
   bool has_pieces() const { return pieces_; }
 
  private:
@@ -95,7 +100,9 @@ class VisitBatch {
   }
   Visit& new_visit(int column, int row);
   void begin(Trajectory trajectory);
+  void add(const Path& path, std::size_t from, std::size_t to);
   void add(std::span<const Span> spans);
+  void raise_total(const Span& span, const Moment& from, const Moment& to);
   void add_impacts(std::uint32_t impacts);
   float plan_length(const Span& span) const;
   void lengthen(const Span& span, float length, const Moment& from, const Moment& to);
@@ -113,6 +120,8 @@ class VisitBatch {
   Stake stake_;
   std::size_t size_ = 0;
   bool pieces_ = false;
+  bool keep_total_ = false;
+  float rotation_ = 0.0F;           // twice the energy of the current rotation per mass [m^2/s^2]
   int column_ = -1, row_ = -1;      // cell of the current visit
   RegionVisits* region_ = nullptr;  // its last visit is the current one
   std::size_t region_index_ = 0;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include "support/slopes.hpp"
 
@@ -12,12 +13,12 @@ namespace {
 using test::block_at;
 using test::Hillside;
 using test::Moments;
+using test::same_bits;
 
 TEST(ForestStems, CapacityShareAndRateOfTheLiterature) {
   const double table[][2] = {{20, 39e3}, {30, 100e3}, {40, 194e3}, {50, 325e3}, {60, 496e3}};  // Dorren & Berger
-  for (const auto& [dbh, energy] : table)
-    EXPECT_NEAR(stem_capacity({.diameter = dbh / 100.0, .where = {}}), energy, 0.005 * energy) << dbh;
-  EXPECT_NEAR(stem_capacity({.diameter = 0.3, .species_factor = 1.6, .where = {}}), 1.6 * 99.9e3, 500.0);
+  for (const auto& [dbh, energy] : table) EXPECT_NEAR(stem_capacity(dbh / 100.0, 1.0), energy, 0.005 * energy) << dbh;
+  EXPECT_NEAR(stem_capacity(0.3, 1.6), 1.6 * 99.9e3, 500.0);
   EXPECT_NEAR(stem_share(0.0), 0.98, 1e-3);
   EXPECT_NEAR(stem_share(0.58), -0.046 + 1.026 / 2.0, 1e-12);
   EXPECT_EQ(stem_share(1.0), 0.0);
@@ -25,7 +26,7 @@ TEST(ForestStems, CapacityShareAndRateOfTheLiterature) {
     EXPECT_EQ(stem_share(e), stem_share(-e));
     EXPECT_LE(stem_share(e), stem_share(e + 0.01));
   }
-  EXPECT_NEAR(mean_way_between_stems({.density = 400.0, .diameter = 0.35, .where = {}}, 1.0), 18.5, 0.05);
+  EXPECT_NEAR(mean_way_between_stems({.density = 400.0, .diameter = 0.35}, 1.0), 18.5, 0.05);
 }
 
 TEST(ForestStems, TheSpeedLosesTheEnergyAndTheWayTurnsAway) {
@@ -102,6 +103,73 @@ TEST(ForestStems, AboveTheTreesNoneIsMet) {
     if (v.event == Event::Stem) {
       ASSERT_LT(v.motion.position.z(), 1020.0 + 1e-9);
     }
+}
+
+/// A forest whose cells are all alike is a uniform stand, bit for bit.
+TEST(ForestStems, EqualCellsAreAUniformStand) {
+  Hillside uniform(0.8), cells(0.8);
+  uniform.cover.grounds[0] = cells.cover.grounds[0] = {.theta_scale = 0.4, .psi_scale = 0.3};
+  uniform.effects.forest_stems = {.density = 300.0, .diameter = 0.25, .where = {}};  // both are floats
+  cells.effects.forest_stems = {.density = 300.0, .diameter = 0.1, .where = {}};
+  auto map = std::make_shared<ForestMap>();
+  map->density = Raster<float>(cells.surface.grid(), 300.0F);
+  map->diameter = Raster<float>(cells.surface.grid(), 0.25F);
+  cells.effects.forest_stems.map = map;
+  int stems = 0;
+  for (std::uint32_t block = 0; block < 200; ++block) {
+    const Release release = block_at({20.0, 400.0, 990.0}, {3.0, 0.5, 0.0}, 1.0, block);
+    const Path path = uniform.run(release);
+    for (const Vertex& v : path.vertices) stems += v.event == Event::Stem ? 1 : 0;
+    ASSERT_TRUE(same_bits(path, cells.run(release))) << block;
+  }
+  EXPECT_GT(stems, 500);
+}
+
+/// Cells in a chequer of densities and thicknesses: the way to the first stem has the distribution whose rate is that
+/// of the cell, P(beyond) = exp(-sum of length / mean way), at every cell edge.
+TEST(ForestStems, TheRateIsThatOfEachCell) {
+  Hillside hill(0.0, 8.0, 400);
+  auto map = std::make_shared<ForestMap>();
+  map->density = Raster<float>(hill.surface.grid(), 0.0F);
+  map->diameter = Raster<float>(hill.surface.grid(), 0.5F);
+  const auto density_of = [](int column) { return column % 3 == 0 ? 0.0 : column % 3 == 1 ? 200.0 : 600.0; };
+  const auto diameter_of = [](int column) { return column % 2 == 0 ? 0.5 : 1.0; };
+  for (int row = 0; row < 400; ++row)
+    for (int column = 0; column < 400; ++column) {
+      map->density.at(column, row) = static_cast<float>(density_of(column));
+      map->diameter.at(column, row) = static_cast<float>(diameter_of(column));
+    }
+  hill.effects.forest_stems = {
+      .density = 600.0, .height = 1e9, .species_factor = 1e-9, .where = {}, .map = std::move(map)};
+  constexpr int kBlocks = 6000, kEdges = 12;
+  std::array<int, kEdges> beyond{};
+  for (std::uint32_t block = 0; block < kBlocks; ++block) {
+    const Path path = hill.run(block_at({24.0, 1600.0, 3000.0}, {80.0, 0.0, 0.0}, 1.2, block));
+    const auto stem = std::find_if(path.vertices.begin(), path.vertices.end(),
+                                   [](const Vertex& v) { return v.event == Event::Stem; });
+    ASSERT_NE(stem, path.vertices.end());
+    for (int edge = 0; edge < kEdges; ++edge) beyond[edge] += stem->motion.position.x() > 8.0 * (4 + edge) ? 1 : 0;
+  }
+  double depth = 0.0;
+  for (int edge = 0; edge < kEdges; ++edge) {
+    depth += 8.0 * 1e-4 * density_of(3 + edge) * (diameter_of(3 + edge) + 1.2);
+    const double p = std::exp(-depth);
+    EXPECT_NEAR(beyond[edge] / double{kBlocks}, p, 5.0 * std::sqrt(p * (1.0 - p) / kBlocks) + 1e-12) << edge;
+  }
+}
+
+/// Where the raster has no forest the flight is the plain one, bit for bit.
+TEST(ForestStems, CellsWithoutAForestKeepEveryBit) {
+  Hillside plain(0.8), acting(0.8);
+  plain.acting = false;
+  auto map = std::make_shared<ForestMap>();
+  map->density = Raster<float>(acting.surface.grid(), 0.0F);
+  map->density.at(199, 199) = 800.0F;
+  acting.effects.forest_stems = {.density = 800.0, .where = {}, .map = std::move(map)};
+  for (std::uint32_t block = 0; block < 50; ++block) {
+    const Release release = block_at({20.0, 200.0, 990.0}, {3.0, 0.5, 0.0}, 1.0, block);
+    ASSERT_TRUE(same_bits(plain.run(release), acting.run(release))) << block;
+  }
 }
 
 }  // namespace

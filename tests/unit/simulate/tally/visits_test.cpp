@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "support/paths.hpp"
 #include "support/scenarios.hpp"
 #include "talus/physics/flight.hpp"
 #include "talus/simulate/plan/plan.hpp"
@@ -63,6 +64,14 @@ Path flight(const Surface& surface, const Vec3& position, const Vec3& velocity, 
   path.end = fly(surface, motion, at, false, path) == Outcome::Landed ? End::Stopped : End::Left;
   if (duration != nullptr) *duration = motion.time;
   return path;
+}
+
+TEST(Visits, InASlideTheSquareOfTheSpeedIsLinearInTheWay) {  // 10 to 20 m/s; the edge of the cells lies half way
+  const Span slide{{1, 1}, 0.0F, 0.25F, 1.0F, 0.25F, 0.0F, 0.0F, 0.0F, 0.0F, 10.0F, 20.0F, 0};
+  const std::map<Cell, Seen> cells = seen(test::path_of({slide}, End::Left), test::grid_of(8, 8, 1.0, 1.0));
+  ASSERT_EQ(cells.size(), 2U);
+  EXPECT_NEAR(cells.begin()->second.speed_squared, 0.5 * (100.0 + 400.0), 1e-4);
+  EXPECT_NEAR(cells.rbegin()->second.speed_squared, 400.0, 1e-4);
 }
 
 /// Times in (0, duration) at which the flight meets a line of the grid in one direction, centres included.

@@ -1,0 +1,61 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dataset.hpp"
+#include "talus/terrain/grid.hpp"
+
+namespace talus::io {
+
+/// The pixel of a raster that holds a place.
+class PixelFinder {
+ public:
+  /// Throws InputError if the raster does not say where it lies.
+  PixelFinder(GDALDataset& dataset, const std::string& path);
+
+  double column(double x, double y) const;
+  double row(double x, double y) const;
+
+ private:
+  std::array<double, 6> inverse_{};
+};
+
+/// Reads single pixels of the first band through a cache of the last tiles of the file.
+class PixelReader {
+ public:
+  PixelReader(GDALDataset& dataset, std::string path);
+
+  /// The value of the pixel as stored; NaN if there is none.
+  double at(double column, double row);
+
+ private:
+  static constexpr int kSide = 256;
+  static constexpr std::size_t kTiles = 64;  // 32 MB
+
+  void read(int x, int y, std::vector<double>& values);
+
+  GDALRasterBand& band_;
+  std::string path_;
+  bool masked_;
+  std::map<std::pair<int, int>, std::vector<double>> tiles_;  // by row and column of tiles
+  std::pair<int, int> key_{-1, -1};
+  const double* tile_ = nullptr;
+  std::vector<std::uint8_t> mask_ = std::vector<std::uint8_t>(std::size_t{kSide} * kSide);
+  GdalMessages messages_;
+};
+
+/// Visits the cells of a grid in squares, so that a raster in any direction is read part by part.
+template <class Visit>
+void in_squares(const Grid& grid, Visit visit) {
+  constexpr int kSide = 256;
+  for (int top = grid.rows; top > 0; top -= kSide)
+    for (int left = 0; left < grid.columns; left += kSide)
+      for (int row = top - 1; row >= std::max(0, top - kSide); --row)
+        for (int column = left; column < std::min(grid.columns, left + kSide); ++column) visit(column, row);
+}
+
+}  // namespace talus::io

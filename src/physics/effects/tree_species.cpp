@@ -1,0 +1,44 @@
+#include "talus/physics/effects/tree_species.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+namespace talus {
+namespace {
+
+// Silver fir is the reference of Dorren & Berger (2006). The factors of the two groups are those of Rockyfor3D, from
+// memory: docs/effects.md, "forest-stems".
+constexpr std::array<TreeSpecies, 4> kSpecies{{
+    {"silver fir", 1.0},
+    {"abies alba", 1.0},
+    {"conifer", 0.93},
+    {"broadleaf", 1.59},
+}};
+
+std::string plain(std::string_view name) {
+  std::string text(name);
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return c == '_' ? ' ' : std::tolower(c); });
+  return text;
+}
+
+}  // namespace
+
+std::span<const TreeSpecies> tree_species() {
+  return kSpecies;
+}
+
+std::optional<double> factor_of_species(std::string_view name) {
+  const std::string wanted = plain(name);
+  for (const TreeSpecies& species : kSpecies)
+    if (species.name == wanted) return species.factor;
+  return std::nullopt;
+}
+
+std::vector<std::string> names_of_species() {
+  std::vector<std::string> names;
+  for (const TreeSpecies& species : kSpecies) names.emplace_back(species.name);
+  return names;
+}
+
+}  // namespace talus

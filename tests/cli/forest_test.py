@@ -1,0 +1,234 @@
+"""forest-stems from rasters and from lists of trees, through `talus run`, `check` and `merge`."""
+import os
+import unittest
+
+import numpy as np
+from osgeo import gdal, ogr
+
+from results_test import digests
+from support import NORTH, WEST, Case, bands_of, box, heights, system, write_dem, write_features
+
+HEAD = """dem = "dem.tif"
+trajectories = 60
+[sources]
+file = "sources.gpkg"
+[blocks]
+diameter = 0.8
+[effects.forest-stems]
+"""
+CELLS = 60  # of 5 m
+
+
+def rows_of_trees(spacing=4.0):
+    """Trees in rows across the slope, y 120 to 200 m from the lower edge."""
+    return [(x, y) for y in np.arange(120.0, 200.0, spacing) for x in np.arange(60.0 + (y % 8) / 4, 240.0, spacing)]
+
+
+def results(folder):
+    """Digests of all results but the scenario, which names other files."""
+    return {name: digest for name, digest in digests(folder).items() if name != "scenario.toml"}
+
+
+class Forests(Case):
+    def raster(self, name, values, **options):
+        write_dem(self.path(name), np.asarray(values, dtype=np.float32), **options)
+
+    def trees(self, name, trees, header="x,y,diameter,species", more=",0.5,conifer"):
+        lines = [f"{WEST + x},{NORTH - 300.0 + y}{more}" for x, y in trees]
+        return self.write(name, "\n".join([header, *lines]) + "\n")
+
+    def run_forest(self, name, keys, *arguments):
+        self.write(name + ".toml", HEAD + keys)
+        done = self.run_well("run", self.path(name + ".toml"), "-o", self.path(name), *arguments)
+        return done.stderr
+
+    def fails_with(self, keys, *words):
+        self.write("s.toml", HEAD + keys)
+        self.fails(2, *words, arguments=["run", self.path("s.toml"), "-o", self.path("none")])
+        self.assertFalse(os.path.exists(self.path("none")))
+
+    def assert_replays(self, name):
+        self.run_well("run", self.path(name + "/scenario.toml"), "-o", self.path(name + "-again"))
+        self.assertEqual(digests(self.path(name + "-again")), digests(self.path(name)))
+
+    def test_equal_cells_are_the_uniform_stand(self):
+        self.raster("density.tif", np.full((CELLS, CELLS), 600.0))
+        self.raster("dbh.tif", np.full((CELLS, CELLS), 0.25))
+        self.run_forest("uniform", "density = 600\ndiameter = 0.25\n")
+        told = self.run_forest("cells", 'density = "density.tif"\ndiameter = "dbh.tif"\n')
+        self.run_forest("mixed", 'density = "density.tif"\ndiameter = 0.25\n')
+        for name in ("cells", "mixed"):
+            self.assertEqual(results(self.path(name)), results(self.path("uniform")))
+        self.assertIn("forest-stems: forest in 3600 of 3600 cells (9 ha): density 600 stems/ha, diameter 0.25 m", told)
+        record = self.record("cells")
+        roles = {i["role"]: i for i in record["inputs"]}
+        for key in ("density", "diameter"):
+            self.assertEqual(len(roles["effects.forest-stems." + key]["sha256"]), 64)
+        self.assert_replays("cells")
+
+    def test_a_forest_in_cells_acts_there_only(self):
+        density = np.zeros((CELLS, CELLS))
+        density[20:30] = 900.0  # y 150 to 200
+        self.raster("density.tif", np.where(density > 0, density, -9999.0), nodata=-9999.0)
+        plain = self.write("plain.toml", HEAD.replace("[effects.forest-stems]\n", ""))
+        self.run_well("run", plain, "-o", self.path("plain"))
+        told = self.run_forest("forest", 'density = "density.tif"\ndiameter = 0.5\n')
+        self.assertIn("forest in 600 of 3600 cells (1.5 ha)", told)
+        self.assertIn("3000 of 3600 cells of the DEM have no value", told)
+        a, b = (bands_of(self.path(n + "/velocity.tif"))[0] for n in ("plain", "forest"))
+        above, inside = slice(13, 19), slice(26, 30)
+        both = (a[above] > 0) & (b[above] > 0)
+        np.testing.assert_allclose(b[above][both], a[above][both], rtol=0.02)
+        mean = [np.mean(v[inside][v[inside] > 0]) for v in (a, b)]
+        self.assertLess(mean[1], 0.75 * mean[0])
+        self.assert_replays("forest")
+
+    def test_another_grid_and_system_is_taken_pixel_by_pixel(self):
+        fine = np.full((2 * CELLS, 2 * CELLS), 700.0)
+        fine[:, CELLS:] = 0.0  # the eastern half
+        write_dem(self.path("fine.tif"), fine.astype(np.float32), cell=2.5)
+        gdal.Warp(self.path("other.tif"), self.path("fine.tif"), dstSRS="EPSG:21781", xRes=1.0, yRes=1.0)
+        for name in ("fine", "other"):
+            told = self.run_forest(name, f'density = "{name}.tif"\ndiameter = 0.25\n')
+            self.assertIn("forest in 1800 of 3600 cells", told.replace("1799", "1800").replace("1801", "1800"))
+        self.assertEqual([r["role"] for r in self.record("other")["reprojections"]], ["effects.forest-stems.density"])
+
+    def test_a_list_of_trees(self):
+        self.trees("trees.csv", rows_of_trees())
+        plain = self.write("plain.toml", HEAD.replace("[effects.forest-stems]\n", ""))
+        self.run_well("run", plain, "-o", self.path("plain"))
+        told = self.run_forest("trees", 'trees = "trees.csv"\nheight = 25\n', "--threads", "1")
+        self.assertIn(f"forest-stems: {len(rows_of_trees())} trees, diameter 0.5 m", told)
+        self.run_forest("threads", 'trees = "trees.csv"\nheight = 25\n', "--threads", "3")
+        self.assertEqual(digests(self.path("threads")), digests(self.path("trees")))
+        self.assertNotEqual(digests(self.path("trees"))["velocity.tif"], digests(self.path("plain"))["velocity.tif"])
+        a, b = (bands_of(self.path(n + "/velocity.tif"))[0] for n in ("plain", "trees"))
+        inside = slice(26, 36)
+        self.assertLess(np.mean(b[inside][b[inside] > 0]), 0.8 * np.mean(a[inside][a[inside] > 0]))
+        complete = self.path("trees/scenario.toml")
+        with open(complete, encoding="utf-8") as file:
+            text = file.read()
+        self.assertIn("trees = ", text)
+        self.assertNotIn("density = 0", text)
+        self.assert_replays("trees")
+        self.assertIn(",stem", "".join(
+            self.run_well("trace", complete, "--source", "0", "--block", str(block)).stdout for block in range(5)))
+        file = ogr.GetDriverByName("GPKG").CreateDataSource(self.path("trees.gpkg"))  # the same as a layer
+        layer = file.CreateLayer("trees", system(2056), ogr.wkbPoint)
+        layer.CreateField(ogr.FieldDefn("diameter", ogr.OFTReal))
+        layer.CreateField(ogr.FieldDefn("Species", ogr.OFTString))
+        layer.StartTransaction()
+        for x, y in rows_of_trees():
+            tree = ogr.Feature(layer.GetLayerDefn())
+            tree.SetGeometry(ogr.CreateGeometryFromWkt(f"POINT ({WEST + x} {NORTH - 300.0 + y})"))
+            tree.SetField(0, 0.5)
+            tree.SetField(1, "CONIFER")
+            layer.CreateFeature(tree)
+        layer.CommitTransaction()
+        layer = file = None
+        self.run_forest("layer", 'trees = "trees.gpkg"\nheight = 25\n')
+        self.assertEqual(results(self.path("layer")), results(self.path("trees")))
+
+    def test_trees_of_an_included_file_stay_or_are_replaced_but_never_vanish(self):
+        self.trees("trees.csv", rows_of_trees())
+        self.write("stand.toml", '[effects.forest-stems]\ntrees = "trees.csv"\n')
+
+        def scenario(keys):
+            return 'include = "stand.toml"\n' + HEAD + keys
+
+        for keys in ("diameter = 0.5\n", 'zones = ["default"]\n', 'file = "sources.gpkg"\n'):
+            self.write("s.toml", scenario(keys))
+            self.fails(2, keys.split(" ")[0], "must not come with the trees of an included file",
+                       arguments=["run", self.path("s.toml"), "-o", self.path("none")])
+        self.write("s.toml", scenario(""))
+        self.assertIn(f"{len(rows_of_trees())} trees", self.run_well("run", self.path("s.toml"), "-o", self.path("kept")).stderr)
+        self.assert_replays("kept")
+        self.write("s.toml", scenario("density = 600\ndiameter = 0.25\n"))
+        self.assertNotIn(" trees,", self.run_well("run", self.path("s.toml"), "-o", self.path("stand")).stderr)
+        self.run_forest("uniform", "density = 600\ndiameter = 0.25\n")
+        self.assertEqual(results(self.path("stand")), results(self.path("uniform")))
+
+    def test_parts_are_joined_and_a_changed_forest_is_refused(self):
+        self.trees("trees.csv", rows_of_trees())
+        keys = 'trees = "trees.csv"\n'
+        self.run_forest("whole", keys)
+        self.run_forest("one", keys, "--part", "1/2")
+        self.run_forest("two", keys, "--part", "2/2")
+        self.run_well("merge", self.path("merged"), self.path("one"), self.path("two"))
+        self.assertEqual(digests(self.path("merged")), digests(self.path("whole")))
+        self.trees("trees.csv", rows_of_trees()[:-1])
+        self.run_forest("other", keys, "--part", "2/2")
+        done = self.call("merge", self.path("no"), self.path("one"), self.path("other"))
+        self.assertEqual(done.returncode, 2, done.stderr)
+
+    def test_trees_that_are_left_out_are_counted(self):
+        self.write("trees.csv", "x,y,diameter,crown\n" + "".join(
+            f"{x},{y},{d},3\n" for x, y, d in [(WEST + 100, NORTH - 100, 0.3), (WEST + 100, NORTH - 100, 0.4),
+                                               (WEST + 100, NORTH - 90, ""), (WEST - 5, NORTH - 90, 0.3)]))
+        told = self.run_forest("left", 'trees = "trees.csv"\n')
+        for words in ("forest-stems: 1 trees", "1 trees stand off the DEM", "1 trees have no diameter",
+                      "1 trees stand at the very place", "fields that are not read: crown", "all as silver fir"):
+            self.assertIn(words, told)
+        plan = self.run_well("check", self.path("left.toml")).stdout
+        self.assertIn("forest-stems: 1 trees", plan)
+        self.write("trees.csv", f"x,y,diameter,species\n{WEST + 100},{NORTH - 100},0.3,conifer\n{WEST + 100},{NORTH - 90},0.3,\n")
+        self.assertIn("1 features have no species: taken as silver fir",
+                      self.run_forest("unknown", 'trees = "trees.csv"\n', "--overwrite"))
+
+    def test_wrong_input_gets_one_clear_error(self):
+        self.raster("negative.tif", np.full((CELLS, CELLS), -5.0))
+        self.raster("centimetres.tif", np.full((CELLS, CELLS), 30.0))
+        self.raster("bare.tif", np.zeros((CELLS, CELLS)))
+        self.raster("far.tif", np.full((CELLS, CELLS), 300.0), transform=(WEST + 9000, 5.0, 0.0, NORTH, 0.0, -5.0))
+        one = [(100.0, 150.0)]
+        self.trees("thick.csv", one, more=",30,conifer")
+        self.trees("palm.csv", one, more=",0.3,palm")
+        self.trees("off.csv", [(-900.0, 150.0)])
+        self.trees("dbh.csv", one, header="x,y,dbh,species")
+        self.trees("empty.csv", [])
+        write_features(self.path("area.gpkg"), "area", [(box(0, 0, 9, 9), [0.3])], [("diameter", ogr.OFTReal)])
+        for keys, words in {
+                'density = "negative.tif"\n': ["negative.tif: -5 at 26", "must be 0 to 10000 1/ha"],
+                'density = 100\ndiameter = "centimetres.tif"\n': ["centimetres.tif: 30 at 26", "0.01 to 3 m", "centimetres?"],
+                'density = "bare.tif"\n': ["bare.tif: no cell of the DEM has a forest"],
+                'density = "far.tif"\n': ["far.tif: no cell of the DEM has a forest", "3600 of 3600 cells without"],
+                'density = "no.tif"\n': ["s.toml:8: effects.forest-stems.density = 'no.tif'", "no such file"],
+                'diameter = "bare.tif"\n': ["does nothing, must give density"],
+                'density = "dem.tif"\nheight = "dem.tif"\n': ["effects.forest-stems.height"],
+                'trees = "thick.csv"\n': ["field diameter = 30", "0.01 to 3 m", "centimetres?"],
+                'trees = "palm.csv"\n': ["unknown species 'palm'", "broadleaf", "conifer"],
+                'trees = "off.csv"\n': ["off.csv: none of its 1 trees can be used: 1 stand off the DEM"],
+                'trees = "dbh.csv"\n': ["dbh.csv: has no field 'diameter'", "dbh"],
+                'trees = "empty.csv"\n': ["empty.csv"],
+                'trees = "area.gpkg"\n': ["area.gpkg: feature 1: is no point"],
+                'trees = "palm.csv"\ndensity = 100\n': ["effects.forest-stems.density", "must not come with trees"],
+                'trees = "palm.csv"\nzones = ["default"]\n': ["effects.forest-stems.zones", "must not come with trees"],
+        }.items():
+            with self.subTest(keys):
+                self.fails_with(keys, *words)
+
+    def test_a_stand_is_counted_once(self):
+        drag = "[effects.vegetation-drag]\ncoefficient = 100\n"
+        self.trees("trees.csv", [(100.0, 150.0)])
+        self.raster("density.tif", np.eye(CELLS))
+        for keys in ('trees = "trees.csv"\n', 'density = "density.tif"\n'):
+            self.fails_with(keys + drag, "vegetation-drag and forest-stems act at the same place")
+        self.run_forest("both", 'trees = "trees.csv"\n' + drag + "[effects]\nallow_both = true\n")
+        self.assert_replays("both")
+
+
+class Presets(Case):
+    def test_soil_types_of_rockyfor3d(self):
+        told = self.run_well("presets").stdout
+        for soil in range(8):
+            self.assertIn(f"rockyfor3d-{soil} ", told)
+        self.assertIn("none: a first guess", told)
+        done = self.run_well(*self.arguments("r4"), "--preset", "rockyfor3d-4")
+        self.assertIn("rockyfor3d-4 (not known)", done.stderr)
+        self.run_well(*self.arguments("talus"), "--preset", "upper-talus-3d")
+        metres = [self.record(n)["trajectory_metres_plan"] for n in ("r4", "talus")]
+        self.assertLess(metres[0], metres[1])  # docs/migration.md, "Limits"
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,101 @@
+// Energies where a path meets objects, on spans by hand: closed forms.
+#include "products/object_finder.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/scenarios.hpp"
+
+namespace talus {
+namespace {
+
+/// Cells of 10 m: the patch (0, 0) lies between (5, 5) and (15, 15).
+Surface plain() {
+  return Surface(test::terrain(test::grid_of(4, 4, 10.0, 10.0), [](double, double) { return 0.0; }));
+}
+
+/// 10 m to the east through the patch, at 10 m/s in plan; the vertical speed goes from 5 to -5 m/s.
+Span flight() {
+  return {{0, 0}, 0.0F, 0.5F, 1.0F, 0.5F, 3.0F, 3.0F, -1.0F, 100.0F, 5.0F, -5.0F, 0};
+}
+
+/// 2 kg, radius 0.5 m: v^2 in J.
+Block block() {
+  Block body{};
+  body.mass = 2.0;
+  body.diameter = 1.0;
+  return body;
+}
+
+HazardObject wall(double west, double east) {
+  return {{{{{west, 0.0}, {east, 0.0}, {east, 20.0}, {west, 20.0}, {west, 0.0}}}}, {}};
+}
+
+ObjectContact contact_with(const HazardObject& object, const Path& path) {
+  const Surface surface = plain();
+  const std::vector<HazardObject> objects{object};
+  std::vector<ObjectContact> contacts(1);
+  ObjectFinder(surface, objects, 0.5).add(path, block(), contacts);
+  return contacts[0];
+}
+
+ObjectContact contact_with(const HazardObject& object, const Span& span) {
+  return contact_with(object, test::path_of({span}, End::Stopped));
+}
+
+TEST(ObjectFinder, TakesTheEnergyAtTheObject) {
+  const ObjectContact rising = contact_with(wall(8.0, 9.0), flight());  // touched from x = 7.5 to 9.5: 2.5 to 0.5 m/s
+  EXPECT_NEAR(rising.entry, 0.10625, 1e-7);
+  EXPECT_NEAR(rising.largest, 0.10625, 1e-7) << "the span has 125 J at its ends, but not here";
+  const ObjectContact falling = contact_with(wall(11.0, 13.0), flight());  // 10.5 to 13.5: -0.5 to -3.5 m/s
+  EXPECT_NEAR(falling.entry, 0.10025, 1e-7);
+  EXPECT_NEAR(falling.largest, 0.11225, 1e-7) << "it falls into the object";
+  EXPECT_LT(contact_with(wall(16.0, 17.0), flight()).largest, 0.0F) << "0.5 m beyond its edge";
+}
+
+TEST(ObjectFinder, InASlideTheSquareOfTheSpeedIsLinear) {  // from 10 to 20 m/s in 10 m
+  const Span slide{{0, 0}, 0.0F, 0.5F, 1.0F, 0.5F, 0.0F, 0.0F, 0.0F, 0.0F, 10.0F, 20.0F, 0};
+  const ObjectContact contact = contact_with(wall(8.0, 9.0), slide);
+  EXPECT_NEAR(contact.entry, 0.100 + 0.25 * 0.300, 1e-7);
+  EXPECT_NEAR(contact.largest, 0.100 + 0.45 * 0.300, 1e-7);
+}
+
+TEST(ObjectFinder, ALineIsAsWideAsItsWidth) {
+  HazardObject road{{}, {{{12.0, -5.0}, {12.0, 25.0}}}};
+  EXPECT_NEAR(contact_with(road, flight()).entry, 0.10225, 1e-7);  // from x = 11.5: -1.5 m/s
+  road.line_width = 5.0;                                           // from 9 m: 1 m/s; to 15 m: -5 m/s
+  EXPECT_NEAR(contact_with(road, flight()).entry, 0.101, 1e-7);
+  EXPECT_NEAR(contact_with(road, flight()).largest, 0.125, 1e-7);
+}
+
+TEST(ObjectFinder,
+     AWideLineIsItsRectangleAlsoInPatchesFarFromItsAxis) {  // 24 m wide: the path begins 9 m from the axis
+  const Surface surface(test::terrain(test::grid_of(12, 4, 4.0, 10.0), [](double, double) { return 0.0; }));
+  HazardObject road{{}, {{{24.0, -5.0}, {24.0, 45.0}}}};
+  road.line_width = 24.0;
+  for (int column = 0; column < 11; ++column) {  // one flight through each patch: from x = 4 column + 2, 4 m long
+    Span span = flight();
+    span.patch = {column, 0};
+    const Path path = test::path_of({span}, End::Stopped);
+    const auto met = [&](const HazardObject& object) {
+      const std::vector<HazardObject> objects{object};
+      std::vector<ObjectContact> contacts(1);
+      ObjectFinder(surface, objects, 0.5).add(path, block(), contacts);
+      return contacts[0];
+    };
+    const ObjectContact of_line = met(road), of_wall = met(wall(12.0, 36.0));
+    EXPECT_NEAR(of_line.entry, of_wall.entry, 1e-7) << column;
+    EXPECT_NEAR(of_line.largest, of_wall.largest, 1e-7) << column;
+    EXPECT_EQ(of_line.largest >= 0.0F, 4 * column + 6 >= 11.5 && 4 * column + 2 <= 36.5) << column;
+  }
+}
+
+TEST(ObjectFinder, EntryIsTheFirstTouchOfThePath) {  // inside a large object from the start; then a faster span
+  Span faster = flight();
+  faster.plan_speed_squared = 400.0F;
+  const ObjectContact contact = contact_with(wall(0.0, 20.0), test::path_of({flight(), faster}, End::Stopped));
+  EXPECT_NEAR(contact.entry, 0.125, 1e-7);
+  EXPECT_NEAR(contact.largest, 0.425, 1e-7);
+}
+
+}  // namespace
+}  // namespace talus
