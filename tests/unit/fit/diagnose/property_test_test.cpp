@@ -19,6 +19,7 @@ struct Made {
 MeasuredBlock a_block(Numbers& numbers, std::size_t i) {
   MeasuredBlock b;
   b.id = "b" + std::to_string(i);
+  b.stream = stream_of_name(b.id);
   b.mass = std::exp(numbers.uniform(5.0, 8.0));
   b.axes = {numbers.uniform(1.3, 2.0), numbers.uniform(1.0, 1.3), numbers.uniform(0.7, 1.0)};
   return b;
@@ -47,6 +48,7 @@ Made few_rocks(Numbers& numbers, std::size_t rocks, std::size_t times) {
     for (std::size_t t = 0; t < times; ++t) {
       made.campaign.blocks.push_back(rock);
       made.campaign.blocks.back().id = "r" + std::to_string(r) + "-" + std::to_string(t);
+      made.campaign.blocks.back().stream = stream_of_name(made.campaign.blocks.back().id);
       made.campaign.blocks.back().group = "rock " + std::to_string(r);
       made.energy.push_back(own + numbers.normal());
     }
