@@ -52,4 +52,14 @@ std::vector<std::string> warnings_of(const Totals& totals, const std::string& wh
   return warnings;
 }
 
+std::vector<std::string> held_warnings(std::uint64_t held, std::uint64_t released, const Effects& effects,
+                                       const std::string& whole) {
+  if (!(static_cast<double>(held) > io::kWarnedHeldShare * static_cast<double>(released))) return {};
+  return {share_text(held, released) + " of the " + whole + " (" + count_text(held) +
+          ") came to rest within two diameters of their release: " +
+          (find_effect("rest-in-roughness")->acts(effects)
+               ? "[effects.rest-in-roughness] may hold blocks that start from rest; try a lower kappa, or leave it out"
+               : "look at the slope of the sources, at phi and at the effects there")};
+}
+
 }  // namespace talus::run

@@ -224,7 +224,9 @@ class Presets(Case):
             self.assertIn(f"rockyfor3d-{soil} ", told)
         self.assertIn("none: a first guess", told)
         done = self.run_well(*self.arguments("r4"), "--preset", "rockyfor3d-4")
-        self.assertIn("rockyfor3d-4 (not known)", done.stderr)
+        self.assertIn("first guess: ground rockyfor3d-4 is for migration", done.stderr)
+        self.assertIn("run-out may be too short (unsafe)", done.stderr)
+        self.assertNotIn("block sizes: ", done.stderr)
         self.run_well(*self.arguments("talus"), "--preset", "upper-talus-3d")
         metres = [self.record(n)["trajectory_metres_plan"] for n in ("r4", "talus")]
         self.assertLess(metres[0], metres[1])  # docs/migration.md, "Limits"

@@ -16,6 +16,7 @@
 #include "talus/io/results/run_record.hpp"
 #include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/products/expected_cells.hpp"
+#include "talus/products/held_at_release.hpp"
 #include "talus/run/summary.hpp"
 #include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/screens/screens.hpp"
@@ -44,6 +45,7 @@ struct Sample {
   std::vector<std::uint64_t> cells_by_passages;
   double seconds = 0.0, length = 0.0;  // of one processor; in space [m]
   talus::Totals totals;                // only the ends
+  std::uint64_t held = 0;              // `held_at_release`
 };
 
 /// Traces and scores trajectories that are spread evenly over all releases (multiples of the golden ratio, modulo 1).
@@ -81,6 +83,7 @@ Sample trace_sample(const Scenario& scenario) {
     sample.length += path.length;
     ++sample.totals.ends[static_cast<std::size_t>(path.end)];
     ++sample.totals.released;
+    sample.held += talus::held_at_release(talus::stop_row(release, path)) ? 1U : 0U;
     sample.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   }
   tally.add(batch);
@@ -197,6 +200,8 @@ void print_estimate(const Scenario& scenario, unsigned threads) {
   line("disk", "about " + rounded_text(1e-6 * bytes_of_results(scenario, size)) + " MB of results, up to " +
                    rounded_text(1e-6 * bytes_at_work(scenario, size, processors)) + " MB more while it goes on");
   for (const std::string& warning : talus::run::warnings_of(sample.totals, "sample")) line("warning", warning);
+  for (const std::string& warning : talus::run::held_warnings(sample.held, sample.traced, scenario.effects, "sample"))
+    line("warning", warning);
   if (talus::io::too_many_limits(sample.totals))
     line("warning", count_text(talus::run::count_of(sample.totals, talus::End::Limit)) +
                         " of the sample ended at the limit of impacts or time; where more than 0.1 % do, the "

@@ -159,7 +159,7 @@ std::string ObjectLayer::lines_text() const {
   std::string text;
   if (s.lines_of_their_width > 0) text = std::to_string(s.lines_of_their_width) + " as wide as their field width says";
   if (s.lines_of_given_width > 0)
-    text += (text.empty() ? "" : ", ") + std::to_string(s.lines_of_given_width) + " without that field " +
+    text += (text.empty() ? "" : "; ") + std::to_string(s.lines_of_given_width) + " without a field width, taken as " +
             text_of(s.line_width) + " m wide" +
             (s.line_width > 0.0 ? " (--width)" : " (a field width, or --width, makes them wider)");
   return text.empty() ? text : "lines: " + text;
