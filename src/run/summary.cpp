@@ -48,7 +48,8 @@ std::vector<std::string> warnings_of(const Totals& totals, const std::string& wh
        "left the DEM or met missing data: the maps do not show how far they go; a larger DEM would");
   tell(End::Trapped, io::kWarnedTrappedShare,
        "were trapped in pits or between walls, on ground too steep to rest on: where these are not in the real "
-       "terrain, the maps end too early; trapped.tif shows where, talus check --pits the pits of the DEM");
+       "terrain, the maps end too early; trapped.tif shows where; a part of them may lie at pits and dammed cells of "
+       "the DEM, which talus check --pits maps");
   return warnings;
 }
 

@@ -121,6 +121,10 @@ class Input(Case):
             self.assertIn(words, text)
         self.assert_nothing_left(set(before))
 
+    def test_cell_sizes_are_short_where_they_are_read(self):
+        write_dem(self.path("dem.tif"), heights(), cell=4.997678230579)
+        self.assertIn("60 x 60 cells of 4.998 m x 4.998 m", self.run_well("check", self.scenario("")).stdout)
+
     def test_check_foretells_within_a_factor_of_one_and_a_half(self):
         """Estimates of cells, memory and disk from an eighth of a run at most. (Seconds: tools/scripts/studies/scaling.py.)"""
         scenario = self.scenario("trajectories = 20000")

@@ -161,6 +161,12 @@ class Hazard(Case):
         self.assertIn("repeats the run for the objects: 3 200 trajectories of the recorded plan", done.stderr)
         rows = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
         self.assertEqual([rows[name]["people"] for name in "ABC"], [3, 4, 1])
+        with open(self.path("out/objects.csv"), encoding="utf-8", newline="") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual([(row["object"], row["name"], row["people"]) for row in table],
+                         [("A", "A", "3"), ("B", "B", "4"), ("C", "C", "1")])
+        self.assertEqual(list(table[0])[1:], list(rows["A"]))  # the columns of the layer, after object
+        self.assertAlmostEqual(float(table[0]["frequency"]), rows["A"]["frequency"], 6)
         self.assertEqual(rows["C"]["trajectories"], 0)
         self.assertEqual(rows["C"]["frequency"], 0.0)
         self.assertIsNone(rows["C"]["return_period"])

@@ -116,8 +116,8 @@ void print_terrain(const LoadedScenario& loaded) {
       static_cast<std::uint64_t>(std::ranges::count_if(heights.values, [](float z) { return std::isnan(z); }));
   const talus::io::GeoReference& geo = loaded.geo;
   line("terrain", count_text(static_cast<std::uint64_t>(grid.columns)) + " x " +
-                      count_text(static_cast<std::uint64_t>(grid.rows)) + " cells of " + talus::text_of(geo.cell_x) +
-                      " m x " + talus::text_of(geo.cell_y) + " m" +
+                      count_text(static_cast<std::uint64_t>(grid.rows)) + " cells of " +
+                      talus::with_digits(geo.cell_x, 4) + " m x " + talus::with_digits(geo.cell_y, 4) + " m" +
                       (missing > 0 ? ", " + count_text(missing) + " of them without a height" : ""));
   line("extent", talus::with_decimals(geo.west, 3) + " to " +
                      talus::with_decimals(geo.west + grid.columns * geo.cell_x, 3) + " east, " +
@@ -129,6 +129,10 @@ void print_terrain(const LoadedScenario& loaded) {
     line("pits", count_text(pits.count) + (pits.count == 1 ? " cell is" : " cells are") +
                      " lower than all eight neighbours, by up to " + talus::with_digits(pits.deepest, 3) +
                      " m; --pits maps them");
+  const talus::DamCount dams = talus::count_dammed(heights);
+  if (dams.dammed > 0)
+    line("dammed", count_text(dams.dammed) + (dams.dammed == 1 ? " cell is" : " cells are") +
+                       " lower than the four neighbours, with a way down only diagonally; --pits maps them");
 }
 
 void print_zones(const Scenario& scenario) {
@@ -250,8 +254,10 @@ void add_check(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("check", "Check a scenario and print the plan; writes nothing, but for --pits");
   add_scenario_options(*command, options->flags);
-  CLI::Option* pits = command->add_option("--pits", options->pits,
-                                          "GeoPackage to write: the cells that are lower than all eight neighbours");
+  CLI::Option* pits =
+      command->add_option("--pits", options->pits,
+                          "GeoPackage to write: pits, the cells that are lower than all eight neighbours, and "
+                          "dammed cells, whose way down is only diagonal");
   command->add_flag("--overwrite", options->overwrite, "replace the file of --pits if it is there")->needs(pits);
   command
       ->add_option("--threads", options->threads,

@@ -178,7 +178,7 @@ std::string object_text(const talus::io::HazardRecord& record) {
   if (record.width > 0.0)
     return "hazard of an object " + talus::text_of(record.width) + " m wide (and the diameter of the block)";
   const talus::Grid& grid = record.header.grid;
-  return "hazard of a cell, " + talus::text_of(grid.cell_x) + " x " + talus::text_of(grid.cell_y) +
+  return "hazard of a cell, " + talus::with_digits(grid.cell_x, 4) + " x " + talus::with_digits(grid.cell_y, 4) +
          " m (larger cells are hit more often; --width 10 for an object 10 m wide, whatever the cell)";
 }
 
