@@ -2,6 +2,7 @@
 
 #include <malloc.h>
 
+#include <algorithm>
 #include <future>
 #include <optional>
 
@@ -10,6 +11,7 @@
 #include "talus/io/results/write_crossings.hpp"
 #include "talus/io/results/write_lines.hpp"
 #include "talus/io/results/write_vectors.hpp"
+#include "talus/products/held_at_release.hpp"
 #include "talus/products/maps.hpp"
 #include "talus/products/screen_summary.hpp"
 #include "talus/run/summary.hpp"
@@ -19,6 +21,12 @@ namespace talus::run {
 namespace {
 
 using io::LoadedScenario;
+
+/// Figures of all stops.
+struct StopFigures {
+  EnergyLines energy_lines;
+  std::uint64_t held;  ///< `held_at_release`
+};
 
 /// Writers of stops, exits, paths and crossings.
 class Vectors {
@@ -41,6 +49,7 @@ class Vectors {
       if (observer_.interrupted()) stop_interrupted();
       stops_.write(rows);
       energy_lines_.add(rows);
+      held_ += static_cast<std::uint64_t>(std::ranges::count_if(rows, held_at_release));
       exits_.write(rows);
     };
     if (paths_) sinks.paths = [this](const RecordedPath& path) { paths_->write(path); };
@@ -52,7 +61,7 @@ class Vectors {
     return sinks;
   }
 
-  const EnergyLines& energy_lines() const { return energy_lines_; }
+  StopFigures figures() const { return {energy_lines_, held_}; }
 
   void finish(const Totals& totals) {
     stops_.finish();
@@ -75,17 +84,17 @@ class Vectors {
   std::optional<io::CrossingsWriter> crossings_;
   ScreenSummary summary_;
   EnergyLines energy_lines_;
+  std::uint64_t held_ = 0;
 };
 
-/// Writes the rows of the checkpoints: round by round, in each round the parts in their order. Returns the energy-line
-/// angles.
-EnergyLines write_vectors(const ResultSource& source, const Totals& totals, const Observer& observer) {
+/// Writes the rows of the checkpoints: round by round, in each round the parts in their order.
+StopFigures write_vectors(const ResultSource& source, const Totals& totals, const Observer& observer) {
   Vectors vectors(source.loaded, source.folder, observer);
   const Sinks sinks = vectors.sinks();
   for (std::uint32_t round = 0; round < source.checkpoints.front().rounds(); ++round)
     for (const Checkpoint& checkpoint : source.checkpoints) checkpoint.replay(round, sinks);
   vectors.finish(totals);
-  return vectors.energy_lines();
+  return vectors.figures();
 }
 
 /// "energy line from release to stop: median 33.5 deg, 5 % below 31.4 deg, least 28.9 deg".
@@ -127,13 +136,16 @@ void write_results(const ResultSource& source, Observer& observer, Stopwatch& wa
              record.threads);
   if (source.tally.weights() != nullptr)
     io::write_hazard(folder / io::kHazardFile, loaded, source.tally, record.totals.left_weight);
-  record.energy_lines = writing.get();
+  StopFigures stops = writing.get();
+  record.energy_lines = std::move(stops.energy_lines);
   io::write_text(folder / "scenario.toml", loaded.complete_toml);
   record.files = io::files_in(folder);
   const Stopwatch::Lap written = watch.lap();
   record.cpu.write = written.cpu + record.totals.sink_cpu_seconds;
   record.wall.write = written.wall;
   for (const std::string& warning : warnings_of(record.totals)) record.warnings.push_back(warning);
+  for (const std::string& warning : held_warnings(stops.held, record.totals.released, loaded.scenario.effects))
+    record.warnings.push_back(warning);
   for (const std::string& warning : warnings_of(record.rounds)) record.warnings.push_back(warning);
   io::write_text(folder / "run.json", io::run_json(record, loaded));
   observer.finish();

@@ -48,8 +48,19 @@ std::vector<std::string> warnings_of(const Totals& totals, const std::string& wh
        "left the DEM or met missing data: the maps do not show how far they go; a larger DEM would");
   tell(End::Trapped, io::kWarnedTrappedShare,
        "were trapped in pits or between walls, on ground too steep to rest on: where these are not in the real "
-       "terrain, the maps end too early; trapped.tif shows where, talus check --pits the pits of the DEM");
+       "terrain, the maps end too early; trapped.tif shows where; a part of them may lie at pits and dammed cells of "
+       "the DEM, which talus check --pits maps");
   return warnings;
+}
+
+std::vector<std::string> held_warnings(std::uint64_t held, std::uint64_t released, const Effects& effects,
+                                       const std::string& whole) {
+  if (!(static_cast<double>(held) > io::kWarnedHeldShare * static_cast<double>(released))) return {};
+  return {share_text(held, released) + " of the " + whole + " (" + count_text(held) +
+          ") came to rest within two diameters of their release: " +
+          (find_effect("rest-in-roughness")->acts(effects)
+               ? "[effects.rest-in-roughness] may hold blocks that start from rest; try a lower kappa, or leave it out"
+               : "look at the slope of the sources, at phi and at the effects there")};
 }
 
 }  // namespace talus::run

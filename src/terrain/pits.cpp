@@ -15,6 +15,13 @@ bool dammed(const Raster<float>& heights, int column, int row) {
   return z(-1, -1) < here || z(1, -1) < here || z(-1, 1) < here || z(1, 1) < here;
 }
 
+double dam_height(const Raster<float>& heights, int column, int row) {
+  if (!dammed(heights, column, row)) return 0.0;
+  const double sides = std::min(std::min(heights.at(column - 1, row), heights.at(column + 1, row)),
+                                std::min(heights.at(column, row - 1), heights.at(column, row + 1)));
+  return sides - heights.at(column, row);
+}
+
 DamCount count_dammed(const Raster<float>& heights) {
   DamCount count;
   for (int row = 0; row < heights.grid.rows; ++row)

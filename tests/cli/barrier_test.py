@@ -86,7 +86,8 @@ class Design(Case):
         self.assertAlmostEqual(rows[1]["largest_energy_kj"], 0.5e-3 * 5000 * 15.0**2, 6)
         self.assertIsNone(rows[2]["design"])
         self.assertIn("nothing crosses the other 2 stretches", text)
-        self.assertIn("one design for the whole line is too low on 1 of its stretches", " ".join(report["notes"]))
+        (note,) = [note for note in report["notes"] if note.startswith("one design for the whole line is too low: ")]
+        self.assertEqual(note.count(" on 25.0-50.0 m, which"), 2, note)  # SEL and h_i
         self.assertIn("alike: the run knows no annual frequencies", report["weighting"])
         self.assertIsNone(report["crossings_per_year"])
         with open(self.path("out/barrier_road_stretches.csv"), encoding="utf-8") as file:
@@ -98,14 +99,29 @@ class Design(Case):
         self.assertEqual(sum(row["crossings"] for row in few), 101)
         self.refused("--stretch = 0.5", arguments=["--screen", "road", "--stretch", "0.5"])
 
+    def test_the_note_names_what_is_too_low_and_never_advises_less_than_the_whole_line(self):
+        """75 fast blocks with low jumps up to 25 m, 26 slow ones with high jumps beyond: only h_i of the line is too low."""
+        self.rows = [(0, i, "road", 10.0, 0.1, 3000.0, 10.0 + 0.2 * i) for i in range(75)]
+        self.rows += [(0, 75 + i, "road", 5.0, 0.5 + 0.1 * i, 3000.0, 25.0 + 0.2 * i) for i in range(26)]
+        self.save()
+        _, report, _ = self.design()
+        (note,) = [note for note in report["notes"] if note.startswith("one design")]
+        freeboard = 0.5 * (6 * 1.2 / math.pi)**(1 / 3)
+        whole = f"{2.5 * 1.21 + freeboard:.4g}"            # the 95th of 101 values: 2.5 m
+        highest = f"{2.875 * 1.21 + freeboard:.3g}"        # of the 26: 0.5 + 0.1 x 0.95 x 25
+        sel = f"{0.5e-3 * 1.2 * 2500 * 1.1 * 12.1**2:.4g}"  # of the whole line: the slow stretch needs a quarter of it
+        self.assertEqual(note, f"one design for the whole line is too low: h_i ({whole} m) on 25.0-50.0 m, which need up to {highest} m."
+                         f" Give each stretch its own design, or the whole line SEL {sel} kJ and h_i {highest} m")
+
     def test_the_coefficient_is_pointed_out(self):
-        """Notes of a run with the default c and with half of it."""
-        for c, said in ((0.25, True), (0.125, False)):
+        """A lower c raises energies (docs/barrier.md): notes of runs above c = 0.15."""
+        for c, said in ((0.5, True), (0.25, True), (0.2, True), (0.15, False), (0.125, False)):
             with open(self.path("out/run.json"), encoding="utf-8") as file:
                 record = json.load(file) | {"deformation_coefficient": c}
             self.write("out/run.json", json.dumps(record))
             notes = " ".join(self.design()[1]["notes"])
-            self.assertEqual("energies may be too low" in notes, said, notes)
+            self.assertEqual("energies and jumps may be too low (unsafe): c = " + str(c) in notes, said, notes)
+            self.assertEqual("run with c = 0.15 as well" in notes, said, notes)
 
     def test_sizes_of_the_run_are_said_again(self):
         with open(self.path("out/run.json"), encoding="utf-8") as file:

@@ -81,6 +81,17 @@ class Input(Case):
         write_features(self.path("sources.gpkg"), "sources", [(box(9000, 9000, 20, 20), [])])
         self.fails_with("sources.gpkg")
 
+    def test_gaps_of_the_dem_at_the_sources_are_said_once(self):
+        """8 source cells, 2 without a height: the other 6 are all beside them, or not."""
+        z = heights()
+        z[12, 29:31] = -9999.0
+        write_dem(self.path("dem.tif"), z, nodata=-9999.0)
+        told = [self.run_well(*self.arguments()).stderr,
+                self.run_well("check", *self.arguments()[1:-2]).stdout]
+        for text in told:
+            (line,) = [line for line in text.splitlines() if "source cells" in line and "heights" in line]
+            self.assertIn(": 2 source cells or points have no height in the DEM and release nothing; 6 source cells", line)
+
     def test_no_diameter(self):
         arguments = self.arguments()
         at = arguments.index("--diameter")
@@ -109,6 +120,10 @@ class Input(Case):
                       "0.8 m", "energy 30, 300 kJ"):
             self.assertIn(words, text)
         self.assert_nothing_left(set(before))
+
+    def test_cell_sizes_are_short_where_they_are_read(self):
+        write_dem(self.path("dem.tif"), heights(), cell=4.997678230579)
+        self.assertIn("60 x 60 cells of 4.998 m x 4.998 m", self.run_well("check", self.scenario("")).stdout)
 
     def test_check_foretells_within_a_factor_of_one_and_a_half(self):
         """Estimates of cells, memory and disk from an eighth of a run at most. (Seconds: tools/scripts/studies/scaling.py.)"""

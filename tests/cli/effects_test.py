@@ -109,10 +109,39 @@ class Effects(Case):
         (told,) = self.sizes(0.3)
         self.assertIn("0.3 m", told)
         self.assertIn("upper-talus-3d (1 to 1.4 m)", told)
-        self.assertIn("small blocks to run faster", told)
+        self.assertIn("smaller blocks: they run too far and too fast", told)
+        self.assertNotIn("unsafe", told)
+        (told,) = self.sizes(3)
+        self.assertIn("larger blocks: run-out and speed too low (unsafe)", told)
+        self.assertNotIn("too fast", told)
         self.assertEqual(len(self.sizes(3, "--preset", "quarry-floor-2d")), 1)
         plan = self.run_well("check", "--dem", self.path("dem.tif"), "--sources", self.path("sources.gpkg"), "--diameter", "0.3").stdout
         self.assertEqual(plan.count("block sizes: "), 1)
+
+    def test_the_measured_size_law_outside_its_sizes(self):
+        """Fitted to blocks of 0.3 to 1.1 m; at its reference diameter, 1.2 m, it changes nothing."""
+        for diameter, said in ((0.25, True), (0.4, False), (1.2, False), (1.3, True), (3, True)):
+            text = HEAD.replace("diameter = 0.8", f"diameter = {diameter}").replace("60", "2")
+            self.write("m.toml", text + '[effects.block-mass]\npreset = "measured"\n')
+            plan = self.run_well("check", self.path("m.toml")).stdout
+            self.assertEqual("fitted to 0.3 to 1.1 m: here it is an extrapolation" in plan, said, plan)
+
+    def test_blocks_that_are_held_at_their_source(self):
+        wrong, held = "sorts them the wrong way", "came to rest within two diameters of their release"
+        four = HEAD.replace("diameter = 0.8", "diameter = 4")
+        for kappa, mass in ((0, False), (0.3, False), (0.3, True)):
+            rest = f"[effects.rest-in-roughness]\nkappa = {kappa}\n" if kappa else ""
+            self.write("rest.toml", four + rest + ('[effects.block-mass]\npreset = "measured"\n' if mass else ""))
+            done = self.run_well("run", self.path("rest.toml"), "-o", self.path("rest"), "--overwrite")
+            rows = rows_of(self.path("rest/stops.gpkg"), "stops")
+            near = sum(np.hypot(g.GetX() - f["x_release"], g.GetY() - f["y_release"]) <= 8.0 and
+                       f["end"] in ("stopped", "trapped") for f, g in rows)
+            self.assertEqual(f"({near}) {held}" in done.stderr, near > 0.03 * len(rows), done.stderr)
+            self.assertEqual(held in done.stderr, kappa > 0, done.stderr)
+            self.assertEqual(wrong in done.stderr, kappa > 0 and not mass, done.stderr)
+            plan = self.run_well("check", self.path("rest.toml")).stdout
+            self.assertEqual(held in plan, held in done.stderr, plan)
+            self.assertEqual(wrong in plan, wrong in done.stderr, plan)
 
     def test_broken_blocks_count_once_and_stops_hold_the_largest_piece(self):
         self.run_scenario("plain", "")

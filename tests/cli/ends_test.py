@@ -102,17 +102,26 @@ class Ends(Case):
         z = heights()
         z[20, 30] = z[19:22, 29:32].min() - 2.5  # by 2.5 m, or by less where the bumps have lowered a neighbour
         z[50, 10] -= 40.0
+        z[30:33, 40:43] = [[960, 960, 960], [960, 950, 953], [960, 957, 940]]  # way down only to the south-east
         write_dem(self.path("dem.tif"), z)
         arguments = ["check", "--dem", self.path("dem.tif"), "--sources", self.path("sources.gpkg"), "--diameter", "0.8"]
         before = os.listdir(self.folder)
         core = z[1:-1, 1:-1]
         around = np.min([z[1 + j:59 + j, 1 + i:59 + i] for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j], axis=0)
         depth = (around.astype(float) - core)[core < around]
+        sides = np.min([z[1 + j:59 + j, 1 + i:59 + i] for i, j in ((1, 0), (-1, 0), (0, 1), (0, -1))], axis=0)
+        dams = (sides.astype(float) - core)[(core < sides) & (around < core)]
+        self.assertIn(3.0, dams)
         said = self.run_well(*arguments).stdout
         self.assertRegex(said, rf"(?m)^pits +{len(depth)} cells are lower than all eight neighbours, by up to ")
+        self.assertRegex(said, rf"(?m)^dammed +{len(dams)} cell")
         self.assert_nothing_left(before)
         self.run_well(*arguments, "-q", "--pits", self.path("pits.gpkg"))
-        pits = rows_of(self.path("pits.gpkg"), "pits")
+        cells = rows_of(self.path("pits.gpkg"), "pits")
+        pits, dammed = ([row for row in cells if row[0]["kind"] == kind] for kind in ("pit", "dammed"))
+        self.assertEqual(len(pits) + len(dammed), len(cells))
+        np.testing.assert_allclose([row["depth_m"] for row, _ in dammed], dams, rtol=1e-12)
+        self.assertIn((41.5, 31.5, 950.0), {((p.GetX() - WEST) / 5.0, (NORTH - p.GetY()) / 5.0, row["z"]) for row, p in dammed})
         self.assertEqual(len(pits), len(depth))
         np.testing.assert_allclose([pit["depth_m"] for pit, _ in pits], depth, rtol=1e-12)
         places = {((point.GetX() - WEST) / 5.0, (NORTH - point.GetY()) / 5.0) for _, point in pits}

@@ -143,7 +143,13 @@ class Forests(Case):
         self.write("s.toml", scenario(""))
         self.assertIn(f"{len(rows_of_trees())} trees", self.run_well("run", self.path("s.toml"), "-o", self.path("kept")).stderr)
         self.assert_replays("kept")
-        self.write("s.toml", scenario("density = 600\ndiameter = 0.25\n"))
+        os.mkdir(self.path("stands"))
+        for name in ("stand.toml", "trees.csv"):
+            os.rename(self.path(name), self.path("stands/" + name))
+        self.write("s.toml", scenario("").replace("stand.toml", "stands/stand.toml"))
+        self.run_well("run", self.path("s.toml"), "-o", self.path("folder"))
+        self.assertEqual(results(self.path("folder")), results(self.path("kept")))
+        self.write("s.toml", scenario("density = 600\ndiameter = 0.25\n").replace("stand.toml", "stands/stand.toml"))
         self.assertNotIn(" trees,", self.run_well("run", self.path("s.toml"), "-o", self.path("stand")).stderr)
         self.run_forest("uniform", "density = 600\ndiameter = 0.25\n")
         self.assertEqual(results(self.path("stand")), results(self.path("uniform")))
@@ -186,6 +192,10 @@ class Forests(Case):
         self.trees("off.csv", [(-900.0, 150.0)])
         self.trees("dbh.csv", one, header="x,y,dbh,species")
         self.trees("empty.csv", [])
+        self.trees("nowhere.csv", one, header="east,north,diameter,species")
+        place = f"{WEST + 100},{NORTH - 150}"
+        self.write("word.csv", f"x,y,diameter\n{place},0.3\n{place},thick\n{place},0.3\n")
+        self.write("late.csv", "x,y,diameter\n" + f"{place},0.3\n" * 60000 + f"{place},0.3x\n")  # after 1 MB
         write_features(self.path("area.gpkg"), "area", [(box(0, 0, 9, 9), [0.3])], [("diameter", ogr.OFTReal)])
         for keys, words in {
                 'density = "negative.tif"\n': ["negative.tif: -5 at 26", "must be 0 to 10000 1/ha"],
@@ -196,7 +206,12 @@ class Forests(Case):
                 'diameter = "bare.tif"\n': ["does nothing, must give density"],
                 'density = "dem.tif"\nheight = "dem.tif"\n': ["effects.forest-stems.height"],
                 'trees = "thick.csv"\n': ["field diameter = 30", "0.01 to 3 m", "centimetres?"],
-                'trees = "palm.csv"\n': ["unknown species 'palm'", "broadleaf", "conifer"],
+                'trees = "palm.csv"\n': ["palm.csv: row 1 below the header: unknown species 'palm'", "broadleaf", "conifer",
+                                         "spruce, larch, pine"],
+                'trees = "word.csv"\n': ["word.csv: row 2 below the header: field diameter = 'thick'", "must be a number in m"],
+                'trees = "late.csv"\n': ["late.csv: row 60001 below the header: field diameter = '0.3x'"],
+                'trees = "nowhere.csv"\n': ["nowhere.csv", "the columns x and y, or wkt; has east, north, diameter, species"],
+                'density = 100\ndiameter = 30\n': ["diameter = 30: must be 0.01 to 3 m", "centimetres?"],
                 'trees = "off.csv"\n': ["off.csv: none of its 1 trees can be used: 1 stand off the DEM"],
                 'trees = "dbh.csv"\n': ["dbh.csv: has no field 'diameter'", "dbh"],
                 'trees = "empty.csv"\n': ["empty.csv"],
@@ -206,6 +221,24 @@ class Forests(Case):
         }.items():
             with self.subTest(keys):
                 self.fails_with(keys, *words)
+
+    def test_a_raster_beside_trees_is_one_fault(self):
+        self.raster("density.tif", np.full((CELLS, CELLS), 300.0))
+        self.trees("trees.csv", [(100.0, 150.0)])
+        self.write("s.toml", HEAD + 'trees = "trees.csv"\ndensity = "density.tif"\n')
+        done = self.call("check", self.path("s.toml"))
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(done.stderr.count("talus: error: "), 1, done.stderr)
+        self.assertIn("must not come with trees", done.stderr)
+
+    def test_a_density_that_is_not_per_hectare_is_said(self):
+        values = np.full((CELLS, CELLS), 0.2)
+        values[:, :40] = 0.45  # two thirds: the median
+        for name, factor, warns in (("per_m2", 1.0, True), ("per_ha", 1000.0, False)):
+            self.raster(name + ".tif", factor * values)
+            told = self.run_forest(name, f'density = "{name}.tif"\n')
+            self.assertEqual(f"{name}.tif: the median density of the forest is 0.45 stems/ha, stands have 100 to 2000" in told,
+                             warns, told)
 
     def test_a_stand_is_counted_once(self):
         drag = "[effects.vegetation-drag]\ncoefficient = 100\n"
@@ -224,7 +257,9 @@ class Presets(Case):
             self.assertIn(f"rockyfor3d-{soil} ", told)
         self.assertIn("none: a first guess", told)
         done = self.run_well(*self.arguments("r4"), "--preset", "rockyfor3d-4")
-        self.assertIn("rockyfor3d-4 (not known)", done.stderr)
+        self.assertIn("first guess: ground rockyfor3d-4 is for migration", done.stderr)
+        self.assertIn("run-out may be too short (unsafe)", done.stderr)
+        self.assertNotIn("block sizes: ", done.stderr)
         self.run_well(*self.arguments("talus"), "--preset", "upper-talus-3d")
         metres = [self.record(n)["trajectory_metres_plan"] for n in ("r4", "talus")]
         self.assertLess(metres[0], metres[1])  # docs/migration.md, "Limits"

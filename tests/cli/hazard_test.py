@@ -99,6 +99,9 @@ class Hazard(Case):
         done = self.run_well("hazard", self.path("out"), "--overwrite", "--matrix", matrix)
         self.assertIn("none of the run's energy_thresholds", done.stderr)
         self.assertFalse(os.path.exists(self.path("out/intensity_T30.tif")), "of the earlier matrix")
+        (removed,) = [line for line in done.stderr.splitlines() if "removed, as not asked for this time: " in line]
+        for name in ("intensity_T30.tif", "return_period_300.tif"):
+            self.assertEqual(name in removed, not os.path.exists(self.path("out/" + name)), removed)
         self.assertTrue(os.path.exists(self.path("out/intensity_T50.tif")))
         self.write("m.toml", "energies = [300, 30]\n")
         self.refused("must be 1 to 8 numbers", "hazard", self.path("out"), "--overwrite", "--matrix", matrix)
@@ -158,6 +161,12 @@ class Hazard(Case):
         self.assertIn("repeats the run for the objects: 3 200 trajectories of the recorded plan", done.stderr)
         rows = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
         self.assertEqual([rows[name]["people"] for name in "ABC"], [3, 4, 1])
+        with open(self.path("out/objects.csv"), encoding="utf-8", newline="") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual([(row["object"], row["name"], row["people"]) for row in table],
+                         [("A", "A", "3"), ("B", "B", "4"), ("C", "C", "1")])
+        self.assertEqual(list(table[0])[1:], list(rows["A"]))  # the columns of the layer, after object
+        self.assertAlmostEqual(float(table[0]["frequency"]), rows["A"]["frequency"], 6)
         self.assertEqual(rows["C"]["trajectories"], 0)
         self.assertEqual(rows["C"]["frequency"], 0.0)
         self.assertIsNone(rows["C"]["return_period"])
@@ -239,7 +248,7 @@ class Hazard(Case):
         for width in ("0", "6", "20"):
             more = [] if width == "0" else ["--width", width]
             done = self.run_well("hazard", self.path("out"), "--objects", self.path("roads.gpkg"), "--overwrite", *more)
-            self.assertIn("lines: 1 as wide as their field width says, 1 without that field " + width + " m wide", done.stderr)
+            self.assertIn("lines: 1 as wide as their field width says; 1 without a field width, taken as " + width + " m wide", done.stderr)
             found[width] = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
         without_name = lambda row: {k: v for k, v in row.items() if k not in ("name", "width")}
         self.assertEqual(without_name(found["6"]["path"]), without_name(found["6"]["road"]))
@@ -280,7 +289,16 @@ class Hazard(Case):
         self.assertLess(sums[0.5][0].sum(), 0.9 * sums[0][0].sum())
         self.assertTrue((sums[0.5] <= sums[0] * (1 + 1e-6) + 1e-12)[0].all())
         self.assertIn("lower than 0.5 m above the terrain", self.titles("out0.5/passage_density.tif")[1])
-        self.run_well("hazard", self.path("out0.5"), "--width", "10", "-q")
+        write_features(self.path("houses.gpkg"), "houses", [(box(105, 150, 10, 8), ["A"])], [("name", ogr.OFTString)])
+        for below in (0, 0.5):
+            done = self.run_well("hazard", self.path(f"out{below}"), "--objects", self.path("houses.gpkg"))
+            self.assertEqual(f"at any height: [output] passages_below = {below} m holds for" in done.stderr, below > 0, done.stderr)
+            self.assertNotIn("removed", done.stderr)
+        done = self.run_well("hazard", self.path("out0.5"), "--width", "10", "--overwrite")
+        self.assertIn("removed, as not asked for this time: intensity_T100.qml, intensity_T100.tif", done.stderr)
+        for name in ("objects.csv", "objects.gpkg", "objects_curves.csv", "objects_sources.csv"):
+            self.assertIn(name, done.stderr)
+            self.assertFalse(os.path.exists(self.path("out0.5/" + name)))
         self.assertIn("lower than 0.5 m above the terrain", self.titles("out0.5/annual_frequency.tif")[0])
 
     def test_objects_need_the_same_inputs(self):

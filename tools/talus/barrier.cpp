@@ -220,18 +220,6 @@ void add_crossings_per_year(BarrierReport& report, const Weighting& weighting) {
   report.per_year = weighting.per_year(sum, squares);
 }
 
-/// A warning that the energies rest on c, where c is not lower than the default.
-void add_coefficient(BarrierReport& report, const Options& o) {
-  const auto c = talus::io::deformation_coefficient_of(o.folder);
-  if (!c || *c < talus::ImpactModel{}.deformation_coefficient) return;
-  report.notes.push_back("energies may be too low: c = " + talus::text_of(*c) +
-                         " (model.deformation_coefficient) is not given by the paper. On a stand-in for its slope c = "
-                         "0.25 gives SEL 33 to "
-                         "62 % and h_i 5 to 30 % below its Table 4. Compare with observed blocks (--observed); "
-                         "docs/barrier.md, \"The value "
-                         "of c\"");
-}
-
 int design(const Options& o) {
   require_seed(o.seed);
   check_numbers(o);
@@ -242,7 +230,7 @@ int design(const Options& o) {
   const CrossingTable values = o.observed.empty() ? crossings : observed_crossings(o);
   BarrierReport report;
   Weighting weighting;
-  add_coefficient(report, o);
+  if (const auto note = talus::io::coefficient_note(o.folder)) report.notes.push_back(*note);
   const std::vector<talus::LineCrossing> blocks = crossings_of(crossings, run, o, report, weighting);
   report.screen = o.screen;
   report.released = run.released;

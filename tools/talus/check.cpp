@@ -16,6 +16,7 @@
 #include "talus/io/results/run_record.hpp"
 #include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/products/expected_cells.hpp"
+#include "talus/products/held_at_release.hpp"
 #include "talus/run/summary.hpp"
 #include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/screens/screens.hpp"
@@ -44,6 +45,7 @@ struct Sample {
   std::vector<std::uint64_t> cells_by_passages;
   double seconds = 0.0, length = 0.0;  // of one processor; in space [m]
   talus::Totals totals;                // only the ends
+  std::uint64_t held = 0;              // `held_at_release`
 };
 
 /// Traces and scores trajectories that are spread evenly over all releases (multiples of the golden ratio, modulo 1).
@@ -81,6 +83,7 @@ Sample trace_sample(const Scenario& scenario) {
     sample.length += path.length;
     ++sample.totals.ends[static_cast<std::size_t>(path.end)];
     ++sample.totals.released;
+    sample.held += talus::held_at_release(talus::stop_row(release, path)) ? 1U : 0U;
     sample.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   }
   tally.add(batch);
@@ -113,8 +116,8 @@ void print_terrain(const LoadedScenario& loaded) {
       static_cast<std::uint64_t>(std::ranges::count_if(heights.values, [](float z) { return std::isnan(z); }));
   const talus::io::GeoReference& geo = loaded.geo;
   line("terrain", count_text(static_cast<std::uint64_t>(grid.columns)) + " x " +
-                      count_text(static_cast<std::uint64_t>(grid.rows)) + " cells of " + talus::text_of(geo.cell_x) +
-                      " m x " + talus::text_of(geo.cell_y) + " m" +
+                      count_text(static_cast<std::uint64_t>(grid.rows)) + " cells of " +
+                      talus::with_digits(geo.cell_x, 4) + " m x " + talus::with_digits(geo.cell_y, 4) + " m" +
                       (missing > 0 ? ", " + count_text(missing) + " of them without a height" : ""));
   line("extent", talus::with_decimals(geo.west, 3) + " to " +
                      talus::with_decimals(geo.west + grid.columns * geo.cell_x, 3) + " east, " +
@@ -126,6 +129,10 @@ void print_terrain(const LoadedScenario& loaded) {
     line("pits", count_text(pits.count) + (pits.count == 1 ? " cell is" : " cells are") +
                      " lower than all eight neighbours, by up to " + talus::with_digits(pits.deepest, 3) +
                      " m; --pits maps them");
+  const talus::DamCount dams = talus::count_dammed(heights);
+  if (dams.dammed > 0)
+    line("dammed", count_text(dams.dammed) + (dams.dammed == 1 ? " cell is" : " cells are") +
+                       " lower than the four neighbours, with a way down only diagonally; --pits maps them");
 }
 
 void print_zones(const Scenario& scenario) {
@@ -197,6 +204,8 @@ void print_estimate(const Scenario& scenario, unsigned threads) {
   line("disk", "about " + rounded_text(1e-6 * bytes_of_results(scenario, size)) + " MB of results, up to " +
                    rounded_text(1e-6 * bytes_at_work(scenario, size, processors)) + " MB more while it goes on");
   for (const std::string& warning : talus::run::warnings_of(sample.totals, "sample")) line("warning", warning);
+  for (const std::string& warning : talus::run::held_warnings(sample.held, sample.traced, scenario.effects, "sample"))
+    line("warning", warning);
   if (talus::io::too_many_limits(sample.totals))
     line("warning", count_text(talus::run::count_of(sample.totals, talus::End::Limit)) +
                         " of the sample ended at the limit of impacts or time; where more than 0.1 % do, the "
@@ -245,8 +254,10 @@ void add_check(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("check", "Check a scenario and print the plan; writes nothing, but for --pits");
   add_scenario_options(*command, options->flags);
-  CLI::Option* pits = command->add_option("--pits", options->pits,
-                                          "GeoPackage to write: the cells that are lower than all eight neighbours");
+  CLI::Option* pits =
+      command->add_option("--pits", options->pits,
+                          "GeoPackage to write: pits, the cells that are lower than all eight neighbours, and "
+                          "dammed cells, whose way down is only diagonal");
   command->add_flag("--overwrite", options->overwrite, "replace the file of --pits if it is there")->needs(pits);
   command
       ->add_option("--threads", options->threads,

@@ -95,6 +95,13 @@ std::vector<std::string> warnings_of(const talus::HazardMatrix& matrix, const ta
   return warnings;
 }
 
+/// A warning if the objects count passages that the maps leave out; empty if not.
+std::string warning_of_objects(const Options& options, const talus::io::HazardHeader& header) {
+  if (options.objects.empty() || !(header.passages_below > 0.0)) return {};
+  return "--objects counts passages at any height: [output] passages_below = " + talus::text_of(header.passages_below) +
+         " m holds for passage densities and the maps of --width only";
+}
+
 /// The recorded plan, with the weighting that is asked for.
 talus::io::LoadedScenario recorded_plan(const Options& options, const std::string& plan) {
   return talus::io::recorded_plan(options.folder, plan, options.frequency);
@@ -171,7 +178,7 @@ std::string object_text(const talus::io::HazardRecord& record) {
   if (record.width > 0.0)
     return "hazard of an object " + talus::text_of(record.width) + " m wide (and the diameter of the block)";
   const talus::Grid& grid = record.header.grid;
-  return "hazard of a cell, " + talus::text_of(grid.cell_x) + " x " + talus::text_of(grid.cell_y) +
+  return "hazard of a cell, " + talus::with_digits(grid.cell_x, 4) + " x " + talus::with_digits(grid.cell_y, 4) +
          " m (larger cells are hit more often; --width 10 for an object 10 m wide, whatever the cell)";
 }
 
@@ -194,7 +201,10 @@ int hazard(const Options& options) {
   record.cells = survey->cells();
   if (record.width == 0.0) record.warnings = warnings_of(record.matrix, record.header.rules);
   for (const std::string& warning : warnings_of(record.header)) record.warnings.push_back(warning);
+  if (const std::string warning = warning_of_objects(options, record.header); !warning.empty())
+    record.warnings.push_back(warning);
   for (std::string& warning : talus::io::size_warnings_of(folder)) record.warnings.push_back(std::move(warning));
+  if (auto note = talus::io::coefficient_note(folder)) record.warnings.push_back(std::move(*note));
 
   progress.stage("writing the maps");
   const talus::Grid& grid = survey->grid();
@@ -206,8 +216,12 @@ int hazard(const Options& options) {
   if (!options.objects.empty()) write_objects(options, staged.temporary(), record);
   record.files = staged.files();
   talus::io::write_text(staged.temporary() / "hazard.json", talus::io::hazard_json(record));
+  const std::vector<std::string> removed = staged.to_remove();
   staged.commit();
   if (options.quiet) return 0;
+  if (!removed.empty())
+    say("", "removed, as not asked for this time: " + talus::joined(removed) +
+                " (of the earlier talus hazard in this folder)");
   for (const std::string& warning : record.warnings) say("warning", warning);
   say("", object_text(record) + ": " + count_text(record.cells) + " cells that something passes, " +
               talus::with_digits(record.header.rules.scale.total, 4) + " events per year; results are in " +
@@ -233,8 +247,8 @@ void add_hazard(CLI::App& app, Action& action) {
   command
       ->add_option(
           "--width", options->width,
-          "m, of the object: frequency and class of an object of this width (and the diameter of the block) at "
-          "each place; else of the cell")
+          "m: the maps are for an object of this width (and the diameter of the block) at each place, else for the "
+          "cell; with --objects also the width of lines without a field width")
       ->check([](const std::string& text) -> std::string {
         char* end = nullptr;
         const double value = std::strtod(text.c_str(), &end);
@@ -251,7 +265,9 @@ void add_hazard(CLI::App& app, Action& action) {
       ->check(CLI::IsMember({"machine"}));
   command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
   command->footer(
-      "Examples:\n  talus hazard result\n  talus hazard result --objects houses.gpkg --overwrite\n\nWrites into the "
+      "Examples:\n  talus hazard result\n  talus hazard result --width 10 --curves --objects houses.gpkg\n\nA later "
+      "hazard "
+      "--overwrite replaces the earlier one as a whole: ask for all at once.\nWrites into the "
       "folder: annual_frequency.tif, return_period_<kJ>.tif, "
       "intensity_T<years>.tif,\nhazard_class.tif, hazard.json; with --curves hazard_curves.tif. Nothing is simulated "
       "again, but for --frequency "

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "talus/physics/effects/registry.hpp"
 #include "talus/simulate/totals.hpp"
 
 namespace talus::run {
@@ -25,5 +26,11 @@ std::string limits_text(const Totals& totals);
 ///
 /// @param whole  name of what `totals` sums over
 std::vector<std::string> warnings_of(const Totals& totals, const std::string& whole = "trajectories");
+
+/// A warning that many blocks hardly left their source; empty if they are few.
+///
+/// @param held, released  numbers of trajectories, `held_at_release` and all
+std::vector<std::string> held_warnings(std::uint64_t held, std::uint64_t released, const Effects& effects,
+                                       const std::string& whole = "trajectories");
 
 }  // namespace talus::run

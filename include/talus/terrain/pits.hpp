@@ -16,6 +16,9 @@ struct DamCount {
 };
 DamCount count_dammed(const Raster<float>& heights);
 
+/// Height by which a dammed cell lies below the lowest of its four neighbours [m]; 0 if it is not dammed.
+double dam_height(const Raster<float>& heights, int column, int row);
+
 /// Height by which a cell lies below the lowest of its eight neighbours [m]; 0 if one of them is not higher, or has no
 /// height: a block could leave there. A cell with a depth above 0 is a true pit: no interpolation of the heights lets
 /// a block out of it.

@@ -49,18 +49,25 @@ std::vector<std::string> StagedFiles::files() const {
   return files_in(temporary());
 }
 
+std::vector<std::string> StagedFiles::to_remove() const {
+  const std::vector<std::string> names = files();
+  std::vector<std::string> found;
+  for (const std::string& name : earlier_)
+    if (std::ranges::count(names, name) == 0 && fs::exists(folder_ / name)) found.push_back(name);
+  return found;
+}
+
 void StagedFiles::commit() {
   for (const std::string& name : files())
     if (fs::exists(folder_ / name) && std::ranges::count(earlier_, name) == 0)
       throw InputError((folder_ / name).string() + ": is there and none of the files of an earlier " + record_ +
                        ", so it is not replaced; move it, or give it another name");
-  const std::vector<std::string> names = files();
+  const std::vector<std::string> names = files(), without_successor = to_remove();
   std::error_code ignored;
   fs::remove(folder_ / record_, ignored);  // first: without it the files count as incomplete
   for (const std::string& name : names)
     if (name != record_) give_name(name);  // in place of an earlier file, which is there until then
-  for (const std::string& name : earlier_)
-    if (std::ranges::count(names, name) == 0) fs::remove(folder_ / name, ignored);
+  for (const std::string& name : without_successor) fs::remove(folder_ / name, ignored);
   if (std::ranges::count(names, record_) > 0) give_name(record_);
 }
 

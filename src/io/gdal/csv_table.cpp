@@ -75,6 +75,15 @@ std::vector<CsvTable::Row> split(const std::string& text, const std::string& pat
 
 }  // namespace
 
+std::optional<double> number_of_cell(const std::string& text) {
+  const std::string value = trimmed(text);
+  if (value.empty()) return std::nullopt;
+  double number = 0.0;
+  const char *first = value.data() + (value.front() == '+' ? 1 : 0), *last = value.data() + value.size();
+  const auto [end, error] = std::from_chars(first, last, number);
+  return error == std::errc{} && end == last ? std::optional(number) : std::nullopt;
+}
+
 CsvTable::CsvTable(std::string path, const std::vector<std::string>& known, const std::vector<std::string>& required)
     : path_(std::move(path)) {
   rows_ = split(content_of(path_), path_);
@@ -120,14 +129,12 @@ const std::string& CsvTable::name(const Row& row, const std::string& column) con
 std::optional<double> CsvTable::number(const Row& row, const std::string& column, const Bounds& bounds) const {
   const std::string& value = text(row, column);
   if (value.empty()) return std::nullopt;
-  double number = 0.0;
-  const char *first = value.data() + (value.front() == '+' ? 1 : 0), *last = value.data() + value.size();
-  const auto [end, error] = std::from_chars(first, last, number);
-  if (error != std::errc{} || end != last)
+  const auto number = number_of_cell(value);
+  if (!number)
     refuse(row, column,
            "must be a number" + (bounds.unit == "1" ? "" : " in " + std::string(bounds.unit)) +
                ", with a point for decimals, or empty where it was not measured");
-  if (const auto rule = fault_of(bounds, number)) refuse(row, column, *rule);
+  if (const auto rule = fault_of(bounds, *number)) refuse(row, column, *rule);
   return number;
 }
 

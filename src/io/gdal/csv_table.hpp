@@ -7,6 +7,9 @@
 
 namespace talus::io {
 
+/// A number as a text table holds it: with a point for decimals, blanks around it; nothing for any other text.
+std::optional<double> number_of_cell(const std::string& text);
+
 /// A text table with a header, read whole: commas, quotation marks as in RFC 4180. Every fault names file, line,
 /// column, value and what is allowed.
 class CsvTable {

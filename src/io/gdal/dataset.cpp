@@ -82,9 +82,13 @@ bool GdalMessages::failed() const {
 Dataset open_dataset(const std::string& path, unsigned kinds) {
   GdalMessages messages;
   // A text table does not declare its types and geometry: GDAL has to guess them.
-  const char* const csv[] = {"AUTODETECT_TYPE=YES",  "GEOM_POSSIBLE_NAMES=wkt,geometry,geom",
-                             "X_POSSIBLE_NAMES=x",   "Y_POSSIBLE_NAMES=y",
-                             "KEEP_GEOM_COLUMNS=NO", nullptr};
+  const char* const csv[] = {"AUTODETECT_TYPE=YES",
+                             "AUTODETECT_SIZE_LIMIT=0",
+                             "GEOM_POSSIBLE_NAMES=wkt,geometry,geom",
+                             "X_POSSIBLE_NAMES=x",
+                             "Y_POSSIBLE_NAMES=y",
+                             "KEEP_GEOM_COLUMNS=NO",
+                             nullptr};
   const char* const* options = ends_with(path, ".csv") ? csv : nullptr;
   Dataset dataset(
       GDALDataset::Open(path.c_str(), kinds | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr, options, nullptr));

@@ -1,6 +1,7 @@
 #include "talus/io/gdal/forest.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -17,7 +18,10 @@ namespace talus::io {
 namespace {
 
 constexpr const char* kRole = "effects.forest-stems";
-constexpr const char* kCentimetres = " (are the diameters in centimetres? they must be in metres)";
+
+// Densities of stems that a stand has; a thin one at the timber line or on a pasture has less.
+constexpr const char* kUsualDensities = "100 to 2000 stems/ha";
+constexpr double kThinnestStand = 50.0;  // [1/ha]
 
 /// Bounds of a number of the effect: "density" or "diameter".
 const Bounds& bounds_of_number(std::string_view key) {
@@ -42,6 +46,27 @@ struct Spread {
   std::string text() const {
     return range_text(low, high) + (low == high ? "" : " (mean " + with_digits(mean(), 3) + ")");
   }
+};
+
+/// The median of many positive numbers, to about 1 %: their counts in bins of 1/200 of a decade, from 1e-4 to 1e6.
+class Median {
+ public:
+  void add(double value) {
+    const double bin = std::floor(kPerDecade * (std::log10(value) - kFirst));
+    ++counts_[static_cast<std::size_t>(std::clamp(bin, 0.0, kBins - 1.0))];
+    ++all_;
+  }
+  double value() const {
+    std::size_t bin = 0;
+    for (std::uint64_t below = counts_[0]; 2 * below < all_;) below += counts_[++bin];
+    return std::pow(10.0, kFirst + (static_cast<double>(bin) + 0.5) / kPerDecade);
+  }
+
+ private:
+  static constexpr double kFirst = -4.0, kPerDecade = 200.0;
+  static constexpr int kBins = 2000;
+  std::array<std::uint64_t, kBins> counts_{};
+  std::uint64_t all_ = 0;
 };
 
 /// A raster of a number of the stand, at the centres of the cells of the DEM.
@@ -81,8 +106,7 @@ class StandRaster {
     if (value == 0.0) return 0.0;
     if (const auto fault = fault_of(bounds_, value))
       throw InputError(path_ + ": " + text_of(value) + " at " + with_decimals(east, 1) + ", " +
-                       with_decimals(north, 1) + " of the DEM: " + *fault +
-                       (bounds_.unit == "m" && value > bounds_.max ? kCentimetres : ""));
+                       with_decimals(north, 1) + " of the DEM: " + *fault + centimetres_hint(bounds_, value));
     return value;
   }
 
@@ -158,6 +182,7 @@ class RasterForest {
     map.density.at(column, row) = static_cast<float>(density);
     if (diameter_) map.diameter.at(column, row) = static_cast<float>(diameter);
     densities_.add(density), diameters_.add(diameter);
+    median_.add(density);
   }
 
   const std::string& first_path() const { return density_ ? request_.density : request_.diameter; }
@@ -185,6 +210,10 @@ class RasterForest {
         out.warnings.push_back(*path + ": " + std::to_string((*raster)->without()) + " of " + std::to_string(cells_) +
                                " cells of the DEM have no value (nodata, or off the raster): no forest there");
     }
+    if (median_.value() < kThinnestStand)
+      out.warnings.push_back(first_path() + ": the median density of the forest is " + with_digits(median_.value(), 2) +
+                             " stems/ha, stands have " + kUsualDensities +
+                             ": is it per m2 or per 100 m2, or a share that the crowns cover?");
     if (thin_ > 0)
       out.warnings.push_back(request_.diameter + ": " + std::to_string(thin_) +
                              " cells with a density have no diameter, or 0: no forest there");
@@ -195,6 +224,7 @@ class RasterForest {
   const Terrain& terrain_;
   std::optional<StandRaster> density_, diameter_;
   Spread densities_, diameters_;
+  Median median_;                       // of the densities
   std::uint64_t cells_ = 0, thin_ = 0;  // of the DEM; of a density without a diameter
 };
 
@@ -251,7 +281,7 @@ class TreeReader {
     if (!value) return value;
     if (const auto fault = fault_of(bounds, *value))
       throw InputError(layer_.label(feature) + ": field diameter = " + text_of(*value) + ": " + *fault +
-                       (*value > bounds.max ? kCentimetres : ""));
+                       centimetres_hint(bounds, *value));
     return value;
   }
 
@@ -263,7 +293,7 @@ class TreeReader {
     }
     if (const auto factor = factor_of_species(name)) return *factor;
     throw InputError(layer_.label(feature) + ": unknown species '" + name + "'" +
-                     known_names(name, names_of_species()));
+                     known_names(name, names_of_species()) + std::string(help_on_species()));
   }
 
   bool on_terrain(const Eigen::Vector2d& place) const {
@@ -313,6 +343,10 @@ class TreeReader {
 };
 
 }  // namespace
+
+std::string centimetres_hint(const Bounds& bounds, double value) {
+  return bounds.unit == "m" && value > bounds.max ? " (are the diameters in centimetres? they must be in metres)" : "";
+}
 
 ForestLayer read_forest(const ForestRequest& request, const ForestStems& numbers, const Terrain& terrain) {
   ForestLayer out;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "csv_table.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 
@@ -27,7 +28,7 @@ Layer::Layer(std::string role, const std::string& path, const Terrain& terrain)
   crs_wkt_ = wkt_of(system);
   if (crs_wkt_.empty()) {
     crs_wkt_ = terrain.geo.crs_wkt;
-    if (!EQUAL(dataset_->GetDriverName(), "CSV"))
+    if (!is_csv())
       warnings_.push_back(path + ": says no coordinate system: taken as the one of the DEM, " + crs_name(crs_wkt_));
   } else {
     const std::vector<int>& order = system->GetDataAxisToSRSAxisMapping();
@@ -35,6 +36,10 @@ Layer::Layer(std::string role, const std::string& path, const Terrain& terrain)
                    (system->EPSGTreatsAsLatLong() != 0 || system->EPSGTreatsAsNorthingEasting() != 0);
   }
   transformer_.emplace(LayerName{std::move(role), path}, crs_wkt_, terrain.geo.crs_wkt, terrain.map());
+}
+
+bool Layer::is_csv() const {
+  return EQUAL(dataset_->GetDriverName(), "CSV");
 }
 
 void Layer::choose_layer() {
@@ -46,6 +51,11 @@ void Layer::choose_layer() {
       layer_ = layer;
     else
       others += (others.empty() ? "" : ", ") + std::string(layer->GetName());
+  }
+  if (layer_ == nullptr && is_csv() && dataset_->GetLayerCount() > 0) {
+    layer_ = dataset_->GetLayer(0);
+    throw InputError(path_ + ": does not say where its features lie: must have the columns x and y, or wkt; has " +
+                     joined(field_names()));
   }
   if (layer_ == nullptr) throw InputError(path_ + ": has no layer with geometry, must have polygons, lines or points");
   if (!others.empty())
@@ -79,20 +89,30 @@ std::vector<std::string> Layer::field_names() const {
 }
 
 std::string Layer::label(const OGRFeature& feature) const {
-  return path_ + ": feature " + std::to_string(feature.GetFID());
+  const std::string number = std::to_string(feature.GetFID());
+  return path_ + (is_csv() ? ": row " + number + " below the header" : ": feature " + number);
 }
 
 std::optional<double> Layer::number(const OGRFeature& feature, const char* name, const Bounds& bounds) const {
   const int index = field(name);
   if (index < 0 || feature.IsFieldSetAndNotNull(index) == 0) return std::nullopt;
   const OGRFieldType type = fields().GetFieldDefn(index)->GetType();
-  if (type == OFTString && *feature.GetFieldAsString(index) == '\0') return std::nullopt;  // an empty field of a CSV
+  const std::string unit = bounds.unit == "1" ? "" : " in " + std::string(bounds.unit);
+  if (type == OFTString && *feature.GetFieldAsString(index) == '\0') return std::nullopt;
   const std::string where = label(feature) + ": field " + name + " = ";
-  if (type != OFTInteger && type != OFTInteger64 && type != OFTReal)
+  double value = feature.GetFieldAsDouble(index);
+  if (is_csv() && type != OFTReal) {  // one cell that is no number makes text of the whole column
+    const std::string text = feature.GetFieldAsString(index);
+    const auto number = number_of_cell(text);
+    if (!number && text.find_first_not_of(' ') == std::string::npos) return std::nullopt;
+    if (!number)
+      throw InputError(where + "'" + text + "': must be a number" + unit +
+                       ", with a point for decimals, or empty where it is not known");
+    value = *number;
+  } else if (type != OFTInteger && type != OFTInteger64 && type != OFTReal) {
     throw InputError(where + "'" + feature.GetFieldAsString(index) + "' is of the type " +
-                     OGRFieldDefn::GetFieldTypeName(type) + ", must be a number field" +
-                     (bounds.unit == "1" ? "" : " in " + std::string(bounds.unit)));
-  const double value = feature.GetFieldAsDouble(index);
+                     OGRFieldDefn::GetFieldTypeName(type) + ", must be a number field" + unit);
+  }
   if (std::isnan(value)) return std::nullopt;
   if (const auto fault = fault_of(bounds, value))
     throw InputError(where + text_of(value) + ": " + *fault + ", or NULL where it is not known");

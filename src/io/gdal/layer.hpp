@@ -34,10 +34,10 @@ class Layer {
   int field(const char* name) const;
   std::vector<std::string> field_names() const;
   const OGRFeatureDefn& fields() const { return *layer_->GetLayerDefn(); }
-  /// "cliffs.shp: feature 12", for messages.
+  /// "cliffs.shp: feature 12", of a CSV "trees.csv: row 12 below the header", for messages.
   std::string label(const OGRFeature& feature) const;
-  /// The value of a numeric field; nothing if it is NULL or the field is not there. Throws InputError if it is no
-  /// number, or out of bounds.
+  /// The value of a numeric field, or of any field of a CSV; nothing if it is NULL or the field is not there. Throws
+  /// InputError if it is no number, or out of bounds.
   std::optional<double> number(const OGRFeature& feature, const char* name, const Bounds& bounds) const;
   /// The value of a text or whole-number field; empty if it is NULL. Throws InputError for other fields.
   std::string code(const OGRFeature& feature, int field) const;
@@ -49,6 +49,7 @@ class Layer {
 
  private:
   void choose_layer();
+  bool is_csv() const;
   void collect(OGRGeometry& geometry, Parts& parts, const std::string& where);
   void move(OGRSimpleCurve& line, const std::string& where);
   void add_valid(const OGRPolygon& polygon, Parts& parts, const std::string& where);

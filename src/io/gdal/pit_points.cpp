@@ -10,14 +10,15 @@ void write_pits(const std::filesystem::path& file, const Raster<float>& heights,
   const Grid& grid = heights.grid;
   const double south = geo.north - grid.rows * geo.cell_y;
   GeoPackage package(file, geo);
-  OGRLayer* layer = package.add_point_layer("pits", {{"depth_m", OFTReal}, {"z", OFTReal}});
+  OGRLayer* layer = package.add_point_layer("pits", {{"kind", OFTString}, {"depth_m", OFTReal}, {"z", OFTReal}});
   const Feature feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
   for (int row = grid.rows - 1; row >= 0; --row)
     for (int column = 0; column < grid.columns; ++column) {
-      const double depth = pit_depth(heights, column, row);
-      if (!(depth > 0.0)) continue;
-      feature->SetField(0, depth);
-      feature->SetField(1, double{heights.at(column, row)});
+      const double pit = pit_depth(heights, column, row), dam = dam_height(heights, column, row);
+      if (!(pit > 0.0 || dam > 0.0)) continue;
+      feature->SetField(0, pit > 0.0 ? "pit" : "dammed");
+      feature->SetField(1, pit > 0.0 ? pit : dam);
+      feature->SetField(2, double{heights.at(column, row)});
       const OGRPoint point(geo.west + grid.centre_x(column), south + grid.centre_y(row));
       feature->SetGeometry(&point);
       package.append(layer, *feature);

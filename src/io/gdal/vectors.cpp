@@ -166,16 +166,21 @@ class Placer {
       out_.warnings.push_back(path + ": features without geometry: FID " + list_of(without_geometry_));
     if (!off_map_.empty())
       out_.warnings.push_back(path + ": features wholly off the DEM, which release nothing: FID " + list_of(off_map_));
-    if (at_edge_ > 0)
-      out_.warnings.push_back(path + ": " + std::to_string(at_edge_) +
-                              " source cells or points lie at the edge of the DEM or beside missing heights: blocks "
-                              "that start where there is no terrain count as left at once");
-    if (without_terrain_ > 0)
-      out_.warnings.push_back(path + ": " + std::to_string(without_terrain_) +
-                              " source cells or points have no height in the DEM and release nothing");
+    if (at_edge_ + without_terrain_ > 0) out_.warnings.push_back(path + ": " + gaps_text());
   }
 
  private:
+  /// What gaps and the edge of the DEM do to the sources.
+  std::string gaps_text() const {
+    std::string text;
+    if (without_terrain_ > 0)
+      text = std::to_string(without_terrain_) + " source cells or points have no height in the DEM and release nothing";
+    if (at_edge_ > 0)
+      text += (text.empty() ? "" : "; ") + std::to_string(at_edge_) +
+              " source cells or points lie at the edge of the DEM or beside missing heights: blocks that start where "
+              "there is no terrain count as left at once";
+    return text;
+  }
   std::uint32_t feature() const { return static_cast<std::uint32_t>(out_.features.size() - 1); }
   void add(const Cell& cell, const SourceCell& source) {
     if (std::isnan(heights_.at(cell.column, cell.row)))

@@ -1,6 +1,8 @@
 #include "barrier_stretches.hpp"
 
+#include <algorithm>
 #include <functional>
+#include <optional>
 
 namespace talus::io {
 namespace {
@@ -36,6 +38,35 @@ const StretchDesign* highest_of(const BarrierReport& r, Value value) {
         (found == nullptr || std::invoke(value, *row.values.design) > std::invoke(value, *found->design)))
       found = &row.values;
   return found;
+}
+
+/// Where a value of the whole line is too low: stretches side by side as one, "from-to m", and the value that is enough
+/// everywhere.
+struct Lack {
+  std::vector<std::string> where;
+  double highest;
+};
+
+template <class Value>
+Lack lack_of(const BarrierReport& r, Value value) {
+  const double line = std::invoke(value, r.design);
+  Lack lack{{}, line};
+  std::optional<Stretch> open;
+  const auto close = [&] {
+    if (open) lack.where.push_back(with_decimals(open->from, 1) + "-" + with_decimals(open->to, 1) + " m");
+    open.reset();
+  };
+  for (const StretchRow& row : r.stretches) {
+    if (!row.values.design || !(std::invoke(value, *row.values.design) > line)) {
+      close();
+      continue;
+    }
+    if (!open) open = row.values.stretch;
+    open->to = row.values.stretch.to;
+    lack.highest = std::max(lack.highest, std::invoke(value, *row.values.design));
+  }
+  close();
+  return lack;
 }
 
 std::string from_to(const Stretch& s) {
@@ -124,17 +155,19 @@ std::string stretches_csv(const BarrierReport& r) {
 }
 
 std::optional<std::string> stretch_note(const BarrierReport& r) {
-  const StretchDesign *energy = highest_of(r, &BarrierDesign::sel), *height = highest_of(r, &BarrierDesign::height);
-  std::size_t higher = 0;
-  for (const StretchRow& row : r.stretches)
-    higher +=
-        row.values.design && (row.values.design->sel > r.design.sel || row.values.design->height > r.design.height)
-            ? 1U
-            : 0U;
-  if (higher == 0) return std::nullopt;
-  return "one design for the whole line is too low on " + std::to_string(higher) +
-         " of its stretches, which need up to SEL " + kilojoules(energy->design->sel) + " kJ and h_i " +
-         with_digits(height->design->height, 3) + " m: give each stretch its own design, or all the highest";
+  const Lack sel = lack_of(r, &BarrierDesign::sel), height = lack_of(r, &BarrierDesign::height);
+  const std::string energies = kilojoules(sel.highest) + " kJ", heights = with_digits(height.highest, 3) + " m";
+  std::vector<std::string> texts;
+  if (!sel.where.empty())
+    texts.push_back("SEL (" + kilojoules(r.design.sel) + " kJ) on " + joined(sel.where) + ", which need up to " +
+                    energies);
+  if (!height.where.empty())
+    texts.push_back("h_i (" + with_digits(r.design.height, 4) + " m) on " + joined(height.where) +
+                    ", which need up to " + heights);
+  if (texts.empty()) return std::nullopt;
+  std::string text = "one design for the whole line is too low: " + texts.front();
+  if (texts.size() > 1) text += "; " + texts.back();
+  return text + ". Give each stretch its own design, or the whole line SEL " + energies + " and h_i " + heights;
 }
 
 }  // namespace talus::io

@@ -159,7 +159,7 @@ std::string ObjectLayer::lines_text() const {
   std::string text;
   if (s.lines_of_their_width > 0) text = std::to_string(s.lines_of_their_width) + " as wide as their field width says";
   if (s.lines_of_given_width > 0)
-    text += (text.empty() ? "" : ", ") + std::to_string(s.lines_of_given_width) + " without that field " +
+    text += (text.empty() ? "" : "; ") + std::to_string(s.lines_of_given_width) + " without a field width, taken as " +
             text_of(s.line_width) + " m wide" +
             (s.line_width > 0.0 ? " (--width)" : " (a field width, or --width, makes them wider)");
   return text.empty() ? text : "lines: " + text;
@@ -167,23 +167,28 @@ std::string ObjectLayer::lines_text() const {
 
 namespace {
 
-/// The layer `objects`: attributes of the input (without those named as a figure), figures, sources.
+/// Attributes of the input that are copied: those that are not named as a column of the results.
+std::vector<int> copied_attributes(OGRFeature& model, const Figures& figures) {
+  std::vector<std::string> own{"sources", "fid", "geom"};
+  for (const auto& [name, value] : figures) own.push_back(name);
+  std::vector<int> copied;
+  for (int i = 0; i < model.GetFieldCount(); ++i) {
+    const char* name = model.GetFieldDefnRef(i)->GetNameRef();
+    if (std::ranges::none_of(own, [&](const std::string& one) { return EQUAL(one.c_str(), name); }))
+      copied.push_back(i);
+  }
+  return copied;
+}
+
+/// The layer `objects`: attributes of the input, figures, sources.
 class ObjectsWriter {
  public:
   ObjectsWriter(const std::filesystem::path& file, const LoadedScenario& loaded, OGRFeature& model,
                 const Figures& figures)
-      : file_(file, loaded.geo) {
-    for (const auto& [name, value] : figures) names_.push_back(name);
-    names_.insert(names_.end(), {"sources", "fid", "geom"});
+      : file_(file, loaded.geo), attributes_(copied_attributes(model, figures)) {
     std::vector<GeoPackage::Column> columns;
-    for (int i = 0; i < model.GetFieldCount(); ++i) {
-      const OGRFieldDefn* field = model.GetFieldDefnRef(i);
-      if (std::ranges::any_of(names_,
-                              [&](const std::string& name) { return EQUAL(name.c_str(), field->GetNameRef()); }))
-        continue;
-      columns.push_back({field->GetNameRef(), field->GetType()});
-      attributes_.push_back(i);
-    }
+    for (const int i : attributes_)
+      columns.push_back({model.GetFieldDefnRef(i)->GetNameRef(), model.GetFieldDefnRef(i)->GetType()});
     for (const auto& [name, value] : figures) columns.push_back({name.c_str(), OFTReal});
     columns.push_back({"sources", OFTString});
     layer_ = file_.add_layer("objects", wkbUnknown, columns);
@@ -210,9 +215,34 @@ class ObjectsWriter {
 
  private:
   GeoPackage file_;
-  std::vector<std::string> names_;
-  std::vector<int> attributes_;  // attributes of the input that are copied
+  std::vector<int> attributes_;
   OGRLayer* layer_ = nullptr;
+};
+
+/// The table objects.csv: the layer `objects` without its geometry.
+class ObjectsTable {
+ public:
+  void add(const std::string& object, OGRFeature& from, const Figures& figures, const std::string& sources) {
+    std::vector<int> attributes = copied_attributes(from, figures);
+    std::erase_if(attributes, [&](int i) { return EQUAL(from.GetFieldDefnRef(i)->GetNameRef(), "object"); });
+    if (text_.empty()) head(from, attributes, figures);
+    text_ += object;
+    for (const int i : attributes)
+      text_ += ',' + csv_field(from.IsFieldSetAndNotNull(i) != 0 ? std::string(from.GetFieldAsString(i)) : "");
+    for (const auto& [name, value] : figures) text_ += ',' + csv_field(value);
+    text_ += ',' + csv_field(sources) + '\n';
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  void head(OGRFeature& from, const std::vector<int>& attributes, const Figures& figures) {
+    text_ = "object";
+    for (const int i : attributes) text_ += ',' + csv_field(std::string(from.GetFieldDefnRef(i)->GetNameRef()));
+    for (const auto& [name, value] : figures) text_ += ',' + name;
+    text_ += ",sources\n";
+  }
+
+  std::string text_;
 };
 
 std::string curve_rows(const std::string& object, const HazardCurve& curve, const EnergyBins& bins) {
@@ -232,8 +262,9 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
                         const std::vector<ObjectHits>& hits, const std::vector<double>& years) const {
   const Grid& grid = loaded.scenario.surface.grid();
   std::unique_ptr<ObjectsWriter> writer;
-  std::string table, curves = "object,energy_kj,frequency,lower,upper,return_period\n",
-                     from = "object,feature,frequency,share\n";
+  ObjectsTable table;
+  std::string curves = "object,energy_kj,frequency,lower,upper,return_period\n",
+              from = "object,feature,frequency,share\n";
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const HazardCurve curve(rules, hits[i].largest);
     const Figures figures = figures_of(rules, hits[i], state_->on_map[i], years);
@@ -248,20 +279,14 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
                         rules.scale.unit) +
               ',' + csv_field(share) + '\n';
     }
-    if (!writer) {
+    if (!writer)
       writer = std::make_unique<ObjectsWriter>(folder / "objects.gpkg", loaded, *state_->features[i], figures);
-      table = "object";
-      for (const auto& [name, value] : figures) table += ',' + name;
-      table += ",sources\n";
-    }
     writer->write(*state_->features[i], *geometry_of(state_->parts[i], grid.west, grid.south), figures, sources);
-    table += object;
-    for (const auto& [name, value] : figures) table += ',' + csv_field(value);
-    table += ',' + csv_field(sources) + '\n';
+    table.add(object, *state_->features[i], figures, sources);
     if (state_->on_map[i]) curves += curve_rows(object, curve, rules.bins);
   }
   writer->finish();
-  write_text(folder / "objects.csv", table);
+  write_text(folder / "objects.csv", table.text());
   write_text(folder / "objects_curves.csv", curves);
   write_text(folder / "objects_sources.csv", from);
 }

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
 #include "talus/simulate/scenario/block_sizes.hpp"
 
 namespace talus::io {
@@ -30,18 +31,31 @@ Screen screen_of(const Json& json) {
 std::vector<std::string> size_warnings_of(const Json& run) {
   std::vector<std::string> found;
   for (const Json& warning : run.value("warnings", Json::array()))
-    if (warning.is_string() && warning.get<std::string>().starts_with(kSizeWarning))
-      found.push_back(warning.get<std::string>());
+    if (warning.is_string())
+      for (const std::string_view start : {kSizeWarning, kGuessWarning})
+        if (warning.get<std::string>().starts_with(start)) found.push_back(warning.get<std::string>());
   return found;
 }
 
-}  // namespace
-
+/// The value of model.deformation_coefficient (c) in a run.json; nothing if it is not there.
 std::optional<double> deformation_coefficient_of(const std::filesystem::path& folder) {
   std::ifstream stream(folder / "run.json", std::ios::binary);
   const Json json = Json::parse(stream, nullptr, false);
   if (!json.is_object() || !json.contains("deformation_coefficient")) return std::nullopt;
   return json.at("deformation_coefficient").get<double>();
+}
+
+}  // namespace
+
+std::optional<std::string> coefficient_note(const std::filesystem::path& folder) {
+  constexpr double kLowC = 0.15;  // the SEL of the paper's Table 4 asks for 0.09 to 0.16
+  const auto c = deformation_coefficient_of(folder);
+  if (!c || !(*c > kLowC)) return std::nullopt;
+  return "energies and jumps may be too low (unsafe): c = " + text_of(*c) +
+         " (model.deformation_coefficient) is not given by the paper, and a lower c raises both. Unless the ground was "
+         "fitted to observed speeds, run with c = 0.15 as well and take the higher values: docs/barrier.md, \"The "
+         "value "
+         "of c\"";
 }
 
 RunSummary read_run(const std::filesystem::path& folder) {

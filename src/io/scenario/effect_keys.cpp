@@ -5,6 +5,7 @@
 
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/gdal/forest.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 
@@ -101,6 +102,16 @@ class EffectReader {
     return true;
   }
 
+  void number(const std::string& key, const EffectField& field) {
+    if (const auto value = table_.number(key, field)) {
+      field.set(spec_.values.effects, *value);
+      given(key);
+    } else if (const TomlValue* wrong = table_.value()->find(key);
+               field.by_cell && wrong != nullptr && wrong->kind == Kind::Number) {
+      table_.faults().back() += centimetres_hint(field, wrong->number);
+    }
+  }
+
   /// Returns whether the effect acts: one of its strengths is given, here or in an included file.
   bool numbers(EffectSpec& effect) {
     bool strength = false;
@@ -109,11 +120,12 @@ class EffectReader {
       const std::string key(entry_.key_of(field));
       const bool given_before = spec_.origins.contains("effects." + name_ + "." + key);
       strength = strength || ((given_before || table_.value()->find(key) != nullptr) && field.is_strength());
-      if (field.by_cell && !listed && raster(effect, key)) continue;
-      if (const auto value = table_.number(key, field)) {
-        field.set(spec_.values.effects, *value);
-        given(key);
+      if (field.by_cell && listed) {  // a fault of its own: not_with_trees
+        table_.find(key);
+        continue;
       }
+      if (field.by_cell && raster(effect, key)) continue;
+      number(key, field);
     }
     return strength;
   }

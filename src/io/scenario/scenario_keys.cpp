@@ -22,11 +22,13 @@ using Kind = TomlValue::Kind;
 
 class SpecReader {
  public:
-  SpecReader(ScenarioSpec& spec, const std::string& file, std::string origin, std::vector<std::string>& faults)
+  /// @param path  of the file; `file` is its name in messages
+  SpecReader(ScenarioSpec& spec, const std::string& path, const std::string& file, std::string origin,
+             std::vector<std::string>& faults)
       : spec_(spec),
         file_(file),
         origin_(std::move(origin)),
-        base_(std::filesystem::absolute(file).parent_path()),
+        base_(std::filesystem::absolute(path).parent_path()),
         faults_(faults) {}
 
   void read(const TomlValue& root) {
@@ -279,12 +281,12 @@ void sort_by_line(std::vector<std::string>& faults, const std::string& file) {
 }
 
 void read_common_keys(ScenarioSpec& spec, TableReader& top, std::vector<std::string>& faults) {
-  SpecReader(spec, top.file(), "scenario", faults).read_common(top);
+  SpecReader(spec, top.file(), top.file(), "scenario", faults).read_common(top);
 }
 
 void read_model_keys(ScenarioSpec& spec, const std::string& path, const std::string& name, const std::string& origin,
                      std::vector<std::string>& faults) {
-  SpecReader(spec, name, origin, faults).read_model_keys(read_toml(path, name));
+  SpecReader(spec, path, name, origin, faults).read_model_keys(read_toml(path, name));
 }
 
 ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) {
@@ -292,7 +294,8 @@ ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) 
   start_with_preset(spec, flags, faults);
   if (!flags.scenario.empty()) {
     spec.scenario = {std::filesystem::absolute(flags.scenario).lexically_normal().string(), flags.scenario};
-    SpecReader(spec, flags.scenario, "scenario", faults).read(read_toml(flags.scenario, flags.scenario));
+    SpecReader(spec, flags.scenario, flags.scenario, "scenario", faults)
+        .read(read_toml(flags.scenario, flags.scenario));
   }
   lay_flags(spec, flags, faults);
   check_effect_zones(spec, faults);

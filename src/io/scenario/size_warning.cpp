@@ -14,8 +14,9 @@ void warn_of_sizes(const ScenarioSpec& spec, const Scenario& scenario, std::vect
   };
   if (cells.empty() || std::find(cells.begin(), cells.end(), 0) != cells.end()) add(spec.default_ground);
   for (const ZoneSpec& zone : spec.zones) add(zone);
-  std::string warning = size_warning(scenario, presets);
-  if (!warning.empty()) warnings.push_back(std::move(warning));
+  for (std::string& warning : std::vector<std::string>{size_warning(scenario, presets), guess_warning(presets),
+                                                       sorting_warning(scenario.effects)})
+    if (!warning.empty()) warnings.push_back(std::move(warning));
 }
 
 }  // namespace talus::io

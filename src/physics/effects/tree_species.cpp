@@ -41,4 +41,10 @@ std::vector<std::string> names_of_species() {
   return names;
 }
 
+std::string_view help_on_species() {
+  return "; give spruce, larch, pine, Douglas fir and other conifers as conifer, beech, maple, oak, ash, birch and "
+         "other "
+         "broad-leaved trees as broadleaf";
+}
+
 }  // namespace talus

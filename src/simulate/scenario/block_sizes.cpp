@@ -18,11 +18,43 @@ std::string metres(const Range& range) {
   return (low == high ? low : low + " to " + high) + " m";
 }
 
-/// Whether a preset was fitted to other sizes, or to sizes that are not known.
-bool strange_to(const Preset& preset, const Range& diameters, bool smaller_pieces) {
-  constexpr double kRounding = 1e-9;
-  return !preset.sizes.known() || smaller_pieces || diameters.low < preset.sizes.smallest * (1.0 - kRounding) ||
-         diameters.high > preset.sizes.largest * (1.0 + kRounding);
+constexpr double kRounding = 1e-9;
+
+bool below(const FittedSizes& sizes, const Range& diameters) {
+  return sizes.known() && diameters.low < sizes.smallest * (1.0 - kRounding);
+}
+
+bool above(const FittedSizes& sizes, const Range& diameters) {
+  return sizes.known() && diameters.high > sizes.largest * (1.0 + kRounding);
+}
+
+/// What is wrong with blocks that are larger, or smaller, than those that the ground was fitted to.
+std::string direction(bool larger, bool smaller) {
+  std::string text;
+  if (larger) text += "; larger blocks: run-out and speed too low (unsafe)";
+  if (smaller) text += "; smaller blocks: they run too far and too fast";
+  if (text.empty()) text = "; small blocks run faster and jump higher than large ones, against field experience";
+  return text + " (E_d grows with D, the roughness ignores it): see docs/physics.md, \"Parameter sets\"";
+}
+
+/// Whether block-mass acts with the numbers of its preset on sizes that the preset was not fitted to. At its reference
+/// diameter it changes nothing.
+bool extrapolates(const BlockMass& effect, const EffectPreset& preset, const Range& diameters) {
+  const BlockMass& numbers = preset.numbers.block_mass;
+  if (effect.roughness != numbers.roughness || effect.stiffness != numbers.stiffness ||
+      effect.reference_diameter != numbers.reference_diameter)
+    return false;
+  FittedSizes sizes = preset.sizes;
+  sizes.largest = std::max(sizes.largest, numbers.reference_diameter);
+  return below(sizes, diameters) || above(sizes, diameters);
+}
+
+std::string extrapolation_of_block_mass(const Scenario& scenario, const Range& diameters) {
+  const EffectPreset& measured = find_preset("block-mass", "measured");
+  if (!extrapolates(scenario.effects.block_mass, measured, diameters)) return {};
+  return "; [effects.block-mass] preset measured was fitted to " +
+         metres({measured.sizes.smallest, measured.sizes.largest}) +
+         ": here it is an extrapolation, see docs/effects.md";
 }
 
 }  // namespace
@@ -45,21 +77,47 @@ Range diameters_of(const Scenario& scenario) {
 std::string size_warning(const Scenario& scenario, std::span<const Preset* const> presets) {
   const Range diameters = diameters_of(scenario);
   const bool break_up = scenario.effects.fragmentation.threshold > 0.0;
+  bool larger = false, smaller = false;
   std::vector<std::string> strange;
   for (const Preset* preset : presets) {
-    if (!strange_to(*preset, diameters, break_up)) continue;
     const FittedSizes& sizes = preset->sizes;
+    if (!sizes.fitted) continue;  // `guess_warning`
+    const bool over = above(sizes, diameters), under = below(sizes, diameters) || (sizes.known() && break_up);
+    if (sizes.known() && !over && !under) continue;
+    larger = larger || over, smaller = smaller || under;
     strange.push_back(std::string(preset->name) + " (" +
                       (sizes.known() ? metres({sizes.smallest, sizes.largest}) : "not known") + ")");
     if (std::count(strange.begin(), strange.end(), strange.back()) > 1) strange.pop_back();
   }
-  if (strange.empty()) return {};
-  const bool scaled = find_effect("block-mass")->acts(scenario.effects);
-  return std::string(kSizeWarning) + "diameters are " + metres(diameters) + (break_up ? ", of pieces less" : "") +
-         ", the ground was fitted to others: " + joined(strange) +
-         (scaled ? "; [effects.block-mass] changes roughness and damping with the size here, see docs/effects.md"
-                 : "; expect small blocks to run faster and jump higher than large ones, against field experience "
-                   "(E_d grows with D, the roughness ignores it): see docs/physics.md, \"Parameter sets\"");
+  const std::string extrapolation = extrapolation_of_block_mass(scenario, diameters);
+  if (strange.empty() && extrapolation.empty()) return {};
+  std::string text =
+      std::string(kSizeWarning) + "diameters are " + metres(diameters) + (break_up ? ", of pieces less" : "");
+  if (!strange.empty()) text += ", the ground was fitted to others: " + joined(strange);
+  if (!extrapolation.empty()) return text + extrapolation;
+  return text + (find_effect("block-mass")->acts(scenario.effects)
+                     ? "; [effects.block-mass] changes roughness and damping with the size here, see docs/effects.md"
+                     : direction(larger, smaller));
+}
+
+std::string guess_warning(std::span<const Preset* const> presets) {
+  std::vector<std::string> names;
+  for (const Preset* preset : presets)
+    if (!preset->sizes.fitted && std::count(names.begin(), names.end(), preset->name) == 0)
+      names.emplace_back(preset->name);
+  if (names.empty()) return {};
+  return std::string(kGuessWarning) + "ground " + joined(names) +
+         " is for migration and fitted to no data; run-out may be too short (unsafe): see docs/migration.md";
+}
+
+std::string sorting_warning(const Effects& effects) {
+  if (!find_effect("rest-in-roughness")->acts(effects) || find_effect("block-mass")->acts(effects)) return {};
+  constexpr std::string_view kText =
+      "[effects.rest-in-roughness] without [effects.block-mass] sorts them the wrong way, large blocks high and small "
+      "ones far: add [effects.block-mass] preset = \"measured\", see docs/effects.md";
+  std::string text;
+  for (const std::string_view part : {kSizeWarning, kText}) text += part;
+  return text;
 }
 
 }  // namespace talus

@@ -26,7 +26,7 @@ constexpr FittedSizes kVaujanyOnly{1.0, 1.4, "not stated in 2D; the paper's simu
 constexpr FittedSizes kVaujanyEhime{
     0.4, 1.4, "not stated; Ehime 0.12 to 2.06 t (Ushiro et al. 2006), Vaujany as the paper simulates it in 3D"};
 constexpr FittedSizes kQuarry{kNotGiven, kNotGiven, "not stated; not known of the quarries"};
-constexpr FittedSizes kGuess{kNotGiven, kNotGiven, "none: a first guess, from the Rn of Rockyfor3D at 1 m"};
+constexpr FittedSizes kGuess{kNotGiven, kNotGiven, "none: a first guess, from the Rn of Rockyfor3D at 1 m", false};
 constexpr std::string_view kRockyfor3d = "migration.md";
 
 /// Ground that keeps next to nothing of a blow: water, swamp.
@@ -65,6 +65,7 @@ const std::array<Preset, 15>& all() {
 const std::array<EffectPreset, 1>& all_of_effects() {
   static const std::array<EffectPreset, 1> presets{{
       {"block-mass", "measured", "fitted to Tschamut and Authume, blocks of 0.3 to 1.1 m",
+       FittedSizes{0.3, 1.1, "blocks of Tschamut and Authume"},
        [] {
          Effects effects;
          effects.block_mass = {.roughness = 0.7, .stiffness = 1.5, .reference_diameter = 1.2, .where = {}};

@@ -182,8 +182,8 @@ void check_stands(const Scenario& s) {
       const bool stems = trees.empty() ? has_stand(e.forest_stems, zone, x, y) : trees[grid.index(column, row)];
       if (stems && e.vegetation_drag.where.covers(zone, x, y))
         throw InputError(
-            "effects: vegetation-drag and forest-stems act at the same place (the cell at " + talus::text_of(x) +
-            " m, " + talus::text_of(y) +
+            "effects: vegetation-drag and forest-stems act at the same place (the cell at " + with_decimals(x, 1) +
+            " m, " + with_decimals(y, 1) +
             " m from the south-western corner), where the stand would take its energy twice: give them zones or files "
             "apart from each other, or set allow_both = true in [effects]");
     }

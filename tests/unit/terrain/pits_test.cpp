@@ -27,6 +27,12 @@ TEST(Dammed, IsACellWhoseOnlyWayDownIsDiagonal) {
   EXPECT_FALSE(dammed(square({9, missing, 4, 6, 5, 6, 9, 6, 9}), 1, 1));
 }
 
+TEST(Dammed, HasTheHeightOfItsLowestSide) {
+  EXPECT_EQ(dam_height(square({9, 6, 4, 8, 5, 7, 9, 6.5F, 9}), 1, 1), 1.0);
+  EXPECT_EQ(dam_height(square({9, 7, 4, 8, 5, 5.25F, 9, 6, 9}), 1, 1), 0.25);
+  EXPECT_EQ(dam_height(square({9, 6, 9, 6, 5, 6, 9, 6, 9}), 1, 1), 0.0);  // a pit
+}
+
 TEST(Dammed, AreCountedAmongCellsWithAHeight) {
   const float missing = std::numeric_limits<float>::quiet_NaN();
   const DamCount count = count_dammed(square({missing, 6, 4, 6, 5, 6, 9, 6, 9}));

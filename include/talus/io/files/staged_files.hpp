@@ -21,6 +21,8 @@ class StagedFiles {
   const std::filesystem::path& temporary() const { return staged_.hidden(); }
   /// Names of what was written so far, in the order of the alphabet.
   std::vector<std::string> files() const;
+  /// The earlier files that have no successor: `commit` removes them. Call it when all new files are written.
+  std::vector<std::string> to_remove() const;
   /// Gives the new files their names, in place of earlier ones, and removes the earlier files that have no successor. A
   /// program that is killed meanwhile leaves each file, earlier or new. Throws std::runtime_error; what has not got its
   /// name yet then stays in `temporary`.

@@ -5,6 +5,7 @@
 
 #include "talus/io/gdal/rasters.hpp"
 #include "talus/physics/effects/forest_stems.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace talus::io {
 
@@ -21,6 +22,9 @@ struct ForestRequest {
   std::string density, diameter;  ///< rasters; where one is empty the number of the effect holds
   std::string trees;              ///< points
 };
+
+/// What to say of a diameter that is too large: it may be in centimetres; empty for other numbers.
+std::string centimetres_hint(const Bounds& bounds, double value);
 
 /// Reads a forest onto the grid of the DEM. `numbers` are those of the effect.
 ///

@@ -6,8 +6,9 @@
 
 namespace talus::io {
 
-/// Writes the true pits of a terrain (`pit_depth`) as the layer `pits` of a GeoPackage: the centre of each cell, row by
-/// row from the north-west, with depth_m and z. Without any the layer is empty.
+/// Writes the true pits of a terrain (`pit_depth`) and its dammed cells (`dam_height`) as the layer `pits` of a
+/// GeoPackage: the centre of each cell, row by row from the north-west, with kind (pit or dammed), depth_m below the
+/// lowest of its eight (pit) or four (dammed) neighbours, and z. Without any the layer is empty.
 ///
 /// Throws std::runtime_error, one line with the file and the cause.
 void write_pits(const std::filesystem::path& file, const Raster<float>& heights, const GeoReference& geo);

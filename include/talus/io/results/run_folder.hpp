@@ -8,8 +8,9 @@
 
 namespace talus::io {
 
-/// The value of model.deformation_coefficient (c) in a run.json; nothing if it is not there.
-std::optional<double> deformation_coefficient_of(const std::filesystem::path& folder);
+/// One line that energies rest on c (model.deformation_coefficient of the run.json), and which way is safe; nothing if
+/// c is low, or not there. docs/barrier.md, "The value of c".
+std::optional<std::string> coefficient_note(const std::filesystem::path& folder);
 
 /// The part of OUT/run.json that products of a finished run need.
 struct RunSummary {
@@ -17,7 +18,7 @@ struct RunSummary {
   double density = 0.0;                    ///< of the rock [kg/m^3]
   double cell = 0.0;                       ///< side of a cell, from west to east [m]
   std::vector<Screen> screens;             ///< in map coordinates [m]
-  std::vector<std::string> size_warnings;  ///< that its blocks have other sizes than its ground was fitted to
+  std::vector<std::string> size_warnings;  ///< about block sizes, and ground that was fitted to no data
 };
 
 /// Reads OUT/run.json. Throws InputError if it cannot be read or `talus run` has not written it.

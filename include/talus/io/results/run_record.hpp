@@ -13,8 +13,9 @@ namespace talus::io {
 
 /// Largest share of trajectories that may end at a limit; above it a run counts as failed.
 inline constexpr double kAllowedLimitShare = 0.001;
-/// Shares of the trajectories above which a run warns: that left the terrain, that were trapped.
-inline constexpr double kWarnedLeftShare = 0.01, kWarnedTrappedShare = 0.03;
+/// Shares of the trajectories above which a run warns: that left the terrain, that were trapped, that hardly left their
+/// source.
+inline constexpr double kWarnedLeftShare = 0.01, kWarnedTrappedShare = 0.03, kWarnedHeldShare = 0.03;
 
 /// Seconds of the three stages of a run.
 struct StageSeconds {

@@ -22,4 +22,7 @@ std::optional<double> factor_of_species(std::string_view name);
 /// Names of all kinds, for messages.
 std::vector<std::string> names_of_species();
 
+/// Which kind to give for trees with names of their own, for messages: "; spruce, larch ... are conifer, ...".
+std::string_view help_on_species();
+
 }  // namespace talus

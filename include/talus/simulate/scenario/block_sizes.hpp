@@ -7,14 +7,21 @@
 
 namespace talus {
 
-/// How a warning about block sizes begins, in run.json, too.
-inline constexpr std::string_view kSizeWarning = "block sizes: ";
+/// How a warning about block sizes, or about a ground that was fitted to no data, begins, in run.json, too.
+inline constexpr std::string_view kSizeWarning = "block sizes: ", kGuessWarning = "first guess: ";
 
 /// Smallest and largest diameter of the blocks at their release [m]. The scenario must be valid.
 Range diameters_of(const Scenario& scenario);
 
-/// One line if blocks of the scenario are smaller or larger than those that a preset of its ground was fitted to, or if
-/// these sizes are not known: the presets, the sizes, and what to expect. Empty if there is nothing to say.
+/// One line if blocks of the scenario are smaller or larger than those that a preset of its ground, or of block-mass,
+/// was fitted to, or if these sizes are not known: the presets, the sizes, and which way the results are wrong. Empty
+/// if there is nothing to say.
 std::string size_warning(const Scenario& scenario, std::span<const Preset* const> presets);
+
+/// One line if presets of the ground were fitted to no data. Empty if there is none.
+std::string guess_warning(std::span<const Preset* const> presets);
+
+/// One line if an effect sorts the sizes the wrong way: rest-in-roughness without block-mass. Empty if none does.
+std::string sorting_warning(const Effects& effects);
 
 }  // namespace talus

@@ -14,6 +14,7 @@ namespace talus {
 struct FittedSizes {
   double smallest, largest;
   std::string_view source;  ///< where the paper, or the literature about its site, says so
+  bool fitted = true;       ///< false: the set is a first guess that no data support
 
   bool known() const { return !std::isnan(smallest); }
 };
@@ -42,7 +43,8 @@ const Preset& find_preset(std::string_view name);
 struct EffectPreset {
   std::string_view effect, name;  ///< "block-mass", "measured"
   std::string_view source;        ///< where its numbers come from
-  Effects numbers;                ///< those of this effect count
+  FittedSizes sizes;
+  Effects numbers;  ///< those of this effect count
 };
 
 /// All sets of effects.

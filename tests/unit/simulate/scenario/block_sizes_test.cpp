@@ -39,7 +39,10 @@ TEST(BlockSizes, WarnsOutsideAndNotInside) {
     EXPECT_TRUE(text.starts_with(kSizeWarning)) << text;
     EXPECT_NE(text.find("upper-talus-3d (1 to 1.4 m)"), std::string::npos) << text;
     EXPECT_EQ(text.find("upper-talus-3d"), text.rfind("upper-talus-3d")) << "once: " << text;
-    EXPECT_NE(text.find("small blocks to run faster"), std::string::npos) << text;
+    const Range d = diameters_of(scenario);
+    EXPECT_EQ(text.find("larger blocks: run-out and speed too low (unsafe)") != std::string::npos, d.high > 1.4)
+        << text;
+    EXPECT_EQ(text.find("smaller blocks: they run too far and too fast") != std::string::npos, d.low < 1.0) << text;
   }
   EXPECT_NE(warning(of_diameter(0.3, 4.0)).find("diameters are 0.3 to 4 m"), std::string::npos);
 }
@@ -53,7 +56,17 @@ TEST(BlockSizes, SaysWhatIsNotKnownWhatBreaksAndWhatIsScaled) {
   const std::string text = warning(scenario);
   EXPECT_NE(text.find("of pieces less"), std::string::npos) << text;
   EXPECT_NE(text.find("[effects.block-mass] changes"), std::string::npos) << text;
-  EXPECT_EQ(text.find("small blocks to run faster"), std::string::npos) << text;
+  EXPECT_EQ(text.find("too fast"), std::string::npos) << text;
+}
+
+TEST(BlockSizes, AGuessIsSaidAsSuch) {
+  EXPECT_EQ(warning(of_diameter(5.0, 5.0), "rockyfor3d-4"), "");
+  const std::vector<const Preset*> presets{&find_preset("rockyfor3d-4"), &find_preset("upper-talus-3d"),
+                                           &find_preset("rockyfor3d-4"), &find_preset("rockyfor3d-0")};
+  const std::string text = guess_warning(presets);
+  EXPECT_TRUE(text.starts_with(kGuessWarning)) << text;
+  EXPECT_NE(text.find("ground rockyfor3d-4, rockyfor3d-0 is"), std::string::npos) << text;
+  EXPECT_EQ(guess_warning(std::span(presets).subspan(1, 1)), "");
 }
 
 }  // namespace

@@ -1,0 +1,12 @@
+#include "talus/products/held_at_release.hpp"
+
+#include <cmath>
+
+namespace talus {
+
+bool held_at_release(const StopRow& row) {
+  if (row.end != End::Stopped && row.end != End::Trapped) return false;
+  return std::hypot(row.x - row.x_release, row.y - row.y_release) <= 2.0 * row.diameter;
+}
+
+}  // namespace talus
