@@ -5,6 +5,7 @@
 
 #include "coverage_report.hpp"
 #include "evidence.hpp"
+#include "limits_report.hpp"
 #include "svg.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
@@ -275,6 +276,11 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
     if (!d.rounds[i].candidates.empty())
       html += "<h3>Round " + std::to_string(i + 1) + (i > 0 ? ", with what was found before in the model" : "") +
               "</h3>\n" + candidates_table(d.rounds[i], record.candidates[i]);
+  html +=
+      "<h2>What could not have been seen</h2>\n<p>The amount of each effect that these data would show, after the "
+      "ground "
+      "has been fitted anew.</p>\n" +
+      limits_html(d.rounds.back().limits);
   html +=
       "<h2>Residuals</h2>\n<p>Each point is a block; z is where its measurement lies among what the model "
       "simulates for it, as a standard normal number. Grey: 95 % of the points of a right model.</p>\n" +
