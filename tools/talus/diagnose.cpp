@@ -60,6 +60,7 @@ void print_summary(const talus::io::DiagnosisRecord& record, const std::string& 
     if (!small.empty()) std::printf("  few rows: %s\n", talus::joined(small).c_str());
   }
   for (const talus::io::BeforeAfter& e : record.errors) std::fputs(talus::io::judgement_lines(e.after).c_str(), stdout);
+  std::fputs(talus::io::limits_lines(d.rounds.back().limits).c_str(), stdout);
   std::printf("written: %s\n", folder.c_str());
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "effect_fits.hpp"
+#include "talus/fit/diagnose/detection_limits.hpp"
 #include "talus/fit/diagnose/families.hpp"
 #include "talus/fit/diagnose/undeclared_places.hpp"
 
@@ -45,6 +46,7 @@ class DiagnosisLoop {
       found.push_back(last.effect);
       d.with_effects = d.rounds.back().candidates.front().fitted;
     }
+    compare_limits(d.rounds.back().limits, limits_with_further_screens(d.with_effects, found));
     if (!found.empty()) d.base = fits_.simulated_anew(std::move(d.base));
     d.trials = options_.trials;
     return d;
@@ -62,14 +64,31 @@ class DiagnosisLoop {
     return residual_table(campaign_, ResidualSpace(campaign_, fitted.runs, rules_), rows_, rules_);
   }
 
-  ScoreTest tested(const FittedModel& base, std::span<const Candidate> candidates) {
+  ScoreTestOptions test_options() {
     ScoreTestOptions how;
     how.trials = options_.trials.test;
     how.seed = options_.seed;
     how.threads = options_.threads;
     how.rules = rules_;
     how.proceed = [this] { return proceeds(); };
-    return score_test(campaign_, {base.model, base.free, base.z, base.runs}, candidates, rows_, how);
+    return how;
+  }
+
+  ScoreTest tested(const FittedModel& base, std::span<const Candidate> candidates) {
+    return score_test(campaign_, {base.model, base.free, base.z, base.runs}, candidates, rows_, test_options());
+  }
+
+  /// What the campaign would show if it had further screens: simulated anew with them.
+  std::vector<DetectionLimit> limits_with_further_screens(const FittedModel& base,
+                                                          const std::vector<std::string>& found) {
+    const Axis axis = axis_of(campaign_, base.runs);
+    const Campaign more = with_further_screens(campaign_, axis, rules_);
+    ScoreTestOptions how = test_options();
+    how.replicates = 0;
+    const auto runs = observe(more, base.model, {how.trials, how.seed, kUnseen, how.threads, rows_, {}});
+    const std::vector<Candidate> candidates = candidates_of(more, base.model, runs, found, rules_);
+    const ScoreTest test = score_test(more, {base.model, base.free, base.z, runs}, candidates, rows_, how);
+    return detection_limits(more, axis, test, candidates, rules_);
   }
 
   /// @param base   the model with all that was found so far
@@ -84,12 +103,13 @@ class DiagnosisLoop {
     const ScoreTest test = tested(base, candidates);
     round.families = tested_families(base, test);
     round.p_value = smallest_corrected(round.families);
+    const Axis axis = axis_of(campaign_, base.runs);
+    round.limits = detection_limits(campaign_, axis, test, candidates, rules_);
     const bool noise = round.p_value > level;
     if (!more || (noise && !found.empty())) {
       round.effect = verdict_without_effect(round);
       return round;
     }
-    const Axis axis = axis_of(campaign_, base.runs);
     round.candidates.reserve(test.effects.size());
     for (const EffectVerdict& verdict : test.effects) {
       const std::string family = admitted(round.families, verdict, level);

@@ -166,6 +166,13 @@ void rank(const Verdict& verdict, EffectVerdict& effect) {
   }
 }
 
+/// Keeps a place of an effect where it is measured better than at those before.
+void sharpen(const Eigen::VectorXd& errors, const std::vector<std::size_t>& members, Sharpest& sharpest) {
+  Index parameter = 0;
+  const double least = errors.minCoeff(&parameter);
+  if (least < sharpest.standard_error) sharpest = {members, static_cast<std::size_t>(parameter), least};
+}
+
 /// The step of a parameter of the base, away from its upper bound [z].
 double step_of(const Parameter& parameter, double z, double size) {
   return parameter.value(z + size) < parameter.upper ? size : -size;
@@ -246,9 +253,10 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
     auto effect = std::find_if(test.effects.begin(), test.effects.end(),
                                [&](const EffectVerdict& e) { return e.effect == name; });
     if (effect == test.effects.end())
-      effect = test.effects.insert(effect, {name, verdict, {}, 1.0, {}});
+      effect = test.effects.insert(effect, {name, verdict, {}, 1.0, {}, {}});
     else
       rank(verdict, *effect);
+    sharpen(projections.back().standard_errors(), place.members, effect->sharpest);
     effect_of.push_back(static_cast<std::size_t>(effect - test.effects.begin()));
   }
   correct(test, smallest_drawn(test.effects.size(), projections, effect_of, trials, directions.streams(), options));

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "coverage_report.hpp"
+#include "diagnosis_summary.hpp"
 #include "evidence.hpp"
+#include "limits_report.hpp"
 #include "svg.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
@@ -92,11 +94,12 @@ std::string plot(const Points& points, const std::string& title, const std::stri
   return svg.drawing({{"width", width}, {"height", height}, {"viewBox", "0 0 " + width + " " + height}});
 }
 
-std::string plots(const Campaign& campaign, const Diagnosis& d, const DiagnosisRules& rules) {
+/// Plots of the most significant residuals before and after.
+std::string plots(const Campaign& campaign, const Diagnosis& d, const DiagnosisRules& rules, std::size_t most) {
   const ResidualSpace before(campaign, d.base.runs, rules), after(campaign, d.with_effects.runs, rules);
   std::string html;
   const std::vector<ResidualRow>& rows = d.rounds.front().residual;
-  for (std::size_t i = 0; i < std::min(kPlots, rows.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(most, rows.size()); ++i) {
     const bool by_block = rows[i].covariate == "mean" || rows[i].covariate == "spread";
     const std::string title = rows[i].observable + " against " + (by_block ? "block" : rows[i].covariate);
     const std::string across = by_block ? "number of the block, in the order of the ids" : labelled(rows[i].covariate);
@@ -254,7 +257,9 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
       "</title><style>body{font:15px/1.5 sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#222}"
       "table{border-collapse:collapse;font-size:13px}td,th{border:1px solid #ccc;padding:3px 8px;text-align:left;"
       "vertical-align:top}svg text{font:11px sans-serif}</style></head><body>\n<h1>What the model of " +
-      escaped(campaign.name) + " lacks</h1>\n";
+      escaped(campaign.name) + " lacks</h1>\n" + summary_html(record) + plots(campaign, d, record.options.rules, 1) +
+      "<p>Each point is a block; z is where its measurement lies among what the model simulates for it, as a standard "
+      "normal number. Grey: 95 % of the points of a right model.</p>\n<h2>Rounds</h2>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i)
     html += "<p>Round " + std::to_string(i + 1) + ": " + sentence(d.rounds[i]) +
             " (p that the residual is noise: " + with_decimals(d.rounds[i].p_value, 4) + ")." +
@@ -276,9 +281,14 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
       html += "<h3>Round " + std::to_string(i + 1) + (i > 0 ? ", with what was found before in the model" : "") +
               "</h3>\n" + candidates_table(d.rounds[i], record.candidates[i]);
   html +=
+      "<h2>What could not have been seen</h2>\n<p>The amount of each effect that these data would show, after the "
+      "ground "
+      "has been fitted anew.</p>\n" +
+      limits_html(d.rounds.back().limits);
+  html +=
       "<h2>Residuals</h2>\n<p>Each point is a block; z is where its measurement lies among what the model "
       "simulates for it, as a standard normal number. Grey: 95 % of the points of a right model.</p>\n" +
-      plots(campaign, d, record.options.rules) + "<h3>Before</h3>\n" + residual_rows(d.rounds.front().residual);
+      plots(campaign, d, record.options.rules, kPlots) + "<h3>Before</h3>\n" + residual_rows(d.rounds.front().residual);
   if (d.rounds.size() > 1) html += "<h3>After</h3>\n" + residual_rows(d.rounds.back().residual);
   return html + "<p>talus " + std::string(version()) + ", seed " + std::to_string(record.options.seed) + ", " +
          record.surface + " surface, " + with_decimals(record.seconds, 0) + " s.</p></body></html>\n";

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "evidence.hpp"
+#include "limits_report.hpp"
 #include "talus/base/version.hpp"
 #include "talus/fit/diagnose/families.hpp"
 
@@ -187,6 +188,7 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
             {"tail", tail_json(record.errors)},
             {"coverage", coverage_json(record.errors)},
             {"families", families_of(first)},
+            {"detection_limits", limits_json(d.rounds.back().limits)},
             {"candidates", candidates_of(first, record.candidates.front())},
             {"residual", residual_of(first.residual)},
             {"residual_after", residual_of(d.rounds.back().residual)},

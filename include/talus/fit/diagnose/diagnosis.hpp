@@ -1,5 +1,6 @@
 #pragma once
 #include "talus/fit/calibrate/fit_problem.hpp"
+#include "talus/fit/diagnose/detection_limit.hpp"
 #include "talus/fit/diagnose/diagnosis_rules.hpp"
 #include "talus/fit/diagnose/family_test.hpp"
 #include "talus/fit/diagnose/residual_table.hpp"
@@ -51,6 +52,7 @@ struct DiagnosisRound {
   std::vector<ResidualRow> residual;        ///< of the fitting rows, before the effect is added
   std::vector<FamilyTest> families;         ///< all, in a fixed order
   double p_value = 1.0;                     ///< the smallest of the families' corrected ones
+  std::vector<DetectionLimit> limits;       ///< of the effects that the base lacks
 };
 
 /// Trajectories of each block.

@@ -49,6 +49,13 @@ struct DiagnosisRules {
   /// which the best is no rarer than 0.008, four families corrected no rarer than 0.03.
   std::size_t fewest_rocks = 6;
 
+  // The detection limits
+  /// Standard errors at which an effect would be seen [-]: the test then finds it in nearly all campaigns, also after
+  /// the correction for the other families and places.
+  double shown = 4.5;
+  /// Screens across the slope that the limits with further speeds assume [-].
+  int further_screens = 12;
+
   // The fits
   /// Gain by which a round of the quadratic model must lower the objective for another one [objective].
   double worth_a_round = 0.002;

@@ -36,6 +36,10 @@ class Projection {
   /// sets of the model, which go through the same choice.
   Verdict verdict(const Eigen::MatrixXd& scores) const;
 
+  /// Standard error of the estimate of each tested parameter if it alone is not zero, in units of its step; under the
+  /// model, with the base free to move along.
+  Eigen::VectorXd standard_errors() const { return information_.diagonal().cwiseSqrt().cwiseInverse(); }
+
  private:
   Eigen::MatrixXd map_;  // tested parameters x directions
   Eigen::MatrixXd information_;

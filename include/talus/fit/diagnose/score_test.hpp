@@ -1,8 +1,17 @@
 #pragma once
+#include <limits>
+
 #include "talus/fit/diagnose/candidates.hpp"
 #include "talus/fit/diagnose/verdict.hpp"
 
 namespace talus {
+
+/// The place and parameter of an effect that a campaign measures best.
+struct Sharpest {
+  std::vector<std::size_t> members;                                 ///< indices into the candidates
+  std::size_t parameter = 0;                                        ///< of the candidate
+  double standard_error = std::numeric_limits<double>::infinity();  ///< in units of what one would notice
+};
 
 /// Result of the test for an effect, at the best of its places.
 struct EffectVerdict {
@@ -11,6 +20,7 @@ struct EffectVerdict {
   Verdict second;             ///< the next best place; without members where there is no other
   double p_value = 1.0;       ///< corrected for the number of its places, from simulated data sets
   std::vector<double> drawn;  ///< by simulated data set: the smallest p-value over its places
+  Sharpest sharpest = {};     ///< follows from the model alone, not from what was measured
 };
 
 struct ScoreTest {

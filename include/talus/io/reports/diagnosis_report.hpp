@@ -30,6 +30,10 @@ void open_holdout(const Campaign& campaign, DiagnosisRecord& record);
 /// Names of the groups of fewer than ten held-out rows, with their rows: they stay out of the headline.
 std::vector<std::string> small_groups(const DiagnosisRecord& record);
 
+/// Lines for the terminal: the effects that these data could not have shown at any amount, and those that speeds at
+/// more screens would show. Empty where there are none.
+std::string limits_lines(std::span<const DetectionLimit> limits);
+
 /// The text of diagnosis.json. Its keys: docs/closing-the-loop.md, "Diagnosis".
 std::string diagnosis_json(const DiagnosisRecord& record);
 

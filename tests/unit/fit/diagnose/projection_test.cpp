@@ -66,5 +66,16 @@ TEST(ChiBar, TheProjectionUsesTheCorrelationOfTheEstimates) {
   EXPECT_NEAR(v.p_value, chi_bar_tail(v.statistic, 2, 2, -0.6), 1e-6);
 }
 
+/// One parameter of the ground and one of an effect, whose scores have variances 4 and 9 and a covariance of 3: the
+/// ground, free to move within its prior, takes 3^2 / (4 + 0.5) of the effect's information.
+TEST(StandardErrors, LoseWhatTheGroundImitates) {
+  const Eigen::Matrix2d covariance{{4.0, 3.0}, {3.0, 9.0}};
+  const TestedPlace place{{0}, Eigen::Vector2d(0.0, 1.0), {true}};
+  const Projection held(place, covariance, Eigen::VectorXd::Ones(1), 1e12);
+  EXPECT_NEAR(held.standard_errors()[0], 1.0 / 3.0, 1e-6);
+  const Projection free(place, covariance, Eigen::VectorXd::Ones(1), 1e-12);
+  EXPECT_NEAR(free.standard_errors()[0], 1.0 / std::sqrt(9.0 - 9.0 / 4.0), 1e-6);
+}
+
 }  // namespace
 }  // namespace talus::test

@@ -1,0 +1,19 @@
+#pragma once
+#include "talus/fit/diagnose/axis.hpp"
+#include "talus/fit/diagnose/detection_limit.hpp"
+#include "talus/fit/diagnose/score_test.hpp"
+
+namespace talus {
+
+/// The limit of every tested effect, in the order of the test.
+std::vector<DetectionLimit> detection_limits(const Campaign& campaign, const Axis& axis, const ScoreTest& test,
+                                             std::span<const Candidate> candidates, const DiagnosisRules& rules = {});
+
+/// The campaign as it would be if speeds were also measured at `rules.further_screens` lines across its axis, at equal
+/// distances from the release to where the paths end. The speeds themselves have no meaning: it is for limits only.
+Campaign with_further_screens(const Campaign& campaign, const Axis& axis, const DiagnosisRules& rules = {});
+
+/// Adds the limits that `further` measurements would give, by effect.
+void compare_limits(std::vector<DetectionLimit>& limits, std::span<const DetectionLimit> further);
+
+}  // namespace talus

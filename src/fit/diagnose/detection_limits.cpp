@@ -1,0 +1,55 @@
+#include "talus/fit/diagnose/detection_limits.hpp"
+
+#include <algorithm>
+
+#include "talus/fit/diagnose/candidates.hpp"
+
+namespace talus {
+namespace {
+
+/// Value of a parameter at z; NaN beyond its bounds.
+double within_bounds(const Parameter& parameter, double z) {
+  const double value = parameter.value(z);
+  return value > parameter.lower && value < parameter.upper ? value : kNotGiven;
+}
+
+}  // namespace
+
+std::vector<DetectionLimit> detection_limits(const Campaign& campaign, const Axis& axis, const ScoreTest& test,
+                                             std::span<const Candidate> candidates, const DiagnosisRules& rules) {
+  std::vector<DetectionLimit> limits;
+  for (const EffectVerdict& effect : test.effects) {
+    const Candidate candidate = merged_candidate(campaign, axis, candidates, effect.sharpest.members, rules);
+    const Parameter& parameter = candidate.parameters[effect.sharpest.parameter];
+    const double z = rules.shown * rules.noticed * effect.sharpest.standard_error;
+    limits.push_back({effect.effect, candidate.where, parameter.key, parameter.unit, parameter.value(0.0),
+                      within_bounds(parameter, z)});
+  }
+  return limits;
+}
+
+Campaign with_further_screens(const Campaign& campaign, const Axis& axis, const DiagnosisRules& rules) {
+  Campaign more = campaign;
+  const Eigen::Vector2d across(-axis.direction.y(), axis.direction.x());
+  const double length = axis.to - axis.from;
+  for (int i = 1; i <= rules.further_screens; ++i) {
+    const double at = axis.from + length * i / (rules.further_screens + 1);
+    const Eigen::Vector2d middle = axis.origin + at * axis.direction;
+    more.screens.push_back({"further " + std::to_string(i), {{middle - length * across, middle + length * across}}});
+  }
+  for (MeasuredBlock& block : more.blocks) {
+    block.passages.resize(campaign.screens.size());
+    block.passages.resize(more.screens.size(), Passage{.speed = 1.0});
+  }
+  return more;
+}
+
+void compare_limits(std::vector<DetectionLimit>& limits, std::span<const DetectionLimit> further) {
+  for (DetectionLimit& limit : limits) {
+    const auto same = std::ranges::find_if(
+        further, [&](const DetectionLimit& f) { return f.effect == limit.effect && f.key == limit.key; });
+    if (same != further.end()) limit.with_further_speeds = same->amount;
+  }
+}
+
+}  // namespace talus

@@ -1,0 +1,132 @@
+#include "diagnosis_summary.hpp"
+
+#include <cmath>
+
+#include "talus/base/text.hpp"
+
+namespace talus::io {
+namespace {
+
+constexpr double kRare = 0.05;        // p-value below which a family is called significant
+constexpr double kSharper = 0.5;      // share of a limit at which further measurements are worth a word
+constexpr std::size_t kFewRows = 50;  // held-out rows below which more blocks are advised
+
+std::string percent(double share) {
+  return with_decimals(100.0 * share, 1) + " %";
+}
+
+std::string bold(const std::string& text) {
+  return "<b>" + text + "</b>";
+}
+
+/// "a", "a and b", "a, b and c".
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+  return text;
+}
+
+bool found(const DiagnosisRound& round) {
+  return round.effect != "none" && round.effect != "unexplained";
+}
+
+std::string with_values(const DiagnosisRound& round) {
+  std::vector<std::string> values;
+  const FittedCandidate& c = round.candidates.front();
+  for (std::size_t i = 0; i < c.parameters.size(); ++i) {
+    const Parameter& p = c.parameters[i];
+    values.push_back(p.key.substr(p.key.rfind('.') + 1) + " " + with_digits(c.values[i], 2) +
+                     (p.unit.empty() || p.unit == "1" ? "" : " " + p.unit));
+  }
+  return values.empty() ? "" : ": " + listed(values);
+}
+
+std::string missing(const Diagnosis& d) {
+  std::vector<std::string> effects;
+  for (const DiagnosisRound& round : d.rounds)
+    if (found(round)) effects.push_back(bold(round.effect) + " (" + escaped(round.where) + with_values(round) + ")");
+  if (!effects.empty()) return "The model lacks " + listed(effects) + ".";
+  if (d.rounds.front().effect == "unexplained")
+    return "Something is missing that no effect of the library explains better than chance.";
+  return "Nothing that these data can show: what is left looks like noise.";
+}
+
+std::string sure(const DiagnosisRound& first) {
+  std::vector<std::string> rare;
+  for (const FamilyTest& family : first.families)
+    if (family.p_corrected <= kRare) rare.push_back(family.name + " (p " + with_digits(family.p_corrected, 1) + ")");
+  std::string text = rare.empty() ? "No family of effects is significant (smallest p " + with_digits(first.p_value, 2) +
+                                        ", corrected for their number)."
+                                  : "What the ground alone leaves depends on: " + listed(rare) +
+                                        ", corrected for the number of families.";
+  if (found(first) && first.alike.empty()) text += " No other effect that was allowed comes close to it.";
+  return text;
+}
+
+std::string gained(const DiagnosisRecord& record) {
+  const HoldoutError& e = record.errors.empty() || small_groups(record).empty() ? record.whole : record.headline;
+  if (std::isnan(e.before)) return "It cannot be said: no group of held-out rows is large enough.";
+  const ScoredRows& rows = record.errors.back().after;
+  std::string text =
+      "On blocks that no fit has seen the error is " + with_decimals(e.before, 3) + " with the ground alone";
+  if (record.diagnosis.rounds.size() > 1 && !std::isnan(e.reduction.share))
+    text += " and " + bold(with_decimals(e.after, 3)) + " with what was found: lower by " +
+            bold(percent(e.reduction.share)) + " (95 %: " + percent(e.reduction.interval.low) + " to " +
+            percent(e.reduction.interval.high) + ")" +
+            (e.reduction.interval.low <= 0.0 ? ", so that no gain is not ruled out" : "");
+  text += ".";
+  if (!std::isnan(rows.climatology.total))
+    text +=
+        " The climatology has " + with_decimals(rows.climatology.total, 3) + ". " + escaped(skill_sentence(rows)) + ".";
+  return text;
+}
+
+std::string undecided(const Diagnosis& d) {
+  std::string text;
+  for (const DiagnosisRound& round : d.rounds)
+    if (found(round) && !round.alike.empty())
+      text += round.effect + " cannot be told apart from " + listed(round.alike) + " on these data. ";
+  for (const FamilyTest& family : d.rounds.front().families)
+    if (!family.may_name) text += escaped(family.note) + ". ";
+  std::vector<std::string> hidden;
+  for (const DetectionLimit& limit : d.rounds.back().limits)
+    if (std::isnan(limit.amount)) hidden.push_back(limit.effect);
+  if (!hidden.empty()) text += "These data cannot show, at any amount: " + listed(hidden) + ".";
+  return text.empty() ? "Every effect of the library would have been seen, from the amounts below." : text;
+}
+
+std::string next(const DiagnosisRecord& record) {
+  const Diagnosis& d = record.diagnosis;
+  std::string text;
+  std::vector<std::string> sharper;
+  for (const DetectionLimit& limit : d.rounds.back().limits)
+    if (std::isnan(limit.amount) ? !std::isnan(limit.with_further_speeds)
+                                 : limit.with_further_speeds - limit.off < kSharper * (limit.amount - limit.off))
+      sharper.push_back(limit.effect);
+  if (!sharper.empty())
+    text += "Speeds at more screens (12 were assumed): they would show " + listed(sharper) +
+            " at less than half the amount. ";
+  for (const FamilyTest& family : d.rounds.front().families)
+    if (!family.may_name) text += "Blocks of at least six different rocks. ";
+  const std::size_t rows = record.errors.empty() ? 0 : record.errors.back().after.blocks;
+  if (rows < kFewRows) text += "More blocks: the gain rests on " + std::to_string(rows) + " held-out ones. ";
+  return text.empty() ? "Nothing that would change this verdict." : text;
+}
+
+}  // namespace
+
+std::string summary_html(const DiagnosisRecord& record) {
+  const Diagnosis& d = record.diagnosis;
+  const std::pair<const char*, std::string> rows[] = {{"What is missing", missing(d)},
+                                                      {"How sure that is", sure(d.rounds.front())},
+                                                      {"What was gained", gained(record)},
+                                                      {"What could not be decided", undecided(d)},
+                                                      {"What to measure next", next(record)}};
+  std::string html = "<table>\n";
+  for (const auto& [heading, text] : rows)
+    html += "<tr><th>" + std::string(heading) + "</th><td>" + text + "</td></tr>\n";
+  return html + "</table>\n";
+}
+
+}  // namespace talus::io

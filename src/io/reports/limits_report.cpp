@@ -1,0 +1,55 @@
+#include "limits_report.hpp"
+
+#include <cmath>
+
+#include "talus/base/text.hpp"
+#include "talus/io/reports/diagnosis_report.hpp"
+
+namespace talus::io {
+namespace {
+
+std::string amount_text(const DetectionLimit& limit, double amount) {
+  if (std::isnan(amount)) return "not to be seen";
+  return with_digits(amount, 2) + (limit.unit.empty() || limit.unit == "1" ? "" : " " + limit.unit);
+}
+
+}  // namespace
+
+Json limits_json(std::span<const DetectionLimit> limits) {
+  Json list = Json::array();
+  for (const DetectionLimit& limit : limits)
+    list.push_back({{"effect", limit.effect},
+                    {"where", limit.where},
+                    {"parameter", limit.key},
+                    {"amount", json_of(limit.amount)},
+                    {"unit", limit.unit},
+                    {"off", json_of(limit.off)},
+                    {"amount_with_further_speeds", json_of(limit.with_further_speeds)}});
+  return list;
+}
+
+std::string limits_html(std::span<const DetectionLimit> limits) {
+  std::string html =
+      "<table><tr><th>effect</th><th>where it would be seen best</th><th>parameter</th><th>without it</th><th>would be "
+      "seen from</th><th>with speeds at 12 further screens</th></tr>\n";
+  for (const DetectionLimit& limit : limits)
+    html += "<tr><td>" + limit.effect + "</td><td>" + escaped(limit.where) + "</td><td>" + escaped(limit.key) +
+            "</td><td>" + amount_text(limit, limit.off) + "</td><td>" + amount_text(limit, limit.amount) + "</td><td>" +
+            amount_text(limit, limit.with_further_speeds) + "</td></tr>\n";
+  return html + "</table>\n";
+}
+
+std::string limits_lines(std::span<const DetectionLimit> limits) {
+  std::string hidden, helped;
+  for (const DetectionLimit& limit : limits) {
+    if (!std::isnan(limit.amount)) continue;
+    std::string& list = std::isnan(limit.with_further_speeds) ? hidden : helped;
+    list += (list.empty() ? "" : ", ") + limit.effect;
+  }
+  std::string line;
+  if (!hidden.empty()) line += "cannot be seen in these data at any amount: " + hidden + "\n";
+  if (!helped.empty()) line += "speeds at more screens would show: " + helped + "\n";
+  return line;
+}
+
+}  // namespace talus::io

@@ -1,0 +1,16 @@
+#pragma once
+#include <span>
+#include <string>
+
+#include "io/files/json.hpp"
+#include "talus/fit/diagnose/detection_limit.hpp"
+
+/// What a campaign could not have shown: docs/detection-limits.md.
+namespace talus::io {
+
+/// `detection_limits` of diagnosis.json.
+Json limits_json(std::span<const DetectionLimit> limits);
+/// The limits as an HTML table.
+std::string limits_html(std::span<const DetectionLimit> limits);
+
+}  // namespace talus::io

@@ -1,0 +1,73 @@
+#include "talus/fit/diagnose/detection_limits.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/scenes.hpp"
+
+namespace talus::test {
+namespace {
+
+/// A candidate with a number on a linear scale: what one would notice is 0.2, the bound is 2.
+Candidate drag() {
+  return {"air-drag", "everywhere", {{"drag", "1", 0.0, 2.0, Parameter::Scale::Linear, 0.0, 0.8, {}, {}}}, 1, {}};
+}
+
+ScoreTest test_with_error(double standard_error) {
+  ScoreTest test;
+  test.effects.push_back({"air-drag", {}, {}, 1.0, {}, {{0}, 0, standard_error}});
+  return test;
+}
+
+TEST(DetectionLimits, AreFourAndAHalfStandardErrors) {
+  const std::vector<Candidate> candidates{drag()};
+  const auto limits = detection_limits(Campaign{}, Axis{}, test_with_error(1.0), candidates);
+  ASSERT_EQ(limits.size(), 1U);
+  EXPECT_DOUBLE_EQ(limits[0].off, 0.0);
+  EXPECT_DOUBLE_EQ(limits[0].amount, 0.9);  // 4.5 x 0.2
+}
+
+TEST(DetectionLimits, BeyondItsBoundsAnEffectIsNotSeen) {
+  const std::vector<Candidate> candidates{drag()};
+  EXPECT_DOUBLE_EQ(detection_limits(Campaign{}, Axis{}, test_with_error(2.0), candidates)[0].amount, 1.8);
+  EXPECT_TRUE(std::isnan(detection_limits(Campaign{}, Axis{}, test_with_error(2.3), candidates)[0].amount));
+}
+
+TEST(DetectionLimits, OfFurtherMeasurementsStandBesideTheirOwnEffect) {
+  std::vector<DetectionLimit> limits{{.effect = "air-drag", .key = "drag"}, {.effect = "block-mass", .key = "m"}};
+  const std::vector<DetectionLimit> further{{.effect = "block-mass", .key = "m", .amount = 0.3},
+                                            {.effect = "wet-ground", .key = "drag", .amount = 0.1}};
+  compare_limits(limits, further);
+  EXPECT_TRUE(std::isnan(limits[0].with_further_speeds));
+  EXPECT_DOUBLE_EQ(limits[1].with_further_speeds, 0.3);
+}
+
+TEST(FurtherScreens, StandAcrossThePathAtEqualDistances) {
+  Campaign campaign;
+  campaign.screens = {{"S1", {}}};
+  campaign.blocks.resize(2);
+  campaign.blocks[0].passages.resize(1);
+  DiagnosisRules rules;
+  rules.further_screens = 3;
+  const Axis axis{{10.0, 20.0}, {0.0, -1.0}, 0.0, 80.0};
+  const Campaign more = with_further_screens(campaign, axis, rules);
+  ASSERT_EQ(more.screens.size(), 4U);
+  for (int i = 1; i <= 3; ++i) {
+    const auto& line = more.screens[static_cast<std::size_t>(i)].lines.front();
+    EXPECT_NEAR(line[0].y(), 20.0 - 20.0 * i, 1e-12);
+    EXPECT_NEAR(line[1].y(), 20.0 - 20.0 * i, 1e-12);
+    EXPECT_LT(std::min(line[0].x(), line[1].x()), -60.0);
+    EXPECT_GT(std::max(line[0].x(), line[1].x()), 80.0);
+  }
+  for (const MeasuredBlock& block : more.blocks) {
+    ASSERT_EQ(block.passages.size(), 4U);
+    EXPECT_FALSE(block.passages[0].has_value());
+    EXPECT_FALSE(std::isnan(block.passages[3]->speed));
+    EXPECT_TRUE(std::isnan(block.passages[3]->jump));
+  }
+  EXPECT_EQ(campaign.screens.size(), 1U);
+}
+
+}  // namespace
+}  // namespace talus::test
