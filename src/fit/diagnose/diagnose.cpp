@@ -47,6 +47,7 @@ class DiagnosisLoop {
     }
     if (!found.empty()) d.base = fits_.simulated_anew(std::move(d.base));
     d.trials = options_.trials;
+    d.times = fits_.times();
     return d;
   }
 
@@ -63,6 +64,7 @@ class DiagnosisLoop {
   }
 
   ScoreTest tested(const FittedModel& base, std::span<const Candidate> candidates) {
+    const Timesheet::Phase phase(fits_.times(), "tests");
     ScoreTestOptions how;
     how.trials = options_.trials.test;
     how.seed = options_.seed;
@@ -106,6 +108,7 @@ class DiagnosisLoop {
   }
 
   std::vector<FamilyTest> tested_families(const FittedModel& base, const ScoreTest& test) const {
+    const Timesheet::Phase phase(fits_.times(), "tests");
     FamilyOptions how;
     how.seed = options_.seed;
     how.rules = rules_;
@@ -139,7 +142,7 @@ class DiagnosisLoop {
   void compete(const FittedModel& base, std::vector<FittedCandidate>& candidates, std::size_t most) {
     std::vector<FittedCandidate*> contenders;
     for (FittedCandidate& c : candidates)
-      if (!c.family.empty()) contenders.push_back(&c);
+      if (!c.family.empty() && c.refined) contenders.push_back(&c);
     drop_losers(contenders, most, -rules_.unfinished);
     for (FittedCandidate* c : contenders) {
       advance();

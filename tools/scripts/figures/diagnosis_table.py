@@ -51,7 +51,7 @@ def campaigns_table(campaigns, results):
         best = truth.get("holdout_error_with_the_truth")
         above = f"{best:.3f} ({100 * (e['after'] / best - 1):+.1f} %)" if best and e["after"] else ""
         print(f"| {name} | {found(d)} | {d['rounds'][0]['p_value']:.4f} | {hidden} | {text(e['before'])}, {text(e['after'])} | "
-              f"{text(e['reduction'] and 100 * e['reduction'], '{:.0f}')} % ({percent(e['ci95'])}) | {above} | {d['seconds']:.0f} |")
+              f"{text(e['reduction'] and 100 * e['reduction'], '{:.0f}')} % ({percent(e['ci95'])}) | {above} | {d['seconds']['wall']:.0f} |")
 
 
 def candidates_table(name, d):
