@@ -6,7 +6,6 @@
 namespace talus {
 namespace {
 
-constexpr double kLargestLoss = 0.04;    // share of the speed lost to drag in one piece
 constexpr double kShortestPiece = 0.01;  // [s]
 constexpr int kMostSteps = 1'000'000;    // pieces of one flight; the time limit comes first
 
@@ -79,7 +78,7 @@ double DragFlight::longest_piece(const Site& site, const Motion& motion) const {
   const double cell = std::min(grid.cell_x, grid.cell_y), speed = motion.velocity.norm();
   const double over_a_cell = 2.0 * cell / (speed + std::sqrt(speed * speed + 2.0 * kGravity * cell));  // in a fall
   const double rate = site.drag.at(speed + kGravity * over_a_cell);
-  return std::max(kShortestPiece, std::min(over_a_cell, kLargestLoss / rate));
+  return std::max(kShortestPiece, std::min(over_a_cell, world_.effort.drag_loss / rate));
 }
 
 /// If the block lands within the piece, the parabola was that of a longer piece. So it flies again, with the parabola
@@ -162,7 +161,9 @@ std::optional<Outcome> DragFlight::fly_clear(Motion& motion, PatchIndex& at, boo
 
 Outcome DragFlight::fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path) {
   bool may_be_clear = effects_.air_drag.coefficient == 0.0;
-  for (int pieces = 0; pieces < kMostSteps && motion.time < world_.rules.time_limit; ++pieces) {
+  for (int pieces = 0; pieces < kMostSteps && motion.time < world_.rules.time_limit &&
+                       path.vertices.size() < world_.effort.most_vertices;
+       ++pieces) {
     if (may_be_clear)
       if (const auto outcome = fly_clear(motion, at, grounded, body, path)) return *outcome;
     const Outcome outcome = fly_piece(motion, at, grounded, body, path);

@@ -12,14 +12,15 @@ namespace talus {
 /// that ends where the damped fall ends; then it gets the velocity of the damped fall. docs/effects.md, "Flight with
 /// drag".
 ///
-/// In a piece the block moves at most one cell, and drag takes at most 4 % of its speed. Linear drag is exact.
-/// Quadratic drag has the rate of the middle of the piece; the relative error of the speed per piece is below 1e-3. A
-/// piece lasts at least 0.01 s, so that the number of pieces is limited for a block stuck in vegetation.
+/// In a piece the block moves at most one cell, and drag takes at most 4 % of its speed (`Effort::drag_loss`). Linear
+/// drag is exact. Quadratic drag has the rate of the middle of the piece; the relative error of the speed per piece is
+/// below 1e-3. A piece lasts at least 0.01 s, so that the number of pieces is limited for a block stuck in vegetation.
 class DragFlight {
  public:
   DragFlight(const World& world, const Release& release);
 
-  /// Like the plain `fly`; `Aloft` if the time limit was reached in the air. Each further parabola gets a vertex.
+  /// Like the plain `fly`; `Aloft` if the limit of time or vertices was reached in the air. Each further parabola gets
+  /// a vertex.
   Outcome fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path);
 
   /// Applies drag and stems of a slide, at its end.

@@ -42,7 +42,8 @@ class Walk {
     path_.spins.push_back({0, motion_.spin.norm()});
     if (const auto end = end_of(effects_.fly(motion_, at_, false, body_, path_))) return *end;
     anchor_.set(motion_);
-    while (path_.impacts < world_.rules.impact_limit && motion_.time < world_.rules.time_limit) {
+    while (path_.impacts < world_.rules.impact_limit && motion_.time < world_.rules.time_limit &&
+           path_.vertices.size() < world_.effort.most_vertices) {
       if (const auto end = meet_the_ground()) return *end;
       if (motion_.velocity.dot(normal_) < kSlideSpeed) {
         const SlideEnd how = slide_on();

@@ -89,7 +89,7 @@ class Luck(Case):
         self.run_well(command, campaign, "-o", out, *FAST, *options, timeout=1200)
         with open(f"{out}/{'calibration' if command == 'calibrate' else 'diagnosis'}.json", encoding="utf-8") as file:
             record = json.load(file)
-        for key in ("command", "inputs", "seconds"):  # paths and time
+        for key in ("command", "inputs", "seconds", "times"):  # paths and time
             record.pop(key, None)
         return record
 

@@ -80,6 +80,8 @@ void print_summary(const talus::io::Calibration& c, const std::string& folder) {
                 100.0 * e.reduction.interval.high);
     std::fputs(talus::io::judgement_lines(e.after).c_str(), stdout);
   }
+  if (c.fit.score.cut_short > 0.0)
+    std::printf("%s\n", talus::io::cut_short_line(c.fit.score.cut_short, c.options.rules.most_vertices).c_str());
   std::printf("written: %s\n", folder.c_str());
 }
 

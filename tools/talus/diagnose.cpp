@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <memory>
 
 #include "campaign_command.hpp"
@@ -61,6 +62,9 @@ void print_summary(const talus::io::DiagnosisRecord& record, const std::string& 
   }
   for (const talus::io::BeforeAfter& e : record.errors) std::fputs(talus::io::judgement_lines(e.after).c_str(), stdout);
   std::fputs(talus::io::limits_lines(d.rounds.back().limits).c_str(), stdout);
+  const double cut = d.with_effects.score.cut_short;
+  if (cut > 0.0) std::printf("%s\n", talus::io::cut_short_line(cut, record.options.rules.search.most_vertices).c_str());
+  std::printf("%s\n", talus::io::time_line(record).c_str());
   std::printf("written: %s\n", folder.c_str());
 }
 
@@ -97,6 +101,7 @@ int diagnose(const Options& options) {
     stop_interrupted();
   }
   for (const talus::io::BeforeAfter& e : record.errors) OpenedCampaign::warn(options, record, e.after);
+  record.cpu_seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write_results(opened.folder, opened.loaded, record);
   opened.folder.commit();

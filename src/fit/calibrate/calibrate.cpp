@@ -95,7 +95,8 @@ class Search {
   }
 
   Score score_of(const Model& model) const {
-    const ObserveOptions how{options_.comparison_trials, options_.seed, 0, options_.threads, problem_.rows, {}};
+    const ObserveOptions how{options_.comparison_trials, options_.seed, 0, options_.threads, problem_.rows, {},
+                             effort_of(options_.rules)};
     return weigh_groups(score(problem_.campaign, observe(problem_.campaign, model, how), problem_.rows));
   }
 

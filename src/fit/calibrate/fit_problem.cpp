@@ -10,7 +10,8 @@ double FitProblem::prior(const FitOptions& options) const {
 
 Evaluation evaluate(const FitProblem& problem, const FitOptions& options, const Eigen::VectorXd& z,
                     const TrialRange& trials) {
-  const ObserveOptions how{trials.count, options.seed, trials.first, options.threads, problem.rows, {}};
+  const ObserveOptions how{
+      trials.count, options.seed, trials.first, options.threads, problem.rows, {}, effort_of(options.rules)};
   const Model model = model_at(problem.start, problem.free, z);
   const Score s = weigh_groups(
       score(problem.campaign, observe(problem.campaign, model, how), problem.rows, fewest_simulated_of(trials.count)));

@@ -39,8 +39,14 @@ class Errors {
 /// Measures the paths of one block; its buffers are reused.
 class Instrument {
  public:
-  Instrument(const Campaign& campaign, const Model& model, const Cover& cover, const ScreenFinder& screens)
-      : campaign_(campaign), model_(model), cover_(cover), screens_(screens), hit_(cover.grounds.size()) {
+  Instrument(const Campaign& campaign, const Model& model, const Cover& cover, const ScreenFinder& screens,
+             const Effort& effort)
+      : campaign_(campaign),
+        model_(model),
+        cover_(cover),
+        screens_(screens),
+        bounded_(effort.most_vertices < Effort{}.most_vertices),
+        hit_(cover.grounds.size()) {
     for (const Screen& screen : campaign.screens) screen_streams_.push_back(stream_of_name(screen.id));
   }
 
@@ -54,6 +60,7 @@ class Instrument {
     samples(errors, block, path, trial, runs);
     runs.impacts[trial] = path.impacts;
     runs.end[trial] = path.end;
+    if (bounded_ && path.end == End::Limit) std::atomic_ref(runs.cut_short).fetch_add(1, std::memory_order_relaxed);
     std::atomic_ref(runs.ends[static_cast<std::size_t>(runs.end[trial])]).fetch_add(1, std::memory_order_relaxed);
     count_zones(path, runs);
   }
@@ -131,6 +138,7 @@ class Instrument {
   const Model& model_;
   const Cover& cover_;
   const ScreenFinder& screens_;
+  const bool bounded_;  // what comes to no end counts as cut short
   std::vector<std::uint32_t> screen_streams_;
   std::vector<Crossing> crossings_;
   std::vector<std::size_t> order_;
@@ -147,6 +155,7 @@ void prepare(const Campaign& campaign, const MeasuredBlock& block, std::size_t z
   runs.impacts.assign(trials, 0);
   runs.end.assign(trials, End::Limit);
   runs.zone_hits.assign(zones, 0);
+  runs.cut_short = 0;
 }
 
 /// Some trials of one block.
@@ -201,14 +210,15 @@ std::vector<BlockRuns> observe(const Campaign& campaign, const Model& model, con
                     model.impact,
                     EndRules{},
                     model.effects.any() ? &model.effects : nullptr,
-                    barriers.empty() ? nullptr : &barriers};
+                    barriers.empty() ? nullptr : &barriers,
+                    options.effort};
   const ScreenFinder screens(campaign.surface, campaign.screens);
   std::exception_ptr failure;
   std::atomic<bool> stop{false};
 #pragma omp parallel num_threads(options.threads > 0 ? options.threads : omp_get_num_procs()) default(none) \
     shared(campaign, model, options, runs, units, cover, world, screens, failure, stop)
   {
-    Instrument instrument(campaign, model, cover, screens);
+    Instrument instrument(campaign, model, cover, screens, options.effort);
     Path path;
 #pragma omp for schedule(dynamic, 1)
     for (const Unit& unit : units) {

@@ -49,6 +49,7 @@ class DiagnosisLoop {
     compare_limits(d.rounds.back().limits, limits_with_further_screens(d.with_effects, found));
     if (!found.empty()) d.base = fits_.simulated_anew(std::move(d.base));
     d.trials = options_.trials;
+    d.times = fits_.times();
     return d;
   }
 
@@ -75,17 +76,20 @@ class DiagnosisLoop {
   }
 
   ScoreTest tested(const FittedModel& base, std::span<const Candidate> candidates) {
+    const Timesheet::Phase phase(fits_.times(), "tests");
     return score_test(campaign_, {base.model, base.free, base.z, base.runs}, candidates, rows_, test_options());
   }
 
   /// What the campaign would show if it had further screens: simulated anew with them.
   std::vector<DetectionLimit> limits_with_further_screens(const FittedModel& base,
                                                           const std::vector<std::string>& found) {
+    const Timesheet::Phase phase(fits_.times(), "detection limits");
     const Axis axis = axis_of(campaign_, base.runs);
     const Campaign more = with_further_screens(campaign_, axis, rules_);
     ScoreTestOptions how = test_options();
     how.replicates = 0;
-    const auto runs = observe(more, base.model, {how.trials, how.seed, kUnseen, how.threads, rows_, {}});
+    const auto runs =
+        observe(more, base.model, {how.trials, how.seed, kUnseen, how.threads, rows_, {}, effort_of(rules_.search)});
     const std::vector<Candidate> candidates = candidates_of(more, base.model, runs, found, rules_);
     const ScoreTest test = score_test(more, {base.model, base.free, base.z, runs}, candidates, rows_, how);
     return detection_limits(more, axis, test, candidates, rules_);
@@ -126,6 +130,7 @@ class DiagnosisLoop {
   }
 
   std::vector<FamilyTest> tested_families(const FittedModel& base, const ScoreTest& test) const {
+    const Timesheet::Phase phase(fits_.times(), "tests");
     FamilyOptions how;
     how.seed = options_.seed;
     how.rules = rules_;
@@ -159,7 +164,7 @@ class DiagnosisLoop {
   void compete(const FittedModel& base, std::vector<FittedCandidate>& candidates, std::size_t most) {
     std::vector<FittedCandidate*> contenders;
     for (FittedCandidate& c : candidates)
-      if (!c.family.empty()) contenders.push_back(&c);
+      if (!c.family.empty() && c.refined) contenders.push_back(&c);
     drop_losers(contenders, most, -rules_.unfinished);
     for (FittedCandidate* c : contenders) {
       advance();

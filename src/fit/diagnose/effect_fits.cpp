@@ -66,7 +66,7 @@ std::uint32_t EffectFits::trials_of_round() const {
 
 ObserveOptions EffectFits::observe_options(std::uint32_t trials) const {
   const std::uint32_t first = kUnseen + round_ * trials_of_round() * options_.trials.compare;
-  return {trials, options_.seed, first, options_.threads, rows_, {}};
+  return {trials, options_.seed, first, options_.threads, rows_, {}, effort_of(options_.rules.search)};
 }
 
 FitOptions EffectFits::fit_options() const {
@@ -94,6 +94,7 @@ FittedModel EffectFits::simulated_anew(FittedModel fitted) const {
 }
 
 FittedModel EffectFits::begin_round(FittedModel base) {
+  const Timesheet::Phase phase(times_, "comparison");
   ++round_;
   return simulated_anew(std::move(base));
 }
@@ -110,6 +111,7 @@ FittedModel EffectFits::fitted_model(Fit&& fit, std::vector<Parameter> free) con
 }
 
 FittedModel EffectFits::fit_ground(const Model& start) const {
+  const Timesheet::Phase phase(times_, "ground");
   const std::vector<BlockRuns> runs = observe(campaign_, start, observe_options(options_.trials.search));
   std::vector<Parameter> free = ground_parameters(campaign_, start, options_.keys, touched_zones(campaign_, runs));
   FitOptions how = fit_options();  // all that follows rests on this fit
@@ -125,22 +127,26 @@ FittedModel EffectFits::fit_ground(const Model& start) const {
 }
 
 double EffectFits::least_objective(const FittedModel& base, const Verdict& verdict, const Candidate& candidate) const {
+  const Timesheet::Phase phase(times_, "fits", candidate.effect);
   const std::vector<Parameter> free = joined(base.free, candidate.parameters);
   const Model off = model_without(base, candidate);
-  return best_start({campaign_, off, free, rows_}, fit_options(), base, candidate, verdict).objective;
+  return best_start({campaign_, off, free, rows_}, fit_options(), base, candidate, verdict).best.objective;
 }
 
 /// The best of some places to start from: the effect in several amounts, each with the ground as it is and moved as the
-/// score test expects it to. An amount of zero, the base itself, is one of them.
-Evaluation EffectFits::best_start(const FitProblem& problem, const FitOptions& how, const FittedModel& base,
-                                  const Candidate& candidate, const Verdict& verdict) const {
+/// score test expects it to. An amount of zero, the base itself, is one of them. Beyond an amount that is much worse
+/// than none, larger ones are not tried: they would be worse still, and blocks that crawl take longest.
+EffectFits::Start EffectFits::best_start(const FitProblem& problem, const FitOptions& how, const FittedModel& base,
+                                         const Candidate& candidate, const Verdict& verdict) const {
   const double noticed = options_.rules.noticed;
   const VectorXd effect = start_of(candidate, verdict, noticed);
   const Index ground = std::ssize(problem.free) - effect.size();
   const double share = std::clamp(effect[0] / std::max(1e-9, noticed * std::abs(verdict.estimate[0])), 0.0, 1.0);
-  Evaluation best;
-  best.objective = std::numeric_limits<double>::infinity();
-  for (const double amount : {0.0, 0.5, 1.0, 2.0, 4.0})
+  double none = 0.0;  // the objective without the effect
+  Start start;
+  start.best.objective = std::numeric_limits<double>::infinity();
+  for (const double amount : {0.0, 0.5, 1.0, 2.0, 4.0}) {
+    double least = std::numeric_limits<double>::infinity();
     for (const bool along : {false, true}) {
       if (along && (ground == 0 || amount == 0.0)) continue;
       VectorXd z(std::ssize(problem.free));
@@ -148,9 +154,15 @@ Evaluation EffectFits::best_start(const FitProblem& problem, const FitOptions& h
       if (along) z.head(ground) += (amount * share * verdict.ground).cwiseMax(-1.5).cwiseMin(1.5);
       z.tail(effect.size()) = amount * effect;
       Evaluation here = evaluate(problem, how, z, {how.trials});
-      if (here.objective < best.objective) best = std::move(here);
+      least = std::min(least, here.objective);
+      if (here.objective < start.best.objective) start.best = std::move(here);
     }
-  return best;
+    if (amount == 0.0) none = least;
+    const bool hopeless = least > none + options_.rules.hopeless;
+    if (amount <= 0.5) start.hopeless = hopeless;
+    if (hopeless) break;
+  }
+  return start;
 }
 
 /// Gives a candidate its fit, with the values and the amount that follow from it.
@@ -168,8 +180,20 @@ void EffectFits::measure_gain(const FittedModel& base, FittedCandidate& candidat
   candidate.gain_interval = {-c.interval.high, -c.interval.low};
 }
 
+/// The base as the model of a candidate at its off values.
+FittedModel EffectFits::without_effect(const FittedModel& base, const Model& off, std::vector<Parameter> free,
+                                       Index added) const {
+  FittedModel fitted = base;
+  fitted.model = off;
+  fitted.z = VectorXd::Zero(std::ssize(free));
+  if (std::ssize(free) > added) fitted.z.head(base.z.size()) = base.z;
+  fitted.free = std::move(free);
+  return fitted;
+}
+
 FittedCandidate EffectFits::fit_effect(const FittedModel& base, const EffectVerdict& verdict,
                                        const Candidate& candidate, const std::string& family) const {
+  const Timesheet::Phase phase(times_, "fits", candidate.effect);
   const DiagnosisRules& rules = options_.rules;
   FittedCandidate out;
   out.effect = candidate.effect;
@@ -191,7 +215,14 @@ FittedCandidate EffectFits::fit_effect(const FittedModel& base, const EffectVerd
   how.enough = rules.worth_a_round;
   how.design = out.with_ground ? 4 * static_cast<int>(free.size()) : 20;
   const Model off = model_without(base, candidate);
-  const VectorXd z = best_start({campaign_, off, free, rows_}, how, base, candidate, verdict.best).z;
+  const Start start = best_start({campaign_, off, free, rows_}, how, base, candidate, verdict.best);
+  const VectorXd& z = start.best.z;
+  out.refined = out.with_ground ? !start.hopeless : !z.tail(added).isZero();
+  if (!out.refined) {
+    take_fit(without_effect(base, off, std::move(free), added), out);
+    measure_gain(base, out);
+    return out;
+  }
   std::vector<Evaluation> known;
   if (out.with_ground) known = with_zero_effect(base.evaluations, added);
   how.known = known;
@@ -219,10 +250,12 @@ FitOptions EffectFits::continued_fit_options(const FittedModel& fitted) const {
 }
 
 void EffectFits::continue_fit(const FittedModel& base, FittedCandidate& candidate) const {
+  const Timesheet::Phase phase(times_, "fits", candidate.effect);
   continue_with(base, candidate, continued_fit_options(candidate.fitted));
 }
 
 void EffectFits::continue_with_more_trials(const FittedModel& base, FittedCandidate& candidate) const {
+  const Timesheet::Phase phase(times_, "fits", candidate.effect);
   FitOptions how = fit_options();
   how.trials *= 2;
   how.comparison_trials *= 2;
@@ -283,6 +316,7 @@ double EffectFits::error_in_folds(const LocalModel& local, const FittedModel& fi
 }
 
 bool EffectFits::confirmed(const FittedModel& base, const FittedCandidate& candidate, const LeastGain& least) const {
+  const Timesheet::Phase phase(times_, "confirmation");
   const DiagnosisRules& rules = options_.rules;
   ObserveOptions unseen = observe_options(options_.trials.compare);
   unseen.first_trial += (1 + rules.fold_orders) * options_.trials.compare;  // after those of the choice

@@ -46,6 +46,7 @@ class EffectFits {
   /// The objective of a model on blocks that its fit has not seen: mean over some random orders of the blocks. Each
   /// order is cut into folds; each fold is simulated with the minimum of the quadratic model of the other folds' rows.
   double cross_validated(const FittedModel& fitted) const {
+    const Timesheet::Phase phase(times_, "cross-validation");
     ObserveOptions unseen = observe_options(options_.trials.compare);
     unseen.first_trial += options_.trials.compare;  // the trials before were used to choose between fits
     return cross_validated(fitted, unseen);
@@ -53,6 +54,8 @@ class EffectFits {
   /// Whether a candidate gains as much again, on its rows and in cross-validation, with random numbers that no choice
   /// has used: the gain of the best of several effects is partly chance.
   bool confirmed(const FittedModel& base, const FittedCandidate& candidate, const LeastGain& least) const;
+  /// The time sheet of these fits; whoever does other work of the diagnosis enters it here.
+  Timesheet& times() const { return times_; }
   /// The fit with the lower objective, with the evaluations of both.
   static FittedModel better_of(FittedModel fitted, FittedModel longer);
 
@@ -62,12 +65,19 @@ class EffectFits {
   FitOptions fit_options() const;
   FitOptions continued_fit_options(const FittedModel& fitted) const;
   FittedModel fitted_model(Fit&& fit, std::vector<Parameter> free) const;
+  FittedModel without_effect(const FittedModel& base, const Model& off, std::vector<Parameter> free,
+                             Eigen::Index added) const;
   FittedModel continued(const FittedModel& fitted, FitOptions how) const;
   void continue_with(const FittedModel& base, FittedCandidate& candidate, const FitOptions& how) const;
   void take_fit(FittedModel&& fitted, FittedCandidate& candidate) const;
   void measure_gain(const FittedModel& base, FittedCandidate& candidate) const;
-  Evaluation best_start(const FitProblem& problem, const FitOptions& how, const FittedModel& base,
-                        const Candidate& candidate, const Verdict& verdict) const;
+  /// The place from which the fit of a candidate starts.
+  struct Start {
+    Evaluation best;
+    bool hopeless = false;  ///< even the smallest amount makes the objective much worse
+  };
+  Start best_start(const FitProblem& problem, const FitOptions& how, const FittedModel& base,
+                   const Candidate& candidate, const Verdict& verdict) const;
   std::vector<std::size_t> shuffled_rows(std::uint32_t number) const;
   double cross_validated(const FittedModel& fitted, ObserveOptions how) const;
   double error_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
@@ -78,6 +88,7 @@ class EffectFits {
   const std::vector<bool>& rows_;
   std::function<bool(double)> proceed_;
   std::uint32_t round_ = 0;
+  mutable Timesheet times_;
 };
 
 }  // namespace talus

@@ -30,6 +30,9 @@ class Scorer {
     double sum = 0.0;
     for (const GroupScore& group : score_.groups) sum += group.score;
     if (!score_.groups.empty()) score_.total = sum / static_cast<double>(score_.groups.size());
+    double cut = 0.0, blocks = 0.0;
+    for_asked([&](std::uint32_t b, const MeasuredBlock&) { cut += cut_short(b), blocks += 1.0; });
+    if (blocks > 0.0) score_.cut_short = cut / blocks;
     return std::move(score_);
   }
 
@@ -40,8 +43,16 @@ class Scorer {
       if (ask_[b]) visit(b, campaign_.blocks[b]);
   }
 
+  /// Share of the trials of a block that came to no end in a search.
+  double cut_short(std::uint32_t block) const {
+    return climatology_ || runs_[block].cut_short == 0
+               ? 0.0
+               : static_cast<double>(runs_[block].cut_short) / static_cast<double>(runs_[block].trials);
+  }
+
   void row(std::uint32_t block, double score, bool unseen = false) {
-    rows_.push_back({static_cast<std::uint32_t>(score_.groups.size()), block, score, unseen});
+    rows_.push_back(
+        {static_cast<std::uint32_t>(score_.groups.size()), block, score + kCutShort * cut_short(block), unseen});
   }
 
   void close(const std::string& name) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis_times.hpp"
 #include "evidence.hpp"
 #include "limits_report.hpp"
 #include "talus/base/version.hpp"
@@ -64,6 +65,7 @@ Json candidates_of(const DiagnosisRound& round, const std::vector<HoldoutError>&
                     {"family", family_of(c.effect)},
                     {"may_be_chosen", !c.family.empty()},
                     {"fitted_with_ground", c.with_ground},
+                    {"refined", c.refined},
                     {"fit", json_of(c.fitted.score.total)},
                     {"price", json_of(c.price)},
                     {"objective_gain", json_of(c.gain)},
@@ -197,6 +199,11 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
             {"seed", record.options.seed},
             {"trials_per_block", {{"search", d.trials.search}, {"test", d.trials.test}, {"compare", d.trials.compare}}},
             {"seconds", json_of(record.seconds)},
+            {"times", times_json(record)},
+            {"cut_short",
+             {{"most_vertices", record.options.rules.search.most_vertices},
+              {"before", json_of(d.base.score.cut_short)},
+              {"after", json_of(d.with_effects.score.cut_short)}}},
             {"talus", version()},
             {"command", record.command},
             {"warnings", record.warnings}};

@@ -163,6 +163,7 @@ std::string calibration_json(const Calibration& c) {
             {"surface", {{"value", c.surface}, {"source", c.surface_from}}},
             {"seed", c.options.seed},
             {"trials", c.options.trials},
+            {"cut_short", json_of(c.fit.score.cut_short)},
             {"comparison_trials", c.options.comparison_trials},
             {"starts", c.options.starts},
             {"start_model", c.start_name},

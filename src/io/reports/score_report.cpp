@@ -132,6 +132,11 @@ std::vector<std::string> score_warnings(const ScoredRows& s) {
   return warnings;
 }
 
+std::string cut_short_line(double share, std::uint32_t most_vertices) {
+  return "note: in the fit " + with_decimals(100.0 * share, 2) + " % of the trajectories came to no end within " +
+         std::to_string(most_vertices) + " vertices; they count against the model (docs/diagnosis-time.md)";
+}
+
 std::string judgement_lines(const ScoredRows& s) {
   std::string text;
   for (const std::string& sentence : {skill_sentence(s), tail_sentence(s)})

@@ -1,4 +1,5 @@
 #pragma once
+#include "talus/physics/world.hpp"
 
 namespace talus {
 
@@ -22,6 +23,17 @@ struct SearchRules {
   /// Typical second derivatives of the objective along one direction and across two, per unit of the spread
   /// [objective]. With the noise they set the ridge, which holds back what few places cannot show.
   double curved = 0.03, twisted = 0.01;
+  /// Vertices (impacts, pieces of slides and of flights with drag) after which a trajectory of a search ends at its
+  /// limit [-]: blocks that crawl take most of the time. docs/diagnosis-time.md has what ordinary ones need.
+  std::uint32_t most_vertices = 10000;
+  /// Share of the speed that drag may take in one piece of a flight of a search [-]: five times that of a run, with an
+  /// error of millimetres.
+  double drag_loss = 0.2;
 };
+
+/// What a trajectory of a search may cost.
+inline Effort effort_of(const SearchRules& rules) {
+  return {rules.most_vertices, rules.drag_loss};
+}
 
 }  // namespace talus

@@ -47,6 +47,7 @@ struct BlockRuns {
   std::vector<End> end;                     ///< by trial
   std::array<std::uint32_t, kEnds> ends{};  ///< trials by End
   std::vector<std::uint32_t> zone_hits;     ///< trials with an impact in each zone
+  std::uint32_t cut_short = 0;              ///< trials that ended at a limit, if `Effort` bounds them: in a search
 };
 
 /// First of the trials that score a fitted model: no search has used their random numbers.
@@ -62,6 +63,7 @@ struct ObserveOptions {
   int threads = 0;                ///< 0: as many as the machine has
   std::vector<bool> blocks;       ///< true for those that are simulated; empty: all
   std::function<bool()> proceed;  ///< called now and then, from any thread; false ends the work. May be empty
+  Effort effort = {};             ///< what each trajectory may cost; searches bound it
 };
 
 /// Simulates every block of a campaign and measures the paths as the campaign did.

@@ -4,6 +4,7 @@
 #include "talus/fit/diagnose/diagnosis_rules.hpp"
 #include "talus/fit/diagnose/family_test.hpp"
 #include "talus/fit/diagnose/residual_table.hpp"
+#include "talus/fit/diagnose/timesheet.hpp"
 #include "talus/fit/score/bootstrap.hpp"
 
 namespace talus {
@@ -27,6 +28,7 @@ struct FittedCandidate {
   std::size_t tested = 0;              ///< number of them that the score test moves; all at zero: no effect
   std::vector<double> values;          ///< fitted values of the parameters
   bool with_ground = true;             ///< false: the ground was held, because it may not be chosen
+  bool refined = true;                 ///< false: no amount helped, so that it was not fitted: its numbers are off
   double p_value = 1.0;                ///< of the score test, corrected for the places of the effect
   std::string family;                  ///< by which it may be chosen; empty: it may not
   double statistic = 0.0;              ///< of the score test
@@ -65,6 +67,7 @@ struct Diagnosis {
   std::vector<DiagnosisRound> rounds;  ///< the last one found "none" or "unexplained"
   FittedModel with_effects;            ///< the last model; the base if nothing was found
   TrialsPerBlock trials;               ///< numbers that were simulated
+  Timesheet times;                     ///< where the processor time went
 };
 
 struct DiagnoseOptions {

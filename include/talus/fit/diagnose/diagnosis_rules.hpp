@@ -70,6 +70,9 @@ struct DiagnosisRules {
   /// Height above its minimum at which a first fit may have ended [objective]: an effect that is further behind cannot
   /// win any more.
   double unfinished = 0.02;
+  /// Rise of the objective over that without an effect at which larger amounts of it are not tried [objective]:
+  /// fourteen times the noise of a total. An effect whose smallest amount costs as much is not fitted.
+  double hopeless = 0.1;
   /// Share of `worth_naming` from which on the longer fit of an effect may yet get there [-].
   double half_way = 0.5;
 

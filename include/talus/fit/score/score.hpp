@@ -33,12 +33,17 @@ struct Score {
   double total = kNotGiven;  ///< weighted mean over the groups; NaN where there is none
   std::vector<GroupScore> groups;
   std::vector<RowScore> rows;  ///< ordered by group, then by block
+  double cut_short = 0.0;      ///< share of the trials that came to no end in a search [-]
 };
 
 /// Fewest simulated values with which a row is scored; below, it scores as the climatology of the fitting rows.
 inline constexpr std::size_t kFewestSimulated = 10;
 /// Fewest rows of a group that counts, and fewest fitting rows that give a spread.
 inline constexpr std::size_t kFewestRows = 5;
+
+/// Rise of the score of a row if all trials of its block were cut short; of some, their share of it. A model that
+/// climatology beats by far is still better than one whose blocks do not come to an end. docs/diagnosis-time.md.
+inline constexpr double kCutShort = 4.0;
 
 /// Scores the simulations of the asked blocks against their measurements, as defined in docs/closing-the-loop.md, "The
 /// score".

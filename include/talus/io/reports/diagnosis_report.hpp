@@ -20,7 +20,8 @@ struct DiagnosisRecord : FitRecord {
   HoldoutError headline;                              ///< the same, of the groups with ten held-out rows and more
   std::vector<HoldoutError> rounds;                   ///< each effect found, against the model before it
   std::vector<std::vector<HoldoutError>> candidates;  ///< as DiagnosisRound::candidates
-  double seconds = 0.0;
+  double seconds = 0.0;      ///< by the clock
+  double cpu_seconds = 0.0;  ///< of all threads; the phases of the diagnosis are parts of it
 };
 
 /// Simulates and scores the held-out rows with every model of a diagnosis, and judges the first and the last model on
@@ -33,6 +34,9 @@ std::vector<std::string> small_groups(const DiagnosisRecord& record);
 /// Lines for the terminal: the effects that these data could not have shown at any amount, and those that speeds at
 /// more screens would show. Empty where there are none.
 std::string limits_lines(std::span<const DetectionLimit> limits);
+
+/// Where the processor time went, in one line: phases and effects of at least 5 %, largest first.
+std::string time_line(const DiagnosisRecord& record);
 
 /// The text of diagnosis.json. Its keys: docs/closing-the-loop.md, "Diagnosis".
 std::string diagnosis_json(const DiagnosisRecord& record);

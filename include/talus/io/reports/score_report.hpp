@@ -65,6 +65,9 @@ std::string tail_sentence(const ScoredRows& scored);
 /// Both, and the counts of the spread, as lines for the terminal.
 std::string judgement_lines(const ScoredRows& scored);
 
+/// A line for a fit of which a share of the trajectories came to no end within so many vertices.
+std::string cut_short_line(double share, std::uint32_t most_vertices);
+
 /// The scores as a table for people: one line per group, the rows beside the score.
 std::string score_table(const ScoreSettings& settings, std::span<const ScoredRows> scores);
 /// The same as JSON. The text ends with a line end.

@@ -68,6 +68,39 @@ TEST(Observe, LaterTrialsAreThoseOfALongerRun) {
   EXPECT_EQ(std::vector<double>(a[1].x.begin() + 40, a[1].x.end()), b[1].x);
 }
 
+/// A trial that needs more vertices than a search allows has no stop and is counted; all others are the same.
+TEST(Observe, CountsWhatASearchCutsShort) {
+  Campaign c = campaign_on_slope(3);
+  const Model model = model_of_slope();
+  const auto whole = observe(c, model, {60, 1, 0, 0, {}, {}});
+  const Cover cover{model.grounds, {}};
+  const World world{c.surface, cover, model.impact, EndRules{}};
+  constexpr std::uint32_t kMost = 70;
+  const auto bounded = observe(c, model, {60, 1, 0, 0, {}, {}, {kMost, 0.2}});
+  std::uint32_t all = 0;
+  for (std::uint32_t b = 0; b < 3; ++b) {
+    std::uint32_t cut_short = 0;
+    for (std::uint32_t t = 0; t < 60; ++t) {
+      Path path;
+      trace(world, release_of(c, b, 1, t), path);
+      const bool cut = bounded[b].end[t] == End::Limit;
+      cut_short += cut ? 1 : 0;
+      if (cut) {
+        EXPECT_GT(path.vertices.size(), kMost);
+        EXPECT_TRUE(std::isnan(bounded[b].x[t]));
+      } else if (!std::isnan(whole[b].x[t])) {
+        EXPECT_EQ(bounded[b].x[t], whole[b].x[t]);
+        EXPECT_LT(path.vertices.size(), kMost + 1010) << "one more impact and slide, which has at most 1000 pieces";
+      }
+    }
+    EXPECT_EQ(bounded[b].cut_short, cut_short);
+    EXPECT_EQ(whole[b].cut_short, 0U);
+    all += cut_short;
+  }
+  EXPECT_GT(all, 20U);
+  EXPECT_LT(all, 160U);
+}
+
 /// Without measurement errors the observations of a path are the engine's values.
 TEST(Observe, WithoutErrorsItIsThePath) {
   Campaign c = campaign_on_slope(3);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "support/campaigns.hpp"
+#include "talus/fit/diagnose/candidates.hpp"
 #include "talus/fit/diagnose/diagnose.hpp"
 
 namespace talus::test {
@@ -77,6 +78,38 @@ TEST(EffectFits, WhatIsNoBetterIsNotConfirmed) {
   EXPECT_EQ(anew.z, good.z);
   EXPECT_NE(anew.objective.total, good.objective.total) << "random numbers of its own";
   EXPECT_NE(later.objective.total, anew.objective.total);
+}
+
+TEST(EffectFits, WhatOnlyHarmsIsNotFitted) {
+  Campaign campaign = campaign_on_slope(30);
+  const Model truth = model_of_slope();
+  measure(campaign, truth, 77);
+  const std::vector<bool> rows = fitting_rows(campaign);
+  DiagnoseOptions options;
+  options.keys = {"theta_scale"};
+  options.trials = {20, 20, 50};
+  EffectFits fits(campaign, options, rows, [](double) { return true; });
+  const FittedModel base = fits.begin_round(fits.fit_ground(truth));
+  const auto list = candidates_of(campaign, base.model, base.runs, {});
+  const auto drag = std::ranges::find(list, "vegetation-drag", &Candidate::effect);
+  ASSERT_NE(drag, list.end());
+  EffectVerdict verdict;
+  verdict.effect = drag->effect;
+  verdict.best.estimate = Eigen::VectorXd::Constant(1, 4.0);  // much too large
+  verdict.best.ground = Eigen::VectorXd::Zero(1);
+  const FittedCandidate held = fits.fit_effect(base, verdict, *drag, "");
+  EXPECT_FALSE(held.refined);
+  EXPECT_EQ(held.gain, 0.0);
+  EXPECT_EQ(held.values, std::vector<double>{0.0});
+  EXPECT_EQ(held.amount, 0.0);
+  EXPECT_FALSE(held.fitted.model.effects.any());
+  EXPECT_EQ(held.fitted.score.total, base.score.total);
+  const FittedCandidate dropped = fits.fit_effect(base, verdict, *drag, "place");
+  EXPECT_FALSE(dropped.refined);
+  EXPECT_EQ(dropped.fitted.z.head(1), base.z) << "with the ground as it is";
+  EXPECT_EQ(dropped.fitted.free.size(), 2U);
+  ASSERT_EQ(fits.times().phases().size(), 3U);  // ground, comparison, fits of vegetation-drag
+  EXPECT_EQ(fits.times().phases().back().effect, "vegetation-drag");
 }
 
 }  // namespace

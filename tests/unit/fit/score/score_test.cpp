@@ -195,6 +195,38 @@ TEST_F(Scores, ARowWithFewValuesScoresAsTheClimatology) {
   }
 }
 
+TEST_F(Scores, WhatASearchCutsShortRaisesTheRowsOfItsBlock) {
+  const Score whole = score(campaign_, runs_, fitting_rows(campaign_));
+  EXPECT_EQ(whole.cut_short, 0.0);
+  runs_[6].cut_short = 5;
+  const Score cut = score(campaign_, runs_, fitting_rows(campaign_));
+  EXPECT_DOUBLE_EQ(cut.cut_short, 5.0 / 20.0 / 16.0);
+  ASSERT_EQ(cut.rows.size(), whole.rows.size());
+  for (std::size_t r = 0; r < cut.rows.size(); ++r)
+    EXPECT_NEAR(cut.rows[r].score - whole.rows[r].score, cut.rows[r].block == 6 ? 4.0 * 5.0 / 20.0 : 0.0, 1e-12);
+}
+
+/// Trials that end in a wrong place and are cut short never make a model look better than the same trials to their end.
+TEST_F(Scores, CuttingTrialsShortIsNoWayToABetterScore) {
+  const std::vector<bool> rows = fitting_rows(campaign_);
+  for (const double off : {0.0, 30.0, 60.0, 90.0})  // metres beyond the measured stops, of which the sd is 23 m
+    for (const std::size_t cut : {1U, 4U, 10U, 20U}) {
+      std::vector<BlockRuns> to_end = runs_, searched = runs_;
+      for (std::size_t b = 0; b < runs_.size(); ++b) {
+        searched[b].cut_short = static_cast<std::uint32_t>(cut);
+        for (std::size_t t = 0; t < cut; ++t) {
+          to_end[b].x[t] += off;
+          searched[b].x[t] = searched[b].y[t] = kNotGiven;
+          for (auto* values :
+               {&searched[b].screens[0].speed, &searched[b].screens[0].jump, &searched[b].screens[0].spin})
+            (*values)[t] = kNotGiven;
+        }
+      }
+      EXPECT_GT(group(score(campaign_, searched, rows), "stop", 16), group(score(campaign_, to_end, rows), "stop", 16))
+          << off << ' ' << cut;
+    }
+}
+
 TEST_F(Scores, ABlockCountsOnceForAllItsSamples) {
   std::vector<double> fitting;
   double sum = 0.0;
