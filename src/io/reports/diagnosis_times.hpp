@@ -4,7 +4,7 @@
 
 namespace talus::io {
 
-/// The key `seconds` of diagnosis.json: by the clock, of the processor, and the latter by phase.
+/// The key `times` of diagnosis.json: processor time in all and by phase.
 Json times_json(const DiagnosisRecord& record);
 
 }  // namespace talus::io
