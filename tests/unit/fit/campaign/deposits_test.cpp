@@ -108,7 +108,9 @@ TEST(Deposits, OnlyStopsInTheRegionOfTheBlockCount) {
   const std::vector<DepositSource> source{{{21.0, 71.0, top}, 1.0}};
   whole.deposits = std::make_shared<const MappedDeposits>(mapped_deposits(source, one));
   cut.deposits = std::make_shared<const MappedDeposits>(mapped_deposits(source, parts));
-  const auto all = observe(whole, model_of_slope(), {200}), some = observe(cut, model_of_slope(), {200});
+  ObserveOptions how;
+  how.trials = 200;
+  const auto all = observe(whole, model_of_slope(), how), some = observe(cut, model_of_slope(), how);
   std::array<int, 2> kept{}, stopped{};
   for (std::size_t b = 0; b < 2; ++b)
     for (std::size_t t = 0; t < 200; ++t) {

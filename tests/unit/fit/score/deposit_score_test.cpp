@@ -11,6 +11,13 @@ namespace {
 
 using Places = std::vector<Eigen::Vector2d>;
 
+ObserveOptions trials(std::uint32_t count, std::uint64_t seed = 1) {
+  ObserveOptions how;
+  how.trials = count;
+  how.seed = seed;
+  return how;
+}
+
 Eigen::Vector2d normal_place(Numbers& numbers, const Eigen::Vector2d& mean) {
   const double x = numbers.normal(), y = numbers.normal();
   return mean + Eigen::Vector2d(x, y);
@@ -37,8 +44,8 @@ TEST(PatternDistance, OfTwoNormalPatternsHasItsClosedForm) {
       std::vector<Places> simulated(5);
       for (Places& stops : simulated) {
         mapped.push_back(normal_place(numbers, {0.0, 0.0}));
-        const std::size_t trials = set % 2 == 0 ? 2 : 2 + stops.size() + mapped.size();  // also of unequal number
-        for (std::size_t t = 0; t < trials; ++t) stops.push_back(normal_place(numbers, {apart, 0.0}));
+        const std::size_t count = set % 2 == 0 ? 2 : 2 + stops.size() + mapped.size();  // also of unequal number
+        for (std::size_t t = 0; t < count; ++t) stops.push_back(normal_place(numbers, {apart, 0.0}));
       }
       const double d = pattern_distance(mapped, simulated).distance;
       sum += d / kSets;
@@ -104,7 +111,7 @@ Campaign mapped_on_slope(std::size_t blocks, const Model& truth, std::uint64_t s
   }
   deposits.limits = {0.5 * (equivalent_diameter(300.0, 2700.0) + equivalent_diameter(2000.0, 2700.0))};
   c.deposits = std::make_shared<const MappedDeposits>(std::move(deposits));
-  const auto runs = observe(c, truth, {40, seed});
+  const auto runs = observe(c, truth, trials(40, seed));
   for (std::size_t b = 0; b < c.blocks.size(); ++b)
     for (std::size_t t = 0; t < 40; ++t)
       if (!std::isnan(runs[b].x[t])) {
@@ -118,7 +125,7 @@ Campaign mapped_on_slope(std::size_t blocks, const Model& truth, std::uint64_t s
 TEST(DepositScore, ByItsDefinition) {
   const Campaign c = mapped_on_slope(24, model_of_slope(), 5);
   const std::vector<bool> all(24, true);
-  const auto runs = observe(c, model_of_slope(), {30});
+  const auto runs = observe(c, model_of_slope(), trials(30));
   const Score s = score(c, runs, all);
   ASSERT_GE(s.groups.size(), 2U);
   EXPECT_EQ(s.groups[0].name, "deposits below 0.861 m");  // between (6 m / (pi rho))^(1/3) = 0.5965 and 1.1225 m
@@ -161,7 +168,7 @@ TEST(DepositScore, DiffersFromModelToModelAsTheEnergyDistance) {
     spread = std::sqrt(spread);
   }
   for (std::size_t m = 0; m < 2; ++m) {
-    const auto runs = observe(c, m == 0 ? model_of_slope() : soft, {400});
+    const auto runs = observe(c, m == 0 ? model_of_slope() : soft, trials(400));
     score_of[m] = score(c, runs, all).groups[0].score * spread;
     const auto patterns = check_deposits(c, runs, all).patterns;
     ASSERT_EQ(patterns.size(), 1U);
@@ -178,8 +185,8 @@ TEST(DepositScore, NoModelGainsByLeavingTheMap) {
   Model stuck = model_of_slope();
   stuck.grounds[0].En50 = 0.01;
   stuck.grounds[0].Et50 = 0.01;
-  stuck.grounds[0].phi = radians(60.0);
-  const auto lost = observe(c, stuck, {60}), right = observe(c, model_of_slope(), {60});
+  stuck.grounds[0].tan_phi = 2.0;
+  const auto lost = observe(c, stuck, trials(60)), right = observe(c, model_of_slope(), trials(60));
   const Score nothing = score_of_climatology(c, all);
   EXPECT_LT(check_deposits(c, lost, all).inside, 0.1);
   EXPECT_NEAR(score(c, lost, all).total, nothing.total, 1e-12);
@@ -195,8 +202,8 @@ TEST(DepositCheck, PValuesOfTheRightModelAreUniform) {
     auto deposits = std::make_shared<MappedDeposits>(*c.deposits);
     deposits->limits.clear();
     c.deposits = deposits;
-    ObserveOptions how{40, 2000 + set};
-    const auto patterns = check_deposits(c, observe(c, model_of_slope(), how), std::vector<bool>(8, true)).patterns;
+    const auto runs = observe(c, model_of_slope(), trials(40, 2000 + set));
+    const auto patterns = check_deposits(c, runs, std::vector<bool>(8, true)).patterns;
     ASSERT_EQ(patterns.size(), 1U);
     if (patterns[0].p_value <= 0.2) ++low;
   }
