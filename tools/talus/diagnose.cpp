@@ -20,6 +20,15 @@ struct Options : CampaignCommand {
   talus::DiagnoseOptions how;
 };
 
+/// Throws InputError if the releases of the blocks are not known.
+void require_releases(const std::string& path, const talus::Campaign& campaign) {
+  if (campaign.deposits != nullptr)
+    throw talus::InputError(path +
+                            ": [deposits]: talus diagnose needs blocks of known release: a mapped pattern does not "
+                            "tell a missing effect from another ground. Use talus calibrate, and talus score to "
+                            "compare models that you name");
+}
+
 void print_error(const char* what, const talus::io::HoldoutError& e) {
   if (std::isnan(e.before))
     std::printf("%s: there are none\n", what);
@@ -90,6 +99,7 @@ int diagnose(const Options& options) {
   talus::io::DiagnosisRecord record;
   OpenedCampaign opened(options, record);
   const talus::Campaign& campaign = opened.loaded.campaign;
+  require_releases(options.campaign, campaign);
   record.options = options.how;
   Progress progress(Progress::mode_of(options.quiet, options.progress == "machine"), 0);
   record.options.proceed = [&progress](double share) { return progress.update(share) && !interrupted(); };

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <exception>
 
+#include "talus/fit/campaign/deposits.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 #include "talus/simulate/screens/screens.hpp"
 
@@ -56,6 +57,7 @@ class Instrument {
     crossings_.clear();
     screens_.find(release, path, crossings_);
     stop(errors, path, release.body.mass, trial, runs);
+    if (campaign_.deposits != nullptr) keep_mapped(block, trial, runs);
     passages(errors, trial, runs);
     samples(errors, block, path, trial, runs);
     runs.impacts[trial] = path.impacts;
@@ -73,6 +75,13 @@ class Instrument {
     const Vec3& end = path.vertices.back().motion.position;
     runs.x[trial] = end.x() + campaign_.error.position_m * error[0];
     runs.y[trial] = end.y() + campaign_.error.position_m * error[1];
+  }
+
+  /// Leaves out a stop where a block like this would not have been mapped.
+  void keep_mapped(const MeasuredBlock& block, std::uint32_t trial, BlockRuns& runs) const {
+    const MappedDeposits& deposits = *campaign_.deposits;
+    if (region_at(deposits, {runs.x[trial], runs.y[trial]}) != region_at(deposits, *block.stop))
+      runs.x[trial] = runs.y[trial] = kNotGiven;
   }
 
   void passages(const Errors& errors, std::uint32_t trial, BlockRuns& runs) const {
@@ -175,6 +184,17 @@ std::vector<Unit> units_of(const Campaign& campaign, std::size_t zones, const Ob
   return units;
 }
 
+/// Moves the release of a mapped block to a source: each is as likely as its area.
+void release_from_source(const Campaign& campaign, const Words& words, Release& release) {
+  const DepositSource& source = source_at(*campaign.deposits, uniform(words[0]));
+  const Grid& grid = campaign.surface.grid();
+  const double x = source.place.x() + (source.point ? 0.0 : (uniform(words[1]) - 0.5) * grid.cell_x);
+  const double y = source.place.y() + (source.point ? 0.0 : (uniform(words[2]) - 0.5) * grid.cell_y);
+  const double height = source.release_height.at(uniform(words[3]));
+  release.motion.position = {x, y, campaign.surface.height(x, y).value_or(kNotGiven) + height};
+  release.motion.velocity = source.velocity;
+}
+
 }  // namespace
 
 Model model_of_preset(const Campaign& campaign, std::string_view preset) {
@@ -197,6 +217,7 @@ Release release_of(const Campaign& campaign, std::uint32_t block, std::uint64_t 
   release.motion.position = {x, y, campaign.surface.height(x, y).value_or(kNotGiven) + measured.release_height};
   release.motion.velocity = measured.velocity;
   release.day = measured.day;
+  if (campaign.deposits != nullptr) release_from_source(campaign, words, release);
   return release;
 }
 

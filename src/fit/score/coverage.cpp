@@ -104,7 +104,9 @@ std::vector<Coverage> coverage(const Campaign& campaign, std::span<const BlockRu
   std::vector<Coverage> list;
   Ranks runout("runout", seed);
   for (std::size_t b = 0; b < campaign.blocks.size(); ++b)
-    if (ask[b]) runout.add(campaign.blocks[b], runout_of(campaign.blocks[b]), runouts_of(campaign.blocks[b], runs[b]));
+    if (ask[b])
+      runout.add(campaign.blocks[b], runout_of(campaign, campaign.blocks[b]),
+                 runouts_of(campaign, campaign.blocks[b], runs[b]));
   runout.add_to(list);
   for (std::size_t s = 0; s < campaign.screens.size(); ++s) add_screen(list, campaign, runs, ask, s, seed);
   correct(list);

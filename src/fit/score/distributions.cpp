@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "talus/base/sample.hpp"
+#include "talus/fit/campaign/deposits.hpp"
 #include "talus/fit/score/score.hpp"
 
 namespace talus {
@@ -48,6 +49,26 @@ void compare_runout(const Campaign& campaign, std::span<const BlockRuns> runs, c
   runout.add_to(out, "runout", "m");
 }
 
+/// Distance and angle from the nearest source, of blocks that were mapped where they lie.
+void compare_deposits(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
+                      Comparison& out) {
+  Values distance, angle;
+  for (std::size_t b = 0; b < runs.size(); ++b) {
+    if (!ask[b]) continue;
+    const RunOut measured = run_out(campaign, *campaign.blocks[b].stop);
+    distance.measure(measured.distance);
+    angle.measure(degrees(measured.angle));
+    for (std::uint32_t t = 0; t < runs[b].trials; ++t) {
+      const RunOut simulated = run_out(campaign, {runs[b].x[t], runs[b].y[t]});
+      distance.simulate({&simulated.distance, 1});
+      const double below = degrees(simulated.angle);
+      angle.simulate({&below, 1});
+    }
+  }
+  distance.add_to(out, "distance from the nearest source", "m");
+  angle.add_to(out, "run-out angle", "deg");
+}
+
 void compare_screen(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
                     std::size_t screen, Comparison& out) {
   Values speed, jump, spin;
@@ -78,7 +99,10 @@ void compare_screen(const Campaign& campaign, std::span<const BlockRuns> runs, c
 
 Comparison compare(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask) {
   Comparison out;
-  compare_runout(campaign, runs, ask, out);
+  if (campaign.deposits != nullptr)
+    compare_deposits(campaign, runs, ask, out);
+  else
+    compare_runout(campaign, runs, ask, out);
   for (std::size_t s = 0; s < campaign.screens.size(); ++s) compare_screen(campaign, runs, ask, s, out);
   Values speed, spin;
   for (std::size_t b = 0; b < runs.size(); ++b) {

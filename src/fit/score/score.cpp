@@ -6,6 +6,7 @@
 
 #include "fitting_values.hpp"
 #include "talus/base/expect.hpp"
+#include "talus/fit/score/deposit_score.hpp"
 
 namespace talus {
 namespace {
@@ -217,10 +218,12 @@ class Scorer {
 
 Score score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
             std::size_t fewest_simulated) {
+  if (campaign.deposits != nullptr) return deposit_score(campaign, runs, ask, fewest_simulated);
   return Scorer(campaign, runs, ask, fewest_simulated).result();
 }
 
 Score score_of_climatology(const Campaign& campaign, const std::vector<bool>& ask) {
+  if (campaign.deposits != nullptr) return deposit_score(campaign, {}, ask, kFewestSimulated);
   return Scorer(campaign, {}, ask, kFewestSimulated).result();
 }
 

@@ -5,6 +5,7 @@
 
 #include "fitting_values.hpp"
 #include "talus/base/sample.hpp"
+#include "talus/fit/campaign/deposits.hpp"
 
 namespace talus {
 namespace {
@@ -12,8 +13,15 @@ namespace {
 FittingValues<double> fitting_runouts(const Campaign& campaign) {
   FittingValues<double> fitting;
   for (std::uint32_t b = 0; b < campaign.blocks.size(); ++b)
-    if (!campaign.blocks[b].holdout && campaign.blocks[b].stop) fitting.add(b, runout_of(campaign.blocks[b]));
+    if (!campaign.blocks[b].holdout && campaign.blocks[b].stop) fitting.add(b, runout_of(campaign, campaign.blocks[b]));
   return fitting;
+}
+
+/// Run-outs of places anywhere in the region of a mapped block.
+void runouts_anywhere(const Campaign& campaign, const MeasuredBlock& block, std::vector<double>& out) {
+  out.clear();
+  for (const Eigen::Vector2d& place : campaign.deposits->anywhere[region_at(*campaign.deposits, *block.stop)])
+    if (const double distance = run_out(campaign, place).distance; !std::isnan(distance)) out.push_back(distance);
 }
 
 double median_of(std::vector<double> values) {
@@ -36,13 +44,16 @@ Score scored(const Campaign& campaign, std::span<const BlockRuns> runs, const st
   for (std::uint32_t b = 0; b < campaign.blocks.size(); ++b) {
     const MeasuredBlock& block = campaign.blocks[b];
     if (!ask[b] || !block.stop) continue;
-    if (runs.empty())
+    if (!runs.empty())
+      keep_finite(runouts_of(campaign, block, runs[b]), values);
+    else if (campaign.deposits == nullptr)
       fitting.of_others(b, values);
     else
-      keep_finite(runouts_of(block, runs[b]), values);
+      runouts_anywhere(campaign, block, values);
     const bool unseen = !runs.empty() && values.size() < kFewestSimulated;
-    if (unseen) values = fitting.values;
-    const double score = fair_tail_crps(values, runout_of(block), begin) / spread;
+    if (unseen && campaign.deposits == nullptr) values = fitting.values;
+    if (unseen && campaign.deposits != nullptr) runouts_anywhere(campaign, block, values);
+    const double score = fair_tail_crps(values, runout_of(campaign, block), begin) / spread;
     out.rows.push_back({0, b, score, unseen});
     group.score += score;
     group.unseen += unseen ? 1 : 0;
@@ -65,6 +76,18 @@ std::vector<double> runouts_of(const MeasuredBlock& block, const BlockRuns& runs
   values.reserve(runs.trials);
   for (std::uint32_t t = 0; t < runs.trials; ++t)
     values.push_back(std::hypot(runs.x[t] - block.x, runs.y[t] - block.y));
+  return values;
+}
+
+double runout_of(const Campaign& campaign, const MeasuredBlock& block) {
+  return campaign.deposits == nullptr ? runout_of(block) : run_out(campaign, *block.stop).distance;
+}
+
+std::vector<double> runouts_of(const Campaign& campaign, const MeasuredBlock& block, const BlockRuns& runs) {
+  if (campaign.deposits == nullptr) return runouts_of(block, runs);
+  std::vector<double> values;
+  values.reserve(runs.trials);
+  for (std::uint32_t t = 0; t < runs.trials; ++t) values.push_back(run_out(campaign, {runs.x[t], runs.y[t]}).distance);
   return values;
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "campaign_tables.hpp"
+#include "deposit_tables.hpp"
 #include "io/files/checksum.hpp"
 #include "io/gdal/dataset.hpp"
 #include "io/scenario/named_file.hpp"
@@ -26,6 +27,7 @@ struct CampaignSpec {
   NamedFile dem, zones, blocks, stops, passages, screens, samples;
   std::vector<std::string> zone_codes, zone_names;
   MeasurementError error;
+  DepositSpec deposits;
 };
 
 class CampaignReader {
@@ -50,11 +52,17 @@ class CampaignReader {
       named_file(top, key, *file);
     read_zone_names(top.table("zone_names"));
     read_error(top.table("measurement_error"));
+    if (const TomlValue* value = top.find("deposits"); value != nullptr && value->kind != Kind::Table)
+      top.fault("deposits", *value, "must be a table: [deposits] with file = \"deposits.csv\" in it");
+    else
+      spec_.deposits = read_deposit_spec(top.table("deposits"), base_);
     top.finish();
+    check_deposits();
     for (const auto& [key, file] : {std::pair{"dem", &spec_.dem}, {"blocks", &spec_.blocks}})
-      if (file->path.empty() && root.find(key) == nullptr)
-        faults_.push_back(path_ + ": has no " + key + ", must name the file: " + key + " = \"" +
-                          (file == &spec_.dem ? "dem.tif" : "blocks.csv") + "\"");
+      if (file->path.empty() && root.find(key) == nullptr && !(file == &spec_.blocks && spec_.deposits.given))
+        faults_.push_back(
+            path_ + ": has no " + key + ", must name the file: " + key + " = \"" +
+            (file == &spec_.dem ? "dem.tif\"" : "blocks.csv\", or [deposits] where releases are not known"));
     if (!spec_.zones.path.empty() && spec_.zone_codes.empty())
       faults_.push_back(spec_.zones.where + ": must come with [zone_names], such as 1 = \"talus\"");
     if (!faults_.empty()) throw InputError(faults_.front());
@@ -68,6 +76,16 @@ class CampaignReader {
     file = {absolute_path(*text, base_), table.where(key, *table.value()->find(key))};
     std::error_code none;
     if (!std::filesystem::exists(file.path, none)) faults_.push_back(file.where + ": no such file (" + file.path + ")");
+  }
+
+  /// Refuses what belongs to released blocks in a campaign of mapped ones.
+  void check_deposits() {
+    if (!spec_.deposits.given) return;
+    for (const NamedFile* file : {&spec_.blocks, &spec_.stops, &spec_.passages, &spec_.screens, &spec_.samples})
+      if (!file->path.empty())
+        faults_.push_back(file->where +
+                          ": must not stand beside [deposits]: blocks of known release and blocks mapped "
+                          "where they lie are two campaigns, each with its campaign.toml");
   }
 
   void use(const std::optional<SurfaceKind>& kind, const char* from) {
@@ -153,9 +171,12 @@ LoadedCampaign read_campaign(const std::string& path, const std::optional<std::s
     std::ranges::sort(campaign.screens, {}, &Screen::id);  // the order in the file changes nothing
     take_warnings(out, screens);
   }
-  campaign.surface = Surface(std::move(terrain.heights), spec.surface);
+  campaign.surface = Surface(spec.deposits.given ? terrain.heights : std::move(terrain.heights), spec.surface);
   out.surface_from = spec.surface_from;
-  read_tables({spec.blocks.path, spec.stops.path, spec.passages.path, spec.samples.path}, campaign, out.warnings);
+  if (spec.deposits.given)
+    read_deposits(spec.deposits, terrain, campaign, out.warnings);
+  else
+    read_tables({spec.blocks.path, spec.stops.path, spec.passages.path, spec.samples.path}, campaign, out.warnings);
   const std::pair<const char*, std::string> files[] = {
       {"campaign", std::filesystem::absolute(path).lexically_normal().string()},
       {"dem", spec.dem.path},
@@ -164,7 +185,10 @@ LoadedCampaign read_campaign(const std::string& path, const std::optional<std::s
       {"stops", spec.stops.path},
       {"passages", spec.passages.path},
       {"screens", spec.screens.path},
-      {"samples", spec.samples.path}};
+      {"samples", spec.samples.path},
+      {"deposits", spec.deposits.table.path},
+      {"sources", spec.deposits.sources.path},
+      {"mapped", spec.deposits.mapped.path}};
   for (const auto& [role, file] : files)
     if (!file.empty()) out.inputs.push_back({role, file, sha256_of_file(file)});
   return out;

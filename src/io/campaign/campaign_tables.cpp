@@ -6,7 +6,6 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "io/gdal/csv_table.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 
@@ -75,21 +74,6 @@ class Tables {
       campaign_.blocks.push_back(std::move(block));
     }
     if (campaign_.blocks.empty()) throw InputError(files_.blocks + ": has no blocks, must have one row for each");
-  }
-
-  static Vec3 axes_of(const CsvTable& table, const Row& row, double diameter) {
-    constexpr std::array<const char*, 3> kColumns{"L1_m", "L2_m", "L3_m"};
-    std::array<std::optional<double>, 3> axes;
-    for (std::size_t i = 0; i < 3; ++i) axes[i] = table.number(row, kColumns[i], kAxis);
-    if (!axes[0] && !axes[1] && !axes[2]) return Vec3::Constant(diameter);
-    for (std::size_t i = 0; i < 3; ++i)
-      if (!axes[i]) table.refuse(row, kColumns[i], "must be given where another axis is, or all three left empty");
-    for (std::size_t i = 1; i < 3; ++i)
-      if (*axes[i] > *axes[i - 1])
-        table.refuse(
-            row, kColumns[i],
-            std::string("must not be above ") + kColumns[i - 1] + " = " + text_of(*axes[i - 1]) + " (L1 >= L2 >= L3)");
-    return {*axes[0], *axes[1], *axes[2]};
   }
 
   void check_release(const CsvTable& table, const Row& row, const MeasuredBlock& block) const {
@@ -206,6 +190,21 @@ class Tables {
 };
 
 }  // namespace
+
+Vec3 axes_of(const CsvTable& table, const CsvTable::Row& row, double diameter) {
+  constexpr std::array<const char*, 3> kColumns{"L1_m", "L2_m", "L3_m"};
+  std::array<std::optional<double>, 3> axes;
+  for (std::size_t i = 0; i < 3; ++i) axes[i] = table.number(row, kColumns[i], kAxis);
+  if (!axes[0] && !axes[1] && !axes[2]) return Vec3::Constant(diameter);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!axes[i]) table.refuse(row, kColumns[i], "must be given where another axis is, or all three left empty");
+  for (std::size_t i = 1; i < 3; ++i)
+    if (*axes[i] > *axes[i - 1])
+      table.refuse(
+          row, kColumns[i],
+          std::string("must not be above ") + kColumns[i - 1] + " = " + text_of(*axes[i - 1]) + " (L1 >= L2 >= L3)");
+  return {*axes[0], *axes[1], *axes[2]};
+}
 
 void read_tables(const CampaignFiles& files, Campaign& campaign, std::vector<std::string>& warnings) {
   Tables(files, campaign, warnings).read();

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "io/gdal/csv_table.hpp"
 #include "talus/fit/campaign/campaign.hpp"
 
 namespace talus::io {
@@ -14,5 +15,8 @@ struct CampaignFiles {
 /// Reads the blocks and their measurements into a campaign that has its terrain and screens already.
 /// Map coordinates become local ones by the campaign's grid. Throws InputError.
 void read_tables(const CampaignFiles& files, Campaign& campaign, std::vector<std::string>& warnings);
+
+/// The axes of a block in a row of a table: L1_m >= L2_m >= L3_m, or none of them and those of a sphere.
+Vec3 axes_of(const CsvTable& table, const CsvTable::Row& row, double diameter);
 
 }  // namespace talus::io

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "coverage_report.hpp"
+#include "deposit_report.hpp"
 #include "talus/base/text.hpp"
 
 namespace talus::io {
@@ -84,6 +85,7 @@ std::string judgement_markdown(const BeforeAfter& e) {
   std::string text;
   for (const std::string& sentence : {skill_sentence(e.after), tail_before_after(e)})
     if (!sentence.empty()) text += sentence + (sentence.ends_with('.') ? "" : ".") + "\n\n";
+  for (const std::string& sentence : deposit_sentences(e.after)) text += sentence + ".\n\n";
   if (e.after.coverage.empty()) return text;
   return text +
          "Measured values below the simulated P5, P50 and P95, after the fit (in brackets 95 % of right models; *: "

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "deposit_report.hpp"
 #include "evidence.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
@@ -62,6 +63,7 @@ Json error_of(const Calibration& c) {
                            {"skill_ci95", json_of(e.after.skill.interval)},
                            {"blocks", e.after.blocks},
                            {"groups", groups}};
+    if (e.after.deposits) error[e.after.rows]["deposits"] = deposits_json(e.after);
   }
   return error;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "coverage_report.hpp"
+#include "deposit_report.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/results/write_vectors.hpp"
@@ -89,6 +90,7 @@ ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<c
   out.tail_interval = bootstrap(out.tail, streams).total;
   out.tail_climatology = tail_score_of_climatology(campaign, ask);
   out.coverage = coverage(campaign, runs, ask);
+  if (campaign.deposits != nullptr) out.deposits = check_deposits(campaign, runs, ask);
   return out;
 }
 
@@ -101,11 +103,13 @@ BeforeAfter compared(const Campaign& campaign, ScoredRows before, ScoredRows aft
 
 std::string skill_sentence(const ScoredRows& s) {
   if (std::isnan(s.skill.share)) return {};
-  const std::string errors =
-      with_decimals(s.score.total, 3) + " against the climatology's " + with_decimals(s.climatology.total, 3);
+  const std::string errors = with_decimals(s.score.total, 3) + " against the climatology's " +
+                             with_decimals(s.climatology.total, 3) +
+                             (s.deposits ? " (blocks anywhere on the mapped ground)" : "");
   const std::string interval = " (95 %: " + with_decimals(100.0 * s.skill.interval.low, 1) + " to " +
                                with_decimals(100.0 * s.skill.interval.high, 1) + " %)";
   const std::string rows = rows_in_words(s.rows) + " rows: ";
+  if (!(s.skill.share > 0.0) && s.deposits) return rows + "no skill: " + errors;
   if (!(s.skill.share > 0.0))
     return rows + "no skill: " + errors + ": the measurements of the " + (s.rows == "fit" ? "other " : "") +
            "fitting blocks, without any model, are as near";
@@ -141,6 +145,7 @@ std::string judgement_lines(const ScoredRows& s) {
   std::string text;
   for (const std::string& sentence : {skill_sentence(s), tail_sentence(s)})
     if (!sentence.empty()) text += sentence + "\n";
+  for (const std::string& sentence : deposit_sentences(s)) text += sentence + "\n";
   return text + coverage_lines(s);
 }
 
@@ -200,6 +205,7 @@ std::string score_json(const ScoreSettings& settings, std::span<const ScoredRows
                     {"tail", tail_json(s)},
                     {"coverage", json_of(s.coverage)},
                     {"groups", groups}};
+    if (s.deposits) json[s.rows]["deposits"] = deposits_json(s);
   }
   return json_text(json);
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,6 +55,8 @@ struct MeasurementError {
   double angular_velocity_fraction = 0.0;  ///< of a spin, relative to it [-]
 };
 
+struct MappedDeposits;
+
 /// Measured data: the place, the released blocks, the observations. Valid by construction: `io::read_campaign` builds
 /// it. docs/closing-the-loop.md, "Campaign".
 struct Campaign {
@@ -64,6 +67,8 @@ struct Campaign {
   std::vector<MeasuredBlock> blocks;    ///< in the order of their ids, whatever that of the file is
   std::vector<Screen> screens;          ///< in the order of their ids
   MeasurementError error;
+  /// Where the blocks may have come from, if they were mapped where they lie; else null, and their releases are known.
+  std::shared_ptr<const MappedDeposits> deposits = nullptr;
 };
 
 /// The blocks that may enter a fit: true where holdout is not set. Size: blocks.

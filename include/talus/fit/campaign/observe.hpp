@@ -39,7 +39,8 @@ struct BlockRuns {
   };
 
   std::uint32_t trials = 0;                 ///< 0: the block was not asked for
-  std::vector<double> x, y;                 ///< place of rest [m, local]; NaN unless the block stays there
+  std::vector<double> x, y;                 ///< place of rest [m, local]; NaN unless the block stays there and, if
+                                            ///< blocks were mapped where they lie, in the mapped region of this one
   std::vector<double> mass_share;           ///< share of the mass that is left at the end [-]
   std::vector<AtScreen> screens;            ///< by screen of the campaign
   std::vector<AtSample> samples;            ///< by sample of the block

@@ -28,7 +28,8 @@ struct Comparison {
 };
 
 /// Compares the pooled distributions: runout (plan distance from the nominal place of release to the stop), and speed,
-/// jump and spin at the screens and the samples. Quantities of fewer than five measured values are left out.
+/// jump and spin at the screens and the samples; of mapped blocks distance and angle from the nearest source.
+/// Quantities of fewer than five measured values are left out.
 Comparison compare(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask);
 
 }  // namespace talus

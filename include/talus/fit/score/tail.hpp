@@ -8,6 +8,11 @@ double runout_of(const MeasuredBlock& block);
 /// Run-outs of its trials [m]; NaN for those that did not stop on the terrain.
 std::vector<double> runouts_of(const MeasuredBlock& block, const BlockRuns& runs);
 
+/// The same of a block of a campaign. If the blocks were mapped where they lie, run-outs are those of `run_out`: from
+/// the source nearest to the place, of mapped and simulated places alike.
+double runout_of(const Campaign& campaign, const MeasuredBlock& block);
+std::vector<double> runouts_of(const Campaign& campaign, const MeasuredBlock& block, const BlockRuns& runs);
+
 /// Median of the measured run-outs of the fitting rows [m]: the tail begins there. NaN where none was measured.
 double tail_begin(const Campaign& campaign);
 
@@ -16,7 +21,8 @@ double tail_begin(const Campaign& campaign);
 /// all nearer stops are alike. Rows with too few simulated values score as the climatology. Without groups where fewer
 /// than five rows were measured.
 Score tail_score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask);
-/// That of the climatology: for each block the run-outs of the other fitting rows.
+/// That of the climatology: for each block the run-outs of the other fitting rows. If the blocks were mapped where they
+/// lie: those of places anywhere in the mapped region.
 Score tail_score_of_climatology(const Campaign& campaign, const std::vector<bool>& ask);
 
 }  // namespace talus

@@ -1,11 +1,13 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "talus/fit/score/bootstrap.hpp"
 #include "talus/fit/score/coverage.hpp"
+#include "talus/fit/score/deposit_score.hpp"
 #include "talus/fit/score/tail.hpp"
 #include "talus/io/campaign/campaign_file.hpp"
 
@@ -24,6 +26,7 @@ struct ScoredRows {
   Score tail, tail_climatology;
   Interval tail_interval;
   std::vector<Coverage> coverage;
+  std::optional<DepositCheck> deposits;  ///< of blocks that were mapped where they lie
 };
 
 /// The score of the model before and after a fit, on rows of one kind.

@@ -1,0 +1,213 @@
+#include "talus/fit/score/deposit_score.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fitting_values.hpp"
+#include "talus/base/expect.hpp"
+#include "talus/fit/campaign/deposits.hpp"
+
+namespace talus {
+namespace {
+
+constexpr std::size_t kPatterns = 99;        // of simulated blocks, for a p-value
+constexpr std::size_t kStopsCompared = 100;  // of each block: more cost time and tell little
+
+using Places = std::vector<Eigen::Vector2d>;
+
+Places stops_of(const BlockRuns& runs) {
+  Places places;
+  for (std::uint32_t t = 0; t < runs.trials; ++t)
+    if (!std::isnan(runs.x[t])) places.emplace_back(runs.x[t], runs.y[t]);
+  return places;
+}
+
+std::size_t class_of(const Campaign& campaign, const MeasuredBlock& block) {
+  return class_of(*campaign.deposits, equivalent_diameter(block.mass, block.density));
+}
+
+std::vector<double> angles_of(const Campaign& campaign, const Places& places) {
+  std::vector<double> angles;
+  for (const Eigen::Vector2d& place : places)
+    if (const double angle = run_out(campaign, place).angle; !std::isnan(angle)) angles.push_back(angle);
+  return angles;
+}
+
+double spread_of(const Places& places) {
+  std::vector<double> x, y;
+  for (const Eigen::Vector2d& place : places) {
+    x.push_back(place.x());
+    y.push_back(place.y());
+  }
+  return std::sqrt(variance_of(x) + variance_of(y));
+}
+
+/// Scores mapped blocks group by group.
+class DepositScorer {
+ public:
+  DepositScorer(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
+                std::size_t fewest_simulated)
+      : campaign_(campaign), ask_(ask), fewest_simulated_(fewest_simulated) {
+    for (std::uint32_t b = 0; b < campaign.blocks.size(); ++b) {
+      simulated_.emplace_back();
+      if (!runs.empty() && ask[b]) simulated_[b] = stops_of(runs[b]);
+    }
+    nothing_simulated_ = runs.empty();
+  }
+
+  Score result() {
+    for (std::size_t number = 0; number <= campaign_.deposits->limits.size(); ++number) places(number);
+    angles();
+    double sum = 0.0;
+    for (const GroupScore& group : score_.groups) sum += group.score;
+    if (!score_.groups.empty()) score_.total = sum / static_cast<double>(score_.groups.size());
+    return std::move(score_);
+  }
+
+ private:
+  const Places& anywhere(const MeasuredBlock& block) const {
+    return campaign_.deposits->anywhere[region_at(*campaign_.deposits, *block.stop)];
+  }
+  bool too_few(std::size_t simulated) const { return simulated < fewest_simulated_; }
+
+  void places(std::size_t number) {
+    Places fitting;
+    for (const MeasuredBlock& block : campaign_.blocks)
+      if (!block.holdout && class_of(campaign_, block) == number) fitting.push_back(*block.stop);
+    if (fitting.size() < kFewestRows) return;
+    const double spread = spread_of(fitting);
+    if (!(spread > 0.0)) return;
+    for (std::uint32_t b = 0; b < campaign_.blocks.size(); ++b) {
+      const MeasuredBlock& block = campaign_.blocks[b];
+      if (!ask_[b] || class_of(campaign_, block) != number) continue;
+      const bool unseen = too_few(simulated_[b].size());
+      row(b, fair_energy_score(unseen ? anywhere(block) : simulated_[b], *block.stop) / spread, unseen);
+    }
+    close(class_name(*campaign_.deposits, number));
+  }
+
+  void angles() {
+    Places fitting;
+    for (const MeasuredBlock& block : campaign_.blocks)
+      if (!block.holdout) fitting.push_back(*block.stop);
+    const std::vector<double> measured = angles_of(campaign_, fitting);
+    if (measured.size() < kFewestRows) return;
+    const double spread = std::sqrt(variance_of(measured));
+    if (!(spread >= kLeastAngleSpread)) return;
+    for (std::uint32_t b = 0; b < campaign_.blocks.size(); ++b) {
+      const MeasuredBlock& block = campaign_.blocks[b];
+      const double angle = ask_[b] ? run_out(campaign_, *block.stop).angle : kNotGiven;
+      if (std::isnan(angle)) continue;
+      std::vector<double> values = angles_of(campaign_, simulated_[b]);
+      const bool unseen = too_few(values.size());
+      if (unseen) values = angles_of(campaign_, anywhere(block));
+      row(b, fair_crps(values, angle) / spread, unseen);
+    }
+    close("run-out angle");
+  }
+
+  void row(std::uint32_t block, double score, bool unseen) {
+    rows_.push_back({static_cast<std::uint32_t>(score_.groups.size()), block, score, unseen && !nothing_simulated_});
+  }
+
+  void close(const std::string& name) {
+    if (rows_.size() >= kFewestRows) {
+      GroupScore group{name, 0.0, static_cast<std::uint32_t>(rows_.size())};
+      for (const RowScore& r : rows_) group.score += r.score / static_cast<double>(rows_.size());
+      group.unseen = static_cast<std::uint32_t>(std::ranges::count(rows_, true, &RowScore::unseen));
+      score_.groups.push_back(std::move(group));
+      score_.rows.insert(score_.rows.end(), rows_.begin(), rows_.end());
+    }
+    rows_.clear();
+  }
+
+  const Campaign& campaign_;
+  const std::vector<bool>& ask_;
+  const std::size_t fewest_simulated_;
+  bool nothing_simulated_;
+  std::vector<Places> simulated_;  // by block: its stops in the mapped region
+  std::vector<RowScore> rows_;     // of the group under way
+  Score score_;
+};
+
+/// Sum and number of distances.
+struct Mean {
+  double sum = 0.0, count = 0.0;
+  void add(double value) { sum += value, count += 1.0; }
+  double value() const { return sum / count; }
+};
+
+/// The share of simulated patterns that are at least as far from the simulated ones as the mapped one is.
+double p_value_of(double distance, std::span<const Places> simulated) {
+  std::size_t as_far = 1;
+  for (std::size_t pattern = 0; pattern < kPatterns; ++pattern) {
+    Places drawn;
+    for (const Places& stops : simulated) drawn.push_back(stops[pattern % stops.size()]);
+    if (pattern_distance(drawn, simulated, pattern).distance >= distance) ++as_far;
+  }
+  return static_cast<double>(as_far) / (kPatterns + 1);
+}
+
+}  // namespace
+
+PatternDistance pattern_distance(std::span<const Eigen::Vector2d> mapped, std::span<const Places> simulated,
+                                 std::optional<std::size_t> left_out) {
+  TALUS_EXPECT(mapped.size() == simulated.size(), "each mapped block has its simulated stops");
+  Mean across, within_simulated, within_mapped;
+  const auto skipped = [&](const Places& of, std::size_t t) { return left_out && t == *left_out % of.size(); };
+  for (std::size_t i = 0; i < mapped.size(); ++i)
+    for (std::size_t k = 0; k < mapped.size(); ++k) {
+      if (k == i) continue;
+      Mean to, between;
+      for (std::size_t t = 0; t < simulated[k].size(); ++t) {
+        if (skipped(simulated[k], t)) continue;
+        to.add((mapped[i] - simulated[k][t]).norm());
+        if (t < simulated[i].size() && !skipped(simulated[i], t))
+          between.add((simulated[i][t] - simulated[k][t]).norm());
+      }
+      if (to.count == 0.0 || between.count == 0.0) continue;
+      across.add(to.value());
+      within_simulated.add(between.value());
+      within_mapped.add((mapped[i] - mapped[k]).norm());
+    }
+  PatternDistance out;
+  out.blocks = static_cast<std::uint32_t>(mapped.size());
+  if (across.count == 0.0) return out;
+  out.distance = 2.0 * across.value() - within_simulated.value() - within_mapped.value();
+  out.share = out.distance / (2.0 * across.value());
+  return out;
+}
+
+Score deposit_score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
+                    std::size_t fewest_simulated) {
+  TALUS_EXPECT(runs.empty() || runs.size() == campaign.blocks.size(), "each block has its runs");
+  return DepositScorer(campaign, runs, ask, fewest_simulated).result();
+}
+
+DepositCheck check_deposits(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask) {
+  DepositCheck check;
+  Mean inside;
+  for (std::size_t b = 0; b < runs.size(); ++b)
+    for (std::uint32_t t = 0; ask[b] && t < runs[b].trials; ++t) inside.add(std::isnan(runs[b].x[t]) ? 0.0 : 1.0);
+  check.inside = inside.value();
+  for (std::size_t number = 0; number <= campaign.deposits->limits.size(); ++number) {
+    Places mapped;
+    std::vector<Places> simulated;
+    for (std::size_t b = 0; b < runs.size(); ++b) {
+      if (!ask[b] || class_of(campaign, campaign.blocks[b]) != number) continue;
+      Places stops = stops_of(runs[b]);
+      if (stops.size() < kFewestSimulated) continue;
+      stops.resize(std::min(stops.size(), kStopsCompared));
+      mapped.push_back(*campaign.blocks[b].stop);
+      simulated.push_back(std::move(stops));
+    }
+    if (mapped.size() < kFewestRows) continue;
+    PatternDistance pattern = pattern_distance(mapped, simulated);
+    pattern.group = class_name(*campaign.deposits, number);
+    pattern.p_value = p_value_of(pattern.distance, simulated);
+    check.patterns.push_back(std::move(pattern));
+  }
+  return check;
+}
+
+}  // namespace talus

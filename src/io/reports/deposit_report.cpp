@@ -1,0 +1,41 @@
+#include "deposit_report.hpp"
+
+#include <cmath>
+
+#include "talus/base/text.hpp"
+
+namespace talus::io {
+namespace {
+
+std::string sentence_of(const std::string& rows, const PatternDistance& pattern) {
+  return rows + " rows: " + pattern.group + ": energy distance of the patterns " + with_decimals(pattern.distance, 2) +
+         " m (" + with_decimals(100.0 * pattern.share, 1) + " % of what it can be, 0 for a right model), p " +
+         with_decimals(pattern.p_value, 2) + (pattern.p_value < 0.05 ? ": not the simulated pattern" : "") + ", " +
+         std::to_string(pattern.blocks) + " blocks";
+}
+
+}  // namespace
+
+std::vector<std::string> deposit_sentences(const ScoredRows& s) {
+  if (!s.deposits || std::isnan(s.deposits->inside)) return {};
+  const std::string rows = rows_in_words(s.rows);
+  std::vector<std::string> sentences;
+  for (const PatternDistance& pattern : s.deposits->patterns) sentences.push_back(sentence_of(rows, pattern));
+  sentences.push_back(rows + " rows: " + with_decimals(100.0 * s.deposits->inside, 1) +
+                      " % of the simulated blocks come to rest where these were mapped; the others do not count");
+  return sentences;
+}
+
+Json deposits_json(const ScoredRows& s) {
+  if (!s.deposits) return nullptr;
+  Json patterns = Json::array();
+  for (const PatternDistance& pattern : s.deposits->patterns)
+    patterns.push_back({{"group", pattern.group},
+                        {"blocks", pattern.blocks},
+                        {"energy_distance_m", json_of(pattern.distance, six_decimals)},
+                        {"share", json_of(pattern.share, six_decimals)},
+                        {"p_value", json_of(pattern.p_value, six_decimals)}});
+  return {{"inside", json_of(s.deposits->inside, six_decimals)}, {"patterns", patterns}};
+}
+
+}  // namespace talus::io

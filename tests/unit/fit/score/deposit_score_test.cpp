@@ -1,0 +1,229 @@
+#include "talus/fit/score/deposit_score.hpp"
+
+#include <algorithm>
+
+#include "support/campaigns.hpp"
+#include "talus/fit/calibrate/calibrate.hpp"
+#include "talus/fit/campaign/deposits.hpp"
+
+namespace talus::test {
+namespace {
+
+using Places = std::vector<Eigen::Vector2d>;
+
+ObserveOptions trials(std::uint32_t count, std::uint64_t seed = 1) {
+  ObserveOptions how;
+  how.trials = count;
+  how.seed = seed;
+  return how;
+}
+
+Eigen::Vector2d normal_place(Numbers& numbers, const Eigen::Vector2d& mean) {
+  const double x = numbers.normal(), y = numbers.normal();
+  return mean + Eigen::Vector2d(x, y);
+}
+
+/// Mean length of a normal vector in the plane with variance s^2 in each direction and mean length nu: Rice's
+/// distribution, s sqrt(pi / 2) L(-nu^2 / (2 s^2)) with L(-x) = exp(-x / 2) ((1 + x) I_0(x / 2) + x I_1(x / 2)).
+double mean_length(double nu, double s) {
+  const double x = nu * nu / (2.0 * s * s), half = 0.5 * x;
+  return s * std::sqrt(0.5 * kPi) * std::exp(-half) *
+         ((1.0 + x) * std::cyl_bessel_i(0.0, half) + x * std::cyl_bessel_i(1.0, half));
+}
+
+/// Two normal patterns a distance d apart: 2 E|X - Y| - E|X - X'| - E|Y - Y'| = 2 (m(d) - m(0)), m the mean length of
+/// a normal vector of twice the variance. Also with few blocks and trials: the estimate is unbiased.
+TEST(PatternDistance, OfTwoNormalPatternsHasItsClosedForm) {
+  Numbers numbers(21);
+  for (const double apart : {0.0, 0.5, 2.0}) {
+    const double expected = 2.0 * (mean_length(apart, std::sqrt(2.0)) - mean_length(0.0, std::sqrt(2.0)));
+    constexpr int kSets = 4000;
+    double sum = 0.0, squares = 0.0;
+    for (int set = 0; set < kSets; ++set) {
+      Places mapped;
+      std::vector<Places> simulated(5);
+      for (Places& stops : simulated) {
+        mapped.push_back(normal_place(numbers, {0.0, 0.0}));
+        const std::size_t count = set % 2 == 0 ? 2 : 2 + stops.size() + mapped.size();  // also of unequal number
+        for (std::size_t t = 0; t < count; ++t) stops.push_back(normal_place(numbers, {apart, 0.0}));
+      }
+      const double d = pattern_distance(mapped, simulated).distance;
+      sum += d / kSets;
+      squares += d * d / kSets;
+    }
+    EXPECT_NEAR(sum, expected, 4.0 * std::sqrt((squares - sum * sum) / kSets)) << apart;
+  }
+}
+
+/// Blocks that differ in where they go: the distance from the right model stays 0 on average.
+TEST(PatternDistance, IsZeroOnAverageForBlocksThatDiffer) {
+  Numbers numbers(22);
+  constexpr int kSets = 4000;
+  double sum = 0.0, squares = 0.0;
+  for (int set = 0; set < kSets; ++set) {
+    Places mapped;
+    std::vector<Places> simulated(4);
+    for (std::size_t b = 0; b < 4; ++b) {
+      const Eigen::Vector2d own(5.0 * static_cast<double>(b), 0.0);
+      mapped.push_back(normal_place(numbers, own));
+      for (int t = 0; t < 3; ++t) simulated[b].push_back(normal_place(numbers, own));
+    }
+    const double d = pattern_distance(mapped, simulated).distance;
+    sum += d / kSets;
+    squares += d * d / kSets;
+  }
+  EXPECT_NEAR(sum, 0.0, 4.0 * std::sqrt((squares - sum * sum) / kSets));
+}
+
+/// All blocks at one place, all stops at another: the distance is twice the way between them, all of what it can be.
+TEST(PatternDistance, OfTwoHeaps) {
+  const Places mapped(6, {1.0, 2.0});
+  const std::vector<Places> simulated(6, Places(4, {4.0, 6.0}));
+  const PatternDistance d = pattern_distance(mapped, simulated);
+  EXPECT_NEAR(d.distance, 2.0 * 5.0, 1e-12);
+  EXPECT_NEAR(d.share, 1.0, 1e-12);
+}
+
+/// The slope of the campaigns with a row of sources at its top, blocks of two sizes, a region that is all of it, and
+/// the stops of one trial as mapped blocks.
+Campaign mapped_on_slope(std::size_t blocks, const Model& truth, std::uint64_t seed, double from_x = 0.0) {
+  Campaign c = campaign_on_slope(blocks);
+  c.screens.clear();
+  c.error = {};
+  const Grid grid = c.surface.grid();
+  Raster<std::uint8_t> region(grid, std::uint8_t{1});
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column)
+      if (grid.centre_x(column) < from_x) region.at(column, row) = 0;
+  std::vector<DepositSource> sources;
+  for (int i = 0; i < 20; ++i) {
+    const double y = 41.0 + 2.0 * i;
+    sources.push_back({{9.0, y, *c.surface.height(9.0, y)}, 4.0});
+  }
+  MappedDeposits deposits = mapped_deposits(sources, region);
+  std::size_t number = 0;
+  for (MeasuredBlock& b : c.blocks) {
+    b.passages.clear();
+    b.holdout = false;
+    b.mass = number++ % 2 == 0 ? 300.0 : 2000.0;
+    b.axes.setConstant(equivalent_diameter(b.mass, b.density));
+    b.stop = Eigen::Vector2d(grid.width() - 1.0, 70.0);  // in the region, until it is known
+  }
+  deposits.limits = {0.5 * (equivalent_diameter(300.0, 2700.0) + equivalent_diameter(2000.0, 2700.0))};
+  c.deposits = std::make_shared<const MappedDeposits>(std::move(deposits));
+  const auto runs = observe(c, truth, trials(40, seed));
+  for (std::size_t b = 0; b < c.blocks.size(); ++b)
+    for (std::size_t t = 0; t < 40; ++t)
+      if (!std::isnan(runs[b].x[t])) {
+        c.blocks[b].stop = Eigen::Vector2d(runs[b].x[t], runs[b].y[t]);
+        break;
+      }
+  return c;
+}
+
+/// Rows are fair energy scores over the spread of the class, written out anew here.
+TEST(DepositScore, ByItsDefinition) {
+  const Campaign c = mapped_on_slope(24, model_of_slope(), 5);
+  const std::vector<bool> all(24, true);
+  const auto runs = observe(c, model_of_slope(), trials(30));
+  const Score s = score(c, runs, all);
+  ASSERT_GE(s.groups.size(), 2U);
+  EXPECT_EQ(s.groups[0].name, "deposits below 0.861 m");  // between (6 m / (pi rho))^(1/3) = 0.5965 and 1.1225 m
+  EXPECT_EQ(s.groups[1].name, "deposits from 0.861 m");
+  for (const RowScore& row : s.rows) {
+    if (row.group > 1) continue;
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    double squares = 0.0, n = 0.0, way = 0.0, pairs = 0.0, stops = 0.0;
+    for (const MeasuredBlock& b : c.blocks)
+      if (b.mass == c.blocks[row.block].mass) mean += *b.stop, squares += b.stop->squaredNorm(), n += 1.0;
+    const BlockRuns& r = runs[row.block];
+    for (std::size_t i = 0; i < 30; ++i) {
+      if (std::isnan(r.x[i])) continue;
+      stops += 1.0;
+      way += std::hypot(r.x[i] - c.blocks[row.block].stop->x(), r.y[i] - c.blocks[row.block].stop->y());
+      for (std::size_t j = 0; j < 30; ++j)
+        if (!std::isnan(r.x[j])) pairs += std::hypot(r.x[i] - r.x[j], r.y[i] - r.y[j]);
+    }
+    const double spread = std::sqrt(squares / n - (mean / n).squaredNorm());
+    EXPECT_NEAR(row.score, (way / stops - 0.5 * pairs / (stops * (stops - 1.0))) / spread, 1e-9);
+  }
+}
+
+/// The sum of rows is half the energy distance and a constant of the map: for blocks of one size the difference of two
+/// models' scores is half that of their distances, within the noise of the trials.
+TEST(DepositScore, DiffersFromModelToModelAsTheEnergyDistance) {
+  Model soft = model_of_slope();
+  soft.grounds[0].En50 *= 0.3;
+  Campaign c = mapped_on_slope(40, model_of_slope(), 6);
+  for (MeasuredBlock& b : c.blocks) b.mass = 300.0, b.axes.setConstant(equivalent_diameter(300.0, 2700.0));
+  const std::vector<bool> all(40, true);
+  std::array<double, 2> score_of{}, distance{};
+  double spread = 0.0;
+  {
+    Places places;
+    for (const MeasuredBlock& b : c.blocks) places.push_back(*b.stop);
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    for (const Eigen::Vector2d& p : places) mean += p / 40.0;
+    for (const Eigen::Vector2d& p : places) spread += (p - mean).squaredNorm() / 40.0;
+    spread = std::sqrt(spread);
+  }
+  for (std::size_t m = 0; m < 2; ++m) {
+    const auto runs = observe(c, m == 0 ? model_of_slope() : soft, trials(400));
+    score_of[m] = score(c, runs, all).groups[0].score * spread;
+    const auto patterns = check_deposits(c, runs, all).patterns;
+    ASSERT_EQ(patterns.size(), 1U);
+    distance[m] = patterns[0].distance;
+  }
+  EXPECT_GT(distance[1] - distance[0], 3.0);
+  EXPECT_NEAR(score_of[1] - score_of[0], 0.5 * (distance[1] - distance[0]), 0.5);
+}
+
+/// A model that throws its blocks out of the mapped ground scores as one that knows nothing, not better than the truth.
+TEST(DepositScore, NoModelGainsByLeavingTheMap) {
+  const Campaign c = mapped_on_slope(30, model_of_slope(), 7, 100.0);
+  const std::vector<bool> all(30, true);
+  Model stuck = model_of_slope();
+  stuck.grounds[0].En50 = 0.01;
+  stuck.grounds[0].Et50 = 0.01;
+  stuck.grounds[0].tan_phi = 2.0;
+  const auto lost = observe(c, stuck, trials(60)), right = observe(c, model_of_slope(), trials(60));
+  const Score nothing = score_of_climatology(c, all);
+  EXPECT_LT(check_deposits(c, lost, all).inside, 0.1);
+  EXPECT_NEAR(score(c, lost, all).total, nothing.total, 1e-12);
+  EXPECT_LT(score(c, right, all).total, 0.9 * nothing.total);
+}
+
+/// If the map is a draw of the model the p-value is uniform: its share below 0.2 is 0.2.
+TEST(DepositCheck, PValuesOfTheRightModelAreUniform) {
+  int low = 0;
+  constexpr int kSets = 150;
+  for (std::uint64_t set = 0; set < kSets; ++set) {
+    Campaign c = mapped_on_slope(8, model_of_slope(), 1000 + set);
+    auto deposits = std::make_shared<MappedDeposits>(*c.deposits);
+    deposits->limits.clear();
+    c.deposits = deposits;
+    const auto runs = observe(c, model_of_slope(), trials(40, 2000 + set));
+    const auto patterns = check_deposits(c, runs, std::vector<bool>(8, true)).patterns;
+    ASSERT_EQ(patterns.size(), 1U);
+    if (patterns[0].p_value <= 0.2) ++low;
+  }
+  EXPECT_NEAR(low, 0.2 * kSets, 3.5 * std::sqrt(0.2 * 0.8 * kSets));
+}
+
+/// A fit to the pattern alone, from a start of three times the En50, comes back to the truth.
+TEST(DepositScore, AFitToThePatternFindsTheGround) {
+  const Model truth = model_of_slope();
+  const Campaign c = mapped_on_slope(60, truth, 8);
+  Model start = truth;
+  start.grounds[0].En50 *= 3.0;
+  const std::vector<std::string> keys{"En50"};
+  const std::vector<Parameter> free = ground_parameters(c, start, keys, {true});
+  FitOptions how;
+  how.starts = 1;
+  how.rounds = 2;
+  const Fit fit = fit_parameters(c, start, free, fitting_rows(c), how);
+  EXPECT_LT(std::abs(std::log(fit.model.grounds[0].En50 / truth.grounds[0].En50)), 0.4);
+}
+
+}  // namespace
+}  // namespace talus::test
