@@ -8,7 +8,7 @@
 #include "talus/fit/calibrate/joint_parameters.hpp"
 #include "talus/fit/calibrate/uncertainty.hpp"
 #include "talus/io/campaign/model_file.hpp"
-#include "talus/io/reports/sites_report.hpp"
+#include "talus/io/reports/sites_calibration.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 
 namespace {

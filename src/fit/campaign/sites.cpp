@@ -6,16 +6,19 @@
 namespace talus {
 
 std::vector<std::vector<std::uint32_t>> streams_of_sites(std::span<const Site> sites) {
-  std::map<std::uint32_t, std::size_t> used;  // by how many sites
-  for (const Site& site : sites) {
-    const std::vector<std::uint32_t> own = streams_of(*site.campaign);
-    for (const std::uint32_t stream : std::set<std::uint32_t>(own.begin(), own.end())) ++used[stream];
-  }
+  std::map<std::uint32_t, std::set<std::size_t>> fitting, all;  // by stream: sites that have it
+  for (std::size_t i = 0; i < sites.size(); ++i)
+    for (const MeasuredBlock& block : sites[i].campaign->blocks) {
+      all[block.stream].insert(i);
+      if (!block.holdout) fitting[block.stream].insert(i);
+    }
   std::vector<std::vector<std::uint32_t>> streams;
   for (const Site& site : sites) {
     streams.emplace_back();
-    for (const MeasuredBlock& block : site.campaign->blocks)
-      streams.back().push_back(used[block.stream] > 1 ? stream_of_name(site.name + "/" + block.id) : block.stream);
+    for (const MeasuredBlock& block : site.campaign->blocks) {
+      const bool elsewhere = (block.holdout ? all : fitting)[block.stream].size() > 1;  // held-out rows change no fit
+      streams.back().push_back(elsewhere ? stream_of_name(site.name + "/" + block.id) : block.stream);
+    }
   }
   return streams;
 }

@@ -1,3 +1,5 @@
+#include "talus/io/reports/sites_calibration.hpp"
+
 #include <cmath>
 
 #include "coverage_report.hpp"

@@ -53,7 +53,7 @@ SiteEvidence evidence_of(const Site& site, const Model& before, const Model& aft
   return out;
 }
 
-Json json_of(const ErrorChange& c) {
+Json change_json(const ErrorChange& c) {
   return {{"blocks", c.blocks},
           {"rows", c.rows},
           {"before", json_of(c.before)},
@@ -104,8 +104,9 @@ std::string names_in_words(std::span<const SiteEvidence> evidence) {
 }
 
 Json errors_json(const SiteEvidence& evidence) {
-  return {
-      {"fit", json_of(evidence.fit)}, {"holdout", json_of(evidence.holdout)}, {"headline", json_of(evidence.headline)}};
+  return {{"fit", change_json(evidence.fit)},
+          {"holdout", change_json(evidence.holdout)},
+          {"headline", change_json(evidence.headline)}};
 }
 
 std::string score_of(double value) {

@@ -1,7 +1,6 @@
 #pragma once
 #include "talus/fit/diagnose/several_sites.hpp"
 #include "talus/io/reports/diagnosis_report.hpp"
-#include "talus/io/reports/fit_report.hpp"
 
 namespace talus::io {
 
@@ -40,27 +39,5 @@ struct SitesRecord : FitRecord {
 std::string sites_json(const SitesRecord& record);
 std::string sites_page(const SitesRecord& record);
 std::string sites_summary(const SitesRecord& record);
-
-/// A fitted number of several campaigns.
-struct SitesParameter {
-  std::string key, unit;
-  std::vector<std::string> sites;  ///< more than one: shared
-  double start = 0.0, value = 0.0;
-  Interval interval;  ///< 95 %
-  bool identifiable = true;
-};
-
-/// Results of `talus calibrate` with several campaigns.
-struct SitesCalibration : FitRecord {
-  FitOptions options;
-  std::vector<std::string> share, files;
-  std::vector<SitesParameter> parameters;
-  std::vector<SiteEvidence> evidence;
-};
-
-/// The text of calibration.json, of report.md, and of the summary on the terminal.
-std::string sites_calibration_json(const SitesCalibration& calibration);
-std::string sites_calibration_report(const SitesCalibration& calibration);
-std::string sites_calibration_summary(const SitesCalibration& calibration);
 
 }  // namespace talus::io
