@@ -7,6 +7,7 @@
 
 #include "campaign_command.hpp"
 #include "progress.hpp"
+#include "several_campaigns.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/fit/calibrate/effect_parameters.hpp"
@@ -19,7 +20,8 @@ namespace {
 
 struct Options : CampaignCommand {
   std::vector<std::string> fit{"theta_scale", "psi_scale", "En50", "Et50"};
-  std::string parameters;  // file of the model from which the fit starts; empty: the default preset
+  std::string parameters;          // file of the model from which the fit starts; empty: the default preset
+  std::vector<std::string> share;  // parameters that several campaigns share
   talus::FitOptions how;
 };
 
@@ -32,24 +34,6 @@ std::vector<talus::BlockRuns> runs_of(const talus::Campaign& campaign, const tal
   std::vector<talus::BlockRuns> runs = talus::observe(campaign, model, how);
   if (interrupted()) stop_interrupted();
   return runs;
-}
-
-/// Chooses what is fitted: the asked parameters of the zones that simulated paths touch, then the asked numbers of
-/// effects.
-void choose_parameters(const talus::Campaign& campaign, const std::vector<std::string>& keys,
-                       talus::io::Calibration& c) {
-  const auto runs = runs_of(campaign, c.start, c, talus::fitting_rows(campaign));
-  const std::vector<bool> touched = talus::touched_zones(campaign, runs);
-  for (std::size_t zone = 0; zone < touched.size(); ++zone) {
-    const auto& cells = campaign.zones.values;
-    const bool there = zone > 0 || cells.empty() || std::find(cells.begin(), cells.end(), 0) != cells.end();
-    if (!touched[zone] && there) c.untouched.push_back(campaign.zone_names[zone]);
-  }
-  std::vector<std::string> of_ground, of_effects;
-  for (const std::string& key : keys) (key.starts_with("effects.") ? of_effects : of_ground).push_back(key);
-  if (!of_ground.empty()) c.free = talus::ground_parameters(campaign, c.start, of_ground, touched);
-  for (talus::Parameter& p : talus::effect_parameters(campaign, c.start, of_effects, talus::DiagnosisRules{}.noticed))
-    c.free.push_back(std::move(p));
 }
 
 /// Scores start and fit on both kinds of rows, with trials of their own.
@@ -86,6 +70,12 @@ void print_summary(const talus::io::Calibration& c, const std::string& folder) {
 }
 
 int calibrate(const Options& options) {
+  if (options.campaigns.size() > 1)
+    return calibrate_sites(options, options.how, options.parameters, options.fit, options.share);
+  if (!options.share.empty())
+    throw talus::InputError(
+        "--share " + talus::joined(options.share) +
+        ": there is one campaign, must be several: talus calibrate a/campaign.toml b/campaign.toml");
   catch_signals();
   require_seed(options.how.seed);
   talus::io::Calibration c;
@@ -126,6 +116,22 @@ int calibrate(const Options& options) {
 
 }  // namespace
 
+void choose_parameters(const talus::Campaign& campaign, const std::vector<std::string>& keys,
+                       talus::io::Calibration& c) {
+  const auto runs = runs_of(campaign, c.start, c, talus::fitting_rows(campaign));
+  const std::vector<bool> touched = talus::touched_zones(campaign, runs);
+  for (std::size_t zone = 0; zone < touched.size(); ++zone) {
+    const auto& cells = campaign.zones.values;
+    const bool there = zone > 0 || cells.empty() || std::find(cells.begin(), cells.end(), 0) != cells.end();
+    if (!touched[zone] && there) c.untouched.push_back(campaign.zone_names[zone]);
+  }
+  std::vector<std::string> of_ground, of_effects;
+  for (const std::string& key : keys) (key.starts_with("effects.") ? of_effects : of_ground).push_back(key);
+  if (!of_ground.empty()) c.free = talus::ground_parameters(campaign, c.start, of_ground, touched);
+  for (talus::Parameter& p : talus::effect_parameters(campaign, c.start, of_effects, talus::DiagnosisRules{}.noticed))
+    c.free.push_back(std::move(p));
+}
+
 void add_calibrate(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("calibrate", "Fit the parameters of the ground to measured data");
@@ -133,8 +139,11 @@ void add_calibrate(CLI::App& app, Action& action) {
   command->add_option("--parameters", options->parameters,
                       "model from which the fit starts, whose effects it keeps; else upper-talus-3d without effects");
   command->add_option("--starts", options->how.starts, "searches from different starts (3)")->check(CLI::Range(1, 50));
+  command->add_option("--share", options->share, "parameters that several campaigns share; all others each has its own")
+      ->delimiter(',');
   command->footer(
-      "Example:\n  talus calibrate campaign.toml -o result\n\n"
+      "Example:\n  talus calibrate campaign.toml -o result\n"
+      "  talus calibrate a/campaign.toml b/campaign.toml --fit En50,phi --share phi -o result\n\n"
       "--fit takes numbers of effects, too: --fit theta_scale,effects.rest-in-roughness.kappa\n"
       "OUT: fitted.toml (the model: for talus score, and to include in a scenario), report.md, calibration.json.");
   command->callback([&action, options] { action = [options] { return calibrate(*options); }; });

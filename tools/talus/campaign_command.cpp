@@ -6,9 +6,6 @@
 #include "talus/fit/score/score.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 
-namespace {
-
-/// Throws InputError if no quantity was measured often enough to be fitted.
 void require_measurements(const std::string& path, const talus::Campaign& campaign) {
   const std::vector<bool> rows = talus::fitting_rows(campaign);
   const talus::Model model = talus::model_of_preset(campaign, talus::kDefaultPreset);
@@ -23,11 +20,10 @@ void require_measurements(const std::string& path, const talus::Campaign& campai
                           " of them that differ: hold out fewer blocks, or measure more");
 }
 
-}  // namespace
-
 void CampaignCommand::add_to(CLI::App& command, std::uint32_t& trials, std::vector<std::string>& keys,
                              std::uint64_t& seed, int& threads) {
-  command.add_option("campaign", campaign, "measured data: campaign.toml")->required();
+  command.add_option("campaign", campaigns, "measured data: campaign.toml; several: docs/several-campaigns.md")
+      ->required();
   command.add_option("-o,--out", out, "new folder for the results")->required();
   command.add_flag("--overwrite", overwrite, "replace the folder if it holds an earlier result");
   command.add_option("--surface", surface, "bilinear or creased (creased): heights between the cells' centres");
@@ -43,11 +39,12 @@ void CampaignCommand::add_to(CLI::App& command, std::uint32_t& trials, std::vect
 }
 
 OpenedCampaign::OpenedCampaign(const CampaignCommand& command, talus::io::FitRecord& record)
-    : loaded(talus::io::read_campaign(command.campaign, command.surface)), folder(command.out, command.overwrite) {
+    : loaded(talus::io::read_campaign(command.campaigns.front(), command.surface)),
+      folder(command.out, command.overwrite) {
   for (const talus::io::InputFile& input : loaded.inputs) folder.protect(input.path);
   if (!command.quiet)
     for (const std::string& warning : loaded.warnings) say("warning", warning);
-  require_measurements(command.campaign, loaded.campaign);
+  require_measurements(command.campaigns.front(), loaded.campaign);
   record.command = command_line();
   record.inputs = loaded.inputs;
   record.warnings = loaded.warnings;

@@ -5,9 +5,10 @@
 #include "talus/io/reports/fit_record.hpp"
 #include "talus/io/reports/score_report.hpp"
 
-/// Common options of `calibrate` and `diagnose`: a campaign, a new folder, the display of progress.
+/// Common options of `calibrate` and `diagnose`: a campaign or several, a new folder, the display of progress.
 struct CampaignCommand {
-  std::string campaign, out, progress;
+  std::vector<std::string> campaigns;
+  std::string out, progress;
   std::optional<std::string> surface;
   bool overwrite = false, quiet = false;
 
@@ -19,6 +20,9 @@ struct CampaignCommand {
 /// Trials per block below which a search can hide a block behind the climatology: a block that rarely stops is not
 /// scored.
 inline constexpr int kFewestSearchTrials = 20;
+
+/// Throws InputError if no quantity was measured often enough to be fitted.
+void require_measurements(const std::string& path, const talus::Campaign& campaign);
 
 /// A campaign that was read, and the new folder for its results.
 struct OpenedCampaign {

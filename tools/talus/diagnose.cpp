@@ -8,6 +8,7 @@
 
 #include "campaign_command.hpp"
 #include "progress.hpp"
+#include "several_campaigns.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/campaign/model_file.hpp"
@@ -93,6 +94,7 @@ void write_results(const talus::io::OutputFolder& folder, const talus::io::Loade
 }
 
 int diagnose(const Options& options) {
+  if (options.campaigns.size() > 1) return diagnose_several(options, options.how);
   catch_signals();
   require_seed(options.how.seed);
   const auto start = std::chrono::steady_clock::now();
@@ -136,6 +138,7 @@ void add_diagnose(CLI::App& app, Action& action) {
   command->footer(
       "Where fewer than 72 blocks are fitted, each gets more trajectories, so that there are as many in all; at most "
       "four times as many.\n\n"
-      "Example:\n  talus diagnose campaign.toml -o diagnosis\n\nThen open diagnosis/report.html.");
+      "Examples:\n  talus diagnose campaign.toml -o diagnosis\n"
+      "  talus diagnose a/campaign.toml b/campaign.toml -o diagnosis\n\nThen open diagnosis/report.html.");
   command->callback([&action, options] { action = [options] { return diagnose(*options); }; });
 }

@@ -32,11 +32,11 @@ class Search {
 
   Fit run() {
     try {
-      std::vector<Eigen::VectorXd> places{origin()};
+      std::vector<Eigen::VectorXd> places{problem_.start()};
       if (options_.starts > 0)
         for (const Eigen::VectorXd& z : choose_starts()) places.push_back(descend(z));
       move_to_best(places);
-      fit_.score = score_of(fit_.model);  // the local model needs its groups and rows
+      fit_.score = score_of(fit_.z);  // the local model needs its groups and rows
       fit_.spread = options_.spread.size() > 0 ? options_.spread
                                                : LocalModel::first_spread(std::ssize(problem_.free), options_.rules);
       for (int round = 0; round < options_.rounds; ++round)
@@ -44,7 +44,7 @@ class Search {
     } catch (const nlopt::forced_stop&) {  // `proceed` returned false
       fit_.interrupted = true;
     }
-    if (!fit_.interrupted) fit_.score = score_of(fit_.model);
+    if (!fit_.interrupted) fit_.score = score_of(fit_.z);
     fit_.tried = done_;
     return std::move(fit_);
   }
@@ -76,7 +76,7 @@ class Search {
       if (&z == &places.front()) first = objective;
       if (objective < fit_.objective) fit_.z = z, fit_.objective = objective;
     }
-    fit_.model = model_at(problem_.start, problem_.free, fit_.z);
+    fit_.model = problem_.model(problem_.sites.front(), fit_.z);
     return first - fit_.objective;
   }
 
@@ -94,26 +94,14 @@ class Search {
     return gain;
   }
 
-  Score score_of(const Model& model) const {
-    const ObserveOptions how{options_.comparison_trials, options_.seed, 0, options_.threads, problem_.rows, {},
-                             effort_of(options_.rules)};
-    return weigh_groups(score(problem_.campaign, observe(problem_.campaign, model, how), problem_.rows));
-  }
-
-  /// The start of the fit, in z.
-  Eigen::VectorXd origin() const {
-    Eigen::VectorXd z(lower_.size());
-    for (Eigen::Index i = 0; i < z.size(); ++i) {
-      const Parameter& p = problem_.free[static_cast<std::size_t>(i)];
-      z[i] = std::clamp(p.z(p.get(problem_.start)), lower_[i], upper_[i]);
-    }
-    return z;
+  Score score_of(const Eigen::VectorXd& z) const {
+    return score_at(problem_, options_, z, {options_.comparison_trials});
   }
 
   /// The start itself, and the best of an additive recurrence in the middle of the box, well apart from each other.
   std::vector<Eigen::VectorXd> choose_starts() {
     const auto n = static_cast<Eigen::Index>(problem_.free.size());
-    std::vector<Eigen::VectorXd> starts{origin()};
+    std::vector<Eigen::VectorXd> starts{problem_.start()};
     if (options_.starts <= 1) return starts;
     double root = 2.0;  // of x^(n + 1) = x + 1: the generalised golden ratio (Roberts 2018)
     for (int k = 0; k < 40; ++k) root = std::pow(1.0 + root, 1.0 / static_cast<double>(n + 1));
@@ -162,7 +150,7 @@ class Search {
     return Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x));
   }
 
-  FitProblem problem_;
+  const FitProblem& problem_;
   const FitOptions& options_;
   Eigen::VectorXd lower_, upper_;
   Fit fit_;
@@ -174,7 +162,11 @@ class Search {
 
 Fit fit_parameters(const Campaign& campaign, const Model& start, std::span<const Parameter> free,
                    const std::vector<bool>& rows, const FitOptions& options) {
-  return Search({campaign, start, free, rows}, options).run();
+  return fit_parameters({campaign, start, free, rows}, options);
+}
+
+Fit fit_parameters(const FitProblem& problem, const FitOptions& options) {
+  return Search(problem, options).run();
 }
 
 }  // namespace talus

@@ -68,7 +68,7 @@ LocalModel::LocalModel(const FitProblem& problem, const FitOptions& options, con
     weights[i] = away <= options.rules.local ? precision * std::exp(-0.5 * away) : 0.0;
     noise_factor_[i] = 1.0 / std::sqrt(precision);
   }
-  const Eigen::VectorXd ones = row_weights(score_, std::vector<double>(problem.campaign.blocks.size(), 1.0));
+  const Eigen::VectorXd ones = row_weights(score_, std::vector<double>(problem.rows().size(), 1.0));
   const Eigen::VectorXd totals = values * ones;
   const auto used = static_cast<double>((weights.array() > 0.0).count());
   noise_ = options.rules.first_noise;
@@ -116,23 +116,23 @@ std::uint32_t LocalModel::first_unused(std::span<const Evaluation> known, std::u
 }
 
 Eigen::VectorXd LocalModel::step(const Eigen::MatrixXd& spread) const {
-  return optimum(std::vector<double>(problem_.campaign.blocks.size(), 1.0), spread);
+  return optimum(std::vector<double>(problem_.rows().size(), 1.0), spread);
 }
 
 Eigen::VectorXd LocalModel::optimum(std::span<const double> block_weights, const Eigen::MatrixXd& spread) const {
   const Eigen::VectorXd trust = options_.rules.trust * spread.diagonal().cwiseSqrt();
   const Eigen::VectorXd total = rows_ * row_weights(score_, block_weights);
+  const std::vector<bool> used = problem_.rows();
   double blocks = 0.0, counted = 0.0;
   for (std::size_t b = 0; b < block_weights.size(); ++b)
-    if (problem_.rows[b]) blocks += 1.0, counted += block_weights[b];
+    if (used[b]) blocks += 1.0, counted += block_weights[b];
   const double prior = prior_ * blocks / counted;  // for the number of blocks that count
   const Eigen::VectorXd slope = from_v_ * model_->gradient(total) + 2.0 * prior * centre_;
   return centre_ + minimum_in_box(slope, curvature_of(total, prior), low_.cwiseMax(-trust), high_.cwiseMin(trust));
 }
 
 Eigen::VectorXd LocalModel::draw(std::uint32_t draw) const {
-  const Eigen::VectorXd weights =
-      row_weights(score_, bootstrap_weights(streams_of(problem_.campaign), draw, options_.seed));
+  const Eigen::VectorXd weights = row_weights(score_, bootstrap_weights(problem_.streams(), draw, options_.seed));
   const Eigen::VectorXd noise =
       noise_ * normals(options_.seed, 1, draw, noise_factor_.size()).cwiseProduct(noise_factor_);
   const Eigen::VectorXd slope = from_v_ * model_->gradient(rows_ * weights - total_ + model_->coefficients(noise)) -

@@ -7,7 +7,6 @@
 #include "talus/base/holm.hpp"
 #include "talus/fit/diagnose/dispersion.hpp"
 #include "talus/fit/diagnose/energy_component.hpp"
-#include "talus/fit/diagnose/property_test.hpp"
 #include "talus/physics/effects/registry.hpp"
 
 namespace talus {
@@ -40,9 +39,9 @@ FamilyTest family_with_members(const char* name, std::vector<std::string> member
   return family;
 }
 
-FamilyTest block_property(const FamilyInput& in, const std::vector<double>& energy, const FamilyOptions& options) {
+FamilyTest block_property(std::span<const BlockNumbers> sites, const FamilyOptions& options) {
   FamilyTest family = family_with_members(kProperty, {"block-shape", "block-mass"});
-  const PropertyTest test = property_test(in.campaign, energy, options.rules, options.seed);
+  const PropertyTest test = property_test(sites, options.rules, options.seed);
   family.may_name = test.rocks >= options.rules.fewest_rocks;
   if (!family.may_name) family.note = rocks_word(test.rocks) + ": a property of the block cannot be named from them";
   if (!test.tested) {
@@ -125,19 +124,36 @@ std::string family_of(const std::string& effect) {
 }
 
 std::vector<FamilyTest> test_families(const FamilyInput& input, const FamilyOptions& options) {
-  const EnergyComponent component(input.space, input.runs);
-  std::vector<double> energy(input.rows.size(), kNotGiven);
-  for (std::size_t b = 0; b < energy.size(); ++b)
-    if (input.rows[b] && input.runs[b].trials > 0) energy[b] = component.of_measured(b);
-  std::vector<FamilyTest> families{block_property(input, energy, options), by_score_test(kPlace, input),
+  const std::vector<double> energy = energy_by_block(input.space, input.runs, input.rows);
+  const std::vector<BlockNumbers> site{{input.campaign, energy}};
+  std::vector<FamilyTest> families{block_property(site, options), by_score_test(kPlace, input),
                                    day(input, energy, options), by_score_test(kInstrument, input),
                                    dispersion(input, options)};
-  std::vector<double> p_values;
-  for (const FamilyTest& family : families)  // a test that can name nothing takes no part of the level
-    p_values.push_back(family.may_name ? family.p_value : kNotGiven);
-  const std::vector<double> after = holm(p_values);
-  for (std::size_t i = 0; i < families.size(); ++i) families[i].p_corrected = after[i];
+  std::vector<FamilyTest*> all;
+  for (FamilyTest& family : families) all.push_back(&family);
+  correct(all);
   return families;
+}
+
+std::vector<double> energy_by_block(const ResidualSpace& space, const std::vector<BlockRuns>& runs,
+                                    const std::vector<bool>& rows) {
+  const EnergyComponent component(space, runs);
+  std::vector<double> energy(rows.size(), kNotGiven);
+  for (std::size_t b = 0; b < energy.size(); ++b)
+    if (rows[b] && runs[b].trials > 0) energy[b] = component.of_measured(b);
+  return energy;
+}
+
+FamilyTest test_block_property(std::span<const BlockNumbers> sites, const FamilyOptions& options) {
+  return block_property(sites, options);
+}
+
+void correct(std::span<FamilyTest* const> families) {
+  std::vector<double> p_values;
+  for (const FamilyTest* family : families)  // a test that can name nothing takes no part of the level
+    p_values.push_back(family->may_name ? family->p_value : kNotGiven);
+  const std::vector<double> after = holm(p_values);
+  for (std::size_t i = 0; i < families.size(); ++i) families[i]->p_corrected = after[i];
 }
 
 double smallest_corrected(std::span<const FamilyTest> families) {

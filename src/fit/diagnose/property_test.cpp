@@ -91,25 +91,73 @@ void join_rocks(const Campaign& campaign, Releases& releases) {
   releases = std::move(joined);
 }
 
+/// What a campaign brings to a test: units that may change places, with their numbers and their properties.
+struct SiteUnits {
+  VectorXd energy;
+  MatrixXd x;
+  Units units;
+  std::size_t blocks = 0, rocks = 0, sites = 0;
+  bool by_rock = false;
+};
+
+SiteUnits units_of(const BlockNumbers& site) {
+  const Campaign& campaign = site.campaign;
+  Releases releases(campaign, used_blocks(campaign, site.values), site.values);
+  SiteUnits out;
+  out.blocks = releases.blocks.size();
+  std::set<Rock> rocks;
+  for (const std::size_t b : releases.blocks) rocks.insert(rock_of(campaign.blocks[b]));
+  out.rocks = rocks.size();
+  if (!groups_are_sites(campaign, releases)) releases.units.strata.assign(out.blocks, 0);
+  out.sites = std::set<std::size_t>(releases.units.strata.begin(), releases.units.strata.end()).size();
+  out.by_rock = 2 * out.rocks <= out.blocks;
+  if (out.by_rock && out.blocks > 0) join_rocks(campaign, releases);
+  out.energy = std::move(releases.energy);
+  out.x = properties_of(campaign, releases.blocks);
+  out.units = std::move(releases.units);
+  return out;
+}
+
+/// The units of several campaigns. Their strata stay apart, so that none changes places with one of another campaign.
+SiteUnits joined(std::vector<SiteUnits> sites) {
+  if (sites.size() == 1) return std::move(sites.front());
+  SiteUnits all;
+  for (const SiteUnits& site : sites) {
+    const Index before = all.energy.size(), more = site.energy.size();
+    all.energy.conservativeResize(before + more);
+    all.energy.tail(more) = site.energy;
+    all.x.conservativeResize(before + more, 3);
+    all.x.bottomRows(more) = site.x;
+    for (const std::size_t stratum : site.units.strata) all.units.strata.push_back(all.sites + stratum);
+    all.units.streams.insert(all.units.streams.end(), site.units.streams.begin(), site.units.streams.end());
+    all.blocks += site.blocks;
+    all.rocks += site.rocks;
+    all.sites += site.sites;
+    all.by_rock = all.by_rock || site.by_rock;
+  }
+  return all;
+}
+
 }  // namespace
 
 PropertyTest property_test(const Campaign& campaign, const std::vector<double>& energy, const DiagnosisRules& rules,
                            std::uint64_t seed) {
-  Releases releases(campaign, used_blocks(campaign, energy), energy);
+  return property_test(std::vector<BlockNumbers>{{campaign, energy}}, rules, seed);
+}
+
+PropertyTest property_test(std::span<const BlockNumbers> sites, const DiagnosisRules& rules, std::uint64_t seed) {
+  std::vector<SiteUnits> each;
+  for (const BlockNumbers& site : sites) each.push_back(units_of(site));
+  const SiteUnits all = joined(std::move(each));
   PropertyTest test;
-  test.blocks = releases.blocks.size();
+  test.blocks = all.blocks;
   if (test.blocks < rules.fewest_blocks) return test;
-  std::set<Rock> rocks;
-  for (const std::size_t b : releases.blocks) rocks.insert(rock_of(campaign.blocks[b]));
-  test.rocks = rocks.size();
-  if (!groups_are_sites(campaign, releases)) releases.units.strata.assign(test.blocks, 0);
-  test.sites = std::set<std::size_t>(releases.units.strata.begin(), releases.units.strata.end()).size();
-  test.by_rock = 2 * test.rocks <= test.blocks;
-  if (test.by_rock) join_rocks(campaign, releases);
-  const MatrixXd x = properties_of(campaign, releases.blocks);
+  test.rocks = all.rocks;
+  test.sites = all.sites;
+  test.by_rock = all.by_rock;
   test.names = {"log L1/L2", "log L1/L3", "log mass"};
-  test.slopes = slopes(releases.energy, x, releases.units.strata);
-  test.regression = regression_test(releases.energy, x, releases.units, rules.arrangements, seed);
+  test.slopes = slopes(all.energy, all.x, all.units.strata);
+  test.regression = regression_test(all.energy, all.x, all.units, rules.arrangements, seed);
   test.tested = test.regression.properties > 0;
   return test;
 }

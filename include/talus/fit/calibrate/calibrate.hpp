@@ -16,5 +16,7 @@ namespace talus {
 /// too low. The result is the same for any number of threads.
 Fit fit_parameters(const Campaign& campaign, const Model& start, std::span<const Parameter> free,
                    const std::vector<bool>& rows, const FitOptions& options);
+/// The same for the campaigns of a problem: one objective over the rows of all.
+Fit fit_parameters(const FitProblem& problem, const FitOptions& options);
 
 }  // namespace talus

@@ -31,7 +31,7 @@ struct FitOptions {
 
 /// The result of a fit.
 struct Fit {
-  Model model;
+  Model model;                   ///< of the first site where there are several: FitProblem::models(z) gives all
   Eigen::VectorXd z;             ///< of the free parameters
   double objective = kNotGiven;  ///< total of the weighed groups + prior_weight / (blocks asked for) * sum of z^2
   Score score;                   ///< of the asked rows, with comparison_trials trials, its groups weighed
@@ -41,20 +41,52 @@ struct Fit {
   bool interrupted = false;
 };
 
-/// A model and the measurements that it is fitted to. The parts must outlive it.
-struct FitProblem {
+/// How a number of the search sets the model of one campaign.
+struct SiteParameter {
+  std::size_t number;  ///< index into FitProblem::free
+  std::function<double(const Model&)> get;
+  std::function<void(Model&, double)> set;
+};
+
+/// A campaign and the model that is fitted to it. The parts must outlive it.
+struct FitSite {
+  std::string name;  ///< stands before its groups; empty where it is the only one
   const Campaign& campaign;
-  const Model& start;               ///< parameters that are not free keep its values
+  const Model& start;             ///< parameters that are not free keep its values
+  const std::vector<bool>& rows;  ///< blocks that are used; size: blocks
+  std::vector<SiteParameter> parameters;
+};
+
+/// A model and the measurements that it is fitted to: one campaign, or several whose models have numbers of their own
+/// and shared ones. The parts must outlive it. docs/several-campaigns.md.
+struct FitProblem {
+  /// One campaign, whose model has all free parameters.
+  FitProblem(const Campaign& campaign, const Model& start, std::span<const Parameter> free,
+             const std::vector<bool>& rows);
+  /// Several campaigns. `get` and `set` of the free parameters are not used: each site has its own.
+  FitProblem(std::vector<FitSite> sites, std::span<const Parameter> free);
+
+  std::vector<FitSite> sites;       ///< at least one
   std::span<const Parameter> free;  ///< at least one
-  const std::vector<bool>& rows;    ///< blocks that are used; size: blocks
 
   double prior(const FitOptions& options) const;  ///< weight of z^2 in the objective
+  std::vector<bool> rows() const;                 ///< of all sites, one after the other
+  std::vector<std::uint32_t> streams() const;     ///< of their blocks, in the same order
+  Eigen::VectorXd start() const;                  ///< z of the start, within the bounds
+  Model model(const FitSite& site, const Eigen::VectorXd& z) const;
+  std::vector<Model> models(const Eigen::VectorXd& z) const;  ///< by site
 };
 
 /// The trials of every block that are simulated.
 struct TrialRange {
   std::uint32_t count, first = 0;
 };
+
+/// The score that the objective is made of, its groups weighed: of all sites together.
+///
+/// @param fewest  simulated values with which a row is scored
+Score score_at(const FitProblem& problem, const FitOptions& options, const Eigen::VectorXd& z, const TrialRange& trials,
+               std::size_t fewest = kFewestSimulated);
 
 /// The objective at one place. Two places with the same trials are compared with the same random numbers.
 Evaluation evaluate(const FitProblem& problem, const FitOptions& options, const Eigen::VectorXd& z,

@@ -1,5 +1,6 @@
 #pragma once
 #include "talus/fit/diagnose/family_test.hpp"
+#include "talus/fit/diagnose/property_test.hpp"
 #include "talus/fit/diagnose/residual.hpp"
 #include "talus/fit/diagnose/score_test.hpp"
 
@@ -22,6 +23,17 @@ struct FamilyOptions {
 
 /// Tests of all families, in a fixed order, with Holm's correction.
 std::vector<FamilyTest> test_families(const FamilyInput& input, const FamilyOptions& options);
+
+/// The energy component of each asked block (`EnergyComponent`), the number in which a property of the block shows; NaN
+/// of the others.
+std::vector<double> energy_by_block(const ResidualSpace& space, const std::vector<BlockRuns>& runs,
+                                    const std::vector<bool>& rows);
+
+/// The family "block property" alone, of one campaign or of several together. Not corrected.
+FamilyTest test_block_property(std::span<const BlockNumbers> sites, const FamilyOptions& options);
+
+/// Holm's correction over some families; those that can name nothing take no part.
+void correct(std::span<FamilyTest* const> families);
 
 /// Name of the family to which an effect belongs.
 std::string family_of(const std::string& effect);

@@ -1,4 +1,6 @@
 #pragma once
+#include <span>
+
 #include "talus/fit/campaign/campaign.hpp"
 #include "talus/fit/diagnose/diagnosis_rules.hpp"
 #include "talus/fit/diagnose/regression.hpp"
@@ -22,6 +24,16 @@ struct PropertyTest {
 /// @param energy  by block of the campaign (EnergyComponent); NaN: not used
 PropertyTest property_test(const Campaign& campaign, const std::vector<double>& energy, const DiagnosisRules& rules,
                            std::uint64_t seed);
+
+/// A number for each block of a campaign; NaN: not used. The parts must outlive it.
+struct BlockNumbers {
+  const Campaign& campaign;
+  const std::vector<double>& values;
+};
+
+/// The same for the blocks of several campaigns together, each with intercepts of its own: blocks of different
+/// campaigns never change places. Rocks that were released several times are one unit in their own campaign.
+PropertyTest property_test(std::span<const BlockNumbers> sites, const DiagnosisRules& rules, std::uint64_t seed);
 
 /// Test whether a number per block depends on the day of release.
 struct DayTest {

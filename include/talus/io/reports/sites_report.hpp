@@ -1,0 +1,43 @@
+#pragma once
+#include "talus/fit/diagnose/several_sites.hpp"
+#include "talus/io/reports/diagnosis_report.hpp"
+
+namespace talus::io {
+
+/// The error before and after on rows of one kind, of one site or of all together.
+struct ErrorChange {
+  std::size_t blocks = 0, rows = 0;
+  double before = kNotGiven, after = kNotGiven, climatology = kNotGiven;
+  Reduction reduction;  ///< 95 % over the blocks
+};
+
+/// The errors of one site, or of all together.
+struct SiteEvidence {
+  std::string site;  ///< "pooled": all
+  ErrorChange fit, holdout;
+  ErrorChange headline;             ///< of the held-out groups with ten rows and more
+  std::vector<BeforeAfter> errors;  ///< of a site alone: fitting and held-out rows
+};
+
+/// Scores two models of each site on all its rows and on those of all sites together.
+///
+/// @param how  trials, seed, first trial, threads
+/// @return the sites in their order, "pooled" last
+std::vector<SiteEvidence> evidence_of_sites(std::span<const Site> sites, std::span<const Model> before,
+                                            std::span<const Model> after, const ObserveOptions& how);
+
+/// Results of `talus diagnose` with several campaigns.
+struct SitesRecord : FitRecord {
+  DiagnoseOptions options;
+  SitesDiagnosis diagnosis;
+  std::vector<SiteEvidence> evidence;
+  std::vector<std::string> files;  ///< by site: its campaign.toml
+  double seconds = 0.0;
+};
+
+/// The text of diagnosis.json, of report.html, and of the summary on the terminal. docs/several-campaigns.md.
+std::string sites_json(const SitesRecord& record);
+std::string sites_page(const SitesRecord& record);
+std::string sites_summary(const SitesRecord& record);
+
+}  // namespace talus::io

@@ -1,0 +1,135 @@
+#include "sites_evidence.hpp"
+
+#include <cmath>
+
+#include "talus/base/text.hpp"
+#include "talus/fit/score/joined_scores.hpp"
+
+namespace talus::io {
+namespace {
+
+/// Scores of one kind of rows: the first model, the last one, the climatology.
+struct Scores {
+  Score before, after, climatology;
+};
+
+ErrorChange change_of(const Scores& s, std::size_t blocks, std::span<const std::uint32_t> streams) {
+  ErrorChange change{blocks, s.after.rows.size(), s.before.total, s.after.total, s.climatology.total, {}};
+  if (!s.after.rows.empty()) change.reduction = reduction(s.before, s.after, streams);
+  return change;
+}
+
+Scores scores_of(const BeforeAfter& e) {
+  return {e.before.score, e.after.score, e.after.climatology};
+}
+
+Scores large_groups(const Scores& s) {
+  return {of_large_groups(s.before), of_large_groups(s.after), of_large_groups(s.climatology)};
+}
+
+/// The scores of all sites on rows of one kind (0: fitting, 1: held out).
+Scores joined_of(std::span<const SiteEvidence> sites, std::span<const std::size_t> blocks, std::size_t kind) {
+  std::vector<SiteScore> before, after, climatology;
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    const Scores s = scores_of(sites[i].errors[kind]);
+    before.push_back({sites[i].site, s.before, blocks[i]});
+    after.push_back({sites[i].site, s.after, blocks[i]});
+    climatology.push_back({sites[i].site, s.climatology, blocks[i]});
+  }
+  return {joined_scores(before), joined_scores(after), joined_scores(climatology)};
+}
+
+SiteEvidence evidence_of(const Site& site, const Model& before, const Model& after, const ObserveOptions& how) {
+  const Campaign& campaign = *site.campaign;
+  const auto first = observe(campaign, before, how), last = observe(campaign, after, how);
+  const std::vector<std::uint32_t> streams = streams_of(campaign);
+  SiteEvidence out;
+  out.site = site.name;
+  for (const auto& [name, rows] : {std::pair{"fit", fitting_rows(campaign)}, {"holdout", holdout_rows(campaign)}})
+    out.errors.push_back(compared(campaign, scored(name, campaign, first, rows), scored(name, campaign, last, rows)));
+  out.fit = change_of(scores_of(out.errors[0]), out.errors[0].after.blocks, streams);
+  out.holdout = change_of(scores_of(out.errors[1]), out.errors[1].after.blocks, streams);
+  out.headline = change_of(large_groups(scores_of(out.errors[1])), out.errors[1].after.blocks, streams);
+  return out;
+}
+
+Json change_json(const ErrorChange& c) {
+  return {{"blocks", c.blocks},
+          {"rows", c.rows},
+          {"before", json_of(c.before)},
+          {"after", json_of(c.after)},
+          {"climatology", json_of(c.climatology)},
+          {"reduction", json_of(c.reduction.share)},
+          {"ci95", json_of(c.reduction.interval)}};
+}
+
+std::string markdown_row(const std::string& site, const char* rows, const ErrorChange& c) {
+  if (c.rows == 0)
+    return "| " + site + " | " + rows + " | " + (c.blocks == 0 ? "none declared" : "too few rows") +
+           " | - | - | - | - |\n";
+  return "| " + site + " | " + rows + " | " + std::to_string(c.blocks) + " blocks, " + std::to_string(c.rows) +
+         " rows | " + score_of(c.before) + " | " + score_of(c.after) + " | " + score_of(c.climatology) + " | " +
+         change_text(c) + " |\n";
+}
+
+}  // namespace
+
+std::vector<SiteEvidence> evidence_of_sites(std::span<const Site> sites, std::span<const Model> before,
+                                            std::span<const Model> after, const ObserveOptions& how) {
+  std::vector<SiteEvidence> list;
+  std::vector<std::size_t> blocks;
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    list.push_back(evidence_of(sites[i], before[i], after[i], how));
+    blocks.push_back(sites[i].campaign->blocks.size());
+  }
+  std::vector<std::uint32_t> streams;
+  for (const std::vector<std::uint32_t>& own : streams_of_sites(sites))
+    streams.insert(streams.end(), own.begin(), own.end());
+  SiteEvidence pooled;
+  pooled.site = "pooled";
+  std::size_t fit = 0, holdout = 0;
+  for (const SiteEvidence& site : list) fit += site.fit.blocks, holdout += site.holdout.blocks;
+  const Scores held = joined_of(list, blocks, 1);
+  pooled.fit = change_of(joined_of(list, blocks, 0), fit, streams);
+  pooled.holdout = change_of(held, holdout, streams);
+  pooled.headline = change_of(large_groups(held), holdout, streams);
+  list.push_back(std::move(pooled));
+  return list;
+}
+
+std::string names_in_words(std::span<const SiteEvidence> evidence) {
+  std::vector<std::string> names;
+  for (const SiteEvidence& e : evidence.first(evidence.size() - 1)) names.push_back(e.site);
+  return joined(names);
+}
+
+Json errors_json(const SiteEvidence& evidence) {
+  return {{"fit", change_json(evidence.fit)},
+          {"holdout", change_json(evidence.holdout)},
+          {"headline", change_json(evidence.headline)}};
+}
+
+std::string score_of(double value) {
+  return std::isnan(value) ? "-" : with_decimals(value, 3);
+}
+
+std::string change_text(const ErrorChange& change) {
+  const Reduction& r = change.reduction;
+  if (std::isnan(r.share)) return "-";
+  return with_decimals(100.0 * r.share, 1) + " % (95 %: " + with_decimals(100.0 * r.interval.low, 1) + " to " +
+         with_decimals(100.0 * r.interval.high, 1) + " %)";
+}
+
+std::string evidence_markdown(std::span<const SiteEvidence> evidence) {
+  std::string text =
+      "| site | rows | | before | after | climatology | lower by |\n| --- | --- | --- | --- | --- | --- | --- |\n";
+  for (const SiteEvidence& e : evidence) {
+    text += markdown_row(e.site, "fitting", e.fit);
+    text += markdown_row(e.site, "held out", e.holdout);
+    if (e.headline.rows != e.holdout.rows)
+      text += markdown_row(e.site, "held out, groups of ten rows and more", e.headline);
+  }
+  return text;
+}
+
+}  // namespace talus::io

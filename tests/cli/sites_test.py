@@ -1,0 +1,141 @@
+"""Several campaigns in one call: `calibrate A B --share NAME` and `diagnose A B`, on a slope that the program itself has measured."""
+import csv
+import json
+import math
+import os
+import random
+import unittest
+
+from support import NORTH, WEST, Case
+
+SHORT = ("--trials", "20", "--surface", "bilinear", "-q")
+
+
+class Sites(Case):
+    """Two measurements of the slope of support.py, by the same model: north (36 blocks) and south (36 others)."""
+
+    def measure(self, name, first, seed, kind, called=None):
+        """Blocks of many shapes, released side by side; every third is held out. `kind`: the model that measures them."""
+        folder = self.path(name)
+        os.makedirs(folder, exist_ok=True)
+        chance = random.Random(first)
+        blocks = []
+        for i in range(36):
+            long, flat = chance.uniform(1.0, 2.0), chance.uniform(0.7, 1.0)
+            blocks.append([f"b{first + i}", WEST + 60 + 5 * i, NORTH - 40, 1, 400 + 20 * i, long, 1.0, flat, int(i % 3 == 2)])
+        self.table(name, "blocks", "id,x,y,release_height_m,mass_kg,L1_m,L2_m,L3_m,holdout", blocks)
+        self.table(name, "stops", "id,x,y", [])
+        self.write(f"{name}/campaign.toml", f'name = "{called or name}"\ndem = "{self.path("dem.tif")}"\nblocks = "blocks.csv"\n'
+                   'stops = "stops.csv"\n[measurement_error]\nposition_m = 0.3\n')
+        self.run_well("score", f"{folder}/campaign.toml", "--parameters", self.write("truth.toml", kind), "--trials", "10",
+                      "--seed", str(seed), "--surface", "bilinear", "--dump", f"{folder}/dump")
+        with open(f"{folder}/dump/stops.csv", encoding="utf-8") as file:
+            self.table(name, "stops", "id,x,y", [[r["block"], r["x"], r["y"]] for r in csv.DictReader(file)
+                                                 if r["trial"] == "0" and r["x"]])
+        return f"{folder}/campaign.toml"
+
+    def table(self, folder, name, head, rows):
+        with open(self.path(f"{folder}/{name}.csv"), "w", encoding="utf-8", newline="") as file:
+            csv.writer(file).writerows([head.split(","), *rows])
+
+    def result(self, command, campaigns, name, *options):
+        out = self.path(name)
+        self.run_well(command, *campaigns, "-o", out, *SHORT, *options, timeout=1200)
+        with open(f"{out}/{'calibration' if command == 'calibrate' else 'diagnosis'}.json", encoding="utf-8") as file:
+            record = json.load(file)
+        for key in ("command", "seconds"):
+            record.pop(key, None)
+        return record
+
+    def text(self, name):
+        with open(self.path(name), encoding="utf-8") as file:
+            return file.read()
+
+
+GROUND = "[ground.zones.default]\ntheta_scale = 0.3\nEn50 = 4\n"
+
+
+class Calibrate(Sites):
+    FIT = ("--fit", "theta_scale", "--starts", "1")
+
+    def test_a_shared_number_of_two_copies(self):
+        """The value of one copy, and an interval narrower by about the root of two: 36 blocks more or less are no more."""
+        a, b = self.measure("a", 0, 5, GROUND, "slope"), self.measure("b", 0, 5, GROUND, "slope")
+        alone = self.result("calibrate", [a], "alone", *self.FIT)["parameters"][0]
+        done = self.run_well("calibrate", b, a, "-o", self.path("both"), *SHORT[:-1], *self.FIT, "--share", "theta_scale",
+                             timeout=1200)
+        self.assertIn("two campaigns have the same name (slope, slope): all are called by their folders", done.stderr)
+        with open(self.path("both/calibration.json"), encoding="utf-8") as file:
+            both = json.load(file)
+        self.assertEqual([p["sites"] for p in both["parameters"]], [["a", "b"]])
+        shared = both["parameters"][0]
+        self.assertTrue(alone["ci95"][0] < shared["value"] < alone["ci95"][1])
+        width = [math.log(p["ci95"][1] / p["ci95"][0]) for p in (alone, shared)]
+        self.assertTrue(1.1 < width[0] / width[1] < 1.9, width)  # 1.41, and the noise of 20 trials in the curvature
+        value = f"theta_scale = {shared['value']}"[:20]
+        self.assertEqual([value in self.text(f"both/{s}/fitted.toml") for s in "ab"], [True, True])
+        self.assertEqual(sorted(os.listdir(self.path("both"))), ["a", "b", "calibration.json", "report.md"])
+
+    def test_the_order_of_the_campaigns_changes_nothing(self):
+        paths = [self.measure("north", 0, 5, GROUND), self.measure("south", 40, 6, GROUND)]
+        options = (*self.FIT, "--share", "theta_scale")
+        first = self.result("calibrate", paths, "first", *options, "--threads", "1")
+        self.assertEqual(self.result("calibrate", paths[::-1], "second", *options, "--threads", "2"), first)
+        self.assertEqual([s["name"] for s in first["sites"]], ["north", "south"])
+
+    def test_nothing_shared_is_each_alone(self):
+        paths = [self.measure("north", 0, 5, GROUND), self.measure("south", 40, 6, GROUND)]
+        both = self.result("calibrate", paths, "both", *self.FIT)
+        self.assertTrue(both["separate_fits"])
+        for path, name, place in zip(paths, ("north", "south"), (0, 1)):
+            alone = self.result("calibrate", [path], f"{name}-alone", *self.FIT)
+            for key in ("value", "ci95", "start", "identifiable"):
+                self.assertEqual(both["parameters"][place][key], alone["parameters"][0][key])
+            for rows in ("fit", "holdout"):
+                for key in ("before", "after", "reduction", "ci95", "climatology"):
+                    self.assertEqual(both["sites"][place]["error"][rows][key], alone["error"][rows][key])
+
+            def model(out):
+                return [line for line in self.text(f"{out}/fitted.toml").splitlines() if not line.startswith("#")]
+            self.assertEqual(model(f"both/{name}"), model(f"{name}-alone"))
+
+    def test_wrong_input(self):
+        a, b = self.measure("a", 0, 5, GROUND), self.measure("b", 40, 6, GROUND)
+        out = ("-o", self.path("out"))
+        self.fails(2, "the same name", arguments=("calibrate", a, a, *out))
+        self.fails(2, "--share phi", "--fit", arguments=("calibrate", a, b, "--fit", "En50", "--share", "phi", *out))
+        self.fails(2, "--share En50", "must be several", arguments=("calibrate", a, "--fit", "En50", "--share", "En50", *out))
+        with open(self.path("b/blocks.csv"), encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+        self.table("b", "blocks", ",".join(rows[0]), [[*r[:-1], "1"] for r in rows[1:]])
+        self.fails(2, b, "nothing to fit to", arguments=("diagnose", a, b, *out))
+        self.assertFalse(os.path.exists(self.path("out")))
+
+
+class Diagnose(Sites):
+    def test_one_table_of_both(self):
+        """An effect of the shape that both share. The order of the campaigns changes no figure."""
+        kind = GROUND + "[effects.block-shape]\nloss = 1.5\n"
+        paths = [self.measure("north", 0, 5, kind), self.measure("south", 40, 6, kind)]
+        options = ("--fit", "theta_scale", "--test-trials", "20", "--most-effects", "1")
+        first = self.result("diagnose", paths, "first", *options, "--threads", "1")
+        self.assertEqual(self.result("diagnose", paths[::-1], "second", *options, "--threads", "2"), first)
+        self.assertEqual([s["name"] for s in first["sites"]], ["north", "south"])
+        pooled = first["families"][0]
+        self.assertEqual((pooled["site"], pooled["name"]), ("pooled", "block property"))
+        self.assertLess(pooled["p_value"], 0.01)
+        self.assertEqual(first["effect"], "block-shape")
+        for site in first["sites"]:
+            self.assertEqual(site["error"]["holdout"]["blocks"], 12)
+            for name in site["files"]:
+                self.assertIn("theta_scale", self.text(f"first/{name}"))
+        losses = {line for s in ("north", "south") for line in self.text(f"first/{s}/with_effect.toml").splitlines()
+                  if line.startswith("loss")}
+        self.assertEqual(len(losses), 1)  # shared
+        page = self.text("first/report.html")
+        self.assertIn("pooled", page)
+        self.assertNotIn("http", page)
+
+
+if __name__ == "__main__":
+    unittest.main()

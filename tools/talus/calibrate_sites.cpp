@@ -1,0 +1,149 @@
+#include <cstdio>
+
+#include "progress.hpp"
+#include "several_campaigns.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/fit/calibrate/calibrate.hpp"
+#include "talus/fit/calibrate/joint_parameters.hpp"
+#include "talus/fit/calibrate/uncertainty.hpp"
+#include "talus/io/campaign/model_file.hpp"
+#include "talus/io/reports/sites_calibration.hpp"
+#include "talus/simulate/scenario/presets.hpp"
+
+namespace {
+
+constexpr double kSearchShare = 0.7;  // of the progress of a fit
+constexpr std::uint32_t kScoreTrials = 100;
+
+/// The work of one calibration of several campaigns.
+class SitesFit {
+ public:
+  SitesFit(const OpenedSites& opened, Progress& progress, talus::io::SitesCalibration& c)
+      : opened_(opened), progress_(progress), c_(c) {}
+
+  /// Reads the model from which each site starts, and chooses what is fitted.
+  void choose(const std::string& start, const std::vector<std::string>& keys, bool quiet) {
+    for (std::size_t i = 0; i < opened_.sites.size(); ++i) {
+      const talus::Campaign& campaign = *opened_.sites[i].campaign;
+      talus::io::Calibration own;
+      own.options = c_.options;
+      own.start = start.empty() ? talus::model_of_preset(campaign, talus::kDefaultPreset)
+                                : talus::io::read_model(start, campaign, &own.warnings);
+      choose_parameters(campaign, keys, own);
+      for (const std::string& zone : own.untouched)
+        own.warnings.push_back("zone " + zone + ": too few simulated paths touch it; not fitted");
+      for (const std::string& warning : own.warnings) {
+        c_.warnings.push_back(opened_.sites[i].name + ": " + warning);
+        if (!quiet) say("warning", c_.warnings.back());
+      }
+      start_.push_back(std::move(own.start));
+      free_.push_back(std::move(own.free));
+      rows_.push_back(talus::fitting_rows(campaign));
+      names_.push_back(opened_.sites[i].name);
+    }
+  }
+
+  /// Each site alone.
+  void fit_apart() {
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      const std::vector<std::size_t> one{i};
+      talus::JointParameters alone;
+      alone.free = free_[i];
+      alone.sites.emplace_back();
+      for (std::size_t k = 0; k < free_[i].size(); ++k)
+        alone.sites.front().push_back({k, free_[i][k].get, free_[i][k].set});
+      for (talus::Parameter& p : alone.free) p.key = names_[i] + ": " + p.key;
+      fit(talus::FitProblem(*opened_.sites[i].campaign, start_[i], free_[i], rows_[i]), alone, one);
+    }
+  }
+
+  /// All sites by one objective.
+  void fit_together() {
+    const talus::JointParameters joint = talus::joint_parameters(names_, free_, c_.share);
+    std::vector<talus::FitSite> sites;
+    std::vector<std::size_t> all;
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      sites.push_back({names_[i], *opened_.sites[i].campaign, start_[i], rows_[i], joint.sites[i]});
+      all.push_back(i);
+    }
+    fit(talus::FitProblem(std::move(sites), joint.free), joint, all);
+  }
+
+  const std::vector<talus::Model>& start() const { return start_; }
+  const std::vector<talus::Model>& models() const { return models_; }
+
+ private:
+  /// @param which  sites of the problem
+  void fit(const talus::FitProblem& problem, const talus::JointParameters& joint,
+           const std::vector<std::size_t>& which) {
+    const double share = static_cast<double>(which.size()) / static_cast<double>(names_.size());
+    talus::FitOptions how = c_.options;
+    how.proceed = [&](double done) { return proceeds(share * kSearchShare * done); };
+    const talus::Fit fitted = talus::fit_parameters(problem, how);
+    if (fitted.interrupted) stop_interrupted();
+    how.proceed = [&](double done) { return proceeds(share * (kSearchShare + (1.0 - kSearchShare) * done)); };
+    const talus::Uncertainty uncertainty = talus::uncertainty_of(problem, how, {}, fitted);
+    if (uncertainty.interrupted) stop_interrupted();
+    done_ += share;
+    for (const talus::Model& model : problem.models(fitted.z)) models_.push_back(model);
+    for (std::size_t k = 0; k < joint.free.size(); ++k) {
+      const talus::Parameter& p = joint.free[k];
+      talus::io::SitesParameter out{p.key,
+                                    p.unit,
+                                    {},
+                                    0.0,
+                                    p.value(fitted.z[static_cast<Eigen::Index>(k)]),
+                                    uncertainty.intervals[k],
+                                    uncertainty.identifiable[k]};
+      for (std::size_t i = 0; i < which.size(); ++i)
+        for (const talus::SiteParameter& own : joint.sites[i])
+          if (own.number == k) out.sites.push_back(names_[which[i]]), out.start = own.get(start_[which[i]]);
+      c_.parameters.push_back(std::move(out));
+    }
+  }
+
+  bool proceeds(double share) { return progress_.update(done_ + share) && !interrupted(); }
+
+  const OpenedSites& opened_;
+  Progress& progress_;
+  talus::io::SitesCalibration& c_;
+  std::vector<std::string> names_;
+  std::vector<talus::Model> start_, models_;
+  std::vector<std::vector<talus::Parameter>> free_;
+  std::vector<std::vector<bool>> rows_;
+  double done_ = 0.0;
+};
+
+}  // namespace
+
+int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how, const std::string& start,
+                    const std::vector<std::string>& fit, const std::vector<std::string>& share) {
+  catch_signals();
+  require_seed(how.seed);
+  talus::check_shared(share, fit);
+  talus::io::SitesCalibration c;
+  OpenedSites opened(command, c);
+  c.options = how;
+  c.share = share;
+  c.files = opened.paths;
+  if (!share.empty()) talus::give_own_streams(opened.sites);
+  Progress progress(Progress::mode_of(command.quiet, command.progress == "machine"), 0);
+  SitesFit work(opened, progress, c);
+  work.choose(start, fit, command.quiet);
+  share.empty() ? work.fit_apart() : work.fit_together();
+  talus::ObserveOptions unseen{kScoreTrials, how.seed, talus::kUnseen, how.threads, {}, [] { return !interrupted(); }};
+  c.evidence = talus::io::evidence_of_sites(opened.sites, work.start(), work.models(), unseen);
+  if (interrupted()) stop_interrupted();
+  talus::io::write_text(opened.folder.temporary() / "calibration.json", talus::io::sites_calibration_json(c));
+  talus::io::write_text(opened.folder.temporary() / "report.md", talus::io::sites_calibration_report(c));
+  opened.write_models(work.models(), "fitted.toml",
+                      "Fitted by talus calibrate to the campaigns " + c.campaign +
+                          ", shared: " + (share.empty() ? "nothing" : talus::joined(share)) +
+                          ".\nUncertainty, and what is not identifiable: report.md of the folder above.");
+  opened.folder.commit();
+  progress.finish();
+  if (!command.quiet)
+    std::printf("%swritten: %s\n", talus::io::sites_calibration_summary(c).c_str(), opened.folder.final_path().c_str());
+  return 0;
+}

@@ -1,0 +1,36 @@
+#pragma once
+#include "campaign_command.hpp"
+#include "talus/fit/calibrate/fit_problem.hpp"
+#include "talus/fit/campaign/sites.hpp"
+#include "talus/fit/diagnose/diagnosis.hpp"
+#include "talus/io/reports/fit_report.hpp"
+
+/// Several campaigns that were read, in the order of their names, and the new folder for their results.
+struct OpenedSites {
+  std::vector<std::string> paths;  ///< of the files campaign.toml
+  std::vector<talus::io::LoadedCampaign> loaded;
+  std::vector<talus::Site> sites;  ///< point to `loaded`
+  talus::io::OutputFolder folder;
+
+  /// Reads the campaigns as `OpenedCampaign` does. The name of a site is that of its campaign, as a name of a folder;
+  /// where two have the same, all are called by their folders, which is said. Throws InputError where these are the
+  /// same, too, and where nothing can be fitted to one of them.
+  OpenedSites(const CampaignCommand& command, talus::io::FitRecord& record);
+
+  /// Writes OUT/SITE/NAME for the models of all sites.
+  void write_models(std::span<const talus::Model> models, const char* name, const std::string& heading) const;
+};
+
+/// The work of `calibrate` and `diagnose` where there are several campaigns.
+///
+/// @param start  file of a model; empty: the default preset
+/// @param fit    keys
+/// @param share  those that the sites share
+int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how, const std::string& start,
+                    const std::vector<std::string>& fit, const std::vector<std::string>& share);
+int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOptions& how);
+
+/// Chooses what is fitted: the asked parameters of the zones that simulated paths touch, then the asked numbers of
+/// effects.
+void choose_parameters(const talus::Campaign& campaign, const std::vector<std::string>& keys,
+                       talus::io::Calibration& c);
