@@ -106,7 +106,8 @@ std::vector<std::vector<BlockRuns>> JointFits::observe_all(const std::vector<Mod
   std::vector<std::vector<BlockRuns>> runs;
   for (std::size_t i = 0; i < sites_.size(); ++i)
     runs.push_back(
-        observe(*sites_[i].campaign, models[i], {trials, options_.seed, first, options_.threads, rows_[i], {}}));
+        observe(*sites_[i].campaign, models[i],
+                {trials, options_.seed, first, options_.threads, rows_[i], {}, effort_of(options_.rules.search)}));
   return runs;
 }
 
@@ -276,8 +277,8 @@ double JointFits::error_in_folds(const LocalModel& local, const JointModel& fitt
     const std::vector<Model> models = problem.models(local.optimum(others, fitted.spread));
     std::size_t before = 0;
     for (std::size_t i = 0; i < sites_.size(); ++i) {
-      ObserveOptions how{
-          options_.trials.compare, options_.seed, first, options_.threads, {}, {}, effort_of(options_.rules.search)};
+      ObserveOptions how{options_.trials.compare,         options_.seed, first, options_.threads, {}, {},
+                         effort_of(options_.rules.search)};
       for (std::size_t b = 0; b < rows_[i].size(); ++b) how.blocks.push_back(fold_of[before + b] == fold);
       std::vector<BlockRuns> seen = observe(*sites_[i].campaign, models[i], how);
       for (std::size_t b = 0; b < seen.size(); ++b)
