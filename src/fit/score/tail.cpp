@@ -23,7 +23,8 @@ double median_of(std::vector<double> values) {
 }
 
 /// @param runs  empty: the climatology is scored
-Score scored(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask) {
+Score scored(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
+             std::span<const std::uint32_t> folds) {
   const FittingValues<double> fitting = fitting_runouts(campaign);
   if (fitting.size() < kFewestRows) return {};
   const double begin = median_of(fitting.values);
@@ -37,11 +38,12 @@ Score scored(const Campaign& campaign, std::span<const BlockRuns> runs, const st
     const MeasuredBlock& block = campaign.blocks[b];
     if (!ask[b] || !block.stop) continue;
     if (runs.empty())
-      fitting.of_others(b, values);
+      fitting.of_others(b, values, folds);
     else
       keep_finite(runouts_of(block, runs[b]), values);
     const bool unseen = !runs.empty() && values.size() < kFewestSimulated;
-    if (unseen) values = fitting.values;
+    if (unseen && folds.empty()) values = fitting.values;
+    if (unseen && !folds.empty()) fitting.of_others(b, values, folds);
     const double score = fair_tail_crps(values, runout_of(block), begin) / spread;
     out.rows.push_back({0, b, score, unseen});
     group.score += score;
@@ -72,12 +74,14 @@ double tail_begin(const Campaign& campaign) {
   return median_of(fitting_runouts(campaign).values);
 }
 
-Score tail_score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask) {
-  return scored(campaign, runs, ask);
+Score tail_score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
+                 std::span<const std::uint32_t> folds) {
+  return scored(campaign, runs, ask, folds);
 }
 
-Score tail_score_of_climatology(const Campaign& campaign, const std::vector<bool>& ask) {
-  return scored(campaign, {}, ask);
+Score tail_score_of_climatology(const Campaign& campaign, const std::vector<bool>& ask,
+                                std::span<const std::uint32_t> folds) {
+  return scored(campaign, {}, ask, folds);
 }
 
 }  // namespace talus
