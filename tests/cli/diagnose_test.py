@@ -8,7 +8,8 @@ from support import Case
 
 ELM = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../data/elm/campaign.toml")
 CAMPAIGNS = os.path.join(os.environ.get("TALUS_DATA", ""), "campaigns")
-SHORT = ("--trials", "20", "--test-trials", "60")
+ONCE = ("--base-fits", "1")  # repeated_test.py has more
+SHORT = ("--trials", "20", "--test-trials", "60", *ONCE)
 DOCS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../docs/effects.md")
 with open(DOCS, encoding="utf-8") as page:
     EFFECTS = set(re.findall(r"^\| \[([a-z-]+)\]\(#\1\)", page.read(), re.MULTILINE))
@@ -49,7 +50,8 @@ class Loop(Case):
             for rows in ("fit", "holdout"):
                 self.assertEqual(when[rows][0]["observable"], "runout")
                 self.assertTrue(all(0 <= c[p] <= 1 for c in when[rows] for p in ("P5", "P50", "P95")))
-        self.assertEqual(len(found["evidence"]), 3)
+        self.assertEqual(len([m for m in found["evidence"] if not m.get("candidate")]), 3)
+        self.assertEqual([m["model"] for m in found["evidence"][3:]], [c["effect"] for c in found["candidates"]])
         climatology = found["evidence"][0]
         self.assertEqual(climatology["model"], "climatology")
         self.assertEqual([g["rows"] for g in climatology["holdout"]["groups"]],
@@ -73,7 +75,7 @@ class Diagnosis(Loop):
 class OfOthers(Loop):
     def test_nothing_hidden(self):
         """With the default number of trials, as a false alarm must be judged with it."""
-        self.assertEqual(self.diagnose(f"{CAMPAIGNS}/alder/campaign.toml", "--surface", "bilinear")["effect"], "none")
+        self.assertEqual(self.diagnose(f"{CAMPAIGNS}/alder/campaign.toml", "--surface", "bilinear", *ONCE)["effect"], "none")
 
     def test_measured_blocks_of_a_quarry(self):
         """Releases of one day, and only end points measured: neither days nor instruments can be tested."""

@@ -1,5 +1,6 @@
 #include "talus/fit/diagnose/diagnose.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -19,6 +20,7 @@ namespace {
 
 struct Options : CampaignCommand {
   talus::DiagnoseOptions how;
+  bool nested = false, no_nested = false, quick_folds = false, all_rows = false;
 };
 
 /// Throws InputError if the releases of the blocks are not known.
@@ -62,14 +64,16 @@ void print_summary(const talus::io::DiagnosisRecord& record, const std::string& 
     print_families(round);
   }
   std::printf("error, fitting rows: %.3f before, %.3f after\n", d.base.score.total, d.with_effects.score.total);
+  const std::string unseen = "error, " + talus::io::rows_in_words(record.errors[record.unseen].after.rows) + " rows";
   if (std::isnan(record.whole.before)) {
-    std::printf("error, held-out rows: nothing can be said, no group has five rows\n");
+    std::printf("%s: nothing can be said, no group has five rows\n", unseen.c_str());
   } else {
     const std::vector<std::string> small = talus::io::small_groups(record);
-    if (!small.empty()) print_error("error, held-out rows, groups of ten rows and more", record.headline);
-    print_error("error, held-out rows", record.whole);
+    if (!small.empty()) print_error((unseen + ", groups of ten rows and more").c_str(), record.headline);
+    print_error(unseen.c_str(), record.whole);
     if (!small.empty()) std::printf("  few rows: %s\n", talus::joined(small).c_str());
   }
+  std::fputs(talus::io::repeated_lines(record).c_str(), stdout);
   for (const talus::io::BeforeAfter& e : record.errors) std::fputs(talus::io::judgement_lines(e.after).c_str(), stdout);
   std::fputs(talus::io::limits_lines(d.rounds.back().limits).c_str(), stdout);
   const double cut = d.with_effects.score.cut_short;
@@ -93,6 +97,23 @@ void write_results(const talus::io::OutputFolder& folder, const talus::io::Loade
                                                 : "The ground alone: talus diagnose found nothing to add."));
 }
 
+/// Settles which rows are fitted and whether the loop is repeated without each fold: by default where nothing is held
+/// out.
+void choose_rows(const Options& options, talus::Campaign& campaign, talus::DiagnoseOptions& how) {
+  if (options.nested && options.no_nested) throw talus::InputError("flags --nested and --no-nested exclude each other");
+  if (options.all_rows)
+    for (talus::MeasuredBlock& block : campaign.blocks) block.holdout = false;
+  const auto fitting = talus::fitting_rows(campaign);
+  const bool all = std::count(fitting.begin(), fitting.end(), false) == 0;
+  how.nested = options.nested || (all && !options.no_nested);
+  how.naming_in_folds = !options.quick_folds;
+  const std::size_t rows = static_cast<std::size_t>(std::count(fitting.begin(), fitting.end(), true));
+  if (how.nested && rows < 2 * how.outer_folds)
+    throw talus::InputError("flag --folds = " + std::to_string(how.outer_folds) + ": " + std::to_string(rows) +
+                            " fitting rows (needs at least " + std::to_string(2 * how.outer_folds) +
+                            "; --no-nested does without)");
+}
+
 int diagnose(const Options& options) {
   if (options.campaigns.size() > 1) return diagnose_several(options, options.how);
   catch_signals();
@@ -103,6 +124,7 @@ int diagnose(const Options& options) {
   const talus::Campaign& campaign = opened.loaded.campaign;
   require_releases(options.campaign, campaign);
   record.options = options.how;
+  choose_rows(options, opened.loaded.campaign, record.options);
   Progress progress(Progress::mode_of(options.quiet, options.progress == "machine"), 0);
   record.options.proceed = [&progress](double share) { return progress.update(share) && !interrupted(); };
   try {
@@ -135,6 +157,18 @@ void add_diagnose(CLI::App& app, Action& action) {
   command->add_option("--most-effects", how.most_effects, "that are added, one a round (3)")->check(CLI::Range(1, 9));
   command->add_option("--level", how.first_level, "of significance, over all families of effects (0.05)")
       ->check(between(0.0001, 0.5));
+  command->add_option("--base-fits", how.base_fits, "independent fits of the ground whose verdicts are compared (5)")
+      ->check(CLI::Range(1, 99));
+  command->add_flag("--all-rows", options->all_rows, "fit the rows that the campaign holds out, too");
+  command->add_flag("--nested", options->nested,
+                    "repeat the whole diagnosis without each fold of the fitting rows, as is done where no row is held "
+                    "out: the error is then one of rows that were neither fitted nor chosen by");
+  command->add_flag("--no-nested", options->no_nested, "never do so");
+  command->add_option("--folds", how.outer_folds, "parts that are left out in turn: groups, or blocks (5)")
+      ->check(CLI::Range(2, 100));
+  command->add_flag("--quick-folds", options->quick_folds,
+                    "the folds fit the effects that all rows chose, without choosing anew: half the time, and an error "
+                    "that has seen the choice");
   command->footer(
       "Where fewer than 72 blocks are fitted, each gets more trajectories, so that there are as many in all; at most "
       "four times as many.\n\n"

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis_loop.hpp"
 #include "effect_fits.hpp"
+#include "outer_folds.hpp"
+#include "repeated_fits.hpp"
 #include "talus/fit/diagnose/detection_limits.hpp"
 #include "talus/fit/diagnose/families.hpp"
 #include "talus/fit/diagnose/undeclared_places.hpp"
@@ -20,8 +23,9 @@ double net_gain(const FittedCandidate& candidate) {
 /// The work of one diagnosis.
 class DiagnosisLoop {
  public:
-  DiagnosisLoop(const Campaign& campaign, const DiagnoseOptions& options)
+  DiagnosisLoop(const Campaign& campaign, const DiagnoseOptions& options, const LoopScope& scope)
       : campaign_(campaign),
+        scope_(scope),
         rows_(fitting_rows(campaign)),
         streams_(streams_of(campaign)),
         options_(options),
@@ -33,8 +37,9 @@ class DiagnosisLoop {
 
   Diagnosis run(const Model& start) {
     Diagnosis d;
-    d.with_effects = fits_.fit_ground(start);
+    d.with_effects = fits_.fit_ground(start, scope_.brief);
     advance(kGroundShare);
+    if (scope_.given) return with_given_effects(std::move(d));
     std::vector<std::string> found;
     for (int round = 0; round <= options_.most_effects; ++round) {
       const double level = round == 0 ? options_.first_level : options_.later_level;
@@ -42,11 +47,11 @@ class DiagnosisLoop {
       if (round == 0) d.base = d.with_effects;
       d.rounds.push_back(run_round(d.with_effects, found, level, round < options_.most_effects));
       const DiagnosisRound& last = d.rounds.back();
-      if (last.effect == "none" || last.effect == "unexplained") break;
+      if (last.effect == "none" || last.effect == "unexplained" || scope_.first_round) break;
       found.push_back(last.effect);
       d.with_effects = d.rounds.back().candidates.front().fitted;
     }
-    compare_limits(d.rounds.back().limits, limits_with_further_screens(d.with_effects, found));
+    if (!scope_.brief) compare_limits(d.rounds.back().limits, limits_with_further_screens(d.with_effects, found));
     if (!found.empty()) d.base = fits_.simulated_anew(std::move(d.base));
     d.trials = options_.trials;
     d.times = fits_.times();
@@ -54,6 +59,32 @@ class DiagnosisLoop {
   }
 
  private:
+  /// Adds effects that were chosen elsewhere, each at its best place, without asking whether they are significant.
+  Diagnosis with_given_effects(Diagnosis d) {
+    std::vector<std::string> found;
+    d.with_effects = fits_.begin_round(std::move(d.with_effects));
+    d.base = d.with_effects;
+    for (const std::string& effect : scope_.effects) {
+      const FittedModel& base = d.with_effects;
+      std::vector<Candidate> candidates = candidates_of(campaign_, base.model, base.runs, found, rules_);
+      std::erase_if(candidates, [&](const Candidate& c) { return c.effect != effect; });
+      if (candidates.empty()) continue;  // nothing was measured that it could change
+      const ScoreTest test = tested(base, candidates);
+      const EffectVerdict placed = in_better_zone(base, test.effects.front(), candidates);
+      const Candidate merged =
+          merged_candidate(campaign_, axis_of(campaign_, base.runs), candidates, placed.best.members, rules_);
+      FittedCandidate fitted = fits_.fit_effect(base, placed, merged, family_of(effect));
+      fits_.continue_fit(base, fitted);
+      found.push_back(effect);
+      d.rounds.emplace_back();
+      d.rounds.back().effect = effect;
+      d.rounds.back().where = fitted.where;
+      d.with_effects = fits_.begin_round(std::move(fitted.fitted));
+    }
+    d.trials = options_.trials;
+    return d;
+  }
+
   void advance(double share = 0.02) { progress_ = std::min(0.95, progress_ + share); }
   /// @param share  of a fit; only the fit of the ground, the longest, is shown
   bool proceeds(double share = 1.0) {
@@ -118,13 +149,15 @@ class DiagnosisLoop {
     for (const EffectVerdict& verdict : test.effects) {
       const std::string family = admitted(round.families, verdict, level);
       // The first round fits all effects; later ones fit those that may be chosen, the most significant first.
-      if (!found.empty() && (family.empty() || round.candidates.size() == rules_.later_fits)) continue;
+      const bool all = found.empty() && !scope_.brief;
+      if (!all && (family.empty() || round.candidates.size() == rules_.later_fits)) continue;
       advance();
       const EffectVerdict placed = in_better_zone(base, verdict, candidates);
       round.candidates.push_back(fits_.fit_effect(
           base, placed, merged_candidate(campaign_, axis, candidates, placed.best.members, rules_), family));
     }
-    if (!noise) compete(base, round.candidates, found.empty() ? rules_.contenders : rules_.later_contenders);
+    const bool few = scope_.brief || !found.empty();
+    if (!noise) compete(base, round.candidates, few ? rules_.later_contenders : rules_.contenders);
     choose(base, round, noise);
     return round;
   }
@@ -171,10 +204,15 @@ class DiagnosisLoop {
       fits_.continue_fit(base, *c);
     }
     drop_losers(contenders, most, rules_.half_way * rules_.worth_naming * base.objective.total);
+    if (scope_.brief) return cross_validate(base, contenders);
     for (FittedCandidate* c : contenders) {
       advance();
       fits_.continue_with_more_trials(base, *c);
     }
+    cross_validate(base, contenders);
+  }
+
+  void cross_validate(const FittedModel& base, std::span<FittedCandidate* const> contenders) const {
     if (contenders.empty()) return;
     const double before = fits_.cross_validated(base);
     for (FittedCandidate* c : contenders) c->cross_validated = before - fits_.cross_validated(c->fitted);
@@ -252,6 +290,7 @@ class DiagnosisLoop {
   }
 
   const Campaign& campaign_;
+  const LoopScope& scope_;
   std::vector<bool> rows_;
   std::vector<std::uint32_t> streams_;
   DiagnoseOptions options_;
@@ -269,8 +308,18 @@ TrialsPerBlock raised_for_few_blocks(TrialsPerBlock trials, std::size_t blocks, 
   return trials;
 }
 
+Diagnosis run_loop(const Campaign& campaign, const Model& start, const DiagnoseOptions& options,
+                   const LoopScope& scope) {
+  return DiagnosisLoop(campaign, options, scope).run(start);
+}
+
 Diagnosis diagnose(const Campaign& campaign, const Model& start, const DiagnoseOptions& options) {
-  return DiagnosisLoop(campaign, options).run(start);
+  const OuterFolds folds = outer_folds(campaign, fitting_rows(campaign), options.outer_folds, options.seed);
+  if (options.nested) require_fitting_rows(campaign, folds);
+  DiagnosisWork work(options);
+  Diagnosis d = repeated_diagnosis(campaign, start, work);
+  if (options.nested) d.nested = nested_validation(campaign, start, work, folds, d);
+  return d;
 }
 
 }  // namespace talus

@@ -110,13 +110,13 @@ FittedModel EffectFits::fitted_model(Fit&& fit, std::vector<Parameter> free) con
   return simulated_anew(std::move(out));
 }
 
-FittedModel EffectFits::fit_ground(const Model& start) const {
+FittedModel EffectFits::fit_ground(const Model& start, bool brief) const {
   const Timesheet::Phase phase(times_, "ground");
   const std::vector<BlockRuns> runs = observe(campaign_, start, observe_options(options_.trials.search));
   std::vector<Parameter> free = ground_parameters(campaign_, start, options_.keys, touched_zones(campaign_, runs));
   FitOptions how = fit_options();  // all that follows rests on this fit
-  how.trials *= 2;
-  how.comparison_trials *= 2;
+  how.trials *= brief ? 1 : 2;
+  how.comparison_trials *= brief ? 1 : 2;
   Fit fit = fit_parameters(campaign_, start, free, rows_, how);
   FittedModel fitted = fitted_model(std::move(fit), std::move(free));
   FitOptions on = continued_fit_options(fitted);
@@ -298,21 +298,40 @@ double EffectFits::cross_validated(const FittedModel& fitted, ObserveOptions how
 
 double EffectFits::error_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
                                   const std::vector<std::size_t>& order) const {
-  const std::size_t folds = options_.rules.folds;
+  const std::size_t count = options_.rules.folds;
+  std::vector<std::vector<std::size_t>> folds(count);
+  for (std::size_t i = 0; i < order.size(); ++i) folds[i % count].push_back(order[i]);
+  return weigh_groups(score(campaign_, runs_in_folds(local, fitted, std::move(how), folds), rows_)).total;
+}
+
+std::vector<BlockRuns> EffectFits::runs_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
+                                                 std::span<const std::vector<std::size_t>> folds) const {
   std::vector<BlockRuns> runs(campaign_.blocks.size());
-  for (std::size_t fold = 0; fold < folds; ++fold) {
+  for (const std::vector<std::size_t>& fold : folds) {
     if (!proceed_(1.0)) throw FitInterrupted{};
     std::vector<double> others(runs.size(), 1.0);
     how.blocks.assign(runs.size(), false);
-    for (std::size_t i = fold; i < order.size(); i += folds) {
-      others[order[i]] = 0.0;
-      how.blocks[order[i]] = true;
-    }
+    for (const std::size_t block : fold) others[block] = 0.0, how.blocks[block] = true;
     const Model model = model_at(fitted.model, fitted.free, local.optimum(others, fitted.spread));
     std::vector<BlockRuns> seen = observe(campaign_, model, how);
-    for (std::size_t i = fold; i < order.size(); i += folds) runs[order[i]] = std::move(seen[order[i]]);
+    for (const std::size_t block : fold) runs[block] = std::move(seen[block]);
   }
-  return weigh_groups(score(campaign_, runs, rows_)).total;
+  return runs;
+}
+
+std::vector<BlockRuns> EffectFits::out_of_fold(const FittedModel& fitted, std::span<const std::uint32_t> fold_of,
+                                               std::size_t folds, ObserveOptions how) const {
+  const FitProblem problem{campaign_, fitted.model, fitted.free, rows_};
+  const FitOptions options = fit_options();
+  Fit fit;
+  fit.z = fitted.z;
+  fit.score = fitted.objective;
+  fit.evaluations = fitted.evaluations;
+  const LocalModel local(problem, options, fit, fitted.spread);
+  std::vector<std::vector<std::size_t>> blocks(folds);
+  for (std::size_t b = 0; b < fold_of.size(); ++b)
+    if (fold_of[b] < folds) blocks[fold_of[b]].push_back(b);
+  return runs_in_folds(local, fitted, std::move(how), blocks);
 }
 
 bool EffectFits::confirmed(const FittedModel& base, const FittedCandidate& candidate, const LeastGain& least) const {

@@ -30,7 +30,9 @@ class EffectFits {
   FittedModel simulated_anew(FittedModel fitted) const;
   /// The ground alone, fitted as `calibrate` does, then for some rounds more: what this fit misses looks like an
   /// effect.
-  FittedModel fit_ground(const Model& start) const;
+  ///
+  /// @param brief  with as many trials as other fits, not twice as many
+  FittedModel fit_ground(const Model& start, bool brief = false) const;
   /// An effect at its best place, fitted from the estimate of the score test; together with the ground where it may be
   /// chosen.
   ///
@@ -51,6 +53,11 @@ class EffectFits {
     unseen.first_trial += options_.trials.compare;  // the trials before were used to choose between fits
     return cross_validated(fitted, unseen);
   }
+  /// Runs of every block with a fold, simulated with the minimum of the quadratic model of the other folds' rows.
+  ///
+  /// @param fold_of  by block: below `folds`, else the block is left out
+  std::vector<BlockRuns> out_of_fold(const FittedModel& fitted, std::span<const std::uint32_t> fold_of,
+                                     std::size_t folds, ObserveOptions how) const;
   /// Whether a candidate gains as much again, on its rows and in cross-validation, with random numbers that no choice
   /// has used: the gain of the best of several effects is partly chance.
   bool confirmed(const FittedModel& base, const FittedCandidate& candidate, const LeastGain& least) const;
@@ -82,6 +89,8 @@ class EffectFits {
   double cross_validated(const FittedModel& fitted, ObserveOptions how) const;
   double error_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
                         const std::vector<std::size_t>& order) const;
+  std::vector<BlockRuns> runs_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
+                                       std::span<const std::vector<std::size_t>> folds) const;
 
   const Campaign& campaign_;
   const DiagnoseOptions& options_;

@@ -49,30 +49,6 @@ std::vector<double> bootstrap_weights(std::span<const std::uint32_t> streams, st
   return weight;
 }
 
-ScoreIntervals bootstrap(const Score& score, std::span<const std::uint32_t> streams, std::uint32_t draws,
-                         std::uint64_t seed) {
-  std::vector<double> totals;
-  std::vector<std::vector<double>> groups(score.groups.size());
-  for (std::uint32_t draw = 0; draw < draws; ++draw) {
-    const std::vector<double> values = weighted_groups(score, bootstrap_weights(streams, draw, seed));
-    totals.push_back(total_of(score, values));
-    for (std::size_t g = 0; g < values.size(); ++g) groups[g].push_back(values[g]);
-  }
-  ScoreIntervals intervals{middle(std::move(totals)), {}};
-  for (std::vector<double>& group : groups) intervals.groups.push_back(middle(std::move(group)));
-  return intervals;
-}
-
-Reduction reduction(const Score& before, const Score& after, std::span<const std::uint32_t> streams,
-                    std::uint32_t draws, std::uint64_t seed) {
-  std::vector<double> shares;
-  for (std::uint32_t draw = 0; draw < draws; ++draw) {
-    const std::vector<double> weight = bootstrap_weights(streams, draw, seed);
-    shares.push_back(1.0 - weighted_total(after, weight) / weighted_total(before, weight));
-  }
-  return {1.0 - after.total / before.total, middle(std::move(shares))};
-}
-
 Difference difference(const Score& before, const Score& after, std::span<const std::uint32_t> streams,
                       std::uint32_t draws, std::uint64_t seed) {
   Difference d{after.total - before.total, {}, {}};

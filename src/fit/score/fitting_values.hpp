@@ -18,11 +18,15 @@ struct FittingValues {
   }
   std::size_t size() const { return values.size(); }
 
-  /// The values of all blocks but one: the climatology of that block, which has not seen its own measurement.
-  void of_others(std::uint32_t block, std::vector<Value>& out) const {
+  /// The values that the climatology of a block may know: those of blocks that are not left out together with it. All,
+  /// where there are no others.
+  ///
+  /// @param folds  by block, see ScoreOptions; empty: the block is left out alone
+  void of_others(std::uint32_t block, std::vector<Value>& out, std::span<const std::uint32_t> folds = {}) const {
     out.clear();
     for (std::size_t i = 0; i < values.size(); ++i)
-      if (blocks[i] != block) out.push_back(values[i]);
+      if (folds.empty() ? blocks[i] != block : folds[blocks[i]] != folds[block]) out.push_back(values[i]);
+    if (out.empty() && !folds.empty()) out = values;
   }
 };
 

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "fitting_values.hpp"
+#include "robust_density.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/fit/score/deposit_score.hpp"
 
@@ -13,16 +14,27 @@ namespace {
 
 constexpr double kHalfWeight = 10.0;  // rows with which a group counts half in a fit
 
+/// Sum over the rows of a block, on average over the blocks.
+double mean_of_blocks(const Score& score) {
+  std::vector<std::uint32_t> blocks;
+  double sum = 0.0;
+  for (const RowScore& row : score.rows) sum += row.score, blocks.push_back(row.block);
+  std::sort(blocks.begin(), blocks.end());
+  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+  return blocks.empty() ? kNotGiven : sum / static_cast<double>(blocks.size());
+}
+
 /// Scores the rows of one campaign group by group.
 class Scorer {
  public:
   Scorer(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
-         std::size_t fewest_simulated)
-      : campaign_(campaign), runs_(runs), ask_(ask), climatology_(runs.empty()), fewest_simulated_(fewest_simulated) {}
+         const ScoreOptions& options)
+      : campaign_(campaign), runs_(runs), ask_(ask), climatology_(runs.empty()), options_(options) {}
 
   Score result() {
     TALUS_EXPECT(climatology_ || runs_.size() == campaign_.blocks.size(), "each block has its runs");
     TALUS_EXPECT(ask_.size() == campaign_.blocks.size(), "each block is asked for or not");
+    TALUS_EXPECT(options_.folds.empty() || options_.folds.size() == campaign_.blocks.size(), "each block has a fold");
     stops();
     masses();
     for (std::size_t screen = 0; screen < campaign_.screens.size(); ++screen) passages(screen);
@@ -31,6 +43,7 @@ class Scorer {
     double sum = 0.0;
     for (const GroupScore& group : score_.groups) sum += group.score;
     if (!score_.groups.empty()) score_.total = sum / static_cast<double>(score_.groups.size());
+    if (options_.rule == ScoreRule::LogDensity) score_.total = mean_of_blocks(score_);
     double cut = 0.0, blocks = 0.0;
     for_asked([&](std::uint32_t b, const MeasuredBlock&) { cut += cut_short(b), blocks += 1.0; });
     if (blocks > 0.0) score_.cut_short = cut / blocks;
@@ -81,15 +94,20 @@ class Scorer {
     if (fitting.size() < 2) return;
     const double spread = std::sqrt(variance_of(x) + variance_of(y));
     if (!(spread > 0.0)) return;
-    std::vector<Eigen::Vector2d> places;
+    std::vector<Eigen::Vector2d> places, broad;
     for_asked([&](std::uint32_t b, const MeasuredBlock& block) {
       if (!block.stop) return;
       places.clear();
-      if (climatology_) fitting.of_others(b, places);
+      fitting.of_others(b, broad, options_.folds);
+      if (climatology_) places = broad;
       for (std::uint32_t t = 0; !climatology_ && t < runs_[b].trials; ++t)
         if (!std::isnan(runs_[b].x[t])) places.emplace_back(runs_[b].x[t], runs_[b].y[t]);
       const bool unseen = too_few(places.size());
-      row(b, fair_energy_score(unseen ? fitting.values : places, *block.stop) / spread, unseen);
+      if (unseen) places = own_values_too() ? fitting.values : broad;
+      row(b,
+          options_.rule == ScoreRule::Fair ? fair_energy_score(places, *block.stop) / spread
+                                           : -log_density(places, broad, *block.stop, spread),
+          unseen);
     });
     close("stop");
   }
@@ -136,11 +154,15 @@ class Scorer {
     if (!(spread > 0.0) || std::min(asked_hits, asked - asked_hits) < kFewestRows) return;
     for_asked([&](std::uint32_t b, const MeasuredBlock& block) {
       const bool hit = crossed(block);
-      const double own = block.holdout ? 0.0 : 1.0;  // left out of its own climatology
+      double others = 0.0, their_hits = 0.0;
+      for (std::uint32_t other = 0; other < campaign_.blocks.size(); ++other)
+        if (!campaign_.blocks[other].holdout && !together(b, other))
+          others += 1.0, their_hits += crossed(campaign_.blocks[other]) ? 1.0 : 0.0;
       if (!climatology_) keep_finite(runs_[b].screens[screen].speed, values_);
-      const double score = climatology_ ? fair_brier_score(hits - (hit ? own : 0.0), fitting - own, hit)
-                                        : fair_brier_score(static_cast<double>(values_.size()), runs_[b].trials, hit);
-      row(b, score / spread);
+      const double simulated_hits = climatology_ ? their_hits : static_cast<double>(values_.size());
+      const double trials = climatology_ ? others : runs_[b].trials;
+      row(b, options_.rule == ScoreRule::Fair ? fair_brier_score(simulated_hits, trials, hit) / spread
+                                              : -log_probability(simulated_hits, trials, p, hit));
     });
     close(name);
   }
@@ -159,7 +181,8 @@ class Scorer {
       const double y = measured(block);
       if (std::isnan(y)) return;
       bool unseen = false;
-      const double score = crps(b, climatology_ ? kNoValues : simulated(b), fitting, y, unseen) / spread;
+      const double score =
+          of_value(b, climatology_ ? kNoValues : simulated(b), fitting, y, spread, unseen) / unit_of(spread);
       row(b, score, unseen);
     });
     close(name);
@@ -180,51 +203,70 @@ class Scorer {
       for (std::size_t i = 0; i < block.samples.size(); ++i) {
         if (std::isnan(block.samples[i].*measured)) continue;
         bool unseen = false;
-        sum += crps(b, climatology_ ? kNoValues : runs_[b].samples[i].*simulated, fitting, block.samples[i].*measured,
-                    unseen);
+        sum += of_value(b, climatology_ ? kNoValues : runs_[b].samples[i].*simulated, fitting,
+                        block.samples[i].*measured, spread, unseen);
         ++count;
         not_seen += unseen ? 1 : 0;
       }
-      if (count > 0) row(b, sum / count / spread, not_seen == count);
+      if (count > 0) row(b, sum / count / unit_of(spread), not_seen == count);
     });
     close(name);
   }
 
-  /// CRPS of the simulated values or, where they are too few, of the values of the fitting rows.
-  double crps(std::uint32_t block, const std::vector<double>& simulated, const FittingValues<double>& fitting,
-              double measured, bool& unseen) {
+  /// Score of the simulated values or, where they are too few, of the values of the fitting rows.
+  double of_value(std::uint32_t block, const std::vector<double>& simulated, const FittingValues<double>& fitting,
+                  double measured, double spread, bool& unseen) {
+    fitting.of_others(block, broad_, options_.folds);
     if (climatology_)
-      fitting.of_others(block, values_);
+      values_ = broad_;
     else
       keep_finite(simulated, values_);
     unseen = too_few(values_.size());
-    if (unseen) values_ = fitting.values;
+    if (unseen) values_ = own_values_too() ? fitting.values : broad_;
+    if (options_.rule == ScoreRule::LogDensity) return -log_density(values_, broad_, measured, spread);
     return fair_crps(values_, measured);
   }
-  bool too_few(std::size_t simulated) const { return !climatology_ && simulated < fewest_simulated_; }
+
+  /// What a score is divided by; a log density has no unit.
+  double unit_of(double spread) const { return options_.rule == ScoreRule::Fair ? spread : 1.0; }
+
+  /// Whether two blocks are left out together.
+  bool together(std::uint32_t a, std::uint32_t b) const {
+    return options_.folds.empty() ? a == b : options_.folds[a] == options_.folds[b];
+  }
+  /// A fitting row that is not simulated often enough scores as all fitting rows, itself among them: so it is in the
+  /// objective of a fit.
+  bool own_values_too() const { return options_.folds.empty() && options_.rule == ScoreRule::Fair; }
+  bool too_few(std::size_t simulated) const { return !climatology_ && simulated < options_.fewest_simulated; }
 
   static inline const std::vector<double> kNoValues{};
   const Campaign& campaign_;
   std::span<const BlockRuns> runs_;
   const std::vector<bool>& ask_;
   const bool climatology_;  // not the runs are scored, but the measurements of the other fitting rows
-  const std::size_t fewest_simulated_;
+  const ScoreOptions options_;
   std::vector<RowScore> rows_;  // of the group under way
-  std::vector<double> values_;
+  std::vector<double> values_, broad_;
   Score score_;
 };
 
 }  // namespace
 
 Score score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
-            std::size_t fewest_simulated) {
-  if (campaign.deposits != nullptr) return deposit_score(campaign, runs, ask, fewest_simulated);
-  return Scorer(campaign, runs, ask, fewest_simulated).result();
+            const ScoreOptions& options) {
+  if (campaign.deposits != nullptr) return deposit_score(campaign, runs, ask, options.fewest_simulated);
+  return Scorer(campaign, runs, ask, options).result();
 }
 
-Score score_of_climatology(const Campaign& campaign, const std::vector<bool>& ask) {
-  if (campaign.deposits != nullptr) return deposit_score(campaign, {}, ask, kFewestSimulated);
-  return Scorer(campaign, {}, ask, kFewestSimulated).result();
+Score score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
+            std::size_t fewest_simulated) {
+  ScoreOptions options;
+  options.fewest_simulated = fewest_simulated;
+  return score(campaign, runs, ask, options);
+}
+
+Score score_of_climatology(const Campaign& campaign, const std::vector<bool>& ask, const ScoreOptions& options) {
+  return score(campaign, {}, ask, options);
 }
 
 Score of_large_groups(const Score& score, std::uint32_t fewest) {

@@ -31,7 +31,8 @@ double median_of(std::vector<double> values) {
 }
 
 /// @param runs  empty: the climatology is scored
-Score scored(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask) {
+Score scored(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
+             std::span<const std::uint32_t> folds) {
   const FittingValues<double> fitting = fitting_runouts(campaign);
   if (fitting.size() < kFewestRows) return {};
   const double begin = median_of(fitting.values);
@@ -47,12 +48,16 @@ Score scored(const Campaign& campaign, std::span<const BlockRuns> runs, const st
     if (!runs.empty())
       keep_finite(runouts_of(campaign, block, runs[b]), values);
     else if (campaign.deposits == nullptr)
-      fitting.of_others(b, values);
+      fitting.of_others(b, values, folds);
     else
       runouts_anywhere(campaign, block, values);
     const bool unseen = !runs.empty() && values.size() < kFewestSimulated;
-    if (unseen && campaign.deposits == nullptr) values = fitting.values;
-    if (unseen && campaign.deposits != nullptr) runouts_anywhere(campaign, block, values);
+    if (unseen && campaign.deposits != nullptr)
+      runouts_anywhere(campaign, block, values);
+    else if (unseen && folds.empty())
+      values = fitting.values;
+    else if (unseen)
+      fitting.of_others(b, values, folds);
     const double score = fair_tail_crps(values, runout_of(campaign, block), begin) / spread;
     out.rows.push_back({0, b, score, unseen});
     group.score += score;
@@ -95,12 +100,14 @@ double tail_begin(const Campaign& campaign) {
   return median_of(fitting_runouts(campaign).values);
 }
 
-Score tail_score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask) {
-  return scored(campaign, runs, ask);
+Score tail_score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
+                 std::span<const std::uint32_t> folds) {
+  return scored(campaign, runs, ask, folds);
 }
 
-Score tail_score_of_climatology(const Campaign& campaign, const std::vector<bool>& ask) {
-  return scored(campaign, {}, ask);
+Score tail_score_of_climatology(const Campaign& campaign, const std::vector<bool>& ask,
+                                std::span<const std::uint32_t> folds) {
+  return scored(campaign, {}, ask, folds);
 }
 
 }  // namespace talus

@@ -7,6 +7,7 @@
 #include "diagnosis_summary.hpp"
 #include "evidence.hpp"
 #include "limits_report.hpp"
+#include "repeated_report.hpp"
 #include "svg.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
@@ -121,10 +122,11 @@ std::string errors_html(const DiagnosisRecord& record) {
       "<h2>Error before and after</h2>\n<table><tr><th></th><th>ground fitted</th><th>with what was found</th>"
       "<th>reduction, 95 %</th></tr>\n";
   const std::vector<std::string> small = small_groups(record);
+  const std::string unseen = rows_in_words(record.errors[record.unseen].after.rows) + " rows";
   if (!small.empty())
-    html += row("<b>held-out rows (never fitted), groups of " + std::to_string(kHeadlineRows) + " rows and more</b>",
+    html += row("<b>" + unseen + " (never fitted), groups of " + std::to_string(kHeadlineRows) + " rows and more</b>",
                 record.headline.before, record.headline.after, &record.headline.reduction);
-  html += row(small.empty() ? "<b>held-out rows (never fitted)</b>" : "held-out rows, all groups", record.whole.before,
+  html += row(small.empty() ? "<b>" + unseen + " (never fitted)</b>" : unseen + ", all groups", record.whole.before,
               record.whole.after, &record.whole.reduction);
   html += row("fitting rows", d.base.score.total, d.with_effects.score.total, nullptr) + "</table>\n";
   html +=
@@ -154,7 +156,7 @@ std::string spread_html(const DiagnosisRecord& record) {
     for (const ScoredRows* scored : {&e.before, &e.after}) {
       const bool after = scored == &e.after;
       if (scored->coverage.empty() || (!after && record.diagnosis.rounds.size() < 2)) continue;
-      html += "<h3>" + std::string(e.after.rows == "fit" ? "Fitting" : "Held-out") + " rows, " +
+      html += "<h3>" + rows_in_words(e.after.rows) + " rows, " +
               (record.diagnosis.rounds.size() < 2 ? "ground fitted"
                : after                            ? "with what was found"
                                                   : "ground alone") +
@@ -264,7 +266,9 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
     html += "<p>Round " + std::to_string(i + 1) + ": " + sentence(d.rounds[i]) +
             " (p that the residual is noise: " + with_decimals(d.rounds[i].p_value, 4) + ")." +
             families_sentence(d.rounds[i]) + "</p>\n";
-  html += errors_html(record);
+  if (const std::string undecided = undecided_text(d.stability); !undecided.empty())
+    html += "<p><b>The first round is " + escaped(undecided) + "</b>: independent base fits differ.</p>\n";
+  html += errors_html(record) + repeated_html(record);
   for (const std::string& warning : record.warnings) html += "<p>Warning: " + escaped(warning) + "</p>\n";
   html += spread_html(record);
   html +=

@@ -6,6 +6,7 @@
 #include "diagnosis_times.hpp"
 #include "evidence.hpp"
 #include "limits_report.hpp"
+#include "repeated_report.hpp"
 #include "talus/base/version.hpp"
 #include "talus/fit/diagnose/families.hpp"
 
@@ -90,10 +91,10 @@ std::vector<BlockRuns> holdout_runs(const Campaign& campaign, const Model& model
   return observe(campaign, model, how);
 }
 
-HoldoutError error_of(const Score& before, const Score& after, std::span<const std::uint32_t> streams) {
+HoldoutError error_of(const Score& before, const Score& after, std::span<const std::uint32_t> clusters) {
   if (before.rows.empty() || std::isnan(before.total) || std::isnan(after.total))
     return {before.total, after.total, {}};
-  return {before.total, after.total, reduction(before, after, streams)};
+  return {before.total, after.total, reduction(before, after, clusters)};
 }
 
 bool found(const DiagnosisRound& round) {
@@ -111,33 +112,42 @@ double probability_of(const DiagnosisRound& round) {
 }  // namespace
 
 void open_holdout(const Campaign& campaign, DiagnosisRecord& record) {
-  const std::vector<std::uint32_t> streams = streams_of(campaign);
+  const std::vector<std::uint32_t> clusters = record.clusters = clusters_of(campaign);
   const std::vector<bool> rows = holdout_rows(campaign), fitting = fitting_rows(campaign);
   const Diagnosis& d = record.diagnosis;
   const auto scored_holdout = [&](const std::vector<BlockRuns>& runs) {
     return scored("holdout", campaign, runs, rows);
   };
   ScoredRows base = scored_holdout(holdout_runs(campaign, d.base.model, record)), last = base;
+  record.evidence.resize(d.rounds.front().candidates.size());
   for (const DiagnosisRound& round : d.rounds) {
     record.candidates.emplace_back();
     const Score before = last.score;
     for (std::size_t i = 0; i < round.candidates.size(); ++i) {
       const std::vector<BlockRuns> runs = holdout_runs(campaign, round.candidates[i].fitted.model, record);
-      record.candidates.back().push_back(error_of(before, score(campaign, runs, rows), streams));
+      Score after = score(campaign, runs, rows);
+      record.candidates.back().push_back(error_of(before, after, clusters));
+      if (record.rounds.empty() && !after.rows.empty())
+        record.evidence[i].push_back({"holdout", std::move(after),
+                                      score(campaign, runs, rows, {ScoreRule::LogDensity, kFewestSimulated, {}}),
+                                      base.score, base.log_score});
       if (i == 0 && found(round)) last = scored_holdout(runs);
     }
-    record.rounds.push_back(error_of(before, last.score, streams));
+    record.rounds.push_back(error_of(before, last.score, clusters));
   }
-  record.whole = error_of(base.score, last.score, streams);
-  record.headline = error_of(of_large_groups(base.score), of_large_groups(last.score), streams);
   record.errors.push_back(compared(campaign, scored("fit", campaign, d.base.runs, fitting),
                                    scored("fit", campaign, d.with_effects.runs, fitting)));
-  record.errors.push_back(compared(campaign, std::move(base), std::move(last)));
+  const bool held_out = std::ranges::count(rows, true) > 0;
+  if (held_out || !d.nested) record.errors.push_back(compared(campaign, std::move(base), std::move(last)));
+  if (d.nested) judge_nested(campaign, record);
+  const BeforeAfter& unseen = record.errors[record.unseen];
+  record.whole = error_of(unseen.before.score, unseen.after.score, clusters);
+  record.headline = error_of(of_large_groups(unseen.before.score), of_large_groups(unseen.after.score), clusters);
 }
 
 std::vector<std::string> small_groups(const DiagnosisRecord& record) {
   std::vector<std::string> names;
-  for (const GroupScore& group : record.errors.back().after.score.groups)
+  for (const GroupScore& group : record.errors[record.unseen].after.score.groups)
     if (group.rows < kHeadlineRows) names.push_back(group.name + " (" + std::to_string(group.rows) + " rows)");
   return names;
 }
@@ -166,6 +176,7 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
   const HoldoutError& e = record.whole;
   Json json{{"effect", first.effect},
             {"effects", effects},
+            {"verdict", verdict_text(d)},
             {"where", first.where},
             {"probability", json_of(probability_of(first))},
             {"indistinguishable_from", first.alike},
@@ -174,23 +185,25 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
              {{"metric", "mean normalised score"},
               {"fit", {{"before", json_of(d.base.score.total)}, {"after", json_of(d.with_effects.score.total)}}},
               {"holdout",
-               {{"before", json_of(e.before)},
+               {{"rows", record.errors[record.unseen].after.rows},
+                {"before", json_of(e.before)},
                 {"after", json_of(e.after)},
                 {"reduction", json_of(e.reduction.share)},
                 {"ci95", json_of(e.reduction.interval)}}},
               {"headline",
-               {{"rows", "holdout"},
+               {{"rows", record.errors[record.unseen].after.rows},
                 {"fewest_rows_of_a_group", kHeadlineRows},
                 {"left_out", small_groups(record)},
                 {"before", json_of(record.headline.before)},
                 {"after", json_of(record.headline.after)},
                 {"reduction", json_of(record.headline.reduction.share)},
                 {"ci95", json_of(record.headline.reduction.interval)}}}}},
-            {"evidence", evidence_json(record.errors, "ground", "found")},
+            {"evidence", evidence_of(record)},
             {"tail", tail_json(record.errors)},
             {"coverage", coverage_json(record.errors)},
             {"families", families_of(first)},
             {"detection_limits", limits_json(d.rounds.back().limits)},
+            {"stability", stability_json(d.stability)},
             {"candidates", candidates_of(first, record.candidates.front())},
             {"residual", residual_of(first.residual)},
             {"residual_after", residual_of(d.rounds.back().residual)},
@@ -210,6 +223,7 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
   Json ground = Json::object();
   for (const Parameter& p : d.base.free) ground[p.key] = json_of(p.get(d.base.model));
   json["base_parameters"] = ground;
+  if (d.nested) json["nested"] = nested_json(record);
   json["inputs"] = json_of(record.inputs);
   return json_text(json);
 }

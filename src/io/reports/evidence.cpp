@@ -17,26 +17,22 @@ std::string score_text(double score) {
   return std::isnan(score) ? "-" : with_decimals(score, 3);
 }
 
-/// The error of one model on rows of both kinds, group by group.
-Json entry_of(const char* name, std::span<const BeforeAfter> errors, const Score& (*score)(const BeforeAfter&)) {
-  Json entry{{"model", name}};
-  for (const BeforeAfter& e : errors) {
-    Json groups = Json::array();
-    for (const GroupScore& group : score(e).groups)
-      groups.push_back({{"group", group.name}, {"error", json_of(group.score)}, {"rows", group.rows}});
-    entry[e.after.rows] = {{"error", json_of(score(e).total)}, {"rows", score(e).rows.size()}, {"groups", groups}};
-  }
-  return entry;
+JudgedModel of_climatology(const BeforeAfter& e) {
+  return {e.after.climatology, e.after.log_climatology};
+}
+JudgedModel of_before(const BeforeAfter& e) {
+  return {e.before.score, e.before.log_score};
+}
+JudgedModel of_after(const BeforeAfter& e) {
+  return {e.after.score, e.after.log_score};
 }
 
-const Score& of_climatology(const BeforeAfter& e) {
-  return e.after.climatology;
-}
-const Score& of_before(const BeforeAfter& e) {
-  return e.before.score;
-}
-const Score& of_after(const BeforeAfter& e) {
-  return e.after.score;
+/// One model on rows of all kinds.
+Json entry_of(const char* name, std::span<const BeforeAfter> errors, std::span<const std::uint32_t> clusters,
+              JudgedModel (*model)(const BeforeAfter&)) {
+  Json entry{{"model", name}};
+  for (const BeforeAfter& e : errors) entry[e.after.rows] = judged_json(model(e), of_before(e), clusters);
+  return entry;
 }
 
 }  // namespace
@@ -67,9 +63,25 @@ Json tail_json(std::span<const BeforeAfter> errors) {
   return json;
 }
 
-Json evidence_json(std::span<const BeforeAfter> errors, const char* before, const char* after) {
-  return Json::array({entry_of("climatology", errors, of_climatology), entry_of(before, errors, of_before),
-                      entry_of(after, errors, of_after)});
+Json judged_json(const JudgedModel& model, const JudgedModel& reference, std::span<const std::uint32_t> clusters) {
+  Json groups = Json::array();
+  for (std::size_t g = 0; g < model.score.groups.size(); ++g)
+    groups.push_back({{"group", model.score.groups[g].name},
+                      {"error", json_of(model.score.groups[g].score)},
+                      {"log_score", json_of(-model.log_score.groups[g].score)},
+                      {"rows", model.score.groups[g].rows}});
+  const Reduction less = reduction(reference.score, model.score, clusters);
+  const NatsGained nats = nats_gained(reference.log_score, model.log_score, clusters);
+  return {{"error", json_of(model.score.total)},      {"reduction", json_of(less.share)},
+          {"reduction_ci95", json_of(less.interval)}, {"log_score", json_of(-model.log_score.total)},
+          {"nats_gained", json_of(nats.per_block)},   {"nats_gained_ci95", json_of(nats.interval)},
+          {"rows", model.score.rows.size()},          {"groups", groups}};
+}
+
+Json evidence_json(std::span<const BeforeAfter> errors, std::span<const std::uint32_t> clusters, const char* before,
+                   const char* after) {
+  return Json::array({entry_of("climatology", errors, clusters, of_climatology),
+                      entry_of(before, errors, clusters, of_before), entry_of(after, errors, clusters, of_after)});
 }
 
 std::string tail_before_after(const BeforeAfter& e) {

@@ -15,11 +15,21 @@ std::string rows_text(const GroupScore& group);
 Json coverage_json(std::span<const BeforeAfter> errors);
 /// `tail` of a report: the error in the far run-outs before and after, by kind of rows.
 Json tail_json(std::span<const BeforeAfter> errors);
-/// `evidence` of a report: the error of the climatology, of the first model and of the last one, with the rows of each
-/// group.
+/// The scores of a model on some rows.
+struct JudgedModel {
+  const Score& score;
+  const Score& log_score;
+};
+/// A model as evidence: its error, its log score (logarithm of the density: higher is better), both against a reference
+/// with paired intervals, and the rows of each group.
+///
+/// @param clusters  by block (`clusters_of`)
+Json judged_json(const JudgedModel& model, const JudgedModel& reference, std::span<const std::uint32_t> clusters);
+/// `evidence` of a report: the climatology, the first model and the last one, against the first model.
 ///
 /// @param names  of the two models
-Json evidence_json(std::span<const BeforeAfter> errors, const char* before, const char* after);
+Json evidence_json(std::span<const BeforeAfter> errors, std::span<const std::uint32_t> clusters, const char* before,
+                   const char* after);
 
 /// Skill, tail and spread after a fit, as Markdown.
 std::string judgement_markdown(const BeforeAfter& error);

@@ -71,34 +71,43 @@ std::string field(double value) {
 }  // namespace
 
 std::string rows_in_words(const std::string& rows) {
-  return rows == "fit" ? "fitting" : "held-out";
+  return rows == "fit" ? "fitting" : rows == "holdout" ? "held-out" : rows;
 }
 
 ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<const BlockRuns> runs,
-                  const std::vector<bool>& ask) {
-  const std::vector<std::uint32_t> streams = streams_of(campaign);
+                  const std::vector<bool>& ask, const std::vector<std::uint32_t>& folds) {
+  const std::vector<std::uint32_t> clusters = clusters_of(campaign);
+  ScoreOptions how{ScoreRule::Fair, kFewestSimulated, folds};
   ScoredRows out;
   out.rows = rows;
   out.blocks = static_cast<std::size_t>(std::count(ask.begin(), ask.end(), true));
-  out.score = score(campaign, runs, ask);
-  out.intervals = bootstrap(out.score, streams);
-  out.climatology = score_of_climatology(campaign, ask);
-  out.climatology_interval = bootstrap(out.climatology, streams).total;
-  out.skill = reduction(out.climatology, out.score, streams);
+  out.score = score(campaign, runs, ask, how);
+  out.intervals = score_intervals(out.score, clusters);
+  out.climatology = score_of_climatology(campaign, ask, how);
+  out.climatology_interval = score_intervals(out.climatology, clusters).total;
+  out.skill = reduction(out.climatology, out.score, clusters);
   out.tail_begin = tail_begin(campaign);
-  out.tail = tail_score(campaign, runs, ask);
-  out.tail_interval = bootstrap(out.tail, streams).total;
-  out.tail_climatology = tail_score_of_climatology(campaign, ask);
+  out.tail = tail_score(campaign, runs, ask, folds);
+  out.tail_interval = score_intervals(out.tail, clusters).total;
+  out.tail_climatology = tail_score_of_climatology(campaign, ask, folds);
   out.coverage = coverage(campaign, runs, ask);
-  if (campaign.deposits != nullptr) out.deposits = check_deposits(campaign, runs, ask);
+  if (campaign.deposits != nullptr) {
+    out.deposits = check_deposits(campaign, runs, ask);
+    return out;
+  }
+  how.rule = ScoreRule::LogDensity;
+  out.log_score = score(campaign, runs, ask, how);
+  out.log_climatology = score_of_climatology(campaign, ask, how);
   return out;
 }
 
 BeforeAfter compared(const Campaign& campaign, ScoredRows before, ScoredRows after) {
-  const std::vector<std::uint32_t> streams = streams_of(campaign);
-  const Reduction whole = reduction(before.score, after.score, streams);
-  const Reduction tail = reduction(before.tail, after.tail, streams);
-  return {std::move(before), std::move(after), whole, tail};
+  const std::vector<std::uint32_t> clusters = clusters_of(campaign);
+  const Reduction whole = reduction(before.score, after.score, clusters);
+  const Reduction tail = reduction(before.tail, after.tail, clusters);
+  const NatsGained nats = nats_gained(before.log_score, after.log_score, clusters);
+  const UsedClusters used = used_clusters(before.score, clusters);
+  return {std::move(before), std::move(after), whole, tail, nats, used};
 }
 
 std::string skill_sentence(const ScoredRows& s) {

@@ -1,9 +1,13 @@
 #pragma once
+#include <optional>
+
 #include "talus/fit/calibrate/fit_problem.hpp"
 #include "talus/fit/diagnose/detection_limit.hpp"
 #include "talus/fit/diagnose/diagnosis_rules.hpp"
 #include "talus/fit/diagnose/family_test.hpp"
+#include "talus/fit/diagnose/nested.hpp"
 #include "talus/fit/diagnose/residual_table.hpp"
+#include "talus/fit/diagnose/stability.hpp"
 #include "talus/fit/diagnose/timesheet.hpp"
 #include "talus/fit/score/bootstrap.hpp"
 
@@ -68,6 +72,8 @@ struct Diagnosis {
   FittedModel with_effects;            ///< the last model; the base if nothing was found
   TrialsPerBlock trials;               ///< numbers that were simulated
   Timesheet times;                     ///< where the processor time went
+  Stability stability;                 ///< the verdicts of independent base fits, this one's among them
+  std::optional<NestedValidation> nested;
 };
 
 struct DiagnoseOptions {
@@ -76,8 +82,12 @@ struct DiagnoseOptions {
   std::uint64_t seed = 1;
   int threads = 0;
   int most_effects = 3;
-  double first_level = 0.05;            ///< over all families: the false alarms that are accepted
-  double later_level = 0.01;            ///< after the first effect: its form is a guess, which leaves a residual
+  double first_level = 0.05;  ///< over all families: the false alarms that are accepted
+  double later_level = 0.01;  ///< after the first effect: its form is a guess, which leaves a residual
+  int base_fits = 5;          ///< whose verdicts are compared; 1: this diagnosis alone
+  bool nested = false;        ///< also repeats the loop without each outer fold
+  std::size_t outer_folds = 5;
+  bool naming_in_folds = true;          ///< false: the folds take the effects that all rows chose
   DiagnosisRules rules;                 ///< numbers that no user sets
   std::function<bool(double)> proceed;  ///< receives the share done, 0..1; false ends the diagnosis. May be empty
 };

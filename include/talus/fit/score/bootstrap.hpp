@@ -20,24 +20,6 @@ double weighted_total(const Score& score, std::span<const double> weight);
 /// @param streams  of the blocks (`streams_of`); blocks of one stream have one weight. The result has their size
 std::vector<double> bootstrap_weights(std::span<const std::uint32_t> streams, std::uint32_t draw, std::uint64_t seed);
 
-/// 95 % intervals of the total and of each group for the choice of the released blocks: percentiles of a bootstrap
-/// (`bootstrap_weights`) with the same weights for all groups. The model is held fixed.
-struct ScoreIntervals {
-  Interval total;
-  std::vector<Interval> groups;  ///< as Score::groups
-};
-ScoreIntervals bootstrap(const Score& score, std::span<const std::uint32_t> streams, std::uint32_t draws = 2000,
-                         std::uint64_t seed = 1);
-
-/// Share by which one model lowers the total of another, with a 95 % interval over the blocks: 1 - after/before of the
-/// same bootstrap draws. Both must be scores of the same rows.
-struct Reduction {
-  double share = kNotGiven;
-  Interval interval;
-};
-Reduction reduction(const Score& before, const Score& after, std::span<const std::uint32_t> streams,
-                    std::uint32_t draws = 2000, std::uint64_t seed = 1);
-
 /// Difference of two totals of the same rows, negative where `after` is better; the draws vary the released blocks.
 struct Difference {
   double mean = 0.0;

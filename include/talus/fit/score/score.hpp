@@ -45,19 +45,36 @@ inline constexpr std::size_t kFewestRows = 5;
 /// climatology beats by far is still better than one whose blocks do not come to an end. docs/diagnosis-time.md.
 inline constexpr double kCutShort = 4.0;
 
+/// What a row is scored by.
+enum class ScoreRule {
+  Fair,        ///< CRPS, energy score and Brier score over the spread of the fitting rows
+  LogDensity,  ///< minus the logarithm of the density of the measured value [nats]. docs/diagnosis-evidence.md
+};
+
+struct ScoreOptions {
+  ScoreRule rule = ScoreRule::Fair;
+  std::size_t fewest_simulated = kFewestSimulated;
+  /// By block: blocks of one number were left out together of a cross-validation, and none of them enters the
+  /// climatology of another. Empty: each block is left out of its own climatology alone.
+  std::vector<std::uint32_t> folds;
+};
+
 /// Scores the simulations of the asked blocks against their measurements, as defined in docs/closing-the-loop.md, "The
 /// score".
 ///
-/// @param runs  by block of the campaign; those asked for must have been simulated
+/// @param runs  by block of the campaign; those asked for must have been simulated. Empty: the climatology is scored
 /// @param ask   which blocks are scored, the fitting or the held-out ones; size: blocks
 ///
-/// Spreads, p and the climatology come from the fitting rows (holdout = false) alone, whatever `ask` is.
+/// Spreads, p and the climatology come from the fitting rows (holdout = false) alone, whatever `ask` is. The total by
+/// log density is the sum of a block's rows, on average over the blocks.
+Score score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
+            const ScoreOptions& options);
 Score score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
             std::size_t fewest_simulated = kFewestSimulated);
 
 /// The score of the climatology on the same rows: of each block the measurements of the other fitting rows stand in for
 /// simulated values. A model without skill does no better.
-Score score_of_climatology(const Campaign& campaign, const std::vector<bool>& ask);
+Score score_of_climatology(const Campaign& campaign, const std::vector<bool>& ask, const ScoreOptions& options = {});
 
 /// Rows from which on a group counts in a headline: of fewer, one block may rule the total.
 inline constexpr std::uint32_t kHeadlineRows = 10;

@@ -20,9 +20,13 @@ double tail_begin(const Campaign& campaign);
 /// of the run-out beyond `tail_begin`, over the standard deviation of the fitting rows' run-outs cut off there. To it
 /// all nearer stops are alike. Rows with too few simulated values score as the climatology. Without groups where fewer
 /// than five rows were measured.
-Score tail_score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask);
+///
+/// @param folds  see ScoreOptions
+Score tail_score(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
+                 std::span<const std::uint32_t> folds = {});
 /// That of the climatology: for each block the run-outs of the other fitting rows. If the blocks were mapped where they
 /// lie: those of places anywhere in the mapped region.
-Score tail_score_of_climatology(const Campaign& campaign, const std::vector<bool>& ask);
+Score tail_score_of_climatology(const Campaign& campaign, const std::vector<bool>& ask,
+                                std::span<const std::uint32_t> folds = {});
 
 }  // namespace talus

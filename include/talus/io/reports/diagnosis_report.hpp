@@ -11,24 +11,38 @@ struct HoldoutError {
   Reduction reduction;  ///< of `before`
 };
 
-/// Results of `talus diagnose`, with the errors on the held-out rows.
+/// The scores of a candidate of the first round on rows that it has not seen, against the ground alone.
+struct CandidateEvidence {
+  std::string rows;  ///< "holdout" or "out-of-fold"
+  Score score, log_score, ground, log_ground;
+};
+
+/// Results of `talus diagnose`, with the errors on the rows that no fit has seen: the held-out ones where there are
+/// any, else all, each out of its fold.
 struct DiagnosisRecord : FitRecord {
   DiagnoseOptions options;
   Diagnosis diagnosis;
-  std::vector<BeforeAfter> errors;                    ///< of the fitting and the held-out rows: base, last model
-  HoldoutError whole;                                 ///< base against the last model
-  HoldoutError headline;                              ///< the same, of the groups with ten held-out rows and more
-  std::vector<HoldoutError> rounds;                   ///< each effect found, against the model before it
-  std::vector<std::vector<HoldoutError>> candidates;  ///< as DiagnosisRound::candidates
-  double seconds = 0.0;      ///< by the clock
+  std::vector<BeforeAfter> errors;      ///< of the fitting, the held-out and the out-of-fold rows: base, last model
+  std::size_t unseen = 1;               ///< index of the errors that the headline is about
+  std::vector<std::uint32_t> clusters;  ///< of the blocks (`clusters_of`)
+  std::vector<std::vector<CandidateEvidence>> evidence;  ///< by candidate of the first round
+  HoldoutError whole;                                    ///< base against the last model, on the unseen rows
+  HoldoutError headline;                                 ///< the same, of the groups with ten unseen rows and more
+  std::vector<HoldoutError> rounds;                      ///< each effect found, against the model before it
+  std::vector<std::vector<HoldoutError>> candidates;     ///< as DiagnosisRound::candidates
+  double seconds = 0.0;                                  ///< by the clock
   double cpu_seconds = 0.0;  ///< of all threads; the phases of the diagnosis are parts of it
 };
 
 /// Simulates and scores the held-out rows with every model of a diagnosis, and judges the first and the last model on
-/// the rows of both kinds. Throws FitInterrupted if `options.proceed` returns false.
+/// the fitting rows, the held-out ones and, out of their folds, all. Throws FitInterrupted if `options.proceed` returns
+/// false.
 void open_holdout(const Campaign& campaign, DiagnosisRecord& record);
 
-/// Names of the groups of fewer than ten held-out rows, with their rows: they stay out of the headline.
+/// The verdict over all base fits, the log score and what the folds found, as lines for the terminal.
+std::string repeated_lines(const DiagnosisRecord& record);
+
+/// Names of the groups of fewer than ten unseen rows, with their rows: they stay out of the headline.
 std::vector<std::string> small_groups(const DiagnosisRecord& record);
 
 /// Lines for the terminal: the effects that these data could not have shown at any amount, and those that speeds at

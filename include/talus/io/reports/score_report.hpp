@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "talus/fit/score/bootstrap.hpp"
 #include "talus/fit/score/coverage.hpp"
 #include "talus/fit/score/deposit_score.hpp"
+#include "talus/fit/score/intervals.hpp"
 #include "talus/fit/score/tail.hpp"
 #include "talus/io/campaign/campaign_file.hpp"
 
@@ -15,7 +15,7 @@ namespace talus::io {
 
 /// The score of some blocks of a campaign, with intervals, and what it is to be judged by.
 struct ScoredRows {
-  std::string rows;  ///< "fit" or "holdout"
+  std::string rows;  ///< "fit", "holdout" or "out-of-fold"
   std::size_t blocks = 0;
   Score score;
   ScoreIntervals intervals;
@@ -26,6 +26,7 @@ struct ScoredRows {
   Score tail, tail_climatology;
   Interval tail_interval;
   std::vector<Coverage> coverage;
+  Score log_score, log_climatology;      ///< minus log densities [nats]
   std::optional<DepositCheck> deposits;  ///< of blocks that were mapped where they lie
 };
 
@@ -34,14 +35,18 @@ struct BeforeAfter {
   ScoredRows before, after;
   Reduction reduction;
   Reduction tail_reduction;
+  NatsGained nats;
+  UsedClusters clusters;  ///< that the intervals rest on
 };
 
-/// "fitting" or "held-out", for "fit" and "holdout".
+/// "fitting", "held-out" or "out-of-fold", for "fit", "holdout" and "out-of-fold".
 std::string rows_in_words(const std::string& rows);
 
-/// Scores the asked blocks and the climatology, bootstraps over them, and counts their ranks.
+/// Scores the asked blocks and the climatology with intervals, and counts their ranks.
+///
+/// @param folds  see ScoreOptions
 ScoredRows scored(const std::string& rows, const Campaign& campaign, std::span<const BlockRuns> runs,
-                  const std::vector<bool>& ask);
+                  const std::vector<bool>& ask, const std::vector<std::uint32_t>& folds = {});
 
 /// Settings of the scores.
 struct ScoreSettings {

@@ -5,6 +5,7 @@
 
 #include "support/campaigns.hpp"
 #include "talus/fit/score/bootstrap.hpp"
+#include "talus/fit/score/intervals.hpp"
 
 namespace talus::test {
 namespace {
@@ -256,10 +257,10 @@ TEST_F(Scores, MassOnlyWhereBlocksBroke) {
   EXPECT_TRUE(has_mass());
 }
 
-TEST_F(Scores, EqualWeightsGiveTheTotalAndTheBootstrapHoldsIt) {
+TEST_F(Scores, EqualWeightsGiveTheTotalAndTheIntervalHoldsIt) {
   const Score s = score(campaign_, runs_, fitting_rows(campaign_));
   EXPECT_NEAR(weighted_total(s, std::vector<double>(24, 2.0)), s.total, 1e-13);
-  const ScoreIntervals i = bootstrap(s, streams_of(campaign_));
+  const ScoreIntervals i = score_intervals(s, clusters_of(campaign_));
   EXPECT_LT(i.total.low, s.total);
   EXPECT_GT(i.total.high, s.total);
 }
@@ -374,17 +375,18 @@ TEST(Bootstrap, VarianceOfAMeanIsRubins) {
   }
 }
 
-/// The percentile interval of a mean of many values is 2 x 1.96 standard errors wide.
-TEST(Bootstrap, WidthOfTheIntervalOfAMean) {
+/// The interval of a mean is 2 t standard errors wide: t of 399 degrees of freedom is 1.965927, the textbook's
+/// interval.
+TEST(Intervals, WidthOfTheIntervalOfAMean) {
   Numbers numbers(12);
   std::vector<double> values(400);
   for (double& v : values) v = numbers.normal();
   const Score s = score_of_rows(values);
   double squares = 0.0;
   for (const double v : values) squares += v * v;
-  const double error = std::sqrt(squares / 400.0 - s.total * s.total) / 20.0;
-  const Interval i = bootstrap(s, streams(400), 4000).total;
-  EXPECT_NEAR(i.high - i.low, 2.0 * 1.96 * error, 0.06 * 3.92 * error);
+  const double error = std::sqrt((squares / 400.0 - s.total * s.total) / 399.0);
+  const Interval i = score_intervals(s, streams(400)).total;
+  EXPECT_NEAR(i.high - i.low, 2.0 * 1.965927 * error, 1e-5 * error);
   EXPECT_NEAR(reduction(s, s, streams(400)).share, 0.0, 1e-15);
 }
 

@@ -1,0 +1,181 @@
+#include "outer_folds.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "effect_fits.hpp"
+#include "talus/base/error.hpp"
+#include "talus/fit/campaign/block_draws.hpp"
+#include "talus/fit/diagnose/diagnose.hpp"
+
+namespace talus {
+namespace {
+
+constexpr double kCandidates = 0.96;  // progress when the candidates are simulated out of fold
+
+/// A group or a block, which is left out as a whole.
+struct Unit {
+  double key = 0.0;  // decides its place in the order
+  std::string name;
+  std::vector<std::size_t> blocks;
+};
+
+/// @param by_group  else each block is a unit
+std::vector<Unit> units_of(const Campaign& campaign, const std::vector<bool>& rows, bool by_group, std::uint64_t seed) {
+  std::map<std::string, Unit> named;
+  for (std::size_t b = 0; b < rows.size(); ++b) {
+    if (!rows[b]) continue;
+    const MeasuredBlock& block = campaign.blocks[b];
+    Unit& unit = named[by_group ? block.group : block.id];
+    unit.name = by_group ? block.group : block.id;
+    unit.key = draw_of_block(seed, by_group ? stream_of_name(block.group) : block.stream, kNoFold, BlockDraw::Order);
+    unit.blocks.push_back(b);
+  }
+  std::vector<Unit> units;
+  for (auto& [name, unit] : named) units.push_back(std::move(unit));
+  std::ranges::stable_sort(units, {}, &Unit::key);
+  return units;
+}
+
+bool groups_can_be_left_out(const Campaign& campaign, const std::vector<bool>& rows, std::size_t folds) {
+  std::map<std::string, std::size_t> blocks;
+  std::size_t all = 0, largest = 0;
+  for (std::size_t b = 0; b < rows.size(); ++b) {
+    if (!rows[b]) continue;
+    if (campaign.blocks[b].group.empty()) return false;
+    ++all;
+    largest = std::max(largest, ++blocks[campaign.blocks[b].group]);
+  }
+  return blocks.size() >= folds && 2 * largest <= all;
+}
+
+void forget(MeasuredBlock& block) {
+  block.holdout = true;
+  block.stop.reset();
+  block.stop_mass.reset();
+  for (std::optional<Passage>& passage : block.passages) passage.reset();
+  block.samples.clear();
+}
+
+OuterFold loop_of(const Campaign& campaign, const OuterFolds& folds, std::uint32_t fold, const Diagnosis& found,
+                  bool naming) {
+  OuterFold loop;
+  for (std::size_t b = 0; b < folds.fold_of.size(); ++b) {
+    if (folds.fold_of[b] != fold) continue;
+    ++loop.blocks;
+    const std::string& group = campaign.blocks[b].group;
+    if (folds.by_group && std::ranges::find(loop.groups, group) == loop.groups.end()) loop.groups.push_back(group);
+  }
+  for (const DiagnosisRound& round : found.rounds) {
+    if (round.effect == "none" || round.effect == "unexplained") continue;
+    loop.effects.push_back(round.effect);
+    loop.where.push_back(round.where);
+  }
+  if (naming) {
+    loop.p_value = found.rounds.front().p_value;
+    if (loop.effects.empty()) loop.effects.push_back(found.rounds.front().effect), loop.where.emplace_back();
+  }
+  return loop;
+}
+
+/// Settings with which every left-out block is simulated, whichever model it is.
+ObserveOptions unseen_runs(const Campaign& campaign, const DiagnoseOptions& options, std::uint32_t trials) {
+  ObserveOptions how;
+  how.trials = trials;
+  how.seed = options.seed + 1;
+  how.threads = options.threads;
+  how.blocks.assign(campaign.blocks.size(), false);
+  return how;
+}
+
+void simulate_fold(const Campaign& campaign, const OuterFolds& folds, std::uint32_t fold, const Model& model,
+                   ObserveOptions how, std::vector<BlockRuns>& runs) {
+  for (std::size_t b = 0; b < folds.fold_of.size(); ++b) how.blocks[b] = folds.fold_of[b] == fold;
+  std::vector<BlockRuns> seen = observe(campaign, model, how);
+  for (std::size_t b = 0; b < seen.size(); ++b)
+    if (how.blocks[b]) runs[b] = std::move(seen[b]);
+}
+
+/// Whether the quadratic model can be made of a fit: it was fitted, and its evaluations are of its own parameters.
+bool has_evaluations(const FittedModel& fitted) {
+  return !fitted.free.empty() && !fitted.evaluations.empty() &&
+         std::ranges::all_of(fitted.evaluations, [&](const Evaluation& e) { return e.z.size() == fitted.z.size(); });
+}
+
+void simulate_candidates(const Campaign& campaign, const DiagnoseOptions& options, const Diagnosis& whole,
+                         NestedValidation& nested) {
+  const std::vector<bool> rows = fitting_rows(campaign);
+  const EffectFits fits(campaign, options, rows,
+                        [&](double) { return !options.proceed || options.proceed(kCandidates); });
+  const ObserveOptions how = unseen_runs(campaign, options, nested.trials);
+  const auto simulated = [&](const FittedModel& fitted) {
+    return has_evaluations(fitted) ? fits.out_of_fold(fitted, nested.folds.fold_of, nested.folds.count, how)
+                                   : std::vector<BlockRuns>{};
+  };
+  nested.ground = simulated(whole.base);
+  for (const FittedCandidate& candidate : whole.rounds.front().candidates)
+    nested.candidates.push_back(simulated(candidate.fitted));
+}
+
+}  // namespace
+
+OuterFolds outer_folds(const Campaign& campaign, const std::vector<bool>& rows, std::size_t folds, std::uint64_t seed) {
+  OuterFolds out;
+  out.count = folds;
+  out.by_group = groups_can_be_left_out(campaign, rows, folds);
+  out.fold_of.assign(rows.size(), kNoFold);
+  std::vector<Unit> units = units_of(campaign, rows, out.by_group, seed);
+  std::ranges::stable_sort(units, std::greater<>{}, [](const Unit& unit) { return unit.blocks.size(); });
+  std::vector<std::size_t> blocks(folds, 0);
+  for (const Unit& unit : units) {  // the largest first, each to the smallest fold
+    const auto fold = static_cast<std::size_t>(std::ranges::min_element(blocks) - blocks.begin());
+    for (const std::size_t b : unit.blocks) out.fold_of[b] = static_cast<std::uint32_t>(fold);
+    blocks[fold] += unit.blocks.size();
+  }
+  return out;
+}
+
+Campaign without_fold(const Campaign& campaign, const OuterFolds& folds, std::uint32_t fold) {
+  Campaign rest = campaign;
+  for (std::size_t b = 0; b < rest.blocks.size(); ++b)
+    if (folds.fold_of[b] == fold || folds.fold_of[b] == kNoFold) forget(rest.blocks[b]);
+  return rest;
+}
+
+void require_fitting_rows(const Campaign& campaign, const OuterFolds& folds) {
+  for (std::uint32_t fold = 0; fold < folds.count; ++fold) {
+    const Campaign rest = without_fold(campaign, folds, fold);
+    if (score_of_climatology(rest, fitting_rows(rest)).groups.empty())
+      throw InputError("cross-validation in " + std::to_string(folds.count) + " folds: without fold " +
+                       std::to_string(fold + 1) +
+                       " no quantity has five values that differ: measure more, or leave it out with --no-nested");
+  }
+}
+
+NestedValidation nested_validation(const Campaign& campaign, const Model& start, DiagnosisWork& work,
+                                   const OuterFolds& folds, const Diagnosis& whole) {
+  NestedValidation nested;
+  nested.folds = folds;
+  nested.naming = work.options().naming_in_folds;
+  nested.trials = whole.trials.compare;
+  nested.base.resize(campaign.blocks.size());
+  nested.found.resize(campaign.blocks.size());
+  LoopScope scope;
+  scope.brief = true;
+  scope.given = !nested.naming;
+  for (const DiagnosisRound& round : whole.rounds)
+    if (round.effect != "none" && round.effect != "unexplained") scope.effects.push_back(round.effect);
+  const ObserveOptions how = unseen_runs(campaign, work.options(), nested.trials);
+  for (std::uint32_t fold = 0; fold < folds.count; ++fold) {
+    const Diagnosis part = run_loop(without_fold(campaign, folds, fold), start, work.next(true), scope);
+    simulate_fold(campaign, folds, fold, part.base.model, how, nested.base);
+    simulate_fold(campaign, folds, fold, part.with_effects.model, how, nested.found);
+    nested.loops.push_back(loop_of(campaign, folds, fold, part, nested.naming));
+  }
+  DiagnoseOptions options = work.options();
+  options.trials = whole.trials;
+  simulate_candidates(campaign, options, whole, nested);
+  return nested;
+}
+
+}  // namespace talus

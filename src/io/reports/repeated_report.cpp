@@ -1,0 +1,216 @@
+#include "repeated_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "evidence.hpp"
+#include "talus/base/text.hpp"
+
+namespace talus::io {
+namespace {
+
+constexpr const char* kOutOfFold = "out-of-fold";
+
+std::string interval_text(const Interval& interval, double unit, int decimals) {
+  return with_decimals(unit * interval.low, decimals) + " to " + with_decimals(unit * interval.high, decimals);
+}
+
+/// The p-values of the base fits, in words.
+std::string p_text(const Interval& range) {
+  if (std::isnan(range.low)) return "-";
+  const std::string low = with_digits(range.low, 2), high = with_digits(range.high, 2);
+  return low == high ? low : low + " to " + high;
+}
+
+std::string found_text(const OuterFold& loop) {
+  return loop.effects.empty() ? "nothing" : joined(loop.effects);
+}
+
+const BeforeAfter* out_of_fold(const DiagnosisRecord& record) {
+  const auto found =
+      std::ranges::find_if(record.errors, [](const BeforeAfter& e) { return e.after.rows == kOutOfFold; });
+  return found == record.errors.end() ? nullptr : &*found;
+}
+
+/// Verdicts with the number of base fits that gave each: "4 of 5 block-shape, 1 of 5 none".
+std::string verdicts_text(const Stability& stability) {
+  std::string text;
+  for (const std::string& verdict : verdicts_of(stability))
+    text += (text.empty() ? "" : ", ") +
+            std::to_string(std::ranges::count(stability.fits, verdict, &BaseFitVerdict::effect)) + " of " +
+            std::to_string(stability.fits.size()) + " " + verdict;
+  return text;
+}
+
+/// The folds that found the same, with their number: "4 of 5 block-shape; 1 of 5 none".
+std::string folds_text(const NestedValidation& nested) {
+  std::vector<std::pair<std::string, int>> counts;
+  for (const OuterFold& loop : nested.loops) {
+    const auto same = std::ranges::find(counts, found_text(loop), &std::pair<std::string, int>::first);
+    if (same == counts.end())
+      counts.emplace_back(found_text(loop), 1);
+    else
+      ++same->second;
+  }
+  std::ranges::stable_sort(counts, std::greater<>{}, &std::pair<std::string, int>::second);
+  std::string text;
+  for (const auto& [found, count] : counts)
+    text +=
+        (text.empty() ? "" : "; ") + std::to_string(count) + " of " + std::to_string(nested.loops.size()) + " " + found;
+  return text;
+}
+
+/// What an interval rests on.
+std::string clusters_text(const BeforeAfter& e, const DiagnosisRecord& record) {
+  const bool groups = e.clusters.given && e.clusters.count < e.after.blocks;
+  const bool few = !e.clusters.given && !record.clusters.empty();
+  return std::to_string(e.clusters.count) + (groups ? " groups" : " blocks") +
+         (few ? " (fewer than three groups: blocks are taken to be independent)" : "");
+}
+
+}  // namespace
+
+void judge_nested(const Campaign& campaign, DiagnosisRecord& record) {
+  const NestedValidation& nested = *record.diagnosis.nested;
+  const std::vector<bool> rows = fitting_rows(campaign);
+  const std::vector<std::uint32_t>& folds = nested.folds.fold_of;
+  record.errors.push_back(compared(campaign, scored(kOutOfFold, campaign, nested.base, rows, folds),
+                                   scored(kOutOfFold, campaign, nested.found, rows, folds)));
+  if (nested.ground.empty()) return;
+  const auto judged = [&](const std::vector<BlockRuns>& runs, ScoreRule rule) {
+    return score(campaign, runs, rows, {rule, kFewestSimulated, folds});
+  };
+  const Score ground = judged(nested.ground, ScoreRule::Fair),
+              log_ground = judged(nested.ground, ScoreRule::LogDensity);
+  for (std::size_t i = 0; i < nested.candidates.size(); ++i)
+    if (!nested.candidates[i].empty())
+      record.evidence[i].push_back({kOutOfFold, judged(nested.candidates[i], ScoreRule::Fair),
+                                    judged(nested.candidates[i], ScoreRule::LogDensity), ground, log_ground});
+}
+
+std::string verdict_text(const Diagnosis& diagnosis) {
+  const std::string undecided = undecided_text(diagnosis.stability);
+  return undecided.empty() ? diagnosis.rounds.front().effect : undecided;
+}
+
+Json evidence_of(const DiagnosisRecord& record) {
+  Json list = evidence_json(record.errors, record.clusters, "ground", "found");
+  const std::vector<FittedCandidate>& candidates = record.diagnosis.rounds.front().candidates;
+  for (std::size_t i = 0; i < record.evidence.size(); ++i) {
+    Json entry{{"model", candidates[i].effect}, {"where", candidates[i].where}, {"candidate", true}};
+    for (const CandidateEvidence& e : record.evidence[i])
+      entry[e.rows] = judged_json({e.score, e.log_score}, {e.ground, e.log_ground}, record.clusters);
+    list.push_back(entry);
+  }
+  return list;
+}
+
+Json stability_json(const Stability& stability) {
+  Json verdicts = Json::array(), p_values = Json::array(), seeds = Json::array(), families = Json::array();
+  for (const BaseFitVerdict& fit : stability.fits) {
+    verdicts.push_back(fit.effect);
+    p_values.push_back(json_of(fit.p_value));
+    seeds.push_back(fit.seed);
+  }
+  for (const FamilyTest& family : stability.fits.front().families)
+    families.push_back({{"name", family.name}, {"p_range", json_of(p_range_of(stability, family.name))}});
+  const std::vector<std::string> names = verdicts_of(stability);
+  return {{"fits", stability.fits.size()},
+          {"verdicts", verdicts},
+          {"p_range", json_of(p_range_of(stability))},
+          {"p_values", p_values},
+          {"seeds", seeds},
+          {"reported", stability.reported},
+          {"undecided_between", names.size() > 1 ? Json(names) : Json::array()},
+          {"families", families}};
+}
+
+Json nested_json(const DiagnosisRecord& record) {
+  const NestedValidation& nested = *record.diagnosis.nested;
+  const BeforeAfter& e = *out_of_fold(record);
+  Json loops = Json::array();
+  for (const OuterFold& loop : nested.loops)
+    loops.push_back({{"blocks", loop.blocks},
+                     {"groups", loop.groups},
+                     {"effects", loop.effects},
+                     {"where", loop.where},
+                     {"p_value", json_of(loop.p_value)}});
+  return {{"folds_by", nested.folds.by_group ? "group" : "block"},
+          {"naming_in_folds", nested.naming},
+          {"trials_per_block", nested.trials},
+          {"folds", loops},
+          {"before", json_of(e.before.score.total)},
+          {"after", json_of(e.after.score.total)},
+          {"reduction", json_of(e.reduction.share)},
+          {"ci95", json_of(e.reduction.interval)},
+          {"nats_gained", json_of(e.nats.per_block)},
+          {"nats_gained_ci95", json_of(e.nats.interval)},
+          {"interval_over", clusters_text(e, record)}};
+}
+
+std::string repeated_lines(const DiagnosisRecord& record) {
+  const Diagnosis& d = record.diagnosis;
+  std::string text;
+  if (d.stability.fits.size() > 1) {
+    text += "verdict: " + verdict_text(d) + "\n  of independent base fits: " + verdicts_text(d.stability) + "; p " +
+            p_text(p_range_of(d.stability)) + "\n";
+    for (const FamilyTest& family : d.stability.fits.front().families)
+      if (!std::isnan(family.p_value))
+        text += "  " + family.name + ": p " + p_text(p_range_of(d.stability, family.name)) + " uncorrected\n";
+  }
+  for (const BeforeAfter& e : record.errors)
+    if (e.after.rows != "fit" && !std::isnan(e.nats.per_block))
+      text += "log score, " + rows_in_words(e.after.rows) + " rows: better by " + with_decimals(e.nats.per_block, 2) +
+              " nats per block (95 %: " + interval_text(e.nats.interval, 1.0, 2) + "); intervals over " +
+              clusters_text(e, record) + "\n";
+  if (d.nested)
+    text += "out of fold (" + std::to_string(d.nested->folds.count) + " folds by " +
+            (d.nested->folds.by_group ? "group" : "block") + (d.nested->naming ? "), found: " : "), given: ") +
+            folds_text(*d.nested) + "\n";
+  return text;
+}
+
+std::string repeated_html(const DiagnosisRecord& record) {
+  const Diagnosis& d = record.diagnosis;
+  std::string html;
+  if (d.stability.fits.size() > 1) {
+    html += "<h2>Stability</h2>\n<p>Independent fits of the ground to the same rows: " +
+            escaped(verdicts_text(d.stability)) + ".</p>\n<table><tr><th>family</th><th>p over the fits</th></tr>\n";
+    for (const FamilyTest& family : d.stability.fits.front().families)
+      html += "<tr><td>" + family.name + "</td><td>" + p_text(p_range_of(d.stability, family.name)) + "</td></tr>\n";
+    html += "</table>\n";
+  }
+  if (d.nested) {
+    html +=
+        "<h2>Every block out of its fold</h2>\n<table><tr><th>fold</th><th>blocks left out</th><th>groups</th><th>" +
+        std::string(d.nested->naming ? "found" : "given") + " without them</th><th>p</th></tr>\n";
+    for (std::size_t f = 0; f < d.nested->loops.size(); ++f) {
+      const OuterFold& loop = d.nested->loops[f];
+      html += "<tr><td>" + std::to_string(f + 1) + "</td><td>" + std::to_string(loop.blocks) + "</td><td>" +
+              escaped(joined(loop.groups)) + "</td><td>" + escaped(found_text(loop)) + "</td><td>" +
+              (std::isnan(loop.p_value) ? "" : with_digits(loop.p_value, 2)) + "</td></tr>\n";
+    }
+    html += "</table>\n";
+  }
+  html +=
+      "<h2>Evidence</h2>\n<p>Each effect at its best place against the ground alone, on rows that its numbers have "
+      "not "
+      "seen. Positive is better.</p>\n<table><tr><th>effect</th><th>rows</th><th>error lower by, 95 %</th><th>log "
+      "score "
+      "better by [nats per block], 95 %</th><th>rows by group</th></tr>\n";
+  for (std::size_t i = 0; i < record.evidence.size(); ++i)
+    for (const CandidateEvidence& e : record.evidence[i]) {
+      const Reduction less = reduction(e.ground, e.score, record.clusters);
+      const NatsGained nats = nats_gained(e.log_ground, e.log_score, record.clusters);
+      std::string rows;
+      for (const GroupScore& group : e.score.groups)
+        rows += (rows.empty() ? "" : ", ") + escaped(group.name) + " " + rows_text(group);
+      html += "<tr><td>" + d.rounds.front().candidates[i].effect + "</td><td>" + rows_in_words(e.rows) + "</td><td>" +
+              with_decimals(100.0 * less.share, 1) + " % (" + interval_text(less.interval, 100.0, 1) + ")</td><td>" +
+              with_decimals(nats.per_block, 2) + " (" + interval_text(nats.interval, 1.0, 2) + ")</td><td>" + rows +
+              "</td></tr>\n";
+    }
+  return html + "</table>\n";
+}
+
+}  // namespace talus::io

@@ -1,0 +1,27 @@
+#pragma once
+#include <string>
+
+#include "io/files/json.hpp"
+#include "talus/io/reports/diagnosis_report.hpp"
+
+/// What a diagnosis found when it was repeated: with other random numbers, and without each fold.
+/// docs/diagnosis-evidence.md.
+namespace talus::io {
+
+/// Scores the nested cross-validation of a diagnosis and adds it to the errors and the evidence.
+void judge_nested(const Campaign& campaign, DiagnosisRecord& record);
+
+/// The effect of the first round; "undecided between X and Y" where the base fits differ.
+std::string verdict_text(const Diagnosis& diagnosis);
+
+/// `evidence`: climatology, ground, what was found, then the candidates of the first round.
+Json evidence_of(const DiagnosisRecord& record);
+/// `stability`.
+Json stability_json(const Stability& stability);
+/// `nested`: the folds with what each found.
+Json nested_json(const DiagnosisRecord& record);
+
+/// Stability and folds as HTML.
+std::string repeated_html(const DiagnosisRecord& record);
+
+}  // namespace talus::io

@@ -1,0 +1,73 @@
+"""`talus diagnose` with several base fits and with every block out of its fold: a small campaign, few trials."""
+import json
+import unittest
+
+import luck_test
+
+FAST = ("--trials", "20", "--test-trials", "20", "--fit", "theta_scale", "--most-effects", "1", "-q")
+
+
+class Repeated(luck_test.Luck):
+    """The campaign of luck_test.py, all its rows fitted."""
+    test_score = test_calibrate = test_diagnose = None
+
+    def diagnosis(self, campaign, out, *options):
+        self.run_well("diagnose", campaign, "-o", self.path(out), *FAST, *options, timeout=1800)
+        with open(self.path(out + "/diagnosis.json"), encoding="utf-8") as file:
+            record = json.load(file)
+        for key in ("command", "inputs", "seconds", "cpu_seconds", "times"):
+            record.pop(key, None)
+        return record
+
+    def test_out_of_fold(self):
+        found = self.diagnosis(self.path("campaign.toml"), "first", "--all-rows", "--folds", "3", "--base-fits", "2", "--threads", "1")
+        self.stability(found, 2)
+        nested = found["nested"]
+        self.assertEqual((nested["folds_by"], len(nested["folds"])), ("block", 3))
+        self.assertEqual([f["blocks"] for f in nested["folds"]], [12, 12, 12])
+        self.assertTrue(all(f["effects"] and f["p_value"] is not None for f in nested["folds"]))
+        e = found["error"]["holdout"]
+        self.assertEqual((e["rows"], e["before"], e["after"]), ("out-of-fold", nested["before"], nested["after"]))
+        self.assertAlmostEqual(e["reduction"], 1 - e["after"] / e["before"], places=4)
+        self.evidence(found, "out-of-fold", 36)
+
+    def stability(self, found, fits):
+        s = found["stability"]
+        self.assertEqual((s["fits"], len(s["verdicts"]), len(set(s["seeds"]))), (fits, fits, fits))
+        self.assertEqual(s["p_range"], [min(s["p_values"]), max(s["p_values"])])
+        self.assertEqual(s["seeds"][0], found["seed"])
+        self.assertEqual(bool(s["undecided_between"]), len(set(s["verdicts"])) > 1)
+        self.assertEqual(found["verdict"].startswith("undecided between "), bool(s["undecided_between"]))
+
+    def evidence(self, found, rows, blocks):
+        models = {m["model"]: m[rows] for m in found["evidence"] if not m.get("candidate")}
+        self.assertEqual(set(models), {"climatology", "ground", "found"})
+        self.assertEqual((models["ground"]["reduction"], models["ground"]["nats_gained"]), (0, 0))
+        for m in models.values():
+            self.assertEqual(m["groups"][0]["group"], "stop")
+            self.assertAlmostEqual(m["reduction"], 1 - m["error"] / models["ground"]["error"], places=4)
+            self.assertAlmostEqual(m["nats_gained"], m["log_score"] - models["ground"]["log_score"], places=4)
+            self.assertAlmostEqual(m["log_score"], sum(g["log_score"] * g["rows"] for g in m["groups"]) / blocks, places=4)
+        candidates = [m for m in found["evidence"] if m.get("candidate")]
+        self.assertEqual([m["model"] for m in candidates], [c["effect"] for c in found["candidates"]])
+        for m in candidates:
+            low, high = m[rows]["nats_gained_ci95"]
+            self.assertTrue(low <= m[rows]["nats_gained"] <= high)
+
+    def test_folds_that_do_not_choose(self):
+        found = self.diagnosis(self.path("campaign.toml"), "quick", "--nested", "--folds", "2", "--quick-folds", "--base-fits", "1")
+        self.stability(found, 1)
+        self.assertFalse(found["nested"]["naming_in_folds"])
+        effects = [e for e in found["effects"] if e not in ("none", "unexplained")]
+        self.assertEqual([f["effects"] for f in found["nested"]["folds"]], [effects, effects])
+        self.assertEqual(found["error"]["holdout"]["rows"], "holdout")  # a holdout column is respected
+        self.assertEqual(sum(f["blocks"] for f in found["nested"]["folds"]), 24)
+
+    def test_wrong_choices(self):
+        campaign, out = self.path("campaign.toml"), self.path("out")
+        self.fails(2, "--nested and --no-nested", arguments=("diagnose", campaign, "-o", out, "--nested", "--no-nested"))
+        self.fails(2, "needs at least 26", arguments=("diagnose", campaign, "-o", out, "--nested", "--folds", "13"))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,144 @@
+#include "fit/diagnose/outer_folds.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "support/campaigns.hpp"
+#include "talus/base/error.hpp"
+
+namespace talus::test {
+namespace {
+
+std::vector<std::size_t> sizes_of(const OuterFolds& folds) {
+  std::vector<std::size_t> sizes(folds.count, 0);
+  for (const std::uint32_t fold : folds.fold_of)
+    if (fold != kNoFold) ++sizes.at(fold);
+  return sizes;
+}
+
+TEST(OuterFolds, EveryFittingBlockIsLeftOutOnceAndNoOther) {
+  const Campaign c = campaign_on_slope(45);
+  const OuterFolds folds = outer_folds(c, fitting_rows(c), 5, 1);
+  EXPECT_FALSE(folds.by_group);
+  EXPECT_EQ(sizes_of(folds), std::vector<std::size_t>(5, 6));
+  for (std::size_t b = 0; b < 45; ++b) EXPECT_EQ(folds.fold_of[b] == kNoFold, c.blocks[b].holdout);
+}
+
+TEST(OuterFolds, GoByTheNamesNotByTheOrder) {
+  Campaign c = campaign_on_slope(45);
+  const OuterFolds first = outer_folds(c, fitting_rows(c), 5, 1);
+  std::ranges::reverse(c.blocks);
+  std::vector<std::uint32_t> turned = outer_folds(c, fitting_rows(c), 5, 1).fold_of;
+  std::ranges::reverse(turned);
+  EXPECT_EQ(turned, first.fold_of);
+  EXPECT_NE(outer_folds(c, fitting_rows(c), 5, 2).fold_of, turned);
+}
+
+TEST(OuterFolds, WholeGroupsWhereThereAreEnough) {
+  Campaign c = campaign_on_slope(45);
+  for (std::size_t b = 0; b < 45; ++b) c.blocks[b].group = "site " + std::to_string(b % 7);
+  const OuterFolds folds = outer_folds(c, fitting_rows(c), 5, 1);
+  EXPECT_TRUE(folds.by_group);
+  for (std::size_t a = 0; a < 45; ++a)
+    for (std::size_t b = 0; b < 45; ++b)
+      if (!c.blocks[a].holdout && !c.blocks[b].holdout && c.blocks[a].group == c.blocks[b].group)
+        EXPECT_EQ(folds.fold_of[a], folds.fold_of[b]);
+  const std::vector<std::size_t> sizes = sizes_of(folds);
+  EXPECT_GT(*std::ranges::min_element(sizes), 0U);
+  for (std::size_t b = 0; b < 45; ++b) c.blocks[b].group = "site " + std::to_string(b % 4);
+  EXPECT_FALSE(outer_folds(c, fitting_rows(c), 5, 1).by_group) << "four groups are no five folds";
+  for (std::size_t b = 0; b < 45; ++b) c.blocks[b].group = b < 30 ? "one" : "site " + std::to_string(b);
+  EXPECT_FALSE(outer_folds(c, fitting_rows(c), 5, 1).by_group) << "without the largest, too few are left";
+  c.blocks[0].group.clear();
+  EXPECT_FALSE(outer_folds(c, fitting_rows(c), 2, 1).by_group);
+}
+
+TEST(OuterFolds, TooFewMeasurementsAreAnErrorBeforeTheWork) {
+  Campaign c = campaign_on_slope(45);
+  measure(c, model_of_slope(), 5);
+  const OuterFolds folds = outer_folds(c, fitting_rows(c), 5, 1);
+  EXPECT_NO_THROW(require_fitting_rows(c, folds));
+  int left = 0;
+  for (MeasuredBlock& b : c.blocks) {
+    b.passages[0].reset();
+    if (b.stop && !b.holdout && ++left > 5) b.stop.reset();  // five stops: four without one of their folds
+  }
+  EXPECT_THROW(require_fitting_rows(c, folds), InputError);
+}
+
+/// What a fold predicts of its blocks does not hang on what was measured of them, bit by bit.
+TEST(Nested, AFoldNeverSeesItsOwnRows) {
+  Campaign c = campaign_on_slope(45);
+  measure(c, model_of_slope(), 77);
+  DiagnoseOptions options;
+  options.keys = {"theta_scale"};
+  options.trials = {20, 20, 20};
+  options.naming_in_folds = false;
+  options.threads = 1;
+  options.outer_folds = 2;
+  const OuterFolds folds = outer_folds(c, fitting_rows(c), 2, options.seed);
+  Diagnosis whole;
+  whole.rounds.emplace_back();
+  whole.trials = options.trials;
+  const auto nested = [&](const Campaign& campaign) {
+    DiagnosisWork work(options);
+    return nested_validation(campaign, model_of_slope(), work, folds, whole);
+  };
+  const NestedValidation first = nested(c);
+  for (std::size_t b = 0; b < c.blocks.size(); ++b) {
+    if (folds.fold_of[b] != 0) continue;
+    if (c.blocks[b].stop) *c.blocks[b].stop += Eigen::Vector2d(50.0, 20.0);
+    if (c.blocks[b].passages[0]) c.blocks[b].passages[0]->speed *= 3.0;
+  }
+  const NestedValidation second = nested(c);
+  bool others_differ = false;
+  for (std::size_t b = 0; b < c.blocks.size(); ++b)
+    for (std::uint32_t t = 0; t < first.base[b].trials; ++t) {
+      const double x = first.base[b].x[t], y = second.base[b].x[t];
+      if (folds.fold_of[b] == 0) EXPECT_TRUE(x == y || (std::isnan(x) && std::isnan(y)));
+      if (folds.fold_of[b] == 1) others_differ |= x != y && !std::isnan(x) && !std::isnan(y);
+    }
+  EXPECT_TRUE(others_differ) << "the other fold is fitted to what was changed";
+}
+
+/// The climatology out of its fold is that of the other folds' measurements.
+TEST(Nested, TheClimatologyKnowsNoRowOfItsFold) {
+  Campaign c = campaign_on_slope(45);
+  measure(c, model_of_slope(), 77);
+  const OuterFolds folds = outer_folds(c, fitting_rows(c), 5, 1);
+  const Score out = score_of_climatology(c, fitting_rows(c), {ScoreRule::Fair, kFewestSimulated, folds.fold_of});
+  std::vector<double> speeds;
+  for (const MeasuredBlock& b : c.blocks)
+    if (!b.holdout && b.passages[0]) speeds.push_back(b.passages[0]->speed);
+  double mean = 0.0, squares = 0.0;
+  for (const double v : speeds) mean += v / static_cast<double>(speeds.size());
+  for (const double v : speeds) squares += (v - mean) * (v - mean) / static_cast<double>(speeds.size());
+  std::size_t compared = 0;
+  for (const RowScore& row : out.rows) {
+    if (out.groups[row.group].name != "speed S1") continue;
+    std::vector<double> others;
+    for (std::size_t b = 0; b < c.blocks.size(); ++b)
+      if (!c.blocks[b].holdout && c.blocks[b].passages[0] && folds.fold_of[b] != folds.fold_of[row.block])
+        others.push_back(c.blocks[b].passages[0]->speed);
+    EXPECT_NEAR(row.score, fair_crps(others, c.blocks[row.block].passages[0]->speed) / std::sqrt(squares), 1e-12);
+    ++compared;
+  }
+  EXPECT_GT(compared, 10U);
+}
+
+TEST(Stability, VerdictsThatDifferAreUndecided) {
+  Stability s;
+  for (const char* effect : {"none", "block-shape", "block-shape", "block-mass", "block-shape"})
+    s.fits.push_back({1, effect, "", 0.01 * static_cast<double>(1 + s.fits.size()), {}});
+  EXPECT_EQ(verdicts_of(s), (std::vector<std::string>{"block-shape", "none", "block-mass"}));
+  EXPECT_EQ(undecided_text(s), "undecided between block-shape, none and block-mass");
+  EXPECT_EQ(p_range_of(s).low, 0.01);
+  EXPECT_EQ(p_range_of(s).high, 0.05);
+  for (BaseFitVerdict& fit : s.fits) fit.effect = "none";
+  EXPECT_EQ(undecided_text(s), "");
+}
+
+}  // namespace
+}  // namespace talus::test

@@ -1,0 +1,124 @@
+#include "talus/fit/score/intervals.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/campaigns.hpp"
+
+namespace talus::test {
+namespace {
+
+/// A score of one group: one row of each block.
+Score score_of_rows(const std::vector<double>& values) {
+  Score s;
+  s.groups = {{"g", 0.0, static_cast<std::uint32_t>(values.size())}};
+  for (std::uint32_t b = 0; b < values.size(); ++b) s.rows.push_back({0, b, values[b]});
+  for (const double value : values) s.groups[0].score += value / static_cast<double>(values.size());
+  s.total = s.groups[0].score;
+  return s;
+}
+
+std::vector<std::uint32_t> numbers_to(std::uint32_t n) {
+  std::vector<std::uint32_t> list(n);
+  for (std::uint32_t i = 0; i < n; ++i) list[i] = 1000 * i;
+  return list;
+}
+
+/// The textbook's interval of a mean: 1, 2, 3, 4, 5 have the standard error sqrt(2.5 / 5), t of 4 degrees of freedom is
+/// 2.776445.
+TEST(Intervals, OfAMeanIsTheTextbooks) {
+  const ScoreIntervals i = score_intervals(score_of_rows({1.0, 2.0, 3.0, 4.0, 5.0}), numbers_to(5));
+  EXPECT_NEAR(i.total.low, 3.0 - 2.776445 * std::sqrt(0.5), 1e-6);
+  EXPECT_NEAR(i.total.high, 3.0 + 2.776445 * std::sqrt(0.5), 1e-6);
+  EXPECT_EQ(i.groups[0].low, i.total.low);
+}
+
+/// Blocks of one cluster that say the same are as one block: three clusters of one value each give the interval of
+/// these three values, t of 2 degrees of freedom 4.302653.
+TEST(Intervals, BlocksOfAClusterCountOnce) {
+  std::vector<double> values;
+  std::vector<std::uint32_t> clusters;
+  for (const double v : {1.0, 2.0, 6.0})
+    for (int k = 0; k < 10; ++k) values.push_back(v), clusters.push_back(static_cast<std::uint32_t>(7.0 * v));
+  const Interval i = score_intervals(score_of_rows(values), clusters).total;
+  EXPECT_NEAR(i.high - i.low, 2.0 * 4.302653 * std::sqrt(7.0 / 3.0), 1e-5);  // variance 7
+  const Score s = score_of_rows(values);
+  EXPECT_EQ(used_clusters(s, clusters).count, 3U);
+  EXPECT_TRUE(used_clusters(s, clusters).given);
+  clusters.assign(30, 5);
+  EXPECT_EQ(used_clusters(s, clusters).count, 30U) << "one cluster shows no scatter: each block is its own";
+  EXPECT_FALSE(used_clusters(s, clusters).given);
+}
+
+/// The order of the rows and the names of the clusters change nothing.
+TEST(Intervals, ArePermutationInvariant) {
+  Score before = score_of_rows({3.0, 1.0, 4.0, 1.5, 5.0, 9.0}), after = score_of_rows({2.0, 1.5, 3.0, 1.0, 5.5, 7.0});
+  const Reduction r = reduction(before, after, std::vector<std::uint32_t>{1, 1, 2, 2, 3, 3});
+  std::ranges::reverse(before.rows);
+  std::ranges::reverse(after.rows);
+  const Reduction other = reduction(before, after, std::vector<std::uint32_t>{9, 9, 4, 4, 2, 2});
+  EXPECT_NEAR(r.share, 1.0 - 20.0 / 23.5, 1e-15);
+  EXPECT_NEAR(other.interval.low, r.interval.low, 1e-14);
+  EXPECT_NEAR(other.interval.high, r.interval.high, 1e-14);
+}
+
+TEST(Intervals, NatsGainedArePerBlock) {
+  Score before = score_of_rows({3.0, 1.0, 4.0}), after = score_of_rows({2.0, 1.0, 2.0});
+  before.groups.push_back(before.groups[0]), after.groups.push_back(after.groups[0]);
+  before.rows.push_back({1, 0, 5.0}), after.rows.push_back({1, 0, 2.0});  // the first block again, in another group
+  EXPECT_NEAR(nats_gained(before, after, numbers_to(3)).per_block, (1.0 + 3.0 + 0.0 + 2.0) / 3.0, 1e-15);
+}
+
+/// Two models whose scores come from a known distribution: before skewed (gamma), the difference a share of it with a
+/// scatter, and a part that all blocks of a cluster have in common.
+struct KnownScores {
+  std::size_t clusters, blocks_of_each;
+  double common;
+
+  void draw(Numbers& numbers, std::vector<double>& before, std::vector<double>& after) const {
+    before.clear(), after.clear();
+    for (std::size_t c = 0; c < clusters; ++c) {
+      const double shared = common * numbers.normal();
+      for (std::size_t i = 0; i < blocks_of_each; ++i) {
+        const double b = -0.375 * std::log(numbers.uniform(1e-12, 1.0) * numbers.uniform(1e-12, 1.0));  // mean 0.75
+        before.push_back(b);
+        after.push_back(b * (0.9 - 0.3 * numbers.normal()) - shared);  // mean 0.675
+      }
+    }
+  }
+};
+
+double share_covered(const KnownScores& known, std::uint64_t seed) {
+  constexpr int kSets = 2000;
+  Numbers numbers(seed);
+  std::vector<double> before, after;
+  std::vector<std::uint32_t> clusters;
+  for (std::uint32_t c = 0; c < known.clusters; ++c) clusters.insert(clusters.end(), known.blocks_of_each, c);
+  int covered = 0;
+  for (int set = 0; set < kSets; ++set) {
+    known.draw(numbers, before, after);
+    const Interval i = reduction(score_of_rows(before), score_of_rows(after), clusters).interval;
+    covered += i.low <= 0.1 && 0.1 <= i.high ? 1 : 0;
+  }
+  return covered / static_cast<double>(kSets);
+}
+
+/// 93 to 97 % within five standard errors of 2000 sets (0.5 % each): a normal quantile in place of t, or blocks of a
+/// group taken as independent, fall out of it at 24 blocks.
+TEST(Intervals, CoverAsOftenAsTheySay) {
+  for (const std::size_t n : {24U, 50U, 100U}) {
+    const double alone = share_covered({n, 1, 0.0}, n), grouped = share_covered({n / 2, 2, 0.15}, 1000 + n);
+    RecordProperty("alone_" + std::to_string(n), std::to_string(alone));
+    std::printf("coverage at %zu blocks: %.1f %% of independent ones, %.1f %% of pairs\n", n, 100.0 * alone,
+                100.0 * grouped);
+    for (const double share : {alone, grouped}) {
+      EXPECT_GE(share, 0.93) << n;
+      EXPECT_LE(share, 0.97) << n;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace talus::test
