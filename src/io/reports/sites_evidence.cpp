@@ -13,9 +13,9 @@ struct Scores {
   Score before, after, climatology;
 };
 
-ErrorChange change_of(const Scores& s, std::size_t blocks, std::span<const std::uint32_t> streams) {
+ErrorChange change_of(const Scores& s, std::size_t blocks, std::span<const std::uint32_t> clusters) {
   ErrorChange change{blocks, s.after.rows.size(), s.before.total, s.after.total, s.climatology.total, {}};
-  if (!s.after.rows.empty()) change.reduction = reduction(s.before, s.after, streams);
+  if (!s.after.rows.empty()) change.reduction = reduction(s.before, s.after, clusters);
   return change;
 }
 
@@ -42,14 +42,14 @@ Scores joined_of(std::span<const SiteEvidence> sites, std::span<const std::size_
 SiteEvidence evidence_of(const Site& site, const Model& before, const Model& after, const ObserveOptions& how) {
   const Campaign& campaign = *site.campaign;
   const auto first = observe(campaign, before, how), last = observe(campaign, after, how);
-  const std::vector<std::uint32_t> streams = streams_of(campaign);
+  const std::vector<std::uint32_t> clusters = clusters_of(campaign);
   SiteEvidence out;
   out.site = site.name;
   for (const auto& [name, rows] : {std::pair{"fit", fitting_rows(campaign)}, {"holdout", holdout_rows(campaign)}})
     out.errors.push_back(compared(campaign, scored(name, campaign, first, rows), scored(name, campaign, last, rows)));
-  out.fit = change_of(scores_of(out.errors[0]), out.errors[0].after.blocks, streams);
-  out.holdout = change_of(scores_of(out.errors[1]), out.errors[1].after.blocks, streams);
-  out.headline = change_of(large_groups(scores_of(out.errors[1])), out.errors[1].after.blocks, streams);
+  out.fit = change_of(scores_of(out.errors[0]), out.errors[0].after.blocks, clusters);
+  out.holdout = change_of(scores_of(out.errors[1]), out.errors[1].after.blocks, clusters);
+  out.headline = change_of(large_groups(scores_of(out.errors[1])), out.errors[1].after.blocks, clusters);
   return out;
 }
 
@@ -82,17 +82,18 @@ std::vector<SiteEvidence> evidence_of_sites(std::span<const Site> sites, std::sp
     list.push_back(evidence_of(sites[i], before[i], after[i], how));
     blocks.push_back(sites[i].campaign->blocks.size());
   }
-  std::vector<std::uint32_t> streams;
-  for (const std::vector<std::uint32_t>& own : streams_of_sites(sites))
-    streams.insert(streams.end(), own.begin(), own.end());
+  std::vector<std::uint32_t> clusters;
+  for (const Site& site : sites)
+    for (const std::uint32_t cluster : clusters_of(*site.campaign))
+      clusters.push_back(cluster ^ stream_of_name(site.name));  // groups of one name at two sites are two
   SiteEvidence pooled;
   pooled.site = "pooled";
   std::size_t fit = 0, holdout = 0;
   for (const SiteEvidence& site : list) fit += site.fit.blocks, holdout += site.holdout.blocks;
   const Scores held = joined_of(list, blocks, 1);
-  pooled.fit = change_of(joined_of(list, blocks, 0), fit, streams);
-  pooled.holdout = change_of(held, holdout, streams);
-  pooled.headline = change_of(large_groups(held), holdout, streams);
+  pooled.fit = change_of(joined_of(list, blocks, 0), fit, clusters);
+  pooled.holdout = change_of(held, holdout, clusters);
+  pooled.headline = change_of(large_groups(held), holdout, clusters);
   list.push_back(std::move(pooled));
   return list;
 }
