@@ -176,7 +176,7 @@ void EffectFits::take_fit(FittedModel&& fitted, FittedCandidate& candidate) cons
 
 void EffectFits::measure_gain(const FittedModel& base, FittedCandidate& candidate) const {
   const Difference c = difference(base.objective, candidate.fitted.objective, streams_of(campaign_));
-  candidate.gain = -c.mean;
+  candidate.gain = 0.0 - c.mean;  // not -0
   candidate.gain_interval = {-c.interval.high, -c.interval.low};
 }
 

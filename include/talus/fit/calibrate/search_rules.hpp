@@ -25,7 +25,7 @@ struct SearchRules {
   double curved = 0.03, twisted = 0.01;
   /// Vertices (impacts, pieces of slides and of flights with drag) after which a trajectory of a search ends at its
   /// limit [-]: blocks that crawl take most of the time. docs/diagnosis-time.md has what ordinary ones need.
-  std::uint32_t most_vertices = 10000;
+  std::uint32_t most_vertices = 20000;
   /// Share of the speed that drag may take in one piece of a flight of a search [-]: five times that of a run, with an
   /// error of millimetres.
   double drag_loss = 0.2;
