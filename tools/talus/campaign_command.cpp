@@ -20,6 +20,14 @@ void require_measurements(const std::string& path, const talus::Campaign& campai
                           " of them that differ: hold out fewer blocks, or measure more");
 }
 
+void require_releases(const std::string& path, const talus::Campaign& campaign) {
+  if (campaign.deposits != nullptr)
+    throw talus::InputError(path +
+                            ": [deposits]: talus diagnose needs blocks of known release: a mapped pattern does not "
+                            "tell a missing effect from another ground. Use talus calibrate, and talus score to "
+                            "compare models that you name");
+}
+
 void CampaignCommand::add_to(CLI::App& command, std::uint32_t& trials, std::vector<std::string>& keys,
                              std::uint64_t& seed, int& threads) {
   command.add_option("campaign", campaigns, "measured data: campaign.toml; several: docs/several-campaigns.md")

@@ -24,6 +24,9 @@ inline constexpr int kFewestSearchTrials = 20;
 /// Throws InputError if no quantity was measured often enough to be fitted.
 void require_measurements(const std::string& path, const talus::Campaign& campaign);
 
+/// Throws InputError if the releases of the blocks are not known.
+void require_releases(const std::string& path, const talus::Campaign& campaign);
+
 /// A campaign that was read, and the new folder for its results.
 struct OpenedCampaign {
   talus::io::LoadedCampaign loaded;

@@ -23,15 +23,6 @@ struct Options : CampaignCommand {
   bool nested = false, no_nested = false, quick_folds = false, all_rows = false;
 };
 
-/// Throws InputError if the releases of the blocks are not known.
-void require_releases(const std::string& path, const talus::Campaign& campaign) {
-  if (campaign.deposits != nullptr)
-    throw talus::InputError(path +
-                            ": [deposits]: talus diagnose needs blocks of known release: a mapped pattern does not "
-                            "tell a missing effect from another ground. Use talus calibrate, and talus score to "
-                            "compare models that you name");
-}
-
 void print_error(const char* what, const talus::io::HoldoutError& e) {
   if (std::isnan(e.before))
     std::printf("%s: there are none\n", what);
@@ -114,15 +105,28 @@ void choose_rows(const Options& options, talus::Campaign& campaign, talus::Diagn
                             "; --no-nested does without)");
 }
 
+/// Several campaigns are diagnosed once, on their own fitting rows.
+void require_one_campaign(const Options& options) {
+  const talus::DiagnoseOptions usual;
+  if (options.nested || options.no_nested || options.quick_folds || options.all_rows ||
+      options.how.outer_folds != usual.outer_folds || options.how.base_fits != usual.base_fits)
+    throw talus::InputError(
+        "flags --nested, --no-nested, --folds, --quick-folds, --all-rows and --base-fits are for one campaign: several "
+        "are fitted once, to the rows that they do not hold out");
+}
+
 int diagnose(const Options& options) {
-  if (options.campaigns.size() > 1) return diagnose_several(options, options.how);
+  if (options.campaigns.size() > 1) {
+    require_one_campaign(options);
+    return diagnose_several(options, options.how);
+  }
   catch_signals();
   require_seed(options.how.seed);
   const auto start = std::chrono::steady_clock::now();
   talus::io::DiagnosisRecord record;
   OpenedCampaign opened(options, record);
   const talus::Campaign& campaign = opened.loaded.campaign;
-  require_releases(options.campaign, campaign);
+  require_releases(options.campaigns.front(), campaign);
   record.options = options.how;
   choose_rows(options, opened.loaded.campaign, record.options);
   Progress progress(Progress::mode_of(options.quiet, options.progress == "machine"), 0);

@@ -40,6 +40,7 @@ int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOption
   const auto start = std::chrono::steady_clock::now();
   talus::io::SitesRecord record;
   OpenedSites opened(command, record);
+  for (std::size_t i = 0; i < opened.sites.size(); ++i) require_releases(opened.paths[i], *opened.sites[i].campaign);
   talus::give_own_streams(opened.sites);
   record.files = opened.paths;
   record.options = how;

@@ -41,7 +41,7 @@ std::string sites_calibration_json(const SitesCalibration& c) {
     sites.push_back({{"name", e.site},
                      {"campaign", c.files[i]},
                      {"error", errors_json(e)},
-                     {"evidence", evidence_json(e.errors, "start", "fitted")},
+                     {"evidence", evidence_json(e.errors, e.clusters, "start", "fitted")},
                      {"coverage", coverage_json(e.errors)},
                      {"tail", tail_json(e.errors)}});
     files.push_back(e.site + "/fitted.toml");

@@ -47,6 +47,7 @@ SiteEvidence evidence_of(const Site& site, const Model& before, const Model& aft
   out.site = site.name;
   for (const auto& [name, rows] : {std::pair{"fit", fitting_rows(campaign)}, {"holdout", holdout_rows(campaign)}})
     out.errors.push_back(compared(campaign, scored(name, campaign, first, rows), scored(name, campaign, last, rows)));
+  out.clusters = clusters;
   out.fit = change_of(scores_of(out.errors[0]), out.errors[0].after.blocks, clusters);
   out.holdout = change_of(scores_of(out.errors[1]), out.errors[1].after.blocks, clusters);
   out.headline = change_of(large_groups(scores_of(out.errors[1])), out.errors[1].after.blocks, clusters);

@@ -91,7 +91,7 @@ Json sites_of(const SitesRecord& record) {
                     {"p_value", json_of(site.families.front().p_value)},
                     {"error", errors_json(evidence)},
                     {"families", families},
-                    {"evidence", evidence_json(evidence.errors, "ground", "found")},
+                    {"evidence", evidence_json(evidence.errors, evidence.clusters, "ground", "found")},
                     {"coverage", coverage_json(evidence.errors)},
                     {"tail", tail_json(evidence.errors)},
                     {"base_parameters", ground},

@@ -15,8 +15,9 @@ struct ErrorChange {
 struct SiteEvidence {
   std::string site;  ///< "pooled": all
   ErrorChange fit, holdout;
-  ErrorChange headline;             ///< of the held-out groups with ten rows and more
-  std::vector<BeforeAfter> errors;  ///< of a site alone: fitting and held-out rows
+  ErrorChange headline;                      ///< of the held-out groups with ten rows and more
+  std::vector<BeforeAfter> errors;           ///< of a site alone: fitting and held-out rows
+  std::vector<std::uint32_t> clusters = {};  ///< of a site alone: of its blocks (`clusters_of`)
 };
 
 /// Scores two models of each site on all its rows and on those of all sites together.
