@@ -141,9 +141,9 @@ class Outputs:
     def measured(self):
         self.call("calibrate", "data/elm/campaign.toml", "-o", "fit", "-q", "--trials", "20", "--threads", "2")
         self.call("score", "data/elm/campaign.toml", "--parameters", "fit/fitted.toml", keep="score.txt")
-        self.call("diagnose", "data/elm/campaign.toml", "-o", "elm", "-q", "--trials", "20", "--test-trials", "20")
+        self.call("diagnose", "data/elm/campaign.toml", "-o", "elm", "-q", "--trials", "20", "--test-trials", "20", "--base-fits", "2")
         if not self.options.quick:
-            self.call("diagnose", "shared/campaigns/tschamut/campaign.toml", "-o", "tschamut", "-q", "--trials", "20", "--test-trials", "20")
+            self.call("diagnose", "shared/campaigns/tschamut/campaign.toml", "-o", "tschamut", "-q", "--trials", "20", "--test-trials", "20", "--base-fits", "2")
 
     def gar(self):
         terrain = "shared/terrain/"
