@@ -52,7 +52,18 @@ std::string missing(const Diagnosis& d) {
   return "Nothing that these data can show: what is left looks like noise.";
 }
 
-std::string sure(const DiagnosisRound& first) {
+/// Whether other fits of the ground come to the same verdict.
+std::string repeated(const Stability& stability) {
+  if (stability.fits.size() < 2) return "";
+  const Interval p = p_range_of(stability);
+  const std::string undecided = undecided_text(stability);
+  return " " + std::to_string(stability.fits.size()) +
+         " independent fits of the ground: " + (undecided.empty() ? "the same verdict from each" : bold(undecided)) +
+         ", smallest p from " + with_digits(p.low, 1) + " to " + with_digits(p.high, 1) + ".";
+}
+
+std::string sure(const Diagnosis& d) {
+  const DiagnosisRound& first = d.rounds.front();
   std::vector<std::string> rare;
   for (const FamilyTest& family : first.families)
     if (family.p_corrected <= kRare) rare.push_back(family.name + " (p " + with_digits(family.p_corrected, 1) + ")");
@@ -61,13 +72,13 @@ std::string sure(const DiagnosisRound& first) {
                                   : "What the ground alone leaves depends on: " + listed(rare) +
                                         ", corrected for the number of families.";
   if (found(first) && first.alike.empty()) text += " No other effect that was allowed comes close to it.";
-  return text;
+  return text + repeated(d.stability);
 }
 
 std::string gained(const DiagnosisRecord& record) {
   const HoldoutError& e = record.errors.empty() || small_groups(record).empty() ? record.whole : record.headline;
   if (std::isnan(e.before)) return "It cannot be said: no group of held-out rows is large enough.";
-  const ScoredRows& rows = record.errors.back().after;
+  const ScoredRows& rows = record.errors[record.unseen].after;
   std::string text =
       "On blocks that no fit has seen the error is " + with_decimals(e.before, 3) + " with the ground alone";
   if (record.diagnosis.rounds.size() > 1 && !std::isnan(e.reduction.share))
@@ -109,8 +120,8 @@ std::string next(const DiagnosisRecord& record) {
             " at less than half the amount. ";
   for (const FamilyTest& family : d.rounds.front().families)
     if (!family.may_name) text += "Blocks of at least six different rocks. ";
-  const std::size_t rows = record.errors.empty() ? 0 : record.errors.back().after.blocks;
-  if (rows < kFewRows) text += "More blocks: the gain rests on " + std::to_string(rows) + " held-out ones. ";
+  const std::size_t rows = record.errors.empty() ? 0 : record.errors[record.unseen].after.blocks;
+  if (rows < kFewRows) text += "More blocks: the gain rests on " + std::to_string(rows) + " ones. ";
   return text.empty() ? "Nothing that would change this verdict." : text;
 }
 
@@ -119,7 +130,7 @@ std::string next(const DiagnosisRecord& record) {
 std::string summary_html(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
   const std::pair<const char*, std::string> rows[] = {{"What is missing", missing(d)},
-                                                      {"How sure that is", sure(d.rounds.front())},
+                                                      {"How sure that is", sure(d)},
                                                       {"What was gained", gained(record)},
                                                       {"What could not be decided", undecided(d)},
                                                       {"What to measure next", next(record)}};

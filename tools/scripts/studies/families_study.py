@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Size and power of the tests of families (docs/closing-the-loop.md, "Families") on a campaign.
+"""Size and power of the tests of families (docs/diagnosis-method.md, "Families") on a campaign.
 
   tools/scripts/studies/families_study.py CAMPAIGN.toml MODEL.toml [--rows fit|all] [--truth MODEL.toml] [--refit 60]
                                           [--surface bilinear|creased] [--build build/release]

@@ -5,7 +5,7 @@ namespace talus {
 
 /// Numbers that rule the rounds of the quadratic model in a fit, of `calibrate` and of `diagnose` alike. z is the
 /// distance of a parameter from its start, in standard deviations of its prior. Where no reason is given, the value is
-/// a choice that has not been tuned. docs/closing-the-loop.md, "Rules", has them as a table.
+/// a choice that has not been tuned. docs/diagnosis-method.md, "Rules", has them as a table.
 struct SearchRules {
   /// Standard deviation of the design of the first round [z], where the caller gives none.
   double first_reach = 0.3;

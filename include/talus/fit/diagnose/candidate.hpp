@@ -4,7 +4,7 @@
 namespace talus {
 
 /// Something that may be missing in a model: its place and its parameters. With all parameters at z = 0 it changes
-/// nothing. docs/closing-the-loop.md, "The candidates".
+/// nothing. docs/diagnosis-method.md, "The candidates".
 struct Candidate {
   std::string effect;                   ///< as in diagnosis.json: "vegetation-drag", ..., "instrument-bias"
   std::string where;                    ///< "everywhere", "zone meadow", "day 2", "screen S1 speed", "92 to 110 m"

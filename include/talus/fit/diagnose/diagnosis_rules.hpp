@@ -8,7 +8,7 @@ namespace talus {
 
 /// Numbers that rule a diagnosis, the same for every campaign. Each comment says what the number is, its unit and why
 /// it has this value; where no reason is given, the value is a choice that has not been tuned.
-/// docs/closing-the-loop.md, "Rules", has them as a table.
+/// docs/diagnosis-method.md, "Rules", has them as a table.
 struct DiagnosisRules {
   SearchRules search;  ///< of all its fits
 

@@ -9,7 +9,7 @@
 
 namespace talus {
 
-/// A quantity of a block that is compared: one number. docs/closing-the-loop.md, "The residual".
+/// A quantity of a block that is compared: one number. docs/diagnosis-method.md, "The residual".
 struct Observable {
   enum class Kind { Runout, Lateral, Mass, Crossed, Speed, Jump, Spin, SampleSpeed, SampleSpin } kind;
   std::size_t screen = 0;  ///< of Crossed, Speed, Jump, Spin

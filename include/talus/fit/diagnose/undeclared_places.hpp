@@ -3,7 +3,7 @@
 #include "talus/fit/diagnose/candidate.hpp"
 
 /// Candidates for objects that a campaign does not declare: other ground in a band, a barrier.
-/// docs/closing-the-loop.md, "The candidates".
+/// docs/diagnosis-method.md, "The candidates".
 namespace talus {
 
 /// A band of other ground across the axis, from one distance along it to another [m].

@@ -4,7 +4,7 @@
 
 namespace talus {
 
-/// Result of the score test for a candidate at one place. docs/closing-the-loop.md, "The score test".
+/// Result of the score test for a candidate at one place. docs/diagnosis-method.md, "The score test".
 struct Verdict {
   std::vector<std::size_t> members;  ///< indices into the candidates: one, or neighbouring bands, or days
   Eigen::VectorXd estimate;          ///< of its tested parameters, in units of what one would notice
