@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "support/campaigns.hpp"
-#include "talus/fit/calibrate/calibrate.hpp"
 #include "talus/fit/campaign/deposits.hpp"
 
 namespace talus::test {
@@ -128,8 +127,8 @@ TEST(DepositScore, ByItsDefinition) {
   const auto runs = observe(c, model_of_slope(), trials(30));
   const Score s = score(c, runs, all);
   ASSERT_GE(s.groups.size(), 2U);
-  EXPECT_EQ(s.groups[0].name, "deposits below 0.861 m");  // between (6 m / (pi rho))^(1/3) = 0.5965 and 1.1225 m
-  EXPECT_EQ(s.groups[1].name, "deposits from 0.861 m");
+  EXPECT_EQ(s.groups[0].name, "deposits below 0.86 m");  // between (6 m / (pi rho))^(1/3) = 0.5965 and 1.1226 m
+  EXPECT_EQ(s.groups[1].name, "deposits from 0.86 m");
   for (const RowScore& row : s.rows) {
     if (row.group > 1) continue;
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
@@ -152,8 +151,9 @@ TEST(DepositScore, ByItsDefinition) {
 /// The sum of rows is half the energy distance and a constant of the map: for blocks of one size the difference of two
 /// models' scores is half that of their distances, within the noise of the trials.
 TEST(DepositScore, DiffersFromModelToModelAsTheEnergyDistance) {
-  Model soft = model_of_slope();
-  soft.grounds[0].En50 *= 0.3;
+  Model hard = model_of_slope();  // blocks bounce on over the floor
+  hard.grounds[0].En50 = 60.0;
+  hard.grounds[0].Et50 = 1000.0;
   Campaign c = mapped_on_slope(40, model_of_slope(), 6);
   for (MeasuredBlock& b : c.blocks) b.mass = 300.0, b.axes.setConstant(equivalent_diameter(300.0, 2700.0));
   const std::vector<bool> all(40, true);
@@ -168,7 +168,7 @@ TEST(DepositScore, DiffersFromModelToModelAsTheEnergyDistance) {
     spread = std::sqrt(spread);
   }
   for (std::size_t m = 0; m < 2; ++m) {
-    const auto runs = observe(c, m == 0 ? model_of_slope() : soft, trials(400));
+    const auto runs = observe(c, m == 0 ? model_of_slope() : hard, trials(400));
     score_of[m] = score(c, runs, all).groups[0].score * spread;
     const auto patterns = check_deposits(c, runs, all).patterns;
     ASSERT_EQ(patterns.size(), 1U);
@@ -208,21 +208,6 @@ TEST(DepositCheck, PValuesOfTheRightModelAreUniform) {
     if (patterns[0].p_value <= 0.2) ++low;
   }
   EXPECT_NEAR(low, 0.2 * kSets, 3.5 * std::sqrt(0.2 * 0.8 * kSets));
-}
-
-/// A fit to the pattern alone, from a start of three times the En50, comes back to the truth.
-TEST(DepositScore, AFitToThePatternFindsTheGround) {
-  const Model truth = model_of_slope();
-  const Campaign c = mapped_on_slope(60, truth, 8);
-  Model start = truth;
-  start.grounds[0].En50 *= 3.0;
-  const std::vector<std::string> keys{"En50"};
-  const std::vector<Parameter> free = ground_parameters(c, start, keys, {true});
-  FitOptions how;
-  how.starts = 1;
-  how.rounds = 2;
-  const Fit fit = fit_parameters(c, start, free, fitting_rows(c), how);
-  EXPECT_LT(std::abs(std::log(fit.model.grounds[0].En50 / truth.grounds[0].En50)), 0.4);
 }
 
 }  // namespace
