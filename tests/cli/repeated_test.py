@@ -20,11 +20,11 @@ class Repeated(luck_test.Luck):
         return record
 
     def test_out_of_fold(self):
-        found = self.diagnosis(self.path("campaign.toml"), "first", "--all-rows", "--folds", "3", "--base-fits", "2", "--threads", "1")
+        found = self.diagnosis(self.path("campaign.toml"), "first", "--all-rows", "--folds", "2", "--base-fits", "2")
         self.stability(found, 2)
         nested = found["nested"]
-        self.assertEqual((nested["folds_by"], len(nested["folds"])), ("block", 3))
-        self.assertEqual([f["blocks"] for f in nested["folds"]], [12, 12, 12])
+        self.assertEqual((nested["folds_by"], len(nested["folds"])), ("block", 2))
+        self.assertEqual([f["blocks"] for f in nested["folds"]], [18, 18])
         self.assertTrue(all(f["effects"] and f["p_value"] is not None for f in nested["folds"]))
         e = found["error"]["holdout"]
         self.assertEqual((e["rows"], e["before"], e["after"]), ("out-of-fold", nested["before"], nested["after"]))
