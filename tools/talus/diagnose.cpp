@@ -9,7 +9,6 @@
 
 #include "campaign_command.hpp"
 #include "progress.hpp"
-#include "several_campaigns.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/campaign/model_file.hpp"
@@ -105,21 +104,10 @@ void choose_rows(const Options& options, talus::Campaign& campaign, talus::Diagn
                             "; --no-nested does without)");
 }
 
-/// Several campaigns are diagnosed once, on their own fitting rows.
-void require_one_campaign(const Options& options) {
-  const talus::DiagnoseOptions usual;
-  if (options.nested || options.no_nested || options.quick_folds || options.all_rows ||
-      options.how.outer_folds != usual.outer_folds || options.how.base_fits != usual.base_fits)
-    throw talus::InputError(
-        "flags --nested, --no-nested, --folds, --quick-folds, --all-rows and --base-fits are for one campaign: several "
-        "are fitted once, to the rows that they do not hold out");
-}
-
 int diagnose(const Options& options) {
-  if (options.campaigns.size() > 1) {
-    require_one_campaign(options);
-    return diagnose_several(options, options.how);
-  }
+  if (options.campaigns.size() > 1)
+    throw talus::InputError(options.campaigns[1] + ": diagnose takes one campaign, must be given one at a time. " +
+                            "Several in one fit: talus calibrate a/campaign.toml b/campaign.toml --share NAME");
   catch_signals();
   require_seed(options.how.seed);
   const auto start = std::chrono::steady_clock::now();
@@ -176,7 +164,6 @@ void add_diagnose(CLI::App& app, Action& action) {
   command->footer(
       "Where fewer than 72 blocks are fitted, each gets more trajectories, so that there are as many in all; at most "
       "four times as many.\n\n"
-      "Examples:\n  talus diagnose campaign.toml -o diagnosis\n"
-      "  talus diagnose a/campaign.toml b/campaign.toml -o diagnosis\n\nThen open diagnosis/report.html.");
+      "Example:\n  talus diagnose campaign.toml -o diagnosis\n\nThen open diagnosis/report.html.");
   command->callback([&action, options] { action = [options] { return diagnose(*options); }; });
 }
