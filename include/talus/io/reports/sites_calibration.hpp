@@ -1,4 +1,6 @@
 #pragma once
+#include "talus/fit/calibrate/calibrate.hpp"
+#include "talus/io/reports/fit_record.hpp"
 #include "talus/io/reports/sites_report.hpp"
 
 namespace talus::io {
