@@ -6,8 +6,8 @@
       [--starts 1] [--trials 24]
   both: [--talus build/release/talus] [--work DIR] [--threads 2]
 
-`make`: a slope with a cliff, the ground drawn around upper-talus-3d (the logarithm of each parameter normal, standard deviation
-0.7, within 1.5), a `talus run` of it, and a sample of the stops inside the mapped polygon as deposits.csv, mapped to 1 m, with
+`make`: a slope with a cliff, the ground drawn around forest-road-3d (the logarithm of each parameter normal, standard deviation
+0.5, within 1), a `talus run` of it, and a sample of the stops inside the mapped polygon as deposits.csv, mapped to 1 m, with
 campaign.toml. truth.json has the ground; nothing else reads it. Slopes: straight, concave, a cone; by the number modulo 3.
 
 `cover`: makes repetitions, calibrates each on its deposits alone and prints, per parameter, how often the 95 % interval holds the
@@ -30,7 +30,7 @@ ogr.UseExceptions()
 CELL, COLUMNS, ROWS = 4.0, 90, 120  # 360 m wide, 480 m long; the cliff is in the north
 WEST, SOUTH = 2600000.0, 1200000.0  # EPSG:2056
 CLIFF = (400.0, 430.0)              # from the south [m]
-PRESET = {"theta_scale": 1.0, "psi_scale": 0.9, "En50": 15.0, "Et50": 50.0}  # upper-talus-3d, from which a fit starts
+PRESET = {"theta_scale": 0.4, "psi_scale": 0.3, "En50": 15.0, "Et50": 50.0}  # forest-road-3d, from which a fit starts
 KINDS = ("straight", "concave", "cone")
 
 
@@ -82,7 +82,7 @@ def talus(o, *arguments):
 
 
 def make(o, folder, number):
-    """A campaign of mapped deposits in a folder; returns the truth."""
+    """A campaign of mapped deposits in a folder; returns the number of its blocks."""
     numbers = np.random.default_rng(100 + number)
     kind = KINDS[number % len(KINDS)]
     os.makedirs(folder, exist_ok=True)
@@ -90,7 +90,7 @@ def make(o, folder, number):
     write_box(f"{folder}/cliff.gpkg", 140.0, *CLIFF[:1], 220.0, CLIFF[1])
     mapped = (20.0, 10.0, 340.0, CLIFF[0] - 20.0)
     write_box(f"{folder}/mapped.gpkg", *mapped)
-    truth = {key: PRESET[key] * float(np.exp(np.clip(numbers.normal(0.0, 0.7), -1.5, 1.5))) for key in PRESET}
+    truth = {key: PRESET[key] * float(np.exp(np.clip(numbers.normal(0.0, 0.5), -1.0, 1.0))) for key in PRESET}
     with open(f"{folder}/truth.json", "w", encoding="utf-8") as out:
         json.dump({"kind": kind, "ground": truth, "start": PRESET}, out, indent=1)
     ground = "".join(f"{key} = {value!r}\n" for key, value in truth.items())
@@ -99,15 +99,15 @@ def make(o, folder, number):
                   '[blocks]\ndiameter = { volume_min = 0.03, volume_max = 2, exponent = 0.6 }\n'
                   f'[ground.zones.default]\n{ground}[output]\ntrajectories = 0\n')
     talus(o, "run", f"{folder}/run.toml", "-o", f"{folder}/run", "--overwrite", "-q")
-    write_deposits(o, folder, numbers, mapped)
-    return truth
+    return write_deposits(o, folder, numbers, mapped)
 
 
 def write_deposits(o, folder, numbers, mapped):
     """A sample of the stops in the mapped polygon."""
     west, south, east, north = (WEST + mapped[0], SOUTH + mapped[1], WEST + mapped[2], SOUTH + mapped[3])
     inside = []
-    for feature in ogr.Open(f"{folder}/run/stops.gpkg").GetLayer(0):
+    stops = ogr.Open(f"{folder}/run/stops.gpkg")  # must outlive its layer
+    for feature in stops.GetLayer(0):
         place = feature.GetGeometryRef()
         if feature["end"] not in ("stopped", "trapped"):
             continue
@@ -124,6 +124,7 @@ def write_deposits(o, folder, numbers, mapped):
     with open(f"{folder}/campaign.toml", "w", encoding="utf-8") as out:
         out.write(f'name = "{os.path.basename(folder)}"\ndem = "dem.tif"\n[measurement_error]\nposition_m = 1.0\n[deposits]\n'
                   f'file = "deposits.csv"\nsources = "cliff.gpkg"\nmapped = "mapped.gpkg"\n{strips}')
+    return len(chosen)
 
 
 def cover(o):
@@ -133,11 +134,16 @@ def cover(o):
     lower = []
     for number in range(o.first, o.first + o.repetitions):
         folder = f"{o.work}/{number}"
-        make(o, folder, number)
+        if make(o, folder, number) < o.blocks:
+            print(f"{number}: on this ground fewer than {o.blocks} stops are on the map; left out", flush=True)
+            continue
         with open(f"{folder}/truth.json", encoding="utf-8") as file:
             truth = json.load(file)
+        with open(f"{folder}/start.toml", "w", encoding="utf-8") as out:
+            out.write('[ground]\ndefault = "forest-road-3d"\n')
         begin = time.time()
-        talus(o, "calibrate", f"{folder}/campaign.toml", "-o", f"{folder}/fit", "--overwrite", "-q", "--fit", o.fit, "--starts",
+        talus(o, "calibrate", f"{folder}/campaign.toml", "-o", f"{folder}/fit", "--overwrite", "-q", "--fit", o.fit, "--parameters",
+              f"{folder}/start.toml", "--starts",
               o.starts, "--trials", o.trials, "--threads", o.threads)
         with open(f"{folder}/fit/calibration.json", encoding="utf-8") as file:
             result = json.load(file)
@@ -187,7 +193,7 @@ def main():
     elif not o.folder:
         sys.exit("make: name a folder")
     else:
-        print(make(o, o.folder.rstrip("/"), o.number))
+        print(make(o, o.folder.rstrip("/"), o.number), "blocks")
 
 
 if __name__ == "__main__":
