@@ -56,8 +56,8 @@ std::vector<CurveEnergy> curve_energies(const EnergyBins& bins) {
   for (float energy = 1.0F; energy <= kLargestOfCurves; energy *= 2.0F) energies.push_back({energy, bins.of(energy)});
   for (std::size_t i = 0; i < bins.thresholds().size(); ++i) energies.push_back({bins.thresholds()[i], bins.above(i)});
   std::ranges::sort(energies, {}, &CurveEnergy::energy);
-  const auto twice = std::ranges::unique(energies, {}, [](const CurveEnergy& of) { return of.energy; });
-  energies.erase(twice.begin(), twice.end());
+  const auto same_energy = [](const CurveEnergy& a, const CurveEnergy& b) { return a.energy == b.energy; };
+  energies.erase(std::unique(energies.begin(), energies.end(), same_energy), energies.end());
   return energies;
 }
 
