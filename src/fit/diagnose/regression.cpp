@@ -38,6 +38,7 @@ MatrixXd basis_of(const MatrixXd& columns) {
   if (columns.cols() == 0) return columns;
   Eigen::ColPivHouseholderQR<MatrixXd> qr(columns);
   qr.setThreshold(kFollows);
+  if (qr.rank() == 0) return MatrixXd(columns.rows(), 0);
   return qr.householderQ() * MatrixXd::Identity(columns.rows(), qr.rank());
 }
 

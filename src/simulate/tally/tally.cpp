@@ -56,6 +56,7 @@ std::vector<Value> sorted_by_cell(const std::vector<Value>& values, const std::v
 
 /// Prefetches memory that is needed soon: records are scattered, and waiting for them would take most of the time.
 void fetch(const void* memory, std::size_t bytes) {
+  if (memory == nullptr) return;  // a histogram that has no counts yet
   for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(static_cast<const char*>(memory) + i, 1);
 }
 
