@@ -51,7 +51,9 @@ class Repeated(luck_test.Luck):
             self.assertAlmostEqual(m["log_score"], sum(g["log_score"] * g["rows"] for g in m["groups"]) / blocks, places=4)
         candidates = [m for m in found["evidence"] if m.get("candidate")]
         self.assertEqual([m["model"] for m in candidates], [c["effect"] for c in found["candidates"]])
-        for m in candidates:
+        refined = {c["effect"] for c in found["candidates"] if c["refined"]}
+        self.assertEqual({m["model"] for m in candidates if rows in m}, refined)
+        for m in (m for m in candidates if rows in m):
             low, high = m[rows]["nats_gained_ci95"]
             self.assertTrue(low <= m[rows]["nats_gained"] <= high)
 

@@ -214,8 +214,12 @@ class DiagnosisLoop {
 
   void cross_validate(const FittedModel& base, std::span<FittedCandidate* const> contenders) const {
     if (contenders.empty()) return;
-    const double before = fits_.cross_validated(base);
-    for (FittedCandidate* c : contenders) c->cross_validated = before - fits_.cross_validated(c->fitted);
+    const std::vector<Score> before = fits_.cross_validated(base);
+    for (FittedCandidate* c : contenders) {
+      const Difference change = mean_difference(before, fits_.cross_validated(c->fitted), streams_);
+      c->cross_validated = -change.mean;
+      c->cross_validated_interval = {-change.interval.high, -change.interval.low};
+    }
   }
 
   /// Keeps at most `most` contenders, those with the largest net gains. Each gains at least `least` and may still win.

@@ -281,7 +281,7 @@ std::vector<std::size_t> EffectFits::shuffled_rows(std::uint32_t number) const {
   return order;
 }
 
-double EffectFits::cross_validated(const FittedModel& fitted, ObserveOptions how) const {
+std::vector<Score> EffectFits::cross_validated(const FittedModel& fitted, ObserveOptions how) const {
   const FitProblem problem{campaign_, fitted.model, fitted.free, rows_};
   const FitOptions options = fit_options();
   Fit fit;
@@ -290,18 +290,18 @@ double EffectFits::cross_validated(const FittedModel& fitted, ObserveOptions how
   fit.evaluations = fitted.evaluations;
   const LocalModel local(problem, options, fit, fitted.spread);
   const std::uint32_t orders = options_.rules.fold_orders;
-  double sum = 0.0;
+  std::vector<Score> scores;
   for (std::uint32_t number = 0; number < orders; ++number, how.first_trial += how.trials)  // new trials for each
-    sum += error_in_folds(local, fitted, how, shuffled_rows(number));
-  return sum / orders;
+    scores.push_back(score_in_folds(local, fitted, how, shuffled_rows(number)));
+  return scores;
 }
 
-double EffectFits::error_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
-                                  const std::vector<std::size_t>& order) const {
+Score EffectFits::score_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
+                                 const std::vector<std::size_t>& order) const {
   const std::size_t count = options_.rules.folds;
   std::vector<std::vector<std::size_t>> folds(count);
   for (std::size_t i = 0; i < order.size(); ++i) folds[i % count].push_back(order[i]);
-  return weigh_groups(score(campaign_, runs_in_folds(local, fitted, std::move(how), folds), rows_)).total;
+  return weigh_groups(score(campaign_, runs_in_folds(local, fitted, std::move(how), folds), rows_));
 }
 
 std::vector<BlockRuns> EffectFits::runs_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
@@ -339,8 +339,9 @@ bool EffectFits::confirmed(const FittedModel& base, const FittedCandidate& candi
   const DiagnosisRules& rules = options_.rules;
   ObserveOptions unseen = observe_options(options_.trials.compare);
   unseen.first_trial += (1 + rules.fold_orders) * options_.trials.compare;  // after those of the choice
-  if (cross_validated(base, unseen) - cross_validated(candidate.fitted, unseen) - candidate.place_price < least.unseen)
-    return false;
+  const Difference change =
+      mean_difference(cross_validated(base, unseen), cross_validated(candidate.fitted, unseen), streams_of(campaign_));
+  if (-change.mean - candidate.place_price < least.unseen) return false;
   unseen.first_trial += rules.fold_orders * options_.trials.compare;
   unseen.trials *= rules.confirming;
   const auto error = [&](const FittedModel& fitted) {

@@ -45,9 +45,9 @@ class EffectFits {
   void continue_fit(const FittedModel& base, FittedCandidate& candidate) const;
   /// Continues the fit with twice as many trials: the choice is among these.
   void continue_with_more_trials(const FittedModel& base, FittedCandidate& candidate) const;
-  /// The objective of a model on blocks that its fit has not seen: mean over some random orders of the blocks. Each
+  /// The objective of a model on blocks that its fit has not seen, for each of some random orders of the blocks. An
   /// order is cut into folds; each fold is simulated with the minimum of the quadratic model of the other folds' rows.
-  double cross_validated(const FittedModel& fitted) const {
+  std::vector<Score> cross_validated(const FittedModel& fitted) const {
     const Timesheet::Phase phase(times_, "cross-validation");
     ObserveOptions unseen = observe_options(options_.trials.compare);
     unseen.first_trial += options_.trials.compare;  // the trials before were used to choose between fits
@@ -86,9 +86,9 @@ class EffectFits {
   Start best_start(const FitProblem& problem, const FitOptions& how, const FittedModel& base,
                    const Candidate& candidate, const Verdict& verdict) const;
   std::vector<std::size_t> shuffled_rows(std::uint32_t number) const;
-  double cross_validated(const FittedModel& fitted, ObserveOptions how) const;
-  double error_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
-                        const std::vector<std::size_t>& order) const;
+  std::vector<Score> cross_validated(const FittedModel& fitted, ObserveOptions how) const;
+  Score score_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
+                       const std::vector<std::size_t>& order) const;
   std::vector<BlockRuns> runs_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
                                        std::span<const std::vector<std::size_t>> folds) const;
 

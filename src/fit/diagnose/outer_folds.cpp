@@ -96,25 +96,19 @@ void simulate_fold(const Campaign& campaign, const OuterFolds& folds, std::uint3
     if (how.blocks[b]) runs[b] = std::move(seen[b]);
 }
 
-/// Whether the quadratic model can be made of a fit: it was fitted, and its evaluations are of its own parameters.
-bool has_evaluations(const FittedModel& fitted) {
-  return !fitted.free.empty() && !fitted.evaluations.empty() &&
-         std::ranges::all_of(fitted.evaluations, [&](const Evaluation& e) { return e.z.size() == fitted.z.size(); });
-}
-
 void simulate_candidates(const Campaign& campaign, const DiagnoseOptions& options, const Diagnosis& whole,
                          NestedValidation& nested) {
+  if (whole.base.free.empty()) return;
   const std::vector<bool> rows = fitting_rows(campaign);
   const EffectFits fits(campaign, options, rows,
                         [&](double) { return !options.proceed || options.proceed(kCandidates); });
   const ObserveOptions how = unseen_runs(campaign, options, nested.trials);
   const auto simulated = [&](const FittedModel& fitted) {
-    return has_evaluations(fitted) ? fits.out_of_fold(fitted, nested.folds.fold_of, nested.folds.count, how)
-                                   : std::vector<BlockRuns>{};
+    return fits.out_of_fold(fitted, nested.folds.fold_of, nested.folds.count, how);
   };
   nested.ground = simulated(whole.base);
   for (const FittedCandidate& candidate : whole.rounds.front().candidates)
-    nested.candidates.push_back(simulated(candidate.fitted));
+    nested.candidates.push_back(candidate.refined ? simulated(candidate.fitted) : std::vector<BlockRuns>{});
 }
 
 }  // namespace

@@ -60,4 +60,19 @@ Difference difference(const Score& before, const Score& after, std::span<const s
   return d;
 }
 
+Difference mean_difference(std::span<const Score> before, std::span<const Score> after,
+                           std::span<const std::uint32_t> streams) {
+  TALUS_EXPECT(!before.empty() && before.size() == after.size(), "scores in pairs");
+  const double share = 1.0 / static_cast<double>(before.size());
+  Difference mean;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const Difference one = difference(before[i], after[i], streams);
+    mean.draws.resize(one.draws.size(), 0.0);
+    mean.mean += share * one.mean;
+    for (std::size_t draw = 0; draw < one.draws.size(); ++draw) mean.draws[draw] += share * one.draws[draw];
+  }
+  mean.interval = middle(mean.draws);
+  return mean;
+}
+
 }  // namespace talus

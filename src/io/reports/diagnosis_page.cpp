@@ -169,10 +169,17 @@ std::string unit_text(const Parameter& parameter) {
   return parameter.unit.empty() || parameter.unit == "1" ? "" : " " + parameter.unit;
 }
 
+std::string gain_text(double gain, const Interval& interval) {
+  if (std::isnan(gain)) return "";
+  return with_decimals(gain, 3) + " (" + with_decimals(interval.low, 3) + " to " + with_decimals(interval.high, 3) +
+         ")";
+}
+
 std::string candidates_table(const DiagnosisRound& round, const std::vector<HoldoutError>& holdout) {
   std::string html =
       "<table><tr><th>effect</th><th>where</th><th>parameters</th><th>p of the score test</th><th>objective lower "
-      "by (fitting rows, 95 %)</th><th>held-out error after</th><th>reduction, 95 %</th></tr>\n";
+      "by (fitting rows, 95 %)</th><th>in cross-validation</th><th>held-out error after</th><th>reduction, 95 "
+      "%</th></tr>\n";
   for (std::size_t i = 0; i < round.candidates.size(); ++i) {
     const FittedCandidate& c = round.candidates[i];
     std::string numbers;
@@ -180,9 +187,9 @@ std::string candidates_table(const DiagnosisRound& round, const std::vector<Hold
       numbers += c.parameters[k].key + " = " + with_digits(c.values[k], 3) + unit_text(c.parameters[k]) + "<br>";
     const HoldoutError& e = holdout[i];
     html += "<tr><td>" + c.effect + "</td><td>" + escaped(c.where) + "</td><td>" + numbers + "</td><td>" +
-            with_decimals(c.p_value, 4) + "</td><td>" + with_decimals(c.gain, 3) + " (" +
-            with_decimals(c.gain_interval.low, 3) + " to " + with_decimals(c.gain_interval.high, 3) + ")" +
-            "</td><td>" + value_text(e.after) + "</td><td>" + reduction_text(e.reduction) + "</td></tr>\n";
+            with_decimals(c.p_value, 4) + "</td><td>" + gain_text(c.gain, c.gain_interval) + "</td><td>" +
+            gain_text(c.cross_validated, c.cross_validated_interval) + "</td><td>" + value_text(e.after) + "</td><td>" +
+            reduction_text(e.reduction) + "</td></tr>\n";
   }
   return html + "</table>\n";
 }

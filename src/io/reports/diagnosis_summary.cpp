@@ -62,6 +62,15 @@ std::string repeated(const Stability& stability) {
          ", smallest p from " + with_digits(p.low, 1) + " to " + with_digits(p.high, 1) + ".";
 }
 
+/// Says so where the interval of the gain in cross-validation, which decided, holds zero.
+std::string gain_in_doubt(const FittedCandidate& chosen) {
+  const Interval& gain = chosen.cross_validated_interval;
+  if (!(gain.low <= 0.0)) return "";
+  return " Blocks left out of its fit do not show its gain for sure: the objective is lower by " +
+         with_decimals(chosen.cross_validated, 3) + " (95 %: " + with_decimals(gain.low, 3) + " to " +
+         with_decimals(gain.high, 3) + ").";
+}
+
 std::string sure(const Diagnosis& d) {
   const DiagnosisRound& first = d.rounds.front();
   std::vector<std::string> rare;
@@ -72,6 +81,7 @@ std::string sure(const Diagnosis& d) {
                                   : "What the ground alone leaves depends on: " + listed(rare) +
                                         ", corrected for the number of families.";
   if (found(first) && first.alike.empty()) text += " No other effect that was allowed comes close to it.";
+  if (found(first)) text += gain_in_doubt(first.candidates.front());
   return text + repeated(d.stability);
 }
 

@@ -41,6 +41,7 @@ struct FittedCandidate {
   double price = 0.0;                  ///< gain that its fitted numbers and those of its place must bring
   double place_price = 0.0;            ///< the part of the price for its place, which was chosen by all blocks
   double cross_validated = kNotGiven;  ///< gain on blocks that its fit has not seen; NaN: not cross-validated
+  Interval cross_validated_interval;   ///< 95 %, paired bootstrap over blocks
   double amount = 0.0;                 ///< largest of its tested parameters, in units of what one would notice
   double chosen_share = 0.0;           ///< share of the bootstraps in which it has the lowest objective of all
   FittedModel fitted;

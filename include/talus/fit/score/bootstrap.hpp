@@ -29,4 +29,11 @@ struct Difference {
 Difference difference(const Score& before, const Score& after, std::span<const std::uint32_t> streams,
                       std::uint32_t draws = 1000, std::uint64_t seed = 1);
 
+/// The mean of the differences of pairs of scores of the same rows, such as those of several cross-validations; the
+/// draws take the same blocks of every pair.
+///
+/// @param before, after  one size, at least 1
+Difference mean_difference(std::span<const Score> before, std::span<const Score> after,
+                           std::span<const std::uint32_t> streams);
+
 }  // namespace talus

@@ -77,5 +77,19 @@ TEST(StandardErrors, LoseWhatTheGroundImitates) {
   EXPECT_NEAR(free.standard_errors()[0], 1.0 / std::sqrt(9.0 - 9.0 / 4.0), 1e-6);
 }
 
+/// A ground 3 standard deviations outside its prior, in a linear model: information 4 of the ground, 9 of the effect, 3
+/// between them, no effect. The penalised fit ends 3 / (4 + 1) = 0.6 short of the ground. What is left of it must not
+/// pass for the effect: a further step of the ground, with a prior centred at the fit, takes four fifths of it away.
+/// (With the gradient of the prior in the score the ground would not move, and all of it would pass for the effect.)
+TEST(Prior, ThatHoldsTheGroundBackIsHardlyTakenForAnEffect) {
+  const Eigen::Matrix2d covariance{{4.0, 3.0}, {3.0, 9.0}};
+  const Projection projection({{0}, Eigen::Vector2d(0.0, 1.0), {false}}, covariance, Eigen::VectorXd::Ones(1), 1.0);
+  const double short_by = 0.6, held = 3.0 * short_by, moved = held / 5.0;
+  Eigen::MatrixXd scores(2, 2);  // of two blocks: half each
+  scores.colwise() = 0.5 * short_by * Eigen::Vector2d(4.0, 3.0);
+  const double information = 9.0 - 2.0 * 9.0 / 5.0 + 4.0 * 9.0 / 25.0;
+  EXPECT_NEAR(projection.verdict(scores).estimate[0], moved / information, 1e-6);
+}
+
 }  // namespace
 }  // namespace talus::test

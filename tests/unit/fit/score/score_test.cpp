@@ -375,6 +375,20 @@ TEST(Bootstrap, VarianceOfAMeanIsRubins) {
   }
 }
 
+/// Five orders with the same rows' scores are one order; two that cancel leave nothing, draw by draw.
+TEST(MeanDifference, TakesTheSameBlocksOfEveryPair) {
+  const std::vector<std::uint32_t> ids = streams(6);
+  const Score zero = score_of_rows({0, 0, 0, 0, 0, 0}), up = score_of_rows({1, 2, 4, 3, 6, 5}),
+              down = score_of_rows({-1, -2, -4, -3, -6, -5});
+  const Difference one = difference(zero, up, ids);
+  const Difference five = mean_difference(std::vector<Score>(5, zero), std::vector<Score>(5, up), ids);
+  EXPECT_NEAR(five.mean, 3.5, 1e-12);
+  EXPECT_NEAR(five.interval.low, one.interval.low, 1e-12);
+  EXPECT_NEAR(five.interval.high, one.interval.high, 1e-12);
+  const Difference none = mean_difference(std::vector<Score>{zero, zero}, std::vector<Score>{up, down}, ids);
+  for (const double draw : none.draws) EXPECT_NEAR(draw, 0.0, 1e-12);
+}
+
 /// The interval of a mean is 2 t standard errors wide: t of 399 degrees of freedom is 1.965927, the textbook's
 /// interval.
 TEST(Intervals, WidthOfTheIntervalOfAMean) {
