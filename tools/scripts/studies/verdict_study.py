@@ -1,0 +1,117 @@
+#!/usr/bin/python3
+"""Whether the verdict of `talus diagnose` hangs on luck: one campaign in ten ways. docs/diagnosis-results.md.
+
+  tools/scripts/studies/verdict_study.py CAMPAIGN.toml [--talus build/release/talus] [--work verdicts] [-- OPTIONS of diagnose]
+
+Five seeds; the rows of every table in two other orders; without half of the held-out blocks; with held-out blocks added
+(copies under other names, before the rest); one thread. A diagnosis that is there already is not run again.
+Prints the verdict and figures of each, and in how many the verdict, the names and the figures are those of the first: a
+figure agrees if it lies in the first one's 95 % interval. Where the same seed and fitting rows are used, it must be equal.
+"""
+import argparse
+import csv
+import json
+import os
+import random
+import shutil
+import subprocess
+import tomllib
+
+TABLES = ("blocks", "stops", "passages", "samples")
+
+
+class Tables:
+    """The tables of a campaign by block, which can be written again as another campaign."""
+
+    def __init__(self, campaign):
+        self.folder = os.path.dirname(os.path.abspath(campaign))
+        with open(campaign, "rb") as file:
+            self.names = {t: n for t, n in tomllib.load(file).items() if t in TABLES}
+        self.toml = os.path.basename(campaign)
+        self.rows = {}
+        for table, name in self.names.items():
+            with open(f"{self.folder}/{name}", encoding="utf-8") as file:
+                self.rows[table] = list(csv.DictReader(file))
+        self.held_out = [b["id"] for b in self.rows["blocks"] if b.get("holdout") == "1"]
+
+    def write(self, folder, rows):
+        shutil.copytree(self.folder, folder, dirs_exist_ok=True, copy_function=shutil.copyfile)
+        for table, name in self.names.items():
+            with open(f"{folder}/{name}", "w", encoding="utf-8", newline="") as file:
+                writer = csv.DictWriter(file, self.rows[table][0].keys())
+                writer.writeheader()
+                writer.writerows(rows[table])
+        return f"{folder}/{self.toml}"
+
+    def shuffled(self, seed):
+        mixed = random.Random(seed)
+        return {table: mixed.sample(rows, len(rows)) for table, rows in self.rows.items()}
+
+    def without_half(self):
+        gone = set(self.held_out[::2])
+        return {table: [r for r in rows if r["id"] not in gone] for table, rows in self.rows.items()}
+
+    def with_more(self):
+        """Copies of held-out blocks under names that sort before the others."""
+        copied = set(self.held_out[::3])
+        return {table: [r | {"id": "0-copy-" + r["id"]} for r in rows if r["id"] in copied] + rows
+                for table, rows in self.rows.items()}
+
+
+def variants(tables):
+    """Name, tables and options of each diagnosis."""
+    for seed in range(1, 6):
+        yield f"seed {seed}", tables.rows, ["--seed", str(seed)]
+    yield "shuffled once", tables.shuffled(1), []
+    yield "shuffled again", tables.shuffled(2), []
+    if tables.held_out:
+        yield "half of the held-out blocks", tables.without_half(), []
+        yield "more held-out blocks", tables.with_more(), []
+    yield "one thread", tables.rows, ["--threads", "1"]
+
+
+def diagnosed(talus, campaign, out, options):
+    if not os.path.exists(f"{out}/diagnosis.json"):
+        subprocess.run([talus, "diagnose", campaign, "-o", out, "-q", *options], check=True)
+    with open(f"{out}/diagnosis.json", encoding="utf-8") as file:
+        return json.load(file)
+
+
+def report(name, found):
+    fit, unseen = found["error"]["fit"], found["error"]["holdout"]
+    p = min(f["p_corrected"] for f in found["families"] if f["p_corrected"] is not None)
+    print(f"{name:28} {found['verdict']:32} {'+'.join(found['effects']):28} {p:8.4f} {fit['before']:.4f} {fit['after']:.4f}  "
+          f"{unseen['before']:.4f} {unseen['after']:.4f} {100 * unseen['reduction']:5.1f} "
+          f"({100 * unseen['ci95'][0]:.1f} to {100 * unseen['ci95'][1]:.1f}) %")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("campaign")
+    parser.add_argument("--talus", default="build/release/talus")
+    parser.add_argument("--work", default="verdicts")
+    parser.add_argument("options", nargs="*", help="of `talus diagnose`, after --")
+    given = parser.parse_args()
+    tables = Tables(given.campaign)
+    print(f"{'':28} {'verdict':32} {'effects':28} {'least p':>8} fit: before, after; unseen: before, after, lower by (95 %)")
+    all_found = []
+    for name, rows, options in variants(tables):
+        folder = f"{given.work}/{name.replace(' ', '_')}"
+        campaign = tables.write(f"{folder}/campaign", rows)
+        found = diagnosed(given.talus, campaign, f"{folder}/out", [*given.options, *options])
+        report(name, found)
+        all_found.append(found)
+    first = all_found[0]
+    low, high = first["error"]["holdout"]["ci95"]
+    alike = {
+        "verdict": [f["verdict"] == first["verdict"] for f in all_found],
+        "effects": [f["effects"] == first["effects"] for f in all_found],
+        "reduction within the first one's interval": [low <= f["error"]["holdout"]["reduction"] <= high for f in all_found],
+        "equal figures of the fit (seed 1)": [f["error"]["fit"] == first["error"]["fit"] for f in [first, *all_found[5:]]],
+    }
+    for what, same in alike.items():
+        print(f"{what}: {sum(same)} of {len(same)}")
+
+
+if __name__ == "__main__":
+    main()
