@@ -1,4 +1,4 @@
-"""Several campaigns in one call: `calibrate A B --share NAME`, on a slope that the program itself has measured."""
+"""Several campaigns in one call: `calibrate A B --share NAME` and `diagnose A B`, on a slope that the program itself has measured."""
 import csv
 import json
 import math
@@ -108,14 +108,33 @@ class Calibrate(Sites):
         with open(self.path("b/blocks.csv"), encoding="utf-8") as file:
             rows = list(csv.reader(file))
         self.table("b", "blocks", ",".join(rows[0]), [[*r[:-1], "1"] for r in rows[1:]])
-        self.fails(2, b, "nothing to fit to", arguments=("calibrate", a, b, *out))
+        self.fails(2, b, "nothing to fit to", arguments=("diagnose", a, b, *out))
         self.assertFalse(os.path.exists(self.path("out")))
 
 
 class Diagnose(Sites):
-    def test_takes_one_campaign(self):
-        a, b = self.measure("a", 0, 5, GROUND), self.measure("b", 40, 6, GROUND)
-        self.fails(2, b, "one campaign", arguments=("diagnose", a, b, "-o", self.path("out")))
+    def test_one_table_of_both(self):
+        """An effect of the shape that both share. The order of the campaigns changes no figure."""
+        kind = GROUND + "[effects.block-shape]\nloss = 1.5\n"
+        paths = [self.measure("north", 0, 5, kind), self.measure("south", 40, 6, kind)]
+        options = ("--fit", "theta_scale", "--test-trials", "20", "--most-effects", "1")
+        first = self.result("diagnose", paths, "first", *options, "--threads", "1")
+        self.assertEqual(self.result("diagnose", paths[::-1], "second", *options, "--threads", "2"), first)
+        self.assertEqual([s["name"] for s in first["sites"]], ["north", "south"])
+        pooled = first["families"][0]
+        self.assertEqual((pooled["site"], pooled["name"]), ("pooled", "block property"))
+        self.assertLess(pooled["p_value"], 0.01)
+        self.assertEqual(first["effect"], "block-shape")
+        for site in first["sites"]:
+            self.assertEqual(site["error"]["holdout"]["blocks"], 12)
+            for name in site["files"]:
+                self.assertIn("theta_scale", self.text(f"first/{name}"))
+        losses = {line for s in ("north", "south") for line in self.text(f"first/{s}/with_effect.toml").splitlines()
+                  if line.startswith("loss")}
+        self.assertEqual(len(losses), 1)  # shared
+        page = self.text("first/report.html")
+        self.assertIn("pooled", page)
+        self.assertNotIn("http", page)
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@
 
 #include "campaign_command.hpp"
 #include "progress.hpp"
+#include "several_campaigns.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/campaign/model_file.hpp"
@@ -105,9 +106,7 @@ void choose_rows(const Options& options, talus::Campaign& campaign, talus::Diagn
 }
 
 int diagnose(const Options& options) {
-  if (options.campaigns.size() > 1)
-    throw talus::InputError(options.campaigns[1] + ": diagnose takes one campaign, must be given one at a time. " +
-                            "Several in one fit: talus calibrate a/campaign.toml b/campaign.toml --share NAME");
+  if (options.campaigns.size() > 1) return diagnose_several(options, options.how);
   catch_signals();
   require_seed(options.how.seed);
   const auto start = std::chrono::steady_clock::now();
@@ -164,6 +163,7 @@ void add_diagnose(CLI::App& app, Action& action) {
   command->footer(
       "Where fewer than 72 blocks are fitted, each gets more trajectories, so that there are as many in all; at most "
       "four times as many.\n\n"
-      "Example:\n  talus diagnose campaign.toml -o diagnosis\n\nThen open diagnosis/report.html.");
+      "Examples:\n  talus diagnose campaign.toml -o diagnosis\n"
+      "  talus diagnose a/campaign.toml b/campaign.toml -o diagnosis\n\nThen open diagnosis/report.html.");
   command->callback([&action, options] { action = [options] { return diagnose(*options); }; });
 }

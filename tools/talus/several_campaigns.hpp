@@ -2,6 +2,7 @@
 #include "campaign_command.hpp"
 #include "talus/fit/calibrate/fit_problem.hpp"
 #include "talus/fit/campaign/sites.hpp"
+#include "talus/fit/diagnose/diagnosis.hpp"
 #include "talus/io/reports/fit_report.hpp"
 
 /// Several campaigns that were read, in the order of their names, and the new folder for their results.
@@ -20,13 +21,14 @@ struct OpenedSites {
   void write_models(std::span<const talus::Model> models, const char* name, const std::string& heading) const;
 };
 
-/// The work of `calibrate` where there are several campaigns.
+/// The work of `calibrate` and `diagnose` where there are several campaigns.
 ///
 /// @param start  file of a model; empty: the default preset
 /// @param fit    keys
 /// @param share  those that the sites share
 int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how, const std::string& start,
                     const std::vector<std::string>& fit, const std::vector<std::string>& share);
+int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOptions& how);
 
 /// Chooses what is fitted: the asked parameters of the zones that simulated paths touch, then the asked numbers of
 /// effects.

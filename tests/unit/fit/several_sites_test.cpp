@@ -1,3 +1,5 @@
+#include "talus/fit/diagnose/several_sites.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,8 +10,6 @@
 #include "support/campaigns.hpp"
 #include "talus/base/error.hpp"
 #include "talus/fit/calibrate/calibrate.hpp"
-#include "talus/fit/calibrate/joint_parameters.hpp"
-#include "talus/fit/campaign/sites.hpp"
 #include "talus/fit/diagnose/property_test.hpp"
 #include "talus/fit/score/joined_scores.hpp"
 

@@ -176,7 +176,7 @@ def one(o, effect, magnitude, count, k):
     found, truth = diagnose(o, folder)
     e = found["error"]["holdout"]
     row = dict(effect=effect, magnitude=magnitude, blocks=count, found=found["effect"], alike=" ".join(found["indistinguishable_from"]),
-               p=found["rounds"][0]["p_value"], before=e["before"], after=e["after"], truth=truth, seconds=found["seconds"])
+               p=found["rounds"][0]["p_value"], before=e["before"], after=e["after"], truth=truth, seconds=found["seconds"]["wall"])
     print(f"{effect} x{magnitude:g}, {count} blocks, {k}: {row['found']} ({row['alike']}) p {row['p']:.4f}, held-out {row['before']:.3f} -> "
           f"{row['after']:.3f}, truth {truth:.3f}, {row['seconds']:.0f} s", flush=True)
     return row

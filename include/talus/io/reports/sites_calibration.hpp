@@ -1,6 +1,4 @@
 #pragma once
-#include "talus/fit/calibrate/calibrate.hpp"
-#include "talus/io/reports/fit_record.hpp"
 #include "talus/io/reports/sites_report.hpp"
 
 namespace talus::io {

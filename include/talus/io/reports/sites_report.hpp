@@ -1,6 +1,6 @@
 #pragma once
-#include "talus/fit/campaign/sites.hpp"
-#include "talus/io/reports/score_report.hpp"
+#include "talus/fit/diagnose/several_sites.hpp"
+#include "talus/io/reports/diagnosis_report.hpp"
 
 namespace talus::io {
 
@@ -26,5 +26,19 @@ struct SiteEvidence {
 /// @return the sites in their order, "pooled" last
 std::vector<SiteEvidence> evidence_of_sites(std::span<const Site> sites, std::span<const Model> before,
                                             std::span<const Model> after, const ObserveOptions& how);
+
+/// Results of `talus diagnose` with several campaigns.
+struct SitesRecord : FitRecord {
+  DiagnoseOptions options;
+  SitesDiagnosis diagnosis;
+  std::vector<SiteEvidence> evidence;
+  std::vector<std::string> files;  ///< by site: its campaign.toml
+  double seconds = 0.0;
+};
+
+/// The text of diagnosis.json, of report.html, and of the summary on the terminal. docs/several-campaigns.md.
+std::string sites_json(const SitesRecord& record);
+std::string sites_page(const SitesRecord& record);
+std::string sites_summary(const SitesRecord& record);
 
 }  // namespace talus::io

@@ -1,0 +1,303 @@
+#include "joint_fits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fit/calibrate/local_model.hpp"
+#include "talus/fit/calibrate/calibrate.hpp"
+#include "talus/fit/campaign/block_draws.hpp"
+#include "talus/fit/score/joined_scores.hpp"
+
+namespace talus {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::uint32_t kFirstRound = 20;  // the rounds of the sites' own fits lie before it
+
+/// A matrix with another one after its last row and column.
+MatrixXd extended(const MatrixXd& first, const MatrixXd& second) {
+  MatrixXd all = MatrixXd::Zero(first.rows() + second.rows(), first.cols() + second.cols());
+  all.topLeftCorner(first.rows(), first.cols()) = first;
+  all.bottomRightCorner(second.rows(), second.cols()) = second;
+  return all;
+}
+
+VectorXd extended(const VectorXd& first, const VectorXd& second) {
+  VectorXd all(first.size() + second.size());
+  all << first, second;
+  return all;
+}
+
+std::vector<std::string> names_of(std::span<const Site> sites) {
+  std::vector<std::string> names;
+  for (const Site& site : sites) names.push_back(site.name);
+  return names;
+}
+
+/// The parameters of a candidate by site.
+std::vector<std::vector<Parameter>> parameters_of(const SiteCandidates& candidate) {
+  std::vector<std::vector<Parameter>> own;
+  for (const std::optional<Candidate>& c : candidate) own.push_back(c ? c->parameters : std::vector<Parameter>{});
+  return own;
+}
+
+/// The models prepared for a candidate, whose parameters are still zero.
+std::vector<Model> models_without(const JointModel& base, const SiteCandidates& candidate) {
+  std::vector<Model> models;
+  for (std::size_t i = 0; i < candidate.size(); ++i)
+    models.push_back(candidate[i]
+                         ? with(base.models[i], *candidate[i], VectorXd::Zero(std::ssize(candidate[i]->parameters)))
+                         : base.models[i]);
+  return models;
+}
+
+const Candidate& first_of(const SiteCandidates& candidate) {
+  return **std::ranges::find_if(candidate, [](const std::optional<Candidate>& c) { return c.has_value(); });
+}
+
+}  // namespace
+
+JointFits::JointFits(std::span<const Site> sites, const DiagnoseOptions& options, std::function<bool(double)> proceed)
+    : sites_(sites), options_(options), proceed_(std::move(proceed)) {
+  for (const Site& site : sites_) {
+    rows_.push_back(fitting_rows(*site.campaign));
+    const std::vector<std::uint32_t> own = streams_of(*site.campaign);
+    streams_.insert(streams_.end(), own.begin(), own.end());
+  }
+}
+
+std::size_t JointFits::blocks() const {
+  std::size_t count = 0;
+  for (const std::vector<bool>& rows : rows_) count += static_cast<std::size_t>(std::ranges::count(rows, true));
+  return count;
+}
+
+FitProblem JointFits::problem_of(const JointParameters& parameters, const std::vector<Model>& start) const {
+  std::vector<FitSite> list;
+  for (std::size_t i = 0; i < sites_.size(); ++i)
+    list.push_back({sites_[i].name, *sites_[i].campaign, start[i], rows_[i], parameters.sites[i]});
+  return {std::move(list), parameters.free};
+}
+
+FitOptions JointFits::fit_options() const {
+  FitOptions how;
+  how.trials = options_.trials.search;
+  how.comparison_trials = 4 * options_.trials.search;
+  how.starts = 0;
+  how.enough = options_.rules.worth_a_round;
+  how.seed = options_.seed;
+  how.threads = options_.threads;
+  how.rules = options_.rules.search;
+  how.proceed = proceed_;
+  return how;
+}
+
+std::uint32_t JointFits::first_trial() const {
+  const std::uint32_t of_round = 1 + 2 * options_.rules.fold_orders + options_.rules.confirming;
+  return kUnseen + (kFirstRound + round_) * of_round * options_.trials.compare;
+}
+
+std::vector<std::vector<BlockRuns>> JointFits::observe_all(const std::vector<Model>& models, std::uint32_t trials,
+                                                           std::uint32_t first) const {
+  std::vector<std::vector<BlockRuns>> runs;
+  for (std::size_t i = 0; i < sites_.size(); ++i)
+    runs.push_back(
+        observe(*sites_[i].campaign, models[i],
+                {trials, options_.seed, first, options_.threads, rows_[i], {}, effort_of(options_.rules.search)}));
+  return runs;
+}
+
+Score JointFits::joined_score(const std::vector<std::vector<BlockRuns>>& runs) const {
+  std::vector<SiteScore> scores;
+  for (std::size_t i = 0; i < sites_.size(); ++i)
+    scores.push_back({sites_[i].name, score(*sites_[i].campaign, runs[i], rows_[i]), rows_[i].size()});
+  return joined_scores(scores);
+}
+
+JointModel JointFits::simulated_anew(JointModel fitted) const {
+  fitted.runs = observe_all(fitted.models, options_.trials.compare, first_trial());
+  fitted.score = joined_score(fitted.runs);
+  fitted.objective = weigh_groups(fitted.score);
+  return fitted;
+}
+
+JointModel JointFits::begin_round(JointModel base) {
+  ++round_;
+  return simulated_anew(std::move(base));
+}
+
+JointModel JointFits::fitted(const FitProblem& problem, const JointParameters& parameters,
+                             const FitOptions& how) const {
+  Fit fit = fit_parameters(problem, how);
+  if (fit.interrupted) throw FitInterrupted{};
+  JointModel out;
+  out.models = problem.models(fit.z);
+  out.parameters = parameters;
+  out.z = std::move(fit.z);
+  out.spread = std::move(fit.spread);
+  out.evaluations = std::move(fit.evaluations);
+  return simulated_anew(std::move(out));
+}
+
+/// A fit continued from where it ended; the better one, with the evaluations of both.
+JointModel JointFits::continued(JointModel before, int rounds, std::uint32_t times_trials) const {
+  FitOptions how = fit_options();
+  how.trials *= times_trials;
+  how.comparison_trials *= times_trials;
+  how.rounds = rounds;
+  how.design = 6 * static_cast<int>(before.z.size());
+  how.spread = before.spread;
+  how.known = before.evaluations;
+  JointModel longer = fitted(problem_of(before.parameters, before.models), before.parameters, how);
+  if (longer.objective.total < before.objective.total) return longer;
+  before.evaluations = std::move(longer.evaluations);
+  return before;
+}
+
+JointModel JointFits::fit_ground(std::span<const SiteDiagnosis> sites) const {
+  std::vector<std::vector<Parameter>> own;
+  JointModel ground;
+  ground.z.resize(0);
+  ground.spread.resize(0, 0);
+  for (const SiteDiagnosis& site : sites) {
+    own.push_back(site.base.free);
+    ground.models.push_back(site.base.model);
+    ground.z = extended(ground.z, site.base.z);
+    ground.spread = extended(ground.spread, site.base.spread);
+  }
+  ground.parameters = joint_parameters(names_of(sites_), own, {});
+  return continued(continued(simulated_anew(std::move(ground)), 3, 1), 2, 2);
+}
+
+Evaluation JointFits::best_start(const JointModel& base, const SiteCandidates& candidate,
+                                 std::span<const VectorXd> estimates) const {
+  const JointParameters parameters = with_shared(base.parameters, parameters_of(candidate));
+  const std::vector<Model> off = models_without(base, candidate);
+  const FitProblem problem = problem_of(parameters, off);
+  const FitOptions how = fit_options();
+  const Index ground = base.z.size(), own = std::ssize(parameters.free) - ground;
+  Evaluation best;
+  best.objective = std::numeric_limits<double>::infinity();
+  for (const VectorXd& estimate : estimates)
+    for (const double amount : {0.5, 1.0, 2.0, 4.0}) {
+      VectorXd effect = VectorXd::Zero(own);
+      for (Index i = 0; i < std::min(own, estimate.size()); ++i) {
+        const Parameter& p = parameters.free[static_cast<std::size_t>(ground + i)];
+        const double z =
+            options_.rules.noticed * amount * std::clamp(estimate[i], p.lower >= p.centre ? 0.3 : -2.0, 4.0);
+        effect[i] = std::clamp(z, p.z(p.lower), p.z(p.upper));
+      }
+      Evaluation here = evaluate(problem, how, extended(base.z, effect), {how.trials});
+      if (here.objective < best.objective) best = std::move(here);
+    }
+  return best;
+}
+
+JointCandidate JointFits::fit_effect(const JointModel& base, const SiteCandidates& candidate,
+                                     const VectorXd& start) const {
+  const DiagnosisRules& rules = options_.rules;
+  const Candidate& first = first_of(candidate);
+  const JointParameters parameters = with_shared(base.parameters, parameters_of(candidate));
+  const Index ground = base.z.size(), own = start.size() - ground;
+  JointCandidate out;
+  out.effect = first.effect;
+  out.where = first.where;
+  out.parameters.assign(parameters.free.begin() + ground, parameters.free.end());
+  out.tested = first.tested;
+  out.price = rules.price * static_cast<double>(own) / static_cast<double>(blocks());
+  std::vector<Evaluation> known = base.evaluations;
+  for (Evaluation& e : known) e.z = extended(e.z, VectorXd::Zero(own));
+  const VectorXd reach = (0.5 * start.tail(own)).cwiseAbs().cwiseMax(0.5 * rules.noticed).cwiseAbs2();
+  FitOptions how = fit_options();
+  how.rounds = 2;
+  how.design = 4 * static_cast<int>(start.size());
+  how.known = known;
+  how.spread = extended(base.spread, MatrixXd(reach.asDiagonal()));
+  std::vector<Model> off = models_without(base, candidate);
+  off = problem_of(parameters, off).models(start);
+  out.fitted = continued(continued(fitted(problem_of(parameters, off), parameters, how), 3, 1), 2, 2);
+  const VectorXd z = out.fitted.z.tail(own);
+  for (Index i = 0; i < own; ++i) out.values.push_back(out.parameters[static_cast<std::size_t>(i)].value(z[i]));
+  out.amount = z.head(static_cast<Index>(out.tested)).cwiseAbs().maxCoeff() / rules.noticed;
+  const Difference change = difference(base.objective, out.fitted.objective, streams_);
+  out.gain = -change.mean;
+  out.gain_interval = {-change.interval.high, -change.interval.low};
+  return out;
+}
+
+/// The fitting blocks of all sites in a random order, numbered on from site to site.
+std::vector<std::size_t> JointFits::shuffled_blocks(std::uint32_t number) const {
+  std::vector<std::pair<double, std::size_t>> keyed;
+  std::size_t block = 0;
+  for (const std::vector<bool>& rows : rows_)
+    for (const bool used : rows) {
+      if (used) keyed.emplace_back(draw_of_block(options_.seed, streams_[block], number, BlockDraw::Order), block);
+      ++block;
+    }
+  std::sort(keyed.begin(), keyed.end());
+  std::vector<std::size_t> order;
+  for (const auto& [key, b] : keyed) order.push_back(b);
+  return order;
+}
+
+double JointFits::cross_validated(const JointModel& fitted, std::uint32_t part) const {
+  const FitProblem problem = problem_of(fitted.parameters, fitted.models);
+  const FitOptions options = fit_options();
+  Fit fit;
+  fit.z = fitted.z;
+  fit.score = fitted.objective;
+  fit.evaluations = fitted.evaluations;
+  const LocalModel local(problem, options, fit, fitted.spread);
+  const std::uint32_t orders = options_.rules.fold_orders;
+  double sum = 0.0;
+  for (std::uint32_t number = 0; number < orders; ++number)
+    sum +=
+        error_in_folds(local, fitted, first_trial() + (1 + part * orders + number) * options_.trials.compare, number);
+  return sum / orders;
+}
+
+double JointFits::error_in_folds(const LocalModel& local, const JointModel& fitted, std::uint32_t first,
+                                 std::uint32_t number) const {
+  const FitProblem problem = problem_of(fitted.parameters, fitted.models);
+  const std::vector<std::size_t> order = shuffled_blocks(number);
+  const std::size_t folds = options_.rules.folds;
+  std::vector<std::size_t> fold_of(streams_.size(), folds);
+  for (std::size_t i = 0; i < order.size(); ++i) fold_of[order[i]] = i % folds;
+  std::vector<std::vector<BlockRuns>> runs;
+  for (const std::vector<bool>& rows : rows_) runs.emplace_back(rows.size());
+  for (std::size_t fold = 0; fold < folds; ++fold) {
+    if (!proceed_(1.0)) throw FitInterrupted{};
+    std::vector<double> others(streams_.size(), 1.0);
+    for (std::size_t b = 0; b < others.size(); ++b)
+      if (fold_of[b] == fold) others[b] = 0.0;
+    const std::vector<Model> models = problem.models(local.optimum(others, fitted.spread));
+    std::size_t before = 0;
+    for (std::size_t i = 0; i < sites_.size(); ++i) {
+      ObserveOptions how{options_.trials.compare,         options_.seed, first, options_.threads, {}, {},
+                         effort_of(options_.rules.search)};
+      for (std::size_t b = 0; b < rows_[i].size(); ++b) how.blocks.push_back(fold_of[before + b] == fold);
+      std::vector<BlockRuns> seen = observe(*sites_[i].campaign, models[i], how);
+      for (std::size_t b = 0; b < seen.size(); ++b)
+        if (how.blocks[b]) runs[i][b] = std::move(seen[b]);
+      before += rows_[i].size();
+    }
+  }
+  return weigh_groups(joined_score(runs)).total;
+}
+
+bool JointFits::confirmed(const JointModel& base, const JointCandidate& candidate, const LeastGain& least) const {
+  const DiagnosisRules& rules = options_.rules;
+  if (cross_validated(base, 1) - cross_validated(candidate.fitted, 1) < least.unseen) return false;
+  const std::uint32_t first = first_trial() + (1 + 2 * rules.fold_orders) * options_.trials.compare;
+  const auto error = [&](const JointModel& fitted) {
+    return weigh_groups(joined_score(observe_all(fitted.models, rules.confirming * options_.trials.compare, first)))
+        .total;
+  };
+  return error(base) - error(candidate.fitted) >= least.fitted;
+}
+
+}  // namespace talus

@@ -1,0 +1,60 @@
+#pragma once
+#include "effect_fits.hpp"
+#include "talus/fit/diagnose/several_sites.hpp"
+
+namespace talus {
+
+/// A candidate of one site, nothing where the site cannot have it (block-shape among spheres).
+using SiteCandidates = std::vector<std::optional<Candidate>>;
+
+/// The fits of several campaigns together, as `EffectFits` makes those of one.
+class JointFits {
+ public:
+  JointFits(std::span<const Site> sites, const DiagnoseOptions& options, std::function<bool(double)> proceed);
+
+  const std::vector<std::vector<bool>>& rows() const { return rows_; }
+  const std::vector<std::uint32_t>& streams() const { return streams_; }
+  /// Number of fitting blocks of all sites.
+  std::size_t blocks() const;
+
+  /// The grounds of all sites as their own fits have left them, then fitted on together for as long as an effect will
+  /// be.
+  JointModel fit_ground(std::span<const SiteDiagnosis> sites) const;
+  /// Begins a round with random numbers that no earlier one has used. @return the base, simulated anew
+  JointModel begin_round(JointModel base);
+  /// The least objective over some amounts of an effect.
+  ///
+  /// @param estimates  amounts from which the search starts, in units of what one would notice
+  Evaluation best_start(const JointModel& base, const SiteCandidates& candidate,
+                        std::span<const Eigen::VectorXd> estimates) const;
+  /// The effect with the grounds, from the best start on.
+  JointCandidate fit_effect(const JointModel& base, const SiteCandidates& candidate,
+                            const Eigen::VectorXd& start) const;
+  /// Cross-validates the objective over the blocks of all sites, with random numbers number `part` of the round.
+  double cross_validated(const JointModel& fitted, std::uint32_t part) const;
+  /// Whether a candidate gains as much again with random numbers that no choice has used.
+  bool confirmed(const JointModel& base, const JointCandidate& candidate, const LeastGain& least) const;
+
+ private:
+  FitProblem problem_of(const JointParameters& parameters, const std::vector<Model>& start) const;
+  FitOptions fit_options() const;
+  std::uint32_t first_trial() const;
+  JointModel fitted(const FitProblem& problem, const JointParameters& parameters, const FitOptions& how) const;
+  JointModel continued(JointModel fitted, int rounds, std::uint32_t times_trials) const;
+  JointModel simulated_anew(JointModel fitted) const;
+  std::vector<std::size_t> shuffled_blocks(std::uint32_t number) const;
+  double error_in_folds(const LocalModel& local, const JointModel& fitted, std::uint32_t first,
+                        std::uint32_t number) const;
+  Score joined_score(const std::vector<std::vector<BlockRuns>>& runs) const;
+  std::vector<std::vector<BlockRuns>> observe_all(const std::vector<Model>& models, std::uint32_t trials,
+                                                  std::uint32_t first) const;
+
+  std::span<const Site> sites_;
+  const DiagnoseOptions& options_;
+  std::function<bool(double)> proceed_;
+  std::vector<std::vector<bool>> rows_;  // by site
+  std::vector<std::uint32_t> streams_;   // of all blocks
+  std::uint32_t round_ = 1;              // the sites' own fits had the first
+};
+
+}  // namespace talus

@@ -1,0 +1,256 @@
+#include "talus/fit/diagnose/several_sites.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "joint_fits.hpp"
+#include "talus/fit/diagnose/diagnose.hpp"
+#include "talus/fit/diagnose/families.hpp"
+
+namespace talus {
+namespace {
+
+using Eigen::VectorXd;
+
+double net_gain(const JointCandidate& candidate) {
+  return candidate.gain - candidate.price;
+}
+
+std::size_t fitting_blocks(const Campaign& campaign) {
+  const std::vector<bool> rows = fitting_rows(campaign);
+  return static_cast<std::size_t>(std::ranges::count(rows, true));
+}
+
+/// Options with the trials of so many blocks.
+DiagnoseOptions for_blocks(DiagnoseOptions options, std::size_t blocks) {
+  options.trials = raised_for_few_blocks(options.trials, blocks, options.rules);
+  return options;
+}
+
+std::size_t all_blocks(std::span<const Site> sites) {
+  std::size_t blocks = 0;
+  for (const Site& site : sites) blocks += fitting_blocks(*site.campaign);
+  return blocks;
+}
+
+/// What the tests of a site leave for the fits of its effects.
+struct SiteTests {
+  std::vector<Candidate> candidates;
+  ScoreTest score_test;
+};
+
+/// The work of one diagnosis of several campaigns.
+class SitesLoop {
+ public:
+  SitesLoop(std::span<const Site> sites, const DiagnoseOptions& options)
+      : sites_(sites),
+        asked_(options),
+        options_(for_blocks(options, all_blocks(sites))),
+        rules_(options_.rules),
+        fits_(sites, options_, [this](double share) { return proceeds(share); }) {}
+
+  SitesDiagnosis run(std::span<const Model> start) {
+    SitesDiagnosis d;
+    for (std::size_t i = 0; i < sites_.size(); ++i) {
+      d.sites.push_back(of_site(i, start[i]));
+      advance(0.5 / static_cast<double>(sites_.size()));
+      d.base.push_back(d.sites.back().base.model);
+    }
+    d.trials = options_.trials;
+    JointRound first;
+    first.family = pooled_family(own_runs(d.sites), {});
+    d.p_value = correct_all(d.sites, first.family);
+    if (!(first.family.p_corrected <= options_.first_level)) {
+      first.effect = d.p_value <= options_.later_level ? "unexplained" : "none";
+      d.rounds.push_back(std::move(first));
+      d.with_effects = d.base;
+      return d;
+    }
+    JointModel model = fits_.fit_ground(d.sites);
+    advance(0.1);
+    d.base = model.models;
+    add_effects(d, std::move(first), std::move(model));
+    return d;
+  }
+
+ private:
+  void advance(double share) { progress_ = std::min(0.95, progress_ + share); }
+  bool proceeds(double share) {
+    if (progress_ == 0.0) ground_ = std::max(ground_, 0.2 * share);
+    return !asked_.proceed || asked_.proceed(std::max(progress_, ground_));
+  }
+
+  /// The ground of a site, with the tests of all its families.
+  SiteDiagnosis of_site(std::size_t site, const Model& start) {
+    const Campaign& campaign = *sites_[site].campaign;
+    const std::vector<bool> rows = fitting_rows(campaign);
+    const DiagnoseOptions own = for_blocks(asked_, fitting_blocks(campaign));
+    EffectFits fits(campaign, own, rows, [this](double share) { return proceeds(share); });
+    SiteDiagnosis out;
+    out.name = sites_[site].name;
+    out.trials = own.trials;
+    out.base = fits.begin_round(fits.fit_ground(start));
+    SiteTests tests;
+    tests.candidates = candidates_of(campaign, out.base.model, out.base.runs, {}, rules_);
+    ScoreTestOptions how;
+    how.trials = own.trials.test;
+    how.seed = own.seed;
+    how.threads = own.threads;
+    how.rules = rules_;
+    how.proceed = [this] { return proceeds(1.0); };
+    tests.score_test =
+        score_test(campaign, {out.base.model, out.base.free, out.base.z, out.base.runs}, tests.candidates, rows, how);
+    const ResidualSpace space(campaign, out.base.runs, rules_);
+    out.families = test_families({campaign, space, out.base.runs, rows, tests.score_test}, {2000, own.seed, rules_});
+    tests_.push_back(std::move(tests));
+    return out;
+  }
+
+  static std::vector<const std::vector<BlockRuns>*> own_runs(const std::vector<SiteDiagnosis>& sites) {
+    std::vector<const std::vector<BlockRuns>*> runs;
+    for (const SiteDiagnosis& site : sites) runs.push_back(&site.base.runs);
+    return runs;
+  }
+
+  /// The family of all sites together, without the effects that were found.
+  FamilyTest pooled_family(const std::vector<const std::vector<BlockRuns>*>& runs,
+                           const std::vector<std::string>& found) const {
+    std::vector<std::vector<double>> energies;
+    for (std::size_t i = 0; i < sites_.size(); ++i)
+      energies.push_back(
+          energy_by_block(ResidualSpace(*sites_[i].campaign, *runs[i], rules_), *runs[i], fits_.rows()[i]));
+    std::vector<BlockNumbers> numbers;
+    for (std::size_t i = 0; i < sites_.size(); ++i) numbers.push_back({*sites_[i].campaign, energies[i]});
+    FamilyTest family = test_block_property(numbers, {2000, options_.seed, rules_});
+    std::erase_if(family.members, [&](const std::string& m) { return std::ranges::find(found, m) != found.end(); });
+    return family;
+  }
+
+  /// Holm over the pooled family and those of the sites that are not pooled. @return the smallest
+  double correct_all(std::vector<SiteDiagnosis>& sites, FamilyTest& pooled) const {
+    std::vector<FamilyTest*> all{&pooled};
+    for (SiteDiagnosis& site : sites)
+      for (FamilyTest& family : site.families) {
+        family.p_corrected = kNotGiven;
+        if (family.name != pooled.name) all.push_back(&family);
+      }
+    correct(all);
+    double smallest = 1.0;
+    for (const FamilyTest* family : all)
+      if (family->p_corrected < smallest) smallest = family->p_corrected;
+    return smallest;
+  }
+
+  void add_effects(SitesDiagnosis& d, JointRound first, JointModel model) {
+    std::vector<std::string> found;
+    for (int number = 0;; ++number) {
+      model = fits_.begin_round(std::move(model));
+      JointRound round = std::move(first);
+      if (number > 0) {
+        std::vector<const std::vector<BlockRuns>*> runs;
+        for (const auto& own : model.runs) runs.push_back(&own);
+        round = JointRound{};
+        round.family = pooled_family(runs, found);
+        round.family.p_corrected = round.family.p_value;
+      }
+      const double level = number == 0 ? options_.first_level : options_.later_level;
+      if (number < options_.most_effects && round.family.may_name && round.family.p_corrected <= level)
+        compete(model, round);
+      if (round.effect == "none" && round.family.p_corrected <= options_.later_level) round.effect = "unexplained";
+      const bool more = round.effect != "none" && round.effect != "unexplained";
+      if (more) found.push_back(round.effect), model = round.candidates.front().fitted;
+      d.rounds.push_back(std::move(round));
+      if (!more) break;
+    }
+    d.with_effects = model.models;
+  }
+
+  /// Every place or variant of an effect that some sites have, by site.
+  std::vector<SiteCandidates> variants_of(const std::string& effect) const {
+    std::vector<std::string> places;
+    for (const SiteTests& tests : tests_)
+      for (const Candidate& c : tests.candidates)
+        if (c.effect == effect && std::ranges::find(places, c.where) == places.end()) places.push_back(c.where);
+    std::vector<SiteCandidates> variants;
+    for (const std::string& place : places) {
+      variants.emplace_back();
+      for (const SiteTests& tests : tests_) {
+        const auto own = std::ranges::find_if(
+            tests.candidates, [&](const Candidate& c) { return c.effect == effect && c.where == place; });
+        variants.back().push_back(own == tests.candidates.end() ? std::nullopt : std::optional(*own));
+      }
+    }
+    return variants;
+  }
+
+  /// Amounts from which the fit of an effect may start: the estimates of the sites, and what one would notice.
+  std::vector<VectorXd> estimates_of(const std::string& effect, std::size_t tested) const {
+    std::vector<VectorXd> all;
+    for (const SiteTests& tests : tests_)
+      for (const EffectVerdict& verdict : tests.score_test.effects)
+        if (verdict.effect == effect) all.push_back(verdict.best.estimate);
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(tested); ++i)
+      for (const double sign : {1.0, -1.0}) all.push_back(sign * VectorXd::Unit(static_cast<Eigen::Index>(tested), i));
+    return all;
+  }
+
+  /// Fits the effects of the family, each in its best variant, and chooses among them.
+  void compete(const JointModel& base, JointRound& round) {
+    for (const std::string& effect : round.family.members) {
+      const std::vector<SiteCandidates> variants = variants_of(effect);
+      Evaluation best;
+      const SiteCandidates* chosen = nullptr;
+      for (const SiteCandidates& variant : variants) {
+        const auto own = std::ranges::find_if(variant, [](const auto& c) { return c.has_value(); });
+        Evaluation here = fits_.best_start(base, variant, estimates_of(effect, (*own)->tested));
+        if (chosen == nullptr || here.objective < best.objective) best = std::move(here), chosen = &variant;
+      }
+      if (chosen == nullptr) continue;  // blocks are spheres at all sites
+      round.candidates.push_back(fits_.fit_effect(base, *chosen, best.z));
+      advance(0.1);
+    }
+    const double before = fits_.cross_validated(base, 0);
+    for (JointCandidate& c : round.candidates) c.cross_validated = before - fits_.cross_validated(c.fitted, 0);
+    choose(base, round);
+  }
+
+  /// The rules of `diagnose`: enough gain, also on blocks that a fit has not seen, and again with new random numbers.
+  void choose(const JointModel& base, JointRound& round) const {
+    const LeastGain least{rules_.worth_naming * base.objective.total, rules_.worth_unseen * base.objective.total};
+    const auto may = [&](const JointCandidate& c) {
+      return c.amount > rules_.least_amount && c.gain > least.fitted && c.cross_validated > least.unseen;
+    };
+    std::ranges::stable_sort(round.candidates, [&](const JointCandidate& a, const JointCandidate& b) {
+      if (may(a) != may(b)) return may(a);
+      return may(a) ? a.cross_validated > b.cross_validated : net_gain(a) > net_gain(b);
+    });
+    const auto chosen = std::ranges::find_if(
+        round.candidates, [&](const JointCandidate& c) { return may(c) && fits_.confirmed(base, c, least); });
+    if (chosen == round.candidates.end()) return;
+    std::rotate(round.candidates.begin(), chosen, chosen + 1);
+    const JointCandidate& best = round.candidates.front();
+    round.effect = best.effect;
+    round.where = best.where;
+    for (std::size_t i = 1; i < round.candidates.size(); ++i) {
+      const JointCandidate& other = round.candidates[i];
+      if (may(other) && difference(other.fitted.objective, best.fitted.objective, fits_.streams()).interval.high > 0.0)
+        round.alike.push_back(other.effect);
+    }
+  }
+
+  std::span<const Site> sites_;
+  DiagnoseOptions asked_, options_;  // trials as asked for, and raised for the blocks of all sites
+  const DiagnosisRules& rules_;
+  JointFits fits_;
+  std::vector<SiteTests> tests_;
+  double progress_ = 0.0, ground_ = 0.0;
+};
+
+}  // namespace
+
+SitesDiagnosis diagnose_sites(std::span<const Site> sites, std::span<const Model> start,
+                              const DiagnoseOptions& options) {
+  return SitesLoop(sites, options).run(start);
+}
+
+}  // namespace talus

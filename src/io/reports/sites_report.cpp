@@ -1,0 +1,283 @@
+#include "talus/io/reports/sites_report.hpp"
+
+#include <cmath>
+
+#include "coverage_report.hpp"
+#include "evidence.hpp"
+#include "sites_evidence.hpp"
+#include "talus/base/text.hpp"
+#include "talus/base/version.hpp"
+
+namespace talus::io {
+namespace {
+
+bool found(const JointRound& round) {
+  return round.effect != "none" && round.effect != "unexplained";
+}
+
+std::string p_text(double p) {
+  return std::isnan(p) ? "-" : with_decimals(p, 4);
+}
+
+Json family_json(const FamilyTest& family, const std::string& site) {
+  Json parts = Json::array();
+  for (const FamilyPart& part : family.parts)
+    parts.push_back({{"name", part.name},
+                     {"statistic", part.statistic},
+                     {"value", json_of(part.value)},
+                     {"p_value", json_of(part.p_value)}});
+  return {{"site", site},
+          {"name", family.name},
+          {"p_value", json_of(family.p_value)},
+          {"p_corrected", json_of(family.p_corrected)},
+          {"members", family.members},
+          {"may_name", family.may_name},
+          {"note", family.note},
+          {"parts", parts}};
+}
+
+Json candidates_json(const JointRound& round) {
+  Json list = Json::array();
+  for (const JointCandidate& c : round.candidates) {
+    Json parameters = Json::object();
+    for (std::size_t i = 0; i < c.values.size(); ++i) parameters[c.parameters[i].key] = json_of(c.values[i]);
+    list.push_back({{"effect", c.effect},
+                    {"where", c.where},
+                    {"parameters", parameters},
+                    {"family", round.family.name},
+                    {"fit", json_of(c.fitted.score.total)},
+                    {"price", json_of(c.price)},
+                    {"objective_gain", json_of(c.gain)},
+                    {"objective_gain_ci95", json_of(c.gain_interval)},
+                    {"cross_validated_objective_gain", json_of(c.cross_validated)}});
+  }
+  return list;
+}
+
+Json rounds_json(const SitesDiagnosis& d) {
+  Json rounds = Json::array();
+  for (const JointRound& round : d.rounds) {
+    Json turn{{"effect", round.effect}, {"p_value", json_of(round.family.p_corrected)}};
+    if (found(round)) turn["where"] = round.where, turn["indistinguishable_from"] = round.alike;
+    turn["family"] = family_json(round.family, "pooled");
+    turn["candidates"] = candidates_json(round);
+    rounds.push_back(turn);
+  }
+  return rounds;
+}
+
+/// All families of the first round: the pooled one, then those of each site.
+Json families_json(const SitesDiagnosis& d) {
+  Json list = Json::array({family_json(d.rounds.front().family, "pooled")});
+  for (const SiteDiagnosis& site : d.sites)
+    for (const FamilyTest& family : site.families) list.push_back(family_json(family, site.name));
+  return list;
+}
+
+Json sites_of(const SitesRecord& record) {
+  const SitesDiagnosis& d = record.diagnosis;
+  Json list = Json::array();
+  for (std::size_t i = 0; i < d.sites.size(); ++i) {
+    const SiteDiagnosis& site = d.sites[i];
+    const SiteEvidence& evidence = record.evidence[i];
+    Json ground = Json::object(), after = Json::object(), families = Json::array();
+    for (const Parameter& p : site.base.free) {
+      ground[p.key] = json_of(p.get(d.base[i]));
+      after[p.key] = json_of(p.get(d.with_effects[i]));
+    }
+    for (const FamilyTest& family : site.families) families.push_back(family_json(family, site.name));
+    list.push_back({{"name", site.name},
+                    {"campaign", record.files[i]},
+                    {"p_value", json_of(site.families.front().p_value)},
+                    {"error", errors_json(evidence)},
+                    {"families", families},
+                    {"evidence", evidence_json(evidence.errors, evidence.clusters, "ground", "found")},
+                    {"coverage", coverage_json(evidence.errors)},
+                    {"tail", tail_json(evidence.errors)},
+                    {"base_parameters", ground},
+                    {"ground_with_effect", after},
+                    {"trials_per_block",
+                     {{"search", site.trials.search}, {"test", site.trials.test}, {"compare", site.trials.compare}}},
+                    {"files", {site.name + "/fitted.toml", site.name + "/with_effect.toml"}}});
+  }
+  return list;
+}
+
+/// What was found, in words.
+std::string verdict_sentence(const SitesDiagnosis& d) {
+  std::string text;
+  for (const JointRound& round : d.rounds) {
+    if (!found(round)) continue;
+    text += (text.empty() ? "The models of all sites lack " : "; then ") + round.effect + " (" + round.where + ")";
+    for (const std::string& other : round.alike) text += ", not to be told apart from " + other;
+  }
+  if (!text.empty()) return text + ", with the same numbers at every site.";
+  const FamilyTest& pooled = d.rounds.front().family;
+  if (!d.rounds.front().candidates.empty())
+    return "All sites together depend on a property of the block (p " + p_text(pooled.p_corrected) +
+           " corrected), but no effect with the same numbers at every site explains it.";
+  return "All sites together show no dependence on a property of the block (p " + p_text(pooled.p_value) + ", " +
+         p_text(pooled.p_corrected) + " corrected): no effect is named for them.";
+}
+
+/// Families of single sites that are significant: a diagnosis of that site alone can name them.
+std::vector<std::string> own_findings(const SitesRecord& record) {
+  std::vector<std::string> list;
+  const SitesDiagnosis& d = record.diagnosis;
+  for (std::size_t i = 0; i < d.sites.size(); ++i)
+    for (const FamilyTest& family : d.sites[i].families)
+      if (family.p_corrected <= record.options.first_level)
+        list.push_back(d.sites[i].name + " alone: " + family.name + " (p " + p_text(family.p_corrected) +
+                       " corrected). To name it: talus diagnose " + record.files[i]);
+  return list;
+}
+
+std::string error_cells(const ErrorChange& c) {
+  if (c.rows == 0)
+    return std::string(c.blocks == 0 ? "<td>none declared</td>" : "<td>too few rows</td>") +
+           "<td>-</td><td>-</td><td>-</td><td>-</td>";
+  return "<td>" + std::to_string(c.blocks) + " blocks, " + std::to_string(c.rows) + " rows</td><td>" +
+         score_of(c.before) + "</td><td>" + score_of(c.after) + "</td><td>" + score_of(c.climatology) + "</td><td>" +
+         change_text(c) + "</td>";
+}
+
+/// p of a site, or of all sites together, that nothing depends on a property of the block.
+double property_p(const SitesDiagnosis& d, std::size_t site) {
+  return site < d.sites.size() ? d.sites[site].families.front().p_value : d.rounds.front().family.p_value;
+}
+
+std::string evidence_html(const SitesRecord& record) {
+  std::string html =
+      "<table><tr><th rowspan='2'>site</th><th rowspan='2'>p, block property</th><th colspan='5'>fitting "
+      "rows</th><th colspan='5'>held-out rows</th></tr><tr>";
+  for (int i = 0; i < 2; ++i) html += "<th>rows</th><th>before</th><th>after</th><th>climatology</th><th>lower by</th>";
+  html += "</tr>\n";
+  for (std::size_t i = 0; i < record.evidence.size(); ++i) {
+    const SiteEvidence& e = record.evidence[i];
+    html += "<tr><td>" + escaped(e.site) + "</td><td>" + p_text(property_p(record.diagnosis, i)) + "</td>" +
+            error_cells(e.fit) + error_cells(e.holdout) + "</tr>\n";
+    if (e.headline.rows != e.holdout.rows)
+      html += "<tr><td>" + escaped(e.site) + ", groups of ten held-out rows and more</td><td colspan='6'></td>" +
+              error_cells(e.headline) + "</tr>\n";
+  }
+  return html + "</table>\n";
+}
+
+std::string families_html(const SitesDiagnosis& d) {
+  std::string html = "<table><tr><th>site</th><th>family</th><th>p</th><th>corrected</th><th></th></tr>\n";
+  const auto row = [&](const std::string& site, const FamilyTest& f) {
+    html += "<tr><td>" + escaped(site) + "</td><td>" + f.name + "</td><td>" + p_text(f.p_value) + "</td><td>" +
+            p_text(f.p_corrected) + "</td><td>" + escaped(f.note) + "</td></tr>\n";
+  };
+  row("pooled", d.rounds.front().family);
+  for (const SiteDiagnosis& site : d.sites)
+    for (const FamilyTest& family : site.families) row(site.name, family);
+  return html + "</table>\n";
+}
+
+std::string candidates_html(const JointRound& round) {
+  std::string html =
+      "<table><tr><th>effect</th><th>where</th><th>numbers, shared</th><th>gain of the objective</th>"
+      "<th>cross-validated</th></tr>\n";
+  for (const JointCandidate& c : round.candidates) {
+    std::string numbers;
+    for (std::size_t i = 0; i < c.values.size(); ++i)
+      numbers += c.parameters[i].key + " = " + with_digits(c.values[i], 3) + "<br>";
+    html += "<tr><td>" + c.effect + "</td><td>" + escaped(c.where) + "</td><td>" + numbers + "</td><td>" +
+            with_decimals(c.gain, 4) + " (" + with_decimals(c.gain_interval.low, 4) + " to " +
+            with_decimals(c.gain_interval.high, 4) + ")</td><td>" + with_decimals(c.cross_validated, 4) +
+            "</td></tr>\n";
+  }
+  return html + "</table>\n";
+}
+
+std::string ground_html(const SitesDiagnosis& d) {
+  std::string html =
+      "<table><tr><th>site</th><th>parameter</th><th>ground alone</th><th>with what was found</th></tr>\n";
+  for (std::size_t i = 0; i < d.sites.size(); ++i)
+    for (const Parameter& p : d.sites[i].base.free)
+      html += "<tr><td>" + escaped(d.sites[i].name) + "</td><td>" + escaped(p.key) + " " + p.unit + "</td><td>" +
+              with_digits(p.get(d.base[i]), 3) + "</td><td>" + with_digits(p.get(d.with_effects[i]), 3) +
+              "</td></tr>\n";
+  return html + "</table>\n";
+}
+
+}  // namespace
+
+std::string sites_json(const SitesRecord& record) {
+  const SitesDiagnosis& d = record.diagnosis;
+  const JointRound& first = d.rounds.front();
+  Json effects = Json::array();
+  for (const JointRound& round : d.rounds)
+    if (found(round)) effects.push_back(round.effect);
+  if (effects.empty()) effects.push_back(first.effect);
+  Json error = errors_json(record.evidence.back());
+  error["metric"] = "mean normalised score";
+  Json json{{"effect", first.effect},
+            {"effects", effects},
+            {"where", first.where},
+            {"indistinguishable_from", first.alike},
+            {"p_value", json_of(d.p_value)},
+            {"error", error},
+            {"sites", sites_of(record)},
+            {"rounds", rounds_json(d)},
+            {"families", families_json(d)},
+            {"candidates", candidates_json(first)},
+            {"findings_of_single_sites", own_findings(record)},
+            {"seed", record.options.seed},
+            {"trials_per_block", {{"search", d.trials.search}, {"test", d.trials.test}, {"compare", d.trials.compare}}},
+            {"seconds", json_of(record.seconds)},
+            {"talus", version()},
+            {"command", record.command},
+            {"warnings", record.warnings}};
+  json["inputs"] = json_of(record.inputs);
+  return json_text(json);
+}
+
+std::string sites_page(const SitesRecord& record) {
+  const SitesDiagnosis& d = record.diagnosis;
+  std::string html =
+      "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'><title>Talus: diagnosis of several campaigns</title>"
+      "<style>body{font:15px/1.5 sans-serif;max-width:1200px;margin:2em auto;padding:0 1em;color:#222}"
+      "table{border-collapse:collapse;font-size:13px}td,th{border:1px solid #ccc;padding:3px 8px;text-align:left;"
+      "vertical-align:top}svg text{font:11px sans-serif}</style></head><body>\n<h1>What the models of " +
+      escaped(names_in_words(record.evidence)) + " lack</h1>\n<p><b>" + escaped(verdict_sentence(d)) + "</b></p>\n";
+  for (const std::string& finding : own_findings(record)) html += "<p>" + escaped(finding) + "</p>\n";
+  html +=
+      "<h2>Evidence, by site and pooled</h2>\n<p>Mean normalised score; before: the ground of each site alone; after: "
+      "with what was found. Intervals: over the blocks. The climatology is a forecast by the other fitting rows: a "
+      "model with a larger error has no skill. Pooled: the mean over the groups of all sites.</p>\n" +
+      evidence_html(record);
+  for (const std::string& warning : record.warnings) html += "<p>Warning: " + escaped(warning) + "</p>\n";
+  html +=
+      "<h2>Families</h2>\n<p>The family \"block property\" is tested with the blocks of all sites, which change places "
+      "only within their own site and group; at a single site it takes no part in the correction (Holm).</p>\n" +
+      families_html(d);
+  for (std::size_t i = 0; i < d.rounds.size(); ++i) {
+    const JointRound& round = d.rounds[i];
+    html += "<h2>Round " + std::to_string(i + 1) + ": " + round.effect +
+            "</h2>\n<p>p of the pooled family: " + p_text(round.family.p_value) + "; " + escaped(round.family.note) +
+            ".</p>\n";
+    if (!round.candidates.empty()) html += candidates_html(round);
+  }
+  return html + "<h2>Ground</h2>\n" + ground_html(d) + "<p>talus " + std::string(version()) + ", seed " +
+         std::to_string(record.options.seed) + ", " + with_decimals(record.seconds, 0) + " s.</p></body></html>\n";
+}
+
+std::string sites_summary(const SitesRecord& record) {
+  const SitesDiagnosis& d = record.diagnosis;
+  std::string text = verdict_sentence(d) + "\n";
+  for (const std::string& finding : own_findings(record)) text += finding + "\n";
+  for (std::size_t i = 0; i < record.evidence.size(); ++i) {
+    const SiteEvidence& e = record.evidence[i];
+    text += e.site + ": p of a block property " + p_text(property_p(d, i));
+    for (const auto& [name, change] : {std::pair{"fitting", e.fit}, {"held-out", e.holdout}})
+      text += "; " + std::string(name) + " rows (" + std::to_string(change.rows) + "): error " +
+              score_of(change.before) + " before, " + score_of(change.after) + " after, climatology " +
+              score_of(change.climatology) + (change.rows > 0 ? ", lower by " + change_text(change) : "");
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace talus::io

@@ -1,0 +1,69 @@
+#include <chrono>
+#include <cstdio>
+
+#include "progress.hpp"
+#include "several_campaigns.hpp"
+#include "talus/fit/diagnose/several_sites.hpp"
+#include "talus/io/reports/sites_report.hpp"
+#include "talus/simulate/scenario/presets.hpp"
+
+namespace {
+
+constexpr std::uint32_t kScoreTrials = 200;
+
+void warn(const CampaignCommand& command, talus::io::SitesRecord& record) {
+  for (const talus::io::SiteEvidence& site : record.evidence)
+    for (const talus::io::BeforeAfter& e : site.errors)
+      for (const std::string& warning : talus::io::score_warnings(e.after)) {
+        record.warnings.push_back(site.site + ": " + warning);
+        if (!command.quiet) say("warning", record.warnings.back());
+      }
+}
+
+void write_results(const OpenedSites& opened, const talus::io::SitesRecord& record) {
+  const std::filesystem::path& out = opened.folder.temporary();
+  talus::io::write_text(out / "diagnosis.json", talus::io::sites_json(record));
+  talus::io::write_text(out / "report.html", talus::io::sites_page(record));
+  const talus::SitesDiagnosis& d = record.diagnosis;
+  opened.write_models(d.base, "fitted.toml", "The ground alone, fitted by talus diagnose with several campaigns.");
+  opened.write_models(d.with_effects, "with_effect.toml",
+                      d.rounds.size() > 1
+                          ? "The ground of this site and what talus diagnose found missing at all sites."
+                          : "The ground alone: talus diagnose found nothing to add at all sites.");
+}
+
+}  // namespace
+
+int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOptions& how) {
+  catch_signals();
+  require_seed(how.seed);
+  const auto start = std::chrono::steady_clock::now();
+  talus::io::SitesRecord record;
+  OpenedSites opened(command, record);
+  for (std::size_t i = 0; i < opened.sites.size(); ++i) require_releases(opened.paths[i], *opened.sites[i].campaign);
+  talus::give_own_streams(opened.sites);
+  record.files = opened.paths;
+  record.options = how;
+  Progress progress(Progress::mode_of(command.quiet, command.progress == "machine"), 0);
+  record.options.proceed = [&progress](double share) { return progress.update(share) && !interrupted(); };
+  std::vector<talus::Model> presets;
+  for (const talus::Site& site : opened.sites)
+    presets.push_back(talus::model_of_preset(*site.campaign, talus::kDefaultPreset));
+  try {
+    record.diagnosis = talus::diagnose_sites(opened.sites, presets, record.options);
+  } catch (const talus::FitInterrupted&) {
+    stop_interrupted();
+  }
+  talus::ObserveOptions unseen{kScoreTrials, how.seed + 1, 0, how.threads, {}, [] { return !interrupted(); }};
+  record.evidence =
+      talus::io::evidence_of_sites(opened.sites, record.diagnosis.base, record.diagnosis.with_effects, unseen);
+  if (interrupted()) stop_interrupted();
+  warn(command, record);
+  record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  write_results(opened, record);
+  opened.folder.commit();
+  progress.finish();
+  if (!command.quiet)
+    std::printf("%swritten: %s\n", talus::io::sites_summary(record).c_str(), opened.folder.final_path().c_str());
+  return 0;
+}
