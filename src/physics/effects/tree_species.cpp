@@ -37,14 +37,14 @@ std::optional<double> factor_of_species(std::string_view name) {
 
 std::vector<std::string> names_of_species() {
   std::vector<std::string> names;
+  names.reserve(std::size(kSpecies));
   for (const TreeSpecies& species : kSpecies) names.emplace_back(species.name);
   return names;
 }
 
 std::string_view help_on_species() {
   return "; give spruce, larch, pine, Douglas fir and other conifers as conifer, beech, maple, oak, ash, birch and "
-         "other "
-         "broad-leaved trees as broadleaf";
+         "other broad-leaved trees as broadleaf";
 }
 
 }  // namespace talus
