@@ -15,6 +15,7 @@ import os
 import random
 import shutil
 import subprocess
+import sys
 import tomllib
 
 TABLES = ("blocks", "stops", "passages", "samples")
@@ -90,15 +91,15 @@ def main():
     parser.add_argument("campaign")
     parser.add_argument("--talus", default="build/release/talus")
     parser.add_argument("--work", default="verdicts")
-    parser.add_argument("options", nargs="*", help="of `talus diagnose`, after --")
-    given = parser.parse_args()
+    end = sys.argv.index("--") if "--" in sys.argv else len(sys.argv)
+    given, more = parser.parse_args(sys.argv[1:end]), sys.argv[end + 1:]
     tables = Tables(given.campaign)
     print(f"{'':28} {'verdict':32} {'effects':28} {'least p':>8} fit: before, after; unseen: before, after, lower by (95 %)")
     all_found = []
     for name, rows, options in variants(tables):
         folder = f"{given.work}/{name.replace(' ', '_')}"
         campaign = tables.write(f"{folder}/campaign", rows)
-        found = diagnosed(given.talus, campaign, f"{folder}/out", [*given.options, *options])
+        found = diagnosed(given.talus, campaign, f"{folder}/out", [*more, *options])
         report(name, found)
         all_found.append(found)
     first = all_found[0]
