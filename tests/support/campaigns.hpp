@@ -1,6 +1,7 @@
 #pragma once
 #include "scenarios.hpp"
 #include "talus/fit/campaign/observe.hpp"
+#include "talus/fit/score/score.hpp"
 
 /// Small campaigns by hand for the tests of `fit`.
 namespace talus::test {
@@ -53,6 +54,16 @@ inline void measure(Campaign& c, const Model& model, std::uint64_t seed) {
       if (!std::isnan(r.screens[s].speed[0]))
         c.blocks[b].passages[s] = Passage{r.screens[s].speed[0], r.screens[s].jump[0], r.screens[s].spin[0]};
   }
+}
+
+/// A score of one group: one row of each block.
+inline Score score_of_rows(const std::vector<double>& values) {
+  Score s;
+  s.groups = {{"g", 0.0, static_cast<std::uint32_t>(values.size())}};
+  for (std::uint32_t b = 0; b < values.size(); ++b) s.rows.push_back({0, b, values[b]});
+  for (const double value : values) s.groups[0].score += value / static_cast<double>(values.size());
+  s.total = s.groups[0].score;
+  return s;
 }
 
 }  // namespace talus::test

@@ -43,7 +43,7 @@ Eigen::VectorXd normals(std::uint64_t seed, std::uint32_t stream, std::uint32_t 
 
 }  // namespace
 
-LocalModel::LocalModel(const FitProblem& problem, const FitOptions& options, const Fit& fit,
+LocalModel::LocalModel(const FitProblem& problem, const FitOptions& options, const EndOfFit& fit,
                        const Eigen::MatrixXd& spread)
     : problem_(problem), options_(options), score_(fit.score), prior_(problem.prior(options)), centre_(fit.z) {
   const Eigen::Index n = std::ssize(problem.free), count = std::ssize(fit.evaluations);

@@ -7,15 +7,24 @@
 
 namespace talus {
 
+/// The place where a fit ended, its score, whose groups are weighed as the objective's are, and all that it evaluated.
+struct EndOfFit {
+  const Eigen::VectorXd& z;
+  const Score& score;
+  const std::vector<Evaluation>& evaluations;
+};
+
 /// A quadratic model of every row score around the optimum of a fit, by least squares over the evaluations near it. It
 /// gives the next step, and how far other blocks, another prior and other random numbers would move the optimum.
 class LocalModel {
  public:
   static constexpr std::uint32_t kDesigns = 2'000'000'000;  ///< first trial of designs
 
-  /// @param fit     with a score whose groups are weighed as the objective's are
+  /// @param fit     its score must outlive the model
   /// @param spread  covariance of the places it is fitted to; those far outside do not count
-  LocalModel(const FitProblem& problem, const FitOptions& options, const Fit& fit, const Eigen::MatrixXd& spread);
+  LocalModel(const FitProblem& problem, const FitOptions& options, const EndOfFit& fit, const Eigen::MatrixXd& spread);
+  LocalModel(const FitProblem& problem, const FitOptions& options, const Fit& fit, const Eigen::MatrixXd& spread)
+      : LocalModel(problem, options, EndOfFit{fit.z, fit.score, fit.evaluations}, spread) {}
 
   /// Number of evaluations of one round.
   static int round_length(Eigen::Index parameters) { return std::max(60, 8 * static_cast<int>(parameters) + 10); }

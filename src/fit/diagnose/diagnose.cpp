@@ -322,7 +322,10 @@ Diagnosis diagnose(const Campaign& campaign, const Model& start, const DiagnoseO
   if (options.nested) require_fitting_rows(campaign, folds);
   DiagnosisWork work(options);
   Diagnosis d = repeated_diagnosis(campaign, start, work);
-  if (options.nested) d.nested = nested_validation(campaign, start, work, folds, d);
+  if (options.nested) {
+    const Timesheet::Phase phase(d.times, "folds");
+    d.nested = nested_validation(campaign, start, work, folds, d);
+  }
   return d;
 }
 

@@ -269,30 +269,15 @@ void EffectFits::continue_with(const FittedModel& base, FittedCandidate& candida
   measure_gain(base, candidate);
 }
 
-/// The fitting rows in a random order: neighbours are often of one day or one kind.
-std::vector<std::size_t> EffectFits::shuffled_rows(std::uint32_t number) const {
-  std::vector<std::pair<double, std::size_t>> keyed;
-  for (std::size_t b = 0; b < rows_.size(); ++b)
-    if (rows_[b])
-      keyed.emplace_back(draw_of_block(options_.seed, campaign_.blocks[b].stream, number, BlockDraw::Order), b);
-  std::sort(keyed.begin(), keyed.end());
-  std::vector<std::size_t> order;
-  for (const auto& [key, block] : keyed) order.push_back(block);
-  return order;
-}
-
 std::vector<Score> EffectFits::cross_validated(const FittedModel& fitted, ObserveOptions how) const {
   const FitProblem problem{campaign_, fitted.model, fitted.free, rows_};
   const FitOptions options = fit_options();
-  Fit fit;
-  fit.z = fitted.z;
-  fit.score = fitted.objective;
-  fit.evaluations = fitted.evaluations;
-  const LocalModel local(problem, options, fit, fitted.spread);
+  const LocalModel local(problem, options, EndOfFit{fitted.z, fitted.objective, fitted.evaluations}, fitted.spread);
   const std::uint32_t orders = options_.rules.fold_orders;
+  const std::vector<std::uint32_t> streams = streams_of(campaign_);
   std::vector<Score> scores;
   for (std::uint32_t number = 0; number < orders; ++number, how.first_trial += how.trials)  // new trials for each
-    scores.push_back(score_in_folds(local, fitted, how, shuffled_rows(number)));
+    scores.push_back(score_in_folds(local, fitted, how, random_order(streams, rows_, options_.seed, number)));
   return scores;
 }
 
@@ -323,11 +308,7 @@ std::vector<BlockRuns> EffectFits::out_of_fold(const FittedModel& fitted, std::s
                                                std::size_t folds, ObserveOptions how) const {
   const FitProblem problem{campaign_, fitted.model, fitted.free, rows_};
   const FitOptions options = fit_options();
-  Fit fit;
-  fit.z = fitted.z;
-  fit.score = fitted.objective;
-  fit.evaluations = fitted.evaluations;
-  const LocalModel local(problem, options, fit, fitted.spread);
+  const LocalModel local(problem, options, EndOfFit{fitted.z, fitted.objective, fitted.evaluations}, fitted.spread);
   std::vector<std::vector<std::size_t>> blocks(folds);
   for (std::size_t b = 0; b < fold_of.size(); ++b)
     if (fold_of[b] < folds) blocks[fold_of[b]].push_back(b);

@@ -85,7 +85,6 @@ class EffectFits {
   };
   Start best_start(const FitProblem& problem, const FitOptions& how, const FittedModel& base,
                    const Candidate& candidate, const Verdict& verdict) const;
-  std::vector<std::size_t> shuffled_rows(std::uint32_t number) const;
   std::vector<Score> cross_validated(const FittedModel& fitted, ObserveOptions how) const;
   Score score_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
                        const std::vector<std::size_t>& order) const;

@@ -229,29 +229,10 @@ JointCandidate JointFits::fit_effect(const JointModel& base, const SiteCandidate
   return out;
 }
 
-/// The fitting blocks of all sites in a random order, numbered on from site to site.
-std::vector<std::size_t> JointFits::shuffled_blocks(std::uint32_t number) const {
-  std::vector<std::pair<double, std::size_t>> keyed;
-  std::size_t block = 0;
-  for (const std::vector<bool>& rows : rows_)
-    for (const bool used : rows) {
-      if (used) keyed.emplace_back(draw_of_block(options_.seed, streams_[block], number, BlockDraw::Order), block);
-      ++block;
-    }
-  std::sort(keyed.begin(), keyed.end());
-  std::vector<std::size_t> order;
-  for (const auto& [key, b] : keyed) order.push_back(b);
-  return order;
-}
-
 double JointFits::cross_validated(const JointModel& fitted, std::uint32_t part) const {
   const FitProblem problem = problem_of(fitted.parameters, fitted.models);
   const FitOptions options = fit_options();
-  Fit fit;
-  fit.z = fitted.z;
-  fit.score = fitted.objective;
-  fit.evaluations = fitted.evaluations;
-  const LocalModel local(problem, options, fit, fitted.spread);
+  const LocalModel local(problem, options, EndOfFit{fitted.z, fitted.objective, fitted.evaluations}, fitted.spread);
   const std::uint32_t orders = options_.rules.fold_orders;
   double sum = 0.0;
   for (std::uint32_t number = 0; number < orders; ++number)
@@ -263,7 +244,9 @@ double JointFits::cross_validated(const JointModel& fitted, std::uint32_t part) 
 double JointFits::error_in_folds(const LocalModel& local, const JointModel& fitted, std::uint32_t first,
                                  std::uint32_t number) const {
   const FitProblem problem = problem_of(fitted.parameters, fitted.models);
-  const std::vector<std::size_t> order = shuffled_blocks(number);
+  std::vector<bool> used;  // by block, numbered on from site to site
+  for (const std::vector<bool>& rows : rows_) used.insert(used.end(), rows.begin(), rows.end());
+  const std::vector<std::size_t> order = random_order(streams_, used, options_.seed, number);
   const std::size_t folds = options_.rules.folds;
   std::vector<std::size_t> fold_of(streams_.size(), folds);
   for (std::size_t i = 0; i < order.size(); ++i) fold_of[order[i]] = i % folds;

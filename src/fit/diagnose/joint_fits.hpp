@@ -42,7 +42,6 @@ class JointFits {
   JointModel fitted(const FitProblem& problem, const JointParameters& parameters, const FitOptions& how) const;
   JointModel continued(JointModel fitted, int rounds, std::uint32_t times_trials) const;
   JointModel simulated_anew(JointModel fitted) const;
-  std::vector<std::size_t> shuffled_blocks(std::uint32_t number) const;
   double error_in_folds(const LocalModel& local, const JointModel& fitted, std::uint32_t first,
                         std::uint32_t number) const;
   Score joined_score(const std::vector<std::vector<BlockRuns>>& runs) const;

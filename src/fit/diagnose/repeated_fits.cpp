@@ -5,6 +5,8 @@
 namespace talus {
 namespace {
 
+constexpr const char* kRepeatedFits = "repeated fits";  // of the time sheet
+
 /// The fit of the most frequent verdict; the first one where it is among the most frequent.
 std::size_t fit_to_report(const Stability& stability) {
   const auto count = [&](const std::string& name) {
@@ -30,7 +32,9 @@ Diagnosis repeated_diagnosis(const Campaign& campaign, const Model& start, Diagn
   stability.fits.push_back(verdict_of(whole, seed));
   LoopScope brief;
   brief.brief = brief.first_round = true;
+  Timesheet repetitions;
   for (int number = 1; number < work.options().base_fits; ++number) {
+    const Timesheet::Phase phase(repetitions, kRepeatedFits);
     DiagnoseOptions options = work.next(true);
     options.seed = seed_of_fit(seed, static_cast<std::size_t>(number));
     stability.fits.push_back(verdict_of(run_loop(campaign, start, options, brief), options.seed));
@@ -39,10 +43,12 @@ Diagnosis repeated_diagnosis(const Campaign& campaign, const Model& start, Diagn
   if (stability.reported != 0) {
     DiagnoseOptions options = work.next(false);
     options.seed = stability.fits[stability.reported].seed;
+    for (const PhaseTime& time : whole.times.phases()) repetitions.add({kRepeatedFits, "", time.cpu});
     whole = run_loop(campaign, start, options, {});
     stability.fits[stability.reported] = verdict_of(whole, options.seed);
   }
   whole.stability = std::move(stability);
+  whole.times.add(repetitions);
   return whole;
 }
 

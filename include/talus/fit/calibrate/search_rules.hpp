@@ -31,7 +31,7 @@ struct SearchRules {
   double drag_loss = 0.2;
 };
 
-/// What a trajectory of a search may cost.
+/// The bounds of a trajectory of a search.
 inline Effort effort_of(const SearchRules& rules) {
   return {rules.most_vertices, rules.drag_loss};
 }

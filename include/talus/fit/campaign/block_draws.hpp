@@ -1,4 +1,9 @@
 #pragma once
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
 #include "talus/base/random.hpp"
 
 namespace talus {
@@ -19,6 +24,21 @@ enum class BlockDraw : std::uint32_t {
 /// @param number  of the draw: a bootstrap, a data set, an order
 inline double draw_of_block(std::uint64_t seed, std::uint32_t stream, std::uint32_t number, BlockDraw what) {
   return uniform(Random(seed, stream, number, Purpose::Bootstrap).words(static_cast<std::uint32_t>(what))[0]);
+}
+
+/// The used blocks in random order number `number`: neighbours in a file are often of one day or one kind.
+///
+/// @param streams  of all blocks
+/// @param used     by block
+inline std::vector<std::size_t> random_order(std::span<const std::uint32_t> streams, const std::vector<bool>& used,
+                                             std::uint64_t seed, std::uint32_t number) {
+  std::vector<std::pair<double, std::size_t>> keyed;
+  for (std::size_t b = 0; b < used.size(); ++b)
+    if (used[b]) keyed.emplace_back(draw_of_block(seed, streams[b], number, BlockDraw::Order), b);
+  std::sort(keyed.begin(), keyed.end());
+  std::vector<std::size_t> order;
+  for (const auto& [key, block] : keyed) order.push_back(block);
+  return order;
 }
 
 }  // namespace talus

@@ -18,8 +18,8 @@ struct DepositSource {
   Vec3 velocity = Vec3::Zero();    ///< at the release [m/s]
 };
 
-/// What is known of blocks that were mapped where they lie: not their releases, but where they may have started and
-/// where was mapped. docs/mapped-deposits.md.
+/// The sources of blocks that were mapped where they lie, and the region that was mapped. Their releases are not known.
+/// docs/mapped-deposits.md.
 struct MappedDeposits {
   std::vector<DepositSource> sources;  ///< at least one
   std::vector<double> share;           ///< of the area, up to and including each source; the last is 1

@@ -27,7 +27,7 @@ struct PatternDistance {
   double p_value = kNotGiven;   ///< share of patterns of simulated blocks that are as far from the others
 };
 
-/// What the score does not say of mapped blocks.
+/// Checks of a model against mapped blocks, beside the score: the pattern of each class and the share that counts.
 struct DepositCheck {
   std::vector<PatternDistance> patterns;  ///< by class
   double inside = kNotGiven;              ///< share of the simulated trajectories that end in the mapped region

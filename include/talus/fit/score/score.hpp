@@ -45,7 +45,7 @@ inline constexpr std::size_t kFewestRows = 5;
 /// climatology beats by far is still better than one whose blocks do not come to an end. docs/diagnosis-time.md.
 inline constexpr double kCutShort = 4.0;
 
-/// What a row is scored by.
+/// The rule that turns a measurement and its simulated values into a score.
 enum class ScoreRule {
   Fair,        ///< CRPS, energy score and Brier score over the spread of the fitting rows
   LogDensity,  ///< minus the logarithm of the density of the measured value [nats]. docs/diagnosis-evidence.md

@@ -8,8 +8,8 @@ double runout_of(const MeasuredBlock& block);
 /// Run-outs of its trials [m]; NaN for those that did not stop on the terrain.
 std::vector<double> runouts_of(const MeasuredBlock& block, const BlockRuns& runs);
 
-/// The same of a block of a campaign. If the blocks were mapped where they lie, run-outs are those of `run_out`: from
-/// the source nearest to the place, of mapped and simulated places alike.
+/// Run-outs of a block of a campaign, measured and simulated. Mapped blocks have no release: theirs are counted from
+/// the nearest source (`run_out`), for mapped and simulated places alike.
 double runout_of(const Campaign& campaign, const MeasuredBlock& block);
 std::vector<double> runouts_of(const Campaign& campaign, const MeasuredBlock& block, const BlockRuns& runs);
 

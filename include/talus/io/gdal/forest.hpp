@@ -23,7 +23,7 @@ struct ForestRequest {
   std::string trees;              ///< points
 };
 
-/// What to say of a diameter that is too large: it may be in centimetres; empty for other numbers.
+/// Hint for a diameter that is too large: it may be in centimetres. Empty for other numbers.
 std::string centimetres_hint(const Bounds& bounds, double value);
 
 /// Reads a forest onto the grid of the DEM. `numbers` are those of the effect.

@@ -50,17 +50,25 @@ FittedModel too_rough(const Campaign& campaign, const std::vector<bool>& rows, F
   return fitted;
 }
 
-TEST(EffectFits, WhatIsNoBetterIsNotConfirmed) {
-  Campaign campaign = campaign_on_slope(45);
-  const Model truth = model_of_slope();
-  measure(campaign, truth, 77);
-  const std::vector<bool> rows = fitting_rows(campaign);
+/// The slope, measured by its own ground, and fits of one number with few trials.
+struct SlopeFits {
+  explicit SlopeFits(std::size_t blocks) : campaign(campaign_on_slope(blocks)) {
+    measure(campaign, model_of_slope(), 77);
+    rows = fitting_rows(campaign);
+    options.keys = {"theta_scale"};
+    options.trials = {20, 20, 50};
+  }
+  Campaign campaign;
+  std::vector<bool> rows;
   DiagnoseOptions options;
-  options.keys = {"theta_scale"};
-  options.trials = {20, 20, 50};
-  EffectFits fits(campaign, options, rows, [](double) { return true; });
-  const FittedModel good = fits.fit_ground(truth);
-  const FittedModel bad = too_rough(campaign, rows, good);
+};
+
+TEST(EffectFits, WhatIsNoBetterIsNotConfirmed) {
+  const SlopeFits slope(45);
+  const Campaign& campaign = slope.campaign;
+  EffectFits fits(campaign, slope.options, slope.rows, [](double) { return true; });
+  const FittedModel good = fits.fit_ground(model_of_slope());
+  const FittedModel bad = too_rough(campaign, slope.rows, good);
   ASSERT_GT(bad.objective.total, good.objective.total);
   EXPECT_EQ(fits.simulated_anew(good).objective.total, good.objective.total);
   EXPECT_LT(mean_difference(fits.cross_validated(bad), fits.cross_validated(good), streams_of(campaign)).mean, 0.0);
@@ -81,15 +89,10 @@ TEST(EffectFits, WhatIsNoBetterIsNotConfirmed) {
 }
 
 TEST(EffectFits, WhatOnlyHarmsIsNotFitted) {
-  Campaign campaign = campaign_on_slope(30);
-  const Model truth = model_of_slope();
-  measure(campaign, truth, 77);
-  const std::vector<bool> rows = fitting_rows(campaign);
-  DiagnoseOptions options;
-  options.keys = {"theta_scale"};
-  options.trials = {20, 20, 50};
-  EffectFits fits(campaign, options, rows, [](double) { return true; });
-  const FittedModel base = fits.begin_round(fits.fit_ground(truth));
+  const SlopeFits slope(30);
+  const Campaign& campaign = slope.campaign;
+  EffectFits fits(campaign, slope.options, slope.rows, [](double) { return true; });
+  const FittedModel base = fits.begin_round(fits.fit_ground(model_of_slope()));
   const auto list = candidates_of(campaign, base.model, base.runs, {});
   const auto drag = std::ranges::find(list, "vegetation-drag", &Candidate::effect);
   ASSERT_NE(drag, list.end());

@@ -10,16 +10,6 @@
 namespace talus::test {
 namespace {
 
-/// A score of one group: one row of each block.
-Score score_of_rows(const std::vector<double>& values) {
-  Score s;
-  s.groups = {{"g", 0.0, static_cast<std::uint32_t>(values.size())}};
-  for (std::uint32_t b = 0; b < values.size(); ++b) s.rows.push_back({0, b, values[b]});
-  for (const double value : values) s.groups[0].score += value / static_cast<double>(values.size());
-  s.total = s.groups[0].score;
-  return s;
-}
-
 std::vector<std::uint32_t> numbers_to(std::uint32_t n) {
   std::vector<std::uint32_t> list(n);
   for (std::uint32_t i = 0; i < n; ++i) list[i] = 1000 * i;

@@ -341,16 +341,6 @@ std::vector<std::uint32_t> streams(std::uint32_t blocks) {
   return list;
 }
 
-/// A score of one group: one row of each block.
-Score score_of_rows(const std::vector<double>& values) {
-  Score s;
-  s.groups = {{"g", 0.0, static_cast<std::uint32_t>(values.size())}};
-  for (std::uint32_t b = 0; b < values.size(); ++b) s.rows.push_back({0, b, values[b]});
-  for (const double value : values) s.groups[0].score += value / static_cast<double>(values.size());
-  s.total = s.groups[0].score;
-  return s;
-}
-
 /// Rubin (1981): the variance of the mean of n values is that of the values over n + 1, for any n. Five standard errors
 /// of a variance of so many draws, with the kurtosis of the draws below 6.
 TEST(Bootstrap, VarianceOfAMeanIsRubins) {
