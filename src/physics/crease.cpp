@@ -56,7 +56,7 @@ CreaseEnd slide_along_crease(const Slope& slope, const Slope& beyond, Motion& mo
   const double pull = -sign * kGravity * edge.direction.z() - friction;
   if (!(speed > 0.0) && !(pull > 0.0)) return CreaseEnd::Held;
 
-  const double to_corner = edge.length * (sign > 0.0 ? 1.0 - edge.share : edge.share);
+  const double to_corner = edge.length * std::max(0.0, sign > 0.0 ? 1.0 - edge.share : edge.share);
   const double way = std::min({to_corner, farthest, kLargestShare * edge.length});
   double duration = time_to_cover(way, speed, pull, 1.0);
   if (pull < 0.0) duration = std::min(duration, speed / -pull);  // comes to rest earlier

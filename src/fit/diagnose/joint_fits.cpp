@@ -229,20 +229,20 @@ JointCandidate JointFits::fit_effect(const JointModel& base, const SiteCandidate
   return out;
 }
 
-double JointFits::cross_validated(const JointModel& fitted, std::uint32_t part) const {
+std::vector<Score> JointFits::cross_validated(const JointModel& fitted, std::uint32_t part) const {
   const FitProblem problem = problem_of(fitted.parameters, fitted.models);
   const FitOptions options = fit_options();
   const LocalModel local(problem, options, EndOfFit{fitted.z, fitted.objective, fitted.evaluations}, fitted.spread);
   const std::uint32_t orders = options_.rules.fold_orders;
-  double sum = 0.0;
+  std::vector<Score> scores;
   for (std::uint32_t number = 0; number < orders; ++number)
-    sum +=
-        error_in_folds(local, fitted, first_trial() + (1 + part * orders + number) * options_.trials.compare, number);
-  return sum / orders;
+    scores.push_back(
+        score_in_folds(local, fitted, first_trial() + (1 + part * orders + number) * options_.trials.compare, number));
+  return scores;
 }
 
-double JointFits::error_in_folds(const LocalModel& local, const JointModel& fitted, std::uint32_t first,
-                                 std::uint32_t number) const {
+Score JointFits::score_in_folds(const LocalModel& local, const JointModel& fitted, std::uint32_t first,
+                                std::uint32_t number) const {
   const FitProblem problem = problem_of(fitted.parameters, fitted.models);
   std::vector<bool> used;  // by block, numbered on from site to site
   for (const std::vector<bool>& rows : rows_) used.insert(used.end(), rows.begin(), rows.end());
@@ -269,12 +269,13 @@ double JointFits::error_in_folds(const LocalModel& local, const JointModel& fitt
       before += rows_[i].size();
     }
   }
-  return weigh_groups(joined_score(runs)).total;
+  return weigh_groups(joined_score(runs));
 }
 
 bool JointFits::confirmed(const JointModel& base, const JointCandidate& candidate, const LeastGain& least) const {
   const DiagnosisRules& rules = options_.rules;
-  if (cross_validated(base, 1) - cross_validated(candidate.fitted, 1) < least.unseen) return false;
+  if (-mean_difference(cross_validated(base, 1), cross_validated(candidate.fitted, 1), streams_).mean < least.unseen)
+    return false;
   const std::uint32_t first = first_trial() + (1 + 2 * rules.fold_orders) * options_.trials.compare;
   const auto error = [&](const JointModel& fitted) {
     return weigh_groups(joined_score(observe_all(fitted.models, rules.confirming * options_.trials.compare, first)))

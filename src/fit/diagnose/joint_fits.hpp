@@ -30,8 +30,9 @@ class JointFits {
   /// The effect with the grounds, from the best start on.
   JointCandidate fit_effect(const JointModel& base, const SiteCandidates& candidate,
                             const Eigen::VectorXd& start) const;
-  /// Cross-validates the objective over the blocks of all sites, with random numbers number `part` of the round.
-  double cross_validated(const JointModel& fitted, std::uint32_t part) const;
+  /// Objectives over the blocks of all sites, each simulated by a fit to the other folds; one for each order of the
+  /// blocks. Random numbers are those of number `part` of the round.
+  std::vector<Score> cross_validated(const JointModel& fitted, std::uint32_t part) const;
   /// Whether a candidate gains as much again with random numbers that no choice has used.
   bool confirmed(const JointModel& base, const JointCandidate& candidate, const LeastGain& least) const;
 
@@ -42,8 +43,8 @@ class JointFits {
   JointModel fitted(const FitProblem& problem, const JointParameters& parameters, const FitOptions& how) const;
   JointModel continued(JointModel fitted, int rounds, std::uint32_t times_trials) const;
   JointModel simulated_anew(JointModel fitted) const;
-  double error_in_folds(const LocalModel& local, const JointModel& fitted, std::uint32_t first,
-                        std::uint32_t number) const;
+  Score score_in_folds(const LocalModel& local, const JointModel& fitted, std::uint32_t first,
+                       std::uint32_t number) const;
   Score joined_score(const std::vector<std::vector<BlockRuns>>& runs) const;
   std::vector<std::vector<BlockRuns>> observe_all(const std::vector<Model>& models, std::uint32_t trials,
                                                   std::uint32_t first) const;

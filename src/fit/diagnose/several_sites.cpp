@@ -209,8 +209,12 @@ class SitesLoop {
       round.candidates.push_back(fits_.fit_effect(base, *chosen, best.z));
       advance(0.1);
     }
-    const double before = fits_.cross_validated(base, 0);
-    for (JointCandidate& c : round.candidates) c.cross_validated = before - fits_.cross_validated(c.fitted, 0);
+    const std::vector<Score> before = fits_.cross_validated(base, 0);
+    for (JointCandidate& c : round.candidates) {
+      const Difference change = mean_difference(before, fits_.cross_validated(c.fitted, 0), fits_.streams());
+      c.cross_validated = -change.mean;
+      c.cross_validated_interval = {-change.interval.high, -change.interval.low};
+    }
     choose(base, round);
   }
 

@@ -169,12 +169,6 @@ std::string unit_text(const Parameter& parameter) {
   return parameter.unit.empty() || parameter.unit == "1" ? "" : " " + parameter.unit;
 }
 
-std::string gain_text(double gain, const Interval& interval) {
-  if (std::isnan(gain)) return "";
-  return with_decimals(gain, 3) + " (" + with_decimals(interval.low, 3) + " to " + with_decimals(interval.high, 3) +
-         ")";
-}
-
 std::string candidates_table(const DiagnosisRound& round, const std::vector<HoldoutError>& holdout) {
   std::string html =
       "<table><tr><th>effect</th><th>where</th><th>parameters</th><th>p of the score test</th><th>objective lower "

@@ -95,7 +95,7 @@ std::string gained(const DiagnosisRecord& record) {
     text += " and " + bold(with_decimals(e.after, 3)) + " with what was found: lower by " +
             bold(percent(e.reduction.share)) + " (95 %: " + percent(e.reduction.interval.low) + " to " +
             percent(e.reduction.interval.high) + ")" +
-            (e.reduction.interval.low <= 0.0 ? ", so that no gain is not ruled out" : "");
+            (e.reduction.interval.low <= 0.0 ? ": there may be no gain" : "");
   text += ".";
   if (!std::isnan(rows.climatology.total))
     text +=
@@ -113,8 +113,8 @@ std::string undecided(const Diagnosis& d) {
   std::vector<std::string> hidden;
   for (const DetectionLimit& limit : d.rounds.back().limits)
     if (std::isnan(limit.amount)) hidden.push_back(limit.effect);
-  if (!hidden.empty()) text += "These data cannot show, at any amount: " + listed(hidden) + ".";
-  return text.empty() ? "Every effect of the library would have been seen, from the amounts below." : text;
+  if (!hidden.empty()) text += "Even a large amount of these would not show for sure: " + listed(hidden) + ".";
+  return text.empty() ? "Every effect of the library would have been seen, from the amounts below on." : text;
 }
 
 std::string next(const DiagnosisRecord& record) {
@@ -131,7 +131,7 @@ std::string next(const DiagnosisRecord& record) {
   for (const FamilyTest& family : d.rounds.front().families)
     if (!family.may_name) text += "Blocks of at least six different rocks. ";
   const std::size_t rows = record.errors.empty() ? 0 : record.errors[record.unseen].after.blocks;
-  if (rows < kFewRows) text += "More blocks: the gain rests on " + std::to_string(rows) + " ones. ";
+  if (rows < kFewRows) text += "More blocks: the gain rests on " + std::to_string(rows) + " of them. ";
   return text.empty() ? "Nothing that would change this verdict." : text;
 }
 

@@ -93,6 +93,12 @@ std::string tail_before_after(const BeforeAfter& e) {
          score_text(e.after.tail_climatology.total) + ".";
 }
 
+std::string gain_text(double gain, const Interval& interval) {
+  if (std::isnan(gain)) return "";
+  return with_decimals(gain, 3) + " (" + with_decimals(interval.low, 3) + " to " + with_decimals(interval.high, 3) +
+         ")";
+}
+
 std::string judgement_markdown(const BeforeAfter& e) {
   std::string text;
   for (const std::string& sentence : {skill_sentence(e.after), tail_before_after(e)})

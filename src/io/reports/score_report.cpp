@@ -123,7 +123,7 @@ std::string skill_sentence(const ScoredRows& s) {
     return rows + "no skill: " + errors + ": the measurements of the " + (s.rows == "fit" ? "other " : "") +
            "fitting blocks, without any model, are as near";
   return rows + "skill " + with_decimals(100.0 * s.skill.share, 1) + " %" + interval + ": " + errors +
-         (s.skill.interval.low > 0.0 ? "" : "; no skill is not ruled out");
+         (s.skill.interval.low > 0.0 ? "" : "; it may have no skill");
 }
 
 std::string tail_sentence(const ScoredRows& s) {

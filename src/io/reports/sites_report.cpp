@@ -49,7 +49,8 @@ Json candidates_json(const JointRound& round) {
                     {"price", json_of(c.price)},
                     {"objective_gain", json_of(c.gain)},
                     {"objective_gain_ci95", json_of(c.gain_interval)},
-                    {"cross_validated_objective_gain", json_of(c.cross_validated)}});
+                    {"cross_validated_objective_gain", json_of(c.cross_validated)},
+                    {"cross_validated_objective_gain_ci95", json_of(c.cross_validated_interval)}});
   }
   return list;
 }
@@ -184,9 +185,8 @@ std::string candidates_html(const JointRound& round) {
     for (std::size_t i = 0; i < c.values.size(); ++i)
       numbers += c.parameters[i].key + " = " + with_digits(c.values[i], 3) + "<br>";
     html += "<tr><td>" + c.effect + "</td><td>" + escaped(c.where) + "</td><td>" + numbers + "</td><td>" +
-            with_decimals(c.gain, 4) + " (" + with_decimals(c.gain_interval.low, 4) + " to " +
-            with_decimals(c.gain_interval.high, 4) + ")</td><td>" + with_decimals(c.cross_validated, 4) +
-            "</td></tr>\n";
+            gain_text(c.gain, c.gain_interval) + "</td><td>" +
+            gain_text(c.cross_validated, c.cross_validated_interval) + "</td></tr>\n";
   }
   return html + "</table>\n";
 }

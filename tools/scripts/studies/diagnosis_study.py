@@ -2,14 +2,18 @@
 """Measures how often `talus diagnose` is right: makes campaigns with the engine itself and diagnoses them.
 
   tools/scripts/studies/diagnosis_study.py [--talus build/release/talus] [--effects all] [--magnitudes 1,2,0.5] [--blocks 60,120]
-                           [--none 20] [--trials 24] [--test-trials 100] [--most-effects 3] [--threads N]
+                           [--none 20] [--null plain,scatter,grouped,outside] [--base-fits 1] [--trials 24] [--test-trials 100] [--most-effects 3] [--threads N]
                            [--jobs 1] [--work DIR] [--seed 1] [-o study.csv]
 
 Each campaign has a slope of its own (length, steepness, a gully, bumps), three zones, blocks of many sizes and shapes, three
 screens and four days. One effect of a known size acts (or none). One simulated trial per block, with errors of measurement,
 serves as the measurement. A third of the blocks is held out. Prints the confusion matrix, the false alarms and the power by
 magnitude, and the error on the held-out rows of three models: the ground alone, the model that was found, the model that made
-the data. The same engine makes and judges the data: this measures the statistics, not the physics. Campaigns that are finished,
+the data. Campaigns without an effect are of the kinds of --null in turn: `plain`; `scatter`, whose stops, speeds, jumps and spins
+scatter 1.6 times as much in variance as trials of the model; `grouped`, six blocks a group, which share an error of the
+release of 6 m and a ground of their own (each parameter 15 % up or down); `outside`, a ground far from the start of the fit
+(theta_scale of talus and rock beyond 2.5 standard deviations of the prior). Printed for these: how often each family is below
+1, 5 and 10 %. The same engine makes and judges the data: this measures the statistics, not the physics. Campaigns that are finished,
 with the same seed, options and program, are not run again.
 """
 import argparse
@@ -61,6 +65,11 @@ def write_raster(path, values, kind, nodata=None):
     raster.GetRasterBand(1).WriteArray(values)
 
 
+FAMILIES = ("block property", "place", "day", "instrument", "dispersion")
+NULLS = ("plain", "scatter", "grouped", "outside")
+BLOCKS = "id,x,y,release_height_m,vx,vy,vz,mass_kg,density_kgm3,L1_m,L2_m,L3_m,day,holdout,group"
+
+
 def terrain(g, folder):
     """A face that eases into a run-out, with a gully and bumps. Row 0 is in the north, where the blocks start."""
     y = (np.arange(ROWS) + 0.5)[:, None] * CELL
@@ -75,16 +84,16 @@ def terrain(g, folder):
     write_raster(f"{folder}/zones.tif", zones.astype(np.uint8), gdal.GDT_Byte)
 
 
-def blocks(g, folder, count):
+def blocks(g, folder, count, grouped):
     with open(f"{folder}/blocks.csv", "w", encoding="utf-8") as out:
-        out.write("id,x,y,release_height_m,vx,vy,vz,mass_kg,density_kgm3,L1_m,L2_m,L3_m,day,holdout\n")
+        out.write(BLOCKS + "\n")
         for i in range(count):
             mass = np.exp(g.uniform(np.log(80), np.log(2500)))
             a, b = sorted(g.uniform(0.45, 1.0, 2), reverse=True)
             length = (6 * mass / 2700 / np.pi / a / b) ** (1 / 3)
             out.write(f"b{i:03d},{WEST + COLUMNS * CELL / 2 + g.uniform(-30, 30):.2f},{SOUTH + ROWS * CELL - g.uniform(8, 40):.2f},"
                       f"{g.uniform(0.5, 2):.2f},0,-1,0,{mass:.1f},2700,{length:.3f},{a * length:.3f},{b * length:.3f},"
-                      f"{1 + i % 4},{int(i % 3 == 1)}\n")
+                      f"{1 + i % 4},{int((i // 6 if grouped else i) % 3 == 1)},{f'g{i // 6}' if grouped else ''}\n")
 
 
 def campaign_text(name, measured):
@@ -94,11 +103,12 @@ def campaign_text(name, measured):
             "position_m = 0.3\nspeed_fraction = 0.03\njump_height_m = 0.1\nangular_velocity_fraction = 0.05\n")
 
 
-def model_text(g, effect, magnitude):
+def model_text(g, effect, magnitude, outside=False, factors=np.ones((3, 4))):
     text = '[ground]\ndefault = "upper-talus-3d"\n'
-    for name, theta, En in (("talus", 0.8, 13), ("meadow", 1.0, 8), ("rock", 0.5, 20)):
-        text += GROUND.format(name=name, theta=theta * g.uniform(0.9, 1.2), psi=g.uniform(0.5, 0.8), En=En * g.uniform(0.8, 1.2),
-                              Et=45 * g.uniform(0.7, 1.3))
+    zones = (("talus", 0.07 if outside else 0.8, 13), ("meadow", 1.0, 8), ("rock", 0.07 if outside else 0.5, 20))
+    for (name, theta, En), times in zip(zones, factors):
+        text += GROUND.format(name=name, theta=theta * g.uniform(0.9, 1.2) * times[0], psi=g.uniform(0.5, 0.8) * times[1],
+                              En=En * g.uniform(0.8, 1.2) * times[2], Et=45 * g.uniform(0.7, 1.3) * times[3])
     if effect != "none":
         text += f"\n[effects.{effect}]\n"
         for key, value in EFFECTS[effect].items():
@@ -119,26 +129,74 @@ def rows(path):
         return list(csv.DictReader(file))
 
 
-def make(talus, folder, effect, magnitude, count, seed):
+def simulated(talus, folder, name, seed):
+    """Stops and passages of ten trials of each block by the model NAME.toml."""
+    run([talus, "score", f"{folder}/plan.toml", "--parameters", f"{folder}/{name}.toml", "--trials", "10", "--seed", str(1000 + seed),
+         "--dump", f"{folder}/{name}", "-q"])
+    stops = [s for s in rows(f"{folder}/{name}/stops.csv") if s["end"] in ("stopped", "trapped")]
+    return stops, rows(f"{folder}/{name}/passages.csv")
+
+
+def scatter_more(g, table, keys):
+    """Adds to each number the same scatter again times 0.6 ** 0.5: the pooled standard deviation within the blocks."""
+    for key in keys:
+        within = defaultdict(list)
+        for row in table:
+            within[row["block"], row.get("screen")].append(float(row[key]))
+        variances = [np.var(values, ddof=1) for values in within.values() if len(values) > 1]
+        spread = np.sqrt(0.6 * np.mean(variances)) if variances else 0.0
+        for row in table:
+            value = float(row[key]) + g.normal(0.0, spread)
+            row[key] = f"{value if key in 'xy' else max(0.0, value):.4f}"
+
+
+def in_groups(g, talus, folder, seed, effect, magnitude):
+    """Each group falls on a ground of its own and its releases are written down with an error of their own."""
+    with open(f"{folder}/blocks.csv", encoding="utf-8") as file:
+        table = list(csv.DictReader(file))
+    ground = g.bit_generator.state
+    stops, passages = [], []
+    for group in sorted({row["group"] for row in table}):
+        g.bit_generator.state = ground  # the same ground but for the group's own factors
+        own = np.random.default_rng([seed, int(group[1:])])
+        write(f"{folder}/{group}.toml", model_text(g, effect, magnitude, factors=own.choice([0.85, 1 / 0.85], (3, 4))))
+        of_group = {row["id"] for row in table if row["group"] == group}
+        some_stops, some_passages = simulated(talus, folder, group, seed)
+        stops += [s for s in some_stops if s["block"] in of_group]
+        passages += [p for p in some_passages if p["block"] in of_group]
+        shift = own.normal(0.0, 6.0, 2)
+        for row in table:
+            if row["id"] in of_group:
+                row["x"], row["y"] = f"{float(row['x']) + shift[0]:.2f}", f"{min(float(row['y']) + shift[1], SOUTH + ROWS * CELL - 2):.2f}"
+    write(f"{folder}/blocks.csv", BLOCKS + "\n" + "".join(",".join(row.values()) + "\n" for row in table))
+    return stops, passages
+
+
+def make(talus, folder, effect, magnitude, count, seed, null="plain"):
     """A campaign in `folder`: the measurements of one trial of the model in truth_model.toml."""
     os.makedirs(folder, exist_ok=True)
     g = np.random.default_rng(seed)
     terrain(g, folder)
-    blocks(g, folder, count)
+    blocks(g, folder, count, null == "grouped")
     top = SOUTH + ROWS * CELL
     lines = [f'S{i + 1},"LINESTRING ({WEST + 4} {top - d}, {WEST + COLUMNS * CELL - 4} {top - d})"' for i, d in enumerate((140, 250, 320))]
     write(f"{folder}/screens.csv", "id,wkt\n" + "\n".join(lines) + "\n")
-    write(f"{folder}/truth_model.toml", model_text(g, effect, magnitude))
     write(f"{folder}/plan.toml", campaign_text("plan", False))
-    run([talus, "score", f"{folder}/plan.toml", "--parameters", f"{folder}/truth_model.toml", "--trials", "10", "--seed",
-         str(1000 + seed), "--dump", f"{folder}/truth", "-q"])
+    ground = g.bit_generator.state
+    write(f"{folder}/truth_model.toml", model_text(g, effect, magnitude, null == "outside"))
+    stops, passages = simulated(talus, folder, "truth_model", seed)
+    if null == "scatter":
+        scatter_more(g, stops, "xy")
+        scatter_more(g, passages, ("speed_ms", "jump_height_m", "angular_velocity_rads"))
+    if null == "grouped":
+        g.bit_generator.state = ground
+        stops, passages = in_groups(g, talus, folder, seed, effect, magnitude)
     mass = {b["id"]: float(b["mass_kg"]) for b in rows(f"{folder}/blocks.csv")}
-    stops = [s for s in rows(f"{folder}/truth/stops.csv") if s["trial"] == "0" and s["end"] in ("stopped", "trapped")]
     write(f"{folder}/stops.csv", "id,x,y,mass_kg\n" + "".join(
-        f"{s['block']},{s['x']},{s['y']},{float(s['mass_share']) * mass[s['block']]:.1f}\n" for s in stops))
+        f"{s['block']},{s['x']},{s['y']},{float(s['mass_share']) * mass[s['block']]:.1f}\n" for s in stops if s["trial"] == "0"))
     write(f"{folder}/passages.csv", "id,screen,speed_ms,jump_height_m,angular_velocity_rads\n" + "".join(
         f"{p['block']},{p['screen']},{p['speed_ms']},{p['jump_height_m']},{p['angular_velocity_rads']}\n"
-        for p in rows(f"{folder}/truth/passages.csv") if p["trial"] == "0"))
+        for p in passages if p["trial"] == "0"))
     write(f"{folder}/campaign.toml", campaign_text(os.path.basename(folder), True))
 
 
@@ -156,10 +214,10 @@ def program(o):
 
 
 def diagnose(o, folder):
-    out = f"{folder}/diagnosis-{o.trials}-{o.test_trials}-{o.most_effects}"
+    out = f"{folder}/diagnosis-{o.trials}-{o.test_trials}-{o.most_effects}-{o.base_fits}"
     if not os.path.exists(f"{out}/diagnosis.json"):
         run([o.talus, "diagnose", f"{folder}/campaign.toml", "-o", out, "--trials", str(o.trials),
-             "--test-trials", str(o.test_trials), "--most-effects", str(o.most_effects), "-q", "--overwrite"]
+             "--test-trials", str(o.test_trials), "--most-effects", str(o.most_effects), "--base-fits", str(o.base_fits), "-q", "--overwrite"]
             + (["--threads", str(o.threads)] if o.threads else []))
     with open(f"{out}/diagnosis.json", encoding="utf-8") as file:
         found = json.load(file)
@@ -170,14 +228,18 @@ def diagnose(o, folder):
 
 def one(o, effect, magnitude, count, k):
     """Makes and diagnoses one campaign, and prints what came out."""
-    folder = f"{o.work}/{o.program}-{o.seed}/{effect}-{magnitude:g}-{count}-{k}"
+    null = o.null[k % len(o.null)] if effect == "none" else "plain"
+    made = effect if null == "plain" else f"none ({null})"
+    folder = f"{o.work}/{o.program}-{o.seed}/{effect}-{null}-{magnitude:g}-{count}-{k}"
     if not os.path.exists(f"{folder}/campaign.toml"):
-        make(o.talus, folder, effect, magnitude, count, o.seed + 7919 * k + sum(map(ord, effect)) + int(100 * magnitude) + count)
+        make(o.talus, folder, effect, magnitude, count, o.seed + 7919 * k + sum(map(ord, effect)) + int(100 * magnitude) + count, null)
     found, truth = diagnose(o, folder)
     e = found["error"]["holdout"]
-    row = dict(effect=effect, magnitude=magnitude, blocks=count, found=found["effect"], alike=" ".join(found["indistinguishable_from"]),
-               p=found["rounds"][0]["p_value"], before=e["before"], after=e["after"], truth=truth, seconds=found["seconds"]["wall"])
-    print(f"{effect} x{magnitude:g}, {count} blocks, {k}: {row['found']} ({row['alike']}) p {row['p']:.4f}, held-out {row['before']:.3f} -> "
+    families = {f["name"]: f["p_value"] for f in found["families"]}
+    row = dict(effect=made, magnitude=magnitude, blocks=count, found=found["effect"], alike=" ".join(found["indistinguishable_from"]),
+               p=found["rounds"][0]["p_value"], before=e["before"], after=e["after"], truth=truth, seconds=found["times"]["cpu"],
+               **{name: families.get(name) for name in FAMILIES})
+    print(f"{made} x{magnitude:g}, {count} blocks, {k}: {row['found']} ({row['alike']}) p {row['p']:.4f}, held-out {row['before']:.3f} -> "
           f"{row['after']:.3f}, truth {truth:.3f}, {row['seconds']:.0f} s", flush=True)
     return row
 
@@ -201,11 +263,16 @@ def report(table):
     print("\n| made with | " + " | ".join(found) + " |\n| --- |" + " --- |" * len(found))
     for name in names:
         print(f"| {name} | " + " | ".join(str(counts[name, f] or "") for f in found) + " |")
-    none = [r for r in table if r["effect"] == "none"]
-    if none:
-        alarms = sum(r["found"] not in ("none", "unexplained") for r in none)
-        print(f"\nfalse alarms: {alarms} of {len(none)}")
-    effects = [r for r in table if r["effect"] != "none"]
+    none = [r for r in table if r["effect"].startswith("none")]
+    for kind in sorted({r["effect"] for r in none}):
+        of = [r for r in none if r["effect"] == kind]
+        alarms = sum(r["found"] not in ("none", "unexplained") for r in of)
+        print(f"\n{kind}: false alarms: {alarms} of {len(of)}, unexplained: {sum(r['found'] == 'unexplained' for r in of)}")
+        for name in FAMILIES:
+            p = np.array([r[name] for r in of if r[name] is not None])
+            if len(p):
+                print(f"  {name}: p below 0.01, 0.05, 0.10 in {', '.join(f'{100 * np.mean(p <= a):.0f} %' for a in (0.01, 0.05, 0.1))} of {len(p)}")
+    effects = [r for r in table if not r["effect"].startswith("none")]
     for size in sorted({r["magnitude"] for r in effects}):
         of = [r for r in effects if r["magnitude"] == size]
         named = sum(r["found"] == r["effect"] for r in of)
@@ -222,6 +289,8 @@ def main():
     parser.add_argument("--magnitudes", default="1,2,0.5")
     parser.add_argument("--blocks", default="60,120")
     parser.add_argument("--none", type=int, default=20)
+    parser.add_argument("--null", default=",".join(NULLS), help="kinds of campaigns without an effect")
+    parser.add_argument("--base-fits", type=int, default=1)
     parser.add_argument("--trials", type=int, default=24)
     parser.add_argument("--test-trials", type=int, default=100)
     parser.add_argument("--most-effects", type=int, default=3)
@@ -232,6 +301,7 @@ def main():
     parser.add_argument("-o", "--out")
     o = parser.parse_args()
     o.effects = list(EFFECTS) if o.effects == "all" else [e for e in o.effects.split(",") if e]
+    o.null = o.null.split(",")
     o.magnitudes = [float(m) for m in o.magnitudes.split(",")]
     o.blocks = [int(n) for n in o.blocks.split(",")]
     o.program = program(o)

@@ -26,7 +26,9 @@ struct JointCandidate {
   std::vector<double> values;
   double gain = 0.0;       ///< of the objective of all sites
   Interval gain_interval;  ///< 95 %, over the blocks of all
-  double price = 0.0, cross_validated = kNotGiven, amount = 0.0;
+  double price = 0.0, amount = 0.0;
+  double cross_validated = kNotGiven;  ///< gain on blocks that its fit has not seen
+  Interval cross_validated_interval;   ///< 95 %, over the blocks of all
   JointModel fitted;
 };
 

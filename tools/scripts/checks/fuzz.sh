@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# Fuzzes the readers and the engine (docs/fuzzing.md): builds the targets with clang's fuzzer and sanitizers, and runs each.
+#
+#   tools/scripts/checks/fuzz.sh [SECONDS each, 600] [TARGET...]
+#
+# New cases go to build/fuzz/corpus/TARGET; a case that fails to build/fuzz/crash-*, and the exit code is not 0. A mended
+# fault's case belongs into tests/fuzz/corpus/TARGET, which `ctest -R fuzz` replays.
+set -euo pipefail
+cd "$(dirname "$0")/../../.."
+seconds="${1:-600}"
+shift || true
+targets=("$@")
+[ ${#targets[@]} -gt 0 ] || targets=(scenario campaign profile tables run_folder engine)
+cmake --preset fuzz > /dev/null
+cmake --build --preset fuzz
+export LSAN_OPTIONS="suppressions=$PWD/tests/leaks_of_libomp.txt:print_suppressions=0" OMP_NUM_THREADS=2
+for target in "${targets[@]}"; do
+  mkdir -p "build/fuzz/corpus/$target"
+  dictionary=()
+  [ -f "tests/fuzz/$target.dict" ] && dictionary=("-dict=tests/fuzz/$target.dict")
+  echo "== $target, $seconds s"
+  "build/fuzz/tests/fuzz_$target" -max_total_time="$seconds" -max_len=20000 -timeout=10 -rss_limit_mb=4096 -print_final_stats=1 \
+    -artifact_prefix="build/fuzz/crash-$target-" "${dictionary[@]}" "build/fuzz/corpus/$target" "tests/fuzz/corpus/$target" 2>&1 |
+    grep -vE "^#|INFO" || exit 1
+done
