@@ -67,6 +67,15 @@ class OfACampaign(Case):
         self.write("s.toml", 'include = "m.toml"\ndem = "dem.tif"\nsurface = "bilinear"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1\n')
         self.assertIn("was fitted on a creased surface", self.run_well("check", self.path("s.toml")).stdout)
 
+    def test_a_model_says_so_where_it_is_used_on_cells_of_another_size(self):
+        self.write("m.toml", 'fitted_cell = 9\n[ground]\ndefault = "upper-talus-3d"\n')
+        self.write("s.toml", 'include = "m.toml"\ndem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1\n')
+        self.assertIn("fitted on cells of 9 m", self.run_well("check", self.path("s.toml")).stdout)
+        self.write("m.toml", 'fitted_cell = 5\n[ground]\ndefault = "upper-talus-3d"\n')
+        self.assertNotIn("fitted on cells", self.run_well("check", self.path("s.toml")).stdout)
+        self.write("m.toml", "fitted_cell = -1\n")
+        self.fails(2, "fitted_cell = -1", arguments=["check", self.path("s.toml")])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "io/scenario/barrier_keys.hpp"
+#include "io/scenario/fitted_on.hpp"
 #include "io/scenario/scenario_flags.hpp"
 #include "io/scenario/scenario_keys.hpp"
 #include "io/scenario/scenario_text.hpp"
@@ -124,11 +125,11 @@ Model read_model(const std::string& path, const Campaign& campaign, std::vector<
                        known_names(zone.name, campaign.zone_names));
   for (const auto& [name, effect] : spec.effects) check_places(name, effect, campaign, path, faults);
   if (!faults.empty()) throw InputError(faults.front());
-  if (warnings != nullptr && spec.model_surface.value_or(campaign.surface.kind()) != campaign.surface.kind())
-    warnings->push_back(path + ": was fitted on a " + std::string(name_of(*spec.model_surface)) +
-                        " surface, and the campaign is simulated on a " +
-                        std::string(name_of(campaign.surface.kind())) + " one: give --surface " +
-                        std::string(name_of(*spec.model_surface)) + ", or fit again");
+  const SurfaceKind kind = campaign.surface.kind();
+  if (warnings != nullptr)
+    warn_of_other_terrain(
+        spec, campaign.surface.grid(), kind, path, "the campaign is simulated",
+        ": give --surface " + std::string(name_of(spec.model_surface.value_or(kind))) + ", or fit again", *warnings);
   Model model;
   model.impact = spec.values.impact;
   model.effects = spec.values.effects;
@@ -155,6 +156,7 @@ std::string model_text(const Model& model, const LoadedCampaign& loaded, const s
   std::istringstream lines(heading);
   for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
   text += "\nsurface = " + toml_text(std::string(name_of(loaded.campaign.surface.kind()))) + "\n";
+  text += "fitted_cell = " + text_of(loaded.campaign.surface.grid().cell_x) + "  # m, side of the cells of the DEM\n";
   for (std::size_t i = 0; i < loaded.campaign.zone_names.size(); ++i) {
     text += "\n[ground.zones." + toml_key(loaded.campaign.zone_names[i]) + "]\n";
     text += "preset = " + toml_text(std::string(kDefaultPreset)) + "\n";

@@ -6,6 +6,7 @@
 
 #include "barrier_keys.hpp"
 #include "effect_places.hpp"
+#include "fitted_on.hpp"
 #include "io/files/checksum.hpp"
 #include "scenario_keys.hpp"
 #include "scenario_text.hpp"
@@ -101,14 +102,6 @@ void warn_unused_diameter(const ScenarioSpec& spec, const SourceLayer& layer, st
                      " to " + text_of(all.high) + " m");
 }
 
-/// A model makes up for the surface on which it was fitted.
-void warn_of_model_surface(const ScenarioSpec& spec, std::vector<std::string>& warnings) {
-  if (!spec.model_surface || *spec.model_surface == spec.surface) return;
-  warnings.push_back(spec.include.where + ": was fitted on a " + std::string(name_of(*spec.model_surface)) +
-                     " surface, and this run is on a " + std::string(name_of(spec.surface)) + " one (" +
-                     spec.origin("surface") + "): fit it again, or leave `surface` to the included file");
-}
-
 /// Steep gullies narrower than two cells are sampled as staircases, whose treads hold blocks.
 void warn_of_dams(const Surface& surface, std::vector<std::string>& warnings) {
   constexpr double kManyDams = 2e-3;  // of the cells; steep terrain with gullies in cells of 5 m has 0.2 to 0.3 %
@@ -179,7 +172,9 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
     out.warnings.push_back(spec.include.where +
                            ": its [[instrument_bias]] is left out: it says how instruments of the "
                            "campaign read, and belongs to no place");
-  warn_of_model_surface(spec, out.warnings);
+  warn_of_other_terrain(spec, terrain.heights.grid, spec.surface, spec.include.where, "this run is",
+                        " (" + spec.origin("surface") + "): fit it again, or leave `surface` to the included file",
+                        out.warnings);
   stop_at_faults(faults, all_faults);
   parts.features = std::move(sources.features);
   parts.sources = std::move(sources.cells);

@@ -18,6 +18,9 @@ namespace talus::io {
 
 namespace {
 
+constexpr Bounds kFittedCell{"fitted_cell", "m",    "side of the cells of the DEM on which a model was fitted",
+                             0.0,           1000.0, Bounds::AboveMin};
+
 using Kind = TomlValue::Kind;
 
 class SpecReader {
@@ -63,6 +66,7 @@ class SpecReader {
   void read_model_keys(const TomlValue& root) {
     TableReader top(&root, "", file_, faults_);
     spec_.model_surface = surface(top);
+    spec_.model_cell = top.number("fitted_cell", kFittedCell);
     TableReader ground = top.table("ground");
     GroundReader(spec_, origin_, faults_).read(ground);
     ground.finish();

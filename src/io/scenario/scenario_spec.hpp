@@ -58,6 +58,7 @@ struct ScenarioSpec {
   NamedFile scenario, include, dem, sources, ground, screens, barriers;
   SurfaceKind surface = kDefaultSurface;
   std::optional<SurfaceKind> model_surface;  ///< on which an included model was fitted
+  std::optional<double> model_cell;          ///< side of the cells of the DEM on which it was fitted [m]
   std::string ground_field;
   ZoneSpec default_ground;
   std::vector<ZoneSpec> zones;                ///< in the order of the file
