@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# Looks for races: builds with clang's thread sanitizer and runs what is parallel with four threads: the engine on the fuzz corpus,
+# a run with all its files, parts and their merge, hazard, a score. libarcher tells the sanitizer what OpenMP does (it knows no
+# OpenMP by itself). Ends with an error at the first race. Not in CI: ten minutes of building for code that rarely changes.
+set -euo pipefail
+cd "$(dirname "$0")/../../.."
+archer=$(ls /usr/lib/llvm-*/lib/libarcher.so | tail -1)
+cmake --preset tsan > /dev/null
+cmake --build --preset tsan
+export OMP_TOOL_LIBRARIES="$archer" TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1" OMP_NUM_THREADS=4
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+talus=build/tsan/talus
+build/tsan/tests/fuzz_engine tests/fuzz/corpus/engine
+$talus run data/valley/scenario.toml -o "$work/whole" --trajectories 3 --threads 4 -q
+for part in 1 2; do $talus run data/valley/scenario.toml -o "$work/part-$part" --part "$part/2" --trajectories 3 --threads 4 -q; done
+$talus merge "$work/merged" "$work/part-1" "$work/part-2" --threads 4 -q
+cmp "$work/whole/impact_probability.tif" "$work/merged/impact_probability.tif"
+$talus hazard "$work/whole" -q
+printf '[ground]\ndefault = "upper-talus-3d"\n' > "$work/model.toml"
+$talus score data/elm/campaign.toml --parameters "$work/model.toml" --trials 20 --threads 4 -q > "$work/score.txt"
+echo "no race"
