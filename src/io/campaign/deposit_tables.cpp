@@ -113,6 +113,7 @@ std::vector<DepositSource> sources_of(const DepositSpec& spec, const Terrain& te
                                       std::vector<std::string>& warnings) {
   const SourceLayer layer = read_sources(spec.sources.path, terrain, spec.release_height);
   warnings.insert(warnings.end(), layer.warnings.begin(), layer.warnings.end());
+  warnings.insert(warnings.end(), layer.unread_notes.begin(), layer.unread_notes.end());
   for (const Setting& setting : layer.attributes)
     if (setting.key.ends_with(".frequency") || setting.key.find(".diameter") != std::string::npos)
       warnings.push_back(spec.sources.path + ": the field " + setting.key.substr(setting.key.rfind('.') + 1) +

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "dataset.hpp"
+#include "dem_warning.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
@@ -51,6 +52,10 @@ void check_cell(const std::string& path, double size) {
 void check_band(GDALRasterBand& band, const std::string& path, std::vector<std::string>& warnings) {
   if (GDALDataTypeIsComplex(band.GetRasterDataType()) != 0)
     throw InputError(path + ": band 1 has complex numbers, must be heights in metres");
+  if (band.GetRasterDataType() == GDT_Byte)
+    warnings.push_back(path +
+                       ": band 1 holds bytes (0 to 255), as pictures do and hillshades: are these heights in "
+                       "metres? Take the DEM that it was made of");
   std::string unit = band.GetUnitType();
   std::transform(unit.begin(), unit.end(), unit.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -179,6 +184,8 @@ Terrain read_terrain(const std::string& path, const RasterMemory& memory) {
   terrain.heights.grid = grid;
   fill_raster(terrain.heights, std::numeric_limits<float>::quiet_NaN(), memory,
               [&] { read_heights(band, path, terrain); });
+  for (std::string& line : dem_warnings(path, dem_figures(terrain.heights), std::min(grid.cell_x, grid.cell_y)))
+    terrain.warnings.push_back(std::move(line));
   return terrain;
 }
 
