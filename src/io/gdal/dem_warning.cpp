@@ -9,7 +9,7 @@ namespace talus::io {
 namespace {
 
 constexpr std::uint64_t kFewestCells = 400;
-constexpr double kSteepMedian = 45.0;  // [deg]; seven DEMs: at most 39; their hillshades, or in feet: at least 52
+constexpr double kSteepMedian = 45.0;  // [deg]; seven DEMs: at most 39; their hillshades, or in feet: at least 51
 constexpr double kSteepShare = 0.03;   // of the cells; seven DEMs: at most 0.014
 constexpr double kStepSlope = 0.05;    // step over cell; the DEMs in centimetres and cells of 4 m: 0.003
 constexpr double kWholeMetres = 1.0;   // [m]: always too coarse

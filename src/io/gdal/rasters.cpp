@@ -115,7 +115,8 @@ class HeightReader {
   throw InputError(path + ": height " + text_of(height) + " m in column " + std::to_string(column) + ", row " +
                    std::to_string(row) + " (from 0 in the north-west), must be " + text_of(kLowest) + " to " +
                    text_of(kHighest) + " m: if it stands for missing values, declare it with " +
-                   edit_command(path, "-a_nodata " + stored));
+                   edit_command(path, "-a_nodata " + stored) +
+                   (height > kHighest && height < 1e5 ? "; or are the heights in feet?" : ""));
 }
 
 void read_heights(GDALRasterBand& band, const std::string& path, Terrain& terrain) {
