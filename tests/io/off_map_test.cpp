@@ -35,10 +35,12 @@ TEST(ShareOutside, OfPolygonsIsThatOfTheirArea) {
   // A ring of 40 x 40 less 20 x 20, of which the right half is outside; the way round changes nothing.
   EXPECT_DOUBLE_EQ(outside("POLYGON((80 5,120 5,120 45,80 45,80 5),(90 15,90 35,110 35,110 15,90 15))"), 0.5);
   EXPECT_DOUBLE_EQ(outside("POLYGON((80 5,80 45,120 45,120 5,80 5),(90 15,110 15,110 35,90 35,90 15))"), 0.5);
+  // A hole of 10 x 20 on the map alone.
+  EXPECT_DOUBLE_EQ(outside("POLYGON((80 5,120 5,120 45,80 45,80 5),(82 15,82 35,92 35,92 15,82 15))"), 800.0 / 1400.0);
 }
 
-TEST(ShareOutside,
-     OfAConcavePolygonWithTwoPartsInside) {  // a U that hangs in from the north: legs 10 x 20 m, bar 30 x 10
+TEST(ShareOutside, OfAConcavePolygonWithTwoPartsInside) {
+  // A U that hangs in from the north: two legs of 10 x 30 m, 20 m of each on the map, and a bar of 30 x 10.
   EXPECT_DOUBLE_EQ(outside("POLYGON((10 30,20 30,20 60,30 60,30 30,40 30,40 70,10 70,10 30))"), 500.0 / 900.0);
 }
 

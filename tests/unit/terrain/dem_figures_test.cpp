@@ -51,6 +51,8 @@ TEST(DemFigures, SteepCellsAndGapsAreCounted) {
   const DemFigures figures = dem_figures(wall);  // interior columns 1 to 20: 11 to 20 are steep, 1 to 9 flat
   EXPECT_DOUBLE_EQ(figures.steep_share, 10.0 / 20.0);
   EXPECT_DOUBLE_EQ(figures.flat_share, 9.0 / 20.0);
+  for (float& height : wall.values) height *= static_cast<float>(std::tan(radians(79.5)) / tan_81);
+  EXPECT_EQ(dem_figures(wall).steep_share, 0.0);
   wall.at(20, 5) = std::numeric_limits<float>::quiet_NaN();  // takes away columns 19 and 20 of rows 4 to 6
   EXPECT_EQ(dem_figures(wall).cells, 20U * 10U - 6U);
 }
