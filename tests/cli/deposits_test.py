@@ -47,6 +47,18 @@ class Deposits(Case):
         self.fails(2, *words, arguments=["score", self.path("campaign.toml"), "--parameters", self.model])
 
 
+class Sources(Deposits):
+    def test_a_field_height_is_not_the_release_height(self):
+        write_features(self.path("sources.gpkg"), "sources", [(box(140, 230, 20, 10), [60.0])], [("HEIGHT", ogr.OFTReal)])
+        done = self.run_well("score", self.path("campaign.toml"), "--parameters", self.model, "--trials", "10")
+        self.assertIn("sources.gpkg: a field height is not read", done.stderr)
+        write_features(self.path("tall.gpkg"), "sources", [(box(140, 230, 20, 10), [60.0])], [("release_height", ogr.OFTReal)])
+        self.campaign(table=TABLE.replace("sources.gpkg", "tall.gpkg"))
+        other = self.run_well("score", self.path("campaign.toml"), "--parameters", self.model, "--trials", "10")
+        self.assertNotIn("is not read", other.stderr)
+        self.assertNotEqual(done.stdout, other.stdout)
+
+
 class Score(Deposits):
     def test_the_right_model_is_near_the_pattern_and_another_is_not(self):
         right = self.score("-q")["fit"]

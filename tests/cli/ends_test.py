@@ -130,7 +130,7 @@ class Ends(Case):
         self.fails(2, "--overwrite", arguments=[*arguments, "--pits", self.path("pits.gpkg")])
         self.run_well(*arguments, "--pits", self.path("pits.gpkg"), "--overwrite")
         self.fails(2, ".gpkg", arguments=[*arguments, "--pits", self.path("pits.tif")])
-        self.fails(2, "sources.gpkg", "another name",
+        self.fails(2, "sources.gpkg", "other layers: sources",
                    arguments=[*arguments, "--pits", self.path("sources.gpkg"), "--overwrite"])
         self.assert_nothing_left(before + ["pits.gpkg"])
 

@@ -153,7 +153,7 @@ class Parts(RunCase):
         self.write("result/run.json", "{}")
         self.write("result/part1/mine.bin", "x")
         parts = [self.path(f"result/part{i}") for i in (1, 2)]
-        self.fails(2, "lies in the folder that --overwrite would replace",
+        self.fails(2, "others in this folder: part1/, part2/",
                    arguments=["merge", self.path("result"), *parts, "--overwrite"])
         self.run_well("merge", self.path("merged"), *parts, "-q")
         self.assertTrue(os.path.exists(self.path("result/part1/mine.bin")))

@@ -32,7 +32,7 @@ class EnergyLine(Case):
         # Points at centres of cells: the release is the height of the cell and the drop of 2 m above it.
         z = heights()
         points = [(f"POINT ({WEST + 152.5} {NORTH - 62.5})", [2.0]), (f"POINT ({WEST + 202.5} {NORTH - 82.5})", [2.0])]
-        write_features(self.path("points.gpkg"), "points", points, [("height", ogr.OFTReal)])
+        write_features(self.path("points.gpkg"), "points", points, [("release_height", ogr.OFTReal)])
         done = self.run_well("run", "--dem", self.path("dem.tif"), "--sources", self.path("points.gpkg"), "--diameter", "1",
                              "--trajectories", "300", "-o", self.path("out"))
         angles = []

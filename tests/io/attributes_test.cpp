@@ -24,7 +24,7 @@ TEST_F(Attributes, AreReadWhateverTheirCase) {
   const SourceLayer layer = read({{"Name", OFTString},
                                   {"FREQUENCY", OFTReal},
                                   {"Diameter", OFTInteger},
-                                  {"height", OFTReal},
+                                  {"release_height", OFTReal},
                                   {"vx", OFTReal},
                                   {"VY", OFTReal},
                                   {"vz", OFTInteger64}},
@@ -43,7 +43,7 @@ TEST_F(Attributes, NullIsNotGiven) {
             {"diameter", OFTReal},
             {"diameter_min", OFTReal},
             {"diameter_max", OFTReal},
-            {"height", OFTReal},
+            {"release_height", OFTReal},
             {"vx", OFTReal}},
            {{"NULL", "NULL", "NULL", "NULL", "NULL", "NULL"}, {"NULL", "NULL", "0.5", "1.5", "NULL", "NULL"}});
   EXPECT_TRUE(std::isnan(layer.features[0].frequency));
@@ -73,7 +73,11 @@ TEST_F(Attributes, OutOfBoundsNamesFeatureFieldValueAndBounds) {
         read({{"frequency", OFTReal}}, {{"-1"}});
       },
       {"feature 1", "frequency = -1", "0 to 1000000 1/year"});
-  expect_input_error([&] { read({{"height", OFTReal}}, {{"600"}}); }, {"feature 1", "height = 600", "0 to 500 m"});
+  expect_input_error(
+      [&] {
+        read({{"release_height", OFTReal}}, {{"600"}});
+      },
+      {"feature 1", "release_height = 600", "0 to 500 m"});
   expect_input_error([&] { read({{"vz", OFTReal}}, {{"-201"}}); }, {"feature 1", "vz = -201", "-200 to 200 m/s"});
   expect_input_error(
       [&] {
@@ -114,9 +118,10 @@ TEST_F(Attributes, ATextFieldWithoutTextIsNotGiven) {
 }
 
 TEST_F(Attributes, ACsvHasItsTypesGuessed) {
-  const std::string file = write_text("s.csv",
-                                      "id,wkt,diameter,vx,height\n1,POINT (600005 5200005),1.5,,3\n2,\"LINESTRING "
-                                      "(600001 5200001, 600012 5200001)\",,,\n");
+  const std::string file =
+      write_text("s.csv",
+                 "id,wkt,diameter,vx,release_height\n1,POINT (600005 5200005),1.5,,3\n2,\"LINESTRING "
+                 "(600001 5200001, 600012 5200001)\",,,\n");
   const SourceLayer layer = read_sources(file, terrain_, {1, 1});
   EXPECT_EQ(layer.cells.size(), 3U);
   EXPECT_EQ(layer.features[0].diameter, (Range{1.5, 1.5}));

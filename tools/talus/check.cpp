@@ -22,6 +22,7 @@
 #include "talus/simulate/screens/screens.hpp"
 #include "talus/simulate/tally/tally.hpp"
 #include "talus/simulate/tally/visits.hpp"
+#include "talus/terrain/dem_figures.hpp"
 #include "talus/terrain/pits.hpp"
 
 namespace {
@@ -124,6 +125,13 @@ void print_terrain(const LoadedScenario& loaded) {
                      talus::with_decimals(geo.north - grid.rows * geo.cell_y, 3) + " to " +
                      talus::with_decimals(geo.north, 3) + " north");
   line("system", talus::io::crs_name(geo.crs_wkt));
+  const talus::DemFigures figures = talus::dem_figures(heights);
+  if (figures.cells > 0)
+    line("slopes",
+         "median " + talus::with_digits(talus::degrees(figures.median_slope), 3) + " deg; " +
+             talus::with_digits(100.0 * figures.steep_share, 2) + " % of the cells above 80 deg, " +
+             talus::with_digits(100.0 * figures.flat_share, 2) + " % flat" +
+             (figures.step > 0.0 ? "; all heights are multiples of " + talus::text_of(figures.step) + " m" : ""));
   const talus::PitSummary pits = talus::summary_of_pits(heights);
   if (pits.count > 0)
     line("pits", count_text(pits.count) + (pits.count == 1 ? " cell is" : " cells are") +

@@ -32,6 +32,10 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags) {
   command.add_option("scenario", flags.scenario, "scenario file (TOML)");
   command.add_option("--dem", flags.dem, "terrain: a raster in a projected system in metres");
   command.add_option("--sources", flags.sources, "where blocks start: polygons, lines or points");
+  command
+      .add_option("--field", flags.fields,
+                  "NAME=COLUMN: a field of the sources under another name, as release_height=HEIGHT; may be repeated")
+      ->allow_extra_args(false);
   command.add_option("--preset", flags.preset, "parameter set of the ground; talus presets lists them");
   command.add_option("--surface", flags.surface, "bilinear or creased (creased): heights between the cells' centres");
   command.add_option("--diameter", flags.diameter, "of the blocks [m]");

@@ -1,7 +1,13 @@
 #include "talus/io/files/output_file.hpp"
 
+#include <algorithm>
+#include <array>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
+#include "io/gdal/dataset.hpp"
+#include "own_files.hpp"
 #include "talus/base/error.hpp"
 
 namespace talus::io {
@@ -9,6 +15,26 @@ namespace talus::io {
 namespace fs = std::filesystem;
 
 namespace {
+
+/// The layers of the files that may be replaced: of `talus sources` and `talus check --pits`.
+constexpr std::array<std::string_view, 3> kLayers{"source_polygons", "source_points", "pits"};
+
+/// --overwrite replaces what Talus has written, no other file of the same name. Throws InputError.
+void refuse_foreign(const fs::path& path) {
+  const GdalMessages quiet;
+  const Dataset file{GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY)};
+  if (!file)
+    throw InputError(path.string() +
+                     ": --overwrite replaces only what talus has written, and this is no GeoPackage; "
+                     "give a new name, or remove it yourself");
+  std::vector<std::string> foreign;
+  for (int i = 0; i < file->GetLayerCount(); ++i)
+    if (const std::string name = file->GetLayer(i)->GetName(); std::ranges::find(kLayers, name) == kLayers.end())
+      foreign.push_back(name);
+  if (!foreign.empty())
+    throw InputError(path.string() + ": --overwrite replaces only what talus has written, and this file has other " +
+                     "layers: " + shown_names(foreign) + "; give a new name, or remove it yourself");
+}
 
 /// The absolute path. Throws InputError if no file can be written there.
 fs::path checked(const fs::path& path, const std::string& extension, bool overwrite) {
@@ -20,6 +46,7 @@ fs::path checked(const fs::path& path, const std::string& extension, bool overwr
     throw InputError(
         name +
         ": the file is there already; give a new name, or --overwrite where the command has it, or remove it first");
+  if (fs::exists(path) && overwrite) refuse_foreign(path);
   if (!fs::is_directory(fs::absolute(path).parent_path()))
     throw InputError(name + ": there is no such folder for the file to go into; create it first");
   return fs::absolute(path);

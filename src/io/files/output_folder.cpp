@@ -12,6 +12,7 @@
 
 #include "folder_lock.hpp"
 #include "input_files.hpp"
+#include "own_files.hpp"
 #include "talus/base/error.hpp"
 
 namespace talus::io {
@@ -39,6 +40,14 @@ bool is_mount_point(const fs::path& folder) {
          self.st_dev != parent.st_dev;
 }
 
+/// --overwrite replaces a result, never what someone else has put into its folder.
+void refuse_foreign_files(const fs::path& folder) {
+  const std::vector<std::string> foreign = foreign_in(folder);
+  if (!foreign.empty())
+    throw InputError(folder.string() + ": --overwrite replaces the files of the earlier result alone, and there are " +
+                     "others in this folder: " + shown_names(foreign) + "; move them, or give a new name");
+}
+
 void refuse_taken_name(const fs::path& folder, bool overwrite) {
   const std::string name = folder.string();
   if (!fs::exists(folder)) return;
@@ -50,7 +59,7 @@ void refuse_taken_name(const fs::path& folder, bool overwrite) {
   if (!overwrite)
     throw InputError(name + ": the folder is there and not empty; give a new name, or --overwrite to replace it");
   for (const char* mark : {"run.json", "part.json", "calibration.json", "diagnosis.json"})
-    if (fs::exists(folder / mark)) return;
+    if (fs::exists(folder / mark)) return refuse_foreign_files(folder);
   throw InputError(name +
                    ": --overwrite replaces only results of talus, and there is no run.json, part.json, "
                    "calibration.json or diagnosis.json in this folder; give a new name, or remove the folder yourself");
@@ -191,7 +200,8 @@ void OutputFolder::commit(const fs::path& folder) {
     throw std::runtime_error(final_path().string() + ": the results cannot be given this name (" + error.message() +
                              "); they are kept in " + temporary().string());
   }
-  if (replace) fs::remove_all(aside, error);
+  if (replace && foreign_in(aside).empty())
+    fs::remove_all(aside, error);  // else a file has come a moment ago: it stays
 }
 
 void write_text(const fs::path& file, std::string_view text) {

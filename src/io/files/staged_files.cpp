@@ -1,10 +1,9 @@
 #include "talus/io/files/staged_files.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "own_files.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/files/output_folder.hpp"
 
@@ -16,13 +15,7 @@ namespace {
 
 /// The files that a record names, and the record.
 std::vector<std::string> files_of(const fs::path& record) {
-  std::vector<std::string> names;
-  std::ifstream file(record);
-  const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
-  if (json.is_object() && json.contains("files") && json["files"].is_array())
-    for (const auto& name : json["files"])
-      if (name.is_string() && fs::path(name.get<std::string>()).filename() == name.get<std::string>())
-        names.push_back(name);
+  std::vector<std::string> names = files_of_record(record);
   names.push_back(record.filename().string());
   return names;
 }

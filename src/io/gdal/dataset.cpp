@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "talus/base/error.hpp"
+#include "vector_file.hpp"
 
 namespace talus::io {
 
@@ -80,6 +81,7 @@ bool GdalMessages::failed() const {
 }
 
 Dataset open_dataset(const std::string& path, unsigned kinds) {
+  if ((kinds & GDAL_OF_VECTOR) != 0) check_vector_file(path);
   GdalMessages messages;
   // A text table does not declare its types and geometry: GDAL has to guess them.
   const char* const csv[] = {"AUTODETECT_TYPE=YES",

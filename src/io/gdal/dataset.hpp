@@ -41,7 +41,7 @@ struct DropFeature {
 using Feature = std::unique_ptr<OGRFeature, DropFeature>;
 
 /// Opens a file for reading. `kinds`: GDAL_OF_RASTER, GDAL_OF_VECTOR or both.
-/// Throws InputError if GDAL cannot.
+/// Throws InputError if GDAL cannot, or would lose rows or fields without a message (`check_vector_file`).
 Dataset open_dataset(const std::string& path, unsigned kinds);
 
 /// A dataset in memory, of zeros. Throws std::runtime_error if there is no memory for it.

@@ -76,10 +76,29 @@ Feature Layer::next() {
 int Layer::field(const char* name) const {
   const int index = fields().GetFieldIndex(name);
   if (index >= 0 || !EQUAL(dataset_->GetDriverName(), "ESRI Shapefile")) return index;
-  // A Shapefile cuts names to ten characters: GDAL and QGIS write the pair diameter_min, diameter_max as these.
+  // A Shapefile cuts names to ten characters: GDAL and QGIS write the pair diameter_min, diameter_max as
+  // diameter_m, diameter_1.
+  if (EQUAL(name, "release_height")) return fields().GetFieldIndex("release_he");
   const int low = fields().GetFieldIndex("diameter_m"), high = fields().GetFieldIndex("diameter_1");
   if (low < 0 || high < 0) return index;
   return EQUAL(name, "diameter_min") ? low : EQUAL(name, "diameter_max") ? high : index;
+}
+
+int Layer::only_field(const std::string& name) const {
+  const std::vector<std::string> names = field_names();
+  std::vector<std::string> same;
+  int index = -1;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == name) return static_cast<int>(i);
+    if (!EQUAL(names[i].c_str(), name.c_str())) continue;
+    same.push_back(names[i]);
+    index = static_cast<int>(i);
+  }
+  if (same.size() > 1)
+    throw InputError(path_ + ": has the fields " + joined(same) +
+                     ", which differ only in the case of their letters: " + "say which is " + name + " with --field " +
+                     name + "=" + same.front() + " or in [sources.fields], or rename one");
+  return index >= 0 ? index : field(name.c_str());
 }
 
 std::vector<std::string> Layer::field_names() const {
@@ -94,7 +113,11 @@ std::string Layer::label(const OGRFeature& feature) const {
 }
 
 std::optional<double> Layer::number(const OGRFeature& feature, const char* name, const Bounds& bounds) const {
-  const int index = field(name);
+  return number(feature, field(name), name, bounds);
+}
+
+std::optional<double> Layer::number(const OGRFeature& feature, int index, const std::string& name,
+                                    const Bounds& bounds) const {
   if (index < 0 || feature.IsFieldSetAndNotNull(index) == 0) return std::nullopt;
   const OGRFieldType type = fields().GetFieldDefn(index)->GetType();
   const std::string unit = bounds.unit == "1" ? "" : " in " + std::string(bounds.unit);
@@ -239,9 +262,15 @@ CellMask mask_of(const OGRGeometry& geometry, const Grid& grid, bool touched) {
 }
 
 std::string list_of(const std::vector<std::int64_t>& ids) {
+  std::vector<std::string> names;
+  for (const std::int64_t id : ids) names.push_back(std::to_string(id));
+  return list_of(names);
+}
+
+std::string list_of(const std::vector<std::string>& names) {
   std::string text;
-  for (std::size_t i = 0; i < ids.size() && i < 8; ++i) text += (i == 0 ? "" : ", ") + std::to_string(ids[i]);
-  return ids.size() > 8 ? text + " and " + std::to_string(ids.size() - 8) + " more" : text;
+  for (std::size_t i = 0; i < names.size() && i < 8; ++i) text += (i == 0 ? "" : ", ") + names[i];
+  return names.size() > 8 ? text + " and " + std::to_string(names.size() - 8) + " more" : text;
 }
 
 }  // namespace talus::io

@@ -32,6 +32,9 @@ class Layer {
 
   /// Index of a field, in any case of letters, also if a Shapefile has cut its name; -1 if there is none.
   int field(const char* name) const;
+  /// Index of a field that is spelt so, else of the only one that is in another case of letters; -1 if there is none.
+  /// Throws InputError if several differ from it only in their case.
+  int only_field(const std::string& name) const;
   std::vector<std::string> field_names() const;
   const OGRFeatureDefn& fields() const { return *layer_->GetLayerDefn(); }
   /// "cliffs.shp: feature 12", of a CSV "trees.csv: row 12 below the header", for messages.
@@ -39,6 +42,9 @@ class Layer {
   /// The value of a numeric field, or of any field of a CSV; nothing if it is NULL or the field is not there. Throws
   /// InputError if it is no number, or out of bounds.
   std::optional<double> number(const OGRFeature& feature, const char* name, const Bounds& bounds) const;
+  /// The same for the field of an index (-1: none); `name` is for messages.
+  std::optional<double> number(const OGRFeature& feature, int index, const std::string& name,
+                               const Bounds& bounds) const;
   /// The value of a text or whole-number field; empty if it is NULL. Throws InputError for other fields.
   std::string code(const OGRFeature& feature, int field) const;
 
@@ -88,5 +94,6 @@ void for_each_cell(const OGRGeometry& geometry, const Grid& grid, bool touched, 
 
 /// "3, 7, 12 and 5 more".
 std::string list_of(const std::vector<std::int64_t>& ids);
+std::string list_of(const std::vector<std::string>& names);
 
 }  // namespace talus::io

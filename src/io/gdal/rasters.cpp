@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "dataset.hpp"
+#include "dem_warning.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
@@ -51,6 +52,10 @@ void check_cell(const std::string& path, double size) {
 void check_band(GDALRasterBand& band, const std::string& path, std::vector<std::string>& warnings) {
   if (GDALDataTypeIsComplex(band.GetRasterDataType()) != 0)
     throw InputError(path + ": band 1 has complex numbers, must be heights in metres");
+  if (band.GetRasterDataType() == GDT_Byte)
+    warnings.push_back(path +
+                       ": band 1 holds bytes (0 to 255), as pictures do and hillshades: are these heights in "
+                       "metres? Take the DEM that it was made of");
   std::string unit = band.GetUnitType();
   std::transform(unit.begin(), unit.end(), unit.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -110,7 +115,8 @@ class HeightReader {
   throw InputError(path + ": height " + text_of(height) + " m in column " + std::to_string(column) + ", row " +
                    std::to_string(row) + " (from 0 in the north-west), must be " + text_of(kLowest) + " to " +
                    text_of(kHighest) + " m: if it stands for missing values, declare it with " +
-                   edit_command(path, "-a_nodata " + stored));
+                   edit_command(path, "-a_nodata " + stored) +
+                   (height > kHighest && height < 1e5 ? "; or are the heights in feet?" : ""));
 }
 
 void read_heights(GDALRasterBand& band, const std::string& path, Terrain& terrain) {
@@ -179,6 +185,8 @@ Terrain read_terrain(const std::string& path, const RasterMemory& memory) {
   terrain.heights.grid = grid;
   fill_raster(terrain.heights, std::numeric_limits<float>::quiet_NaN(), memory,
               [&] { read_heights(band, path, terrain); });
+  for (std::string& line : dem_warnings(path, dem_figures(terrain.heights), std::min(grid.cell_x, grid.cell_y)))
+    terrain.warnings.push_back(std::move(line));
   return terrain;
 }
 

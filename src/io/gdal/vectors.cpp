@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "layer.hpp"
+#include "off_map.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 
@@ -17,61 +18,152 @@ std::string file_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
+/// A field that is read: what it holds, and what was found in it.
+struct Column {
+  std::string name;   // "release_height"
+  std::string field;  // "HEIGHT"
+  int index;
+  std::size_t count = 0;  // of features with a value
+  double low = 0.0, high = 0.0;
+
+  bool is_text() const { return name == "name"; }
+  std::string shown() const { return EQUAL(field.c_str(), name.c_str()) ? name : field + " (" + name + ")"; }
+};
+
+/// The key of the parameter table with the bounds of a field.
+std::string_view key_of(const std::string& name) {
+  if (name == "frequency") return "sources.frequency";
+  if (name == "release_height") return "sources.release_height";
+  return name.starts_with("diameter") ? "blocks.diameter" : "sources.velocity";
+}
+
+/// The fields of a layer that are read: those that the map names, else those of the names themselves.
+std::vector<Column> columns_of(const Layer& layer, const std::string& path, const FieldMap& map) {
+  std::vector<std::pair<std::string, int>> mapped;
+  for (const auto& [name, given] : map) {
+    const int index = layer.only_field(given.field);
+    if (index < 0)
+      throw InputError(given.where + ": " + path + " has no field '" + given.field + "'" +
+                       known_names(given.field, layer.field_names()));
+    mapped.emplace_back(name, index);
+  }
+  const auto taken = [&](int index) {
+    return std::ranges::any_of(mapped, [index](const auto& entry) { return entry.second == index; });
+  };
+  std::vector<Column> columns;
+  for (const std::string& name : source_field_names()) {
+    const auto entry = std::ranges::find(mapped, name, &std::pair<std::string, int>::first);
+    const int index = entry != mapped.end() ? entry->second : layer.only_field(name);
+    if (index < 0 || (entry == mapped.end() && taken(index))) continue;
+    columns.push_back({name, layer.field_names()[static_cast<std::size_t>(index)], index});
+  }
+  return columns;
+}
+
+std::string range_text(const Column& column) {
+  return column.low == column.high ? text_of(column.low) : text_of(column.low) + " to " + text_of(column.high);
+}
+
 // Reads the fields of a feature and records which were read.
 class AttributeReader {
  public:
-  AttributeReader(const Layer& layer, const Range& release_height) : layer_(layer), release_height_(release_height) {}
+  AttributeReader(const Layer& layer, const std::string& path, const Range& release_height, const FieldMap& map)
+      : layer_(layer), path_(path), release_height_(release_height), columns_(columns_of(layer, path, map)) {}
 
   SourceFeature read(const OGRFeature& feature) {
     SourceFeature f;
     ++features_;
-    const int name = layer_.field("name");
-    if (name >= 0 && feature.IsFieldSetAndNotNull(name) != 0) f.name = feature.GetFieldAsString(name);
-    f.frequency = get(feature, "frequency", "sources.frequency").value_or(kNotGiven);
+    f.name = text(feature, "name");
+    f.frequency = get(feature, "frequency").value_or(kNotGiven);
     f.diameter = diameter(feature);
     f.release_height = release_height_;
-    if (const auto height = get(feature, "height", "sources.release_height")) f.release_height = {*height, *height};
+    if (const auto height = get(feature, "release_height")) f.release_height = {*height, *height};
     for (const auto& [field, axis] : {std::pair{"vx", 0}, {"vy", 1}, {"vz", 2}})
-      f.velocity[axis] = get(feature, field, "sources.velocity").value_or(0.0);
+      f.velocity[axis] = get(feature, field).value_or(0.0);
     if (!(f.velocity.norm() <= 200.0))
       throw InputError(layer_.label(feature) + ": fields vx, vy, vz give a speed of " + text_of(f.velocity.norm()) +
                        " m/s, must be at most 200 m/s");
     return f;
   }
 
-  std::vector<Setting> record(const std::string& path) const {
+  std::vector<Setting> record() const {
     std::vector<Setting> settings;
-    for (const Seen& s : seen_)
-      settings.push_back({"sources.attributes." + s.field,
-                          (s.low == s.high ? text_of(s.low) : text_of(s.low) + " to " + text_of(s.high)) + " (" +
-                              std::to_string(s.count) + " of " + std::to_string(features_) + " features)",
-                          s.unit == "1" ? "" : s.unit, "attribute " + s.field + " of " + file_name(path)});
+    for (const Column& c : columns_) {
+      if (c.count == 0 || c.is_text()) continue;
+      settings.push_back({"sources.attributes." + c.name, range_text(c) + " (" + share_text(c) + ")", unit_of(c),
+                          "attribute " + c.field + " of " + file_name(path_)});
+    }
     return settings;
   }
 
- private:
-  struct Seen {
-    std::string field, unit;
-    std::size_t count;
-    double low, high;
-  };
+  /// "fields read: diameter 0.5 to 2 m (2 of 3 features), release_height 1 m from HEIGHT (3 of 3 features)".
+  std::string read_note() const {
+    std::vector<std::string> words;
+    for (const Column& c : columns_) {
+      std::string word = c.name;
+      if (c.count > 0 && !c.is_text()) word += " " + range_text(c) + (unit_of(c).empty() ? "" : " " + unit_of(c));
+      if (!EQUAL(c.field.c_str(), c.name.c_str())) word += " from " + c.field;
+      words.push_back(word + " (" + (c.count == 0 ? "empty" : share_text(c)) + ")");
+    }
+    const std::vector<std::string> there = layer_.field_names();
+    if (words.empty()) return path_ + ": no field is read" + (there.empty() ? "" : "; there are " + joined(there));
+    return path_ + ": fields read: " + joined(words);
+  }
 
-  std::optional<double> get(const OGRFeature& feature, const char* field, std::string_view key) {
-    const Bounds& bounds = bounds_of(key);
-    const auto value = layer_.number(feature, field, bounds);
+  /// A line for each field that looks as if it were meant.
+  std::vector<std::string> unread_notes() const {
+    std::vector<std::string> notes;
+    for (const std::string& field : layer_.field_names()) {
+      const auto is_field = [&](const Column& c) { return c.field == field; };
+      if (std::ranges::any_of(columns_, is_field)) continue;
+      const auto meant =
+          std::ranges::find_if(columns_, [&](const Column& c) { return EQUAL(c.name.c_str(), field.c_str()); });
+      if (meant != columns_.end())
+        notes.push_back(path_ + ": field " + field + " is not read: " + meant->field + " is read as " + meant->name);
+      if (EQUAL(field.c_str(), "height"))
+        notes.push_back(path_ + ": field " + field +
+                        " is not read (it is mostly the height of a cliff): if it is the height of release above the "
+                        "ground, give --field release_height=" +
+                        field + ", or release_height = \"" + field + "\" in [sources.fields]");
+    }
+    return notes;
+  }
+
+ private:
+  Column* column(const char* name) {
+    const auto found = std::ranges::find(columns_, name, &Column::name);
+    return found == columns_.end() ? nullptr : &*found;
+  }
+
+  std::string share_text(const Column& c) const {
+    return std::to_string(c.count) + " of " + std::to_string(features_) + " features";
+  }
+
+  static std::string unit_of(const Column& c) {
+    const std::string unit(c.is_text() ? "1" : bounds_of(key_of(c.name)).unit);
+    return unit == "1" ? "" : unit;
+  }
+
+  std::string text(const OGRFeature& feature, const char* name) {
+    Column* const c = column(name);
+    if (c == nullptr || feature.IsFieldSetAndNotNull(c->index) == 0) return {};
+    ++c->count;
+    return feature.GetFieldAsString(c->index);
+  }
+
+  std::optional<double> get(const OGRFeature& feature, const char* name) {
+    Column* const c = column(name);
+    const auto value =
+        c == nullptr ? std::nullopt : layer_.number(feature, c->index, c->shown(), bounds_of(key_of(c->name)));
     if (!value) return value;
-    auto seen = std::find_if(seen_.begin(), seen_.end(), [&](const Seen& s) { return s.field == field; });
-    if (seen == seen_.end()) seen = seen_.insert(seen_.end(), {field, std::string(bounds.unit), 0, *value, *value});
-    ++seen->count;
-    seen->low = std::min(seen->low, *value);
-    seen->high = std::max(seen->high, *value);
+    c->low = c->count == 0 ? *value : std::min(c->low, *value);
+    c->high = c->count == 0 ? *value : std::max(c->high, *value);
+    ++c->count;
     return value;
   }
 
   Range diameter(const OGRFeature& feature) {
-    const auto one = get(feature, "diameter", "blocks.diameter");
-    const auto low = get(feature, "diameter_min", "blocks.diameter"),
-               high = get(feature, "diameter_max", "blocks.diameter");
+    const auto one = get(feature, "diameter"), low = get(feature, "diameter_min"), high = get(feature, "diameter_max");
     const std::string where = layer_.label(feature) + ": ";
     if (one && (low || high))
       throw InputError(where + "has diameter = " + text_of(*one) +
@@ -89,9 +181,10 @@ class AttributeReader {
   }
 
   const Layer& layer_;
+  std::string path_;
   Range release_height_;
+  std::vector<Column> columns_;
   std::size_t features_ = 0;
-  std::vector<Seen> seen_;
 };
 
 struct Cell {
@@ -120,30 +213,57 @@ std::vector<Cell> cells_of(const Parts& parts, const Grid& grid) {
   return cells;
 }
 
+/// A feature of which a part releases nothing.
+struct Lack {
+  std::string name;      // "polygon 4 (cliff A)"
+  double outside, hole;  // shares off the DEM, and where it has no heights
+};
+
+/// "83 % of polygon 4 (cliff A) lies outside the DEM".
+std::string lack_text(const Lack& lack) {
+  const double share = lack.outside + lack.hole;
+  const char* where = lack.hole == 0.0      ? "outside the DEM"
+                      : lack.outside == 0.0 ? "where the DEM has no heights"
+                                            : "outside the DEM or where it has no heights";
+  return with_digits(100.0 * share, share < 0.995 ? 2 : 3) + " % of " + lack.name + " lies " + where;
+}
+
+/// The largest shares first: "83 % of polygon 4 (cliff A) lies outside the DEM; ... and 3 more features".
+std::string lacks_text(std::vector<Lack> lacks) {
+  constexpr std::size_t kShown = 5;
+  std::ranges::stable_sort(lacks, std::ranges::greater{}, [](const Lack& l) { return l.outside + l.hole; });
+  std::string text;
+  for (std::size_t i = 0; i < std::min(lacks.size(), kShown); ++i) text += (i > 0 ? "; " : "") + lack_text(lacks[i]);
+  if (lacks.size() > kShown) text += "; and parts of " + std::to_string(lacks.size() - kShown) + " more features";
+  return text + ": blocks start from the rest alone";
+}
+
 // Places features on the terrain and counts those that are not on it.
 class Placer {
  public:
   Placer(const Terrain& terrain, SourceLayer& out) : heights_(terrain.heights), out_(out) {}
 
   void place(const Parts& parts, std::int64_t id) {
+    const std::string name = std::to_string(id) + (source().name.empty() ? "" : " (" + source().name + ")");
     if (parts.empty()) {
-      without_geometry_.push_back(id);
+      without_geometry_.push_back(name);
       return;
     }
     box_.Merge(parts.envelope());
     const Grid& grid = heights_.grid;
-    bool on_map = false;
+    std::uint64_t on_map = 0;
+    const std::uint64_t missing = without_terrain_;
     for (const Cell& cell : cells_of(parts, grid)) {
       add(cell, {feature(), grid.centre_x(cell.column), grid.centre_y(cell.row), false});
-      on_map = true;
+      ++on_map;
     }
     for (const Eigen::Vector2d& point : parts.points) {
       const Cell cell{grid.column_of(point.x()), grid.row_of(point.y())};
       if (!grid.contains(cell.column, cell.row)) continue;
       add(cell, {feature(), point.x(), point.y(), true});
-      on_map = true;
+      ++on_map;
     }
-    if (!on_map) off_map_.push_back(id);
+    record(parts, name, on_map, without_terrain_ - missing);
   }
 
   void finish(const std::string& path, const Layer& layer, const Terrain& terrain) {
@@ -166,6 +286,10 @@ class Placer {
       out_.warnings.push_back(path + ": features without geometry: FID " + list_of(without_geometry_));
     if (!off_map_.empty())
       out_.warnings.push_back(path + ": features wholly off the DEM, which release nothing: FID " + list_of(off_map_));
+    if (!without_height_.empty())
+      out_.warnings.push_back(path + ": features where the DEM has no heights, which release nothing: FID " +
+                              list_of(without_height_));
+    if (!lacks_.empty()) out_.warnings.push_back(path + ": " + lacks_text(lacks_));
     if (at_edge_ + without_terrain_ > 0) out_.warnings.push_back(path + ": " + gaps_text());
   }
 
@@ -181,6 +305,20 @@ class Placer {
               "there is no terrain count as left at once";
     return text;
   }
+  const SourceFeature& source() const { return out_.features.back(); }
+
+  /// Records which share of a feature releases nothing.
+  /// @param on_map   its cells and points on the DEM
+  /// @param missing  those without a height
+  void record(const Parts& parts, const std::string& name, std::uint64_t on_map, std::uint64_t missing) {
+    constexpr double kNoticed = 0.01;
+    if (on_map == 0) return off_map_.push_back(name);
+    if (missing == on_map) return without_height_.push_back(name);
+    const double outside = share_outside(parts, heights_.grid);
+    const double hole = (1.0 - outside) * static_cast<double>(missing) / static_cast<double>(on_map);
+    if (outside + hole >= kNoticed) lacks_.push_back({kind_of(parts) + (" " + name), outside, hole});
+  }
+
   std::uint32_t feature() const { return static_cast<std::uint32_t>(out_.features.size() - 1); }
   void add(const Cell& cell, const SourceCell& source) {
     if (std::isnan(heights_.at(cell.column, cell.row)))
@@ -202,15 +340,23 @@ class Placer {
   const Raster<float>& heights_;
   SourceLayer& out_;
   OGREnvelope box_;
-  std::vector<std::int64_t> without_geometry_, off_map_;
+  std::vector<std::string> without_geometry_, off_map_, without_height_;  // "4 (cliff A)"
+  std::vector<Lack> lacks_;
   std::uint64_t without_terrain_ = 0, at_edge_ = 0;
 };
 
 }  // namespace
 
-SourceLayer read_sources(const std::string& path, const Terrain& terrain, const Range& release_height) {
+const std::vector<std::string>& source_field_names() {
+  static const std::vector<std::string> names{
+      "name", "frequency", "diameter", "diameter_min", "diameter_max", "release_height", "vx", "vy", "vz"};
+  return names;
+}
+
+SourceLayer read_sources(const std::string& path, const Terrain& terrain, const Range& release_height,
+                         const FieldMap& fields) {
   Layer layer("sources", path, terrain);
-  AttributeReader attributes(layer, release_height);
+  AttributeReader attributes(layer, path, release_height, fields);
   SourceLayer out;
   Placer placer(terrain, out);
   while (const Feature feature = layer.next()) {
@@ -219,7 +365,9 @@ SourceLayer read_sources(const std::string& path, const Terrain& terrain, const 
     placer.place(layer.parts(*feature), feature->GetFID());
   }
   placer.finish(path, layer, terrain);
-  out.attributes = attributes.record(path);
+  out.attributes = attributes.record();
+  out.read_note = attributes.read_note();
+  out.unread_notes = attributes.unread_notes();
   out.reprojections = layer.reprojections();
   for (std::string& line : layer.warnings()) out.warnings.push_back(std::move(line));
   return out;

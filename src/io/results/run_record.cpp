@@ -170,6 +170,7 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   json["settings"] = settings_of(loaded);
   json["inputs"] = json_of(loaded.inputs);
   json["reprojections"] = reprojections_of(loaded);
+  if (!loaded.notes.empty()) json["notes"] = loaded.notes;
   json["warnings"] = record.warnings;
   json["files"] = record.files;
   json["threads"] = record.threads;

@@ -81,10 +81,12 @@ void check_diameters(const Scenario& parts, const SourceLayer& layer, const std:
   if (!parts.blocks.classes.empty() || parts.blocks.power_law.volume.high != 0.0) return;
   for (const SourceCell& cell : layer.cells) {
     if (!std::isnan(layer.features[cell.feature].diameter.low)) continue;
-    throw InputError(path + ": feature " + std::to_string(layer.ids[cell.feature]) +
-                     " has no block diameter, must have one (there is no default block): give [blocks] diameter in the "
-                     "scenario, --diameter M, or a field diameter "
-                     "(or diameter_min and diameter_max) of the sources, in m");
+    throw InputError(
+        path + ": feature " + std::to_string(layer.ids[cell.feature]) +
+        " has no block diameter, must have one (there is no default block): give [blocks] diameter in the "
+        "scenario, --diameter M, or a field diameter "
+        "(or diameter_min and diameter_max) of the sources, in m; --field diameter=COLUMN where it has another "
+        "name");
   }
 }
 
@@ -154,7 +156,9 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
   Scenario parts = spec.values;
   SourceLayer sources;
   attempt([&] {
-    sources = read_sources(spec.sources.path, terrain, spec.release_height);
+    sources = read_sources(spec.sources.path, terrain, spec.release_height, spec.source_fields);
+    out.notes.push_back(sources.read_note);
+    out.notes.insert(out.notes.end(), sources.unread_notes.begin(), sources.unread_notes.end());
     check_diameters(parts, sources, spec.sources.path);
     warn_unused_diameter(spec, sources, out.warnings);
     take(out, sources);

@@ -1,5 +1,6 @@
 #include "talus/io/scenario/plan_checksum.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "io/files/checksum.hpp"
@@ -12,6 +13,14 @@ namespace {
 void strip_folder(NamedFile& file) {
   const std::filesystem::path path(file.path);
   if (path.is_absolute()) file.path = path.filename().string();
+}
+
+/// Whether the sources have a field `height`, which earlier builds read as the height of release, or
+/// `release_height`, which they did not read: such runs must not go on, or be repeated, as if they were the same.
+bool fields_changed_meaning(const LoadedScenario& loaded) {
+  const auto unread = [](const std::string& note) { return note.find("height of a cliff") != std::string::npos; };
+  const auto read = [](const Setting& s) { return s.key == "sources.attributes.release_height"; };
+  return std::ranges::any_of(loaded.notes, unread) || std::ranges::any_of(loaded.settings, read);
 }
 
 }  // namespace
@@ -27,6 +36,7 @@ std::string plan_checksum(const LoadedScenario& loaded) {
   sum.add(toml_of(spec));
   for (const InputFile& input : loaded.inputs)
     if (input.role != "scenario" && input.role != "include") sum.add(input.role + input.sha256 + "\n");
+  if (fields_changed_meaning(loaded)) sum.add("release_height\n");
   return sum.digits();
 }
 

@@ -1,5 +1,6 @@
 #include "scenario_flags.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "surface_key.hpp"
@@ -25,6 +26,28 @@ void lay_flag(ScenarioSpec& spec, const char* key, double value, std::vector<std
   }
 }
 
+/// --field NAME=COLUMN, which overrides the same name of [sources.fields].
+void lay_fields(ScenarioSpec& spec, const std::vector<std::string>& flags, std::vector<std::string>& faults) {
+  FieldMap given;
+  for (const std::string& flag : flags) {
+    const std::string where = "flag --field " + flag;
+    const std::size_t equals = flag.find('=');
+    const std::string name = flag.substr(0, equals);
+    const std::vector<std::string>& names = source_field_names();
+    if (equals == std::string::npos || equals + 1 == flag.size())
+      faults.push_back(where + ": must be NAME=COLUMN, for example release_height=HEIGHT (names: " + joined(names) +
+                       ")");
+    else if (std::ranges::find(names, name) == names.end())
+      faults.push_back(where + ": unknown name '" + name + "'" + known_names(name, names));
+    else if (!given.insert({name, {flag.substr(equals + 1), where}}).second)
+      faults.push_back(where + ": " + name + " is given twice, must be once");
+  }
+  for (auto& [name, field] : given) {
+    spec.source_fields[name] = field;
+    spec.origins["sources.fields." + name] = "flag --field";
+  }
+}
+
 }  // namespace
 
 void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults) {
@@ -47,6 +70,7 @@ void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::strin
   if (flags.sources)
     spec.sources = {absolute_path(*flags.sources, here), "flag --sources = '" + *flags.sources + "'"},
     spec.origins["sources.file"] = "flag --sources";
+  lay_fields(spec, flags.fields, faults);
   if (flags.surface)
     if (const auto kind = surface_of_flag(*flags.surface, faults)) {
       spec.surface = *kind;

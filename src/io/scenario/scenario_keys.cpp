@@ -125,6 +125,17 @@ class SpecReader {
       spec_.release_height = *range;
       given("sources.release_height");
     }
+    read_fields(table.table("fields"));
+    table.finish();
+  }
+
+  void read_fields(TableReader table) {
+    for (const std::string& name : source_field_names()) {
+      const auto field = table.text(name);
+      if (!field) continue;
+      spec_.source_fields[name] = {*field, table.where(name, *table.value()->find(name))};
+      given(table.full(name));
+    }
     table.finish();
   }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "named_file.hpp"
+#include "talus/io/gdal/source_fields.hpp"
 #include "talus/io/scenario/loaded_scenario.hpp"
 
 namespace talus::io {
@@ -66,6 +67,7 @@ struct ScenarioSpec {
   std::vector<BarrierLine> barrier_lines;
   std::vector<InstrumentBias> instrument_bias;  ///< of a model that is included
   Range release_height = SourceFeature{}.release_height;
+  FieldMap source_fields;
   std::optional<ProfileSpec> profile;          ///< of `talus profile`: there are no layers then
   Scenario values;                             ///< its settings; without terrain, sources and screens
   std::map<std::string, std::string> origins;  ///< of the keys that are given: "scenario", "flag --seed"

@@ -76,6 +76,7 @@ class Lines {
     file("sources", "file", spec.sources);
     if (spec.profile) sources(*spec.profile);
     add("sources", "release_height", range_text(spec.release_height), "m");
+    for (const auto& [name, field] : spec.source_fields) add("sources.fields", name, toml_text(field.field), "");
     fields("blocks");
     const Blocks& blocks = spec.values.blocks;
     if (!blocks.classes.empty() || blocks.power_law.volume.high != 0.0)

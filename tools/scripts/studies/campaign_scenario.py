@@ -23,14 +23,14 @@ def write_sources(blocks, dem, path):
     file = ogr.GetDriverByName("GPKG").CreateDataSource(path)
     layer = file.CreateLayer("sources", system, ogr.wkbPoint)
     layer.CreateField(ogr.FieldDefn("name", ogr.OFTString))
-    for name in ("diameter", "height", "vx", "vy", "vz"):
+    for name in ("diameter", "release_height", "vx", "vy", "vz"):
         layer.CreateField(ogr.FieldDefn(name, ogr.OFTReal))
     for block in blocks:
         volume = float(block["mass_kg"]) / float(block["density_kgm3"])
         feature = ogr.Feature(layer.GetLayerDefn())
         feature["name"] = block["id"]
         feature["diameter"] = (6.0 * volume / math.pi) ** (1.0 / 3.0)
-        feature["height"] = float(block["release_height_m"] or 1.0)
+        feature["release_height"] = float(block["release_height_m"] or 1.0)
         for name in ("vx", "vy", "vz"):
             feature[name] = float(block[name] or 0.0)
         feature.SetGeometry(ogr.CreateGeometryFromWkt(f"POINT ({block['x']} {block['y']})"))

@@ -14,7 +14,7 @@ namespace talus::io {
 class OutputFile {
  public:
   /// @param extension  ".gpkg": what the name must end in
-  /// @param overwrite  a file of this name may be replaced
+  /// @param overwrite  a file of this name may be replaced, if all its layers are of `talus sources` or `check --pits`
   /// Throws InputError if the name has another extension or is taken, or if the folder is not there.
   OutputFile(const std::filesystem::path& path, const std::string& extension, bool overwrite);
 

@@ -27,7 +27,8 @@ class OutputFolder {
   };
 
   /// @param overwrite  an earlier result of talus (it holds a run.json, part.json, calibration.json or diagnosis.json)
-  /// may be replaced. Throws InputError if the name is taken or nothing can be written there.
+  /// may be replaced. Throws InputError if the name is taken, if there are files in it that are not of this result, or
+  /// if nothing can be written there.
   OutputFolder(const std::filesystem::path& path, bool overwrite, Unfinished unfinished = Unfinished::Ignore);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "talus/io/gdal/rasters.hpp"
+#include "talus/io/gdal/source_fields.hpp"
 #include "talus/simulate/scenario/scenario.hpp"
 
 namespace talus::io {
@@ -14,6 +15,8 @@ struct SourceLayer {
   std::vector<std::int64_t> ids;        ///< of the features in the file, for messages
   std::vector<Setting> attributes;      ///< settings read from the fields
   std::vector<Reprojection> reprojections;
+  std::string read_note;                  ///< which fields were read, with the range of their values
+  std::vector<std::string> unread_notes;  ///< fields that look as if they were meant, and are not read
   std::vector<std::string> warnings;
 };
 
@@ -26,6 +29,7 @@ struct SourceLayer {
 ///
 /// @param release_height  for features without the field height [m]
 /// Throws InputError that names file, feature, field, value and what is allowed; also if no cell is left.
-SourceLayer read_sources(const std::string& path, const Terrain& terrain, const Range& release_height);
+SourceLayer read_sources(const std::string& path, const Terrain& terrain, const Range& release_height,
+                         const FieldMap& fields = {});
 
 }  // namespace talus::io

@@ -31,6 +31,7 @@ struct RunFlags {
   std::optional<double> diameter;  ///< [m]
   std::optional<std::uint32_t> trajectories;
   std::optional<std::uint64_t> seed;
+  std::vector<std::string> fields;  ///< "diameter=Durchmesser": names of fields of the sources
   bool energy_total = false, bounds = false;
 };
 

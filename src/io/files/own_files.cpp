@@ -1,0 +1,110 @@
+#include "own_files.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+#include <string_view>
+
+#include "folder_lock.hpp"
+#include "talus/base/text.hpp"
+#include "talus/io/files/output_folder.hpp"
+
+namespace talus::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Names of the files that `calibrate` and `diagnose` write, also into the folders of several campaigns.
+constexpr std::array<std::string_view, 6> kFitFiles{"calibration.json", "diagnosis.json", "report.md",
+                                                    "report.html",      "fitted.toml",    "with_effect.toml"};
+
+/// Beginnings of the names of the files of a part.
+constexpr std::array<std::string_view, 4> kPartFiles{"tally-", "reach-", "rest-", "rows-"};
+
+/// What other programs leave beside a file that they have read: statistics, overviews, logs of a data base.
+constexpr std::array<std::string_view, 5> kBeside{".aux.xml", ".ovr", "-wal", "-shm", "-journal"};
+
+bool is_one_of(const std::string& name, std::span<const std::string_view> names) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+/// A hidden file or folder of a program that was killed while it wrote: `StagedPath`.
+bool is_staged(const std::string& name) {
+  return name.starts_with(".") && name.find(".talus-") != std::string::npos;
+}
+
+/// A folder of one of several campaigns: it holds a fitted model, and only files of such.
+bool is_site(const fs::path& folder) {
+  std::error_code none;
+  if (!fs::is_directory(folder, none) || fs::is_symlink(folder, none) || !fs::exists(folder / "fitted.toml", none))
+    return false;
+  return std::ranges::all_of(fs::directory_iterator(folder), [](const fs::directory_entry& entry) {
+    return is_one_of(entry.path().filename().string(), kFitFiles);
+  });
+}
+
+/// The names that the records of a folder list, and those that are known by the records that are there.
+std::set<std::string> own_names(const fs::path& folder) {
+  std::set<std::string> own{"run.json", "hazard.json", "part.json", OutputFolder::kWork, FolderLock::kName};
+  for (const char* record : {"run.json", "hazard.json"})
+    for (std::string& name : files_of_record(folder / record)) own.insert(std::move(name));
+  if (fs::exists(folder / "part.json")) own.insert("scenario.toml");
+  if (fs::exists(folder / "calibration.json") || fs::exists(folder / "diagnosis.json"))
+    own.insert(kFitFiles.begin(), kFitFiles.end());
+  for (const auto& entry : fs::directory_iterator(folder)) {  // of `talus barrier`: NAME.json says which
+    const std::string name = entry.path().stem().string();
+    if (!name.starts_with("barrier_") || entry.path().extension() != ".json") continue;
+    for (const char* end : {".json", ".csv", "_stretches.csv"}) own.insert(name + end);
+  }
+  return own;
+}
+
+bool is_beside(const std::string& name, const std::set<std::string>& own) {
+  return std::ranges::any_of(kBeside, [&](std::string_view end) {
+    return name.ends_with(end) && own.contains(name.substr(0, name.size() - end.size()));
+  });
+}
+
+}  // namespace
+
+std::vector<std::string> files_of_record(const fs::path& record) {
+  std::vector<std::string> names;
+  std::ifstream file(record);
+  const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
+  if (json.is_object() && json.contains("files") && json["files"].is_array())
+    for (const auto& name : json["files"])
+      if (name.is_string() && fs::path(name.get<std::string>()).filename() == name.get<std::string>())
+        names.push_back(name);
+  return names;
+}
+
+std::vector<std::string> foreign_in(const fs::path& folder) {
+  const std::set<std::string> own = own_names(folder);
+  const bool part = fs::exists(folder / "part.json");
+  const bool fit = fs::exists(folder / "calibration.json") || fs::exists(folder / "diagnosis.json");
+  std::vector<std::string> foreign;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    const bool is_folder = entry.is_directory() && !entry.is_symlink();
+    bool ours = is_folder ? name == OutputFolder::kWork : own.contains(name) || is_beside(name, own);
+    ours = ours || is_staged(name) || (fit && is_site(entry.path()));
+    if (part && !is_folder)
+      ours = ours || std::ranges::any_of(kPartFiles, [&](std::string_view start) { return name.starts_with(start); });
+    if (!ours) foreign.push_back(name + (is_folder ? "/" : ""));
+  }
+  std::ranges::sort(foreign);
+  return foreign;
+}
+
+std::string shown_names(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 5;
+  const std::size_t shown = std::min(names.size(), kShown);
+  const std::string text = joined(std::vector<std::string>(names.begin(), names.begin() + std::ptrdiff_t(shown)));
+  return names.size() > shown ? text + " and " + std::to_string(names.size() - shown) + " more" : text;
+}
+
+}  // namespace talus::io

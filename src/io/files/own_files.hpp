@@ -1,0 +1,21 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace talus::io {
+
+/// The files and folders in a folder of results that Talus has not written there, in the order of their names; folders
+/// end in "/". Talus's own are:
+///   what the records run.json, hazard.json and part.json list, and the records;
+///   the files of `barrier`, `calibrate`, `diagnose`, with the folders of their campaigns;
+///   what readers leave beside one of these: X.aux.xml, X.ovr, X-wal, X-shm, X-journal.
+std::vector<std::string> foreign_in(const std::filesystem::path& folder);
+
+/// The files that a record of results lists in `files`, by their names alone.
+std::vector<std::string> files_of_record(const std::filesystem::path& record);
+
+/// "a.txt, photos/ and 3 more".
+std::string shown_names(const std::vector<std::string>& names);
+
+}  // namespace talus::io

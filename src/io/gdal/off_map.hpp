@@ -1,0 +1,14 @@
+#pragma once
+#include "layer.hpp"
+#include "talus/terrain/grid.hpp"
+
+namespace talus::io {
+
+/// Share of a feature outside a grid, exactly, from 0 to 1: of the area of its polygons, else of the length of its
+/// lines, else of the number of its points.
+double share_outside(const Parts& parts, const Grid& grid);
+
+/// "polygon", "line", "point" or "feature", by what it is made of.
+const char* kind_of(const Parts& parts);
+
+}  // namespace talus::io

@@ -1,0 +1,226 @@
+#include "vector_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "dataset.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+
+namespace talus::io {
+namespace {
+
+bool ends_with(const std::string& path, const char* end) {
+  const std::size_t length = std::string_view(end).size();
+  return path.size() > length && EQUAL(path.c_str() + path.size() - length, end);
+}
+
+/// What separates cells, as GDAL finds it: the one of comma, semicolon and tab that is in the header; the comma where
+/// several are; a blank where none is.
+char separator_of(std::string_view header) {
+  char found = '\0';
+  bool quoted = false, blank = false;
+  for (const char c : header) {
+    if (c == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (c == ' ') blank = true;
+    if (c != ',' && c != ';' && c != '\t') continue;
+    if (found != '\0' && found != c) return ',';
+    found = c;
+  }
+  return found != '\0' ? found : blank ? ' ' : ',';
+}
+
+std::string lower_trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
+  std::string word = first == std::string::npos ? std::string() : text.substr(first, last - first + 1);
+  std::ranges::transform(word, word.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return word;
+}
+
+struct CloseFile {
+  void operator()(VSILFILE* file) const { VSIFCloseL(file); }
+};
+using File = std::unique_ptr<VSILFILE, CloseFile>;
+
+File opened(const std::string& path) {
+  const GdalMessages quiet;
+  return File(VSIFOpenL(path.c_str(), "rb"));
+}
+
+void check_csv(const std::string& path) {
+  const File file = opened(path);
+  if (!file) return;  // GDAL says why
+  std::string piece(std::size_t{1} << 16, '\0');
+  std::optional<CsvStructure> structure;
+  while (const std::size_t count = VSIFReadL(piece.data(), 1, piece.size(), file.get())) {
+    std::string_view text(piece.data(), count);
+    if (!structure) {
+      if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
+      structure.emplace(path, text.substr(0, text.find_first_of("\r\n")));
+    }
+    structure->take(text);
+  }
+  if (structure) structure->finish();
+}
+
+std::optional<std::uint64_t> size_of(const std::string& path) {
+  VSIStatBufL status;
+  if (VSIStatL(path.c_str(), &status) != 0) return std::nullopt;
+  return static_cast<std::uint64_t>(status.st_size);
+}
+
+/// A part of a Shapefile, with its end in small letters or in capitals; nothing if it is not there.
+std::optional<std::string> part_of(const std::string& path, const char* small, const char* capitals) {
+  const std::string stem = path.substr(0, path.size() - 4);
+  for (const char* end : {small, capitals})
+    if (size_of(stem + end)) return stem + end;
+  return std::nullopt;
+}
+
+/// The number of records in a .dbf. Throws InputError if the file is shorter than its header says.
+std::uint64_t records_of(const std::string& dbf) {
+  std::array<unsigned char, 12> head{};
+  const File file = opened(dbf);
+  const bool read = file && VSIFReadL(head.data(), 1, head.size(), file.get()) == head.size();
+  const auto number = [&head](std::size_t at, std::size_t bytes) {
+    std::uint64_t value = 0;
+    for (std::size_t i = bytes; i-- > 0;) value = value << 8 | head[at + i];
+    return value;
+  };
+  const std::uint64_t records = number(4, 4), size = number(8, 2) + records * number(10, 2);
+  if (!read || *size_of(dbf) < size)
+    throw InputError(dbf + ": is cut off, must have " + (read ? std::to_string(size) : "at least 32") +
+                     " bytes: copy it again");
+  return records;
+}
+
+void check_shapefile(const std::string& path) {
+  const auto dbf = part_of(path, ".dbf", ".DBF"), shx = part_of(path, ".shx", ".SHX");
+  const std::string stem = path.substr(0, path.size() - 4);
+  if (!size_of(path)) return;  // GDAL says why
+  if (!dbf)
+    throw InputError(path + ": the fields of its features are in " + std::filesystem::path(stem).filename().string() +
+                     ".dbf, which is not there: copy all parts of a Shapefile (.shp, .shx, .dbf, .prj); if it is to "
+                     "have no fields, convert it: ogr2ogr " +
+                     stem + ".gpkg " + path);
+  const auto index_size = shx ? size_of(*shx) : std::nullopt;
+  if (!index_size || *index_size < 100) return;  // GDAL says why
+  const std::uint64_t records = records_of(*dbf), shapes = (*index_size - 100) / 8;
+  if (records != shapes)
+    throw InputError(path + ": has " + std::to_string(shapes) + " features, and its .dbf has the fields of " +
+                     std::to_string(records) +
+                     ", must be as many: copy all parts of the Shapefile (.shp, .shx, .dbf) again");
+}
+
+}  // namespace
+
+void check_vector_file(const std::string& path) {
+  std::error_code none;
+  if (std::filesystem::is_directory(path, none)) {
+    for (const auto& entry : std::filesystem::directory_iterator(path, none))
+      if (entry.is_regular_file(none)) check_vector_file(entry.path().string());
+  } else if (ends_with(path, ".csv") || ends_with(path, ".tsv") || ends_with(path, ".psv")) {
+    check_csv(path.starts_with("CSV:") ? path.substr(4) : path);
+  } else if (ends_with(path, ".shp")) {
+    check_shapefile(path);
+  }
+}
+
+CsvStructure::CsvStructure(std::string path, std::string_view header)
+    : path_(std::move(path)), separator_(separator_of(header)) {}
+
+void CsvStructure::take(std::string_view text) {
+  for (const char c : text) take(c);
+}
+
+void CsvStructure::take(char c) {
+  const bool second = c == '\n' && last_ == '\r', line_end = c == '\n' || c == '\r';
+  last_ = c;
+  if (second) return;
+  if (line_end) ++line_;
+  if (c == '"') {
+    take_quote();
+  } else if (place_ == Place::Quoted) {
+    if (in_header_) cell_ += c;
+  } else if (line_end) {
+    end_row();
+  } else if (c == separator_) {
+    if (c != ' ' || place_ != Place::Start) end_cell();  // several blanks separate once
+  } else if (c == ' ' || c == '\t') {
+    if (place_ == Place::AfterQuote) place_ = Place::Closed;
+    if (in_header_) cell_ += c;
+  } else {
+    if (place_ == Place::AfterQuote || place_ == Place::Closed)
+      refuse(line_, "text stands after a quotation mark that closes a cell (opened in line " +
+                        std::to_string(quote_line_) +
+                        "), must be a separator or the end of the line: is a quotation mark missing?");
+    place_ = Place::Plain;
+    if (in_header_) cell_ += c;
+  }
+}
+
+void CsvStructure::take_quote() {
+  if (place_ == Place::Start) {
+    place_ = Place::Quoted;
+    quote_line_ = line_;
+  } else if (place_ == Place::Quoted) {
+    place_ = Place::AfterQuote;
+  } else if (place_ == Place::AfterQuote) {  // doubled: one mark of the text
+    place_ = Place::Quoted;
+  } else {
+    refuse(line_, "a quotation mark stands inside a cell: put the whole cell in quotation marks and double the mark");
+  }
+}
+
+void CsvStructure::end_cell() {
+  ++cells_;
+  place_ = Place::Start;
+  if (in_header_) columns_.push_back(lower_trimmed(cell_));
+  cell_.clear();
+}
+
+void CsvStructure::end_row() {
+  const bool open_cell = separator_ != ' ' || place_ != Place::Start;  // blanks at the end of a line are no cell
+  const bool empty = cells_ == 0 && place_ == Place::Start;
+  if (!empty && open_cell) end_cell();
+  if (!empty && in_header_) {
+    check_header();
+    in_header_ = false;
+  } else if (!empty && cells_ != columns_.size()) {
+    refuse(row_line_, "has " + std::to_string(cells_) + (cells_ == 1 ? " cell" : " cells") + ", must have " +
+                          std::to_string(columns_.size()) + " as the header");
+  }
+  cells_ = 0;
+  row_line_ = line_;
+}
+
+void CsvStructure::check_header() const {
+  const auto is_name = [](const std::string& word) {
+    return std::ranges::any_of(word, [](unsigned char c) { return std::isalpha(c) != 0 || c >= 0x80; });
+  };
+  if (std::ranges::none_of(columns_, is_name)) return;  // no header: GDAL says that x and y are missing
+  for (auto column = columns_.begin(); column != columns_.end(); ++column)
+    if (!column->empty() && std::find(columns_.begin(), column, *column) != column)
+      refuse(row_line_, "column '" + *column + "' is there twice (in any case of letters), must be there once");
+}
+
+void CsvStructure::finish() {
+  if (place_ == Place::Quoted)
+    refuse(
+        quote_line_,
+        "the quotation mark that opens here is not closed, and all that follows would be lost: close it; a mark that "
+        "belongs to a text is written double, in a cell in quotation marks");
+  if (cells_ > 0 || place_ != Place::Start) end_row();
+}
+
+void CsvStructure::refuse(int line, const std::string& fault) const {
+  throw InputError(path_ + ":" + std::to_string(line) + ": " + fault);
+}
+
+}  // namespace talus::io

@@ -1,0 +1,50 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace talus::io {
+
+/// Refuses a vector file of which GDAL would lose rows or fields without a message: a CSV as `CsvStructure` says, a
+/// Shapefile without its .dbf or whose .dbf has another number of records; of a folder each of these in it. All else
+/// passes, also what is not there. Throws InputError.
+void check_vector_file(const std::string& path);
+
+/// The structure of a CSV, read before GDAL reads it. GDAL 3.6 ends with a crash where x stands twice in the header,
+/// loses what comes after a quotation mark that is not closed, and takes rows that are too short or too long.
+///
+/// Throws InputError, with file and line, for a column that is there twice (in any case of letters), a quotation mark
+/// that is not closed or stands inside a cell, and a row that has not as many cells as the header.
+class CsvStructure {
+ public:
+  /// @param header  first line of the file, which says what separates cells: a comma, semicolon, tab or blanks
+  CsvStructure(std::string path, std::string_view header);
+
+  /// Takes the next characters of the file.
+  void take(std::string_view text);
+  /// The end of the file.
+  void finish();
+
+ private:
+  /// Place of the next character.
+  enum class Place { Start, Plain, Quoted, AfterQuote, Closed };
+
+  void take(char c);
+  void take_quote();
+  void end_cell();
+  void end_row();
+  void check_header() const;
+  [[noreturn]] void refuse(int line, const std::string& fault) const;
+
+  std::string path_;
+  char separator_;
+  Place place_ = Place::Start;
+  char last_ = '\n';
+  int line_ = 1, row_line_ = 1, quote_line_ = 0;
+  std::size_t cells_ = 0;  // ended ones of this row
+  bool in_header_ = true;
+  std::vector<std::string> columns_;  // of the header
+  std::string cell_;                  // of the header
+};
+
+}  // namespace talus::io

@@ -1,0 +1,352 @@
+"""Inputs that once passed in silence: fields, tables, Shapefiles, rasters that are no DEM, folders with other files."""
+import os
+import shutil
+import struct
+import unittest
+
+import numpy as np
+from osgeo import gdal, ogr
+
+from support import NORTH, WEST, Case, box, heights, rows_of, system, write_dem, write_features
+
+X, Y = WEST + 150.0, NORTH - 65.0  # on the slope
+
+
+def write_shapefile(path, diameters):
+    file = ogr.GetDriverByName("ESRI Shapefile").CreateDataSource(path)
+    layer = file.CreateLayer("cliffs", system(2056), ogr.wkbPolygon)
+    layer.CreateField(ogr.FieldDefn("diameter", ogr.OFTReal))
+    for i, diameter in enumerate(diameters):
+        feature = ogr.Feature(layer.GetLayerDefn())
+        feature.SetGeometry(ogr.CreateGeometryFromWkt(box(140 + 20 * i, 230, 10, 10)))
+        feature.SetField(0, diameter)
+        layer.CreateFeature(feature)
+
+
+class InputCase(Case):
+    def flags(self, sources="sources.gpkg", dem="dem.tif", trajectories="5"):
+        return ["--dem", self.path(dem), "--sources", self.path(sources), "--diameter", "1.2", "--trajectories", trajectories]
+
+    def run_flags(self, *more, out="out", **flags):
+        return self.run_well("run", *self.flags(**flags), "-o", self.path(out), *more)
+
+    def refused(self, *words, more=(), **flags):
+        """Both `run` and `check` refuse it with the words; no folder appears."""
+        for command in (["run", *self.flags(**flags), *more, "-o", self.path("none")], ["check", *self.flags(**flags), *more]):
+            self.fails(2, *words, arguments=command)
+        self.assertFalse(os.path.exists(self.path("none")))
+
+    def releases(self, out="out"):
+        """Height of the release above the centre of its cell, by the first vertex of the paths."""
+        z = heights()
+        found = []
+        for _, line in rows_of(self.path(out + "/trajectories.gpkg"), "trajectories"):
+            x, y, height = line.GetX(0), line.GetY(0), line.GetZ(0)
+            found.append(height - float(z[int((NORTH - y) // 5), int((x - WEST) // 5)]))
+        return found
+
+
+class Fields(InputCase):
+    def setUp(self):
+        super().setUp()
+        points = [(f"POINT ({WEST + 152.5 + 10 * i} {NORTH - 62.5})", [f"cliff {i}", 60.0 + i, 2.0]) for i in range(3)]
+        write_features(self.path("sources.gpkg"), "sources", points,
+                       [("name", ogr.OFTString), ("HEIGHT", ogr.OFTReal), ("Durchmesser", ogr.OFTReal)])
+
+    def test_height_is_not_the_release_height(self):
+        done = self.run_flags()
+        self.assertLess(max(self.releases()), 2.0)
+        self.assertIn("field HEIGHT is not read", done.stderr)
+        self.assertIn("--field release_height=HEIGHT", done.stderr)
+        self.assertIn("fields read: name (3 of 3 features)", done.stderr)
+        self.assertTrue(any("HEIGHT is not read" in note for note in self.record()["notes"]))
+        self.assertIn("HEIGHT is not read", self.run_well("check", *self.flags()).stdout)
+
+    def test_a_field_is_read_where_it_is_named(self):
+        fields = ["--field", "release_height=HEIGHT", "--field", "diameter=durchmesser"]
+        done = self.run_flags(*fields)
+        for height, expected in zip(sorted(self.releases()), np.repeat([60.0, 61.0, 62.0], 5)):
+            self.assertAlmostEqual(height, expected, delta=0.01)  # at the centre of a cell
+        said = "diameter 2 m from Durchmesser (3 of 3 features), release_height 60 to 62 m from HEIGHT (3 of 3 features)"
+        self.assertIn(said, done.stderr)
+        self.assertNotIn("is not read", done.stderr)
+        self.assertIn(said, self.run_well("check", *self.flags(), *fields).stdout)
+        settings = {s["key"]: s for s in self.record()["settings"]}
+        self.assertEqual(settings["sources.fields.release_height"]["value"], "HEIGHT")
+        self.assertEqual(settings["sources.attributes.release_height"]["value"], "60 to 62 (3 of 3 features)")
+        self.assertEqual(settings["sources.attributes.release_height"]["source"], "attribute HEIGHT of sources.gpkg")
+
+    def test_the_scenario_of_a_run_keeps_the_names(self):
+        self.run_flags("--field", "release_height=HEIGHT", "--field", "diameter=Durchmesser")
+        with open(self.path("out/scenario.toml"), encoding="utf-8") as file:
+            self.assertIn('[sources.fields]\ndiameter = "Durchmesser"\nrelease_height = "HEIGHT"\n', file.read())
+        self.run_well("run", self.path("out/scenario.toml"), "-o", self.path("again"), "-q")
+        stops = [sorted((f["source"], f["block"], f["z"], p.GetX(), p.GetY()) for f, p in rows_of(self.path(out + "/stops.gpkg"), "stops"))
+                 for out in ("out", "again")]
+        self.assertEqual(stops[0], stops[1])
+        path = self.run_well("trace", self.path("out/scenario.toml"), "--source", "1", "--block", "2").stdout.splitlines()
+        last = dict(zip(path[0].split(","), path[-1].split(",")))
+        stop = next(f for f, _ in rows_of(self.path("out/stops.gpkg"), "stops") if (f["source"], f["block"]) == (1, 2))
+        self.assertAlmostEqual(float(last["z"]), stop["z"], places=2)
+
+    def test_a_flag_counts_more_than_the_scenario(self):
+        self.write("s.toml", 'dem = "dem.tif"\ntrajectories = 5\n[sources]\nfile = "sources.gpkg"\n[sources.fields]\n'
+                   'diameter = "HEIGHT"\nrelease_height = "HEIGHT"\n')
+        self.fails(2, "field HEIGHT (diameter) = 60: must be 0.01 to 50 m", arguments=["check", self.path("s.toml")])
+        done = self.run_well("run", self.path("s.toml"), "-o", self.path("out"), "--field", "diameter=Durchmesser")
+        self.assertIn("diameter 2 m from Durchmesser", done.stderr)
+        self.assertIn("release_height 60 to 62 m from HEIGHT", done.stderr)
+
+    def test_wrong_names(self):
+        self.refused("unknown name 'releaseheight'", "did you mean 'release_height'", more=["--field", "releaseheight=HEIGHT"])
+        self.refused("flag --field diameter=Durchmeser", "has no field 'Durchmeser'", "did you mean 'Durchmesser'",
+                     more=["--field", "diameter=Durchmeser"])
+        self.refused("must be NAME=COLUMN", more=["--field", "diameter"])
+        self.refused("diameter is given twice", more=["--field", "diameter=HEIGHT", "--field", "diameter=Durchmesser"])
+        self.write("s.toml", 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[sources.fields]\ndiametre = "D"\nname = 3\n')
+        done = self.call("check", self.path("s.toml"))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("s.toml:5: unknown key 'diametre' in [sources.fields]; did you mean 'diameter'?", done.stderr)
+        self.assertIn("s.toml:6: sources.fields.name = 3: must be text", done.stderr)
+
+    def test_names_that_differ_only_in_their_case(self):
+        def feature(i):
+            return ('{"type":"Feature","properties":{"diameter":1.0,"Diameter":3.0,"DIAMETER":4.0},"geometry":'
+                    f'{{"type":"Point","coordinates":[{X + i},{Y}]}}}}')
+        crs = '"crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::2056"}}'
+        self.write("s.geojson", '{"type":"FeatureCollection",' + crs + ',"features":[' + ",".join(map(feature, range(2))) + "]}")
+        self.assertIn("diameter 1 m (2 of 2", self.run_well("check", *self.flags("s.geojson")).stdout)  # spelt so
+        self.assertIn("diameter 3 m (2 of 2", self.run_well("check", *self.flags("s.geojson"), "--field", "diameter=Diameter").stdout)
+        self.refused("s.geojson: has the fields diameter, Diameter, DIAMETER, which differ only in the case",
+                     sources="s.geojson", more=["--field", "diameter=DiaMeter"])
+
+
+class Tables(InputCase):
+    def table(self, text, name="t.csv"):
+        self.write(name, text)
+        return name
+
+    def test_a_doubled_column(self):  # GDAL 3.6 ended with a crash (139)
+        for header in ("x,x,y", "x,X,y", "d,x,y,d"):
+            text = header + "\n" + ",".join(["1"] * len(header.split(","))) + "\n"
+            self.refused("t.csv:1: column '" + ("d" if header[0] == "d" else "x") + "' is there twice", sources=self.table(text))
+        self.refused("t.csv:1: column 'x' is there twice", sources=self.table(f"x;x;y\n{X};{X};{Y}\n"))
+
+    def test_a_quotation_mark_that_is_not_closed(self):  # 4 of 60 rows were read
+        rows = [f"a{i},{X + 0.1 * i},{Y}" for i in range(60)]
+        rows[4] = '"' + rows[4]
+        self.refused("t.csv:6: the quotation mark that opens here is not closed", sources=self.table("name,x,y\n" + "\n".join(rows)))
+        rows[30] = '"' + rows[30]  # two of them: the rows between were one
+        self.refused("t.csv:32: text stands after a quotation mark that closes a cell (opened in line 6)",
+                     sources=self.table("name,x,y\n" + "\n".join(rows)))
+        self.refused("t.csv:2: a quotation mark stands inside a cell", sources=self.table(f'name,x,y\na 5" rock,{X},{Y}\n'))
+
+    def test_rows_of_another_length(self):  # the short one took the diameter of the flag
+        self.refused("t.csv:3: has 2 cells, must have 3", sources=self.table(f"x,y,diameter\n{X},{Y},2.5\n{X},{Y}\n"))
+        self.refused("t.csv:2: has 5 cells, must have 3", sources=self.table(f"x,y,diameter\n{X},{Y},2.5,7,8\n"))
+        self.refused("t.csv:4: has 1 cell, must have 3", sources=self.table(f'x,y,name\n{X},{Y},"a\nb"\n{X}\n'))
+
+    def test_good_tables_pass(self):
+        rows = f'\ufeffname;x;y;diameter\r\n"a ""quoted"" name";{X};{Y};2\r\n\r\n;{X};{Y};\r\n" two\r\nlines ";{X};{Y};3'
+        said = self.run_well("check", *self.flags(self.table(rows))).stdout
+        self.assertIn("diameter 2 to 3 m (2 of 3 features)", said)
+        self.assertIn("3 features, 3 source cells", said)
+        self.run_well("check", *self.flags(self.table(f"x\ty\n{X}\t{Y}\n")))
+        self.run_well("check", *self.flags(self.table(f"x y\n{X} {Y} \n")))
+        self.run_well("check", *self.flags(self.table(f'wkt,diameter\n"LINESTRING ({X} {Y}, {X + 9} {Y})",\n')))
+
+    def test_every_other_layer_is_checked(self):
+        bad = self.table(f'wkt,id,height,capacity,zone\n"LINESTRING ({X} {Y},{X + 9} {Y})",a,1\n')
+        for table in ('[screens]\nfile = "t.csv"', '[barriers]\nfile = "t.csv"',
+                      '[ground]\nfile = "t.csv"\nfield = "zone"\n[ground.zones.road]\npreset = "forest-road-3d"'):
+            self.write("s.toml", f'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1\n{table}\n')
+            self.fails(2, bad + ":2: has 3 cells, must have 5", arguments=["check", self.path("s.toml")])
+        write_features(self.path("sources.gpkg"), "sources", [(f"POINT ({X} {Y})", [0.1])], [("frequency", ogr.OFTReal)])
+        self.run_flags("-q")
+        self.fails(2, bad + ":2: has 3 cells", arguments=["hazard", self.path("out"), "--objects", self.path(bad)])
+
+
+class Shapefiles(InputCase):
+    def test_fields_that_are_not_there(self):
+        write_shapefile(self.path("c.shp"), [2.5, 2.5, 3.5])
+        self.assertIn("diameter 2.5 to 3.5 m (3 of 3", self.run_well("check", *self.flags("c.shp")).stdout)
+        with open(self.path("c.dbf"), "rb") as file:
+            whole = file.read()
+        header, record = struct.unpack("<HH", whole[8:12])
+        with open(self.path("c.dbf"), "wb") as file:
+            file.write(whole[:4] + struct.pack("<I", 1) + whole[8:header + record] + b"\x1a")
+        self.refused("c.shp: has 3 features, and its .dbf has the fields of 1", sources="c.shp")
+        with open(self.path("c.dbf"), "wb") as file:
+            file.write(whole[:header + record])
+        self.refused("c.dbf: is cut off", sources="c.shp")
+        os.remove(self.path("c.dbf"))
+        self.refused("c.shp: the fields of its features are in c.dbf, which is not there", "ogr2ogr", sources="c.shp")
+        with open(self.path("c.DBF"), "wb") as file:
+            file.write(whole)
+        self.run_well("check", *self.flags("c.shp"))
+
+    def test_a_name_of_fourteen_letters_is_cut(self):
+        file = ogr.GetDriverByName("ESRI Shapefile").CreateDataSource(self.path("c.shp"))
+        layer = file.CreateLayer("cliffs", system(2056), ogr.wkbPoint)
+        gdal.PushErrorHandler("CPLQuietErrorHandler")
+        layer.CreateField(ogr.FieldDefn("release_height", ogr.OFTReal))
+        gdal.PopErrorHandler()
+        feature = ogr.Feature(layer.GetLayerDefn())
+        feature.SetGeometry(ogr.CreateGeometryFromWkt(f"POINT ({X} {Y})"))
+        feature.SetField(0, 7.5)
+        layer.CreateFeature(feature)
+        file = layer = feature = None
+        self.assertIn("release_height 7.5 m from release_he (1 of 1", self.run_well("check", *self.flags("c.shp")).stdout)
+
+
+class Overwrite(InputCase):
+    def content(self, out="out"):
+        return {os.path.join(folder, name): os.stat(os.path.join(folder, name)).st_mtime_ns
+                for folder, _, names in os.walk(self.path(out)) for name in names}
+
+    def test_files_of_others_stay(self):
+        self.run_flags("-q")
+        os.mkdir(self.path("out/photos"))
+        self.write("out/photos/a.jpg", "x")
+        self.write("out/project.qgz", "x")
+        before = self.content()
+        self.fails(2, "others in this folder: photos/, project.qgz;",
+                   arguments=["run", *self.flags(), "-o", self.path("out"), "--overwrite"])
+        self.assertEqual(self.content(), before)
+        shutil.rmtree(self.path("out/photos"))
+        os.rename(self.path("out/project.qgz"), self.path("project.qgz"))
+        self.run_flags("--overwrite")
+        self.assertNotEqual(self.content(), before)
+
+    def test_what_talus_and_viewers_leave_is_replaced(self):
+        write_features(self.path("screens.gpkg"), "screens",
+                       [(f"LINESTRING ({WEST} {NORTH - 120},{WEST + 300} {NORTH - 120})", ["road"])], [("id", ogr.OFTString)])
+        write_features(self.path("sources.gpkg"), "sources", [(box(140, 230, 20, 10), [0.1])], [("frequency", ogr.OFTReal)])
+        self.write("s.toml", 'dem = "dem.tif"\ntrajectories = 20\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1.2\n'
+                   '[screens]\nfile = "screens.gpkg"\n')
+        arguments = ["run", self.path("s.toml"), "-o", self.path("out"), "-q"]
+        self.run_well(*arguments)
+        self.run_well("hazard", self.path("out"), "-q")
+        self.run_well("barrier", self.path("out"), "--screen", "road")
+        for name in ("energy.tif.aux.xml", "stops.gpkg-wal", "stops.gpkg-shm"):
+            self.write("out/" + name, "")
+        self.run_well(*arguments, "--overwrite")
+        self.assertFalse(os.path.exists(self.path("out/hazard.json")))
+        self.assertFalse(os.path.exists(self.path("out/energy.tif.aux.xml")))
+        self.write("out/barrier_notes.csv", "mine")
+        self.fails(2, "barrier_notes.csv", arguments=[*arguments, "--overwrite"])
+        self.assertTrue(os.path.exists(self.path("out/barrier_notes.csv")))
+
+    def test_parts_and_merged_results(self):
+        for i in (1, 2):
+            self.run_flags("-q", "--part", f"{i}/2", out=f"part{i}")
+        self.run_flags("-q", "--part", "1/2", "--overwrite", out="part1")
+        parts = [self.path("part1"), self.path("part2")]
+        self.run_well("merge", self.path("all"), *parts, "-q")
+        self.run_well("merge", self.path("all"), *parts, "-q", "--overwrite")
+        self.write("part1/diary.txt", "dear diary")
+        self.write("all/diary.txt", "dear diary")
+        self.fails(2, "folder: diary.txt;", arguments=["run", *self.flags(), "--part", "1/2", "-o", parts[0], "--overwrite"])
+        self.fails(2, "folder: diary.txt;", arguments=["merge", self.path("all"), *parts, "--overwrite"])
+        self.assertTrue(os.path.exists(self.path("part1/diary.txt")) and os.path.exists(self.path("all/diary.txt")))
+
+    def test_a_file_of_others(self):
+        self.write("notes.gpkg", "mine")
+        arguments = ["sources", "--dem", self.path("dem.tif"), "--slope", "30", "--overwrite", "-o"]
+        self.fails(2, "notes.gpkg", "no GeoPackage", arguments=[*arguments, self.path("notes.gpkg")])
+        write_features(self.path("mine.gpkg"), "houses", [(f"POINT ({X} {Y})", [])])
+        self.fails(2, "mine.gpkg", "other layers: houses", arguments=[*arguments, self.path("mine.gpkg")])
+        self.run_well(*arguments, self.path("cells.gpkg"))
+        self.run_well(*arguments, self.path("cells.gpkg"))
+
+
+class OffTheDem(InputCase):
+    def said(self, shapes):
+        write_features(self.path("sources.gpkg"), "sources", shapes, [("name", ogr.OFTString)])
+        done = self.run_well("check", *self.flags())
+        return [line for line in done.stdout.splitlines() if line.startswith("warning")]
+
+    def test_shares_of_features(self):
+        left, top = WEST + 100, NORTH - 30
+        lines = self.said([(box(140, 270, 20, 180), ["cliff A"]),  # 30 of 180 m inside
+                           (box(40, 200, 20, 30), ["inside"]),
+                           (f"LINESTRING ({left} {top},{left} {top + 120})", ["edge"]),  # 30 of 120 m
+                           (box(140, 500, 20, 10), ["gone"])])
+        said = "\n".join(lines)
+        self.assertIn("83 % of polygon 1 (cliff A) lies outside the DEM; 75 % of line 3 (edge) lies outside the DEM:", said)
+        self.assertIn("features wholly off the DEM, which release nothing: FID 4 (gone)", said)
+        self.assertNotIn("inside)", said)
+
+    def test_holes_of_the_dem(self):
+        z = heights()
+        z[10:14, 28:30] = -9999.0  # 140 to 150 m east, 230 to 250 m north: half of the first polygon
+        write_dem(self.path("dem.tif"), z, nodata=-9999.0)
+        said = "\n".join(self.said([(box(140, 230, 20, 20), ["half"]), (box(140, 230, 10, 20), ["all"])]))
+        self.assertIn("50 % of polygon 1 (half) lies where the DEM has no heights:", said)
+        self.assertIn("features where the DEM has no heights, which release nothing: FID 2 (all)", said)
+
+    def test_nothing_is_said_of_features_inside(self):
+        self.assertNotIn("lies", "\n".join(self.said([(box(140, 230, 20, 10), ["cliff"])])))
+
+
+class NoDem(InputCase):
+    """Terrain with slopes of 15 to 50 degrees and bumps of all sizes, and what is taken for it by mistake."""
+
+    def setUp(self):
+        super().setUp()
+        rng = np.random.default_rng(3)
+        y, x = np.mgrid[0:120, 0:120] * 5.0
+        z = 800.0 + 0.65 * (600.0 - y)
+        for length in (400.0, 170.0, 70.0, 30.0):
+            a, b = rng.uniform(0, 6, 2)
+            z += 0.035 * length * np.sin(2 * np.pi * x / length + a) * np.cos(2 * np.pi * y / length + b)
+        self.z = z + rng.normal(0, 0.05, z.shape)
+
+    def warnings(self, z, kind=gdal.GDT_Float32):
+        file = gdal.GetDriverByName("GTiff").Create(self.path("z.tif"), 120, 120, 1, kind)
+        file.SetGeoTransform((WEST, 5.0, 0.0, NORTH, 0.0, -5.0))
+        file.SetProjection(system(2056).ExportToWkt())
+        file.GetRasterBand(1).WriteArray(z)
+        file = None
+        return self.run_well("check", *self.flags(dem="z.tif")).stdout
+
+    def test_terrain_is_taken_without_a_word(self):
+        for z in (self.z, np.round(self.z, 2), np.round(self.z, 1)):
+            said = self.warnings(z)
+            for word in ("steeper than 80 deg (", "from cell to cell", "holds bytes"):
+                self.assertNotIn(word, said)
+            self.assertIn("slopes        median 3", said)
+
+    def test_whole_metres(self):
+        said = self.warnings(np.round(self.z))
+        self.assertIn("all heights are multiples of 1 m, a slope of 11 deg from cell to cell", said)
+        self.assertIn("multiples of 0.3048 m (a foot)", self.warnings(np.round(self.z / 0.3048) * 0.3048))
+
+    def test_feet(self):
+        self.assertIn("half of its cells are steeper than 6", self.warnings(self.z / 0.3048))
+
+    def test_a_hillshade(self):
+        self.warnings(self.z)
+        gdal.DEMProcessing(self.path("shade.tif"), self.path("z.tif"), "hillshade")
+        shade = gdal.Open(self.path("shade.tif")).ReadAsArray()
+        said = self.warnings(shade, gdal.GDT_Byte)
+        self.assertIn("band 1 holds bytes", said)
+        self.assertIn("multiples of 1 m", said)
+
+    def test_real_terrain(self):
+        folder = os.environ.get("TALUS_DATA", "")
+        for name in ("gar", "alr", "mal"):
+            dem = os.path.join(folder, "terrain", name + ".tif")
+            if not os.path.exists(dem):
+                self.skipTest(dem + " is not there")
+            done = self.run_well("sources", "--dem", dem, "--slope", "60", "-o", self.path(name + ".gpkg"))
+            self.assertNotIn("warning", done.stderr)
+            shade = self.path(name + "_shade.tif")
+            gdal.DEMProcessing(shade, dem, "hillshade")
+            done = self.run_well("sources", "--dem", shade, "--slope", "60", "-o", self.path(name + "_shade.gpkg"))
+            for word in ("half of its cells are steeper than 5", "multiples of 1 m", "holds bytes"):
+                self.assertIn(word, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

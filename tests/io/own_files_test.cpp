@@ -1,0 +1,59 @@
+#include "io/files/own_files.hpp"
+
+#include "files.hpp"
+
+namespace talus::io::test {
+
+class OwnFiles : public Files {
+ protected:
+  /// Writes a file into a folder below the folder of the test.
+  void file(const std::string& name, const std::string& text = "") {
+    std::filesystem::create_directories(std::filesystem::path(path(name)).parent_path());
+    write_text(name, text);
+  }
+  std::vector<std::string> foreign() const { return foreign_in(path("out")); }
+};
+
+using Names = std::vector<std::string>;
+
+TEST_F(OwnFiles, OfARunAreThoseThatItsRecordsList) {
+  file("out/run.json", R"({"files": ["energy.tif", "energy.qml", "../mine.txt", 7]})");
+  file("out/hazard.json", R"({"files": ["hazard_class.tif"]})");
+  for (const char* name :
+       {"energy.tif", "energy.qml", "hazard_class.tif", "energy.tif.aux.xml", "barrier_road.json", "barrier_road.csv",
+        "barrier_road_stretches.csv", ".hazard.talus-17/a.tif", "unfinished/part.json"})
+    file(std::string("out/") + name);
+  EXPECT_EQ(foreign(), Names{});
+  for (const char* name : {"mine.txt", "velocity.tif", "velocity.tif.aux.xml", "barrier_notes.csv", "fitted.toml",
+                           ".git/config", "photos/a.jpg", "tally-1", "energy.tif.bak"})
+    file(std::string("out/") + name);
+  EXPECT_EQ(foreign(), (Names{".git/", "barrier_notes.csv", "energy.tif.bak", "fitted.toml", "mine.txt", "photos/",
+                              "tally-1", "velocity.tif", "velocity.tif.aux.xml"}));
+  std::filesystem::remove(path("out/energy.tif"));
+  std::filesystem::create_directory(path("out/energy.tif"));  // a folder is none of the files of a run
+  EXPECT_EQ(foreign()[2], "energy.tif.bak");
+  EXPECT_EQ(foreign()[3], "energy.tif/");
+}
+
+TEST_F(OwnFiles, OfPartsAndFitsAreKnownByTheirNames) {
+  for (const char* name :
+       {"part.json", "scenario.toml", ".lock", "tally-1-0.bin", "rows-1-0.bin", "rest-2.bin", "reach-0.bin"})
+    file(std::string("out/") + name);
+  EXPECT_EQ(foreign(), Names{});
+  file("out/report.md");
+  EXPECT_EQ(foreign(), Names{"report.md"});
+  for (const char* name : {"part.json", "scenario.toml", "tally-1-0.bin", "rows-1-0.bin", "rest-2.bin", "reach-0.bin"})
+    std::filesystem::remove(path(std::string("out/") + name));
+  for (const char* name : {"calibration.json", "fitted.toml", "alder/fitted.toml", "alder/with_effect.toml"})
+    file(std::string("out/") + name);
+  EXPECT_EQ(foreign(), Names{});
+  file("out/alder/notes.txt");
+  EXPECT_EQ(foreign(), Names{"alder/"});
+}
+
+TEST(ShownNames, AreTheFirstFive) {
+  EXPECT_EQ(shown_names({"a", "b"}), "a, b");
+  EXPECT_EQ(shown_names({"a", "b", "c", "d", "e", "f", "g"}), "a, b, c, d, e and 2 more");
+}
+
+}  // namespace talus::io::test

@@ -1,0 +1,39 @@
+#include "io/gdal/vector_file.hpp"
+
+#include "files.hpp"
+
+namespace talus::io::test {
+
+namespace {
+
+void read(const std::string& text, std::size_t piece = 1000) {
+  CsvStructure csv("t.csv", text.substr(0, text.find_first_of("\r\n")));
+  for (std::size_t at = 0; at < text.size(); at += piece) csv.take(std::string_view(text).substr(at, piece));
+  csv.finish();
+}
+
+void refuses(const std::string& text, const std::vector<std::string>& words) {
+  for (const std::size_t piece : {1U, 3U, 1000U}) expect_input_error([&] { read(text, piece); }, words);
+}
+
+}  // namespace
+
+TEST(CsvStructure, TakesWhatIsWhole) {
+  for (const char* text : {"x,y\n1,2\n", "x,y\r\n1,2\r\n", "x,y\r1,2\r3,4", "x;y;\n1;2;\n", "x\ty\n1\t2",
+                           "x y\n1   2 \n", "x,y\n\n1,2\n\n", "a,b\n\"1,\n\"\"2\"\"\",\" \" \n", "a,b\n,\n",
+                           "a\n\"\"\n", "a,,\n1,2,3\n", "1,1\n2,3\n", "", "\n"})
+    EXPECT_NO_THROW(read(text)) << text;
+}
+
+TEST(CsvStructure, NamesTheLine) {
+  refuses("x,x,y\n", {"t.csv:1:", "column 'x' is there twice"});
+  refuses("x, X ,y\n1,2,3\n", {"t.csv:1:", "'x'"});
+  refuses("x,y\n1\n", {"t.csv:2: has 1 cell, must have 2"});
+  refuses("x,y\r\n1,2\r\n1,2,3\r\n", {"t.csv:3: has 3 cells, must have 2"});
+  refuses("x,y\n\"a\nb\",2\n\n1\n", {"t.csv:5: has 1 cell"});
+  refuses("x,y\n1,2\n\"3,4\n5,6\n", {"t.csv:3: the quotation mark that opens here is not closed"});
+  refuses("x,y\n\"1,2\n\"3,4\n", {"t.csv:3: text stands after a quotation mark", "opened in line 2"});
+  refuses("x,y\n1,\"2\" \"3\"\n", {"t.csv:2: a quotation mark stands inside a cell"});
+}
+
+}  // namespace talus::io::test
