@@ -12,7 +12,7 @@ import unittest
 import numpy as np
 from osgeo import gdal, ogr
 
-from support import TALUS, Case, RunCase, box, system, write_features
+from support import TALUS, Case, RunCase, box, system, write_dem, write_features
 
 BARRIER_PICTURE = os.path.join(os.path.dirname(__file__), "../../tools/scripts/figures/barrier_picture.py")
 
@@ -211,6 +211,24 @@ class Bound(Case):
         trace = self.run_well("trace", self.path("out/scenario.toml"), "--source", "0", "--block", "0")
         self.assertGreater(trace.stdout.count("\n"), 1_000_000)
         self.assertLess(trace.stdout.count("\n"), 1_002_000)
+
+
+    def test_a_trajectory_crosses_at_most_four_million_patches(self):
+        """A block of 1 cm that flies to and fro for a day in a hollow of cells of 5 cm, without loss."""
+        y, x = np.mgrid[0:1200, 0:1200] * 0.05
+        z = 100.0 + 3.0 * np.hypot(x - x.mean(), y - y.mean())
+        write_dem(self.path("dem.tif"), z.astype(np.float32), 0.05)
+        self.write("p.csv", "x,y\n2600021.33,1200267.18\n")
+        self.write("s.toml", 'dem = "dem.tif"\ntrajectories = 1\n[sources]\nfile = "p.csv"\nrelease_height = 1\n[blocks]\n'
+                             "diameter = 0.01\n[ground.zones.default]\ntheta_scale = 0\npsi_scale = 0\nEn50 = 1e6\nEt50 = 1e6\n"
+                             "phi = 0.01\n[model]\nstop_speed = 1e-9\ntime_limit = 86400\nimpact_limit = 10000000\n"
+                             "trap_time = 3600\ndeformation_coefficient = 1e-6\n[output]\ntrajectories = 0\n")
+        done = self.call("run", self.path("s.toml"), "-o", self.path("out"), timeout=60)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        record = self.record()
+        self.assertEqual(record["ends"]["limit"], 1)
+        self.assertLess(record["impacts"], 100_000)  # 149 000 without the bound
+        self.assertLess(record["peak_memory_mb"], 1500)  # 3 600 without it
 
 
 class Forged(RunCase):
