@@ -67,7 +67,8 @@ std::optional<std::string> coefficient_note(const std::filesystem::path& folder)
 
 RunSummary read_run(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "run.json";
-  if (!std::ifstream(file, std::ios::binary).is_open())
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(file, none) || !std::ifstream(file, std::ios::binary).is_open())
     throw InputError(folder.string() +
                      ": has no run.json that can be read, must be a folder that talus run has written");
   RunSummary run;
