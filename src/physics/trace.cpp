@@ -14,6 +14,10 @@ namespace {
 
 [[maybe_unused]] constexpr double kPatchError = 1e-6;  // of the place of a block in its patch, by rounding [patches]
 
+/// Patches crossed after which a trajectory ends at its limit, as with `Effort::most_vertices`: they bound its memory
+/// and time where it flies over many patches between few vertices. docs/physics.md, "End of a trajectory".
+constexpr std::size_t kMostSpans = 4'000'000;
+
 /// The half of a creased patch that a block meets. (Apart, and by value, so that the usual patch stays in registers.)
 [[gnu::noinline]] Patch facet_of(const Surface& surface, Patch patch, double p, double q, const Vec3& velocity) {
   return surface.facet(patch, p, q, velocity);
@@ -43,7 +47,7 @@ class Walk {
     if (const auto end = end_of(effects_.fly(motion_, at_, false, body_, path_))) return *end;
     anchor_.set(motion_);
     while (path_.impacts < world_.rules.impact_limit && motion_.time < world_.rules.time_limit &&
-           path_.vertices.size() < world_.effort.most_vertices) {
+           path_.vertices.size() < world_.effort.most_vertices && path_.spans.size() < kMostSpans) {
       if (const auto end = meet_the_ground()) return *end;
       if (motion_.velocity.dot(normal_) < kSlideSpeed) {
         const SlideEnd how = slide_on();

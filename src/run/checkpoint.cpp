@@ -1,7 +1,6 @@
 #include "talus/run/checkpoint.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "checkpoint_rows.hpp"
 #include "checkpoint_tally.hpp"
 #include "io/files/checksum.hpp"
+#include "io/files/json.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/files/output_folder.hpp"
@@ -25,6 +25,8 @@ using io::plan_checksum;
 using io::replace_text;
 using Json = nlohmann::ordered_json;
 constexpr int kFormat = 6;
+constexpr std::int64_t kMostRounds = 10'000;  // that talus run takes
+constexpr std::int64_t kLargest32 = 0xFFFF'FFFF;
 
 /// "tally-3.bin"; for a process of rank 1 "tally-3-1.bin".
 std::string numbered(const std::string& what, std::uint32_t number, int rank = 0) {
@@ -37,8 +39,21 @@ Json json_of(const Rounds& asked) {
   return json;
 }
 
+std::uint32_t number_of(const Json& json, const char* key, std::int64_t lowest, std::int64_t highest) {
+  return static_cast<std::uint32_t>(io::whole_number(json.at(key), lowest, highest));
+}
+
+/// The name of a file of a checkpoint. Throws InputError for one that no checkpoint writes, such as "../tally-1.bin".
+std::string file_name(const Json& json, std::string_view what) {
+  const std::string name = json;
+  if (!name.starts_with(what) || !name.ends_with(".bin") || name.find_first_of(std::string("/\\\0", 3)) != name.npos)
+    throw InputError("it names the file '" + name.substr(0, 80) + "', must be a '" + std::string(what) +
+                     "... .bin' of its own folder");
+  return name;
+}
+
 Rounds rounds_of(const Json& json) {
-  Rounds asked{json.at("count"), {}, json.at("above"), json.at("most")};
+  Rounds asked{number_of(json, "count", 1, kMostRounds), {}, json.at("above"), number_of(json, "most", 1, kMostRounds)};
   if (json.contains("until_error")) asked.until_error = json.at("until_error").get<double>();
   return asked;
 }
@@ -248,30 +263,33 @@ void Checkpoint::write_manifest() const {
 
 void Checkpoint::read_manifest() {
   const fs::path file = folder_ / kCheckpointManifest;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream.is_open())
+  if (!fs::exists(file))
     throw InputError(folder_.string() + ": has no " + kCheckpointManifest +
                      ", must be what talus run --part has written");
   std::string plan;
   try {
-    Json json = Json::parse(stream);
+    Json json = io::read_record(file);
     const std::string sha256 = json.at("sha256");
     json.erase("sha256");
     if (sha256 != io::sha256_of_bytes(text_of(json))) throw InputError("its checksum is another");
     if (json.at("format").get<int>() != kFormat || json.at("version").get<std::string>() != version())
       throw InputError("was written by Talus " + json.at("version").get<std::string>());
     plan = json.at("plan");
-    part_ = {json.at("part"), json.at("of")};
+    const std::uint32_t of = number_of(json, "of", 1, kLargest32);
+    part_ = {number_of(json, "part", 1, of), of};
     asked_ = rounds_of(json.at("rounds"));
-    rounds_ = json.at("rounds_done");
-    units_done_ = json.at("units_done");
-    generation_ = json.at("generation");
+    rounds_ = number_of(json, "rounds_done", 0, kMostRounds);
+    units_done_ = static_cast<std::uint64_t>(io::whole_number(json.at("units_done"), 0, std::int64_t{1} << 62U));
+    generation_ = number_of(json, "generation", 0, kLargest32 - 1);
     rest_sha256_ = json.at("rest_sha256");
     for (const Json& s : json.at("settings")) settings_.push_back({s.at(0), s.at(1), s.at(2), s.at(3)});
     for (const Json& rows : json.at("rows"))
-      rows_files_.push_back({rows.at("round"), rows.at("generation"), rows.at("file"), rows.at("sha256")});
-    for (const Json& tally : json.at("tallies")) tallies_.push_back({tally.at("file"), tally.at("sha256")});
-    for (const Json& reach : json.at("reaches")) reaches_.push_back({reach.at("file"), reach.at("sha256")});
+      rows_files_.push_back({number_of(rows, "round", 0, kMostRounds), number_of(rows, "generation", 0, kLargest32),
+                             file_name(rows.at("file"), "rows-"), rows.at("sha256")});
+    for (const Json& tally : json.at("tallies"))
+      tallies_.push_back({file_name(tally.at("file"), "tally-"), tally.at("sha256")});
+    for (const Json& reach : json.at("reaches"))
+      reaches_.push_back({file_name(reach.at("file"), "reach-"), reach.at("sha256")});
     round_ = rounds_;
   } catch (const std::exception& error) {
     throw InputError(file.string() + ": cannot be understood (" + error.what() +

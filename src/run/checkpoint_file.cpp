@@ -37,6 +37,7 @@ void CheckpointFileWriter::fail() const {
 CheckpointFileReader::CheckpointFileReader(const std::filesystem::path& file, const std::string& sha256)
     : path_(file), file_(std::fopen(file.c_str(), "rb")) {
   std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) fail();
   left_ = std::filesystem::file_size(file, error);
   if (!file_ || error) fail();
   Sha256 sum;

@@ -46,7 +46,8 @@ class CheckpointFileReader {
   bool get_value(T& value) {  // false at the end of the file
     return read(&value, sizeof value);
   }
-  void finish();  ///< throws InputError if bytes are left
+  void finish();                                ///< throws InputError if bytes are left
+  std::uint64_t left() const { return left_; }  ///< bytes to the end
   [[noreturn]] void fail() const;
 
  private:

@@ -7,6 +7,7 @@ namespace {
 
 template <class Row>
 std::vector<Row> rows_of(CheckpointFileReader& in, std::uint64_t count) {
+  if (count > in.left() / sizeof(Row)) in.fail();
   const std::string bytes = in.get(count * sizeof(Row));
   std::vector<Row> rows(count);
   if (count > 0) std::memcpy(rows.data(), bytes.data(), bytes.size());

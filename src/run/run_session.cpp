@@ -149,6 +149,9 @@ void RunSession::make_folder() {
 void RunSession::warn_of_input() {
   for (const std::string& note : plan_.loaded.notes) observer_.message(note);
   for (const std::string& warning : plan_.loaded.warnings) observer_.warning(warning);
+  const Rounds& rounds = plan_.rounds;
+  const std::uint64_t all = plan_.loaded.scenario.released() * (rounds.until_error ? 1 : rounds.count);
+  if (const auto warning = size_warning(all, plan_.part.of)) observer_.warning(*warning);
   const std::size_t sources = plan_.loaded.scenario.sources.size();
   if (request_.part && plan_.part.first(sources) == plan_.part.end(sources))
     observer_.warning("--part " + *request_.part + " is empty: the plan has " + count_text(sources) + " source cells");

@@ -33,7 +33,7 @@ std::string ends_text(const Totals& totals) {
 std::string limits_text(const Totals& totals) {
   const std::uint64_t limits = count_of(totals, End::Limit);
   return count_text(limits) + " of " + count_text(totals.released) + " trajectories (" +
-         share_text(limits, totals.released) + ", allowed are 0.1 %) ended at the limit of impacts or time";
+         share_text(limits, totals.released) + ", allowed are 0.1 %) ended at the limit of impacts, time or vertices";
 }
 
 std::vector<std::string> warnings_of(const Totals& totals, const std::string& whole) {
@@ -51,6 +51,17 @@ std::vector<std::string> warnings_of(const Totals& totals, const std::string& wh
        "terrain, the maps end too early; trapped.tif shows where; a part of them may lie at pits and dammed cells of "
        "the DEM, which talus check --pits maps");
   return warnings;
+}
+
+std::optional<std::string> size_warning(std::uint64_t trajectories, std::uint32_t parts) {
+  constexpr double kMany = 1e9, kSeconds = 1e-4, kStopBytes = 172.0;  // docs/performance.md
+  const double here = static_cast<double>(trajectories) / parts;
+  if (!(here > kMany)) return std::nullopt;
+  return count_text(static_cast<std::uint64_t>(here)) + " trajectories: at 0.1 ms each they take about " +
+         with_digits(here * kSeconds / 86400.0, 2) + " days of one processor, their stops about " +
+         with_digits(here * kStopBytes / 1e12, 2) +
+         " TB of disk, and a cell that more than 4 294 967 295 of them cross ends the run; talus check estimates time "
+         "and disk; are --trajectories the blocks per source cell that were meant?";
 }
 
 std::vector<std::string> held_warnings(std::uint64_t held, std::uint64_t released, const Effects& effects,

@@ -8,6 +8,7 @@
 #include "crossing_weights.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/files/file_name.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/gdal/crossings_file.hpp"
 #include "talus/io/reports/barrier_report.hpp"
@@ -247,7 +248,9 @@ int design(const Options& o) {
   if (weighting.scale) add_frequencies(report, blocks, weighting);
   add_width(report, blocks, run, o);
 
-  const std::string name = talus::io::barrier_file_name(o.screen);
+  std::vector<std::string> ids;
+  for (const talus::Screen& screen : run.screens) ids.push_back(screen.id);
+  const std::string name = "barrier_" + talus::io::file_name_of(o.screen, ids);
   talus::io::replace_text(fs::path(o.folder) / (name + ".csv"), talus::io::barrier_csv(report));
   talus::io::replace_text(fs::path(o.folder) / (name + "_stretches.csv"), talus::io::stretches_csv(report));
   talus::io::replace_text(fs::path(o.folder) / (name + ".json"), talus::io::barrier_json(report));
@@ -282,7 +285,7 @@ void add_barrier(CLI::App& app, Action& action) {
                       "another weighting (TOML: [frequency], [features]), as of talus hazard");
   command->add_flag("--unweighted", o->unweighted, "count every block alike, also where the sources have frequencies");
   command->add_flag("-q,--quiet", o->quiet, "say nothing but errors");
-  command->add_option("--seed", o->seed, "of the bootstrap: 1 (default)");
+  command->add_option("--seed", o->seed, "of the bootstrap: 1 (default)")->check(seed_number());
   command->footer(
       "Example:\n  talus barrier result --screen road --gTr 1.02 --gDp 1.02 --gVol 1.02\n\n"
       "Writes barrier_ID.json, barrier_ID.csv and barrier_ID_stretches.csv into the folder. docs/barrier.md explains "

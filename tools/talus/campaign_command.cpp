@@ -38,9 +38,9 @@ void CampaignCommand::add_to(CLI::App& command, std::uint32_t& trials, std::vect
   command.add_option("--fit", keys, "parameters, in every zone: theta_scale,psi_scale,En50,Et50,phi")->delimiter(',');
   command.add_option("--trials", trials, "trajectories per block in the searches (" + std::to_string(trials) + ")")
       ->check(CLI::Range(kFewestSearchTrials, 10000));
-  command.add_option("--seed", seed, "of the random numbers (1)");
+  command.add_option("--seed", seed, "of the random numbers (1)")->check(seed_number());
   command.add_option("--threads", threads, "all processors where it is not given; the results are the same")
-      ->check(CLI::Range(1, 4096));
+      ->check(startable_threads());
   command.add_flag("-q,--quiet", quiet, "say nothing but errors");
   command.add_option("--progress", progress, "machine: lines `progress 42` for other programs")
       ->check(CLI::IsMember({"machine"}));

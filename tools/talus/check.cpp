@@ -216,7 +216,7 @@ void print_estimate(const Scenario& scenario, unsigned threads) {
     line("warning", warning);
   if (talus::io::too_many_limits(sample.totals))
     line("warning", count_text(talus::run::count_of(sample.totals, talus::End::Limit)) +
-                        " of the sample ended at the limit of impacts or time; where more than 0.1 % do, the "
+                        " of the sample ended at the limit of impacts, time or vertices; where more than 0.1 % do, the "
                         "run ends with exit code 1");
 }
 
@@ -227,6 +227,7 @@ void print_plan(const LoadedScenario& loaded, unsigned threads) {
   print_blocks(loaded.scenario);
   print_estimate(loaded.scenario, threads);
   for (const std::string& warning : loaded.warnings) line("warning", warning);
+  if (const auto warning = talus::run::size_warning(loaded.scenario.released())) line("warning", *warning);
 }
 
 /// Writes the map of the pits, if it is asked for.

@@ -44,6 +44,13 @@ const std::vector<std::string>& command_line();
 /// Check of an option with a fraction: a number from low to high. (CLI::Range lets "nan" through.)
 CLI::Validator between(double low, double high);
 
+/// Check of an option with a seed: a whole number within its bounds. (CLI11 turns -1 into a huge number.)
+CLI::Validator seed_number();
+
+/// Check of an option with a number of threads: 1 to 4096, and as many can be started. Under a limit of memory or of
+/// processes the library of threads would end the program without an error of ours.
+CLI::Validator startable_threads();
+
 /// Throws InputError if the seed is out of bounds. (A negative number arrives as a huge one.)
 void require_seed(std::uint64_t seed);
 

@@ -260,7 +260,7 @@ void add_hazard(CLI::App& app, Action& action) {
                     "the thresholds; with --width the thresholds)");
   command->add_flag("--overwrite", options->overwrite, "replace the hazard maps that are there");
   command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
-      ->check(CLI::Range(1, 4096));
+      ->check(startable_threads());
   command->add_option("--progress", options->progress, "machine: lines `progress 42` for other programs")
       ->check(CLI::IsMember({"machine"}));
   command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");

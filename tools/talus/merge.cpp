@@ -28,7 +28,7 @@ void add_merge(CLI::App& app, Action& action) {
   command->add_option("--memory", options->memory, "such as 2G: what does not fit lies in a file beside the results");
   command->add_flag("--overwrite", options->overwrite, "replace the folder if it holds an earlier result");
   command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
-      ->check(CLI::Range(1, 4096));
+      ->check(startable_threads());
   command->add_flag("-q,--quiet", *quiet, "say nothing but errors");
   command->footer(
       "Example:\n"

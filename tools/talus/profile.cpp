@@ -158,9 +158,9 @@ void add_profile(CLI::App& app, Action& action) {
   command->add_option("-o,--out", options->out, "new folder for the results")->required();
   command->add_flag("--overwrite", options->overwrite, "replace the folder if it holds an earlier result");
   command->add_option("--trajectories", options->flags.trajectories, "how many blocks");
-  command->add_option("--seed", options->flags.seed, "of the random numbers");
+  command->add_option("--seed", options->flags.seed, "of the random numbers")->check(seed_number());
   command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
-      ->check(CLI::Range(1, 4096));
+      ->check(startable_threads());
   command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
   command->add_option("--progress", options->progress, "machine: lines `progress 42` for other programs")
       ->check(CLI::IsMember({"machine"}));

@@ -1,10 +1,13 @@
 #include "program.hpp"
 
+#include <fcntl.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <new>
 #include <string_view>
 
@@ -12,6 +15,7 @@
 #include "talus/base/memory.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
+#include "talus/run/startable_threads.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace {
@@ -75,9 +79,17 @@ void describe(CLI::App& app) {
       "130 interrupted, 1 anything else.");
 }
 
+/// Opens the three standard streams where they are closed, so that no file of results gets the number of one and with
+/// it what is printed. Each the wrong way round: using it remains an error.
+void hold_standard_streams() {
+  for (const int stream : {0, 1, 2})
+    if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", stream == 0 ? O_WRONLY : O_RDONLY) < 0) std::_Exit(kFailed);
+}
+
 }  // namespace
 
 void begin_program(int argc, char** argv) {
+  hold_standard_streams();
   talus::keep_freed_memory();
   std::signal(SIGPIPE, SIG_IGN);  // if the reader of the output ends, a write fails and is handled
   std::signal(SIGXFSZ, SIG_IGN);  // the same for a file above the allowed size
@@ -131,6 +143,34 @@ CLI::Validator between(double low, double high) {
           "FLOAT in " + range};
 }
 
+CLI::Validator seed_number() {
+  const auto check = [](std::string& text) -> std::string {
+    const talus::Bounds* bounds = nullptr;
+    for (const auto& field : talus::scenario_fields())
+      if (field.key == "seed") bounds = &field;
+    double value = 0.0;
+    if (!CLI::detail::lexical_cast(text, value)) return {};  // the conversion says it
+    const auto fault = talus::fault_of(*bounds, value);
+    return fault ? "Value " + text + " " + *fault : "";
+  };
+  return {check, ""};
+}
+
+CLI::Validator startable_threads() {
+  constexpr int kMost = 4096;
+  const auto check = [](std::string& text) -> std::string {
+    int threads = 0;
+    if (!CLI::detail::lexical_cast(text, threads) || threads < 1 || threads > kMost)
+      return "Value " + text + " not in range [1 - " + std::to_string(kMost) + "]";
+    const int most = talus::run::startable_threads(threads);
+    return most == threads ? ""
+                           : "Value " + text + ": this system lets the program start " + std::to_string(most) +
+                                 " threads (ulimit -v limits their memory, ulimit -u their number); give half of that "
+                                 "or less";
+  };
+  return {check, "INT in [1 - 4096]"};
+}
+
 void require_seed(std::uint64_t seed) {
   const auto fields = talus::scenario_fields();
   const auto bounds = std::find_if(fields.begin(), fields.end(), [](const auto& field) { return field.key == "seed"; });
@@ -139,7 +179,7 @@ void require_seed(std::uint64_t seed) {
 }
 
 void catch_signals() {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) {
     const auto before = std::signal(signal, [](int) { asked_to_end = true; });
     if (before == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup
   }

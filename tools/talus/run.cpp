@@ -40,7 +40,7 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags) {
   command.add_option("--surface", flags.surface, "bilinear or creased (creased): heights between the cells' centres");
   command.add_option("--diameter", flags.diameter, "of the blocks [m]");
   command.add_option("--trajectories", flags.trajectories, "per source cell");
-  command.add_option("--seed", flags.seed, "of the random numbers");
+  command.add_option("--seed", flags.seed, "of the random numbers")->check(seed_number());
   command.add_flag("--energy-total", flags.energy_total, "also energy_total.tif: the energy with rotation");
   command.add_flag("--bounds", flags.bounds, "also 95 % bounds of the percentiles: energy_bounds.tif and others");
 }
@@ -55,7 +55,7 @@ void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes) {
   command
       ->add_option("--threads", request.threads,
                    "all processors where it is not given, of several processes one each; the results are the same")
-      ->check(CLI::Range(1, 4096));
+      ->check(startable_threads());
   command->add_option("--part", request.part, "I/N: only part I of N of the source cells, for talus merge");
   command->add_flag("--resume", request.resume, "go on with an interrupted run of the same command");
   command->add_option("--memory", request.memory, "such as 2G: what does not fit lies in a file beside the results");

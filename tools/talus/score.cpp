@@ -85,13 +85,13 @@ void add_score(CLI::App& app, Action& action) {
                       "bilinear or creased (creased): heights between the cells' centres");
   command->add_option("--trials", options->trials, "simulated trajectories per block (100)")
       ->check(CLI::Range(10, 100000));
-  command->add_option("--seed", options->seed, "of the random numbers (1)");
+  command->add_option("--seed", options->seed, "of the random numbers (1)")->check(seed_number());
   command->add_option("--rows", options->rows, "fit, holdout or all (all)")
       ->check(CLI::IsMember({"fit", "holdout", "all"}));
   command->add_flag("--json", options->json, "print JSON");
   command->add_option("--dump", options->dump, "new folder for what was simulated, by block and trial (CSV)");
   command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
-      ->check(CLI::Range(1, 4096));
+      ->check(startable_threads());
   command->add_flag("-q,--quiet", options->quiet, "say nothing but errors and the result");
   command->footer(
       "Example:\n  talus score campaign.toml --parameters result/fitted.toml\n\n"

@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <limits>
 
 #include "talus/physics/impact.hpp"
 #include "talus/terrain/surface.hpp"
@@ -18,11 +17,11 @@ struct EndRules {
   std::uint32_t impact_limit = 100'000;
 };
 
-/// What a trajectory may cost. A run follows each to its end; a search bounds it. docs/diagnosis-time.md.
+/// What a trajectory may cost. A search bounds it more than a run does. docs/physics.md, "End of a trajectory";
+/// docs/diagnosis-time.md.
 struct Effort {
-  /// Vertices after which a trajectory ends at its limit [-]; the most that there are: never.
-  std::uint32_t most_vertices = std::numeric_limits<std::uint32_t>::max();
-  double drag_loss = 0.04;  ///< share of the speed that drag may take in one piece of a flight [-]
+  std::uint32_t most_vertices = 1'000'000;  ///< vertices after which a trajectory ends at its limit [-]
+  double drag_loss = 0.04;                  ///< share of the speed that drag may take in one piece of a flight [-]
 };
 
 /// Everything a block can meet. The surface and the cover are on the same grid.

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,11 @@ std::string limits_text(const Totals& totals);
 ///
 /// @param whole  name of what `totals` sums over
 std::vector<std::string> warnings_of(const Totals& totals, const std::string& whole = "trajectories");
+
+/// A warning that a plan has very many trajectories, with their time; nothing if it has not.
+///
+/// @param parts  equal parts of it, of which one is run
+std::optional<std::string> size_warning(std::uint64_t trajectories, std::uint32_t parts = 1);
 
 /// A warning that many blocks hardly left their source; empty if they are few.
 ///

@@ -2,7 +2,10 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <system_error>
 
+#include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 
 namespace talus::io {
@@ -28,6 +31,35 @@ Json json_of(std::span<const InputFile> files) {
   for (const InputFile& file : files)
     list.push_back({{"role", file.role}, {"path", file.path}, {"sha256", file.sha256}});
   return list;
+}
+
+Json parsed_record(const std::string& text) {
+  constexpr int kDeepest = 32;
+  return Json::parse(text, [](int depth, Json::parse_event_t, Json&) {
+    if (depth > kDeepest) throw InputError("it is nested more than " + std::to_string(kDeepest) + " deep");
+    return true;
+  });
+}
+
+Json read_record(const std::filesystem::path& file) {
+  constexpr std::uintmax_t kLargest = std::uintmax_t{1} << 28U;  // screens of a region have some megabytes
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) throw InputError("it is no regular file");
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (error || size > kLargest) throw InputError("it has more than 256 MB");
+  std::ifstream stream(file, std::ios::binary);
+  std::string text(size, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(size));
+  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, stream.gcount())));
+  return parsed_record(text);
+}
+
+std::int64_t whole_number(const Json& number, std::int64_t lowest, std::int64_t highest) {
+  const bool whole = number.is_number_integer() && !(number.is_number_unsigned() && number.get<std::uint64_t>() >> 63U);
+  if (!whole || number.get<std::int64_t>() < lowest || number.get<std::int64_t>() > highest)
+    throw InputError("it has the number " + number.dump().substr(0, 40) + " where one from " + std::to_string(lowest) +
+                     " to " + std::to_string(highest) + " must be");
+  return number.get<std::int64_t>();
 }
 
 std::string json_text(const Json& json) {

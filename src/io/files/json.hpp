@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -25,6 +26,17 @@ Json json_of(const Interval& interval, double (*rounded)(double) = six_digits);
 
 /// Input files with their checksums.
 Json json_of(std::span<const InputFile> files);
+
+/// The JSON in a text. Throws InputError or Json::exception if it is none, or is nested deeper than any record of ours.
+Json parsed_record(const std::string& text);
+
+/// The JSON in a file that Talus wrote (run.json, part.json). Throws InputError or Json::exception if the file is no
+/// regular file, larger than any record of ours, or no JSON; before more than that is read.
+Json read_record(const std::filesystem::path& file);
+
+/// A whole number of a record, within bounds. (A conversion would wrap a larger one.) Throws InputError or
+/// Json::exception.
+std::int64_t whole_number(const Json& number, std::int64_t lowest, std::int64_t highest);
 
 /// The text of a JSON file, indented; bytes that are no UTF-8 are replaced.
 std::string json_text(const Json& json);

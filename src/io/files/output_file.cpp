@@ -41,6 +41,7 @@ fs::path checked(const fs::path& path, const std::string& extension, bool overwr
   const std::string name = path.string();
   if (path.extension() != extension || path.stem().empty())
     throw InputError(name + ": the file must end in " + extension + ", for example result" + extension);
+  refuse_dangling_link(path);
   if (fs::is_directory(path)) throw InputError(name + ": is a folder; give the name of a file");
   if (fs::exists(path) && !overwrite)
     throw InputError(

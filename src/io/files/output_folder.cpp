@@ -50,6 +50,7 @@ void refuse_foreign_files(const fs::path& folder) {
 
 void refuse_taken_name(const fs::path& folder, bool overwrite) {
   const std::string name = folder.string();
+  refuse_dangling_link(folder);
   if (!fs::exists(folder)) return;
   if (!fs::is_directory(folder)) throw InputError(name + ": is a file; give the name of a new folder");
   if (is_mount_point(folder))

@@ -6,9 +6,18 @@
 #include <cerrno>
 #include <stdexcept>
 
+#include "talus/base/error.hpp"
+
 namespace talus::io {
 
 namespace fs = std::filesystem;
+
+void refuse_dangling_link(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_symlink(path, error) || fs::exists(path, error)) return;
+  throw InputError(path.string() + ": is a link to " + fs::read_symlink(path, error).string() +
+                   ", which is not there; remove the link, or give another name");
+}
 
 StagedPath::StagedPath(Kind kind, const fs::path& path, const std::string& extension)
     : path_(path),

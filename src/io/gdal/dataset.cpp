@@ -1,6 +1,7 @@
 #include "dataset.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <stdexcept>
 
@@ -111,6 +112,10 @@ Dataset memory_dataset(int columns, int rows, GDALDataType type) {
   return dataset;
 }
 
+bool is_place(double x, double y) {
+  return std::abs(x) <= kFarthestPlace && std::abs(y) <= kFarthestPlace;
+}
+
 std::string edit_command(const std::string& path, const std::string& option) {
   const bool tiff = ends_with(path, ".tif") || ends_with(path, ".tiff");
   return tiff ? "gdal_edit.py " + option + " " + path : "gdal_translate " + option + " " + path + " mended.tif";
@@ -118,6 +123,10 @@ std::string edit_command(const std::string& path, const std::string& option) {
 
 std::string wkt_of(const OGRSpatialReference* system) {
   if (system == nullptr || system->IsEmpty()) return {};
+  const char* const name = system->GetName();  // what GDAL says where a GeoPackage has none
+  if (name != nullptr && (STARTS_WITH_CI(name, "Undefined Cartesian") || STARTS_WITH_CI(name, "Undefined geographic") ||
+                          STARTS_WITH_CI(name, "Undefined SRS")))
+    return {};
   const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
   char* text = nullptr;
   std::string wkt;

@@ -47,6 +47,13 @@ Dataset open_dataset(const std::string& path, unsigned kinds);
 /// A dataset in memory, of zeros. Throws std::runtime_error if there is no memory for it.
 Dataset memory_dataset(int columns, int rows, GDALDataType type);
 
+/// Coordinates on a map of the earth are below this [m]; with the number of a zone before them they have up to 8
+/// digits.
+inline constexpr double kFarthestPlace = 1e9;
+
+/// Whether these can be coordinates on a map of the earth: numbers, and not too large.
+bool is_place(double x, double y);
+
 /// The command that corrects the metadata of a raster: "gdal_edit.py -a_nodata 0 dem.tif"; for formats that cannot be
 /// edited, gdal_translate to a copy.
 std::string edit_command(const std::string& path, const std::string& option);

@@ -206,6 +206,10 @@ void Layer::move(OGRSimpleCurve& line, const std::string& where) {
     double x = line.getX(i), y = line.getY(i);
     if (!std::isfinite(x) || !std::isfinite(y)) throw InputError(where + ": a coordinate is not a number");
     transformer_->apply(x, y, where);
+    if (!is_place(x, y))
+      throw InputError(where + ": its place (" + text_of(x) + ", " + text_of(y) +
+                       ") is none on the earth, must be within " + text_of(kFarthestPlace) +
+                       " m of the origin of the map: mend the coordinates of the feature");
     line.setPoint(i, x - grid.west, y - grid.south);
   }
 }

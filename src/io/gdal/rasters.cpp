@@ -17,6 +17,26 @@ namespace {
 
 constexpr double kLowest = -500.0, kHighest = 9000.0;  // heights on the earth, with room to spare [m]
 
+std::string numbers_text(const std::array<double, 6>& numbers) {
+  std::string text;
+  for (const double number : numbers) text += (text.empty() ? "" : ", ") + text_of(number);
+  return text;
+}
+
+/// Throws InputError if the geotransform holds no place on the earth.
+void check_place(const std::string& path, const std::array<double, 6>& g) {
+  const std::string found = path + ": its place (geotransform " + numbers_text(g) + ") ";
+  const std::string way_out = ": georeference it with " + edit_command(path, "-a_ullr WEST NORTH EAST SOUTH");
+  if (!std::ranges::all_of(g, [](double number) { return std::isfinite(number); }))
+    throw InputError(found + "has a number that is not finite, must be six numbers" + way_out);
+  if ((g[1] == 0.0 && g[2] == 0.0) || (g[4] == 0.0 && g[5] == 0.0))
+    throw InputError(found + "has cells of 0 m, must be " + text_of(bounds_of("dem.cell").min) + " to " +
+                     text_of(bounds_of("dem.cell").max) + " m" + way_out);
+  if (!is_place(g[0], g[3]))
+    throw InputError(found + "is none on the earth, must be within " + text_of(kFarthestPlace) + " m of the origin" +
+                     way_out);
+}
+
 GeoReference read_place(GDALDataset& dataset, const std::string& path) {
   std::array<double, 6> g{};
   if (dataset.GetGeoTransform(g.data()) != CE_None)
@@ -24,6 +44,7 @@ GeoReference read_place(GDALDataset& dataset, const std::string& path) {
                      ": does not say where it lies (no geotransform), must be a north-up raster: georeference it with "
                      "" +
                      edit_command(path, "-a_ullr WEST NORTH EAST SOUTH"));
+  check_place(path, g);
   if (std::abs(g[2]) > 1e-9 * std::abs(g[1]) || std::abs(g[4]) > 1e-9 * std::abs(g[5]) || g[1] == 0.0) {
     const double turn = degrees(std::atan2(g[4], g[1]));
     throw InputError(path + ": raster is rotated or sheared (by " + text_of(std::round(turn * 100.0) / 100.0) +
@@ -49,6 +70,34 @@ void check_cell(const std::string& path, double size) {
     throw InputError(path + ": cells of " + text_of(size) + " m, " + *fault + ": resample it with gdalwarp -tr");
 }
 
+/// Units of length that are no metres.
+struct OtherUnit {
+  std::string_view symbol, names;
+  double metres;
+};
+constexpr OtherUnit kOtherUnits[] = {{"mm", "millimetres", 0.001}, {"cm", "centimetres", 0.01},
+                                     {"dm", "decimetres", 0.1},    {"km", "kilometres", 1000.0},
+                                     {"in", "inches", 0.0254},     {"yd", "yards", 0.9144}};
+
+/// Throws InputError if the band holds no heights: numbers of colours, or all equal by a scale of 0.
+void check_values(GDALRasterBand& band, const std::string& path, std::vector<std::string>& warnings) {
+  if (band.GetColorInterpretation() == GCI_PaletteIndex || band.GetColorTable() != nullptr)
+    throw InputError(path +
+                     ": band 1 is a picture (its numbers stand for the colours of a palette), must be heights in "
+                     "metres: give the raster of heights from which the picture was made");
+  int given = 0;
+  const double scale = band.GetScale(&given), offset = band.GetOffset();
+  if (!std::isfinite(scale) || !std::isfinite(offset) || scale == 0.0)
+    throw InputError(
+        path + ": band 1 has the scale " + text_of(scale) + " and the offset " + text_of(offset) +
+        ", must be numbers and the scale not 0, which makes all heights equal: mend them, for example with "
+        "gdal_translate -a_scale 1 -a_offset 0 " +
+        path + " mended.tif");
+  if (scale != 1.0 || offset != 0.0)
+    warnings.push_back(path + ": heights are the numbers of band 1 times its scale " + text_of(scale) +
+                       " plus its offset " + text_of(offset) + ", as the file says");
+}
+
 void check_band(GDALRasterBand& band, const std::string& path, std::vector<std::string>& warnings) {
   if (GDALDataTypeIsComplex(band.GetRasterDataType()) != 0)
     throw InputError(path + ": band 1 has complex numbers, must be heights in metres");
@@ -59,12 +108,18 @@ void check_band(GDALRasterBand& band, const std::string& path, std::vector<std::
   std::string unit = band.GetUnitType();
   std::transform(unit.begin(), unit.end(), unit.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  check_values(band, path, warnings);
   if (unit.empty() || unit == "m" || unit == "metre" || unit == "meter" || unit == "metres" || unit == "meters") return;
-  if (unit.find("ft") != std::string::npos || unit.find("foot") != std::string::npos ||
-      unit.find("feet") != std::string::npos)
-    throw InputError(path + ": heights are in feet (unit '" + band.GetUnitType() +
-                     "' of band 1), must be metres: convert them with gdal_calc.py -A " + path +
-                     " --calc='A*0.3048' --outfile=metres.tif");
+  const bool feet = unit.find("ft") != std::string::npos || unit.find("foot") != std::string::npos ||
+                    unit.find("feet") != std::string::npos;
+  const auto known = std::ranges::find_if(kOtherUnits, [&](const OtherUnit& other) {
+    return unit == other.symbol || unit.starts_with(other.names.substr(0, 4));
+  });
+  if (feet || known != std::end(kOtherUnits))
+    throw InputError(path + ": heights are in " + (feet ? "feet" : std::string(known->names)) + " (unit '" +
+                     band.GetUnitType() + "' of band 1), must be metres: convert them with gdal_calc.py -A " + path +
+                     " --calc='A*" + text_of(feet ? 0.3048 : known->metres) +
+                     "' --outfile=metres.tif, or if they are metres, say so with gdal_edit.py -units m " + path);
   warnings.push_back(path + ": unknown unit '" + band.GetUnitType() + "' of the heights: taken as metres");
 }
 

@@ -186,14 +186,4 @@ std::string barrier_csv(const BarrierReport& r) {
   return text;
 }
 
-std::string barrier_file_name(const std::string& screen) {
-  std::string name = "barrier_" + screen;
-  for (char& c : name) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
-                       c == '_' || static_cast<unsigned char>(c) >= 0x80;
-    if (!plain) c = '_';
-  }
-  return name;
-}
-
 }  // namespace talus::io

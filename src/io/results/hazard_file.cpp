@@ -1,26 +1,29 @@
 #include "talus/io/results/hazard_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <nlohmann/json.hpp>
+#include <limits>
 #include <stdexcept>
 
 #include "hazard_stream.hpp"
+#include "io/files/json.hpp"
 #include "io/gdal/dataset.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace talus::io {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Bits of the byte of a cell.
 constexpr unsigned kTerrain = 1, kTouched = 2, kExit = 4;
 
 constexpr const char* kMark = "talus-hazard";
 constexpr int kFormat = 2;
+constexpr std::size_t kMostThresholds = 32;
+constexpr double kMostPerByte = 1040.0;  // bytes that one byte of a gzip file can hold
 
 Json json_of(const LoadedScenario& loaded, const HazardRules& rules, std::int64_t left_weight) {
   const Grid& grid = loaded.scenario.surface.grid();
@@ -46,14 +49,28 @@ Json json_of(const LoadedScenario& loaded, const HazardRules& rules, std::int64_
           {"passages_below", loaded.scenario.output.passages_below}};
 }
 
+/// Whether the numbers of a header are some that a run can write.
+bool is_possible(const HazardHeader& header) {
+  const auto within = [](const char* key, double value) { return !fault_of(bounds_of(key), value); };
+  const auto& thresholds = header.rules.bins.thresholds();
+  const WeightScale& scale = header.rules.scale;
+  return within("dem.cell", header.grid.cell_x) && within("dem.cell", header.grid.cell_y) &&
+         std::isfinite(header.geo.west) && std::isfinite(header.geo.north) && thresholds.size() <= kMostThresholds &&
+         std::ranges::is_sorted(thresholds) &&
+         std::ranges::all_of(thresholds, [&](double kj) { return within("output.energy_thresholds", kj); }) &&
+         scale.unit > 0.0 && scale.square_unit > 0.0 && scale.total >= 0.0 && std::isfinite(scale.total) &&
+         header.left_weight >= 0 && within("output.passages_below", header.passages_below);
+}
+
 HazardHeader header_of(const std::string& text) {
-  const Json json = Json::parse(text);
+  constexpr std::int64_t kMostCells = std::numeric_limits<int>::max();
+  const Json json = parsed_record(text);
   HazardHeader header{
       json.at("version"), json.at("plan"),          {}, {}, {EnergyBins(json.at("energy_thresholds")), {}},
       json.at("left"),    json.at("passages_below")};
   Grid& grid = header.grid;
-  grid.columns = json.at("columns");
-  grid.rows = json.at("rows");
+  grid.columns = static_cast<int>(whole_number(json.at("columns"), 1, kMostCells));
+  grid.rows = static_cast<int>(whole_number(json.at("rows"), 1, kMostCells));
   grid.cell_x = json.at("cell_x");
   grid.cell_y = json.at("cell_y");
   header.geo = {json.at("crs_wkt"), json.at("west"), json.at("north"), grid.cell_x, grid.cell_y};
@@ -65,7 +82,7 @@ HazardHeader header_of(const std::string& text) {
                         json.at("equal"),
                         0.0};
   header.rules.scale.largest_diameter = json.at("largest_diameter");
-  if (grid.columns < 1 || grid.rows < 1 || !(header.rules.scale.unit > 0.0)) throw std::out_of_range("a number");
+  if (!is_possible(header)) throw std::out_of_range("a number");
   return header;
 }
 
@@ -140,6 +157,9 @@ HazardHeader read_hazard(const std::filesystem::path& file, const std::function<
                          const std::function<void(const HazardRow&)>& visit) {
   HazardReader in(file);
   const HazardHeader header = get_header(in);
+  const double least =
+      static_cast<double>(header.grid.columns) * header.grid.rows;  // bytes: each cell has one byte at least
+  if (least > kMostPerByte * static_cast<double>(std::filesystem::file_size(file))) in.fail();
   begin(header);
   std::vector<std::uint8_t> states(static_cast<std::size_t>(header.grid.columns));
   for (int row = header.grid.rows - 1; row >= 0; --row) {

@@ -62,6 +62,7 @@ void HazardWriter::fail() {
 }
 
 HazardReader::HazardReader(const std::filesystem::path& file) : name_(file.string()) {
+  if (std::error_code error; !std::filesystem::is_regular_file(file, error)) fail();
   stream_ = VSIFOpenL(gzip_name(file).c_str(), "rb");
   if (stream_ == nullptr) fail();
 }

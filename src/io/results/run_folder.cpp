@@ -3,14 +3,13 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "io/files/json.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/block_sizes.hpp"
 
 namespace talus::io {
 namespace {
-
-using Json = nlohmann::json;
 
 double setting_of(const Json& json, const std::string& key) {
   for (const Json& setting : json.at("settings"))
@@ -37,10 +36,18 @@ std::vector<std::string> size_warnings_of(const Json& run) {
   return found;
 }
 
+/// The record; nothing if there is none that can be read.
+Json read_record_or_nothing(const std::filesystem::path& file) {
+  try {
+    return read_record(file);
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
 /// The value of model.deformation_coefficient (c) in a run.json; nothing if it is not there.
 std::optional<double> deformation_coefficient_of(const std::filesystem::path& folder) {
-  std::ifstream stream(folder / "run.json", std::ios::binary);
-  const Json json = Json::parse(stream, nullptr, false);
+  const Json json = read_record_or_nothing(folder / "run.json");
   if (!json.is_object() || !json.contains("deformation_coefficient")) return std::nullopt;
   return json.at("deformation_coefficient").get<double>();
 }
@@ -60,13 +67,13 @@ std::optional<std::string> coefficient_note(const std::filesystem::path& folder)
 
 RunSummary read_run(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "run.json";
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream.is_open())
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(file, none) || !std::ifstream(file, std::ios::binary).is_open())
     throw InputError(folder.string() +
                      ": has no run.json that can be read, must be a folder that talus run has written");
   RunSummary run;
   try {
-    const Json json = Json::parse(stream);
+    const Json json = read_record(file);
     run.released = json.at("released").get<double>();
     run.density = setting_of(json, "blocks.density");
     run.cell = json.at("grid").at("cell_x_m").get<double>();
@@ -80,8 +87,7 @@ RunSummary read_run(const std::filesystem::path& folder) {
 }
 
 std::vector<std::string> size_warnings_of(const std::filesystem::path& folder) {
-  std::ifstream stream(folder / "run.json", std::ios::binary);
-  const Json json = Json::parse(stream, nullptr, false);
+  const Json json = read_record_or_nothing(folder / "run.json");
   return json.is_object() ? size_warnings_of(json) : std::vector<std::string>{};
 }
 

@@ -119,9 +119,8 @@ bool too_many_limits(const Totals& totals) {
 
 std::optional<std::string> status_of_result(const std::filesystem::path& folder, const std::string& plan,
                                             const Rounds& asked) {
-  std::ifstream stream(folder / "run.json", std::ios::binary);
   try {
-    const Json json = Json::parse(stream);
+    const Json json = read_record(folder / "run.json");
     if (json.at("plan") != plan || json.contains("rounds") != asked.several()) return std::nullopt;
     std::string status = json.at("status");
     if (!asked.several()) return status;
@@ -131,7 +130,7 @@ std::optional<std::string> status_of_result(const std::filesystem::path& folder,
                                                   rounds.at("most_rounds") == asked.most
                                             : !rounds.contains("asked") && rounds.at("done") == asked.count;
     return as_asked ? std::optional(std::move(status)) : std::nullopt;
-  } catch (const Json::exception&) {
+  } catch (const std::exception&) {
     return std::nullopt;  // no such file, or not one of a run
   }
 }

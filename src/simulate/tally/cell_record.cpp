@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "talus/base/checked_sum.hpp"
 #include "talus/base/expect.hpp"
 
 namespace talus {
@@ -46,14 +47,14 @@ double EnergyTotal::mean() const {
 
 void EnergyTotal::add(std::span<const float> values) {
   const Sums sums = sums_of(values, 1.0 / kTotalUnit);
-  sum += sums.sum;
+  add_checked(sum, sums.sum);
   maximum = std::max(maximum, sums.largest);
   histogram.add(values);
 }
 
 void EnergyTotal::merge(const EnergyTotal& other) {
   maximum = std::max(maximum, other.maximum);
-  sum += other.sum;
+  add_checked(sum, other.sum);
   histogram.merge(other.histogram);
 }
 
@@ -77,13 +78,13 @@ double CellRecord::mean(Quantity quantity) const {
 }
 
 PerQuantity<float> CellRecord::add(const CellValues& values) {
-  passages += static_cast<std::uint32_t>(values.count);
+  add_checked(passages, static_cast<std::uint32_t>(values.count));  // no other count of the cell is larger
   PerQuantity<float> largest{};
   for_each_quantity([&](auto q) {
     constexpr double kUnits = 1.0 / kQuantityTable[q].fixed_point;
     const std::span<const float> list(values.lists[q].data(), values.count);
     const Sums sums = sums_of(list, kUnits);
-    sum[q] += sums.sum;
+    add_checked(sum[q], sums.sum);
     largest[q] = sums.largest;
     maximum[q] = std::max(maximum[q], sums.largest);
     histogram[q].add(list);
@@ -92,17 +93,17 @@ PerQuantity<float> CellRecord::add(const CellValues& values) {
 }
 
 void CellRecord::merge(const CellRecord& other) {
-  impacts += other.impacts;
-  length += other.length;
-  length_squares += other.length_squares;
-  passages += other.passages;
-  sources += other.sources;
-  deposits += other.deposits;
-  trapped += other.trapped;
-  exits += other.exits;
+  add_checked(impacts, other.impacts);
+  add_checked(length, other.length);
+  add_checked(length_squares, other.length_squares);
+  add_checked(passages, other.passages);
+  add_checked(sources, other.sources);
+  add_checked(deposits, other.deposits);
+  add_checked(trapped, other.trapped);
+  add_checked(exits, other.exits);
   for (std::size_t q = 0; q < kQuantities; ++q) {
     maximum[q] = std::max(maximum[q], other.maximum[q]);
-    sum[q] += other.sum[q];
+    add_checked(sum[q], other.sum[q]);
     histogram[q].merge(other.histogram[q]);
     TALUS_EXPECT(histogram[q].count() == passages, "each passage is in the histogram once");
   }

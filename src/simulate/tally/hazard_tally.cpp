@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/base/checked_sum.hpp"
 #include "talus/base/expect.hpp"
 
 namespace talus {
@@ -105,16 +106,16 @@ void HazardCell::merge(const HazardCell& other) {
   if (!other.bins_.empty()) cover(other.first_, other.first_ + static_cast<int>(other.bins_.size()) - 1);
   for (std::size_t i = 0; i < other.bins_.size(); ++i) {
     Bin& bin = bins_[i + static_cast<std::size_t>(other.first_ - first_)];
-    bin.weight += other.bins_[i].weight;
-    bin.square += other.bins_[i].square;
+    add_checked(bin.weight, other.bins_[i].weight);
+    add_checked(bin.square, other.bins_[i].square);
   }
   overlaps_.resize(std::max(overlaps_.size(), other.overlaps_.size()));
-  for (std::size_t i = 0; i < other.overlaps_.size(); ++i) overlaps_[i] += other.overlaps_[i];
+  for (std::size_t i = 0; i < other.overlaps_.size(); ++i) add_checked(overlaps_[i], other.overlaps_[i]);
   lengths_.resize(std::max(lengths_.size(), other.lengths_.size()));
   for (std::size_t i = 0; i < other.lengths_.size(); ++i) {
-    lengths_[i].length += other.lengths_[i].length;
-    lengths_[i].by_diameter += other.lengths_[i].by_diameter;
-    lengths_[i].squares += other.lengths_[i].squares;
+    add_checked(lengths_[i].length, other.lengths_[i].length);
+    add_checked(lengths_[i].by_diameter, other.lengths_[i].by_diameter);
+    add_checked(lengths_[i].squares, other.lengths_[i].squares);
   }
 }
 
@@ -135,11 +136,16 @@ void HazardCell::save(ByteWriter& out) const {
   out.put_all(std::span<const WeightedLengths>(lengths_));
 }
 
-HazardCell HazardCell::restored(ByteReader& in) {
+HazardCell HazardCell::restored(const HazardRules& rules, ByteReader& in) {
   const auto first = in.get<int>();
   const auto bins = in.get_all<Bin>();
   const auto overlaps = in.get_all<std::int64_t>();
-  return restored(first, bins, overlaps, in.get_all<WeightedLengths>());
+  const auto lengths = in.get_all<WeightedLengths>();
+  const auto most = static_cast<std::size_t>(rules.bins.count());
+  if (first < 0 || bins.size() > most || static_cast<std::size_t>(first) > most - bins.size() ||
+      overlaps.size() > rules.levels() || lengths.size() > rules.levels())
+    throw std::out_of_range("bins of the hazard");
+  return restored(first, bins, overlaps, lengths);
 }
 
 bool HazardCell::operator==(const HazardCell& other) const {

@@ -6,12 +6,14 @@
 #include <cstring>
 #include <limits>
 
+#include "talus/base/checked_sum.hpp"
 #include "talus/base/expect.hpp"
 
 namespace talus {
 namespace {
 
 constexpr int kShift = 19;  // a float keeps 23 bits after the leading one: 4 of them number the bins of a doubling
+constexpr int kKeys = 1 << (31 - kShift);  // keys of positive floats are below this
 
 int key_of(float value) {
   return static_cast<int>(std::bit_cast<std::uint32_t>(value > LogHistogram::kFloor ? value : LogHistogram::kFloor) >>
@@ -63,6 +65,13 @@ void LogHistogram::put(int bin, std::uint32_t count) {
   }
 }
 
+/// Throws InputError if the sum does not fit 32 bits.
+void LogHistogram::add_count(int bin, std::uint32_t more) {
+  std::uint32_t count = get(bin);
+  add_checked(count, more);
+  put(bin, count);
+}
+
 void LogHistogram::widen(std::uint8_t width) {
   LogHistogram wide(memory_);
   wide.counts_ = zeros(memory_, std::size_t{size_} * width);
@@ -89,11 +98,11 @@ void LogHistogram::cover(int low_key, int high_key) {
   wide.width_ = width_;
   const int collapsed = std::clamp(low - first_, 0, static_cast<int>(size_));  // bins that fall into the lowest one
   std::uint32_t sum = 0;
-  for (int bin = 0; bin < collapsed; ++bin) sum += get(bin);
+  for (int bin = 0; bin < collapsed; ++bin) add_checked(sum, get(bin));
   if (collapsed < size_)
     std::memcpy(wide.counts_ + (first_ + collapsed - low) * width_, counts_ + collapsed * width_,
                 static_cast<std::size_t>(size_ - collapsed) * width_);
-  if (sum > 0) wide.put(0, wide.get(0) + sum);
+  if (sum > 0) wide.add_count(0, sum);
   swap(wide);
 }
 
@@ -166,8 +175,7 @@ void LogHistogram::merge(const LogHistogram& other) {
   for (auto key = other.few_.begin(); key != few_end; ++key) add_key(*key);
   for (int bin = 0; bin < other.size_; ++bin) {
     const std::uint32_t count = other.get(bin);
-    const int to = std::max(0, other.first_ + bin - first_);
-    if (count > 0) put(to, get(to) + count);
+    if (count > 0) add_count(std::max(0, other.first_ + bin - first_), count);
   }
 }
 
@@ -185,14 +193,17 @@ LogHistogram LogHistogram::restored(ByteReader& in) {
   LogHistogram h;
   h.few_count_ = in.get<std::uint8_t>();
   if (h.few_count_ > kFew) throw std::out_of_range("values of a histogram");
-  for (int i = 0; i < h.few_count_; ++i) h.few_[static_cast<std::size_t>(i)] = in.get<std::uint16_t>();
+  for (int i = 0; i < h.few_count_; ++i) {
+    std::uint16_t& key = h.few_[static_cast<std::size_t>(i)] = in.get<std::uint16_t>();
+    if (key >= kKeys) throw std::out_of_range("values of a histogram");
+  }
   h.size_ = in.get<std::uint16_t>();
   if (h.size_ == 0) return h;
   h.first_ = in.get<std::uint16_t>();
   h.width_ = in.get<std::uint8_t>();
   const auto counts = in.get_all<unsigned char>();
-  if ((h.width_ != 1 && h.width_ != 2 && h.width_ != 4) || h.size_ > kSpan ||
-      counts.size() != static_cast<std::size_t>(h.size_) * h.width_)
+  if ((h.width_ != 1 && h.width_ != 2 && h.width_ != 4) || h.size_ > kSpan || h.first_ + h.size_ > kKeys ||
+      h.few_count_ > 0 || counts.size() != static_cast<std::size_t>(h.size_) * h.width_)
     throw std::out_of_range("bins of a histogram");
   h.counts_ = zeros(h.memory_, counts.size());
   std::memcpy(h.counts_, counts.data(), counts.size());

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "tally_region.hpp"
+#include "talus/base/checked_sum.hpp"
 #include "talus/base/expect.hpp"
 
 namespace talus {
@@ -409,16 +410,16 @@ void Tally::merge(std::size_t index, ByteReader& in) {
     const std::size_t record = region.record_of(cell, threshold_count_, energy_thresholds());
     region.records[record].merge(CellRecord::restored(in));
     for (std::size_t i = 0; i < threshold_count_; ++i)
-      region.exceedances[record * threshold_count_ + i] += in.get<std::uint32_t>();
+      add_checked(region.exceedances[record * threshold_count_ + i], in.get<std::uint32_t>());
     for (std::size_t i = 0; i < energy_thresholds(); ++i)
-      region.lengths[record * energy_thresholds() + i] += in.get<std::int64_t>();
+      add_checked(region.lengths[record * energy_thresholds() + i], in.get<std::int64_t>());
     if (keep_total_) {
       region.make_totals();
       region.totals[record].merge(EnergyTotal::restored(in));
     }
     if (!hazard_) continue;
     region.make_hazards();
-    region.hazards[record].merge(HazardCell::restored(in));
+    region.hazards[record].merge(HazardCell::restored(hazard_->rules, in));
   }
 }
 

@@ -8,7 +8,10 @@ crossing. Bins with fewer than 20 blocks show no percentile. Grey: the designs b
 """
 import argparse
 import csv
+import glob
 import json
+
+import sys
 
 import matplotlib
 
@@ -35,6 +38,16 @@ def along(lines, x, y):
     return result, start
 
 
+def report_of(folder, screen):
+    """The design at a screen: of the files barrier_*.json the one that names it (docs/barrier.md, "Names of the files")."""
+    for name in sorted(glob.glob(f"{glob.escape(folder)}/barrier_*.json")):
+        with open(name, encoding="utf-8") as file:
+            report = json.load(file)
+        if report["screen"] == screen:
+            return report
+    sys.exit(f"{folder}: has no barrier_*.json of screen '{screen}': run talus barrier {folder} --screen '{screen}' first")
+
+
 def first_crossings(path, screen):
     seen, rows = set(), []
     with open(path, encoding="utf-8", newline="") as file:
@@ -55,8 +68,7 @@ def main():
     o = parser.parse_args()
     with open(f"{o.out}/run.json", encoding="utf-8") as file:
         run = json.load(file)
-    with open(f"{o.out}/barrier_{o.screen}.json", encoding="utf-8") as file:
-        report = json.load(file)
+    report = report_of(o.out, o.screen)
     design = {row["name"]: row["value"] for row in report["design"]}
     lines = next(s["lines"] for s in run["screens"] if s["id"] == o.screen)
     x, y, energy, height = first_crossings(f"{o.out}/screens.csv", o.screen)

@@ -5,6 +5,9 @@
 
 namespace talus::io {
 
+/// Throws InputError if a name for results is a link to something that is not there.
+void refuse_dangling_link(const std::filesystem::path& path);
+
 /// A file or folder that appears under its name complete, or not at all: it is written under a hidden name beside it,
 /// `.NAME.talus-PROCESS`, and renamed when it is on the disk. Without `commit` (an exception, an interruption, a full
 /// disk) the hidden file or folder is removed.

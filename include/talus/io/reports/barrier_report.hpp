@@ -64,7 +64,4 @@ std::string stretches_csv(const BarrierReport& report);
 /// A sentence if some stretch needs more than the one design of the whole line.
 std::optional<std::string> stretch_note(const BarrierReport& report);
 
-/// "barrier_road": the name of the files without ending; a character that a file name cannot have becomes '_'.
-std::string barrier_file_name(const std::string& screen);
-
 }  // namespace talus::io

@@ -70,7 +70,8 @@ class HazardCell {
                              const std::vector<WeightedLengths>& lengths);
 
   void save(ByteWriter& out) const;
-  static HazardCell restored(ByteReader& in);
+  /// Reads what `save` wrote. Throws std::out_of_range if the bytes cannot be of a cell with these rules.
+  static HazardCell restored(const HazardRules& rules, ByteReader& in);
 
   bool operator==(const HazardCell& other) const;  ///< of the contents; reserved memory does not count
 

@@ -71,6 +71,7 @@ class LogHistogram {
   }
   std::uint32_t get(int bin) const;
   void put(int bin, std::uint32_t count);
+  void add_count(int bin, std::uint32_t more);
   void add_key(int key);
   void count_all(std::span<const float> values);
   void cover(int low_key, int high_key);

@@ -1,0 +1,19 @@
+#pragma once
+#include <limits>
+#include <string>
+
+#include "talus/base/error.hpp"
+
+namespace talus {
+
+/// Adds whole numbers to a count or a sum of the results. Throws InputError if the sum has more bits than it is kept
+/// in: a count that begins anew at 0 would be a wrong map.
+template <class Whole>
+void add_checked(Whole& sum, Whole more) {
+  if (__builtin_add_overflow(sum, more, &sum))
+    throw InputError("a count or sum of one cell becomes larger than " +
+                     std::to_string(std::numeric_limits<Whole>::max()) +
+                     ", the most that it can hold: give fewer trajectories or rounds, or merge fewer of them");
+}
+
+}  // namespace talus

@@ -1,0 +1,382 @@
+"""Odd inputs: names that make files, counts that do not fit, rasters that hold no heights, forged files of results."""
+import gzip
+import hashlib
+import json
+import os
+import resource
+import struct
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+from osgeo import gdal, ogr
+
+from support import TALUS, Case, RunCase, box, system, write_dem, write_features
+
+BARRIER_PICTURE = os.path.join(os.path.dirname(__file__), "../../tools/scripts/figures/barrier_picture.py")
+
+
+class NamesOfFiles(Case):
+    def screens(self, *ids):
+        line = "LINESTRING (2600000 {0},2600300 {0})"
+        write_features(self.path("screens.gpkg"), "screens",
+                       [(line.format(1200100 + i), [name]) for i, name in enumerate(ids)], [("id", ogr.OFTString)])
+        self.write("s.toml", 'dem = "dem.tif"\ntrajectories = 40\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 0.8\n'
+                             '[screens]\nfile = "screens.gpkg"\n')
+        self.run_well("run", self.path("s.toml"), "-o", self.path("out"), "-q")
+
+    def files_of(self, screen):
+        """The names of the files that `talus barrier` adds for a screen."""
+        before = set(os.listdir(self.path("out")))
+        self.run_well("barrier", self.path("out"), "--screen", screen, "-q")
+        return sorted(set(os.listdir(self.path("out"))) - before)
+
+    def test_each_screen_has_files_of_its_own(self):
+        ids = ["a/b", "a_b", "A_b", "..", "__", "road", "L123 km 4,2", "Straße"]
+        self.screens(*ids)
+        files = {name: self.files_of(name) for name in ids}
+        self.assertEqual({len(found) for found in files.values()}, {3}, files)  # none replaced those of another
+        self.assertEqual(len({f.lower() for found in files.values() for f in found}), 3 * len(ids))
+        for name, plain in (("road", "road"), ("L123 km 4,2", "L123_km_4_2"), ("Straße", "Straße")):  # names as ever
+            self.assertEqual(files[name], sorted(f"barrier_{plain}{end}" for end in (".csv", ".json", "_stretches.csv")))
+        digits = hashlib.sha256(b"a/b").hexdigest()[:8]
+        self.assertIn(f"barrier_a_b-{digits}.json", files["a/b"])
+        for name, found in files.items():
+            with open(self.path("out/" + next(f for f in found if f.endswith(".json"))), encoding="utf-8") as file:
+                self.assertEqual(json.load(file)["screen"], name)
+
+    def test_long_ids(self):
+        ids = ["x" * 300 + "1", "x" * 300 + "2", "ü" * 100]
+        self.screens(*ids)
+        for name in ids:
+            self.assertEqual(len(self.files_of(name)), 3)
+        self.assertTrue(all(len(os.fsencode(name)) < 160 for name in os.listdir(self.path("out"))))
+
+    def test_ids_that_cannot_be_told_apart(self):
+        digits = hashlib.sha256(b"a/b").hexdigest()[:8]
+        self.screens("a/b", "a_b", f"a_b-{digits}")
+        self.fails(2, "'a/b'", "one name", "another id", arguments=["barrier", self.path("out"), "--screen", "a/b"])
+
+    def test_no_id(self):
+        self.screens("", "road")
+        self.fails(2, "the run has no screen ''", arguments=["barrier", self.path("out"), "--screen", ""])
+
+    def test_the_picture_finds_the_files(self):
+        ids = ["a/b", "a_b", "L123 km 4,2"]
+        self.screens(*ids)
+        draw = [sys.executable, BARRIER_PICTURE, self.path("out"), "-o", self.path("p.png"), "--screen"]
+        done = subprocess.run([*draw, ids[0]], capture_output=True, text=True)
+        if "No module named 'matplotlib'" in done.stderr:
+            self.skipTest("no matplotlib")
+        self.assertIn("run talus barrier", done.stderr)
+        for name in ids:
+            self.files_of(name)
+            done = subprocess.run([*draw, name], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+
+
+class Elevations(Case):
+    """DEMs that are known to be wrong."""
+
+    def dem(self, place="2600000.0, 5.0, 0.0, 1200300.0, 0.0, -5.0", band=""):
+        crs = system(2056).ExportToWkt().replace('"', "&quot;")
+        self.write("d.vrt", f'<VRTDataset rasterXSize="60" rasterYSize="60"><SRS>{crs}</SRS><GeoTransform>{place}</GeoTransform>'
+                            f'<VRTRasterBand dataType="Float32" band="1">{band}<SimpleSource>'
+                            '<SourceFilename relativeToVRT="1">dem.tif</SourceFilename><SourceBand>1</SourceBand>'
+                            "</SimpleSource></VRTRasterBand></VRTDataset>")
+        return ["check", "--dem", self.path("d.vrt"), "--sources", self.path("sources.gpkg"), "--diameter", "0.8",
+                "--trajectories", "5"]
+
+    def test_no_place_on_the_earth(self):
+        for place, word in (("2600000.0, 0.0, 0.0, 1200300.0, 0.0, -5.0", "cells of 0 m"),
+                            ("2600000.0, 5.0, 0.0, 1200300.0, 0.0, 0.0", "cells of 0 m"),
+                            ("nan, 5.0, 0.0, 1200300.0, 0.0, -5.0", "not finite"),
+                            ("2600000.0, 5.0, 0.0, inf, 0.0, -5.0", "not finite"),
+                            ("2600000.0, nan, 0.0, 1200300.0, 0.0, -5.0", "not finite"),
+                            ("1e300, 5.0, 0.0, 1200300.0, 0.0, -5.0", "none on the earth")):
+            with self.subTest(place):
+                self.fails(2, "d.vrt", "geotransform", word, "-a_ullr", arguments=self.dem(place))
+
+    def test_bands_that_hold_no_heights(self):
+        for band, words in (("<Scale>0</Scale>", ("the scale 0", "-a_scale 1")),
+                            ("<Offset>nan</Offset>", ("the offset nan", "-a_scale 1")),
+                            ("<ColorInterp>Palette</ColorInterp><ColorTable><Entry c1='9' c2='0' c3='0'/></ColorTable>",
+                             ("palette",))):
+            with self.subTest(band):
+                self.fails(2, "d.vrt", "band 1", *words, arguments=self.dem(band=band))
+
+    def test_heights_in_other_units(self):
+        for unit, word, factor in (("cm", "centimetres", "A*0.01'"), ("km", "kilometres", "A*1000'"),
+                                   ("Millimeter", "millimetres", "A*0.001'"), ("ft", "feet", "A*0.3048'"),
+                                   ("inch", "inches", "A*0.0254'")):
+            with self.subTest(unit):
+                self.fails(2, f"heights are in {word}", f"'{unit}'", factor,
+                           arguments=self.dem(band=f"<UnitType>{unit}</UnitType>"))
+        for unit in ("", "m", "metre"):
+            self.run_well(*self.dem(band=f"<UnitType>{unit}</UnitType>"))
+
+    def test_a_scale_is_said_and_used(self):
+        """Heights in decimetres from 900 m: the same run as with heights in metres."""
+        self.run_well(*self.arguments("metres"), "-q")
+        z = gdal.Open(self.path("dem.tif")).ReadAsArray()
+        dem = gdal.GetDriverByName("GTiff").Create(self.path("scaled.tif"), 60, 60, 1, gdal.GDT_Float32)
+        dem.SetGeoTransform((2600000.0, 5.0, 0.0, 1200300.0, 0.0, -5.0))
+        dem.SetProjection(system(2056).ExportToWkt())
+        dem.GetRasterBand(1).WriteArray(((z.astype(np.float64) - 900.0) * 16.0).astype(np.float32))  # exact
+        dem.GetRasterBand(1).SetScale(0.0625)
+        dem.GetRasterBand(1).SetOffset(900.0)
+        dem = None
+        arguments = [self.path("scaled.tif") if a == self.path("dem.tif") else a for a in self.arguments("scaled")]
+        done = self.run_well(*arguments)
+        self.assertIn("times its scale 0.0625 plus its offset 900", done.stderr)
+        self.assertAlmostEqual(self.record("scaled")["trajectory_metres"], self.record("metres")["trajectory_metres"], delta=30)
+
+
+class Places(Case):
+    def check(self, sources):
+        return ["check", "--dem", self.path("dem.tif"), "--sources", self.path(sources), "--diameter", "0.8",
+                "--trajectories", "5"]
+
+    def test_a_source_that_is_no_place(self):
+        for text, where in (("x,y\n1e300,1200250\n", "row 1"), ("x,y\n2600150,1200235\n2600150,-1e12\n", "row 2")):
+            self.write("s.csv", text)
+            self.fails(2, "s.csv", where, "none on the earth", arguments=self.check("s.csv"))
+        write_features(self.path("s.gpkg"), "s", [("POINT (1e300 1200250)", [])])
+        self.fails(2, "s.gpkg", "feature 1", "none on the earth", arguments=self.check("s.gpkg"))
+
+    def test_a_geopackage_without_a_system(self):
+        """As docs/scenario.md says: taken to be in the system of the DEM, with a warning."""
+        file = ogr.GetDriverByName("GPKG").CreateDataSource(self.path("s.gpkg"))
+        layer = file.CreateLayer("s", None, ogr.wkbUnknown)
+        feature = ogr.Feature(layer.GetLayerDefn())
+        feature.SetGeometry(ogr.CreateGeometryFromWkt(box(140, 230, 20, 10)))
+        layer.CreateFeature(feature)
+        file = layer = None
+        done = self.run_well(*self.check("s.gpkg"))
+        self.assertIn("s.gpkg: says no coordinate system: taken as the one of the DEM, EPSG:2056", done.stdout)
+        self.assertRegex(done.stdout, "sources +1 feature, 8 source cells")
+
+
+class Options(Case):
+    def test_seeds(self):
+        for seed in ("-1", "18446744073709551615"):
+            self.fails(2, "--seed", seed, "must be a whole number, 0 to 9007199254740991",
+                       arguments=[*self.arguments(), "--seed", seed])
+
+    def test_a_link_to_nothing_as_output(self):
+        os.symlink("/nowhere/at/all", self.path("out"))
+        os.symlink("/nowhere/at/all", self.path("pits.gpkg"))
+        done = self.fails(2, "is a link to /nowhere/at/all, which is not there", arguments=self.arguments())
+        self.assertNotIn("warning", done.stderr)  # at the start, before anything is read
+        check = ["check", *self.arguments()[1:-2], "--pits", self.path("pits.gpkg")]
+        self.fails(2, "is a link to /nowhere/at/all", arguments=check)
+
+    def test_more_threads_than_memory_allows(self):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_AS, (2_000_000_000, 2_000_000_000))
+        self.fails(2, "--threads", "4096", "lets the program start", "ulimit -v", preexec_fn=limit,
+                   arguments=[*self.arguments(), "--threads", "4096"])
+        self.run_well(*self.arguments(), "--threads", "2", "-q", preexec_fn=limit)
+
+    def test_a_plan_without_end(self):
+        """8 source cells of 1e9 blocks: said by `check` and by `run`, before it is traced."""
+        big = self.arguments(trajectories="1000000000")
+        done = self.run_well("check", *big[1:-2])
+        self.assertIn("8 000 000 000 trajectories", done.stdout)
+        self.assertRegex(done.stdout, "about 9.3 days of one processor")
+        with subprocess.Popen([TALUS, *big, "--progress=machine"], stderr=subprocess.PIPE, text=True) as process:
+            said = []
+            for line in iter(process.stderr.readline, ""):
+                said.append(line)
+                if line.startswith("progress"):
+                    break
+            process.kill()
+        self.assertTrue(any("8 000 000 000 trajectories" in line for line in said), said)
+
+
+class Bound(Case):
+    def test_a_trajectory_has_at_most_a_million_vertices(self):
+        """A block that can neither stop nor leave nor be trapped, for a day and ten million impacts."""
+        self.write("p.csv", "x,y\n2600150,1200150\n")
+        self.write("s.toml", 'dem = "dem.tif"\ntrajectories = 1\n[sources]\nfile = "p.csv"\nrelease_height = 100\n[blocks]\n'
+                             "diameter = 0.1\ndensity = 500\n[effects.vegetation-drag]\ncoefficient = 5000\nheight = 60\n"
+                             "[model]\nstop_speed = 1e-9\ntime_limit = 86400\nimpact_limit = 10000000\ntrap_time = 3600\n")
+        done = self.call("run", self.path("s.toml"), "-o", self.path("out"), timeout=60)
+        self.assertEqual(done.returncode, 1, done.stderr)  # too many ended at a limit
+        self.assertIn("limit of impacts, time or vertices", done.stderr)
+        record = self.record()
+        self.assertEqual(record["ends"]["limit"], 1)
+        self.assertLess(record["cpu_seconds"]["simulate"], 10.0)
+        trace = self.run_well("trace", self.path("out/scenario.toml"), "--source", "0", "--block", "0")
+        self.assertGreater(trace.stdout.count("\n"), 1_000_000)
+        self.assertLess(trace.stdout.count("\n"), 1_002_000)
+
+
+    def test_a_trajectory_crosses_at_most_four_million_patches(self):
+        """A block of 1 cm that flies to and fro for a day in a hollow of cells of 5 cm, without loss."""
+        y, x = np.mgrid[0:1200, 0:1200] * 0.05
+        z = 100.0 + 3.0 * np.hypot(x - x.mean(), y - y.mean())
+        write_dem(self.path("dem.tif"), z.astype(np.float32), 0.05)
+        self.write("p.csv", "x,y\n2600021.33,1200267.18\n")
+        self.write("s.toml", 'dem = "dem.tif"\ntrajectories = 1\n[sources]\nfile = "p.csv"\nrelease_height = 1\n[blocks]\n'
+                             "diameter = 0.01\n[ground.zones.default]\ntheta_scale = 0\npsi_scale = 0\nEn50 = 1e6\nEt50 = 1e6\n"
+                             "phi = 0.01\n[model]\nstop_speed = 1e-9\ntime_limit = 86400\nimpact_limit = 10000000\n"
+                             "trap_time = 3600\ndeformation_coefficient = 1e-6\n[output]\ntrajectories = 0\n")
+        done = self.call("run", self.path("s.toml"), "-o", self.path("out"), timeout=60)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        record = self.record()
+        self.assertEqual(record["ends"]["limit"], 1)
+        self.assertLess(record["impacts"], 100_000)  # 985 000 without the bound
+        self.assertLess(record["peak_memory_mb"], 1500)
+
+
+class Forged(RunCase):
+    """Files of results that another program made to do harm. Each is refused at once."""
+
+    def setUp(self):
+        super().setUp()
+        for i in (1, 2):
+            self.run_scenario(f"part{i}", "--part", f"{i}/2")
+        self.merge = ["merge", self.path("m"), self.path("part1"), self.path("part2")]
+
+    def manifest(self, change):
+        """Rewrites part1/part.json, with the checksum that it must have."""
+        with open(self.path("part1/part.json"), encoding="utf-8") as file:
+            manifest = json.load(file)
+        change(manifest)
+        manifest.pop("sha256", None)
+        text = json.dumps(manifest, indent=2, ensure_ascii=False) + "\n"
+        manifest["sha256"] = hashlib.sha256(text.encode()).hexdigest()
+        self.write("part1/part.json", json.dumps(manifest, indent=2, ensure_ascii=False) + "\n")
+
+    def tally(self, change):
+        """Rewrites the tally of part1, with the checksum that it must have."""
+        name = next(n for n in os.listdir(self.path("part1")) if n.startswith("tally"))
+        with open(self.path(f"part1/{name}"), "r+b") as file:
+            changed = change(file.read())
+            file.seek(0)
+            file.truncate()
+            file.write(changed)
+        self.manifest(lambda m: m.update(tallies=[{"file": name, "sha256": hashlib.sha256(changed).hexdigest()}]))
+
+    def refused(self, *words):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_AS, (1_500_000_000, 1_500_000_000))
+        done = self.fails(2, *words, arguments=self.merge, preexec_fn=limit, timeout=20)
+        self.assertFalse(os.path.exists(self.path("m")))
+        return done
+
+    def test_the_forger_is_right(self):
+        """What the other tests rely on: a file that is written anew without a change is accepted."""
+        self.tally(lambda bytes_: bytes_)
+        self.run_well(*self.merge, "-q")
+
+    def test_names_out_of_the_folder(self):
+        self.write("secret.bin", "not to be read")
+        for name in ("../secret.bin", "/etc/passwd", "tally-../../secret.bin", "tally-\x00.bin", "", "x" * 300):
+            for list_, key in (("tallies", "file"), ("reaches", "file"), ("rows", "file")):
+                with self.subTest(name=name, list=list_):
+                    self.manifest(lambda m, n=name, k=list_: m[k].append({"round": 0, "generation": 1, "file": n, "sha256": "0"}))
+                    self.refused("part.json", "it names the file")
+                    self.manifest(lambda m, k=list_: m[k].pop())
+
+    def test_numbers_that_wrap(self):
+        for change in ({"part": 0}, {"of": 0}, {"part": 2**32 + 1}, {"part": -1}, {"part": 1.5}, {"rounds_done": 2**32 + 1},
+                       {"rounds_done": 10**6}, {"generation": 2**64 - 1}, {"units_done": 2**63}):
+            with self.subTest(change):
+                key = next(iter(change))
+                old = {}
+                self.manifest(lambda m, c=change, k=key, o=old: (o.update({k: m[k]}), m.update(c)))
+                self.refused("part.json", "must be")
+                self.manifest(lambda m, o=old: m.update(o))
+
+    def test_no_record_at_all(self):
+        self.write("part1/part.json", "[" * 1_000_000)
+        self.refused("part.json", "deep")
+        os.truncate(self.path("part1/part.json"), 300_000_000)
+        self.refused("part.json", "256 MB")
+        os.remove(self.path("part1/part.json"))
+        os.mkfifo(self.path("part1/part.json"))
+        self.refused("part.json", "no regular file")
+
+    def test_lengths_of_a_tally(self):
+        for text in (struct.pack("<QQ", 0, 2**62), struct.pack("<QQ", 2**40, 8) + b"x" * 8, struct.pack("<QQ", 0, 3) + b"\xff" * 3):
+            with self.subTest(text):
+                self.tally(lambda _, t=text: t)
+                self.refused("tally", "is damaged")
+
+    def test_counts_that_would_wrap(self):
+        """A cell with nearly 2^32 passages in one part: with those of the other they have more than 32 bits."""
+        count_at = 16 + 2 + 24  # after region, length; cell; impacts, length, squares
+        other = next(n for n in os.listdir(self.path("part2")) if n.startswith("tally"))
+        with open(self.path(f"part2/{other}"), "rb") as file:
+            second = file.read()
+        def both(first):  # the first cell of the other part, counted in this one
+            length = struct.unpack_from("<Q", second, 8)[0]
+            changed = bytearray(second[:16 + length])
+            struct.pack_into("<I", changed, count_at, 2**32 - 1)
+            return bytes(changed)
+        self.tally(both)
+        self.refused("larger than 4294967295")
+
+    def test_rows_that_are_longer_than_their_file(self):
+        name = next(n for n in os.listdir(self.path("part1")) if n.startswith("rows"))
+        bytes_ = b"U" + struct.pack("<Q", 0) + b"S" + struct.pack("<Q", 2**61)
+        with open(self.path(f"part1/{name}"), "wb") as file:
+            file.write(bytes_)
+        self.manifest(lambda m: m["rows"][0].update(file=name, sha256=hashlib.sha256(bytes_).hexdigest()))
+        self.refused("rows", "is damaged")
+
+
+class ForgedHazard(RunCase):
+    def setUp(self):
+        super().setUp()
+        self.run_scenario("out")
+        with gzip.open(self.path("out/hazard_tally.gz")) as file:
+            self.bytes = file.read()
+
+    def header(self, **change):
+        start = len(b"talus-hazard") + 4
+        length = struct.unpack_from("<I", self.bytes, start)[0]
+        header = json.loads(self.bytes[start + 4:start + 4 + length])
+        header.update(change)
+        text = json.dumps(header).encode()
+        return self.bytes[:start] + struct.pack("<I", len(text)) + text + self.bytes[start + 4 + length:-64]
+
+    def refused(self, bytes_, *words):
+        with gzip.open(self.path("out/hazard_tally.gz"), "wb") as file:
+            file.write(bytes_ + hashlib.sha256(bytes_).hexdigest().encode())
+        def limit():
+            resource.setrlimit(resource.RLIMIT_AS, (1_500_000_000, 1_500_000_000))
+        self.fails(2, "hazard_tally.gz", *(words or ["is damaged"]), preexec_fn=limit, timeout=20,
+                   arguments=["hazard", self.path("out"), "-q", "--threads", "1"])
+        self.assertFalse(os.path.exists(self.path("out/hazard.json")))
+
+    def test_the_forger_is_right(self):
+        with gzip.open(self.path("out/hazard_tally.gz"), "wb") as file:
+            bytes_ = self.header()
+            file.write(bytes_ + hashlib.sha256(bytes_).hexdigest().encode())
+        self.run_well("hazard", self.path("out"), "-q")
+
+    def test_headers(self):
+        for change in ({"columns": 2**31 - 1}, {"columns": 2**31}, {"columns": 2**32 + 60}, {"rows": 2**31 - 1}, {"columns": -1},
+                       {"columns": 0}, {"columns": 60.5}, {"columns": "60"}, {"cell_x": 0}, {"cell_x": 1e300}, {"unit": 0},
+                       {"unit": None}, {"energy_thresholds": list(range(1, 100000))}, {"energy_thresholds": [300, 30]},
+                       {"energy_thresholds": [-1]}, {"left": -5}):
+            with self.subTest(str(change)[:60]):
+                self.refused(self.header(**change))
+
+    def test_a_bomb(self):
+        """A gigabyte of zeros in a megabyte, of a map that would be as large."""
+        self.refused(self.header(columns=40_000, rows=40_000) + b"\0" * 50_000_000)
+        self.refused(b"\0" * 50_000_000, "is no file that talus run wrote")
+
+    def test_deep_json(self):
+        start = len(b"talus-hazard") + 4
+        text = b"[" * 500_000
+        self.refused(self.bytes[:start] + struct.pack("<I", len(text)) + text)
+
+
+if __name__ == "__main__":
+    unittest.main()
