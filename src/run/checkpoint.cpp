@@ -1,7 +1,6 @@
 #include "talus/run/checkpoint.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "checkpoint_rows.hpp"
 #include "checkpoint_tally.hpp"
 #include "io/files/checksum.hpp"
+#include "io/gdal/regular_file.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/files/output_folder.hpp"
@@ -248,13 +248,14 @@ void Checkpoint::write_manifest() const {
 
 void Checkpoint::read_manifest() {
   const fs::path file = folder_ / kCheckpointManifest;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream.is_open())
+  std::error_code none;
+  if (!fs::exists(file, none))
     throw InputError(folder_.string() + ": has no " + kCheckpointManifest +
                      ", must be what talus run --part has written");
+  const std::string text = io::read_file(file.string(), file.string(), "the record of a part", io::kMostRecord);
   std::string plan;
   try {
-    Json json = Json::parse(stream);
+    Json json = Json::parse(text);
     const std::string sha256 = json.at("sha256");
     json.erase("sha256");
     if (sha256 != io::sha256_of_bytes(text_of(json))) throw InputError("its checksum is another");

@@ -1,10 +1,10 @@
 #include "talus/io/files/staged_files.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "io/gdal/regular_file.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/files/output_folder.hpp"
 
@@ -17,8 +17,8 @@ namespace {
 /// The files that a record names, and the record.
 std::vector<std::string> files_of(const fs::path& record) {
   std::vector<std::string> names;
-  std::ifstream file(record);
-  const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
+  const std::string text = read_file(record.string(), record.string(), "a record of talus", kMostRecord);
+  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   if (json.is_object() && json.contains("files") && json["files"].is_array())
     for (const auto& name : json["files"])
       if (name.is_string() && fs::path(name.get<std::string>()).filename() == name.get<std::string>())

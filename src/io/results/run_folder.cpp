@@ -1,8 +1,8 @@
 #include "talus/io/results/run_folder.hpp"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "io/gdal/regular_file.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/block_sizes.hpp"
@@ -37,10 +37,16 @@ std::vector<std::string> size_warnings_of(const Json& run) {
   return found;
 }
 
+/// The run.json of a folder; discarded if it cannot be read.
+Json record_in(const std::filesystem::path& folder) {
+  const std::string file = (folder / "run.json").string();
+  if (!std::filesystem::exists(file)) return Json(Json::value_t::discarded);
+  return Json::parse(read_file(file, file, "a record of talus run", kMostRecord), nullptr, false);
+}
+
 /// The value of model.deformation_coefficient (c) in a run.json; nothing if it is not there.
 std::optional<double> deformation_coefficient_of(const std::filesystem::path& folder) {
-  std::ifstream stream(folder / "run.json", std::ios::binary);
-  const Json json = Json::parse(stream, nullptr, false);
+  const Json json = record_in(folder);
   if (!json.is_object() || !json.contains("deformation_coefficient")) return std::nullopt;
   return json.at("deformation_coefficient").get<double>();
 }
@@ -60,13 +66,13 @@ std::optional<std::string> coefficient_note(const std::filesystem::path& folder)
 
 RunSummary read_run(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "run.json";
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream.is_open())
+  std::error_code none;
+  if (!std::filesystem::exists(file, none))
     throw InputError(folder.string() +
                      ": has no run.json that can be read, must be a folder that talus run has written");
   RunSummary run;
   try {
-    const Json json = Json::parse(stream);
+    const Json json = Json::parse(read_file(file.string(), file.string(), "a record of talus run", kMostRecord));
     run.released = json.at("released").get<double>();
     run.density = setting_of(json, "blocks.density");
     run.cell = json.at("grid").at("cell_x_m").get<double>();
@@ -80,8 +86,7 @@ RunSummary read_run(const std::filesystem::path& folder) {
 }
 
 std::vector<std::string> size_warnings_of(const std::filesystem::path& folder) {
-  std::ifstream stream(folder / "run.json", std::ios::binary);
-  const Json json = Json::parse(stream, nullptr, false);
+  const Json json = record_in(folder);
   return json.is_object() ? size_warnings_of(json) : std::vector<std::string>{};
 }
 

@@ -5,7 +5,9 @@
 #include <fstream>
 
 #include "io/files/json.hpp"
+#include "io/gdal/regular_file.hpp"
 #include "talus/base/version.hpp"
+#include "talus/io/gdal/input_access.hpp"
 #include "talus/simulate/tally/histogram.hpp"
 
 namespace talus::io {
@@ -119,9 +121,10 @@ bool too_many_limits(const Totals& totals) {
 
 std::optional<std::string> status_of_result(const std::filesystem::path& folder, const std::string& plan,
                                             const Rounds& asked) {
-  std::ifstream stream(folder / "run.json", std::ios::binary);
+  const std::string file = (folder / "run.json").string();
+  if (!std::filesystem::exists(file)) return std::nullopt;
   try {
-    const Json json = Json::parse(stream);
+    const Json json = Json::parse(read_file(file, file, "a record of talus run", kMostRecord));
     if (json.at("plan") != plan || json.contains("rounds") != asked.several()) return std::nullopt;
     std::string status = json.at("status");
     if (!asked.several()) return status;
@@ -132,7 +135,7 @@ std::optional<std::string> status_of_result(const std::filesystem::path& folder,
                                             : !rounds.contains("asked") && rounds.at("done") == asked.count;
     return as_asked ? std::optional(std::move(status)) : std::nullopt;
   } catch (const Json::exception&) {
-    return std::nullopt;  // no such file, or not one of a run
+    return std::nullopt;  // not the record of a run
   }
 }
 
@@ -169,6 +172,7 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   if (!scenario.barriers.empty()) json["barriers"] = barriers_of(scenario, totals);
   json["settings"] = settings_of(loaded);
   json["inputs"] = json_of(loaded.inputs);
+  if (network_is_allowed()) json["network"] = "allowed";
   json["reprojections"] = reprojections_of(loaded);
   json["warnings"] = record.warnings;
   json["files"] = record.files;
