@@ -109,7 +109,7 @@ class SpecialFiles(Scenario):
 
     def test_in_a_folder_of_results(self):
         os.mkdir(self.path("run"))
-        for name in ("run.json", "screens.csv", "part.json", "hazard_tally.gz"):
+        for name in ("run.json", "screens.csv", "part.json", "scenario.toml", "hazard_tally.gz"):
             os.symlink("../pipe", self.path("run/" + name))
         self.refused("is a pipe", arguments=["barrier", self.path("run"), "--screen", "a"])
         self.refused("is a pipe", arguments=["hazard", self.path("run")])
@@ -525,11 +525,13 @@ class Names(Scenario):
         folder = self.path("campaign")
         shutil.copytree(ELM, folder)
         quoted = '"' + HOSTILE.replace('"', '""') + '"'
-        for name, columns in (("blocks.csv", ("id", "day")), ("stops.csv", ("id",)), ("passages.csv", ("id", "screen")),
+        for name, columns in (("blocks.csv", ("id",)), ("stops.csv", ("id",)), ("passages.csv", ("id", "screen")),
                               ("screens.csv", ("id",))):
             with open(f"{folder}/{name}", encoding="utf-8") as file:
                 header, *rows = file.read().splitlines()
             places = [header.split(",").index(column) for column in columns]
+            few = int(rows[0].split(",")[0][1:]) + 23 if name != "screens.csv" else 0
+            rows = [row for row in rows if not few or int(row.split(",")[0][1:]) <= few]
             lines = [header]
             for row in rows:
                 cells = re.split(r',(?=(?:[^"]*"[^"]*")*[^"]*$)', row)
@@ -547,7 +549,7 @@ class Names(Scenario):
             file.write(toml)
         return f"{folder}/campaign.toml"
 
-    def assert_page(self, path):
+    def assert_page(self, path, whole=True):
         with open(path, encoding="utf-8") as file:
             page = file.read()
         tags = Tags(page)
@@ -555,16 +557,17 @@ class Names(Scenario):
         self.assertLessEqual(tags.elements, {"html", "head", "meta", "title", "style", "body", "h1", "h2", "h3", "p", "b", "br",
                                              "table", "tr", "td", "th", "svg", "rect", "line", "circle", "text"})
         self.assertFalse({name for name in tags.attributes if name.startswith("on") or name in ("href", "src")})
-        self.assertIn("<script>alert(1)</script>", tags.text)  # the name as it was given
+        if whole:
+            self.assertIn("<script>alert(1)</script>", tags.text)  # the name as it was given
         self.assertNotIn("&amp;lt;", page)  # escaped once
         self.assert_tame(page)
         return tags.text
 
     def test_the_pages_of_campaigns(self):
         campaign = self.campaign()
-        common = ("--trials", "20", "--fit", "En50")
-        done = self.run_well("diagnose", campaign, "-o", self.path("d"), *common, "--test-trials", "40", "--base-fits", "1",
-                             "--effects", "wet-ground", timeout=600)
+        common = ("--trials", "20", "--test-trials", "40", "--fit", "En50", "--threads", "2")
+        done = self.run_well("diagnose", campaign, "-o", self.path("d"), *common, "--base-fits", "1", "--no-nested",
+                             timeout=600)
         self.assert_tame(done.stdout + done.stderr)
         text = self.assert_page(self.path("d/report.html"))
         for word in ("elm<script>", "S1<script>"):
@@ -574,8 +577,9 @@ class Names(Scenario):
         other = self.path("campaign2")
         shutil.copytree(self.path("campaign"), other)
         done = self.run_well("diagnose", campaign, other + "/campaign.toml", "-o", self.path("dd"), *common,
-                             "--test-trials", "40", timeout=600)
+                             timeout=600)
         self.assert_tame(done.stdout + done.stderr)
+        self.assert_page(self.path("dd/report.html"), whole=False)  # sites are called by names of folders
         with open(self.path("d/fitted.toml"), encoding="utf-8") as file:
             self.assertIn("talus<script>", file.read())
         done = self.run_well("score", campaign, "--parameters", self.path("d/fitted.toml"))
@@ -584,7 +588,7 @@ class Names(Scenario):
     def test_the_drawing_of_a_profile(self):
         self.write("p.csv", "x,z\n0,100\n50,60\n100,20\n150,20\n")
         self.write("p.toml", 'profile = "p.csv"\n[sources]\nx = 5\n[blocks]\ndiameter = 1\n[screens]\nx = [60]\n'
-                   f"[ground.zones.{json.dumps(HOSTILE)}]\npreset = \"hard-rock-3d\"\nx = [20, 40]\n")
+                   f"[ground.zones.{json.dumps(HOSTILE)}]\npreset = \"forest-road-2d\"\nx = [20, 40]\n")
         done = self.run_well("profile", self.path("p.toml"), "-o", self.path("out"), "--trajectories", "5")
         self.assert_tame(done.stdout + done.stderr)
         xml.dom.minidom.parse(self.path("out/profile.svg"))

@@ -76,8 +76,7 @@ class CampaignReader {
     const auto text = table.text(key);
     if (!text) return;
     file = {absolute_path(*text, base_), table.where(key, *table.value()->find(key))};
-    std::error_code none;
-    if (!std::filesystem::exists(file.path, none)) faults_.push_back(file.where + ": no such file (" + file.path + ")");
+    check_files({&file}, faults_);
   }
 
   /// Refuses what belongs to released blocks in a campaign of mapped ones.

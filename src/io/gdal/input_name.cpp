@@ -88,7 +88,7 @@ InputName of_virtual(std::string name) {
     archive = true;
     name.erase(0, name.find('/', 1) + 1);
     if (name.starts_with('{')) name.erase(0, 1), name.erase(std::min(name.size(), name.find('}')), 1);
-    if (name.starts_with("vsi")) name.insert(0, "/");
+    if (name.starts_with("vsi")) name.insert(name.begin(), '/');
   }
   if (begins_with_one(name, kNetworks)) return of_network(name);
   if (archive && !name.starts_with("/vsi")) return of_archive(name);
@@ -112,7 +112,7 @@ InputName of_part(const std::string& name, const fs::path& base) {
       std::string file = name.substr(colons[from] + 1, colons[to] - colons[from] - 1);
       std::erase(file, '"');
       if (file.empty()) continue;
-      const InputName found = file.starts_with("/vsi") || file.find("://") != std::string::npos
+      const InputName found = file.starts_with("/vsi") || begins_with_one(file, kWeb)
                                   ? looked_up(file)
                                   : of_local((base / file).lexically_normal().string());
       if (!found.fault.empty() || found.network) return found;
@@ -133,7 +133,7 @@ InputName looked_up(const std::string& name, const fs::path& base) {
   if (name.starts_with("file:")) return refused("is an address, must be the path of a file: leave out file://");
   if (name.find(':') != std::string::npos)
     return refused(
-        "is no file that is there, and databases and services are not read: export it first, with gdal_translate or "
+        "must be a file that is there (databases and services are not read): export it first, with gdal_translate or "
         "ogr2ogr, and name that file");
   return {};
 }

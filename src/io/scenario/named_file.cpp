@@ -6,6 +6,7 @@
 namespace talus::io {
 
 std::string absolute_path(const std::string& given, const std::filesystem::path& base) {
+  if (given.starts_with("/vsi")) return given;
   const std::filesystem::path path = (base / given).lexically_normal();
   std::error_code none;
   if (!std::filesystem::exists(path, none) && given.find(':') != std::string::npos) return given;
