@@ -1,6 +1,7 @@
 """Inputs that would harm: docs/security.md. No file makes the program wait, connect, run code or fill the memory, and no
 name in one reaches a page as markup or the terminal as a command."""
 import contextlib
+import csv
 import html.parser
 import http.server
 import json
@@ -520,34 +521,27 @@ class Names(Scenario):
     def hostile(self, what):
         return f"{what}{HOSTILE}"
 
-    def campaign(self):
-        """The campaign elm with hostile names of everything, and fewer blocks."""
-        folder = self.path("campaign")
-        shutil.copytree(ELM, folder)
-        quoted = '"' + HOSTILE.replace('"', '""') + '"'
-        for name, columns in (("blocks.csv", ("id",)), ("stops.csv", ("id",)), ("passages.csv", ("id", "screen")),
-                              ("screens.csv", ("id",))):
-            with open(f"{folder}/{name}", encoding="utf-8") as file:
-                header, *rows = file.read().splitlines()
-            places = [header.split(",").index(column) for column in columns]
-            few = int(rows[0].split(",")[0][1:]) + 23 if name != "screens.csv" else 0
-            rows = [row for row in rows if not few or int(row.split(",")[0][1:]) <= few]
-            lines = [header]
-            for row in rows:
-                cells = re.split(r',(?=(?:[^"]*"[^"]*")*[^"]*$)', row)
-                for place in places:
-                    cells[place] = f'"{cells[place]}' + quoted[1:]
-                lines.append(",".join(cells))
-            with open(f"{folder}/{name}", "w", encoding="utf-8") as file:
-                file.write("\n".join(lines) + "\n")
-        text = json.dumps(HOSTILE)[1:-1]
-        with open(f"{folder}/campaign.toml", encoding="utf-8") as file:
-            toml = file.read().replace('"elm"', f'"elm{text}"')
-        for zone in ("talus", "meadow", "rock"):
-            toml = toml.replace(f'"{zone}"', f'"{zone}{text}"')
-        with open(f"{folder}/campaign.toml", "w", encoding="utf-8") as file:
-            file.write(toml)
-        return f"{folder}/campaign.toml"
+    def campaign(self, name="campaign"):
+        """Blocks that roll a few metres, with hostile names of everything."""
+        os.mkdir(self.path(name))
+        blocks, stops, passages = [], [], []
+        for i in range(12):
+            x, y, block = WEST + 60 + 10 * i, NORTH - 190, self.hostile(f"b{i:02}")
+            blocks.append([block, x, y, 1, 400 + 60 * i, self.hostile(f"G{i % 2}"), int(i % 4 == 3)])
+            stops.append([block, x + i % 3 - 1, y - 20 - i % 5])
+            passages.append([block, self.hostile("S1"), 3 + 0.1 * i, 0.3 + 0.02 * i])
+        line = f"LINESTRING ({WEST} {NORTH - 195}, {WEST + 300} {NORTH - 195})"
+        for table, head, rows in (("blocks", "id,x,y,release_height_m,mass_kg,group,holdout", blocks), ("stops", "id,x,y", stops),
+                                  ("passages", "id,screen,speed_ms,jump_height_m", passages),
+                                  ("screens", "id,wkt", [[self.hostile("S1"), line]])):
+            with open(self.path(f"{name}/{table}.csv"), "w", encoding="utf-8", newline="") as file:
+                csv.writer(file, lineterminator="\n").writerows([head.split(","), *rows])
+        gdal.Translate(self.path(name + "/zones.tif"), self.path("dem.tif"), outputType=gdal.GDT_Byte,
+                       scaleParams=[[0, 1e4, 1, 1]])
+        tables = "".join(f'{table} = "{table}.csv"\n' for table in ("blocks", "stops", "passages", "screens"))
+        return self.write(name + "/campaign.toml", f"name = {json.dumps(self.hostile('slope'))}\n{tables}"
+                          f'dem = "../dem.tif"\nzones = "zones.tif"\n[zone_names]\n1 = {json.dumps(self.hostile("talus"))}\n'
+                          "[measurement_error]\nposition_m = 0.3\nspeed_fraction = 0.03\njump_height_m = 0.1\n")
 
     def assert_page(self, path, whole=True):
         with open(path, encoding="utf-8") as file:
@@ -565,21 +559,26 @@ class Names(Scenario):
 
     def test_the_pages_of_campaigns(self):
         campaign = self.campaign()
-        common = ("--trials", "20", "--test-trials", "40", "--fit", "En50", "--threads", "2")
+        common = ("--trials", "20", "--test-trials", "20", "--most-effects", "1", "--fit", "En50", "--threads", "2")
         done = self.run_well("diagnose", campaign, "-o", self.path("d"), *common, "--base-fits", "1", "--no-nested",
                              timeout=600)
         self.assert_tame(done.stdout + done.stderr)
         text = self.assert_page(self.path("d/report.html"))
-        for word in ("elm<script>", "S1<script>"):
+        for word in ("slope<script>", "S1<script>"):
             self.assertIn(word, text)
         with open(self.path("d/diagnosis.json"), encoding="utf-8") as file:
             json.load(file)
-        other = self.path("campaign2")
-        shutil.copytree(self.path("campaign"), other)
-        done = self.run_well("diagnose", campaign, other + "/campaign.toml", "-o", self.path("dd"), *common,
-                             timeout=600)
+        other = self.campaign("other")
+        done = self.run_well("diagnose", campaign, other, "-o", self.path("dd"), *common, timeout=600)
         self.assert_tame(done.stdout + done.stderr)
         self.assert_page(self.path("dd/report.html"), whole=False)  # sites are called by names of folders
+        done = self.run_well("calibrate", campaign, "-o", self.path("c"), "--trials", "20", "--fit", "En50", "--starts", "1")
+        self.assert_tame(done.stdout + done.stderr)
+        with open(self.path("c/report.md"), encoding="utf-8") as file:
+            report = file.read()
+        self.assertIn("# Calibration on slope&lt;script>", report)
+        self.assertNotRegex(report, "<[a-z/!?]")
+        self.assert_tame(report)
         with open(self.path("d/fitted.toml"), encoding="utf-8") as file:
             self.assertIn("talus<script>", file.read())
         done = self.run_well("score", campaign, "--parameters", self.path("d/fitted.toml"))

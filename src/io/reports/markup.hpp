@@ -32,6 +32,9 @@ class Markup {
 
 Markup operator""_html(const char* literal, std::size_t size);
 
+/// A text in Markdown without markup of HTML: a < that would begin a tag is escaped.
+std::string markdown_without_html(std::string_view text);
+
 template <class Piece>
 Markup operator+(Markup page, const Piece& piece) {
   page += piece;
