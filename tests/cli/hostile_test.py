@@ -212,6 +212,7 @@ class Network(Scenario):
 
     def silent(self, *words, code=2, arguments=None, **options):
         options.setdefault("timeout", 60)
+        self.listener.count = 0
         done = self.call(*(arguments or self.run_arguments()), **options)
         self.assertEqual(self.listener.count, 0, done.stderr)
         self.assertEqual(done.returncode, code, done.stderr)

@@ -96,6 +96,7 @@ void close_other_file_systems() {
   for (char** start = starts; start != nullptr && *start != nullptr; ++start)
     if (!holds(kLocalFiles, *start)) close_file_system(*start);
   CSLDestroy(starts);
+  for (const char* start : {"/vsicurl?", "/vsistdin?"}) close_file_system(start);  // not in the list: no / at the end
 }
 
 /// Answers all that GDAL would fetch: systems of coordinates given by an address, schemas, tiles.
