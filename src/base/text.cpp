@@ -13,6 +13,8 @@ namespace talus {
 
 namespace {
 
+constexpr std::size_t kLongestWord = 200;  // that is compared with names [byte]
+
 std::string lower(std::string_view word) {
   std::string result(word);
   std::transform(result.begin(), result.end(), result.begin(),
@@ -97,10 +99,12 @@ std::string joined(std::span<const std::string> words) {
 }
 
 std::string nearest_name(std::string_view word, std::span<const std::string> names) {
-  const std::string wanted = lower(word);
+  const std::string wanted = lower(word.substr(0, kLongestWord));
   std::string best;
   std::size_t least = std::max<std::size_t>(2, wanted.size() / 3) + 1;
   for (const std::string& name : names) {
+    const std::size_t longer = std::max(wanted.size(), name.size()) - std::min(wanted.size(), name.size());
+    if (longer >= least) continue;  // so many letters are inserted or left out at least
     const std::size_t d = distance(wanted, lower(name));
     if (d < least && d < name.size()) {
       least = d;

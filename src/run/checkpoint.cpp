@@ -263,7 +263,8 @@ void Checkpoint::write_manifest() const {
 
 void Checkpoint::read_manifest() {
   const fs::path file = folder_ / kCheckpointManifest;
-  if (!fs::exists(file))
+  std::error_code none;
+  if (!fs::exists(file, none))
     throw InputError(folder_.string() + ": has no " + kCheckpointManifest +
                      ", must be what talus run --part has written");
   std::string plan;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/gdal/cause_of_failure.hpp"
+#include "io/gdal/regular_file.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/files/output_folder.hpp"
 
@@ -35,7 +36,7 @@ void CheckpointFileWriter::fail() const {
 }
 
 CheckpointFileReader::CheckpointFileReader(const std::filesystem::path& file, const std::string& sha256)
-    : path_(file), file_(std::fopen(file.c_str(), "rb")) {
+    : path_(file), file_(io::fault_of_file(file.string()) ? nullptr : std::fopen(file.c_str(), "rb")) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) fail();
   left_ = std::filesystem::file_size(file, error);

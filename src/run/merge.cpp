@@ -87,6 +87,7 @@ Outcome merge(const MergeRequest& request, Observer& observer) {
   const MemoryPolicy memory(scratch.get());
   LoadedScenario loaded = scenario_of(request.parts.front(), memory);
   const std::vector<Checkpoint> checkpoints = opened(request.parts, loaded);
+  observer.inputs_read();
   io::OutputFolder folder(request.out, request.overwrite);
   protect_inputs(folder, request, loaded);
   const Scenario& scenario = loaded.scenario;

@@ -60,6 +60,7 @@ RunSession::~RunSession() = default;
 
 Outcome RunSession::run() {
   load(check_request());
+  observer_.inputs_read();
   if (processes_.largest(observer_.interrupted() ? 1 : 0) > 0) stop_interrupted();
   if (const std::optional<Outcome> done = outcome_of_done()) return *done;
   make_folder();

@@ -254,7 +254,7 @@ int design(const Options& o) {
   talus::io::replace_text(fs::path(o.folder) / (name + ".csv"), talus::io::barrier_csv(report));
   talus::io::replace_text(fs::path(o.folder) / (name + "_stretches.csv"), talus::io::stretches_csv(report));
   talus::io::replace_text(fs::path(o.folder) / (name + ".json"), talus::io::barrier_json(report));
-  if (!o.quiet) std::fputs(talus::io::barrier_text(report).c_str(), stdout);
+  if (!o.quiet) print_text(talus::io::barrier_text(report));
   return 0;
 }
 

@@ -51,22 +51,21 @@ void score_both(const talus::Campaign& campaign, talus::io::Calibration& c) {
 void print_summary(const talus::io::Calibration& c, const std::string& folder) {
   for (std::size_t i = 0; i < c.free.size(); ++i) {
     const talus::Interval& interval = c.uncertainty.intervals[i];
-    std::printf("%-44s %8.3g  95 %%: %.3g to %.3g%s\n", c.free[i].key.c_str(), c.free[i].get(c.fit.model), interval.low,
-                interval.high, c.uncertainty.identifiable[i] ? "" : "  not identifiable");
+    print("%-44s %8.3g  95 %%: %.3g to %.3g%s\n", c.free[i].key.c_str(), c.free[i].get(c.fit.model), interval.low,
+          interval.high, c.uncertainty.identifiable[i] ? "" : "  not identifiable");
   }
   for (const std::string& zone : c.untouched)
-    std::printf("zone %s: too few simulated paths touch it; not fitted\n", zone.c_str());
+    print("zone %s: too few simulated paths touch it; not fitted\n", zone.c_str());
   for (const talus::io::BeforeAfter& e : c.errors) {
     if (std::isnan(e.after.score.total)) continue;  // no group has five rows: the report says so
-    std::printf("error, %s rows (%zu blocks): %.3f before, %.3f after (lower by %.1f %%, 95 %%: %.1f to %.1f %%)\n",
-                talus::io::rows_in_words(e.after.rows).c_str(), e.after.blocks, e.before.score.total,
-                e.after.score.total, 100.0 * e.reduction.share, 100.0 * e.reduction.interval.low,
-                100.0 * e.reduction.interval.high);
-    std::fputs(talus::io::judgement_lines(e.after).c_str(), stdout);
+    print("error, %s rows (%zu blocks): %.3f before, %.3f after (lower by %.1f %%, 95 %%: %.1f to %.1f %%)\n",
+          talus::io::rows_in_words(e.after.rows).c_str(), e.after.blocks, e.before.score.total, e.after.score.total,
+          100.0 * e.reduction.share, 100.0 * e.reduction.interval.low, 100.0 * e.reduction.interval.high);
+    print_text(talus::io::judgement_lines(e.after));
   }
   if (c.fit.score.cut_short > 0.0)
-    std::printf("%s\n", talus::io::cut_short_line(c.fit.score.cut_short, c.options.rules.most_vertices).c_str());
-  std::printf("written: %s\n", folder.c_str());
+    print("%s\n", talus::io::cut_short_line(c.fit.score.cut_short, c.options.rules.most_vertices).c_str());
+  print("written: %s\n", folder.c_str());
 }
 
 int calibrate(const Options& options) {
@@ -76,7 +75,6 @@ int calibrate(const Options& options) {
     throw talus::InputError(
         "--share " + talus::joined(options.share) +
         ": there is one campaign, must be several: talus calibrate a/campaign.toml b/campaign.toml");
-  catch_signals();
   require_seed(options.how.seed);
   talus::io::Calibration c;
   OpenedCampaign opened(options, c);

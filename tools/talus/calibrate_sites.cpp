@@ -119,7 +119,6 @@ class SitesFit {
 
 int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how, const std::string& start,
                     const std::vector<std::string>& fit, const std::vector<std::string>& share) {
-  catch_signals();
   require_seed(how.seed);
   talus::check_shared(share, fit);
   talus::io::SitesCalibration c;
@@ -144,6 +143,6 @@ int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how
   opened.folder.commit();
   progress.finish();
   if (!command.quiet)
-    std::printf("%swritten: %s\n", talus::io::sites_calibration_summary(c).c_str(), opened.folder.final_path().c_str());
+    print("%swritten: %s\n", talus::io::sites_calibration_summary(c).c_str(), opened.folder.final_path().c_str());
   return 0;
 }

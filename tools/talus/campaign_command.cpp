@@ -46,9 +46,15 @@ void CampaignCommand::add_to(CLI::App& command, std::uint32_t& trials, std::vect
       ->check(CLI::IsMember({"machine"}));
 }
 
+std::vector<talus::io::LoadedCampaign> read_campaigns(const CampaignCommand& command) {
+  std::vector<talus::io::LoadedCampaign> loaded;
+  for (const std::string& path : command.campaigns) loaded.push_back(talus::io::read_campaign(path, command.surface));
+  catch_signals();
+  return loaded;
+}
+
 OpenedCampaign::OpenedCampaign(const CampaignCommand& command, talus::io::FitRecord& record)
-    : loaded(talus::io::read_campaign(command.campaigns.front(), command.surface)),
-      folder(command.out, command.overwrite) {
+    : loaded(std::move(read_campaigns(command).front())), folder(command.out, command.overwrite) {
   for (const talus::io::InputFile& input : loaded.inputs) folder.protect(input.path);
   if (!command.quiet)
     for (const std::string& warning : loaded.warnings) say("warning", warning);

@@ -21,6 +21,9 @@ struct CampaignCommand {
 /// scored.
 inline constexpr int kFewestSearchTrials = 20;
 
+/// Reads the campaigns of a command. Until then a signal ends the program at once; from then on see `catch_signals`.
+std::vector<talus::io::LoadedCampaign> read_campaigns(const CampaignCommand& command);
+
 /// Throws InputError if no quantity was measured often enough to be fitted.
 void require_measurements(const std::string& path, const talus::Campaign& campaign);
 

@@ -95,7 +95,7 @@ Sample trace_sample(const Scenario& scenario) {
 }
 
 void line(const char* what, const std::string& text) {
-  std::printf("%-14s%s\n", what, text.c_str());
+  print("%-14s%s\n", what, text.c_str());
 }
 
 std::string range_text(const talus::Range& range, const char* unit) {
@@ -237,7 +237,7 @@ void write_pits(const Options& options, const LoadedScenario& loaded) {
   for (const talus::io::InputFile& input : loaded.inputs) out.protect(input.path);
   talus::io::write_pits(out.temporary(), loaded.scenario.surface.heights(), loaded.geo);
   out.commit();
-  if (!options.quiet) std::printf("written: %s\n", options.pits.c_str());
+  if (!options.quiet) print("written: %s\n", options.pits.c_str());
 }
 
 int check(const Options& options) {

@@ -34,7 +34,8 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags);
 using talus::run::Interrupted;  // exit code 130
 using talus::run::stop_interrupted;
 
-/// Signals that end a program from now on only set the flag that `interrupted` reads, so that no half result is left.
+/// Until this is called, a signal ends the program at once, also while it reads: nothing has been written. From now on
+/// signals only set the flag that `interrupted` reads, so that no half result is left.
 void catch_signals();
 bool interrupted();
 
@@ -54,5 +55,12 @@ CLI::Validator startable_threads();
 /// Throws InputError if the seed is out of bounds. (A negative number arrives as a huge one.)
 void require_seed(std::uint64_t seed);
 
-/// "talus: KIND: TEXT" on stderr, in one line.
+/// The only ways to write on the terminal: each shows control characters of names instead of sending them
+/// (`printable`). tests/layers.cmake holds the programs to them.
+
+/// "talus: KIND: TEXT" on stderr, in one line, which is cut if it is very long.
 void say(const std::string& kind, const std::string& text);
+
+/// On stdout: a text as it is, or as printf formats it.
+void print_text(const std::string& text);
+[[gnu::format(printf, 1, 2)]] void print(const char* format, ...);

@@ -25,21 +25,21 @@ struct Options : CampaignCommand {
 
 void print_error(const char* what, const talus::io::HoldoutError& e) {
   if (std::isnan(e.before))
-    std::printf("%s: there are none\n", what);
+    print("%s: there are none\n", what);
   else
-    std::printf("%s: %.3f before, %.3f after (lower by %.1f %%, 95 %%: %.1f to %.1f %%)\n", what, e.before, e.after,
-                100.0 * e.reduction.share, 100.0 * e.reduction.interval.low, 100.0 * e.reduction.interval.high);
+    print("%s: %.3f before, %.3f after (lower by %.1f %%, 95 %%: %.1f to %.1f %%)\n", what, e.before, e.after,
+          100.0 * e.reduction.share, 100.0 * e.reduction.interval.low, 100.0 * e.reduction.interval.high);
 }
 
 /// The families that these data can test, or that cannot name anything.
 void print_families(const talus::DiagnosisRound& round) {
   for (const talus::FamilyTest& family : round.families) {
     if (!std::isnan(family.p_corrected))
-      std::printf("  %s: p %.4f, corrected %.4f\n", family.name.c_str(), family.p_value, family.p_corrected);
+      print("  %s: p %.4f, corrected %.4f\n", family.name.c_str(), family.p_value, family.p_corrected);
     else if (!family.may_name && !std::isnan(family.p_value))
-      std::printf("  %s: p %.4f; %s\n", family.name.c_str(), family.p_value, family.note.c_str());
+      print("  %s: p %.4f; %s\n", family.name.c_str(), family.p_value, family.note.c_str());
     else if (!family.may_name)
-      std::printf("  %s: %s\n", family.name.c_str(), family.note.c_str());
+      print("  %s: %s\n", family.name.c_str(), family.note.c_str());
   }
 }
 
@@ -47,30 +47,30 @@ void print_summary(const talus::io::DiagnosisRecord& record, const std::string& 
   const talus::Diagnosis& d = record.diagnosis;
   for (std::size_t i = 0; i < d.rounds.size(); ++i) {
     const talus::DiagnosisRound& round = d.rounds[i];
-    std::printf("round %zu: %s", i + 1, round.effect.c_str());
-    if (!round.where.empty()) std::printf(", %s", round.where.c_str());
+    print("round %zu: %s", i + 1, round.effect.c_str());
+    if (!round.where.empty()) print(", %s", round.where.c_str());
     for (const std::string& other : round.alike)
-      std::printf("%s %s", &other == &round.alike.front() ? "; not to be told apart from" : ",", other.c_str());
-    std::printf(" (p of noise %.4f)\n", round.p_value);
+      print("%s %s", &other == &round.alike.front() ? "; not to be told apart from" : ",", other.c_str());
+    print(" (p of noise %.4f)\n", round.p_value);
     print_families(round);
   }
-  std::printf("error, fitting rows: %.3f before, %.3f after\n", d.base.score.total, d.with_effects.score.total);
+  print("error, fitting rows: %.3f before, %.3f after\n", d.base.score.total, d.with_effects.score.total);
   const std::string unseen = "error, " + talus::io::rows_in_words(record.errors[record.unseen].after.rows) + " rows";
   if (std::isnan(record.whole.before)) {
-    std::printf("%s: nothing can be said, no group has five rows\n", unseen.c_str());
+    print("%s: nothing can be said, no group has five rows\n", unseen.c_str());
   } else {
     const std::vector<std::string> small = talus::io::small_groups(record);
     if (!small.empty()) print_error((unseen + ", groups of ten rows and more").c_str(), record.headline);
     print_error(unseen.c_str(), record.whole);
-    if (!small.empty()) std::printf("  few rows: %s\n", talus::joined(small).c_str());
+    if (!small.empty()) print("  few rows: %s\n", talus::joined(small).c_str());
   }
-  std::fputs(talus::io::repeated_lines(record).c_str(), stdout);
-  for (const talus::io::BeforeAfter& e : record.errors) std::fputs(talus::io::judgement_lines(e.after).c_str(), stdout);
-  std::fputs(talus::io::limits_lines(d.rounds.back().limits).c_str(), stdout);
+  print_text(talus::io::repeated_lines(record));
+  for (const talus::io::BeforeAfter& e : record.errors) print_text(talus::io::judgement_lines(e.after));
+  print_text(talus::io::limits_lines(d.rounds.back().limits));
   const double cut = d.with_effects.score.cut_short;
-  if (cut > 0.0) std::printf("%s\n", talus::io::cut_short_line(cut, record.options.rules.search.most_vertices).c_str());
-  std::printf("%s\n", talus::io::time_line(record).c_str());
-  std::printf("written: %s\n", folder.c_str());
+  if (cut > 0.0) print("%s\n", talus::io::cut_short_line(cut, record.options.rules.search.most_vertices).c_str());
+  print("%s\n", talus::io::time_line(record).c_str());
+  print("written: %s\n", folder.c_str());
 }
 
 void write_results(const talus::io::OutputFolder& folder, const talus::io::LoadedCampaign& loaded,
@@ -107,7 +107,6 @@ void choose_rows(const Options& options, talus::Campaign& campaign, talus::Diagn
 
 int diagnose(const Options& options) {
   if (options.campaigns.size() > 1) return diagnose_several(options, options.how);
-  catch_signals();
   require_seed(options.how.seed);
   const auto start = std::chrono::steady_clock::now();
   talus::io::DiagnosisRecord record;

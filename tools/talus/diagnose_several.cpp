@@ -35,7 +35,6 @@ void write_results(const OpenedSites& opened, const talus::io::SitesRecord& reco
 }  // namespace
 
 int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOptions& how) {
-  catch_signals();
   require_seed(how.seed);
   const auto start = std::chrono::steady_clock::now();
   talus::io::SitesRecord record;
@@ -64,6 +63,6 @@ int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOption
   opened.folder.commit();
   progress.finish();
   if (!command.quiet)
-    std::printf("%swritten: %s\n", talus::io::sites_summary(record).c_str(), opened.folder.final_path().c_str());
+    print("%swritten: %s\n", talus::io::sites_summary(record).c_str(), opened.folder.final_path().c_str());
   return 0;
 }

@@ -10,7 +10,6 @@ namespace {
 using talus::run::MergeRequest;
 
 int run_merge(MergeRequest request, bool quiet) {
-  catch_signals();
   request.command = command_line();
   TerminalObserver observer(Progress::mode_of(quiet, false), quiet);
   return exit_code(talus::run::merge(request, observer));

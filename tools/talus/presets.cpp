@@ -10,44 +10,43 @@ namespace {
 
 /// The diameters that each set was fitted to.
 void print_sizes() {
-  std::printf("\n%-18s  diameters fitted [m]\n", "preset");
+  print("\n%-18s  diameters fitted [m]\n", "preset");
   for (const talus::Preset& preset : talus::presets()) {
     const talus::FittedSizes& sizes = preset.sizes;
     const std::string range = sizes.known() ? talus::text_of(sizes.smallest) + " to " + talus::text_of(sizes.largest)
                                             : std::string("not known");
-    std::printf("%-18s  %-10s  %s\n", std::string(preset.name).c_str(), range.c_str(),
-                std::string(sizes.source).c_str());
+    print("%-18s  %-10s  %s\n", std::string(preset.name).c_str(), range.c_str(), std::string(sizes.source).c_str());
   }
 }
 
 /// The sets of effects, as a scenario names them, with their numbers.
 void print_effect_presets() {
-  std::printf("\n");
+  print("\n");
   for (const talus::EffectPreset& preset : talus::effect_presets()) {
-    std::printf("[effects.%s] preset = \"%s\":", std::string(preset.effect).c_str(), std::string(preset.name).c_str());
+    print("[effects.%s] preset = \"%s\":", std::string(preset.effect).c_str(), std::string(preset.name).c_str());
     for (const talus::EffectField& field : talus::find_effect(preset.effect)->fields())
-      std::printf(" %s %s%s", std::string(talus::find_effect(preset.effect)->key_of(field)).c_str(),
-                  talus::text_of(field.get(preset.numbers)).c_str(), field.unit == "m" ? " m" : "");
-    std::printf("; %s\n", std::string(preset.source).c_str());
+      print(" %s %s%s", std::string(talus::find_effect(preset.effect)->key_of(field)).c_str(),
+            talus::text_of(field.get(preset.numbers)).c_str(), field.unit == "m" ? " m" : "");
+    print("; %s\n", std::string(preset.source).c_str());
   }
 }
 
 /// One column per parameter of a ground, as `fields` names it; then the source of the set.
 int print_presets() {
-  std::printf("%-18s", "preset");
+  print("%-18s", "preset");
   for (const auto& field : talus::ground_fields())
-    std::printf("%*s", static_cast<int>(field.key.size()) + 2, field.key.data());
-  std::printf("  source\n");
+    print("%*s", static_cast<int>(field.key.size()) + 2, field.key.data());
+  print("  source\n");
   for (const talus::Preset& preset : talus::presets()) {
-    std::printf("%-18s", std::string(preset.name).c_str());
+    print("%-18s", std::string(preset.name).c_str());
     for (const auto& field : talus::ground_fields()) {
-      std::printf("%*.6g", static_cast<int>(field.key.size()) + 2, field.get(preset.ground));
+      print("%*.6g", static_cast<int>(field.key.size()) + 2, field.get(preset.ground));
     }
-    std::printf("  %s: %s\n", std::string(preset.source).c_str(), std::string(preset.where).c_str());
+    print("  %s: %s\n", std::string(preset.source).c_str(), std::string(preset.where).c_str());
   }
   print_sizes();
   print_effect_presets();
-  std::printf(
+  print(
       "\nTables of Mitchell and Hungr's paper on PIERRE 2; rockyfor3d-N is a first guess for soil type N of "
       "Rockyfor3D,\nwhich no data support and which damps more than the paper's sets: docs/migration.md.\n"
       "Units: En50, Et50 m3/s2, phi degrees; the others have none.\n"

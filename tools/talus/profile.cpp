@@ -123,8 +123,8 @@ talus::io::ProfileResults simulate_and_write(const Options& options, const Loade
 
 int run_profile(const Options& options) {
   Stopwatch watch;
-  catch_signals();
   const LoadedProfile profile = talus::io::load_profile(options.flags);
+  catch_signals();
   if (interrupted()) stop_interrupted();
   talus::io::OutputFolder folder(options.out, options.overwrite);
   for (const talus::io::InputFile& input : profile.loaded.inputs)

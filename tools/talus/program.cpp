@@ -1,11 +1,13 @@
 #include "program.hpp"
 
 #include <fcntl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <csignal>
+#include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
@@ -13,15 +15,47 @@
 
 #include "talus/base/error.hpp"
 #include "talus/base/memory.hpp"
+#include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
+#include "talus/io/gdal/input_access.hpp"
 #include "talus/run/startable_threads.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace {
 
-std::atomic<bool> asked_to_end{false};
+std::atomic<bool> asked_to_end{false}, ends_at_once{true};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may set it");
+
+constexpr std::size_t kLongestLine = 4000;  // of a message [byte]
+
+/// Handles a signal that ends the program.
+void end(int) {
+  asked_to_end = true;
+  if (!ends_at_once) return;
+  constexpr std::string_view kMessage = "talus: interrupted; nothing was written\n";
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, kMessage.data(), kMessage.size());
+  _exit(kInterrupted);
+}
+
+void handle_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) {
+    const auto before = std::signal(signal, end);
+    if (before == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup
+  }
+}
+
+/// Adds what every command that reads inputs knows.
+void add_access(CLI::App& command) {
+  command.add_flag_callback("--allow-network", talus::io::allow_network,
+                            "inputs may be named by addresses (https://...); without it only local files are read");
+  command.add_option_function<std::vector<std::string>>(
+      "--allow-folder",
+      [](const std::vector<std::string>& folders) {
+        for (const std::string& folder : folders) talus::io::allow_folder(folder);
+      },
+      "a VRT may name files below this folder, not only below its own and the scenario's");
+}
 
 std::vector<std::string> words;
 
@@ -94,6 +128,7 @@ void begin_program(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // if the reader of the output ends, a write fails and is handled
   std::signal(SIGXFSZ, SIG_IGN);  // the same for a file above the allowed size
   words.assign(argv, argv + argc);
+  handle_signals();
 }
 
 Action understood(int argc, char** argv, const std::vector<AddCommand>& commands) {
@@ -102,6 +137,8 @@ Action understood(int argc, char** argv, const std::vector<AddCommand>& commands
   describe(app);
   Action action;
   for (const AddCommand& add : commands) add(app, action);
+  for (CLI::App* command : app.get_subcommands(nullptr))
+    if (command->get_name() != "presets") add_access(*command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -179,10 +216,7 @@ void require_seed(std::uint64_t seed) {
 }
 
 void catch_signals() {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) {
-    const auto before = std::signal(signal, [](int) { asked_to_end = true; });
-    if (before == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup
-  }
+  ends_at_once = false;
 }
 
 const std::vector<std::string>& command_line() {
@@ -194,8 +228,24 @@ bool interrupted() {
 }
 
 void say(const std::string& kind, const std::string& text) {
-  std::string line = "talus: " + (kind.empty() ? "" : kind + ": ") + text;
+  std::string line =
+      talus::printable("talus: " + (kind.empty() ? "" : kind + ": ") + talus::shortened(text, kLongestLine));
   std::ranges::replace_if(
       line, [](char c) { return c == '\n' || c == '\r'; }, ' ');
   std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+void print_text(const std::string& text) {
+  std::fputs(talus::printable(text).c_str(), stdout);
+}
+
+void print(const char* format, ...) {
+  std::va_list values, again;
+  va_start(values, format);
+  va_copy(again, values);
+  std::string text(static_cast<std::size_t>(std::max(0, std::vsnprintf(nullptr, 0, format, values))), '\0');
+  std::vsnprintf(text.data(), text.size() + 1, format, again);
+  va_end(again);
+  va_end(values);
+  print_text(text);
 }

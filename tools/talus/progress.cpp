@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "commands.hpp"
+#include "talus/base/printable.hpp"
+
 Progress::Mode Progress::mode_of(bool quiet, bool machine) {
   if (machine) return Mode::Machine;
   if (quiet) return Mode::Silent;
@@ -54,10 +57,10 @@ void Progress::finish() {
 
 void Progress::show(const std::string& text) {
   if (mode_ == Mode::Terminal) {
-    std::fprintf(stderr, "\r\033[K%s", text.c_str());
+    std::fprintf(stderr, "\r\033[K%s", talus::printable(text).c_str());
     on_line_ = true;
   } else {
-    std::fprintf(stderr, "talus: %s\n", text.c_str());
+    say("", text);
   }
   std::fflush(stderr);
 }

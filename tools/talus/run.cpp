@@ -19,7 +19,7 @@ TerminalObserver observer_of(const Options& options, const talus::ProcessGroup& 
 }
 
 int run(const Options& options, talus::ProcessGroup& processes) {
-  catch_signals();
+  if (processes.size() > 1) catch_signals();  // they end together
   talus::run::RunRequest request = options.request;
   request.command = command_line();
   TerminalObserver observer = observer_of(options, processes);

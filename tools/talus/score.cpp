@@ -22,7 +22,6 @@ struct Options {
 };
 
 int score_model(const Options& options) {
-  catch_signals();
   require_seed(options.seed);
   if (options.parameters.empty())
     throw talus::InputError(
@@ -30,6 +29,7 @@ int score_model(const Options& options) {
   talus::io::LoadedCampaign loaded = talus::io::read_campaign(options.campaign, options.surface);
   const talus::Campaign& campaign = loaded.campaign;
   const talus::Model model = talus::io::read_model(options.parameters, campaign, &loaded.warnings);
+  catch_signals();
   if (!options.quiet)
     for (const std::string& warning : loaded.warnings) say("warning", warning);
   std::optional<talus::io::OutputFolder> dump;
@@ -70,7 +70,7 @@ int score_model(const Options& options) {
     talus::io::write_runs(dump->temporary(), loaded, runs);
     dump->commit();
   }
-  std::fputs(text.c_str(), stdout);
+  print_text(text);
   return 0;
 }
 

@@ -53,11 +53,8 @@ void reorder(std::vector<T>& list, const std::vector<std::size_t>& order) {
 }  // namespace
 
 OpenedSites::OpenedSites(const CampaignCommand& command, talus::io::FitRecord& record)
-    : paths(command.campaigns), folder(command.out, command.overwrite) {
-  for (const std::string& path : paths) {
-    loaded.push_back(talus::io::read_campaign(path, command.surface));
-    require_measurements(path, loaded.back().campaign);
-  }
+    : paths(command.campaigns), loaded(read_campaigns(command)), folder(command.out, command.overwrite) {
+  for (std::size_t i = 0; i < paths.size(); ++i) require_measurements(paths[i], loaded[i].campaign);
   std::vector<std::string> names = site_names(paths, loaded, record.warnings);
   std::vector<std::size_t> order(paths.size());
   std::iota(order.begin(), order.end(), 0U);

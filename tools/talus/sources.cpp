@@ -36,11 +36,11 @@ int find_sources(const Options& options) {
   if (options.slope)
     if (const auto rule = talus::fault_of(kSlope, *options.slope))
       throw talus::InputError("flag --slope = " + talus::with_digits(*options.slope, 6) + ": " + *rule);
-  catch_signals();
   const auto keep_going = [] { return !interrupted(); };
   talus::io::OutputFile out(options.out, ".gpkg", options.overwrite);
   out.protect(options.dem);
   const talus::io::Terrain terrain = talus::io::read_terrain(options.dem);
+  catch_signals();
   if (!options.quiet)
     for (const std::string& warning : terrain.warnings) say("warning", warning);
   const talus::Grid& grid = terrain.heights.grid;

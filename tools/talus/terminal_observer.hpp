@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "commands.hpp"
 #include "progress.hpp"
 #include "talus/run/run_session.hpp"
 
@@ -11,6 +12,7 @@ class TerminalObserver : public talus::run::Observer {
   TerminalObserver(Progress::Mode mode, bool quiet) : mode_(mode), quiet_(quiet) {}
 
   bool interrupted() const override;
+  void inputs_read() override { catch_signals(); }
   void begin(std::uint64_t trajectories) override { progress_.emplace(mode_, trajectories); }
   void begin_part(const std::string& part) override { progress_->begin(part); }
   bool progress(double share) override { return progress_->update(share); }

@@ -29,7 +29,7 @@ void check_range(const char* option, std::uint64_t value, std::uint64_t count, c
 /// Every vertex in full precision: the shortest decimals that read back as the same numbers.
 void print_csv(const talus::io::LoadedScenario& loaded, const talus::Path& path) {
   const double south = loaded.geo.north - loaded.scenario.surface.grid().rows * loaded.geo.cell_y;
-  std::puts("time,x,y,z,vx,vy,vz,wx,wy,wz,event");
+  print_text("time,x,y,z,vx,vy,vz,wx,wy,wz,event\n");
   for (const talus::Vertex& vertex : path.vertices) {
     const talus::Motion& m = vertex.motion;
     const std::array<double, 10> values{m.time,
@@ -45,7 +45,7 @@ void print_csv(const talus::io::LoadedScenario& loaded, const talus::Path& path)
     std::string line;
     for (const double value : values) line += talus::text_of(value) + ",";
     line += vertex.event == talus::Event::End ? talus::io::name_of(path.end) : talus::io::name_of(vertex.event);
-    std::puts(line.c_str());
+    print_text(line + "\n");
   }
 }
 

@@ -21,6 +21,8 @@ class Observer {
 
   virtual bool interrupted() const { return false; }
 
+  /// The inputs are read; from now on files are written.
+  virtual void inputs_read() {}
   /// The work begins.
   /// @param trajectories  number in the whole run; 0: not known
   virtual void begin(std::uint64_t /*trajectories*/) {}

@@ -12,6 +12,7 @@
 #include "io/scenario/table_reader.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/gdal/input_access.hpp"
 #include "talus/io/gdal/lines.hpp"
 #include "talus/io/gdal/zones.hpp"
 
@@ -32,8 +33,9 @@ struct CampaignSpec {
 
 class CampaignReader {
  public:
-  explicit CampaignReader(const std::string& path)
-      : path_(path), base_(std::filesystem::absolute(path).parent_path()) {}
+  explicit CampaignReader(const std::string& path) : path_(path), base_(std::filesystem::absolute(path).parent_path()) {
+    allow_folder(base_.string());
+  }
 
   CampaignSpec read(const std::optional<std::string>& surface) {
     const TomlValue root = read_toml(path_, path_);
@@ -74,8 +76,7 @@ class CampaignReader {
     const auto text = table.text(key);
     if (!text) return;
     file = {absolute_path(*text, base_), table.where(key, *table.value()->find(key))};
-    std::error_code none;
-    if (!std::filesystem::exists(file.path, none)) faults_.push_back(file.where + ": no such file (" + file.path + ")");
+    check_files({&file}, faults_);
   }
 
   /// Refuses what belongs to released blocks in a campaign of mapped ones.

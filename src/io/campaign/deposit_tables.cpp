@@ -30,9 +30,7 @@ NamedFile named(TableReader& table, const std::string& key, const std::filesyste
   const auto text = table.text(key);
   if (!text) return {};
   NamedFile file{absolute_path(*text, base), table.where(key, *table.value()->find(key))};
-  std::error_code none;
-  if (!std::filesystem::exists(file.path, none))
-    table.faults().push_back(file.where + ": no such file (" + file.path + ")");
+  check_files({&file}, table.faults());
   return file;
 }
 

@@ -8,6 +8,7 @@
 
 #include "input_files.hpp"
 #include "io/gdal/dataset.hpp"
+#include "io/gdal/input_name.hpp"
 
 namespace talus::io {
 
@@ -18,7 +19,8 @@ void require(bool done) {
 }
 
 bool add_file(Sha256& sum, const std::string& path) {
-  VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
+  if (!looked_up(path).fault.empty()) return false;
+  VSILFILE* file = VSIFOpenL(name_for_gdal(path).c_str(), "rb");
   if (file == nullptr) return false;
   std::vector<char> bytes(1U << 16);
   for (std::size_t n = 0; (n = VSIFReadL(bytes.data(), 1, bytes.size(), file)) > 0;) sum.add({bytes.data(), n});

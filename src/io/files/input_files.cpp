@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "io/gdal/dataset.hpp"
+#include "talus/base/error.hpp"
 
 namespace talus::io {
 
@@ -24,10 +25,13 @@ std::vector<std::string> files_in_folder(const std::string& folder) {
 
 /// The rasters that a VRT is made of, in the order of their names.
 std::vector<std::string> rasters_of_vrt(const std::string& path) {
-  const GdalMessages quiet;
-  const Dataset mosaic{GDALDataset::Open(path.c_str())};
-  if (!mosaic) return {};
+  Dataset mosaic;
   std::vector<std::string> files;
+  try {
+    mosaic = open_dataset(path, GDAL_OF_RASTER);
+  } catch (const InputError&) {
+    return files;
+  }
   char** const names = mosaic->GetFileList();
   for (char** name = names; name != nullptr && *name != nullptr; ++name)
     if (*name != path && !std::string_view(*name).ends_with(".aux.xml") && !std::string_view(*name).ends_with(".ovr"))

@@ -2,9 +2,8 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
-#include <system_error>
 
+#include "io/gdal/regular_file.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 
@@ -42,16 +41,7 @@ Json parsed_record(const std::string& text) {
 }
 
 Json read_record(const std::filesystem::path& file) {
-  constexpr std::uintmax_t kLargest = std::uintmax_t{1} << 28U;  // screens of a region have some megabytes
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) throw InputError("it is no regular file");
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (error || size > kLargest) throw InputError("it has more than 256 MB");
-  std::ifstream stream(file, std::ios::binary);
-  std::string text(size, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(size));
-  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, stream.gcount())));
-  return parsed_record(text);
+  return parsed_record(read_file(file.string(), file.string(), "a record of talus", kMostRecord));
 }
 
 std::int64_t whole_number(const Json& number, std::int64_t lowest, std::int64_t highest) {

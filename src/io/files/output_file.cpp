@@ -19,14 +19,20 @@ namespace {
 /// The layers of the files that may be replaced: of `talus sources` and `talus check --pits`.
 constexpr std::array<std::string_view, 3> kLayers{"source_polygons", "source_points", "pits"};
 
-/// --overwrite replaces what Talus has written, no other file of the same name. Throws InputError.
-void refuse_foreign(const fs::path& path) {
-  const GdalMessages quiet;
-  const Dataset file{GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY)};
-  if (!file)
+/// The file that is to be replaced. Throws InputError if it is none of Talus's.
+Dataset earlier_file(const fs::path& path) {
+  try {
+    return open_dataset(path.string(), GDAL_OF_VECTOR);
+  } catch (const InputError&) {
     throw InputError(path.string() +
                      ": --overwrite replaces only what talus has written, and this is no GeoPackage; "
                      "give a new name, or remove it yourself");
+  }
+}
+
+/// --overwrite replaces what Talus has written, no other file of the same name. Throws InputError.
+void refuse_foreign(const fs::path& path) {
+  const Dataset file = earlier_file(path);
   std::vector<std::string> foreign;
   for (int i = 0; i < file->GetLayerCount(); ++i)
     if (const std::string name = file->GetLayer(i)->GetName(); std::ranges::find(kLayers, name) == kLayers.end())

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <span>
 #include <string_view>
 
 #include "folder_lock.hpp"
+#include "json.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
 
@@ -73,8 +72,12 @@ bool is_beside(const std::string& name, const std::set<std::string>& own) {
 
 std::vector<std::string> files_of_record(const fs::path& record) {
   std::vector<std::string> names;
-  std::ifstream file(record);
-  const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
+  Json json;
+  try {
+    json = read_record(record);
+  } catch (const std::exception&) {
+    return names;  // not there, or no record
+  }
   if (json.is_object() && json.contains("files") && json["files"].is_array())
     for (const auto& name : json["files"])
       if (name.is_string() && fs::path(name.get<std::string>()).filename() == name.get<std::string>())

@@ -10,6 +10,7 @@
 #include "dataset.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/gdal/input_access.hpp"
 
 namespace talus::io {
 
@@ -32,6 +33,7 @@ Context make_context() {
   Context context(proj_context_create());
   if (!context) throw std::runtime_error("PROJ cannot be started");
   proj_log_level(context.get(), PJ_LOG_NONE);
+  if (!network_is_allowed()) proj_context_set_enable_network(context.get(), 0);
   return context;
 }
 

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
+#include "regular_file.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/base/text.hpp"
@@ -19,11 +17,7 @@ std::string trimmed(const std::string& text) {
 }
 
 std::string content_of(const std::string& path) {
-  std::error_code none;
-  std::ifstream file(path, std::ios::binary);
-  if (!file.is_open() || std::filesystem::is_directory(path, none))
-    throw InputError(path + ": cannot be read, must be a table (CSV)");
-  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::string text = read_file(path, path, "a table (CSV)", kMostTable);
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // byte order mark
   return text;
 }

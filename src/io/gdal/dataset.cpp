@@ -5,6 +5,8 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "input_name.hpp"
+#include "local_gdal.hpp"
 #include "talus/base/error.hpp"
 #include "vector_file.hpp"
 
@@ -39,7 +41,7 @@ void start_gdal() {
   std::call_once(once, [] {
     if (CPLGetConfigOption("GDAL_CACHEMAX", nullptr) == nullptr) GDALSetCacheMax64(32LL << 20);
     CPLSetErrorHandler(collect_of_threads);
-    GDALAllRegister();
+    register_drivers();
   });
 }
 
@@ -82,8 +84,9 @@ bool GdalMessages::failed() const {
 }
 
 Dataset open_dataset(const std::string& path, unsigned kinds) {
-  if ((kinds & GDAL_OF_VECTOR) != 0) check_vector_file(path);
   GdalMessages messages;
+  check_input(path);
+  if ((kinds & GDAL_OF_VECTOR) != 0) check_vector_file(path);
   // A text table does not declare its types and geometry: GDAL has to guess them.
   const char* const csv[] = {"AUTODETECT_TYPE=YES",
                              "AUTODETECT_SIZE_LIMIT=0",
@@ -93,13 +96,14 @@ Dataset open_dataset(const std::string& path, unsigned kinds) {
                              "KEEP_GEOM_COLUMNS=NO",
                              nullptr};
   const char* const* options = ends_with(path, ".csv") ? csv : nullptr;
-  Dataset dataset(
-      GDALDataset::Open(path.c_str(), kinds | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr, options, nullptr));
+  Dataset dataset(GDALDataset::Open(name_for_gdal(path).c_str(), kinds | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
+                                    nullptr, options, nullptr));
   if (!dataset) {
     const char* kind = (kinds & GDAL_OF_RASTER) == 0   ? "vector layer"
                        : (kinds & GDAL_OF_VECTOR) == 0 ? "raster"
                                                        : "raster or vector layer";
-    throw InputError(path + ": cannot be opened as a " + kind + ": " + messages.take());
+    throw InputError(path + ": cannot be opened as a " + kind + ": " + messages.take() +
+                     "; docs/security.md has the formats that are read");
   }
   return dataset;
 }

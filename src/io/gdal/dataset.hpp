@@ -8,8 +8,8 @@
 
 namespace talus::io {
 
-/// Registers GDAL's drivers once, bounds its block cache to 32 MB (unless the environment sets GDAL_CACHEMAX), and
-/// keeps its messages off the screen. Every function of `io` that uses GDAL calls it first.
+/// Registers the drivers of GDAL that Talus uses once, bounds its block cache to 32 MB (unless the environment sets
+/// GDAL_CACHEMAX), and keeps its messages off the screen. Every function of `io` that uses GDAL calls it first.
 void start_gdal();
 
 /// Collects the messages of GDAL in this thread while the object lives, and those of GDAL's own threads.
@@ -40,8 +40,9 @@ struct DropFeature {
 };
 using Feature = std::unique_ptr<OGRFeature, DropFeature>;
 
-/// Opens a file for reading. `kinds`: GDAL_OF_RASTER, GDAL_OF_VECTOR or both.
-/// Throws InputError if GDAL cannot, or would lose rows or fields without a message (`check_vector_file`).
+/// Opens an input for reading, the only place that does. `kinds`: GDAL_OF_RASTER, GDAL_OF_VECTOR or both.
+/// Throws InputError if the input is not allowed (docs/security.md), if GDAL cannot open it, or would lose rows or
+/// fields without a message (`check_vector_file`).
 Dataset open_dataset(const std::string& path, unsigned kinds);
 
 /// A dataset in memory, of zeros. Throws std::runtime_error if there is no memory for it.

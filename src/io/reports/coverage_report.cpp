@@ -40,7 +40,7 @@ void for_rows(const std::vector<Coverage>& list, Row row) {
   }
 }
 
-std::string histogram(const Coverage& c) {
+Markup histogram(const Coverage& c) {
   const Interval& expected = c.expected_in_class;
   const double highest = std::max<double>(*std::ranges::max_element(c.ranks), expected.high);
   const Axis x{0.0, kRankClasses, kMargin, kWidth - 2 * kMargin};
@@ -105,14 +105,14 @@ std::string coverage_markdown(const std::vector<Coverage>& list) {
   return text;
 }
 
-std::string coverage_html(const std::vector<Coverage>& list) {
-  std::string text =
+Markup coverage_html(const std::vector<Coverage>& list) {
+  Markup text =
       "<table><tr><th>observable</th><th>rows</th><th>below the simulated P5 (expected)</th><th>below "
       "P50</th><th>below "
-      "P95</th></tr>\n";
+      "P95</th></tr>\n"_html;
   for_rows(list, [&text](const std::vector<std::string>& cells) {
     text += "<tr>";
-    for (const std::string& cell : cells) text += "<td>" + escaped(cell) + "</td>";
+    for (const std::string& cell : cells) text += "<td>"_html + cell + "</td>";
     text += "</tr>\n";
   });
   return text + "</table>\n";
@@ -137,8 +137,8 @@ Json json_of(const std::vector<Coverage>& list) {
   return out;
 }
 
-std::string rank_histograms(const std::vector<Coverage>& list) {
-  std::string html = "<p>";
+Markup rank_histograms(const std::vector<Coverage>& list) {
+  Markup html = "<p>"_html;
   for (const Coverage& c : list) html += histogram(c);
   return html + "</p>\n";
 }

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "io/files/json.hpp"
+#include "markup.hpp"
 #include "talus/io/reports/score_report.hpp"
 
 /// Calibration of the spread in words, numbers and pictures. docs/closing-the-loop.md, "Calibration of the spread".
@@ -15,10 +16,10 @@ std::string coverage_markdown(const std::vector<Coverage>& list);
 /// The same as JSON, with the histogram of ranks.
 Json json_of(const std::vector<Coverage>& list);
 /// The same as an HTML table.
-std::string coverage_html(const std::vector<Coverage>& list);
+Markup coverage_html(const std::vector<Coverage>& list);
 /// Warnings, one for each share that a right model does not give.
 std::vector<std::string> coverage_warnings(const ScoredRows& scored);
 /// Histograms of ranks as drawings, one per observable; the grey band holds 95 % of the bars of a right model.
-std::string rank_histograms(const std::vector<Coverage>& list);
+Markup rank_histograms(const std::vector<Coverage>& list);
 
 }  // namespace talus::io

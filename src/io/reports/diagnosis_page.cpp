@@ -67,7 +67,7 @@ Points points_of(const Campaign& campaign, const ResidualSpace& space, const Res
 }
 
 /// A scatter plot of z against a property; the grey band holds 95 % of the points if the model is right.
-std::string plot(const Points& points, const std::string& title, const std::string& below) {
+Markup plot(const Points& points, const std::string& title, const std::string& below) {
   const double low = points.x.empty() ? 0.0 : *std::min_element(points.x.begin(), points.x.end());
   const double high = points.x.empty() ? 1.0 : *std::max_element(points.x.begin(), points.x.end());
   const auto share = [=](double value) { return high > low ? (value - low) / (high - low) : 0.5; };
@@ -96,15 +96,15 @@ std::string plot(const Points& points, const std::string& title, const std::stri
 }
 
 /// Plots of the most significant residuals before and after.
-std::string plots(const Campaign& campaign, const Diagnosis& d, const DiagnosisRules& rules, std::size_t most) {
+Markup plots(const Campaign& campaign, const Diagnosis& d, const DiagnosisRules& rules, std::size_t most) {
   const ResidualSpace before(campaign, d.base.runs, rules), after(campaign, d.with_effects.runs, rules);
-  std::string html;
+  Markup html;
   const std::vector<ResidualRow>& rows = d.rounds.front().residual;
   for (std::size_t i = 0; i < std::min(most, rows.size()); ++i) {
     const bool by_block = rows[i].covariate == "mean" || rows[i].covariate == "spread";
     const std::string title = rows[i].observable + " against " + (by_block ? "block" : rows[i].covariate);
     const std::string across = by_block ? "number of the block, in the order of the ids" : labelled(rows[i].covariate);
-    html += "<p>" + plot(points_of(campaign, before, rows[i]), title + ", before", across);
+    html += "<p>"_html + plot(points_of(campaign, before, rows[i]), title + ", before", across);
     if (d.rounds.size() > 1) html += plot(points_of(campaign, after, rows[i]), title + ", after", across);
     html += "</p>\n";
   }
@@ -112,51 +112,52 @@ std::string plots(const Campaign& campaign, const Diagnosis& d, const DiagnosisR
 }
 
 /// The error before and after, beside the climatology's, in all and by group.
-std::string errors_html(const DiagnosisRecord& record) {
+Markup errors_html(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
-  const auto row = [](const std::string& rows, double before, double after, const Reduction* reduction) {
-    return "<tr><td>" + rows + "</td><td>" + value_text(before) + "</td><td>" + value_text(after) + "</td><td>" +
+  const auto row = [](const Markup& rows, double before, double after, const Reduction* reduction) {
+    return "<tr><td>"_html + rows + "</td><td>" + value_text(before) + "</td><td>" + value_text(after) + "</td><td>" +
            (reduction != nullptr ? reduction_text(*reduction) : "") + "</td></tr>\n";
   };
-  std::string html =
+  Markup html =
       "<h2>Error before and after</h2>\n<table><tr><th></th><th>ground fitted</th><th>with what was found</th>"
-      "<th>reduction, 95 %</th></tr>\n";
+      "<th>reduction, 95 %</th></tr>\n"_html;
   const std::vector<std::string> small = small_groups(record);
   const std::string unseen = rows_in_words(record.errors[record.unseen].after.rows) + " rows";
   if (!small.empty())
-    html += row("<b>" + unseen + " (never fitted), groups of " + std::to_string(kHeadlineRows) + " rows and more</b>",
-                record.headline.before, record.headline.after, &record.headline.reduction);
-  html += row(small.empty() ? "<b>" + unseen + " (never fitted)</b>" : unseen + ", all groups", record.whole.before,
-              record.whole.after, &record.whole.reduction);
-  html += row("fitting rows", d.base.score.total, d.with_effects.score.total, nullptr) + "</table>\n";
+    html +=
+        row("<b>"_html + unseen + " (never fitted), groups of " + std::to_string(kHeadlineRows) + " rows and more</b>",
+            record.headline.before, record.headline.after, &record.headline.reduction);
+  html += row(small.empty() ? "<b>"_html + unseen + " (never fitted)</b>" : Markup() + unseen + ", all groups",
+              record.whole.before, record.whole.after, &record.whole.reduction);
+  html += row("fitting rows"_html, d.base.score.total, d.with_effects.score.total, nullptr) + "</table>\n";
   html +=
       "<p>Mean normalised score: 0 says the very value, about 0.56 knows no more than the spread of the "
       "measurements. Climatology: the measurements of the fitting blocks (of a fitting block those of the others) in "
       "the place of a model.</p>\n";
   for (const BeforeAfter& e : record.errors)
     for (const std::string& sentence : {skill_sentence(e.after), tail_before_after(e)})
-      if (!sentence.empty()) html += "<p>" + escaped(sentence) + "</p>\n";
+      if (!sentence.empty()) html += "<p>"_html + sentence + "</p>\n";
   for (const BeforeAfter& e : record.errors) html += groups_html(e) + "<br>\n";
   if (!small.empty())
-    html += "<p>* fewer than " + std::to_string(kHeadlineRows) + " rows: one block may rule the group.</p>\n";
+    html += "<p>* fewer than "_html + std::to_string(kHeadlineRows) + " rows: one block may rule the group.</p>\n";
   return html;
 }
 
 /// How the measured values lie among the simulated ones.
-std::string spread_html(const DiagnosisRecord& record) {
-  std::string html =
+Markup spread_html(const DiagnosisRecord& record) {
+  Markup html =
       "<h2>Calibration of the spread</h2>\n<p>Measured values below percentiles of the values simulated for the same "
       "block: 5, 50 and 95 % in a right model (in brackets what 95 % of right models give; *: hardly a right model). "
       "Below, "
       "the "
       "blocks by the rank of their measurement among the simulated values, in tenths: high at both ends where the "
       "model "
-      "scatters too little, in the middle where it scatters too much. Grey: 95 % of the bars of a right model.</p>\n";
+      "scatters too little, in the middle where it scatters too much. Grey: 95 % of the bars of a right model.</p>\n"_html;
   for (const BeforeAfter& e : record.errors)
     for (const ScoredRows* scored : {&e.before, &e.after}) {
       const bool after = scored == &e.after;
       if (scored->coverage.empty() || (!after && record.diagnosis.rounds.size() < 2)) continue;
-      html += "<h3>" + rows_in_words(e.after.rows) + " rows, " +
+      html += "<h3>"_html + rows_in_words(e.after.rows) + " rows, " +
               (record.diagnosis.rounds.size() < 2 ? "ground fitted"
                : after                            ? "with what was found"
                                                   : "ground alone") +
@@ -169,18 +170,19 @@ std::string unit_text(const Parameter& parameter) {
   return parameter.unit.empty() || parameter.unit == "1" ? "" : " " + parameter.unit;
 }
 
-std::string candidates_table(const DiagnosisRound& round, const std::vector<HoldoutError>& holdout) {
-  std::string html =
+Markup candidates_table(const DiagnosisRound& round, const std::vector<HoldoutError>& holdout) {
+  Markup html =
       "<table><tr><th>effect</th><th>where</th><th>parameters</th><th>p of the score test</th><th>objective lower "
       "by (fitting rows, 95 %)</th><th>in cross-validation</th><th>held-out error after</th><th>reduction, 95 "
-      "%</th></tr>\n";
+      "%</th></tr>\n"_html;
   for (std::size_t i = 0; i < round.candidates.size(); ++i) {
     const FittedCandidate& c = round.candidates[i];
-    std::string numbers;
+    Markup numbers;
     for (std::size_t k = 0; k < c.parameters.size(); ++k)
-      numbers += c.parameters[k].key + " = " + with_digits(c.values[k], 3) + unit_text(c.parameters[k]) + "<br>";
+      numbers +=
+          Markup() + c.parameters[k].key + " = " + with_digits(c.values[k], 3) + unit_text(c.parameters[k]) + "<br>";
     const HoldoutError& e = holdout[i];
-    html += "<tr><td>" + c.effect + "</td><td>" + escaped(c.where) + "</td><td>" + numbers + "</td><td>" +
+    html += "<tr><td>"_html + c.effect + "</td><td>" + c.where + "</td><td>" + numbers + "</td><td>" +
             with_decimals(c.p_value, 4) + "</td><td>" + gain_text(c.gain, c.gain_interval) + "</td><td>" +
             gain_text(c.cross_validated, c.cross_validated_interval) + "</td><td>" + value_text(e.after) + "</td><td>" +
             reduction_text(e.reduction) + "</td></tr>\n";
@@ -189,62 +191,62 @@ std::string candidates_table(const DiagnosisRound& round, const std::vector<Hold
 }
 
 /// The tests of the families, with what each found.
-std::string families_table(const DiagnosisRound& round) {
-  std::string html =
+Markup families_table(const DiagnosisRound& round) {
+  Markup html =
       "<table><tr><th>family</th><th>p</th><th>corrected</th><th>effects in it</th><th>what was compared (p of it "
-      "alone)</th><th></th></tr>\n";
+      "alone)</th><th></th></tr>\n"_html;
   for (const FamilyTest& family : round.families) {
-    std::string members, parts;
-    for (const std::string& member : family.members) members += member + "<br>";
+    Markup members, parts;
+    for (const std::string& member : family.members) members += Markup() + member + "<br>";
     for (const FamilyPart& part : family.parts)
-      parts += escaped(part.name) + ": " + part.statistic + " " + with_decimals(part.value, 2) +
+      parts += Markup() + part.name + ": " + part.statistic + " " + with_decimals(part.value, 2) +
                (std::isnan(part.p_value) ? "" : " (" + with_digits(part.p_value, 2) + ")") + "<br>";
-    html += "<tr><td>" + family.name + "</td><td>" +
+    html += "<tr><td>"_html + family.name + "</td><td>" +
             (std::isnan(family.p_value) ? "not tested" : with_digits(family.p_value, 2)) + "</td><td>" +
             (std::isnan(family.p_corrected) ? "" : with_digits(family.p_corrected, 2)) + "</td><td>" + members +
-            "</td><td>" + parts + "</td><td>" + escaped(family.note) + "</td></tr>\n";
+            "</td><td>" + parts + "</td><td>" + family.note + "</td></tr>\n";
   }
   return html + "</table>\n";
 }
 
-std::string residual_rows(const std::vector<ResidualRow>& rows) {
-  std::string html =
+Markup residual_rows(const std::vector<ResidualRow>& rows) {
+  Markup html =
       "<table><tr><th>observable</th><th>against</th><th>statistic</th><th>p</th><th>corrected</th><th>blocks</th></"
-      "tr>\n";
+      "tr>\n"_html;
   for (std::size_t i = 0; i < std::min<std::size_t>(12, rows.size()); ++i)
-    html += "<tr><td>" + escaped(rows[i].observable) + "</td><td>" + rows[i].covariate + "</td><td>" +
+    html += "<tr><td>"_html + rows[i].observable + "</td><td>" + rows[i].covariate + "</td><td>" +
             with_decimals(rows[i].statistic, 2) + "</td><td>" + with_digits(rows[i].p_value, 2) + "</td><td>" +
             with_digits(rows[i].corrected, 2) + "</td><td>" + std::to_string(rows[i].blocks) + "</td></tr>\n";
   return html + "</table>\n";
 }
 
 /// The families that are significant, and those that could not name anything.
-std::string families_sentence(const DiagnosisRound& round) {
-  std::string text;
+Markup families_sentence(const DiagnosisRound& round) {
+  Markup text;
   for (const FamilyTest& family : round.families) {
     if (family.p_corrected <= kRare)
-      text += (text.empty() ? " What is left depends on: " : ", ") + ("<b>" + family.name) + "</b> (p " +
+      text += Markup() + (text.empty() ? " What is left depends on: " : ", ") + "<b>" + family.name + "</b> (p " +
               with_digits(family.p_corrected, 2) + " corrected)";
   }
   if (!text.empty()) text += ".";
   for (const FamilyTest& family : round.families)
     if (!family.may_name)
-      text += " " + escaped(family.note) + (std::isnan(family.p_value) ? "" : ", p " + with_digits(family.p_value, 2)) +
-              ".";
+      text +=
+          " "_html + family.note + (std::isnan(family.p_value) ? "" : ", p " + with_digits(family.p_value, 2)) + ".";
   return text;
 }
 
-std::string sentence(const DiagnosisRound& round) {
+Markup sentence(const DiagnosisRound& round) {
   const bool rare = round.p_value <= kRare || (!round.residual.empty() && round.residual.front().corrected <= kRare);
-  if (round.effect == "none" && !rare) return "Nothing is left that differs from noise.";
+  if (round.effect == "none" && !rare) return "Nothing is left that differs from noise."_html;
   if (round.effect == "none")
-    return "What is left would be rare as noise, but no effect of the library is named for it.";
+    return "What is left would be rare as noise, but no effect of the library is named for it."_html;
   if (round.effect == "unexplained")
-    return "A residual is left that no effect of the library explains better than chance.";
-  std::string text = "The model lacks <b>" + round.effect + "</b> (" + escaped(round.where) + ").";
+    return "A residual is left that no effect of the library explains better than chance."_html;
+  Markup text = "The model lacks <b>"_html + round.effect + "</b> (" + round.where + ").";
   if (!round.alike.empty()) {
     text += " On these data it cannot be told apart from: ";
-    for (std::size_t i = 0; i < round.alike.size(); ++i) text += (i > 0 ? ", " : "") + round.alike[i];
+    for (std::size_t i = 0; i < round.alike.size(); ++i) text += Markup() + (i > 0 ? ", " : "") + round.alike[i];
     text += ".";
   }
   return text;
@@ -254,49 +256,49 @@ std::string sentence(const DiagnosisRound& round) {
 
 std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
-  std::string html =
-      "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'><title>Talus: diagnosis of " +
-      escaped(campaign.name) +
+  Markup html =
+      "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'><title>Talus: diagnosis of "_html + campaign.name +
       "</title><style>body{font:15px/1.5 sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#222}"
       "table{border-collapse:collapse;font-size:13px}td,th{border:1px solid #ccc;padding:3px 8px;text-align:left;"
       "vertical-align:top}svg text{font:11px sans-serif}</style></head><body>\n<h1>What the model of " +
-      escaped(campaign.name) + " lacks</h1>\n" + summary_html(record) + plots(campaign, d, record.options.rules, 1) +
+      campaign.name + " lacks</h1>\n" + summary_html(record) + plots(campaign, d, record.options.rules, 1) +
       "<p>Each point is a block; z is where its measurement lies among what the model simulates for it, as a standard "
       "normal number. Grey: 95 % of the points of a right model.</p>\n<h2>Rounds</h2>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i)
-    html += "<p>Round " + std::to_string(i + 1) + ": " + sentence(d.rounds[i]) +
+    html += "<p>Round "_html + std::to_string(i + 1) + ": " + sentence(d.rounds[i]) +
             " (p that the residual is noise: " + with_decimals(d.rounds[i].p_value, 4) + ")." +
             families_sentence(d.rounds[i]) + "</p>\n";
   if (const std::string undecided = undecided_text(d.stability); !undecided.empty())
-    html += "<p><b>The first round is " + escaped(undecided) + "</b>: independent base fits differ.</p>\n";
+    html += "<p><b>The first round is "_html + undecided + "</b>: independent base fits differ.</p>\n";
   html += errors_html(record) + repeated_html(record);
-  for (const std::string& warning : record.warnings) html += "<p>Warning: " + escaped(warning) + "</p>\n";
+  for (const std::string& warning : record.warnings) html += "<p>Warning: "_html + warning + "</p>\n";
   html += spread_html(record);
   html +=
       "<h2>Families</h2>\n<p>Effects that leave the same kind of trace are tested together, by one test of few degrees "
       "of freedom. Only an effect of a significant family may be named.</p>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i)
-    html += "<h3>Round " + std::to_string(i + 1) + "</h3>\n" + families_table(d.rounds[i]);
+    html += "<h3>Round "_html + std::to_string(i + 1) + "</h3>\n" + families_table(d.rounds[i]);
   html +=
       "<h2>Candidates</h2>\n<p>Each at its best place, fitted together with the ground where it may be named, else "
       "with "
       "the ground held. The objective is the error with groups of n rows that count n / (n + 10).</p>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i)
     if (!d.rounds[i].candidates.empty())
-      html += "<h3>Round " + std::to_string(i + 1) + (i > 0 ? ", with what was found before in the model" : "") +
+      html += "<h3>Round "_html + std::to_string(i + 1) + (i > 0 ? ", with what was found before in the model" : "") +
               "</h3>\n" + candidates_table(d.rounds[i], record.candidates[i]);
   html +=
       "<h2>What could not have been seen</h2>\n<p>The amount of each effect that these data would show, after the "
       "ground "
-      "has been fitted anew.</p>\n" +
+      "has been fitted anew.</p>\n"_html +
       limits_html(d.rounds.back().limits);
   html +=
       "<h2>Residuals</h2>\n<p>Each point is a block; z is where its measurement lies among what the model "
-      "simulates for it, as a standard normal number. Grey: 95 % of the points of a right model.</p>\n" +
+      "simulates for it, as a standard normal number. Grey: 95 % of the points of a right model.</p>\n"_html +
       plots(campaign, d, record.options.rules, kPlots) + "<h3>Before</h3>\n" + residual_rows(d.rounds.front().residual);
-  if (d.rounds.size() > 1) html += "<h3>After</h3>\n" + residual_rows(d.rounds.back().residual);
-  return html + "<p>talus " + std::string(version()) + ", seed " + std::to_string(record.options.seed) + ", " +
-         record.surface + " surface, " + with_decimals(record.seconds, 0) + " s.</p></body></html>\n";
+  if (d.rounds.size() > 1) html += "<h3>After</h3>\n"_html + residual_rows(d.rounds.back().residual);
+  html += "<p>talus "_html + std::string(version()) + ", seed " + std::to_string(record.options.seed) + ", " +
+          record.surface + " surface, " + with_decimals(record.seconds, 0) + " s.</p></body></html>\n";
+  return html.text();
 }
 
 }  // namespace talus::io

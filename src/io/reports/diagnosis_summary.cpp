@@ -15,15 +15,18 @@ std::string percent(double share) {
   return with_decimals(100.0 * share, 1) + " %";
 }
 
-std::string bold(const std::string& text) {
-  return "<b>" + text + "</b>";
+Markup bold(const std::string& text) {
+  return "<b>"_html + text + "</b>";
 }
 
 /// "a", "a and b", "a, b and c".
-std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+template <class Text>
+Text listed(const std::vector<Text>& words) {
+  Text text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) text += std::string_view(i + 1 == words.size() ? " and " : ", ");
+    text += words[i];
+  }
   return text;
 }
 
@@ -42,24 +45,24 @@ std::string with_values(const DiagnosisRound& round) {
   return values.empty() ? "" : ": " + listed(values);
 }
 
-std::string missing(const Diagnosis& d) {
-  std::vector<std::string> effects;
+Markup missing(const Diagnosis& d) {
+  std::vector<Markup> effects;
   for (const DiagnosisRound& round : d.rounds)
-    if (found(round)) effects.push_back(bold(round.effect) + " (" + escaped(round.where) + with_values(round) + ")");
-  if (!effects.empty()) return "The model lacks " + listed(effects) + ".";
+    if (found(round)) effects.push_back(bold(round.effect) + " (" + round.where + with_values(round) + ")");
+  if (!effects.empty()) return "The model lacks "_html + listed(effects) + ".";
   if (d.rounds.front().effect == "unexplained")
-    return "Something is missing that no effect of the library explains better than chance.";
-  return "Nothing that these data can show: what is left looks like noise.";
+    return "Something is missing that no effect of the library explains better than chance."_html;
+  return "Nothing that these data can show: what is left looks like noise."_html;
 }
 
 /// Whether other fits of the ground come to the same verdict.
-std::string repeated(const Stability& stability) {
-  if (stability.fits.size() < 2) return "";
+Markup repeated(const Stability& stability) {
+  if (stability.fits.size() < 2) return {};
   const Interval p = p_range_of(stability);
   const std::string undecided = undecided_text(stability);
-  return " " + std::to_string(stability.fits.size()) +
-         " independent fits of the ground: " + (undecided.empty() ? "the same verdict from each" : bold(undecided)) +
-         ", smallest p from " + with_digits(p.low, 1) + " to " + with_digits(p.high, 1) + ".";
+  return " "_html + std::to_string(stability.fits.size()) + " independent fits of the ground: " +
+         (undecided.empty() ? "the same verdict from each"_html : bold(undecided)) + ", smallest p from " +
+         with_digits(p.low, 1) + " to " + with_digits(p.high, 1) + ".";
 }
 
 /// Says so where the interval of the gain in cross-validation, which decided, holds zero.
@@ -71,7 +74,7 @@ std::string gain_in_doubt(const FittedCandidate& chosen) {
          with_decimals(gain.high, 3) + ").";
 }
 
-std::string sure(const Diagnosis& d) {
+Markup sure(const Diagnosis& d) {
   const DiagnosisRound& first = d.rounds.front();
   std::vector<std::string> rare;
   for (const FamilyTest& family : first.families)
@@ -82,24 +85,23 @@ std::string sure(const Diagnosis& d) {
                                         ", corrected for the number of families.";
   if (found(first) && first.alike.empty()) text += " No other effect that was allowed comes close to it.";
   if (found(first)) text += gain_in_doubt(first.candidates.front());
-  return text + repeated(d.stability);
+  return Markup() + text + repeated(d.stability);
 }
 
-std::string gained(const DiagnosisRecord& record) {
+Markup gained(const DiagnosisRecord& record) {
   const HoldoutError& e = record.errors.empty() || small_groups(record).empty() ? record.whole : record.headline;
-  if (std::isnan(e.before)) return "It cannot be said: no group of held-out rows is large enough.";
+  if (std::isnan(e.before)) return "It cannot be said: no group of held-out rows is large enough."_html;
   const ScoredRows& rows = record.errors[record.unseen].after;
-  std::string text =
-      "On blocks that no fit has seen the error is " + with_decimals(e.before, 3) + " with the ground alone";
+  Markup text =
+      "On blocks that no fit has seen the error is "_html + with_decimals(e.before, 3) + " with the ground alone";
   if (record.diagnosis.rounds.size() > 1 && !std::isnan(e.reduction.share))
-    text += " and " + bold(with_decimals(e.after, 3)) + " with what was found: lower by " +
+    text += " and "_html + bold(with_decimals(e.after, 3)) + " with what was found: lower by " +
             bold(percent(e.reduction.share)) + " (95 %: " + percent(e.reduction.interval.low) + " to " +
             percent(e.reduction.interval.high) + ")" +
             (e.reduction.interval.low <= 0.0 ? ": there may be no gain" : "");
   text += ".";
   if (!std::isnan(rows.climatology.total))
-    text +=
-        " The climatology has " + with_decimals(rows.climatology.total, 3) + ". " + escaped(skill_sentence(rows)) + ".";
+    text += " The climatology has "_html + with_decimals(rows.climatology.total, 3) + ". " + skill_sentence(rows) + ".";
   return text;
 }
 
@@ -109,7 +111,7 @@ std::string undecided(const Diagnosis& d) {
     if (found(round) && !round.alike.empty())
       text += round.effect + " cannot be told apart from " + listed(round.alike) + " on these data. ";
   for (const FamilyTest& family : d.rounds.front().families)
-    if (!family.may_name) text += escaped(family.note) + ". ";
+    if (!family.may_name) text += family.note + ". ";
   std::vector<std::string> hidden;
   for (const DetectionLimit& limit : d.rounds.back().limits)
     if (std::isnan(limit.amount)) hidden.push_back(limit.effect);
@@ -137,16 +139,15 @@ std::string next(const DiagnosisRecord& record) {
 
 }  // namespace
 
-std::string summary_html(const DiagnosisRecord& record) {
+Markup summary_html(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
-  const std::pair<const char*, std::string> rows[] = {{"What is missing", missing(d)},
-                                                      {"How sure that is", sure(d)},
-                                                      {"What was gained", gained(record)},
-                                                      {"What could not be decided", undecided(d)},
-                                                      {"What to measure next", next(record)}};
-  std::string html = "<table>\n";
-  for (const auto& [heading, text] : rows)
-    html += "<tr><th>" + std::string(heading) + "</th><td>" + text + "</td></tr>\n";
+  const std::pair<const char*, Markup> rows[] = {{"What is missing", missing(d)},
+                                                 {"How sure that is", sure(d)},
+                                                 {"What was gained", gained(record)},
+                                                 {"What could not be decided", Markup() + undecided(d)},
+                                                 {"What to measure next", Markup() + next(record)}};
+  Markup html = "<table>\n"_html;
+  for (const auto& [heading, text] : rows) html += "<tr><th>"_html + heading + "</th><td>" + text + "</td></tr>\n";
   return html + "</table>\n";
 }
 

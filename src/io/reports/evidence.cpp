@@ -112,12 +112,12 @@ std::string judgement_markdown(const BeforeAfter& e) {
          coverage_markdown(e.after.coverage) + "\n";
 }
 
-std::string groups_html(const BeforeAfter& e) {
-  std::string html = "<table><tr><th>group, " + rows_in_words(e.after.rows) +
-                     " rows</th><th>before</th><th>after</th><th>climatology</th><th>rows</th></tr>\n";
+Markup groups_html(const BeforeAfter& e) {
+  Markup html = "<table><tr><th>group, "_html + rows_in_words(e.after.rows) +
+                " rows</th><th>before</th><th>after</th><th>climatology</th><th>rows</th></tr>\n";
   for (std::size_t g = 0; g < e.after.score.groups.size(); ++g) {
     const GroupScore& group = e.after.score.groups[g];
-    html += "<tr><td>" + escaped(group.name) + "</td><td>" + score_text(e.before.score.groups[g].score) + "</td><td>" +
+    html += "<tr><td>"_html + group.name + "</td><td>" + score_text(e.before.score.groups[g].score) + "</td><td>" +
             score_text(group.score) + "</td><td>" + score_text(e.after.climatology.groups[g].score) + "</td><td>" +
             rows_text(group) + "</td></tr>\n";
   }

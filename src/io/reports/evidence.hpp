@@ -3,6 +3,7 @@
 #include <string>
 
 #include "io/files/json.hpp"
+#include "markup.hpp"
 #include "talus/io/reports/score_report.hpp"
 
 /// What a fit is to be judged by beside its error: the climatology, the rows, the tail, the spread.
@@ -38,6 +39,6 @@ std::string judgement_markdown(const BeforeAfter& error);
 /// The error in the far run-outs before and after in a sentence. Empty where it was not scored.
 std::string tail_before_after(const BeforeAfter& error);
 /// Error by group as an HTML table: before, after, climatology, rows.
-std::string groups_html(const BeforeAfter& error);
+Markup groups_html(const BeforeAfter& error);
 
 }  // namespace talus::io

@@ -5,6 +5,7 @@
 
 #include "deposit_report.hpp"
 #include "evidence.hpp"
+#include "markup.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
 #include "talus/simulate/scenario/presets.hpp"
@@ -208,7 +209,7 @@ std::string calibration_report(const Calibration& c) {
       "## Measured and simulated, all blocks\n\nQuantiles over all blocks, simulated with the measurement error.\n\n" +
       distribution_lines(c.comparison);
   for (const std::string& warning : c.warnings) text += "\nWarning: " + warning + "\n";
-  return text;
+  return markdown_without_html(text);
 }
 
 }  // namespace talus::io

@@ -28,13 +28,13 @@ Json limits_json(std::span<const DetectionLimit> limits) {
   return list;
 }
 
-std::string limits_html(std::span<const DetectionLimit> limits) {
-  std::string html =
+Markup limits_html(std::span<const DetectionLimit> limits) {
+  Markup html =
       "<table><tr><th>effect</th><th>where it would be seen best</th><th>parameter</th><th>without it</th><th>would be "
-      "seen from</th><th>with speeds at 12 further screens</th></tr>\n";
+      "seen from</th><th>with speeds at 12 further screens</th></tr>\n"_html;
   for (const DetectionLimit& limit : limits)
-    html += "<tr><td>" + limit.effect + "</td><td>" + escaped(limit.where) + "</td><td>" + escaped(limit.key) +
-            "</td><td>" + amount_text(limit, limit.off) + "</td><td>" + amount_text(limit, limit.amount) + "</td><td>" +
+    html += "<tr><td>"_html + limit.effect + "</td><td>" + limit.where + "</td><td>" + limit.key + "</td><td>" +
+            amount_text(limit, limit.off) + "</td><td>" + amount_text(limit, limit.amount) + "</td><td>" +
             amount_text(limit, limit.with_further_speeds) + "</td></tr>\n";
   return html + "</table>\n";
 }

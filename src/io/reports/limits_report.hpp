@@ -3,6 +3,7 @@
 #include <string>
 
 #include "io/files/json.hpp"
+#include "markup.hpp"
 #include "talus/fit/diagnose/detection_limit.hpp"
 
 /// What a campaign could not have shown: docs/detection-limits.md.
@@ -11,6 +12,6 @@ namespace talus::io {
 /// `detection_limits` of diagnosis.json.
 Json limits_json(std::span<const DetectionLimit> limits);
 /// The limits as an HTML table.
-std::string limits_html(std::span<const DetectionLimit> limits);
+Markup limits_html(std::span<const DetectionLimit> limits);
 
 }  // namespace talus::io

@@ -95,15 +95,16 @@ Points beyond(const Runout& runout, double width) {
   return points;
 }
 
-constexpr char kStyle[] =
-    "<style>text{font:12px sans-serif;fill:#333}polyline,.frame{fill:none}.frame{stroke:#555}.grid{stroke:#e3e3e3}"
-    ".ground{stroke:#222;stroke-width:2}.zone{stroke:#c8791b;stroke-width:5}.path{stroke:#0b62c4;stroke-width:.6;"
-    "opacity:.45}"
-    ".screen{stroke:#b0127b;stroke-dasharray:4 "
-    "3}.max{stroke:#999}.p99{stroke:#d9480f}.p95{stroke:#d9480f;stroke-width:2}"
-    ".p50{stroke:#1f7a33;stroke-width:2}.mean{stroke:#1f7a33;stroke-dasharray:5 "
-    "3}.beyond{stroke:#0b62c4;stroke-width:2}"
-    "</style>\n";
+Markup style() {
+  return "<style>text{font:12px sans-serif;fill:#333}polyline,.frame{fill:none}.frame{stroke:#555}.grid{stroke:#e3e3e3}"
+         ".ground{stroke:#222;stroke-width:2}.zone{stroke:#c8791b;stroke-width:5}.path{stroke:#0b62c4;stroke-width:.6;"
+         "opacity:.45}"
+         ".screen{stroke:#b0127b;stroke-dasharray:4 "
+         "3}.max{stroke:#999}.p99{stroke:#d9480f}.p95{stroke:#d9480f;stroke-width:2}"
+         ".p50{stroke:#1f7a33;stroke-width:2}.mean{stroke:#1f7a33;stroke-dasharray:5 "
+         "3}.beyond{stroke:#0b62c4;stroke-width:2}"
+         "</style>\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"_html;
+}
 
 void draw_ground(const Panel& panel, const LoadedProfile& p, std::span<const RecordedPath> paths) {
   const Scenario& s = p.loaded.scenario;
@@ -159,14 +160,13 @@ std::string profile_svg(const LoadedProfile& p, const ProfileResults& results, s
   const Panel reach(body, top, kPanel, {0.0, farthest}, {0.0, 1.0});
   reach.frame("share of the blocks that goes farther", "distance from the release (m)");
   reach.line(beyond(results.runout, p.bin), "beyond");
-  std::string style(kStyle);
-  style += "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
   const std::string width = with_decimals(kWidth, 0), size = with_decimals(top + kPanel + kGap, 0);
-  return body.drawing({{"xmlns", "http://www.w3.org/2000/svg"},
-                       {"width", width},
-                       {"height", size},
-                       {"viewBox", "0 0 " + width + " " + size}},
-                      style);
+  const Markup drawing = body.drawing({{"xmlns", "http://www.w3.org/2000/svg"},
+                                       {"width", width},
+                                       {"height", size},
+                                       {"viewBox", "0 0 " + width + " " + size}},
+                                      style());
+  return drawing.text();
 }
 
 }  // namespace talus::io

@@ -170,24 +170,25 @@ std::string repeated_lines(const DiagnosisRecord& record) {
   return text;
 }
 
-std::string repeated_html(const DiagnosisRecord& record) {
+Markup repeated_html(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
-  std::string html;
+  Markup html;
   if (d.stability.fits.size() > 1) {
-    html += "<h2>Stability</h2>\n<p>Independent fits of the ground to the same rows: " +
-            escaped(verdicts_text(d.stability)) + ".</p>\n<table><tr><th>family</th><th>p over the fits</th></tr>\n";
+    html += "<h2>Stability</h2>\n<p>Independent fits of the ground to the same rows: "_html +
+            verdicts_text(d.stability) + ".</p>\n<table><tr><th>family</th><th>p over the fits</th></tr>\n";
     for (const FamilyTest& family : d.stability.fits.front().families)
-      html += "<tr><td>" + family.name + "</td><td>" + p_text(p_range_of(d.stability, family.name)) + "</td></tr>\n";
+      html +=
+          "<tr><td>"_html + family.name + "</td><td>" + p_text(p_range_of(d.stability, family.name)) + "</td></tr>\n";
     html += "</table>\n";
   }
   if (d.nested) {
     html +=
-        "<h2>Every block out of its fold</h2>\n<table><tr><th>fold</th><th>blocks left out</th><th>groups</th><th>" +
+        "<h2>Every block out of its fold</h2>\n<table><tr><th>fold</th><th>blocks left out</th><th>groups</th><th>"_html +
         std::string(d.nested->naming ? "found" : "given") + " without them</th><th>p</th></tr>\n";
     for (std::size_t f = 0; f < d.nested->loops.size(); ++f) {
       const OuterFold& loop = d.nested->loops[f];
-      html += "<tr><td>" + std::to_string(f + 1) + "</td><td>" + std::to_string(loop.blocks) + "</td><td>" +
-              escaped(joined(loop.groups)) + "</td><td>" + escaped(found_text(loop)) + "</td><td>" +
+      html += "<tr><td>"_html + std::to_string(f + 1) + "</td><td>" + std::to_string(loop.blocks) + "</td><td>" +
+              joined(loop.groups) + "</td><td>" + found_text(loop) + "</td><td>" +
               (std::isnan(loop.p_value) ? "" : with_digits(loop.p_value, 2)) + "</td></tr>\n";
     }
     html += "</table>\n";
@@ -204,11 +205,11 @@ std::string repeated_html(const DiagnosisRecord& record) {
       const NatsGained nats = nats_gained(e.log_ground, e.log_score, record.clusters);
       std::string rows;
       for (const GroupScore& group : e.score.groups)
-        rows += (rows.empty() ? "" : ", ") + escaped(group.name) + " " + rows_text(group);
-      html += "<tr><td>" + d.rounds.front().candidates[i].effect + "</td><td>" + rows_in_words(e.rows) + "</td><td>" +
-              with_decimals(100.0 * less.share, 1) + " % (" + interval_text(less.interval, 100.0, 1) + ")</td><td>" +
-              with_decimals(nats.per_block, 2) + " (" + interval_text(nats.interval, 1.0, 2) + ")</td><td>" + rows +
-              "</td></tr>\n";
+        rows += (rows.empty() ? "" : ", ") + group.name + " " + rows_text(group);
+      html += "<tr><td>"_html + d.rounds.front().candidates[i].effect + "</td><td>" + rows_in_words(e.rows) +
+              "</td><td>" + with_decimals(100.0 * less.share, 1) + " % (" + interval_text(less.interval, 100.0, 1) +
+              ")</td><td>" + with_decimals(nats.per_block, 2) + " (" + interval_text(nats.interval, 1.0, 2) +
+              ")</td><td>" + rows + "</td></tr>\n";
     }
   return html + "</table>\n";
 }

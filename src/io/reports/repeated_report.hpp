@@ -2,6 +2,7 @@
 #include <string>
 
 #include "io/files/json.hpp"
+#include "markup.hpp"
 #include "talus/io/reports/diagnosis_report.hpp"
 
 /// What a diagnosis found when it was repeated: with other random numbers, and without each fold.
@@ -22,6 +23,6 @@ Json stability_json(const Stability& stability);
 Json nested_json(const DiagnosisRecord& record);
 
 /// Stability and folds as HTML.
-std::string repeated_html(const DiagnosisRecord& record);
+Markup repeated_html(const DiagnosisRecord& record);
 
 }  // namespace talus::io

@@ -4,6 +4,7 @@
 
 #include "coverage_report.hpp"
 #include "evidence.hpp"
+#include "markup.hpp"
 #include "sites_evidence.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
@@ -78,7 +79,7 @@ std::string sites_calibration_report(const SitesCalibration& c) {
   for (std::size_t i = 0; i + 1 < c.evidence.size(); ++i)
     text += "## " + c.evidence[i].site + ", fitting rows\n\n" + judgement_markdown(c.evidence[i].errors.front());
   for (const std::string& warning : c.warnings) text += "\nWarning: " + warning + "\n";
-  return text;
+  return markdown_without_html(text);
 }
 
 std::string sites_calibration_summary(const SitesCalibration& c) {

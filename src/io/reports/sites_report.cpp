@@ -133,11 +133,11 @@ std::vector<std::string> own_findings(const SitesRecord& record) {
   return list;
 }
 
-std::string error_cells(const ErrorChange& c) {
+Markup error_cells(const ErrorChange& c) {
   if (c.rows == 0)
-    return std::string(c.blocks == 0 ? "<td>none declared</td>" : "<td>too few rows</td>") +
-           "<td>-</td><td>-</td><td>-</td><td>-</td>";
-  return "<td>" + std::to_string(c.blocks) + " blocks, " + std::to_string(c.rows) + " rows</td><td>" +
+    return "<td>"_html + (c.blocks == 0 ? "none declared" : "too few rows") +
+           "</td><td>-</td><td>-</td><td>-</td><td>-</td>";
+  return "<td>"_html + std::to_string(c.blocks) + " blocks, " + std::to_string(c.rows) + " rows</td><td>" +
          score_of(c.before) + "</td><td>" + score_of(c.after) + "</td><td>" + score_of(c.climatology) + "</td><td>" +
          change_text(c) + "</td>";
 }
@@ -147,28 +147,28 @@ double property_p(const SitesDiagnosis& d, std::size_t site) {
   return site < d.sites.size() ? d.sites[site].families.front().p_value : d.rounds.front().family.p_value;
 }
 
-std::string evidence_html(const SitesRecord& record) {
-  std::string html =
+Markup evidence_html(const SitesRecord& record) {
+  Markup html =
       "<table><tr><th rowspan='2'>site</th><th rowspan='2'>p, block property</th><th colspan='5'>fitting "
-      "rows</th><th colspan='5'>held-out rows</th></tr><tr>";
+      "rows</th><th colspan='5'>held-out rows</th></tr><tr>"_html;
   for (int i = 0; i < 2; ++i) html += "<th>rows</th><th>before</th><th>after</th><th>climatology</th><th>lower by</th>";
   html += "</tr>\n";
   for (std::size_t i = 0; i < record.evidence.size(); ++i) {
     const SiteEvidence& e = record.evidence[i];
-    html += "<tr><td>" + escaped(e.site) + "</td><td>" + p_text(property_p(record.diagnosis, i)) + "</td>" +
+    html += "<tr><td>"_html + e.site + "</td><td>" + p_text(property_p(record.diagnosis, i)) + "</td>" +
             error_cells(e.fit) + error_cells(e.holdout) + "</tr>\n";
     if (e.headline.rows != e.holdout.rows)
-      html += "<tr><td>" + escaped(e.site) + ", groups of ten held-out rows and more</td><td colspan='6'></td>" +
+      html += "<tr><td>"_html + e.site + ", groups of ten held-out rows and more</td><td colspan='6'></td>" +
               error_cells(e.headline) + "</tr>\n";
   }
   return html + "</table>\n";
 }
 
-std::string families_html(const SitesDiagnosis& d) {
-  std::string html = "<table><tr><th>site</th><th>family</th><th>p</th><th>corrected</th><th></th></tr>\n";
+Markup families_html(const SitesDiagnosis& d) {
+  Markup html = "<table><tr><th>site</th><th>family</th><th>p</th><th>corrected</th><th></th></tr>\n"_html;
   const auto row = [&](const std::string& site, const FamilyTest& f) {
-    html += "<tr><td>" + escaped(site) + "</td><td>" + f.name + "</td><td>" + p_text(f.p_value) + "</td><td>" +
-            p_text(f.p_corrected) + "</td><td>" + escaped(f.note) + "</td></tr>\n";
+    html += "<tr><td>"_html + site + "</td><td>" + f.name + "</td><td>" + p_text(f.p_value) + "</td><td>" +
+            p_text(f.p_corrected) + "</td><td>" + f.note + "</td></tr>\n";
   };
   row("pooled", d.rounds.front().family);
   for (const SiteDiagnosis& site : d.sites)
@@ -176,27 +176,27 @@ std::string families_html(const SitesDiagnosis& d) {
   return html + "</table>\n";
 }
 
-std::string candidates_html(const JointRound& round) {
-  std::string html =
+Markup candidates_html(const JointRound& round) {
+  Markup html =
       "<table><tr><th>effect</th><th>where</th><th>numbers, shared</th><th>gain of the objective</th>"
-      "<th>cross-validated</th></tr>\n";
+      "<th>cross-validated</th></tr>\n"_html;
   for (const JointCandidate& c : round.candidates) {
-    std::string numbers;
+    Markup numbers;
     for (std::size_t i = 0; i < c.values.size(); ++i)
-      numbers += c.parameters[i].key + " = " + with_digits(c.values[i], 3) + "<br>";
-    html += "<tr><td>" + c.effect + "</td><td>" + escaped(c.where) + "</td><td>" + numbers + "</td><td>" +
+      numbers += Markup() + c.parameters[i].key + " = " + with_digits(c.values[i], 3) + "<br>";
+    html += "<tr><td>"_html + c.effect + "</td><td>" + c.where + "</td><td>" + numbers + "</td><td>" +
             gain_text(c.gain, c.gain_interval) + "</td><td>" +
             gain_text(c.cross_validated, c.cross_validated_interval) + "</td></tr>\n";
   }
   return html + "</table>\n";
 }
 
-std::string ground_html(const SitesDiagnosis& d) {
-  std::string html =
-      "<table><tr><th>site</th><th>parameter</th><th>ground alone</th><th>with what was found</th></tr>\n";
+Markup ground_html(const SitesDiagnosis& d) {
+  Markup html =
+      "<table><tr><th>site</th><th>parameter</th><th>ground alone</th><th>with what was found</th></tr>\n"_html;
   for (std::size_t i = 0; i < d.sites.size(); ++i)
     for (const Parameter& p : d.sites[i].base.free)
-      html += "<tr><td>" + escaped(d.sites[i].name) + "</td><td>" + escaped(p.key) + " " + p.unit + "</td><td>" +
+      html += "<tr><td>"_html + d.sites[i].name + "</td><td>" + p.key + " " + p.unit + "</td><td>" +
               with_digits(p.get(d.base[i]), 3) + "</td><td>" + with_digits(p.get(d.with_effects[i]), 3) +
               "</td></tr>\n";
   return html + "</table>\n";
@@ -236,32 +236,32 @@ std::string sites_json(const SitesRecord& record) {
 
 std::string sites_page(const SitesRecord& record) {
   const SitesDiagnosis& d = record.diagnosis;
-  std::string html =
+  Markup html =
       "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'><title>Talus: diagnosis of several campaigns</title>"
       "<style>body{font:15px/1.5 sans-serif;max-width:1200px;margin:2em auto;padding:0 1em;color:#222}"
       "table{border-collapse:collapse;font-size:13px}td,th{border:1px solid #ccc;padding:3px 8px;text-align:left;"
-      "vertical-align:top}svg text{font:11px sans-serif}</style></head><body>\n<h1>What the models of " +
-      escaped(names_in_words(record.evidence)) + " lack</h1>\n<p><b>" + escaped(verdict_sentence(d)) + "</b></p>\n";
-  for (const std::string& finding : own_findings(record)) html += "<p>" + escaped(finding) + "</p>\n";
+      "vertical-align:top}svg text{font:11px sans-serif}</style></head><body>\n<h1>What the models of "_html +
+      names_in_words(record.evidence) + " lack</h1>\n<p><b>" + verdict_sentence(d) + "</b></p>\n";
+  for (const std::string& finding : own_findings(record)) html += "<p>"_html + finding + "</p>\n";
   html +=
       "<h2>Evidence, by site and pooled</h2>\n<p>Mean normalised score; before: the ground of each site alone; after: "
       "with what was found. Intervals: over the blocks. The climatology is a forecast by the other fitting rows: a "
-      "model with a larger error has no skill. Pooled: the mean over the groups of all sites.</p>\n" +
+      "model with a larger error has no skill. Pooled: the mean over the groups of all sites.</p>\n"_html +
       evidence_html(record);
-  for (const std::string& warning : record.warnings) html += "<p>Warning: " + escaped(warning) + "</p>\n";
+  for (const std::string& warning : record.warnings) html += "<p>Warning: "_html + warning + "</p>\n";
   html +=
       "<h2>Families</h2>\n<p>The family \"block property\" is tested with the blocks of all sites, which change places "
-      "only within their own site and group; at a single site it takes no part in the correction (Holm).</p>\n" +
+      "only within their own site and group; at a single site it takes no part in the correction (Holm).</p>\n"_html +
       families_html(d);
   for (std::size_t i = 0; i < d.rounds.size(); ++i) {
     const JointRound& round = d.rounds[i];
-    html += "<h2>Round " + std::to_string(i + 1) + ": " + round.effect +
-            "</h2>\n<p>p of the pooled family: " + p_text(round.family.p_value) + "; " + escaped(round.family.note) +
-            ".</p>\n";
+    html += "<h2>Round "_html + std::to_string(i + 1) + ": " + round.effect +
+            "</h2>\n<p>p of the pooled family: " + p_text(round.family.p_value) + "; " + round.family.note + ".</p>\n";
     if (!round.candidates.empty()) html += candidates_html(round);
   }
-  return html + "<h2>Ground</h2>\n" + ground_html(d) + "<p>talus " + std::string(version()) + ", seed " +
-         std::to_string(record.options.seed) + ", " + with_decimals(record.seconds, 0) + " s.</p></body></html>\n";
+  html += "<h2>Ground</h2>\n"_html + ground_html(d) + "<p>talus " + std::string(version()) + ", seed " +
+          std::to_string(record.options.seed) + ", " + with_decimals(record.seconds, 0) + " s.</p></body></html>\n";
+  return html.text();
 }
 
 std::string sites_summary(const SitesRecord& record) {

@@ -22,23 +22,28 @@ std::vector<double> ticks(double low, double high, int wanted) {
 Svg::Attribute::Attribute(std::string_view key, double number) : name(key), value(with_decimals(number, 1)) {}
 
 void Svg::element(std::string_view name, Attributes attributes) {
-  body_.append(tag(name, attributes)).append("/>").append(end_);
+  add_tag(body_, name, attributes);
+  body_ += "/>";
+  body_ += end_;
 }
 
 void Svg::words(Attributes attributes, std::string_view text) {
-  body_.append(tag("text", attributes)).append(">").append(escaped(text)).append("</text>").append(end_);
+  add_tag(body_, "text", attributes);
+  body_ += ">"_html + text + "</text>" + end_;
 }
 
-std::string Svg::drawing(Attributes attributes, std::string_view head) const {
-  return tag("svg", attributes).append(">").append(end_).append(head).append(body_).append("</svg>\n");
+Markup Svg::drawing(Attributes attributes, const Markup& head) const {
+  Markup svg;
+  add_tag(svg, "svg", attributes);
+  return svg + ">" + end_ + head + body_ + "</svg>\n";
 }
 
-std::string Svg::tag(std::string_view name, Attributes attributes) const {
-  std::string text = "<";
-  text += name;
+void Svg::add_tag(Markup& to, std::string_view name, Attributes attributes) const {
+  to += "<";
+  to += name;
+  const std::string_view quote(&quote_, 1);
   for (const Attribute& attribute : attributes)
-    ((text.append(" ").append(attribute.name) += '=') += quote_).append(attribute.value) += quote_;
-  return text;
+    (to += " "_html + attribute.name + "=" + quote).add_value(attribute.value) += quote;
 }
 
 }  // namespace talus::io

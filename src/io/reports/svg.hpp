@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "markup.hpp"
+
 namespace talus::io {
 
 /// A scale of a plot: `first` lies at the place `from` of the drawing, `last` at `from + length` [px].
@@ -18,7 +20,8 @@ std::vector<double> ticks(double low, double high, int wanted);
 /// A drawing as text, element by element, for a file of its own or for a page.
 class Svg {
  public:
-  /// An attribute of an element. Numbers are lengths, to a tenth of a pixel; whole ones stay whole.
+  /// An attribute of an element; its value is escaped. Numbers are lengths, to a tenth of a pixel; whole ones stay
+  /// whole.
   struct Attribute {
     Attribute(std::string_view key, double number);
     Attribute(std::string_view key, int number) : name(key), value(std::to_string(number)) {}
@@ -35,14 +38,14 @@ class Svg {
   void element(std::string_view name, Attributes attributes);
   void words(Attributes attributes, std::string_view text);  ///< <text>
   /// The drawing: the <svg> element with all that was added.
-  /// @param head  text before the elements, such as a <style>
-  std::string drawing(Attributes attributes, std::string_view head = "") const;
+  /// @param head  before the elements, such as a <style>
+  Markup drawing(Attributes attributes, const Markup& head = {}) const;
 
  private:
-  std::string tag(std::string_view name, Attributes attributes) const;
+  void add_tag(Markup& to, std::string_view name, Attributes attributes) const;
   char quote_;
   std::string_view end_;
-  std::string body_;
+  Markup body_;
 };
 
 }  // namespace talus::io

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "io/gdal/cause_of_failure.hpp"
+#include "io/gdal/regular_file.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/files/output_folder.hpp"
 
@@ -62,7 +63,7 @@ void HazardWriter::fail() {
 }
 
 HazardReader::HazardReader(const std::filesystem::path& file) : name_(file.string()) {
-  if (std::error_code error; !std::filesystem::is_regular_file(file, error)) fail();
+  if (const auto fault = fault_of_file(name_)) throw InputError(name_ + ": " + *fault);
   stream_ = VSIFOpenL(gzip_name(file).c_str(), "rb");
   if (stream_ == nullptr) fail();
 }

@@ -5,7 +5,9 @@
 #include <fstream>
 
 #include "io/files/json.hpp"
+#include "io/gdal/regular_file.hpp"
 #include "talus/base/version.hpp"
+#include "talus/io/gdal/input_access.hpp"
 #include "talus/simulate/tally/histogram.hpp"
 
 namespace talus::io {
@@ -168,6 +170,7 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   if (!scenario.barriers.empty()) json["barriers"] = barriers_of(scenario, totals);
   json["settings"] = settings_of(loaded);
   json["inputs"] = json_of(loaded.inputs);
+  if (network_is_allowed()) json["network"] = "allowed";
   json["reprojections"] = reprojections_of(loaded);
   if (!loaded.notes.empty()) json["notes"] = loaded.notes;
   json["warnings"] = record.warnings;

@@ -1,10 +1,12 @@
 #include "named_file.hpp"
 
 #include "io/gdal/dataset.hpp"
+#include "io/gdal/input_name.hpp"
 
 namespace talus::io {
 
 std::string absolute_path(const std::string& given, const std::filesystem::path& base) {
+  if (given.starts_with("/vsi")) return given;
   const std::filesystem::path path = (base / given).lexically_normal();
   std::error_code none;
   if (!std::filesystem::exists(path, none) && given.find(':') != std::string::npos) return given;
@@ -15,13 +17,12 @@ void check_files(const std::vector<const NamedFile*>& files, std::vector<std::st
   start_gdal();
   for (const NamedFile* file : files) {
     if (file->path.empty()) continue;
+    const InputName name = looked_up(file->path);
     VSIStatBufL status;
-    std::error_code none;
-    const bool local = std::filesystem::path(file->path).is_absolute() && file->path.rfind("/vsi", 0) != 0;
-    if (local && !std::filesystem::exists(file->path, none))
+    if (!name.fault.empty())
+      faults.push_back(file->where + ": " + name.fault);
+    else if (name.network ? VSIStatL(name_for_gdal(file->path).c_str(), &status) != 0 : name.file.empty())
       faults.push_back(file->where + ": no such file (" + file->path + ")");
-    if (file->path.rfind("/vsi", 0) == 0 && VSIStatL(file->path.c_str(), &status) != 0)
-      faults.push_back(file->where + ": no such file");
   }
 }
 

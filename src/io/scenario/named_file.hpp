@@ -11,11 +11,11 @@ struct NamedFile {
   std::string where;  ///< "scenario.toml:3: dem = 'dem.tif'" or "flag --dem = 'dem.tif'", for messages
 };
 
-/// The absolute path of a file given relative to `base`. Names that are no files (PG:..., WFS:...) stay as they are,
-/// for GDAL.
+/// The absolute path of a file given relative to `base`. Names that are no files (/vsizip/..., NETCDF:..., https:...)
+/// stay as they are, for GDAL.
 std::string absolute_path(const std::string& given, const std::filesystem::path& base);
 
-/// Adds a fault for each file that is named and not there.
+/// Adds a fault for each file that is named and not there, or not allowed (docs/security.md).
 void check_files(const std::vector<const NamedFile*>& files, std::vector<std::string>& faults);
 
 }  // namespace talus::io

@@ -11,6 +11,7 @@
 #include "surface_key.hpp"
 #include "table_reader.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/gdal/input_access.hpp"
 #include "talus/physics/effects/registry.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 
@@ -145,6 +146,7 @@ ScenarioSpec read_profile_spec(const RunFlags& flags, std::vector<std::string>& 
   spec.default_ground = {
       "default", std::string(kDefaultProfilePreset), find_preset(kDefaultProfilePreset).ground, {}, {}, {}};
   spec.scenario = {std::filesystem::absolute(flags.scenario).lexically_normal().string(), flags.scenario};
+  allow_folder_of(flags.scenario);
   const TomlValue root = read_toml(flags.scenario, flags.scenario);
   ProfileReader reader(spec, flags.scenario, faults);
   reader.read(TableReader(&root, "", flags.scenario, faults));

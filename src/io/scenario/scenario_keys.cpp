@@ -13,6 +13,7 @@
 #include "surface_key.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/gdal/input_access.hpp"
 
 namespace talus::io {
 
@@ -309,6 +310,7 @@ ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) 
   start_with_preset(spec, flags, faults);
   if (!flags.scenario.empty()) {
     spec.scenario = {std::filesystem::absolute(flags.scenario).lexically_normal().string(), flags.scenario};
+    allow_folder_of(flags.scenario);
     SpecReader(spec, flags.scenario, flags.scenario, "scenario", faults)
         .read(read_toml(flags.scenario, flags.scenario));
   }

@@ -3,16 +3,18 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
+#include "io/gdal/regular_file.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
 
 namespace talus::io {
 
 namespace {
+
+constexpr int kDeepest = 16;              // tables, lists and parts of a dotted key in one another
+constexpr std::size_t kLongestKey = 200;  // [byte]
 
 TomlValue converted(const toml::node& node);
 
@@ -52,6 +54,77 @@ TomlValue converted(const toml::node& node) {
   return value;
 }
 
+[[noreturn]] void refuse_depth(const std::string& name, int line) {
+  throw InputError(name + ":" + std::to_string(line) + ": tables and lists in one another, more than " +
+                   std::to_string(kDeepest) + " deep: no key of Talus lies so deep");
+}
+
+/// The places of a TOML text that are no string and no comment, one by one.
+class Bare {
+ public:
+  explicit Bare(std::string_view text) : text_(text) {}
+
+  /// The next character outside of strings and comments; 0 at the end.
+  char next() {
+    while (at_ < text_.size()) {
+      const char c = text_[at_];
+      if (c == '"' || c == '\'')
+        skip_string(c);
+      else if (c == '#')
+        at_ = std::min(text_.find('\n', at_), text_.size());
+      else
+        return ++at_, line_ += c == '\n' ? 1 : 0, c;
+    }
+    return '\0';
+  }
+  int line() const { return line_; }
+
+ private:
+  void skip_string(char quote) {
+    const bool block = text_.substr(at_, 3) == std::string(3, quote);
+    at_ += block ? 3 : 1;
+    for (; at_ < text_.size(); ++at_) {
+      const char c = text_[at_];
+      if (c == '\n' && !block) return;  // not closed: the parser says so
+      line_ += c == '\n' ? 1 : 0;
+      if (c == '\\' && quote == '"') {
+        ++at_;
+      } else if (c == quote && (!block || text_.substr(at_, 3) == std::string(3, quote))) {
+        at_ += block ? 3 : 1;
+        return;
+      }
+    }
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  int line_ = 1;
+};
+
+/// Throws InputError for tables, lists and dotted keys so deep in one another that the parser, which calls itself,
+/// would run out of memory for its calls.
+void check_depth(std::string_view text, const std::string& name) {
+  Bare bare(text);
+  int brackets = 0, dots = 0;
+  for (char c = bare.next(); c != '\0'; c = bare.next()) {
+    if (c == '[' || c == '{') ++brackets;
+    if (c == ']' || c == '}') --brackets;
+    if (c == '.') ++dots;
+    if (c == '\n' || c == '=' || c == ',' || c == '[' || c == '{') dots = 0;
+    if (brackets > kDeepest || dots > kDeepest) refuse_depth(name, bare.line());
+  }
+}
+
+void check_keys(const TomlValue& value, const std::string& name) {
+  for (const auto& [key, member] : value.members) {
+    if (key.size() > kLongestKey)
+      throw InputError(name + ":" + std::to_string(member.line) + ": key '" + shortened(key, 40) + "' has " +
+                       std::to_string(key.size()) + " letters, must have at most " + std::to_string(kLongestKey));
+    check_keys(member, name);
+  }
+  for (const TomlValue& item : value.items) check_keys(item, name);
+}
+
 }  // namespace
 
 const TomlValue* TomlValue::find(const std::string& key) const {
@@ -67,7 +140,7 @@ std::string TomlValue::shown() const {
     case Kind::Number:
       return text_of(number);
     case Kind::Text:
-      return "'" + text + "'";
+      return "'" + shortened(text, 200) + "'";
     case Kind::List: {
       std::vector<std::string> shown;
       for (std::size_t i = 0; i < items.size() && i < 6; ++i) shown.push_back(items[i].shown());
@@ -82,13 +155,12 @@ std::string TomlValue::shown() const {
 }
 
 TomlValue read_toml(const std::string& path, const std::string& name) {
-  std::error_code none;
-  std::ifstream file(path, std::ios::binary);
-  if (!file.is_open() || std::filesystem::is_directory(path, none))
-    throw InputError(name + ": cannot be read, must be a TOML file");
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::string text = read_file(path, name, "a TOML file", kMostToml);
+  check_depth(text, name);
   try {
-    return converted(toml::parse(text));
+    TomlValue tree = converted(toml::parse(text));
+    check_keys(tree, name);
+    return tree;
   } catch (const toml::parse_error& error) {
     std::string what(error.description());
     std::replace(what.begin(), what.end(), '\n', ' ');

@@ -1,0 +1,151 @@
+#include "input_name.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include "regular_file.hpp"
+#include "talus/base/error.hpp"
+#include "talus/io/gdal/input_access.hpp"
+#include "vrt_check.hpp"
+
+namespace talus::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::array<std::string_view, 3> kArchives{"/vsizip/", "/vsitar/", "/vsigzip/"};
+constexpr std::array<std::string_view, 8> kNetworks{"/vsicurl", "/vsis3",  "/vsigs",    "/vsiaz",
+                                                    "/vsiadls", "/vsioss", "/vsiswift", "/vsiwebhdfs"};
+constexpr std::array<std::string_view, 3> kWeb{"http://", "https://", "ftp://"};
+/// Names of a part of a file: "NETCDF:file.nc:height".
+constexpr std::array<std::string_view, 3> kParts{"NETCDF:", "GTIFF_DIR:", "GPKG:"};
+
+template <std::size_t N>
+bool begins_with_one(const std::string& name, const std::array<std::string_view, N>& starts) {
+  return std::ranges::any_of(starts, [&](std::string_view start) { return name.starts_with(start); });
+}
+
+InputName refused(std::string fault) {
+  InputName name;
+  name.fault = std::move(fault);
+  return name;
+}
+
+InputName of_network(const std::string& name) {
+  if (network_is_allowed()) return {"", true, ""};
+  return refused(std::string(begins_with_one(name, kWeb) ? "is an address" : "names the network") +
+                 ", must be a local file: download it first, or give --allow-network");
+}
+
+/// A folder of ESRI, all of whose files are regular.
+bool is_geodatabase(const fs::path& path) {
+  std::error_code none;
+  if (path.extension() != ".gdb" || !fs::is_directory(path, none)) return false;
+  for (const auto& entry : fs::directory_iterator(path, none))
+    if (!entry.is_regular_file(none)) return false;
+  return true;
+}
+
+/// A file beside `path` that GDAL may read with it (dem.tif.aux.xml, dem.tfw) and that is no regular file.
+std::optional<std::string> fault_beside(const fs::path& path) {
+  std::error_code none;
+  const std::string stem = path.stem().string();
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  for (const auto& entry : fs::directory_iterator(folder, none)) {
+    const std::string file = entry.path().filename().string();
+    if (!file.starts_with(stem) || entry.is_regular_file(none) || entry.is_directory(none)) continue;
+    if (const auto fault = fault_of_file(entry.path().string())) return "lies beside " + file + ", which " + *fault;
+  }
+  return std::nullopt;
+}
+
+InputName of_local(const std::string& path) {
+  if (is_geodatabase(path)) return {path, false, ""};
+  if (const auto fault = fault_of_file(path)) return refused(*fault);
+  if (const auto fault = fault_beside(path)) return refused(*fault);
+  return {path, false, ""};
+}
+
+/// The first file on the way down a path that goes on inside of an archive.
+InputName of_archive(const std::string& path) {
+  std::error_code none;
+  for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
+    const std::string head = path.substr(0, end);
+    if (!fs::exists(head, none)) return {};
+    if (!fs::is_directory(head, none)) return of_local(head);
+    if (end == std::string::npos) return refused("is a folder, must be a file in an archive");
+  }
+}
+
+/// A name of GDAL's virtual files.
+InputName of_virtual(std::string name) {
+  const std::string whole = name;
+  bool archive = false;
+  while (begins_with_one(name, kArchives)) {
+    archive = true;
+    name.erase(0, name.find('/', 1) + 1);
+    if (name.starts_with('{')) name.erase(0, 1), name.erase(std::min(name.size(), name.find('}')), 1);
+    if (name.starts_with("vsi")) name.insert(name.begin(), '/');
+  }
+  if (begins_with_one(name, kNetworks)) return of_network(name);
+  if (archive && !name.starts_with("/vsi")) return of_archive(name);
+  return refused("is no file that is read, must be a local file, or one in an archive (/vsizip/, /vsitar/, /vsigzip/)");
+}
+
+bool names_part(const std::string& name) {
+  std::string start = name.substr(0, name.find(':') + 1);
+  std::ranges::transform(start, start.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return std::ranges::count(kParts, std::string_view(start)) > 0;
+}
+
+/// The file in "NETCDF:file.nc:height" or "GTIFF_DIR:2:dem.tif": the longest stretch between colons that is one.
+InputName of_part(const std::string& name, const fs::path& base) {
+  std::vector<std::size_t> colons;
+  for (std::size_t at = name.find(':'); at != std::string::npos; at = name.find(':', at + 1)) colons.push_back(at);
+  colons.push_back(name.size());
+  std::error_code none;
+  for (std::size_t from = 0; from + 1 < colons.size(); ++from)
+    for (std::size_t to = colons.size() - 1; to > from; --to) {
+      std::string file = name.substr(colons[from] + 1, colons[to] - colons[from] - 1);
+      std::erase(file, '"');
+      if (file.empty()) continue;
+      const InputName found = file.starts_with("/vsi") || begins_with_one(file, kWeb)
+                                  ? looked_up(file)
+                                  : of_local((base / file).lexically_normal().string());
+      if (!found.fault.empty() || found.network) return found;
+      if (fs::is_regular_file(found.file, none)) return found;
+    }
+  return {};
+}
+
+}  // namespace
+
+InputName looked_up(const std::string& name, const fs::path& base) {
+  std::error_code none;
+  if (name.starts_with('<')) return refused("is a text, must be the name of a file");
+  if (name.starts_with("/vsi")) return of_virtual(name);
+  if (fs::exists(name, none)) return of_local(name);
+  if (names_part(name)) return of_part(name, base);
+  if (begins_with_one(name, kWeb)) return of_network(name);
+  if (name.starts_with("file:")) return refused("is an address, must be the path of a file: leave out file://");
+  if (name.find(':') != std::string::npos)
+    return refused(
+        "must be a file that is there (databases and services are not read): export it first, with gdal_translate or "
+        "ogr2ogr, and name that file");
+  return {};
+}
+
+void check_input(const std::string& name) {
+  const InputName found = looked_up(name);
+  if (!found.fault.empty()) throw InputError(name + ": " + found.fault);
+  if (!found.file.empty() && !names_part(name)) check_vrt(name, found.file);
+}
+
+std::string name_for_gdal(const std::string& name) {
+  return begins_with_one(name, kWeb) ? "/vsicurl/" + name : name;
+}
+
+}  // namespace talus::io

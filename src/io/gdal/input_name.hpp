@@ -1,0 +1,29 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace talus::io {
+
+/// The folders that `allow_folder` has named.
+const std::vector<std::filesystem::path>& allowed_folders();
+
+/// What the name of an input stands for.
+struct InputName {
+  std::string file;      ///< the local file behind it: a.zip of "/vsizip/a.zip/dem.tif"; empty if there is none
+  bool network = false;  ///< it is an address, and the network is allowed
+  std::string fault;     ///< why it is refused; empty: it is allowed, if it is there
+};
+
+/// Looks at a name without opening anything.
+/// @param base  the folder of relative names of parts, as in NETCDF:file.nc:height; empty: the current one
+InputName looked_up(const std::string& name, const std::filesystem::path& base = {});
+
+/// Throws InputError if the name of an input is not allowed, if it stands for no regular file, or if it is a VRT that
+/// names what it may not. Called before GDAL opens the name.
+void check_input(const std::string& name);
+
+/// The name as GDAL takes it: an address of the web becomes one of GDAL's files.
+std::string name_for_gdal(const std::string& name);
+
+}  // namespace talus::io

@@ -1,0 +1,81 @@
+#include "regular_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+#include "talus/base/error.hpp"
+
+namespace talus::io {
+
+namespace {
+
+class OpenFile {
+ public:
+  /// Does not wait for the other end of a pipe.
+  explicit OpenFile(const std::string& path)
+      : file_(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY)) {}
+  ~OpenFile() {
+    if (file_ >= 0) close(file_);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  int number() const { return file_; }
+
+ private:
+  int file_;
+};
+
+/// Says what a file is that is no regular one; empty for a regular file.
+std::string special_kind(mode_t mode) {
+  if (S_ISREG(mode)) return "";
+  if (S_ISDIR(mode)) return "a folder";
+  if (S_ISFIFO(mode)) return "a pipe";
+  if (S_ISSOCK(mode)) return "a socket";
+  return "a device";
+}
+
+std::string megabytes(std::size_t bytes) {
+  return std::to_string(bytes >> 20U) + " MB";
+}
+
+}  // namespace
+
+std::optional<std::string> fault_of_file(const std::string& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0) return std::nullopt;
+  const std::string kind = special_kind(status.st_mode);
+  if (kind.empty()) return std::nullopt;
+  return "is " + kind + ", must be a regular file: " +
+         (S_ISDIR(status.st_mode) ? "name a file in it" : "write its content to a file, and name that");
+}
+
+std::string read_file(const std::string& path, const std::string& name, const std::string& what, std::size_t most) {
+  const auto refuse = [&](const std::string& fault) { throw InputError(name + ": cannot be read: " + fault); };
+  if (const auto fault = fault_of_file(path)) refuse(*fault + ", " + what);
+  const OpenFile file(path);
+  struct stat status {};
+  if (file.number() < 0 || fstat(file.number(), &status) != 0)
+    throw InputError(name + ": cannot be read, must be " + what);
+  if (!S_ISREG(status.st_mode)) refuse("is no regular file, must be " + what);
+  const auto size = static_cast<std::size_t>(status.st_size);
+  if (size > most)
+    refuse("has " + megabytes(size) + ", must have at most " + megabytes(most) + ": is it " + what + "?");
+  std::string text;
+  text.resize(size);
+  std::size_t done = 0;
+  while (done < size) {
+    const ssize_t count = read(file.number(), text.data() + done, size - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw InputError(name + ": cannot be read, must be " + what);
+    if (count == 0) break;  // has become shorter
+    done += static_cast<std::size_t>(count);
+  }
+  text.resize(done);
+  return text;
+}
+
+}  // namespace talus::io
