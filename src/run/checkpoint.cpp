@@ -10,6 +10,7 @@
 #include "checkpoint_tally.hpp"
 #include "io/files/checksum.hpp"
 #include "io/files/json.hpp"
+#include "io/gdal/regular_file.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/files/output_folder.hpp"
@@ -267,9 +268,10 @@ void Checkpoint::read_manifest() {
   if (!fs::exists(file, none))
     throw InputError(folder_.string() + ": has no " + kCheckpointManifest +
                      ", must be what talus run --part has written");
+  const std::string text = io::read_file(file.string(), file.string(), "the record of a part", io::kMostRecord);
   std::string plan;
   try {
-    Json json = io::read_record(file);
+    Json json = io::parsed_record(text);
     const std::string sha256 = json.at("sha256");
     json.erase("sha256");
     if (sha256 != io::sha256_of_bytes(text_of(json))) throw InputError("its checksum is another");

@@ -298,7 +298,7 @@ class Forged(RunCase):
         self.refused("part.json", "256 MB")
         os.remove(self.path("part1/part.json"))
         os.mkfifo(self.path("part1/part.json"))
-        self.refused("part.json", "no regular file")
+        self.refused("part.json", "is a pipe")
 
     def test_lengths_of_a_tally(self):
         for text in (struct.pack("<QQ", 0, 2**62), struct.pack("<QQ", 2**40, 8) + b"x" * 8, struct.pack("<QQ", 0, 3) + b"\xff" * 3):

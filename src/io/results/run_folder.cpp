@@ -1,9 +1,9 @@
 #include "talus/io/results/run_folder.hpp"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "io/files/json.hpp"
+#include "io/gdal/regular_file.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/block_sizes.hpp"
@@ -68,12 +68,13 @@ std::optional<std::string> coefficient_note(const std::filesystem::path& folder)
 RunSummary read_run(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "run.json";
   std::error_code none;
-  if (!std::filesystem::is_regular_file(file, none) || !std::ifstream(file, std::ios::binary).is_open())
+  if (!std::filesystem::exists(file, none))
     throw InputError(folder.string() +
                      ": has no run.json that can be read, must be a folder that talus run has written");
+  const std::string text = read_file(file.string(), file.string(), "a record of talus run", kMostRecord);
   RunSummary run;
   try {
-    const Json json = read_record(file);
+    const Json json = parsed_record(text);
     run.released = json.at("released").get<double>();
     run.density = setting_of(json, "blocks.density");
     run.cell = json.at("grid").at("cell_x_m").get<double>();
