@@ -32,6 +32,12 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags) {
   command.add_option("scenario", flags.scenario, "scenario file (TOML)");
   command.add_option("--dem", flags.dem, "terrain: a raster in a projected system in metres");
   command.add_option("--sources", flags.sources, "where blocks start: polygons, lines or points");
+  command.add_option("--sources-layer", flags.sources_layer,
+                     "the layer of the sources, of a file with several; or --sources FILE|layername=NAME");
+  command.add_option("--screens", flags.screens, "lines: what crosses them is recorded");
+  command.add_option("--zones", flags.zones,
+                     "ground: polygons, or a raster; what it names is a zone of the scenario, or a preset");
+  command.add_option("--zone-field", flags.zone_field, "the field of --zones that names the zone or preset; zone");
   command
       .add_option("--field", flags.fields,
                   "NAME=COLUMN: a field of the sources under another name, as release_height=HEIGHT; may be repeated")
@@ -39,6 +45,10 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags) {
   command.add_option("--preset", flags.preset, "parameter set of the ground; talus presets lists them");
   command.add_option("--surface", flags.surface, "bilinear or creased (creased): heights between the cells' centres");
   command.add_option("--diameter", flags.diameter, "of the blocks [m]");
+  command.add_option("--frequency", flags.frequency, "events per year of all sources together, for talus hazard");
+  command.add_option("--thresholds", flags.thresholds, "energies of the maps of exceedance [kJ], as 30,300 (default)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command.add_option("--trajectories", flags.trajectories, "per source cell");
   command.add_option("--seed", flags.seed, "of the random numbers")->check(seed_number());
   command.add_flag("--energy-total", flags.energy_total, "also energy_total.tif: the energy with rotation");

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "io/gdal/dataset.hpp"
+#include "io/gdal/layer_name.hpp"
 #include "talus/base/error.hpp"
 
 namespace talus::io {
@@ -57,8 +58,9 @@ std::vector<std::string> parts_of_shapefile(const std::string& path) {
 
 }  // namespace
 
-std::vector<std::string> files_of_input(const std::string& path) {
+std::vector<std::string> files_of_input(const std::string& name) {
   std::error_code none;
+  const std::string path = file_of_layer(name);
   if (fs::is_directory(path, none)) return files_in_folder(path);
   const std::string end = path.size() > 4 ? path.substr(path.size() - 4) : "";
   std::vector<std::string> files{path}, others;

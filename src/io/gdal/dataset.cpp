@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "input_name.hpp"
+#include "layer_name.hpp"
 #include "local_gdal.hpp"
 #include "talus/base/error.hpp"
 #include "vector_file.hpp"
@@ -85,8 +86,9 @@ bool GdalMessages::failed() const {
 
 Dataset open_dataset(const std::string& path, unsigned kinds) {
   GdalMessages messages;
-  check_input(path);
-  if ((kinds & GDAL_OF_VECTOR) != 0) check_vector_file(path);
+  const std::string file = (kinds & GDAL_OF_VECTOR) != 0 ? file_of_layer(path) : path;
+  check_input(file);
+  if ((kinds & GDAL_OF_VECTOR) != 0) check_vector_file(file);
   // A text table does not declare its types and geometry: GDAL has to guess them.
   const char* const csv[] = {"AUTODETECT_TYPE=YES",
                              "AUTODETECT_SIZE_LIMIT=0",
@@ -95,8 +97,8 @@ Dataset open_dataset(const std::string& path, unsigned kinds) {
                              "Y_POSSIBLE_NAMES=y",
                              "KEEP_GEOM_COLUMNS=NO",
                              nullptr};
-  const char* const* options = ends_with(path, ".csv") ? csv : nullptr;
-  Dataset dataset(GDALDataset::Open(name_for_gdal(path).c_str(), kinds | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
+  const char* const* options = ends_with(file, ".csv") ? csv : nullptr;
+  Dataset dataset(GDALDataset::Open(name_for_gdal(file).c_str(), kinds | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
                                     nullptr, options, nullptr));
   if (!dataset) {
     const char* kind = (kinds & GDAL_OF_RASTER) == 0   ? "vector layer"

@@ -5,13 +5,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <stdexcept>
 
 #include "csv_table.hpp"
+#include "layer_name.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 
 namespace talus::io {
+namespace {
+
+/// The layers of `talus sources`, of which polygons are what others take as sources.
+const std::vector<std::string> kOfSources{"source_polygons", "source_points"};
+
+}  // namespace
 
 OGREnvelope Parts::envelope() const {
   OGREnvelope all, one;
@@ -42,26 +50,43 @@ bool Layer::is_csv() const {
   return EQUAL(dataset_->GetDriverName(), "CSV");
 }
 
-void Layer::choose_layer() {
-  std::string others;
-  for (int i = 0; i < dataset_->GetLayerCount(); ++i) {
-    OGRLayer* layer = dataset_->GetLayer(i);
-    if (layer->GetGeomType() == wkbNone) continue;
-    if (layer_ == nullptr)
-      layer_ = layer;
-    else
-      others += (others.empty() ? "" : ", ") + std::string(layer->GetName());
-  }
-  if (layer_ == nullptr && is_csv() && dataset_->GetLayerCount() > 0) {
+std::vector<OGRLayer*> Layer::layers_with_geometry() const {
+  std::vector<OGRLayer*> layers;
+  for (int i = 0; i < dataset_->GetLayerCount(); ++i)
+    if (OGRLayer* layer = dataset_->GetLayer(i); layer->GetGeomType() != wkbNone) layers.push_back(layer);
+  return layers;
+}
+
+void Layer::refuse_without_geometry() {
+  if (is_csv() && dataset_->GetLayerCount() > 0) {
     layer_ = dataset_->GetLayer(0);
     throw InputError(path_ + ": does not say where its features lie: must have the columns x and y, or wkt; has " +
                      joined(field_names()));
   }
-  if (layer_ == nullptr) throw InputError(path_ + ": has no layer with geometry, must have polygons, lines or points");
-  if (!others.empty())
-    warnings_.push_back(path_ + ": has several layers: the first, " + layer_->GetName() +
-                        ", is used; not used: " + others);
+  throw InputError(path_ + ": has no layer with geometry, must have polygons, lines or points");
+}
+
+void Layer::choose_layer() {
+  const std::vector<OGRLayer*> layers = layers_with_geometry();
+  if (layers.empty()) refuse_without_geometry();
+  std::vector<std::string> names;
+  for (OGRLayer* layer : layers) names.emplace_back(layer->GetName());
+  const NamedLayer wanted = named_layer(path_);
+  if (!wanted.filter.empty())
+    throw InputError(path_ + ": a filter (|subset=) is not read: export the selected features to a file of their own");
+  const std::string given = wanted.number >= 0 && wanted.number < dataset_->GetLayerCount()
+                                ? dataset_->GetLayer(wanted.number)->GetName()
+                                : wanted.layer;
+  const bool asked = !wanted.layer.empty() || wanted.number >= 0;
+  if (!asked && names.size() > 1 && names != kOfSources)
+    throw InputError(wanted.file + ": has the layers " + joined(names) + ", must be told which: " +
+                     std::filesystem::path(wanted.file).filename().string() + "|layername=" + names.front());
+  const auto found = asked ? std::ranges::find(names, given) : names.begin();
+  if (found == names.end()) throw InputError(path_ + ": has no such layer with geometry" + known_names(given, names));
+  layer_ = layers[static_cast<std::size_t>(found - names.begin())];
   layer_->ResetReading();
+  if (!asked && names.size() > 1)
+    warnings_.push_back(path_ + ": its layer " + *found + " is read, " + names.back() + " is not");
 }
 
 Feature Layer::next() {

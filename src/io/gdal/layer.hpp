@@ -19,7 +19,8 @@ struct Parts {
   OGREnvelope envelope() const;
 };
 
-/// The first layer with geometry of a vector file, feature by feature on the grid of the DEM.
+/// A layer of a vector file, feature by feature on the grid of the DEM: the one that is named (`NamedLayer`), or the
+/// only one with geometry.
 class Layer {
  public:
   /// @param role  "sources", for the record of the transformation
@@ -54,6 +55,8 @@ class Layer {
   std::vector<std::string> warnings() const;
 
  private:
+  std::vector<OGRLayer*> layers_with_geometry() const;
+  [[noreturn]] void refuse_without_geometry();
   void choose_layer();
   bool is_csv() const;
   void collect(OGRGeometry& geometry, Parts& parts, const std::string& where);

@@ -32,15 +32,24 @@ class ZoneIndex {
   std::uint8_t at(const std::string& zone, const std::string& where) {
     const auto found = std::find(names_.begin(), names_.end(), zone);
     if (found == names_.end() && (zone == "default" || zone == request_.default_code)) return 0;
+    if (found == names_.end() && std::ranges::count(request_.presets, zone) > 0 && names_.size() < 255) {
+      names_.push_back(zone);
+      seen_.push_back(true);
+      return static_cast<std::uint8_t>(names_.size());
+    }
     if (found == names_.end())
       throw InputError(where + ": zone '" + zone + "' is not described, must be one of [" + request_.table +
                        "]: " + (names_.empty() ? "none is there" : joined(names_)) + ": " +
-                       (request_.table == "ground.zones" ? "add [ground.zones." + quoted(zone) + "] with a preset"
+                       (request_.table == "ground.zones" ? "add [ground.zones." + quoted(zone) +
+                                                               "] with a preset, or call it by a preset (talus presets)"
                                                          : "add " + quoted(zone) + " = \"NAME\" there"));
     const auto index = static_cast<std::size_t>(found - names_.begin());
     seen_[index] = true;
     return static_cast<std::uint8_t>(index + 1);
   }
+
+  /// The presets that were named, in the order of their first place.
+  std::vector<std::string> named_presets() const { return {names_.begin() + std::ssize(request_.names), names_.end()}; }
 
   void warn_unseen(std::vector<std::string>& warnings) const {
     for (std::size_t i = 0; i < seen_.size(); ++i)
@@ -94,6 +103,7 @@ void read_polygons(const ZoneRequest& request, const Terrain& terrain, ZoneLayer
       for_each_cell(polygon, grid, false, [&](int column, int row) { out.zones.at(column, row) = value; });
   }
   index.warn_unseen(out.warnings);
+  out.presets = index.named_presets();
   out.reprojections = layer.reprojections();
   for (std::string& line : layer.warnings()) out.warnings.push_back(std::move(line));
 }

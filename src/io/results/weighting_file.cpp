@@ -33,7 +33,7 @@ void apply_weighting(const std::string& file, Scenario& scenario) {
   ScenarioSpec spec;
   read_frequency(spec, top.table("frequency"), file);
   const FrequencyRules& given = spec.values.frequency;
-  if (!std::isnan(given.per_area) || !std::isnan(given.scale)) {
+  if (!std::isnan(given.total) || !std::isnan(given.per_area) || !std::isnan(given.scale)) {
     scenario.frequency = {};
     for (SourceFeature& feature : scenario.features) feature.frequency = kNotGiven;
     for (BlockClass& block : scenario.blocks.classes) block.frequency = kNotGiven;

@@ -36,6 +36,10 @@ void read_frequency(ScenarioSpec& spec, TableReader table, const std::string& or
       table.fault("by_true_area", *value, "must be true or false");
     spec.origins["frequency.by_true_area"] = origin;
   }
+  if (const auto value = table.number("total", bounds_of("frequency.total"))) {
+    rules.total = *value;
+    spec.origins["frequency.total"] = origin;
+  }
   if (const auto value = table.number("per_area", bounds_of("frequency.per_area"))) {
     rules.per_area = *value;
     spec.origins["frequency.per_area"] = origin;

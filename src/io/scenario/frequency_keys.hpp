@@ -4,7 +4,7 @@
 
 namespace talus::io {
 
-/// Reads [frequency]: by_true_area, per_area, power_law = { A, b }. docs/hazard.md, "How often".
+/// Reads [frequency]: by_true_area, total, per_area, power_law = { A, b }. docs/hazard.md, "How often".
 ///
 /// @param origin  of what is given, for the record: "scenario"
 void read_frequency(ScenarioSpec& spec, TableReader table, const std::string& origin);

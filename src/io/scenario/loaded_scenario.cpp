@@ -16,6 +16,7 @@
 #include "talus/io/gdal/lines.hpp"
 #include "talus/io/gdal/vectors.hpp"
 #include "talus/io/gdal/zones.hpp"
+#include "talus/simulate/scenario/presets.hpp"
 #include "talus/terrain/pits.hpp"
 
 namespace talus::io {
@@ -59,7 +60,14 @@ void load_ground(ScenarioSpec& spec, const Terrain& terrain, Scenario& parts, Lo
   ZoneRequest request{spec.ground.path, spec.ground_field, {parts.zone_names.begin() + 1, parts.zone_names.end()}};
   for (const ZoneSpec& zone : spec.zones) request.codes.push_back(zone.code);
   request.default_code = spec.default_ground.code;
+  for (const Preset& preset : presets()) request.presets.emplace_back(preset.name);
   ZoneLayer layer = read_zones(request, terrain);
+  for (const std::string& name : layer.presets) {
+    spec.zones.push_back({name, name, find_preset(name).ground, {}, {}});
+    parts.cover.grounds.push_back(spec.zones.back().ground);
+    parts.zone_names.push_back(name);
+    out.notes.push_back(spec.ground.path + ": zone " + name + " is the preset of this name");
+  }
   parts.cover.zones = std::move(layer.zones);
   spec.ground_field = layer.field;
   take(out, layer);

@@ -2,6 +2,7 @@
 
 #include "io/gdal/dataset.hpp"
 #include "io/gdal/input_name.hpp"
+#include "io/gdal/layer_name.hpp"
 
 namespace talus::io {
 
@@ -9,7 +10,9 @@ std::string absolute_path(const std::string& given, const std::filesystem::path&
   if (given.starts_with("/vsi")) return given;
   const std::filesystem::path path = (base / given).lexically_normal();
   std::error_code none;
-  if (!std::filesystem::exists(path, none) && given.find(':') != std::string::npos) return given;
+  const std::string file = file_of_layer(given);
+  if (file.find(':') != std::string::npos && !std::filesystem::exists((base / file).lexically_normal(), none))
+    return given;
   return std::filesystem::absolute(path).lexically_normal().string();
 }
 
@@ -17,12 +20,13 @@ void check_files(const std::vector<const NamedFile*>& files, std::vector<std::st
   start_gdal();
   for (const NamedFile* file : files) {
     if (file->path.empty()) continue;
-    const InputName name = looked_up(file->path);
+    const std::string path = file_of_layer(file->path);
+    const InputName name = looked_up(path);
     VSIStatBufL status;
     if (!name.fault.empty())
       faults.push_back(file->where + ": " + name.fault);
-    else if (name.network ? VSIStatL(name_for_gdal(file->path).c_str(), &status) != 0 : name.file.empty())
-      faults.push_back(file->where + ": no such file (" + file->path + ")");
+    else if (name.network ? VSIStatL(name_for_gdal(path).c_str(), &status) != 0 : name.file.empty())
+      faults.push_back(file->where + ": no such file (" + path + ")");
   }
 }
 

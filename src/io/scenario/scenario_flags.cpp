@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 
+#include "io/gdal/layer_name.hpp"
 #include "surface_key.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
@@ -48,6 +50,17 @@ void lay_fields(ScenarioSpec& spec, const std::vector<std::string>& flags, std::
   }
 }
 
+/// --sources-layer NAME: the layer of the file of sources, also of one that the scenario names.
+void lay_sources_layer(ScenarioSpec& spec, const std::string& layer, std::vector<std::string>& faults) {
+  if (spec.sources.path.empty()) {
+    faults.push_back("flag --sources-layer = '" + layer +
+                     "': must come with --sources, or a scenario that has sources");
+    return;
+  }
+  spec.sources.path = file_of_layer(spec.sources.path) + "|layername=" + layer;
+  spec.origins["sources.file"] += ", flag --sources-layer";
+}
+
 }  // namespace
 
 void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults) {
@@ -70,6 +83,14 @@ void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::strin
   if (flags.sources)
     spec.sources = {absolute_path(*flags.sources, here), "flag --sources = '" + *flags.sources + "'"},
     spec.origins["sources.file"] = "flag --sources";
+  if (flags.sources_layer) lay_sources_layer(spec, *flags.sources_layer, faults);
+  if (flags.screens)
+    spec.screens = {absolute_path(*flags.screens, here), "flag --screens = '" + *flags.screens + "'"},
+    spec.origins["screens.file"] = "flag --screens";
+  if (flags.zones)
+    spec.ground = {absolute_path(*flags.zones, here), "flag --zones = '" + *flags.zones + "'"},
+    spec.origins["ground.file"] = "flag --zones";
+  if (flags.zone_field) spec.ground_field = *flags.zone_field, spec.origins["ground.field"] = "flag --zone-field";
   lay_fields(spec, flags.fields, faults);
   if (flags.surface)
     if (const auto kind = surface_of_flag(*flags.surface, faults)) {
@@ -85,6 +106,18 @@ void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::strin
   if (flags.bounds) {
     spec.values.output.bounds = true;
     spec.origins["output.bounds"] = "flag --bounds";
+  }
+  if (flags.frequency) {
+    spec.values.frequency.total = *flags.frequency;
+    spec.origins["frequency.total"] = "flag --frequency";
+    if (const auto rule = fault_of(bounds_of("frequency.total"), *flags.frequency))
+      faults.push_back("flag --frequency = " + text_of(*flags.frequency) + ": " + *rule);
+  }
+  if (!flags.thresholds.empty()) {
+    spec.values.output.energy_thresholds = flags.thresholds;
+    spec.origins["output.energy_thresholds"] = "flag --thresholds";
+    if (std::ranges::adjacent_find(flags.thresholds, std::greater_equal<>()) != flags.thresholds.end())
+      faults.push_back("flag --thresholds: must ascend, as 30,300");
   }
   if (flags.diameter) {
     if (const auto rule = fault_of(bounds_of("blocks.diameter"), *flags.diameter))

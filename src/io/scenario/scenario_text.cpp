@@ -139,6 +139,7 @@ class Lines {
   void frequency() {
     const FrequencyRules& rules = spec_.values.frequency;
     if (rules.by_true_area) add("frequency", "by_true_area", "true", "");
+    if (!std::isnan(rules.total)) add("frequency", "total", text_of(rules.total), "1/year");
     if (!std::isnan(rules.per_area)) add("frequency", "per_area", text_of(rules.per_area), "1/(m2 year)");
     if (!std::isnan(rules.scale))
       add("frequency", "power_law", "{ A = " + text_of(rules.scale) + ", b = " + text_of(rules.exponent) + " }",

@@ -16,8 +16,8 @@ constexpr std::int64_t kLeastWeight = 1024;  // below it the unit would change a
 
 /// The inputs that give frequencies.
 struct Sources {
-  bool features = false, classes = false, area = false, law = false;
-  int count() const { return int{features} + int{classes} + int{area} + int{law}; }
+  bool features = false, classes = false, total = false, area = false, law = false;
+  int count() const { return int{features} + int{classes} + int{total} + int{area} + int{law}; }
 };
 
 [[noreturn]] void refuse(const std::string& what) {
@@ -34,6 +34,7 @@ Sources sources_of(const Scenario& s) {
   Sources found;
   for (const SourceFeature& f : s.features) found.features = found.features || f.frequency > 0.0;  // zeros: not given
   for (const BlockClass& c : s.blocks.classes) found.classes = found.classes || !std::isnan(c.frequency);
+  found.total = !std::isnan(rules.total);
   found.area = !std::isnan(rules.per_area);
   found.law = !std::isnan(rules.scale);
   return found;
@@ -42,18 +43,19 @@ Sources sources_of(const Scenario& s) {
 void check_contradictions(const Scenario& s, const Sources& found) {
   if (found.count() > 1)
     refuse(std::string("is given by ") + (found.features ? "the field frequency of the sources, " : "") +
-           (found.classes ? "the classes of blocks.diameter, " : "") + (found.area ? "frequency.per_area, " : "") +
-           (found.law ? "frequency.power_law, " : "") + "must be given by one of them: leave out the others");
+           (found.classes ? "the classes of blocks.diameter, " : "") + (found.total ? "frequency.total, " : "") +
+           (found.area ? "frequency.per_area, " : "") + (found.law ? "frequency.power_law, " : "") +
+           "must be given by one of them: leave out the others");
   if (found.features)
     for (const SourceCell& cell : s.sources)
       if (std::isnan(s.features[cell.feature].frequency))
         refuse(
             feature_name(s, cell.feature) +
             " of the sources has no frequency, but others have; must be given for all (0 where nothing falls) or none");
-  if (!found.features && !found.area && !found.classes && !found.law && s.frequency.by_true_area)
+  if (found.count() == 0 && s.frequency.by_true_area)
     refuse(
         "by_true_area = true, but nothing says how often blocks fall; give the sources a field frequency, or "
-        "frequency.per_area, or frequency.power_law");
+        "frequency.total, frequency.per_area or frequency.power_law");
   if ((found.classes || found.law))
     for (const SourceCell& cell : s.sources)
       if (!std::isnan(s.features[cell.feature].diameter.low))
@@ -178,6 +180,7 @@ std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, bool further_r
     for (const BlockClass& c : s.blocks.classes) by_class.push_back(c.frequency);
   double events = 0.0;
   for (const double f : by_class) events += f;
+  if (found.total) events = s.frequency.total;
   const std::vector<double> cells = cell_frequencies(s, found, events), factors = class_factors(s, by_class);
   const double largest_factor = *std::ranges::max_element(factors);
 

@@ -145,6 +145,7 @@ void check_barriers(const Barriers& barriers) {
 
 void check_frequency(const Scenario& s) {
   const FrequencyRules& rules = s.frequency;
+  if (!std::isnan(rules.total)) check(bounds_of("frequency.total"), rules.total, "frequency.total");
   if (!std::isnan(rules.per_area)) check(bounds_of("frequency.per_area"), rules.per_area, "frequency.per_area");
   if (!std::isnan(rules.scale)) check(bounds_of("frequency.power_law.A"), rules.scale, "frequency.power_law.A");
   if (!std::isnan(rules.scale)) check(bounds_of("frequency.power_law.b"), rules.exponent, "frequency.power_law.b");

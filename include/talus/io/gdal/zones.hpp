@@ -8,8 +8,9 @@ namespace talus::io {
 
 /// Kinds of ground from a file.
 struct ZoneLayer {
-  Raster<std::uint8_t> zones;  ///< 0: the default ground; i + 1: names[i] of the request
-  std::string field;           ///< field of the polygons that named the zone; empty for a raster
+  Raster<std::uint8_t> zones;        ///< 0: the default ground; i + 1: names[i] of the request
+  std::string field;                 ///< field of the polygons that named the zone; empty for a raster
+  std::vector<std::string> presets;  ///< those of the request that the map names: zones names.size() + 1 and on
   std::vector<Reprojection> reprojections;
   std::vector<std::string> warnings;
 };
@@ -21,6 +22,7 @@ struct ZoneRequest {
   std::vector<std::string> names;      ///< names of the described zones in the file; at most 255
   std::vector<std::string> codes{};    ///< code of each zone in a raster; empty, or an empty text: its name
   std::string default_code{};          ///< code in a raster of the ground outside all zones; "default" is one too
+  std::vector<std::string> presets{};  ///< further names that a zone may have on the map
   std::string table = "ground.zones";  ///< table that describes the zones, for messages
 };
 

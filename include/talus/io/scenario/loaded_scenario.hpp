@@ -27,8 +27,10 @@ struct LoadedScenario {
 /// Settings of the command line. They override a scenario file or replace it.
 struct RunFlags {
   std::string scenario;  ///< path of the TOML file; empty: from flags alone
-  std::optional<std::string> dem, sources, preset, surface;
-  std::optional<double> diameter;  ///< [m]
+  std::optional<std::string> dem, sources, sources_layer, screens, zones, zone_field, preset, surface;
+  std::optional<double> diameter;   ///< [m]
+  std::optional<double> frequency;  ///< of all sources together [1/year]
+  std::vector<double> thresholds;   ///< of the energy [kJ]; empty: not given
   std::optional<std::uint32_t> trajectories;
   std::optional<std::uint64_t> seed;
   std::vector<std::string> fields;  ///< "diameter=Durchmesser": names of fields of the sources

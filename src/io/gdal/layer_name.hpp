@@ -1,0 +1,22 @@
+#pragma once
+#include <string>
+
+namespace talus::io {
+
+/// The name of a layer as QGIS writes it: "cliffs.gpkg|layername=north".
+struct NamedLayer {
+  std::string file;    ///< what stands before the first such "|"
+  std::string layer;   ///< its name; empty: not given
+  int number = -1;     ///< "|layerid=0"; -1: not given
+  std::string filter;  ///< "|subset=...", which is not read; empty: none
+};
+
+/// Takes such a name apart. A name without "|layername=" and its like is a file.
+NamedLayer named_layer(const std::string& name);
+
+/// The file of such a name.
+inline std::string file_of_layer(const std::string& name) {
+  return named_layer(name).file;
+}
+
+}  // namespace talus::io
