@@ -86,7 +86,7 @@ bool GdalMessages::failed() const {
 Dataset open_dataset(const std::string& path, unsigned kinds) {
   GdalMessages messages;
   check_input(path);
-  if ((kinds & GDAL_OF_VECTOR) != 0) check_vector_file(path);
+  if ((kinds & GDAL_OF_VECTOR) != 0) check_vector_file(name_for_gdal(path));
   // A text table does not declare its types and geometry: GDAL has to guess them.
   const char* const csv[] = {"AUTODETECT_TYPE=YES",
                              "AUTODETECT_SIZE_LIMIT=0",
