@@ -503,7 +503,7 @@ class LocalNames(Scenario):
             self.refused("names /etc/passwd")
 
     def test_archives_and_parts(self):
-        with zipfile.ZipFile(self.path("project/a.zip"), "w") as archive:
+        with zipfile.ZipFile(self.path("a.zip"), "w") as archive:
             archive.write(self.path("elsewhere/dem.tif"), "inside/dem.tif")
         for name in (f"/vsizip/{self.path('a.zip')}/inside/dem.tif", f"/vsizip/{{{self.path('a.zip')}}}/inside/dem.tif",
                      f"GTIFF_DIR:1:{self.path('elsewhere/dem.tif')}"):
