@@ -445,6 +445,34 @@ class LocalNames(Scenario):
         self.vrt("project/dem.vrt", "link.tif", 1)
         self.run_well(*arguments)
 
+    def test_a_run_on_a_vrt_can_be_repeated_from_its_own_scenario(self):
+        self.vrt("project/dem.vrt", "../elsewhere/dem.tif", 1)
+        run = self.path("run.toml")
+        with open(run, "w", encoding="utf-8") as file:
+            file.write(f'dem = "project/dem.vrt"\ntrajectories = 2\n[sources]\nfile = "{self.path("sources.gpkg")}"\n[blocks]\ndiameter = 1\n')
+        os.makedirs(self.path("far"))
+        out = self.path("far/out")
+        self.run_well("run", run, "-q", "-o", out)
+        self.run_well("trace", out + "/scenario.toml", "--source", "0", "--block", "0")
+        for part in "1", "2":
+            self.run_well("run", run, "-q", "--part", part + "/2", "-o", self.path("far/part" + part))
+        self.run_well("merge", self.path("far/merged"), self.path("far/part1"), self.path("far/part2"))
+        self.run_well("check", "--allow-folder", self.path("far"), run)  # the flag before the scenario
+
+    def test_a_vrt_behind_a_link_is_looked_at(self):
+        os.mkdir(self.path("project/sub"))
+        self.vrt("project/sub/inner.vrt", self.path("elsewhere/dem.tif"), 0)
+        self.vrt("project/sub/real.vrt", "inner.vrt", 1)
+        os.symlink("sub/real.vrt", self.path("project/dem.vrt"))
+        arguments = ["run", "--dem", self.path("project/dem.vrt"), "--sources", self.path("sources.gpkg"), "--diameter",
+                     "1", "-q", "-o", self.path("out")]
+        self.refused("names " + self.path("elsewhere/dem.tif"), "--allow-folder", arguments=arguments)
+        with zipfile.ZipFile(self.path("project/a.zip"), "w") as archive:
+            archive.write(self.path("project/sub/inner.vrt"), "inner.vrt")
+            archive.write(self.path("project/sub/real.vrt"), "real.vrt")
+        arguments[2] = "/vsizip/" + self.path("project/a.zip/real.vrt")  # two slashes: an absolute path
+        self.refused("names " + self.path("elsewhere/dem.tif"), arguments=arguments)
+
     def test_vrts_in_vrts(self):
         self.scenario(dem="project/dem.vrt")
         self.vrt("project/dem.vrt", "inner.vrt", 1)

@@ -5,7 +5,7 @@ import struct
 import unittest
 
 import numpy as np
-from osgeo import gdal, ogr
+from osgeo import gdal, ogr, osr
 
 from support import NORTH, WEST, Case, box, heights, rows_of, system, write_dem, write_features
 
@@ -199,6 +199,21 @@ class Shapefiles(InputCase):
         self.assertIn("release_height 7.5 m from release_he (1 of 1", self.run_well("check", *self.flags("c.shp")).stdout)
 
 
+KML = """<kml xmlns="http://www.opengis.net/kml/2.2"><Document><Schema name="s" id="s"><SimpleField type="float" name="diameter"/></Schema>
+<Placemark><name>a</name><ExtendedData><SchemaData schemaUrl="#s"><SimpleData name="diameter">1.5</SimpleData></SchemaData></ExtendedData>
+<Point><coordinates>{},{}</coordinates></Point></Placemark></Document></kml>"""
+
+
+class Kml(InputCase):
+    def test_its_fields_are_read(self):
+        """GDAL's older reader of KML knows only the name."""
+        world = system(4326)
+        world.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+        place = osr.CoordinateTransformation(system(2056), world).TransformPoint(X, Y)
+        self.write("a.kml", KML.format(*place[:2]))
+        self.assertIn("diameter 1.5 m", self.run_well("check", *self.flags("a.kml")).stdout)
+
+
 class Overwrite(InputCase):
     def content(self, out="out"):
         return {os.path.join(folder, name): os.stat(os.path.join(folder, name)).st_mtime_ns
@@ -236,6 +251,15 @@ class Overwrite(InputCase):
         self.write("out/barrier_notes.csv", "mine")
         self.fails(2, "barrier_notes.csv", arguments=[*arguments, "--overwrite"])
         self.assertTrue(os.path.exists(self.path("out/barrier_notes.csv")))
+        os.remove(self.path("out/barrier_notes.csv"))
+        self.write("out/barrier_lines.json", '{"type": "FeatureCollection"}')  # of a name like ours
+        self.write("out/.DS_Store", "")
+        self.fails(2, "folder: barrier_lines.json;", arguments=[*arguments, "--overwrite"])
+        os.remove(self.path("out/barrier_lines.json"))
+        os.makedirs(self.path("out/.sub.talus-77/unfinished"))
+        self.write("out/.sub.talus-77/unfinished/part.json", "{}")  # kept work of another run
+        self.fails(2, ".sub.talus-77/", arguments=[*arguments, "--overwrite"])
+        self.assertTrue(os.path.exists(self.path("out/.sub.talus-77/unfinished/part.json")))
 
     def test_parts_and_merged_results(self):
         for i in (1, 2):

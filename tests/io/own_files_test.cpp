@@ -19,20 +19,22 @@ using Names = std::vector<std::string>;
 TEST_F(OwnFiles, OfARunAreThoseThatItsRecordsList) {
   file("out/run.json", R"({"files": ["energy.tif", "energy.qml", "../mine.txt", 7]})");
   file("out/hazard.json", R"({"files": ["hazard_class.tif"]})");
-  for (const char* name :
-       {"energy.tif", "energy.qml", "hazard_class.tif", "energy.tif.aux.xml", "barrier_road.json", "barrier_road.csv",
-        "barrier_road_stretches.csv", ".hazard.talus-17/a.tif", "unfinished/part.json"})
+  for (const char* name : {"energy.tif", "energy.qml", "hazard_class.tif", "energy.tif.aux.xml", "barrier_road.csv",
+                           "barrier_road_stretches.csv", ".DS_Store", ".hazard.talus-17/a.tif", "unfinished/part.json"})
     file(std::string("out/") + name);
+  file("out/barrier_road.json", R"({"program": "talus", "screen": "road"})");
   EXPECT_EQ(foreign(), Names{});
-  for (const char* name : {"mine.txt", "velocity.tif", "velocity.tif.aux.xml", "barrier_notes.csv", "fitted.toml",
-                           ".git/config", "photos/a.jpg", "tally-1", "energy.tif.bak"})
+  for (const char* name : {"barrier_mine.json", "barrier_mine.csv", ".sub.talus-17/unfinished/part.json", "mine.txt",
+                           "velocity.tif", "velocity.tif.aux.xml", "barrier_notes.csv", "fitted.toml", ".git/config",
+                           "photos/a.jpg", "tally-1", "energy.tif.bak"})
     file(std::string("out/") + name);
-  EXPECT_EQ(foreign(), (Names{".git/", "barrier_notes.csv", "energy.tif.bak", "fitted.toml", "mine.txt", "photos/",
-                              "tally-1", "velocity.tif", "velocity.tif.aux.xml"}));
+  EXPECT_EQ(foreign(), (Names{".git/", ".sub.talus-17/", "barrier_mine.csv", "barrier_mine.json", "barrier_notes.csv",
+                              "energy.tif.bak", "fitted.toml", "mine.txt", "photos/", "tally-1", "velocity.tif",
+                              "velocity.tif.aux.xml"}));
   std::filesystem::remove(path("out/energy.tif"));
   std::filesystem::create_directory(path("out/energy.tif"));  // a folder is none of the files of a run
-  EXPECT_EQ(foreign()[2], "energy.tif.bak");
-  EXPECT_EQ(foreign()[3], "energy.tif/");
+  EXPECT_EQ(foreign()[5], "energy.tif.bak");
+  EXPECT_EQ(foreign()[6], "energy.tif/");
 }
 
 TEST_F(OwnFiles, OfPartsAndFitsAreKnownByTheirNames) {

@@ -191,7 +191,7 @@ int hazard(const Options& options) {
   record.width = options.width;
   record.curves = options.curves;
   for (const std::string& input : {options.objects, options.frequency})
-    if (!input.empty() && input.find(':') == std::string::npos && !fs::exists(input))  // PG:... is no file
+    if (!input.empty() && !input.starts_with("/vsi") && input.find(':') == std::string::npos && !fs::exists(input))
       throw talus::InputError(input + ": there is no such file");
   if (!options.matrix.empty()) record.matrix = talus::io::read_matrix(options.matrix);
   talus::io::StagedFiles staged(folder, "hazard.json", options.overwrite);

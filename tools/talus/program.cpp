@@ -49,12 +49,14 @@ void handle_signals() {
 void add_access(CLI::App& command) {
   command.add_flag_callback("--allow-network", talus::io::allow_network,
                             "inputs may be named by addresses (https://...); without it only local files are read");
-  command.add_option_function<std::vector<std::string>>(
-      "--allow-folder",
-      [](const std::vector<std::string>& folders) {
-        for (const std::string& folder : folders) talus::io::allow_folder(folder);
-      },
-      "a VRT may name files below this folder, not only below its own and the scenario's");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--allow-folder",
+          [](const std::vector<std::string>& folders) {
+            for (const std::string& folder : folders) talus::io::allow_folder(folder);
+          },
+          "a VRT may name files below this folder, not only below its own and the scenario's; may be repeated")
+      ->allow_extra_args(false);
 }
 
 std::vector<std::string> words;

@@ -31,9 +31,25 @@ bool is_one_of(const std::string& name, std::span<const std::string_view> names)
   return std::ranges::find(names, name) != names.end();
 }
 
-/// A hidden file or folder of a program that was killed while it wrote: `StagedPath`.
-bool is_staged(const std::string& name) {
-  return name.starts_with(".") && name.find(".talus-") != std::string::npos;
+/// What desktops leave in every folder that they show.
+constexpr std::array<std::string_view, 3> kOfDesktops{".DS_Store", "Thumbs.db", "desktop.ini"};
+
+/// A hidden file or folder of a program that was killed while it wrote (`StagedPath`), without kept work in it.
+bool is_staged(const fs::path& path) {
+  const std::string name = path.filename().string();
+  std::error_code none;
+  return name.starts_with(".") && name.find(".talus-") != std::string::npos &&
+         !fs::exists(path / OutputFolder::kWork / "part.json", none);
+}
+
+/// Whether a file is the design that `talus barrier` has written.
+bool is_design(const fs::path& file) {
+  try {
+    const Json json = read_record(file);
+    return json.is_object() && json.value("program", "") == "talus" && json.contains("screen");
+  } catch (const std::exception&) {
+    return false;
+  }
 }
 
 /// A folder of one of several campaigns: it holds a fitted model, and only files of such.
@@ -56,7 +72,7 @@ std::set<std::string> own_names(const fs::path& folder) {
     own.insert(kFitFiles.begin(), kFitFiles.end());
   for (const auto& entry : fs::directory_iterator(folder)) {  // of `talus barrier`: NAME.json says which
     const std::string name = entry.path().stem().string();
-    if (!name.starts_with("barrier_") || entry.path().extension() != ".json") continue;
+    if (!name.starts_with("barrier_") || entry.path().extension() != ".json" || !is_design(entry.path())) continue;
     for (const char* end : {".json", ".csv", "_stretches.csv"}) own.insert(name + end);
   }
   return own;
@@ -94,7 +110,7 @@ std::vector<std::string> foreign_in(const fs::path& folder) {
     const std::string name = entry.path().filename().string();
     const bool is_folder = entry.is_directory() && !entry.is_symlink();
     bool ours = is_folder ? name == OutputFolder::kWork : own.contains(name) || is_beside(name, own);
-    ours = ours || is_staged(name) || (fit && is_site(entry.path()));
+    ours = ours || is_staged(entry.path()) || is_one_of(name, kOfDesktops) || (fit && is_site(entry.path()));
     if (part && !is_folder)
       ours = ours || std::ranges::any_of(kPartFiles, [&](std::string_view start) { return name.starts_with(start); });
     if (!ours) foreign.push_back(name + (is_folder ? "/" : ""));

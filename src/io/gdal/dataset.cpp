@@ -88,7 +88,7 @@ Dataset open_dataset(const std::string& path, unsigned kinds) {
   GdalMessages messages;
   const std::string file = (kinds & GDAL_OF_VECTOR) != 0 ? file_of_layer(path) : path;
   check_input(file);
-  if ((kinds & GDAL_OF_VECTOR) != 0) check_vector_file(file);
+  if ((kinds & GDAL_OF_VECTOR) != 0) check_vector_file(name_for_gdal(file));
   // A text table does not declare its types and geometry: GDAL has to guess them.
   const char* const csv[] = {"AUTODETECT_TYPE=YES",
                              "AUTODETECT_SIZE_LIMIT=0",

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "regular_file.hpp"
 #include "talus/base/error.hpp"
@@ -43,7 +44,9 @@ InputName of_network(const std::string& name) {
 /// A folder of ESRI, all of whose files are regular.
 bool is_geodatabase(const fs::path& path) {
   std::error_code none;
-  if (path.extension() != ".gdb" || !fs::is_directory(path, none)) return false;
+  std::string end = path.extension().string();
+  std::ranges::transform(end, end.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (end != ".gdb" || !fs::is_directory(path, none)) return false;
   for (const auto& entry : fs::directory_iterator(path, none))
     if (!entry.is_regular_file(none)) return false;
   return true;
@@ -51,18 +54,20 @@ bool is_geodatabase(const fs::path& path) {
 
 /// A file beside `path` that GDAL may read with it (dem.tif.aux.xml, dem.tfw) and that is no regular file.
 std::optional<std::string> fault_beside(const fs::path& path) {
-  std::error_code none;
-  const std::string stem = path.stem().string();
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  for (const auto& entry : fs::directory_iterator(folder, none)) {
-    const std::string file = entry.path().filename().string();
-    if (!file.starts_with(stem) || entry.is_regular_file(none) || entry.is_directory(none)) continue;
-    if (const auto fault = fault_of_file(entry.path().string())) return "lies beside " + file + ", which " + *fault;
-  }
+  constexpr std::array<const char*, 4> kAfterName{".aux.xml", ".ovr", ".msk", ".xml"};
+  constexpr std::array<const char*, 16> kOfStem{".aux", ".rrd", ".hdr", ".prj", ".tfw", ".tifw", ".wld", ".tab",
+                                                ".dbf", ".shx", ".cpg", ".qix", ".sbn", ".csvt", ".clr", ".stx"};
+  std::vector<std::string> beside;
+  for (const char* end : kAfterName) beside.push_back(path.string() + end);
+  for (const char* end : kOfStem) beside.push_back(fs::path(path).replace_extension(end).string());
+  for (const std::string& file : beside)
+    if (const auto fault = fault_of_file(file))
+      return "lies beside " + fs::path(file).filename().string() + ", which " + *fault;
   return std::nullopt;
 }
 
-InputName of_local(const std::string& path) {
+InputName of_local(std::string path) {
+  if (path.size() > 1 && path.ends_with('/')) path.pop_back();
   if (is_geodatabase(path)) return {path, false, ""};
   if (const auto fault = fault_of_file(path)) return refused(*fault);
   if (const auto fault = fault_beside(path)) return refused(*fault);

@@ -2,6 +2,7 @@
 
 #include <cpl_http.h>
 #include <cpl_vsi.h>
+#include <cpl_vsi_virtual.h>
 #include <gdal_priv.h>
 #include <ogr_srs_api.h>
 
@@ -9,6 +10,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "talus/io/gdal/input_access.hpp"
 
@@ -47,7 +49,7 @@ constexpr std::array<std::string_view, 37> kDrivers{"GTiff",
                                                     "GeoJSONSeq",
                                                     "CSV",
                                                     "FlatGeobuf",
-                                                    "KML",
+                                                    "LIBKML",
                                                     "DXF",
                                                     "MapInfo File",
                                                     "GPX",
@@ -77,8 +79,11 @@ void drop_other_drivers() {
     if (GDALDriver* const driver = manager.GetDriverByName(ours)) driver->pfnOpen = nullptr;
 }
 
-/// In the place of a file system of GDAL: holds no file.
+/// In the place of a file system of GDAL: holds no file. The earlier one is kept until the program ends: GDAL itself
+/// may hold it under other names.
 void close_file_system(const char* start) {
+  static auto& replaced = *new std::vector<const VSIFilesystemHandler*>;  // never removed: not even at the end
+  replaced.push_back(VSIFileManager::GetHandler(start));
   VSIFilesystemPluginCallbacksStruct* const none = VSIAllocFilesystemPluginCallbacksStruct();
   none->open = [](void*, const char*, const char*) -> void* { return nullptr; };
   none->stat = [](void*, const char*, VSIStatBufL*, int) { return -1; };

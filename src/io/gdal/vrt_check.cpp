@@ -79,6 +79,12 @@ std::vector<Source> sources_in(const std::string& vrt, const std::string& text) 
   return sources;
 }
 
+/// A relative name in the folder of a VRT. Names of GDAL's files keep their "//".
+std::string in_folder(const fs::path& folder, const std::string& name) {
+  const std::string whole = (folder / name).string();
+  return whole.starts_with("/vsi") ? whole : fs::path(whole).lexically_normal().string();
+}
+
 bool is_below(const fs::path& file, const fs::path& folder) {
   const fs::path way = file.lexically_relative(folder);
   return !way.empty() && *way.begin() != "..";
@@ -102,17 +108,20 @@ class VrtCheck {
     if (text.size() > kMostVrt)
       throw InputError(name + ": has more than " + std::to_string(kMostVrt >> 20U) +
                        " MB, must be a smaller VRT: write it to a raster first, with gdal_translate");
-    const fs::path folder = fs::path(name).parent_path();
+    std::error_code none;  // GDAL looks beside what a link stands for
+    const fs::path real = name.starts_with("/vsi") ? fs::path(name) : fs::weakly_canonical(name, none);
+    const fs::path folder = (none ? fs::path(name) : real).parent_path();
     for (const Source& source : sources_in(name, text)) check(name, folder, source, depth);
   }
 
   void check(const std::string& vrt, const fs::path& folder, const Source& source, int depth) {
     const bool plain = source.relative && source.name.find(':') == std::string::npos && source.name[0] != '/';
-    const std::string name = plain ? (folder / source.name).lexically_normal().string() : source.name;
+    const std::string name = plain ? in_folder(folder, source.name) : source.name;
     if (!seen_.insert(name).second) return;
     const InputName found = looked_up(name, source.relative ? folder : fs::path());
     if (!found.fault.empty()) throw InputError(vrt + ": names '" + source.name + "', which " + found.fault);
-    if (found.network || found.file.empty()) return;  // what is not there GDAL says
+    if (found.network) return;
+    if (found.file.empty()) throw InputError(vrt + ": names '" + source.name + "', which is not there");
     require_below(vrt, found.file);
     check(name, depth + 1);
   }

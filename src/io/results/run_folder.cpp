@@ -48,7 +48,8 @@ Json read_record_or_nothing(const std::filesystem::path& file) {
 /// The value of model.deformation_coefficient (c) in a run.json; nothing if it is not there.
 std::optional<double> deformation_coefficient_of(const std::filesystem::path& folder) {
   const Json json = read_record_or_nothing(folder / "run.json");
-  if (!json.is_object() || !json.contains("deformation_coefficient")) return std::nullopt;
+  if (!json.is_object() || !json.contains("deformation_coefficient") || !json["deformation_coefficient"].is_number())
+    return std::nullopt;
   return json.at("deformation_coefficient").get<double>();
 }
 

@@ -27,6 +27,7 @@ bool fields_changed_meaning(const LoadedScenario& loaded) {
 
 std::string plan_checksum(const LoadedScenario& loaded) {
   ScenarioSpec spec = *loaded.spec;
+  spec.vrt_folders.clear();
   for (NamedFile* file : {&spec.dem, &spec.sources, &spec.ground, &spec.screens, &spec.barriers}) strip_folder(*file);
   for (auto& [name, effect] : spec.effects) {
     strip_folder(effect.file);

@@ -9,6 +9,7 @@
 #include "effect_keys.hpp"
 #include "frequency_keys.hpp"
 #include "ground_keys.hpp"
+#include "io/gdal/input_name.hpp"
 #include "scenario_flags.hpp"
 #include "surface_key.hpp"
 #include "talus/base/error.hpp"
@@ -38,6 +39,7 @@ class SpecReader {
   void read(const TomlValue& root) {
     TableReader top(&root, "", file_, faults_);
     read_include(top);
+    read_vrt_folders(top);
     named_file(top, "dem", spec_.dem);
     surface(top);
     read_common(top);
@@ -93,6 +95,17 @@ class SpecReader {
     std::error_code none;
     if (!std::filesystem::exists(spec_.include.path, none)) return;  // reported later, with the other files
     talus::io::read_model_keys(spec_, spec_.include.path, *text, "include " + *text, faults_);
+  }
+
+  /// Folders below which a VRT may name files: a run writes down those that it was allowed.
+  void read_vrt_folders(TableReader& top) {
+    const TomlValue* const list = top.find("vrt_folders");
+    if (list == nullptr) return;
+    const auto is_text = [](const TomlValue& item) { return item.kind == Kind::Text; };
+    if (list->kind != Kind::List || !std::ranges::all_of(list->items, is_text))
+      return top.fault("vrt_folders", *list, "must be a list of folders, like [\"/data/tiles\"]");
+    for (const TomlValue& item : list->items) allow_folder(absolute_path(item.text, base_));
+    given("vrt_folders");
   }
 
   void named_file(TableReader& table, const std::string& key, NamedFile& file) {
@@ -305,6 +318,14 @@ void read_model_keys(ScenarioSpec& spec, const std::string& path, const std::str
   SpecReader(spec, path, name, origin, faults).read_model_keys(read_toml(path, name));
 }
 
+/// Where a raster is a VRT, the scenario that a run leaves has to allow what this one does.
+static void keep_vrt_folders(ScenarioSpec& spec) {
+  const auto is_vrt = [](const NamedFile& file) { return file.path.ends_with(".vrt") || file.path.ends_with(".VRT"); };
+  if (!is_vrt(spec.dem) && !is_vrt(spec.ground)) return;
+  for (const std::filesystem::path& folder : allowed_folders())
+    if (std::ranges::count(spec.vrt_folders, folder.string()) == 0) spec.vrt_folders.push_back(folder.string());
+}
+
 ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) {
   ScenarioSpec spec;
   start_with_preset(spec, flags, faults);
@@ -315,6 +336,7 @@ ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) 
         .read(read_toml(flags.scenario, flags.scenario));
   }
   lay_flags(spec, flags, faults);
+  keep_vrt_folders(spec);
   check_effect_zones(spec, faults);
   sort_by_line(faults, flags.scenario);
   const std::string in = flags.scenario.empty() ? "" : flags.scenario + ": ";

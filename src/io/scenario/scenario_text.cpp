@@ -69,6 +69,7 @@ struct Line {
 class Lines {
  public:
   explicit Lines(const ScenarioSpec& spec) : spec_(spec) {
+    if (!spec.vrt_folders.empty()) add("", "vrt_folders", texts(spec.vrt_folders), "");
     file("", "dem", spec.dem);
     if (spec.profile) terrain(*spec.profile);
     if (!spec.dem.path.empty()) add("", "surface", toml_text(std::string(name_of(spec.surface))), "");
@@ -108,6 +109,12 @@ class Lines {
   void add(const std::string& table, const std::string& key, const std::string& value, const std::string& unit) {
     const std::string full = table.empty() ? key : table + "." + key;
     lines_.push_back({table, key, value, unit, spec_.origin(full), full});
+  }
+
+  static std::string texts(const std::vector<std::string>& list) {
+    std::vector<std::string> quoted;
+    for (const std::string& text : list) quoted.push_back(toml_text(text));
+    return "[" + joined(quoted) + "]";
   }
 
   void file(const std::string& table, const std::string& key, const NamedFile& file) {

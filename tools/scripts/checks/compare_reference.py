@@ -45,7 +45,7 @@ LONGEST_STEP = 0.003  # s, of the reference
 UPPER_TALUS_3D = {"theta_scale": 1.0, "psi_scale": 0.9, "En50": 15, "Et50": 50, "phi": 30, "shape": [1.0, 1.5]}
 AT_REST = ("stopped", "trapped")  # ends of Talus that the reference calls stopped
 SCREEN_COLUMNS = {"speed": "speed_ms", "jump": "jump_height_m", "omega": "angular_velocity_rads"}
-SOURCE_COLUMNS = ("id AS name, CAST(diameter_m AS float) AS diameter, CAST(release_height_m AS float) AS height,"
+SOURCE_COLUMNS = ("id AS name, CAST(diameter_m AS float) AS diameter, CAST(release_height_m AS float) AS release_height,"
                   " CAST(vx AS float) AS vx, CAST(vy AS float) AS vy, CAST(vz AS float) AS vz")
 
 # difference and allowed in % (of the 5-95 % range, the released, the count); allowed = None: not judged

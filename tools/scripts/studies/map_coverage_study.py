@@ -3,7 +3,7 @@
 
   tools/scripts/studies/map_coverage_study.py [--talus build/release/talus] [--repetitions 400] [--trajectories 10] [--work DIR] [--jobs 2]
 
-A slope of 60 x 80 cells of 4 m, three cliffs with frequencies of 0.5, 0.1 and 0.02 per year and blocks of their own sizes, 24
+A slope of 60 x 80 cells of 4 m, three cliffs with frequencies of 0.5, 0.1 and 0.02 per year and blocks of their own sizes, 36
 source cells. The truth is one run of 40 000 blocks per source cell. Each repetition is a run of --trajectories blocks per source
 cell with another seed, `talus hazard` and `talus barrier` on it. Looked at are 60 cells, ten each near impact probabilities of
 0.5, 0.2, 0.1, 0.05, 0.02 and 0.01. Printed: in how many of the repetitions, on average over the cells, the interval holds the
@@ -197,7 +197,8 @@ def main():
         if rows:
             report(f"barrier: {name}", rows)
     print(f"hazard class where decided: {right} of {decided} are the truth's ({100 * right / max(1, decided):.1f} %)")
-    n = 24 * o.trajectories
+    with open(f"{best}/run.json", encoding="utf-8") as file:
+        n = json.load(file)["released"] / o.truth * o.trajectories
     expected = n * probability[cells] * (1 - probability[cells])
     print(f"variance of the passages over that of a binomial, mean of the cells: {np.mean(np.var(counts, axis=0, ddof=1) / expected):.3f}")
 
