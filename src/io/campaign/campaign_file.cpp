@@ -160,7 +160,12 @@ LoadedCampaign read_campaign(const std::string& path, const std::optional<std::s
   campaign.zone_names = {"default"};
   out.zone_codes = {""};
   if (!spec.zones.path.empty()) {
-    ZoneLayer zones = read_zones({spec.zones.path, "", spec.zone_names, spec.zone_codes, "", "zone_names"}, terrain);
+    ZoneLayer zones = read_zones({.path = spec.zones.path,
+                                  .field = "",
+                                  .names = spec.zone_names,
+                                  .codes = spec.zone_codes,
+                                  .table = "zone_names"},
+                                 terrain);
     campaign.zones = std::move(zones.zones);
     campaign.zone_names.insert(campaign.zone_names.end(), spec.zone_names.begin(), spec.zone_names.end());
     out.zone_codes.insert(out.zone_codes.end(), spec.zone_codes.begin(), spec.zone_codes.end());

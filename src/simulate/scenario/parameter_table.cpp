@@ -101,7 +101,7 @@ constexpr std::array<Field<Scenario>, 10> kScenario{{
      [](Scenario& s, double v) { s.output.paths = static_cast<std::uint32_t>(v); }},
 }};
 
-constexpr std::array<Bounds, 19> kLists{{
+constexpr std::array<Bounds, 20> kLists{{
     {"blocks.diameter", "m", "diameter of the sphere of equal volume", 0.01, 50.0},
     {"blocks.weight", "1", "share of a class of blocks, relative to the others", 0.0, 1e9, kAbove},
     {"blocks.frequency", "1/year", "events per year of a class of blocks", 0.0, 1e6},
