@@ -1,5 +1,4 @@
 """The common job without a scenario file: layers and fields by name, screens, zones, frequency and thresholds by flags."""
-import json
 import unittest
 
 from osgeo import gdal, ogr
@@ -19,10 +18,6 @@ class Layers(Case):
             feature.SetGeometry(ogr.CreateGeometryFromWkt(box(x, 230, 10, 10)))
             layer.CreateFeature(feature)
         self.flags = ["--dem", self.path("dem.tif"), "--trajectories", "5"]
-
-    def record(self, out):
-        with open(self.path(out + "/run.json"), encoding="utf-8") as file:
-            return json.load(file)
 
     def test_a_layer_is_named_or_the_file_is_refused(self):
         site = self.path("site.gpkg")
@@ -56,7 +51,8 @@ class Layers(Case):
         self.assertIn("zone forest-road-3d is the preset of this name", done.stderr)
         self.run_well("hazard", self.path("out"))
         self.assertTrue(gdal.Open(self.path("out/return_period_100.tif")))
-        complete = self.text("out/scenario.toml")
+        with open(self.path("out/scenario.toml"), encoding="utf-8") as file:
+            complete = file.read()
         for words in ("total = 0.5", "energy_thresholds = [10, 100]", "[ground.zones.forest-road-3d]", 'field = "ground"'):
             self.assertIn(words, complete)
         self.run_well("run", self.path("out/scenario.toml"), "-o", self.path("again"))
