@@ -153,6 +153,7 @@ class Tables(InputCase):
         self.assertIn("3 features, 3 source cells", said)
         self.run_well("check", *self.flags(self.table(f"x\ty\n{X}\t{Y}\n")))
         self.run_well("check", *self.flags(self.table(f"x y\n{X} {Y} \n")))
+        self.run_well("check", *self.flags(self.table(f"x,y\n{X},{Y},,\n")))  # as spreadsheets write it
         self.run_well("check", *self.flags(self.table(f'wkt,diameter\n"LINESTRING ({X} {Y}, {X + 9} {Y})",\n')))
 
     def test_every_other_layer_is_checked(self):

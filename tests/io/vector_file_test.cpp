@@ -25,6 +25,11 @@ TEST(CsvStructure, TakesWhatIsWhole) {
     EXPECT_NO_THROW(read(text)) << text;
 }
 
+TEST(CsvStructure, TakesEmptyCellsAfterTheLastColumn) {
+  for (const char* text : {"x,y\n1,2,,\n3,4\n", "x;y\r\n1;2;  ;\r\n"}) EXPECT_NO_THROW(read(text)) << text;
+  refuses("x,y\n1,2,,3\n", {"t.csv:2: has 4 cells, must have 2"});
+}
+
 TEST(CsvStructure, NamesTheLine) {
   refuses("x,x,y\n", {"t.csv:1:", "column 'x' is there twice"});
   refuses("x, X ,y\n1,2,3\n", {"t.csv:1:", "'x'"});

@@ -251,6 +251,7 @@ int design(const Options& o) {
   std::vector<std::string> ids;
   for (const talus::Screen& screen : run.screens) ids.push_back(screen.id);
   const std::string name = "barrier_" + talus::io::file_name_of(o.screen, ids);
+  catch_signals();  // from here on: all three files or none
   talus::io::replace_text(fs::path(o.folder) / (name + ".csv"), talus::io::barrier_csv(report));
   talus::io::replace_text(fs::path(o.folder) / (name + "_stretches.csv"), talus::io::stretches_csv(report));
   talus::io::replace_text(fs::path(o.folder) / (name + ".json"), talus::io::barrier_json(report));

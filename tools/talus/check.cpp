@@ -235,6 +235,7 @@ void write_pits(const Options& options, const LoadedScenario& loaded) {
   if (options.pits.empty()) return;
   talus::io::OutputFile out(options.pits, ".gpkg", options.overwrite);
   for (const talus::io::InputFile& input : loaded.inputs) out.protect(input.path);
+  catch_signals();
   talus::io::write_pits(out.temporary(), loaded.scenario.surface.heights(), loaded.geo);
   out.commit();
   if (!options.quiet) print("written: %s\n", options.pits.c_str());

@@ -72,10 +72,12 @@ int trace_one(const Options& options) {
                                                      static_cast<std::uint32_t>(options.block));
   talus::Path path;
   talus::trace(scenario.world(), release, path);
-  if (out)
+  if (out) {
+    catch_signals();
     write_geopackage(*out, loaded, release, path);
-  else
+  } else {
     print_csv(loaded, path);
+  }
   return 0;
 }
 

@@ -180,6 +180,7 @@ void CsvStructure::take_quote() {
 
 void CsvStructure::end_cell() {
   ++cells_;
+  if (place_ != Place::Start) filled_ = cells_;
   place_ = Place::Start;
   if (in_header_) columns_.push_back(lower_trimmed(cell_));
   cell_.clear();
@@ -192,11 +193,11 @@ void CsvStructure::end_row() {
   if (!empty && in_header_) {
     check_header();
     in_header_ = false;
-  } else if (!empty && cells_ != columns_.size()) {
+  } else if (!empty && (cells_ < columns_.size() || filled_ > columns_.size())) {  // spreadsheets end rows with ",,,"
     refuse(row_line_, "has " + std::to_string(cells_) + (cells_ == 1 ? " cell" : " cells") + ", must have " +
                           std::to_string(columns_.size()) + " as the header");
   }
-  cells_ = 0;
+  cells_ = filled_ = 0;
   row_line_ = line_;
 }
 

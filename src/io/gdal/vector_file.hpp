@@ -41,7 +41,8 @@ class CsvStructure {
   Place place_ = Place::Start;
   char last_ = '\n';
   int line_ = 1, row_line_ = 1, quote_line_ = 0;
-  std::size_t cells_ = 0;  // ended ones of this row
+  std::size_t cells_ = 0;   // ended ones of this row
+  std::size_t filled_ = 0;  // the same up to the last with text
   bool in_header_ = true;
   std::vector<std::string> columns_;  // of the header
   std::string cell_;                  // of the header
