@@ -4,12 +4,11 @@
     make_manual.py --program build/release/talus --out FOLDER
 
 Names, types, bounds and texts are those of `talus help --json`; examples, those of `talus COMMAND --help`. FOLDER gets
-man1/talus.1.gz, man1/talus-COMMAND.1.gz, bash/talus, zsh/_talus and fish/talus.fish. The date of the pages is that of
+man1/talus.1, man1/talus-COMMAND.1, bash/talus, zsh/_talus and fish/talus.fish. The date of the pages is that of
 SOURCE_DATE_EPOCH where it is set.
 """
 import argparse
 import datetime
-import gzip
 import json
 import os
 import pathlib
@@ -162,12 +161,6 @@ def main_page(description):
     return page + ",\n".join(f".BR talus\\-{command['name']} (1)" for command in description["commands"]) + "\n"
 
 
-def write_compressed(path, text):
-    """The same bytes for the same text: without a name or a time in the file."""
-    with open(path, "wb") as file, gzip.GzipFile("", "wb", 9, file, mtime=0) as packed:
-        packed.write(text.encode())
-
-
 # Completions
 
 
@@ -313,10 +306,10 @@ def main():
     shutil.rmtree(options.out, ignore_errors=True)
     for folder in ("man1", "bash", "zsh", "fish"):
         (options.out / folder).mkdir(parents=True)
-    write_compressed(options.out / "man1" / "talus.1.gz", main_page(description))
+    (options.out / "man1" / "talus.1").write_text(main_page(description), encoding="utf-8")
     for command in commands:
         page = command_page(options.program, command, description["version"])
-        write_compressed(options.out / "man1" / f"talus-{command['name']}.1.gz", page)
+        (options.out / "man1" / f"talus-{command['name']}.1").write_text(page, encoding="utf-8")
     (options.out / "bash" / "talus").write_text(bash_completion(commands), encoding="utf-8")
     (options.out / "zsh" / "_talus").write_text(zsh_completion(commands), encoding="utf-8")
     (options.out / "fish" / "talus.fish").write_text(fish_completion(commands), encoding="utf-8")
