@@ -14,9 +14,6 @@ from support import TALUS, WEST, Case, box, heights, write_dem, write_features
 
 
 class CommandLine(Case):
-    def test_no_arguments(self):
-        self.fails(2, "no command", "talus --help", arguments=[])
-
     def test_unknown_command_names_the_nearest(self):
         self.fails(2, "'rnu'", "did you mean 'run'", arguments=["rnu"])
 

@@ -34,23 +34,29 @@ struct Options {
   bool unweighted = false, quiet = false;
 };
 
+constexpr Bounds factor(std::string_view key, std::string_view meaning) {
+  return {key, "1", meaning, 1.0, 3.0};
+}
+constexpr Bounds kPercentile{"--percentile", "%", "of speed and jump height", 0.0, 100.0, Bounds::Between};
+constexpr Bounds kContainment{"--containment", "%", "share of the crossings that the width holds", 0.0, 100.0,
+                              Bounds::AboveMin};
+constexpr Bounds kStretch{"--stretch", "m", "longest stretch with a design of its own", 1.0, 1e6};
+constexpr Bounds kVolume{"--volume", "m3", "of the design block", 0.0, 65000.0, Bounds::AboveMin};
+constexpr Bounds kDensity{"--density", "kg/m3", "mass per volume of the rock", 500.0, 8000.0};
+
 /// Throws InputError if a number on the command line is out of bounds.
 void check_numbers(const Options& o) {
-  const auto factor = [](std::string_view key, std::string_view meaning) {
-    return Bounds{key, "1", meaning, 1.0, 3.0};
-  };
   const std::pair<Bounds, std::optional<double>> all[] = {
       {factor("--gTr", "quality of the trajectories"), o.factors.trajectory},
       {factor("--gDp", "quality of the topography"), o.factors.topography},
       {factor("--gVol", "quality of the block's volume"), o.factors.volume},
       {factor("--gG", "quality of the rock's density"), o.factors.density},
       {factor("--gE", "safety factor of the maximum energy level"), o.factors.mel},
-      {{"--percentile", "%", "of speed and jump height", 0.0, 100.0, Bounds::Between}, o.percentile},
-      {{"--containment", "%", "share of the crossings that the width holds", 0.0, 100.0, Bounds::AboveMin},
-       o.containment},
-      {{"--stretch", "m", "longest stretch with a design of its own", 1.0, 1e6}, o.stretch},
-      {{"--volume", "m3", "of the design block", 0.0, 65000.0, Bounds::AboveMin}, o.volume},
-      {{"--density", "kg/m3", "mass per volume of the rock", 500.0, 8000.0}, o.density}};
+      {kPercentile, o.percentile},
+      {kContainment, o.containment},
+      {kStretch, o.stretch},
+      {kVolume, o.volume},
+      {kDensity, o.density}};
   for (const auto& [bounds, value] : all)
     if (value)
       if (const auto fault = talus::fault_of(bounds, *value))
@@ -264,29 +270,42 @@ int design(const Options& o) {
 void add_barrier(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("barrier", "Design values of a barrier at a screen of a run");
-  command->add_option("out", o->folder, "folder of results that talus run has written, with screens")->required();
+  with(command->add_option("out", o->folder, "folder of results that talus run has written, with screens")->required(),
+       folder_of_results());
   command->add_option("--screen", o->screen, "id of the line at which the barrier stands")->required();
-  command->add_option(
-      "--observed", o->observed,
-      "CSV of observed crossings (as screens.csv or a campaign's passages.csv); the probabilities are of "
-      "them, else of the simulated ones");
-  command->add_option("--gTr", o->factors.trajectory, "trajectories: 1.02 for a calibrated model, 1.10 else (default)");
-  command->add_option("--gDp", o->factors.topography, "topography: 1.02 for a good survey, 1.10 else (default)");
-  command->add_option("--gVol", o->factors.volume, "volume: 1.02 for a good survey of the blocks, 1.10 else (default)");
-  command->add_option("--gG", o->factors.density, "density of the rock: 1.00 (default)");
-  command->add_option("--gE", o->factors.mel, "MEL / SEL: 1.30 as in the paper (default), 1.20 as in UNI 11211-4");
-  command->add_option("--percentile", o->percentile, "of speed and jump height [%]: 95 (default)");
-  command->add_option("--volume", o->volume,
-                      "of the design block [m3]; the largest that crosses where it is not given");
-  command->add_option("--density", o->density, "of the design block [kg/m3]; the run's where it is not given");
-  command->add_option("--containment", o->containment, "share of the crossings that the width holds [%]: 99 (default)");
-  command->add_option("--stretch", o->stretch,
-                      "longest stretch of the line with a design of its own [m]: 30 (default)");
-  command->add_option("--frequency", o->frequency,
-                      "another weighting (TOML: [frequency], [features]), as of talus hazard");
+  with(command->add_option(
+           "--observed", o->observed,
+           "CSV of observed crossings (as screens.csv or a campaign's passages.csv); the probabilities are of "
+           "them, else of the simulated ones"),
+       file_of({"csv"}));
+  const auto number = [command](const char* name, auto& value, const char* text, const Bounds& bounds,
+                                const std::string& standard) {
+    with(command->add_option(name, value, text), number_of(bounds, standard));
+  };
+  const auto add_factor = [&number](const char* name, double& value, const char* text) {
+    number(name, value, text, factor(name, ""), talus::text_of(value));
+  };
+  add_factor("--gTr", o->factors.trajectory, "trajectories: 1.02 for a calibrated model, 1.10 else (default)");
+  add_factor("--gDp", o->factors.topography, "topography: 1.02 for a good survey, 1.10 else (default)");
+  add_factor("--gVol", o->factors.volume, "volume: 1.02 for a good survey of the blocks, 1.10 else (default)");
+  add_factor("--gG", o->factors.density, "density of the rock: 1.00 (default)");
+  add_factor("--gE", o->factors.mel, "MEL / SEL: 1.30 as in the paper (default), 1.20 as in UNI 11211-4");
+  number("--percentile", o->percentile, "of speed and jump height [%]: 95 (default)", kPercentile,
+         talus::text_of(o->percentile));
+  number("--volume", o->volume, "of the design block [m3]; the largest that crosses where it is not given", kVolume,
+         "");
+  number("--density", o->density, "of the design block [kg/m3]; the run's where it is not given", kDensity, "");
+  number("--containment", o->containment, "share of the crossings that the width holds [%]: 99 (default)", kContainment,
+         talus::text_of(o->containment));
+  number("--stretch", o->stretch, "longest stretch of the line with a design of its own [m]: 30 (default)", kStretch,
+         talus::text_of(o->stretch));
+  with(command->add_option("--frequency", o->frequency,
+                           "another weighting (TOML: [frequency], [features]), as of talus hazard"),
+       file_of({"toml"}));
   command->add_flag("--unweighted", o->unweighted, "count every block alike, also where the sources have frequencies");
   command->add_flag("-q,--quiet", o->quiet, "say nothing but errors");
-  command->add_option("--seed", o->seed, "of the bootstrap: 1 (default)")->check(seed_number());
+  with(command->add_option("--seed", o->seed, "of the bootstrap: 1 (default)")->check(seed_number()),
+       scalar_of("seed"));
   command->footer(
       "Example:\n  talus barrier result --screen road --gTr 1.02 --gDp 1.02 --gVol 1.02\n\n"
       "Writes barrier_ID.json, barrier_ID.csv and barrier_ID_stretches.csv into the folder. docs/barrier.md explains "

@@ -88,7 +88,7 @@ int calibrate(const Options& options) {
     for (const std::string& warning : c.warnings) say("warning", warning);
   choose_parameters(campaign, options.fit, c);
   const std::vector<bool> rows = talus::fitting_rows(campaign);
-  Progress progress(Progress::mode_of(options.quiet, options.progress == "machine"), 0);
+  Progress progress(Progress::mode_of(options.quiet, options.progress), 0, "fit");
   c.options.proceed = [&](double share) { return progress.update(kSearchShare * share) && !interrupted(); };
   c.fit = talus::fit_parameters(campaign, c.start, c.free, rows, c.options);
   if (c.fit.interrupted) stop_interrupted();
@@ -134,9 +134,13 @@ void add_calibrate(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("calibrate", "Fit the parameters of the ground to measured data");
   options->add_to(*command, options->how.trials, options->fit, options->how.seed, options->how.threads);
-  command->add_option("--parameters", options->parameters,
-                      "model from which the fit starts, whose effects it keeps; else upper-talus-3d without effects");
-  command->add_option("--starts", options->how.starts, "searches from different starts (3)")->check(CLI::Range(1, 50));
+  with(command->add_option(
+           "--parameters", options->parameters,
+           "model from which the fit starts, whose effects it keeps; else upper-talus-3d without effects"),
+       file_of({"toml"}));
+  with(command->add_option("--starts", options->how.starts, "searches from different starts (3)")
+           ->check(CLI::Range(1, 50)),
+       default_of(options->how.starts));
   command->add_option("--share", options->share, "parameters that several campaigns share; all others each has its own")
       ->delimiter(',');
   command->footer(

@@ -127,7 +127,7 @@ int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how
   c.share = share;
   c.files = opened.paths;
   if (!share.empty()) talus::give_own_streams(opened.sites);
-  Progress progress(Progress::mode_of(command.quiet, command.progress == "machine"), 0);
+  Progress progress(Progress::mode_of(command.quiet, command.progress), 0, "fit");
   SitesFit work(opened, progress, c);
   work.choose(start, fit, command.quiet);
   share.empty() ? work.fit_apart() : work.fit_together();

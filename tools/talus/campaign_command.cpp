@@ -30,20 +30,23 @@ void require_releases(const std::string& path, const talus::Campaign& campaign) 
 
 void CampaignCommand::add_to(CLI::App& command, std::uint32_t& trials, std::vector<std::string>& keys,
                              std::uint64_t& seed, int& threads) {
-  command.add_option("campaign", campaigns, "measured data: campaign.toml; several: docs/several-campaigns.md")
-      ->required();
-  command.add_option("-o,--out", out, "new folder for the results")->required();
+  with(command.add_option("campaign", campaigns, "measured data: campaign.toml; several: docs/several-campaigns.md")
+           ->required(),
+       file_of({"toml"}));
+  with(command.add_option("-o,--out", out, "new folder for the results")->required(), new_folder());
   command.add_flag("--overwrite", overwrite, "replace the folder if it holds an earlier result");
-  command.add_option("--surface", surface, "bilinear or creased (creased): heights between the cells' centres");
+  with(command.add_option("--surface", surface, "bilinear or creased (creased): heights between the cells' centres"),
+       surface_choice());
   command.add_option("--fit", keys, "parameters, in every zone: theta_scale,psi_scale,En50,Et50,phi")->delimiter(',');
-  command.add_option("--trials", trials, "trajectories per block in the searches (" + std::to_string(trials) + ")")
-      ->check(CLI::Range(kFewestSearchTrials, 10000));
-  command.add_option("--seed", seed, "of the random numbers (1)")->check(seed_number());
+  with(
+      command.add_option("--trials", trials, "trajectories per block in the searches (" + std::to_string(trials) + ")")
+          ->check(CLI::Range(kFewestSearchTrials, 10000)),
+      default_of(trials));
+  with(command.add_option("--seed", seed, "of the random numbers (1)")->check(seed_number()), scalar_of("seed"));
   command.add_option("--threads", threads, "all processors where it is not given; the results are the same")
       ->check(startable_threads());
   command.add_flag("-q,--quiet", quiet, "say nothing but errors");
-  command.add_option("--progress", progress, "machine: lines `progress 42` for other programs")
-      ->check(CLI::IsMember({"machine"}));
+  add_progress(command, progress);
 }
 
 std::vector<talus::io::LoadedCampaign> read_campaigns(const CampaignCommand& command) {

@@ -265,9 +265,10 @@ void add_check(CLI::App& app, Action& action) {
       app.add_subcommand("check", "Check a scenario and print the plan; writes nothing, but for --pits");
   add_scenario_options(*command, options->flags);
   CLI::Option* pits =
-      command->add_option("--pits", options->pits,
-                          "GeoPackage to write: pits, the cells that are lower than all eight neighbours, and "
-                          "dammed cells, whose way down is only diagonal");
+      with(command->add_option("--pits", options->pits,
+                               "GeoPackage to write: pits, the cells that are lower than all eight neighbours, and "
+                               "dammed cells, whose way down is only diagonal"),
+           new_file_of({"vector"}));
   command->add_flag("--overwrite", options->overwrite, "replace the file of --pits if it is there")->needs(pits);
   command
       ->add_option("--threads", options->threads,

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "facts.hpp"
 #include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/run/observer.hpp"
 #include "talus/simulate/plan/process_group.hpp"
@@ -30,6 +31,9 @@ void add_merge(CLI::App& app, Action& action);
 
 /// Adds the options of `run` and `check` that give the scenario.
 void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags);
+
+/// Adds --progress, `machine` or `json`. With `json` every message of `say` becomes a line {"warning": "..."}.
+void add_progress(CLI::App& command, std::string& progress);
 
 using talus::run::Interrupted;  // exit code 130
 using talus::run::stop_interrupted;
@@ -58,7 +62,8 @@ void require_seed(std::uint64_t seed);
 /// The only ways to write on the terminal: each shows control characters of names instead of sending them
 /// (`printable`). tests/layers.cmake holds the programs to them.
 
-/// "talus: KIND: TEXT" on stderr, in one line, which is cut if it is very long.
+/// "talus: KIND: TEXT" on stderr, in one line, which is cut if it is very long; with --progress=json {"KIND": "TEXT"},
+/// where an empty kind is "message".
 void say(const std::string& kind, const std::string& text);
 
 /// On stdout: a text as it is, or as printf formats it.

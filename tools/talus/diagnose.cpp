@@ -115,7 +115,7 @@ int diagnose(const Options& options) {
   require_releases(options.campaigns.front(), campaign);
   record.options = options.how;
   choose_rows(options, opened.loaded.campaign, record.options);
-  Progress progress(Progress::mode_of(options.quiet, options.progress == "machine"), 0);
+  Progress progress(Progress::mode_of(options.quiet, options.progress), 0, "diagnose");
   record.options.proceed = [&progress](double share) { return progress.update(share) && !interrupted(); };
   try {
     record.diagnosis =
@@ -142,20 +142,27 @@ void add_diagnose(CLI::App& app, Action& action) {
       app.add_subcommand("diagnose", "Find what a fitted model leaves of measured data, and which effect explains it");
   talus::DiagnoseOptions& how = options->how;
   options->add_to(*command, how.trials.search, how.keys, how.seed, how.threads);
-  command->add_option("--test-trials", how.trials.test, "trajectories per block in the tests (100)")
-      ->check(CLI::Range(20, 10000));
-  command->add_option("--most-effects", how.most_effects, "that are added, one a round (3)")->check(CLI::Range(1, 9));
-  command->add_option("--level", how.first_level, "of significance, over all families of effects (0.05)")
-      ->check(between(0.0001, 0.5));
-  command->add_option("--base-fits", how.base_fits, "independent fits of the ground whose verdicts are compared (5)")
-      ->check(CLI::Range(1, 99));
+  with(command->add_option("--test-trials", how.trials.test, "trajectories per block in the tests (100)")
+           ->check(CLI::Range(20, 10000)),
+       default_of(how.trials.test));
+  with(command->add_option("--most-effects", how.most_effects, "that are added, one a round (3)")
+           ->check(CLI::Range(1, 9)),
+       default_of(static_cast<double>(how.most_effects)));
+  with(command->add_option("--level", how.first_level, "of significance, over all families of effects (0.05)")
+           ->check(between(0.0001, 0.5)),
+       default_of(how.first_level));
+  with(command
+           ->add_option("--base-fits", how.base_fits, "independent fits of the ground whose verdicts are compared (5)")
+           ->check(CLI::Range(1, 99)),
+       default_of(static_cast<double>(how.base_fits)));
   command->add_flag("--all-rows", options->all_rows, "fit the rows that the campaign holds out, too");
   command->add_flag("--nested", options->nested,
                     "repeat the whole diagnosis without each fold of the fitting rows, as is done where no row is held "
                     "out: the error is then one of rows that were neither fitted nor chosen by");
   command->add_flag("--no-nested", options->no_nested, "never do so");
-  command->add_option("--folds", how.outer_folds, "parts that are left out in turn: groups, or blocks (5)")
-      ->check(CLI::Range(2, 100));
+  with(command->add_option("--folds", how.outer_folds, "parts that are left out in turn: groups, or blocks (5)")
+           ->check(CLI::Range(2, 100)),
+       default_of(static_cast<double>(how.outer_folds)));
   command->add_flag("--quick-folds", options->quick_folds,
                     "the folds fit the effects that all rows chose, without choosing anew: half the time, and an error "
                     "that has seen the choice");

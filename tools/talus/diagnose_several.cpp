@@ -43,7 +43,7 @@ int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOption
   talus::give_own_streams(opened.sites);
   record.files = opened.paths;
   record.options = how;
-  Progress progress(Progress::mode_of(command.quiet, command.progress == "machine"), 0);
+  Progress progress(Progress::mode_of(command.quiet, command.progress), 0, "diagnose");
   record.options.proceed = [&progress](double share) { return progress.update(share) && !interrupted(); };
   std::vector<talus::Model> presets;
   for (const talus::Site& site : opened.sites)

@@ -31,7 +31,7 @@ struct Options {
   int threads = 0;
   std::string progress;
   bool curves = false, overwrite = false, quiet = false;
-  Progress::Mode mode() const { return Progress::mode_of(quiet, progress == "machine"); }
+  Progress::Mode mode() const { return Progress::mode_of(quiet, progress); }
 };
 
 /// The hazard file, which a run writes if its sources have frequencies.
@@ -195,7 +195,7 @@ int hazard(const Options& options) {
       throw talus::InputError(input + ": there is no such file");
   if (!options.matrix.empty()) record.matrix = talus::io::read_matrix(options.matrix);
   talus::io::StagedFiles staged(folder, "hazard.json", options.overwrite);
-  Progress progress(options.mode(), 0);
+  Progress progress(options.mode(), 0, options.frequency.empty() ? "evaluate" : "simulate");
   const auto survey = options.frequency.empty() ? survey_of(file, options.threads, progress, record)
                                                 : reweighted_survey(options, file, progress, record);
   record.cells = survey->cells();
@@ -235,20 +235,24 @@ void add_hazard(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("hazard", "Annual frequencies, return periods and classes of hazard from a run");
-  command->add_option("folder", options->folder, "OUT of a run whose sources have frequencies")->required();
-  command->add_option("--matrix", options->matrix,
-                      "classes by intensity and return period (TOML); else 30, 300 kJ and 30, 100, 300 years");
-  command->add_option(
-      "--objects", options->objects,
-      "polygons or lines (as wide as their field width, else --width, else 0 m): how often each is hit, "
-      "with which energy, and from where; repeats the run");
-  command->add_option("--frequency", options->frequency,
-                      "another weighting (TOML: [frequency], [features]); repeats the run");
-  command
-      ->add_option(
-          "--width", options->width,
-          "m: the maps are for an object of this width (and the diameter of the block) at each place, else for the "
-          "cell; with --objects also the width of lines without a field width")
+  with(command->add_option("folder", options->folder, "OUT of a run whose sources have frequencies")->required(),
+       folder_of_results());
+  with(command->add_option("--matrix", options->matrix,
+                           "classes by intensity and return period (TOML); else 30, 300 kJ and 30, 100, 300 years"),
+       file_of({"toml"}));
+  with(command->add_option(
+           "--objects", options->objects,
+           "polygons or lines (as wide as their field width, else --width, else 0 m): how often each is hit, "
+           "with which energy, and from where; repeats the run"),
+       file_of({"vector"}));
+  with(command->add_option("--frequency", options->frequency,
+                           "another weighting (TOML: [frequency], [features]); repeats the run"),
+       file_of({"toml"}));
+  CLI::Option* width = command->add_option(
+      "--width", options->width,
+      "m: the maps are for an object of this width (and the diameter of the block) at each place, else for the "
+      "cell; with --objects also the width of lines without a field width");
+  with(width, number_of({"width", "m", "of the object", 0.0, 1000.0, talus::Bounds::AboveMin}))
       ->check([](const std::string& text) -> std::string {
         char* end = nullptr;
         const double value = std::strtod(text.c_str(), &end);
@@ -261,8 +265,7 @@ void add_hazard(CLI::App& app, Action& action) {
   command->add_flag("--overwrite", options->overwrite, "replace the hazard maps that are there");
   command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
       ->check(startable_threads());
-  command->add_option("--progress", options->progress, "machine: lines `progress 42` for other programs")
-      ->check(CLI::IsMember({"machine"}));
+  add_progress(*command, options->progress);
   command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
   command->footer(
       "Examples:\n  talus hazard result\n  talus hazard result --width 10 --curves --objects houses.gpkg\n\nA later "

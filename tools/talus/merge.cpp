@@ -11,7 +11,7 @@ using talus::run::MergeRequest;
 
 int run_merge(MergeRequest request, bool quiet) {
   request.command = command_line();
-  TerminalObserver observer(Progress::mode_of(quiet, false), quiet);
+  TerminalObserver observer(Progress::mode_of(quiet, ""), quiet);
   return exit_code(talus::run::merge(request, observer));
 }
 
@@ -21,9 +21,10 @@ void add_merge(CLI::App& app, Action& action) {
   const auto options = std::make_shared<MergeRequest>();
   const auto quiet = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("merge", "Join the parts of a run; the same bits as one run");
-  command->add_option("out", options->out, "new folder for the results")->required();
-  command->add_option("parts", options->parts, "folders that talus run --part I/N has written, all of them")
-      ->required();
+  with(command->add_option("out", options->out, "new folder for the results")->required(), new_folder());
+  with(command->add_option("parts", options->parts, "folders that talus run --part I/N has written, all of them")
+           ->required(),
+       folder_of_results());
   command->add_option("--memory", options->memory, "such as 2G: what does not fit lies in a file beside the results");
   command->add_flag("--overwrite", options->overwrite, "replace the folder if it holds an earlier result");
   command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")

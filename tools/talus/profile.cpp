@@ -97,7 +97,7 @@ void summarise(const talus::Totals& totals, const talus::BinDistribution& runout
 talus::io::ProfileResults simulate_and_write(const Options& options, const LoadedProfile& profile,
                                              const fs::path& folder, Stopwatch& watch, talus::io::RunRecord& record) {
   const talus::Scenario& scenario = profile.loaded.scenario;
-  Progress progress(Progress::mode_of(options.quiet, options.progress == "machine"), scenario.released());
+  Progress progress(Progress::mode_of(options.quiet, options.progress), scenario.released());
   talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
   Readers readers(profile, folder);
   talus::Sinks sinks = readers.sinks();
@@ -154,16 +154,19 @@ int run_profile(const Options& options) {
 void add_profile(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("profile", "Simulate in two dimensions, on a profile");
-  command->add_option("profile", options->flags.scenario, "file of the profile (TOML): docs/profile.md")->required();
-  command->add_option("-o,--out", options->out, "new folder for the results")->required();
+  with(command->add_option("profile", options->flags.scenario, "file of the profile (TOML): docs/profile.md")
+           ->required(),
+       file_of({"toml"}));
+  with(command->add_option("-o,--out", options->out, "new folder for the results")->required(), new_folder());
   command->add_flag("--overwrite", options->overwrite, "replace the folder if it holds an earlier result");
-  command->add_option("--trajectories", options->flags.trajectories, "how many blocks");
-  command->add_option("--seed", options->flags.seed, "of the random numbers")->check(seed_number());
+  with(command->add_option("--trajectories", options->flags.trajectories, "how many blocks"),
+       scalar_of("trajectories"));
+  with(command->add_option("--seed", options->flags.seed, "of the random numbers")->check(seed_number()),
+       scalar_of("seed"));
   command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
       ->check(startable_threads());
   command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
-  command->add_option("--progress", options->progress, "machine: lines `progress 42` for other programs")
-      ->check(CLI::IsMember({"machine"}));
+  add_progress(*command, options->progress);
   command->footer("Example:\n  talus profile profile.toml -o result");
   command->callback([&action, options] { action = [options] { return run_profile(*options); }; });
 }

@@ -11,8 +11,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "help.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/memory.hpp"
 #include "talus/base/printable.hpp"
@@ -25,6 +27,7 @@
 namespace {
 
 std::atomic<bool> asked_to_end{false}, ends_at_once{true};
+bool says_json = false;  // messages are lines of JSON
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may set it");
 
 constexpr std::size_t kLongestLine = 4000;  // of a message [byte]
@@ -49,14 +52,21 @@ void handle_signals() {
 void add_access(CLI::App& command) {
   command.add_flag_callback("--allow-network", talus::io::allow_network,
                             "inputs may be named by addresses (https://...); without it only local files are read");
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--allow-folder",
-          [](const std::vector<std::string>& folders) {
-            for (const std::string& folder : folders) talus::io::allow_folder(folder);
-          },
-          "a VRT may name files below this folder, not only below its own and the scenario's; may be repeated")
-      ->allow_extra_args(false);
+  with(command
+           .add_option_function<std::vector<std::string>>(
+               "--allow-folder",
+               [](const std::vector<std::string>& folders) {
+                 for (const std::string& folder : folders) talus::io::allow_folder(folder);
+               },
+               "a VRT may name files below this folder, not only below its own and the scenario's; may be repeated")
+           ->allow_extra_args(false),
+       folder_of_results());
+}
+
+/// {"KIND": "TEXT"} in one line; bytes that are no UTF-8 are replaced.
+std::string json_line(const std::string& kind, const std::string& text) {
+  const nlohmann::json line{{kind, talus::printable(text)}};
+  return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 std::vector<std::string> words;
@@ -85,7 +95,6 @@ std::vector<std::string> option_names(const CLI::App& command) {
 std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands(nullptr)) commands.push_back(command->get_name());
-  if (words.size() < 2) return "no command is given (known: " + talus::joined(commands) + "); see talus --help";
   const auto called = app.get_subcommands();
   const CLI::App& command = called.empty() ? app : *called.front();
   const std::string see_help = "; see " + (called.empty() ? "talus" : "talus " + command.get_name()) + " --help";
@@ -115,6 +124,14 @@ void describe(CLI::App& app) {
       "130 interrupted, 1 anything else.");
 }
 
+/// The action that prints the help of the program.
+Action help_of(const CLI::App& app) {
+  return [text = app.help()] {
+    print_text(text);
+    return 0;
+  };
+}
+
 /// Opens the three standard streams where they are closed, so that no file of results gets the number of one and with
 /// it what is printed. Each the wrong way round: using it remains an error.
 void hold_standard_streams() {
@@ -141,6 +158,8 @@ Action understood(int argc, char** argv, const std::vector<AddCommand>& commands
   for (const AddCommand& add : commands) add(app, action);
   for (CLI::App* command : app.get_subcommands(nullptr))
     if (command->get_name() != "presets") add_access(*command);
+  add_help(app, action);
+  if (argc < 2) return help_of(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -229,7 +248,27 @@ bool interrupted() {
   return asked_to_end;
 }
 
+void add_progress(CLI::App& command, std::string& progress) {
+  command
+      .add_option_function<std::string>(
+          "--progress",
+          [&progress](const std::string& form) {
+            progress = form;
+            says_json = form == "json";
+          },
+          "machine: lines `progress 42` for other programs; json: lines {\"phase\": \"simulate\", \"share\": 0.42}, "
+          "and "
+          "{\"warning\": \"...\"} in the place of each message")
+      ->check(CLI::IsMember({"machine", "json"}));
+}
+
 void say(const std::string& kind, const std::string& text) {
+  if (says_json) {
+    const std::string line = json_line(kind.empty() ? "message" : kind, talus::shortened(text, kLongestLine));
+    std::fprintf(stderr, "%s\n", line.c_str());
+    std::fflush(stderr);
+    return;
+  }
   std::string line =
       talus::printable("talus: " + (kind.empty() ? "" : kind + ": ") + talus::shortened(text, kLongestLine));
   std::ranges::replace_if(

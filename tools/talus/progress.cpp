@@ -9,15 +9,17 @@
 #include "commands.hpp"
 #include "talus/base/printable.hpp"
 
-Progress::Mode Progress::mode_of(bool quiet, bool machine) {
-  if (machine) return Mode::Machine;
+Progress::Mode Progress::mode_of(bool quiet, const std::string& progress) {
+  if (progress == "machine") return Mode::Machine;
+  if (progress == "json") return Mode::Json;
   if (quiet) return Mode::Silent;
   return isatty(STDERR_FILENO) != 0 ? Mode::Terminal : Mode::Lines;
 }
 
-Progress::Progress(Mode mode, std::uint64_t trajectories)
-    : mode_(mode), trajectories_(static_cast<double>(trajectories)) {
+Progress::Progress(Mode mode, std::uint64_t trajectories, std::string phase)
+    : mode_(mode), trajectories_(static_cast<double>(trajectories)), phase_(std::move(phase)) {
   if (mode_ == Mode::Machine) percent(0);
+  if (mode_ == Mode::Json) json(0.0);
 }
 
 Progress::~Progress() {
@@ -28,6 +30,7 @@ bool Progress::update(double share) {
   if (mode_ == Mode::Silent) return true;
   if (mode_ == Mode::Machine) return percent(std::clamp(static_cast<int>(99.0 * share), 0, 99));
   const Clock::time_point now = Clock::now();
+  if (mode_ == Mode::Json) return json(std::clamp(share, 0.0, 1.0));
   const double interval = mode_ == Mode::Terminal ? 0.2 : 10.0;
   if (std::chrono::duration<double>(now - shown_).count() < interval || !(share > 0.0)) return true;
   shown_ = now;
@@ -43,9 +46,15 @@ void Progress::begin(const std::string& part) {
   part_ = part + ": ";
   start_ = Clock::now();
   if (mode_ == Mode::Terminal) shown_ = start_;
+  json_ = -1.0;
 }
 
 void Progress::stage(const std::string& text) {
+  if (mode_ == Mode::Json) {
+    phase_ = "write";
+    json_ = -1.0;
+    json(0.0);
+  }
   const bool long_run = Clock::now() - start_ > std::chrono::seconds(10);
   if (mode_ == Mode::Terminal || (mode_ == Mode::Lines && long_run)) show(text);
 }
@@ -53,6 +62,7 @@ void Progress::stage(const std::string& text) {
 void Progress::finish() {
   erase();
   if (mode_ == Mode::Machine) percent(100);
+  if (mode_ == Mode::Json) json(1.0);
 }
 
 void Progress::show(const std::string& text) {
@@ -74,6 +84,16 @@ bool Progress::percent(int value) {
   if (value <= percent_) return true;
   percent_ = value;
   return std::fprintf(stderr, "progress %d\n", value) > 0 && std::fflush(stderr) == 0;
+}
+
+/// A line for each whole percent of the phase, and for its end.
+bool Progress::json(double share) {
+  const double shown = share < 1.0 ? std::floor(100.0 * share) / 100.0 : 1.0;
+  if (shown <= json_) return true;
+  json_ = shown;
+  const std::string part = part_.empty() ? "" : ", \"part\": \"" + part_.substr(0, part_.find(':')) + "\"";
+  return std::fprintf(stderr, "{\"phase\": \"%s\", \"share\": %.2f%s}\n", phase_.c_str(), shown, part.c_str()) > 0 &&
+         std::fflush(stderr) == 0;
 }
 
 std::string duration_text(double seconds) {

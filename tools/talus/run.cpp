@@ -1,7 +1,9 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "talus/base/text.hpp"
 #include "talus/run/run_session.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
 #include "terminal_observer.hpp"
 
 namespace {
@@ -15,7 +17,7 @@ struct Options {
 /// The observer of a process. Of several processes only the leader prints.
 TerminalObserver observer_of(const Options& options, const talus::ProcessGroup& processes) {
   const bool leads = processes.leads(), quiet = options.quiet || !leads;
-  return {Progress::mode_of(quiet, options.progress == "machine" && leads), quiet};
+  return {Progress::mode_of(quiet, leads ? options.progress : ""), quiet};
 }
 
 int run(const Options& options, talus::ProcessGroup& processes) {
@@ -26,31 +28,50 @@ int run(const Options& options, talus::ProcessGroup& processes) {
   return exit_code(talus::run::RunSession(std::move(request), observer, processes).run());
 }
 
+/// "30,300".
+std::string default_thresholds() {
+  std::string text;
+  for (const double energy : talus::OutputSettings{}.energy_thresholds)
+    text += (text.empty() ? "" : ",") + talus::text_of(energy);
+  return text;
+}
+
 }  // namespace
 
 void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags) {
-  command.add_option("scenario", flags.scenario, "scenario file (TOML)");
-  command.add_option("--dem", flags.dem, "terrain: a raster in a projected system in metres");
-  command.add_option("--sources", flags.sources, "where blocks start: polygons, lines or points");
+  with(command.add_option("scenario", flags.scenario, "scenario file (TOML)"), file_of({"toml"}));
+  with(command.add_option("--dem", flags.dem, "terrain: a raster in a projected system in metres"),
+       file_of({"raster"}));
+  with(command.add_option("--sources", flags.sources, "where blocks start: polygons, lines or points"),
+       file_of({"vector"}));
   command.add_option("--sources-layer", flags.sources_layer,
                      "the layer of the sources, of a file with several; or --sources FILE|layername=NAME");
-  command.add_option("--screens", flags.screens, "lines: what crosses them is recorded");
-  command.add_option("--zones", flags.zones,
-                     "ground: polygons, or a raster; what it names is a zone of the scenario, or a preset");
-  command.add_option("--zone-field", flags.zone_field, "the field of --zones that names the zone or preset; zone");
+  with(command.add_option("--screens", flags.screens, "lines: what crosses them is recorded"), file_of({"vector"}));
+  with(command.add_option("--zones", flags.zones,
+                          "ground: polygons, or a raster; what it names is a zone of the scenario, or a preset"),
+       file_of({"vector", "raster"}));
+  with(command.add_option("--zone-field", flags.zone_field, "the field of --zones that names the zone or preset; zone"),
+       default_of("zone"));
   command
       .add_option("--field", flags.fields,
                   "NAME=COLUMN: a field of the sources under another name, as release_height=HEIGHT; may be repeated")
       ->allow_extra_args(false);
-  command.add_option("--preset", flags.preset, "parameter set of the ground; talus presets lists them");
-  command.add_option("--surface", flags.surface, "bilinear or creased (creased): heights between the cells' centres");
-  command.add_option("--diameter", flags.diameter, "of the blocks [m]");
-  command.add_option("--frequency", flags.frequency, "events per year of all sources together, for talus hazard");
-  command.add_option("--thresholds", flags.thresholds, "energies of the maps of exceedance [kJ], as 30,300 (default)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command.add_option("--trajectories", flags.trajectories, "per source cell");
-  command.add_option("--seed", flags.seed, "of the random numbers")->check(seed_number());
+  with(command.add_option("--preset", flags.preset, "parameter set of the ground; talus presets lists them"),
+       preset_choice());
+  with(command.add_option("--surface", flags.surface,
+                          "bilinear or creased (creased): heights between the cells' centres"),
+       surface_choice());
+  with(command.add_option("--diameter", flags.diameter, "of the blocks [m]"),
+       number_of(talus::bounds_of("blocks.diameter")));
+  with(command.add_option("--frequency", flags.frequency, "events per year of all sources together, for talus hazard"),
+       number_of(talus::bounds_of("frequency.total")));
+  with(command
+           .add_option("--thresholds", flags.thresholds, "energies of the maps of exceedance [kJ], as 30,300 (default)")
+           ->delimiter(',')
+           ->allow_extra_args(false),
+       number_of(talus::bounds_of("output.energy_thresholds"), default_thresholds()));
+  with(command.add_option("--trajectories", flags.trajectories, "per source cell"), scalar_of("trajectories"));
+  with(command.add_option("--seed", flags.seed, "of the random numbers")->check(seed_number()), scalar_of("seed"));
   command.add_flag("--energy-total", flags.energy_total, "also energy_total.tif: the energy with rotation");
   command.add_flag("--bounds", flags.bounds, "also 95 % bounds of the percentiles: energy_bounds.tif and others");
 }
@@ -60,7 +81,7 @@ void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes) {
   talus::run::RunRequest& request = options->request;
   CLI::App* command = app.add_subcommand("run", "Simulate a scenario and write its hazard maps");
   add_scenario_options(*command, request.flags);
-  command->add_option("-o,--out", request.out, "new folder for the results")->required();
+  with(command->add_option("-o,--out", request.out, "new folder for the results")->required(), new_folder());
   command->add_flag("--overwrite", request.overwrite, "replace the folder if it holds an earlier result");
   command
       ->add_option("--threads", request.threads,
@@ -69,22 +90,29 @@ void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes) {
   command->add_option("--part", request.part, "I/N: only part I of N of the source cells, for talus merge");
   command->add_flag("--resume", request.resume, "go on with an interrupted run of the same command");
   command->add_option("--memory", request.memory, "such as 2G: what does not fit lies in a file beside the results");
-  command->add_option("--checkpoint", request.checkpoint, "seconds between two times that the work is kept on the disk")
-      ->check(between(0.0, 1e6));
-  command->add_option("--rounds", request.rounds.count, "how often the scenario's trajectories are traced")
-      ->check(CLI::Range(1, 10'000));
+  with(command
+           ->add_option("--checkpoint", request.checkpoint,
+                        "seconds between two times that the work is kept on the disk")
+           ->check(between(0.0, 1e6)),
+       with_unit("s", request.checkpoint));
+  with(command->add_option("--rounds", request.rounds.count, "how often the scenario's trajectories are traced")
+           ->check(CLI::Range(1, 10'000)),
+       default_of(request.rounds.count));
   CLI::Option* until =
       command->add_option("--until-error", request.rounds.until_error,
                           "rounds until the relative 95 % half-width of the impact probability is below this");
   until->check(between(1e-4, 10.0))->excludes("--rounds");
-  command->add_option("--above", request.rounds.above, "the error counts in all cells with a larger probability; 0.01")
-      ->check(between(1e-9, 1.0));
-  command->add_option("--most-rounds", request.rounds.most, "--until-error: never more; 100")
-      ->check(CLI::Range(1, 10'000))
-      ->needs(until);
+  with(
+      command
+          ->add_option("--above", request.rounds.above, "the error counts in all cells with a larger probability; 0.01")
+          ->check(between(1e-9, 1.0)),
+      default_of(request.rounds.above));
+  with(command->add_option("--most-rounds", request.rounds.most, "--until-error: never more; 100")
+           ->check(CLI::Range(1, 10'000))
+           ->needs(until),
+       default_of(request.rounds.most));
   command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
-  command->add_option("--progress", options->progress, "machine: lines `progress 42` for other programs")
-      ->check(CLI::IsMember({"machine"}));
+  add_progress(*command, options->progress);
   command->footer(
       "Examples:\n"
       "  talus run scenario.toml -o result\n"

@@ -79,17 +79,24 @@ int score_model(const Options& options) {
 void add_score(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("score", "Say how far a model is from measured data, group by group");
-  command->add_option("campaign", options->campaign, "measured data: campaign.toml")->required();
-  command->add_option("--parameters", options->parameters, "the model: fitted.toml, as talus calibrate writes it");
-  command->add_option("--surface", options->surface,
-                      "bilinear or creased (creased): heights between the cells' centres");
-  command->add_option("--trials", options->trials, "simulated trajectories per block (100)")
-      ->check(CLI::Range(10, 100000));
-  command->add_option("--seed", options->seed, "of the random numbers (1)")->check(seed_number());
-  command->add_option("--rows", options->rows, "fit, holdout or all (all)")
-      ->check(CLI::IsMember({"fit", "holdout", "all"}));
+  with(command->add_option("campaign", options->campaign, "measured data: campaign.toml")->required(),
+       file_of({"toml"}));
+  with(command->add_option("--parameters", options->parameters, "the model: fitted.toml, as talus calibrate writes it"),
+       file_of({"toml"}));
+  with(command->add_option("--surface", options->surface,
+                           "bilinear or creased (creased): heights between the cells' centres"),
+       surface_choice());
+  with(command->add_option("--trials", options->trials, "simulated trajectories per block (100)")
+           ->check(CLI::Range(10, 100000)),
+       default_of(options->trials));
+  with(command->add_option("--seed", options->seed, "of the random numbers (1)")->check(seed_number()),
+       scalar_of("seed"));
+  with(command->add_option("--rows", options->rows, "fit, holdout or all (all)")
+           ->check(CLI::IsMember({"fit", "holdout", "all"})),
+       default_of(options->rows));
   command->add_flag("--json", options->json, "print JSON");
-  command->add_option("--dump", options->dump, "new folder for what was simulated, by block and trial (CSV)");
+  with(command->add_option("--dump", options->dump, "new folder for what was simulated, by block and trial (CSV)"),
+       new_folder());
   command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
       ->check(startable_threads());
   command->add_flag("-q,--quiet", options->quiet, "say nothing but errors and the result");

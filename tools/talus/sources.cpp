@@ -65,10 +65,14 @@ int find_sources(const Options& options) {
 void add_sources(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("sources", "Find candidate source cells by the steepness of the terrain");
-  command->add_option("--dem", options->dem, "terrain: a raster in a projected system in metres")->required();
-  command->add_option("-o,--out", options->out, "GeoPackage to write: the cells as polygons and as points")->required();
-  command->add_option("--slope", options->slope,
-                      "cells at least so steep [deg]; without it 55 cell^-0.075, which is 48.7 at 5 m");
+  with(command->add_option("--dem", options->dem, "terrain: a raster in a projected system in metres")->required(),
+       file_of({"raster"}));
+  with(command->add_option("-o,--out", options->out, "GeoPackage to write: the cells as polygons and as points")
+           ->required(),
+       new_file_of({"vector"}));
+  with(command->add_option("--slope", options->slope,
+                           "cells at least so steep [deg]; without it 55 cell^-0.075, which is 48.7 at 5 m"),
+       number_of(kSlope));
   command->add_flag("--overwrite", options->overwrite, "replace the file if it is there");
   command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
   command->footer(

@@ -86,12 +86,15 @@ int trace_one(const Options& options) {
 void add_trace(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("trace", "Replay one trajectory of a run, bit for bit");
-  command->add_option("scenario", options->scenario, "scenario file; every run leaves its own in OUT/scenario.toml")
-      ->required();
+  with(
+      command->add_option("scenario", options->scenario, "scenario file; every run leaves its own in OUT/scenario.toml")
+          ->required(),
+      file_of({"toml"}));
   command->add_option("--source", options->source, "number of the source cell, as in stops.gpkg")->required();
   command->add_option("--block", options->block, "number of the block, as in stops.gpkg")->required();
-  command->add_option("-o,--out", options->out,
-                      "GeoPackage to write: the path and its vertices; without it CSV is printed");
+  with(command->add_option("-o,--out", options->out,
+                           "GeoPackage to write: the path and its vertices; without it CSV is printed"),
+       new_file_of({"vector"}));
   command->footer("Example:\n  talus trace result/scenario.toml --source 17 --block 4 -o path.gpkg");
   command->callback([&action, options] { action = [options] { return trace_one(*options); }; });
 }

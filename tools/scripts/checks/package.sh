@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# Makes the Debian packages from build/release, installs them in a clean Debian 12, and works there as a user would:
+# program, manual, completion, example, library. Needs root (chroot), the network, and about 1 GB for a while.
+#   tools/scripts/checks/package.sh [BUILD]     BUILD: build/release
+# With TALUS_BASE=FOLDER the bare system is taken from there, or made there if it is not; else it is made and thrown away.
+set -euo pipefail
+cd "$(dirname "$0")/../../.."
+build="$(realpath "${1:-build/release}")"
+stage() { printf '\n== %s (%d s so far)\n' "$1" "$SECONDS"; }
+
+tools/install_packages.sh debootstrap lintian dpkg-dev file
+work="$(mktemp -d)"
+trap 'rm -rf --one-file-system "$work"' EXIT
+root="$work/root"
+
+stage "packages"
+export SOURCE_DATE_EPOCH="${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct 2>/dev/null || date +%s)}"
+cmake --build "$build" --target talus talus-mpi talus_library
+rm -rf "$build/packages"
+(cd "$build" && cpack)
+for package in "$build"/packages/*.deb; do
+  echo && dpkg-deb --field "$package" Package Version Depends Installed-Size
+done
+# Not asked of a package that no Debian bug waits for, and whose library is static.
+lintian --fail-on error --suppress-tags initial-upload-closes-no-bugs "$build"/packages/*.deb
+
+stage "a clean Debian 12"
+base="${TALUS_BASE:-$work/base}"
+[ -e "$base/usr/bin/apt-get" ] || debootstrap --variant=minbase bookworm "$base" http://deb.debian.org/debian > "$work/debootstrap.log"
+cp -a "$base" "$root"
+cp "$build"/packages/*.deb "$root/root/"
+cp -r tests/package "$root/root/bounce"
+in_root() { chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
+
+stage "installation of the program"
+in_root sh -c 'apt-get update -qq && apt-get install -y -qq --no-install-recommends /root/talus_*.deb man-db bash-completion' \
+  > "$work/apt.log" 2>&1 || { tail -30 "$work/apt.log" >&2; exit 1; }
+
+stage "as a user"
+in_root bash -euc '
+  talus --version
+  cp -r /usr/share/doc/talus/examples/valley /root/valley
+  cd /root/valley
+  talus run scenario.toml --trajectories 5 -o out --quiet
+  talus hazard out
+  ls out | tr "\n" " " && echo
+  man --no-hyphenation -l /usr/share/man/man1/talus-run.1.gz | head -20
+  . /usr/share/bash-completion/bash_completion
+  . /usr/share/bash-completion/completions/talus
+  COMP_WORDS=(talus ha) COMP_CWORD=1
+  _talus
+  [ "${COMPREPLY[*]}" = hazard ] && echo "completion: talus ha -> talus ${COMPREPLY[*]}"'
+
+stage "the library"
+in_root sh -c 'apt-get install -y -qq --no-install-recommends /root/libtalus-dev_*.deb g++ cmake make' \
+  > "$work/apt.log" 2>&1 || { tail -30 "$work/apt.log" >&2; exit 1; }
+in_root sh -euc 'cmake -S /root/bounce -B /root/bounce/build > /dev/null && cmake --build /root/bounce/build > /dev/null
+  /root/bounce/build/bounce'
+
+stage "removal"
+in_root sh -c 'apt-get purge -y -qq talus libtalus-dev > /dev/null 2>&1; find / -xdev -path /root -prune -o -path /var -prune -o -name "*talus*" -print' > "$work/left"
+if [ -s "$work/left" ]; then
+  echo "left behind:" && cat "$work/left" && exit 1
+fi
+echo "nothing is left behind"
+stage "done"
