@@ -1,5 +1,6 @@
 """The commands of the tutorials, run as a reader runs them: the ```sh blocks of a page in turn, in a folder that holds data.
-A block whose commands the program does not have is left out, and named. TALUS is the path of the program."""
+Left out, and named: a block whose commands the program does not have, and one that says that it takes minutes, unless LONG=1.
+TALUS is the path of the program."""
 import os
 import re
 import shutil
@@ -30,6 +31,9 @@ def script_of(page, known):
         missing = sorted(set(re.findall(r"\btalus ([a-z]+)", block)) - known)
         if missing:
             print(f"{page}:{line}: left out, the program has no {', '.join(missing)}")
+            continue
+        if re.search(r"^# takes .*minutes", block, re.M) and os.environ.get("LONG") != "1":
+            print(f"{page}:{line}: left out, takes minutes")
             continue
         parts += [f"echo '== {page}:{line}' >&2", block]
     return "\n".join(parts)
