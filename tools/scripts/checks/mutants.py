@@ -5,8 +5,7 @@
 
 The sources are copied to build/mutants/tree and built there once (minutes). Then, for each fault of `MUTANTS`, one line is
 changed, core_tests are built and run: first the tests named in the table, then, if none fails, all. Printed: the fault, and the
-first test that fails, or SURVIVED; at the end how many survived, which is the exit code's 0 or 1. docs/validation.md, "Faults on
-purpose".
+first test that fails, or SURVIVED; at the end how many survived, which is the exit code's 0 or 1. docs/validation.md.
 """
 import argparse
 import re
