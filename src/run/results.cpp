@@ -8,6 +8,7 @@
 
 #include "talus/base/text.hpp"
 #include "talus/io/results/hazard_file.hpp"
+#include "talus/io/results/qgis_project.hpp"
 #include "talus/io/results/write_crossings.hpp"
 #include "talus/io/results/write_lines.hpp"
 #include "talus/io/results/write_vectors.hpp"
@@ -32,7 +33,8 @@ struct StopFigures {
 class Vectors {
  public:
   Vectors(const LoadedScenario& loaded, const std::filesystem::path& folder, const Observer& observer)
-      : scenario_(loaded.scenario),
+      : loaded_(loaded),
+        scenario_(loaded.scenario),
         folder_(folder),
         observer_(observer),
         stops_(folder / "stops.gpkg", loaded),
@@ -70,11 +72,13 @@ class Vectors {
     if (crossings_) {
       crossings_->finish();
       io::write_text(folder_ / "screens_summary.csv", io::screens_summary_csv(scenario_, summary_));
+      io::write_screens(folder_ / "screens.gpkg", loaded_, summary_);
     }
     if (!scenario_.barriers.empty()) io::write_text(folder_ / "barriers.csv", io::barriers_csv(scenario_, totals));
   }
 
  private:
+  const LoadedScenario& loaded_;
   const Scenario& scenario_;
   std::filesystem::path folder_;
   const Observer& observer_;
@@ -139,6 +143,8 @@ void write_results(const ResultSource& source, Observer& observer, Stopwatch& wa
   StopFigures stops = writing.get();
   record.energy_lines = std::move(stops.energy_lines);
   io::write_text(folder / "scenario.toml", loaded.complete_toml);
+  io::write_text(folder / io::kProjectFile,
+                 io::project_of(io::files_in(folder), folder, source.final_folder, io::ground_of(loaded)));
   record.files = io::files_in(folder);
   const Stopwatch::Lap written = watch.lap();
   record.cpu.write = written.cpu + record.totals.sink_cpu_seconds;

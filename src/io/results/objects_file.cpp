@@ -8,6 +8,7 @@
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
+#include "talus/io/results/vector_style.hpp"
 
 namespace talus::io {
 namespace {
@@ -211,7 +212,10 @@ class ObjectsWriter {
     file_.append(layer_, *row);
   }
 
-  void finish() { file_.finish(); }
+  void finish(StyledLayer style) {
+    file_.set_style("objects", style_of(style));
+    file_.finish();
+  }
 
  private:
   GeoPackage file_;
@@ -285,7 +289,8 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
     table.add(object, *state_->features[i], figures, sources);
     if (state_->on_map[i]) curves += curve_rows(object, curve, rules.bins);
   }
-  writer->finish();
+  const bool lines = std::ranges::all_of(state_->parts, [](const Parts& parts) { return parts.polygons.empty(); });
+  writer->finish(lines ? StyledLayer::LineObjects : StyledLayer::AreaObjects);
   write_text(folder / "objects.csv", table.text());
   write_text(folder / "objects_curves.csv", curves);
   write_text(folder / "objects_sources.csv", from);
