@@ -6,6 +6,7 @@
 #include <future>
 #include <optional>
 
+#include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/results/hazard_file.hpp"
 #include "talus/io/results/qgis_project.hpp"
@@ -173,9 +174,9 @@ void summarise(const io::RunRecord& record, const LoadedScenario& loaded, std::s
 
 Outcome judge_limits(const Totals& totals, const std::filesystem::path& folder, Observer& observer) {
   if (!io::too_many_limits(totals)) return Outcome::Done;
-  observer.error(limits_text(totals) + "; look at the first: talus trace " + (folder / "scenario.toml").string() +
-                 " --source " + std::to_string(totals.first_limit[0]) + " --block " +
-                 std::to_string(totals.first_limit[1]));
+  observer.error(limits_text(totals) + "; look at the first: talus trace " +
+                 shell_word((folder / "scenario.toml").string()) + " --source " +
+                 std::to_string(totals.first_limit[0]) + " --block " + std::to_string(totals.first_limit[1]));
   return Outcome::TooManyLimits;
 }
 

@@ -113,7 +113,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
   Layer layer("objects", path, terrain);
   const int id = layer.field("name") >= 0 ? layer.field("name") : layer.field("id");
   std::string off;
-  while (Feature feature = layer.next()) {
+  for_each_feature(layer, [&](Feature& feature) {
     Parts parts = layer.parts(*feature);
     if (parts.empty() || !parts.points.empty())
       throw InputError(layer.label(*feature) + ": " + (parts.empty() ? "has no geometry" : "is a point") +
@@ -134,7 +134,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
     state_->objects.push_back(object_of(parts, width.value_or(line_width)));
     state_->parts.push_back(std::move(parts));
     state_->features.push_back(std::move(feature));
-  }
+  });
   if (state_->objects.empty()) throw InputError(path + ": has no features, must have polygons or lines");
   if (std::ranges::count(state_->on_map, true) == 0)
     throw InputError(path + ": lies wholly off the DEM: is the coordinate system of the layer the right one?");

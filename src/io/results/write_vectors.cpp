@@ -37,7 +37,7 @@ struct Place {
   double y(double local) const { return south + local; }
 };
 
-/// Name of the source's feature of each feature; without one its number from 0.
+/// Name of each feature of the sources: its own, or its number (FID); of a scene made by code its index.
 std::vector<std::string> feature_names(const Scenario& scenario) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < scenario.features.size(); ++i)
