@@ -35,6 +35,11 @@ Legend percent_legend() {
   return {{1e-4, 1e-3, 1e-2, 1e-1, 1.0}, 100.0, "%", Palette::Plasma};
 }
 
+/// A reach probability is at least 1 / trajectories of a source cell: its classes begin where those of impacts end.
+Legend reach_legend() {
+  return {{0.02, 0.05, 0.1, 0.2, 0.5, 1.0}, 100.0, "%", Palette::Plasma};
+}
+
 Legend energy_legend(const std::string& band) {
   return {{30, 100, 300, 1000, 3000}, 1.0, "kJ", Palette::Plasma, band};
 }
@@ -45,6 +50,11 @@ Legend speed_legend(const std::string& band) {
 
 Legend height_legend(const std::string& band) {
   return {{0.5, 1, 2, 4, 8}, 1.0, "m", Palette::Viridis, band};
+}
+
+Legend with_names(Legend legend) {
+  legend.names_in_file = true;
+  return legend;
 }
 
 Legend count_legend() {
@@ -291,7 +301,7 @@ std::vector<RunRaster> make_run_rasters() {
       {{"reach_probability",
         "Fraction of the trajectories of those source cells of which at least one trajectory reaches the cell "
         "(in plan, at any height)",
-        Kind::Probability, bounded_bands("reach probability (in plan, at any height)", "1"), percent_legend()},
+        Kind::Probability, bounded_bands("reach probability (in plan, at any height)", "1"), reach_legend()},
        "share of the trajectories of the source cells of which at least one trajectory reaches the cell",
        reach_probability,
        not_reached},
@@ -379,7 +389,7 @@ HazardRaster class_raster() {
             {"class at upper bound", "class"},
             {"undecided", "1"},
             {"cut short", "1"}},
-           {{1, 2, 3, 4, 5}, 1.0, "", Palette::HazardClasses}},
+           {{1, 2, 3, 4, 5}, 1.0, "", Palette::HazardClasses, "", true, true}},
           "class of the matrix; `undecided` is 1 where the classes at the bounds differ, `cut short` where paths leave "
           "the map",
           [](const HazardPlace& place, std::size_t, std::vector<float>& figures) { push_classes(place, figures); },
@@ -402,7 +412,7 @@ std::vector<HazardRaster> make_hazard_rasters() {
         "Years between blocks of more than <kJ> kJ that pass the cell, in plan, at any height",
         Kind::Quantity,
         bounded_bands("return period of E > <kJ> kJ", "years"),
-        {{10, 30, 100, 300, 1000}, 1.0, "years", Palette::PlasmaFromDark},
+        {{10, 30, 100, 300, 1000}, 1.0, "years", Palette::PlasmaFromDark, "", false},
         true},
        "1 / frequency of exceeding the energy; one file per energy threshold",
        [](const HazardPlace& place, std::size_t i, Figures& figures) {
@@ -413,7 +423,7 @@ std::vector<HazardRaster> make_hazard_rasters() {
          return std::vector<double>(rules.bins.thresholds().begin(), rules.bins.thresholds().end());
        }},
       {{"intensity_T<years>", "Translational kinetic energy that is exceeded once in <years> years in the cell",
-        Kind::Quantity, bounded_bands("energy once in <years> years", "kJ"), energy_legend("")},
+        Kind::Quantity, bounded_bands("energy once in <years> years", "kJ"), with_names(energy_legend(""))},
        "energy that is exceeded once in so many years",
        [](const HazardPlace& place, std::size_t i, Figures& figures) {
          push(figures, place.curve->energy_once_in(place.matrix.years[i]));

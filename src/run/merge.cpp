@@ -112,7 +112,7 @@ Outcome merge(const MergeRequest& request, Observer& observer) {
   io::set_rounds(loaded, rounds);
   record.wall.read = watch.lap().wall;
   record.cpu.simulate = record.totals.cpu_seconds - record.totals.sink_cpu_seconds;
-  write_results({loaded, checkpoints, tally, folder.temporary()}, observer, watch, record);
+  write_results({loaded, checkpoints, tally, folder.temporary(), folder.final_path()}, observer, watch, record);
   if (observer.interrupted()) stop_interrupted();
   folder.commit();
   summarise(record, loaded, 0, folder.final_path(), observer);

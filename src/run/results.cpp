@@ -6,8 +6,10 @@
 #include <future>
 #include <optional>
 
+#include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/results/hazard_file.hpp"
+#include "talus/io/results/qgis_project.hpp"
 #include "talus/io/results/write_crossings.hpp"
 #include "talus/io/results/write_lines.hpp"
 #include "talus/io/results/write_vectors.hpp"
@@ -32,7 +34,8 @@ struct StopFigures {
 class Vectors {
  public:
   Vectors(const LoadedScenario& loaded, const std::filesystem::path& folder, const Observer& observer)
-      : scenario_(loaded.scenario),
+      : loaded_(loaded),
+        scenario_(loaded.scenario),
         folder_(folder),
         observer_(observer),
         stops_(folder / "stops.gpkg", loaded),
@@ -70,11 +73,13 @@ class Vectors {
     if (crossings_) {
       crossings_->finish();
       io::write_text(folder_ / "screens_summary.csv", io::screens_summary_csv(scenario_, summary_));
+      io::write_screens(folder_ / "screens.gpkg", loaded_, summary_);
     }
     if (!scenario_.barriers.empty()) io::write_text(folder_ / "barriers.csv", io::barriers_csv(scenario_, totals));
   }
 
  private:
+  const LoadedScenario& loaded_;
   const Scenario& scenario_;
   std::filesystem::path folder_;
   const Observer& observer_;
@@ -139,6 +144,8 @@ void write_results(const ResultSource& source, Observer& observer, Stopwatch& wa
   StopFigures stops = writing.get();
   record.energy_lines = std::move(stops.energy_lines);
   io::write_text(folder / "scenario.toml", loaded.complete_toml);
+  io::write_text(folder / io::kProjectFile,
+                 io::project_of(io::files_in(folder), folder, source.final_folder, io::ground_of(loaded)));
   record.files = io::files_in(folder);
   const Stopwatch::Lap written = watch.lap();
   record.cpu.write = written.cpu + record.totals.sink_cpu_seconds;
@@ -167,9 +174,9 @@ void summarise(const io::RunRecord& record, const LoadedScenario& loaded, std::s
 
 Outcome judge_limits(const Totals& totals, const std::filesystem::path& folder, Observer& observer) {
   if (!io::too_many_limits(totals)) return Outcome::Done;
-  observer.error(limits_text(totals) + "; look at the first: talus trace " + (folder / "scenario.toml").string() +
-                 " --source " + std::to_string(totals.first_limit[0]) + " --block " +
-                 std::to_string(totals.first_limit[1]));
+  observer.error(limits_text(totals) + "; look at the first: talus trace " +
+                 shell_word((folder / "scenario.toml").string()) + " --source " +
+                 std::to_string(totals.first_limit[0]) + " --block " + std::to_string(totals.first_limit[1]));
   return Outcome::TooManyLimits;
 }
 

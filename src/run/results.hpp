@@ -14,6 +14,7 @@ struct ResultSource {
   std::span<const Checkpoint> checkpoints;  ///< one, or the parts in their order; all with the same number of rounds
   const Tally& tally;
   std::filesystem::path folder;
+  std::filesystem::path final_folder;  ///< its name when it is complete
 };
 
 /// Writes every result: maps from the tally, vectors from the rows in the checkpoints. Fills the record.

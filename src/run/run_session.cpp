@@ -239,8 +239,8 @@ Outcome RunSession::deliver_results() {
   loaded.settings = tracing_->checkpoint().settings(rounds);
   io::set_rounds(loaded, rounds);
   try {
-    write_results({loaded, tracing_->checkpoints(), tracing_->tally(), folder_->temporary()}, observer_, watch_,
-                  record_);
+    write_results({loaded, tracing_->checkpoints(), tracing_->tally(), folder_->temporary(), folder_->final_path()},
+                  observer_, watch_, record_);
   } catch (const Interrupted&) {
     tracing_->interrupt_writing();
   }

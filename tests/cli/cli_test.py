@@ -171,7 +171,7 @@ class Folder(Case):
         self.run_well(*self.arguments())
 
     def test_unwritable_parent(self):
-        self.fails(2, "no such folder", arguments=self.arguments("none/out"))
+        self.fails(2, "no folder can be made", arguments=self.arguments("dem.tif/out"))
         self.fails(2, arguments=[*self.arguments()[:-1], "/proc/out"])
 
 

@@ -1,9 +1,12 @@
 """The common job without a scenario file: layers and fields by name, screens, zones, frequency and thresholds by flags."""
+import os
+import shlex
+import subprocess
 import unittest
 
 from osgeo import gdal, ogr
 
-from support import NORTH, WEST, Case, box, system
+from support import NORTH, WEST, Case, box, heights, system, write_dem
 
 
 class Layers(Case):
@@ -61,6 +64,115 @@ class Layers(Case):
         self.fails(2, "must ascend", arguments=["run", *flags[:-1], "100,10", "-o", self.path("no")])
         self.fails(2, "flag --frequency", arguments=["run", *self.flags, "--sources", self.path("site.gpkg"), "--sources-layer", "cliffs",
                                                      "--frequency", "-1", "-o", self.path("no")])
+
+    def write_sources(self, name, kind, values, field="diameter"):
+        """Boxes side by side with the values in a field; as a GeoPackage or a Shapefile."""
+        driver = "GPKG" if name.endswith(".gpkg") else "ESRI Shapefile"
+        file = ogr.GetDriverByName(driver).CreateDataSource(self.path(name))
+        layer = file.CreateLayer(os.path.splitext(name)[0], system(2056), ogr.wkbPolygon)
+        layer.CreateField(ogr.FieldDefn(field, kind))
+        for i, value in enumerate(values):
+            feature = ogr.Feature(layer.GetLayerDefn())
+            if value is not None:
+                feature.SetField(0, value)
+            feature.SetGeometry(ogr.CreateGeometryFromWkt(box(100 + 20 * i, 230, 10, 10)))
+            layer.CreateFeature(feature)
+        return self.path(name)
+
+    def test_numbers_in_a_text_field_are_read_and_said(self):
+        for name in "text.gpkg", "text.shp":
+            source = self.write_sources(name, ogr.OFTString, ["1.2", "0.8", None])
+            done = self.run_well("run", *self.flags, "--sources", source, "--diameter", "1", "-o", self.path("out"), "--overwrite")
+            self.assertIn("diameter 0.8 to 1.2 m (2 of 3 features, 1 empty; text, read as numbers)", done.stderr)
+            stops = ogr.Open(self.path("out/stops.gpkg")).GetLayer(0)
+            self.assertEqual(sorted({row["diameter_m"] for row in stops}), [0.8, 1.0, 1.2])
+        # A comma may be one of thousands: never guessed.
+        for values, fault in ((["1.2", "1,2"], "'1,2'"), (["1.2", "large"], "'large'")):
+            source = self.write_sources("bad.gpkg", ogr.OFTString, values)
+            self.fails(2, "feature 2: field diameter = " + fault, "must be a number in m", "to_real(",
+                       arguments=["run", *self.flags, "--sources", source, "-o", self.path("no")])
+            os.remove(source)
+
+    def test_check_lists_every_fault_and_every_field(self):
+        self.write_sources("bad.gpkg", ogr.OFTReal, [-1.0, 1.0, 5000.0, None])
+        nets = ogr.GetDriverByName("GPKG").CreateDataSource(self.path("nets.gpkg"))
+        layer = nets.CreateLayer("nets", system(2056), ogr.wkbLineString)
+        for name in "height", "capacity":
+            layer.CreateField(ogr.FieldDefn(name, ogr.OFTReal))
+        for height in (3.0, -2.0):
+            feature = ogr.Feature(layer.GetLayerDefn())
+            feature.SetField(0, height)
+            feature.SetGeometry(ogr.CreateGeometryFromWkt(f"LINESTRING ({WEST} {NORTH - 200},{WEST + 300} {NORTH - 200})"))
+            layer.CreateFeature(feature)
+        nets = layer = None
+        scenario = 'dem = "dem.tif"\ntrajectories = 2\n[sources]\nfile = "{}"\n[blocks]\ndiameter = 1\n[barriers]\nfile = "nets.gpkg"\n'
+        done = self.call("check", self.write("bad.toml", scenario.format("bad.gpkg")))
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        said = done.stderr.splitlines()
+        wanted = ("bad.gpkg: feature 1: field diameter = -1", "bad.gpkg: feature 3: field diameter = 5000",
+                  "nets.gpkg: feature 1: has no capacity", "nets.gpkg: feature 2: field height = -2", "nets.gpkg: feature 2: has no capacity")
+        self.assertEqual(len(said), len(wanted), done.stderr)
+        for line, words in zip(said, wanted):
+            self.assertIn(words, line)
+        self.fails(2, "feature 1: field diameter = -1", "(and 1 more fault: talus check lists all)",
+                   arguments=["run", self.path("bad.toml"), "-o", self.path("no")])
+        good = self.write_sources("good.gpkg", ogr.OFTReal, [1.0, 2.0, None])
+        nets = ogr.Open(self.path("nets.gpkg"), 1)
+        for row in nets.GetLayer(0):
+            row["height"], row["capacity"] = 3.0, 400.0 + row.GetFID()
+            nets.GetLayer(0).SetFeature(row)
+        nets = row = None
+        said = self.run_well("check", self.write("good.toml", scenario.format(good))).stdout
+        self.assertIn("good.gpkg: fields read: diameter 1 to 2 m (2 of 3 features, 1 empty)", said)
+        self.assertIn("nets.gpkg: fields read: height 3 m (2 of 2 features), capacity 401 to 402 kJ (2 of 2 features)", said)
+
+    def test_features_have_the_number_that_qgis_shows(self):
+        source = self.write_sources("plain.gpkg", ogr.OFTReal, [1.0, 1.5])
+        self.run_well("run", *self.flags, "--sources", source, "--frequency", "1", "-o", self.path("out"))
+        stops = ogr.Open(self.path("out/stops.gpkg")).GetLayer(0)
+        by_number = {(row["feature"], row["diameter_m"]) for row in stops}
+        self.assertEqual(by_number, {("1", 1.0), ("2", 1.5)})
+        other = self.write("weights.toml", "[features]\n1 = 0.5\n2 = 0.25\n")
+        self.run_well("run", *self.flags, "--sources", source, "-o", self.path("plain"))
+        self.run_well("hazard", self.path("out"), "-q")
+        self.fails(2, "no such feature", "1, 2", arguments=["hazard", self.path("out"), "--overwrite", "--frequency",
+                                                         self.write("zero.toml", "[features]\n0 = 0.5\n")])
+        self.assertTrue(os.path.exists(other))
+
+    def test_paths_in_commands_are_quoted(self):
+        for folder in "a b", "it's", "$(touch x)":
+            os.makedirs(self.path(folder))
+            dem = self.path(f"{folder}/dem.tif")
+            write_dem(dem, heights(), code=0)
+            done = self.fails(2, "gdal_edit.py", arguments=["run", "--dem", dem, "--sources", self.path("sources.gpkg"), "-o", self.path("no")])
+            self.assertEqual(shlex.split(done.stderr.split("with gdal_edit.py ")[1])[-1], dem)
+
+    def test_parent_folders_are_made_and_not_left_behind(self):
+        before = os.listdir(self.folder)
+        self.fails(2, "diameter", arguments=["run", "--dem", self.path("dem.tif"), "--sources", self.path("sources.gpkg"),
+                                              "-o", self.path("no/such/folder")])
+        self.assertEqual(sorted(os.listdir(self.folder)), sorted(before))
+        self.fails(2, "steep", arguments=["sources", "--dem", self.path("dem.tif"), "--slope", "89.9", "-o", self.path("no/such/cells.gpkg")])
+        self.assertEqual(sorted(os.listdir(self.folder)), sorted(before))
+        self.run_well(*self.arguments("some/new/folder", trajectories="3"), "-q")
+        self.assertTrue(os.path.exists(self.path("some/new/folder/run.json")))
+        self.run_well("sources", "--dem", self.path("dem.tif"), "--slope", "30", "-o", self.path("more/cells.gpkg"))
+        self.assertTrue(os.path.exists(self.path("more/cells.gpkg")))
+        self.write("file", "")
+        self.fails(2, "no folder can be made", arguments=self.arguments("file/out"))
+
+    def test_a_picture_of_a_barrier_at_a_screen_with_any_name(self):
+        with open(self.path("line.csv"), "w", encoding="utf-8") as file:
+            file.write(f'id,wkt\n"L123 km 4,2","LINESTRING ({WEST + 20} {NORTH - 150}, {WEST + 380} {NORTH - 150})"\n')
+        self.run_well(*self.arguments(trajectories="100"), "--screens", self.path("line.csv"), "-q")
+        self.run_well("barrier", self.path("out"), "--screen", "L123 km 4,2", "-q")
+        script = os.path.join(os.path.dirname(__file__), "../../tools/scripts/figures/barrier_picture.py")
+        done = subprocess.run(["/usr/bin/python3", script, self.path("out"), "--screen", "L123 km 4,2", "-o", self.path("picture.png")],
+                              capture_output=True, text=True, check=False)
+        if "No module named 'matplotlib'" in done.stderr:
+            self.skipTest("no matplotlib")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertGreater(os.path.getsize(self.path("picture.png")), 10000)
 
 
 if __name__ == "__main__":

@@ -85,7 +85,7 @@ class Sources(Case):
         self.fails(2, "--slope = 90", "below 90 deg", arguments=[*arguments, "--slope", "90"])
         self.fails(2, "no cell is at least 80 deg steep", "--slope", arguments=[*arguments, "--slope", "80"])
         self.fails(2, "cells.shp", ".gpkg", arguments=[*arguments[:-1], self.path("cells.shp")])
-        self.fails(2, "no such folder", arguments=[*arguments[:-1], self.path("none/cells.gpkg")])
+        self.fails(2, "no folder can be made", arguments=[*arguments[:-1], self.path("dem.tif/cells.gpkg")])
         self.fails(2, "none.tif", arguments=["sources", "--dem", self.path("none.tif"), "-o", self.path("cells.gpkg")])
         self.fails(2, "--dem", arguments=["sources", "-o", self.path("cells.gpkg")])
         self.assert_nothing_left(before)

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "files.hpp"
+#include "talus/base/input_faults.hpp"
 #include "talus/io/gdal/vectors.hpp"
 
 namespace talus::io::test {
@@ -101,7 +102,7 @@ TEST_F(Attributes, AShapefileWithATextForANumberIsRefused) {
       [&] {
         read_sources(file, terrain_, {1, 1});
       },
-      {"s.shp: feature 0", "diameter = '1,2'", "String", "must be a number field in m"});
+      {"s.shp: feature 0", "diameter = '1,2'", "with a point for decimals", "replace(the field"});
 }
 
 TEST_F(Attributes, AShapefileCutsThePairOfDiameters) {  // GDAL writes diameter_m and diameter_1
@@ -111,6 +112,36 @@ TEST_F(Attributes, AShapefileCutsThePairOfDiameters) {  // GDAL writes diameter_
   const Range diameter = read_sources(file, terrain_, {1, 1}).features[0].diameter;
   EXPECT_EQ(diameter.low, 0.5);
   EXPECT_EQ(diameter.high, 1.8);
+}
+
+TEST_F(Attributes, NumbersInATextFieldAreRead) {
+  const SourceLayer layer = read({{"diameter", OFTString}}, {{"1.25"}, {" 2 "}, {"NULL"}});
+  EXPECT_EQ(layer.features[0].diameter.low, 1.25);
+  EXPECT_EQ(layer.features[1].diameter.low, 2.0);
+  EXPECT_TRUE(std::isnan(layer.features[2].diameter.low));
+  EXPECT_NE(layer.read_note.find("diameter 1.25 to 2 m (2 of 3 features, 1 empty; text, read as numbers)"),
+            std::string::npos)
+      << layer.read_note;
+}
+
+TEST_F(Attributes, EveryFaultIsListed) {
+  const Fields fields{{"diameter", OFTReal}, {"release_height", OFTReal}};
+  try {
+    read(fields, {{"-1", "2"}, {"1", "2"}, {"2000", "-5"}});
+    FAIL();
+  } catch (const InputFaults& error) {
+    ASSERT_EQ(error.faults().size(), 3U);
+    EXPECT_NE(error.faults()[0].find("feature 1: field diameter = -1"), std::string::npos);
+    EXPECT_NE(error.faults()[1].find("feature 3: field diameter = 2000"), std::string::npos);
+    EXPECT_NE(error.faults()[2].find("feature 3: field release_height = -5"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("(and 2 more faults: talus check lists all)"), std::string::npos);
+  }
+}
+
+TEST_F(Attributes, AFeatureWithoutANameHasItsNumber) {
+  const SourceLayer layer = read({{"name", OFTString}}, {{"cliff"}, {"NULL"}});
+  EXPECT_EQ(layer.features[0].name, "cliff");
+  EXPECT_EQ(layer.features[1].name, "2");
 }
 
 TEST_F(Attributes, ATextFieldWithoutTextIsNotGiven) {

@@ -4,9 +4,15 @@
 #include <cpl_minixml.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <numbers>
+#include <set>
 
+#include "talus/io/results/qgis_project.hpp"
+#include "talus/io/results/vector_style.hpp"
 #include "talus/products/raster_table.hpp"
 
 namespace talus::io {
@@ -84,6 +90,153 @@ TEST(Style, WithoutALegendItIsAFault) {
   EXPECT_THROW(style_of(map), std::logic_error);
   map.legend = {};
   EXPECT_THROW(style_of(map), std::logic_error);
+}
+
+TEST(Style, ReturnPeriodsHaveNoZero) {  // nothing comes back every 0 years
+  for (const Map& map : all_maps()) {
+    const bool zero = style_of(map).find("value=\"0\"") != std::string::npos;
+    EXPECT_EQ(zero, !map.name.starts_with("return_period")) << map.name;
+  }
+}
+
+TEST(Style, ReachProbabilityHasClassesOfItsOwn) {
+  // The least value is 1 / trajectories of a source cell, 2 % with 50: its classes must not all lie below.
+  const std::vector<LegendClass> classes = classes_of(map_of("reach_probability"));
+  ASSERT_EQ(classes.size(), 6U);
+  EXPECT_EQ(classes[0].label, "up to 2 %");
+  EXPECT_EQ(classes[5].label, "50 to 100 %");
+}
+
+// Colours as they are seen.
+
+using Rgb = Eigen::Vector3d;
+using Matrix = Eigen::Matrix3d;
+
+Rgb linear(const std::string& text) {  // sRGB (IEC 61966-2-1)
+  Rgb rgb;
+  for (int i = 0; i < 3; ++i) {
+    const double c = std::stoi(text.substr(1 + 2 * static_cast<std::size_t>(i), 2), nullptr, 16) / 255.0;
+    rgb[i] = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+  }
+  return rgb;
+}
+
+Rgb lab_of(const Rgb& rgb) {  // CIE 1976 L*a*b* for the white of D65
+  const Matrix xyz{
+      {0.4124564, 0.3575761, 0.1804375}, {0.2126729, 0.7151522, 0.0721750}, {0.0193339, 0.1191920, 0.9503041}};
+  const Rgb t = (xyz * rgb.cwiseMax(0.0).cwiseMin(1.0)).cwiseQuotient(Rgb(0.95047, 1.0, 1.08883));
+  const auto f = [](double x) { return x > 216.0 / 24389.0 ? std::cbrt(x) : (24389.0 / 27.0 * x + 16.0) / 116.0; };
+  return {116.0 * f(t[1]) - 16.0, 500.0 * (f(t[0]) - f(t[1])), 200.0 * (f(t[1]) - f(t[2]))};
+}
+
+/// Eyes: normal ones, and those without one kind of cones by Machado, Oliveira and Fernandes (2009, IEEE Transactions
+/// on Visualization and Computer Graphics 15, 1291-1298), their matrices of severity 1, for linear RGB.
+const std::map<std::string, Matrix>& eyes() {
+  static const std::map<std::string, Matrix> all{
+      {"normal", Matrix::Identity()},
+      {"protanopia",
+       Matrix{{0.152286, 1.052583, -0.204868}, {0.114503, 0.786281, 0.099216}, {-0.003882, -0.048116, 1.051998}}},
+      {"deuteranopia",
+       Matrix{{0.367322, 0.860646, -0.227968}, {0.280085, 0.672501, 0.047413}, {-0.011820, 0.042940, 0.968881}}}};
+  return all;
+}
+
+TEST(Colours, AsSeenByMachado) {  // greys stay grey, and pure red is dark without the cones for it
+  for (const auto& [eye, matrix] : eyes()) {
+    const Rgb grey = lab_of(matrix * linear("#808080"));
+    EXPECT_NEAR(grey[0], 53.6, 0.1) << eye;
+    EXPECT_NEAR(grey.tail<2>().norm(), 0.0, 0.1) << eye;
+  }
+  EXPECT_NEAR(lab_of(linear("#ff0000"))[0], 53.2, 0.1);
+  EXPECT_LT(lab_of(eyes().at("protanopia") * linear("#ff0000"))[0], 45.0);
+}
+
+constexpr Palette kPalettes[]{Palette::Plasma, Palette::PlasmaFromDark, Palette::Viridis, Palette::Cividis,
+                              Palette::HazardClasses};
+
+TEST(Colours, NeighboursDifferForAllEyes) {
+  constexpr double kLeast = 15.0;  // of CIELAB; 2.3 is just noticeable side by side (Mahy and others, 1994)
+  for (const Palette palette : kPalettes)
+    for (const auto& [eye, matrix] : eyes()) {
+      const auto colours = colours_of(palette);
+      for (std::size_t i = 1; i < colours.size(); ++i)
+        EXPECT_GE((lab_of(matrix * linear(colours[i])) - lab_of(matrix * linear(colours[i - 1]))).norm(), kLeast)
+            << static_cast<int>(palette) << ": " << colours[i - 1] << " " << colours[i] << " " << eye;
+    }
+}
+
+TEST(Colours, LightnessIsMonotone) {  // in every eye: the order of the classes is seen, also in a grey copy
+  for (const Palette palette : kPalettes)
+    for (const auto& [eye, matrix] : eyes()) {
+      const auto colours = colours_of(palette);
+      const double sign = palette == Palette::PlasmaFromDark ? 1.0 : -1.0;
+      for (std::size_t i = 1; i < colours.size(); ++i)
+        EXPECT_GT(sign * (lab_of(matrix * linear(colours[i]))[0] - lab_of(matrix * linear(colours[i - 1]))[0]), 1.0)
+            << static_cast<int>(palette) << ": " << colours[i - 1] << " " << colours[i] << " " << eye;
+    }
+}
+
+TEST(ClassNames, OfClassesAndOfIntensities) {
+  Map classes = map_of("hazard_class");
+  classes.classes = {"none", "\"low\" < 30 & rare", "high"};
+  const Tree tree(CPLParseXMLString(class_names_of(classes).c_str()), CPLDestroyXMLNode);
+  const CPLXMLNode* names = CPLGetXMLNode(tree.get(), "=PAMDataset.PAMRasterBand.CategoryNames");
+  ASSERT_NE(names, nullptr);
+  EXPECT_STREQ(CPLGetXMLValue(names->psChild->psNext, "", ""), "\"low\" < 30 & rare");
+  const std::string intensity = class_names_of(map_of("intensity_T30"));
+  EXPECT_NE(intensity.find("tableType=\"athematic\""), std::string::npos) << intensity;
+  EXPECT_NE(intensity.find("<F>30</F>\n      <F>100</F>\n      <F>30 to 100 kJ</F>"), std::string::npos) << intensity;
+  EXPECT_EQ(class_names_of(map_of("energy")), "");
+}
+
+TEST(VectorStyle, ClassesOfTheRaster) {
+  for (const auto& [layer, raster] : {std::pair{StyledLayer::Stops, "energy"},
+                                      {StyledLayer::Exits, "energy"},
+                                      {StyledLayer::Trajectories, "velocity"},
+                                      {StyledLayer::Screens, "energy"},
+                                      {StyledLayer::AreaObjects, "return_period_30"},
+                                      {StyledLayer::LineObjects, "return_period_30"}}) {
+    const Tree tree(CPLParseXMLString(style_of(layer).c_str()), CPLDestroyXMLNode);
+    ASSERT_NE(tree, nullptr);
+    const CPLXMLNode* ranges = CPLGetXMLNode(tree.get(), "=qgis.renderer-v2.ranges");
+    ASSERT_NE(ranges, nullptr);
+    const std::vector<LegendClass> classes = classes_of(map_of(raster));
+    std::size_t i = 0;
+    for (const CPLXMLNode* range = ranges->psChild; range != nullptr; range = range->psNext, ++i) {
+      ASSERT_LT(i, classes.size());
+      EXPECT_TRUE(std::string(CPLGetXMLValue(range, "label", "")).starts_with(classes[i].label)) << classes[i].label;
+      EXPECT_LT(std::atof(CPLGetXMLValue(range, "lower", "")), std::atof(CPLGetXMLValue(range, "upper", "")));
+    }
+    EXPECT_EQ(i, classes.size());
+  }
+}
+
+TEST(Project, HasATitleForEveryRaster) {
+  std::set<std::string> known;
+  for (const ProjectLayer& layer : project_layers())
+    if (!layer.vector) known.insert(layer.name);
+  for (const RunRaster& raster : run_rasters()) EXPECT_EQ(known.count(raster.map.name), 1U) << raster.map.name;
+  for (const HazardRaster& raster : hazard_rasters()) {
+    const std::string name = raster.map.name.substr(0, raster.map.name.find('<'));
+    EXPECT_EQ(known.count(name), 1U) << name;
+  }
+}
+
+TEST(Project, NamesOfFilesAndFoldersAreEscaped) {
+  const ProjectGround ground{{"", 0.0, 100.0, 1.0, 1.0}, 10, 10, {}};
+  const std::string text = project_of({"hazard_class.tif", "return_period_30.tif", "return_period_300.tif",
+                                       "stops.gpkg", "mine.tif", "return_period_<b>.tif"},
+                                      "/nowhere", "/some/\"a\" <b> & \x01\xff'c'", ground);
+  const Tree tree(CPLParseXMLString(text.c_str()), CPLDestroyXMLNode);
+  ASSERT_NE(tree, nullptr) << text;
+  EXPECT_STREQ(CPLGetXMLValue(tree.get(), "=qgis.title", ""), "Talus: \"a\" <b> & ?'c'");
+  EXPECT_EQ(text.find('\x01'), std::string::npos);
+  EXPECT_EQ(text.find("mine"), std::string::npos) << "only results are shown";
+  EXPECT_EQ(text.find("&lt;b&gt;.tif"), std::string::npos);
+  EXPECT_LT(text.find("talus_layer_stops"), text.find("talus_map_hazard_class"));
+  EXPECT_LT(text.find("talus_map_hazard_class"), text.find("talus_map_return_period_30"));
+  EXPECT_LT(text.find("\"talus_map_return_period_30\""), text.find("\"talus_map_return_period_300\""));
+  EXPECT_NE(text.find("datasource>./stops.gpkg|layername=stops<"), std::string::npos) << text;
 }
 
 }  // namespace

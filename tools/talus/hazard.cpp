@@ -14,6 +14,7 @@
 #include "talus/io/results/hazard_file.hpp"
 #include "talus/io/results/hazard_record.hpp"
 #include "talus/io/results/objects_file.hpp"
+#include "talus/io/results/qgis_project.hpp"
 #include "talus/io/results/recorded_plan.hpp"
 #include "talus/io/results/run_folder.hpp"
 #include "talus/io/results/run_record.hpp"
@@ -218,6 +219,7 @@ int hazard(const Options& options) {
   talus::io::write_text(staged.temporary() / "hazard.json", talus::io::hazard_json(record));
   const std::vector<std::string> removed = staged.to_remove();
   staged.commit();
+  talus::io::refresh_project(folder);
   if (options.quiet) return 0;
   if (!removed.empty())
     say("", "removed, as not asked for this time: " + talus::joined(removed) +

@@ -20,7 +20,9 @@ struct Legend {
   double factor;               ///< from the unit of the file to the unit of the labels
   std::string unit;            ///< of the labels; empty for none
   Palette palette;
-  std::string band{};  ///< name of the band that is shown; empty: the first
+  std::string band{};          ///< name of the band that is shown; empty: the first
+  bool has_zero = true;        ///< 0 is a value, "nothing here": it has an entry, without a colour
+  bool names_in_file = false;  ///< the names of its classes are stored beside the raster, too
 };
 
 /// A result file: its name without its ending (docs/products.md), and its bands.

@@ -54,15 +54,15 @@ fs::path checked(const fs::path& path, const std::string& extension, bool overwr
         name +
         ": the file is there already; give a new name, or --overwrite where the command has it, or remove it first");
   if (fs::exists(path) && overwrite) refuse_foreign(path);
-  if (!fs::is_directory(fs::absolute(path).parent_path()))
-    throw InputError(name + ": there is no such folder for the file to go into; create it first");
   return fs::absolute(path);
 }
 
 }  // namespace
 
 OutputFile::OutputFile(const fs::path& path, const std::string& extension, bool overwrite)
-    : staged_(StagedPath::Kind::File, checked(path, extension, overwrite), extension) {}
+    : staged_(StagedPath::Kind::File, checked(path, extension, overwrite), extension) {
+  parents_.make(staged_.path().parent_path());
+}
 
 void OutputFile::protect(const fs::path& input) const {
   std::error_code none;

@@ -68,8 +68,6 @@ void refuse_taken_name(const fs::path& folder, bool overwrite) {
 
 void make_hidden(StagedPath& staged) {
   const std::string parent = staged.path().parent_path().string();
-  if (!fs::is_directory(parent))
-    throw InputError(parent + ": there is no such folder for the results to go into; create it first");
   const std::error_code error = staged.make_folder();
   if (!error) return;
   if (error == std::errc::no_space_on_device) throw std::runtime_error(parent + ": " + error.message());
@@ -132,6 +130,7 @@ OutputFolder::OutputFolder(const fs::path& path, bool overwrite, Unfinished unfi
   if (unfinished == Unfinished::Refuse && kept && !overwrite)
     throw InputError(final.string() + ": an interrupted run of this name is kept in " + left.back().path.string() +
                      "; give --resume to go on with it, or --overwrite to begin anew");
+  parents_.make(final.parent_path());
   make_hidden(staged_);
   std::error_code ignored;
   if (unfinished == Unfinished::Resume && kept) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string_view>
 
 #include "own_files.hpp"
 #include "talus/base/error.hpp"
@@ -51,8 +52,13 @@ std::vector<std::string> StagedFiles::to_remove() const {
 }
 
 void StagedFiles::commit() {
+  const auto is_earlier = [&](const std::string& name) {  // or what a reader has left beside an earlier one
+    constexpr std::string_view kBeside = ".aux.xml";
+    return std::ranges::count(earlier_, name) > 0 ||
+           (name.ends_with(kBeside) && std::ranges::count(earlier_, name.substr(0, name.size() - kBeside.size())) > 0);
+  };
   for (const std::string& name : files())
-    if (fs::exists(folder_ / name) && std::ranges::count(earlier_, name) == 0)
+    if (fs::exists(folder_ / name) && !is_earlier(name))
       throw InputError((folder_ / name).string() + ": is there and none of the files of an earlier " + record_ +
                        ", so it is not replaced; move it, or give it another name");
   const std::vector<std::string> names = files(), without_successor = to_remove();

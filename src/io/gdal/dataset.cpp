@@ -9,6 +9,7 @@
 #include "layer_name.hpp"
 #include "local_gdal.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/shell.hpp"
 #include "vector_file.hpp"
 
 namespace talus::io {
@@ -123,8 +124,9 @@ bool is_place(double x, double y) {
 }
 
 std::string edit_command(const std::string& path, const std::string& option) {
+  const std::string file = shell_word(path);
   const bool tiff = ends_with(path, ".tif") || ends_with(path, ".tiff");
-  return tiff ? "gdal_edit.py " + option + " " + path : "gdal_translate " + option + " " + path + " mended.tif";
+  return tiff ? "gdal_edit.py " + option + " " + file : "gdal_translate " + option + " " + file + " mended.tif";
 }
 
 std::string wkt_of(const OGRSpatialReference* system) {

@@ -239,7 +239,7 @@ class TreeReader {
   }
 
   void read(ForestLayer& out) {
-    while (const Feature feature = layer_.next()) add(*feature);
+    for_each_feature(layer_, [this](const Feature& feature) { add(*feature); });
     if (trees_.empty()) refuse();
     auto map = std::make_shared<ForestMap>();
     map->trees = TreeList(trees_);
@@ -260,8 +260,10 @@ class TreeReader {
       ++without_place_;
       return;
     }
-    const auto diameter = diameter_of(feature);
-    const double species = species_of(feature);
+    std::optional<double> diameter;
+    double species = 1.0;
+    layer_.faults().attempt([&] { diameter = diameter_of(feature); });
+    layer_.faults().attempt([&] { species = species_of(feature); });
     for (const Eigen::Vector2d& place : parts.points) {
       if (!on_terrain(place))
         ++off_;

@@ -26,6 +26,13 @@ class Configured {
   bool had_ = false;
 };
 
+/// A text in a command of SQL.
+std::string in_sql(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "''" : std::string(1, c);
+  return quoted + '\'';
+}
+
 constexpr const char* kDate = "1970-01-01T00:00:00.000Z";
 
 }  // namespace
@@ -90,6 +97,7 @@ void GeoPackage::finish() {
   if (index_) index_->finish();
   for (const std::string& trigger : triggers_) execute(trigger);
   for (const std::string& layer : layers_) create_index(layer);
+  write_styles();
   require(dataset_->CommitTransaction() == OGRERR_NONE, messages);
   dataset_.reset();
   require(true, messages);
@@ -104,6 +112,26 @@ std::vector<std::string> GeoPackage::execute(const std::string& sql) {
   }
   require(true, messages);
   return rows;
+}
+
+/// The table `layer_styles`, as QGIS makes it.
+void GeoPackage::write_styles() {
+  if (styles_.empty()) return;
+  execute(
+      "CREATE TABLE layer_styles (id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, f_table_catalog TEXT(256), "
+      "f_table_schema TEXT(256), f_table_name TEXT(256), f_geometry_column TEXT(256), styleName TEXT(30), styleQML "
+      "TEXT, styleSLD TEXT, useAsDefault BOOLEAN, description TEXT, owner TEXT(30), ui TEXT(30), update_time "
+      "DATETIME)");
+  const std::string date = std::string("'") + kDate + "'";
+  execute(
+      "INSERT INTO gpkg_contents (table_name, data_type, identifier, description, last_change) VALUES "
+      "('layer_styles', 'attributes', 'layer_styles', '', " +
+      date + ")");
+  for (const auto& [layer, style] : styles_)
+    execute(
+        "INSERT INTO layer_styles (f_table_catalog, f_table_schema, f_table_name, f_geometry_column, styleName, "
+        "styleQML, styleSLD, useAsDefault, description, owner, ui, update_time) VALUES ('', '', " +
+        in_sql(layer) + ", 'geom', 'talus', " + in_sql(style) + ", '', 1, '', '', NULL, " + date + ")");
 }
 
 void GeoPackage::create_index(const std::string& layer) {

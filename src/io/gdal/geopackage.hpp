@@ -31,19 +31,24 @@ class GeoPackage {
   /// Appends a row, which gets the next number as its fid. The feature may be used again.
   void append(OGRLayer* layer, OGRFeature& feature);
 
-  /// Builds the spatial indices and closes the file.
+  /// Sets the style that QGIS gives a layer when it opens the file.
+  void set_style(const std::string& layer, const std::string& style) { styles_.emplace_back(layer, style); }
+
+  /// Writes the styles, builds the spatial indices and closes the file.
   void finish();
 
  private:
   OGRLayer* create_layer(const char* name, OGRwkbGeometryType type, const std::vector<Column>& columns);
   std::vector<std::string> execute(const std::string& sql);
+  void write_styles();
   void create_index(const std::string& layer);
   [[noreturn]] void fail(const std::string& cause) const;
   void require(bool good, GdalMessages& messages) const;
 
   std::filesystem::path file_;
   OGRSpatialReference system_;
-  std::vector<std::string> layers_;  // still without an index
+  std::vector<std::string> layers_;                          // still without an index
+  std::vector<std::pair<std::string, std::string>> styles_;  // by layer
   OGRLayer* points_ = nullptr;
   std::optional<PointIndex> index_;    // of points_
   std::vector<std::string> triggers_;  // of points_, to be set again

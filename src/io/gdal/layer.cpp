@@ -11,6 +11,7 @@
 #include "csv_table.hpp"
 #include "layer_name.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
 
 namespace talus::io {
@@ -19,7 +20,37 @@ namespace {
 /// The layers of `talus sources`, of which polygons are what others take as sources.
 const std::vector<std::string> kOfSources{"source_polygons", "source_points"};
 
+/// What a text must be in the place of a number. A comma is not taken as a decimal point: "1,200" may be 1200.
+/// @param in_layer  the text is in a text field of a layer, else in a CSV
+std::string no_number_text(const std::string& text, const std::string& unit, bool in_layer) {
+  const std::string wanted = "must be a number" + unit + ", with a point for decimals, or " +
+                             (in_layer ? "NULL" : "empty") + " where it is not known";
+  if (!in_layer) return wanted;
+  const bool comma = text.find(',') != std::string::npos;
+  return wanted + ": in QGIS make a number field of it with the field calculator, to_real(" +
+         (comma ? "replace(the field, ',', '.'))" : "the field)");
+}
+
 }  // namespace
+
+std::string FieldUse::text(std::size_t features) const {
+  std::string word = name;
+  if (count > 0 && !is_text) word += " " + range() + (unit.empty() ? "" : " " + unit);
+  if (!EQUAL(field.c_str(), name.c_str())) word += " from " + field;
+  word += " (" + (count == 0 ? "empty" : std::to_string(count) + " of " + std::to_string(features) + " features");
+  if (count > 0 && count < features) word += ", " + std::to_string(features - count) + " empty";
+  return word + (from_text && count > 0 ? "; text, read as numbers)" : ")");
+}
+
+std::string FieldUse::range() const {
+  return low == high ? text_of(low) : text_of(low) + " to " + text_of(high);
+}
+
+void FieldUse::add(double value) {
+  low = count == 0 ? value : std::min(low, value);
+  high = count == 0 ? value : std::max(high, value);
+  ++count;
+}
 
 OGREnvelope Parts::envelope() const {
   OGREnvelope all, one;
@@ -79,8 +110,9 @@ void Layer::choose_layer() {
                                 : wanted.layer;
   const bool asked = !wanted.layer.empty() || wanted.number >= 0;
   if (!asked && names.size() > 1 && names != kOfSources)
-    throw InputError(wanted.file + ": has the layers " + joined(names) + ", must be told which: " +
-                     std::filesystem::path(wanted.file).filename().string() + "|layername=" + names.front());
+    throw InputError(
+        wanted.file + ": has the layers " + joined(names) + ", must be told which: " +
+        shell_word(std::filesystem::path(wanted.file).filename().string() + "|layername=" + names.front()));
   const auto found = asked ? std::ranges::find(names, given) : names.begin();
   if (found == names.end()) throw InputError(path_ + ": has no such layer with geometry" + known_names(given, names));
   layer_ = layers[static_cast<std::size_t>(found - names.begin())];
@@ -122,7 +154,7 @@ int Layer::only_field(const std::string& name) const {
   if (same.size() > 1)
     throw InputError(path_ + ": has the fields " + joined(same) +
                      ", which differ only in the case of their letters: " + "say which is " + name + " with --field " +
-                     name + "=" + same.front() + " or in [sources.fields], or rename one");
+                     shell_word(name + "=" + same.front()) + " or in [sources.fields], or rename one");
   return index >= 0 ? index : field(name.c_str());
 }
 
@@ -149,13 +181,12 @@ std::optional<double> Layer::number(const OGRFeature& feature, int index, const 
   if (type == OFTString && *feature.GetFieldAsString(index) == '\0') return std::nullopt;
   const std::string where = label(feature) + ": field " + name + " = ";
   double value = feature.GetFieldAsDouble(index);
-  if (is_csv() && type != OFTReal) {  // one cell that is no number makes text of the whole column
+  const bool of_cells = is_csv() && type != OFTReal;  // one cell that is no number makes text of the whole column
+  if (of_cells || type == OFTString) {
     const std::string text = feature.GetFieldAsString(index);
     const auto number = number_of_cell(text);
     if (!number && text.find_first_not_of(' ') == std::string::npos) return std::nullopt;
-    if (!number)
-      throw InputError(where + "'" + text + "': must be a number" + unit +
-                       ", with a point for decimals, or empty where it is not known");
+    if (!number) throw InputError(where + "'" + text + "': " + no_number_text(text, unit, !is_csv()));
     value = *number;
   } else if (type != OFTInteger && type != OFTInteger64 && type != OFTReal) {
     throw InputError(where + "'" + feature.GetFieldAsString(index) + "' is of the type " +
@@ -165,6 +196,10 @@ std::optional<double> Layer::number(const OGRFeature& feature, int index, const 
   if (const auto fault = fault_of(bounds, value))
     throw InputError(where + text_of(value) + ": " + *fault + ", or NULL where it is not known");
   return value;
+}
+
+bool Layer::holds_text(int field) const {
+  return !is_csv() && fields().GetFieldDefn(field)->GetType() == OFTString;
 }
 
 std::string Layer::code(const OGRFeature& feature, int index) const {
@@ -288,6 +323,12 @@ CellMask mask_of(const OGRGeometry& geometry, const Grid& grid, bool touched) {
                                          mask.rows, GDT_Byte, 0, 0, nullptr) != CE_None)
     throw std::runtime_error("rasterizing failed: " + messages.take());
   return mask;
+}
+
+std::string fields_note(const std::string& path, const std::vector<FieldUse>& fields, std::size_t features) {
+  std::vector<std::string> words;
+  for (const FieldUse& use : fields) words.push_back(use.text(features));
+  return path + ": fields read: " + joined(words);
 }
 
 std::string list_of(const std::vector<std::int64_t>& ids) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "dataset.hpp"
+#include "talus/base/input_faults.hpp"
 #include "talus/io/gdal/rasters.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 
@@ -17,6 +18,23 @@ struct Parts {
 
   bool empty() const { return polygons.empty() && lines.empty() && points.empty(); }
   OGREnvelope envelope() const;
+};
+
+/// A field that is read: what it holds, and what was found in it.
+struct FieldUse {
+  std::string name;   ///< what it holds: "release_height"
+  std::string field;  ///< its own name: "HEIGHT"
+  std::string unit;   ///< empty for none
+  int index = -1;
+  bool is_text = false;    ///< what it holds is text
+  bool from_text = false;  ///< numbers in a text field
+  std::size_t count = 0;   ///< of features with a value
+  double low = 0.0, high = 0.0;
+
+  void add(double value);
+  std::string range() const;
+  /// "diameter 0.5 to 2 m from Durchmesser (2 of 3 features, 1 empty)".
+  std::string text(std::size_t features) const;
 };
 
 /// A layer of a vector file, feature by feature on the grid of the DEM: the one that is named (`NamedLayer`), or the
@@ -49,6 +67,12 @@ class Layer {
   /// The value of a text or whole-number field; empty if it is NULL. Throws InputError for other fields.
   std::string code(const OGRFeature& feature, int field) const;
 
+  /// Whether a field is a text field; of a CSV, whose cells are all text, no.
+  bool holds_text(int field) const;
+
+  /// The faults of features so far: `for_each_feature` reports them together.
+  FaultList& faults() { return faults_; }
+
   const std::string& crs_wkt() const { return crs_wkt_; }
   const std::vector<Reprojection>& reprojections() const { return transformer_->used(); }
   /// Warnings of the opening, the geometries and the transformation.
@@ -71,7 +95,16 @@ class Layer {
   bool north_first_ = false;  // the file has its coordinates in the order of the axes: latitude first
   std::vector<std::string> warnings_;
   std::size_t mended_ = 0;
+  FaultList faults_;
 };
+
+/// Calls `read(feature)` for every feature of a layer, also after a fault. Throws InputFaults, with the faults of all
+/// features, after the last one.
+template <class Read>
+void for_each_feature(Layer& layer, Read read) {
+  while (Feature feature = layer.next()) layer.faults().attempt([&] { read(feature); });
+  layer.faults().stop();
+}
 
 /// Calls `visit(column, row)` (row 0 in the south) for the cells of a geometry in local metres, row by row from the
 /// north-west: the cells whose centre it covers or, with `touched`, all that it touches.
@@ -94,6 +127,9 @@ void for_each_cell(const OGRGeometry& geometry, const Grid& grid, bool touched, 
     for (int i = 0; i < mask.columns; ++i)
       if (*mark++ != 0) visit(mask.column + i, mask.north_row - j);
 }
+
+/// "cliffs.gpkg: fields read: diameter 0.5 to 2 m (2 of 3 features, 1 empty), name (3 of 3 features)".
+std::string fields_note(const std::string& path, const std::vector<FieldUse>& fields, std::size_t features);
 
 /// "3, 7, 12 and 5 more".
 std::string list_of(const std::vector<std::int64_t>& ids);

@@ -17,14 +17,29 @@ class LineReader {
         meant_(std::move(meant)),
         grid_(terrain.heights.grid),
         layer_(std::move(role), path, terrain),
-        id_(layer_.field("id")) {}
+        id_(layer_.field("id")) {
+    if (id_ >= 0) use_of(id_, "id", "").is_text = true;
+  }
 
   Layer& layer() { return layer_; }
 
   /// The field `id`, else the number of the feature.
-  std::string id_of(const OGRFeature& feature) const {
+  std::string id_of(const OGRFeature& feature) {
     const std::string id = id_ < 0 ? "" : layer_.code(feature, id_);
+    if (!id.empty()) ++uses_.front().count;
     return id.empty() ? std::to_string(feature.GetFID()) : id;
+  }
+
+  /// The number in a field, which must be there; nothing and a fault of the layer if it is not.
+  std::optional<double> number(const OGRFeature& feature, const char* field, std::string_view key) {
+    std::optional<double> value;
+    layer_.faults().attempt([&] {
+      value = layer_.number(feature, field, bounds_of(key));
+      if (!value) throw InputError(layer_.label(feature) + ": has no " + field + ", must be " + meant_);
+    });
+    if (const int index = layer_.field(field); value && index >= 0)
+      use_of(index, field, std::string(bounds_of(key).unit)).add(*value);
+    return value;
   }
 
   /// Appends the lines of a feature.
@@ -52,15 +67,25 @@ class LineReader {
     if (!off_map_.empty())
       out.warnings.push_back(path_ + ": lines wholly off the DEM, which nothing will cross: features " +
                              list_of(off_map_));
+    if (!uses_.empty()) out.notes.push_back(fields_note(path_, uses_, features_));
     out.reprojections = layer_.reprojections();
     for (std::string& line : layer_.warnings()) out.warnings.push_back(std::move(line));
   }
 
  private:
+  FieldUse& use_of(int index, const std::string& name, const std::string& unit) {
+    const auto found = std::ranges::find(uses_, index, &FieldUse::index);
+    if (found != uses_.end()) return *found;
+    uses_.push_back({name, layer_.field_names()[static_cast<std::size_t>(index)], unit, index});
+    uses_.back().from_text = unit.empty() ? false : layer_.holds_text(index);
+    return uses_.back();
+  }
+
   std::string path_, meant_;
   const Grid& grid_;
   Layer layer_;
   int id_;
+  std::vector<FieldUse> uses_;  // of `id` first
   std::size_t features_ = 0;
   std::vector<std::int64_t> off_map_;
 };
@@ -70,12 +95,12 @@ class LineReader {
 ScreenLayer read_screens(const std::string& path, const Terrain& terrain) {
   LineReader reader("screens", path, terrain, "lines that blocks may cross");
   ScreenLayer out;
-  while (const Feature feature = reader.layer().next()) {
+  for_each_feature(reader.layer(), [&](const Feature& feature) {
     const std::string id = reader.id_of(*feature);
     auto screen = std::find_if(out.screens.begin(), out.screens.end(), [&](const Screen& s) { return s.id == id; });
     if (screen == out.screens.end()) screen = out.screens.insert(screen, Screen{id, {}});
     reader.read(*feature, screen->lines);
-  }
+  });
   reader.finish(out);
   return out;
 }
@@ -83,20 +108,13 @@ ScreenLayer read_screens(const std::string& path, const Terrain& terrain) {
 BarrierLayer read_barriers(const std::string& path, const Terrain& terrain) {
   LineReader reader("barriers", path, terrain, "lines with the fields height (m) and capacity (kJ)");
   BarrierLayer out;
-  while (const Feature feature = reader.layer().next()) {
-    const auto number = [&](const char* field, std::string_view key) {
-      const auto value = reader.layer().number(*feature, field, bounds_of(key));
-      if (!value)
-        throw InputError(reader.layer().label(*feature) + ": has no " + field +
-                         ", must have height (m) and capacity (kJ)");
-      return *value;
-    };
+  for_each_feature(reader.layer(), [&](const Feature& feature) {
     Barrier& barrier = out.barriers.emplace_back();
     barrier.id = reader.id_of(*feature);
-    barrier.height = number("height", "barriers.height");
-    barrier.capacity = 1e3 * number("capacity", "barriers.capacity");
+    barrier.height = reader.number(*feature, "height", "barriers.height").value_or(0.0);
+    barrier.capacity = 1e3 * reader.number(*feature, "capacity", "barriers.capacity").value_or(0.0);
     reader.read(*feature, barrier.lines);
-  }
+  });
   reader.finish(out);
   return out;
 }

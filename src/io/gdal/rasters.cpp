@@ -8,6 +8,7 @@
 #include "dataset.hpp"
 #include "dem_warning.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 
@@ -48,14 +49,14 @@ GeoReference read_place(GDALDataset& dataset, const std::string& path) {
   if (std::abs(g[2]) > 1e-9 * std::abs(g[1]) || std::abs(g[4]) > 1e-9 * std::abs(g[5]) || g[1] == 0.0) {
     const double turn = degrees(std::atan2(g[4], g[1]));
     throw InputError(path + ": raster is rotated or sheared (by " + text_of(std::round(turn * 100.0) / 100.0) +
-                     " deg), must be north-up: resample it, for example with gdalwarp -r bilinear " + path +
+                     " deg), must be north-up: resample it, for example with gdalwarp -r bilinear " + shell_word(path) +
                      " north_up.tif");
   }
   if (g[1] < 0.0 || g[5] > 0.0)
     throw InputError(
         path +
         ": rows run from south to north or columns from east to west, must be north-up: turn it over with gdalwarp " +
-        path + " north_up.tif");
+        shell_word(path) + " north_up.tif");
   GeoReference geo;
   geo.crs_wkt = wkt_of(dataset.GetSpatialRef());
   geo.west = g[0];
@@ -92,7 +93,7 @@ void check_values(GDALRasterBand& band, const std::string& path, std::vector<std
         path + ": band 1 has the scale " + text_of(scale) + " and the offset " + text_of(offset) +
         ", must be numbers and the scale not 0, which makes all heights equal: mend them, for example with "
         "gdal_translate -a_scale 1 -a_offset 0 " +
-        path + " mended.tif");
+        shell_word(path) + " mended.tif");
   if (scale != 1.0 || offset != 0.0)
     warnings.push_back(path + ": heights are the numbers of band 1 times its scale " + text_of(scale) +
                        " plus its offset " + text_of(offset) + ", as the file says");
@@ -117,9 +118,10 @@ void check_band(GDALRasterBand& band, const std::string& path, std::vector<std::
   });
   if (feet || known != std::end(kOtherUnits))
     throw InputError(path + ": heights are in " + (feet ? "feet" : std::string(known->names)) + " (unit '" +
-                     band.GetUnitType() + "' of band 1), must be metres: convert them with gdal_calc.py -A " + path +
-                     " --calc='A*" + text_of(feet ? 0.3048 : known->metres) +
-                     "' --outfile=metres.tif, or if they are metres, say so with gdal_edit.py -units m " + path);
+                     band.GetUnitType() + "' of band 1), must be metres: convert them with gdal_calc.py -A " +
+                     shell_word(path) + " --calc='A*" + text_of(feet ? 0.3048 : known->metres) +
+                     "' --outfile=metres.tif, or if they are metres, say so with gdal_edit.py -units m " +
+                     shell_word(path));
   warnings.push_back(path + ": unknown unit '" + band.GetUnitType() + "' of the heights: taken as metres");
 }
 
@@ -198,7 +200,7 @@ void read_heights(GDALRasterBand& band, const std::string& path, Terrain& terrai
   }
   if (known == 0)
     throw InputError(path + ": all cells are missing values, must hold heights: is its nodata value right? (gdalinfo " +
-                     path + ")");
+                     shell_word(path) + ")");
   if (zeros > 0 && lowest_other > 50.0 && zeros < known)
     terrain.warnings.push_back(
         path + ": " + std::to_string(zeros) + " cells have the height 0 and all others more than " +

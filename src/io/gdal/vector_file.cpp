@@ -10,6 +10,7 @@
 
 #include "dataset.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
 
 namespace talus::io {
@@ -108,7 +109,7 @@ void check_shapefile(const std::string& path) {
     throw InputError(path + ": the fields of its features are in " + std::filesystem::path(stem).filename().string() +
                      ".dbf, which is not there: copy all parts of a Shapefile (.shp, .shx, .dbf, .prj); if it is to "
                      "have no fields, convert it: ogr2ogr " +
-                     stem + ".gpkg " + path);
+                     shell_word(stem + ".gpkg") + " " + shell_word(path));
   const auto index_size = shx ? size_of(*shx) : std::nullopt;
   if (!index_size || *index_size < 100) return;  // GDAL says why
   const std::uint64_t records = records_of(*dbf), shapes = (*index_size - 100) / 8;

@@ -8,6 +8,7 @@
 #include "layer.hpp"
 #include "off_map.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
 
 namespace talus::io {
@@ -18,18 +19,6 @@ std::string file_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
-/// A field that is read: what it holds, and what was found in it.
-struct Column {
-  std::string name;   // "release_height"
-  std::string field;  // "HEIGHT"
-  int index;
-  std::size_t count = 0;  // of features with a value
-  double low = 0.0, high = 0.0;
-
-  bool is_text() const { return name == "name"; }
-  std::string shown() const { return EQUAL(field.c_str(), name.c_str()) ? name : field + " (" + name + ")"; }
-};
-
 /// The key of the parameter table with the bounds of a field.
 std::string_view key_of(const std::string& name) {
   if (name == "frequency") return "sources.frequency";
@@ -38,7 +27,7 @@ std::string_view key_of(const std::string& name) {
 }
 
 /// The fields of a layer that are read: those that the map names, else those of the names themselves.
-std::vector<Column> columns_of(const Layer& layer, const std::string& path, const FieldMap& map) {
+std::vector<FieldUse> columns_of(const Layer& layer, const std::string& path, const FieldMap& map) {
   std::vector<std::pair<std::string, int>> mapped;
   for (const auto& [name, given] : map) {
     const int index = layer.only_field(given.field);
@@ -50,30 +39,38 @@ std::vector<Column> columns_of(const Layer& layer, const std::string& path, cons
   const auto taken = [&](int index) {
     return std::ranges::any_of(mapped, [index](const auto& entry) { return entry.second == index; });
   };
-  std::vector<Column> columns;
+  std::vector<FieldUse> columns;
   for (const std::string& name : source_field_names()) {
     const auto entry = std::ranges::find(mapped, name, &std::pair<std::string, int>::first);
     const int index = entry != mapped.end() ? entry->second : layer.only_field(name);
     if (index < 0 || (entry == mapped.end() && taken(index))) continue;
-    columns.push_back({name, layer.field_names()[static_cast<std::size_t>(index)], index});
+    FieldUse use{name, layer.field_names()[static_cast<std::size_t>(index)], {}, index};
+    use.is_text = name == "name";
+    const std::string unit(use.is_text ? "1" : bounds_of(key_of(name)).unit);
+    if (unit != "1") use.unit = unit;
+    use.from_text = !use.is_text && layer.holds_text(index);
+    columns.push_back(std::move(use));
   }
   return columns;
 }
 
-std::string range_text(const Column& column) {
-  return column.low == column.high ? text_of(column.low) : text_of(column.low) + " to " + text_of(column.high);
+/// "diameter", or "Durchmesser (diameter)", for messages.
+std::string shown(const FieldUse& use) {
+  return EQUAL(use.field.c_str(), use.name.c_str()) ? use.name : use.field + " (" + use.name + ")";
 }
 
 // Reads the fields of a feature and records which were read.
 class AttributeReader {
  public:
-  AttributeReader(const Layer& layer, const std::string& path, const Range& release_height, const FieldMap& map)
+  AttributeReader(Layer& layer, const std::string& path, const Range& release_height, const FieldMap& map)
       : layer_(layer), path_(path), release_height_(release_height), columns_(columns_of(layer, path, map)) {}
 
+  /// A feature without a name has its number (FID) for one. Faults are added to those of the layer.
   SourceFeature read(const OGRFeature& feature) {
     SourceFeature f;
     ++features_;
     f.name = text(feature, "name");
+    if (f.name.empty()) f.name = std::to_string(feature.GetFID());
     f.frequency = get(feature, "frequency").value_or(kNotGiven);
     f.diameter = diameter(feature);
     f.release_height = release_height_;
@@ -88,82 +85,71 @@ class AttributeReader {
 
   std::vector<Setting> record() const {
     std::vector<Setting> settings;
-    for (const Column& c : columns_) {
-      if (c.count == 0 || c.is_text()) continue;
-      settings.push_back({"sources.attributes." + c.name, range_text(c) + " (" + share_text(c) + ")", unit_of(c),
+    for (const FieldUse& c : columns_) {
+      if (c.count == 0 || c.is_text) continue;
+      settings.push_back({"sources.attributes." + c.name, c.range() + " (" + share_text(c) + ")", c.unit,
                           "attribute " + c.field + " of " + file_name(path_)});
     }
     return settings;
   }
 
-  /// "fields read: diameter 0.5 to 2 m (2 of 3 features), release_height 1 m from HEIGHT (3 of 3 features)".
   std::string read_note() const {
-    std::vector<std::string> words;
-    for (const Column& c : columns_) {
-      std::string word = c.name;
-      if (c.count > 0 && !c.is_text()) word += " " + range_text(c) + (unit_of(c).empty() ? "" : " " + unit_of(c));
-      if (!EQUAL(c.field.c_str(), c.name.c_str())) word += " from " + c.field;
-      words.push_back(word + " (" + (c.count == 0 ? "empty" : share_text(c)) + ")");
-    }
     const std::vector<std::string> there = layer_.field_names();
-    if (words.empty()) return path_ + ": no field is read" + (there.empty() ? "" : "; there are " + joined(there));
-    return path_ + ": fields read: " + joined(words);
+    if (columns_.empty()) return path_ + ": no field is read" + (there.empty() ? "" : "; there are " + joined(there));
+    return fields_note(path_, columns_, features_);
   }
 
   /// A line for each field that looks as if it were meant.
   std::vector<std::string> unread_notes() const {
     std::vector<std::string> notes;
     for (const std::string& field : layer_.field_names()) {
-      const auto is_field = [&](const Column& c) { return c.field == field; };
+      const auto is_field = [&](const FieldUse& c) { return c.field == field; };
       if (std::ranges::any_of(columns_, is_field)) continue;
       const auto meant =
-          std::ranges::find_if(columns_, [&](const Column& c) { return EQUAL(c.name.c_str(), field.c_str()); });
+          std::ranges::find_if(columns_, [&](const FieldUse& c) { return EQUAL(c.name.c_str(), field.c_str()); });
       if (meant != columns_.end())
         notes.push_back(path_ + ": field " + field + " is not read: " + meant->field + " is read as " + meant->name);
       if (EQUAL(field.c_str(), "height"))
         notes.push_back(path_ + ": field " + field +
                         " is not read (it is mostly the height of a cliff): if it is the height of release above the "
-                        "ground, give --field release_height=" +
-                        field + ", or release_height = \"" + field + "\" in [sources.fields]");
+                        "ground, give --field " +
+                        shell_word("release_height=" + field) + ", or release_height = \"" + field +
+                        "\" in [sources.fields]");
     }
     return notes;
   }
 
  private:
-  Column* column(const char* name) {
-    const auto found = std::ranges::find(columns_, name, &Column::name);
+  FieldUse* column(const char* name) {
+    const auto found = std::ranges::find(columns_, name, &FieldUse::name);
     return found == columns_.end() ? nullptr : &*found;
   }
 
-  std::string share_text(const Column& c) const {
+  std::string share_text(const FieldUse& c) const {
     return std::to_string(c.count) + " of " + std::to_string(features_) + " features";
   }
 
-  static std::string unit_of(const Column& c) {
-    const std::string unit(c.is_text() ? "1" : bounds_of(key_of(c.name)).unit);
-    return unit == "1" ? "" : unit;
-  }
-
   std::string text(const OGRFeature& feature, const char* name) {
-    Column* const c = column(name);
+    FieldUse* const c = column(name);
     if (c == nullptr || feature.IsFieldSetAndNotNull(c->index) == 0) return {};
     ++c->count;
     return feature.GetFieldAsString(c->index);
   }
 
+  /// The value of a field; nothing where there is none, or a faulty one.
   std::optional<double> get(const OGRFeature& feature, const char* name) {
-    Column* const c = column(name);
-    const auto value =
-        c == nullptr ? std::nullopt : layer_.number(feature, c->index, c->shown(), bounds_of(key_of(c->name)));
-    if (!value) return value;
-    c->low = c->count == 0 ? *value : std::min(c->low, *value);
-    c->high = c->count == 0 ? *value : std::max(c->high, *value);
-    ++c->count;
+    FieldUse* const c = column(name);
+    std::optional<double> value;
+    if (c == nullptr) return value;
+    layer_.faults().attempt([&] { value = layer_.number(feature, c->index, shown(*c), bounds_of(key_of(c->name))); });
+    if (value) c->add(*value);
     return value;
   }
 
   Range diameter(const OGRFeature& feature) {
+    const std::size_t faults = layer_.faults().count();
     const auto one = get(feature, "diameter"), low = get(feature, "diameter_min"), high = get(feature, "diameter_max");
+    if (layer_.faults().count() > faults) return {kNotGiven, kNotGiven};
     const std::string where = layer_.label(feature) + ": ";
     if (one && (low || high))
       throw InputError(where + "has diameter = " + text_of(*one) +
@@ -180,10 +166,10 @@ class AttributeReader {
     return low ? Range{*low, *high} : Range{kNotGiven, kNotGiven};
   }
 
-  const Layer& layer_;
+  Layer& layer_;
   std::string path_;
   Range release_height_;
-  std::vector<Column> columns_;
+  std::vector<FieldUse> columns_;
   std::size_t features_ = 0;
 };
 
@@ -244,7 +230,8 @@ class Placer {
   Placer(const Terrain& terrain, SourceLayer& out) : heights_(terrain.heights), out_(out) {}
 
   void place(const Parts& parts, std::int64_t id) {
-    const std::string name = std::to_string(id) + (source().name.empty() ? "" : " (" + source().name + ")");
+    const std::string number = std::to_string(id);
+    const std::string name = number + (source().name == number ? "" : " (" + source().name + ")");
     if (parts.empty()) {
       without_geometry_.push_back(name);
       return;
@@ -359,11 +346,11 @@ SourceLayer read_sources(const std::string& path, const Terrain& terrain, const 
   AttributeReader attributes(layer, path, release_height, fields);
   SourceLayer out;
   Placer placer(terrain, out);
-  while (const Feature feature = layer.next()) {
+  for_each_feature(layer, [&](const Feature& feature) {
     out.features.push_back(attributes.read(*feature));
     out.ids.push_back(feature->GetFID());
     placer.place(layer.parts(*feature), feature->GetFID());
-  }
+  });
   placer.finish(path, layer, terrain);
   out.attributes = attributes.record();
   out.read_note = attributes.read_note();

@@ -89,19 +89,24 @@ void read_polygons(const ZoneRequest& request, const Terrain& terrain, ZoneLayer
                      ": say which holds the zone by field in [ground]");
   }
   const Grid& grid = terrain.heights.grid;
-  while (const Feature feature = layer.next()) {
+  FieldUse use{name, layer.field_names()[static_cast<std::size_t>(field)], {}, field, true};
+  std::size_t features = 0;
+  for_each_feature(layer, [&](const Feature& feature) {
+    ++features;
+    if (!layer.code(*feature, field).empty()) ++use.count;
     const Parts parts = layer.parts(*feature);
     if (!parts.lines.empty() || !parts.points.empty())
       throw InputError(layer.label(*feature) + ": is no polygon, must be one");
-    if (parts.empty()) continue;
+    if (parts.empty()) return;
     const OGREnvelope box = parts.envelope();
-    if (box.MaxX <= 0.0 || box.MinX >= grid.width() || box.MaxY <= 0.0 || box.MinY >= grid.height()) continue;
+    if (box.MaxX <= 0.0 || box.MinX >= grid.width() || box.MaxY <= 0.0 || box.MinY >= grid.height()) return;
     const std::string zone = layer.code(*feature, field);
     const std::uint8_t value =
         zone.empty() ? std::uint8_t{0} : index.at(zone, layer.label(*feature) + ": field " + name);
     for (const OGRPolygon& polygon : parts.polygons)
       for_each_cell(polygon, grid, false, [&](int column, int row) { out.zones.at(column, row) = value; });
-  }
+  });
+  out.notes.push_back(fields_note(request.path, {use}, features));
   index.warn_unseen(out.warnings);
   out.presets = index.named_presets();
   out.reprojections = layer.reprojections();

@@ -5,6 +5,7 @@
 #include "coverage_report.hpp"
 #include "evidence.hpp"
 #include "sites_evidence.hpp"
+#include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
 
@@ -129,7 +130,7 @@ std::vector<std::string> own_findings(const SitesRecord& record) {
     for (const FamilyTest& family : d.sites[i].families)
       if (family.p_corrected <= record.options.first_level)
         list.push_back(d.sites[i].name + " alone: " + family.name + " (p " + p_text(family.p_corrected) +
-                       " corrected). To name it: talus diagnose " + record.files[i]);
+                       " corrected). To name it: talus diagnose " + shell_word(record.files[i]));
   return list;
 }
 

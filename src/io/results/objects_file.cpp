@@ -8,6 +8,7 @@
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
+#include "talus/io/results/vector_style.hpp"
 
 namespace talus::io {
 namespace {
@@ -112,7 +113,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
   Layer layer("objects", path, terrain);
   const int id = layer.field("name") >= 0 ? layer.field("name") : layer.field("id");
   std::string off;
-  while (Feature feature = layer.next()) {
+  for_each_feature(layer, [&](Feature& feature) {
     Parts parts = layer.parts(*feature);
     if (parts.empty() || !parts.points.empty())
       throw InputError(layer.label(*feature) + ": " + (parts.empty() ? "has no geometry" : "is a point") +
@@ -133,7 +134,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
     state_->objects.push_back(object_of(parts, width.value_or(line_width)));
     state_->parts.push_back(std::move(parts));
     state_->features.push_back(std::move(feature));
-  }
+  });
   if (state_->objects.empty()) throw InputError(path + ": has no features, must have polygons or lines");
   if (std::ranges::count(state_->on_map, true) == 0)
     throw InputError(path + ": lies wholly off the DEM: is the coordinate system of the layer the right one?");
@@ -211,7 +212,10 @@ class ObjectsWriter {
     file_.append(layer_, *row);
   }
 
-  void finish() { file_.finish(); }
+  void finish(StyledLayer style) {
+    file_.set_style("objects", style_of(style));
+    file_.finish();
+  }
 
  private:
   GeoPackage file_;
@@ -285,7 +289,8 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
     table.add(object, *state_->features[i], figures, sources);
     if (state_->on_map[i]) curves += curve_rows(object, curve, rules.bins);
   }
-  writer->finish();
+  const bool lines = std::ranges::all_of(state_->parts, [](const Parts& parts) { return parts.polygons.empty(); });
+  writer->finish(lines ? StyledLayer::LineObjects : StyledLayer::AreaObjects);
   write_text(folder / "objects.csv", table.text());
   write_text(folder / "objects_curves.csv", curves);
   write_text(folder / "objects_sources.csv", from);

@@ -1,18 +1,15 @@
 #include "talus/io/results/style.hpp"
 
-#include <cpl_minixml.h>
-#include <cpl_vsi.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <memory>
-#include <regex>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
-#include <string_view>
 
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
+#include "xml.hpp"
 
 namespace talus::io {
 namespace {
@@ -20,16 +17,17 @@ namespace {
 constexpr std::size_t kColours = 6;
 using Colours = std::array<const char*, kColours>;
 
-// Six colours each of matplotlib's plasma, viridis and cividis (CC0), from light to dark in even steps, also for the
-// colour-blind.
-constexpr Colours kPlasma{"#f0f921", "#fca636", "#e16462", "#b12a90", "#6a00a8", "#0d0887"};
-constexpr Colours kPlasmaFromDark{"#0d0887", "#6a00a8", "#b12a90", "#e16462", "#fca636", "#f0f921"};
+// Six colours each of matplotlib's plasma, viridis and cividis (CC0), from light to dark in even steps. The darkest of
+// plasma is darker here: without the red cones (protanopia) it would be too near to the one before it. How far apart
+// the colours are for the colour-blind is tested (tests/io/style_test.cpp).
+constexpr Colours kPlasma{"#f0f921", "#fca636", "#e16462", "#b12a90", "#6a00a8", "#08054f"};
+constexpr Colours kPlasmaFromDark{"#08054f", "#6a00a8", "#b12a90", "#e16462", "#fca636", "#f0f921"};
 constexpr Colours kViridis{"#fde725", "#7ad151", "#22a884", "#2a788e", "#414487", "#440154"};
 constexpr Colours kCividis{"#ffea46", "#cbba69", "#958f78", "#666970", "#31446b", "#00204d"};
 // The classes of the Swiss matrix: yellow and white, yellow, blue, red; further ones, should there be any, darker.
 constexpr Colours kHazardClasses{"#fff9c4", "#ffd600", "#2979ff", "#d50000", "#7f0000", "#3e0000"};
 
-const Colours& colours_of(Palette palette) {
+const Colours& colours(Palette palette) {
   switch (palette) {
     case Palette::Plasma:
       return kPlasma;
@@ -61,67 +59,36 @@ std::string plain(double value) {
   return {digits.begin(), end};
 }
 
-/// A class of the legend: its upper limit, which belongs to it.
-struct Item {
-  std::string value, label;
-  const char* colour;
-};
-
-std::vector<Item> named_items(const Map& map) {
-  const Colours& colours = colours_of(map.legend.palette);
-  std::vector<Item> items;
+/// The classes of a map whose values are classes, from 1.
+std::vector<LegendClass> named_classes(const Map& map) {
+  const Colours& all = colours(map.legend.palette);
+  std::vector<LegendClass> classes;
   for (std::size_t i = 1; i < map.classes.size(); ++i)
-    items.push_back({std::to_string(i), map.classes[i], colours[std::min(i, kColours) - 1]});
-  return items;
+    classes.push_back({static_cast<double>(i), map.classes[i], all[std::min(i, kColours) - 1]});
+  return classes;
 }
 
-std::vector<Item> items_by_limit(const Map& map, const std::string& unit) {
-  const Legend& legend = map.legend;
-  const bool to_one = map.kind == Map::Kind::Probability;  // nothing is above 100 %
-  const std::size_t classes = legend.limits.size() + (to_one ? 0 : 1);
-  const Colours& colours = colours_of(legend.palette);
-  std::vector<Item> items;
-  std::string below;
-  for (std::size_t i = 0; i < legend.limits.size(); ++i) {
-    const std::string limit = plain(legend.limits[i] * legend.factor);
-    const std::string label = below.empty() ? "up to " + limit : below + " to " + limit;
-    items.push_back(
-        {i + 1 == classes ? "inf" : text_of(legend.limits[i]), label + unit, colours[i + kColours - classes]});
-    below = limit;
-  }
-  if (!to_one) items.push_back({"inf", "above " + below + unit, colours.back()});
-  return items;
+std::string value_text(double limit) {
+  return std::isinf(limit) ? "inf" : text_of(limit);
 }
 
-/// An element of XML; adds attributes and elements to it.
-class Element {
- public:
-  explicit Element(CPLXMLNode* node) : node_(node) {}
-
-  Element add(const char* name) const { return Element(CPLCreateXMLNode(node_, CXT_Element, name)); }
-  void add(const char* name, const char* text) const { CPLCreateXMLElementAndValue(node_, name, text); }
-  const Element& set(const char* attribute, const std::string& value) const {
-    CPLAddXMLAttributeAndValue(node_, attribute, value.c_str());
-    return *this;
-  }
-
- private:
-  CPLXMLNode* node_;
-};
-
-void add_item(const Element& to, const Item& item, int alpha) {
+void add_item(const Element& to, const LegendClass& item, int alpha) {
   to.add("item")
-      .set("value", item.value)
+      .set("value", value_text(item.limit))
       .set("label", item.label)
       .set("color", item.colour)
       .set("alpha", std::to_string(alpha));
 }
 
+/// The label of 0: no colour.
+std::string zero_label(const Map& map) {
+  if (!map.classes.empty()) return map.classes[0];
+  return map.legend.unit.empty() ? "0" : "0 " + map.legend.unit;
+}
+
 void add_items(const Element& shader, const Map& map) {
-  const std::string unit = map.legend.unit.empty() ? "" : " " + map.legend.unit;
-  const bool named = !map.classes.empty();
-  add_item(shader, {"0", named ? map.classes[0] : "0" + unit, "#ffffff"}, 0);  // no value: not drawn
-  for (const Item& item : named ? named_items(map) : items_by_limit(map, unit)) add_item(shader, item, 255);
+  if (map.legend.has_zero) add_item(shader, {0.0, zero_label(map), "#ffffff"}, 0);
+  for (const LegendClass& item : classes_of(map)) add_item(shader, item, 255);
 }
 
 void add_renderer(const Element& pipe, const Map& map) {
@@ -142,26 +109,47 @@ void add_renderer(const Element& pipe, const Map& map) {
 
 }  // namespace
 
+std::span<const char* const> colours_of(Palette palette) {
+  return colours(palette);
+}
+
+std::vector<LegendClass> classes_of(const Legend& legend, bool to_one) {
+  const std::string unit = legend.unit.empty() ? "" : " " + legend.unit;
+  const std::size_t count = legend.limits.size() + (to_one ? 0 : 1);
+  const Colours& all = colours(legend.palette);
+  constexpr double kOpen = std::numeric_limits<double>::infinity();
+  std::vector<LegendClass> classes;
+  std::string below;
+  for (std::size_t i = 0; i < legend.limits.size(); ++i) {
+    const std::string limit = plain(legend.limits[i] * legend.factor);
+    const std::string label = below.empty() ? "up to " + limit : below + " to " + limit;
+    classes.push_back({i + 1 == count ? kOpen : legend.limits[i], label + unit, all[i + kColours - count]});
+    below = limit;
+  }
+  if (!to_one) classes.push_back({kOpen, "above " + below + unit, all.back()});
+  return classes;
+}
+
+std::vector<LegendClass> classes_of(const Map& map) {
+  return map.classes.empty() ? classes_of(map.legend, map.kind == Map::Kind::Probability) : named_classes(map);
+}
+
 std::string style_of(const Map& map) {
   if (map.legend.limits.empty()) throw std::logic_error(map.name + " has no legend");
-  const std::unique_ptr<CPLXMLNode, decltype(&CPLDestroyXMLNode)> type(
-      CPLCreateXMLNode(nullptr, CXT_Literal, "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>"),
-      CPLDestroyXMLNode);
-  CPLXMLNode* const root = CPLCreateXMLNode(nullptr, CXT_Element, "qgis");
-  CPLAddXMLSibling(type.get(), root);
-  const Element qgis(root);
-  const Element pipe = qgis.set("version", "3.22.0").set("styleCategories", "Symbology").add("pipe");
+  const QgisDocument document;
+  const Element pipe = document.root().set("styleCategories", "Symbology").add("pipe");
   add_renderer(pipe, map);
   pipe.add("brightnesscontrast").set("brightness", "0").set("contrast", "0");
   pipe.add("huesaturation").set("saturation", "0").set("grayscaleMode", "0").set("colorizeOn", "0");
   pipe.add("rasterresampler").set("maxOversampling", "2");
-  qgis.add("blendMode", "0");
-  const std::unique_ptr<char, decltype(&VSIFree)> text(CPLSerializeXMLTree(type.get()), VSIFree);
-  return std::regex_replace(text.get(), std::regex(" />"), "/>");  // the bytes of earlier versions
+  document.root().add("blendMode", "0");
+  return document.text();
 }
 
 void write_style(const std::filesystem::path& folder, const Map& map) {
   write_text(folder / (map.name + ".qml"), style_of(map));
+  if (const std::string names = class_names_of(map); !names.empty())
+    write_text(folder / (map.name + ".tif.aux.xml"), names);
 }
 
 }  // namespace talus::io

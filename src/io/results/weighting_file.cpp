@@ -10,7 +10,7 @@
 namespace talus::io {
 namespace {
 
-/// Reads the frequencies of features. The file names a feature by its name or, without one, by its number from 0.
+/// Reads the frequencies of features. The file names a feature by its name or, without one, by its number (FID).
 void read_features(TableReader& table, Scenario& scenario) {
   if (table.value() == nullptr) return;
   std::vector<std::string> known;

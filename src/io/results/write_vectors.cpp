@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "io/gdal/geopackage.hpp"
+#include "talus/io/results/vector_style.hpp"
 
 namespace talus::io {
 namespace {
@@ -36,7 +37,7 @@ struct Place {
   double y(double local) const { return south + local; }
 };
 
-/// Name of the source's feature of each feature; without one its number from 0.
+/// Name of each feature of the sources: its own, or its number (FID); of a scene made by code its index.
 std::vector<std::string> feature_names(const Scenario& scenario) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < scenario.features.size(); ++i)
@@ -149,6 +150,7 @@ void StopsWriter::write(std::span<const StopRow> rows) {
 }
 
 void StopsWriter::finish() {
+  state_->file.set_style("stops", style_of(StyledLayer::Stops));
   state_->file.finish();
 }
 
@@ -206,6 +208,7 @@ void ExitsWriter::write(std::span<const StopRow> rows) {
 }
 
 void ExitsWriter::finish() {
+  state_->file.set_style("exits", style_of(StyledLayer::Exits));
   state_->file.finish();
 }
 
@@ -287,6 +290,7 @@ void TrajectoriesWriter::write_vertices(const Path& path) {
 }
 
 void TrajectoriesWriter::finish() {
+  state_->file.set_style("trajectories", style_of(StyledLayer::Trajectories));
   state_->file.finish();
 }
 

@@ -18,16 +18,16 @@ Raster<std::uint8_t> read_mask(const std::string& name, const std::string& path,
   const Grid& grid = terrain.heights.grid;
   Raster<std::uint8_t> mask(grid, 0, terrain.heights.values.memory());
   Layer layer("effects." + name, path, terrain);
-  while (const Feature feature = layer.next()) {
+  for_each_feature(layer, [&](const Feature& feature) {
     const Parts parts = layer.parts(*feature);
     if (!parts.lines.empty() || !parts.points.empty())
       throw InputError(layer.label(*feature) + ": is no polygon, must be one: [effects." + name + "] acts inside");
-    if (parts.empty()) continue;
+    if (parts.empty()) return;
     const OGREnvelope box = parts.envelope();
-    if (box.MaxX <= 0.0 || box.MinX >= grid.width() || box.MaxY <= 0.0 || box.MinY >= grid.height()) continue;
+    if (box.MaxX <= 0.0 || box.MinX >= grid.width() || box.MaxY <= 0.0 || box.MinY >= grid.height()) return;
     for (const OGRPolygon& polygon : parts.polygons)
       for_each_cell(polygon, grid, false, [&](int column, int row) { mask.at(column, row) = 1; });
-  }
+  });
   if (std::find(mask.values.begin(), mask.values.end(), 1) == mask.values.end())
     out.warnings.push_back(path + ": covers no cell of the DEM: [effects." + name + "] acts nowhere");
   const auto& used = layer.reprojections();

@@ -12,6 +12,7 @@
 #include "scenario_text.hpp"
 #include "size_warning.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/input_faults.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/gdal/lines.hpp"
 #include "talus/io/gdal/vectors.hpp"
@@ -49,6 +50,13 @@ void take(LoadedScenario& out, const Part& part) {
   out.warnings.insert(out.warnings.end(), part.warnings.begin(), part.warnings.end());
 }
 
+/// The same of a layer with notes on its fields.
+template <class Part>
+void take_all(LoadedScenario& out, const Part& part) {
+  take(out, part);
+  out.notes.insert(out.notes.end(), part.notes.begin(), part.notes.end());
+}
+
 void load_ground(ScenarioSpec& spec, const Terrain& terrain, Scenario& parts, LoadedScenario& out) {
   parts.cover.grounds = {spec.default_ground.ground};
   parts.zone_names = {"default"};
@@ -70,7 +78,7 @@ void load_ground(ScenarioSpec& spec, const Terrain& terrain, Scenario& parts, Lo
   }
   parts.cover.zones = std::move(layer.zones);
   spec.ground_field = layer.field;
-  take(out, layer);
+  take_all(out, layer);
 }
 
 /// The barriers of the layer, then those that the scenario names by their ends.
@@ -78,7 +86,7 @@ void load_barriers(const ScenarioSpec& spec, const Terrain& terrain, Scenario& p
   BarrierLayer layer;
   if (!spec.barriers.path.empty()) {
     layer = read_barriers(spec.barriers.path, terrain);
-    take(out, layer);
+    take_all(out, layer);
   }
   for (const BarrierLine& line : spec.barrier_lines) layer.barriers.push_back(barrier_of(line, terrain.heights.grid));
   parts.barriers = Barriers(std::move(layer.barriers));
@@ -153,6 +161,9 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
   const auto attempt = [&](const std::function<void()>& read) {  // with `all_faults`, goes on with the next layer
     try {
       read();
+    } catch (const InputFaults& error) {
+      if (all_faults == nullptr) throw;
+      faults.insert(faults.end(), error.faults().begin(), error.faults().end());
     } catch (const InputError& error) {
       if (all_faults == nullptr) throw;
       faults.emplace_back(error.what());
@@ -177,7 +188,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
     attempt([&] {
       ScreenLayer screens = read_screens(spec.screens.path, terrain);
       parts.screens = std::move(screens.screens);
-      take(out, screens);
+      take_all(out, screens);
     });
   attempt([&] { load_barriers(spec, terrain, parts, out); });
   if (!spec.instrument_bias.empty())

@@ -25,8 +25,7 @@ struct Sources {
 }
 
 std::string feature_name(const Scenario& s, std::size_t i) {
-  return "feature number " + std::to_string(i) + " (from 0)" +
-         (s.features[i].name.empty() ? "" : " (" + s.features[i].name + ")");
+  return "feature " + (s.features[i].name.empty() ? "number " + std::to_string(i) + " (from 0)" : s.features[i].name);
 }
 
 Sources sources_of(const Scenario& s) {

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <string>
 
+#include "talus/io/files/made_folders.hpp"
 #include "talus/io/files/staged_path.hpp"
 
 namespace talus::io {
@@ -15,7 +16,7 @@ class OutputFile {
  public:
   /// @param extension  ".gpkg": what the name must end in
   /// @param overwrite  a file of this name may be replaced, if all its layers are of `talus sources` or `check --pits`
-  /// Throws InputError if the name has another extension or is taken, or if the folder is not there.
+  /// Throws InputError if the name has another extension or is taken, or if its folder cannot be made.
   OutputFile(const std::filesystem::path& path, const std::string& extension, bool overwrite);
 
   /// Where to write until `commit`.
@@ -28,6 +29,7 @@ class OutputFile {
   void commit();
 
  private:
+  MadeFolders parents_;  // before `staged_`: removed after it
   StagedPath staged_;
 };
 

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "talus/io/files/made_folders.hpp"
 #include "talus/io/files/staged_path.hpp"
 
 namespace talus::io {
@@ -15,7 +16,8 @@ class FolderLock;
 ///
 /// Everything is written into a hidden folder beside it, `.NAME.talus-PID` (`StagedPath`), so that a rename is all that
 /// `commit` has to do. Without `commit` (an exception, an interruption, a full disk) the hidden folder is removed,
-/// unless `keep` was called, so that the run can be resumed.
+/// unless `keep` was called, so that the run can be resumed. Folders above it that are not there are made, and removed
+/// again if nothing came into them.
 class OutputFolder {
  public:
   /// Treatment of the hidden folders that interrupted runs of this name have left. With `Refuse` and `Resume`, throws
@@ -57,6 +59,7 @@ class OutputFolder {
   /// Makes `work` and marks it as in use until this process ends, even if it is killed.
   void hold_work();
   void commit(const std::filesystem::path& folder);
+  MadeFolders parents_;  // before `staged_`: removed after it
   StagedPath staged_;
   bool overwrite_;
   std::unique_ptr<FolderLock> lock_;  // of `work`

@@ -11,6 +11,7 @@ namespace talus::io {
 struct ScreenLayer {
   std::vector<Screen> screens;
   std::vector<Reprojection> reprojections;
+  std::vector<std::string> notes;  ///< which fields were read
   std::vector<std::string> warnings;
 };
 
@@ -22,6 +23,7 @@ ScreenLayer read_screens(const std::string& path, const Terrain& terrain);
 struct BarrierLayer {
   std::vector<Barrier> barriers;
   std::vector<Reprojection> reprojections;
+  std::vector<std::string> notes;  ///< which fields were read
   std::vector<std::string> warnings;
 };
 

@@ -12,6 +12,7 @@ struct ZoneLayer {
   std::string field;                 ///< field of the polygons that named the zone; empty for a raster
   std::vector<std::string> presets;  ///< those of the request that the map names: zones names.size() + 1 and on
   std::vector<Reprojection> reprojections;
+  std::vector<std::string> notes;  ///< which fields were read
   std::vector<std::string> warnings;
 };
 

@@ -1,10 +1,27 @@
 #pragma once
 #include <filesystem>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "talus/products/maps.hpp"
 
 namespace talus::io {
+
+/// A class of a legend. Values above the limit of the class before, up to and with its own, belong to it.
+struct LegendClass {
+  double limit;  ///< infinite in the last class; the value itself where values are classes
+  std::string label;
+  std::string colour;  ///< "#rrggbb"
+};
+
+/// The colours of a palette, "#rrggbb", in the order of the classes.
+std::span<const char* const> colours_of(Palette palette);
+
+/// The classes of a legend, without that of 0. @param to_one  nothing is above the last limit
+std::vector<LegendClass> classes_of(const Legend& legend, bool to_one);
+/// The classes of a map, by their limits or their names.
+std::vector<LegendClass> classes_of(const Map& map);
 
 /// The look of a map in QGIS (3.22 and later): the text of its `.qml`.
 ///
@@ -13,7 +30,12 @@ namespace talus::io {
 /// legend, or not the band that its legend shows.
 std::string style_of(const Map& map);
 
-/// Writes `NAME.qml` beside the raster, where QGIS finds it by itself. Throws std::runtime_error.
+/// The names of a map's classes as GDAL stores them beside a raster: category names and a raster attribute table with
+/// the colours. Empty if the legend does not ask for it (`Legend::names_in_file`).
+std::string class_names_of(const Map& map);
+
+/// Writes `NAME.qml` and, if there are names of classes, `NAME.tif.aux.xml` beside the raster, where QGIS and GDAL find
+/// them by themselves. Throws std::runtime_error.
 void write_style(const std::filesystem::path& folder, const Map& map);
 
 }  // namespace talus::io

@@ -1,0 +1,15 @@
+#pragma once
+#include <string>
+
+namespace talus::io {
+
+/// The layers of results that have a style.
+enum class StyledLayer { Stops, Exits, Trajectories, Screens, AreaObjects, LineObjects };
+
+/// The look of a layer in QGIS (3.22 and later): the text that its GeoPackage holds as the default style of the layer.
+///
+/// Features in the classes of a legend that a raster has too: `stops` and `exits` by energy, `trajectories` by speed,
+/// `screens` by the P95 of the energy, objects by return period. docs/products.md, "Styles".
+std::string style_of(StyledLayer layer);
+
+}  // namespace talus::io

@@ -1,0 +1,29 @@
+#include "talus/base/input_faults.hpp"
+
+namespace talus {
+namespace {
+
+std::string summary_of(const std::vector<std::string>& faults) {
+  const std::size_t more = faults.size() - 1;
+  if (more == 0) return faults.front();
+  return faults.front() + " (and " + std::to_string(more) + (more == 1 ? " more fault" : " more faults") +
+         ": talus check lists all)";
+}
+
+}  // namespace
+
+InputFaults::InputFaults(std::vector<std::string> faults)
+    : InputError(summary_of(faults)), faults_(std::move(faults)) {}
+
+void FaultList::add(std::string fault) {
+  if (++count_ <= kMost) faults_.push_back(std::move(fault));
+}
+
+void FaultList::stop() const {
+  if (faults_.empty()) return;
+  std::vector<std::string> all = faults_;
+  if (count_ > kMost) all.push_back("and " + std::to_string(count_ - kMost) + " more faults of this kind of input");
+  throw InputFaults(std::move(all));
+}
+
+}  // namespace talus

@@ -1,0 +1,146 @@
+#include "talus/io/results/vector_style.hpp"
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "talus/base/text.hpp"
+#include "talus/io/results/style.hpp"
+#include "talus/products/raster_table.hpp"
+#include "xml.hpp"
+
+namespace talus::io {
+namespace {
+
+enum class Symbol { Point, Line, Area };
+
+/// How the features of a layer are drawn.
+struct Look {
+  Symbol symbol;
+  std::string value;  ///< expression of QGIS for what the colour shows
+  Legend legend;
+  double smallest, largest;      ///< size or width in the first and the last class [mm]
+  std::string above_label = "";  ///< added to the label of the last class
+};
+
+/// The legend of a raster, without its band.
+Legend legend_of(const std::string& name) {
+  for (const RunRaster& raster : run_rasters())
+    if (raster.map.name == name) return raster.map.legend;
+  for (const HazardRaster& raster : hazard_rasters())
+    if (raster.map.name == name) return raster.map.legend;
+  throw std::logic_error("no raster " + name);
+}
+
+/// Objects that nothing hits have no return period, and belong to the longest; those off the map have no class.
+constexpr const char* kReturnPeriod =
+    R"(CASE WHEN "trajectories" IS NULL THEN NULL ELSE coalesce("return_period", 1e99) END)";
+/// [kJ], of the largest speed of the path
+constexpr const char* kLargestEnergy = R"(0.0005 * "mass_kg" * "max_speed_ms" ^ 2)";
+
+Look look_of(StyledLayer layer) {
+  switch (layer) {
+    case StyledLayer::Stops:
+      return {Symbol::Point, kLargestEnergy, legend_of("energy"), 1.2, 2.4};
+    case StyledLayer::Exits:
+      return {Symbol::Point, "\"energy_kj\"", legend_of("energy"), 1.6, 2.8};
+    case StyledLayer::Trajectories:
+      return {Symbol::Line, "\"max_speed_ms\"", legend_of("velocity"), 0.25, 0.25};
+    case StyledLayer::Screens:
+      return {Symbol::Line, "\"energy_kj_p95\"", legend_of("energy"), 1.0, 1.6};
+    case StyledLayer::AreaObjects:
+      return {Symbol::Area, kReturnPeriod, legend_of("return_period_<kJ>"), 0.4, 0.4, ", or never hit"};
+    case StyledLayer::LineObjects:
+      return {Symbol::Line, kReturnPeriod, legend_of("return_period_<kJ>"), 1.4, 1.4, ", or never hit"};
+  }
+  throw std::logic_error("a layer without a style");
+}
+
+/// "#rrggbb" as QGIS writes the colours of symbols.
+std::string colour_text(const std::string& rgb) {
+  std::string text;
+  for (const std::size_t at : {1, 3, 5}) text += std::to_string(std::stoi(rgb.substr(at, 2), nullptr, 16)) + ",";
+  return text + "255";
+}
+
+void add_options(const Element& layer, const std::vector<std::pair<const char*, std::string>>& options) {
+  const Element map = layer.add("Option");
+  map.set("type", "Map");
+  for (const auto& [name, value] : options)
+    map.add("Option").set("type", "QString").set("name", name).set("value", value);
+}
+
+constexpr const char* kDark = "35,35,35,255";  // of outlines: seen on light colours and on a hillshade
+
+void add_symbol(const Element& symbols, const Look& look, std::size_t number, const std::string& rgb, double size) {
+  static constexpr std::array<const char*, 3> kTypes{"marker", "line", "fill"};
+  static constexpr std::array<const char*, 3> kLayers{"SimpleMarker", "SimpleLine", "SimpleFill"};
+  const auto kind = static_cast<std::size_t>(look.symbol);
+  const Element symbol = symbols.add("symbol");
+  symbol.set("type", kTypes[kind]).set("name", std::to_string(number)).set("alpha", "1");
+  symbol.set("clip_to_extent", "1").set("force_rhr", "0");
+  const Element layer = symbol.add("layer");
+  layer.set("class", kLayers[kind]).set("enabled", "1").set("locked", "0").set("pass", "0");
+  const std::string colour = colour_text(rgb), width = text_of(size);
+  if (look.symbol == Symbol::Line)
+    add_options(layer, {{"line_color", colour},
+                        {"line_width", width},
+                        {"line_width_unit", "MM"},
+                        {"capstyle", "round"},
+                        {"joinstyle", "round"},
+                        {"line_style", "solid"}});
+  else if (look.symbol == Symbol::Point)
+    add_options(layer, {{"name", "circle"},
+                        {"color", colour},
+                        {"size", width},
+                        {"size_unit", "MM"},
+                        {"outline_color", kDark},
+                        {"outline_style", "solid"},
+                        {"outline_width", "0.1"},
+                        {"outline_width_unit", "MM"}});
+  else
+    add_options(layer, {{"color", colour},
+                        {"style", "solid"},
+                        {"outline_color", kDark},
+                        {"outline_style", "solid"},
+                        {"outline_width", width},
+                        {"outline_width_unit", "MM"}});
+}
+
+void add_renderer(const Element& root, const Look& look) {
+  constexpr double kMost = 1e100;  // of the last class; QGIS reads no infinite number here
+  const Element renderer = root.add("renderer-v2");
+  renderer.set("type", "graduatedSymbol").set("attr", look.value).set("graduatedMethod", "GraduatedColor");
+  renderer.set("symbollevels", "0").set("enableorderby", "0").set("forceraster", "0");
+  const Element ranges = renderer.add("ranges"), symbols = renderer.add("symbols");
+  const std::vector<LegendClass> classes = classes_of(look.legend, false);
+  double low = 0.0;
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    const bool last = i + 1 == classes.size();
+    const double high = last ? kMost : classes[i].limit;
+    const double share = static_cast<double>(i) / static_cast<double>(classes.size() - 1);
+    ranges.add("range")
+        .set("lower", text_of(low))
+        .set("upper", text_of(high))
+        .set("symbol", std::to_string(i))
+        .set("label", classes[i].label + (last ? look.above_label : ""))
+        .set("render", "true");
+    add_symbol(symbols, look, i, classes[i].colour, look.smallest + share * (look.largest - look.smallest));
+    low = high;
+  }
+}
+
+}  // namespace
+
+std::string style_of(StyledLayer layer) {
+  const Look look = look_of(layer);
+  const QgisDocument document;
+  document.root().set("styleCategories", "Symbology");
+  add_renderer(document.root(), look);
+  document.root().add("blendMode", "0");
+  document.root().add("featureBlendMode", "0");
+  document.root().add("layerGeometryType", std::to_string(static_cast<int>(look.symbol)));
+  return document.text();
+}
+
+}  // namespace talus::io

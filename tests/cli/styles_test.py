@@ -1,0 +1,89 @@
+"""Styles, names of classes and the project of QGIS, as files; tests/qgis/styles_test.py opens them in QGIS."""
+import os
+import unittest
+import xml.etree.ElementTree as xml
+
+from osgeo import gdal, ogr
+
+from support import RunCase, box, write_features
+
+
+class Styles(RunCase):
+    def setUp(self):
+        super().setUp()
+        self.run_scenario("out")
+
+    def project(self, out="out"):
+        return xml.parse(self.path(f"{out}/talus.qgs")).getroot()
+
+    def titles(self, out="out"):
+        return [layer.get("name") for layer in self.project(out).iter("layer-tree-layer")]
+
+    def test_vectors_have_a_style_in_their_file(self):
+        for name, attribute in (("stops", "mass_kg"), ("exits", "energy_kj"), ("trajectories", "max_speed_ms"),
+                                ("screens", "energy_kj_p95")):
+            file = ogr.Open(self.path(f"out/{name}.gpkg"))
+            self.assertEqual(file.GetLayer(0).GetName(), name)  # the style is not the first layer
+            rows = [row.items() for row in file.GetLayerByName("layer_styles")]
+            self.assertEqual([(row["f_table_name"], row["f_geometry_column"], bool(row["useAsDefault"])) for row in rows],
+                             [(name, "geom", True)])
+            renderer = xml.fromstring(rows[0]["styleQML"].split("\n", 1)[1]).find("renderer-v2")
+            self.assertEqual(renderer.get("type"), "graduatedSymbol")
+            self.assertIn(attribute, renderer.get("attr"))
+            self.assertIn(attribute, [f.GetName() for f in file.GetLayer(0).schema])
+
+    def test_screens_have_the_figures_of_the_summary(self):
+        import csv
+        with open(self.path("out/screens_summary.csv"), encoding="utf-8", newline="") as file:
+            rows = {row["quantity"]: row for row in csv.DictReader(file)}
+        feature = ogr.Open(self.path("out/screens.gpkg")).GetLayer(0).GetNextFeature().items()
+        self.assertEqual((feature["id"], feature["crossings"]), ("road", int(rows["energy"]["crossings"])))
+        self.assertEqual(feature["energy_kj_p95"], float(rows["energy"]["p95"]))
+        self.assertEqual(feature["jump_height_m_max"], float(rows["jump height"]["maximum"]))
+
+    def test_the_project_shows_what_is_there(self):
+        root, record = self.project(), self.record()
+        self.assertIn("talus.qgs", record["files"])
+        group = root.find("layer-tree-group/layer-tree-group")
+        self.assertEqual(group.get("name"), "Talus: out")
+        self.assertEqual(self.titles()[-1], "Hillshade of the DEM")
+        sources = [layer.findtext("datasource") for layer in root.iter("maplayer")]
+        self.assertIn("../dem.tif", sources)
+        for source in sources:
+            self.assertTrue(os.path.exists(os.path.join(self.path("out"), source.split("|")[0])), source)
+        shown = {os.path.basename(source.split("|")[0]) for source in sources} - {"dem.tif"}
+        self.assertEqual(shown, {name for name in record["files"] if name.endswith((".tif", ".gpkg"))})
+        checked = [layer.get("name") for layer in root.iter("layer-tree-layer") if layer.get("checked") == "Qt::Checked"]
+        self.assertEqual(checked, ["Screens: energy, P95", "Impact probability", "Hillshade of the DEM"])
+        with open(self.path("out/talus.qgs"), encoding="utf-8") as file:
+            self.assertNotIn(self.folder, file.read())  # no absolute path
+
+    def test_hazard_comes_on_top_of_the_maps(self):
+        write_features(self.path("houses.gpkg"), "houses", [(box(100, 100, 150, 60), ["house"])], [("name", ogr.OFTString)])
+        self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"), "-q")
+        titles = self.titles()
+        self.assertEqual(titles[0], "Objects: return period of a hit")
+        self.assertLess(titles.index("Hazard class"), titles.index("Impact probability"))
+        self.assertIn("Return period of more than 300 kJ", titles)
+        checked = [layer.get("name") for layer in self.project().iter("layer-tree-layer") if layer.get("checked") == "Qt::Checked"]
+        self.assertEqual(checked, ["Objects: return period of a hit", "Screens: energy, P95", "Hazard class", "Hillshade of the DEM"])
+        self.run_well("hazard", self.path("out"), "--overwrite", "-q")  # without the objects: they are gone from the project
+        self.assertNotIn("Objects: return period of a hit", self.titles())
+
+    def test_classes_have_their_names_for_gdal(self):
+        self.run_well("hazard", self.path("out"), "-q")
+        band = gdal.Open(self.path("out/hazard_class.tif")).GetRasterBand(1)
+        names = ["none", "residual", "low", "medium", "high"]
+        self.assertEqual(band.GetCategoryNames(), names)
+        table = band.GetDefaultRAT()
+        self.assertEqual([table.GetValueAsString(i, 1) for i in range(table.GetRowCount())], names)
+        self.assertEqual([table.GetValueAsInt(2, column) for column in (2, 3, 4)], [0xff, 0xd6, 0x00])
+        table = gdal.Open(self.path("out/intensity_T100.tif")).GetRasterBand(1).GetDefaultRAT()
+        self.assertEqual(table.GetTypeOfCol(0), gdal.GFT_Real)
+        self.assertEqual((table.GetValueAsDouble(2, 0), table.GetValueAsDouble(2, 1), table.GetValueAsString(2, 2)),
+                         (100.0, 300.0, "100 to 300 kJ"))
+        self.run_well("hazard", self.path("out"), "--overwrite", "-q")  # the names are files of the hazard: replaced
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,142 @@
+"""Opens the project of a result in QGIS, without a screen: every layer is there, with its legend and its colours.
+
+Needs QGIS 3.22 or later (python3-qgis). TALUS is the path of the program.
+"""
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+
+from osgeo import gdal  # noqa: E402
+from qgis.core import (QgsApplication, QgsMapRendererParallelJob, QgsMapSettings, QgsProject, QgsRectangle,  # noqa: E402
+                       QgsVectorLayer)
+from qgis.PyQt.QtCore import QSize  # noqa: E402
+from qgis.PyQt.QtGui import QColor  # noqa: E402
+
+TALUS = os.environ.get("TALUS", "talus")
+VALLEY = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../data/valley")
+
+
+def renders(layers, extent, system, size=QSize(400, 400), background="white"):
+    settings = QgsMapSettings()
+    settings.setLayers(layers)
+    settings.setExtent(extent)
+    settings.setDestinationCrs(system)
+    settings.setOutputSize(size)
+    settings.setBackgroundColor(QColor(background))
+    job = QgsMapRendererParallelJob(settings)
+    job.start()
+    job.waitForFinished()
+    return job.renderedImage()
+
+
+class Project(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.app = QgsApplication.instance() or QgsApplication([], False)
+        cls.app.initQgis()
+        cls.folder = tempfile.mkdtemp(prefix="talus-qgis-")
+        cls.addClassCleanup(shutil.rmtree, cls.folder, True)
+        shutil.copytree(VALLEY, os.path.join(cls.folder, "valley"))
+        out = os.path.join(cls.folder, "out")
+        for arguments in (["run", os.path.join(cls.folder, "valley/scenario.toml"), "--trajectories", "10", "-o", out],
+                          ["hazard", out, "--objects", os.path.join(cls.folder, "valley/houses.gpkg")]):
+            subprocess.run([TALUS, *arguments, "-q"], check=True)
+        # Another place: all paths of the project are relative.
+        cls.moved = cls.folder + "-moved"
+        os.rename(cls.folder, cls.moved)
+        cls.addClassCleanup(shutil.rmtree, cls.moved, True)
+        cls.out = os.path.join(cls.moved, "out")
+
+    def setUp(self):
+        self.project = QgsProject()
+        self.assertTrue(self.project.read(os.path.join(self.out, "talus.qgs")), self.project.error())
+        self.group = self.project.layerTreeRoot().children()[0]
+        self.layers = {layer.name(): layer.layer() for layer in self.group.findLayers()}
+
+    def test_opens_everything_as_one_group(self):
+        self.assertEqual(len(self.project.layerTreeRoot().children()), 1)
+        self.assertEqual(self.group.name(), "Talus: out")
+        self.assertEqual(self.project.crs().authid(), "EPSG:2056")
+        self.assertGreater(len(self.layers), 25)
+        for name, layer in self.layers.items():
+            self.assertTrue(layer is not None and layer.isValid(), name)
+            self.assertEqual(layer.crs().authid(), "EPSG:2056", name)
+        names = list(self.layers)
+        maps = [name for name in names if self.layers[name].type() == 1]
+        self.assertEqual((maps[0], names[-1]), ("Hazard class", "Hillshade of the DEM"))
+        visible = [layer.name() for layer in self.group.findLayers() if layer.isVisible()]
+        self.assertEqual(visible, ["Objects: return period of a hit", "Screens: energy, P95", "Hazard class", "Hillshade of the DEM"])
+        self.assertEqual(self.layers["Hillshade of the DEM"].renderer().type(), "hillshade")
+
+    def test_legends(self):
+        def raster(name):
+            return [item.label for item in self.layers[name].renderer().shader().rasterShaderFunction().colorRampItemList()]
+
+        def vector(name):
+            return [item.label() for item in self.layers[name].renderer().ranges()]
+
+        self.assertEqual(raster("Hazard class"), ["none", "residual", "low", "medium", "high"])
+        years = ["up to 10 years", "10 to 30 years", "30 to 100 years", "100 to 300 years", "300 to 1000 years", "above 1000 years"]
+        self.assertEqual(raster("Return period of more than 300 kJ"), years)
+        self.assertEqual(vector("Objects: return period of a hit"), years[:-1] + [years[-1] + ", or never hit"])
+        self.assertEqual(raster("Reach probability"), ["0 %", "up to 2 %", "2 to 5 %", "5 to 10 %", "10 to 20 %", "20 to 50 %", "50 to 100 %"])
+        kj = ["up to 30 kJ", "30 to 100 kJ", "100 to 300 kJ", "300 to 1000 kJ", "1000 to 3000 kJ", "above 3000 kJ"]
+        for name in "Stops: largest energy of the path", "Ends off the map: energy", "Screens: energy, P95":
+            self.assertEqual(vector(name), kj)
+        self.assertEqual(vector("Paths: largest speed")[0], "up to 5 m/s")
+
+    def test_a_layer_alone_has_its_style(self):
+        for name in "stops", "exits", "trajectories", "screens", "objects":
+            layer = QgsVectorLayer(os.path.join(self.out, name + ".gpkg"), name, "ogr")
+            self.assertEqual(layer.renderer().type(), "graduatedSymbol", name)
+
+    def test_every_feature_has_a_class(self):
+        for name in "Stops: largest energy of the path", "Paths: largest speed", "Screens: energy, P95", "Objects: return period of a hit":
+            layer = self.layers[name]
+            used = set()
+            from qgis.core import QgsExpression, QgsExpressionContext, QgsExpressionContextUtils
+            expression = QgsExpression(layer.renderer().classAttribute())
+            context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
+            for feature in layer.getFeatures():
+                context.setFeature(feature)
+                value = expression.evaluate(context)
+                matching = [i for i, one in enumerate(layer.renderer().ranges()) if one.lowerValue() <= value <= one.upperValue()]
+                self.assertTrue(matching, (name, value))
+                used.add(matching[0])
+            if name.startswith("Stops"):
+                self.assertGreater(len(used), 2)  # the classes tell blocks apart
+
+    def test_drawn_colours_are_those_of_the_classes(self):
+        layer = self.layers["Hazard class"]
+        band = gdal.Open(os.path.join(self.out, "hazard_class.tif"))
+        west, cell, _, north, _, _ = band.GetGeoTransform()
+        classes = band.GetRasterBand(1).ReadAsArray()
+        colours = {1: "#fff9c4", 2: "#ffd600", 3: "#2979ff", 4: "#d50000"}
+        seen = 0
+        for number, colour in colours.items():
+            rows, columns = (classes == number).nonzero()
+            if not len(rows):
+                continue
+            x, y = west + columns[0] * cell, north - rows[0] * cell
+            image = renders([layer], QgsRectangle(x, y - cell, x + cell, y), self.project.crs(), QSize(9, 9))
+            drawn, wanted = QColor(image.pixel(4, 4)), QColor(colour)
+            for part in "red", "green", "blue":  # 80 % of the colour over white
+                self.assertAlmostEqual(getattr(drawn, part)(), round(0.8 * getattr(wanted, part)() + 0.2 * 255), delta=2, msg=number)
+            seen += 1
+        self.assertGreater(seen, 1)
+
+    def test_the_map_is_drawn(self):
+        visible = [layer.layer() for layer in self.group.findLayers() if layer.isVisible()]
+        image = renders(visible, self.layers["Hillshade of the DEM"].extent(), self.project.crs())
+        colours = {image.pixel(x, y) for x in range(0, 400, 3) for y in range(0, 400, 3)}
+        self.assertGreater(len(colours), 50)  # shaded, not empty
+        if os.environ.get("TALUS_PICTURES"):
+            image.save(os.path.join(os.environ["TALUS_PICTURES"], "styles_test.png"))
+
+
+if __name__ == "__main__":
+    unittest.main()
