@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <memory>
 
 namespace talus {
 namespace {
@@ -130,27 +131,55 @@ std::uint64_t HazardSurvey::cells() const {
   return sum;
 }
 
-void HazardSurvey::fill(int row, std::size_t first, std::size_t count, std::span<double> values) const {
-  const Row& from = rows_[static_cast<std::size_t>(row)];
-  const auto columns = static_cast<std::size_t>(grid_.columns);
-  for (std::size_t column = 0; column < columns; ++column) {
-    const bool terrain = column < from.terrain.size() && from.terrain[column];
-    for (std::size_t i = 0; i < count; ++i)
-      values[i * columns + column] = terrain ? double{nothing_[first + i]} : kNotGiven;
+void HazardSurvey::fill(const CellWindow& window, std::size_t first, std::size_t count,
+                        std::span<double> values) const {
+  const int end = window.column + window.columns;
+  std::size_t place = 0;  // of the first cell of a row
+  for (int row = window.row; row < window.row + window.rows; ++row, place += static_cast<std::size_t>(window.columns)) {
+    const Row& from = rows_[static_cast<std::size_t>(row)];
+    const auto value = [&](std::size_t i, int column) -> double& {
+      return values[i * window.cells() + place + static_cast<std::size_t>(column - window.column)];
+    };
+    for (int column = window.column; column < end; ++column)
+      for (std::size_t i = 0; i < count; ++i)
+        value(i, column) = from.has_terrain(column) ? double{nothing_[first + i]} : kNotGiven;
+    for (std::size_t k = from.first_from(window.column); k < from.columns.size() && from.columns[k] < end; ++k)
+      for (std::size_t i = 0; i < count; ++i) value(i, from.columns[k]) = from.figures[k * nothing_.size() + first + i];
   }
-  for (std::size_t k = 0; k < from.columns.size(); ++k)
-    for (std::size_t i = 0; i < count; ++i)
-      values[i * columns + static_cast<std::size_t>(from.columns[k])] = from.figures[k * nothing_.size() + first + i];
+}
+
+Quiet HazardSurvey::quiet(const CellWindow& window) const {
+  std::size_t terrain = 0;
+  for (int row = window.row; row < window.row + window.rows; ++row) {
+    const Row& of = rows_[static_cast<std::size_t>(row)];
+    const std::size_t k = of.first_from(window.column);
+    if (k < of.columns.size() && of.columns[k] < window.column + window.columns) return Quiet::No;
+    for (int column = window.column; column < window.column + window.columns; ++column)
+      terrain += of.has_terrain(column) ? 1U : 0U;
+  }
+  return quiet_of(terrain, window);
+}
+
+std::optional<std::vector<double>> HazardSurvey::everywhere(Quiet quiet, std::size_t first, std::size_t count) const {
+  if (quiet == Quiet::No) return std::nullopt;
+  std::vector<double> values(count, kNotGiven);
+  if (quiet == Quiet::Terrain) std::copy_n(&nothing_[first], count, values.begin());
+  return values;
 }
 
 std::vector<Map> make_hazard_maps(const HazardSurvey& survey) {
+  const auto quiet = std::make_shared<QuietRegions>(
+      survey.grid(), [&survey](std::size_t, const CellWindow& region) { return survey.quiet(region); });
   std::vector<Map> maps;
   std::size_t next = 0;
   for (HazardMap& of : hazard_maps_of(survey.rules(), survey.matrix(), survey.object(), survey.curves())) {
     const std::size_t first = next, count = of.map.bands.size();
     next += count;
-    of.map.fill_row = [&survey, first, count](int row, std::span<double> values) {
-      survey.fill(row, first, count, values);
+    of.map.fill = [&survey, first, count](const CellWindow& window, std::span<double> values) {
+      survey.fill(window, first, count, values);
+    };
+    of.map.everywhere = [&survey, quiet, first, count](const CellWindow& window) {
+      return survey.everywhere(quiet->of(window), first, count);
     };
     maps.push_back(std::move(of.map));
   }

@@ -2,16 +2,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <mutex>
 
+#include "talus/products/quiet_regions.hpp"
 #include "talus/products/raster_table.hpp"
+#include "talus/simulate/plan/region.hpp"
 
 namespace talus {
 namespace {
 
-/// Fills the rows of a map: a rule for touched cells, and by band the value where nothing crosses.
-struct Filling {
-  CellRule rule;
-  std::vector<double> untouched;
+/// The rule of a raster, for several threads: a rule keeps what it has computed, so that each thread takes one for
+/// itself and puts it back.
+class Rules {
+ public:
+  explicit Rules(std::function<CellRule()> make) : make_(std::move(make)) {}
+
+  CellRule take() {
+    const std::scoped_lock lock(mutex_);
+    if (free_.empty()) return make_();
+    CellRule rule = std::move(free_.back());
+    free_.pop_back();
+    return rule;
+  }
+  void put_back(CellRule rule) {
+    const std::scoped_lock lock(mutex_);
+    free_.push_back(std::move(rule));
+  }
+
+ private:
+  std::function<CellRule()> make_;
+  std::mutex mutex_;
+  std::vector<CellRule> free_;
 };
 
 std::vector<double> untouched_values(const RunRaster& raster, const RunCounts& run, std::size_t bands) {
@@ -19,27 +41,80 @@ std::vector<double> untouched_values(const RunRaster& raster, const RunCounts& r
   return std::vector<double>(bands, raster.map.kind == Map::Kind::Quantity ? kNotGiven : 0.0);
 }
 
-auto rows_of(const Scenario& scenario, const Tally& tally, Filling filling) {
-  return [&scenario, &tally, filling = std::move(filling)](int row, std::span<double> values) {
-    const Grid& grid = tally.grid();
-    const auto columns = static_cast<std::size_t>(grid.columns);
-    std::vector<double> cell(filling.untouched.size());
-    for (int column = 0; column < grid.columns; ++column) {
-      if (column % kRegionSide == 0) tally.memory().keep_below_limit();  // reading a record loads its neighbours too
-      const CellRecord* record = tally.find(column, row);
-      const bool terrain = !std::isnan(scenario.surface.heights().at(column, row));
-      if (record != nullptr)
-        filling.rule({*record, tally.exceedances(column, row), tally.lengths_above(column, row),
-                      tally.energy_total(column, row)},
-                     cell);
-      else if (terrain)
-        std::ranges::copy(filling.untouched, cell.begin());
-      else
-        std::ranges::fill(cell, kNotGiven);
-      for (std::size_t band = 0; band < cell.size(); ++band)
-        values[band * columns + static_cast<std::size_t>(column)] = cell[band];
+/// The values of a raster of the tally: a rule for touched cells, and by band the value where nothing crosses.
+struct TallyValues {
+  const Raster<float>& heights;
+  const Tally& tally;
+  std::vector<double> untouched;
+
+  void of_cell(int column, int row, const CellRule& rule, std::span<double> values) const {
+    if (const CellRecord* const record = tally.find(column, row); record != nullptr)
+      rule({*record, tally.exceedances(column, row), tally.lengths_above(column, row), tally.energy_total(column, row)},
+           values);
+    else if (!std::isnan(heights.at(column, row)))
+      std::ranges::copy(untouched, values.begin());
+    else
+      std::ranges::fill(values, kNotGiven);
+  }
+
+  void of_window(const CellWindow& window, const CellRule& rule, std::span<double> values) const {
+    std::vector<double> cell(untouched.size());
+    std::size_t place = 0;
+    for (int row = window.row; row < window.row + window.rows; ++row)
+      for (int column = window.column; column < window.column + window.columns; ++column, ++place) {
+        if (column % kRegionSide == 0) tally.memory().keep_below_limit();  // reading a record loads its neighbours too
+        of_cell(column, row, rule, cell);
+        for (std::size_t band = 0; band < cell.size(); ++band) values[band * window.cells() + place] = cell[band];
+      }
+  }
+};
+
+auto filling(TallyValues values, std::function<CellRule()> make_rule) {
+  return [values = std::move(values), rules = std::make_shared<Rules>(std::move(make_rule))](const CellWindow& window,
+                                                                                             std::span<double> to) {
+    CellRule rule = rules->take();
+    values.of_window(window, rule, to);
+    rules->put_back(std::move(rule));
+  };
+}
+
+/// The value of each band where nothing happens.
+auto quiet_values(std::shared_ptr<const QuietRegions> quiet, std::vector<double> untouched) {
+  return [quiet = std::move(quiet),
+          untouched = std::move(untouched)](const CellWindow& window) -> std::optional<std::vector<double>> {
+    switch (quiet->of(window)) {
+      case Quiet::Terrain:
+        return untouched;
+      case Quiet::NoTerrain:
+        return std::vector<double>(untouched.size(), kNotGiven);
+      default:
+        return std::nullopt;
     }
   };
+}
+
+/// What the cells of a window where nothing happens have in common.
+Quiet quiet_terrain(const Raster<float>& heights, const CellWindow& window) {
+  heights.values.memory().keep_below_limit();
+  std::size_t missing = 0;
+  for (int row = window.row; row < window.row + window.rows; ++row) {
+    const float* const first = &heights.at(window.column, row);
+    for (int column = 0; column < window.columns; ++column) missing += std::isnan(first[column]) ? 1U : 0U;
+  }
+  return quiet_of(window.cells() - missing, window);
+}
+
+/// For each region, whether blocks are released in it.
+std::vector<bool> regions_of_sources(const Scenario& scenario) {
+  const Grid& grid = scenario.surface.grid();
+  const int across = (grid.columns + kRegionSide - 1) / kRegionSide, up = (grid.rows + kRegionSide - 1) / kRegionSide;
+  std::vector<bool> regions(static_cast<std::size_t>(across) * static_cast<std::size_t>(up));
+  for (const SourceCell& source : scenario.sources) {
+    const int column = std::clamp(grid.column_of(source.x), 0, grid.columns - 1) / kRegionSide;
+    const int row = std::clamp(grid.row_of(source.y), 0, grid.rows - 1) / kRegionSide;
+    regions[static_cast<std::size_t>(row) * static_cast<std::size_t>(across) + static_cast<std::size_t>(column)] = true;
+  }
+  return regions;
 }
 
 }  // namespace
@@ -47,15 +122,23 @@ auto rows_of(const Scenario& scenario, const Tally& tally, Filling filling) {
 std::vector<Map> make_maps(const Scenario& scenario, const Tally& tally) {
   RunCounts run = counts_of(scenario);
   run.thresholds = tally.thresholds();
+  const Raster<float>& heights = scenario.surface.heights();
+  const std::vector<bool> released = regions_of_sources(scenario);
+  const auto quiet = std::make_shared<QuietRegions>(tally.grid(), [&](std::size_t region, const CellWindow& window) {
+    return released[region] || tally.is_touched(region) ? Quiet::No : quiet_terrain(heights, window);
+  });
   std::vector<Map> maps;
   for (const RunRaster& raster : run_rasters()) {
     Map map = raster.map;
     map.bands = bands_of(raster, run);
     if (map.bands.empty()) continue;
-    if (raster.of_scenario)
-      map.fill_row = raster.of_scenario(scenario);
-    else
-      map.fill_row = rows_of(scenario, tally, {raster.rule(run), untouched_values(raster, run, map.bands.size())});
+    const std::vector<double> untouched = untouched_values(raster, run, map.bands.size());
+    if (raster.of_scenario) {
+      map.fill = raster.of_scenario(scenario);
+    } else {
+      map.fill = filling({heights, tally, untouched}, [&raster, run] { return raster.rule(run); });
+    }
+    map.everywhere = quiet_values(quiet, untouched);
     maps.push_back(std::move(map));
   }
   return maps;

@@ -276,8 +276,10 @@ RunRaster count(const std::string& name, const std::string& title, const std::st
 
 /// The raster of the release cells.
 RunRaster release() {
-  const auto rows = [](const Scenario& scenario) {
-    return [cells = ReleaseCells(scenario)](int row, std::span<double> values) { cells.fill_row(row, values); };
+  const auto cells = [](const Scenario& scenario) {
+    return [cells = ReleaseCells(scenario)](const CellWindow& window, std::span<double> values) {
+      cells.fill(window, values);
+    };
   };
   RunRaster raster{{"release",
                     "Trajectories released from the cell: the sources as the run took them",
@@ -286,7 +288,7 @@ RunRaster release() {
                     count_legend()},
                    "trajectories released from the cell",
                    {}};
-  raster.of_scenario = rows;
+  raster.of_scenario = cells;
   return raster;
 }
 

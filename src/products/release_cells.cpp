@@ -14,12 +14,21 @@ ReleaseCells::ReleaseCells(const Scenario& scenario) : scenario_(scenario) {
   std::ranges::sort(cells_);
 }
 
-void ReleaseCells::fill_row(int row, std::span<double> values) const {
-  for (std::size_t column = 0; column < values.size(); ++column)
-    values[column] = std::isnan(scenario_.surface.heights().at(static_cast<int>(column), row)) ? kNotGiven : 0.0;
-  for (auto cell = std::ranges::lower_bound(cells_, std::pair{row, 0}); cell != cells_.end() && cell->first == row;
-       ++cell) {
-    double& value = values[static_cast<std::size_t>(cell->second)];
+void ReleaseCells::fill(const CellWindow& window, std::span<double> values) const {
+  for (int row = 0; row < window.rows; ++row)
+    fill_row(window.column, window.row + row,
+             values.subspan(static_cast<std::size_t>(row) * static_cast<std::size_t>(window.columns),
+                            static_cast<std::size_t>(window.columns)));
+}
+
+void ReleaseCells::fill_row(int first, int row, std::span<double> values) const {
+  const int end = first + static_cast<int>(values.size());
+  for (int column = first; column < end; ++column)
+    values[static_cast<std::size_t>(column - first)] =
+        std::isnan(scenario_.surface.heights().at(column, row)) ? kNotGiven : 0.0;
+  for (auto cell = std::ranges::lower_bound(cells_, std::pair{row, first});
+       cell != cells_.end() && *cell < std::pair{row, end}; ++cell) {
+    double& value = values[static_cast<std::size_t>(cell->second - first)];
     value = (std::isnan(value) ? 0.0 : value) + scenario_.trajectories;
   }
 }

@@ -8,7 +8,6 @@
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
-#include "talus/run/write_maps.hpp"
 
 namespace talus::run {
 
@@ -20,7 +19,7 @@ std::size_t memory_limit_of(const std::string& text, int threads) {
   const double factor = unit == 'G' ? 1e9 : unit == 'M' ? 1e6 : 0.0;
   if (read != 2 || factor == 0.0 || !(number * factor <= 1e15))
     throw InputError("--memory '" + text + "': must be a number with M or G (10^6 or 10^9 bytes), such as 500M or 2G");
-  const double least = std::max(140.0 + 30.0 * threads, 150.0 + 50.0 * std::min(threads, kMapsAtOnce));  // measured
+  const double least = std::max(200.0, 140.0 + 30.0 * threads);  // measured
   if (!(number * factor >= 1e6 * least))
     throw InputError("--memory '" + text + "' with " + std::to_string(threads) +
                      (threads == 1 ? " thread: must be " : " threads: must be ") + text_of(least) +

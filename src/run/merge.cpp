@@ -83,7 +83,7 @@ Outcome merge(const MergeRequest& request, Observer& observer) {
   Stopwatch watch;
   const int threads = request.threads > 0 ? request.threads : omp_get_num_procs();
   const std::unique_ptr<ScratchFile> scratch =
-      scratch_file_beside(request.out, memory_limit_of(request.memory, std::min(threads, kMapsAtOnce)));
+      scratch_file_beside(request.out, memory_limit_of(request.memory, threads));
   const MemoryPolicy memory(scratch.get());
   LoadedScenario loaded = scenario_of(request.parts.front(), memory);
   const std::vector<Checkpoint> checkpoints = opened(request.parts, loaded);

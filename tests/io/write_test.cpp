@@ -63,9 +63,11 @@ double value_at(int column, int row, std::size_t band) {
 Map map_of(Map::Kind kind, std::vector<Map::Band> bands) {
   const std::size_t count = bands.size();
   Map map{"energy", "A test", kind, std::move(bands), {}};
-  map.fill_row = [count](int row, std::span<double> values) {
+  map.fill = [count](const CellWindow& window, std::span<double> values) {
+    auto value = values.begin();
     for (std::size_t b = 0; b < count; ++b)
-      for (int c = 0; c < kColumns; ++c) values[b * kColumns + static_cast<std::size_t>(c)] = value_at(c, row, b);
+      for (int row = window.row; row < window.row + window.rows; ++row)
+        for (int c = window.column; c < window.column + window.columns; ++c) *value++ = value_at(c, row, b);
   };
   return map;
 }
@@ -136,7 +138,7 @@ TEST_F(Write, OverviewsKeepTheLargestValue) {
 
 TEST_F(Write, CountsAreUInt32) {
   Map map = map_of(Map::Kind::Count, {{"passages", "count"}});
-  map.fill_row = [](int, std::span<double> values) {
+  map.fill = [](const CellWindow&, std::span<double> values) {
     std::fill(values.begin(), values.end(), std::nan(""));
     values[0] = 0.0;
     values[1] = 4e9;

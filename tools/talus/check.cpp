@@ -210,7 +210,7 @@ void print_estimate(const Scenario& scenario, unsigned threads) {
   line("memory", "about " + rounded_text(so_far + 1e-6 * bytes_in_memory(scenario, size)) +
                      " MB; talus run --memory sets a limit");
   line("disk", "about " + rounded_text(1e-6 * bytes_of_results(scenario, size)) + " MB of results, up to " +
-                   rounded_text(1e-6 * bytes_at_work(scenario, size, processors)) + " MB more while it goes on");
+                   rounded_text(1e-6 * bytes_at_work(scenario, size)) + " MB more while it goes on");
   for (const std::string& warning : talus::run::warnings_of(sample.totals, "sample")) line("warning", warning);
   for (const std::string& warning : talus::run::held_warnings(sample.held, sample.traced, scenario.effects, "sample"))
     line("warning", warning);

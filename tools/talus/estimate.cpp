@@ -7,7 +7,6 @@
 
 #include "progress.hpp"
 #include "talus/products/raster_table.hpp"
-#include "talus/run/write_maps.hpp"
 #include "talus/simulate/screens/screens.hpp"
 #include "talus/simulate/stop_row.hpp"
 #include "talus/simulate/tally/tally.hpp"
@@ -28,8 +27,6 @@ constexpr double kStop = 172.0;            // a row of stops.gpkg [byte]
 constexpr double kPathPoint = 36.0;        // of trajectories.gpkg [byte]
 constexpr double kCrossing = 150.0;        // a row of screens.csv [byte]
 constexpr double kKeptCell = 344.0;        // of a touched cell in the saved tally [byte]
-constexpr double kDraftBand = 16.0 / 3.0;  // of a cell, with overviews [byte]
-constexpr double kLargeMap = 16e6;         // cells; from there on drafts are compressed, and empty cells take nothing
 constexpr double kEmptyCell = 1.9e-8;      // of the grid, per band, to write [s]
 constexpr double kTouchedCell = 1.6e-7;    // of a touched cell, per band, to write [s]
 constexpr double kWriteTrajectory = 5e-6;  // a row of stops.gpkg [s]
@@ -68,11 +65,10 @@ double bands(const Scenario& scenario) {
   return static_cast<double>(std::accumulate(numbers.begin(), numbers.end(), std::size_t{0}));
 }
 
-/// Bands of the largest rasters that are written at the same time.
-double draft_bands(const Scenario& scenario, unsigned processors) {
+/// Bands of the largest rasters that are written at the same time: at the end of each, all threads begin with the next.
+double bands_at_once(const Scenario& scenario) {
   const std::vector<std::size_t> numbers = numbers_of_bands(scenario);
-  const auto at_once = std::min<std::ptrdiff_t>(processors, talus::run::kMapsAtOnce);
-  return static_cast<double>(std::accumulate(numbers.begin(), numbers.begin() + at_once, std::size_t{0}));
+  return static_cast<double>(numbers[0] + numbers[1]);
 }
 
 }  // namespace
@@ -92,19 +88,18 @@ double bytes_of_results(const Scenario& scenario, const RunSize& size) {
          paths * (500.0 + kPathPoint * size.metres_per_path / grid.cell_x);
 }
 
-double bytes_at_work(const Scenario& scenario, const RunSize& size, unsigned processors) {
+double bytes_at_work(const Scenario& scenario, const RunSize& size) {
   const double kept = kKeptCell + 4.0 * thresholds(scenario) + length_bytes(scenario) +
                       (scenario.output.energy_total ? kKeptTotal : 0.0) +
                       (size.with_hazard ? hazard_bytes(scenario) : 0.0);
-  const double cells = size.grid_cells > kLargeMap ? size.touched_cells : size.grid_cells;
-  const double drafts = kDraftBand * draft_bands(scenario, processors) * cells;
-  return size.touched_cells * kept + std::max(size.touched_cells * kept, drafts) +
+  const double tiles = kRasterCell * bands_at_once(scenario) * size.touched_cells;
+  return size.touched_cells * kept + std::max(size.touched_cells * kept, tiles) +
          size.trajectories * sizeof(talus::StopRow) + size.crossings * sizeof(talus::Crossing);
 }
 
 double seconds_to_write(const Scenario& scenario, const RunSize& size, unsigned processors) {
   const double rasters = bands(scenario) * (kEmptyCell * size.grid_cells + kTouchedCell * size.touched_cells);
-  return kWriteFiles + rasters / std::min(processors, unsigned{talus::run::kMapsAtOnce}) +
+  return kWriteFiles + rasters / processors +
          kWriteTrajectory * size.trajectories;
 }
 

@@ -14,8 +14,8 @@ struct RunSize {
 
 double bytes_in_memory(const talus::Scenario& scenario, const RunSize& size);  ///< without terrain and zones
 double bytes_of_results(const talus::Scenario& scenario, const RunSize& size);
-/// Bytes beside the results while the run goes on: saved work for --resume, and drafts of the maps.
-double bytes_at_work(const talus::Scenario& scenario, const RunSize& size, unsigned processors);
+/// Bytes beside the results while the run goes on: saved work for --resume, and compressed tiles of maps.
+double bytes_at_work(const talus::Scenario& scenario, const RunSize& size);
 double seconds_to_write(const talus::Scenario& scenario, const RunSize& size, unsigned processors);
 
 /// Two digits of a number: "1 200".

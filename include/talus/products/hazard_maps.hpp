@@ -1,5 +1,7 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -7,6 +9,7 @@
 #include "talus/products/hazard_matrix.hpp"
 #include "talus/products/maps.hpp"
 #include "talus/products/object_width.hpp"
+#include "talus/products/quiet_regions.hpp"
 #include "talus/products/raster_table.hpp"
 
 namespace talus {
@@ -38,9 +41,13 @@ class HazardSurvey {
   const HazardMatrix& matrix() const { return matrix_; }
   std::uint64_t cells() const;  ///< number of touched cells, or of places where an object is hit
 
-  /// Fills figures `first` to `first + count - 1` of each cell of a row: NaN without terrain; untouched cells have the
-  /// figures of no passage.
-  void fill(int row, std::size_t first, std::size_t count, std::span<double> values) const;
+  /// Fills figures `first` to `first + count - 1` of each cell of a window: NaN without terrain; untouched cells have
+  /// the figures of no passage.
+  void fill(const CellWindow& window, std::size_t first, std::size_t count, std::span<double> values) const;
+  /// What the cells of a window have in common; looks at each.
+  Quiet quiet(const CellWindow& window) const;
+  /// The same figures of cells where nothing happens; nothing for `Quiet::No`.
+  std::optional<std::vector<double>> everywhere(Quiet quiet, std::size_t first, std::size_t count) const;
 
  private:
   struct Row {
@@ -49,6 +56,14 @@ class HazardSurvey {
     std::vector<float> figures;
     std::vector<PassageDensity> densities;  // by cell and level, until `finish`
     std::vector<bool> exits;                // by cell, until `finish`: paths leave the terrain from here
+
+    bool has_terrain(int column) const {
+      return static_cast<std::size_t>(column) < terrain.size() && terrain[static_cast<std::size_t>(column)];
+    }
+    /// Index of the first touched cell in this column or east of it.
+    std::size_t first_from(int column) const {
+      return static_cast<std::size_t>(std::ranges::lower_bound(columns, column) - columns.begin());
+    }
   };
   std::vector<float> figures_of(const HazardAt& at) const;  // the same number for every cell
   std::vector<float> figures_of(std::span<const PassageDensity> levels, bool exit) const;

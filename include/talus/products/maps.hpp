@@ -1,10 +1,12 @@
 #pragma once
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "talus/base/sample.hpp"
+#include "talus/products/cell_window.hpp"
 #include "talus/simulate/scenario/scenario.hpp"
 #include "talus/simulate/tally/tally.hpp"
 
@@ -40,8 +42,16 @@ struct Map {
   bool smallest_in_overviews = false;  ///< overviews show the smallest cell of a pixel, else the largest
   std::vector<std::string> classes{};  ///< names of the values 0, 1, ... if the values are classes
 
-  /// Fills row `row` (0 in the south): values[band * columns + column]; NaN means no value.
-  std::function<void(int row, std::span<double> values)> fill_row{};
+  /// Fills the cells of a window: values[(band * window.rows + row) * window.columns + column], row 0 in the south; NaN
+  /// means no value. Several threads may call it at the same time.
+  std::function<void(const CellWindow& window, std::span<double> values)> fill{};
+  /// The value of each band in all cells of a window, where it is known to be the same; else nothing. May be empty.
+  std::function<std::optional<std::vector<double>>(const CellWindow& window)> everywhere{};
+
+  /// Fills a whole row: values[band * columns + column].
+  void fill_row(int row, std::span<double> values) const {
+    fill({0, row, static_cast<int>(values.size() / bands.size()), 1}, values);
+  }
 };
 
 /// All maps of a finished run, in the order in which they are written. The scenario and the tally must outlive them.

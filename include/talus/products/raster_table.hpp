@@ -48,8 +48,9 @@ struct RunRaster {
   std::string threshold_band{};   ///< name of these bands; <limit> stands for the threshold: "P(E > <limit>)"
   bool counts_lengths = false;    ///< only passages below `RunCounts::passages_below` count
   bool threshold_bounds = false;  ///< two bands with bounds for each band of a threshold come after these
-  /// Makes the function that fills the rows of a raster that the scenario alone gives.
-  std::function<std::function<void(int row, std::span<double> values)>(const Scenario& scenario)> of_scenario{};
+  /// Makes `Map::fill` of a raster that the scenario alone gives.
+  std::function<std::function<void(const CellWindow& window, std::span<double> values)>(const Scenario& scenario)>
+      of_scenario{};
   bool RunCounts::*request{};  ///< the raster is written only if this is set
 };
 

@@ -377,6 +377,10 @@ const std::int64_t* Tally::lengths_above(int column, int row) const {
   return region.lengths.data() + (region.slot[cell_in_region(column, row)] - 1U) * energy_thresholds();
 }
 
+bool Tally::is_touched(std::size_t region) const {
+  return !regions_[region].slot.empty();
+}
+
 void Tally::save(std::size_t index, ByteWriter& out) const {
   memory().keep_below_limit();
   const Region& region = regions_[index];

@@ -19,11 +19,11 @@ TEST(ReleaseCells, ByHand) {
   s.trajectories = 20;
   const ReleaseCells cells(s);
   std::vector<double> row(4);
-  cells.fill_row(1, row);
+  cells.fill({0, 1, 4, 1}, row);
   EXPECT_EQ(row, (std::vector<double>{40.0, 0.0, 20.0, 0.0}));
-  cells.fill_row(0, row);
+  cells.fill({0, 0, 4, 1}, row);
   EXPECT_EQ(row, (std::vector<double>(4, 0.0)));
-  cells.fill_row(2, row);
+  cells.fill({0, 2, 4, 1}, row);
   EXPECT_TRUE(std::isnan(row[3]));
   EXPECT_EQ(row[0], 0.0);
 }

@@ -58,6 +58,9 @@ class Tally {
   /// Number of touched cells with 0, 1, 2, ... trajectories; the last number is of `most` or more.
   std::vector<std::uint64_t> cells_by_passages(std::uint32_t most) const;
 
+  /// Whether any cell of a region has a record.
+  bool is_touched(std::size_t region) const;
+
   /// Writes the records of a region; nothing if no trajectory touched it. Regions are numbered row by row from the
   /// south-west. Not while batches are added.
   std::size_t regions() const { return region_count_; }

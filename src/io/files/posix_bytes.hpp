@@ -1,0 +1,18 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+namespace talus::io {
+
+/// Creates a file for writing and reading, or empties it. @return its descriptor. Throws std::runtime_error
+int create_file(const std::filesystem::path& path);
+
+/// Writes all bytes at a place of a file. Throws std::runtime_error
+void write_bytes(int file, std::span<const std::byte> bytes, std::uint64_t offset);
+
+/// Reads as many bytes as there is room for, from a place of a file. Throws std::runtime_error
+void read_bytes(int file, std::span<std::byte> bytes, std::uint64_t offset);
+
+}  // namespace talus::io
