@@ -28,6 +28,7 @@ void add_score(CLI::App& app, Action& action);
 void add_sources(CLI::App& app, Action& action);
 void add_hazard(CLI::App& app, Action& action);
 void add_merge(CLI::App& app, Action& action);
+void add_report(CLI::App& app, Action& action);
 
 /// Adds the options of `run` and `check` that give the scenario.
 void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags);

@@ -71,18 +71,6 @@ std::string json_line(const std::string& kind, const std::string& text) {
 
 std::vector<std::string> words;
 
-/// Parts of the interface that a later version brings.
-constexpr std::array<std::string_view, 1> kLaterCommands{"report"};
-
-void refuse_later_parts(int argc, char** argv) {
-  const auto fail = [](const std::string& what) {
-    throw talus::InputError(what + " is not in this version (" + std::string(talus::version()) +
-                            ") yet; see talus --help for what is");
-  };
-  if (argc > 1 && std::ranges::count(kLaterCommands, std::string_view(argv[1])) > 0)
-    fail("the command " + std::string(argv[1]));
-}
-
 /// The names of a command's options.
 std::vector<std::string> option_names(const CLI::App& command) {
   std::vector<std::string> names;
@@ -151,7 +139,6 @@ void begin_program(int argc, char** argv) {
 }
 
 Action understood(int argc, char** argv, const std::vector<AddCommand>& commands) {
-  refuse_later_parts(argc, argv);
   CLI::App app("Talus maps rock-fall hazard on 3D terrain.");
   describe(app);
   Action action;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <set>
 #include <span>
 #include <string_view>
@@ -70,6 +71,7 @@ std::set<std::string> own_names(const fs::path& folder) {
   if (fs::exists(folder / "part.json")) own.insert("scenario.toml");
   if (fs::exists(folder / "calibration.json") || fs::exists(folder / "diagnosis.json"))
     own.insert(kFitFiles.begin(), kFitFiles.end());
+  if (fs::exists(folder / "run.json") && is_run_page(folder / "report.html")) own.insert("report.html");
   for (const auto& entry : fs::directory_iterator(folder)) {  // of `talus barrier`: NAME.json says which
     const std::string name = entry.path().stem().string();
     if (!name.starts_with("barrier_") || entry.path().extension() != ".json" || !is_design(entry.path())) continue;
@@ -85,6 +87,14 @@ bool is_beside(const std::string& name, const std::set<std::string>& own) {
 }
 
 }  // namespace
+
+bool is_run_page(const fs::path& file) {
+  std::error_code none;
+  if (!fs::is_regular_file(file, none)) return false;
+  std::string head(300, '\0');
+  std::ifstream(file).read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head.find("content=\"" + kPageMark + "report\"") != std::string::npos;
+}
 
 std::vector<std::string> files_of_record(const fs::path& record) {
   std::vector<std::string> names;

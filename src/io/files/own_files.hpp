@@ -5,10 +5,16 @@
 
 namespace talus::io {
 
+/// Beginning of what a page of ours says that made it (its `generator`): "talus report".
+inline const std::string kPageMark = "talus ";
+
+/// Whether a file is a page that `talus report` has written.
+bool is_run_page(const std::filesystem::path& file);
+
 /// The files and folders in a folder of results that Talus has not written there, in the order of their names; folders
 /// end in "/". Talus's own are:
 ///   what the records run.json, hazard.json and part.json list, and the records;
-///   the files of `barrier`, `calibrate`, `diagnose`, with the folders of their campaigns;
+///   the files of `barrier`, `calibrate`, `diagnose`, with the folders of their campaigns; the page of `report`;
 ///   what readers leave beside one of these: X.aux.xml, X.ovr, X-wal, X-shm, X-journal.
 std::vector<std::string> foreign_in(const std::filesystem::path& folder);
 

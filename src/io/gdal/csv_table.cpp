@@ -93,7 +93,7 @@ void CsvTable::read_header(const std::vector<std::string>& known, const std::vec
   columns_ = rows_.front().cells;
   rows_.erase(rows_.begin());
   for (auto column = columns_.begin(); column != columns_.end(); ++column) {
-    if (std::find(known.begin(), known.end(), *column) == known.end())
+    if (!known.empty() && std::find(known.begin(), known.end(), *column) == known.end())
       throw InputError(path_ + ":1: unknown column '" + *column + "'" + known_names(*column, known));
     if (std::find(columns_.begin(), column, *column) != column)
       throw InputError(path_ + ":1: column '" + *column + "' is there twice, must be there once");

@@ -19,12 +19,13 @@ class CsvTable {
     std::vector<std::string> cells;  ///< as many as columns, without blanks around them
   };
 
-  /// @param known     columns that may be there; any other is refused
+  /// @param known     columns that may be there; any other is refused. Empty: any
   /// @param required  columns that must be there
   /// Throws InputError if it cannot be read, has no header, or has rows of another length.
   CsvTable(std::string path, const std::vector<std::string>& known, const std::vector<std::string>& required);
 
   const std::vector<Row>& rows() const { return rows_; }
+  const std::vector<std::string>& columns() const { return columns_; }
   bool has(const std::string& column) const { return column_of(column) >= 0; }
 
   /// The text of a cell; empty if it is empty or the column is not there.

@@ -40,6 +40,8 @@ class Svg {
   /// The drawing: the <svg> element with all that was added.
   /// @param head  before the elements, such as a <style>
   Markup drawing(Attributes attributes, const Markup& head = {}) const;
+  /// The elements alone, for a group in a drawing.
+  const Markup& elements() const { return body_; }
 
  private:
   void add_tag(Markup& to, std::string_view name, Attributes attributes) const;

@@ -1,0 +1,88 @@
+#include "map_raster.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "talus/base/error.hpp"
+
+namespace talus::io {
+namespace {
+
+constexpr int kTile = 512;  // of a Cloud Optimized GeoTIFF: every tile of the file is unpacked once
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+MapRaster::MapRaster(const std::string& path, int band)
+    : path_(path),
+      dataset_(open_dataset(path, GDAL_OF_RASTER)),
+      band_(band >= 1 && band <= dataset_->GetRasterCount() ? dataset_->GetRasterBand(band) : nullptr) {
+  if (band_ == nullptr)
+    throw InputError(path + ": has " + std::to_string(dataset_->GetRasterCount()) + " bands, must have band " +
+                     std::to_string(band) + ", as talus has written it");
+}
+
+std::string MapRaster::metadata(const char* key) const {
+  const char* const text = dataset_->GetMetadataItem(key);
+  return text == nullptr ? "" : text;
+}
+
+/// Calls `visit(column, row, value)` for the cells of a window that have a value.
+template <class Visit>
+void MapRaster::for_each_value(const MapWindow& window, Visit visit) const {
+  GdalMessages messages;
+  std::vector<double> values(std::size_t{kTile} * kTile);
+  std::vector<std::uint8_t> mask(values.size());
+  const bool masked = (band_->GetMaskFlags() & GMF_ALL_VALID) == 0;
+  int given = 0;
+  const double scale = band_->GetScale(&given), offset = band_->GetOffset();
+  const int right = window.column + window.columns, bottom = window.row + window.rows;
+  for (int top = window.row; top < bottom; top = (top / kTile + 1) * kTile)
+    for (int left = window.column; left < right; left = (left / kTile + 1) * kTile) {
+      const int columns = std::min((left / kTile + 1) * kTile, right) - left,
+                rows = std::min((top / kTile + 1) * kTile, bottom) - top;
+      if (band_->RasterIO(GF_Read, left, top, columns, rows, values.data(), columns, rows, GDT_Float64, 0, 0,
+                          nullptr) != CE_None ||
+          (masked && band_->GetMaskBand()->RasterIO(GF_Read, left, top, columns, rows, mask.data(), columns, rows,
+                                                    GDT_Byte, 0, 0, nullptr) != CE_None))
+        throw InputError(path_ + ": cannot be read: " + messages.take());
+      for (int i = 0; i < columns * rows; ++i)
+        if ((!masked || mask[i] != 0) && std::isfinite(values[i]))
+          visit(left + i % columns, top + i / columns, values[i] * scale + offset);
+    }
+}
+
+std::vector<double> MapRaster::pixels(const MapWindow& window, PixelValue kind) const {
+  std::vector<double> pixels(std::size_t(window.width()) * window.height(), kNone);
+  std::vector<std::uint32_t> counts(kind == PixelValue::Mean ? pixels.size() : 0);
+  for_each_value(window, [&](int column, int row, double value) {
+    const std::size_t at =
+        std::size_t((row - window.row) / window.side) * window.width() + (column - window.column) / window.side;
+    double& pixel = pixels[at];
+    if (kind == PixelValue::Mean) {
+      pixel = counts[at]++ == 0 ? value : pixel + value;
+      return;
+    }
+    if (std::isnan(pixel) || (kind == PixelValue::Largest ? value > pixel : value < pixel)) pixel = value;
+  });
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    if (counts[i] > 0) pixels[i] /= counts[i];
+  return pixels;
+}
+
+std::optional<MapWindow> MapRaster::positive_cells() const {
+  int left = columns(), top = rows(), right = -1, bottom = -1;
+  for_each_value({0, 0, columns(), rows(), 1}, [&](int column, int row, double value) {
+    if (!(value > 0.0)) return;
+    left = std::min(left, column);
+    right = std::max(right, column);
+    top = std::min(top, row);
+    bottom = std::max(bottom, row);
+  });
+  if (right < 0) return std::nullopt;
+  return MapWindow{left, top, right - left + 1, bottom - top + 1, 1};
+}
+
+}  // namespace talus::io

@@ -1,0 +1,175 @@
+#include "report_barriers.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "report_facts.hpp"
+#include "svg.hpp"
+#include "talus/base/printable.hpp"
+#include "talus/base/text.hpp"
+#include "talus/base/vector.hpp"
+
+namespace talus::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostBarriers = 20, kMostStretches = 400;
+
+void read_limits(const Json& json, BarrierPart& part) {
+  for (const Json& quantity : json.value("reliability", Json::array()))
+    for (const Json& one : quantity.at("exceeded")) {
+      BarrierPart::Limit limit{quantity.at("quantity").get<std::string>(), one.at("name").get<std::string>(),
+                               quantity.value("unit", "")};
+      limit.value = number_of(one, "value");
+      limit.weibull = number_of(one, "weibull");
+      limit.share = number_of(one, "share");
+      limit.share_low = one.at("share_interval").at(0).get<double>();
+      limit.share_high = one.at("share_interval").at(1).get<double>();
+      limit.agrees = quantity.value("agrees", false);
+      if (const Json per_year = one.value("per_year", Json()); per_year.is_object())
+        if (const double often = number_of(per_year, "value"); often > 0.0) limit.years = 1.0 / often;
+      part.limits.push_back(std::move(limit));
+    }
+}
+
+BarrierPart part_of(const Json& json) {
+  BarrierPart part;
+  part.screen = json.at("screen").get<std::string>();
+  part.weighting = json.value("weighting", "");
+  part.crossings = number_of(json, "crossings");
+  for (const Json& one : json.at("design"))
+    part.design.push_back({one.at("name").get<std::string>(), one.value("unit", ""), one.value("from", ""),
+                           number_of(one, "value")});
+  read_limits(json, part);
+  for (const Json& one : json.value("stretches", Json::array())) {
+    if (part.stretches.size() == kMostStretches) break;
+    BarrierPart::Stretch stretch{number_of(one, "from_m"), number_of(one, "to_m"), number_of(one, "crossings")};
+    if (const Json design = one.value("design", Json()); design.is_object()) {
+      stretch.sel = number_of(design, "sel_kj");
+      stretch.mel = number_of(design, "mel_kj");
+      stretch.height = number_of(design, "h_i_m");
+    }
+    part.stretches.push_back(stretch);
+  }
+  part.notes = texts_of(json, "notes");
+  return part;
+}
+
+/// The net at its height, and the design block with its speed, to scale.
+Markup section_drawing(const BarrierPart& part) {
+  const double height = part.value("h_i"), diameter = std::cbrt(6.0 * part.value("V") / kPi);
+  if (!(height > 0.0 && height < 1e3 && diameter > 0.0 && diameter < 1e3)) return {};
+  constexpr double kGround = 170.0, kNet = 250.0;
+  const double scale = 130.0 / std::max(height, diameter), radius = 0.5 * scale * diameter;
+  const double centre = kGround - std::max(radius, scale * (height - part.value("f_min")));
+  Svg svg('\'', "");
+  svg.element("line", {{"x1", 10}, {"x2", 370}, {"y1", kGround}, {"y2", kGround}, {"stroke", "#555"}});
+  svg.element("line", {{"x1", kNet},
+                       {"x2", kNet},
+                       {"y1", kGround},
+                       {"y2", kGround - scale * height},
+                       {"stroke", "#00695c"},
+                       {"stroke-width", 4}});
+  svg.element("circle", {{"cx", 110}, {"cy", centre}, {"r", radius}, {"fill", "#bbb"}, {"stroke", "#555"}});
+  svg.element("line", {{"x1", 115.0 + radius},
+                       {"x2", std::max(140.0 + radius, 225.0)},
+                       {"y1", centre},
+                       {"y2", centre},
+                       {"stroke", "#b3261e"},
+                       {"stroke-width", 2}});
+  svg.words({{"x", kNet + 8.0}, {"y", kGround - 0.5 * scale * height}}, "h_i = " + with_digits(height, 3) + " m");
+  svg.words({{"x", 10}, {"y", kGround + 15.0}},
+            "design block " + with_digits(diameter, 3) + " m, v_d = " + with_digits(part.value("v_d"), 3) +
+                " m/s, MEL = " + with_digits(part.value("MEL"), 4) + " kJ");
+  return svg.drawing({{"width", 380}, {"height", 195}, {"viewBox", "0 0 380 195"}});
+}
+
+/// What each stretch needs along the line: bars of SEL, and the value of the whole line.
+Markup stretch_chart(const BarrierPart& part, bool energy) {
+  const auto of = [&](const BarrierPart::Stretch& s) { return energy ? s.sel : s.height; };
+  const double whole = part.value(energy ? "SEL" : "h_i");
+  double most = whole, last = 0.0;
+  for (const auto& s : part.stretches) most = std::max(most, of(s)), last = std::max(last, s.to);
+  if (!(most > 0.0 && last > 0.0)) return {};
+  const Axis x{0.0, last, 44.0, 640.0}, y{0.0, 1.05 * most, 130.0, -108.0};
+  Svg svg('\'', "");
+  svg.words({{"x", 44}, {"y", 12}, {"font-weight", "bold"}}, energy ? "SEL of each stretch [kJ]"
+                                                                    : "h_i of each stretch [m]");
+  for (const auto& s : part.stretches) {
+    svg.element("rect", {{"x", x(s.from)},
+                         {"y", y(of(s))},
+                         {"width", std::max(0.5, x(s.to) - x(s.from) - 1.0)},
+                         {"height", y(0.0) - y(of(s))},
+                         {"fill", of(s) > whole ? "#b3261e" : "#5b7fa6"}});
+    if (s.crossings > 0.0 && !(of(s) > 0.0))
+      svg.words({{"x", 0.5 * (x(s.from) + x(s.to))}, {"y", y(0.0) - 3.0}, {"text-anchor", "middle"}}, "?");
+  }
+  svg.element("line", {{"x1", 44}, {"x2", 684}, {"y1", y(whole)}, {"y2", y(whole)}, {"stroke", "#222"},
+                       {"stroke-dasharray", "6 3"}});
+  svg.words({{"x", 688}, {"y", y(whole) + 4.0}}, "line");
+  for (const double tick : ticks(0.0, 1.05 * most, 4))
+    svg.words({{"x", 40}, {"y", y(tick) + 4.0}, {"text-anchor", "end"}}, with_digits(tick, 4));
+  for (const double tick : ticks(0.0, last, 8))
+    svg.words({{"x", x(tick)}, {"y", 144}, {"text-anchor", "middle"}}, with_digits(tick, 5));
+  svg.words({{"x", 364}, {"y", 158}, {"text-anchor", "middle"}}, "m along the line");
+  return svg.drawing({{"width", 720}, {"height", 162}, {"viewBox", "0 0 720 162"}});
+}
+
+Markup limits_table(const BarrierPart& part) {
+  Markup html =
+      "<table><tr><th>quantity</th><th>value</th><th>exceeded by, of the values [95 %]</th><th>by the Weibull "
+      "law</th><th>once in</th></tr>\n"_html;
+  for (const BarrierPart::Limit& l : part.limits)
+    html += "<tr><td>"_html + l.quantity + "</td><td>" + l.name + " = " + with_digits(l.value, 4) + " " + l.unit +
+            "</td><td>" + with_digits(100.0 * l.share, 3) + " % [" + with_digits(100.0 * l.share_low, 3) + ", " +
+            with_digits(100.0 * l.share_high, 3) + "]</td><td>" + with_digits(100.0 * l.weibull, 3) + " %" +
+            (l.agrees ? "" : " (the law does not fit: use the share)") + "</td><td>" +
+            (l.years > 0.0 ? with_digits(l.years, 3) + " years" : std::string("-")) + "</td></tr>\n";
+  return html + "</table>\n";
+}
+
+Markup barrier_html(const BarrierPart& part) {
+  Markup html = "<h3>Barrier at "_html + part.screen + "</h3>\n<p>" + grouped(part.crossings) +
+                " blocks cross the line; every block counts " + part.weighting +
+                ".</p>\n<table><tr><th>design value</th><th></th><th>from</th></tr>\n";
+  for (const BarrierPart::Value& value : part.design)
+    html += "<tr><td>"_html + value.name + "</td><td class='n'>" + with_digits(value.value, 4) + " " + value.unit +
+            "</td><td>" + value.from + "</td></tr>\n";
+  html += "</table>\n<figure>"_html + section_drawing(part) + "</figure>\n" + limits_table(part);
+  if (!part.stretches.empty())
+    html += "<figure>"_html + stretch_chart(part, true) + "<br>" + stretch_chart(part, false) +
+            "<figcaption>Each stretch designed by its own crossings; red: more than the design of the whole line; ?: too "
+            "few crossings for a design; dashed: the whole line.</figcaption></figure>\n";
+  for (const std::string& note : part.notes) html += "<p class='look'>Note: "_html + note + "</p>\n";
+  return html;
+}
+
+}  // namespace
+
+double BarrierPart::value(const std::string& name) const {
+  const auto found = std::ranges::find(design, name, &Value::name);
+  return found == design.end() ? 0.0 : found->value;
+}
+
+std::vector<BarrierPart> read_barrier_parts(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none))
+    if (entry.path().extension() == ".json" && entry.path().filename().string().starts_with("barrier_"))
+      files.push_back(entry.path());
+  std::ranges::sort(files);
+  if (files.size() > kMostBarriers) files.resize(kMostBarriers);
+  std::vector<BarrierPart> parts;
+  for (const fs::path& file : files) parts.push_back(understood(file, part_of));
+  return parts;
+}
+
+Markup barriers_html(const std::vector<BarrierPart>& parts) {
+  if (parts.empty()) return {};
+  Markup html = "<h2>Barriers</h2>\n"_html;
+  for (const BarrierPart& part : parts) html += barrier_html(part);
+  return html;
+}
+
+}  // namespace talus::io

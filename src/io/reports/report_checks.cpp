@@ -1,0 +1,247 @@
+#include "report_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "talus/base/text.hpp"
+#include "talus/physics/effects/registry.hpp"
+#include "talus/products/interval.hpp"
+
+namespace talus::io {
+namespace {
+
+using Mark = Check::Mark;
+using Checks = std::vector<Check>;
+
+// Shares from which `talus run` warns: README, "Before you sign".
+constexpr double kMostLeft = 0.01, kMostTrapped = 0.03;
+
+std::string percent_of(double count, double all) {
+  return with_digits(all > 0.0 ? 100.0 * count / all : 0.0, 3) + " %";
+}
+
+bool warned_of(const RunFacts& run, std::string_view words) {
+  return std::ranges::any_of(run.warnings, [&](const std::string& w) { return w.find(words) != std::string::npos; });
+}
+
+/// The effects of the record, and all others.
+std::pair<std::vector<std::string>, std::vector<std::string>> effects_of(const RunFacts& run) {
+  std::vector<std::string> acting, off;
+  for (const EffectEntry& entry : effect_entries()) {
+    const std::string name(entry.name);
+    (run.settings_of("effects." + name).empty() ? off : acting).push_back(name);
+  }
+  return {acting, off};
+}
+
+/// The presets of the ground, each once.
+std::vector<std::string> presets_of(const RunFacts& run) {
+  std::vector<std::string> presets;
+  for (const RecordedSetting* setting : run.settings_of("ground."))
+    if (setting->is_of_preset())
+      if (std::string name = setting->source.substr(7); std::ranges::count(presets, name) == 0)
+        presets.push_back(std::move(name));
+  return presets;
+}
+
+void check_ends(const RunFacts& run, Checks& checks) {
+  const auto share = [&](const char* end) { return run.released > 0.0 ? run.end(end) / run.released : 0.0; };
+  const auto found = [&](const char* end) {
+    return grouped(run.end(end)) + " of " + grouped(run.released) + " blocks (" +
+           percent_of(run.end(end), run.released) + ")";
+  };
+  checks.push_back({share("left") > kMostLeft ? Mark::Act : run.end("left") > 0.0 ? Mark::Look : Mark::Fine,
+                    "Blocks that leave the DEM", found("left"),
+                    "The maps do not show how far they would go. Above 1 %: take a larger DEM."});
+  checks.push_back({share("trapped") > kMostTrapped ? Mark::Act : run.end("trapped") > 0.0 ? Mark::Look : Mark::Fine,
+                    "Blocks that are trapped", found("trapped"),
+                    "Held in pits or between walls on ground too steep to rest on. Above 3 %: look at the DEM there."});
+  checks.push_back({run.end("limit") > 0.0 ? Mark::Look : Mark::Fine, "Blocks cut short by a limit", found("limit"),
+                    "Their path was not followed to its end."});
+  if (run.status != "complete")
+    checks.push_back({Mark::Act, "The run", run.status, "The run itself says that its result is not to be used."});
+}
+
+void check_sizes(const RunFacts& run, Checks& checks) {
+  const auto diameters = diameters_of(run);
+  const std::string cell = with_digits(run.grid.cell_x, 4) + " m";
+  if (!diameters) {
+    checks.push_back({Mark::Look, "Cells and blocks", "cells of " + cell + "; diameters: see the settings",
+                      "A cell much larger than a block hides the ground that the block meets."});
+  } else {
+    const auto& [small, large] = *diameters;
+    const bool wide = run.grid.cell_x > 5.0 * small;
+    checks.push_back({wide ? Mark::Look : Mark::Fine, "Cells and blocks",
+                      "cells of " + cell + ", blocks of " + with_digits(small, 3) + " to " + with_digits(large, 3) +
+                          " m: a cell is " + with_digits(run.grid.cell_x / large, 2) + " to " +
+                          with_digits(run.grid.cell_x / small, 2) + " diameters wide",
+                      "The ground between the centres of the cells is a smooth patch; its roughness is in the ground's "
+                      "parameters. Compare with a finer DEM where there is one."});
+  }
+  const bool warned = warned_of(run, "block sizes:");
+  checks.push_back({warned ? Mark::Act : Mark::Fine, "Sizes of the blocks and the fit of the ground",
+                    warned ? "a warning of the run says that they differ" : "no warning",
+                    "A ground holds for blocks of the sizes to which it was fitted."});
+}
+
+void check_numbers(const CheckedRun& checked, Checks& checks) {
+  const RunFacts& run = checked.run;
+  const auto released = static_cast<std::uint64_t>(std::clamp(run.released, 0.0, 1e15));
+  std::string found = grouped(run.per_source) + " per source cell, " + grouped(run.source_cells) + " source cells";
+  bool few = run.per_source < 50.0;
+  const auto bounds = [&](double p, const std::string& where) {
+    const auto hits = static_cast<std::uint64_t>(std::llround(p * run.released));
+    if (released == 0 || hits == 0 || hits > released) return;
+    const Interval i = probability_bounds(hits, released, 0.95);
+    found += "; " + where + ": " + with_digits(100.0 * p, 3) + " % [" + with_digits(100.0 * i.low, 3) + ", " +
+             with_digits(100.0 * i.high, 3) + "]";
+    few = few || i.high - i.low > 0.4 * p;
+  };
+  for (const ReportMap& map : checked.sheet.maps)
+    if (map.name == "impact_probability" && map.largest <= 1.0) bounds(map.largest, "most often hit cell");
+  bounds(1e-3, "a cell that one block in 1000 crosses");
+  checks.push_back({few ? Mark::Look : Mark::Fine, "Number of blocks", found,
+                    "95 % bounds of the number of blocks alone. Where they are wide: --trajectories, or --until-error."});
+}
+
+void check_ground(const CheckedRun& checked, Checks& checks) {
+  const RunFacts& run = checked.run;
+  const std::vector<std::string> presets = presets_of(run);
+  if (checked.fit)
+    checks.push_back({checked.fit->note.empty() ? Mark::Fine : Mark::Look, "Ground", "fitted: " + checked.fit->file,
+                      "A fit holds for its slope, its blocks and its kind of DEM."});
+  if (!presets.empty())
+    checks.push_back({Mark::Look, "Ground from presets", joined(presets),
+                      "A first guess from other slopes. Compare with silent witnesses: where do old blocks lie? Vary it."});
+  if (checked.fit || warned_of(run, "was fitted on")) {
+    const bool other = warned_of(run, "was fitted on");
+    checks.push_back({other ? Mark::Act : Mark::Fine, "DEM of the fit and DEM of the run",
+                      other ? "a warning of the run says that they differ" : "like cells and surface",
+                      "A fitted ground makes up for what its DEM does not show."});
+  }
+  if (checked.low_c) checks.push_back({Mark::Look, "Deformation coefficient c", *checked.low_c, ""});
+}
+
+void check_inputs(const CheckedRun& checked, Checks& checks) {
+  const RunFacts& run = checked.run;
+  checks.push_back({checked.sheet.relief.empty() ? Mark::Act : Mark::Look, "DEM",
+                    checked.sheet.relief.empty() ? checked.sheet.relief_note : "drawn under the maps",
+                    "Trees, bridges, roofs and interpolated holes become terrain. Look at the relief."});
+  checks.push_back({Mark::Look, "Sources", grouped(run.source_cells) + " source cells, drawn on every map",
+                    "Are they what you drew? A source that is missing makes every map too low."});
+  for (const Reprojection& one : run.reprojections) {
+    const bool good = one.accuracy_m && *one.accuracy_m <= 0.5 * run.grid.cell_x;
+    checks.push_back({good ? Mark::Fine : Mark::Look, "Coordinates of " + one.role,
+                      "brought to the system of the DEM, accuracy " +
+                          (one.accuracy_m ? with_digits(*one.accuracy_m, 3) + " m" : std::string("unknown")),
+                      "By: " + one.operation});
+  }
+  checks.push_back({run.warnings.empty() ? Mark::Fine : Mark::Act, "Warnings of the run",
+                    run.warnings.empty() ? "none" : std::to_string(run.warnings.size()) + ", listed above",
+                    "Say of each why it does not matter here, or mend it."});
+}
+
+void check_hazard(const CheckedRun& checked, Checks& checks) {
+  if (!checked.has_frequencies) {
+    checks.push_back({Mark::Look, "Frequency", "none is declared",
+                      "Nothing on this page is per year: probabilities are of one block that falls somewhere."});
+    return;
+  }
+  if (!checked.hazard) {
+    checks.push_back({Mark::Look, "Frequency", "declared, but talus hazard was not run",
+                      "Run it for return periods and classes."});
+    return;
+  }
+  const HazardFacts& hazard = *checked.hazard;
+  const bool left = hazard.left_per_year > 0.01 * hazard.events_per_year;
+  checks.push_back({left ? Mark::Act : Mark::Fine, "Events that leave the DEM",
+                    with_digits(hazard.left_per_year, 3) + " of " + with_digits(hazard.events_per_year, 3) + " per year",
+                    "Beyond the DEM the hazard goes on, and no map shows it."});
+  checks.push_back({Mark::Look, "Whose hazard", "of " + hazard.object,
+                    "A larger cell is hit more often; compare maps for one width only."});
+  if (!hazard.same_run)
+    checks.push_back({Mark::Act, "Hazard of another run", "hazard.json names another plan than run.json",
+                      "Run talus hazard again with --overwrite."});
+}
+
+void check_screens(const CheckedRun& checked, Checks& checks) {
+  constexpr double kFew = 100.0;
+  std::vector<std::string> few;
+  for (const ScreensPart::Row& row : checked.screens.rows)
+    if (row.quantity == "speed" && row.blocks < kFew) few.push_back(row.screen + " (" + grouped(row.blocks) + ")");
+  if (checked.screens.rows.empty()) return;
+  checks.push_back({few.empty() ? Mark::Fine : Mark::Look, "Blocks at the screens",
+                    few.empty() ? "at least 100 at each" : "fewer than 100 at " + joined(few),
+                    "P95 of few blocks is uncertain, P99 more so."});
+}
+
+}  // namespace
+
+std::optional<std::pair<double, double>> diameters_of(const RunFacts& run) {
+  std::optional<std::pair<double, double>> range;
+  for (const RecordedSetting& setting : run.settings) {
+    if (!(setting.key.starts_with("blocks.") || setting.key.starts_with("sources.attributes.")) ||
+        setting.key.find("diameter") == std::string::npos || setting.unit != "m")
+      continue;
+    const std::string text = setting.value.substr(0, setting.value.find('('));
+    for (std::size_t at = 0; (at = text.find_first_of("0123456789", at)) != std::string::npos;) {
+      const std::size_t end = std::min(text.find_first_not_of("0123456789.e-+", at), text.size());
+      if (const double d = std::strtod(text.substr(at, end - at).c_str(), nullptr); d > 0.0 && d < 1e3)
+        range = range ? std::pair(std::min(range->first, d), std::max(range->second, d)) : std::pair(d, d);
+      at = end;
+    }
+  }
+  return range;
+}
+
+std::vector<Check> checks_of(const CheckedRun& checked) {
+  Checks checks;
+  check_inputs(checked, checks);
+  check_ends(checked.run, checks);
+  check_sizes(checked.run, checks);
+  check_ground(checked, checks);
+  check_numbers(checked, checks);
+  check_hazard(checked, checks);
+  check_screens(checked, checks);
+  const auto [acting, off] = effects_of(checked.run);
+  checks.push_back({Mark::Look, "Effects", "acting: " + (acting.empty() ? "none" : joined(acting)) + "; off: " + joined(off),
+                    "Is there forest, deep or wet ground, a block that breaks? An effect that is off is not in the maps."});
+  return checks;
+}
+
+Markup checks_html(const std::vector<Check>& checks) {
+  Markup html =
+      "<h2>Before you sign</h2>\n<p>What this run says of each point. Tick it when you have looked; the model cannot do "
+      "that for you.</p>\n<table><tr><th></th><th>point</th><th>this run</th><th>why</th></tr>\n"_html;
+  for (const Check& check : checks) {
+    const Markup start = check.mark == Mark::Act    ? "<tr class='act'><td>\u2610 act</td><td>"_html
+                         : check.mark == Mark::Look ? "<tr class='look'><td>\u2610 look</td><td>"_html
+                                                    : "<tr><td>\u2610 fine</td><td>"_html;
+    html += start + check.what + "</td><td>" + check.found + "</td><td>" + check.why + "</td></tr>\n";
+  }
+  return html +
+         "</table>\n<table class='sign'><tr><td>Looked through by</td><td>&nbsp;</td><td>Date</td><td>&nbsp;</td><td>"
+         "Signature</td><td>&nbsp;</td></tr></table>\n";
+}
+
+Markup assumptions_html(const CheckedRun& checked) {
+  const auto [acting, off] = effects_of(checked.run);
+  Markup html =
+      "<h2>Assumptions</h2>\n<ul>\n<li>Impact model of PIERRE 2 (Mitchell and Hungr): stochastic rebounds of a sphere on "
+      "rough ground. "_html;
+  html += (acting.empty() ? std::string("No further effect acts.") : "Further effects: " + joined(acting) + ".") +
+          "</li>\n<li>";
+  html += checked.hazard ? "Frequencies, return periods and classes are of the frequencies that the sources state; impact "
+                           "probabilities are not weighted by them."
+                         : "Probabilities are given that one block falls, each source cell as likely as any other. They "
+                           "are not per year.";
+  html +=
+      "</li>\n<li>Crossing a cell is meant in plan, at any height: a block that flies over a road has crossed it.</li>\n"
+      "<li>Energy is translational; P95 is of the largest energy of each path in the cell, over the paths that cross "
+      "it.</li>\n<li>Jump height is vertical, from the terrain to the centre of the block: add its radius.</li>\n<li>"
+      "Bounds hold for the number of blocks of this model. They know nothing of a wrong DEM, source or parameter.</li>\n"
+      "</ul>\n";
+  return html;
+}
+
+}  // namespace talus::io

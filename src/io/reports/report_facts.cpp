@@ -1,0 +1,203 @@
+#include "report_facts.hpp"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+
+#include "talus/base/error.hpp"
+#include "talus/base/printable.hpp"
+#include "talus/base/text.hpp"
+#include "talus/io/gdal/crs.hpp"
+
+namespace talus::io {
+namespace {
+
+constexpr std::size_t kMostTexts = 200, kMostText = 1000, kMostSettings = 2000;  // a page stays readable
+constexpr std::int64_t kMostCells = 1'000'000;                                  // of a side
+
+std::string text_of_value(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// A word as a shell takes it.
+std::string quoted(const std::string& word) {
+  const bool plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c > 127 || std::string_view("/._-+=:,@%").find(static_cast<char>(c)) < 100;
+  });
+  if (plain) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+std::string command_of(const Json& json) {
+  std::string text;
+  for (const std::string& word : texts_of(json, "command")) text += (text.empty() ? "" : " ") + quoted(word);
+  return text;
+}
+
+RecordedGrid grid_of(const Json& json) {
+  RecordedGrid grid;
+  grid.columns = static_cast<int>(whole_number(json.at("columns"), 2, kMostCells));
+  grid.rows = static_cast<int>(whole_number(json.at("rows"), 2, kMostCells));
+  grid.cell_x = number_of(json, "cell_x_m");
+  grid.cell_y = number_of(json, "cell_y_m");
+  grid.west = number_of(json, "west");
+  grid.north = number_of(json, "north");
+  if (!(grid.cell_x > 0.0 && grid.cell_y > 0.0)) throw InputError("its cells have no size");
+  grid.crs = shortened(crs_name(json.at("crs_wkt").get<std::string>()), 120);
+  return grid;
+}
+
+std::vector<Screen> screens_of(const Json& json) {
+  std::vector<Screen> screens;
+  for (const Json& one : json.value("screens", Json::array())) {
+    Screen screen{one.at("id").get<std::string>(), {}};
+    for (const Json& line : one.at("lines")) {
+      auto& places = screen.lines.emplace_back();
+      for (const Json& place : line) places.emplace_back(place.at(0).get<double>(), place.at(1).get<double>());
+    }
+    screens.push_back(std::move(screen));
+  }
+  return screens;
+}
+
+std::vector<RecordedSetting> settings_of_record(const Json& json) {
+  std::vector<RecordedSetting> settings;
+  for (const Json& one : json.at("settings")) {
+    if (settings.size() == kMostSettings) break;
+    settings.push_back({one.at("key").get<std::string>(), shortened(text_of_value(one.at("value")), kMostText),
+                        one.value("unit", ""), one.value("source", "")});
+  }
+  return settings;
+}
+
+void read_counts(const Json& json, RunFacts& run) {
+  run.released = json.at("released").get<double>();
+  run.source_cells = number_of(json, "source_cells");
+  run.per_source = number_of(json, "trajectories_per_source");
+  run.impacts = number_of(json, "impacts");
+  run.kilometres = 1e-3 * number_of(json, "trajectory_metres");
+  run.touched_cells = number_of(json, "touched_cells");
+  if (json.contains("rounds")) run.rounds = number_of(json.at("rounds"), "done");
+  for (const auto& [end, count] : json.at("ends").items()) run.ends.emplace_back(end, count.get<double>());
+  if (!json.contains("energy_line_deg")) return;
+  const Json& line = json.at("energy_line_deg");
+  run.energy_line = {number_of(line, "least"), number_of(line, "p5"), number_of(line, "p50")};
+}
+
+RunFacts facts_of(const Json& json) {
+  RunFacts run;
+  run.version = json.value("version", "");
+  run.command = command_of(json);
+  run.status = json.value("status", "");
+  run.plan = json.value("plan", "");
+  read_counts(json, run);
+  run.grid = grid_of(json.at("grid"));
+  run.screens = screens_of(json);
+  run.settings = settings_of_record(json);
+  for (const Json& one : json.value("inputs", Json::array()))
+    run.inputs.push_back({one.at("role").get<std::string>(), one.at("path").get<std::string>(), one.value("sha256", "")});
+  for (const Json& one : json.value("reprojections", Json::array())) {
+    const Json accuracy = one.value("accuracy_m", Json());
+    run.reprojections.push_back({one.at("role").get<std::string>(), one.at("operation").get<std::string>(),
+                                 accuracy.is_number() ? std::optional(accuracy.get<double>()) : std::nullopt});
+  }
+  run.warnings = texts_of(json, "warnings");
+  run.notes = texts_of(json, "notes");
+  return run;
+}
+
+}  // namespace
+
+double RunFacts::end(const std::string& name) const {
+  const auto found = std::ranges::find(ends, name, &std::pair<std::string, double>::first);
+  return found == ends.end() ? 0.0 : found->second;
+}
+
+const InputFile* RunFacts::input(const std::string& role) const {
+  const auto found = std::ranges::find(inputs, role, &InputFile::role);
+  return found == inputs.end() ? nullptr : &*found;
+}
+
+std::vector<const RecordedSetting*> RunFacts::settings_of(const std::string& beginning) const {
+  std::vector<const RecordedSetting*> found;
+  for (const RecordedSetting& setting : settings)
+    if (setting.key.starts_with(beginning)) found.push_back(&setting);
+  return found;
+}
+
+void throw_not_understood(const std::filesystem::path& file, const std::string& cause) {
+  throw InputError(file.string() + ": cannot be understood (" + cause +
+                   "), must be as talus has written it; run that command again");
+}
+
+RunFacts read_facts(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "run.json";
+  std::error_code none;
+  if (!std::filesystem::exists(file, none))
+    throw InputError(folder.string() + ": is no folder of results (it has no run.json); give the OUT of talus run");
+  RunFacts run = understood(file, facts_of);
+  run.finished = day_of(file);
+  return run;
+}
+
+std::optional<HazardFacts> read_hazard_facts(const std::filesystem::path& folder, const RunFacts& run) {
+  const std::filesystem::path file = folder / "hazard.json";
+  std::error_code none;
+  if (!std::filesystem::exists(file, none)) return std::nullopt;
+  return understood(file, [&](const Json& json) {
+    HazardFacts hazard;
+    hazard.command = command_of(json);
+    hazard.events_per_year = number_of(json, "events_per_year");
+    hazard.left_per_year = number_of(json, "left_per_year");
+    const Json object = json.value("object", Json());
+    hazard.object = object.is_object() ? "an object " + text_of(number_of(object, "width_m")) + " m wide" : "a cell";
+    hazard.warnings = texts_of(json, "warnings");
+    const Json of_run = json.value("run", Json::object());
+    hazard.same_run = of_run.value("plan", "") == run.plan;
+    return hazard;
+  });
+}
+
+std::string day_of(const std::filesystem::path& file) {
+  struct stat status {};
+  std::tm parts{};
+  std::array<char, 16> text{};
+  if (stat(file.c_str(), &status) != 0 || gmtime_r(&status.st_mtime, &parts) == nullptr) return "";
+  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%d", &parts)};
+}
+
+std::vector<std::string> texts_of(const Json& json, const char* key) {
+  std::vector<std::string> texts;
+  const Json list = json.value(key, Json::array());
+  for (const Json& one : list) {
+    if (texts.size() == kMostTexts) {
+      texts.push_back("... and " + std::to_string(list.size() - kMostTexts) + " more");
+      break;
+    }
+    if (one.is_string()) texts.push_back(shortened(one.get<std::string>(), kMostText));
+  }
+  return texts;
+}
+
+double number_of(const Json& json, const char* key, double otherwise) {
+  if (!json.contains(key) || json.at(key).is_null()) return otherwise;
+  const double number = json.at(key).get<double>();
+  if (!std::isfinite(number)) throw InputError(std::string("its number '") + key + "' is not finite");
+  return number;
+}
+
+std::string grouped(double number) {
+  const std::string digits = with_decimals(std::round(std::abs(number)), 0);
+  std::string text = number <= -0.5 ? "-" : "";
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) text += "\u00a0";
+    text += digits[i];
+  }
+  return text;
+}
+
+}  // namespace talus::io

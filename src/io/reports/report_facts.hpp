@@ -1,0 +1,89 @@
+#pragma once
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/files/json.hpp"
+#include "talus/simulate/scenario/scenario.hpp"
+
+/// What a page shows of a run: plain values, read from the records of its folder. docs/report.md.
+namespace talus::io {
+
+/// A setting as the record holds it; the value as text.
+struct RecordedSetting {
+  std::string key, value, unit, source;
+
+  bool is_default() const { return source == "default"; }
+  bool is_of_preset() const { return source.starts_with("preset "); }
+};
+
+/// Place and size of the cells.
+struct RecordedGrid {
+  int columns = 0, rows = 0;
+  double cell_x = 0.0, cell_y = 0.0, west = 0.0, north = 0.0;  ///< [m]
+  std::string crs;                                             ///< "EPSG:2056 (CH1903+ / LV95)"
+};
+
+/// run.json.
+struct RunFacts {
+  std::string version, command, status, plan;
+  std::string finished;  ///< day of the record, "2026-11-23"
+  double released = 0.0, source_cells = 0.0, per_source = 0.0, rounds = 0.0, impacts = 0.0, kilometres = 0.0;
+  double touched_cells = 0.0;
+  std::vector<std::pair<std::string, double>> ends;  ///< in the order of the record
+  std::optional<std::array<double, 3>> energy_line;  ///< least, P5, P50 [deg]
+  RecordedGrid grid;
+  std::vector<Screen> screens;  ///< in map coordinates [m]
+  std::vector<RecordedSetting> settings;
+  std::vector<InputFile> inputs;
+  std::vector<Reprojection> reprojections;
+  std::vector<std::string> warnings, notes;
+
+  double end(const std::string& name) const;  ///< 0 if there is none
+  const InputFile* input(const std::string& role) const;
+  std::vector<const RecordedSetting*> settings_of(const std::string& beginning) const;
+};
+
+/// hazard.json.
+struct HazardFacts {
+  std::string command, object;
+  double events_per_year = 0.0, left_per_year = 0.0;
+  std::vector<std::string> warnings;
+  bool same_run = true;  ///< of the plan of run.json
+};
+
+/// Reads OUT/run.json. Throws InputError if it cannot be read or `talus run` has not written it.
+RunFacts read_facts(const std::filesystem::path& folder);
+
+/// Reads OUT/hazard.json; nothing if it is not there. Throws InputError if it cannot be understood.
+std::optional<HazardFacts> read_hazard_facts(const std::filesystem::path& folder, const RunFacts& run);
+
+/// Day on which a file was written last (UTC): "2026-11-23"; empty if it is not known.
+std::string day_of(const std::filesystem::path& file);
+
+/// Throws InputError "FILE: cannot be understood (CAUSE), ...".
+[[noreturn]] void throw_not_understood(const std::filesystem::path& file, const std::string& cause);
+
+/// Reads a record beside the run by `read`. Throws InputError "FILE: cannot be understood (...)".
+template <class Read>
+auto understood(const std::filesystem::path& file, Read read) {
+  try {
+    return read(read_record(file));
+  } catch (const std::exception& error) {
+    throw_not_understood(file, error.what());
+  }
+}
+
+/// The texts of a list in a record, at most some hundred of them.
+std::vector<std::string> texts_of(const Json& json, const char* key);
+
+/// A number of a record that is finite; `otherwise` if it is not there or null.
+double number_of(const Json& json, const char* key, double otherwise = 0.0);
+
+/// A whole number with its thousands apart: "47 850".
+std::string grouped(double number);
+
+}  // namespace talus::io

@@ -1,0 +1,35 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "markup.hpp"
+#include "report_facts.hpp"
+
+namespace talus::io {
+
+/// The calibration, or the diagnosis, that made the ground of a run: the records beside the file that it includes.
+struct FitPart {
+  struct Number {
+    std::string key, unit;
+    double value = 0.0, low = 0.0, high = 0.0;
+    bool identifiable = true;
+  };
+  struct Error {
+    std::string rows;  ///< "fitting rows", "held-out rows"
+    double before = 0.0, after = 0.0;
+  };
+  std::string file;      ///< fitted.toml
+  std::string campaign;  ///< that it was fitted to
+  std::string note;      ///< why nothing is told of it
+  std::vector<Number> parameters;
+  std::vector<Error> errors;
+  std::string effect;    ///< verdict of the diagnosis; empty without one
+  std::vector<std::string> warnings;
+};
+
+/// Nothing if the scenario includes no model. The records are read only if the model is the one of the run.
+std::optional<FitPart> read_fit_part(const RunFacts& run);
+Markup fit_html(const std::optional<FitPart>& part);
+
+}  // namespace talus::io

@@ -1,0 +1,177 @@
+#include "report_maps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "io/files/checksum.hpp"
+#include "packed_map.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/printable.hpp"
+
+namespace talus::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A raster that a page shows where it is there, in this order.
+struct Shown {
+  const char *begins, *title;
+  bool in_print;
+};
+constexpr Shown kShown[] = {{"hazard_class", "Hazard class", true},
+                            {"impact_probability", "Impact probability", true},
+                            {"energy", "Energy", true},
+                            {"jump_height", "Jump height", true},
+                            {"velocity", "Speed", true},
+                            {"deposits", "Deposits", true},
+                            {"release", "Released blocks", true},
+                            {"annual_frequency", "Annual frequency", true},
+                            {"return_period_", "Return period, E > ", true},
+                            {"intensity_T", "Energy exceeded once in ", true},
+                            {"reach_probability", "Reach probability", false},
+                            {"energy_total", "Energy with rotation", false},
+                            {"passages", "Passages", false},
+                            {"trapped", "Trapped", false},
+                            {"exits", "Paths that leave the DEM", false}};
+constexpr std::size_t kMostMaps = 24;
+
+/// "30" of "return_period_30".
+std::string rest_of(const std::string& name, const Shown& shown) {
+  return name.substr(std::string(shown.begins).size());
+}
+
+bool is_shown_as(const std::string& name, const Shown& shown) {
+  const std::string begins = shown.begins;
+  return begins.ends_with('_') || begins.ends_with('T') ? name.starts_with(begins) && name.size() < begins.size() + 12
+                                                        : name == begins;
+}
+
+std::string title_of(const std::string& name, const Shown& shown, const std::string& band) {
+  const std::string title = shown.title, rest = rest_of(name, shown);
+  if (name.starts_with("return_period_")) return title + rest + " kJ";
+  if (name.starts_with("intensity_T")) return title + rest + " years";
+  const bool quantity = band == "mean" || band == "maximum" || (band.size() == 3 && band.starts_with('P'));
+  return quantity ? title + ", " + shortened(band, 20) : title;
+}
+
+/// The rasters of a kind in the folder, by the number in their name.
+std::vector<std::string> names_in(const fs::path& folder, const Shown& shown) {
+  std::vector<std::string> names;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none))
+    if (entry.path().extension() == ".tif" && is_shown_as(entry.path().stem().string(), shown))
+      names.push_back(entry.path().stem().string());
+  std::ranges::sort(names, [](const std::string& a, const std::string& b) {
+    return std::pair(a.size(), a) < std::pair(b.size(), b);  // 30 before 300
+  });
+  return names;
+}
+
+/// Throws InputError if a raster is not on the grid of the run.
+void check_grid(const fs::path& file, const MapRaster& raster, const RecordedGrid& grid) {
+  if (raster.columns() == grid.columns && raster.rows() == grid.rows) return;
+  throw InputError(file.string() + ": has " + std::to_string(raster.columns()) + " x " + std::to_string(raster.rows()) +
+                   " cells, must have those of the run, " + std::to_string(grid.columns) + " x " +
+                   std::to_string(grid.rows));
+}
+
+/// The cells that something passes, with the objects and a rim; the whole grid where nothing is known.
+MapWindow window_of(const fs::path& folder, const RecordedGrid& grid, const Outlines& objects) {
+  MapWindow window{0, 0, grid.columns, grid.rows, 1};
+  const fs::path passages = folder / "impact_probability.tif";
+  if (fs::exists(passages)) {
+    const MapRaster raster(passages.string(), 1);
+    check_grid(passages, raster, grid);
+    window = raster.positive_cells().value_or(window);
+  }
+  double left = window.column, top = window.row, right = left + window.columns, bottom = top + window.rows;
+  for (const Outline& object : objects.list)
+    for (const Eigen::Vector2d& place : object.places) {
+      left = std::min(left, (place.x() - grid.west) / grid.cell_x);
+      right = std::max(right, (place.x() - grid.west) / grid.cell_x);
+      top = std::min(top, (grid.north - place.y()) / grid.cell_y);
+      bottom = std::max(bottom, (grid.north - place.y()) / grid.cell_y);
+    }
+  const double rim = 2.0 + 0.04 * std::max(right - left, bottom - top);
+  const auto cell = [](double place, int most) { return static_cast<int>(std::clamp<double>(place, 0.0, most)); };
+  window.column = cell(std::floor(left - rim), grid.columns);
+  window.row = cell(std::floor(top - rim), grid.rows);
+  window.columns = std::max(1, cell(std::ceil(right + rim), grid.columns) - window.column);
+  window.rows = std::max(1, cell(std::ceil(bottom + rim), grid.rows) - window.row);
+  window.side = (std::max(window.columns, window.rows) + kLongestMap - 1) / kLongestMap;
+  return window;
+}
+
+/// The relief, if the DEM is there and is the one of the run.
+void add_relief(const RunFacts& run, MapSheet& sheet) {
+  const InputFile* const dem = run.input("dem");
+  const auto leave_out = [&](const std::string& why) {
+    sheet.relief_note = "No relief under the maps: the DEM " + why + ".";
+  };
+  if (dem == nullptr) return leave_out("is not in the record of the run");
+  try {
+    if (const std::string now = sha256_of_file(dem->path); now.empty() || dem->sha256.empty())
+      return leave_out("is no longer where it was, " + shortened(dem->path, 300));
+    else if (now != dem->sha256)
+      return leave_out("has changed since the run (its checksum is another), " + shortened(dem->path, 300));
+    const MapRaster raster(dem->path, 1);
+    check_grid(dem->path, raster, run.grid);
+    sheet.copyright = shortened(raster.metadata("TIFFTAG_COPYRIGHT"), 200);
+    const std::vector<double> heights = raster.pixels(sheet.window, PixelValue::Mean);
+    sheet.relief = relief_of(heights, sheet.window.width(), sheet.pixel_x, sheet.pixel_y);
+  } catch (const InputError& error) {
+    leave_out("cannot be read: " + shortened(error.what(), 300));
+  }
+}
+
+/// A raster as a map; nothing with a note if it has no style that can be drawn.
+void add_map(const fs::path& folder, const std::string& name, const Shown& shown, const RunFacts& run,
+             MapSheet& sheet) {
+  const fs::path file = folder / (name + ".tif");
+  const auto style = read_map_style(folder / (name + ".qml"));
+  if (!style) {
+    sheet.notes.push_back(name + ".tif: has no style with classes beside it (" + name + ".qml), and is not shown");
+    return;
+  }
+  const MapRaster raster(file.string(), style->band);
+  check_grid(file, raster, run.grid);
+  ReportMap map{name, title_of(name, shown, raster.band_name()), shortened(raster.unit(), 20), *style, {}, {}};
+  map.in_print = shown.in_print;
+  map.smallest = name.starts_with("return_period_");
+  map.classes_only = name == "hazard_class";
+  std::vector<double> values = raster.pixels(sheet.window, map.smallest ? PixelValue::Smallest : PixelValue::Largest);
+  for (const double value : values) map.largest = std::max(map.largest, std::isnan(value) ? 0.0 : value);
+  map.picture = picture_of(values, sheet.window.width(), map.style);
+  map.values = packed_values(values);
+  if (name == "release")
+    for (const double value : values) sheet.sources.push_back(value > 0.0 ? 1 : 0);
+  if ((name == "trapped" || name == "exits") && !(map.largest > 0.0)) return;  // an empty map says nothing
+  sheet.maps.push_back(std::move(map));
+}
+
+}  // namespace
+
+MapSheet read_sheet(const fs::path& folder, const RunFacts& run) {
+  constexpr std::size_t kMostPlaces = 50'000;
+  MapSheet sheet;
+  if (const fs::path objects = folder / "objects.gpkg"; fs::exists(objects))
+    sheet.objects = read_outlines(objects.string(), "objects", "name", kMostPlaces);
+  if (sheet.objects.cut) sheet.notes.push_back("objects.gpkg: has more objects than are drawn");
+  sheet.window = window_of(folder, run.grid, sheet.objects);
+  const MapWindow& window = sheet.window;
+  sheet.west = run.grid.west + window.column * run.grid.cell_x;
+  sheet.north = run.grid.north - window.row * run.grid.cell_y;
+  sheet.pixel_x = window.side * run.grid.cell_x;
+  sheet.pixel_y = window.side * run.grid.cell_y;
+  add_relief(run, sheet);
+  for (const Shown& shown : kShown)
+    for (const std::string& name : names_in(folder, shown))
+      if (sheet.maps.size() < kMostMaps)
+        add_map(folder, name, shown, run, sheet);
+      else
+        sheet.notes.push_back(name + ".tif: is not shown, as there are " + std::to_string(kMostMaps) + " maps already");
+  return sheet;
+}
+
+}  // namespace talus::io

@@ -1,0 +1,159 @@
+#include "report_objects.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "io/gdal/csv_table.hpp"
+#include "svg.hpp"
+#include "talus/base/printable.hpp"
+#include "talus/base/text.hpp"
+
+namespace talus::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Bounds kAny{"value", "1", "of an object", -1e15, 1e15};
+constexpr std::size_t kMostObjects = 100, kMostCurves = 8, kMostThresholds = 6;
+constexpr const char* kYears = "return_period_";
+// Of ColorBrewer's Dark2, safe for the colour-blind beside the dashes.
+constexpr std::array<const char*, kMostCurves> kColours{"#1b9e77", "#d95f02", "#7570b3", "#e7298a",
+                                                        "#66a61e", "#e6ab02", "#a6761d", "#666666"};
+
+void read_thresholds(const CsvTable& table, ObjectsPart& part) {
+  for (const std::string& column : table.columns()) {
+    if (!column.starts_with(kYears) || part.thresholds.size() == kMostThresholds) continue;
+    const std::string energy = column.substr(std::string(kYears).size());
+    if (number_of_cell(energy)) part.thresholds.push_back(energy);
+  }
+}
+
+void read_curves(const fs::path& file, ObjectsPart& part) {
+  std::error_code none;
+  if (!fs::exists(file, none)) return;
+  const CsvTable table(file.string(), {"object", "energy_kj", "frequency", "lower", "upper", "return_period"},
+                       {"object", "energy_kj", "frequency"});
+  for (const CsvTable::Row& row : table.rows())
+    for (ObjectsPart::Object& object : part.objects) {
+      if (object.name != table.text(row, "object")) continue;
+      const auto energy = table.number(row, "energy_kj", kAny), frequency = table.number(row, "frequency", kAny);
+      if (energy && frequency && *energy > 0.0 && *frequency > 0.0) object.curve.push_back({*energy, *frequency});
+    }
+}
+
+double place_of(double value, double low, double high, double from, double length) {
+  return from + length * (std::log10(value) - low) / (high - low);
+}
+
+/// How often each energy is exceeded, for the objects that are hit most often. Both scales are logarithmic.
+Markup curves_drawing(const ObjectsPart& part) {
+  std::vector<const ObjectsPart::Object*> drawn;
+  double least = 1e30, most = 0.0, weakest = 1e30, strongest = 0.0;
+  for (const ObjectsPart::Object& object : part.objects) {
+    if (object.curve.empty() || drawn.size() == kMostCurves) continue;
+    drawn.push_back(&object);
+    for (const auto& [energy, frequency] : object.curve) {
+      weakest = std::min(weakest, energy), strongest = std::max(strongest, energy);
+      least = std::min(least, frequency), most = std::max(most, frequency);
+    }
+  }
+  if (drawn.empty()) return {};
+  const double left = std::floor(std::log10(weakest)), right = std::max(left + 1.0, std::ceil(std::log10(strongest)));
+  const double low = std::floor(std::log10(least)), high = std::max(low + 1.0, std::ceil(std::log10(most)));
+  Svg svg('\'', "");
+  for (double tenfold = left; tenfold <= right; ++tenfold) {
+    const double x = place_of(std::pow(10.0, tenfold), left, right, 70.0, 400.0);
+    svg.element("line", {{"x1", x}, {"x2", x}, {"y1", 20}, {"y2", 260}, {"stroke", "#ddd"}});
+    svg.words({{"x", x}, {"y", 275}, {"text-anchor", "middle"}}, with_digits(std::pow(10.0, tenfold), 3));
+  }
+  for (double tenfold = low; tenfold <= high; ++tenfold) {
+    const double y = place_of(std::pow(10.0, tenfold), low, high, 260.0, -240.0);
+    svg.element("line", {{"x1", 70}, {"x2", 470}, {"y1", y}, {"y2", y}, {"stroke", "#ddd"}});
+    svg.words({{"x", 64}, {"y", y + 4.0}, {"text-anchor", "end"}}, with_digits(std::pow(10.0, tenfold), 3));
+  }
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    std::string points;
+    for (const auto& [energy, frequency] : drawn[i]->curve)
+      points += with_decimals(place_of(energy, left, right, 70.0, 400.0), 1) + "," +
+                with_decimals(place_of(frequency, low, high, 260.0, -240.0), 1) + " ";
+    const std::string dashes = i % 2 == 0 ? "none" : "6 3";
+    const double y = 30.0 + 18.0 * static_cast<double>(i);
+    svg.element("polyline", {{"points", points},
+                             {"fill", "none"},
+                             {"stroke", kColours[i]},
+                             {"stroke-width", 2},
+                             {"stroke-linejoin", "round"},
+                             {"stroke-linecap", "round"},
+                             {"stroke-dasharray", dashes}});
+    if (drawn[i]->curve.size() == 1)
+      svg.element("circle", {{"cx", place_of(drawn[i]->curve[0].energy, left, right, 70.0, 400.0)},
+                             {"cy", place_of(drawn[i]->curve[0].frequency, low, high, 260.0, -240.0)},
+                             {"r", 4},
+                             {"fill", kColours[i]}});
+    svg.element("line", {{"x1", 490}, {"x2", 516}, {"y1", y}, {"y2", y}, {"stroke", kColours[i]},
+                         {"stroke-width", 2}, {"stroke-dasharray", dashes}});
+    svg.words({{"x", 522}, {"y", y + 4.0}}, shortened(drawn[i]->name, 32));
+  }
+  svg.words({{"x", 270}, {"y", 292}, {"text-anchor", "middle"}}, "energy [kJ]");
+  svg.words({{"x", 4}, {"y", 12}}, "exceeded how often [1/year]");
+  return svg.drawing({{"width", 720}, {"height", 298}, {"viewBox", "0 0 720 298"}});
+}
+
+Markup object_row(const ObjectsPart::Object& object) {
+  Markup row = "<tr><td>"_html + object.name + "</td><td class='n'>" + with_digits(object.frequency, 3) + " [" +
+               with_digits(object.low, 3) + ", " + with_digits(object.high, 3) + "]</td><td class='n'>" +
+               (object.frequency > 0.0 ? with_digits(1.0 / object.frequency, 3) : "never seen") + "</td>";
+  for (const std::string& years : object.years)
+    row += "<td class='n'>"_html + (years.empty() ? std::string("never seen") : years) + "</td>";
+  return row + "<td>" + shortened(object.sources, 300) + "</td></tr>\n";
+}
+
+}  // namespace
+
+ObjectsPart read_objects_part(const fs::path& folder) {
+  ObjectsPart part;
+  const fs::path file = folder / "objects.csv";
+  std::error_code none;
+  if (!fs::exists(file, none)) return part;
+  const CsvTable table(file.string(), {}, {"object", "frequency", "frequency_lower", "frequency_upper", "sources"});
+  read_thresholds(table, part);
+  for (const CsvTable::Row& row : table.rows()) {
+    const auto number = [&](const char* column) { return table.number(row, column, kAny).value_or(0.0); };
+    ObjectsPart::Object object{table.text(row, "object"), table.text(row, "sources"), number("frequency"),
+                               number("frequency_lower"), number("frequency_upper"), {}, {}};
+    for (const std::string& energy : part.thresholds) {
+      const auto years = table.number(row, kYears + energy, kAny);
+      object.years.push_back(years ? with_digits(*years, 3) : "");
+    }
+    part.objects.push_back(std::move(object));
+  }
+  std::ranges::stable_sort(part.objects, std::ranges::greater{}, &ObjectsPart::Object::frequency);
+  if (part.objects.size() > kMostObjects) {
+    part.left_out = part.objects.size() - kMostObjects;
+    part.objects.resize(kMostObjects);
+  }
+  read_curves(folder / "objects_curves.csv", part);
+  return part;
+}
+
+Markup objects_html(const ObjectsPart& part) {
+  if (part.objects.empty()) return {};
+  Markup html =
+      "<h2>Objects</h2>\n<p>How often each object is hit, with 95 % bounds of the number of blocks. \"Never seen\": no block of "
+      "this run did it; the upper bound says how often it may happen all the same.</p>\n<div class='wide'><table><tr>"
+      "<th>object</th><th>hits per year [95 %]</th><th>once in [years]</th>"_html;
+  for (const std::string& energy : part.thresholds)
+    html += "<th>above "_html + energy + " kJ once in [years]</th>";
+  html += "<th>from</th></tr>\n";
+  for (const ObjectsPart::Object& object : part.objects) html += object_row(object);
+  html += "</table></div>\n";
+  if (part.left_out > 0)
+    html += "<p class='note'>"_html + std::to_string(part.left_out) + " more, hit less often, are in objects.csv.</p>\n";
+  const Markup curves = curves_drawing(part);
+  if (curves.empty()) return html;
+  return html + "<figure>" + curves +
+         "<figcaption>Hazard curves of the objects that are hit most often, from objects_curves.csv.</figcaption></figure>\n";
+}
+
+}  // namespace talus::io

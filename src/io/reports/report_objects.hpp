@@ -1,0 +1,30 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "markup.hpp"
+
+namespace talus::io {
+
+/// Hazard of single objects, as `talus hazard --objects` has written it.
+struct ObjectsPart {
+  struct Point {
+    double energy = 0.0, frequency = 0.0;  ///< [kJ], [1/year]
+  };
+  struct Object {
+    std::string name, sources;
+    double frequency = 0.0, low = 0.0, high = 0.0;  ///< [1/year]
+    std::vector<std::string> years;                 ///< return period by threshold [years]; empty: never seen
+    std::vector<Point> curve;
+  };
+  std::vector<std::string> thresholds;  ///< [kJ]
+  std::vector<Object> objects;          ///< the most often hit first
+  std::size_t left_out = 0;
+};
+
+/// Throws InputError if a table is there and cannot be understood. No objects without tables.
+ObjectsPart read_objects_part(const std::filesystem::path& folder);
+Markup objects_html(const ObjectsPart& part);
+
+}  // namespace talus::io

@@ -1,0 +1,193 @@
+#include "talus/io/reports/run_page.hpp"
+
+#include <algorithm>
+#include <ctime>
+
+#include "io/files/own_files.hpp"
+#include "page_frame.hpp"
+#include "report_barriers.hpp"
+#include "report_checks.hpp"
+#include "report_facts.hpp"
+#include "report_map_page.hpp"
+#include "report_objects.hpp"
+#include "run_page_script.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/printable.hpp"
+#include "talus/base/text.hpp"
+#include "talus/base/version.hpp"
+#include "talus/io/files/output_folder.hpp"
+#include "talus/io/files/staged_path.hpp"
+#include "talus/io/results/run_folder.hpp"
+
+namespace talus::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// All that a page shows.
+struct RunReport {
+  RunFacts run;
+  std::optional<HazardFacts> hazard;
+  MapSheet sheet;
+  ScreensPart screens;
+  std::vector<BarrierPart> barriers;
+  ObjectsPart objects;
+  std::optional<FitPart> fit;
+  bool has_frequencies = false;
+  std::optional<std::string> low_c;
+
+  CheckedRun checked() const { return {run, hazard, sheet, screens, fit, has_frequencies, low_c}; }
+};
+
+RunReport read_report(const fs::path& folder) {
+  RunReport report;
+  report.run = read_facts(folder);
+  report.hazard = read_hazard_facts(folder, report.run);
+  report.sheet = read_sheet(folder, report.run);
+  report.screens = read_screens_part(folder);
+  report.barriers = read_barrier_parts(folder);
+  report.objects = read_objects_part(folder);
+  report.fit = read_fit_part(report.run);
+  report.has_frequencies = fs::exists(folder / "hazard_tally.gz");
+  report.low_c = coefficient_note(folder);
+  return report;
+}
+
+Markup warnings_html(const RunReport& report) {
+  std::vector<std::string> warnings = report.run.warnings;
+  if (report.hazard)
+    for (const std::string& warning : report.hazard->warnings)
+      if (std::ranges::count(warnings, warning) == 0) warnings.push_back(warning);
+  if (warnings.empty()) return "<p>The run gave no warnings.</p>\n"_html;
+  Markup html = "<h3>Warnings</h3>\n<ul>\n"_html;
+  for (const std::string& warning : warnings) html += "<li class='look'>"_html + warning + "</li>\n";
+  return html + "</ul>\n";
+}
+
+Markup line(const std::string& name, const std::string& value) {
+  return value.empty() ? Markup() : "<tr><th>"_html + name + "</th><td>" + value + "</td></tr>\n";
+}
+
+std::string ends_text(const RunFacts& run) {
+  std::string text;
+  for (const auto& [end, count] : run.ends) text += (text.empty() ? "" : ", ") + end + " " + grouped(count);
+  return text;
+}
+
+std::string energy_line_text(const RunFacts& run) {
+  if (!run.energy_line) return "";
+  const auto& [least, p5, p50] = *run.energy_line;
+  return "least " + with_digits(least, 4) + ", P5 " + with_digits(p5, 4) + ", P50 " + with_digits(p50, 4) + " deg";
+}
+
+Markup run_html(const RunReport& report, const std::string& attribution) {
+  const RunFacts& run = report.run;
+  const RecordedGrid& grid = run.grid;
+  const std::string blocks =
+      grouped(run.released) + " blocks from " + grouped(run.source_cells) + " source cells, " + grouped(run.per_source) +
+      " each" + (run.rounds > 0.0 ? ", in " + grouped(run.rounds) + " rounds" : std::string());
+  return "<h2>What was run</h2>\n<table>\n"_html + line("program", "talus " + run.version) +
+         line("command", run.command) + line("hazard", report.hazard ? report.hazard->command : "") +
+         line("day of the run", run.finished) + line("status", run.status) + line("released", blocks) +
+         line("how they ended", ends_text(run)) +
+         line("paths", grouped(run.kilometres) + " km, " + grouped(run.impacts) + " impacts, " +
+                           grouped(run.touched_cells) + " cells touched") +
+         line("energy line of those that stopped", energy_line_text(run)) +
+         line("terrain", grouped(grid.columns) + " x " + grouped(grid.rows) + " cells of " +
+                             with_digits(grid.cell_x, 6) + " x " + with_digits(grid.cell_y, 6) + " m") +
+         line("coordinate system", grid.crs) + line("attribution", attribution) + line("plan", run.plan) +
+         "</table>\n" + warnings_html(report);
+}
+
+Markup inputs_html(const RunFacts& run) {
+  Markup html =
+      "<h3>Inputs</h3>\n<div class='wide'><table><tr><th>role</th><th>file</th><th>SHA-256</th></tr>\n"_html;
+  for (const InputFile& input : run.inputs)
+    html += "<tr><td>"_html + input.role + "</td><td>" + input.path + "</td><td>" + input.sha256 + "</td></tr>\n";
+  html += "</table></div>\n";
+  for (const std::string& note : run.notes) html += "<p class='note'>"_html + note + "</p>\n";
+  return html;
+}
+
+Markup settings_html(const RunFacts& run) {
+  const auto table = [&](auto wanted) {
+    Markup rows = "<table><tr><th>setting</th><th>value</th><th>unit</th><th>from</th></tr>\n"_html;
+    for (const RecordedSetting& s : run.settings)
+      if (wanted(s))
+        rows += "<tr><td>"_html + s.key + "</td><td>" + s.value + "</td><td>" + s.unit + "</td><td>" + s.source +
+                "</td></tr>\n";
+    return rows + "</table>\n";
+  };
+  const auto given = [](const RecordedSetting& s) { return !s.is_default() && !s.is_of_preset(); };
+  return "<h3>Settings that were given</h3>\n"_html + table(given) +
+         "<details><summary>Settings of presets and defaults</summary>\n" +
+         table([&](const RecordedSetting& s) { return !given(s); }) + "</details>\n";
+}
+
+Markup maps_html(const RunReport& report, const MapImprint& imprint) {
+  const MapSheet& sheet = report.sheet;
+  Markup html = "<h2>Maps</h2>\n"_html;
+  if (sheet.window.side > 1)
+    html += "<p>The maps show the part of the terrain that something passes. A pixel is "_html +
+            with_digits(sheet.pixel_x, 4) + " m wide and holds " + std::to_string(sheet.window.side) + " x " +
+            std::to_string(sheet.window.side) +
+            " cells: it shows their largest value (of return periods the smallest), so that reached areas look larger "
+            "than they are.</p>\n";
+  if (!sheet.relief_note.empty()) html += "<p class='act'>"_html + sheet.relief_note + "</p>\n";
+  for (const std::string& note : sheet.notes) html += "<p class='note'>"_html + note + "</p>\n";
+  if (sheet.maps.empty()) return html + "<p>The folder has no maps.</p>\n";
+  return html + map_store(sheet, report.run, imprint) + map_viewer(sheet) + map_figures(sheet, imprint);
+}
+
+/// Today (UTC), or the day that the environment states for repeatable builds.
+std::string today() {
+  const char* const given = std::getenv("SOURCE_DATE_EPOCH");
+  const std::time_t now = given != nullptr ? static_cast<std::time_t>(std::strtoll(given, nullptr, 10)) : std::time(nullptr);
+  std::tm parts{};
+  std::array<char, 16> text{};
+  if (gmtime_r(&now, &parts) == nullptr) return "";
+  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%d", &parts)};
+}
+
+}  // namespace
+
+std::string run_page(const RunPageRequest& request) {
+  const RunReport report = read_report(request.folder);
+  const std::string attribution = request.attribution.empty() ? report.sheet.copyright : request.attribution;
+  const MapImprint imprint{report.run.grid.crs, report.run.finished, attribution};
+  const fs::path folder = fs::absolute(request.folder).lexically_normal();
+  const std::string name = (folder.has_filename() ? folder : folder.parent_path()).filename().string();
+  const PageFrame frame{"report", request.title.empty() ? "Rock fall: " + name : request.title,
+                        "page of " + today() + " of the run of " + report.run.finished + ", plan " + report.run.plan,
+                        report.sheet.maps.empty() ? Markup() : run_page_script()};
+  const Markup body = run_html(report, attribution) + maps_html(report, imprint) + screens_html(report.screens) +
+                      barriers_html(report.barriers) + objects_html(report.objects) + fit_html(report.fit) +
+                      assumptions_html(report.checked()) + checks_html(checks_of(report.checked())) +
+                      "<h2>Record</h2>\n" + inputs_html(report.run) + settings_html(report.run);
+  return page_of(frame, body);
+}
+
+void check_page_name(const fs::path& file, bool overwrite, const fs::path& folder) {
+  std::error_code none;
+  if (!fs::exists(folder / "run.json", none))
+    throw InputError(folder.string() + ": is no folder of results (it has no run.json); give the OUT of talus run");
+  refuse_dangling_link(file);
+  if (fs::exists(file, none)) {
+    if (!overwrite)
+      throw InputError(file.string() + ": is there already; give --overwrite to replace it, or another name by -o");
+    if (!is_run_page(file))
+      throw InputError(file.string() +
+                       ": is there and no page of talus report, so it is not replaced; give another name by -o");
+  }
+  if (const fs::path parent = file.parent_path(); !parent.empty() && !fs::is_directory(parent, none))
+    throw InputError(parent.string() + ": is no folder, must be one; make it first, or give another -o");
+}
+
+void write_run_page(const fs::path& file, const std::string& page) {
+  StagedPath staged(StagedPath::Kind::File, file, ".html");
+  write_text(staged.hidden(), page);
+  if (const std::error_code error = staged.commit())
+    throw std::runtime_error(file.string() + ": cannot be given this name: " + error.message());
+}
+
+}  // namespace talus::io
