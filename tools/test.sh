@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # Runs every check: the tests of the release build (layers, core, files, command line, the plug-in in QGIS, reference
-# results); the core and
-# files again as clang builds them, with warnings as errors, invariants checked and sanitizers; equal bytes from both
-# compilers; formatting and clang-tidy.
+# results); the core and files again as clang builds them, with warnings as errors, invariants checked and sanitizers;
+# equal bytes from both compilers; formatting and clang-tidy.
 # The measured data and reference results are read from ../shared/data, or from the folder TALUS_DATA.
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -8,15 +8,15 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 import unittest
 import xml.etree.ElementTree as xml
 
 from osgeo import gdal, ogr, osr
 from qgis.core import (QgsApplication, QgsFeature, QgsGeometry, QgsMapRendererParallelJob, QgsMapSettings, QgsProcessingContext,
-                       QgsProcessingFeatureSourceDefinition, QgsProcessingFeedback, QgsProject, QgsRasterLayer,
-                       QgsVectorLayer)
+                       QgsProcessingFeatureSourceDefinition, QgsProcessingFeedback, QgsProcessingModelAlgorithm,
+                       QgsProcessingModelChildAlgorithm, QgsProcessingModelChildParameterSource, QgsProject,
+                       QgsRasterLayer, QgsVectorLayer)
 from qgis.PyQt.QtCore import QLocale, QSize
 from qgis.PyQt.QtGui import QColor
 
@@ -218,6 +218,10 @@ class ByQgisProcess(Case):
         self.assertIn("has no block diameter", text)
         self.assertFalse(os.path.exists(self.path("out")))
 
+    def test_a_temporary_folder(self):
+        text = self.call("run", f"DEM={DEM}", f"SOURCES={VALLEY}/cliffs.shp", "TRAJECTORIES=1", "OUT=TEMPORARY_OUTPUT")
+        self.assertRegex(text, r"RECORD:\s+\S+/OUT/run.json")
+
     def test_sources_and_check(self):
         self.call("sources", f"DEM={DEM}", f"OUT={self.path('cells.gpkg')}", "SLOPE=50")
         text = self.call("check", f"DEM={DEM}", f"SOURCES={self.path('cells.gpkg')}|layername=source_polygons", "DIAMETER=1")
@@ -307,7 +311,7 @@ class FromPython(Case):
         self.assertEqual(log.steps[-1], 100.0)
 
     def test_cancel_and_resume(self):
-        inputs = self.inputs(SOURCES=self.cliffs_in_memory(), TRAJECTORIES=400)  # written twice: the bytes must be the same
+        inputs = self.inputs(SOURCES=self.cliffs_in_memory(), TRAJECTORIES=150)  # written twice: the bytes must be the same
         log = Log(cancel_at=10.0)
         _, good = self.run_algorithm("run", inputs, log)
         ended = time.monotonic()
@@ -343,10 +347,33 @@ class FromPython(Case):
         self.assertEqual(layers[0].name(), "Hazard class")
         self.assertEqual(len(layers), len({layer.source() for layer in layers}))
         self.assertIn("Reach probability", [layer.name() for layer in layers])
+        shown = [node.name() for node in groups[0].findLayers()
+                 if node.itemVisibilityChecked() and isinstance(node.layer(), QgsRasterLayer)]
+        self.assertEqual(shown, ["Hazard class"])
         hazard = layers[0]
         self.assert_drawn_as_in_style(hazard)
         self.assertGreater(len(hazard.renderer().legendSymbologyItems()), 2)
         QgsProject.instance().clear()
+
+    def test_in_a_model(self):
+        """run, then hazard on its folder: outputs of one are inputs of the next."""
+        model = QgsProcessingModelAlgorithm("chain", "tests")
+        for name, values in (("run", {"DEM": DEM, "SOURCES": os.path.join(VALLEY, "cliffs.shp"), "TRAJECTORIES": 5,
+                                      "DIAMETER_MIN_FIELD": "diameter_m", "DIAMETER_MAX_FIELD": "diameter_1",
+                                      "OUT": self.path("out"), "LOAD": False}), ("hazard", {"LOAD": False})):
+            child = QgsProcessingModelChildAlgorithm("talus:" + name)
+            child.setChildId(name)
+            for key, value in values.items():
+                child.addParameterSources(key, [QgsProcessingModelChildParameterSource.fromStaticValue(value)])
+            if name == "hazard":
+                child.addParameterSources("FOLDER", [QgsProcessingModelChildParameterSource.fromChildOutput("run", "OUT")])
+            model.addChildAlgorithm(child)
+        context = QgsProcessingContext()
+        log = Log()
+        results, good = model.run({}, context, log)
+        self.assertTrue(good, log.textLog())
+        self.assertEqual(results["CHILD_RESULTS"]["hazard"]["HAZARD_CLASS"], self.path("out/hazard_class.tif"))
+        self.assertEqual(context.layersToLoadOnCompletion(), {})
 
     def load(self, context):
         """As the toolbox does it after an algorithm."""
@@ -392,10 +419,3 @@ class FromPython(Case):
                 compared += 1
         self.assertGreater(compared, 500)
         self.assertGreater(len(colours), 2)
-
-
-if __name__ == "__main__":
-    outcome = unittest.main(exit=False).result
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(0 if outcome.wasSuccessful() else 1)  # QGIS 3.22 falls over its own objects where Python ends

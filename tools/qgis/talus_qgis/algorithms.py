@@ -1,6 +1,7 @@
 """The algorithms: one class for all commands. Their parameters are what `talus help --json` says; ALGORITHMS holds only what
 QGIS needs in addition: which inputs are layers, whose fields are picked, which files come out."""
 import os
+import time
 
 from qgis.core import (QgsProcessing, QgsProcessingAlgorithm, QgsProcessingException, QgsProcessingFeatureSourceDefinition,
                        QgsProcessingOutputFile, QgsProcessingOutputFolder, QgsProcessingOutputRasterLayer,
@@ -79,6 +80,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         super().__init__()
         self.table = table
         self.layers = {}  # of parameters, taken in the main thread
+        self.destinations = {}  # files and folders that are written
 
     # What QGIS asks
 
@@ -107,7 +109,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         lines = [tr("about " + self.table["id"])]
         for p in self.described():
             if p["name"] not in NOT_IN_DIALOG:
-                lines.append(f"<b>{label(p['name'])}</b>: {tr(p['text'])}")
+                lines.append(f"<b>{self._title(p)}</b>: {tr(p['text'])}")
         lines.append(tr("Talus runs the program talus of this computer. Every parameter is explained on the pages of its "
                         "documentation."))
         return "<p>" + "</p><p>".join(lines) + "</p>"
@@ -193,7 +195,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         if p.get("unit"):
             title += f" [{p['unit']}]"
         if self.by_scenario() and p["type"] != "flag" and "default" in p:
-            title += f" ({p['default']})"
+            title += " (" + tr("{value} if not set").format(value=p["default"]) + ")"
         return title
 
     def _default(self, p):
@@ -254,6 +256,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
 
     def prepareAlgorithm(self, parameters, context, feedback):
         """Takes the layers in the main thread, to which they belong."""
+        self.layers, self.destinations = {}, {}
         for p in self.described():
             if p["type"] != "file" or p.get("written"):
                 continue
@@ -288,8 +291,9 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         folder = self._folder(parameters, context)
         words = self._words(parameters, context, feedback, layers.folder_beside(folder))
         rounds = self.parameterAsInt(parameters, "ROUNDS", context) if parameters.get("ROUNDS") else 1
+        begin = time.time()
         process.run(command + words, feedback, self._phases(parameters), rounds)
-        return self._results(parameters, context, feedback, folder)
+        return self._results(parameters, context, folder, begin)
 
     def _phases(self, parameters):
         phases = self.table["phases"]
@@ -304,7 +308,13 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             return os.path.join(QgsProcessingUtils.tempFolder(), "talus_" + self.table["id"])
         key = key_of(name)
         return os.path.normpath(self.parameterAsFile(parameters, key, context) if name == "folder" else
-                                self.parameterAsFileOutput(parameters, key, context))
+                                self._destination(parameters, key, context))
+
+    def _destination(self, parameters, key, context):
+        """The file or folder to write. QGIS makes a new temporary name at every question, so it is asked once."""
+        if key not in self.destinations:
+            self.destinations[key] = self.parameterAsFileOutput(parameters, key, context)
+        return self.destinations[key]
 
     def _words(self, parameters, context, feedback, inputs):
         """The command line: positional words last, so that a list before them cannot take them."""
@@ -352,7 +362,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         if p["repeatable"] and kind == "file":
             return self.parameterAsFileList(parameters, key, context)
         if kind in ("file", "folder"):
-            return [self.parameterAsFileOutput(parameters, key, context) if p["written"] else
+            return [self._destination(parameters, key, context) if p["written"] else
                     self.parameterAsFile(parameters, key, context)]
         return [self.parameterAsString(parameters, key, context)]
 
@@ -374,7 +384,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
 
     # Results
 
-    def _results(self, parameters, context, feedback, folder):
+    def _results(self, parameters, context, folder, begin):
         found = {}
         table = self.table
         if "geopackage" in table:
@@ -383,7 +393,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             return self._barrier_results(parameters, context)
         for p in self.described():
             if p.get("written") and p["type"] in ("file", "folder"):
-                found[key_of(p["name"])] = self.parameterAsFileOutput(parameters, key_of(p["name"]), context)
+                found[key_of(p["name"])] = self._destination(parameters, key_of(p["name"]), context)
         if "folder" not in table:
             return {key: value for key, value in found.items() if value}
         for name in table.get("rasters", ()):
@@ -396,7 +406,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         if table["folder"] == "folder":
             found["RESULTS"] = folder
         if self.parameterAsBool(parameters, "LOAD", context) and not table.get("nothing to load"):
-            results.load(folder, results.files_of(folder), "Talus: " + os.path.basename(folder), context)
+            results.load(folder, results.files_of(folder, begin), "Talus: " + os.path.basename(folder), context)
         return {key: value for key, value in found.items() if value}
 
     @staticmethod
@@ -406,7 +416,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
 
     def _geopackage_results(self, parameters, context):
         name, names = self.table["geopackage"]
-        path = self.parameterAsFileOutput(parameters, key_of(name), context)
+        path = self._destination(parameters, key_of(name), context)
         found = {key_of(name): path, **{key_of(layer): f"{path}|layername={layer}" for layer in names}}
         if self.parameterAsBool(parameters, "LOAD", context):
             rows = [(f"{path}|layername={layer}", results.title_of(layer), os.path.basename(path), i, i == 0)

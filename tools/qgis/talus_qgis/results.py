@@ -2,7 +2,7 @@
 import os
 
 from qgis.core import (QgsLayerTreeGroup, QgsProcessingContext, QgsProcessingLayerPostProcessorInterface, QgsProject,
-                       QgsProviderRegistry, QgsVectorLayer)
+                       QgsProviderRegistry, QgsRasterLayer, QgsVectorLayer)
 
 from .texts import tr
 
@@ -16,6 +16,8 @@ ORDER = [("hazard_class", True), ("objects", True), ("stops", False), ("trajecto
 
 GROUP_MARK = "talus/folder"  # property of the group: the folder of its results
 RANK_MARK = "talus/rank"     # property of a layer: its place in the group
+
+CLOCKS = 2.0  # s by which the clock of a disk may be behind
 
 _kept_alive = []  # QGIS does not hold the post-processors
 
@@ -43,13 +45,13 @@ def title_of(stem):
     return stem.replace("_", " ") if title.startswith("title ") else title
 
 
-def files_of(folder, names=None):
-    """Layers in a folder: (uri, title, file, rank, shown), the top of the group first."""
+def files_of(folder, begin):
+    """Layers that were written into a folder since `begin`: (uri, title, file, rank, shown), the top of the group first."""
     found = []
-    for name in sorted(os.listdir(folder)) if names is None else names:
+    for name in sorted(os.listdir(folder)):
         path = os.path.join(folder, name)
         stem, kind = os.path.splitext(name)
-        if kind not in (".tif", ".gpkg", ".fgb") or not os.path.isfile(path):
+        if kind not in (".tif", ".gpkg", ".fgb") or not os.path.isfile(path) or os.path.getmtime(path) < begin - CLOCKS:
             continue
         rank, shown = rank_of(name)
         if kind == ".tif":
@@ -113,6 +115,8 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
             if layer.source() == node.layer().source():  # of an earlier run into the same folder
                 node.layer().project().removeMapLayer(layer.id())
                 continue
+            if self.rank == 0 and isinstance(layer, QgsRasterLayer):  # nothing shines through the hazard class
+                other.setItemVisibilityChecked(False)
             if (int(layer.customProperty(RANK_MARK, 0)), layer.name()) < (self.rank, self.name):
                 place += 1
         copy = node.clone()

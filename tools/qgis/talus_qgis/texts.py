@@ -173,6 +173,7 @@ GERMAN = {
     "Talus runs the program talus of this computer. Every parameter is explained on the pages of its documentation.":
         "Talus startet das Programm talus dieses Rechners. Seine Dokumentation erklärt jeden Parameter.",
     "round": "Runde",
+    "{value} if not set": "{value}, wenn leer",
     # of the program
     "terrain: a raster in a projected system in metres": "Gelände: ein Raster in einem projizierten System in Metern",
     "where blocks start: polygons, lines or points": "wo Blöcke starten: Flächen, Linien oder Punkte",

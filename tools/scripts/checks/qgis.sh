@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Tests the QGIS plug-in (tools/qgis) in QGIS without a window: qgis.sh build/release/talus
+# Runs tests/qgis in QGIS without a window, those of the plug-in (tools/qgis) among them: qgis.sh build/release/talus
 # Where QGIS is not installed it says so and is skipped (code 77); with CI=true that is a failure.
 set -euo pipefail
 talus="$(realpath "${1:-build/release/talus}")"
@@ -15,4 +15,6 @@ export HOME="$profile" XDG_RUNTIME_DIR="$profile" QT_QPA_PLATFORM=offscreen TALU
 export QGIS_PLUGINPATH="$root/tools/qgis" LC_ALL=C.UTF-8
 qgis_process.bin plugins enable talus_qgis >/dev/null 2>&1
 cd "$root/tests/qgis"
-/usr/bin/python3 -W ignore qgis_test.py "${@:2}"
+for tests in ${QGIS_TESTS:-*_test.py}; do
+  /usr/bin/python3 -W ignore run_tests.py "${tests%.py}" "${@:2}"
+done
