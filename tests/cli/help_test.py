@@ -62,7 +62,7 @@ class Help(Case):
                 self.assertIsInstance(p["required"], bool, where)
                 self.assertIsInstance(p["repeatable"], bool, where)
                 if p["type"] == "file":
-                    self.assertLessEqual(set(p["holds"]), {"raster", "vector", "toml", "csv"}, where)
+                    self.assertLessEqual(set(p["holds"]), {"raster", "vector", "toml", "csv", "html"}, where)
                     self.assertTrue(p["holds"], where)
                 if p["type"] == "choice" and "default" in p:
                     self.assertIn(p["default"], p["choices"], where)
