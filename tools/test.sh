@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Runs every check: the tests of the release build (layers, core, files, command line, reference results); the core and
+# Runs every check: the tests of the release build (layers, core, files, command line, the plug-in in QGIS, reference
+# results); the core and
 # files again as clang builds them, with warnings as errors, invariants checked and sanitizers; equal bytes from both
 # compilers; the Debian packages in a bare system (as root); formatting and clang-tidy.
 # The measured data and reference results are read from ../shared/data, or from the folder TALUS_DATA.
@@ -12,7 +13,9 @@ if [ "${CI:-}" = true ] && [ ! -d "$data/reference" ]; then
 fi
 stage() { printf '\n== %s (%d min %02d s so far)\n' "$1" $((SECONDS / 60)) $((SECONDS % 60)); }
 
-tools/install_packages.sh openmpi-bin python3-scipy python3-yaml dpkg-dev file man-db zsh fish clang clang-format clang-tidy libomp-dev libclang-rt-14-dev
+tools/install_packages.sh qgis python3-qgis qgis-providers fonts-dejavu-core  # 1.4 GB: the plug-in is tested in QGIS
+tools/install_packages.sh openmpi-bin python3-scipy clang clang-format clang-tidy libomp-dev libclang-rt-14-dev
+tools/install_packages.sh python3-yaml dpkg-dev file man-db zsh fish  # the Debian packages: manual pages, completions
 stage "formatting"
 git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror
 stage "release: build"
@@ -31,7 +34,7 @@ cmake --preset asan ${TALUS_DATA:+-DTALUS_DATA="$TALUS_DATA"}
 cmake --build --preset asan
 stage "asan: tests of core and files"
 statistics="ScoreTest|Calibrate|FreePaths|EffectFits|Nested|ResidualTable"  # long where nothing is optimised
-ctest --preset asan -j 2 -LE "slow|cli|example|package" -E "$statistics"
+ctest --preset asan -j 2 -LE "slow|cli|example|package|qgis" -E "$statistics"
 stage "the same bytes from gcc with optimisation and from clang without"
 tools/scripts/checks/same_bytes.sh build/release/talus build/asan/talus
 stage "clang-tidy on the engine"  # on all sources before a release: tools/scripts/checks/tidy.sh build/dev

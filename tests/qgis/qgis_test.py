@@ -1,0 +1,401 @@
+"""The plug-in in QGIS, without a window: by qgis_process, and from Python as the toolbox does it.
+
+Run by tools/scripts/checks/qgis.sh, which sets HOME, QGIS_PLUGINPATH and TALUS.
+"""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+import xml.etree.ElementTree as xml
+
+from osgeo import gdal, ogr, osr
+from qgis.core import (QgsApplication, QgsFeature, QgsGeometry, QgsMapRendererParallelJob, QgsMapSettings, QgsProcessingContext,
+                       QgsProcessingFeatureSourceDefinition, QgsProcessingFeedback, QgsProject, QgsRasterLayer,
+                       QgsVectorLayer)
+from qgis.PyQt.QtCore import QLocale, QSize
+from qgis.PyQt.QtGui import QColor
+
+sys.path.append("/usr/share/qgis/python/plugins")  # of Processing
+sys.path.append(os.environ["QGIS_PLUGINPATH"])
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+VALLEY = os.path.join(HERE, "../../data/valley")
+DEM = os.path.join(VALLEY, "dem.tif")
+ALGORITHMS = ["barrier", "calibrate", "check", "diagnose", "hazard", "objects", "profile", "run", "sources"]
+QGIS_PROCESS = shutil.which("qgis_process.bin") or "qgis_process"  # Debian's own wrapper fails in 3.22
+
+application = None
+
+
+def setUpModule():
+    global application
+    gdal.UseExceptions()
+    ogr.UseExceptions()
+    application = QgsApplication([], False)
+    application.initQgis()
+    from processing.core.Processing import Processing
+    Processing.initialize()
+    from talus_qgis.provider import TalusProvider
+    application.talus = TalusProvider()
+    QgsApplication.processingRegistry().addProvider(application.talus)
+
+
+def commands_of_the_program():
+    done = subprocess.run([os.environ["TALUS"], "help", "--json"], capture_output=True, check=True)
+    return {command["name"]: command for command in json.loads(done.stdout)["commands"]}
+
+
+class Log(QgsProcessingFeedback):
+    """Keeps what the log would show, and may cancel."""
+
+    def __init__(self, cancel_at=None):
+        super().__init__(False)
+        self.warnings, self.infos, self.steps, self.cancelled = [], [], [], None
+        if cancel_at is not None:
+            self.progressChanged.connect(lambda share: self._cancel() if share >= cancel_at and not self.cancelled else None)
+        self.progressChanged.connect(self.steps.append)
+
+    def _cancel(self):
+        self.cancelled = time.monotonic()
+        self.cancel()
+
+    def pushWarning(self, text):
+        self.warnings.append(text)
+
+    def pushInfo(self, text):
+        self.infos.append(text)
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp(prefix="talus-qgis-")
+        self.addCleanup(shutil.rmtree, self.folder, True)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def run_algorithm(self, name, parameters, log=None, context=None):
+        algorithm = QgsApplication.processingRegistry().createAlgorithmById("talus:" + name)
+        context = context or QgsProcessingContext()
+        context.setProject(QgsProject.instance())
+        good, message = algorithm.checkParameterValues(parameters, context)
+        self.assertTrue(good, message)
+        results, done = algorithm.run(parameters, context, log or Log())
+        return results, done
+
+    def cliffs(self):
+        layer = QgsVectorLayer(os.path.join(VALLEY, "cliffs.shp"), "cliffs", "ogr")
+        self.assertTrue(layer.isValid())
+        return layer
+
+    def cliffs_in_memory(self):
+        cliffs = self.cliffs()
+        memory = QgsVectorLayer("MultiPolygon?crs=EPSG:4326", "in memory", "memory")
+        memory.dataProvider().addAttributes(cliffs.fields().toList())
+        memory.updateFields()
+        rows = []
+        for feature in cliffs.getFeatures():
+            row = QgsFeature(memory.fields())
+            row.setGeometry(QgsGeometry(feature.geometry()))
+            row.setAttributes(feature.attributes())
+            rows.append(row)
+        memory.dataProvider().addFeatures(rows)
+        return memory
+
+    def inputs(self, **more):
+        return {"DEM": DEM, "SOURCES": os.path.join(VALLEY, "cliffs.shp"), "DIAMETER": 1.0, "TRAJECTORIES": 5,
+                "OUT": self.path("out"), "LOAD": False, **more}
+
+    def record(self, out="out"):
+        with open(self.path(out + "/run.json"), encoding="utf-8") as file:
+            return json.load(file)
+
+
+class Provider(Case):
+    def test_all_algorithms_are_listed(self):
+        expected = sorted(ALGORITHMS + (["report"] if "report" in commands_of_the_program() else []))
+        self.assertEqual(sorted(a.name() for a in application.talus.algorithms()), expected)
+
+    def test_parameters_are_those_of_the_program(self):
+        left_out = {"quiet", "progress", "allow-network", "sources-layer", "field", "memory", "part", "checkpoint"}
+        for algorithm in application.talus.algorithms():
+            command = commands_of_the_program()[algorithm.table["command"]]
+            names = {d.name() for d in algorithm.parameterDefinitions()}
+            for parameter in command["parameters"]:
+                if parameter["name"] not in left_out:
+                    self.assertIn(parameter["name"].upper().replace("-", "_"), names, algorithm.id())
+
+    def test_bounds_and_choices(self):
+        run = QgsApplication.processingRegistry().algorithmById("talus:run")
+        diameter = run.parameterDefinition("DIAMETER")
+        self.assertEqual((diameter.minimum(), diameter.maximum()), (0.01, 50.0))
+        self.assertIn("lower-talus-3d", run.parameterDefinition("PRESET").options())
+        good, message = run.checkParameterValues({"OUT": "x"}, QgsProcessingContext())
+        self.assertFalse(good)
+
+    def test_german(self):
+        from talus_qgis import texts
+        before = QLocale()
+        QgsApplication.setLocale(QLocale("de_CH"))
+        try:
+            self.assertTrue(texts.german())
+            run = QgsApplication.processingRegistry().createAlgorithmById("talus:run")
+            self.assertIn("Durchmesser", run.parameterDefinition("DIAMETER").description())
+            self.assertIn("Gelände", run.parameterDefinition("DEM").help())
+            self.assertEqual(run.displayName(), "Simulation rechnen")
+        finally:
+            QgsApplication.setLocale(before)
+
+    def test_every_german_text_of_the_program_is_one_that_it_says(self):
+        from talus_qgis import texts
+        said = {p["text"] for c in commands_of_the_program().values() for p in c["parameters"]}
+        with open(texts.__file__, encoding="utf-8") as source:
+            of_program = source.read().split("# of the program")[1]
+        for text in texts.GERMAN:
+            if f'"{text[:40]}' in of_program:
+                self.assertIn(text, said)
+
+    def test_a_missing_program_is_said(self):
+        from talus_qgis import program
+        before = os.environ["TALUS"]
+        os.environ["TALUS"] = "/nowhere/talus"
+        try:
+            run = QgsApplication.processingRegistry().createAlgorithmById("talus:run")
+            can, message = run.canExecute()
+            self.assertFalse(can)
+            self.assertIn("/nowhere/talus", message)
+            self.assertIn("apt install", message)
+        finally:
+            os.environ["TALUS"] = before
+        self.assertTrue(program.path())
+
+
+class ByQgisProcess(Case):
+    def call(self, algorithm, *arguments, code=0):
+        done = subprocess.run([QGIS_PROCESS, "run", "talus:" + algorithm, "--", *arguments], capture_output=True, text=True,
+                              timeout=300, check=False)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done.stdout + done.stderr
+
+    def two_layers(self):
+        """The cliffs in EPSG:4326, second in a GeoPackage."""
+        path = self.path("two.gpkg")
+        gdal.VectorTranslate(path, os.path.join(VALLEY, "houses.gpkg"), format="GPKG", layerName="houses")
+        gdal.VectorTranslate(path, os.path.join(VALLEY, "cliffs.shp"), format="GPKG", layerName="cliffs",
+                             accessMode="update", geometryType="PROMOTE_TO_MULTI")
+        file = ogr.Open(path)
+        self.assertEqual(file.GetLayerByName("cliffs").GetSpatialRef().GetAuthorityCode(None), "4326")
+        return path
+
+    def test_run_then_hazard_then_barrier(self):
+        text = self.call("run", f"DEM={DEM}", f"SOURCES={self.two_layers()}|layername=cliffs", "DIAMETER_MIN_FIELD=diameter_m",
+                         "DIAMETER_MAX_FIELD=diameter_1", "TRAJECTORIES=20", f"SCREENS={VALLEY}/screens.gpkg",
+                         "PRESET=upper-talus-3d", f"OUT={self.path('out')}", "SEED=3")
+        self.assertIn("WARNING", text)  # of the program: sizes other than those the preset was fitted to
+        self.assertIn("block sizes", text)
+        record = self.record()
+        self.assertEqual(record["released"], 957 * 20)  # 957 source cells: data/valley/README.md, scenario.toml
+        flags = " ".join(record["command"])
+        for word in ("--field=diameter_min=diameter_m", "layername=cliffs", "--seed=3"):
+            self.assertIn(word, flags)
+        self.assertIn(self.path("out/impact_probability.tif"), text)
+        text = self.call("hazard", f"FOLDER={self.path('out')}", f"OBJECTS={VALLEY}/houses.gpkg", "WIDTH=10")
+        self.assertTrue(os.path.exists(self.path("out/hazard_class.tif")))
+        self.assertTrue(os.path.exists(self.path("out/objects.gpkg")))
+        self.call("barrier", f"OUT={self.path('out')}", "SCREEN=road")
+        self.assertTrue(os.path.exists(self.path("out/barrier_road.csv")))
+        if "report" in commands_of_the_program():
+            self.call("report", f"FOLDER={self.path('out')}", f"OUT={self.path('page.html')}")
+            self.assertGreater(os.path.getsize(self.path("page.html")), 10000)
+
+    def test_what_is_wrong_is_one_clear_line(self):
+        text = self.call("run", f"DEM={DEM}", f"SOURCES={VALLEY}/houses.gpkg", f"OUT={self.path('out')}", code=1)
+        self.assertIn("has no block diameter", text)
+        self.assertFalse(os.path.exists(self.path("out")))
+
+    def test_sources_and_check(self):
+        self.call("sources", f"DEM={DEM}", f"OUT={self.path('cells.gpkg')}", "SLOPE=50")
+        text = self.call("check", f"DEM={DEM}", f"SOURCES={self.path('cells.gpkg')}|layername=source_polygons", "DIAMETER=1")
+        self.assertIn("releases", text)
+        self.assertIn("EPSG:2056", text)
+
+
+class FromPython(Case):
+    def test_memory_layer_equals_its_file(self):
+        cliffs, memory = self.cliffs(), self.cliffs_in_memory()
+        fields = {"DIAMETER_MIN_FIELD": "diameter_m", "DIAMETER_MAX_FIELD": "diameter_1"}
+        for out, source in (("file", cliffs), ("memory", memory)):
+            results, good = self.run_algorithm("run", self.inputs(SOURCES=source, OUT=self.path(out), **fields))
+            self.assertTrue(good)
+        self.assertTrue(os.path.exists(self.path("memory_inputs/sources.gpkg")))
+        self.assertEqual(self.record("file")["ends"], self.record("memory")["ends"])
+        a, b = (gdal.Open(self.path(out + "/passages.tif")).ReadAsArray() for out in ("file", "memory"))
+        self.assertTrue((a == b).all())
+
+    def test_a_selection_of_a_shapefile_keeps_the_fields_that_it_cuts(self):
+        cliffs = self.cliffs()
+        cliffs.selectAll()
+        QgsProject.instance().addMapLayer(cliffs)
+        self.addCleanup(QgsProject.instance().removeMapLayer, cliffs.id())
+        inputs = self.inputs()
+        del inputs["DIAMETER"]  # the features have their own: diameter_min, cut to diameter_m
+        for out, selected in (("all", False), ("selected", True)):
+            source = QgsProcessingFeatureSourceDefinition(cliffs.id(), selected)
+            _, good = self.run_algorithm("run", {**inputs, "SOURCES": source, "OUT": self.path(out)})
+            self.assertTrue(good)
+        self.assertEqual(self.record("all")["ends"], self.record("selected")["ends"])
+        self.assertTrue(os.path.exists(self.path("selected_inputs/sources.shp")))
+
+    def test_selected_features_and_filters(self):
+        cliffs = self.cliffs()
+        cliffs.selectByIds([1, 2])
+        area = {f.id(): f.geometry().area() for f in cliffs.getFeatures()}
+        QgsProject.instance().addMapLayer(cliffs)
+        self.addCleanup(QgsProject.instance().removeMapLayer, cliffs.id())
+        chosen = QgsProcessingFeatureSourceDefinition(cliffs.id(), True)
+        self.run_algorithm("run", self.inputs(SOURCES=chosen, OUT=self.path("selected")))
+        self.run_algorithm("run", self.inputs(SOURCES=cliffs.id(), OUT=self.path("all")))
+        cliffs.setSubsetString("\"name\" <> 'x'")
+        filtered = QgsProcessingFeatureSourceDefinition(cliffs.id(), False)
+        self.run_algorithm("run", self.inputs(SOURCES=filtered, OUT=self.path("filtered")))
+        some, everything = self.record("selected")["released"], self.record("all")["released"]
+        self.assertEqual(everything, 957 * 5)
+        # the cells of two features are the share of their area, to the cells on the edges
+        share = (area[1] + area[2]) / sum(area.values())
+        self.assertAlmostEqual(some / everything, share, delta=0.05)
+        self.assertEqual(self.record("filtered")["released"], everything)
+        self.assertTrue(os.path.exists(self.path("selected_inputs/sources.shp")))
+        self.assertFalse(os.path.exists(self.path("all_inputs")))
+
+    def test_an_empty_selection_is_refused(self):
+        cliffs = self.cliffs()
+        QgsProject.instance().addMapLayer(cliffs)
+        self.addCleanup(QgsProject.instance().removeMapLayer, cliffs.id())
+        log = Log()
+        _, good = self.run_algorithm("run", self.inputs(SOURCES=QgsProcessingFeatureSourceDefinition(cliffs.id(), True)), log)
+        self.assertFalse(good)
+        self.assertIn("has no feature", log.textLog())
+
+    def test_another_band(self):
+        two = self.path("two_bands.tif")
+        dem = gdal.Open(DEM)
+        out = gdal.GetDriverByName("GTiff").Create(two, dem.RasterXSize, dem.RasterYSize, 2, gdal.GDT_Float32)
+        out.SetGeoTransform(dem.GetGeoTransform())
+        out.SetProjection(dem.GetProjection())
+        out.GetRasterBand(1).WriteArray(dem.ReadAsArray() * 0 + 7)
+        out.GetRasterBand(2).WriteArray(dem.ReadAsArray())
+        for i in (1, 2):
+            out.GetRasterBand(i).SetNoDataValue(dem.GetRasterBand(1).GetNoDataValue())
+        out = None
+        self.run_algorithm("run", self.inputs(OUT=self.path("one")))
+        _, good = self.run_algorithm("run", self.inputs(DEM=two, DEM_BAND=2, OUT=self.path("second")))
+        self.assertTrue(good)
+        self.assertEqual(self.record("one")["ends"], self.record("second")["ends"])
+
+    def test_warnings_and_progress_reach_the_log(self):
+        log = Log()
+        _, good = self.run_algorithm("run", self.inputs(DIAMETER=5.0), log)
+        self.assertTrue(good)
+        self.assertTrue(any("block sizes" in text for text in log.warnings), log.warnings)
+        self.assertEqual(log.steps, sorted(log.steps))
+        self.assertGreater(len(log.steps), 20)
+        self.assertEqual(log.steps[-1], 100.0)
+
+    def test_cancel_and_resume(self):
+        inputs = self.inputs(SOURCES=self.cliffs_in_memory(), TRAJECTORIES=400)  # written twice: the bytes must be the same
+        log = Log(cancel_at=10.0)
+        _, good = self.run_algorithm("run", inputs, log)
+        ended = time.monotonic()
+        self.assertFalse(good)
+        self.assertLess(ended - log.cancelled, 2.0)
+        self.assertEqual(self.children(), [])
+        self.assertFalse(os.path.exists(self.path("out/run.json")))
+        self.assertIn("Resume", log.textLog())
+        again = Log()
+        _, good = self.run_algorithm("run", {**inputs, "RESUME": True}, again)
+        self.assertTrue(good, again.textLog())
+        self.assertTrue(any("going on" in text for text in again.infos), again.infos)
+        self.run_algorithm("run", {**inputs, "OUT": self.path("whole")})
+        a, b = (gdal.Open(self.path(out + "/passages.tif")).ReadAsArray() for out in ("out", "whole"))
+        self.assertTrue((a == b).all())
+
+    def children(self):
+        found = subprocess.run(["ps", "--ppid", str(os.getpid()), "-o", "comm="], capture_output=True, text=True, check=False)
+        return [name for name in found.stdout.split() if "talus" in name]
+
+    def test_results_are_a_group_with_styles(self):
+        context = QgsProcessingContext()
+        self.run_algorithm("run", self.inputs(LOAD=True), context=context)
+        self.load(context)
+        context = QgsProcessingContext()
+        _, good = self.run_algorithm("hazard", {"FOLDER": self.path("out"), "LOAD": True}, context=context)
+        self.assertTrue(good)
+        self.load(context)
+        root = QgsProject.instance().layerTreeRoot()
+        groups = [g for g in root.findGroups() if g.name() == "Talus: out"]
+        self.assertEqual(len(groups), 1)  # one group for the run and what is added to it
+        layers = [node.layer() for node in groups[0].findLayers()]
+        self.assertEqual(layers[0].name(), "Hazard class")
+        self.assertEqual(len(layers), len({layer.source() for layer in layers}))
+        self.assertIn("Reach probability", [layer.name() for layer in layers])
+        hazard = layers[0]
+        self.assert_drawn_as_in_style(hazard)
+        self.assertGreater(len(hazard.renderer().legendSymbologyItems()), 2)
+        QgsProject.instance().clear()
+
+    def load(self, context):
+        """As the toolbox does it after an algorithm."""
+        from processing.gui.Postprocessing import handleAlgorithmResults
+        algorithm = QgsApplication.processingRegistry().algorithmById("talus:run")
+        handleAlgorithmResults(algorithm, context, Log())
+
+    def assert_drawn_as_in_style(self, layer):
+        path = layer.source()
+        renderer = xml.parse(path[:-4] + ".qml").getroot().find("pipe/rasterrenderer")
+        band, opacity = int(renderer.get("band")), float(renderer.get("opacity"))
+        items = [(float(i.get("value")), QColor(i.get("color")), i.get("alpha") != "0") for i in renderer.iter("item")]
+        entries = [(float(i.get("value")), QColor(i.get("color")), i.get("alpha") != "0")
+                   for i in renderer.iter("paletteEntry")]
+        settings = QgsMapSettings()
+        settings.setLayers([layer])
+        settings.setDestinationCrs(layer.crs())
+        settings.setExtent(layer.extent())
+        settings.setOutputSize(QSize(layer.width(), layer.height()))
+        settings.setBackgroundColor(QColor(255, 255, 255))
+        job = QgsMapRendererParallelJob(settings)
+        job.start()
+        job.waitForFinished()
+        image = job.renderedImage()
+        raster = gdal.Open(path)
+        values = raster.GetRasterBand(band)
+        nodata, cells = values.GetNoDataValue(), values.ReadAsArray()
+        compared, colours = 0, set()
+        for y in range(2, layer.height(), 3):
+            for x in range(2, layer.width(), 3):
+                value = float(cells[y, x])
+                if entries:
+                    hit = next((e for e in entries if e[0] == value), None)
+                else:
+                    hit = next((e for e in items if value <= e[0]), None)
+                if value == nodata or value != value or hit is None or not hit[2]:
+                    continue
+                want = [255 * (1 - opacity) + opacity * c for c in (hit[1].red(), hit[1].green(), hit[1].blue())]
+                got = image.pixelColor(x, y)
+                for a, b in zip(want, (got.red(), got.green(), got.blue())):
+                    self.assertLessEqual(abs(a - b), 2.0, (x, y, value))
+                colours.add(value)
+                compared += 1
+        self.assertGreater(compared, 500)
+        self.assertGreater(len(colours), 2)
+
+
+if __name__ == "__main__":
+    outcome = unittest.main(exit=False).result
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(0 if outcome.wasSuccessful() else 1)  # QGIS 3.22 falls over its own objects where Python ends

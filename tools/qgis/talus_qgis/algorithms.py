@@ -1,0 +1,423 @@
+"""The algorithms: one class for all commands. Their parameters are what `talus help --json` says; ALGORITHMS holds only what
+QGIS needs in addition: which inputs are layers, whose fields are picked, which files come out."""
+import os
+
+from qgis.core import (QgsProcessing, QgsProcessingAlgorithm, QgsProcessingException, QgsProcessingFeatureSourceDefinition,
+                       QgsProcessingOutputFile, QgsProcessingOutputFolder, QgsProcessingOutputRasterLayer,
+                       QgsProcessingOutputVectorLayer, QgsProcessingParameterBand, QgsProcessingParameterBoolean,
+                       QgsProcessingParameterDefinition, QgsProcessingParameterEnum, QgsProcessingParameterFeatureSource,
+                       QgsProcessingParameterField, QgsProcessingParameterFile, QgsProcessingParameterFileDestination,
+                       QgsProcessingParameterFolderDestination, QgsProcessingParameterMultipleLayers,
+                       QgsProcessingParameterNumber, QgsProcessingParameterRasterLayer, QgsProcessingParameterString,
+                       QgsProcessingUtils, QgsProperty)
+from qgis.PyQt.QtGui import QIcon
+
+from . import layers, process, program, results
+from .texts import label, tr
+
+LARGEST_IN_DIALOG = 2147483647  # a spin box of QGIS takes no more
+NOT_IN_DIALOG = {"quiet", "progress", "allow-network", "sources-layer", "field", "memory", "part", "checkpoint"}
+ALWAYS_ADVANCED = {"threads", "allow-folder", "seed", "surface"}
+
+# Fields of the sources that can be picked, by the program's name of them.
+SOURCE_FIELDS = [("diameter", False), ("release_height", False), ("frequency", False), ("diameter_min", True),
+                 ("diameter_max", True), ("name", True)]
+SHAPES = [QgsProcessing.TypeVectorPoint, QgsProcessing.TypeVectorLine, QgsProcessing.TypeVectorPolygon]
+
+RUN_RASTERS = ["impact_probability", "reach_probability", "energy", "velocity", "jump_height", "passages", "deposits",
+               "release"]
+SCENARIO_INPUTS = {
+    "order": ["dem", "sources", "diameter", "preset", "trajectories", "frequency", "screens", "zones", "zone-field"],
+    "bands": {"dem"},
+    "shapes": {"sources": SHAPES, "screens": [QgsProcessing.TypeVectorLine], "zones": [QgsProcessing.TypeVectorPolygon]},
+    "fields": {"sources": SOURCE_FIELDS},
+    "field of": {"zone-field": "zones"},
+    "raster too": {"zones"},
+    "advanced": {"scenario", "surface", "thresholds", "seed", "energy-total", "bounds", "overwrite", "rounds", "until-error",
+                 "above", "most-rounds", "zones-raster", "pits"},
+    "needs": [("scenario",), ("dem", "sources")],
+}
+
+ALGORITHMS = [
+    {"id": "run", "command": "run", **SCENARIO_INPUTS, "phases": ["simulate", "write"], "folder": "out",
+     "rasters": RUN_RASTERS, "vectors": ["stops", "trajectories"], "files": {"record": "run.json",
+                                                                              "complete-scenario": "scenario.toml"}},
+    {"id": "check", "command": "check", **SCENARIO_INPUTS, "phases": []},
+    {"id": "sources", "command": "sources", "bands": {"dem"}, "order": ["dem", "slope", "out"], "phases": [],
+     "geopackage": ("out", ["source_polygons", "source_points"])},
+    {"id": "hazard", "command": "hazard", "order": ["folder", "width", "curves", "objects", "overwrite"],
+     "advanced": {"matrix", "frequency"}, "phases": ["evaluate", "write", "simulate"], "folder": "folder",
+     "shapes": {"objects": [QgsProcessing.TypeVectorLine, QgsProcessing.TypeVectorPolygon]},
+     "rasters": ["hazard_class", "annual_frequency"], "vectors": ["objects"], "record": "hazard.json"},
+    {"id": "objects", "command": "hazard", "order": ["folder", "objects", "width", "overwrite"], "required": {"objects"},
+     "advanced": {"matrix", "frequency", "curves"}, "phases": ["evaluate", "write", "simulate"], "folder": "folder",
+     "shapes": {"objects": [QgsProcessing.TypeVectorLine, QgsProcessing.TypeVectorPolygon]},
+     "rasters": ["hazard_class", "annual_frequency"], "vectors": ["objects"],
+     "files": {"table": "objects.csv", "curves": "objects_curves.csv"}, "record": "hazard.json"},
+    {"id": "barrier", "command": "barrier", "order": ["out", "screen"], "is folder": {"out"},
+     "advanced": {"observed", "frequency", "percentile", "containment", "stretch", "unweighted"}, "phases": []},
+    {"id": "profile", "command": "profile", "phases": ["simulate", "write"],
+     "files": {"record": "run.json", "picture": "profile.svg"}, "folder": "out", "nothing to load": True},
+    {"id": "calibrate", "command": "calibrate", "phases": ["fit"], "folder": "out", "nothing to load": True,
+     "advanced": {"fit", "trials", "starts", "share", "parameters"},
+     "files": {"fitted": "fitted.toml", "report": "report.md", "record": "calibration.json"}},
+    {"id": "diagnose", "command": "diagnose", "phases": ["diagnose"], "folder": "out", "nothing to load": True,
+     "advanced": {"fit", "trials", "test-trials", "most-effects", "level", "base-fits", "all-rows", "nested", "no-nested",
+                  "folds", "quick-folds"},
+     "files": {"fitted": "fitted.toml", "report": "report.html", "record": "diagnosis.json"}},
+    {"id": "report", "command": "report", "phases": [], "is folder": {"folder"}, "is page": {"page", "output", "out", "o"}},
+]
+
+
+def key_of(name):
+    """The name of a parameter in QGIS: ZONE_FIELD of --zone-field."""
+    return name.upper().replace("-", "_")
+
+
+class TalusAlgorithm(QgsProcessingAlgorithm):
+    def __init__(self, table):
+        super().__init__()
+        self.table = table
+        self.layers = {}  # of parameters, taken in the main thread
+
+    # What QGIS asks
+
+    def createInstance(self):
+        return TalusAlgorithm(self.table)
+
+    def name(self):
+        return self.table["id"]
+
+    def displayName(self):
+        return tr("algorithm " + self.table["id"])
+
+    def icon(self):
+        return QIcon(os.path.join(os.path.dirname(__file__), "icon.svg"))
+
+    def helpUrl(self):
+        return program.help_page()
+
+    def tags(self):
+        return ["talus", "rockfall", "rock fall", "steinschlag", "naturgefahren", self.table["command"]]
+
+    def shortDescription(self):
+        return tr("about " + self.table["id"])
+
+    def shortHelpString(self):
+        lines = [tr("about " + self.table["id"])]
+        for p in self.described():
+            if p["name"] not in NOT_IN_DIALOG:
+                lines.append(f"<b>{label(p['name'])}</b>: {tr(p['text'])}")
+        lines.append(tr("Talus runs the program talus of this computer. Every parameter is explained on the pages of its "
+                        "documentation."))
+        return "<p>" + "</p><p>".join(lines) + "</p>"
+
+    def canExecute(self):
+        try:
+            program.description()
+            return True, ""
+        except program.ProgramMissing as fault:
+            return False, str(fault)
+
+    def flags(self):
+        return super().flags() | QgsProcessingAlgorithm.FlagCanCancel
+
+    # Parameters
+
+    def described(self):
+        """The parameters of the command as the program tells them; none where there is no program."""
+        try:
+            command = program.command(self.table["command"])
+        except program.ProgramMissing:
+            return []
+        found = [dict(p) for p in command["parameters"]] if command else []
+        for p in found:
+            if p["name"] in self.table.get("is folder", ()) and p["type"] == "text" and p["positional"]:
+                p.update(type="folder", written=False)
+            if p["name"] in self.table.get("is page", ()) and p["type"] == "text" and not p["positional"]:
+                p.update(type="file", written=True, holds=["html"])
+            p["required"] = p["required"] or p["name"] in self.table.get("required", ())
+        order = self.table.get("order", [])
+        return sorted(found, key=lambda p: order.index(p["name"]) if p["name"] in order else len(order))
+
+    def by_scenario(self):
+        """Whether a scenario file may give the values: then no default of the dialog may hide its own."""
+        return any(p["name"] == "scenario" for p in self.described())
+
+    def initAlgorithm(self, configuration=None):
+        for p in self.described():
+            if p["name"] in NOT_IN_DIALOG:
+                continue
+            advanced = p["name"] in self.table.get("advanced", ()) or p["name"] in ALWAYS_ADVANCED
+            self._add(self._definition(p), p["text"], advanced)
+            if p["name"] in self.table.get("bands", ()):
+                band = QgsProcessingParameterBand("DEM_BAND", label("dem-band"), 1, key_of(p["name"]), True)
+                self._add(band, tr("Band of the raster that holds the heights."), False)
+            for field, rare in self.table.get("fields", {}).get(p["name"], ()):
+                self._add(QgsProcessingParameterField(key_of(field) + "_FIELD", label(field + "-field"), None,
+                                                      key_of(p["name"]), QgsProcessingParameterField.Any, False, True),
+                          tr("Field of the sources that is read as {field}.").format(field=field), rare)
+            if p["name"] in self.table.get("raster too", ()):
+                self._add(QgsProcessingParameterRasterLayer(key_of(p["name"]) + "_RASTER", label(p["name"] + "-raster"), None,
+                                                            True), p["text"], True)
+        self._declare_outputs()
+
+    def _add(self, definition, text, advanced):
+        definition.setHelp(tr(text))
+        if advanced:
+            definition.setFlags(definition.flags() | QgsProcessingParameterDefinition.FlagAdvanced)
+        self.addParameter(definition)
+
+    def _definition(self, p):
+        key, title, optional = key_of(p["name"]), self._title(p), not p["required"]
+        kind = p["type"]
+        if p["name"] in self.table.get("field of", {}):
+            return QgsProcessingParameterField(key, title, None, key_of(self.table["field of"][p["name"]]),
+                                               QgsProcessingParameterField.Any, False, optional)
+        if kind == "flag":
+            return QgsProcessingParameterBoolean(key, title, False)
+        if kind == "choice":
+            return QgsProcessingParameterEnum(key, title, p["choices"], False, self._default(p), optional, True)
+        if kind in ("number", "integer"):
+            return self._number(p, key, title, optional)
+        if kind == "folder":
+            if p["written"]:
+                return QgsProcessingParameterFolderDestination(key, title, None, optional)
+            return QgsProcessingParameterFile(key, title, QgsProcessingParameterFile.Folder, "", None, optional)
+        if kind == "file":
+            return self._file(p, key, title, optional)
+        return QgsProcessingParameterString(key, title, self._default(p), False, optional)
+
+    def _title(self, p):
+        title = label("folder" if p["type"] == "folder" and p["name"] == "out" and not p["written"] else p["name"])
+        if p.get("unit"):
+            title += f" [{p['unit']}]"
+        if self.by_scenario() and p["type"] != "flag" and "default" in p:
+            title += f" ({p['default']})"
+        return title
+
+    def _default(self, p):
+        return None if self.by_scenario() else p.get("default")
+
+    def _number(self, p, key, title, optional):
+        whole = p["type"] == "integer"
+        kind = QgsProcessingParameterNumber.Integer if whole else QgsProcessingParameterNumber.Double
+        low, high = p.get("low", -1e300), p.get("high", 1e300)
+        if whole:
+            low, high = max(low, -LARGEST_IN_DIALOG), min(high, LARGEST_IN_DIALOG)
+        return QgsProcessingParameterNumber(key, title, kind, self._default(p), optional, low, high)
+
+    def _file(self, p, key, title, optional):
+        if p["written"]:
+            vector = "vector" in p["holds"]
+            kinds = "GeoPackage (*.gpkg)" if vector else f"{p['holds'][0].upper()} (*.{p['holds'][0]})"
+            destination = QgsProcessingParameterFileDestination(key, title, kinds, None, optional)
+            destination.setCreateByDefault(not optional)
+            return destination
+        if p["repeatable"]:
+            several = QgsProcessingParameterMultipleLayers(key, title, QgsProcessing.TypeFile, None, optional)
+            several.setMinimumNumberInputs(1)
+            return several
+        if "vector" in p["holds"]:
+            return QgsProcessingParameterFeatureSource(key, title, self.table.get("shapes", {}).get(p["name"], []), None,
+                                                       optional)
+        if "raster" in p["holds"]:
+            return QgsProcessingParameterRasterLayer(key, title, None, optional)
+        return QgsProcessingParameterFile(key, title, QgsProcessingParameterFile.File, p["holds"][0], None, optional)
+
+    def _declare_outputs(self):
+        table = self.table
+        loads = (table.get("folder") and not table.get("nothing to load")) or table.get("geopackage")
+        if loads:
+            self._add(QgsProcessingParameterBoolean("LOAD", label("load"), True), tr("Loads the results as a group of layers."),
+                      False)
+        for name in table.get("rasters", ()):
+            self.addOutput(QgsProcessingOutputRasterLayer(key_of(name), results.title_of(name)))
+        for name in table.get("vectors", ()):
+            self.addOutput(QgsProcessingOutputVectorLayer(key_of(name), results.title_of(name)))
+        for name in table.get("geopackage", (None, ()))[1]:
+            self.addOutput(QgsProcessingOutputVectorLayer(key_of(name), results.title_of(name)))
+        for name, file in table.get("files", {}).items():
+            self.addOutput(QgsProcessingOutputFile(key_of(name), file))
+        if table.get("folder") == "folder":
+            self.addOutput(QgsProcessingOutputFolder("RESULTS", tr("Folder of the results")))
+        if table["id"] == "barrier":
+            self.addOutput(QgsProcessingOutputFile("TABLE", "barrier_*.csv"))
+
+    # Work
+
+    def checkParameterValues(self, parameters, context):
+        needs = self.table.get("needs")
+        if needs and not any(all(parameters.get(key_of(name)) not in (None, "") for name in names) for names in needs):
+            return False, tr("Give the terrain and the sources, or a scenario file.")
+        return super().checkParameterValues(parameters, context)
+
+    def prepareAlgorithm(self, parameters, context, feedback):
+        """Takes the layers in the main thread, to which they belong."""
+        for p in self.described():
+            if p["type"] != "file" or p.get("written"):
+                continue
+            key = key_of(p["name"])
+            if "raster" in p["holds"]:
+                name = key + "_RASTER" if p["name"] in self.table.get("raster too", ()) else key
+                layer = self.parameterAsRasterLayer(parameters, name, context)
+                if layer is None and parameters.get(name):
+                    raise QgsProcessingException(self.invalidRasterError(parameters, name))
+                self.layers[name] = layer.clone() if layer is not None else None
+            if "vector" in p["holds"] and parameters.get(key) not in (None, ""):
+                self.layers[key] = self._vector(parameters, key, context)
+        return True
+
+    def _vector(self, parameters, key, context):
+        """(file of the layer if that is all of it, its source of features, kind of file in which they can be written)."""
+        source = self.parameterAsSource(parameters, key, context)
+        if source is None:
+            raise QgsProcessingException(self.invalidSourceError(parameters, key))
+        value = parameters[key]
+        plain = value.source if isinstance(value, QgsProcessingFeatureSourceDefinition) else value
+        if isinstance(plain, QgsProperty):
+            plain = plain.staticValue()
+        layer = self.parameterAsVectorLayer({key: plain}, key, context)
+        return layers.plain_vector(value, layer), source, layers.suffix_for(layer)
+
+    def processAlgorithm(self, parameters, context, feedback):
+        try:
+            command = [program.path(), self.table["command"]]
+        except program.ProgramMissing as fault:
+            raise QgsProcessingException(str(fault)) from fault
+        folder = self._folder(parameters, context)
+        words = self._words(parameters, context, feedback, layers.folder_beside(folder))
+        rounds = self.parameterAsInt(parameters, "ROUNDS", context) if parameters.get("ROUNDS") else 1
+        process.run(command + words, feedback, self._phases(parameters), rounds)
+        return self._results(parameters, context, feedback, folder)
+
+    def _phases(self, parameters):
+        phases = self.table["phases"]
+        if self.table["command"] == "hazard" and not parameters.get("OBJECTS") and not parameters.get("FREQUENCY"):
+            return ["evaluate", "write"]
+        return phases
+
+    def _folder(self, parameters, context):
+        """The folder of the results; for a command without one, one for what has to be written for it."""
+        name = self.table.get("folder")
+        if name is None:
+            return os.path.join(QgsProcessingUtils.tempFolder(), "talus_" + self.table["id"])
+        key = key_of(name)
+        return os.path.normpath(self.parameterAsFile(parameters, key, context) if name == "folder" else
+                                self.parameterAsFileOutput(parameters, key, context))
+
+    def _words(self, parameters, context, feedback, inputs):
+        """The command line: positional words last, so that a list before them cannot take them."""
+        flags, positional = [], []
+        for p in self.described():
+            if p["name"] in NOT_IN_DIALOG:
+                continue
+            for value in self._values(p, parameters, context, feedback, inputs):
+                if p["positional"]:
+                    positional.append(value)
+                elif p["type"] == "flag":
+                    flags.append(p["flags"][-1])
+                else:
+                    flags.append(f"{p['flags'][-1]}={value}")
+        flags += self._field_words(parameters, context)
+        if any(p["name"] == "progress" for p in self.described()):
+            flags.append("--progress=json")
+        return flags + (["--", *positional] if positional else [])
+
+    def _field_words(self, parameters, context):
+        words = []
+        for fields in self.table.get("fields", {}).values():
+            for field, _ in fields:
+                column = self.parameterAsString(parameters, key_of(field) + "_FIELD", context)
+                if column:
+                    words.append(f"--field={field}={column}")
+        return words
+
+    def _values(self, p, parameters, context, feedback, inputs):
+        """What the user gave for a parameter, as words of the command line; nothing where nothing was given."""
+        key, kind = key_of(p["name"]), p["type"]
+        if kind == "file" and not p["written"] and set(p["holds"]) & {"raster", "vector"}:
+            return self._layer_words(p, parameters, context, feedback, inputs)
+        if parameters.get(key) in (None, ""):
+            if p["type"] not in ("file", "folder") or not p["written"] or not p["required"]:
+                return []
+        if kind == "flag":
+            return [""] if self.parameterAsBool(parameters, key, context) else []
+        if kind == "integer":
+            return [str(self.parameterAsInt(parameters, key, context))]
+        if kind == "number":
+            return [repr(self.parameterAsDouble(parameters, key, context))]
+        if kind == "choice":
+            return [self.parameterAsEnumString(parameters, key, context)]
+        if p["repeatable"] and kind == "file":
+            return self.parameterAsFileList(parameters, key, context)
+        if kind in ("file", "folder"):
+            return [self.parameterAsFileOutput(parameters, key, context) if p["written"] else
+                    self.parameterAsFile(parameters, key, context)]
+        return [self.parameterAsString(parameters, key, context)]
+
+    def _layer_words(self, p, parameters, context, feedback, inputs):
+        key = key_of(p["name"])
+        words = []
+        if "vector" in p["holds"] and self.layers.get(key):
+            plain, source, suffix = self.layers[key]
+            words.append(plain or layers.write_vector(source, os.path.join(inputs, p["name"] + suffix), context, feedback))
+        raster = self.layers.get(key + "_RASTER" if p["name"] in self.table.get("raster too", ()) else key)
+        if "raster" in p["holds"] and raster:
+            if words:
+                raise QgsProcessingException(tr("{name}: give the polygons or the raster, not both").format(
+                    name=label(p["name"])))
+            band = parameters.get("DEM_BAND") if p["name"] in self.table.get("bands", ()) else None
+            number = self.parameterAsInt(parameters, "DEM_BAND", context) if band else 1
+            words.append(layers.raster_file(raster, number, inputs, feedback))
+        return words
+
+    # Results
+
+    def _results(self, parameters, context, feedback, folder):
+        found = {}
+        table = self.table
+        if "geopackage" in table:
+            return self._geopackage_results(parameters, context)
+        if table["id"] == "barrier":
+            return self._barrier_results(parameters, context)
+        for p in self.described():
+            if p.get("written") and p["type"] in ("file", "folder"):
+                found[key_of(p["name"])] = self.parameterAsFileOutput(parameters, key_of(p["name"]), context)
+        if "folder" not in table:
+            return {key: value for key, value in found.items() if value}
+        for name in table.get("rasters", ()):
+            found[key_of(name)] = self._file_in(folder, name + ".tif")
+        for name in table.get("vectors", ()):
+            path = self._file_in(folder, name + ".gpkg") or self._file_in(folder, name + ".fgb")
+            found[key_of(name)] = f"{path}|layername={name}" if path and path.endswith(".gpkg") else path
+        for name, file in table.get("files", {}).items():
+            found[key_of(name)] = self._file_in(folder, file)
+        if table["folder"] == "folder":
+            found["RESULTS"] = folder
+        if self.parameterAsBool(parameters, "LOAD", context) and not table.get("nothing to load"):
+            results.load(folder, results.files_of(folder), "Talus: " + os.path.basename(folder), context)
+        return {key: value for key, value in found.items() if value}
+
+    @staticmethod
+    def _file_in(folder, name):
+        path = os.path.join(folder, name)
+        return path if os.path.exists(path) else None
+
+    def _geopackage_results(self, parameters, context):
+        name, names = self.table["geopackage"]
+        path = self.parameterAsFileOutput(parameters, key_of(name), context)
+        found = {key_of(name): path, **{key_of(layer): f"{path}|layername={layer}" for layer in names}}
+        if self.parameterAsBool(parameters, "LOAD", context):
+            rows = [(f"{path}|layername={layer}", results.title_of(layer), os.path.basename(path), i, i == 0)
+                    for i, layer in enumerate(names)]
+            results.load(os.path.dirname(path), rows, "Talus: " + os.path.basename(path), context, path)
+        return found
+
+    def _barrier_results(self, parameters, context):
+        folder = self.parameterAsFile(parameters, "OUT", context)
+        written = [os.path.join(folder, name) for name in os.listdir(folder)
+                   if name.startswith("barrier_") and name.endswith(".csv") and not name.endswith("_stretches.csv")]
+        return {"TABLE": max(written, key=os.path.getmtime)} if written else {}
+
+

@@ -1,0 +1,161 @@
+"""Runs the program: shows its progress and warnings as they come, ends it when the user cancels.
+
+Not by QgsBlockingProcess, which in QGIS 3.22 shows no progress in qgis_process and cannot be cancelled there.
+"""
+import json
+import queue
+import subprocess
+import threading
+
+from qgis.core import QgsProcessingException
+
+from .program import HIDDEN_WINDOW
+from .texts import tr
+
+POLL = 0.1      # s between two looks at the button Cancel
+PATIENCE = 20.0  # s until a program that was asked to end is ended by force; a run ends within 2 s
+
+
+class Progress:
+    """One bar for all phases: each takes its share of it, and the bar never goes back."""
+
+    SHARES = {"simulate": 8.0, "diagnose": 8.0, "fit": 8.0, "evaluate": 1.0, "write": 1.0}
+
+    def __init__(self, feedback, phases, parts=1):
+        self.feedback = feedback
+        self.phases = phases
+        self.parts = parts
+        self.shown = 0.0
+        self.phase = None
+
+    def show(self, line):
+        phase, share = line.get("phase", ""), float(line.get("share", 0.0))
+        title = " ".join(filter(None, (tr("phase " + phase), line.get("part", "").replace("round", tr("round")))))
+        if title != self.phase:
+            self.phase = title
+            self.feedback.setProgressText(title)
+        if line.get("part") and self.parts > 1:
+            done = int("".join(c for c in line["part"] if c.isdigit()) or 1)
+            share = min(1.0, (done - 1 + share) / self.parts)
+        whole = sum(self.SHARES.get(p, 1.0) for p in self.phases)
+        before = sum(self.SHARES.get(p, 1.0) for p in self.phases[:self.phases.index(phase)]) if phase in self.phases else 0.0
+        percent = 100.0 * (before + share * self.SHARES.get(phase, 1.0)) / whole
+        self.shown = max(self.shown, min(100.0, percent))
+        self.feedback.setProgress(self.shown)
+
+
+class Messages:
+    """Sorts what the program says into the log; keeps the error."""
+
+    def __init__(self, feedback, progress):
+        self.feedback = feedback
+        self.progress = progress
+        self.error = ""
+
+    def take(self, stream, text):
+        if not text:
+            return
+        if stream == "stderr" and text.startswith("{"):
+            try:
+                self._take_json(json.loads(text))
+                return
+            except ValueError:
+                pass
+        self._take_text(stream, text)
+
+    def _take_json(self, line):
+        if "phase" in line:
+            self.progress.show(line)
+        for kind, text in line.items():
+            if kind == "warning":
+                self.feedback.pushWarning(text)
+            elif kind == "error":
+                self._fail(text)
+            elif kind == "message":
+                self.feedback.pushInfo(text)
+
+    def _take_text(self, stream, text):
+        if text.startswith("talus: warning: "):
+            self.feedback.pushWarning(text[len("talus: warning: "):])
+        elif text.startswith("talus: error: "):
+            self._fail(text[len("talus: error: "):])
+        elif stream == "stdout" and text.startswith("warning "):  # of talus check
+            self.feedback.pushWarning(text[len("warning "):].strip())
+        else:
+            self.feedback.pushConsoleInfo(text)
+
+    def _fail(self, text):
+        if self.error:
+            self.feedback.reportError(text)  # check lists every fault
+        else:
+            self.error = text
+
+
+def _read(name, stream, lines):
+    for line in stream:
+        lines.put((name, line.rstrip("\r\n")))
+    lines.put((name, None))
+
+
+def _start(command):
+    try:
+        return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                encoding="utf-8", errors="replace", bufsize=1, creationflags=HIDDEN_WINDOW)
+    except OSError as fault:
+        raise QgsProcessingException(f"{command[0]}: {fault.strerror}") from fault
+
+
+def _end(process):
+    """Asks the program to end and waits for it."""
+    process.terminate()
+    try:
+        process.wait(PATIENCE)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+
+
+def _shown(command):
+    return " ".join(f'"{word}"' if " " in word or not word else word for word in command)
+
+
+def run(command, feedback, phases, parts=1):
+    """Runs a command to its end. Raises QgsProcessingException with the program's own line where it fails, or with how to
+    go on where the user has cancelled."""
+    feedback.pushCommandInfo(_shown(command))
+    messages = Messages(feedback, Progress(feedback, phases, parts))
+    lines = queue.Queue()
+    process = _start(command)
+    readers = [threading.Thread(target=_read, args=(name, getattr(process, name), lines), daemon=True)
+               for name in ("stdout", "stderr")]
+    for reader in readers:
+        reader.start()
+    try:
+        open_streams = len(readers)
+        while open_streams and not feedback.isCanceled():
+            try:
+                stream, text = lines.get(timeout=POLL)
+            except queue.Empty:
+                continue
+            if text is None:
+                open_streams -= 1
+            else:
+                messages.take(stream, text)
+        if feedback.isCanceled():
+            _end(process)
+        code = process.wait()
+    finally:
+        if process.poll() is None:
+            _end(process)
+        for reader in readers:
+            reader.join(2.0)
+        for stream in (process.stdout, process.stderr):
+            stream.close()
+    while not lines.empty():
+        stream, text = lines.get_nowait()
+        messages.take(stream, text or "")
+    if feedback.isCanceled():
+        raise QgsProcessingException(tr("Cancelled. What a run has traced is kept: start it again with the same inputs and "
+                                        "\"Resume\"."))
+    if code != 0:
+        raise QgsProcessingException(messages.error or tr("talus ended with code {code}").format(code=code))
