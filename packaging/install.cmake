@@ -8,7 +8,6 @@ endif()
 
 install(FILES README.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
-install(DIRECTORY ${PROJECT_BINARY_DIR}/html DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program OPTIONAL)  # by manual.sh
 install(DIRECTORY data/valley DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT program)
 
 # QGIS looks for plug-ins of the system in /usr/share only.

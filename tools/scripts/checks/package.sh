@@ -16,10 +16,7 @@ root="$work/root"
 stage "packages"
 export SOURCE_DATE_EPOCH="${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct 2>/dev/null || date +%s)}"
 cmake --build "$build" --target talus talus-mpi
-rm -rf "$build/packages" "$build/html"
-if command -v mkdocs > /dev/null && [ -x tools/scripts/checks/manual.sh ]; then
-  tools/scripts/checks/manual.sh "$build/html"
-fi
+rm -rf "$build/packages"
 (cd "$build" && cpack)
 for package in "$build"/packages/*.deb; do
   echo && dpkg-deb --field "$package" Package Version Depends Installed-Size
