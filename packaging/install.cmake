@@ -7,7 +7,7 @@ if(TARGET talus-mpi)
 endif()
 
 install(FILES README.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(DIRECTORY data/valley DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT program)
 
 # QGIS looks for plug-ins of the system in /usr/share only.

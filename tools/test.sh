@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs every check: the tests of the release build (layers, core, files, command line, the plug-in in QGIS, reference
 # results); the core and files again as clang builds them, with warnings as errors, invariants checked and sanitizers;
-# equal bytes from both compilers; formatting and clang-tidy.
+# equal bytes from both compilers; the Debian packages in a bare system (as root); formatting and clang-tidy.
 # The measured data and reference results are read from ../shared/data, or from the folder TALUS_DATA.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -22,6 +22,12 @@ cmake --preset release ${TALUS_DATA:+-DTALUS_DATA="$TALUS_DATA"}
 cmake --build --preset release
 stage "release: tests"
 ctest --preset release -j 2
+stage "packages in a bare Debian"
+if [ "$(id -u)" = 0 ]; then
+  tools/scripts/checks/package.sh build/release
+else
+  echo "skipped: tools/scripts/checks/package.sh needs root"
+fi
 stage "asan: build by clang, warnings are errors, invariants checked, sanitizers"
 cmake --preset asan ${TALUS_DATA:+-DTALUS_DATA="$TALUS_DATA"}
 cmake --build --preset asan

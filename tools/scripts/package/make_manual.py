@@ -155,7 +155,7 @@ def main_page(description):
     page += f".SH DESCRIPTION\n{roff(with_full_stop(description['text']))}\n.SH COMMANDS\n"
     for command in description["commands"]:
         page += f".TP\n\\fB{roff(command['name'])}\\fR\n{roff(with_full_stop(command['text']))}\n"
-    page += exit_status() + ".SH FILES\n.TP\n.I /usr/share/doc/talus/docs\nThe manual.\n"
+    page += exit_status() + ".SH FILES\n.TP\n.I /usr/share/doc/talus\nThe manual.\n"
     page += ".TP\n.I /usr/share/doc/talus/examples/valley\nAn example: copy it, then\n"
     page += ".B talus run scenario.toml \\-o out\n.SH SEE ALSO\n"
     return page + ",\n".join(f".BR talus\\-{command['name']} (1)" for command in description["commands"]) + "\n"
