@@ -20,10 +20,16 @@ draw() {  # NAME RASTER options of picture.py
 
 "$talus" run $valley/scenario.toml -q -o "$work/valley"
 "$talus" hazard "$work/valley" -q --width 10
-"$talus" barrier "$work/valley" --screen road -q
+"$talus" barrier "$work/valley" --screen road --gTr 1.02 --gDp 1.02 --gVol 1.02 -q
 "$talus" sources --dem $valley/dem.tif -q -o "$work/candidates.gpkg"
 ogr2ogr "$work/steep.gpkg" "$work/candidates.gpkg" source_polygons
 "$talus" run --dem $valley/dem.tif --sources $cliffs --trajectories 20 -q -o "$work/first"
+ogr2ogr "$work/ground.gpkg" $valley/zones.gpkg -dialect sqlite \
+  -sql "SELECT geom, CASE zone WHEN 'road' THEN 'forest-road-3d' ELSE 'upper-talus-3d' END AS preset FROM zones"
+"$talus" run --dem $valley/dem.tif --sources $cliffs --zones "$work/ground.gpkg" --zone-field preset --screens $lines \
+  --trajectories 50 -q -o "$work/job"  # as docs/road-job.md
+"$talus" hazard "$work/job" -q --width 10
+"$talus" barrier "$work/job" --screen road -q
 out=$work/valley
 
 draw hillshade "" --title "DEM (hillshade), cliffs, lines, houses" --vectors $cliffs $lines $houses
@@ -44,6 +50,8 @@ draw hazard_class "$out/hazard_class.tif" --names none,residual,low,medium,high 
 draw hazard_undecided "$out/hazard_class.tif" --band 4 --names decided,undecided --title "Class not decided by this number of blocks" --vectors $cliffs
 /usr/bin/python3 $figures/barrier_picture.py "$out" --screen road -o "$pictures/valley_barrier.png" --bin 20
 /usr/bin/python3 $figures/grounds_picture.py $valley/dem.tif "$pictures/grounds.png" --talus "$talus" --sources $cliffs --lines $lines
+draw job_hazard "$work/job/hazard_class.tif" --names none,residual,low,medium,high --title "Class of hazard, object 10 m wide" --vectors $cliffs $lines $houses
+/usr/bin/python3 $figures/barrier_picture.py "$work/job" --screen road -o "$pictures/job_barrier.png" --bin 20
 if /usr/bin/python3 -c "import qgis.core" 2>/dev/null; then
   QT_QPA_PLATFORM=offscreen HOME=$work XDG_RUNTIME_DIR=$work /usr/bin/python3 $figures/qgis_picture.py $valley/dem.tif "$out/hazard_class.tif" "$pictures/qgis.png"
 else

@@ -10,8 +10,9 @@ import os
 import sys
 
 from PIL import Image
-from qgis.core import (QgsApplication, QgsHillshadeRenderer, QgsLayoutExporter, QgsLayoutItemLegend, QgsLayoutItemMap,
-                       QgsLayoutItemScaleBar, QgsLayoutPoint, QgsLayoutSize, QgsPrintLayout, QgsProject, QgsRasterLayer)
+from qgis.core import (Qgis, QgsApplication, QgsHillshadeRenderer, QgsLayoutExporter, QgsLayoutItemLegend, QgsLayoutItemMap,
+                       QgsLayoutItemScaleBar, QgsLayoutPoint, QgsLayoutSize, QgsPrintLayout, QgsProject, QgsRasterDataProvider,
+                       QgsRasterLayer)
 
 
 def place(layout, item, x, y, width, height):
@@ -29,6 +30,9 @@ def layers_of(dem_path, raster_path):
             sys.exit(f"{path}: QGIS cannot open it")
     dem.setRenderer(QgsHillshadeRenderer(dem.dataProvider(), 1, 315.0, 45.0))
     dem.renderer().setMultiDirectional(True)
+    dem.setResamplingStage(Qgis.RasterResamplingStage.Provider)  # else the cells show as a grid
+    dem.dataProvider().enableProviderResampling(True)
+    dem.dataProvider().setZoomedInResamplingMethod(QgsRasterDataProvider.ResamplingMethod.Bilinear)
     result.renderer().setOpacity(0.65)
     return dem, result
 
