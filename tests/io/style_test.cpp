@@ -12,6 +12,7 @@
 #include <set>
 
 #include "files.hpp"
+#include "talus/io/results/class_names.hpp"
 #include "talus/io/results/qgis_project.hpp"
 #include "talus/io/results/vector_style.hpp"
 #include "talus/products/raster_table.hpp"
