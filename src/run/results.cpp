@@ -12,6 +12,7 @@
 #include "talus/io/results/qgis_project.hpp"
 #include "talus/io/results/write_crossings.hpp"
 #include "talus/io/results/write_lines.hpp"
+#include "talus/io/results/write_screens.hpp"
 #include "talus/io/results/write_vectors.hpp"
 #include "talus/products/held_at_release.hpp"
 #include "talus/products/maps.hpp"

@@ -92,7 +92,8 @@ class Fields(InputCase):
     def test_a_flag_counts_more_than_the_scenario(self):
         self.write("s.toml", 'dem = "dem.tif"\ntrajectories = 5\n[sources]\nfile = "sources.gpkg"\n[sources.fields]\n'
                    'diameter = "HEIGHT"\nrelease_height = "HEIGHT"\n')
-        self.fails(2, "field HEIGHT (diameter) = 60: must be 0.01 to 50 m", arguments=["check", self.path("s.toml")])
+        self.fails(2, "field HEIGHT (diameter) = 60: must be 0.01 to 50 m", "(and 2 more faults: talus check lists all)",
+                   arguments=["run", self.path("s.toml"), "-o", self.path("no")])
         done = self.run_well("run", self.path("s.toml"), "-o", self.path("out"), "--field", "diameter=Durchmesser")
         self.assertIn("diameter 2 m from Durchmesser", done.stderr)
         self.assertIn("release_height 60 to 62 m from HEIGHT", done.stderr)
@@ -149,7 +150,7 @@ class Tables(InputCase):
     def test_good_tables_pass(self):
         rows = f'\ufeffname;x;y;diameter\r\n"a ""quoted"" name";{X};{Y};2\r\n\r\n;{X};{Y};\r\n" two\r\nlines ";{X};{Y};3'
         said = self.run_well("check", *self.flags(self.table(rows))).stdout
-        self.assertIn("diameter 2 to 3 m (2 of 3 features)", said)
+        self.assertIn("diameter 2 to 3 m (2 of 3 features, 1 empty)", said)
         self.assertIn("3 features, 3 source cells", said)
         self.run_well("check", *self.flags(self.table(f"x\ty\n{X}\t{Y}\n")))
         self.run_well("check", *self.flags(self.table(f"x y\n{X} {Y} \n")))

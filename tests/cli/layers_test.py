@@ -6,7 +6,7 @@ import unittest
 
 from osgeo import gdal, ogr
 
-from support import NORTH, WEST, Case, box, heights, system, write_dem
+from support import NORTH, WEST, Case, box, heights, rows_of, system, write_dem
 
 
 class Layers(Case):
@@ -84,7 +84,7 @@ class Layers(Case):
             source = self.write_sources(name, ogr.OFTString, ["1.2", "0.8", None])
             done = self.run_well("run", *self.flags, "--sources", source, "--diameter", "1", "-o", self.path("out"), "--overwrite")
             self.assertIn("diameter 0.8 to 1.2 m (2 of 3 features, 1 empty; text, read as numbers)", done.stderr)
-            stops = ogr.Open(self.path("out/stops.gpkg")).GetLayer(0)
+            stops = [row for row, _ in rows_of(self.path("out/stops.gpkg"), "stops")]
             self.assertEqual(sorted({row["diameter_m"] for row in stops}), [0.8, 1.0, 1.2])
         # A comma may be one of thousands: never guessed.
         for values, fault in ((["1.2", "1,2"], "'1,2'"), (["1.2", "large"], "'large'")):
@@ -118,26 +118,24 @@ class Layers(Case):
                    arguments=["run", self.path("bad.toml"), "-o", self.path("no")])
         good = self.write_sources("good.gpkg", ogr.OFTReal, [1.0, 2.0, None])
         nets = ogr.Open(self.path("nets.gpkg"), 1)
-        for row in nets.GetLayer(0):
-            row["height"], row["capacity"] = 3.0, 400.0 + row.GetFID()
-            nets.GetLayer(0).SetFeature(row)
-        nets = row = None
+        layer = nets.GetLayer(0)
+        for number in 1, 2:
+            feature = layer.GetFeature(number)
+            feature["height"], feature["capacity"] = 3.0, 400.0 + number
+            layer.SetFeature(feature)
+        nets = layer = feature = None
         said = self.run_well("check", self.write("good.toml", scenario.format(good))).stdout
         self.assertIn("good.gpkg: fields read: diameter 1 to 2 m (2 of 3 features, 1 empty)", said)
         self.assertIn("nets.gpkg: fields read: height 3 m (2 of 2 features), capacity 401 to 402 kJ (2 of 2 features)", said)
 
     def test_features_have_the_number_that_qgis_shows(self):
-        source = self.write_sources("plain.gpkg", ogr.OFTReal, [1.0, 1.5])
-        self.run_well("run", *self.flags, "--sources", source, "--frequency", "1", "-o", self.path("out"))
-        stops = ogr.Open(self.path("out/stops.gpkg")).GetLayer(0)
-        by_number = {(row["feature"], row["diameter_m"]) for row in stops}
-        self.assertEqual(by_number, {("1", 1.0), ("2", 1.5)})
-        other = self.write("weights.toml", "[features]\n1 = 0.5\n2 = 0.25\n")
-        self.run_well("run", *self.flags, "--sources", source, "-o", self.path("plain"))
-        self.run_well("hazard", self.path("out"), "-q")
-        self.fails(2, "no such feature", "1, 2", arguments=["hazard", self.path("out"), "--overwrite", "--frequency",
-                                                         self.write("zero.toml", "[features]\n0 = 0.5\n")])
-        self.assertTrue(os.path.exists(other))
+        source = self.write_sources("plain.gpkg", ogr.OFTReal, [1.0, 1.5], "frequency")
+        self.run_well("run", *self.flags, "--sources", source, "--diameter", "1", "-o", self.path("out"))
+        starts = {(row["feature"], row["x_release"] > WEST + 115) for row, _ in rows_of(self.path("out/stops.gpkg"), "stops")}
+        self.assertEqual(starts, {("1", False), ("2", True)})
+        self.run_well("hazard", self.path("out"), "-q", "--frequency", self.write("weights.toml", "[features]\n1 = 0.5\n2 = 0.25\n"))
+        self.fails(2, "there is no such feature", "1, 2", arguments=["hazard", self.path("out"), "--overwrite", "--frequency",
+                                                                     self.write("zero.toml", "[features]\n0 = 0.5\n")])
 
     def test_paths_in_commands_are_quoted(self):
         for folder in "a b", "it's", "$(touch x)":

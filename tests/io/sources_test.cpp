@@ -190,7 +190,7 @@ TEST_F(Sources, OtherLayersAreNamed) {
   GDALDataset* out = GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE);
   out->CreateLayer("second", nullptr, wkbPoint, nullptr);
   GDALClose(out);
-  EXPECT_TRUE(said(read_sources(file, terrain_, {1, 1}).warnings, "the first, layer, is used; not used: second"));
+  expect_input_error([&] { read_sources(file, terrain_, {1, 1}); }, {"layer, second", "'two.gpkg|layername=layer'"});
 }
 
 TEST_F(Sources, WithoutASystemTheDemsIsTaken) {

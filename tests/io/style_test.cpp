@@ -11,6 +11,8 @@
 #include <numbers>
 #include <set>
 
+#include "files.hpp"
+#include "talus/io/results/class_names.hpp"
 #include "talus/io/results/qgis_project.hpp"
 #include "talus/io/results/vector_style.hpp"
 #include "talus/products/raster_table.hpp"
@@ -74,7 +76,7 @@ TEST(Style, ShownBands) {  // docs/products.md: the P95 of each quantity
 TEST(Style, LabelsWithUnits) {
   const std::string energy = style_of(map_of("energy")), probability = style_of(map_of("impact_probability"));
   EXPECT_NE(energy.find("value=\"100\" label=\"30 to 100 kJ\" color=\"#fca636\""), std::string::npos) << energy;
-  EXPECT_NE(energy.find("value=\"inf\" label=\"above 3000 kJ\" color=\"#0d0887\""), std::string::npos) << energy;
+  EXPECT_NE(energy.find("value=\"inf\" label=\"above 3000 kJ\" color=\"#08054f\""), std::string::npos) << energy;
   EXPECT_NE(probability.find("value=\"inf\" label=\"10 to 100 %\""), std::string::npos) << probability;
 }
 
@@ -185,7 +187,12 @@ TEST(ClassNames, OfClassesAndOfIntensities) {
   EXPECT_STREQ(CPLGetXMLValue(names->psChild->psNext, "", ""), "\"low\" < 30 & rare");
   const std::string intensity = class_names_of(map_of("intensity_T30"));
   EXPECT_NE(intensity.find("tableType=\"athematic\""), std::string::npos) << intensity;
-  EXPECT_NE(intensity.find("<F>30</F>\n      <F>100</F>\n      <F>30 to 100 kJ</F>"), std::string::npos) << intensity;
+  const Tree ranges(CPLParseXMLString(intensity.c_str()), CPLDestroyXMLNode);
+  const CPLXMLNode* row = CPLGetXMLNode(ranges.get(), "=PAMDataset.PAMRasterBand.GDALRasterAttributeTable.Row");
+  std::vector<std::string> cells;
+  for (const CPLXMLNode* cell = row->psNext->psChild; cell != nullptr; cell = cell->psNext)
+    if (cell->eType == CXT_Element) cells.emplace_back(CPLGetXMLValue(cell, "", ""));
+  EXPECT_EQ(cells, (std::vector<std::string>{"30", "100", "30 to 100 kJ", "252", "166", "54"}));  // #fca636
   EXPECT_EQ(class_names_of(map_of("energy")), "");
 }
 
@@ -211,32 +218,43 @@ TEST(VectorStyle, ClassesOfTheRaster) {
   }
 }
 
-TEST(Project, HasATitleForEveryRaster) {
+TEST(ProjectLayers, HaveATitleForEveryRaster) {
   std::set<std::string> known;
   for (const ProjectLayer& layer : project_layers())
     if (!layer.vector) known.insert(layer.name);
   for (const RunRaster& raster : run_rasters()) EXPECT_EQ(known.count(raster.map.name), 1U) << raster.map.name;
+  EXPECT_EQ(project_layers().back().name, "sources") << "every raster of today has a title of its own";
   for (const HazardRaster& raster : hazard_rasters()) {
     const std::string name = raster.map.name.substr(0, raster.map.name.find('<'));
     EXPECT_EQ(known.count(name), 1U) << name;
   }
 }
 
-TEST(Project, NamesOfFilesAndFoldersAreEscaped) {
-  const ProjectGround ground{{"", 0.0, 100.0, 1.0, 1.0}, 10, 10, {}};
+class Project : public test::Files {};
+
+TEST_F(Project, NamesOfFilesAreEscaped) {
+  const std::string dem = write_text("a \"b\" <c> & 'd'.tif", "");
+  const ProjectGround ground{{"", 0.0, 100.0, 1.0, 1.0}, 10, 10, dem};
   const std::string text = project_of({"hazard_class.tif", "return_period_30.tif", "return_period_300.tif",
                                        "stops.gpkg", "mine.tif", "return_period_<b>.tif"},
-                                      "/nowhere", "/some/\"a\" <b> & \x01\xff'c'", ground);
+                                      path(""), path("out"), ground);
   const Tree tree(CPLParseXMLString(text.c_str()), CPLDestroyXMLNode);
   ASSERT_NE(tree, nullptr) << text;
-  EXPECT_STREQ(CPLGetXMLValue(tree.get(), "=qgis.title", ""), "Talus: \"a\" <b> & ?'c'");
-  EXPECT_EQ(text.find('\x01'), std::string::npos);
+  EXPECT_NE(text.find(">../a \"b\" &lt;c&gt; &amp; 'd'.tif</datasource>"), std::string::npos) << text;
   EXPECT_EQ(text.find("mine"), std::string::npos) << "only results are shown";
   EXPECT_EQ(text.find("&lt;b&gt;.tif"), std::string::npos);
   EXPECT_LT(text.find("talus_layer_stops"), text.find("talus_map_hazard_class"));
   EXPECT_LT(text.find("talus_map_hazard_class"), text.find("talus_map_return_period_30"));
   EXPECT_LT(text.find("\"talus_map_return_period_30\""), text.find("\"talus_map_return_period_300\""));
-  EXPECT_NE(text.find("datasource>./stops.gpkg|layername=stops<"), std::string::npos) << text;
+  EXPECT_NE(text.find("<datasource>./stops.gpkg|layername=stops<"), std::string::npos) << text;
+}
+
+TEST_F(Project, AFileThatIsNotThereHasNoHillshade) {
+  for (const std::string& dem :
+       {path("none.tif"), std::string("/vsicurl/http://example.org/dem.tif"), std::string("x.tif")})
+    EXPECT_EQ(project_of({}, path(""), path("out"), {{"", 0.0, 100.0, 1.0, 1.0}, 10, 10, dem}).find("hillshade"),
+              std::string::npos)
+        << dem;
 }
 
 }  // namespace

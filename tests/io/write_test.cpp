@@ -218,9 +218,22 @@ TEST_F(Write, OnlyResultsAreReplaced) {
   write_text(folder_ / "mine" / "diary.txt", "");
   EXPECT_THROW(OutputFolder(folder_ / "file", true), InputError);
   EXPECT_THROW(OutputFolder(folder_ / "mine", true), InputError);
-  EXPECT_THROW(OutputFolder(folder_ / "none" / "out", true), InputError);
+  EXPECT_THROW(OutputFolder(folder_ / "file" / "out", true), InputError);
   EXPECT_THROW(OutputFolder("", true), InputError);
   EXPECT_THROW(OutputFolder("/", true), InputError);
+}
+
+TEST_F(Write, FoldersAboveAreMadeAndRemovedIfEmpty) {
+  { const OutputFolder refused(folder_ / "a" / "b" / "out", false); }
+  EXPECT_FALSE(fs::exists(folder_ / "a"));
+  {
+    OutputFolder folder(folder_ / "a" / "b" / "out", false);
+    folder.commit();
+  }
+  EXPECT_TRUE(fs::is_directory(folder_ / "a" / "b" / "out"));
+  { const OutputFolder refused(folder_ / "a" / "c" / "out", false); }
+  EXPECT_TRUE(fs::exists(folder_ / "a" / "b"));
+  EXPECT_FALSE(fs::exists(folder_ / "a" / "c"));
 }
 
 TEST_F(Write, TextOnAFullDiskIsAnError) {

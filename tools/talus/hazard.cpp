@@ -183,6 +183,15 @@ std::string object_text(const talus::io::HazardRecord& record) {
          " m (larger cells are hit more often; --width 10 for an object 10 m wide, whatever the cell)";
 }
 
+/// The results are complete without the project: a fault is a warning.
+void refresh_project(const fs::path& folder) {
+  try {
+    talus::io::refresh_project(folder);
+  } catch (const std::exception& error) {
+    say("warning", std::string(talus::io::kProjectFile) + " is as it was before: " + error.what());
+  }
+}
+
 int hazard(const Options& options) {
   catch_signals();
   const fs::path folder(options.folder), file = tally_file(folder);
@@ -219,7 +228,7 @@ int hazard(const Options& options) {
   talus::io::write_text(staged.temporary() / "hazard.json", talus::io::hazard_json(record));
   const std::vector<std::string> removed = staged.to_remove();
   staged.commit();
-  talus::io::refresh_project(folder);
+  refresh_project(folder);
   if (options.quiet) return 0;
   if (!removed.empty())
     say("", "removed, as not asked for this time: " + talus::joined(removed) +

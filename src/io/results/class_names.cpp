@@ -1,4 +1,5 @@
-// The names of the classes of a map, in GDAL's sidecar file: drivers of GeoTIFF keep both kinds of names there.
+#include "talus/io/results/class_names.hpp"
+
 #include <array>
 #include <cmath>
 

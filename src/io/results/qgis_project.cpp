@@ -11,6 +11,7 @@
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
+#include "talus/products/raster_table.hpp"
 #include "xml.hpp"
 
 namespace talus::io {
@@ -171,6 +172,16 @@ void add_view(const Element& root, const ProjectGround& ground) {
   add_system(canvas, "destinationsrs", geo.crs_wkt);
 }
 
+/// Adds the rasters of a run that have no title here: their names are their titles.
+std::vector<ProjectLayer> with_further_rasters(std::vector<ProjectLayer> layers) {
+  for (const RunRaster& raster : run_rasters()) {
+    const std::string& name = raster.map.name;
+    const auto known = [&](const ProjectLayer& layer) { return !layer.vector && layer.name == name; };
+    if (std::ranges::none_of(layers, known)) layers.push_back({name, name});
+  }
+  return layers;
+}
+
 /// The ground of a finished run, from its record.
 ProjectGround ground_of(const Json& run) {
   const Json& grid = run.at("grid");
@@ -186,7 +197,7 @@ ProjectGround ground_of(const Json& run) {
 }  // namespace
 
 const std::vector<ProjectLayer>& project_layers() {
-  static const std::vector<ProjectLayer> layers{
+  static const std::vector<ProjectLayer> layers = with_further_rasters({
       {"objects", "Objects: return period of a hit", true},
       {"screens", "Screens: energy, P95", true},
       {"exits", "Ends off the map: energy", true},
@@ -216,7 +227,7 @@ const std::vector<ProjectLayer>& project_layers() {
       {"exits", "Exits"},
       {"release", "Release cells"},
       {"sources", "Source cells that reach the cell"},
-  };
+  });
   return layers;
 }
 
@@ -233,7 +244,7 @@ std::string project_of(const std::vector<std::string>& files, const fs::path& fo
   std::vector<Shown> shown = shown_layers(files, folder);
   check_layers(shown);
   if (auto hillshade = hillshade_of(ground.dem, shown_as)) shown.push_back(std::move(*hillshade));
-  const std::string title = "Talus: " + shown_as.filename().string();
+  const std::string title = "Talus";  // without the name of the folder: the same results are the same bytes
   const QgisDocument document;
   const Element root = document.root();
   root.set("projectname", title);

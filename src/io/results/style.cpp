@@ -9,6 +9,7 @@
 
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
+#include "talus/io/results/class_names.hpp"
 #include "xml.hpp"
 
 namespace talus::io {

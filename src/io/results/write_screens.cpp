@@ -1,3 +1,5 @@
+#include "talus/io/results/write_screens.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +9,6 @@
 #include "talus/base/expect.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/results/vector_style.hpp"
-#include "talus/io/results/write_lines.hpp"
 
 namespace talus::io {
 namespace {

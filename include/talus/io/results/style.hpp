@@ -30,10 +30,6 @@ std::vector<LegendClass> classes_of(const Map& map);
 /// legend, or not the band that its legend shows.
 std::string style_of(const Map& map);
 
-/// The names of a map's classes as GDAL stores them beside a raster: category names and a raster attribute table with
-/// the colours. Empty if the legend does not ask for it (`Legend::names_in_file`).
-std::string class_names_of(const Map& map);
-
 /// Writes `NAME.qml` and, if there are names of classes, `NAME.tif.aux.xml` beside the raster, where QGIS and GDAL find
 /// them by themselves. Throws std::runtime_error.
 void write_style(const std::filesystem::path& folder, const Map& map);

@@ -1,8 +1,6 @@
 #pragma once
-#include <filesystem>
 #include <string>
 
-#include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/products/screen_summary.hpp"
 #include "talus/simulate/totals.hpp"
 
@@ -12,9 +10,6 @@ namespace talus::io {
 ///
 ///   screen,quantity,unit,crossings,blocks,share_of_released,mean,p50,p95,p99,maximum
 std::string screens_summary_csv(const Scenario& scenario, const ScreenSummary& summary);
-
-/// Writes `screens.gpkg`: the lines of each screen with the figures of its crossings. docs/products.md.
-void write_screens(const std::filesystem::path& file, const LoadedScenario& loaded, const ScreenSummary& summary);
 
 /// The text of `barriers.csv`: a row per barrier and part of kBarrierPart metres of its line.
 ///
