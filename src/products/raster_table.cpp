@@ -182,10 +182,10 @@ RunRaster exceedance(Quantity quantity, const std::string& name, const std::stri
 
 /// Mean, percentiles and maximum of the values of a cell.
 void put_distribution(double mean, const LogHistogram& histogram, double maximum, std::span<double> values) {
-  values[0] = std::min(maximum, mean);
-  values[1] = std::min(maximum, histogram.percentile(0.50));
-  values[2] = std::min(maximum, histogram.percentile(0.95));
-  values[3] = std::min(maximum, histogram.percentile(0.99));
+  constexpr std::array kShares{0.50, 0.95, 0.99};
+  histogram.percentiles(kShares, values.subspan(1, kShares.size()));
+  values[0] = mean;
+  for (double& value : values.first(4)) value = std::min(maximum, value);
   values[4] = maximum;
 }
 

@@ -218,7 +218,7 @@ class Trouble(Case):
     def test_full_disk(self):
         disk = self.path("disk")
         os.mkdir(disk)
-        if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=600k", "none", disk],
+        if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=400k", "none", disk],
                                                check=False, capture_output=True).returncode != 0:
             self.skipTest("only root can mount a small disk")
         self.addCleanup(subprocess.run, ["umount", disk], check=True)

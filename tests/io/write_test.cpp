@@ -7,6 +7,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "io/files/cog_file.hpp"
+#include "io/files/compression.hpp"
 #include "io/gdal/dataset.hpp"
 #include "io/gdal/point_index.hpp"
 #include "talus/base/error.hpp"
@@ -161,6 +163,75 @@ TEST_F(Write, EqualMapsGiveEqualBytesAndNothingElse) {
   ASSERT_TRUE(write_map(map, target(kColumns, kRows)));
   EXPECT_EQ(text_of_file(folder_ / "energy.tif"), first);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+/// Rectangle of cells with equal values in a map that is quiet everywhere else; known as such by `everywhere` or not.
+Map quiet_map(bool known) {
+  const auto quiet = [](const CellWindow& w) { return w.row >= 300 || w.column + w.columns <= 512; };
+  Map map = map_of(Map::Kind::Quantity, {{"mean", "kJ"}, {"P95", "kJ"}});
+  map.smallest_in_overviews = true;
+  map.fill = [quiet](const CellWindow& window, std::span<double> values) {
+    auto value = values.begin();
+    for (std::size_t b = 0; b < 2; ++b)
+      for (int row = window.row; row < window.row + window.rows; ++row)
+        for (int c = window.column; c < window.column + window.columns; ++c)
+          *value++ = quiet({c, row, 1, 1}) ? (b == 0 ? 7.0 : std::nan("")) : value_at(c, row, b);
+  };
+  if (known)
+    map.everywhere = [quiet](const CellWindow& window) -> std::optional<std::vector<double>> {
+      if (!quiet(window)) return std::nullopt;
+      return std::vector<double>{7.0, std::nan("")};
+    };
+  return map;
+}
+
+TEST_F(Write, QuietPartsHaveTheBytesOfAnyOther) {
+  ASSERT_TRUE(write_map(quiet_map(false), target(kColumns, kRows)));
+  const std::string looked_at = text_of_file(folder_ / "energy.tif");
+  ASSERT_TRUE(write_map(quiet_map(true), target(kColumns, kRows)));
+  EXPECT_EQ(text_of_file(folder_ / "energy.tif"), looked_at);
+}
+
+TEST_F(Write, PartsInAnyOrderGiveTheSameBytes) {
+  const Map map = quiet_map(true);
+  const MapTarget to = target(kColumns, kRows);
+  ASSERT_TRUE(write_map(map, to));
+  const std::string first = text_of_file(folder_ / "energy.tif");
+  fs::remove(folder_ / "energy.tif");
+  MapFile file(map, to);
+  for (std::size_t i = file.parts(); i-- > 0;) {
+    EXPECT_FALSE(fs::exists(folder_ / "energy.tif"));
+    EXPECT_EQ(file.write_part(i), i == 0);
+  }
+  EXPECT_EQ(text_of_file(folder_ / "energy.tif"), first);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(Write, AMapThatIsNotFinishedLeavesNothing) {
+  const Map map = quiet_map(true);
+  const MapTarget to = target(kColumns, kRows);
+  {
+    MapFile file(map, to);
+    file.write_part(0);
+    EXPECT_FALSE(fs::is_empty(folder_));
+  }
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(Write, ALargeFileIsABigTiffOfTheSamePixels) {
+  TileStore store(folder_ / "map.tif");
+  const std::vector<float> pixels(128 * 128, 5.0F);
+  SmallTiff small(1, GDT_Float32);
+  const CogLevel level{128, 128, 1, 1, {store.add(compressed_tile(pixels, 128, 1))}};
+  const CogLevel overview{64, 64, 1, 1, {TilePlace{}}};
+  CogFormat format{128, kDeflate, kPredictor<float>, small.tags()};
+  format.most_small = 0;
+  ASSERT_TRUE(write_cog(folder_ / "map.tif", format, std::array{level, overview}, store, {}));
+  EXPECT_EQ(text_of_file(folder_ / "map.tif").substr(0, 4), std::string("II+\0", 4));
+  const Dataset file = open_dataset((folder_ / "map.tif").string(), GDAL_OF_RASTER);
+  EXPECT_STREQ(file->GetMetadataItem("LAYOUT", "IMAGE_STRUCTURE"), "COG");
+  EXPECT_EQ(read(file->GetRasterBand(1)), pixels);
+  EXPECT_EQ(file->GetRasterBand(1)->GetOverviewCount(), 1);
 }
 
 TEST_F(Write, AnEndedMapLeavesNothing) {

@@ -27,8 +27,8 @@ constexpr double kStop = 172.0;            // a row of stops.gpkg [byte]
 constexpr double kPathPoint = 36.0;        // of trajectories.gpkg [byte]
 constexpr double kCrossing = 150.0;        // a row of screens.csv [byte]
 constexpr double kKeptCell = 344.0;        // of a touched cell in the saved tally [byte]
-constexpr double kEmptyCell = 1.9e-8;      // of the grid, per band, to write [s]
-constexpr double kTouchedCell = 1.6e-7;    // of a touched cell, per band, to write [s]
+constexpr double kEmptyCell = 4e-10;       // of the grid, per band, to write [s]
+constexpr double kTouchedCell = 1.3e-7;    // of a touched cell, per band, to write [s]
 constexpr double kWriteTrajectory = 5e-6;  // a row of stops.gpkg [s]
 constexpr double kWriteFiles = 0.6;        // to create all files [s]
 
@@ -99,8 +99,7 @@ double bytes_at_work(const Scenario& scenario, const RunSize& size) {
 
 double seconds_to_write(const Scenario& scenario, const RunSize& size, unsigned processors) {
   const double rasters = bands(scenario) * (kEmptyCell * size.grid_cells + kTouchedCell * size.touched_cells);
-  return kWriteFiles + rasters / processors +
-         kWriteTrajectory * size.trajectories;
+  return kWriteFiles + rasters / processors + kWriteTrajectory * size.trajectories;
 }
 
 std::string rounded_text(double value) {

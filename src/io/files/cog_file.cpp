@@ -216,8 +216,7 @@ bool write_cog(const std::filesystem::path& path, const CogFormat& format, std::
     none.emplace_back(level.tiles.size());
     for (const TilePlace& tile : level.tiles) bytes += tile.size == 0 ? 0 : tile.size + 2 * kAround;
   }
-  constexpr std::uint64_t kMost = (std::uint64_t{1} << 32U) - 1;  // of a file with places of 4 bytes
-  const bool big = head(format, levels, none, Layout(false)).size() + bytes > kMost;
+  const bool big = head(format, levels, none, Layout(false)).size() + bytes > format.most_small;
   const Layout layout(big);
   const std::uint64_t begin = head(format, levels, none, layout).size();
   const std::string first = head(format, levels, offsets_of(levels, begin), layout);

@@ -23,6 +23,7 @@ struct CogFormat {
   int side;  ///< pixels of a tile
   std::uint16_t compression, predictor;
   std::vector<TiffTag> tags;  ///< of GDAL; those of the size, the tiles and the compression are not taken over
+  std::uint64_t most_small = (std::uint64_t{1} << 32U) - 1;  ///< bytes; a larger file is a BigTIFF
 };
 
 /// Writes a Cloud Optimized GeoTIFF: all directories, then the tiles of each overview from the smallest to the largest,

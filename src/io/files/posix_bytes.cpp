@@ -12,7 +12,8 @@ namespace talus::io {
 namespace {
 
 [[noreturn]] void fail(const char* what, int cause) {
-  throw std::runtime_error(std::string(what) + ": " + std::system_category().message(cause));
+  throw std::runtime_error(std::string(what) + ": " +
+                           (cause == ENOSPC ? "the disk is full" : std::system_category().message(cause)));
 }
 
 /// Calls pread or pwrite until all bytes are moved.

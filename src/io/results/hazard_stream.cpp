@@ -1,10 +1,15 @@
 #include "hazard_stream.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
 #include <stdexcept>
+#include <system_error>
 
-#include "io/gdal/cause_of_failure.hpp"
+#include "io/files/compression.hpp"
+#include "io/files/posix_bytes.hpp"
 #include "io/gdal/regular_file.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/files/output_folder.hpp"
@@ -12,8 +17,9 @@
 namespace talus::io {
 namespace {
 
-constexpr std::size_t kBuffer = 1U << 18U;
-constexpr std::size_t kDigits = 64;  // of the checksum
+constexpr std::size_t kWritten = 1U << 22U;  // compressed at once
+constexpr std::size_t kBuffer = 1U << 18U;   // read at once
+constexpr std::size_t kDigits = 64;          // of the checksum
 
 std::string gzip_name(const std::filesystem::path& file) {
   return "/vsigzip/" + file.string();
@@ -22,44 +28,56 @@ std::string gzip_name(const std::filesystem::path& file) {
 }  // namespace
 
 HazardWriter::HazardWriter(const std::filesystem::path& file) : file_(file) {
-  stream_ = VSIFOpenL(gzip_name(file).c_str(), "wb");
-  if (stream_ == nullptr) fail();
+  try {
+    descriptor_ = create_file(file_);
+  } catch (const std::runtime_error& error) {
+    fail(error.what());
+  }
 }
 
 HazardWriter::~HazardWriter() {
-  if (stream_ == nullptr) return;
-  VSIFCloseL(stream_);
+  if (descriptor_ < 0) return;
+  close(descriptor_);
   std::error_code ignored;
   std::filesystem::remove(file_, ignored);
 }
 
 void HazardWriter::put(const void* bytes, std::size_t count) {
   buffer_.append(static_cast<const char*>(bytes), count);
-  if (buffer_.size() >= kBuffer) flush();
+  if (buffer_.size() >= kWritten) flush();
 }
 
 void HazardWriter::flush() {
   sum_.add(buffer_);
-  if (!buffer_.empty() && VSIFWriteL(buffer_.data(), 1, buffer_.size(), stream_) != buffer_.size()) fail();
+  write(buffer_);
   buffer_.clear();
+}
+
+void HazardWriter::write(const std::string& bytes) {
+  if (bytes.empty()) return;
+  const std::vector<std::byte> gzip = gzipped(std::as_bytes(std::span(bytes)));
+  try {
+    write_bytes(descriptor_, gzip, end_);
+  } catch (const std::runtime_error& error) {
+    fail(error.what());
+  }
+  end_ += gzip.size();
 }
 
 void HazardWriter::finish() {
   flush();
-  const std::string digits = sum_.digits();
-  if (VSIFWriteL(digits.data(), 1, digits.size(), stream_) != digits.size()) fail();
-  VSILFILE* stream = stream_;
-  stream_ = nullptr;
-  if (VSIFCloseL(stream) != 0 || messages_.failed()) {
-    std::error_code ignored;
-    std::filesystem::remove(file_, ignored);
-    fail();
-  }
+  write(sum_.digits());
+  const int descriptor = descriptor_;
+  descriptor_ = -1;
+  if (close(descriptor) == 0) return;
+  const int cause = errno;
+  std::error_code ignored;
+  std::filesystem::remove(file_, ignored);
+  fail("cannot be written: " + std::system_category().message(cause));
 }
 
-void HazardWriter::fail() {
-  throw std::runtime_error(file_.filename().string() +
-                           ": cannot be written: " + cause_of_failure(file_.parent_path(), messages_.take()));
+void HazardWriter::fail(const std::string& cause) const {
+  throw std::runtime_error(file_.filename().string() + ": " + cause);
 }
 
 HazardReader::HazardReader(const std::filesystem::path& file) : name_(file.string()) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -24,11 +25,12 @@ class HazardWriter {
 
  private:
   void flush();
-  [[noreturn]] void fail();
+  void write(const std::string& bytes);
+  [[noreturn]] void fail(const std::string& cause) const;
 
   std::filesystem::path file_;
-  GdalMessages messages_;
-  VSILFILE* stream_ = nullptr;
+  int descriptor_ = -1;
+  std::uint64_t end_ = 0;  // bytes in the file
   std::string buffer_;
   Sha256 sum_;
 };

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/files/tile_compression.hpp"
+#include "io/files/compression.hpp"
 #include "talus/base/expect.hpp"
 
 namespace talus::io {

@@ -6,8 +6,7 @@
 #include <atomic>
 #include <stdexcept>
 
-#include "io/files/tile_compression.hpp"
-#include "io/gdal/cause_of_failure.hpp"
+#include "io/files/compression.hpp"
 #include "io/gdal/geotiff_tags.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/files/output_folder.hpp"
@@ -105,23 +104,37 @@ std::size_t MapFile::parts() const {
 
 bool MapFile::write_part(std::size_t i) {
   if (target_.proceed && !target_.proceed()) return false;
-  try {
+  bool last = false;
+  named([&] {
     std::call_once(begun_, [this] { store_ = std::make_unique<TileStore>(target_.folder / (map_.name + ".tif")); });
     tiles_->make_part(i, *store_);
-    return --missing_ == 0 && finish();
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(map_.name + ".tif: " + cause_of_failure(target_.folder, error.what()));
-  }
+    last = --missing_ == 0;
+  });
+  return last && finish();
 }
 
 bool MapFile::finish() {
   StagedPath staged(StagedPath::Kind::File, target_.folder / (map_.name + ".tif"), ".tif");
-  if (!tiles_->write(staged.hidden(), *store_)) return false;
+  bool whole = false;
+  named([&] { whole = tiles_->write(staged.hidden(), *store_); });
   store_.reset();
   tiles_.reset();
-  if (const std::error_code error = staged.commit())
-    throw std::runtime_error("cannot be given its name: " + error.message());
+  if (!whole) return false;
+  const std::error_code error = staged.commit();
+  named([&] {
+    if (error) throw std::runtime_error("cannot be given its name: " + error.message());
+  });
   return true;
+}
+
+/// Puts the name of the file before the message of an exception.
+template <class Work>
+void MapFile::named(const Work& work) {
+  try {
+    work();
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(map_.name + ".tif: " + error.what());
+  }
 }
 
 bool write_map(const Map& map, const MapTarget& target) {

@@ -225,6 +225,41 @@ double LogHistogram::percentile(double share) const {
   return bin.low + (bin.high - bin.low) * (rank - bin.below - 0.5) / bin.count;
 }
 
+/// Calls visit(key, count) for the bins that hold something, in ascending order; until it returns false.
+template <class Visit>
+void LogHistogram::each_bin(const Visit& visit) const {
+  if (counts_ != nullptr) {
+    for (int bin = 0; bin < size_; ++bin)
+      if (const std::uint32_t here = get(bin); here > 0 && !visit(first_ + bin, here)) return;
+    return;
+  }
+  auto keys = few_;
+  const auto end = keys.begin() + few_count_;
+  std::sort(keys.begin(), end);
+  for (auto key = keys.begin(); key != end;) {
+    const int lowest = (keys[few_count_ - 1U] | 7) - kSpan + 1;  // as `cover` has it
+    const int here = std::max<int>(*key, lowest);
+    const auto next = std::find_if(key, end, [&](int other) { return std::max(other, lowest) != here; });
+    if (!visit(here, static_cast<std::uint32_t>(next - key))) return;
+    key = next;
+  }
+}
+
+void LogHistogram::percentiles(std::span<const double> shares, std::span<double> values) const {
+  const auto total = static_cast<double>(count());
+  std::size_t next = 0;
+  double below = 0.0;
+  const auto rank = [&] { return std::clamp(std::ceil(shares[next] * total), 1.0, total); };
+  std::ranges::fill(values, 0.0);
+  if (total == 0.0) return;
+  each_bin([&](int key, double here) {
+    for (; next < shares.size() && below + here >= rank(); ++next)
+      values[next] = edge_of(key) + (edge_of(key + 1) - edge_of(key)) * (rank() - below - 0.5) / here;
+    below += here;
+    return next < shares.size();
+  });
+}
+
 /// The few values as counts.
 LogHistogram LogHistogram::spilled() const {
   LogHistogram bins;

@@ -56,6 +56,8 @@ class MapFile {
   template <class T>
   class TilesOf;
   bool finish();
+  template <class Work>
+  void named(const Work& work);
 
   const Map& map_;
   const MapTarget& target_;

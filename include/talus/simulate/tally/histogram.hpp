@@ -46,6 +46,8 @@ class LogHistogram {
   /// is less than 6.25 %. If the exact answer is below m = max(kFloor, largest / 128), only this is known, and the
   /// returned value is below 1.0625 * m. 0 if nothing was counted.
   double percentile(double share) const;
+  /// Several of them in one look at the bins: the same numbers. @param shares  ascending
+  void percentiles(std::span<const double> shares, std::span<double> values) const;
 
   /// A bin with what it holds.
   struct Bin {
@@ -78,6 +80,8 @@ class LogHistogram {
   void spill(int low_key, int high_key);
   void widen(std::uint8_t width);
   LogHistogram spilled() const;
+  template <class Visit>
+  void each_bin(const Visit& visit) const;
 
   MemoryPolicy memory_;
   unsigned char* counts_ = nullptr;  // null while there are few values

@@ -39,6 +39,9 @@ void expect_within_bound(Values values, const LogHistogram& histogram, const cha
   ASSERT_EQ(histogram.count(), values.size()) << what;
   const double apart = std::max<double>(LogHistogram::kFloor, values.back() / 128.0);  // smaller ones share a bin
   const auto n = static_cast<double>(values.size());
+  std::array<double, std::size(kShares)> together{};
+  histogram.percentiles(kShares, together);
+  for (std::size_t i = 0; i < together.size(); ++i) ASSERT_EQ(together[i], histogram.percentile(kShares[i])) << what;
   for (const double share : kShares) {
     const auto k = static_cast<std::size_t>(std::clamp(std::ceil(share * n), 1.0, n));
     const double exact = values[k - 1], found = histogram.percentile(share);

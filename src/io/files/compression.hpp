@@ -13,6 +13,9 @@ namespace talus::io {
 std::vector<std::byte> compressed_tile(std::span<const float> pixels, std::size_t width, std::size_t bands);
 std::vector<std::byte> compressed_tile(std::span<const std::uint32_t> pixels, std::size_t width, std::size_t bands);
 
+/// A complete gzip file of these bytes. Several, one after the other, are a gzip file too.
+std::vector<std::byte> gzipped(std::span<const std::byte> bytes);
+
 /// Numbers of the TIFF specification for what `compressed_tile` does.
 inline constexpr std::uint16_t kDeflate = 8;
 template <class T>
