@@ -12,7 +12,7 @@ if [ "${CI:-}" = true ] && [ ! -d "$data/reference" ]; then
 fi
 stage() { printf '\n== %s (%d min %02d s so far)\n' "$1" $((SECONDS / 60)) $((SECONDS % 60)); }
 
-tools/install_packages.sh openmpi-bin python3-scipy clang clang-format clang-tidy libomp-dev libclang-rt-14-dev
+tools/install_packages.sh openmpi-bin python3-scipy clang clang-format clang-tidy libomp-dev libclang-rt-14-dev chromium
 stage "formatting"
 git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror
 stage "release: build"

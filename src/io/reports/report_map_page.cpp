@@ -101,23 +101,51 @@ std::string points_of(const std::vector<Eigen::Vector2d>& places, const Scale& s
   return points;
 }
 
-/// A name at a place of the map, with a pale rim; within the map.
-void put_name(Svg& svg, const std::string& name, const Eigen::Vector2d& place, const char* colour, const Scale& scale) {
-  const double x = scale.x(place.x()), y = scale.y(place.y());
-  if (!(x >= 0.0 && y >= 0.0 && x <= scale.width && y <= scale.height)) return;
-  const bool right = x > 0.8 * scale.width;
-  svg.words({{"x", right ? x - 5.0 : x + 5.0},
-             {"y", std::max(12.0, y - 4.0)},
-             {"fill", colour},
-             {"text-anchor", right ? "end" : "start"},
-             {"font-weight", "bold"},
-             {"stroke", "#fff"},
-             {"stroke-width", 3},
-             {"paint-order", "stroke"}},
-            shortened(name, 32));
-}
+/// Writes names on the map, each beside its place, where it is within the map and covers no earlier one; a name
+/// without such a place is left out.
+class Names {
+ public:
+  Names(Svg& svg, const Scale& scale) : svg_(svg), scale_(scale) {}
 
-void draw_screens(Svg& svg, const std::vector<Screen>& screens, const Scale& scale) {
+  bool put(const std::string& name, const Eigen::Vector2d& place, const char* colour) {
+    constexpr double kLetter = 7.2, kLine = 13.0;  // of bold letters, generous [px]
+    const std::string text = shortened(name, 32);
+    const double x = scale_.x(place.x()), y = scale_.y(place.y()), width = kLetter * static_cast<double>(text.size());
+    for (const double down : {-4.0, 14.0, 5.0})
+      for (const double right : {6.0, -6.0 - width}) {
+        const Box box{x + right, y + down - kLine, x + right + width, y + down};
+        if (!is_free(box)) continue;
+        taken_.push_back(box);
+        svg_.words({{"x", box.left},
+                    {"y", box.low - 2.0},
+                    {"fill", colour},
+                    {"font-weight", "bold"},
+                    {"stroke", "#fff"},
+                    {"stroke-width", 3},
+                    {"paint-order", "stroke"}},
+                   text);
+        return true;
+      }
+    return false;
+  }
+
+ private:
+  struct Box {
+    double left, top, right, low;
+  };
+  bool is_free(const Box& box) const {
+    if (!(box.left >= 0.0 && box.top >= 0.0 && box.right <= scale_.width && box.low <= scale_.height)) return false;
+    return std::ranges::none_of(taken_, [&](const Box& other) {
+      return box.left < other.right && other.left < box.right && box.top < other.low && other.top < box.low;
+    });
+  }
+
+  Svg& svg_;
+  const Scale& scale_;
+  std::vector<Box> taken_;
+};
+
+void draw_screens(Svg& svg, const std::vector<Screen>& screens, const Scale& scale, Names& names) {
   for (const Screen& screen : screens)
     for (const auto& line : screen.lines)
       svg.element("polyline", {{"points", points_of(line, scale)},
@@ -126,11 +154,12 @@ void draw_screens(Svg& svg, const std::vector<Screen>& screens, const Scale& sca
                                {"stroke-width", 2},
                                {"stroke-dasharray", "7 3"}});
   for (const Screen& screen : screens)
-    if (!screen.lines.empty() && !screen.lines.front().empty())
-      put_name(svg, screen.id, screen.lines.front()[screen.lines.front().size() / 2], kScreenColour, scale);
+    for (const auto& line : screen.lines)
+      if (std::ranges::any_of(line, [&](const auto& place) { return names.put(screen.id, place, kScreenColour); }))
+        break;
 }
 
-void draw_objects(Svg& svg, const Outlines& objects, const Scale& scale) {
+void draw_objects(Svg& svg, const Outlines& objects, const Scale& scale, Names& names) {
   constexpr std::size_t kMostNames = 40;
   for (const Outline& object : objects.list) {
     if (object.places.size() == 1) {
@@ -148,13 +177,13 @@ void draw_objects(Svg& svg, const Outlines& objects, const Scale& scale) {
                                                          {"stroke-width", 2}});
   }
   if (objects.list.size() > kMostNames) return;
-  for (const Outline& object : objects.list) put_name(svg, object.name, object.places.front(), kObjectColour, scale);
+  for (const Outline& object : objects.list) names.put(object.name, object.places.front(), kObjectColour);
 }
 
 /// Ticks with coordinates at the lower and the left rim.
 void draw_coordinates(Svg& svg, const Scale& scale) {
   const double east = scale.west + scale.width / scale.per_metre, south = scale.north - scale.height / scale.per_metre;
-  for (const double place : ticks(scale.west, east, 4)) {
+  for (const double place : ticks(scale.west, east, 6)) {
     const double x = scale.x(place);
     svg.element("line", {{"x1", x}, {"x2", x}, {"y1", scale.height}, {"y2", scale.height - 7.0}, {"stroke", "#000"}});
     if (x > 30.0 && x < scale.width - 30.0)
@@ -166,19 +195,16 @@ void draw_coordinates(Svg& svg, const Scale& scale) {
                  {"paint-order", "stroke"}},
                 with_decimals(place, 0));
   }
-  for (const double place : ticks(south, scale.north, 4)) {
+  for (const double place : ticks(south, scale.north, 6)) {
     const double y = scale.y(place);
     svg.element("line", {{"x1", 0}, {"x2", 7}, {"y1", y}, {"y2", y}, {"stroke", "#000"}});
     if (y > 14.0 && y < scale.height - 26.0)
       svg.words({{"x", 10}, {"y", y + 4.0}, {"stroke", "#fff"}, {"stroke-width", 3}, {"paint-order", "stroke"}},
                 with_decimals(place, 0));
   }
-  svg.element("rect", {{"x", 0},
-                       {"y", 0},
-                       {"width", scale.width},
-                       {"height", scale.height},
-                       {"fill", "none"},
-                       {"stroke", "#000"}});
+  svg.element(
+      "rect",
+      {{"x", 0}, {"y", 0}, {"width", scale.width}, {"height", scale.height}, {"fill", "none"}, {"stroke", "#000"}});
 }
 
 /// The largest length of 1, 2 or 5 times a power of ten that is at most `most` [m].
@@ -211,28 +237,33 @@ void draw_north(Svg& svg, double x, double y) {
 /// The key of the outlines, the scale bar, the arrow, and where and when.
 Markup furniture(const MapSheet& sheet, const RunFacts& run, const MapImprint& imprint, const Scale& scale) {
   Svg svg;
-  double y = scale.drawing_height() - 128.0;
+  double y = scale.drawing_height() - 132.0;
   const auto key = [&](const char* colour, const char* dashes, const std::string& text) {
-    svg.element("line", {{"x1", 0}, {"x2", 22}, {"y1", y - 4.0}, {"y2", y - 4.0}, {"stroke", colour},
-                         {"stroke-width", 2}, {"stroke-dasharray", dashes}});
+    svg.element("line", {{"x1", 0},
+                         {"x2", 22},
+                         {"y1", y - 4.0},
+                         {"y2", y - 4.0},
+                         {"stroke", colour},
+                         {"stroke-width", 2},
+                         {"stroke-dasharray", dashes}});
     svg.words({{"x", 28}, {"y", y}}, text);
     y -= 16.0;
   };
   if (!sheet.objects.list.empty()) key(kObjectColour, "none", "objects");
   if (!run.screens.empty()) key(kScreenColour, "7 3", "screens");
   if (!sheet.sources.empty()) key(kSourceColour, "none", "source cells");
-  y = scale.drawing_height() - 112.0;
+  y = scale.drawing_height() - 116.0;
   draw_scale_bar(svg, y, scale);
   draw_north(svg, kLegend - 26.0, y - 20.0);
   const std::string side = with_digits(sheet.pixel_x, 4), cells = std::to_string(sheet.window.side);
   y += 38.0;
-  for (const std::string& line : {shortened(imprint.crs, 36), std::string("grid north; coordinates in m"),
-                                  "run of " + imprint.date,
-                                  sheet.window.side == 1 ? "1 pixel = 1 cell of " + side + " m"
-                                                         : "1 pixel = " + cells + " x " + cells + " cells, " + side + " m",
-                                  shortened(imprint.attribution, 36)}) {
+  for (const std::string& line :
+       {shortened(imprint.crs, 36), std::string("grid north; coordinates in m"), "run of " + imprint.date,
+        sheet.window.side == 1 ? "1 pixel = 1 cell of " + side + " m"
+                               : "1 pixel = " + cells + " x " + cells + " cells, " + side + " m",
+        shortened(imprint.attribution, 36)}) {
     svg.words({{"x", 0}, {"y", y}}, line);
-    y += 15.0;
+    y += 16.0;
   }
   Markup group = "<g id='furniture' "_html;
   set(group, "transform", "translate(" + tenth(scale.width + kGap) + " 0)");
@@ -247,14 +278,16 @@ Markup outlines(const MapSheet& sheet, const RunFacts& run, const Scale& scale) 
   if (const std::string rim = rim_of(sheet.sources, sheet.window.width()); !rim.empty()) {
     group += "<path fill='none' stroke-width='1.2' vector-effect='non-scaling-stroke' ";
     set(group, "stroke", kSourceColour);
-    set(group, "transform", "scale(" + with_digits(scale.per_metre * sheet.pixel_x, 8) + " " +
-                                with_digits(scale.per_metre * sheet.pixel_y, 8) + ")");
+    set(group, "transform",
+        "scale(" + with_digits(scale.per_metre * sheet.pixel_x, 8) + " " +
+            with_digits(scale.per_metre * sheet.pixel_y, 8) + ")");
     set(group, "d", rim);
     group += "/>\n";
   }
   Svg svg;
-  draw_objects(svg, sheet.objects, scale);
-  draw_screens(svg, run.screens, scale);
+  Names names(svg, scale);
+  draw_objects(svg, sheet.objects, scale, names);
+  draw_screens(svg, run.screens, scale, names);
   draw_coordinates(svg, scale);
   return group + svg.elements() + "</g>\n";
 }
@@ -328,6 +361,8 @@ Markup map_store(const MapSheet& sheet, const RunFacts& run, const MapImprint& i
 Markup map_viewer(const MapSheet& sheet) {
   if (sheet.maps.empty()) return {};
   const Scale scale(sheet);
+  std::size_t most = 0;  // classes of a legend
+  for (const ReportMap& map : sheet.maps) most = std::max(most, map.style.classes.size());
   Markup html =
       "<div class='screen'><h3>Compare two maps</h3>\n<p>Move the slider: left of it is the first map, right of it the "
       "second. Click on the map: the table shows the values of the cell there, of every map.</p>\n<p><label>Left "
@@ -348,17 +383,22 @@ Markup map_viewer(const MapSheet& sheet) {
   html += "/></clipPath><clipPath id='right'><rect id='right-part' y='-1' width='0' ";
   set(html, "height", tenth(scale.height + 2.0));
   html += "/></clipPath>\n"_html + use("relief") + "<g clip-path='url(#left)'>" + use("map-0", "view-a") +
-          "</g><g clip-path='url(#right)'>" + use("map-0", "view-b") + "</g>" + use("outlines") + use("furniture") +
-          use("legend-0", "view-legend");
+          "</g><g clip-path='url(#right)'>" + use("map-0", "view-b") + "</g>" + use("outlines") + use("furniture");
   html += "<line id='edge' y1='0' stroke='#000' stroke-width='2' ";
   set(html, "y2", tenth(scale.height));
-  html += "/><circle id='mark' r='6' fill='none' stroke='#000' stroke-width='2' visibility='hidden'/></svg>\n<p><input "
-          "id='slider' type='range' min='0' max='1000' value='500' aria-label='place of the slider' ";
-  set(html, "style", "width:" + tenth(100.0 * scale.width / (scale.width + kGap + kLegend)) + "%");
+  html +=
+      "/><circle id='mark' r='6' fill='none' stroke='#000' stroke-width='2' visibility='hidden'/></svg>\n<p><input "
+      "id='slider' type='range' min='0' max='1000' value='500' aria-label='place of the slider' ";
+  set(html, "style", "margin:0;width:" + tenth(scale.width) + "px;max-width:100%");
+  html += "></p>\n<svg ";
+  set(html, "viewBox",
+      tenth(scale.width + kGap) + " 0 " + tenth(2.0 * kLegend + 60.0) + " " + std::to_string(22 + 18 * most));
+  set(html, "width", tenth(2.0 * kLegend + 60.0));
+  html += ">"_html + use("legend-0", "legend-a") + "<g transform='translate(260 0)'>" + use("legend-0", "legend-b") +
+          "</g></svg>";
   return html +
-         "></p>\n<p id='place'>No place is chosen yet.</p>\n<table id='values'></table>\n<p class='note'>Values are "
-         "rounded to three digits; - stands for no value. A legend belongs to the map on its side that was chosen "
-         "last.</p></div>\n";
+         "\n<p id='place'>No place is chosen yet.</p>\n<table id='values'></table>\n<p class='note'>Values are "
+         "rounded to three digits; - stands for no value.</p></div>\n";
 }
 
 Markup map_figures(const MapSheet& sheet, const MapImprint& imprint) {
