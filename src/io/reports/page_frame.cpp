@@ -13,7 +13,7 @@ Markup style() {
          ".broad{max-width:1200px}"
          "header{border-bottom:2px solid #444;margin-bottom:1em}header p,footer{color:#555;font-size:13px}"
          "header p{margin:0}h1{margin:0 0 .3em;line-height:1.25}h2{margin-top:1.6em;border-bottom:1px solid #ccc}"
-         "h1,h2,h3,td,p,li{overflow-wrap:anywhere}"
+         "h1,h2,h3,p,li,.b{overflow-wrap:anywhere}"
          "table{border-collapse:collapse;font-size:13px}td,th{border:1px solid #ccc;padding:3px 8px;text-align:left;"
          "vertical-align:top}th{background:#f3f3f3}td.n{text-align:right;white-space:nowrap}td.k{white-space:nowrap}"
          ".sign{margin-top:1em;width:100%}.sign td{height:2.2em;width:18%}.sign td:nth-child(odd){width:12%;border:0}"

@@ -44,6 +44,14 @@ std::vector<std::string> presets_of(const RunFacts& run) {
   return presets;
 }
 
+/// Whether the field of a setting is given by every feature: "0.6 to 1.5 (59 of 59 features)".
+bool of_all_features(const RecordedSetting* setting) {
+  unsigned given = 0, all = 1;
+  const std::size_t at = setting->value.find('(');
+  return at != std::string::npos &&
+         std::sscanf(setting->value.c_str() + at, "(%9u of %9u features)", &given, &all) == 2 && given == all;
+}
+
 void check_ends(const RunFacts& run, Checks& checks) {
   const auto share = [&](const char* end) { return run.released > 0.0 ? run.end(end) / run.released : 0.0; };
   const auto found = [&](const char* end) {
@@ -186,7 +194,9 @@ void check_screens(const CheckedRun& checked, Checks& checks) {
 
 std::optional<std::pair<double, double>> diameters_of(const RunFacts& run) {
   std::optional<std::pair<double, double>> range;
+  const bool own = std::ranges::any_of(run.settings_of("sources.attributes.diameter"), of_all_features);
   for (const RecordedSetting& setting : run.settings) {
+    if (own && setting.key.starts_with("blocks.")) continue;  // not used where all features have their own
     if (!(setting.key.starts_with("blocks.") || setting.key.starts_with("sources.attributes.")) ||
         setting.key.find("diameter") == std::string::npos || setting.unit != "m")
       continue;
@@ -226,7 +236,7 @@ Markup checks_html(const std::vector<Check>& checks) {
     const Markup start = check.mark == Mark::Act    ? "<tr class='act'><td class='k'>\u2610 act</td><td>"_html
                          : check.mark == Mark::Look ? "<tr class='look'><td class='k'>\u2610 look</td><td>"_html
                                                     : "<tr><td class='k'>\u2610 fine</td><td>"_html;
-    html += start + check.what + "</td><td>" + check.found + "</td><td>" + check.why + "</td></tr>\n";
+    html += start + check.what + "</td><td class='b'>" + check.found + "</td><td>" + check.why + "</td></tr>\n";
   }
   return html +
          "</table>\n<table class='sign'><tr><td>Looked through "
