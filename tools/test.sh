@@ -13,7 +13,7 @@ fi
 stage() { printf '\n== %s (%d min %02d s so far)\n' "$1" $((SECONDS / 60)) $((SECONDS % 60)); }
 
 tools/install_packages.sh qgis python3-qgis qgis-providers fonts-dejavu-core  # 1.4 GB: the plug-in is tested in QGIS
-tools/install_packages.sh openmpi-bin python3-scipy python3-yaml dpkg-dev file man-db mkdocs zsh fish \
+tools/install_packages.sh openmpi-bin python3-scipy python3-yaml dpkg-dev file man-db mkdocs chromium zsh fish \
   clang clang-format clang-tidy libomp-dev libclang-rt-14-dev
 stage "formatting"
 git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror

@@ -21,9 +21,6 @@ class CommandLine(Case):
         self.fails(2, "'--trajectory'", "did you mean '--trajectories'", arguments=["run", "--trajectory", "5", "-o", "x"])
         self.fails(2, "'--versoin'", "did you mean '--version'", arguments=["--versoin"])
 
-    def test_parts_of_later_versions(self):
-        self.fails(2, "report", "not in this version", arguments=["report", "x"])
-
     def test_values_that_are_no_numbers(self):
         self.fails(2, "--diameter", "abc", arguments=self.arguments(diameter="abc"))
         self.fails(2, "--trajectories", "-5", arguments=self.arguments(trajectories="-5"))

@@ -578,7 +578,7 @@ class Names(Scenario):
         tags = Tags(page)
         self.assertNotIn("script", tags.elements)
         self.assertLessEqual(tags.elements, {"html", "head", "meta", "title", "style", "body", "h1", "h2", "h3", "p", "b", "br",
-                                             "table", "tr", "td", "th", "svg", "rect", "line", "circle", "text"})
+                                             "table", "tr", "td", "th", "header", "footer", "svg", "rect", "line", "circle", "text"})
         self.assertFalse({name for name in tags.attributes if name.startswith("on") or name in ("href", "src")})
         if whole:
             self.assertIn("<script>alert(1)</script>", tags.text)  # the name as it was given

@@ -133,7 +133,7 @@ class Diagnose(Sites):
         self.assertEqual(len(losses), 1)  # shared
         page = self.text("first/report.html")
         self.assertIn("pooled", page)
-        self.assertNotIn("http", page)
+        self.assertNotRegex(page, "https?:")
 
 
 if __name__ == "__main__":

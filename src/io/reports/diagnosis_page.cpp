@@ -7,10 +7,10 @@
 #include "diagnosis_summary.hpp"
 #include "evidence.hpp"
 #include "limits_report.hpp"
+#include "page_frame.hpp"
 #include "repeated_report.hpp"
 #include "svg.hpp"
 #include "talus/base/text.hpp"
-#include "talus/base/version.hpp"
 
 namespace talus::io {
 namespace {
@@ -257,11 +257,7 @@ Markup sentence(const DiagnosisRound& round) {
 std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
   Markup html =
-      "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'><title>Talus: diagnosis of "_html + campaign.name +
-      "</title><style>body{font:15px/1.5 sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#222}"
-      "table{border-collapse:collapse;font-size:13px}td,th{border:1px solid #ccc;padding:3px 8px;text-align:left;"
-      "vertical-align:top}svg text{font:11px sans-serif}</style></head><body>\n<h1>What the model of " +
-      campaign.name + " lacks</h1>\n" + summary_html(record) + plots(campaign, d, record.options.rules, 1) +
+      summary_html(record) + plots(campaign, d, record.options.rules, 1) +
       "<p>Each point is a block; z is where its measurement lies among what the model simulates for it, as a standard "
       "normal number. Grey: 95 % of the points of a right model.</p>\n<h2>Rounds</h2>\n";
   for (std::size_t i = 0; i < d.rounds.size(); ++i)
@@ -296,9 +292,9 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
       "simulates for it, as a standard normal number. Grey: 95 % of the points of a right model.</p>\n"_html +
       plots(campaign, d, record.options.rules, kPlots) + "<h3>Before</h3>\n" + residual_rows(d.rounds.front().residual);
   if (d.rounds.size() > 1) html += "<h3>After</h3>\n"_html + residual_rows(d.rounds.back().residual);
-  html += "<p>talus "_html + std::string(version()) + ", seed " + std::to_string(record.options.seed) + ", " +
-          record.surface + " surface, " + with_decimals(record.seconds, 0) + " s.</p></body></html>\n";
-  return html.text();
+  const std::string footer = "seed " + std::to_string(record.options.seed) + ", " + record.surface + " surface, " +
+                             with_decimals(record.seconds, 0) + " s";
+  return page_of({"diagnose", "What the model of " + campaign.name + " lacks", footer}, html);
 }
 
 }  // namespace talus::io

@@ -50,6 +50,10 @@ std::string picture_of(std::span<const double> values, int width, const MapStyle
   return address_of(picture);
 }
 
+double light_on(double east, double north) {
+  return (0.5 * east - 0.5 * north + std::sqrt(0.5)) / std::sqrt(1.0 + east * east + north * north);
+}
+
 std::string relief_of(std::span<const double> heights, int width, double pixel_x, double pixel_y) {
   const int rows = static_cast<int>(heights.size()) / width;
   Picture picture{width, rows, {}, {{255, 255, 255, 0}}};
@@ -65,11 +69,11 @@ std::string relief_of(std::span<const double> heights, int width, double pixel_x
         const double z = x < 0 || y < 0 || x >= width || y >= rows ? here : heights[std::size_t(y) * width + x];
         return std::isnan(z) ? here : z;
       };
-      const double east = (at(1, -1) + 2 * at(1, 0) + at(1, 1) - at(-1, -1) - 2 * at(-1, 0) - at(-1, 1)) / (8 * pixel_x);
+      const double east =
+          (at(1, -1) + 2 * at(1, 0) + at(1, 1) - at(-1, -1) - 2 * at(-1, 0) - at(-1, 1)) / (8 * pixel_x);
       const double north =
           (at(-1, -1) + 2 * at(0, -1) + at(1, -1) - at(-1, 1) - 2 * at(0, 1) - at(1, 1)) / (8 * pixel_y);
-      const double light = (0.5 * east - 0.5 * north + std::sqrt(0.5)) / std::sqrt(1.0 + east * east + north * north);
-      const double shade = 90.0 + 165.0 * std::clamp(light, 0.0, 1.0);
+      const double shade = 90.0 + 165.0 * std::clamp(light_on(east, north), 0.0, 1.0);
       picture.pixels.push_back(std::isnan(shade) ? std::uint8_t{0} : static_cast<std::uint8_t>(shade));
     }
   return address_of(picture);

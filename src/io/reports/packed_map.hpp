@@ -18,7 +18,11 @@ std::string packed_values(std::span<const double> values);
 /// A picture of the classes of a style, as a `data:` address of a PNG; what has no class is transparent.
 std::string picture_of(std::span<const double> values, int width, const MapStyle& style);
 
-/// Shaded relief, lit from the north-west at 45 degrees, as a `data:` address. Rows from the north.
+/// Cosine of the angle between a slope and the light from the north-west, 45 degrees high.
+/// @param east, north  how much the slope rises that way [m/m]
+double light_on(double east, double north);
+
+/// Shaded relief, lit by `light_on`, as a `data:` address. Rows from the north.
 /// @param pixel_x, pixel_y  [m]
 std::string relief_of(std::span<const double> heights, int width, double pixel_x, double pixel_y);
 

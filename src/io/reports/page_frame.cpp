@@ -10,12 +10,14 @@ namespace {
 
 Markup style() {
   return "<style>body{font:15px/1.5 sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#222}"
+         ".broad{max-width:1200px}"
          "header{border-bottom:2px solid #444;margin-bottom:1em}header p,footer{color:#555;font-size:13px}"
          "header p{margin:0}h1{margin:0 0 .3em;line-height:1.25}h2{margin-top:1.6em;border-bottom:1px solid #ccc}"
-         "h1,h2,h3,td,p,li{overflow-wrap:anywhere}"
+         "h1,h2,h3,p,li,.b{overflow-wrap:anywhere}"
          "table{border-collapse:collapse;font-size:13px}td,th{border:1px solid #ccc;padding:3px 8px;text-align:left;"
-         "vertical-align:top}th{background:#f3f3f3}td.n{text-align:right;white-space:nowrap}"
-         "svg{max-width:100%;height:auto}svg text{font:11px sans-serif}"
+         "vertical-align:top}th{background:#f3f3f3}td.n{text-align:right;white-space:nowrap}td.k{white-space:nowrap}"
+         ".sign{margin-top:1em;width:100%}.sign td{height:2.2em;width:18%}.sign td:nth-child(odd){width:12%;border:0}"
+         "svg{max-width:100%;height:auto}text{font-family:sans-serif;font-size:11px}"
          "footer{border-top:1px solid #ccc;margin-top:2em;padding-top:.5em}"
          ".wide{overflow-x:auto}.hidden{position:absolute;width:0;height:0}figure{margin:1em 0}"
          ".look{background:#fff6d6}.act{background:#fde2de}.note{color:#555;font-size:13px}"
@@ -48,8 +50,9 @@ std::string page_of(const PageFrame& frame, const Markup& body) {
   Markup page = "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'>"_html;
   (page += "<meta name=\"generator\" content=\"").add_value(kPageMark + frame.kind) += "\">";
   page += policy(frame.script) + "<meta name='viewport' content='width=device-width'><title>Talus: " + frame.title +
-          "</title>" + style() + "</head><body>\n<header><p>" + program + ", " + frame.kind + "</p><h1>" + frame.title +
-          "</h1></header>\n" + body + "<footer>" + program + ", " + frame.footer + "</footer>\n";
+          "</title>" + style() + "</head>" + (frame.wide ? "<body class='broad'>"_html : "<body>"_html) +
+          "\n<header><p>" + program + ", " + frame.kind + "</p><h1>" + frame.title + "</h1></header>\n" + body +
+          "<footer>" + program + ", " + frame.footer + "</footer>\n";
   if (!frame.script.empty()) page += "<script>"_html + frame.script + "</script>\n";
   page += "</body></html>\n";
   return page.text();

@@ -12,6 +12,7 @@ struct PageFrame {
   std::string title;   ///< of the window and at the top
   std::string footer;  ///< one line at the end, after the version
   Markup script{};     ///< JavaScript of ours; empty for none
+  bool wide = false;   ///< for tables of many columns
 };
 
 /// A whole page. It is self-contained: a policy in its head forbids the browser to load anything, and to run any other

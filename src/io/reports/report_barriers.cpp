@@ -39,8 +39,8 @@ BarrierPart part_of(const Json& json) {
   part.weighting = json.value("weighting", "");
   part.crossings = number_of(json, "crossings");
   for (const Json& one : json.at("design"))
-    part.design.push_back({one.at("name").get<std::string>(), one.value("unit", ""), one.value("from", ""),
-                           number_of(one, "value")});
+    part.design.push_back(
+        {one.at("name").get<std::string>(), one.value("unit", ""), one.value("from", ""), number_of(one, "value")});
   read_limits(json, part);
   for (const Json& one : json.value("stretches", Json::array())) {
     if (part.stretches.size() == kMostStretches) break;
@@ -79,9 +79,9 @@ Markup section_drawing(const BarrierPart& part) {
                        {"stroke", "#b3261e"},
                        {"stroke-width", 2}});
   svg.words({{"x", kNet + 8.0}, {"y", kGround - 0.5 * scale * height}}, "h_i = " + with_digits(height, 3) + " m");
-  svg.words({{"x", 10}, {"y", kGround + 15.0}},
-            "design block " + with_digits(diameter, 3) + " m, v_d = " + with_digits(part.value("v_d"), 3) +
-                " m/s, MEL = " + with_digits(part.value("MEL"), 4) + " kJ");
+  svg.words({{"x", 10}, {"y", kGround + 15.0}}, "design block " + with_digits(diameter, 3) +
+                                                    " m, v_d = " + with_digits(part.value("v_d"), 3) +
+                                                    " m/s, MEL = " + with_digits(part.value("MEL"), 4) + " kJ");
   return svg.drawing({{"width", 380}, {"height", 195}, {"viewBox", "0 0 380 195"}});
 }
 
@@ -94,8 +94,8 @@ Markup stretch_chart(const BarrierPart& part, bool energy) {
   if (!(most > 0.0 && last > 0.0)) return {};
   const Axis x{0.0, last, 44.0, 640.0}, y{0.0, 1.05 * most, 130.0, -108.0};
   Svg svg('\'', "");
-  svg.words({{"x", 44}, {"y", 12}, {"font-weight", "bold"}}, energy ? "SEL of each stretch [kJ]"
-                                                                    : "h_i of each stretch [m]");
+  svg.words({{"x", 44}, {"y", 12}, {"font-weight", "bold"}},
+            energy ? "SEL of each stretch [kJ]" : "h_i of each stretch [m]");
   for (const auto& s : part.stretches) {
     svg.element("rect", {{"x", x(s.from)},
                          {"y", y(of(s))},
@@ -105,8 +105,9 @@ Markup stretch_chart(const BarrierPart& part, bool energy) {
     if (s.crossings > 0.0 && !(of(s) > 0.0))
       svg.words({{"x", 0.5 * (x(s.from) + x(s.to))}, {"y", y(0.0) - 3.0}, {"text-anchor", "middle"}}, "?");
   }
-  svg.element("line", {{"x1", 44}, {"x2", 684}, {"y1", y(whole)}, {"y2", y(whole)}, {"stroke", "#222"},
-                       {"stroke-dasharray", "6 3"}});
+  svg.element(
+      "line",
+      {{"x1", 44}, {"x2", 684}, {"y1", y(whole)}, {"y2", y(whole)}, {"stroke", "#222"}, {"stroke-dasharray", "6 3"}});
   svg.words({{"x", 688}, {"y", y(whole) + 4.0}}, "line");
   for (const double tick : ticks(0.0, 1.05 * most, 4))
     svg.words({{"x", 40}, {"y", y(tick) + 4.0}, {"text-anchor", "end"}}, with_digits(tick, 4));
@@ -125,7 +126,7 @@ Markup limits_table(const BarrierPart& part) {
             "</td><td>" + with_digits(100.0 * l.share, 3) + " % [" + with_digits(100.0 * l.share_low, 3) + ", " +
             with_digits(100.0 * l.share_high, 3) + "]</td><td>" + with_digits(100.0 * l.weibull, 3) + " %" +
             (l.agrees ? "" : " (the law does not fit: use the share)") + "</td><td>" +
-            (l.years > 0.0 ? with_digits(l.years, 3) + " years" : std::string("-")) + "</td></tr>\n";
+            (l.years > 0.0 ? readable(l.years) + " years" : std::string("-")) + "</td></tr>\n";
   return html + "</table>\n";
 }
 
@@ -138,9 +139,10 @@ Markup barrier_html(const BarrierPart& part) {
             "</td><td>" + value.from + "</td></tr>\n";
   html += "</table>\n<figure>"_html + section_drawing(part) + "</figure>\n" + limits_table(part);
   if (!part.stretches.empty())
-    html += "<figure>"_html + stretch_chart(part, true) + "<br>" + stretch_chart(part, false) +
-            "<figcaption>Each stretch designed by its own crossings; red: more than the design of the whole line; ?: too "
-            "few crossings for a design; dashed: the whole line.</figcaption></figure>\n";
+    html +=
+        "<figure>"_html + stretch_chart(part, true) + "<br>" + stretch_chart(part, false) +
+        "<figcaption>Each stretch designed by its own crossings; red: more than the design of the whole line; ?: too "
+        "few crossings for a design; dashed: the whole line.</figcaption></figure>\n";
   for (const std::string& note : part.notes) html += "<p class='look'>Note: "_html + note + "</p>\n";
   return html;
 }

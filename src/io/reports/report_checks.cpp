@@ -44,16 +44,28 @@ std::vector<std::string> presets_of(const RunFacts& run) {
   return presets;
 }
 
+/// Whether the field of a setting is given by every feature: "0.6 to 1.5 (59 of 59 features)".
+bool of_all_features(const RecordedSetting* setting) {
+  unsigned given = 0, all = 1;
+  const std::size_t at = setting->value.find('(');
+  return at != std::string::npos &&
+         std::sscanf(setting->value.c_str() + at, "(%9u of %9u features)", &given, &all) == 2 && given == all;
+}
+
 void check_ends(const RunFacts& run, Checks& checks) {
   const auto share = [&](const char* end) { return run.released > 0.0 ? run.end(end) / run.released : 0.0; };
   const auto found = [&](const char* end) {
     return grouped(run.end(end)) + " of " + grouped(run.released) + " blocks (" +
            percent_of(run.end(end), run.released) + ")";
   };
-  checks.push_back({share("left") > kMostLeft ? Mark::Act : run.end("left") > 0.0 ? Mark::Look : Mark::Fine,
+  checks.push_back({share("left") > kMostLeft ? Mark::Act
+                    : run.end("left") > 0.0   ? Mark::Look
+                                              : Mark::Fine,
                     "Blocks that leave the DEM", found("left"),
                     "The maps do not show how far they would go. Above 1 %: take a larger DEM."});
-  checks.push_back({share("trapped") > kMostTrapped ? Mark::Act : run.end("trapped") > 0.0 ? Mark::Look : Mark::Fine,
+  checks.push_back({share("trapped") > kMostTrapped ? Mark::Act
+                    : run.end("trapped") > 0.0      ? Mark::Look
+                                                    : Mark::Fine,
                     "Blocks that are trapped", found("trapped"),
                     "Held in pits or between walls on ground too steep to rest on. Above 3 %: look at the DEM there."});
   checks.push_back({run.end("limit") > 0.0 ? Mark::Look : Mark::Fine, "Blocks cut short by a limit", found("limit"),
@@ -100,8 +112,9 @@ void check_numbers(const CheckedRun& checked, Checks& checks) {
   for (const ReportMap& map : checked.sheet.maps)
     if (map.name == "impact_probability" && map.largest <= 1.0) bounds(map.largest, "most often hit cell");
   bounds(1e-3, "a cell that one block in 1000 crosses");
-  checks.push_back({few ? Mark::Look : Mark::Fine, "Number of blocks", found,
-                    "95 % bounds of the number of blocks alone. Where they are wide: --trajectories, or --until-error."});
+  checks.push_back(
+      {few ? Mark::Look : Mark::Fine, "Number of blocks", found,
+       "95 % bounds of the number of blocks alone. Where they are wide: --trajectories, or --until-error."});
 }
 
 void check_ground(const CheckedRun& checked, Checks& checks) {
@@ -111,8 +124,9 @@ void check_ground(const CheckedRun& checked, Checks& checks) {
     checks.push_back({checked.fit->note.empty() ? Mark::Fine : Mark::Look, "Ground", "fitted: " + checked.fit->file,
                       "A fit holds for its slope, its blocks and its kind of DEM."});
   if (!presets.empty())
-    checks.push_back({Mark::Look, "Ground from presets", joined(presets),
-                      "A first guess from other slopes. Compare with silent witnesses: where do old blocks lie? Vary it."});
+    checks.push_back(
+        {Mark::Look, "Ground from presets", joined(presets),
+         "A first guess from other slopes. Compare with silent witnesses: where do old blocks lie? Vary it."});
   if (checked.fit || warned_of(run, "was fitted on")) {
     const bool other = warned_of(run, "was fitted on");
     checks.push_back({other ? Mark::Act : Mark::Fine, "DEM of the fit and DEM of the run",
@@ -148,15 +162,16 @@ void check_hazard(const CheckedRun& checked, Checks& checks) {
     return;
   }
   if (!checked.hazard) {
-    checks.push_back({Mark::Look, "Frequency", "declared, but talus hazard was not run",
-                      "Run it for return periods and classes."});
+    checks.push_back(
+        {Mark::Look, "Frequency", "declared, but talus hazard was not run", "Run it for return periods and classes."});
     return;
   }
   const HazardFacts& hazard = *checked.hazard;
   const bool left = hazard.left_per_year > 0.01 * hazard.events_per_year;
-  checks.push_back({left ? Mark::Act : Mark::Fine, "Events that leave the DEM",
-                    with_digits(hazard.left_per_year, 3) + " of " + with_digits(hazard.events_per_year, 3) + " per year",
-                    "Beyond the DEM the hazard goes on, and no map shows it."});
+  checks.push_back(
+      {left ? Mark::Act : Mark::Fine, "Events that leave the DEM",
+       with_digits(hazard.left_per_year, 3) + " of " + with_digits(hazard.events_per_year, 3) + " per year",
+       "Beyond the DEM the hazard goes on, and no map shows it."});
   checks.push_back({Mark::Look, "Whose hazard", "of " + hazard.object,
                     "A larger cell is hit more often; compare maps for one width only."});
   if (!hazard.same_run)
@@ -179,7 +194,9 @@ void check_screens(const CheckedRun& checked, Checks& checks) {
 
 std::optional<std::pair<double, double>> diameters_of(const RunFacts& run) {
   std::optional<std::pair<double, double>> range;
+  const bool own = std::ranges::any_of(run.settings_of("sources.attributes.diameter"), of_all_features);
   for (const RecordedSetting& setting : run.settings) {
+    if (own && setting.key.starts_with("blocks.")) continue;  // not used where all features have their own
     if (!(setting.key.starts_with("blocks.") || setting.key.starts_with("sources.attributes.")) ||
         setting.key.find("diameter") == std::string::npos || setting.unit != "m")
       continue;
@@ -204,42 +221,49 @@ std::vector<Check> checks_of(const CheckedRun& checked) {
   check_hazard(checked, checks);
   check_screens(checked, checks);
   const auto [acting, off] = effects_of(checked.run);
-  checks.push_back({Mark::Look, "Effects", "acting: " + (acting.empty() ? "none" : joined(acting)) + "; off: " + joined(off),
-                    "Is there forest, deep or wet ground, a block that breaks? An effect that is off is not in the maps."});
+  checks.push_back(
+      {Mark::Look, "Effects", "acting: " + (acting.empty() ? "none" : joined(acting)) + "; off: " + joined(off),
+       "Is there forest, deep or wet ground, a block that breaks? An effect that is off is not in the maps."});
   return checks;
 }
 
 Markup checks_html(const std::vector<Check>& checks) {
   Markup html =
-      "<h2>Before you sign</h2>\n<p>What this run says of each point. Tick it when you have looked; the model cannot do "
+      "<h2>Before you sign</h2>\n<p>What this run says of each point. Tick it when you have looked; the model cannot "
+      "do "
       "that for you.</p>\n<table><tr><th></th><th>point</th><th>this run</th><th>why</th></tr>\n"_html;
   for (const Check& check : checks) {
-    const Markup start = check.mark == Mark::Act    ? "<tr class='act'><td>\u2610 act</td><td>"_html
-                         : check.mark == Mark::Look ? "<tr class='look'><td>\u2610 look</td><td>"_html
-                                                    : "<tr><td>\u2610 fine</td><td>"_html;
-    html += start + check.what + "</td><td>" + check.found + "</td><td>" + check.why + "</td></tr>\n";
+    const Markup start = check.mark == Mark::Act    ? "<tr class='act'><td class='k'>\u2610 act</td><td>"_html
+                         : check.mark == Mark::Look ? "<tr class='look'><td class='k'>\u2610 look</td><td>"_html
+                                                    : "<tr><td class='k'>\u2610 fine</td><td>"_html;
+    html += start + check.what + "</td><td class='b'>" + check.found + "</td><td>" + check.why + "</td></tr>\n";
   }
   return html +
-         "</table>\n<table class='sign'><tr><td>Looked through by</td><td>&nbsp;</td><td>Date</td><td>&nbsp;</td><td>"
-         "Signature</td><td>&nbsp;</td></tr></table>\n";
+         "</table>\n<table class='sign'><tr><td>Looked through "
+         "by</td><td></td><td>Date</td><td></td><td>Signature</td><td>"
+         "</td></tr></table>\n";
 }
 
 Markup assumptions_html(const CheckedRun& checked) {
   const auto [acting, off] = effects_of(checked.run);
   Markup html =
-      "<h2>Assumptions</h2>\n<ul>\n<li>Impact model of PIERRE 2 (Mitchell and Hungr): stochastic rebounds of a sphere on "
+      "<h2>Assumptions</h2>\n<ul>\n<li>Impact model of PIERRE 2 (Mitchell and Hungr): stochastic rebounds of a sphere "
+      "on "
       "rough ground. "_html;
-  html += (acting.empty() ? std::string("No further effect acts.") : "Further effects: " + joined(acting) + ".") +
-          "</li>\n<li>";
-  html += checked.hazard ? "Frequencies, return periods and classes are of the frequencies that the sources state; impact "
-                           "probabilities are not weighted by them."
-                         : "Probabilities are given that one block falls, each source cell as likely as any other. They "
-                           "are not per year.";
+  html += acting.empty() ? std::string("No further effect acts.") : "Further effects: " + joined(acting) + ".";
+  html += "</li>\n<li>";
+  html += checked.hazard
+              ? "Frequencies, return periods and classes are of the frequencies that the sources state; impact "
+                "probabilities are not weighted by them."
+              : "Probabilities are given that one block falls, each source cell as likely as any other. They "
+                "are not per year.";
   html +=
-      "</li>\n<li>Crossing a cell is meant in plan, at any height: a block that flies over a road has crossed it.</li>\n"
+      "</li>\n<li>Crossing a cell is meant in plan, at any height: a block that flies over a road has crossed "
+      "it.</li>\n"
       "<li>Energy is translational; P95 is of the largest energy of each path in the cell, over the paths that cross "
       "it.</li>\n<li>Jump height is vertical, from the terrain to the centre of the block: add its radius.</li>\n<li>"
-      "Bounds hold for the number of blocks of this model. They know nothing of a wrong DEM, source or parameter.</li>\n"
+      "Bounds hold for the number of blocks of this model. They know nothing of a wrong DEM, source or "
+      "parameter.</li>\n"
       "</ul>\n";
   return html;
 }

@@ -15,7 +15,7 @@ namespace talus::io {
 namespace {
 
 constexpr std::size_t kMostTexts = 200, kMostText = 1000, kMostSettings = 2000;  // a page stays readable
-constexpr std::int64_t kMostCells = 1'000'000;                                  // of a side
+constexpr std::int64_t kMostCells = 1'000'000;                                   // of a side
 
 std::string text_of_value(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -99,7 +99,8 @@ RunFacts facts_of(const Json& json) {
   run.screens = screens_of(json);
   run.settings = settings_of_record(json);
   for (const Json& one : json.value("inputs", Json::array()))
-    run.inputs.push_back({one.at("role").get<std::string>(), one.at("path").get<std::string>(), one.value("sha256", "")});
+    run.inputs.push_back(
+        {one.at("role").get<std::string>(), one.at("path").get<std::string>(), one.value("sha256", "")});
   for (const Json& one : json.value("reprojections", Json::array())) {
     const Json accuracy = one.value("accuracy_m", Json());
     run.reprojections.push_back({one.at("role").get<std::string>(), one.at("operation").get<std::string>(),
@@ -188,6 +189,12 @@ double number_of(const Json& json, const char* key, double otherwise) {
   const double number = json.at(key).get<double>();
   if (!std::isfinite(number)) throw InputError(std::string("its number '") + key + "' is not finite");
   return number;
+}
+
+std::string readable(double number) {
+  if (!(std::abs(number) >= 1e3 && std::abs(number) < 1e12)) return with_digits(number, 3);
+  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(number))) - 2.0);
+  return grouped(std::round(number / unit) * unit);
 }
 
 std::string grouped(double number) {

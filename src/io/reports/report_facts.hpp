@@ -83,6 +83,9 @@ std::vector<std::string> texts_of(const Json& json, const char* key);
 /// A number of a record that is finite; `otherwise` if it is not there or null.
 double number_of(const Json& json, const char* key, double otherwise = 0.0);
 
+/// A number for a reader: three digits, large ones with their thousands apart and without an exponent: "2 360".
+std::string readable(double number);
+
 /// A whole number with its thousands apart: "47 850".
 std::string grouped(double number);
 

@@ -1,7 +1,6 @@
 #include "report_map_page.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "svg.hpp"
 #include "talus/base/printable.hpp"
@@ -10,253 +9,30 @@
 namespace talus::io {
 namespace {
 
-constexpr double kWidest = 700.0, kHighest = 700.0;  // of a map in a drawing [px]
-constexpr double kLegend = 230.0, kGap = 14.0;       // the column beside it
-constexpr double kLowest = 380.0;                    // of a drawing: room for the longest legend
-constexpr const char* kSourceColour = "#111111";
-constexpr const char* kScreenColour = "#c2185b";
-constexpr const char* kObjectColour = "#00695c";
-
-/// The scale of the drawings: places on the map as places in the drawing.
-struct Scale {
-  double per_metre, width, height, west, north;
-
-  explicit Scale(const MapSheet& sheet)
-      : per_metre(std::min(kWidest / (sheet.window.width() * sheet.pixel_x),
-                           kHighest / (sheet.window.height() * sheet.pixel_y))),
-        width(per_metre * sheet.window.width() * sheet.pixel_x),
-        height(per_metre * sheet.window.height() * sheet.pixel_y),
-        west(sheet.west),
-        north(sheet.north) {}
-  double x(double east) const { return per_metre * (east - west); }
-  double y(double northing) const { return per_metre * (north - northing); }
-  double drawing_height() const { return std::max(height, kLowest); }
-};
-
-std::string tenth(double value) {
-  return with_decimals(value, 1);
-}
-
-/// Adds an attribute with a number.
-Markup& set(Markup& to, const char* name, const std::string& value) {
-  return ((to += std::string_view(name)) += "=\"").add_value(value) += "\" ";
-}
-
-/// The rim of the marked pixels as a path, in pixels. Empty if it is too ragged to be one.
-std::string rim_of(const std::vector<std::uint8_t>& marks, int width) {
-  constexpr std::size_t kMostText = 400'000;
-  const int height = width > 0 ? static_cast<int>(marks.size()) / width : 0;
-  const auto marked = [&](int x, int y) {
-    return x >= 0 && y >= 0 && x < width && y < height && marks[std::size_t(y) * width + x] != 0;
-  };
-  std::string path;
-  for (const bool across : {true, false}) {
-    const int lines = across ? height : width, length = across ? width : height;
-    for (int line = 0; line <= lines && path.size() < kMostText; ++line) {
-      int start = -1;
-      for (int at = 0; at <= length; ++at) {
-        const bool edge = at < length && (across ? marked(at, line) != marked(at, line - 1)
-                                                 : marked(line, at) != marked(line - 1, at));
-        if (edge && start < 0) start = at;
-        if (edge || start < 0) continue;
-        const auto place = [&](int along, int aside) { return std::to_string(along) + " " + std::to_string(aside); };
-        path += "M" + (across ? place(start, line) : place(line, start)) + (across ? "H" : "V") + std::to_string(at);
-        start = -1;
-      }
-    }
-  }
-  return path.size() < kMostText ? path : "";
-}
-
-Markup picture(const std::string& id, const std::string& address, const Scale& scale, bool smooth,
+Markup picture(const std::string& id, const std::string& address, const MapScale& scale, bool smooth,
                const Markup& more = {}) {
   Markup image = "<image preserveAspectRatio='none' "_html;
-  set(image, "id", id);
-  set(image, "width", tenth(scale.width));
-  set(image, "height", tenth(scale.height));
+  set_attribute(image, "id", id);
+  set_attribute(image, "width", tenth(scale.width));
+  set_attribute(image, "height", tenth(scale.height));
   if (!smooth) image += "style='image-rendering:pixelated' opacity='0.8' ";
   image += more;
-  set(image, "href", address);
+  set_attribute(image, "href", address);
   return image + "/>\n";
 }
 
 /// What the page's script knows of a map.
 Markup data_of(const ReportMap& map) {
   Markup data;
-  set(data, "data-title", map.title);
-  set(data, "data-unit", map.unit);
+  set_attribute(data, "data-title", map.title);
+  set_attribute(data, "data-unit", map.unit);
   if (map.classes_only) {
     std::string labels;
     for (const MapClass& one : map.style.classes) labels += (labels.empty() ? "" : "\n") + one.label;
-    set(data, "data-classes", labels);
+    set_attribute(data, "data-classes", labels);
   }
-  set(data, "data-values", map.values);
+  set_attribute(data, "data-values", map.values);
   return data;
-}
-
-std::string points_of(const std::vector<Eigen::Vector2d>& places, const Scale& scale) {
-  std::string points;
-  for (const Eigen::Vector2d& place : places)
-    points += (points.empty() ? "" : " ") + tenth(scale.x(place.x())) + "," + tenth(scale.y(place.y()));
-  return points;
-}
-
-/// A name at a place of the map, with a pale rim; within the map.
-void put_name(Svg& svg, const std::string& name, const Eigen::Vector2d& place, const char* colour, const Scale& scale) {
-  const double x = scale.x(place.x()), y = scale.y(place.y());
-  if (!(x >= 0.0 && y >= 0.0 && x <= scale.width && y <= scale.height)) return;
-  const bool right = x > 0.8 * scale.width;
-  svg.words({{"x", right ? x - 5.0 : x + 5.0},
-             {"y", std::max(12.0, y - 4.0)},
-             {"fill", colour},
-             {"text-anchor", right ? "end" : "start"},
-             {"font-weight", "bold"},
-             {"stroke", "#fff"},
-             {"stroke-width", 3},
-             {"paint-order", "stroke"}},
-            shortened(name, 32));
-}
-
-void draw_screens(Svg& svg, const std::vector<Screen>& screens, const Scale& scale) {
-  for (const Screen& screen : screens)
-    for (const auto& line : screen.lines)
-      svg.element("polyline", {{"points", points_of(line, scale)},
-                               {"fill", "none"},
-                               {"stroke", kScreenColour},
-                               {"stroke-width", 2},
-                               {"stroke-dasharray", "7 3"}});
-  for (const Screen& screen : screens)
-    if (!screen.lines.empty() && !screen.lines.front().empty())
-      put_name(svg, screen.id, screen.lines.front()[screen.lines.front().size() / 2], kScreenColour, scale);
-}
-
-void draw_objects(Svg& svg, const Outlines& objects, const Scale& scale) {
-  constexpr std::size_t kMostNames = 40;
-  for (const Outline& object : objects.list) {
-    if (object.places.size() == 1) {
-      svg.element("circle", {{"cx", scale.x(object.places[0].x())},
-                             {"cy", scale.y(object.places[0].y())},
-                             {"r", 4},
-                             {"fill", "none"},
-                             {"stroke", kObjectColour},
-                             {"stroke-width", 2}});
-      continue;
-    }
-    svg.element(object.closed ? "polygon" : "polyline", {{"points", points_of(object.places, scale)},
-                                                         {"fill", "none"},
-                                                         {"stroke", kObjectColour},
-                                                         {"stroke-width", 2}});
-  }
-  if (objects.list.size() > kMostNames) return;
-  for (const Outline& object : objects.list) put_name(svg, object.name, object.places.front(), kObjectColour, scale);
-}
-
-/// Ticks with coordinates at the lower and the left rim.
-void draw_coordinates(Svg& svg, const Scale& scale) {
-  const double east = scale.west + scale.width / scale.per_metre, south = scale.north - scale.height / scale.per_metre;
-  for (const double place : ticks(scale.west, east, 4)) {
-    const double x = scale.x(place);
-    svg.element("line", {{"x1", x}, {"x2", x}, {"y1", scale.height}, {"y2", scale.height - 7.0}, {"stroke", "#000"}});
-    if (x > 30.0 && x < scale.width - 30.0)
-      svg.words({{"x", x},
-                 {"y", scale.height - 10.0},
-                 {"text-anchor", "middle"},
-                 {"stroke", "#fff"},
-                 {"stroke-width", 3},
-                 {"paint-order", "stroke"}},
-                with_decimals(place, 0));
-  }
-  for (const double place : ticks(south, scale.north, 4)) {
-    const double y = scale.y(place);
-    svg.element("line", {{"x1", 0}, {"x2", 7}, {"y1", y}, {"y2", y}, {"stroke", "#000"}});
-    if (y > 14.0 && y < scale.height - 26.0)
-      svg.words({{"x", 10}, {"y", y + 4.0}, {"stroke", "#fff"}, {"stroke-width", 3}, {"paint-order", "stroke"}},
-                with_decimals(place, 0));
-  }
-  svg.element("rect", {{"x", 0},
-                       {"y", 0},
-                       {"width", scale.width},
-                       {"height", scale.height},
-                       {"fill", "none"},
-                       {"stroke", "#000"}});
-}
-
-/// The largest length of 1, 2 or 5 times a power of ten that is at most `most` [m].
-double round_length(double most) {
-  const double unit = std::pow(10.0, std::floor(std::log10(most)));
-  return unit * (most >= 5.0 * unit ? 5.0 : most >= 2.0 * unit ? 2.0 : 1.0);
-}
-
-void draw_scale_bar(Svg& svg, double y, const Scale& scale) {
-  const double metres = round_length(170.0 / scale.per_metre), length = metres * scale.per_metre;
-  for (int part = 0; part < 2; ++part)
-    svg.element("rect", {{"x", 0.5 * length * part},
-                         {"y", y},
-                         {"width", 0.5 * length},
-                         {"height", 6},
-                         {"fill", part == 0 ? "#000" : "#fff"},
-                         {"stroke", "#000"}});
-  const bool far = metres >= 2000.0;
-  svg.words({{"x", 0}, {"y", y + 19.0}}, "0");
-  svg.words({{"x", length}, {"y", y + 19.0}, {"text-anchor", "middle"}},
-            text_of(far ? 1e-3 * metres : metres) + (far ? " km" : " m"));
-}
-
-void draw_north(Svg& svg, double x, double y) {
-  svg.element("polygon", {{"points", tenth(x) + "," + tenth(y) + " " + tenth(x + 8) + "," + tenth(y + 26) + " " +
-                                         tenth(x) + "," + tenth(y + 20) + " " + tenth(x - 8) + "," + tenth(y + 26)}});
-  svg.words({{"x", x}, {"y", y - 4.0}, {"text-anchor", "middle"}, {"font-weight", "bold"}}, "N");
-}
-
-/// The key of the outlines, the scale bar, the arrow, and where and when.
-Markup furniture(const MapSheet& sheet, const RunFacts& run, const MapImprint& imprint, const Scale& scale) {
-  Svg svg;
-  double y = scale.drawing_height() - 128.0;
-  const auto key = [&](const char* colour, const char* dashes, const std::string& text) {
-    svg.element("line", {{"x1", 0}, {"x2", 22}, {"y1", y - 4.0}, {"y2", y - 4.0}, {"stroke", colour},
-                         {"stroke-width", 2}, {"stroke-dasharray", dashes}});
-    svg.words({{"x", 28}, {"y", y}}, text);
-    y -= 16.0;
-  };
-  if (!sheet.objects.list.empty()) key(kObjectColour, "none", "objects");
-  if (!run.screens.empty()) key(kScreenColour, "7 3", "screens");
-  if (!sheet.sources.empty()) key(kSourceColour, "none", "source cells");
-  y = scale.drawing_height() - 112.0;
-  draw_scale_bar(svg, y, scale);
-  draw_north(svg, kLegend - 26.0, y - 20.0);
-  const std::string side = with_digits(sheet.pixel_x, 4), cells = std::to_string(sheet.window.side);
-  y += 38.0;
-  for (const std::string& line : {shortened(imprint.crs, 36), std::string("grid north; coordinates in m"),
-                                  "run of " + imprint.date,
-                                  sheet.window.side == 1 ? "1 pixel = 1 cell of " + side + " m"
-                                                         : "1 pixel = " + cells + " x " + cells + " cells, " + side + " m",
-                                  shortened(imprint.attribution, 36)}) {
-    svg.words({{"x", 0}, {"y", y}}, line);
-    y += 15.0;
-  }
-  Markup group = "<g id='furniture' "_html;
-  set(group, "transform", "translate(" + tenth(scale.width + kGap) + " 0)");
-  return group + ">\n" + svg.elements() + "</g>\n";
-}
-
-Markup outlines(const MapSheet& sheet, const RunFacts& run, const Scale& scale) {
-  Markup group = "<clipPath id='frame'><rect "_html;
-  set(group, "width", tenth(scale.width));
-  set(group, "height", tenth(scale.height));
-  group += "/></clipPath>\n<g id='outlines' clip-path='url(#frame)'>\n";
-  if (const std::string rim = rim_of(sheet.sources, sheet.window.width()); !rim.empty()) {
-    group += "<path fill='none' stroke-width='1.2' vector-effect='non-scaling-stroke' ";
-    set(group, "stroke", kSourceColour);
-    set(group, "transform", "scale(" + with_digits(scale.per_metre * sheet.pixel_x, 8) + " " +
-                                with_digits(scale.per_metre * sheet.pixel_y, 8) + ")");
-    set(group, "d", rim);
-    group += "/>\n";
-  }
-  Svg svg;
-  draw_objects(svg, sheet.objects, scale);
-  draw_screens(svg, run.screens, scale);
-  draw_coordinates(svg, scale);
-  return group + svg.elements() + "</g>\n";
 }
 
 std::string unit_words(const ReportMap& map) {
@@ -265,12 +41,12 @@ std::string unit_words(const ReportMap& map) {
 }
 
 /// The classes of a map as coloured fields with their labels.
-Markup legend(const ReportMap& map, std::size_t number, const Scale& scale) {
+Markup legend(const ReportMap& map, std::size_t number, const MapScale& scale) {
   Svg svg;
   svg.words({{"x", 0}, {"y", 12}, {"font-weight", "bold"}}, shortened(map.title + unit_words(map), 40));
   double y = 22.0;
   for (const MapClass& one : map.style.classes) {
-    if (one.colour.opacity == 0 || y > kLowest - 190.0) continue;
+    if (one.colour.opacity == 0 || y > kLowestDrawing - 190.0) continue;
     svg.element("rect", {{"x", 0},
                          {"y", y},
                          {"width", 24},
@@ -284,20 +60,20 @@ Markup legend(const ReportMap& map, std::size_t number, const Scale& scale) {
     y += 18.0;
   }
   Markup group = "<g "_html;
-  set(group, "id", "legend-" + std::to_string(number));
-  set(group, "transform", "translate(" + tenth(scale.width + kGap) + " 0)");
+  set_attribute(group, "id", "legend-" + std::to_string(number));
+  set_attribute(group, "transform", "translate(" + tenth(scale.width + kLegendGap) + " 0)");
   return group + ">\n" + svg.elements() + "</g>\n";
 }
 
 Markup use(const std::string& what, const char* id = nullptr) {
   Markup element = "<use "_html;
-  if (id != nullptr) set(element, "id", id);
-  set(element, "href", "#" + what);
+  if (id != nullptr) set_attribute(element, "id", id);
+  set_attribute(element, "href", "#" + what);
   return element + "/>";
 }
 
-std::string box_of(const Scale& scale, bool with_legend) {
-  return "-1 -1 " + tenth(scale.width + 2.0 + (with_legend ? kGap + kLegend : 0.0)) + " " +
+std::string box_of(const MapScale& scale, bool with_legend) {
+  return "-1 -1 " + tenth(scale.width + 2.0 + (with_legend ? kLegendGap + kLegendWidth : 0.0)) + " " +
          tenth((with_legend ? scale.drawing_height() : scale.height) + 2.0);
 }
 
@@ -313,7 +89,7 @@ std::string sentence_of(const ReportMap& map, const MapSheet& sheet) {
 }  // namespace
 
 Markup map_store(const MapSheet& sheet, const RunFacts& run, const MapImprint& imprint) {
-  const Scale scale(sheet);
+  const MapScale scale(sheet);
   Markup store = "<svg class='hidden' aria-hidden='true'><defs>\n"_html;
   if (sheet.relief.empty())
     store += "<g id='relief'></g>\n";
@@ -327,48 +103,56 @@ Markup map_store(const MapSheet& sheet, const RunFacts& run, const MapImprint& i
 
 Markup map_viewer(const MapSheet& sheet) {
   if (sheet.maps.empty()) return {};
-  const Scale scale(sheet);
+  const MapScale scale(sheet);
+  std::size_t most = 0;  // classes of a legend
+  for (const ReportMap& map : sheet.maps) most = std::max(most, map.style.classes.size());
   Markup html =
       "<div class='screen'><h3>Compare two maps</h3>\n<p>Move the slider: left of it is the first map, right of it the "
       "second. Click on the map: the table shows the values of the cell there, of every map.</p>\n<p><label>Left "
       "<select id='choose-a'></select></label> <label>Right <select id='choose-b'></select></label></p>\n<svg "
       "id='viewer' style='cursor:crosshair' "_html;
-  set(html, "viewBox", box_of(scale, true));
-  set(html, "width", tenth(scale.width + kGap + kLegend));
-  set(html, "data-columns", std::to_string(sheet.window.width()));
-  set(html, "data-rows", std::to_string(sheet.window.height()));
-  set(html, "data-width", tenth(scale.width));
-  set(html, "data-height", tenth(scale.height));
-  set(html, "data-west", with_decimals(sheet.west, 3));
-  set(html, "data-north", with_decimals(sheet.north, 3));
-  set(html, "data-pixel-x", with_digits(sheet.pixel_x, 12));
-  set(html, "data-pixel-y", with_digits(sheet.pixel_y, 12));
+  set_attribute(html, "viewBox", box_of(scale, true));
+  set_attribute(html, "width", tenth(scale.width + kLegendGap + kLegendWidth));
+  set_attribute(html, "data-columns", std::to_string(sheet.window.width()));
+  set_attribute(html, "data-rows", std::to_string(sheet.window.height()));
+  set_attribute(html, "data-width", tenth(scale.width));
+  set_attribute(html, "data-height", tenth(scale.height));
+  set_attribute(html, "data-west", with_decimals(sheet.west, 3));
+  set_attribute(html, "data-north", with_decimals(sheet.north, 3));
+  set_attribute(html, "data-pixel-x", with_digits(sheet.pixel_x, 12));
+  set_attribute(html, "data-pixel-y", with_digits(sheet.pixel_y, 12));
   html += "><clipPath id='left'><rect id='left-part' y='-1' x='-1' width='0' ";
-  set(html, "height", tenth(scale.height + 2.0));
+  set_attribute(html, "height", tenth(scale.height + 2.0));
   html += "/></clipPath><clipPath id='right'><rect id='right-part' y='-1' width='0' ";
-  set(html, "height", tenth(scale.height + 2.0));
+  set_attribute(html, "height", tenth(scale.height + 2.0));
   html += "/></clipPath>\n"_html + use("relief") + "<g clip-path='url(#left)'>" + use("map-0", "view-a") +
-          "</g><g clip-path='url(#right)'>" + use("map-0", "view-b") + "</g>" + use("outlines") + use("furniture") +
-          use("legend-0", "view-legend");
+          "</g><g clip-path='url(#right)'>" + use("map-0", "view-b") + "</g>" + use("outlines") + use("furniture");
   html += "<line id='edge' y1='0' stroke='#000' stroke-width='2' ";
-  set(html, "y2", tenth(scale.height));
-  html += "/><circle id='mark' r='6' fill='none' stroke='#000' stroke-width='2' visibility='hidden'/></svg>\n<p><input "
-          "id='slider' type='range' min='0' max='1000' value='500' aria-label='place of the slider' ";
-  set(html, "style", "width:" + tenth(100.0 * scale.width / (scale.width + kGap + kLegend)) + "%");
+  set_attribute(html, "y2", tenth(scale.height));
+  html +=
+      "/><circle id='mark' r='6' fill='none' stroke='#000' stroke-width='2' visibility='hidden'/></svg>\n<p><input "
+      "id='slider' type='range' min='0' max='1000' value='500' aria-label='place of the slider' ";
+  set_attribute(html, "style", "margin:0;width:" + tenth(scale.width) + "px;max-width:100%");
+  html += "></p>\n<svg ";
+  set_attribute(html, "viewBox",
+                tenth(scale.width + kLegendGap) + " 0 " + tenth(2.0 * kLegendWidth + 60.0) + " " +
+                    std::to_string(22 + 18 * most));
+  set_attribute(html, "width", tenth(2.0 * kLegendWidth + 60.0));
+  html += ">"_html + use("legend-0", "legend-a") + "<g transform='translate(260 0)'>" + use("legend-0", "legend-b") +
+          "</g></svg>";
   return html +
-         "></p>\n<p id='place'>No place is chosen yet.</p>\n<table id='values'></table>\n<p class='note'>Values are "
-         "rounded to three digits; - stands for no value. A legend belongs to the map on its side that was chosen "
-         "last.</p></div>\n";
+         "\n<p id='place'>No place is chosen yet.</p>\n<table id='values'></table>\n<p class='note'>Values are "
+         "rounded to three digits; - stands for no value.</p></div>\n";
 }
 
 Markup map_figures(const MapSheet& sheet, const MapImprint& imprint) {
-  const Scale scale(sheet);
+  const MapScale scale(sheet);
   Markup html;
   for (std::size_t i = 0; i < sheet.maps.size(); ++i) {
     if (!sheet.maps[i].in_print) continue;
     html += "<figure class='map'><svg "_html;
-    set(html, "viewBox", box_of(scale, true));
-    set(html, "width", tenth(scale.width + kGap + kLegend));
+    set_attribute(html, "viewBox", box_of(scale, true));
+    set_attribute(html, "width", tenth(scale.width + kLegendGap + kLegendWidth));
     html += ">"_html + use("relief") + use("map-" + std::to_string(i)) + use("outlines") + use("furniture") +
             use("legend-" + std::to_string(i)) + "</svg>\n<figcaption>" + sentence_of(sheet.maps[i], sheet);
     if (!imprint.attribution.empty()) html += " "_html + imprint.attribution;

@@ -1,15 +1,9 @@
 #pragma once
-#include <string>
-
+#include "map_furniture.hpp"
 #include "markup.hpp"
 #include "report_maps.hpp"
 
 namespace talus::io {
-
-/// Words under every map.
-struct MapImprint {
-  std::string crs, date, attribution;
-};
 
 /// The pictures, outlines and furniture that the drawings of a page share; they show nothing by themselves.
 Markup map_store(const MapSheet& sheet, const RunFacts& run, const MapImprint& imprint);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "io/gdal/csv_table.hpp"
+#include "report_facts.hpp"
 #include "svg.hpp"
 #include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
@@ -91,8 +92,13 @@ Markup curves_drawing(const ObjectsPart& part) {
                              {"cy", place_of(drawn[i]->curve[0].frequency, low, high, 260.0, -240.0)},
                              {"r", 4},
                              {"fill", kColours[i]}});
-    svg.element("line", {{"x1", 490}, {"x2", 516}, {"y1", y}, {"y2", y}, {"stroke", kColours[i]},
-                         {"stroke-width", 2}, {"stroke-dasharray", dashes}});
+    svg.element("line", {{"x1", 490},
+                         {"x2", 516},
+                         {"y1", y},
+                         {"y2", y},
+                         {"stroke", kColours[i]},
+                         {"stroke-width", 2},
+                         {"stroke-dasharray", dashes}});
     svg.words({{"x", 522}, {"y", y + 4.0}}, shortened(drawn[i]->name, 32));
   }
   svg.words({{"x", 270}, {"y", 292}, {"text-anchor", "middle"}}, "energy [kJ]");
@@ -103,7 +109,7 @@ Markup curves_drawing(const ObjectsPart& part) {
 Markup object_row(const ObjectsPart::Object& object) {
   Markup row = "<tr><td>"_html + object.name + "</td><td class='n'>" + with_digits(object.frequency, 3) + " [" +
                with_digits(object.low, 3) + ", " + with_digits(object.high, 3) + "]</td><td class='n'>" +
-               (object.frequency > 0.0 ? with_digits(1.0 / object.frequency, 3) : "never seen") + "</td>";
+               (object.frequency > 0.0 ? readable(1.0 / object.frequency) : "never seen") + "</td>";
   for (const std::string& years : object.years)
     row += "<td class='n'>"_html + (years.empty() ? std::string("never seen") : years) + "</td>";
   return row + "<td>" + shortened(object.sources, 300) + "</td></tr>\n";
@@ -120,11 +126,16 @@ ObjectsPart read_objects_part(const fs::path& folder) {
   read_thresholds(table, part);
   for (const CsvTable::Row& row : table.rows()) {
     const auto number = [&](const char* column) { return table.number(row, column, kAny).value_or(0.0); };
-    ObjectsPart::Object object{table.text(row, "object"), table.text(row, "sources"), number("frequency"),
-                               number("frequency_lower"), number("frequency_upper"), {}, {}};
+    ObjectsPart::Object object{table.text(row, "object"),
+                               table.text(row, "sources"),
+                               number("frequency"),
+                               number("frequency_lower"),
+                               number("frequency_upper"),
+                               {},
+                               {}};
     for (const std::string& energy : part.thresholds) {
       const auto years = table.number(row, kYears + energy, kAny);
-      object.years.push_back(years ? with_digits(*years, 3) : "");
+      object.years.push_back(years ? readable(*years) : "");
     }
     part.objects.push_back(std::move(object));
   }
@@ -140,20 +151,22 @@ ObjectsPart read_objects_part(const fs::path& folder) {
 Markup objects_html(const ObjectsPart& part) {
   if (part.objects.empty()) return {};
   Markup html =
-      "<h2>Objects</h2>\n<p>How often each object is hit, with 95 % bounds of the number of blocks. \"Never seen\": no block of "
+      "<h2>Objects</h2>\n<p>How often each object is hit, with 95 % bounds of the number of blocks. \"Never seen\": no "
+      "block of "
       "this run did it; the upper bound says how often it may happen all the same.</p>\n<div class='wide'><table><tr>"
       "<th>object</th><th>hits per year [95 %]</th><th>once in [years]</th>"_html;
-  for (const std::string& energy : part.thresholds)
-    html += "<th>above "_html + energy + " kJ once in [years]</th>";
+  for (const std::string& energy : part.thresholds) html += "<th>above "_html + energy + " kJ once in [years]</th>";
   html += "<th>from</th></tr>\n";
   for (const ObjectsPart::Object& object : part.objects) html += object_row(object);
   html += "</table></div>\n";
   if (part.left_out > 0)
-    html += "<p class='note'>"_html + std::to_string(part.left_out) + " more, hit less often, are in objects.csv.</p>\n";
+    html +=
+        "<p class='note'>"_html + std::to_string(part.left_out) + " more, hit less often, are in objects.csv.</p>\n";
   const Markup curves = curves_drawing(part);
   if (curves.empty()) return html;
   return html + "<figure>" + curves +
-         "<figcaption>Hazard curves of the objects that are hit most often, from objects_curves.csv.</figcaption></figure>\n";
+         "<figcaption>Hazard curves of the objects that are hit most often, from "
+         "objects_curves.csv.</figcaption></figure>\n";
 }
 
 }  // namespace talus::io

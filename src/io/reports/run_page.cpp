@@ -65,7 +65,7 @@ Markup warnings_html(const RunReport& report) {
 }
 
 Markup line(const std::string& name, const std::string& value) {
-  return value.empty() ? Markup() : "<tr><th>"_html + name + "</th><td>" + value + "</td></tr>\n";
+  return value.empty() ? Markup() : "<tr><th>"_html + name + "</th><td class='b'>" + value + "</td></tr>\n";
 }
 
 std::string ends_text(const RunFacts& run) {
@@ -83,9 +83,9 @@ std::string energy_line_text(const RunFacts& run) {
 Markup run_html(const RunReport& report, const std::string& attribution) {
   const RunFacts& run = report.run;
   const RecordedGrid& grid = run.grid;
-  const std::string blocks =
-      grouped(run.released) + " blocks from " + grouped(run.source_cells) + " source cells, " + grouped(run.per_source) +
-      " each" + (run.rounds > 0.0 ? ", in " + grouped(run.rounds) + " rounds" : std::string());
+  const std::string blocks = grouped(run.released) + " blocks from " + grouped(run.source_cells) + " source cells, " +
+                             grouped(run.per_source) + " each" +
+                             (run.rounds > 0.0 ? ", in " + grouped(run.rounds) + " rounds" : std::string());
   return "<h2>What was run</h2>\n<table>\n"_html + line("program", "talus " + run.version) +
          line("command", run.command) + line("hazard", report.hazard ? report.hazard->command : "") +
          line("day of the run", run.finished) + line("status", run.status) + line("released", blocks) +
@@ -100,10 +100,10 @@ Markup run_html(const RunReport& report, const std::string& attribution) {
 }
 
 Markup inputs_html(const RunFacts& run) {
-  Markup html =
-      "<h3>Inputs</h3>\n<div class='wide'><table><tr><th>role</th><th>file</th><th>SHA-256</th></tr>\n"_html;
+  Markup html = "<h3>Inputs</h3>\n<div class='wide'><table><tr><th>role</th><th>file</th><th>SHA-256</th></tr>\n"_html;
   for (const InputFile& input : run.inputs)
-    html += "<tr><td>"_html + input.role + "</td><td>" + input.path + "</td><td>" + input.sha256 + "</td></tr>\n";
+    html += "<tr><td>"_html + input.role + "</td><td class='b'>" + input.path + "</td><td class='b'>" + input.sha256 +
+            "</td></tr>\n";
   html += "</table></div>\n";
   for (const std::string& note : run.notes) html += "<p class='note'>"_html + note + "</p>\n";
   return html;
@@ -114,8 +114,8 @@ Markup settings_html(const RunFacts& run) {
     Markup rows = "<table><tr><th>setting</th><th>value</th><th>unit</th><th>from</th></tr>\n"_html;
     for (const RecordedSetting& s : run.settings)
       if (wanted(s))
-        rows += "<tr><td>"_html + s.key + "</td><td>" + s.value + "</td><td>" + s.unit + "</td><td>" + s.source +
-                "</td></tr>\n";
+        rows += "<tr><td class='b'>"_html + s.key + "</td><td class='b'>" + s.value + "</td><td>" + s.unit +
+                "</td><td class='b'>" + s.source + "</td></tr>\n";
     return rows + "</table>\n";
   };
   const auto given = [](const RecordedSetting& s) { return !s.is_default() && !s.is_of_preset(); };
@@ -142,7 +142,8 @@ Markup maps_html(const RunReport& report, const MapImprint& imprint) {
 /// Today (UTC), or the day that the environment states for repeatable builds.
 std::string today() {
   const char* const given = std::getenv("SOURCE_DATE_EPOCH");
-  const std::time_t now = given != nullptr ? static_cast<std::time_t>(std::strtoll(given, nullptr, 10)) : std::time(nullptr);
+  const std::time_t now =
+      given != nullptr ? static_cast<std::time_t>(std::strtoll(given, nullptr, 10)) : std::time(nullptr);
   std::tm parts{};
   std::array<char, 16> text{};
   if (gmtime_r(&now, &parts) == nullptr) return "";

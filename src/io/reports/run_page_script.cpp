@@ -11,6 +11,7 @@ if (!viewer) return;
 const number = name => Number(viewer.dataset[name]);
 const maps = Array.from(document.querySelectorAll('image[data-values]'));
 const choices = [find('choose-a'), find('choose-b')], views = [find('view-a'), find('view-b')];
+const legends = [find('legend-a'), find('legend-b')];
 
 // Values: base64 of a zlib stream of 16-bit codes, first their low bytes, then their high bytes.
 const codes = new Map();
@@ -44,7 +45,7 @@ function slide() {
 
 function choose(side) {
   views[side].setAttribute('href', '#map-' + choices[side].value);
-  find('view-legend').setAttribute('href', '#legend-' + choices[side].value);
+  legends[side].setAttribute('href', '#legend-' + choices[side].value);
 }
 
 async function show(column, row) {
@@ -80,7 +81,6 @@ choices.forEach((choice, side) => {
   choice.addEventListener('change', () => choose(side));
   choose(side);
 });
-choose(0);
 slide();
 })();
 )js"_html;

@@ -4,6 +4,7 @@
 
 #include "coverage_report.hpp"
 #include "evidence.hpp"
+#include "page_frame.hpp"
 #include "sites_evidence.hpp"
 #include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
@@ -237,12 +238,7 @@ std::string sites_json(const SitesRecord& record) {
 
 std::string sites_page(const SitesRecord& record) {
   const SitesDiagnosis& d = record.diagnosis;
-  Markup html =
-      "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'><title>Talus: diagnosis of several campaigns</title>"
-      "<style>body{font:15px/1.5 sans-serif;max-width:1200px;margin:2em auto;padding:0 1em;color:#222}"
-      "table{border-collapse:collapse;font-size:13px}td,th{border:1px solid #ccc;padding:3px 8px;text-align:left;"
-      "vertical-align:top}svg text{font:11px sans-serif}</style></head><body>\n<h1>What the models of "_html +
-      names_in_words(record.evidence) + " lack</h1>\n<p><b>" + verdict_sentence(d) + "</b></p>\n";
+  Markup html = "<p><b>"_html + verdict_sentence(d) + "</b></p>\n";
   for (const std::string& finding : own_findings(record)) html += "<p>"_html + finding + "</p>\n";
   html +=
       "<h2>Evidence, by site and pooled</h2>\n<p>Mean normalised score; before: the ground of each site alone; after: "
@@ -260,9 +256,11 @@ std::string sites_page(const SitesRecord& record) {
             "</h2>\n<p>p of the pooled family: " + p_text(round.family.p_value) + "; " + round.family.note + ".</p>\n";
     if (!round.candidates.empty()) html += candidates_html(round);
   }
-  html += "<h2>Ground</h2>\n"_html + ground_html(d) + "<p>talus " + std::string(version()) + ", seed " +
-          std::to_string(record.options.seed) + ", " + with_decimals(record.seconds, 0) + " s.</p></body></html>\n";
-  return html.text();
+  html += "<h2>Ground</h2>\n"_html + ground_html(d);
+  const std::string footer =
+      "seed " + std::to_string(record.options.seed) + ", " + with_decimals(record.seconds, 0) + " s";
+  return page_of({"diagnose", "What the models of " + names_in_words(record.evidence) + " lack", footer, {}, true},
+                 html);
 }
 
 std::string sites_summary(const SitesRecord& record) {

@@ -1,0 +1,263 @@
+#include "map_furniture.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "svg.hpp"
+#include "talus/base/printable.hpp"
+#include "talus/base/text.hpp"
+
+namespace talus::io {
+namespace {
+
+constexpr double kWidest = 700.0, kHighest = 700.0;  // of a map in a drawing [px]
+constexpr const char* kSourceColour = "#111111";
+constexpr const char* kScreenColour = "#c2185b";
+constexpr const char* kObjectColour = "#00695c";
+
+/// The rim of the marked pixels as a path, in pixels. Empty if it is too ragged to be one.
+std::string rim_of(const std::vector<std::uint8_t>& marks, int width) {
+  constexpr std::size_t kMostText = 400'000;
+  const int height = width > 0 ? static_cast<int>(marks.size()) / width : 0;
+  const auto marked = [&](int x, int y) {
+    return x >= 0 && y >= 0 && x < width && y < height && marks[std::size_t(y) * width + x] != 0;
+  };
+  std::string path;
+  for (const bool across : {true, false}) {
+    const int lines = across ? height : width, length = across ? width : height;
+    for (int line = 0; line <= lines && path.size() < kMostText; ++line) {
+      int start = -1;
+      for (int at = 0; at <= length; ++at) {
+        const bool edge = at < length && (across ? marked(at, line) != marked(at, line - 1)
+                                                 : marked(line, at) != marked(line - 1, at));
+        if (edge && start < 0) start = at;
+        if (edge || start < 0) continue;
+        const auto place = [&](int along, int aside) { return std::to_string(along) + " " + std::to_string(aside); };
+        path += "M" + (across ? place(start, line) : place(line, start)) + (across ? "H" : "V") + std::to_string(at);
+        start = -1;
+      }
+    }
+  }
+  return path.size() < kMostText ? path : "";
+}
+
+std::string points_of(const std::vector<Eigen::Vector2d>& places, const MapScale& scale) {
+  std::string points;
+  for (const Eigen::Vector2d& place : places)
+    points += (points.empty() ? "" : " ") + tenth(scale.x(place.x())) + "," + tenth(scale.y(place.y()));
+  return points;
+}
+
+/// Writes names on the map, each beside its place, where it is within the map and covers no earlier one; a name
+/// without such a place is left out.
+class Names {
+ public:
+  Names(Svg& svg, const MapScale& scale) : svg_(svg), scale_(scale) {}
+
+  bool put(const std::string& name, const Eigen::Vector2d& place, const char* colour) {
+    constexpr double kLetter = 7.2, kLine = 13.0;  // of bold letters, generous [px]
+    const std::string text = shortened(name, 32);
+    const double x = scale_.x(place.x()), y = scale_.y(place.y()), width = kLetter * static_cast<double>(text.size());
+    for (const double down : {-4.0, 14.0, 5.0})
+      for (const double right : {6.0, -6.0 - width}) {
+        const Box box{x + right, y + down - kLine, x + right + width, y + down};
+        if (!is_free(box)) continue;
+        taken_.push_back(box);
+        svg_.words({{"x", box.left},
+                    {"y", box.low - 2.0},
+                    {"fill", colour},
+                    {"font-weight", "bold"},
+                    {"stroke", "#fff"},
+                    {"stroke-width", 3},
+                    {"paint-order", "stroke"}},
+                   text);
+        return true;
+      }
+    return false;
+  }
+
+ private:
+  struct Box {
+    double left, top, right, low;
+  };
+  bool is_free(const Box& box) const {
+    if (!(box.left >= 0.0 && box.top >= 0.0 && box.right <= scale_.width && box.low <= scale_.height)) return false;
+    return std::ranges::none_of(taken_, [&](const Box& other) {
+      return box.left < other.right && other.left < box.right && box.top < other.low && other.top < box.low;
+    });
+  }
+
+  Svg& svg_;
+  const MapScale& scale_;
+  std::vector<Box> taken_;
+};
+
+void draw_screens(Svg& svg, const std::vector<Screen>& screens, const MapScale& scale, Names& names) {
+  for (const Screen& screen : screens)
+    for (const auto& line : screen.lines)
+      svg.element("polyline", {{"points", points_of(line, scale)},
+                               {"fill", "none"},
+                               {"stroke", kScreenColour},
+                               {"stroke-width", 2},
+                               {"stroke-dasharray", "7 3"}});
+  for (const Screen& screen : screens)
+    for (const auto& line : screen.lines)
+      if (std::ranges::any_of(line, [&](const auto& place) { return names.put(screen.id, place, kScreenColour); }))
+        break;
+}
+
+void draw_objects(Svg& svg, const Outlines& objects, const MapScale& scale, Names& names) {
+  constexpr std::size_t kMostNames = 40;
+  for (const Outline& object : objects.list) {
+    if (object.places.size() == 1) {
+      svg.element("circle", {{"cx", scale.x(object.places[0].x())},
+                             {"cy", scale.y(object.places[0].y())},
+                             {"r", 4},
+                             {"fill", "none"},
+                             {"stroke", kObjectColour},
+                             {"stroke-width", 2}});
+      continue;
+    }
+    svg.element(object.closed ? "polygon" : "polyline", {{"points", points_of(object.places, scale)},
+                                                         {"fill", "none"},
+                                                         {"stroke", kObjectColour},
+                                                         {"stroke-width", 2}});
+  }
+  if (objects.list.size() > kMostNames) return;
+  for (const Outline& object : objects.list) names.put(object.name, object.places.front(), kObjectColour);
+}
+
+/// Ticks with coordinates at the lower and the left rim.
+void draw_coordinates(Svg& svg, const MapScale& scale) {
+  const double east = scale.west + scale.width / scale.per_metre, south = scale.north - scale.height / scale.per_metre;
+  for (const double place : ticks(scale.west, east, 6)) {
+    const double x = scale.x(place);
+    svg.element("line", {{"x1", x}, {"x2", x}, {"y1", scale.height}, {"y2", scale.height - 7.0}, {"stroke", "#000"}});
+    if (x > 30.0 && x < scale.width - 30.0)
+      svg.words({{"x", x},
+                 {"y", scale.height - 10.0},
+                 {"text-anchor", "middle"},
+                 {"stroke", "#fff"},
+                 {"stroke-width", 3},
+                 {"paint-order", "stroke"}},
+                with_decimals(place, 0));
+  }
+  for (const double place : ticks(south, scale.north, 6)) {
+    const double y = scale.y(place);
+    svg.element("line", {{"x1", 0}, {"x2", 7}, {"y1", y}, {"y2", y}, {"stroke", "#000"}});
+    if (y > 14.0 && y < scale.height - 26.0)
+      svg.words({{"x", 10}, {"y", y + 4.0}, {"stroke", "#fff"}, {"stroke-width", 3}, {"paint-order", "stroke"}},
+                with_decimals(place, 0));
+  }
+  svg.element(
+      "rect",
+      {{"x", 0}, {"y", 0}, {"width", scale.width}, {"height", scale.height}, {"fill", "none"}, {"stroke", "#000"}});
+}
+
+/// The largest length of 1, 2 or 5 times a power of ten that is at most `most` [m].
+double round_length(double most) {
+  const double unit = std::pow(10.0, std::floor(std::log10(most)));
+  return unit * (most >= 5.0 * unit ? 5.0 : most >= 2.0 * unit ? 2.0 : 1.0);
+}
+
+void draw_scale_bar(Svg& svg, double y, const MapScale& scale) {
+  const double metres = round_length(170.0 / scale.per_metre), length = metres * scale.per_metre;
+  for (int part = 0; part < 2; ++part)
+    svg.element("rect", {{"x", 0.5 * length * part},
+                         {"y", y},
+                         {"width", 0.5 * length},
+                         {"height", 6},
+                         {"fill", part == 0 ? "#000" : "#fff"},
+                         {"stroke", "#000"}});
+  const bool far = metres >= 2000.0;
+  svg.words({{"x", 0}, {"y", y + 19.0}}, "0");
+  svg.words({{"x", length}, {"y", y + 19.0}, {"text-anchor", "middle"}},
+            text_of(far ? 1e-3 * metres : metres) + (far ? " km" : " m"));
+}
+
+void draw_north(Svg& svg, double x, double y) {
+  svg.element("polygon", {{"points", tenth(x) + "," + tenth(y) + " " + tenth(x + 8) + "," + tenth(y + 26) + " " +
+                                         tenth(x) + "," + tenth(y + 20) + " " + tenth(x - 8) + "," + tenth(y + 26)}});
+  svg.words({{"x", x}, {"y", y - 4.0}, {"text-anchor", "middle"}, {"font-weight", "bold"}}, "N");
+}
+
+}  // namespace
+
+MapScale::MapScale(const MapSheet& sheet)
+    : per_metre(std::min(kWidest / (sheet.window.width() * sheet.pixel_x),
+                         kHighest / (sheet.window.height() * sheet.pixel_y))),
+      width(per_metre * sheet.window.width() * sheet.pixel_x),
+      height(per_metre * sheet.window.height() * sheet.pixel_y),
+      west(sheet.west),
+      north(sheet.north) {}
+
+double MapScale::drawing_height() const {
+  return std::max(height, kLowestDrawing);
+}
+
+std::string tenth(double value) {
+  return with_decimals(value, 1);
+}
+
+Markup& set_attribute(Markup& to, const char* name, const std::string& value) {
+  return ((to += std::string_view(name)) += "=\"").add_value(value) += "\" ";
+}
+
+Markup furniture(const MapSheet& sheet, const RunFacts& run, const MapImprint& imprint, const MapScale& scale) {
+  Svg svg;
+  double y = scale.drawing_height() - 132.0;
+  const auto key = [&](const char* colour, const char* dashes, const std::string& text) {
+    svg.element("line", {{"x1", 0},
+                         {"x2", 22},
+                         {"y1", y - 4.0},
+                         {"y2", y - 4.0},
+                         {"stroke", colour},
+                         {"stroke-width", 2},
+                         {"stroke-dasharray", dashes}});
+    svg.words({{"x", 28}, {"y", y}}, text);
+    y -= 16.0;
+  };
+  if (!sheet.objects.list.empty()) key(kObjectColour, "none", "objects");
+  if (!run.screens.empty()) key(kScreenColour, "7 3", "screens");
+  if (!sheet.sources.empty()) key(kSourceColour, "none", "source cells");
+  y = scale.drawing_height() - 116.0;
+  draw_scale_bar(svg, y, scale);
+  draw_north(svg, kLegendWidth - 26.0, y - 20.0);
+  const std::string side = with_digits(sheet.pixel_x, 4), cells = std::to_string(sheet.window.side);
+  y += 38.0;
+  for (const std::string& line :
+       {shortened(imprint.crs, 36), std::string("grid north; coordinates in m"), "run of " + imprint.date,
+        sheet.window.side == 1 ? "1 pixel = 1 cell of " + side + " m"
+                               : "1 pixel = " + cells + " x " + cells + " cells, " + side + " m",
+        shortened(imprint.attribution, 36)}) {
+    svg.words({{"x", 0}, {"y", y}}, line);
+    y += 16.0;
+  }
+  Markup group = "<g id='furniture' "_html;
+  set_attribute(group, "transform", "translate(" + tenth(scale.width + kLegendGap) + " 0)");
+  return group + ">\n" + svg.elements() + "</g>\n";
+}
+
+Markup outlines(const MapSheet& sheet, const RunFacts& run, const MapScale& scale) {
+  Markup group = "<clipPath id='frame'><rect "_html;
+  set_attribute(group, "width", tenth(scale.width));
+  set_attribute(group, "height", tenth(scale.height));
+  group += "/></clipPath>\n<g id='outlines' clip-path='url(#frame)'>\n";
+  if (const std::string rim = rim_of(sheet.sources, sheet.window.width()); !rim.empty()) {
+    group += "<path fill='none' stroke-width='1.2' vector-effect='non-scaling-stroke' ";
+    set_attribute(group, "stroke", kSourceColour);
+    set_attribute(group, "transform",
+                  "scale(" + with_digits(scale.per_metre * sheet.pixel_x, 8) + " " +
+                      with_digits(scale.per_metre * sheet.pixel_y, 8) + ")");
+    set_attribute(group, "d", rim);
+    group += "/>\n";
+  }
+  Svg svg;
+  Names names(svg, scale);
+  draw_objects(svg, sheet.objects, scale, names);
+  draw_screens(svg, run.screens, scale, names);
+  draw_coordinates(svg, scale);
+  return group + svg.elements() + "</g>\n";
+}
+
+}  // namespace talus::io

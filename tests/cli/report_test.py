@@ -1,0 +1,435 @@
+"""talus report as a user calls it, and its page in a browser."""
+import base64
+import csv
+import html.parser
+import json
+import math
+import os
+import re
+import shutil
+import subprocess
+import unittest
+import zlib
+
+import numpy as np
+from osgeo import gdal, ogr
+
+from support import NORTH, WEST, RunCase, box, write_features
+
+HOSTILE = "<script>alert(1)</script>&amp;'\"\u202e</svg>"
+CHROMIUM = next((path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if path), None)
+VOID = {"meta", "br", "input", "rect", "line", "circle", "polygon", "polyline", "path", "image", "use"}
+
+
+class Page(html.parser.HTMLParser):
+    """A page: its elements with their attributes, its text; fails on an element that is not closed in turn."""
+
+    def __init__(self, path):
+        super().__init__(convert_charrefs=True)
+        self.elements, self.text, self.open = [], "", []
+        with open(path, encoding="utf-8") as file:
+            self.source = file.read()
+        self.feed(self.source)
+        self.close()
+        if self.open:
+            raise AssertionError(f"not closed: {self.open}")
+
+    def handle_starttag(self, tag, attributes):
+        self.elements.append((tag, dict(attributes)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attributes):
+        self.elements.append((tag, dict(attributes)))
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            raise AssertionError(f"</{tag}> in line {self.getpos()[0]} closes nothing")
+
+    def handle_data(self, data):
+        if not self.open or self.open[-1] not in ("script", "style"):
+            self.text += data
+
+    def all(self, tag):
+        return [attributes for name, attributes in self.elements if name == tag]
+
+    def maps(self):
+        return {image["data-title"]: image for image in self.all("image") if "data-values" in image}
+
+    def viewer(self):
+        return next(svg for svg in self.all("svg") if svg.get("id") == "viewer")
+
+
+def codes(image, columns):
+    """The 16-bit codes of a map, as docs/report.md states them."""
+    data = np.frombuffer(zlib.decompress(base64.b64decode(image["data-values"])), np.uint8).astype(int)
+    half = len(data) // 2
+    return (data[:half] + 256 * data[half:]).reshape(-1, columns)
+
+
+def value_of(code):
+    if code < 2:
+        return None if code == 0 else 0.0
+    exponent, digits = divmod(int(code) - 2, 900)
+    return float(f"{digits + 100}e{exponent - 32}")
+
+
+def three_digits(value, nodata):
+    if value == nodata or math.isnan(value):
+        return None
+    return float(f"{value:.2e}")
+
+
+def band_of(path, number, *window):
+    """Values of a band, and its nodata value."""
+    file = gdal.Open(path)
+    band = file.GetRasterBand(number)
+    return band.ReadAsArray(*window), band.GetNoDataValue()
+
+
+class Report(RunCase):
+    """A run with screens, hazard with objects, and a barrier."""
+
+    def results(self, hazard=True, out="out"):
+        self.run_scenario(out)
+        if hazard:
+            write_features(self.path("houses.gpkg"), "houses",
+                           [(box(100, 100, 12, 9), ["mill"]), (box(205, 120, 12, 9), ["school"])], [("name", ogr.OFTString)])
+            self.run_well("hazard", self.path(out), "--objects", self.path("houses.gpkg"), "-q")
+            self.run_well("barrier", self.path(out), "--screen", "road", "-q")
+
+    def page(self, *more, out="out"):
+        self.run_well("report", self.path(out), "-q", *more)
+        return Page(self.path(out + "/report.html"))
+
+    def assert_alone(self, page):
+        """Nothing on the page loads anything."""
+        for tag, attributes in page.elements:
+            self.assertNotIn("src", attributes, tag)
+            for name, value in attributes.items():
+                self.assertFalse(name.startswith("on"), f"{tag} {name}")
+                if name.endswith("href"):
+                    self.assertRegex(value, r"^(#[a-z0-9-]+|data:image/png;base64,[A-Za-z0-9+/=]+)$", tag)
+        self.assertNotIn("link", [tag for tag, _ in page.elements])
+        self.assertNotRegex(page.source, r"https?:|@import|url\((?!#)")
+        self.assertIn("default-src 'none'", page.source)
+        self.assertEqual(len(page.all("script")), page.source.count("<script"))
+
+    def window(self, page):
+        viewer, grid = page.viewer(), self.record()["grid"]
+        column = round((float(viewer["data-west"]) - grid["west"]) / grid["cell_x_m"])
+        row = round((grid["north"] - float(viewer["data-north"])) / grid["cell_y_m"])
+        return column, row, int(viewer["data-columns"]), int(viewer["data-rows"])
+
+
+class Content(Report):
+    def test_all_sections(self):
+        self.results()
+        page = self.page("--title", "Above the road", "--attribution", "Survey of the canton")
+        self.assert_alone(page)
+        record = self.record()
+        for words in ("Above the road", "Survey of the canton", "What was run", "At the screens", "Barrier at road", "Objects",
+                      "Before you sign", "Assumptions", "mill", "school", "EPSG:2056"):
+            self.assertIn(words, page.text)
+        for entry in record["inputs"]:
+            self.assertIn(entry["sha256"], page.text)
+            self.assertIn(entry["path"], page.text)
+        for warning in record["warnings"]:
+            self.assertIn(warning, page.text)
+        self.assertIn(", ".join(f"{end} {count:,}".replace(",", "\u00a0") for end, count in record["ends"].items()), page.text)
+        self.assertLessEqual({"Impact probability", "Energy, P95", "Jump height, P95", "Deposits", "Released blocks",
+                              "Hazard class", "Annual frequency", "Return period, E > 30 kJ"}, set(page.maps()))
+        self.assertIn("relief", [image["id"] for image in page.all("image")])
+
+    def test_values_behind_the_click_are_those_of_the_files(self):
+        self.results()
+        page = self.page()
+        left, top, columns, rows = self.window(page)
+        files = {"Impact probability": ("impact_probability", 1), "Energy, P95": ("energy", 3), "Deposits": ("deposits", 1),
+                 "Jump height, P95": ("jump_height", 3), "Hazard class": ("hazard_class", 1),
+                 "Return period, E > 30 kJ": ("return_period_30", 1), "Annual frequency": ("annual_frequency", 1)}
+        for title, (name, band) in files.items():
+            values, nodata = band_of(self.path(f"out/{name}.tif"), band, left, top, columns, rows)
+            shown = codes(page.maps()[title], columns)
+            self.assertEqual(shown.shape, values.shape)
+            self.assertGreater(np.count_nonzero(shown > 1), 20, title)
+            for code, value in zip(shown.ravel(), values.ravel()):
+                self.assertEqual(value_of(code), three_digits(float(value), nodata), title)
+        whole, _ = band_of(self.path("out/impact_probability.tif"), 1)
+        inside = whole[top:top + rows, left:left + columns]
+        self.assertEqual(np.count_nonzero(whole > 0), np.count_nonzero(inside > 0))  # nothing is cut off
+
+    def test_large_maps_hold_the_largest_value_of_their_cells(self):
+        self.results(hazard=False)
+        for name in ("impact_probability", "passages", "release"):  # the results of a grid of 1800 x 1800 cells
+            values = np.kron(band_of(self.path(f"out/{name}.tif"), 1)[0], np.ones((30, 30)))
+            rng = np.random.default_rng(1)
+            values = np.where(values > 0, values * rng.uniform(0.5, 1.5, values.shape), values)
+            copy = gdal.GetDriverByName("GTiff").Create(self.path("large.tif"), 1800, 1800, 1, gdal.GDT_Float32)
+            copy.GetRasterBand(1).WriteArray(values)
+            copy.GetRasterBand(1).SetNoDataValue(-9999)
+            copy = None
+            os.replace(self.path("large.tif"), self.path(f"out/{name}.tif"))
+            if name == "impact_probability":
+                expected = values.astype(np.float32)
+        for name in os.listdir(self.path("out")):
+            if name.endswith(".tif") and name not in ("impact_probability.tif", "passages.tif", "release.tif"):
+                os.remove(self.path("out/" + name))
+        record = self.record()
+        record["grid"].update(columns=1800, rows=1800, cell_x_m=5 / 30, cell_y_m=5 / 30)
+        self.write("out/run.json", json.dumps(record))
+        page = self.page()
+        viewer = page.viewer()
+        columns, rows = int(viewer["data-columns"]), int(viewer["data-rows"])
+        self.assertLessEqual(max(columns, rows), 800)
+        side = round(float(viewer["data-pixel-x"]) * 6)
+        self.assertGreater(side, 1)
+        self.assertIn(f"{side} x {side} cells", page.text)
+        left = round((float(viewer["data-west"]) - WEST) * 6)
+        top = round((NORTH - float(viewer["data-north"])) * 6)
+        shown = codes(page.maps()["Impact probability"], columns)
+        for row in range(0, rows, 7):
+            for column in range(0, columns, 7):
+                cells = expected[top + row * side:top + (row + 1) * side, left + column * side:left + (column + 1) * side]
+                self.assertEqual(value_of(shown[row, column]), three_digits(float(cells.max()), -9999))
+        self.assertIn("No relief under the maps", page.text)  # the DEM has other cells
+
+    def test_without_hazard_and_screens(self):
+        write_features(self.path("sources.gpkg"), "sources", [(box(140, 230, 20, 10), ["cliff"])], [("name", ogr.OFTString)])
+        self.run_well(*self.arguments(), "-q")
+        page = self.page()
+        self.assert_alone(page)
+        self.assertNotIn("At the screens", page.text)
+        self.assertNotIn("Hazard class", page.maps())
+        self.assertIn("Nothing on this page is per year", page.text)
+
+    def test_screens_in_numbers(self):
+        self.results(hazard=False)
+        page = self.page()
+        with open(self.path("out/screens_summary.csv"), encoding="utf-8") as file:
+            rows = [row for row in csv.DictReader(file) if row["quantity"] in ("speed", "energy", "jump height")]
+        self.assertEqual(len(rows), 3)
+        for row in rows:
+            for key in ("p50", "p95", "p99", "maximum"):
+                self.assertIn(f"{float(row[key]):.3g}", page.text)
+
+    def test_a_dem_that_was_moved_or_changed_is_left_out(self):
+        self.results(hazard=False)
+        with open(self.path("dem.tif"), "ab") as file:
+            file.write(b" ")
+        page = self.page()
+        self.assertIn("the DEM has changed since the run", page.text)
+        self.assertNotIn("relief", [image["id"] for image in page.all("image")])
+        os.remove(self.path("dem.tif"))
+        self.assertIn("the DEM is no longer where it was", self.page("--overwrite").text)
+
+    def test_the_fit_of_the_ground(self):
+        os.mkdir(self.path("fit"))
+        self.write("fit/fitted.toml", '[ground.zones.default]\npreset = "upper-talus-3d"\nEn50 = 13\n')
+        self.write("fit/calibration.json", json.dumps({
+            "campaign": "quarry" + HOSTILE, "parameters": [{"key": "ground.En50", "unit": "m3/s2", "value": 13.0,
+                                                            "ci95": [9.5, 17.5], "identifiable": False}],
+            "error": {"holdout": {"before": 0.811, "after": 0.634}}, "warnings": []}))
+        with open(self.path("s.toml"), encoding="utf-8") as file:
+            self.write("s.toml", 'include = "fit/fitted.toml"\n' + file.read())
+        self.results(hazard=False)
+        page = self.page()
+        self.assert_alone(page)
+        for words in ("Fit of the ground", "quarry<script>", "0.811", "9.5 to 17.5", "not determined by the data"):
+            self.assertIn(words, page.text)
+        with open(self.path("fit/fitted.toml"), "a", encoding="utf-8") as file:
+            file.write("# another\n")
+        self.assertIn("has changed since the run", self.page("--overwrite").text)
+
+    def test_hostile_names_stay_text(self):
+        road = f"road{HOSTILE}"
+        write_features(self.path("screens.gpkg"), "screens",
+                       [(f"LINESTRING ({WEST} 1200100,{WEST + 300} 1200100)", [road])], [("id", ogr.OFTString)])
+        write_features(self.path("sources.gpkg"), "sources", [(box(100, 230, 30, 15), [f"cliff{HOSTILE}", 0.5])],
+                       [("name", ogr.OFTString), ("frequency", ogr.OFTReal)])
+        self.run_scenario("out")
+        write_features(self.path("houses.gpkg"), "houses", [(box(100, 100, 30, 30), [f"mill{HOSTILE}"])],
+                       [("name", ogr.OFTString)])
+        self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"), "-q")
+        self.run_well("barrier", self.path("out"), "--screen", road, "-q")
+        record = self.record()
+
+        def spoilt(value):
+            if isinstance(value, dict):
+                return {key: item if key in ("crs_wkt", "plan") else spoilt(item) for key, item in value.items()}
+            if isinstance(value, list):
+                return [spoilt(item) for item in value]
+            return value + HOSTILE if isinstance(value, str) and value != "dem" and not value.endswith("dem.tif") and \
+                not re.fullmatch("[0-9a-f]{64}|default|m", value) else value
+
+        self.write("out/run.json", json.dumps(spoilt(record)))
+        page = self.page("--title", f"title{HOSTILE}", "--attribution", f"canton{HOSTILE}")
+        self.assert_alone(page)
+        self.assertEqual(len(page.all("script")), 1)
+        for name in ("road", "mill", "cliff", "title", "canton"):
+            self.assertIn(f"{name}<script>alert(1)</script>&amp;'\"", page.text)
+        self.assertNotIn("&amp;lt;", page.source)  # escaped once
+        self.assertNotRegex(page.source, "[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
+
+
+class Files(Report):
+    def test_names_and_overwrite(self):
+        self.results(hazard=False)
+        self.fails(2, "nowhere", "no run.json", arguments=["report", self.path("nowhere")])
+        self.fails(2, "must end in .html", arguments=["report", self.path("out"), "-o", self.path("page.pdf")])
+        self.fails(2, "is no folder", arguments=["report", self.path("out"), "-o", self.path("no/page.html")])
+        self.page()
+        self.fails(2, "is there already", "--overwrite", arguments=["report", self.path("out")])
+        self.page("--overwrite")
+        self.write("mine.html", "<p>mine</p>")
+        self.fails(2, "no page of talus report",
+                   arguments=["report", self.path("out"), "-o", self.path("mine.html"), "--overwrite"])
+        self.run_well("report", self.path("out"), "-o", self.path("page.html"))
+        self.assertFalse([name for name in os.listdir(self.folder) + os.listdir(self.path("out")) if name.startswith(".")])
+        self.run_scenario("out", "--overwrite")  # the page belongs to the folder
+
+    def test_the_same_page_again(self):
+        self.results()
+        day = {**os.environ, "SOURCE_DATE_EPOCH": "1700000000"}
+        for name in ("one.html", "two.html"):
+            self.run_well("report", self.path("out"), "-o", self.path(name), "-q", env=day)
+        with open(self.path("one.html"), "rb") as one, open(self.path("two.html"), "rb") as two:
+            self.assertEqual(one.read(), two.read())
+
+    def test_tampered_folders(self):
+        self.results()
+
+        def refused(name, content, *words):
+            with open(self.path("out/" + name), "rb") as file:
+                kept = file.read()
+            self.write("out/" + name, content)
+            self.fails(2, name, *words, arguments=["report", self.path("out")])
+            self.assertFalse(os.path.exists(self.path("out/report.html")))
+            with open(self.path("out/" + name), "wb") as file:
+                file.write(kept)
+
+        record = self.record()
+        refused("run.json", "[" * 100_000, "cannot be understood")
+        refused("run.json", "{}", "cannot be understood")
+        for change in ({"columns": 10**9}, {"columns": -5}, {"cell_x_m": 0}, {"cell_x_m": 1e999}, {"crs_wkt": 7}):
+            refused("run.json", json.dumps({**record, "grid": {**record["grid"], **change}}), "cannot be understood")
+        refused("hazard.json", '{"warnings": 3, "events_per_year": "many"}', "cannot be understood")
+        refused("barrier_road.json", '{"screen": ["road"]}', "cannot be understood")
+        refused("screens_summary.csv", "screen,speed\nroad\n")
+        refused("objects_curves.csv", "object,energy_kj,frequency\nmill,much,1\n", "must be a number")
+        os.remove(self.path("out/run.json"))
+        os.mkfifo(self.path("out/run.json"))
+        self.fails(2, "run.json", "a pipe", arguments=["report", self.path("out")])
+
+    def test_a_raster_of_another_grid_is_refused(self):
+        self.results(hazard=False)
+        record = self.record()
+        record["grid"]["columns"] = 61
+        self.write("out/run.json", json.dumps(record))
+        self.fails(2, "impact_probability.tif", "60 x 60 cells", arguments=["report", self.path("out")])
+
+    def test_a_style_that_is_none_leaves_the_map_out(self):
+        self.results(hazard=False)
+        for text in ("", "<qgis>", "<qgis><pipe><rasterrenderer band='9e9'/></pipe></qgis>", "x" * 2_000_000):
+            self.write("out/energy.qml", text)
+            page = self.page("--overwrite")
+            self.assertNotIn("Energy, P95", page.maps())
+            self.assertIn("energy.tif: has no style with classes", page.text)
+
+
+# Clicks on every map, then writes what the page shows into the document.
+HARNESS = """<script>
+addEventListener('load', async () => {
+  const said = [];
+  const viewer = document.getElementById('viewer'), box = viewer.getScreenCTM();
+  const x = Number(viewer.dataset.width) * (COLUMN + 0.5) / Number(viewer.dataset.columns);
+  const y = Number(viewer.dataset.height) * (ROW + 0.5) / Number(viewer.dataset.rows);
+  const place = new DOMPoint(x, y).matrixTransform(box);
+  viewer.dispatchEvent(new MouseEvent('click', {clientX: place.x, clientY: place.y, bubbles: true}));
+  const slider = document.getElementById('slider');
+  slider.value = 250;
+  slider.dispatchEvent(new Event('input'));
+  const choice = document.getElementById('choose-b');
+  choice.value = '2';
+  choice.dispatchEvent(new Event('change'));
+  for (let i = 0; i < 200 && document.querySelectorAll('#values tr').length === 0; ++i)
+    await new Promise(done => setTimeout(done, 20));
+  const state = document.createElement('pre');
+  state.id = 'state';
+  state.textContent = JSON.stringify({
+    values: Array.from(document.querySelectorAll('#values tr')).map(row => [row.cells[0].textContent, row.cells[1].textContent]),
+    place: document.getElementById('place').textContent,
+    left: document.getElementById('left-part').getAttribute('width'),
+    view: document.getElementById('view-b').getAttribute('href'),
+    pictures: (await Promise.all(Array.from(document.querySelectorAll('image')).map(image => new Promise(done => {
+      const picture = new Image();
+      picture.onload = () => done(picture.naturalWidth);
+      picture.onerror = () => done(0);
+      picture.src = image.getAttribute('href');
+    }))))});
+  document.body.append(state);
+});
+</script>"""
+
+
+class Browser(Report):
+    """The page in headless Chromium."""
+
+    def setUp(self):
+        super().setUp()
+        if CHROMIUM is None:
+            if os.environ.get("CI") == "true":
+                self.fail("no chromium: CI must not skip this test")
+            self.skipTest("chromium is not installed: the page is not opened in a browser")
+
+    def chromium(self, *arguments):
+        done = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--v=0",
+                               f"--user-data-dir={self.path('profile')}", "--window-size=1200,1600",
+                               "--virtual-time-budget=10000", *arguments],
+                              capture_output=True, text=True, check=False, timeout=300)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("CONSOLE", done.stderr)
+        return done.stdout
+
+    def test_click_and_slider(self):
+        self.results()
+        page = self.page()
+        left, top, columns, rows = self.window(page)
+        energy = band_of(self.path("out/energy.tif"), 3, left, top, columns, rows)[0]
+        row, column = np.unravel_index(np.argmax(energy), energy.shape)
+        share = band_of(self.path("out/impact_probability.tif"), 1, left, top, columns, rows)[0][row, column]
+        policy = re.search('<meta http-equiv="Content-Security-Policy"[^>]*>', page.source).group(0)
+        source = page.source.replace(policy, "").replace("</body>", HARNESS.replace("COLUMN", str(column))
+                                                         .replace("ROW", str(row)) + "</body>")
+        self.write("clicked.html", source)
+        dom = self.chromium("--dump-dom", "file://" + self.path("clicked.html"))
+        state = json.loads(re.search('<pre id="state">(.*?)</pre>', dom, re.DOTALL).group(1).replace("&gt;", ">"))
+        values = dict(state["values"])
+        self.assertEqual(set(values), set(page.maps()))
+        self.assertEqual(float(values["Energy, P95"].removesuffix(" kJ")), float(f"{energy[row, column]:.2e}"))
+        self.assertEqual(float(values["Impact probability"].removesuffix(" %")), float(f"{100 * float(f'{share:.2e}'):.6g}"))
+        self.assertIn(values["Hazard class"], ("none", "residual", "low", "medium", "high"))
+        self.assertIn(f"East {float(page.viewer()['data-west']) + 5 * column:.1f}", state["place"])
+        self.assertAlmostEqual(float(state["left"]), 1 + float(page.viewer()["data-width"]) / 4, 1)
+        self.assertEqual(state["view"], "#map-2")
+        self.assertEqual(len(state["pictures"]), len(page.all("image")))
+        self.assertEqual(set(state["pictures"]), {columns})
+
+    def test_opens_as_it_is_and_prints(self):
+        self.results()
+        page = self.page()
+        dom = self.chromium("--dump-dom", "file://" + self.path("out/report.html"))
+        self.assertEqual(dom.count("<option"), 2 * len(page.maps()))  # the script ran under the policy of the page
+        self.chromium("--screenshot=" + self.path("page.png"), "file://" + self.path("out/report.html"))
+        picture = gdal.Open(self.path("page.png")).ReadAsArray()
+        self.assertEqual(picture.shape[1:], (1600, 1200))
+        self.assertGreater(len(np.unique(picture.reshape(picture.shape[0], -1)[:3], axis=1).T), 100)
+        self.chromium("--print-to-pdf=" + self.path("page.pdf"), "file://" + self.path("out/report.html"))
+        with open(self.path("page.pdf"), "rb") as file:
+            pdf = file.read()
+        self.assertTrue(pdf.startswith(b"%PDF"))
+        self.assertGreater(len(pdf), 50_000)
+
+
+if __name__ == "__main__":
+    unittest.main()

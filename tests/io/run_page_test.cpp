@@ -1,0 +1,151 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "files.hpp"
+#include "io/reports/map_style.hpp"
+#include "io/reports/packed_map.hpp"
+#include "io/reports/page_frame.hpp"
+#include "io/reports/report_barriers.hpp"
+#include "io/reports/report_checks.hpp"
+#include "io/reports/report_facts.hpp"
+#include "io/reports/report_fit.hpp"
+#include "io/reports/report_map_page.hpp"
+#include "io/reports/report_objects.hpp"
+#include "io/reports/report_screens.hpp"
+
+namespace talus::io {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string kHostile = "<script>alert(1)</script>&amp;'\"\x1b[31m\u202e</svg>";
+
+TEST(CodeOf, DigitsAndPowerOfTen) {  // 2 + 900 (e + 30) + (d - 100), docs/report.md
+  EXPECT_EQ(code_of(0.0), 1);
+  EXPECT_EQ(code_of(1.0), 2 + 900 * 30);
+  EXPECT_EQ(code_of(123456.0), 2 + 900 * 35 + 23);
+  EXPECT_EQ(code_of(9.994), 2 + 900 * 30 + 899);
+  EXPECT_EQ(code_of(9.996), 2 + 900 * 31);  // rounds to 10.0
+  EXPECT_EQ(code_of(0.0125), 2 + 900 * 28 + 25);
+  EXPECT_EQ(code_of(9.99e41), 2 + 900 * 71 + 899);
+}
+
+TEST(CodeOf, ValuesThatHaveNone) {
+  for (const double value : {std::nan(""), -1.0, std::numeric_limits<double>::infinity(), 1e42})
+    EXPECT_EQ(code_of(value), 0) << value;
+  EXPECT_EQ(code_of(1e-40), 1);
+}
+
+TEST(LightOn, CosineBetweenTheSlopeAndTheLight) {
+  const double half = std::sqrt(0.5);
+  EXPECT_NEAR(light_on(0.0, 0.0), half, 1e-12);    // level: 45 degrees
+  EXPECT_NEAR(light_on(half, -half), 1.0, 1e-12);  // 45 degrees steep, faces the north-west: at a right angle
+  EXPECT_NEAR(light_on(-half, half), 0.0, 1e-12);  // faces away: along the slope
+  EXPECT_NEAR(light_on(1.0, 1.0), std::sqrt(1.0 / 6.0), 1e-12);  // faces the south-west: (0, 0, half) . n
+}
+
+TEST(Relief, LevelGroundAtAnyHeight) {
+  EXPECT_EQ(relief_of(std::vector<double>(25, 0.0), 5, 2.0, 3.0),
+            relief_of(std::vector<double>(25, 700.0), 5, 2.0, 3.0));
+}
+
+using MapStyleFile = test::Files;
+
+std::string qml(const std::string& shader) {
+  return "<!DOCTYPE qgis><qgis><pipe><rasterrenderer band=\"3\"><rastershader>" + shader +
+         "</rastershader></rasterrenderer></pipe></qgis>";
+}
+
+TEST_F(MapStyleFile, ClassesOfDiscreteValues) {
+  write_text(
+      "a.qml",
+      qml("<colorrampshader colorRampType=\"DISCRETE\"><item value=\"0\" label=\"0\" color=\"#ffffff\" alpha=\"0\"/>"
+          "<item value=\"30\" label=\"up to 30\" color=\"#f0a921\" alpha=\"255\"/><item value=\"inf\" label=\"above\" "
+          "color=\"1,2,3,255\"/></colorrampshader>"));
+  const auto style = read_map_style(path("a.qml"));
+  ASSERT_TRUE(style);
+  EXPECT_EQ(style->band, 3);
+  ASSERT_EQ(style->classes.size(), 3U);
+  EXPECT_EQ(style->class_of(0.0), 0U);
+  EXPECT_EQ(style->class_of(30.0), 1U);  // a limit belongs to its class
+  EXPECT_EQ(style->class_of(30.1), 2U);
+  EXPECT_EQ(style->class_of(std::nan("")), std::nullopt);
+  EXPECT_EQ(style->classes[1].colour.green, 0xa9);
+  EXPECT_EQ(style->classes[2].colour.blue, 3);
+}
+
+TEST_F(MapStyleFile, NoneOfRampsAndOfTextsThatAreNoStyle) {
+  EXPECT_EQ(read_map_style(path("missing.qml")), std::nullopt);
+  for (const std::string& text : {std::string(), std::string("<qgis>"), std::string("no style"),
+                                  qml("<colorrampshader colorRampType=\"INTERPOLATED\"><item value=\"1\" "
+                                      "color=\"#000000\"/></colorrampshader>"),
+                                  qml("<colorrampshader colorRampType=\"DISCRETE\"><item value=\"nan\" "
+                                      "color=\"#00000g\"/></colorrampshader>")}) {
+    write_text("b.qml", text);
+    EXPECT_FALSE(read_map_style(path("b.qml"))) << text;
+  }
+}
+
+TEST(Facts, NumbersForReaders) {
+  EXPECT_EQ(grouped(47850.0), "47\u00a0850");
+  EXPECT_EQ(grouped(999.0), "999");
+  EXPECT_EQ(grouped(-1234567.0), "-1\u00a0234\u00a0567");
+  EXPECT_EQ(readable(2361.0), "2\u00a0360");
+  EXPECT_EQ(readable(0.00123456), "0.00123");
+}
+
+/// No markup of the name, in any of the ways in which it could be one.
+void expect_tame(const std::string& page) {
+  EXPECT_THAT(page, HasSubstr("&lt;script&gt;alert(1)"));
+  EXPECT_THAT(page, Not(HasSubstr("<script")));
+  EXPECT_THAT(page, Not(HasSubstr("\x1b")));
+  EXPECT_THAT(page, Not(HasSubstr("\u202e")));
+}
+
+TEST(Escaping, EveryFieldOfEverySection) {
+  const std::string& h = kHostile;
+  ScreensPart screens{{{h, h, h, 1, 1, 1, 1, 1, 1, 2.0, std::vector<double>(30, 1.0)}}, h};
+  BarrierPart barrier{h,           h,           5.0, {{h, h, h, 1.0}, {"h_i", "m", h, 2.0}, {"V", "m3", h, 1.0}},
+                      {{h, h, h}}, {{0, 9, 1}}, {h}};
+  ObjectsPart objects{{h}, {{h, h, 0.1, 0.1, 0.2, {h}, {{1.0, 0.1}, {2.0, 0.05}}}}, 0};
+  const std::optional<FitPart> fit = FitPart{h, h, "", {{h, h, 1.0, 0.5, 2.0, false}}, {{h, 1.0, 0.5}}, h, {h}};
+  for (const Markup& html : {screens_html(screens), barriers_html({barrier}), objects_html(objects), fit_html(fit),
+                             checks_html({{Check::Mark::Act, h, h, h}})})
+    expect_tame(html.text());
+  EXPECT_THAT(page_of({h, h, h}, Markup() + h), HasSubstr("<title>Talus: &lt;script&gt;"));
+}
+
+TEST(Escaping, ValuesOfAttributesOfMaps) {
+  MapSheet sheet;
+  sheet.window = {0, 0, 10, 10, 1};
+  sheet.pixel_x = sheet.pixel_y = 1.0;
+  sheet.north = 10.0;
+  ReportMap map{kHostile, kHostile, kHostile, {1, false, {{1.0, kHostile, {}}}}, kHostile, kHostile};
+  map.classes_only = map.in_print = true;
+  sheet.maps.push_back(map);
+  sheet.objects.list.push_back({kHostile, {{2.0, 2.0}, {3.0, 3.0}}, true});
+  RunFacts run;
+  run.screens.push_back({kHostile, {{{1.0, 1.0}, {9.0, 9.0}}}});
+  const MapImprint imprint{kHostile, kHostile, kHostile};
+  const std::string page = (map_store(sheet, run, imprint) + map_viewer(sheet) + map_figures(sheet, imprint)).text();
+  EXPECT_THAT(page, Not(HasSubstr("<script")));
+  EXPECT_THAT(page, HasSubstr("data-title=\"&lt;script&gt;alert(1)&lt;/script&gt;&amp;amp;&#39;&quot;"));
+  EXPECT_THAT(page, HasSubstr("data-classes=\"&lt;script"));
+  EXPECT_THAT(page, HasSubstr("href=\"&lt;script"));
+}
+
+TEST(PageFrame, PolicyAllowsNothingButItsOwnScript) {
+  const std::string plain = page_of({"diagnose", "a", "b"}, {});
+  EXPECT_THAT(plain, HasSubstr("default-src 'none'"));
+  EXPECT_THAT(plain, Not(HasSubstr("script-src")));
+  // echo -n 'let a = 1;' | openssl dgst -sha256 -binary | base64
+  EXPECT_THAT(page_of({"report", "a", "b", "let a = 1;"_html}, {}),
+              HasSubstr("script-src 'sha256-xY6QKfH9PRsQnLz56nj6MBwiK5oHg+im1Jkpdp1x/Ck='"));
+}
+
+}  // namespace
+}  // namespace talus::io
