@@ -6,7 +6,6 @@ import unittest
 from urllib.parse import unquote
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "../.."))
-LATER = ("docs/install.md", "docs/qgis.md", "docs/report.md")  # pages of parts that a version may lack
 FOLDERS = ("data", "docs", "include", "src", "tests", "tools")
 
 
@@ -51,7 +50,7 @@ class Links(unittest.TestCase):
         for page in pages():
             for path, section in links(page):
                 if not os.path.exists(os.path.join(ROOT, path)):
-                    broken += [f"{page}: {path}"] if path not in LATER else []
+                    broken += [f"{page}: {path}"]
                 elif section and ("--" in section or section not in map(anchor, headings(path))):  # mkdocs makes - of --
                     broken.append(f"{page}: {path}#{section}")
         self.assertEqual(broken, [])
@@ -66,7 +65,7 @@ class Links(unittest.TestCase):
         for page in pages():
             for path in re.findall(r"(?<![\w./-])((?:%s)/[\w./-]*[\w/])" % "|".join(FOLDERS), text_of(page)):
                 placeholder = re.search(r"/[A-Z]{4,}\b|/NAME_", path)  # tests/cli/FILE.py
-                if not placeholder and path not in LATER and not os.path.exists(os.path.join(ROOT, path)):
+                if not placeholder and not os.path.exists(os.path.join(ROOT, path)):
                     missing.append(f"{page}: {path}")
         self.assertEqual(sorted(set(missing)), [])
 

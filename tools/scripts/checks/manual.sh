@@ -7,9 +7,6 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 site=$(realpath -m "${1:-$work/site}")
 cp -r docs "$work/docs"
-for page in install qgis report; do  # pages of the navigation that a build without these parts lacks
-  [ -e "docs/$page.md" ] || echo "# ${page^} (not in this version)" > "$work/docs/$page.md"
-done
 sed "s|^docs_dir: .*|docs_dir: $work/docs|; s|^site_dir: .*|site_dir: $site|" mkdocs.yml > "$work/mkdocs.yml"
 mkdocs build --quiet --strict --clean -f "$work/mkdocs.yml"
 if grep -rlE '<(script|link|img|iframe)[^>]*(src|href)="(https?:)?//' --include='*.html' "$site" | head -5 | grep .; then
