@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "facts.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/reports/run_page.hpp"
@@ -36,9 +37,14 @@ int report(Options options) {
 void add_report(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("report", "One self-contained HTML page on a run: maps, tables, checklist");
-  command->add_option("folder", options->folder, "OUT of talus run, with what hazard and barrier have added")->required();
-  command->add_option("-o,--out", options->out, "file of the page (.html); report.html in the folder where it is not given");
-  command->add_option("--title", options->request.title, "title of the page; the name of the folder where it is not given");
+  with(command->add_option("folder", options->folder, "OUT of talus run, with what hazard and barrier have added")
+           ->required(),
+       folder_of_results());
+  with(command->add_option("-o,--out", options->out,
+                           "file of the page (.html); report.html in the folder where it is not given"),
+       new_file_of({"html"}));
+  command->add_option("--title", options->request.title,
+                      "title of the page; the name of the folder where it is not given");
   command->add_option("--attribution", options->request.attribution,
                       "whose terrain and maps these are, below every map; what the DEM states where it is not given");
   command->add_flag("--overwrite", options->overwrite, "replace an earlier page of talus report");

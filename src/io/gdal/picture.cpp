@@ -64,8 +64,7 @@ std::string png_of(const Picture& picture) {
   GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("PNG");
   if (driver == nullptr) throw std::runtime_error("a picture cannot be made: this GDAL has no driver PNG");
   const char* const options[] = {"ZLEVEL=9", nullptr};
-  Dataset png(
-      driver->CreateCopy(file.name(), memory.get(), FALSE, const_cast<char**>(options), nullptr, nullptr));
+  Dataset png(driver->CreateCopy(file.name(), memory.get(), FALSE, const_cast<char**>(options), nullptr, nullptr));
   if (!png) fail();
   png.reset();
   std::string bytes = file.content();
@@ -75,8 +74,7 @@ std::string png_of(const Picture& picture) {
 
 std::string deflated(std::string_view bytes) {
   std::size_t size = 0;
-  const std::unique_ptr<void, FreeBytes> packed(
-      CPLZLibDeflate(bytes.data(), bytes.size(), 9, nullptr, 0, &size));
+  const std::unique_ptr<void, FreeBytes> packed(CPLZLibDeflate(bytes.data(), bytes.size(), 9, nullptr, 0, &size));
   if (!packed) throw std::runtime_error("values cannot be packed: there is no memory");
   return {static_cast<const char*>(packed.get()), size};
 }

@@ -24,7 +24,7 @@ struct FitPart {
   std::string note;      ///< why nothing is told of it
   std::vector<Number> parameters;
   std::vector<Error> errors;
-  std::string effect;    ///< verdict of the diagnosis; empty without one
+  std::string effect;  ///< verdict of the diagnosis; empty without one
   std::vector<std::string> warnings;
 };
 

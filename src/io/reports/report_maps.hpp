@@ -20,11 +20,11 @@ struct ReportMap {
   std::string title;  ///< "Energy, P95"
   std::string unit;   ///< of the file, "kJ"
   MapStyle style;
-  std::string picture;      ///< `data:` address
-  std::string values;       ///< `packed_values`
-  double largest = 0.0;     ///< of all pixels
-  bool in_print = false;    ///< has a figure of its own
-  bool smallest = false;    ///< a pixel holds the smallest value of its cells, else the largest
+  std::string picture;        ///< `data:` address
+  std::string values;         ///< `packed_values`
+  double largest = 0.0;       ///< of all pixels
+  bool in_print = false;      ///< has a figure of its own
+  bool smallest = false;      ///< a pixel holds the smallest value of its cells, else the largest
   bool classes_only = false;  ///< the values are classes with names
 };
 
@@ -32,9 +32,9 @@ struct ReportMap {
 struct MapSheet {
   MapWindow window;
   double west = 0.0, north = 0.0, pixel_x = 0.0, pixel_y = 0.0;  ///< [m]
-  std::string relief;       ///< `data:` address; empty if there is none
-  std::string relief_note;  ///< why there is none
-  std::string copyright;    ///< as the file of the DEM states it
+  std::string relief;                                            ///< `data:` address; empty if there is none
+  std::string relief_note;                                       ///< why there is none
+  std::string copyright;                                         ///< as the file of the DEM states it
   std::vector<ReportMap> maps;
   std::vector<std::uint8_t> sources;  ///< pixels from which blocks are released; empty if not known
   Outlines objects;

@@ -89,9 +89,9 @@ ScreensPart read_screens_part(const fs::path& folder) {
   const fs::path file = folder / "screens_summary.csv";
   std::error_code none;
   if (!fs::exists(file, none)) return part;
-  const CsvTable table(file.string(), {},
-                       {"screen", "quantity", "unit", "crossings", "blocks", "share_of_released", "p50", "p95", "p99",
-                        "maximum"});
+  const CsvTable table(
+      file.string(), {},
+      {"screen", "quantity", "unit", "crossings", "blocks", "share_of_released", "p50", "p95", "p99", "maximum"});
   for (const CsvTable::Row& line : table.rows()) {
     const auto number = [&](const char* column) { return table.number(line, column, kAny).value_or(0.0); };
     const std::string& quantity = table.text(line, "quantity");
@@ -100,9 +100,17 @@ ScreensPart read_screens_part(const fs::path& folder) {
       part.note = "Only the first " + std::to_string(kMostScreens) + " screens are shown.";
       break;
     }
-    part.rows.push_back({table.text(line, "screen"), quantity, table.text(line, "unit"), number("crossings"),
-                         number("blocks"), number("share_of_released"), number("p50"), number("p95"), number("p99"),
-                         number("maximum"), {}});
+    part.rows.push_back({table.text(line, "screen"),
+                         quantity,
+                         table.text(line, "unit"),
+                         number("crossings"),
+                         number("blocks"),
+                         number("share_of_released"),
+                         number("p50"),
+                         number("p95"),
+                         number("p99"),
+                         number("maximum"),
+                         {}});
   }
   count_crossings(folder / "screens.csv", part);
   return part;
@@ -111,9 +119,11 @@ ScreensPart read_screens_part(const fs::path& folder) {
 Markup screens_html(const ScreensPart& part) {
   if (part.rows.empty()) return {};
   Markup html =
-      "<h2>At the screens</h2>\n<p>Every crossing counts, each block as much as any other; a block that rolls to and fro "
+      "<h2>At the screens</h2>\n<p>Every crossing counts, each block as much as any other; a block that rolls to and "
+      "fro "
       "crosses several times. Energy is translational, jump height is from the terrain to the centre of the "
-      "block.</p>\n<div class='wide'><table><tr><th>screen</th><th>quantity</th><th>crossings</th><th>blocks</th><th>of "
+      "block.</p>\n<div "
+      "class='wide'><table><tr><th>screen</th><th>quantity</th><th>crossings</th><th>blocks</th><th>of "
       "all released</th><th>P50</th><th>P95</th><th>P99</th><th>largest</th></tr>\n"_html;
   for (const ScreensPart::Row& row : part.rows) html += row_html(row);
   html += "</table></div>\n";
@@ -122,8 +132,8 @@ Markup screens_html(const ScreensPart& part) {
   for (const ScreensPart::Row& row : part.rows) {
     if (row.counts.empty()) continue;
     if (row.screen != screen)
-      html += (screen.empty() ? "<h3>"_html : "</figure>\n<h3>"_html) + "Crossings of " + row.screen +
-              "</h3>\n<figure>";
+      html +=
+          (screen.empty() ? "<h3>"_html : "</figure>\n<h3>"_html) + "Crossings of " + row.screen + "</h3>\n<figure>";
     screen = row.screen;
     html += histogram(row);
   }
