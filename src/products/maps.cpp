@@ -46,6 +46,7 @@ struct TallyValues {
   const Raster<float>& heights;
   const Tally& tally;
   std::vector<double> untouched;
+  std::shared_ptr<const QuietRegions> quiet;
 
   void of_cell(int column, int row, const CellRule& rule, std::span<double> values) const {
     if (const CellRecord* const record = tally.find(column, row); record != nullptr)
@@ -57,14 +58,31 @@ struct TallyValues {
       std::ranges::fill(values, kNotGiven);
   }
 
-  void of_window(const CellWindow& window, const CellRule& rule, std::span<double> values) const {
+  /// A part of a row within one region. @param place  of its first cell in a band of `values`
+  void of_part(const CellWindow& part, std::size_t place, std::size_t band_size, const CellRule& rule,
+               std::span<double> values) const {
+    if (const Quiet state = quiet->of(part); state != Quiet::No) {
+      for (std::size_t band = 0; band < untouched.size(); ++band)
+        std::ranges::fill(values.subspan(band * band_size + place, part.cells()),
+                          state == Quiet::Terrain ? untouched[band] : kNotGiven);
+      return;
+    }
+    tally.memory().keep_below_limit();  // reading a record loads its neighbours too
     std::vector<double> cell(untouched.size());
+    for (int column = part.column; column < part.column + part.columns; ++column, ++place) {
+      of_cell(column, part.row, rule, cell);
+      for (std::size_t band = 0; band < cell.size(); ++band) values[band * band_size + place] = cell[band];
+    }
+  }
+
+  void of_window(const CellWindow& window, const CellRule& rule, std::span<double> values) const {
+    const int end = window.column + window.columns;
     std::size_t place = 0;
     for (int row = window.row; row < window.row + window.rows; ++row)
-      for (int column = window.column; column < window.column + window.columns; ++column, ++place) {
-        if (column % kRegionSide == 0) tally.memory().keep_below_limit();  // reading a record loads its neighbours too
-        of_cell(column, row, rule, cell);
-        for (std::size_t band = 0; band < cell.size(); ++band) values[band * window.cells() + place] = cell[band];
+      for (int column = window.column, next = 0; column < end; column = next) {
+        next = std::min(end, (column / kRegionSide + 1) * kRegionSide);
+        of_part({column, row, next - column, 1}, place, window.cells(), rule, values);
+        place += static_cast<std::size_t>(next - column);
       }
   }
 };
@@ -136,7 +154,7 @@ std::vector<Map> make_maps(const Scenario& scenario, const Tally& tally) {
     if (raster.of_scenario) {
       map.fill = raster.of_scenario(scenario);
     } else {
-      map.fill = filling({heights, tally, untouched}, [&raster, run] { return raster.rule(run); });
+      map.fill = filling({heights, tally, untouched, quiet}, [&raster, run] { return raster.rule(run); });
     }
     map.everywhere = quiet_values(quiet, untouched);
     maps.push_back(std::move(map));
