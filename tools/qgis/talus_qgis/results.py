@@ -107,7 +107,7 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
 
     def _move(self, node, root):
         group = self._group(root)
-        place = 0
+        place, shown = 0, self.shown
         for other in group.findLayers():
             layer = other.layer()
             if layer is None or layer.id() == node.layerId():
@@ -115,13 +115,17 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
             if layer.source() == node.layer().source():  # of an earlier run into the same folder
                 node.layer().project().removeMapLayer(layer.id())
                 continue
-            if self.rank == 0 and isinstance(layer, QgsRasterLayer):  # nothing shines through the hazard class
-                other.setItemVisibilityChecked(False)
-            if (int(layer.customProperty(RANK_MARK, 0)), layer.name()) < (self.rank, self.name):
+            rank = int(layer.customProperty(RANK_MARK, 0))
+            if isinstance(layer, QgsRasterLayer) and isinstance(node.layer(), QgsRasterLayer):
+                if self.rank == 0:  # nothing shines through the hazard class, whichever of the two comes first
+                    other.setItemVisibilityChecked(False)
+                elif rank == 0:
+                    shown = False
+            if (rank, layer.name()) < (self.rank, self.name):
                 place += 1
         copy = node.clone()
-        copy.setItemVisibilityChecked(self.shown)
-        copy.setExpanded(self.shown)
+        copy.setItemVisibilityChecked(shown)
+        copy.setExpanded(shown)
         group.insertChildNode(place, copy)
         node.parent().removeChildNode(node)
 
