@@ -7,12 +7,12 @@ import unittest
 
 from support import NORTH, WEST, Case
 
-FAST = ("--trials", "20", "-q")
+FAST = ("--trials", "10", "-q")
 
 
 class Luck(Case):
     """Blocks down the slope of support.py, measured by the program itself; every third is held out."""
-    count = 27
+    count = 36
 
     def setUp(self):
         super().setUp()
@@ -123,7 +123,7 @@ class Luck(Case):
 
     def test_diagnose(self):
         """One round with few trials: the verdict, every candidate and every fitted number."""
-        options = ("--fit", "En50", "--test-trials", "20", "--most-effects", "1", "--base-fits", "1")
+        options = ("--fit", "En50", "--test-trials", "10", "--most-effects", "1", "--base-fits", "1")
         first = self.record("diagnose", self.path("campaign.toml"), "first", *options, "--threads", "1")
         self.assertGreater(len(first["candidates"]), 8)
         other = self.record("diagnose", self.shuffled(self.other_holdout()), "other-out", *options, "--threads", "2")

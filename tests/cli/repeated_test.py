@@ -5,7 +5,7 @@ import unittest
 
 import luck_test
 
-FAST = ("--trials", "20", "--test-trials", "20", "--fit", "En50", "--most-effects", "1", "-q")
+FAST = ("--trials", "10", "--test-trials", "10", "--fit", "En50", "--most-effects", "1", "-q")
 
 
 class Repeated(luck_test.Luck):

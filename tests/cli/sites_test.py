@@ -12,7 +12,7 @@ SHORT = ("--trials", "20", "--surface", "bilinear", "-q")
 
 
 class Sites(Case):
-    """Two measurements of the slope of support.py, by the same model: north (24 blocks) and south (24 others)."""
+    """Two measurements of the slope of support.py, by the same model: north (36 blocks) and south (36 others)."""
 
     def measure(self, name, first, seed, kind, called=None):
         """Blocks of many shapes, released side by side; every third is held out. `kind`: the model that measures them."""
@@ -20,7 +20,7 @@ class Sites(Case):
         os.makedirs(folder, exist_ok=True)
         chance = random.Random(first)
         blocks = []
-        for i in range(24):
+        for i in range(36):
             long, flat = chance.uniform(1.0, 2.0), chance.uniform(0.7, 1.0)
             blocks.append([f"b{first + i}", WEST + 60 + 5 * i, NORTH - 40, 1, 400 + 20 * i, long, 1.0, flat, int(i % 3 == 2)])
         self.table(name, "blocks", "id,x,y,release_height_m,mass_kg,L1_m,L2_m,L3_m,holdout", blocks)
@@ -125,7 +125,7 @@ class Diagnose(Sites):
         self.assertLess(pooled["p_value"], 0.01)
         self.assertEqual(first["effect"], "block-shape")
         for site in first["sites"]:
-            self.assertEqual(site["error"]["holdout"]["blocks"], 8)
+            self.assertEqual(site["error"]["holdout"]["blocks"], 12)
             for name in site["files"]:
                 self.assertIn("En50", self.text(f"first/{name}"))
         losses = {line for s in ("north", "south") for line in self.text(f"first/{s}/with_effect.toml").splitlines()
