@@ -6,8 +6,7 @@ namespace {
 std::string summary_of(const std::vector<std::string>& faults) {
   const std::size_t more = faults.size() - 1;
   if (more == 0) return faults.front();
-  return faults.front() + " (and " + std::to_string(more) + (more == 1 ? " more fault" : " more faults") +
-         ": talus check lists all)";
+  return faults.front() + " (and " + std::to_string(more) + (more == 1 ? " more fault)" : " more faults)");
 }
 
 }  // namespace

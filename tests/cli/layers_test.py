@@ -37,6 +37,43 @@ class Layers(Case):
         source = next(i for i in self.record("named")["inputs"] if i["role"] == "sources")
         self.assertEqual(len(source["sha256"]), 64)
 
+    def test_what_a_layer_name_may_not_do(self):
+        """A name with a layer is a file, too: it is not overwritten, and parts with other layers are not merged."""
+        site, check = self.path("site.gpkg"), ["check", *self.flags, "--sources"]
+        for part in ("|geometrytype=Polygon", "|layerid=abc"):
+            self.fails(2, f"'{part}' is not read", arguments=[*check, site + "|layername=cliffs" + part])
+        self.fails(2, "has a layer already", arguments=[*check, site + "|layername=cliffs", "--sources-layer", "houses"])
+        self.fails(2, "must come with --zones", arguments=[*check, site + "|layername=cliffs", "--zone-field", "kind"])
+        self.fails(2, "flag --frequency = 0: must be above 0", arguments=[*check, site + "|layername=cliffs", "--frequency", "0"])
+        self.run_well("sources", "--dem", self.path("dem.tif"), "-o", self.path("s.gpkg"), "--slope", "10")
+        self.fails(2, "is the file that --overwrite would replace",
+                   arguments=["check", *self.flags, "--sources", self.path("s.gpkg|layername=source_points"), "--diameter", "1",
+                              "--pits", self.path("s.gpkg"), "--overwrite"])
+        years = ogr.GetDriverByName("GPKG").CreateDataSource(self.path("years.gpkg"))
+        for year in "2019/cliffs", "2020/cliffs":
+            layer = years.CreateLayer(year, system(2056), ogr.wkbPolygon)
+            feature = ogr.Feature(layer.GetLayerDefn())
+            feature.SetGeometry(ogr.CreateGeometryFromWkt(box(140, 230, 10, 10)))
+            layer.CreateFeature(feature)
+        layer = years = None
+        for i, year in ((1, "2019/cliffs"), (2, "2020/cliffs")):
+            self.run_well("run", *self.flags, "--sources", self.path("years.gpkg|layername=") + year, "--diameter", "1", "--part", f"{i}/2",
+                          "-o", self.path(f"part{i}"))
+        self.fails(2, "part", arguments=["merge", self.path("merged"), self.path("part1"), self.path("part2")])
+
+    def test_objects_in_a_named_layer(self):
+        self.run_well("run", *self.flags, "--sources", self.path("site.gpkg|layername=cliffs"), "--frequency", "1", "-o", self.path("out"))
+        self.run_well("hazard", self.path("out"), "--objects", self.path("site.gpkg|layername=houses"))
+        project = self.path("out/talus.qgs")
+        with open(project, encoding="utf-8") as file:
+            text = file.read()
+        with open(project, "w", encoding="utf-8") as file:
+            file.write(text.replace("<qgis ", '<qgis saveDateTime="2026-11-23T10:00:00" ', 1))
+        done = self.run_well("hazard", self.path("out"), "--overwrite")
+        self.assertIn("talus.qgs was saved in QGIS and stays as it is", done.stderr)
+        with open(project, encoding="utf-8") as file:
+            self.assertIn("saveDateTime", file.read())
+
     def test_the_job_without_toml(self):
         zones = ogr.GetDriverByName("GPKG").CreateDataSource(self.path("zones.gpkg"))
         layer = zones.CreateLayer("zones", system(2056), ogr.wkbPolygon)

@@ -11,6 +11,7 @@
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/files/staged_files.hpp"
+#include "talus/io/gdal/layer_name.hpp"
 #include "talus/io/results/hazard_file.hpp"
 #include "talus/io/results/hazard_record.hpp"
 #include "talus/io/results/objects_file.hpp"
@@ -40,10 +41,11 @@ fs::path tally_file(const fs::path& folder) {
   const fs::path file = folder / talus::io::kHazardFile;
   if (fs::exists(file)) return file;
   throw talus::InputError(
-      folder.string() + (fs::exists(folder / "run.json")
-                             ? ": this run knows no annual frequencies; give the sources a field frequency (events per "
-                               "year), or the scenario [frequency] per_area or power_law, and run again"
-                             : ": is no folder of results (it has no run.json); give the OUT of talus run"));
+      folder.string() +
+      (fs::exists(folder / "run.json")
+           ? ": this run knows no annual frequencies; give the sources a field frequency (events per "
+             "year), or the scenario [frequency] total (--frequency), per_area or power_law, and run again"
+           : ": is no folder of results (it has no run.json); give the OUT of talus run"));
 }
 
 /// What an object of some width needs: class limits that are thresholds of the run.
@@ -186,7 +188,9 @@ std::string object_text(const talus::io::HazardRecord& record) {
 /// The results are complete without the project: a fault is a warning.
 void refresh_project(const fs::path& folder) {
   try {
-    talus::io::refresh_project(folder);
+    if (!talus::io::refresh_project(folder))
+      say("warning", std::string(talus::io::kProjectFile) +
+                         " was saved in QGIS and stays as it is: add the new maps there, or remove it before");
   } catch (const std::exception& error) {
     say("warning", std::string(talus::io::kProjectFile) + " is as it was before: " + error.what());
   }
@@ -200,7 +204,7 @@ int hazard(const Options& options) {
   record.matrix_file = options.matrix;
   record.width = options.width;
   record.curves = options.curves;
-  for (const std::string& input : {options.objects, options.frequency})
+  for (const std::string& input : {talus::io::file_of_layer(options.objects), options.frequency})
     if (!input.empty() && !input.starts_with("/vsi") && input.find(':') == std::string::npos && !fs::exists(input))
       throw talus::InputError(input + ": there is no such file");
   if (!options.matrix.empty()) record.matrix = talus::io::read_matrix(options.matrix);

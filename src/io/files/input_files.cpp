@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "io/gdal/dataset.hpp"
-#include "io/gdal/layer_name.hpp"
 #include "talus/base/error.hpp"
+#include "talus/io/gdal/layer_name.hpp"
 
 namespace talus::io {
 

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <vector>
 
+#include "input_files.hpp"
 #include "io/gdal/dataset.hpp"
 #include "own_files.hpp"
 #include "talus/base/error.hpp"
@@ -66,8 +67,9 @@ OutputFile::OutputFile(const fs::path& path, const std::string& extension, bool 
 
 void OutputFile::protect(const fs::path& input) const {
   std::error_code none;
-  if (fs::equivalent(input, staged_.path(), none))
-    throw InputError(input.string() + ": is the file that --overwrite would replace; give another name");
+  for (const std::string& part : files_of_input(input.string()))
+    if (fs::equivalent(part, staged_.path(), none))
+      throw InputError(input.string() + ": is the file that --overwrite would replace; give another name");
 }
 
 void OutputFile::commit() {

@@ -6,10 +6,10 @@
 #include <stdexcept>
 
 #include "input_name.hpp"
-#include "layer_name.hpp"
 #include "local_gdal.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/shell.hpp"
+#include "talus/io/gdal/layer_name.hpp"
 #include "vector_file.hpp"
 
 namespace talus::io {

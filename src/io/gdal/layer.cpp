@@ -9,10 +9,10 @@
 #include <stdexcept>
 
 #include "csv_table.hpp"
-#include "layer_name.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/gdal/layer_name.hpp"
 
 namespace talus::io {
 namespace {
@@ -103,8 +103,10 @@ void Layer::choose_layer() {
   std::vector<std::string> names;
   for (OGRLayer* layer : layers) names.emplace_back(layer->GetName());
   const NamedLayer wanted = named_layer(path_);
-  if (!wanted.filter.empty())
-    throw InputError(path_ + ": a filter (|subset=) is not read: export the selected features to a file of their own");
+  if (!wanted.unread.empty())
+    throw InputError(path_ + ": '" + wanted.unread +
+                     "' is not read (a filter, a kind of geometry or a wrong number): export the features to a file of "
+                     "their own");
   const std::string given = wanted.number >= 0 && wanted.number < dataset_->GetLayerCount()
                                 ? dataset_->GetLayer(wanted.number)->GetName()
                                 : wanted.layer;

@@ -1,4 +1,4 @@
-#include "layer_name.hpp"
+#include "talus/io/gdal/layer_name.hpp"
 
 #include <algorithm>
 #include <array>
@@ -32,8 +32,10 @@ NamedLayer named_layer(const std::string& name) {
     const std::size_t equals = part.find('=');
     const std::string key = part.substr(0, equals), value = part.substr(equals + 1);
     if (key == "layername") found.layer = value;
-    if (key == "layerid") std::from_chars(value.data(), value.data() + value.size(), found.number);
-    if (key == "subset") found.filter = value;
+    const char* const last = value.data() + value.size();
+    const bool number =
+        key == "layerid" && std::from_chars(value.data(), last, found.number).ptr == last && !value.empty();
+    if (key != "layername" && !number) found.unread = "|" + part;
     at = end;
   }
   return found;

@@ -10,13 +10,14 @@
 #include "talus/base/error.hpp"
 #include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/gdal/layer_name.hpp"
 
 namespace talus::io {
 
 namespace {
 
 std::string file_name(const std::string& path) {
-  return std::filesystem::path(path).filename().string();
+  return same_layer_in(std::filesystem::path(file_of_layer(path)).filename().string(), path);
 }
 
 /// The key of the parameter table with the bounds of a field.

@@ -253,7 +253,8 @@ Markup assumptions_html(const CheckedRun& checked) {
   html += acting.empty() ? std::string("No further effect acts.") : "Further effects: " + joined(acting) + ".";
   html += "</li>\n<li>";
   html += checked.hazard
-              ? "Frequencies, return periods and classes are of the frequencies that the sources state; impact "
+              ? "Frequencies, return periods and classes follow from the frequencies that were given (settings, "
+                "above); impact "
                 "probabilities are not weighted by them."
               : "Probabilities are given that one block falls, each source cell as likely as any other. They "
                 "are not per year.";

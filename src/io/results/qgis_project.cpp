@@ -1,6 +1,7 @@
 #include "talus/io/results/qgis_project.hpp"
 
 #include <algorithm>
+#include <fstream>
 #include <optional>
 #include <set>
 
@@ -260,7 +261,18 @@ std::string project_of(const std::vector<std::string>& files, const fs::path& fo
   return document.text();
 }
 
-void refresh_project(const fs::path& folder) {
+/// Whether QGIS has saved a project: it writes who and when into the first element.
+bool saved_by_qgis(const fs::path& project) {
+  constexpr std::streamsize kHead = 4096;  // bytes
+  std::string head(kHead, '\0');
+  std::ifstream file(project, std::ios::binary);
+  file.read(head.data(), kHead);
+  head.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, file.gcount())));
+  return head.find("saveDateTime=") != std::string::npos;
+}
+
+bool refresh_project(const fs::path& folder) {
+  if (saved_by_qgis(folder / kProjectFile)) return false;
   const Json run = read_record(folder / "run.json");
   std::set<std::string> names;
   for (const char* record : {"run.json", "hazard.json"})
@@ -268,6 +280,7 @@ void refresh_project(const fs::path& folder) {
       if (fs::is_regular_file(folder / name)) names.insert(std::move(name));
   const fs::path full = full_name(folder);
   replace_text(folder / kProjectFile, project_of({names.begin(), names.end()}, folder, full, ground_of(run)));
+  return true;
 }
 
 }  // namespace talus::io

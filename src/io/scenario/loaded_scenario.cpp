@@ -162,7 +162,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
     try {
       read();
     } catch (const InputFaults& error) {
-      if (all_faults == nullptr) throw;
+      if (all_faults == nullptr) stop_at_faults(error.faults(), nullptr);
       faults.insert(faults.end(), error.faults().begin(), error.faults().end());
     } catch (const InputError& error) {
       if (all_faults == nullptr) throw;

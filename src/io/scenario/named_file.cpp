@@ -2,18 +2,17 @@
 
 #include "io/gdal/dataset.hpp"
 #include "io/gdal/input_name.hpp"
-#include "io/gdal/layer_name.hpp"
+#include "talus/io/gdal/layer_name.hpp"
 
 namespace talus::io {
 
 std::string absolute_path(const std::string& given, const std::filesystem::path& base) {
   if (given.starts_with("/vsi")) return given;
-  const std::filesystem::path path = (base / given).lexically_normal();
   std::error_code none;
   const std::string file = file_of_layer(given);
-  if (file.find(':') != std::string::npos && !std::filesystem::exists((base / file).lexically_normal(), none))
-    return given;
-  return std::filesystem::absolute(path).lexically_normal().string();
+  const std::filesystem::path path = (base / file).lexically_normal();
+  if (file.find(':') != std::string::npos && !std::filesystem::exists(path, none)) return given;
+  return same_layer_in(std::filesystem::absolute(path).lexically_normal().string(), given);
 }
 
 void check_files(const std::vector<const NamedFile*>& files, std::vector<std::string>& faults) {

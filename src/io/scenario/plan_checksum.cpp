@@ -5,14 +5,15 @@
 
 #include "io/files/checksum.hpp"
 #include "scenario_text.hpp"
+#include "talus/io/gdal/layer_name.hpp"
 
 namespace talus::io {
 namespace {
 
 /// Removes the folder: machines may have the same files in other folders. Name and content count.
 void strip_folder(NamedFile& file) {
-  const std::filesystem::path path(file.path);
-  if (path.is_absolute()) file.path = path.filename().string();
+  const std::filesystem::path path(file_of_layer(file.path));
+  if (path.is_absolute()) file.path = same_layer_in(path.filename().string(), file.path);
 }
 
 /// Whether the sources have a field `height`, which earlier builds read as the height of release, or

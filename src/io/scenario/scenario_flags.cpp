@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <functional>
 
-#include "io/gdal/layer_name.hpp"
 #include "surface_key.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/gdal/layer_name.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 
@@ -57,7 +57,10 @@ void lay_sources_layer(ScenarioSpec& spec, const std::string& layer, std::vector
                      "': must come with --sources, or a scenario that has sources");
     return;
   }
-  spec.sources.path = file_of_layer(spec.sources.path) + "|layername=" + layer;
+  if (const std::string file = file_of_layer(spec.sources.path); file != spec.sources.path)
+    faults.push_back("flag --sources-layer = '" + layer + "': the name of the file has a layer already: " +
+                     spec.sources.path.substr(file.size()) + "; give one of the two");
+  spec.sources.path += "|layername=" + layer;
   spec.origins["sources.file"] += ", flag --sources-layer";
 }
 
@@ -90,7 +93,13 @@ void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::strin
   if (flags.zones)
     spec.ground = {absolute_path(*flags.zones, here), "flag --zones = '" + *flags.zones + "'"},
     spec.origins["ground.file"] = "flag --zones";
-  if (flags.zone_field) spec.ground_field = *flags.zone_field, spec.origins["ground.field"] = "flag --zone-field";
+  if (flags.zone_field) {
+    if (spec.ground.path.empty())
+      faults.push_back("flag --zone-field = '" + *flags.zone_field +
+                       "': must come with --zones, or a scenario that has zones");
+    spec.ground_field = *flags.zone_field;
+    spec.origins["ground.field"] = "flag --zone-field";
+  }
   lay_fields(spec, flags.fields, faults);
   if (flags.surface)
     if (const auto kind = surface_of_flag(*flags.surface, faults)) {

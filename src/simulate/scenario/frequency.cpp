@@ -42,9 +42,9 @@ Sources sources_of(const Scenario& s) {
 void check_contradictions(const Scenario& s, const Sources& found) {
   if (found.count() > 1)
     refuse(std::string("is given by ") + (found.features ? "the field frequency of the sources, " : "") +
-           (found.classes ? "the classes of blocks.diameter, " : "") + (found.total ? "frequency.total, " : "") +
-           (found.area ? "frequency.per_area, " : "") + (found.law ? "frequency.power_law, " : "") +
-           "must be given by one of them: leave out the others");
+           (found.classes ? "the classes of blocks.diameter, " : "") +
+           (found.total ? "frequency.total (--frequency), " : "") + (found.area ? "frequency.per_area, " : "") +
+           (found.law ? "frequency.power_law, " : "") + "must be given by one of them: leave out the others");
   if (found.features)
     for (const SourceCell& cell : s.sources)
       if (std::isnan(s.features[cell.feature].frequency))

@@ -118,7 +118,7 @@ constexpr std::array<Bounds, 20> kLists{{
     {"barriers.height", "m", "of the top of a barrier above the ground", 0.0, 100.0},
     {"barriers.capacity", "kJ", "translational energy that a barrier takes", 0.0,
      std::numeric_limits<double>::infinity()},
-    {"frequency.total", "1/year", "events per year of all sources together", 0.0, 1e6},
+    {"frequency.total", "1/year", "events per year of all sources together", 0.0, 1e6, kAbove},
     {"frequency.per_area", "1/(m2 year)", "events per area of the sources and year", 0.0, 1e3},
     {"frequency.power_law.A", "1/year", "events per year of 1 m3 and more", 0.0, 1e6},
     {"frequency.power_law.b", "1", "b in N(>= V) = A V^-b", 0.0, 10.0, kAbove},

@@ -28,7 +28,8 @@ std::string project_of(const std::vector<std::string>& files, const std::filesys
                        const std::filesystem::path& shown_as, const ProjectGround& ground);
 
 /// Writes the project of a finished run anew, with all the results that are in its folder now.
-void refresh_project(const std::filesystem::path& folder);
+/// @return false if QGIS has saved it since: then it stays as the user has left it
+bool refresh_project(const std::filesystem::path& folder);
 
 /// Order and title of a layer. A name that ends in "_" or "_T" is followed by a number, "<n>" in the title.
 struct ProjectLayer {

@@ -8,7 +8,7 @@ struct NamedLayer {
   std::string file;    ///< what stands before the first such "|"
   std::string layer;   ///< its name; empty: not given
   int number = -1;     ///< "|layerid=0"; -1: not given
-  std::string filter;  ///< "|subset=...", which is not read; empty: none
+  std::string unread;  ///< the part that is not read: a filter, a kind of geometry, a wrong number; empty: none
 };
 
 /// Takes such a name apart. A name without "|layername=" and its like is a file.
@@ -17,6 +17,11 @@ NamedLayer named_layer(const std::string& name);
 /// The file of such a name.
 inline std::string file_of_layer(const std::string& name) {
   return named_layer(name).file;
+}
+
+/// The same layer in another file, or under another name of its file.
+inline std::string same_layer_in(const std::string& file, const std::string& name) {
+  return file + name.substr(file_of_layer(name).size());
 }
 
 }  // namespace talus::io
