@@ -94,6 +94,27 @@ class Project(unittest.TestCase):
             layer = QgsVectorLayer(os.path.join(self.out, name + ".gpkg"), name, "ogr")
             self.assertEqual(layer.renderer().type(), "graduatedSymbol", name)
 
+    def test_lines_and_areas_in_one_layer_of_objects(self):
+        """QGIS draws one kind of geometry per layer: each has its own, in symbols of its kind."""
+        mixed, out = os.path.join(self.moved, "mixed.gpkg"), os.path.join(self.moved, "mixed")
+        for name, options in (("houses", {}), ("screens", {"accessMode": "append"})):
+            gdal.VectorTranslate(mixed, os.path.join(self.moved, f"valley/{name}.gpkg"), format="GPKG", layerName="objects",
+                                 geometryType="GEOMETRY", **options)
+        for arguments in (["run", os.path.join(self.moved, "valley/scenario.toml"), "--trajectories", "2", "-o", out],
+                          ["hazard", out, "--objects", mixed, "--width", "5"]):
+            subprocess.run([TALUS, *arguments, "-q"], check=True)
+        project = QgsProject()
+        self.assertTrue(project.read(os.path.join(out, "talus.qgs")), project.error())
+        found = {layer.name(): layer.layer() for layer in project.layerTreeRoot().children()[0].findLayers()}
+        for name, kind, symbol, count in (("Objects: return period of a hit (lines)", 1, "QgsLineSymbol", 2),
+                                          ("Objects: return period of a hit", 2, "QgsFillSymbol", 6)):
+            layer = found[name]
+            self.assertEqual((layer.geometryType(), layer.featureCount()), (kind, count))
+            self.assertEqual(type(layer.renderer().ranges()[0].symbol()).__name__, symbol)
+            image = renders([layer], layer.extent(), layer.crs())
+            drawn = {image.pixelColor(x, y).name() for x in range(0, 400, 2) for y in range(0, 400, 2)}
+            self.assertGreater(len(drawn), 1, name)
+
     def test_every_feature_has_a_class(self):
         for name in "Stops: largest energy of the path", "Paths: largest speed", "Screens: energy, P95", "Objects: return period of a hit":
             layer = self.layers[name]

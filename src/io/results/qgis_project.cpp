@@ -12,6 +12,7 @@
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
+#include "talus/io/results/vector_style.hpp"
 #include "talus/products/raster_table.hpp"
 #include "xml.hpp"
 
@@ -55,6 +56,36 @@ std::string style_in(const fs::path& file, const std::string& layer) {
   return {};
 }
 
+/// Whether a layer holds lines beside areas.
+bool has_lines_beside_areas(const fs::path& file, const std::string& layer) {
+  bool lines = false, areas = false;
+  try {
+    const Dataset dataset = open_dataset(file.string(), GDAL_OF_VECTOR);
+    OGRLayer* features = dataset->GetLayerByName(layer.c_str());
+    while (features != nullptr) {
+      const Feature feature(features->GetNextFeature());
+      if (!feature) break;
+      const OGRGeometry* geometry = feature->GetGeometryRef();
+      lines = lines || (geometry != nullptr && geometry->getDimension() == 1);
+      areas = areas || (geometry != nullptr && geometry->getDimension() == 2);
+    }
+  } catch (const InputError&) {  // as in style_in
+  }
+  return lines && areas;
+}
+
+/// Takes the lines out of a layer of objects of both kinds: QGIS draws one kind of geometry per layer.
+Shown lines_of(Shown& objects) {
+  Shown lines;
+  lines.id = objects.id + "_lines";
+  lines.title = objects.title + " (lines)";
+  lines.source = objects.source + "|geometrytype=LineString";
+  lines.vector = true;
+  lines.style = parsed_xml(style_of(StyledLayer::LineObjects));
+  objects.source += "|geometrytype=Polygon";
+  return lines;
+}
+
 std::string style_beside(const fs::path& raster) {
   const fs::path file = fs::path(raster).replace_extension(".qml");
   try {
@@ -85,6 +116,7 @@ std::vector<Shown> shown_layers(const std::vector<std::string>& files, const fs:
       one.source = "./" + name + (layer.vector ? "|layername=" + stem : "");
       one.vector = layer.vector;
       one.style = parsed_xml(layer.vector ? style_in(folder / name, stem) : style_beside(folder / name));
+      if (stem == "objects" && has_lines_beside_areas(folder / name, stem)) shown.push_back(lines_of(one));
       shown.push_back(std::move(one));
     }
   return shown;
@@ -98,6 +130,7 @@ void check_layers(std::vector<Shown>& shown) {
     return found != shown.end();
   };
   check("talus_layer_objects");
+  check("talus_layer_objects_lines");
   check("talus_layer_screens");
   if (!check("talus_map_hazard_class")) check("talus_map_impact_probability");
 }
