@@ -229,6 +229,67 @@ class ByQgisProcess(Case):
         self.assertIn("EPSG:2056", text)
 
 
+class Commands(Case):
+    """The run of a command: talus_qgis.process."""
+
+    def script(self, name, *lines):
+        path = self.path(name)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("\n".join(("#!/bin/sh", *lines, "")))
+        os.chmod(path, 0o755)
+        return path
+
+    def alive(self):
+        """Commands that work in the folder of this test."""
+        listed = subprocess.run(["ps", "-eo", "args="], capture_output=True, text=True, check=False).stdout
+        return [line for line in listed.splitlines() if self.folder in line]
+
+    def test_cancel_ends_what_a_script_has_started(self):
+        script = self.script("talus", f'"{os.environ["TALUS"]}" "$@"', "exit $?")
+        before = os.environ["TALUS"]
+        os.environ["TALUS"] = script
+        try:
+            log = Log(cancel_at=10.0)
+            _, good = self.run_algorithm("run", self.inputs(TRAJECTORIES=150), log)
+            ended = time.monotonic()
+        finally:
+            os.environ["TALUS"] = before
+        self.assertFalse(good)
+        self.assertLess(ended - log.cancelled, 2.0)
+        self.assertEqual(self.alive(), [])
+        self.assertIn("Resume", log.textLog())
+
+    def test_what_does_not_end_is_ended_by_force(self):
+        from talus_qgis import process
+        stubborn = self.script("stubborn", "trap '' TERM", "echo '{\"phase\": \"write\", \"share\": 0.5}' >&2",
+                               "while :; do sleep 0.1; done")
+        script = self.script("talus", f"{stubborn} &", "wait")
+        log, before = Log(cancel_at=10.0), process.PATIENCE
+        process.PATIENCE = 0.5
+        try:
+            with self.assertRaisesRegex(Exception, "Cancelled"):
+                process.run([script], log, ["write"])
+        finally:
+            process.PATIENCE = before
+        self.assertLess(time.monotonic() - log.cancelled, 2.0)
+        self.assertEqual(self.alive(), [])
+
+    def test_a_run_that_succeeds_is_not_cancelled(self):
+        from talus_qgis import process
+        said = "echo '{\"phase\": \"write\", \"share\": 1}' >&2"
+        log = Log(cancel_at=99.0)
+        process.run([self.script("last", "trap '' TERM", said, "sleep 0.3")], log, ["write"])
+        self.assertIsNotNone(log.cancelled)
+        with self.assertRaisesRegex(Exception, "Cancelled"):
+            process.run([self.script("early", said, "sleep 5")], Log(cancel_at=99.0), ["write"])
+
+    def test_the_command_of_the_log_can_be_pasted_into_a_shell(self):
+        from talus_qgis import process
+        words = ["--name=it's \"$HOME\"; echo `id` & *", "a b", "", "(x)", "back\\slash", "two\nlines"]
+        printed = subprocess.run(["sh", "-c", process.shown(["printf", "%s\\0", *words])], capture_output=True, check=True).stdout
+        self.assertEqual(printed.decode().split("\0")[:-1], words)
+
+
 class FromPython(Case):
     def test_memory_layer_equals_its_file(self):
         cliffs, memory = self.cliffs(), self.cliffs_in_memory()
