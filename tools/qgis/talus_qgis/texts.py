@@ -156,6 +156,7 @@ GERMAN = {
         "{path} beschreibt sich nicht (talus help --json): ein anderes Programm oder eine ältere Version? {way_out}",
     "Cancelled. What a run has traced is kept: start it again with the same inputs and \"Resume\".":
         "Abgebrochen. Was ein Lauf gerechnet hat, ist behalten: mit denselben Eingaben und «Fortsetzen» neu starten.",
+    "Cancelled before the program was started.": "Abgebrochen, bevor das Programm gestartet war.",
     "talus ended with code {code}": "talus endete mit Code {code}",
     "{name} has no coordinate system: set it in QGIS (layer > Set CRS)":
         "{name} hat kein Koordinatensystem: in QGIS setzen (Layer > KBS setzen)",
