@@ -5,6 +5,7 @@ Run by tools/scripts/checks/qgis.sh, which sets HOME, QGIS_PLUGINPATH and TALUS.
 import glob
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -553,26 +554,47 @@ class FromPython(Case):
 
     def test_results_are_a_group_with_styles(self):
         context = QgsProcessingContext()
-        self.run_algorithm("run", self.inputs(LOAD=True), context=context)
+        self.run_algorithm("run", self.inputs(LOAD=True, SCREENS=os.path.join(VALLEY, "screens.gpkg")), context=context)
         self.load(context)
+        self.assert_as_in_project()
         context = QgsProcessingContext()
-        _, good = self.run_algorithm("hazard", {"FOLDER": self.path("out"), "LOAD": True}, context=context)
+        _, good = self.run_algorithm("hazard", {"FOLDER": self.path("out"), "LOAD": True,
+                                                "OBJECTS": os.path.join(VALLEY, "houses.gpkg")}, context=context)
         self.assertTrue(good)
         self.load(context)
-        root = QgsProject.instance().layerTreeRoot()
-        groups = [g for g in root.findGroups() if g.name() == "Talus: out"]
-        self.assertEqual(len(groups), 1)  # one group for the run and what is added to it
-        layers = [node.layer() for node in groups[0].findLayers()]
-        self.assertEqual(layers[0].name(), "Hazard class")
+        layers = self.assert_as_in_project()
         self.assertEqual(len(layers), len({layer.source() for layer in layers}))
-        self.assertIn("Reach probability", [layer.name() for layer in layers])
-        shown = [node.name() for node in groups[0].findLayers()
-                 if node.itemVisibilityChecked() and isinstance(node.layer(), QgsRasterLayer)]
-        self.assertEqual(shown, ["Hazard class"])
-        hazard = layers[0]
+        hazard = next(layer for layer in layers if layer.name() == "Hazard class")
         self.assert_drawn_as_in_style(hazard)
         self.assertGreater(len(hazard.renderer().legendSymbologyItems()), 2)
         QgsProject.instance().clear()
+
+    def assert_as_in_project(self):
+        """The one group of the results has the titles, the order and the visibility of the project that the program has
+        written (to the hillshade and to what lies second in a GeoPackage)."""
+        groups = [g for g in QgsProject.instance().layerTreeRoot().findGroups() if g.name() == "Talus: out"]
+        self.assertEqual(len(groups), 1)  # one group for the run and what is added to it
+        project = xml.parse(self.path("out/talus.qgs")).getroot()
+        wanted = [(layer.get("name"), layer.get("checked") == "Qt::Checked") for layer in project.iter("layer-tree-layer")
+                  if layer.get("id") != "talus_hillshade"]
+        found = [(node.name(), node.itemVisibilityChecked()) for node in groups[0].findLayers()
+                 if node.name() != "Vertices of the paths"]
+        self.assertGreater(len(wanted), 15)
+        self.assertEqual(found, wanted)
+        return [node.layer() for node in groups[0].findLayers()]
+
+    def test_order_and_titles_are_those_of_the_program(self):
+        from talus_qgis import results
+        with open(os.path.join(HERE, "../../src/io/results/qgis_project.cpp"), encoding="utf-8") as file:
+            rows = re.findall(r'^      \{"(\w+)", "([^"]+)"(, true)?\},$', file.read(), re.M)
+        self.assertGreater(len(rows), 25)
+        self.assertEqual(results.ORDER, [name + (".gpkg" if vector else ".tif") for name, _, vector in rows])
+        for file, (name, title, vector) in zip(results.ORDER, rows):
+            stem, kind = os.path.splitext(file)
+            number = "300" if "<n>" in title else ""
+            self.assertEqual(results.title_of(stem + number + kind), title.replace("<n>", number))
+        self.assertLess(results._place(7, results.title_of("return_period_30.tif")),
+                        results._place(7, results.title_of("return_period_100.tif")))
 
     def test_in_a_model(self):
         """run, then hazard on its folder: outputs of one are inputs of the next."""
