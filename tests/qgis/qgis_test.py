@@ -2,22 +2,25 @@
 
 Run by tools/scripts/checks/qgis.sh, which sets HOME, QGIS_PLUGINPATH and TALUS.
 """
+import glob
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 import xml.etree.ElementTree as xml
 
 from osgeo import gdal, ogr, osr
-from qgis.core import (QgsApplication, QgsFeature, QgsGeometry, QgsMapRendererParallelJob, QgsMapSettings, QgsProcessingContext,
+from qgis.core import (QgsApplication, QgsFeature, QgsField, QgsGeometry, QgsMapRendererParallelJob, QgsMapSettings, QgsProcessingContext,
                        QgsProcessingFeatureSourceDefinition, QgsProcessingFeedback, QgsProcessingModelAlgorithm,
                        QgsProcessingModelChildAlgorithm, QgsProcessingModelChildParameterSource, QgsProject,
-                       QgsRasterLayer, QgsVectorLayer)
-from qgis.PyQt.QtCore import QLocale, QSize
+                       QgsRasterLayer, QgsVectorLayer, QgsVectorLayerJoinInfo)
+from qgis.PyQt.QtCore import QLocale, QSize, QVariant
 from qgis.PyQt.QtGui import QColor
 
 sys.path.append("/usr/share/qgis/python/plugins")  # of Processing
@@ -110,6 +113,10 @@ class Case(unittest.TestCase):
     def inputs(self, **more):
         return {"DEM": DEM, "SOURCES": os.path.join(VALLEY, "cliffs.shp"), "DIAMETER": 1.0, "TRAJECTORIES": 5,
                 "OUT": self.path("out"), "LOAD": False, **more}
+
+    def written(self, pattern):
+        """The files that the plug-in has written for the program."""
+        return sorted(glob.glob(self.path(pattern)))
 
     def record(self, out="out"):
         with open(self.path(out + "/run.json"), encoding="utf-8") as file:
@@ -229,6 +236,67 @@ class ByQgisProcess(Case):
         self.assertIn("EPSG:2056", text)
 
 
+class Commands(Case):
+    """The run of a command: talus_qgis.process."""
+
+    def script(self, name, *lines):
+        path = self.path(name)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("\n".join(("#!/bin/sh", *lines, "")))
+        os.chmod(path, 0o755)
+        return path
+
+    def alive(self):
+        """Commands that work in the folder of this test."""
+        listed = subprocess.run(["ps", "-eo", "args="], capture_output=True, text=True, check=False).stdout
+        return [line for line in listed.splitlines() if self.folder in line]
+
+    def test_cancel_ends_what_a_script_has_started(self):
+        script = self.script("talus", f'"{os.environ["TALUS"]}" "$@"', "exit $?")
+        before = os.environ["TALUS"]
+        os.environ["TALUS"] = script
+        try:
+            log = Log(cancel_at=10.0)
+            _, good = self.run_algorithm("run", self.inputs(TRAJECTORIES=150), log)
+            ended = time.monotonic()
+        finally:
+            os.environ["TALUS"] = before
+        self.assertFalse(good)
+        self.assertLess(ended - log.cancelled, 2.0)
+        self.assertEqual(self.alive(), [])
+        self.assertIn("Resume", log.textLog())
+
+    def test_what_does_not_end_is_ended_by_force(self):
+        from talus_qgis import process
+        stubborn = self.script("stubborn", "trap '' TERM", "echo '{\"phase\": \"write\", \"share\": 0.5}' >&2",
+                               "while :; do sleep 0.1; done")
+        script = self.script("talus", f"{stubborn} &", "wait")
+        log, before = Log(cancel_at=10.0), process.PATIENCE
+        process.PATIENCE = 0.5
+        try:
+            with self.assertRaisesRegex(Exception, "Cancelled"):
+                process.run([script], log, ["write"])
+        finally:
+            process.PATIENCE = before
+        self.assertLess(time.monotonic() - log.cancelled, 2.0)
+        self.assertEqual(self.alive(), [])
+
+    def test_a_run_that_succeeds_is_not_cancelled(self):
+        from talus_qgis import process
+        said = "echo '{\"phase\": \"write\", \"share\": 1}' >&2"
+        log = Log(cancel_at=99.0)
+        process.run([self.script("last", "trap '' TERM", said, "sleep 0.3")], log, ["write"])
+        self.assertIsNotNone(log.cancelled)
+        with self.assertRaisesRegex(Exception, "Cancelled"):
+            process.run([self.script("early", said, "sleep 5")], Log(cancel_at=99.0), ["write"])
+
+    def test_the_command_of_the_log_can_be_pasted_into_a_shell(self):
+        from talus_qgis import process
+        words = ["--name=it's \"$HOME\"; echo `id` & *", "a b", "", "(x)", "back\\slash", "two\nlines"]
+        printed = subprocess.run(["sh", "-c", process.shown(["printf", "%s\\0", *words])], capture_output=True, check=True).stdout
+        self.assertEqual(printed.decode().split("\0")[:-1], words)
+
+
 class FromPython(Case):
     def test_memory_layer_equals_its_file(self):
         cliffs, memory = self.cliffs(), self.cliffs_in_memory()
@@ -236,7 +304,7 @@ class FromPython(Case):
         for out, source in (("file", cliffs), ("memory", memory)):
             results, good = self.run_algorithm("run", self.inputs(SOURCES=source, OUT=self.path(out), **fields))
             self.assertTrue(good)
-        self.assertTrue(os.path.exists(self.path("memory_inputs/sources.gpkg")))
+        self.assertEqual(len(self.written("memory_inputs/sources_*/sources.gpkg")), 1)
         self.assertEqual(self.record("file")["ends"], self.record("memory")["ends"])
         a, b = (gdal.Open(self.path(out + "/passages.tif")).ReadAsArray() for out in ("file", "memory"))
         self.assertTrue((a == b).all())
@@ -253,7 +321,7 @@ class FromPython(Case):
             _, good = self.run_algorithm("run", {**inputs, "SOURCES": source, "OUT": self.path(out)})
             self.assertTrue(good)
         self.assertEqual(self.record("all")["ends"], self.record("selected")["ends"])
-        self.assertTrue(os.path.exists(self.path("selected_inputs/sources.shp")))
+        self.assertEqual(len(self.written("selected_inputs/sources_*/sources.shp")), 1)
 
     def test_selected_features_and_filters(self):
         cliffs = self.cliffs()
@@ -273,7 +341,7 @@ class FromPython(Case):
         share = (area[1] + area[2]) / sum(area.values())
         self.assertAlmostEqual(some / everything, share, delta=0.05)
         self.assertEqual(self.record("filtered")["released"], everything)
-        self.assertTrue(os.path.exists(self.path("selected_inputs/sources.shp")))
+        self.assertEqual(len(self.written("selected_inputs/sources_*/sources.shp")), 1)
         self.assertFalse(os.path.exists(self.path("all_inputs")))
 
     def test_an_empty_selection_is_refused(self):
@@ -300,6 +368,158 @@ class FromPython(Case):
         _, good = self.run_algorithm("run", self.inputs(DEM=two, DEM_BAND=2, OUT=self.path("second")))
         self.assertTrue(good)
         self.assertEqual(self.record("one")["ends"], self.record("second")["ends"])
+
+    def two_rasters_of_two_bands(self):
+        """The terrain and a raster of zones, each in the second band of a file, with one name of layer."""
+        dem = gdal.Open(DEM)
+        found = []
+        for name, values in (("a", dem.ReadAsArray()), ("b", dem.ReadAsArray() * 0 + 1)):
+            out = gdal.GetDriverByName("GTiff").Create(self.path(name + ".tif"), dem.RasterXSize, dem.RasterYSize, 2,
+                                                       gdal.GDT_Float32)
+            out.GetRasterBand(1).WriteArray(values * 0 + 7)
+            out.GetRasterBand(2).WriteArray(values)
+            out.SetGeoTransform(dem.GetGeoTransform())
+            out.SetProjection(dem.GetProjection())
+            out = None
+            found.append(QgsRasterLayer(self.path(name + ".tif"), "same name", "gdal"))
+        return found
+
+    def test_rasters_of_one_name_are_two_files(self):
+        from talus_qgis import layers
+        first, second = self.two_rasters_of_two_bands()
+        a = layers.raster_file(first, 2, self.path("in"), "dem", Log())
+        b = layers.raster_file(second, 2, self.path("in"), "zones", Log())
+        again = layers.raster_file(first, 2, self.path("in"), "dem", Log())
+        self.assertEqual(a, again)
+        self.assertEqual(len(self.written("in/*/*")), 2)
+        self.assertTrue((gdal.Open(a).ReadAsArray() == gdal.Open(DEM).ReadAsArray()).all())
+        self.assertTrue((gdal.Open(b).ReadAsArray() == 1).all())
+
+    def test_nothing_is_left_of_a_raster_that_cannot_be_written(self):
+        from talus_qgis import layers
+        first, _ = self.two_rasters_of_two_bands()
+        with self.assertRaises(Exception):
+            layers.raster_file(first, 9, self.path("in"), "dem", Log())
+        stopped = Log()
+        stopped.cancel()
+        with self.assertRaisesRegex(Exception, "Cancelled"):
+            layers.raster_file(first, 2, self.path("in"), "dem", stopped)
+        self.assertFalse(os.path.exists(self.path("in")))
+
+    def test_each_check_has_a_folder_of_its_own(self):
+        algorithm = QgsApplication.processingRegistry().createAlgorithmById("talus:check")
+        context = QgsProcessingContext()
+        self.assertNotEqual(algorithm._folder({}, context), algorithm._folder({}, context))
+
+    def test_the_sources_of_a_result_stay_as_they_were(self):
+        """A second run with other sources, refused for want of --overwrite."""
+        some, all_of_them = self.cliffs_in_memory(), self.cliffs_in_memory()
+        some.dataProvider().deleteFeatures([f.id() for f in some.getFeatures()][2:])
+        _, good = self.run_algorithm("run", self.inputs(SOURCES=some))
+        self.assertTrue(good)
+        given = next(i["path"] for i in self.record()["inputs"] if i["role"] == "sources").split("|")[0]
+        with open(given, "rb") as file:
+            before = file.read()
+        log = Log()
+        _, good = self.run_algorithm("run", self.inputs(SOURCES=all_of_them), log)
+        self.assertFalse(good)
+        self.assertIn("overwrite", log.textLog())
+        with open(given, "rb") as file:
+            self.assertEqual(file.read(), before)
+        self.assertEqual(QgsVectorLayer(given, "", "ogr").featureCount(), some.featureCount())
+
+    def test_cancel_while_a_layer_is_written(self):
+        from talus_qgis import layers
+
+        class AtSecond(Log):
+            asked = 0
+
+            def isCanceled(self):
+                self.asked += 1
+                return self.asked > 1
+
+        source = self.as_source(self.cliffs_in_memory())
+        whole = layers.write_vector(source, self.path("in"), "sources.gpkg", QgsProcessingContext(), Log())
+        with open(whole, "rb") as file:
+            before = file.read()
+        with self.assertRaisesRegex(Exception, "Cancelled"):
+            layers.write_vector(source, self.path("in"), "sources.gpkg", QgsProcessingContext(), AtSecond())
+        with open(whole, "rb") as file:
+            self.assertEqual(file.read(), before)
+        self.assertEqual(self.written("in/*"), [os.path.dirname(whole)])
+
+    def as_source(self, layer):
+        algorithm = QgsApplication.processingRegistry().createAlgorithmById("talus:run")
+        self.kept = algorithm, layer
+        context = QgsProcessingContext()
+        context.setProject(QgsProject.instance())
+        return algorithm.parameterAsSource({"SOURCES": layer}, "SOURCES", context)
+
+    def test_the_date_of_writing_is_set_for_one_thread(self):
+        from talus_qgis import layers
+        seen = []
+
+        class Looks(Log):
+            def isCanceled(self):
+                other = threading.Thread(target=lambda: seen.append(gdal.GetConfigOption("OGR_CURRENT_DATE")))
+                other.start()
+                other.join()
+                return False
+
+        source = self.as_source(self.cliffs_in_memory())
+        files = [layers.write_vector(source, self.path(name), "sources.gpkg", QgsProcessingContext(), Looks())
+                 for name in ("a", "b") if not time.sleep(0.01)]
+        self.assertEqual(set(seen), {None})
+        self.assertIsNone(gdal.GetConfigOption("OGR_CURRENT_DATE"))
+        self.assertEqual(*(os.path.basename(os.path.dirname(file)) for file in files))  # the checksum of the content
+        with open(files[0], "rb") as file:
+            self.assertIn(b"2000-01-01T00:00:00.000Z", file.read())
+
+    def test_a_layer_of_one_kind_of_geometry_is_not_the_file(self):
+        """A GeoJSON with polygons and lines, of which QGIS shows the polygons."""
+        from talus_qgis import layers
+        rings = '[[[7.1, 46.1], [7.2, 46.1], [7.2, 46.2], [7.1, 46.1]]]'
+        shapes = [f'{{"type": "Polygon", "coordinates": {rings}}}', f'{{"type": "LineString", "coordinates": {rings[1:-1]}}}']
+        with open(self.path("mixed.geojson"), "w", encoding="utf-8") as file:
+            file.write('{"type": "FeatureCollection", "features": [' + ", ".join(
+                f'{{"type": "Feature", "properties": {{"a": 1}}, "geometry": {shape}}}' for shape in shapes) + "]}")
+        name = self.path("mixed.geojson")
+        for rest in ("|geometrytype=Polygon", "|layername=mixed|geometrytype=Polygon", "|layerid=0|geometrytype=Polygon"):
+            polygons = QgsVectorLayer(name + rest, "", "ogr")
+            self.assertEqual(polygons.featureCount(), 1)
+            self.assertIsNone(layers.plain_vector(polygons, polygons))
+            copy = layers.write_vector(self.as_source(polygons), self.path("in"), "sources.gpkg", QgsProcessingContext(), Log())
+            self.assertEqual(QgsVectorLayer(copy, "", "ogr").featureCount(), 1)
+        cliffs = self.cliffs()
+        self.assertEqual(layers.plain_vector(cliffs, cliffs), os.path.join(VALLEY, "cliffs.shp"))
+        self.assertIsNone(layers.plain_vector(cliffs, QgsVectorLayer(cliffs.source() + "|option:ENCODING=UTF-8", "", "ogr")))
+
+    def test_virtual_and_joined_fields_are_handed_over(self):
+        gdal.VectorTranslate(self.path("names.shp"), os.path.join(VALLEY, "cliffs.shp"), selectFields=["name"])
+        virtual, joined, table = (QgsVectorLayer(self.path("names.shp"), "cliffs", "ogr") for _ in range(3))
+        virtual.addExpressionField("1.5", QgsField("mine", QVariant.Double))
+        table.addExpressionField("1.5", QgsField("size_of_block", QVariant.Double))
+        QgsProject.instance().addMapLayer(table)
+        self.addCleanup(QgsProject.instance().removeMapLayer, table.id())
+        join = QgsVectorLayerJoinInfo()
+        join.setJoinLayer(table)
+        join.setJoinFieldName("name")
+        join.setTargetFieldName("name")
+        join.setPrefix("j_")
+        join.setUsingMemoryCache(True)
+        joined.addJoin(join)
+        for out, layer, field in (("virtual", virtual, "mine"), ("joined", joined, "j_size_of_block")):
+            inputs = self.inputs(SOURCES=layer, OUT=self.path(out), DIAMETER_FIELD=field)
+            del inputs["DIAMETER"]
+            log = Log()
+            _, good = self.run_algorithm("run", inputs, log)
+            self.assertTrue(good, log.textLog())
+        self.assertEqual(len(self.written("virtual_inputs/*/sources.shp")), 1)
+        self.assertEqual(len(self.written("joined_inputs/*/sources.gpkg")), 1)  # a Shapefile would cut the name
+        given = self.inputs(SOURCES=self.path("names.shp"), OUT=self.path("given"), DIAMETER=1.5)
+        self.run_algorithm("run", given)
+        self.assertEqual(self.record("virtual")["ends"], self.record("joined")["ends"])
+        self.assertEqual(self.record("virtual")["ends"], self.record("given")["ends"])
 
     def test_warnings_and_progress_reach_the_log(self):
         log = Log()
@@ -334,26 +554,47 @@ class FromPython(Case):
 
     def test_results_are_a_group_with_styles(self):
         context = QgsProcessingContext()
-        self.run_algorithm("run", self.inputs(LOAD=True), context=context)
+        self.run_algorithm("run", self.inputs(LOAD=True, SCREENS=os.path.join(VALLEY, "screens.gpkg")), context=context)
         self.load(context)
+        self.assert_as_in_project()
         context = QgsProcessingContext()
-        _, good = self.run_algorithm("hazard", {"FOLDER": self.path("out"), "LOAD": True}, context=context)
+        _, good = self.run_algorithm("hazard", {"FOLDER": self.path("out"), "LOAD": True,
+                                                "OBJECTS": os.path.join(VALLEY, "houses.gpkg")}, context=context)
         self.assertTrue(good)
         self.load(context)
-        root = QgsProject.instance().layerTreeRoot()
-        groups = [g for g in root.findGroups() if g.name() == "Talus: out"]
-        self.assertEqual(len(groups), 1)  # one group for the run and what is added to it
-        layers = [node.layer() for node in groups[0].findLayers()]
-        self.assertEqual(layers[0].name(), "Hazard class")
+        layers = self.assert_as_in_project()
         self.assertEqual(len(layers), len({layer.source() for layer in layers}))
-        self.assertIn("Reach probability", [layer.name() for layer in layers])
-        shown = [node.name() for node in groups[0].findLayers()
-                 if node.itemVisibilityChecked() and isinstance(node.layer(), QgsRasterLayer)]
-        self.assertEqual(shown, ["Hazard class"])
-        hazard = layers[0]
+        hazard = next(layer for layer in layers if layer.name() == "Hazard class")
         self.assert_drawn_as_in_style(hazard)
         self.assertGreater(len(hazard.renderer().legendSymbologyItems()), 2)
         QgsProject.instance().clear()
+
+    def assert_as_in_project(self):
+        """The one group of the results has the titles, the order and the visibility of the project that the program has
+        written (to the hillshade and to what lies second in a GeoPackage)."""
+        groups = [g for g in QgsProject.instance().layerTreeRoot().findGroups() if g.name() == "Talus: out"]
+        self.assertEqual(len(groups), 1)  # one group for the run and what is added to it
+        project = xml.parse(self.path("out/talus.qgs")).getroot()
+        wanted = [(layer.get("name"), layer.get("checked") == "Qt::Checked") for layer in project.iter("layer-tree-layer")
+                  if layer.get("id") != "talus_hillshade"]
+        found = [(node.name(), node.itemVisibilityChecked()) for node in groups[0].findLayers()
+                 if node.name() != "Vertices of the paths"]
+        self.assertGreater(len(wanted), 15)
+        self.assertEqual(found, wanted)
+        return [node.layer() for node in groups[0].findLayers()]
+
+    def test_order_and_titles_are_those_of_the_program(self):
+        from talus_qgis import results
+        with open(os.path.join(HERE, "../../src/io/results/qgis_project.cpp"), encoding="utf-8") as file:
+            rows = re.findall(r'^      \{"(\w+)", "([^"]+)"(, true)?\},$', file.read(), re.M)
+        self.assertGreater(len(rows), 25)
+        self.assertEqual(results.ORDER, [name + (".gpkg" if vector else ".tif") for name, _, vector in rows])
+        for file, (name, title, vector) in zip(results.ORDER, rows):
+            stem, kind = os.path.splitext(file)
+            number = "300" if "<n>" in title else ""
+            self.assertEqual(results.title_of(stem + number + kind), title.replace("<n>", number))
+        self.assertLess(results._place(7, results.title_of("return_period_30.tif")),
+                        results._place(7, results.title_of("return_period_100.tif")))
 
     def test_in_a_model(self):
         """run, then hazard on its folder: outputs of one are inputs of the next."""

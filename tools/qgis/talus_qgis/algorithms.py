@@ -302,10 +302,10 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         return phases
 
     def _folder(self, parameters, context):
-        """The folder of the results; for a command without one, one for what has to be written for it."""
+        """The folder of the results; for a command without one, a new one for what has to be written for it."""
         name = self.table.get("folder")
         if name is None:
-            return os.path.join(QgsProcessingUtils.tempFolder(), "talus_" + self.table["id"])
+            return QgsProcessingUtils.generateTempFilename("talus_" + self.table["id"])
         key = key_of(name)
         return os.path.normpath(self.parameterAsFile(parameters, key, context) if name == "folder" else
                                 self._destination(parameters, key, context))
@@ -371,7 +371,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         words = []
         if "vector" in p["holds"] and self.layers.get(key):
             plain, source, suffix = self.layers[key]
-            words.append(plain or layers.write_vector(source, os.path.join(inputs, p["name"] + suffix), context, feedback))
+            words.append(plain or layers.write_vector(source, inputs, p["name"] + suffix, context, feedback))
         raster = self.layers.get(key + "_RASTER" if p["name"] in self.table.get("raster too", ()) else key)
         if "raster" in p["holds"] and raster:
             if words:
@@ -379,7 +379,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
                     name=label(p["name"])))
             band = parameters.get("DEM_BAND") if p["name"] in self.table.get("bands", ()) else None
             number = self.parameterAsInt(parameters, "DEM_BAND", context) if band else 1
-            words.append(layers.raster_file(raster, number, inputs, feedback))
+            words.append(layers.raster_file(raster, number, inputs, p["name"], feedback))
         return words
 
     # Results

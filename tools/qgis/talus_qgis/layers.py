@@ -1,13 +1,16 @@
 """Layers of QGIS as files that the program reads.
 
 A layer that is a plain file goes to the program as it is, so that the record of the run names the user's own file. What
-QGIS alone knows (selected features, filters, layers in memory or in a database, another CRS, one band of several) is
-written into the folder OUT_inputs beside the results: a run can be resumed, and `hazard` reads the inputs once more.
+QGIS alone knows (selected features, filters, joined and virtual fields, layers in memory or in a database, another CRS,
+one band of several) is written into the folder OUT_inputs beside the results: a run can be resumed, and `hazard` reads the
+inputs once more. There each input lies in a folder named after its parameter and its content, so that what an earlier run
+has read stays as it was.
 """
 import filecmp
+import hashlib
 import os
-import re
 import tempfile
+from contextlib import contextmanager
 
 from osgeo import gdal
 from qgis.core import (QgsFeature, QgsFeatureSink, QgsProcessingException, QgsProcessingFeatureSourceDefinition,
@@ -32,14 +35,28 @@ def plain_vector(value, layer):
         return None
     parts = QgsProviderRegistry.instance().decodeUri("ogr", layer.source())
     path, name = parts.get("path") or "", parts.get("layerName") or ""
+    if any(value for part, value in parts.items() if part not in ("path", "layerName")):
+        return None  # one kind of geometry, a layer by its number, options of the driver
     if not os.path.isfile(path) or not path.lower().endswith(READ_AS_THEY_ARE) or "|" in path:
         return None
     file_layer = QgsVectorLayer(path + (f"|layername={name}" if name else ""), "", "ogr")
-    if not file_layer.isValid() or file_layer.crs() != layer.crs():
+    if not file_layer.isValid() or file_layer.crs() != layer.crs() or _names(file_layer) != _names(layer):
         return None
     if not name and len(file_layer.dataProvider().subLayers()) > 1:
         name = file_layer.dataProvider().subLayers()[0].split("!!::!!")[1]  # the one that QGIS shows
-    return path + (f"|layername={name}" if name else "")
+    return path + (f"|layername={name}" if name else "") if _count(path, name) == layer.featureCount() else None
+
+
+def _names(layer):
+    """The names of the fields; those that are joined and virtual come last."""
+    return layer.fields().names()
+
+
+def _count(path, name):
+    """The number of features in a layer of a file, as the program reads it."""
+    file = gdal.OpenEx(path, gdal.OF_VECTOR | gdal.OF_READONLY)
+    layer = file.GetLayerByName(name) if name else file.GetLayer(0)
+    return layer.GetFeatureCount() if layer is not None else None
 
 
 def _restricted(definition):
@@ -48,30 +65,66 @@ def _restricted(definition):
 
 
 def suffix_for(layer):
-    """A Shapefile stays one: the program knows the names of fields that it cuts, as diameter_m of diameter_min."""
+    """A Shapefile stays one: the program knows the names of fields that it cuts, as diameter_m of diameter_min. Not so
+    where a joined or virtual field has a name that would be cut anew."""
     shapefile = isinstance(layer, QgsVectorLayer) and layer.dataProvider().storageType() == "ESRI Shapefile"
-    return ".shp" if shapefile else ".gpkg"
+    return ".shp" if shapefile and all(len(name.encode()) <= 10 for name in _names(layer)) else ".gpkg"
 
 
-def write_vector(source, path, context, feedback):
+@contextmanager
+def _kept(inputs, name):
+    """A temporary folder to write an input into, and a list for the place at which it is kept: a folder of `inputs` named
+    after the parameter and the content. Nothing is left of an input that was not written to its end."""
+    os.makedirs(inputs, exist_ok=True)
+    try:
+        with tempfile.TemporaryDirectory(dir=inputs) as fresh:
+            place = []
+            yield fresh, place
+            files = sorted(os.listdir(fresh))
+            place.append(os.path.join(inputs, f"{name}_{_checksum(fresh, files)}"))
+            os.makedirs(place[0], exist_ok=True)
+            for file in files:
+                target = os.path.join(place[0], file)
+                if not (os.path.exists(target) and filecmp.cmp(os.path.join(fresh, file), target, shallow=False)):
+                    os.replace(os.path.join(fresh, file), target)
+    except BaseException:
+        if not os.listdir(inputs):
+            os.rmdir(inputs)
+        raise
+
+
+def _checksum(folder, files):
+    """The first 12 digits of the SHA-256 of some files."""
+    whole = hashlib.sha256()
+    for file in files:
+        whole.update(file.encode() + b"\0")
+        with open(os.path.join(folder, file), "rb") as content:
+            for block in iter(lambda: content.read(1 << 20), b""):
+                whole.update(block)
+    return whole.hexdigest()[:12]
+
+
+def _stop_if_cancelled(feedback):
+    if feedback.isCanceled():
+        raise QgsProcessingException(tr("Cancelled before the program was started."))
+
+
+def write_vector(source, inputs, file, context, feedback):
     """Writes the features of a source, with their CRS, into a GeoPackage or Shapefile; equal features give equal bytes."""
     if not source.sourceCrs().isValid():
         raise QgsProcessingException(tr("{name} has no coordinate system: set it in QGIS (layer > Set CRS)").format(
             name=source.sourceName()))
-    folder = os.path.dirname(path)
-    os.makedirs(folder, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=folder) as fresh:
-        dated = gdal.GetConfigOption("OGR_CURRENT_DATE")
-        gdal.SetConfigOption("OGR_CURRENT_DATE", "2000-01-01T00:00:00.000Z")  # else the time of writing stands in the file
+    with _kept(inputs, os.path.splitext(file)[0]) as (fresh, place):
+        dated = gdal.GetThreadLocalConfigOption("OGR_CURRENT_DATE")  # of this thread alone: QGIS goes on writing in others
+        gdal.SetThreadLocalConfigOption("OGR_CURRENT_DATE", "2000-01-01T00:00:00.000Z")  # not the time of writing
         try:
-            count = _write_features(source, os.path.join(fresh, os.path.basename(path)), context, feedback)
+            count = _write_features(source, os.path.join(fresh, file), context, feedback)
         finally:
-            gdal.SetConfigOption("OGR_CURRENT_DATE", dated)
+            gdal.SetThreadLocalConfigOption("OGR_CURRENT_DATE", dated)
         if count == 0:
             raise QgsProcessingException(tr("{name} has no feature: is nothing selected, or does a filter hide all?").format(
                 name=source.sourceName()))
-        for name in os.listdir(fresh):
-            os.replace(os.path.join(fresh, name), os.path.join(folder, name))
+    path = os.path.join(place[0], file)
     feedback.pushInfo(tr("{name}: {count} features are written to {path}").format(name=source.sourceName(), count=count,
                                                                                  path=path))
     return path
@@ -90,21 +143,22 @@ def _write_features(source, path, context, feedback):
     if writer.hasError() != QgsVectorFileWriter.NoError:
         raise QgsProcessingException(f"{path}: {writer.errorMessage()}")
     count = 0
-    for feature in source.getFeatures():
-        if feedback.isCanceled():
-            break
-        copy = QgsFeature(source.fields())
-        copy.setAttributes(feature.attributes())
-        copy.setGeometry(feature.geometry())
-        if not writer.addFeature(copy, QgsFeatureSink.FastInsert):
-            raise QgsProcessingException(f"{path}: {writer.errorMessage()}")
-        count += 1
-    del writer  # closes the file
+    try:
+        for feature in source.getFeatures():
+            _stop_if_cancelled(feedback)
+            copy = QgsFeature(source.fields())
+            copy.setAttributes(feature.attributes())
+            copy.setGeometry(feature.geometry())
+            if not writer.addFeature(copy, QgsFeatureSink.FastInsert):
+                raise QgsProcessingException(f"{path}: {writer.errorMessage()}")
+            count += 1
+    finally:
+        del writer  # closes the file
     return count
 
 
-def raster_file(layer, band, folder, feedback):
-    """The file of a raster layer; a GeoTIFF in `folder` where a band other than the first or another CRS is meant."""
+def raster_file(layer, band, inputs, name, feedback):
+    """The file of a raster layer; a GeoTIFF in `inputs` where a band other than the first or another CRS is meant."""
     if not isinstance(layer, QgsRasterLayer) or layer.providerType() != "gdal":
         raise QgsProcessingException(tr("{name} is no raster in a file: save it as GeoTIFF first").format(
             name=layer.name() if layer is not None else "?"))
@@ -113,20 +167,28 @@ def raster_file(layer, band, folder, feedback):
     same_crs = own.crs() == layer.crs()
     if os.path.isfile(path) and band in (None, 1) and same_crs:
         return path
-    os.makedirs(folder, exist_ok=True)
-    name = re.sub(r"[^\w-]+", "_", layer.name()) or "raster"
-    target = os.path.join(folder, f"{name}_band{band or 1}.tif")
-    fresh = target[:-len(".tif")] + ".new.tif"
-    options = {"bandList": [band or 1], "format": "GTiff", "creationOptions": ["COMPRESS=DEFLATE"]}
+    options = {"bandList": [band or 1], "rat": False}
     if not same_crs:
         options["outputSRS"] = layer.crs().toWkt()
-    if gdal.Translate(fresh, path, **options) is None:
-        raise QgsProcessingException(f"{path}: {gdal.GetLastErrorMsg()}")
-    if os.path.exists(target) and filecmp.cmp(target, fresh, shallow=False):
-        os.remove(fresh)
-    else:
-        os.replace(fresh, target)
+    with _kept(inputs, name) as (fresh, place):
+        _translate(os.path.join(fresh, name + ".tif"), path, options, feedback)
+    target = os.path.join(place[0], name + ".tif")
     feedback.pushInfo(tr("{name}: band {band} is written to {path}").format(name=layer.name(), band=band or 1, path=target))
     return target
 
 
+def _translate(target, path, options, feedback):
+    """Writes a part of a raster as GeoTIFF, without the statistics that QGIS keeps beside a raster that it has shown: equal
+    cells give equal bytes."""
+    try:
+        part = gdal.Translate("", path, format="VRT", **options)
+        if part is not None:
+            part.GetRasterBand(1).SetMetadata({})
+            part = gdal.Translate(target, part, format="GTiff", creationOptions=["COMPRESS=DEFLATE"],
+                                  callback=lambda *_: 0 if feedback.isCanceled() else 1)
+        fault = "" if part is not None else gdal.GetLastErrorMsg()
+    except RuntimeError as raised:  # where another plug-in has switched exceptions of GDAL on
+        part, fault = None, str(raised)
+    _stop_if_cancelled(feedback)
+    if part is None:
+        raise QgsProcessingException(f"{path}: {fault}")

@@ -3,9 +3,13 @@
 Not by QgsBlockingProcess, which in QGIS 3.22 shows no progress in qgis_process and cannot be cancelled there.
 """
 import json
+import os
 import queue
+import shlex
+import signal
 import subprocess
 import threading
+import time
 
 from qgis.core import QgsProcessingException
 
@@ -92,37 +96,63 @@ class Messages:
 
 
 def _read(name, stream, lines):
-    for line in stream:
-        lines.put((name, line.rstrip("\r\n")))
+    """Reads a stream to its end and closes it: closed by another thread, it would wait for the line that is being read."""
+    with stream:
+        for line in stream:
+            lines.put((name, line.rstrip("\r\n")))
     lines.put((name, None))
 
 
 def _start(command):
+    """The program in a session of its own, so that a script that starts talus is ended together with it."""
     try:
         return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                encoding="utf-8", errors="replace", bufsize=1, creationflags=HIDDEN_WINDOW)
+                                encoding="utf-8", errors="replace", bufsize=1, creationflags=HIDDEN_WINDOW,
+                                start_new_session=True)
     except OSError as fault:
         raise QgsProcessingException(f"{command[0]}: {fault.strerror}") from fault
 
 
-def _end(process):
-    """Asks the program to end and waits for it."""
-    process.terminate()
+def _signal(process, by_force):
+    """Asks the program, and what it has started, to end."""
+    if os.name == "nt":
+        process.kill() if by_force else process.terminate()
+        return
     try:
-        process.wait(PATIENCE)
+        os.killpg(process.pid, signal.SIGKILL if by_force else signal.SIGTERM)
+    except ProcessLookupError:
+        pass  # all have ended
+
+
+def _ended(process, readers, patience):
+    """Whether the program and all that writes into its streams end within a time."""
+    last = time.monotonic() + patience
+    for reader in readers:
+        reader.join(max(0.0, last - time.monotonic()))
+    try:
+        process.wait(max(0.0, last - time.monotonic()))
     except subprocess.TimeoutExpired:
-        process.kill()
-        process.wait()
+        return False
+    return not any(reader.is_alive() for reader in readers)
 
 
-def _shown(command):
-    return " ".join(f'"{word}"' if " " in word or not word else word for word in command)
+def _end(process, readers):
+    """Asks the program to end and waits for it; ends it by force where it does not."""
+    _signal(process, by_force=False)
+    if not _ended(process, readers, PATIENCE):
+        _signal(process, by_force=True)
+        _ended(process, readers, PATIENCE)
+
+
+def shown(command):
+    """The command as it can be pasted into a shell."""
+    return subprocess.list2cmdline(command) if os.name == "nt" else shlex.join(command)
 
 
 def run(command, feedback, phases, parts=1):
     """Runs a command to its end. Raises QgsProcessingException with the program's own line where it fails, or with how to
-    go on where the user has cancelled."""
-    feedback.pushCommandInfo(_shown(command))
+    go on where the user has cancelled it before its end."""
+    feedback.pushCommandInfo(shown(command))
     messages = Messages(feedback, Progress(feedback, phases, parts))
     lines = queue.Queue()
     process = _start(command)
@@ -141,21 +171,18 @@ def run(command, feedback, phases, parts=1):
                 open_streams -= 1
             else:
                 messages.take(stream, text)
-        if feedback.isCanceled():
-            _end(process)
-        code = process.wait()
+        while process.poll() is None and not feedback.isCanceled():  # its streams are closed, it works on
+            time.sleep(POLL)
     finally:
-        if process.poll() is None:
-            _end(process)
-        for reader in readers:
-            reader.join(2.0)
-        for stream in (process.stdout, process.stderr):
-            stream.close()
+        if process.poll() is None or any(reader.is_alive() for reader in readers):
+            _end(process, readers)
     while not lines.empty():
         stream, text = lines.get_nowait()
         messages.take(stream, text or "")
+    code = process.poll()
+    if code == 0:
+        return  # whatever was asked in its last moments, it has written its results
     if feedback.isCanceled():
         raise QgsProcessingException(tr("Cancelled. What a run has traced is kept: start it again with the same inputs and "
                                         "\"Resume\"."))
-    if code != 0:
-        raise QgsProcessingException(messages.error or tr("talus ended with code {code}").format(code=code))
+    raise QgsProcessingException(messages.error or tr("talus ended with code {code}").format(code=code))

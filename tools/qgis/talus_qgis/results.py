@@ -1,18 +1,26 @@
 """What a command has written, as a group of layers: titles, styles, the hazard class on top."""
 import os
+import re
 
 from qgis.core import (QgsLayerTreeGroup, QgsProcessingContext, QgsProcessingLayerPostProcessorInterface, QgsProject,
                        QgsProviderRegistry, QgsRasterLayer, QgsVectorLayer)
 
 from .texts import tr
 
-# From the top of the group downwards. `True`: shown at first; the others wait for a click.
-ORDER = [("hazard_class", True), ("objects", True), ("stops", False), ("trajectories", False), ("exits.gpkg", False),
-         ("reach_probability", True), ("impact_probability", False), ("annual_frequency", False), ("return_period_", False),
-         ("intensity_T", False), ("hazard_curves", False), ("energy", False), ("energy_total", False), ("velocity", False),
-         ("jump_height", False), ("energy_exceedance", False), ("height_exceedance", False), ("passage_density", False),
-         ("passages", False), ("impacts", False), ("deposits", False), ("trapped", False), ("exits", False),
-         ("sources", False), ("release", False)]
+# From the top of the group downwards: order and titles (texts.py) are those of the project talus.qgs, which the program
+# writes into the same folder: project_layers() in src/io/results/qgis_project.cpp. A name that ends in _ or T goes on with
+# a number.
+ORDER = ["objects.gpkg", "screens.gpkg", "exits.gpkg", "stops.gpkg", "trajectories.gpkg", "hazard_class.tif",
+         "annual_frequency.tif", "return_period_.tif", "intensity_T.tif", "hazard_curves.tif", "impact_probability.tif",
+         "reach_probability.tif", "passage_density.tif", "energy.tif", "energy_total.tif", "jump_height.tif", "velocity.tif",
+         "energy_exceedance.tif", "height_exceedance.tif", "energy_bounds.tif", "jump_height_bounds.tif",
+         "velocity_bounds.tif", "passages.tif", "impacts.tif", "deposits.tif", "trapped.tif", "exits.tif", "release.tif",
+         "sources.tif"]
+
+# Shown at first, as check_layers() there does it; the others wait for a click. Where there is a hazard class, it is the one
+# raster that is shown.
+SHOWN = ("objects.gpkg", "screens.gpkg", "hazard_class.tif", "impact_probability.tif")
+HAZARD_CLASS = ORDER.index("hazard_class.tif")
 
 GROUP_MARK = "talus/folder"  # property of the group: the folder of its results
 RANK_MARK = "talus/rank"     # property of a layer: its place in the group
@@ -24,25 +32,24 @@ _kept_alive = []  # QGIS does not hold the post-processors
 
 def rank_of(name):
     """(place, whether it is shown) of a file."""
-    stem = os.path.splitext(name)[0]
-    exact = {key: i for i, (key, _) in enumerate(ORDER)}
-    for key in (name, stem):
-        if key in exact:
-            return exact[key], ORDER[exact[key]][1]
-    for i, (key, shown) in enumerate(ORDER):
-        if key.endswith("_") or key == "intensity_T":
-            if stem.startswith(key):
-                return i, shown
-    return len(ORDER), False
+    stem, kind = os.path.splitext(name)
+    listed = _numbered(stem)[0] + (".tif" if kind == ".tif" else ".gpkg")
+    return (ORDER.index(listed), listed in SHOWN) if listed in ORDER else (len(ORDER), False)
 
 
-def title_of(stem):
-    """"Return period of 300 kJ" of `return_period_300`."""
-    for key in ("return_period_", "intensity_T"):
-        if stem.startswith(key):
-            return tr("title " + key).format(stem[len(key):])
+def _numbered(stem):
+    """("return_period_", "300") of `return_period_300`; the whole name and nothing of others."""
+    found = re.fullmatch(r"(return_period_|intensity_T)([0-9.e+-]+)", stem)
+    return found.groups() if found else (stem, "")
+
+
+def title_of(name):
+    """"Return period of more than 300 kJ" of `return_period_300`; of a file with its ending, or of a name."""
+    stem, number = _numbered(os.path.splitext(name)[0] if name.endswith((".tif", ".gpkg", ".fgb")) else name)
+    if name.endswith((".gpkg", ".fgb")) and stem == "exits":
+        return tr("title exits.gpkg")  # there is a raster of this name, too
     title = tr("title " + stem)
-    return stem.replace("_", " ") if title.startswith("title ") else title
+    return stem.replace("_", " ") if title.startswith("title ") else title.format(number)
 
 
 def files_of(folder, begin):
@@ -55,13 +62,18 @@ def files_of(folder, begin):
             continue
         rank, shown = rank_of(name)
         if kind == ".tif":
-            found.append((path, title_of(stem), name, rank, shown))
+            found.append((path, title_of(name), name, rank, shown))
             continue
         for layer in _layers_in(path):
-            title = title_of(stem) if layer in ("", stem) else title_of(layer)
+            title = title_of(name if layer in ("", stem) else layer)
             uri = path if not layer else f"{path}|layername={layer}"
             found.append((uri, title, name, rank, shown))
-    return sorted(found, key=lambda row: (row[3], row[1]))
+    return sorted(found, key=lambda row: _place(row[3], row[1]))
+
+
+def _place(rank, title):
+    """What layers are sorted by: shorter titles first, as 30 kJ before 300 kJ."""
+    return rank, len(title), title
 
 
 def _layers_in(path):
@@ -117,11 +129,11 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
                 continue
             rank = int(layer.customProperty(RANK_MARK, 0))
             if isinstance(layer, QgsRasterLayer) and isinstance(node.layer(), QgsRasterLayer):
-                if self.rank == 0:  # nothing shines through the hazard class, whichever of the two comes first
+                if self.rank == HAZARD_CLASS:  # nothing shines through the hazard class, whichever of the two comes first
                     other.setItemVisibilityChecked(False)
-                elif rank == 0:
+                elif rank == HAZARD_CLASS:
                     shown = False
-            if (rank, layer.name()) < (self.rank, self.name):
+            if _place(rank, layer.name()) < _place(self.rank, self.name):
                 place += 1
         copy = node.clone()
         copy.setItemVisibilityChecked(shown)
