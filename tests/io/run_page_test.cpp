@@ -78,6 +78,18 @@ TEST_F(MapStyleFile, ClassesOfDiscreteValues) {
   EXPECT_EQ(style->classes[2].colour.blue, 3);
 }
 
+TEST_F(MapStyleFile, OpacityFromNothingToFull) {
+  std::string items;
+  for (const char* alpha : {"-7", "128", "1e300", "inf", "much"})
+    items += std::string("<item value=\"1\" color=\"#000000\" alpha=\"") + alpha + "\"/>";
+  write_text("c.qml", qml("<colorrampshader colorRampType=\"EXACT\">" + items + "</colorrampshader>"));
+  const auto style = read_map_style(path("c.qml"));
+  ASSERT_TRUE(style);
+  std::vector<int> opacities;
+  for (const MapClass& one : style->classes) opacities.push_back(one.colour.opacity);
+  EXPECT_EQ(opacities, (std::vector{0, 128, 255, 255, 255}));
+}
+
 TEST_F(MapStyleFile, NoneOfRampsAndOfTextsThatAreNoStyle) {
   EXPECT_EQ(read_map_style(path("missing.qml")), std::nullopt);
   for (const std::string& text : {std::string(), std::string("<qgis>"), std::string("no style"),
@@ -134,7 +146,7 @@ TEST(Escaping, ValuesOfAttributesOfMaps) {
   const std::string page = (map_store(sheet, run, imprint) + map_viewer(sheet) + map_figures(sheet, imprint)).text();
   EXPECT_THAT(page, Not(HasSubstr("<script")));
   EXPECT_THAT(page, HasSubstr("data-title=\"&lt;script&gt;alert(1)&lt;/script&gt;&amp;amp;&#39;&quot;"));
-  EXPECT_THAT(page, HasSubstr("data-classes=\"&lt;script"));
+  EXPECT_THAT(page, HasSubstr("data-classes=\"[[1.0,&quot;&lt;script"));
   EXPECT_THAT(page, HasSubstr("href=\"&lt;script"));
 }
 

@@ -30,7 +30,7 @@ struct RecordedGrid {
 /// run.json.
 struct RunFacts {
   std::string version, command, status, plan;
-  std::string finished;  ///< day of the record, "2026-11-23"
+  std::string written;  ///< day of the file run.json, "2026-11-23": a copy may have a later one
   double released = 0.0, source_cells = 0.0, per_source = 0.0, rounds = 0.0, impacts = 0.0, kilometres = 0.0;
   double touched_cells = 0.0;
   std::vector<std::pair<std::string, double>> ends;  ///< in the order of the record
