@@ -120,6 +120,11 @@ std::vector<const RecordedSetting*> RunFacts::settings_of(const std::string& beg
   return found;
 }
 
+std::string too_large_for_page(const std::filesystem::path& table) {
+  if (std::filesystem::file_size(table) <= kMostPageTable) return "";
+  return table.filename().string() + " has more than " + std::to_string(kMostPageTable >> 20U) + " MB";
+}
+
 void throw_not_understood(const std::filesystem::path& file, const std::string& cause) {
   throw InputError(file.string() + ": cannot be understood (" + cause +
                    "), must be as talus has written it; run that command again");
