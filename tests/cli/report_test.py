@@ -329,6 +329,22 @@ class Files(Report):
         self.assertGreater(told, 0)
         Page(self.path("out/report.html"))  # whole
 
+    def test_memory_for_a_large_table_of_crossings(self):
+        """The text of the table, and not several times that."""
+        self.results(hazard=False)
+
+        def megabytes():
+            process = subprocess.Popen([TALUS, "report", self.path("out"), "-q", "-o", self.path("p.html"), "--overwrite"])
+            _, process.returncode, used = os.wait4(process.pid, 0)
+            self.assertEqual(process.returncode, 0)
+            return used.ru_maxrss / 1024
+
+        small = megabytes()
+        with open(self.path("out/screens.csv"), "r+", encoding="utf-8") as file:
+            rows = "".join(file.readlines()[1:])
+            file.write(rows * round(40e6 / len(rows)))
+        self.assertLess(megabytes() - small, 2 * 40)
+
     def test_the_same_page_again(self):
         self.results()
         day = {**os.environ, "SOURCE_DATE_EPOCH": "1700000000"}
