@@ -7,6 +7,7 @@ import math
 import os
 import re
 import shutil
+import signal
 import subprocess
 import unittest
 import zlib
@@ -14,7 +15,7 @@ import zlib
 import numpy as np
 from osgeo import gdal, ogr
 
-from support import NORTH, WEST, RunCase, box, write_features
+from support import NORTH, TALUS, WEST, RunCase, box, write_features
 
 HOSTILE = "<script>alert(1)</script>&amp;'\"\u202e</svg>"
 CHROMIUM = next((path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if path), None)
@@ -272,6 +273,28 @@ class Content(Report):
         self.assertNotRegex(page.source, "[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
 
 
+    def test_names_of_classes_go_by_their_value(self):
+        self.results()
+        with open(self.path("out/hazard_class.qml"), encoding="utf-8") as file:
+            style = file.read()
+        items = re.findall(r"<item [^>]*/>\s*", style)
+        expected = [[float(re.search('value="([^"]*)"', item).group(1)), re.search('label="([^"]*)"', item).group(1)]
+                    for item in items]
+        self.assertGreater(len(expected), 3)
+        self.write("out/hazard_class.qml", style.replace("".join(items), "".join(items[:0:-1])))
+        image = self.page().maps()["Hazard class"]
+        self.assertEqual(json.loads(image["data-classes"]), expected[:0:-1])  # the last first, the first not at all
+
+    def test_the_day_is_that_of_the_file_and_so_called(self):
+        self.results(hazard=False)
+        os.utime(self.path("out/run.json"), (1.0e9, 1.0e9))  # 2001-09-09
+        page = self.page()
+        self.assertIn("run.json written on2001-09-09", page.text)  # two cells of the table
+        self.assertIn("run.json written on 2001-09-09, plan", page.text)
+        self.assertIn("run.json of 2001-09-09", page.text)
+        self.assertNotIn("day of the run", page.text)
+
+
 class Files(Report):
     def test_names_and_overwrite(self):
         self.results(hazard=False)
@@ -286,7 +309,41 @@ class Files(Report):
                    arguments=["report", self.path("out"), "-o", self.path("mine.html"), "--overwrite"])
         self.run_well("report", self.path("out"), "-o", self.path("page.html"))
         self.assertFalse([name for name in os.listdir(self.folder) + os.listdir(self.path("out")) if name.startswith(".")])
-        self.run_scenario("out", "--overwrite")  # the page belongs to the folder
+        self.run_well("report", self.path("out"), "-o", self.path("out/for the canton.html"))
+        self.run_scenario("out", "--overwrite")  # the pages belong to the folder
+        self.assertFalse([name for name in os.listdir(self.path("out")) if name.endswith(".html")])
+
+    def test_no_hidden_file_is_left_by_a_signal(self):
+        self.results(hazard=False)
+        told = 0
+        for _ in range(8):
+            process = subprocess.Popen([TALUS, "report", self.path("out"), "-q", "--overwrite"])
+            hidden = self.path(f"out/.report.talus-{process.pid}.html")
+            while process.poll() is None and not os.path.exists(hidden):
+                pass
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+                told += 1
+            process.wait(60)
+            self.assertEqual([name for name in os.listdir(self.path("out")) if name.startswith(".")], [])
+        self.assertGreater(told, 0)
+        Page(self.path("out/report.html"))  # whole
+
+    def test_memory_for_a_large_table_of_crossings(self):
+        """The text of the table, and not several times that."""
+        self.results(hazard=False)
+
+        def megabytes():
+            process = subprocess.Popen([TALUS, "report", self.path("out"), "-q", "-o", self.path("p.html"), "--overwrite"])
+            _, process.returncode, used = os.wait4(process.pid, 0)
+            self.assertEqual(process.returncode, 0)
+            return used.ru_maxrss / 1024
+
+        small = megabytes()
+        with open(self.path("out/screens.csv"), "r+", encoding="utf-8") as file:
+            rows = "".join(file.readlines()[1:])
+            file.write(rows * round(40e6 / len(rows)))
+        self.assertLess(megabytes() - small, 2 * 40)
 
     def test_the_same_page_again(self):
         self.results()
@@ -295,6 +352,12 @@ class Files(Report):
             self.run_well("report", self.path("out"), "-o", self.path(name), "-q", env=day)
         with open(self.path("one.html"), "rb") as one, open(self.path("two.html"), "rb") as two:
             self.assertEqual(one.read(), two.read())
+
+    def test_a_day_that_is_none_is_refused(self):
+        self.results(hazard=False)
+        for text in ("abc", "", "-1", "1.5", "253402300800", "1e9"):
+            self.fails(2, f"SOURCE_DATE_EPOCH = '{text}'", "must be a whole number of seconds",
+                       arguments=["report", self.path("out")], env={**os.environ, "SOURCE_DATE_EPOCH": text})
 
     def test_tampered_folders(self):
         self.results()
@@ -393,6 +456,9 @@ class Browser(Report):
 
     def test_click_and_slider(self):
         self.results()
+        with open(self.path("out/hazard_class.qml"), encoding="utf-8") as file:
+            style = file.read()
+        self.write("out/hazard_class.qml", re.sub('<item value="0"[^>]*/>', "", style))  # names go by value, not by place
         page = self.page()
         left, top, columns, rows = self.window(page)
         energy = band_of(self.path("out/energy.tif"), 3, left, top, columns, rows)[0]
@@ -408,7 +474,9 @@ class Browser(Report):
         self.assertEqual(set(values), set(page.maps()))
         self.assertEqual(float(values["Energy, P95"].removesuffix(" kJ")), float(f"{energy[row, column]:.2e}"))
         self.assertEqual(float(values["Impact probability"].removesuffix(" %")), float(f"{100 * float(f'{share:.2e}'):.6g}"))
-        self.assertIn(values["Hazard class"], ("none", "residual", "low", "medium", "high"))
+        here = int(band_of(self.path("out/hazard_class.tif"), 1, left + int(column), top + int(row), 1, 1)[0][0, 0])
+        self.assertGreater(here, 0)
+        self.assertEqual(values["Hazard class"], re.search(f'<item value="{here}" label="([^"]*)"', style).group(1))
         self.assertIn(f"East {float(page.viewer()['data-west']) + 5 * column:.1f}", state["place"])
         self.assertAlmostEqual(float(state["left"]), 1 + float(page.viewer()["data-width"]) / 4, 1)
         self.assertEqual(state["view"], "#map-2")

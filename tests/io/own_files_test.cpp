@@ -37,6 +37,16 @@ TEST_F(OwnFiles, OfARunAreThoseThatItsRecordsList) {
   EXPECT_EQ(foreign()[6], "energy.tif/");
 }
 
+TEST_F(OwnFiles, PagesOfTheReportByWhatTheyHold) {
+  const std::string page = R"(<!doctype html><meta name="generator" content="talus report">)";
+  file("out/run.json", "{}");
+  file("out/report.html", page);
+  file("out/for the canton.html", page);
+  file("out/page.txt", page);
+  file("out/mine.html", "<p>mine</p>");
+  EXPECT_EQ(foreign(), (Names{"mine.html", "page.txt"}));
+}
+
 TEST_F(OwnFiles, OfPartsAndFitsAreKnownByTheirNames) {
   for (const char* name :
        {"part.json", "scenario.toml", ".lock", "tally-1-0.bin", "rows-1-0.bin", "rest-2.bin", "reach-0.bin"})

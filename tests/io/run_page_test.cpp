@@ -78,6 +78,42 @@ TEST_F(MapStyleFile, ClassesOfDiscreteValues) {
   EXPECT_EQ(style->classes[2].colour.blue, 3);
 }
 
+TEST_F(MapStyleFile, OpacityFromNothingToFull) {
+  std::string items;
+  for (const char* alpha : {"-7", "128", "1e300", "inf", "much"})
+    items += std::string("<item value=\"1\" color=\"#000000\" alpha=\"") + alpha + "\"/>";
+  write_text("c.qml", qml("<colorrampshader colorRampType=\"EXACT\">" + items + "</colorrampshader>"));
+  const auto style = read_map_style(path("c.qml"));
+  ASSERT_TRUE(style);
+  std::vector<int> opacities;
+  for (const MapClass& one : style->classes) opacities.push_back(one.colour.opacity);
+  EXPECT_EQ(opacities, (std::vector{0, 128, 255, 255, 255}));
+}
+
+using Tables = test::Files;
+
+TEST_F(Tables, TheObjectsHitMostOftenOfMany) {  // object i of 12345 is hit (7919 i mod 12345) / 12345 times a year
+  std::string table = "object,frequency,frequency_lower,frequency_upper,sources\n";
+  for (int i = 0; i < 12345; ++i)
+    table += std::to_string(i) + "," + std::to_string(i * 7919L % 12345) + "e-5,0,1,cliff\n";
+  write_text("objects.csv", table);
+  const ObjectsPart part = read_objects_part(path(""));
+  ASSERT_EQ(part.objects.size(), 100U);
+  EXPECT_EQ(part.left_out, 12245U);
+  for (int i = 0; i < 100; ++i)
+    EXPECT_DOUBLE_EQ(part.objects[static_cast<std::size_t>(i)].frequency, 0.12344 - 1e-5 * i);
+}
+
+TEST_F(Tables, LargerThanAPageReadsAreLeftOutAndSaid) {
+  write_text("objects.csv", "object,frequency,frequency_lower,frequency_upper,sources\nmill,1,0,2,cliff\n");
+  write_text("objects_curves.csv", "object,energy_kj,frequency\nmill,10,1\n");
+  EXPECT_EQ(read_objects_part(path("")).objects.at(0).curve.size(), 1U);
+  std::filesystem::resize_file(path("objects_curves.csv"), kMostPageTable + 1);  // a hole: takes no room
+  EXPECT_EQ(read_objects_part(path("")).note, "objects_curves.csv has more than 128 MB: the curves are not drawn.");
+  std::filesystem::resize_file(path("objects.csv"), kMostPageTable + 1);
+  EXPECT_THAT(objects_html(read_objects_part(path(""))).text(), HasSubstr("objects are not shown"));
+}
+
 TEST_F(MapStyleFile, NoneOfRampsAndOfTextsThatAreNoStyle) {
   EXPECT_EQ(read_map_style(path("missing.qml")), std::nullopt);
   for (const std::string& text : {std::string(), std::string("<qgis>"), std::string("no style"),
@@ -111,7 +147,7 @@ TEST(Escaping, EveryFieldOfEverySection) {
   ScreensPart screens{{{h, h, h, 1, 1, 1, 1, 1, 1, 2.0, std::vector<double>(30, 1.0)}}, h};
   BarrierPart barrier{h,           h,           5.0, {{h, h, h, 1.0}, {"h_i", "m", h, 2.0}, {"V", "m3", h, 1.0}},
                       {{h, h, h}}, {{0, 9, 1}}, {h}};
-  ObjectsPart objects{{h}, {{h, h, 0.1, 0.1, 0.2, {h}, {{1.0, 0.1}, {2.0, 0.05}}}}, 0};
+  ObjectsPart objects{{h}, {{h, h, 0.1, 0.1, 0.2, {h}, {{1.0, 0.1}, {2.0, 0.05}}}}, 0, h};
   const std::optional<FitPart> fit = FitPart{h, h, "", {{h, h, 1.0, 0.5, 2.0, false}}, {{h, 1.0, 0.5}}, h, {h}};
   for (const Markup& html : {screens_html(screens), barriers_html({barrier}), objects_html(objects), fit_html(fit),
                              checks_html({{Check::Mark::Act, h, h, h}})})
@@ -134,7 +170,7 @@ TEST(Escaping, ValuesOfAttributesOfMaps) {
   const std::string page = (map_store(sheet, run, imprint) + map_viewer(sheet) + map_figures(sheet, imprint)).text();
   EXPECT_THAT(page, Not(HasSubstr("<script")));
   EXPECT_THAT(page, HasSubstr("data-title=\"&lt;script&gt;alert(1)&lt;/script&gt;&amp;amp;&#39;&quot;"));
-  EXPECT_THAT(page, HasSubstr("data-classes=\"&lt;script"));
+  EXPECT_THAT(page, HasSubstr("data-classes=\"[[1.0,&quot;&lt;script"));
   EXPECT_THAT(page, HasSubstr("href=\"&lt;script"));
 }
 

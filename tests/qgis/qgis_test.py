@@ -214,7 +214,7 @@ class ByQgisProcess(Case):
         text = self.call("hazard", f"FOLDER={self.path('out')}", f"OBJECTS={VALLEY}/houses.gpkg", "WIDTH=10")
         self.assertTrue(os.path.exists(self.path("out/hazard_class.tif")))
         self.assertTrue(os.path.exists(self.path("out/objects.gpkg")))
-        self.call("barrier", f"OUT={self.path('out')}", "SCREEN=road")
+        self.call("barrier", f"FOLDER={self.path('out')}", "SCREEN=road")
         self.assertTrue(os.path.exists(self.path("out/barrier_road.csv")))
         if "report" in commands_of_the_program():
             self.call("report", f"FOLDER={self.path('out')}", f"OUT={self.path('page.html')}")

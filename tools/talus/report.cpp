@@ -24,6 +24,7 @@ int report(Options options) {
     throw talus::InputError("-o: '" + options.out + "' must end in .html (the report is a page)");
   talus::io::check_page_name(file, options.overwrite, options.folder);
   const std::string page = talus::io::run_page(options.request);
+  catch_signals();  // from here on: the whole page
   talus::io::write_run_page(file, page);
   if (!options.quiet)
     say("", "the report is in " + fs::absolute(file).lexically_normal().string() + " (" +

@@ -71,9 +71,12 @@ std::set<std::string> own_names(const fs::path& folder) {
   if (fs::exists(folder / "part.json")) own.insert("scenario.toml");
   if (fs::exists(folder / "calibration.json") || fs::exists(folder / "diagnosis.json"))
     own.insert(kFitFiles.begin(), kFitFiles.end());
-  if (fs::exists(folder / "run.json") && is_run_page(folder / "report.html")) own.insert("report.html");
-  for (const auto& entry : fs::directory_iterator(folder)) {  // of `talus barrier`: NAME.json says which
+  const bool has_run = fs::exists(folder / "run.json");
+  for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().stem().string();
+    if (has_run && entry.path().extension() == ".html" && is_run_page(entry.path()))  // whatever `report -o` called it
+      own.insert(entry.path().filename().string());
+    // Of `talus barrier`: NAME.json says which.
     if (!name.starts_with("barrier_") || entry.path().extension() != ".json" || !is_design(entry.path())) continue;
     for (const char* end : {".json", ".csv", "_stretches.csv"}) own.insert(name + end);
   }

@@ -23,8 +23,7 @@ std::string content_of(const std::string& path) {
 }
 
 /// Cuts a text into rows and cells. A cell in quotation marks may hold commas, line ends and doubled marks.
-std::vector<CsvTable::Row> split(const std::string& text, const std::string& path) {
-  std::vector<CsvTable::Row> rows;
+void split(const std::string& text, const std::string& path, const std::function<void(CsvTable::Row)>& take) {
   std::vector<std::string> cells;
   std::string cell;
   int line = 1, start = 1;
@@ -36,7 +35,7 @@ std::vector<CsvTable::Row> split(const std::string& text, const std::string& pat
   };
   const auto end_row = [&] {
     end_cell();
-    if (cells.size() > 1 || !cells[0].empty()) rows.push_back({start, cells});
+    if (cells.size() > 1 || !cells[0].empty()) take({start, cells});
     cells.clear();
   };
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -64,7 +63,6 @@ std::vector<CsvTable::Row> split(const std::string& text, const std::string& pat
   if (quoted)
     throw InputError(path + ":" + std::to_string(start) + ": a quotation mark is open to the end, must be closed");
   if (!cell.empty() || !cells.empty()) end_row();
-  return rows;
 }
 
 }  // namespace
@@ -80,18 +78,29 @@ std::optional<double> number_of_cell(const std::string& text) {
 
 CsvTable::CsvTable(std::string path, const std::vector<std::string>& known, const std::vector<std::string>& required)
     : path_(std::move(path)) {
-  rows_ = split(content_of(path_), path_);
-  read_header(known, required);
-  for (const Row& row : rows_)
+  read(known, required, [this](const CsvTable&, Row& row) { rows_.push_back(std::move(row)); });
+}
+
+CsvTable::CsvTable(std::string path, const std::vector<std::string>& known, const std::vector<std::string>& required,
+                   const Take& take)
+    : path_(std::move(path)) {
+  read(known, required, take);
+}
+
+void CsvTable::read(const std::vector<std::string>& known, const std::vector<std::string>& required, const Take& take) {
+  split(content_of(path_), path_, [&](Row row) {
+    if (columns_.empty()) return read_header(std::move(row.cells), known, required);
     if (row.cells.size() != columns_.size())
       throw InputError(path_ + ":" + std::to_string(row.line) + ": has " + std::to_string(row.cells.size()) +
                        " cells, must have " + std::to_string(columns_.size()) + " as the header");
+    take(*this, row);
+  });
+  if (columns_.empty()) throw InputError(path_ + ": is empty, must have a header with " + joined(required));
 }
 
-void CsvTable::read_header(const std::vector<std::string>& known, const std::vector<std::string>& required) {
-  if (rows_.empty()) throw InputError(path_ + ": is empty, must have a header with " + joined(required));
-  columns_ = rows_.front().cells;
-  rows_.erase(rows_.begin());
+void CsvTable::read_header(std::vector<std::string> columns, const std::vector<std::string>& known,
+                           const std::vector<std::string>& required) {
+  columns_ = std::move(columns);
   for (auto column = columns_.begin(); column != columns_.end(); ++column) {
     if (!known.empty() && std::find(known.begin(), known.end(), *column) == known.end())
       throw InputError(path_ + ":1: unknown column '" + *column + "'" + known_names(*column, known));

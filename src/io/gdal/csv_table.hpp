@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,7 +11,7 @@ namespace talus::io {
 /// A number as a text table holds it: with a point for decimals, blanks around it; nothing for any other text.
 std::optional<double> number_of_cell(const std::string& text);
 
-/// A text table with a header, read whole: commas, quotation marks as in RFC 4180. Every fault names file, line,
+/// A text table with a header: commas, quotation marks as in RFC 4180. Every fault names file, line,
 /// column, value and what is allowed.
 class CsvTable {
  public:
@@ -23,6 +24,12 @@ class CsvTable {
   /// @param required  columns that must be there
   /// Throws InputError if it cannot be read, has no header, or has rows of another length.
   CsvTable(std::string path, const std::vector<std::string>& known, const std::vector<std::string>& required);
+
+  /// What is done with a row of a table.
+  using Take = std::function<void(const CsvTable&, Row&)>;
+  /// Gives each row to `take` and keeps none, for tables that need six times the memory of their text if they are kept.
+  CsvTable(std::string path, const std::vector<std::string>& known, const std::vector<std::string>& required,
+           const Take& take);
 
   const std::vector<Row>& rows() const { return rows_; }
   const std::vector<std::string>& columns() const { return columns_; }
@@ -42,7 +49,9 @@ class CsvTable {
 
  private:
   int column_of(const std::string& name) const;
-  void read_header(const std::vector<std::string>& known, const std::vector<std::string>& required);
+  void read(const std::vector<std::string>& known, const std::vector<std::string>& required, const Take& take);
+  void read_header(std::vector<std::string> columns, const std::vector<std::string>& known,
+                   const std::vector<std::string>& required);
 
   std::string path_;
   std::vector<std::string> columns_;

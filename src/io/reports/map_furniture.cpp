@@ -226,7 +226,7 @@ Markup furniture(const MapSheet& sheet, const RunFacts& run, const MapImprint& i
   const std::string side = with_digits(sheet.pixel_x, 4), cells = std::to_string(sheet.window.side);
   y += 38.0;
   for (const std::string& line :
-       {shortened(imprint.crs, 36), std::string("grid north; coordinates in m"), "run of " + imprint.date,
+       {shortened(imprint.crs, 36), std::string("grid north; coordinates in m"), "run.json of " + imprint.date,
         sheet.window.side == 1 ? "1 pixel = 1 cell of " + side + " m"
                                : "1 pixel = " + cells + " x " + cells + " cells, " + side + " m",
         shortened(imprint.attribution, 36)}) {

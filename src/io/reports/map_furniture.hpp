@@ -12,7 +12,7 @@ inline constexpr double kLowestDrawing = 380.0;                   ///< room for 
 
 /// Words under every map.
 struct MapImprint {
-  std::string crs, date, attribution;
+  std::string crs, date, attribution;  // date: day of run.json
 };
 
 /// The scale of the drawings: places on the map as places in the drawing [px].

@@ -48,8 +48,8 @@ std::optional<Colour> colour_of(const std::string& text, int opacity) {
 
 void add_class(const CPLXMLNode* item, MapStyle& style) {
   const auto limit = number_of(CPLGetXMLValue(item, "value", ""));
-  const auto colour = colour_of(CPLGetXMLValue(item, "color", ""),
-                                static_cast<int>(number_of(CPLGetXMLValue(item, "alpha", "255")).value_or(255.0)));
+  const double opacity = std::clamp(number_of(CPLGetXMLValue(item, "alpha", "255")).value_or(255.0), 0.0, 255.0);
+  const auto colour = colour_of(CPLGetXMLValue(item, "color", ""), static_cast<int>(opacity));
   if (limit && colour && style.classes.size() < kMostClasses)
     style.classes.push_back({*limit, shortened(CPLGetXMLValue(item, "label", ""), kMostLabel), *colour});
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "talus/base/text.hpp"
+#include "talus/io/results/run_record.hpp"
 #include "talus/physics/effects/registry.hpp"
 #include "talus/products/interval.hpp"
 
@@ -12,9 +13,6 @@ namespace {
 
 using Mark = Check::Mark;
 using Checks = std::vector<Check>;
-
-// Shares from which `talus run` warns: README, "Before you sign".
-constexpr double kMostLeft = 0.01, kMostTrapped = 0.03;
 
 std::string percent_of(double count, double all) {
   return with_digits(all > 0.0 ? 100.0 * count / all : 0.0, 3) + " %";
@@ -58,14 +56,14 @@ void check_ends(const RunFacts& run, Checks& checks) {
     return grouped(run.end(end)) + " of " + grouped(run.released) + " blocks (" +
            percent_of(run.end(end), run.released) + ")";
   };
-  checks.push_back({share("left") > kMostLeft ? Mark::Act
-                    : run.end("left") > 0.0   ? Mark::Look
-                                              : Mark::Fine,
+  checks.push_back({share("left") > kWarnedLeftShare ? Mark::Act
+                    : run.end("left") > 0.0          ? Mark::Look
+                                                     : Mark::Fine,
                     "Blocks that leave the DEM", found("left"),
                     "The maps do not show how far they would go. Above 1 %: take a larger DEM."});
-  checks.push_back({share("trapped") > kMostTrapped ? Mark::Act
-                    : run.end("trapped") > 0.0      ? Mark::Look
-                                                    : Mark::Fine,
+  checks.push_back({share("trapped") > kWarnedTrappedShare ? Mark::Act
+                    : run.end("trapped") > 0.0             ? Mark::Look
+                                                           : Mark::Fine,
                     "Blocks that are trapped", found("trapped"),
                     "Held in pits or between walls on ground too steep to rest on. Above 3 %: look at the DEM there."});
   checks.push_back({run.end("limit") > 0.0 ? Mark::Look : Mark::Fine, "Blocks cut short by a limit", found("limit"),

@@ -8,6 +8,7 @@
 
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
+#include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/gdal/crs.hpp"
 
@@ -21,20 +22,9 @@ std::string text_of_value(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// A word as a shell takes it.
-std::string quoted(const std::string& word) {
-  const bool plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
-    return std::isalnum(c) != 0 || c > 127 || std::string_view("/._-+=:,@%").find(static_cast<char>(c)) < 100;
-  });
-  if (plain) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 std::string command_of(const Json& json) {
   std::string text;
-  for (const std::string& word : texts_of(json, "command")) text += (text.empty() ? "" : " ") + quoted(word);
+  for (const std::string& word : texts_of(json, "command")) text += (text.empty() ? "" : " ") + shell_word(word);
   return text;
 }
 
@@ -130,6 +120,11 @@ std::vector<const RecordedSetting*> RunFacts::settings_of(const std::string& beg
   return found;
 }
 
+std::string too_large_for_page(const std::filesystem::path& table) {
+  if (std::filesystem::file_size(table) <= kMostPageTable) return "";
+  return table.filename().string() + " has more than " + std::to_string(kMostPageTable >> 20U) + " MB";
+}
+
 void throw_not_understood(const std::filesystem::path& file, const std::string& cause) {
   throw InputError(file.string() + ": cannot be understood (" + cause +
                    "), must be as talus has written it; run that command again");
@@ -141,7 +136,7 @@ RunFacts read_facts(const std::filesystem::path& folder) {
   if (!std::filesystem::exists(file, none))
     throw InputError(folder.string() + ": is no folder of results (it has no run.json); give the OUT of talus run");
   RunFacts run = understood(file, facts_of);
-  run.finished = day_of(file);
+  run.written = day_of(file);
   return run;
 }
 

@@ -30,7 +30,7 @@ struct RecordedGrid {
 /// run.json.
 struct RunFacts {
   std::string version, command, status, plan;
-  std::string finished;  ///< day of the record, "2026-11-23"
+  std::string written;  ///< day of the file run.json, "2026-11-23": a copy may have a later one
   double released = 0.0, source_cells = 0.0, per_source = 0.0, rounds = 0.0, impacts = 0.0, kilometres = 0.0;
   double touched_cells = 0.0;
   std::vector<std::pair<std::string, double>> ends;  ///< in the order of the record
@@ -63,6 +63,12 @@ std::optional<HazardFacts> read_hazard_facts(const std::filesystem::path& folder
 
 /// Day on which a file was written last (UTC): "2026-11-23"; empty if it is not known.
 std::string day_of(const std::filesystem::path& file);
+
+/// Largest table that is read for a page [byte].
+inline constexpr std::uintmax_t kMostPageTable = std::uintmax_t{128} << 20U;
+
+/// "NAME has more than 128 MB" for a table above `kMostPageTable`; empty else.
+std::string too_large_for_page(const std::filesystem::path& table);
 
 /// Throws InputError "FILE: cannot be understood (CAUSE), ...".
 [[noreturn]] void throw_not_understood(const std::filesystem::path& file, const std::string& cause);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "io/files/json.hpp"
 #include "svg.hpp"
 #include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
@@ -21,15 +22,22 @@ Markup picture(const std::string& id, const std::string& address, const MapScale
   return image + "/>\n";
 }
 
+/// Values and names of the classes of a map, as the script reads them: [[2,"low"],[3,"medium"]].
+std::string named_classes(const MapStyle& style) {
+  constexpr double kMost = 1e300;  // JSON has no infinity
+  Json pairs = Json::array();
+  for (const MapClass& one : style.classes)
+    pairs.push_back(Json::array({std::clamp(one.limit, -kMost, kMost), one.label}));
+  return pairs.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 /// What the page's script knows of a map.
 Markup data_of(const ReportMap& map) {
   Markup data;
   set_attribute(data, "data-title", map.title);
   set_attribute(data, "data-unit", map.unit);
   if (map.classes_only) {
-    std::string labels;
-    for (const MapClass& one : map.style.classes) labels += (labels.empty() ? "" : "\n") + one.label;
-    set_attribute(data, "data-classes", labels);
+    set_attribute(data, "data-classes", named_classes(map.style));
   }
   set_attribute(data, "data-values", map.values);
   return data;

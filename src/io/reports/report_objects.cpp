@@ -33,14 +33,19 @@ void read_thresholds(const CsvTable& table, ObjectsPart& part) {
 void read_curves(const fs::path& file, ObjectsPart& part) {
   std::error_code none;
   if (!fs::exists(file, none)) return;
-  const CsvTable table(file.string(), {"object", "energy_kj", "frequency", "lower", "upper", "return_period"},
-                       {"object", "energy_kj", "frequency"});
-  for (const CsvTable::Row& row : table.rows())
+  if (const std::string fault = too_large_for_page(file); !fault.empty()) {
+    part.note = fault + ": the curves are not drawn.";
+    return;
+  }
+  const auto add_point = [&part](const CsvTable& table, const CsvTable::Row& row) {
     for (ObjectsPart::Object& object : part.objects) {
       if (object.name != table.text(row, "object")) continue;
       const auto energy = table.number(row, "energy_kj", kAny), frequency = table.number(row, "frequency", kAny);
       if (energy && frequency && *energy > 0.0 && *frequency > 0.0) object.curve.push_back({*energy, *frequency});
     }
+  };
+  CsvTable(file.string(), {"object", "energy_kj", "frequency", "lower", "upper", "return_period"},
+           {"object", "energy_kj", "frequency"}, add_point);
 }
 
 double place_of(double value, double low, double high, double from, double length) {
@@ -115,6 +120,30 @@ Markup object_row(const ObjectsPart::Object& object) {
   return row + "<td>" + shortened(object.sources, 300) + "</td></tr>\n";
 }
 
+ObjectsPart::Object object_of(const CsvTable& table, const CsvTable::Row& row, const ObjectsPart& part) {
+  const auto number = [&](const char* column) { return table.number(row, column, kAny).value_or(0.0); };
+  ObjectsPart::Object object{table.text(row, "object"),
+                             table.text(row, "sources"),
+                             number("frequency"),
+                             number("frequency_lower"),
+                             number("frequency_upper"),
+                             {},
+                             {}};
+  for (const std::string& energy : part.thresholds) {
+    const auto years = table.number(row, kYears + energy, kAny);
+    object.years.push_back(years ? readable(*years) : "");
+  }
+  return object;
+}
+
+/// Leaves the objects that are hit most often, those first; of equal ones the first of the table.
+void keep_most_hit(ObjectsPart& part) {
+  std::ranges::stable_sort(part.objects, std::ranges::greater{}, &ObjectsPart::Object::frequency);
+  if (part.objects.size() <= kMostObjects) return;
+  part.left_out += part.objects.size() - kMostObjects;
+  part.objects.resize(kMostObjects);
+}
+
 }  // namespace
 
 ObjectsPart read_objects_part(const fs::path& folder) {
@@ -122,34 +151,24 @@ ObjectsPart read_objects_part(const fs::path& folder) {
   const fs::path file = folder / "objects.csv";
   std::error_code none;
   if (!fs::exists(file, none)) return part;
-  const CsvTable table(file.string(), {}, {"object", "frequency", "frequency_lower", "frequency_upper", "sources"});
-  read_thresholds(table, part);
-  for (const CsvTable::Row& row : table.rows()) {
-    const auto number = [&](const char* column) { return table.number(row, column, kAny).value_or(0.0); };
-    ObjectsPart::Object object{table.text(row, "object"),
-                               table.text(row, "sources"),
-                               number("frequency"),
-                               number("frequency_lower"),
-                               number("frequency_upper"),
-                               {},
-                               {}};
-    for (const std::string& energy : part.thresholds) {
-      const auto years = table.number(row, kYears + energy, kAny);
-      object.years.push_back(years ? readable(*years) : "");
-    }
-    part.objects.push_back(std::move(object));
+  if (const std::string fault = too_large_for_page(file); !fault.empty()) {
+    part.note = fault + ": its objects are not shown.";
+    return part;
   }
-  std::ranges::stable_sort(part.objects, std::ranges::greater{}, &ObjectsPart::Object::frequency);
-  if (part.objects.size() > kMostObjects) {
-    part.left_out = part.objects.size() - kMostObjects;
-    part.objects.resize(kMostObjects);
-  }
+  const auto add_object = [&part](const CsvTable& table, const CsvTable::Row& row) {
+    if (part.objects.empty()) read_thresholds(table, part);  // at the first row
+    part.objects.push_back(object_of(table, row, part));
+    if (part.objects.size() == 10 * kMostObjects) keep_most_hit(part);  // a table of any length needs little memory
+  };
+  CsvTable(file.string(), {}, {"object", "frequency", "frequency_lower", "frequency_upper", "sources"}, add_object);
+  keep_most_hit(part);
   read_curves(folder / "objects_curves.csv", part);
   return part;
 }
 
 Markup objects_html(const ObjectsPart& part) {
-  if (part.objects.empty()) return {};
+  const Markup note = part.note.empty() ? Markup() : "<p class='note'>"_html + part.note + "</p>\n";
+  if (part.objects.empty()) return part.note.empty() ? Markup() : "<h2>Objects</h2>\n"_html + note;
   Markup html =
       "<h2>Objects</h2>\n<p>How often each object is hit, with 95 % bounds of the number of blocks. \"Never seen\": no "
       "block of "
@@ -162,6 +181,7 @@ Markup objects_html(const ObjectsPart& part) {
   if (part.left_out > 0)
     html +=
         "<p class='note'>"_html + std::to_string(part.left_out) + " more, hit less often, are in objects.csv.</p>\n";
+  html += note;
   const Markup curves = curves_drawing(part);
   if (curves.empty()) return html;
   return html + "<figure>" + curves +

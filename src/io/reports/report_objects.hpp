@@ -21,6 +21,7 @@ struct ObjectsPart {
   std::vector<std::string> thresholds;  ///< [kJ]
   std::vector<Object> objects;          ///< the most often hit first
   std::size_t left_out = 0;
+  std::string note;
 };
 
 /// Throws InputError if a table is there and cannot be understood. No objects without tables.

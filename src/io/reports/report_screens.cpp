@@ -16,7 +16,6 @@ namespace fs = std::filesystem;
 
 constexpr Bounds kAny{"value", "1", "of a quantity", -1e15, 1e15};
 constexpr std::size_t kBins = 30, kMostScreens = 30;
-constexpr std::uintmax_t kMostCrossings = std::uintmax_t{128} << 20U;  // larger tables are not read for a drawing
 
 /// A quantity of the summary, and its column in screens.csv.
 struct Quantity {
@@ -28,13 +27,11 @@ constexpr std::array<Quantity, 3> kQuantities{
 void count_crossings(const fs::path& file, ScreensPart& part) {
   std::error_code none;
   if (!fs::exists(file, none)) return;
-  if (fs::file_size(file, none) > kMostCrossings) {
-    part.note = "screens.csv has more than " + std::to_string(kMostCrossings >> 20U) +
-                " MB: the figures are those of screens_summary.csv, without drawings.";
+  if (const std::string fault = too_large_for_page(file); !fault.empty()) {
+    part.note = fault + ": the figures are those of screens_summary.csv, without drawings.";
     return;
   }
-  const CsvTable table(file.string(), {}, {"screen", "speed_ms", "energy_kj", "jump_height_m"});
-  for (const CsvTable::Row& line : table.rows())
+  const auto count = [&part](const CsvTable& table, const CsvTable::Row& line) {
     for (ScreensPart::Row& row : part.rows) {
       if (table.text(line, "screen") != row.screen || !(row.maximum > 0.0)) continue;
       const auto quantity = std::ranges::find(kQuantities, row.quantity, &Quantity::name);
@@ -44,6 +41,8 @@ void count_crossings(const fs::path& file, ScreensPart& part) {
       const double place = std::clamp(*value / row.maximum * kBins, 0.0, kBins - 1.0);
       ++row.counts[static_cast<std::size_t>(place)];
     }
+  };
+  CsvTable(file.string(), {}, {"screen", "speed_ms", "energy_kj", "jump_height_m"}, count);
 }
 
 /// Bars of the crossings by value, with lines at P50 and P95.

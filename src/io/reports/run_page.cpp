@@ -1,6 +1,7 @@
 #include "talus/io/reports/run_page.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <ctime>
 
 #include "io/files/own_files.hpp"
@@ -88,7 +89,7 @@ Markup run_html(const RunReport& report, const std::string& attribution) {
                              (run.rounds > 0.0 ? ", in " + grouped(run.rounds) + " rounds" : std::string());
   return "<h2>What was run</h2>\n<table>\n"_html + line("program", "talus " + run.version) +
          line("command", run.command) + line("hazard", report.hazard ? report.hazard->command : "") +
-         line("day of the run", run.finished) + line("status", run.status) + line("released", blocks) +
+         line("run.json written on", run.written) + line("status", run.status) + line("released", blocks) +
          line("how they ended", ends_text(run)) +
          line("paths", grouped(run.kilometres) + " km, " + grouped(run.impacts) + " impacts, " +
                            grouped(run.touched_cells) + " cells touched") +
@@ -139,11 +140,24 @@ Markup maps_html(const RunReport& report, const MapImprint& imprint) {
   return html + map_store(sheet, report.run, imprint) + map_viewer(sheet) + map_figures(sheet, imprint);
 }
 
-/// Today (UTC), or the day that the environment states for repeatable builds.
-std::string today() {
+/// The time that the environment states for repeatable builds, else the present [s since 1970, UTC].
+std::time_t time_of_page() {
+  constexpr std::int64_t kMost = 253'402'300'799;  // the end of the year 9999
   const char* const given = std::getenv("SOURCE_DATE_EPOCH");
-  const std::time_t now =
-      given != nullptr ? static_cast<std::time_t>(std::strtoll(given, nullptr, 10)) : std::time(nullptr);
+  if (given == nullptr) return std::time(nullptr);
+  const std::string_view text = given;
+  std::int64_t seconds = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+  if (error != std::errc{} || end != text.data() + text.size() || seconds < 0 || seconds > kMost)
+    throw InputError("SOURCE_DATE_EPOCH = '" + std::string(text) +
+                     "' in the environment: must be a whole number of seconds since 1970, from 0 to " +
+                     std::to_string(kMost) + "; unset it for the date of today");
+  return static_cast<std::time_t>(seconds);
+}
+
+/// The day of the page (UTC).
+std::string today() {
+  const std::time_t now = time_of_page();
   std::tm parts{};
   std::array<char, 16> text{};
   if (gmtime_r(&now, &parts) == nullptr) return "";
@@ -155,12 +169,13 @@ std::string today() {
 std::string run_page(const RunPageRequest& request) {
   const RunReport report = read_report(request.folder);
   const std::string attribution = request.attribution.empty() ? report.sheet.copyright : request.attribution;
-  const MapImprint imprint{report.run.grid.crs, report.run.finished, attribution};
+  const MapImprint imprint{report.run.grid.crs, report.run.written, attribution};
   const fs::path folder = fs::absolute(request.folder).lexically_normal();
   const std::string name = (folder.has_filename() ? folder : folder.parent_path()).filename().string();
-  const PageFrame frame{"report", request.title.empty() ? "Rock fall: " + name : request.title,
-                        "page of " + today() + " of the run of " + report.run.finished + ", plan " + report.run.plan,
-                        report.sheet.maps.empty() ? Markup() : run_page_script()};
+  const PageFrame frame{
+      "report", request.title.empty() ? "Rock fall: " + name : request.title,
+      "page of " + today() + ", run.json written on " + report.run.written + ", plan " + report.run.plan,
+      report.sheet.maps.empty() ? Markup() : run_page_script()};
   const Markup body = run_html(report, attribution) + maps_html(report, imprint) + screens_html(report.screens) +
                       barriers_html(report.barriers) + objects_html(report.objects) + fit_html(report.fit) +
                       assumptions_html(report.checked()) + checks_html(checks_of(report.checked())) +

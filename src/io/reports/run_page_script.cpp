@@ -29,7 +29,10 @@ function textOf(code, map) {
   const share = map.dataset.unit === '1', n = code - 2;
   const digits = n % 900 + 100, exponent = Math.floor(n / 900) - 32 + (share ? 2 : 0);
   const value = code === 1 ? 0 : Number(digits + 'e' + exponent);
-  if (map.dataset.classes !== undefined) return map.dataset.classes.split('\n')[value] || String(value);
+  if (map.dataset.classes !== undefined) {
+    const named = JSON.parse(map.dataset.classes).find(one => one[0] === value);
+    return named && named[1] || String(value);
+  }
   const unit = map.dataset.unit === 'count' ? '' : share ? '%' : map.dataset.unit;
   return value + (unit ? ' ' + unit : '');
 }

@@ -55,7 +55,7 @@ ALGORITHMS = [
      "shapes": {"objects": [QgsProcessing.TypeVectorLine, QgsProcessing.TypeVectorPolygon]},
      "rasters": ["hazard_class", "annual_frequency"], "vectors": ["objects"],
      "files": {"table": "objects.csv", "curves": "objects_curves.csv"}, "record": "hazard.json"},
-    {"id": "barrier", "command": "barrier", "order": ["out", "screen"], "is folder": {"out"},
+    {"id": "barrier", "command": "barrier", "order": ["folder", "screen"], "is folder": {"folder"},
      "advanced": {"observed", "frequency", "percentile", "containment", "stretch", "unweighted"}, "phases": []},
     {"id": "profile", "command": "profile", "phases": ["simulate", "write"],
      "files": {"record": "run.json", "picture": "profile.svg"}, "folder": "out", "nothing to load": True},
