@@ -425,7 +425,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         return found
 
     def _barrier_results(self, parameters, context):
-        folder = self.parameterAsFile(parameters, "OUT", context)
+        folder = self.parameterAsFile(parameters, "FOLDER", context)
         written = [os.path.join(folder, name) for name in os.listdir(folder)
                    if name.startswith("barrier_") and name.endswith(".csv") and not name.endswith("_stretches.csv")]
         return {"TABLE": max(written, key=os.path.getmtime)} if written else {}
