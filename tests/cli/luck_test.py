@@ -7,7 +7,7 @@ import unittest
 
 from support import NORTH, WEST, Case
 
-FAST = ("--trials", "10", "-q")
+FAST = ("-q",)
 
 
 class Luck(Case):
@@ -114,7 +114,7 @@ class Luck(Case):
         return record
 
     def test_calibrate(self):
-        options = ("--fit", "En50,theta_scale", "--starts", "1")
+        options = ("--fit", "En50,theta_scale", "--starts", "1", "--trials", "20")
         first = self.record("calibrate", self.path("campaign.toml"), "first", *options, "--threads", "1")
         self.assertEqual(self.record("calibrate", self.shuffled(self.own()), "shuffled-out", *options, "--threads", "2"), first)
         other = self.record("calibrate", self.with_other_holdout(), "other-out", *options)
@@ -123,7 +123,7 @@ class Luck(Case):
 
     def test_diagnose(self):
         """One round with few trials: the verdict, every candidate and every fitted number."""
-        options = ("--fit", "En50", "--test-trials", "10", "--most-effects", "1", "--base-fits", "1")
+        options = ("--fit", "En50", "--trials", "10", "--test-trials", "10", "--most-effects", "1", "--base-fits", "1")
         first = self.record("diagnose", self.path("campaign.toml"), "first", *options, "--threads", "1")
         self.assertGreater(len(first["candidates"]), 8)
         other = self.record("diagnose", self.shuffled(self.other_holdout()), "other-out", *options, "--threads", "2")

@@ -270,7 +270,8 @@ int design(const Options& o) {
 void add_barrier(CLI::App& app, Action& action) {
   const auto o = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("barrier", "Design values of a barrier at a screen of a run");
-  with(command->add_option("folder", o->folder, "folder of results that talus run has written, with screens")->required(),
+  with(command->add_option("folder", o->folder, "folder of results that talus run has written, with screens")
+           ->required(),
        folder_of_results());
   command->add_option("--screen", o->screen, "id of the line at which the barrier stands")->required();
   with(command->add_option(

@@ -28,8 +28,8 @@ void require_releases(const std::string& path, const talus::Campaign& campaign) 
                             "compare models that you name");
 }
 
-void CampaignCommand::add_to(CLI::App& command, std::uint32_t& trials, std::vector<std::string>& keys,
-                             std::uint64_t& seed, int& threads) {
+void CampaignCommand::add_to(CLI::App& command, std::uint32_t& trials, int fewest_trials,
+                             std::vector<std::string>& keys, std::uint64_t& seed, int& threads) {
   with(command.add_option("campaign", campaigns, "measured data: campaign.toml; several: docs/several-campaigns.md")
            ->required(),
        file_of({"toml"}));
@@ -40,7 +40,7 @@ void CampaignCommand::add_to(CLI::App& command, std::uint32_t& trials, std::vect
   command.add_option("--fit", keys, "parameters, in every zone: theta_scale,psi_scale,En50,Et50,phi")->delimiter(',');
   with(
       command.add_option("--trials", trials, "trajectories per block in the searches (" + std::to_string(trials) + ")")
-          ->check(CLI::Range(kFewestSearchTrials, 10000)),
+          ->check(CLI::Range(fewest_trials, 10000)),
       default_of(trials));
   with(command.add_option("--seed", seed, "of the random numbers (1)")->check(seed_number()), scalar_of("seed"));
   command.add_option("--threads", threads, "all processors where it is not given; the results are the same")

@@ -13,8 +13,8 @@ struct CampaignCommand {
   bool overwrite = false, quiet = false;
 
   /// Adds the options, those of a search among them.
-  void add_to(CLI::App& command, std::uint32_t& trials, std::vector<std::string>& keys, std::uint64_t& seed,
-              int& threads);
+  void add_to(CLI::App& command, std::uint32_t& trials, int fewest_trials, std::vector<std::string>& keys,
+              std::uint64_t& seed, int& threads);
 };
 
 /// Trials per block below which a search can hide a block behind the climatology: a block that rarely stops is not

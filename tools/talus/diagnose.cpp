@@ -141,9 +141,9 @@ void add_diagnose(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("diagnose", "Find what a fitted model leaves of measured data, and which effect explains it");
   talus::DiagnoseOptions& how = options->how;
-  options->add_to(*command, how.trials.search, how.keys, how.seed, how.threads);
+  options->add_to(*command, how.trials.search, 10, how.keys, how.seed, how.threads);
   with(command->add_option("--test-trials", how.trials.test, "trajectories per block in the tests (100)")
-           ->check(CLI::Range(20, 10000)),
+           ->check(CLI::Range(10, 10000)),
        default_of(how.trials.test));
   with(command->add_option("--most-effects", how.most_effects, "that are added, one a round (3)")
            ->check(CLI::Range(1, 9)),

@@ -86,7 +86,7 @@ class Instrument {
 
   void passages(const Errors& errors, std::uint32_t trial, BlockRuns& runs) const {
     for (const Crossing& crossing : crossings_) {
-      const Bias bias = bias_of(crossing.screen);
+      const Bias bias = bias_of(instrument_of_screen(crossing.screen));
       BlockRuns::AtScreen& screen = runs.screens[crossing.screen];
       if (!std::isnan(screen.speed[trial])) continue;  // only the first crossing counts
       const auto error = errors.of_screen(screen_streams_[crossing.screen]);
@@ -126,7 +126,7 @@ class Instrument {
   void record(const Errors& errors, std::size_t sample, const Motion& motion, BlockRuns::AtSample& out,
               std::uint32_t trial) const {
     const auto error = errors.of_sample(sample);
-    const Bias bias = bias_of(campaign_.screens.size());
+    const Bias bias = bias_of(kSampler);
     out.speed[trial] = motion.velocity.norm() * (1.0 + bias.speed) * (1.0 + campaign_.error.speed_fraction * error[0]);
     out.spin[trial] =
         motion.spin.norm() * (1.0 + bias.spin) * (1.0 + campaign_.error.angular_velocity_fraction * error[1]);
@@ -141,7 +141,9 @@ class Instrument {
       if (hit_[zone]) std::atomic_ref(runs.zone_hits[zone]).fetch_add(1, std::memory_order_relaxed);
   }
 
-  Bias bias_of(std::size_t instrument) const { return model_.bias.empty() ? Bias{} : model_.bias[instrument]; }
+  Bias bias_of(std::size_t instrument) const {
+    return instrument < model_.bias.size() ? model_.bias[instrument] : Bias{};
+  }
 
   const Campaign& campaign_;
   const Model& model_;

@@ -308,7 +308,7 @@ class DiagnosisLoop {
 TrialsPerBlock raised_for_few_blocks(TrialsPerBlock trials, std::size_t blocks, const DiagnosisRules& rules) {
   const double more = std::clamp(rules.many_blocks / static_cast<double>(blocks), 1.0, rules.most_of_one);
   for (std::uint32_t* count : {&trials.search, &trials.test, &trials.compare})
-    *count = static_cast<std::uint32_t>(std::lround(more * *count));
+    *count = std::max(rules.fewest_of_one, static_cast<std::uint32_t>(std::lround(more * *count)));
   return trials;
 }
 

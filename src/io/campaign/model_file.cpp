@@ -58,13 +58,16 @@ std::string barriers_text(const Model& model, const Campaign& campaign) {
 /// [[instrument_bias]] of a model: `talus score` uses it, a scenario warns that it does not.
 std::string bias_text(const Model& model, const Campaign& campaign) {
   std::string text;
-  for (std::size_t i = 0; i < model.bias.size(); ++i) {
-    const Bias& b = model.bias[i];
-    if (b.speed == 0.0 && b.jump == 0.0 && b.spin == 0.0) continue;
-    text += "\n[[instrument_bias]]  # read too high, as a share of the value\n";
-    if (i < campaign.screens.size()) text += "screen = " + toml_text(campaign.screens[i].id) + "\n";
+  const auto add = [&](std::size_t instrument, const std::string& screen) {
+    if (instrument >= model.bias.size()) return;
+    const Bias& b = model.bias[instrument];
+    if (b.speed == 0.0 && b.jump == 0.0 && b.spin == 0.0) return;
+    text += "\n[[instrument_bias]]  # read too high, as a share of the value\n" + screen;
     text += "speed = " + text_of(b.speed) + "\njump = " + text_of(b.jump) + "\nspin = " + text_of(b.spin) + "\n";
-  }
+  };
+  for (std::size_t s = 0; s < campaign.screens.size(); ++s)
+    add(instrument_of_screen(s), "screen = " + toml_text(campaign.screens[s].id) + "\n");
+  add(kSampler, "");
   return text;
 }
 
@@ -100,12 +103,12 @@ void check_places(const std::string& name, const EffectSpec& effect, const Campa
       faults.push_back(unknown + known_names(zone, campaign.zone_names));
 }
 
-/// Index of the instrument of a bias: a screen, or the samples, which come after the screens.
+/// Number of the instrument of a bias: a screen, or the samples.
 std::size_t instrument_of(const InstrumentBias& bias, const Campaign& campaign) {
-  if (bias.screen.empty()) return campaign.screens.size();
+  if (bias.screen.empty()) return kSampler;
   std::vector<std::string> known;
   for (std::size_t i = 0; i < campaign.screens.size(); ++i) {
-    if (campaign.screens[i].id == bias.screen) return i;
+    if (campaign.screens[i].id == bias.screen) return instrument_of_screen(i);
     known.push_back(campaign.screens[i].id);
   }
   throw InputError(bias.where + " screen = '" + bias.screen + "': the campaign has no such screen" +
@@ -145,7 +148,7 @@ Model read_model(const std::string& path, const Campaign& campaign, std::vector<
   }
   for (const BarrierLine& line : spec.barrier_lines)
     model.barriers.push_back(barrier_of(line, campaign.surface.grid()));
-  if (!spec.instrument_bias.empty()) model.bias.resize(campaign.screens.size() + 1);
+  if (!spec.instrument_bias.empty()) model.bias.resize(instrument_of_screen(campaign.screens.size()));
   for (const InstrumentBias& bias : spec.instrument_bias)
     model.bias[instrument_of(bias, campaign)] = {bias.speed, bias.jump, bias.spin};
   return model;

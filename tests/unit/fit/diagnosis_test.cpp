@@ -6,6 +6,7 @@
 
 #include "support/scenes.hpp"
 #include "talus/fit/diagnose/candidates.hpp"
+#include "talus/fit/diagnose/detection_limits.hpp"
 #include "talus/fit/diagnose/projection.hpp"
 #include "talus/fit/diagnose/residual_table.hpp"
 #include "talus/fit/diagnose/score_test.hpp"
@@ -147,6 +148,37 @@ TEST(Candidates, OffChangesNoBit) {
   }
 }
 
+/// A model whose samples are read 20 % too low, a campaign with a further screen: the samples keep their error, and the
+/// screen has none.
+TEST(FurtherScreens, HaveNoBiasAndTheSamplesKeepTheirs) {
+  Campaign campaign = slope_campaign(6);
+  campaign.error = {};
+  for (MeasuredBlock& block : campaign.blocks) block.samples = {{.x = block.x, .y = block.y - 20.0, .distance = 20.0}};
+  const Model plain = model_of_preset(campaign, "upper-talus-3d");
+  Model biased = plain;
+  biased.bias.resize(1);
+  biased.bias[kSampler].speed = -0.2;
+  const Campaign more = with_further_screens(campaign, {{60.0, 190.0}, {0.0, -1.0}, 0.0, 150.0});
+  const auto without = observe(more, plain, {20, 1, 0, 1, {}, {}}), with = observe(more, biased, {20, 1, 0, 1, {}, {}});
+  double seen = 0.0, crossed = 0.0;
+  for (std::size_t b = 0; b < with.size(); ++b)
+    for (std::size_t t = 0; t < 20; ++t) {
+      const double sample = with[b].samples[0].speed[t];
+      if (!std::isnan(sample)) {
+        EXPECT_NEAR(sample, 0.8 * without[b].samples[0].speed[t], 1e-12);
+        seen += 1.0;
+      }
+      for (std::size_t s = 0; s < more.screens.size(); ++s) {
+        const double speed = with[b].screens[s].speed[t];
+        if (std::isnan(speed)) continue;
+        EXPECT_EQ(speed, without[b].screens[s].speed[t]);
+        crossed += 1.0;
+      }
+    }
+  EXPECT_GT(seen, 20.0);
+  EXPECT_GT(crossed, 20.0);
+}
+
 TEST(Candidates, ABarrierAboveEveryJumpLetsNothingPassAndABiasMultiplies) {
   Campaign c = slope_campaign(6);
   c.error = {};
@@ -156,7 +188,7 @@ TEST(Candidates, ABarrierAboveEveryJumpLetsNothingPassAndABiasMultiplies) {
   walled.barriers.push_back({"wall", {{{0.0, 100.0}, {120.0, 100.0}}}, 1e9, std::numeric_limits<double>::infinity()});
   Model high = model;
   high.bias.assign(2, Bias{});
-  high.bias[0].speed = 0.25;
+  high.bias[instrument_of_screen(0)].speed = 0.25;
   const auto caught = observe(c, walled, {20, 1, 0, 0, {}, {}}), read = observe(c, high, {20, 1, 0, 0, {}, {}});
   for (std::size_t b = 0; b < runs.size(); ++b)
     for (std::size_t t = 0; t < 20; ++t) {

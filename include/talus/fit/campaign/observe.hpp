@@ -12,6 +12,12 @@ struct Bias {
   double speed = 0.0, jump = 0.0, spin = 0.0;
 };
 
+/// Numbers of the instruments of a campaign, in Model::bias.
+inline constexpr std::size_t kSampler = 0;  ///< that of the samples
+constexpr std::size_t instrument_of_screen(std::size_t screen) {
+  return 1 + screen;
+}
+
 /// A model of a campaign: the ground of each zone, the impact law and the effects. It may also have zones, barriers and
 /// errors of instruments that the campaign's files do not mention.
 struct Model {
@@ -20,7 +26,7 @@ struct Model {
   Effects effects;
   Raster<std::uint8_t> zones;     ///< instead of the campaign's; empty: the campaign's
   std::vector<Barrier> barriers;  ///< undeclared ones; they act as those of a run
-  std::vector<Bias> bias;         ///< by screen, then that of the samples; empty: none
+  std::vector<Bias> bias;         ///< by instrument; those beyond its end have none
 };
 
 /// A model with the same ground in all zones of a campaign: the preset of this name, no effect.

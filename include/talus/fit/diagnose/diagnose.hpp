@@ -4,7 +4,8 @@
 namespace talus {
 
 /// Raises the trials per block of a small campaign, so that it has as many in all as one of `rules.many_blocks`. The
-/// noise of a mean over all blocks is then the same. At most `rules.most_of_one` times as many per block.
+/// noise of a mean over all blocks is then the same. At most `rules.most_of_one` times as many per block, and at least
+/// `rules.fewest_of_one`.
 ///
 /// @param blocks  number of fitting blocks
 TrialsPerBlock raised_for_few_blocks(TrialsPerBlock trials, std::size_t blocks, const DiagnosisRules& rules = {});

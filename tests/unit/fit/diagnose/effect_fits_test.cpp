@@ -19,6 +19,7 @@ TEST(Trials, AreSharedOutAmongFewBlocks) {
   EXPECT_EQ(third.test, 300U);
   EXPECT_EQ(third.compare, 600U);
   EXPECT_EQ(raised_for_few_blocks({24, 100, 200}, 5).search, 96U) << "four times at most";
+  EXPECT_EQ(raised_for_few_blocks({10, 100, 200}, 144).search, 20U) << "never fewer than a score needs";
 }
 
 TEST(EffectFits, ALongerFitIsTakenWhereItIsBetterAndTeachesWhereItIsNot) {
