@@ -29,9 +29,9 @@ std::size_t memory_limit_of(const std::string& text, int threads) {
 
 std::unique_ptr<ScratchFile> scratch_file_beside(const std::filesystem::path& results, std::size_t bytes) {
   if (bytes == 0) return nullptr;
-  const std::filesystem::path parent = io::full_name(results).parent_path();
-  if (!std::filesystem::is_directory(parent))
-    throw InputError(parent.string() + ": there is no such folder for the results to go into; create it first");
+  std::filesystem::path parent = io::full_name(results).parent_path();
+  while (!std::filesystem::is_directory(parent) && parent.has_relative_path())
+    parent = parent.parent_path();  // those below are made with the results
   GDALSetCacheMax64(static_cast<GIntBig>(bytes / 16));
   return std::make_unique<ScratchFile>(parent.string(), bytes);
 }

@@ -102,6 +102,27 @@ class Layers(Case):
         self.fails(2, "flag --frequency", arguments=["run", *self.flags, "--sources", self.path("site.gpkg"), "--sources-layer", "cliffs",
                                                      "--frequency", "-1", "-o", self.path("no")])
 
+    def test_barriers_by_a_flag_are_those_of_the_scenario(self):
+        """A wall across the slope without a limit of energy: nothing that starts above it is found below."""
+        with open(self.path("wall.csv"), "w", encoding="utf-8") as file:
+            file.write(f'wkt,height,capacity\n"LINESTRING ({WEST - 50} {NORTH - 150}, {WEST + 500} {NORTH - 150})",100,1000000\n')
+        flags = ["--dem", self.path("dem.tif"), "--trajectories", "20", "--sources", self.path("site.gpkg|layername=cliffs"),
+                 "--barriers", self.path("wall.csv")]
+        done = self.run_well("run", *flags, "-o", self.path("out"))
+        self.assertIn("wall.csv: no field id: the lines are called by the numbers of their features", done.stderr)
+        below = gdal.Open(self.path("out/impact_probability.tif")).ReadAsArray()
+        row = int(150 / gdal.Open(self.path("out/impact_probability.tif")).GetGeoTransform()[1])
+        self.assertGreater((below[:row] > 0).sum(), 0)
+        self.assertEqual((below[row + 1:] > 0).sum(), 0)
+        self.run_well("run", self.path("out/scenario.toml"), "-o", self.path("again"))
+        self.assertTrue((gdal.Open(self.path("again/impact_probability.tif")).ReadAsArray() == below).all())
+        self.fails(2, "has no height", arguments=["run", *flags[:-1], self.barrier_without("height"), "-o", self.path("no")])
+
+    def barrier_without(self, field):
+        with open(self.path("wall.csv"), encoding="utf-8") as file:
+            text = file.read().replace(field, "other")
+        return self.write("bad.csv", text)
+
     def write_sources(self, name, kind, values, field="diameter"):
         """Boxes side by side with the values in a field; as a GeoPackage or a Shapefile."""
         driver = "GPKG" if name.endswith(".gpkg") else "ESRI Shapefile"
@@ -193,6 +214,8 @@ class Layers(Case):
         self.assertTrue(os.path.exists(self.path("some/new/folder/run.json")))
         self.run_well("sources", "--dem", self.path("dem.tif"), "--slope", "30", "-o", self.path("more/cells.gpkg"))
         self.assertTrue(os.path.exists(self.path("more/cells.gpkg")))
+        self.run_well(*self.arguments("with/memory/out"), "--memory", "300M")
+        self.assertEqual(os.listdir(self.path("with")) + os.listdir(self.path("with/memory")), ["memory", "out"])
         self.write("file", "")
         self.fails(2, "no folder can be made", arguments=self.arguments("file/out"))
 

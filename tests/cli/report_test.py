@@ -156,6 +156,11 @@ class Content(Report):
             self.assertGreater(np.count_nonzero(shown > 1), 20, title)
             for code, value in zip(shown.ravel(), values.ravel()):
                 self.assertEqual(value_of(code), three_digits(float(value), nodata), title)
+        cells = [band_of(self.path("out/hazard_class.tif"), band, left, top, columns, rows)[0] for band in (1, 4)]
+        has_class = (cells[0] > 0) | (cells[1] > 0)
+        self.assertIn(f"{100 * np.mean(cells[1][has_class]):.2g} % of the pixels with a class", page.text)
+        for code, value, has in zip(codes(page.maps()["Class not decided"], columns).ravel(), cells[1].ravel(), has_class.ravel()):
+            self.assertEqual(value_of(code), float(value) if has else None)
         whole, _ = band_of(self.path("out/impact_probability.tif"), 1)
         inside = whole[top:top + rows, left:left + columns]
         self.assertEqual(np.count_nonzero(whole > 0), np.count_nonzero(inside > 0))  # nothing is cut off

@@ -219,6 +219,8 @@ class ByQgisProcess(Case):
         if "report" in commands_of_the_program():
             self.call("report", f"FOLDER={self.path('out')}", f"OUT={self.path('page.html')}")
             self.assertGreater(os.path.getsize(self.path("page.html")), 10000)
+            text = self.call("report", f"FOLDER={self.path('out')}")
+            self.assertIn(self.path("out/report.html"), text)  # the result, where no name was given
 
     def test_what_is_wrong_is_one_clear_line(self):
         text = self.call("run", f"DEM={DEM}", f"SOURCES={VALLEY}/houses.gpkg", f"OUT={self.path('out')}", code=1)

@@ -47,6 +47,9 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags) {
   command.add_option("--sources-layer", flags.sources_layer,
                      "the layer of the sources, of a file with several; or --sources FILE|layername=NAME");
   with(command.add_option("--screens", flags.screens, "lines: what crosses them is recorded"), file_of({"vector"}));
+  with(command.add_option("--barriers", flags.barriers,
+                          "lines of fences, dams or walls, with the fields height [m] and capacity [kJ]"),
+       file_of({"vector"}));
   with(command.add_option("--zones", flags.zones,
                           "ground: polygons, or a raster; what it names is a zone of the scenario, or a preset"),
        file_of({"vector", "raster"}));

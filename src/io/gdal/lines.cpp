@@ -67,6 +67,7 @@ class LineReader {
     if (!off_map_.empty())
       out.warnings.push_back(path_ + ": lines wholly off the DEM, which nothing will cross: features " +
                              list_of(off_map_));
+    if (id_ < 0) out.notes.push_back(path_ + ": no field id: the lines are called by the numbers of their features");
     if (!uses_.empty()) out.notes.push_back(fields_note(path_, uses_, features_));
     out.reprojections = layer_.reprojections();
     for (std::string& line : layer_.warnings()) out.warnings.push_back(std::move(line));

@@ -353,6 +353,7 @@ SourceLayer read_sources(const std::string& path, const Terrain& terrain, const 
     placer.place(layer.parts(*feature), feature->GetFID());
   });
   placer.finish(path, layer, terrain);
+  out.fields = layer.field_names();
   out.attributes = attributes.record();
   out.read_note = attributes.read_note();
   out.unread_notes = attributes.unread_notes();

@@ -172,6 +172,12 @@ void check_hazard(const CheckedRun& checked, Checks& checks) {
        "Beyond the DEM the hazard goes on, and no map shows it."});
   checks.push_back({Mark::Look, "Whose hazard", "of " + hazard.object,
                     "A larger cell is hit more often; compare maps for one width only."});
+  if (const auto share = checked.sheet.undecided)
+    checks.push_back(
+        {*share > 0.05 ? Mark::Look : Mark::Fine, "Cells whose class is not decided",
+         with_digits(100.0 * *share, 2) + " % of the pixels with a class",
+         "There the classes at the 95 % bounds of the number of blocks differ (map \"Class not decided\"). "
+         "More blocks decide them: --trajectories, or --until-error."});
   if (!hazard.same_run)
     checks.push_back({Mark::Act, "Hazard of another run", "hazard.json names another plan than run.json",
                       "Run talus hazard again with --overwrite."});

@@ -150,6 +150,30 @@ void add_map(const fs::path& folder, const std::string& name, const Shown& shown
   sheet.maps.push_back(std::move(map));
 }
 
+/// Where the classes at the two bounds of the frequency differ: a map of its own.
+void add_undecided(const fs::path& folder, const RunFacts& run, MapSheet& sheet) {
+  constexpr int kClass = 1, kUndecided = 4;  // bands of hazard_class.tif
+  const fs::path file = folder / "hazard_class.tif";
+  if (!fs::exists(file)) return;
+  const MapRaster classes(file.string(), kClass), undecided(file.string(), kUndecided);
+  check_grid(file, undecided, run.grid);
+  const std::vector<double> of_class = classes.pixels(sheet.window, PixelValue::Largest);
+  std::vector<double> values = undecided.pixels(sheet.window, PixelValue::Largest);
+  double open = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!(of_class[i] > 0.0 || values[i] > 0.0)) values[i] = std::numeric_limits<double>::quiet_NaN();
+    if (!std::isnan(values[i])) open += values[i], all += 1.0;
+  }
+  if (all > 0.0) sheet.undecided = open / all;
+  ReportMap map{"hazard_class_undecided", "Class not decided", "1", {}, {}, {}};
+  map.style = {
+      kUndecided, true, {{0.0, "decided", {200, 200, 200}}, {1.0, "not decided by this number", {213, 94, 0}}}};
+  map.classes_only = true;
+  map.picture = picture_of(values, sheet.window.width(), map.style);
+  map.values = packed_values(values);
+  sheet.maps.push_back(std::move(map));
+}
+
 }  // namespace
 
 MapSheet read_sheet(const fs::path& folder, const RunFacts& run) {
@@ -171,6 +195,7 @@ MapSheet read_sheet(const fs::path& folder, const RunFacts& run) {
         add_map(folder, name, shown, run, sheet);
       else
         sheet.notes.push_back(name + ".tif: is not shown, as there are " + std::to_string(kMostMaps) + " maps already");
+  add_undecided(folder, run, sheet);
   return sheet;
 }
 

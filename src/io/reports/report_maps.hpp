@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,7 @@ struct MapSheet {
   std::string copyright;                                         ///< as the file of the DEM states it
   std::vector<ReportMap> maps;
   std::vector<std::uint8_t> sources;  ///< pixels from which blocks are released; empty if not known
+  std::optional<double> undecided;    ///< share of the pixels with a class where it is not decided
   Outlines objects;
   std::vector<std::string> notes;  ///< what is left out, and why
 };

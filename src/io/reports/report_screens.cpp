@@ -70,15 +70,14 @@ Markup histogram(const ScreensPart::Row& row) {
   return svg.drawing({{"width", kWidth}, {"height", kHeight}, {"viewBox", "0 0 300 130"}});
 }
 
-Markup number_cell(double value, int digits) {
-  return "<td class='n'>"_html + with_digits(value, digits) + "</td>";
-}
-
 Markup row_html(const ScreensPart::Row& row) {
+  const auto figure = [&row](double value) {  // of no crossing there is none
+    return "<td class='n'>"_html + (row.crossings > 0.0 ? with_digits(value, 3) : std::string("-")) + "</td>";
+  };
   return "<tr><td>"_html + row.screen + "</td><td>" + row.quantity + " [" + row.unit + "]</td><td class='n'>" +
          grouped(row.crossings) + "</td><td class='n'>" + grouped(row.blocks) + "</td><td class='n'>" +
-         with_digits(100.0 * row.share, 3) + " %</td>" + number_cell(row.p50, 3) + number_cell(row.p95, 3) +
-         number_cell(row.p99, 3) + number_cell(row.maximum, 3) + "</tr>\n";
+         with_digits(100.0 * row.share, 3) + " %</td>" + figure(row.p50) + figure(row.p95) + figure(row.p99) +
+         figure(row.maximum) + "</tr>\n";
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "size_warning.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/input_faults.hpp"
+#include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/gdal/lines.hpp"
 #include "talus/io/gdal/vectors.hpp"
@@ -102,7 +103,8 @@ void check_diameters(const Scenario& parts, const SourceLayer& layer, const std:
         " has no block diameter, must have one (there is no default block): give [blocks] diameter in the "
         "scenario, --diameter M, or a field diameter "
         "(or diameter_min and diameter_max) of the sources, in m; --field diameter=COLUMN where it has another "
-        "name");
+        "name (its fields: " +
+        (layer.fields.empty() ? "none" : shortened(joined(layer.fields), 300)) + ")");
   }
 }
 
@@ -135,6 +137,16 @@ void warn_of_dams(const Surface& surface, std::vector<std::string>& warnings) {
                             "finer DEM if gullies matter"
                           : "a bilinear surface dams them, and they can hold a quarter of the blocks that stop: "
                             "take surface = \"creased\", or a finer DEM"));
+}
+
+SourceLayer load_sources(const ScenarioSpec& spec, const Terrain& terrain, const Scenario& parts, LoadedScenario& out) {
+  SourceLayer sources = read_sources(spec.sources.path, terrain, spec.release_height, spec.source_fields);
+  out.notes.push_back(sources.read_note);
+  out.notes.insert(out.notes.end(), sources.unread_notes.begin(), sources.unread_notes.end());
+  check_diameters(parts, sources, spec.sources.path);
+  warn_unused_diameter(spec, sources, out.warnings);
+  take(out, sources);
+  return sources;
 }
 
 void record_inputs(const ScenarioSpec& spec, LoadedScenario& out) {
@@ -174,14 +186,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
   out.geo = terrain.geo;
   Scenario parts = spec.values;
   SourceLayer sources;
-  attempt([&] {
-    sources = read_sources(spec.sources.path, terrain, spec.release_height, spec.source_fields);
-    out.notes.push_back(sources.read_note);
-    out.notes.insert(out.notes.end(), sources.unread_notes.begin(), sources.unread_notes.end());
-    check_diameters(parts, sources, spec.sources.path);
-    warn_unused_diameter(spec, sources, out.warnings);
-    take(out, sources);
-  });
+  attempt([&] { sources = load_sources(spec, terrain, parts, out); });
   attempt([&] { load_ground(spec, terrain, parts, out); });
   attempt([&] { load_effect_places(spec, terrain, parts, out); });
   if (!spec.screens.path.empty())

@@ -28,6 +28,14 @@ void lay_flag(ScenarioSpec& spec, const char* key, double value, std::vector<std
   }
 }
 
+/// A flag that names a file, in place of that of the scenario.
+void lay_file(ScenarioSpec& spec, const std::string& flag, const std::optional<std::string>& path, NamedFile& file,
+              const char* key) {
+  if (!path) return;
+  file = {absolute_path(*path, std::filesystem::current_path()), "flag " + flag + " = '" + *path + "'"};
+  spec.origins[key] = "flag " + flag;
+}
+
 /// --field NAME=COLUMN, which overrides the same name of [sources.fields].
 void lay_fields(ScenarioSpec& spec, const std::vector<std::string>& flags, std::vector<std::string>& faults) {
   FieldMap given;
@@ -79,20 +87,12 @@ void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::vector<st
 }
 
 void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults) {
-  const auto here = std::filesystem::current_path();
-  if (flags.dem)
-    spec.dem = {absolute_path(*flags.dem, here), "flag --dem = '" + *flags.dem + "'"},
-    spec.origins["dem"] = "flag --dem";
-  if (flags.sources)
-    spec.sources = {absolute_path(*flags.sources, here), "flag --sources = '" + *flags.sources + "'"},
-    spec.origins["sources.file"] = "flag --sources";
+  lay_file(spec, "--dem", flags.dem, spec.dem, "dem");
+  lay_file(spec, "--sources", flags.sources, spec.sources, "sources.file");
   if (flags.sources_layer) lay_sources_layer(spec, *flags.sources_layer, faults);
-  if (flags.screens)
-    spec.screens = {absolute_path(*flags.screens, here), "flag --screens = '" + *flags.screens + "'"},
-    spec.origins["screens.file"] = "flag --screens";
-  if (flags.zones)
-    spec.ground = {absolute_path(*flags.zones, here), "flag --zones = '" + *flags.zones + "'"},
-    spec.origins["ground.file"] = "flag --zones";
+  lay_file(spec, "--screens", flags.screens, spec.screens, "screens.file");
+  lay_file(spec, "--barriers", flags.barriers, spec.barriers, "barriers.file");
+  lay_file(spec, "--zones", flags.zones, spec.ground, "ground.file");
   if (flags.zone_field) {
     if (spec.ground.path.empty())
       faults.push_back("flag --zone-field = '" + *flags.zone_field +

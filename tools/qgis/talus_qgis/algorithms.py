@@ -28,9 +28,11 @@ SHAPES = [QgsProcessing.TypeVectorPoint, QgsProcessing.TypeVectorLine, QgsProces
 RUN_RASTERS = ["impact_probability", "reach_probability", "energy", "velocity", "jump_height", "passages", "deposits",
                "release"]
 SCENARIO_INPUTS = {
-    "order": ["dem", "sources", "diameter", "preset", "trajectories", "frequency", "screens", "zones", "zone-field"],
+    "order": ["dem", "sources", "diameter", "preset", "trajectories", "frequency", "screens", "barriers", "zones",
+              "zone-field"],
     "bands": {"dem"},
-    "shapes": {"sources": SHAPES, "screens": [QgsProcessing.TypeVectorLine], "zones": [QgsProcessing.TypeVectorPolygon]},
+    "shapes": {"sources": SHAPES, "screens": [QgsProcessing.TypeVectorLine],
+               "barriers": [QgsProcessing.TypeVectorLine], "zones": [QgsProcessing.TypeVectorPolygon]},
     "fields": {"sources": SOURCE_FIELDS},
     "field of": {"zone-field": "zones"},
     "raster too": {"zones"},
@@ -191,7 +193,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         return QgsProcessingParameterString(key, title, self._default(p), False, optional)
 
     def _title(self, p):
-        title = label("folder" if p["type"] == "folder" and p["name"] == "out" and not p["written"] else p["name"])
+        name = "folder" if p["type"] == "folder" and p["name"] == "out" and not p["written"] else p["name"]
+        title = label("weighting" if p["type"] == "file" and name == "frequency" else name)
         if p.get("unit"):
             title += f" [{p['unit']}]"
         if self.by_scenario() and p["type"] != "flag" and "default" in p:
@@ -394,6 +397,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         for p in self.described():
             if p.get("written") and p["type"] in ("file", "folder"):
                 found[key_of(p["name"])] = self._destination(parameters, key_of(p["name"]), context)
+        if table["id"] == "report" and not found.get("OUT"):
+            found["OUT"] = self._file_in(self.parameterAsFile(parameters, "FOLDER", context), "report.html")
         if "folder" not in table:
             return {key: value for key, value in found.items() if value}
         for name in table.get("rasters", ()):

@@ -17,6 +17,7 @@ LABELS = {
     "trajectories": ("Trajectories per source cell", "Sturzbahnen pro Anbruchzelle"),
     "frequency": ("Frequency of all sources together", "Häufigkeit aller Anbruchgebiete zusammen"),
     "screens": ("Screens (lines where crossings are recorded)", "Nachweislinien (Durchgänge werden festgehalten)"),
+    "barriers": ("Barriers (lines; fields height [m], capacity [kJ])", "Schutzbauten (Linien; Felder height [m], capacity [kJ])"),
     "zones": ("Zones of ground (polygons)", "Bodenzonen (Flächen)"),
     "zones-raster": ("Zones of ground as a raster", "Bodenzonen als Raster"),
     "zone-field": ("Field: zone or preset", "Feld: Zone oder Parametersatz"),
@@ -38,6 +39,7 @@ LABELS = {
     "pits": ("Map of the pits", "Karte der Mulden"),
     "slope": ("Steepness of source cells", "Neigung der Anbruchzellen"),
     "folder": ("Folder of a run", "Ordner eines Laufs"),
+    "weighting": ("Other frequencies of the sources (TOML)", "Andere Häufigkeiten der Anbruchgebiete (TOML)"),
     "matrix": ("Classes (TOML)", "Gefahrenstufen (TOML)"),
     "objects": ("Objects at risk (houses, roads)", "Gefährdete Objekte (Häuser, Strassen)"),
     "width": ("Width of the object", "Breite des Objekts"),
@@ -185,6 +187,8 @@ GERMAN = {
     "terrain: a raster in a projected system in metres": "Gelände: ein Raster in einem projizierten System in Metern",
     "where blocks start: polygons, lines or points": "wo Blöcke starten: Flächen, Linien oder Punkte",
     "lines: what crosses them is recorded": "Linien: was sie quert, wird festgehalten",
+    "lines of fences, dams or walls, with the fields height [m] and capacity [kJ]":
+        "Linien von Netzen, Dämmen oder Mauern, mit den Feldern height [m] und capacity [kJ]",
     "ground: polygons, or a raster; what it names is a zone of the scenario, or a preset":
         "Boden: Flächen oder ein Raster; was sie nennen, ist eine Zone des Szenarios oder ein Parametersatz",
     "the field of --zones that names the zone or preset; zone": "das Feld der Zonen, das Zone oder Parametersatz nennt; zone",

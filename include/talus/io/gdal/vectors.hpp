@@ -13,6 +13,7 @@ struct SourceLayer {
   std::vector<SourceFeature> features;  ///< in the order of the file, with those wholly off the map
   std::vector<SourceCell> cells;        ///< by feature: its cells row by row from the north-west, then its points
   std::vector<std::int64_t> ids;        ///< of the features in the file, for messages
+  std::vector<std::string> fields;      ///< names of all fields of the layer
   std::vector<Setting> attributes;      ///< settings read from the fields
   std::vector<Reprojection> reprojections;
   std::string read_note;                  ///< which fields were read, with the range of their values
