@@ -54,6 +54,18 @@ TEST(DesignBarrier, FreeboardIsHalfAMetreAtLeast) {
   EXPECT_NEAR(freeboard(8.0 * 3.14159265358979 / 6.0), 1.0, 1e-12);
 }
 
+/// 0, 1, ... 100 m/s and m, each 1 kg: above 70.5 m/s are 30 of 101, above 90.5 m/s 10, above 79.5 m 21.
+TEST(DesignBarrier, HowOftenItIsExceeded) {
+  BarrierDesign design{};
+  design.sel = 0.5 * 70.5 * 70.5;
+  design.mel = 0.5 * 90.5 * 90.5;
+  design.height = 79.5;
+  const DesignExceeded exceeded = exceeded_by(hundred(1.0, 1.0), design);
+  EXPECT_NEAR(exceeded.sel, 30.0 / 101.0, 1e-12);
+  EXPECT_NEAR(exceeded.mel, 10.0 / 101.0, 1e-12);
+  EXPECT_NEAR(exceeded.height, 21.0 / 101.0, 1e-12);
+}
+
 TEST(DesignBarrier, AnyPercentile) {
   DesignFactors factors{1.0, 1.0, 1.0, 1.0, 1.0, 1.2, 0.5, 0.975};
   const BarrierDesign d = design_barrier(hundred(0.2, 0.04), {2.0, 2500.0}, factors);

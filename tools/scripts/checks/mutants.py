@@ -29,7 +29,7 @@ MUTANTS = [
     ("src/physics/impact.cpp", "2.0 / 7.0 * slip", "2.0 / 5.0 * slip", "*Impact*:*Friction*"),
     ("src/physics/impact.cpp", "(1.0 + k.normal) * v_n", "k.normal * v_n", "*Impact*:*Friction*"),
     ("src/physics/impact.cpp", "2.5 / arm * n.cross(friction)", "2.5 / arm * friction.cross(n)", "*Impact*:*Energy*"),
-    ("src/physics/impact.cpp", "draw(event - event % kAhead)", "draw(event)", "*Impact*:*Asper*:*Vector*"),
+    ("src/physics/impact.cpp", "draws_[event - first_]", "draws_[(event - first_) / 2]", "*Impact*:*Asper*:*Vector*"),
     ("src/physics/trace.cpp", "motion_.velocity.dot(normal_) < kSlideSpeed", "motion_.velocity.dot(normal_) < 10.0 * kSlideSpeed", "*Trace*:*Slide*:*Vector*"),
     ("src/physics/trace.cpp", "if (!fast && normal_.head<2>().norm() <= ground.tan_phi * normal_.z()) return End::Stopped;", "if (!fast) return End::Stopped;", "*Trace*:*End*:*Stop*"),
     ("src/physics/trace.cpp", "path_.impacts += 1;", "path_.impacts += 2;", "*Trace*:*Path*"),
@@ -58,13 +58,13 @@ MUTANTS = [
     # products and hazard
     ("src/products/interval.cpp", "0.5 * (1.0 - confidence)", "(1.0 - confidence)", "*Interval*:*Bound*"),
     ("src/products/interval.cpp", "sources * (trials - 1)", "sources * trials", "*Interval*:*Reach*"),
-    ("src/products/percentile_bounds.cpp", "at_most(low - 1.0, count, share) > kTail", "at_most(low, count, share) > kTail", "*Percentile*"),
+    ("src/products/percentile_bounds.cpp", "at_most(low, count, share) <= kTail", "at_most(low + 1.0, count, share) <= kTail", "*Percentile*"),
     ("src/products/hazard.cpp", "{1.0 / frequency.value, 1.0 / frequency.high, 1.0 / frequency.low}", "{1.0 / frequency.value, 1.0 / frequency.low, 1.0 / frequency.high}", "*Hazard*:*Return*"),
     ("src/products/hazard_matrix.cpp", "frequencies[i] * matrix.years[column] >= kOnce", "frequencies[i] * matrix.years[column] > kOnce + 0.1", "*Hazard*:*Matrix*:*Class*"),
     ("src/products/hazard_matrix.cpp", "highest = std::max(highest, matrix.classes[i][column])", "highest = matrix.classes[i][column]", "*Hazard*:*Matrix*:*Class*"),
     ("src/products/barrier_design.cpp", "0.5 * d.mass * d.speed * d.speed", "d.mass * d.speed * d.speed", "*Barrier*:*Design*"),
     ("src/products/barrier_design.cpp", "c.energy() > design.mel", "c.energy() > design.sel", "*Barrier*:*Design*"),
-    ("src/products/weibull.cpp", "s2 / s0 - first * first + 1.0 / (shape * shape)", "s2 / s0 + first * first + 1.0 / (shape * shape)", "*Weibull*"),
+    ("src/products/weibull.cpp", "first - 1.0 / shape - mean", "first - 0.9 / shape - mean", "*Weibull*"),
     ("src/products/weibull.cpp", "std::exp(-std::pow(x / scale, shape))", "1.0 - std::exp(-std::pow(x / scale, shape))", "*Weibull*"),
     ("src/products/raster_table.cpp", "values[1] = length.low / area;\n    values[2] = length.high / area;", "values[2] = length.low / area;\n    values[1] = length.high / area;", "*Raster*:*Map*:*Passage*"),
     ("src/products/held_at_release.cpp", "2.0 * row.diameter", "0.2 * row.diameter", "*Held*"),
@@ -142,4 +142,5 @@ def main():
     sys.exit(survivors > 0)
 
 
-main()
+if __name__ == "__main__":
+    main()

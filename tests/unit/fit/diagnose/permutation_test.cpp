@@ -42,6 +42,13 @@ TEST(Permutation, FewUnitsAreArrangedInEveryWayOnce) {
   EXPECT_EQ(different.size(), 12U);
 }
 
+TEST(Permutation, MoreWaysThanWereAskedForAreChosenFrom) {  // 5! = 120
+  EXPECT_TRUE(Arrangements(units_of(5), 120, 1).exact());
+  const Arrangements some(units_of(5), 119, 1);
+  EXPECT_FALSE(some.exact());
+  EXPECT_EQ(some.size(), 119U);
+}
+
 /// Whatever was measured, it is one of its own arrangements. Over all of them each p-value k/120 occurs at most as
 /// often as it says, here exactly (all sums differ but for ties, which share the larger p).
 TEST(Permutation, IsExactByEnumeration) {

@@ -123,6 +123,22 @@ TEST(HazardTally, OneTrajectoryCountsOnceWithItsLargestEnergy) {  // 1000 kg: 2,
     EXPECT_NEAR(static_cast<double>(cell.overlaps()[level]) * rules.scale.square_unit, expected[level], 1e-9);
 }
 
+TEST(StratumSums, AnEnergyAtTheThresholdDoesNotExceedIt) {
+  Scenario s = test::scenario_on(test::terrain(test::grid_of(6, 4, 1.0, 1.0), [](double, double) { return 0.0; }));
+  s.sources.assign(1, {0, 1.5, 1.5, false});
+  s.trajectories = 4;
+  s.features[0].frequency = 1.0;
+  const AnnualWeights weights = AnnualWeights::of(s).value();
+  Tally tally(s.surface.grid(), {18.0, 30.0}, s.output.height_thresholds);
+  tally.keep_hazard(weights);
+  StratumSums sums(tally.hazard_rules());
+  ScratchVector<std::int64_t> overlaps;
+  for (int hit = 0; hit < 2; ++hit) sums.add({weights.weight(s, 0, 0), 0, 4}, 18.0F, overlaps);
+  sums.finish(overlaps);
+  EXPECT_GT(overlaps[0], 0) << "two of four have hit";
+  EXPECT_EQ(overlaps[1], 0) << "with exactly 18 kJ";
+}
+
 TEST(HazardCell, MergingPartsGivesTheWhole) {
   const Scenario s = two_features();
   const Tally whole = tally_of(s, 1);
