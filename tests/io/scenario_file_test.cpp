@@ -170,8 +170,8 @@ TEST_F(ScenarioFile, WhatIsNoTomlIsRefusedWithItsLine) {
 TEST_F(ScenarioFile, MissingPartsAreSaid) {
   refused("", {"no terrain", "--dem", "(and 1 more fault"});
   refused("dem = \"dem.tif\"\n", {"no sources", "[sources] file", "--sources"});
-  refused(std::string(kFiles),
-          {"sources.gpkg: feature 1 has no block diameter", "[blocks] diameter", "--diameter", "diameter_min", "its fields: "});
+  refused(std::string(kFiles), {"sources.gpkg: feature 1 has no block diameter", "[blocks] diameter", "--diameter",
+                                "diameter_min", "its fields: "});
 }
 
 TEST_F(ScenarioFile, DiameterOfTheFeatureThenTheFlagThenTheScenario) {
