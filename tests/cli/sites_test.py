@@ -8,7 +8,7 @@ import unittest
 
 from support import NORTH, WEST, Case
 
-SHORT = ("--trials", "20", "--surface", "bilinear", "-q")
+SHORT = ("--surface", "bilinear", "-q")
 
 
 class Sites(Case):
@@ -56,7 +56,7 @@ GROUND = "[ground.zones.default]\ntheta_scale = 0.3\nEn50 = 4\n"
 
 
 class Calibrate(Sites):
-    FIT = ("--fit", "theta_scale", "--starts", "1")
+    FIT = ("--fit", "theta_scale", "--starts", "1", "--trials", "20")
 
     def test_a_shared_number_of_two_copies(self):
         """The value of one copy, and a narrower interval. By how much, a unit test says: with 20 trials noise widens the interval of one copy."""
@@ -117,7 +117,7 @@ class Diagnose(Sites):
         """An effect of the shape that both share. (The order of the campaigns is that of their names: see Calibrate.)"""
         kind = "[ground.zones.default]\nEn50 = 4\n[effects.block-shape]\nloss = 0.8\n"
         paths = [self.measure("south", 40, 6, kind), self.measure("north", 0, 5, kind)]
-        options = ("--fit", "En50", "--test-trials", "20", "--most-effects", "1")
+        options = ("--fit", "En50", "--trials", "10", "--test-trials", "20", "--most-effects", "1")
         first = self.result("diagnose", paths, "first", *options)
         self.assertEqual([s["name"] for s in first["sites"]], ["north", "south"])
         pooled = first["families"][0]
