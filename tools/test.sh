@@ -32,7 +32,9 @@ stage "asan: build by clang, warnings are errors, invariants checked, sanitizers
 cmake --preset asan ${TALUS_DATA:+-DTALUS_DATA="$TALUS_DATA"}
 cmake --build --preset asan
 stage "asan: tests of core and files"
-statistics="ScoreTest|Calibrate|FreePaths|EffectFits|Nested|ResidualTable"  # long where nothing is optimised
+# Long where nothing is optimised, and run above: tests of laws by many blocks.
+statistics="ScoreTest|Calibrate|FreePaths|EffectFits|Nested|ResidualTable|SceneSymmetry|PlaneTable|PlaneSigns|PlaneScaling"
+statistics+="|LogScore|DepositScore|DepositCheck|Dispersion|Evaluate|EnergyComponent|CoverageOf|PropertyTest"
 ctest --preset asan -j 2 -LE "slow|cli|example|package|qgis" -E "$statistics"
 stage "the same bytes from gcc with optimisation and from clang without"
 tools/scripts/checks/same_bytes.sh build/release/talus build/asan/talus
