@@ -114,7 +114,7 @@ class Outputs:
         self.append("data/valley/effects.toml", "data/valley/wet.toml", "", ("seed = 1 ", "day = 3\nseed = 1 "))
         self.append("data/valley/scenario.toml", "data/valley/stems.toml", STEMS, few)
         self.nets(few)
-        for name in ("effects", "wet", "stems", "nets", "netseffects"):
+        for name in ("effects", "stems", "netseffects") if self.options.brief else ("effects", "wet", "stems", "nets", "netseffects"):
             self.call("run", f"data/valley/{name}.toml", "-o", name, "-q")
 
     def nets(self, few):
