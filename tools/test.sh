@@ -10,7 +10,7 @@ if [ "${CI:-}" = true ] && [ ! -d "$data/reference" ]; then
   echo "tools/test.sh: no data at $data: CI must not skip the tests that need them" >&2
   exit 1
 fi
-export OMP_WAIT_POLICY=passive  # two tests at a time share the processors: a thread that waits does not spin (13 % of a fit)
+export OMP_WAIT_POLICY=passive  # two tests at a time share the processors: a thread that waits does not spin
 stage() { printf '\n== %s (%d min %02d s so far)\n' "$1" $((SECONDS / 60)) $((SECONDS % 60)); }
 
 tools/install_packages.sh qgis python3-qgis qgis-providers fonts-dejavu-core  # 1.4 GB: the plug-in is tested in QGIS

@@ -13,8 +13,8 @@ namespace talus::run {
 std::size_t memory_limit_of(const std::string& text, int threads);
 
 /// Makes the file that holds terrain, zones and tally beside the results (or in the nearest folder above them that is
-/// there), with at most `bytes` of memory for the
-/// process. Sets GDAL's cache to a sixteenth of `bytes`. Call it before anything is read.
+/// there), with at most `bytes` of memory for the process. Sets GDAL's cache to a sixteenth of `bytes`. Call it before
+/// anything is read.
 ///
 /// @return null if `bytes` is 0
 std::unique_ptr<ScratchFile> scratch_file_beside(const std::filesystem::path& results, std::size_t bytes);

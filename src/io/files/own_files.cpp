@@ -76,7 +76,7 @@ std::set<std::string> own_names(const fs::path& folder) {
     const std::string name = entry.path().stem().string();
     if (has_run && entry.path().extension() == ".html" && is_run_page(entry.path()))  // whatever `report -o` called it
       own.insert(entry.path().filename().string());
-    // Of `talus barrier`: NAME.json says which.
+    // Files of `talus barrier`: NAME.json lists them.
     if (!name.starts_with("barrier_") || entry.path().extension() != ".json" || !is_design(entry.path())) continue;
     for (const char* end : {".json", ".csv", "_stretches.csv"}) own.insert(name + end);
   }

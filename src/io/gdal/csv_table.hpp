@@ -25,7 +25,7 @@ class CsvTable {
   /// Throws InputError if it cannot be read, has no header, or has rows of another length.
   CsvTable(std::string path, const std::vector<std::string>& known, const std::vector<std::string>& required);
 
-  /// What is done with a row of a table.
+  /// Function that takes each row of a table as it is read.
   using Take = std::function<void(const CsvTable&, Row&)>;
   /// Gives each row to `take` and keeps none, for tables that need six times the memory of their text if they are kept.
   CsvTable(std::string path, const std::vector<std::string>& known, const std::vector<std::string>& required,

@@ -165,6 +165,11 @@ void add_undecided(const fs::path& folder, const RunFacts& run, MapSheet& sheet)
     if (!std::isnan(values[i])) open += values[i], all += 1.0;
   }
   if (all > 0.0) sheet.undecided = open / all;
+  if (sheet.maps.size() == kMostMaps) {
+    sheet.notes.push_back("Class not decided: is not shown, as there are " + std::to_string(kMostMaps) +
+                          " maps already");
+    return;
+  }
   ReportMap map{"hazard_class_undecided", "Class not decided", "1", {}, {}, {}};
   map.style = {
       kUndecided, true, {{0.0, "decided", {200, 200, 200}}, {1.0, "not decided by this number", {213, 94, 0}}}};

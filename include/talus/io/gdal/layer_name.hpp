@@ -19,7 +19,7 @@ inline std::string file_of_layer(const std::string& name) {
   return named_layer(name).file;
 }
 
-/// The same layer in another file, or under another name of its file.
+/// Name of a layer with the path of its file replaced: "new.gpkg|layername=houses" of "old.gpkg|layername=houses".
 inline std::string same_layer_in(const std::string& file, const std::string& name) {
   return file + name.substr(file_of_layer(name).size());
 }
