@@ -11,11 +11,13 @@ namespace talus {
 namespace {
 
 constexpr std::uint32_t kMaxRedraws = 200;  // P(N1 < -1) = 0.16 each: 200 in a row happen once in 1e160 impacts
+constexpr double kStill = 1e-100;           // a slower motion has no direction: its square has lost its digits [m/s]
 
-/// Direction of the motion in plan. For a vertical motion, the dip direction; on flat ground, a random direction.
+/// Direction of the motion in plan. For a vertical motion or none, the dip direction; on flat ground, a random
+/// direction.
 Eigen::Vector2d heading_of(const Vec3& velocity, const Vec3& normal, double turn) {
   const double plan = std::sqrt(velocity.x() * velocity.x() + velocity.y() * velocity.y());
-  if (plan > 1e-9 * std::abs(velocity.z())) return velocity.head<2>() * (1.0 / plan);
+  if (plan > 1e-9 * std::abs(velocity.z()) && plan > kStill) return velocity.head<2>() * (1.0 / plan);
   const double dip = std::sqrt(normal.x() * normal.x() + normal.y() * normal.y());
   if (dip > 1e-9) return {normal.x() / dip, normal.y() / dip};
   const SineCosine direction = sine_cosine_of_turn(turn);

@@ -131,6 +131,13 @@ TEST(RoughPlane, AVerticalFallHeadsDownTheDip) {
   }
 }
 
+TEST(RoughPlane, TheNormalIsAUnitVectorHoweverSlowTheBlock) {
+  for (const double speed : {1e-90, 1e-101, 1e-155, 1e-159, 1e-170}) {  // the square of 1e-159 has few digits
+    const Vec3 v = speed * Vec3(1.037, -0.4998, -1.143);
+    EXPECT_NEAR(rough_plane(slope_normal(40.0, 1.0), v, {0.3, 0.2, 1.0, 0.5}).normal.norm(), 1.0, 1e-14) << speed;
+  }
+}
+
 TEST(RoughPlane, OnFlatGroundAVerticalFallTakesTheDrawnHeading) {
   for (const double turn : {0.0, 0.1, 0.25, 0.6, 0.99}) {
     const Vec3 out = rough_plane({0, 0, 1}, {0, 0, -5}, {std::tan(radians(15.0)), 0.0, 1.0, turn}).normal;
