@@ -225,6 +225,8 @@ class ByQgisProcess(Case):
     def test_what_is_wrong_is_one_clear_line(self):
         text = self.call("run", f"DEM={DEM}", f"SOURCES={VALLEY}/houses.gpkg", f"OUT={self.path('out')}", code=1)
         self.assertIn("has no block diameter", text)
+        text = self.call("run", f"DEM={DEM}", f"SOURCES={self.two_layers()}", "DIAMETER=1", f"OUT={self.path('out')}", code=1)
+        self.assertIn(f"two.gpkg has several layers (houses, cliffs): name one, as {self.path('two.gpkg')}|layername=houses", text)
         self.assertFalse(os.path.exists(self.path("out")))
 
     def test_a_temporary_folder(self):

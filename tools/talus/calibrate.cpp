@@ -133,8 +133,8 @@ void choose_parameters(const talus::Campaign& campaign, const std::vector<std::s
 void add_calibrate(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("calibrate", "Fit the parameters of the ground to measured data");
-  options->add_to(*command, options->how.trials, kFewestSearchTrials, options->fit, options->how.seed,
-                  options->how.threads);
+  const int fewest_trials = static_cast<int>(talus::DiagnosisRules{}.fewest_of_one);
+  options->add_to(*command, options->how.trials, fewest_trials, options->fit, options->how.seed, options->how.threads);
   with(command->add_option(
            "--parameters", options->parameters,
            "model from which the fit starts, whose effects it keeps; else upper-talus-3d without effects"),

@@ -17,10 +17,6 @@ struct CampaignCommand {
               std::uint64_t& seed, int& threads);
 };
 
-/// Trials per block below which a search can hide a block behind the climatology: a block that rarely stops is not
-/// scored.
-inline constexpr int kFewestSearchTrials = 20;
-
 /// Reads the campaigns of a command. Until then a signal ends the program at once; from then on see `catch_signals`.
 std::vector<talus::io::LoadedCampaign> read_campaigns(const CampaignCommand& command);
 

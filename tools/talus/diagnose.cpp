@@ -168,7 +168,7 @@ void add_diagnose(CLI::App& app, Action& action) {
                     "that has seen the choice");
   command->footer(
       "Where fewer than 72 blocks are fitted, each gets more trajectories, so that there are as many in all; at most "
-      "four times as many.\n\n"
+      "four times as many, and never fewer than 20.\n\n"
       "Examples:\n  talus diagnose campaign.toml -o diagnosis\n"
       "  talus diagnose a/campaign.toml b/campaign.toml -o diagnosis\n\nThen open diagnosis/report.html.");
   command->callback([&action, options] { action = [options] { return diagnose(*options); }; });

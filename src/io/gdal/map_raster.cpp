@@ -24,6 +24,13 @@ MapRaster::MapRaster(const std::string& path, int band)
                      std::to_string(band) + ", as talus has written it");
 }
 
+MapRaster::MapRaster(const std::string& path, const std::string& band)
+    : path_(path), dataset_(open_dataset(path, GDAL_OF_RASTER)), band_(nullptr) {
+  for (auto* const candidate : dataset_->GetBands())
+    if (band == candidate->GetDescription()) band_ = candidate;
+  if (band_ == nullptr) throw InputError(path + ": has no band `" + band + "`, must have it, as talus has written it");
+}
+
 std::string MapRaster::metadata(const char* key) const {
   const char* const text = dataset_->GetMetadataItem(key);
   return text == nullptr ? "" : text;

@@ -26,9 +26,12 @@ class MapRaster {
   /// @param band  from 1
   /// Throws InputError if the file is not allowed, cannot be opened, or has no such band.
   MapRaster(const std::string& path, int band);
+  /// @param band  its name
+  MapRaster(const std::string& path, const std::string& band);
 
   int columns() const { return band_->GetXSize(); }
   int rows() const { return band_->GetYSize(); }
+  int band() const { return band_->GetBand(); }  ///< from 1
   std::string band_name() const { return band_->GetDescription(); }
   std::string unit() const { return band_->GetUnitType(); }
   std::string metadata(const char* key) const;

@@ -152,10 +152,9 @@ void add_map(const fs::path& folder, const std::string& name, const Shown& shown
 
 /// Where the classes at the two bounds of the frequency differ: a map of its own.
 void add_undecided(const fs::path& folder, const RunFacts& run, MapSheet& sheet) {
-  constexpr int kClass = 1, kUndecided = 4;  // bands of hazard_class.tif
   const fs::path file = folder / "hazard_class.tif";
   if (!fs::exists(file)) return;
-  const MapRaster classes(file.string(), kClass), undecided(file.string(), kUndecided);
+  const MapRaster classes(file.string(), std::string("class")), undecided(file.string(), std::string("undecided"));
   check_grid(file, undecided, run.grid);
   const std::vector<double> of_class = classes.pixels(sheet.window, PixelValue::Largest);
   std::vector<double> values = undecided.pixels(sheet.window, PixelValue::Largest);
@@ -172,7 +171,7 @@ void add_undecided(const fs::path& folder, const RunFacts& run, MapSheet& sheet)
   }
   ReportMap map{"hazard_class_undecided", "Class not decided", "1", {}, {}, {}};
   map.style = {
-      kUndecided, true, {{0.0, "decided", {200, 200, 200}}, {1.0, "not decided by this number", {213, 94, 0}}}};
+      undecided.band(), true, {{0.0, "decided", {200, 200, 200}}, {1.0, "not decided by this number", {213, 94, 0}}}};
   map.classes_only = true;
   map.picture = picture_of(values, sheet.window.width(), map.style);
   map.values = packed_values(values);

@@ -10,7 +10,7 @@ from qgis.core import (QgsProcessing, QgsProcessingAlgorithm, QgsProcessingExcep
                        QgsProcessingParameterField, QgsProcessingParameterFile, QgsProcessingParameterFileDestination,
                        QgsProcessingParameterFolderDestination, QgsProcessingParameterMultipleLayers,
                        QgsProcessingParameterNumber, QgsProcessingParameterRasterLayer, QgsProcessingParameterString,
-                       QgsProcessingUtils, QgsProperty)
+                       QgsProcessingUtils, QgsProperty, QgsVectorLayer)
 from qgis.PyQt.QtGui import QIcon
 
 from . import layers, process, program, results
@@ -284,6 +284,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         if isinstance(plain, QgsProperty):
             plain = plain.staticValue()
         layer = self.parameterAsVectorLayer({key: plain}, key, context)
+        if isinstance(layer, QgsVectorLayer):
+            layers.refuse_unnamed(layer)
         return layers.plain_vector(value, layer), source, layers.suffix_for(layer)
 
     def processAlgorithm(self, parameters, context, feedback):

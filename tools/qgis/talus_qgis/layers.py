@@ -42,9 +42,19 @@ def plain_vector(value, layer):
     file_layer = QgsVectorLayer(path + (f"|layername={name}" if name else ""), "", "ogr")
     if not file_layer.isValid() or file_layer.crs() != layer.crs() or _names(file_layer) != _names(layer):
         return None
-    if not name and len(file_layer.dataProvider().subLayers()) > 1:
-        name = file_layer.dataProvider().subLayers()[0].split("!!::!!")[1]  # the one that QGIS shows
     return path + (f"|layername={name}" if name else "") if _count(path, name) == layer.featureCount() else None
+
+
+def refuse_unnamed(layer):
+    """A file of several layers without the name of one: QGIS would take the first, the road instead of the houses."""
+    parts = QgsProviderRegistry.instance().decodeUri("ogr", layer.source())
+    if layer.providerType() != "ogr" or parts.get("layerName") or parts.get("layerId") not in (None, -1):
+        return
+    # QGIS lists a layer once for each kind of geometry in it
+    names = list(dict.fromkeys(sub.split("!!::!!")[1] for sub in layer.dataProvider().subLayers()))
+    if len(names) > 1:
+        raise QgsProcessingException(tr("{path} has several layers ({names}): name one, as {path}|layername={first}").format(
+            path=parts.get("path"), names=", ".join(names), first=names[0]))
 
 
 def _names(layer):

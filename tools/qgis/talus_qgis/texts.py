@@ -168,6 +168,8 @@ GERMAN = {
     "talus ended with code {code}": "talus endete mit Code {code}",
     "{name} has no coordinate system: set it in QGIS (layer > Set CRS)":
         "{name} hat kein Koordinatensystem: in QGIS setzen (Layer > KBS setzen)",
+    "{path} has several layers ({names}): name one, as {path}|layername={first}":
+        "{path} hat mehrere Layer ({names}): einen nennen, als {path}|layername={first}",
     "{name} has no feature: is nothing selected, or does a filter hide all?":
         "{name} hat kein Objekt: ist nichts gewählt, oder verbirgt ein Filter alles?",
     "{name}: {count} features are written to {path}": "{name}: {count} Objekte sind nach {path} geschrieben",
