@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <limits>
 
+#include "pixels.hpp"
 #include "talus/base/error.hpp"
 
 namespace talus::io {
 namespace {
 
-constexpr int kTile = 512;  // of a Cloud Optimized GeoTIFF: every tile of the file is unpacked once
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -40,25 +40,26 @@ std::string MapRaster::metadata(const char* key) const {
 template <class Visit>
 void MapRaster::for_each_value(const MapWindow& window, Visit visit) const {
   GdalMessages messages;
-  std::vector<double> values(std::size_t{kTile} * kTile);
-  std::vector<std::uint8_t> mask(values.size());
+  std::vector<double> values;
+  std::vector<std::uint8_t> mask;
   const bool masked = (band_->GetMaskFlags() & GMF_ALL_VALID) == 0;
   int given = 0;
   const double scale = band_->GetScale(&given), offset = band_->GetOffset();
-  const int right = window.column + window.columns, bottom = window.row + window.rows;
-  for (int top = window.row; top < bottom; top = (top / kTile + 1) * kTile)
-    for (int left = window.column; left < right; left = (left / kTile + 1) * kTile) {
-      const int columns = std::min((left / kTile + 1) * kTile, right) - left,
-                rows = std::min((top / kTile + 1) * kTile, bottom) - top;
-      if (band_->RasterIO(GF_Read, left, top, columns, rows, values.data(), columns, rows, GDT_Float64, 0, 0,
-                          nullptr) != CE_None ||
-          (masked && band_->GetMaskBand()->RasterIO(GF_Read, left, top, columns, rows, mask.data(), columns, rows,
-                                                    GDT_Byte, 0, 0, nullptr) != CE_None))
-        throw InputError(path_ + ": cannot be read: " + messages.take());
-      for (int i = 0; i < columns * rows; ++i)
-        if ((!masked || mask[i] != 0) && std::isfinite(values[i]))
-          visit(left + i % columns, top + i / columns, values[i] * scale + offset);
-    }
+  const RasterPart whole{window.column, window.row, window.column + window.columns, window.row + window.rows};
+  for (const RasterPart& part : pieces_of(*band_, whole)) {
+    const int columns = part.columns(), rows = part.rows();
+    values.resize(std::size_t(columns) * rows);
+    if (masked) mask.resize(values.size());
+    if (band_->RasterIO(GF_Read, part.left, part.top, columns, rows, values.data(), columns, rows, GDT_Float64, 0, 0,
+                        nullptr) != CE_None ||
+        (masked && band_->GetMaskBand()->RasterIO(GF_Read, part.left, part.top, columns, rows, mask.data(), columns,
+                                                  rows, GDT_Byte, 0, 0, nullptr) != CE_None))
+      throw InputError(path_ + ": cannot be read: " + messages.take());
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if ((!masked || mask[i] != 0) && std::isfinite(values[i]))
+        visit(part.left + static_cast<int>(i % columns), part.top + static_cast<int>(i / columns),
+              values[i] * scale + offset);
+  }
 }
 
 std::vector<double> MapRaster::pixels(const MapWindow& window, PixelValue kind) const {

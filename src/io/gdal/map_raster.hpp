@@ -20,7 +20,7 @@ struct MapWindow {
 /// One value for the cells of a pixel.
 enum class PixelValue { Largest, Smallest, Mean };
 
-/// A band of a raster, read part by part: memory for one tile and the pixels that are asked for.
+/// A band of a raster, read part by part: memory for a piece of the file and the pixels that are asked for.
 class MapRaster {
  public:
   /// @param band  from 1

@@ -1,11 +1,32 @@
 #include "pixels.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "talus/base/error.hpp"
 
 namespace talus::io {
+
+std::vector<RasterPart> pieces_of(GDALRasterBand& band, const RasterPart& whole) {
+  constexpr int kWide = 2048, kHigh = 1024;  // pixels, where a block has fewer
+  int block_columns = 1, block_rows = 1;
+  band.GetBlockSize(&block_columns, &block_rows);
+  const bool striped = block_columns >= band.GetXSize();
+  const int columns = striped ? band.GetXSize() : block_columns * std::max(1, kWide / block_columns);
+  int rows = std::clamp(kWide * kHigh / columns, 1, kHigh);
+  if (block_rows <= rows)
+    rows -= rows % block_rows;
+  else if (!striped)  // a strip of many rows stays in the cache while its pieces are read, tiles beside it would not
+    rows = block_rows;
+  const auto after = [](int place, int side) { return place / side * std::int64_t{side} + side; };
+  std::vector<RasterPart> pieces;
+  for (int top = whole.top; top < whole.bottom; top = pieces.back().bottom)
+    for (int left = whole.left; left < whole.right; left = pieces.back().right)
+      pieces.push_back({left, top, static_cast<int>(std::min<std::int64_t>(after(left, columns), whole.right)),
+                        static_cast<int>(std::min<std::int64_t>(after(top, rows), whole.bottom))});
+  return pieces;
+}
 
 PixelFinder::PixelFinder(GDALDataset& dataset, const std::string& path) {
   std::array<double, 6> place{};

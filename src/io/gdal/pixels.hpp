@@ -48,6 +48,19 @@ class PixelReader {
   GdalMessages messages_;
 };
 
+/// A part of a raster: columns and rows from the north-west, without those at `right` and `bottom`.
+struct RasterPart {
+  int left = 0, top = 0, right = 0, bottom = 0;
+
+  int columns() const { return right - left; }
+  int rows() const { return bottom - top; }
+};
+
+/// Cuts a part of a raster into pieces of about two million pixels along the blocks in which the file is packed, whole
+/// rows where they are rows: each block is unpacked once, however wide the raster and small the cache of GDAL. From the
+/// north-west, row by row of pieces.
+std::vector<RasterPart> pieces_of(GDALRasterBand& band, const RasterPart& whole);
+
 /// Visits the cells of a grid in squares, so that a raster in any direction is read part by part.
 template <class Visit>
 void in_squares(const Grid& grid, Visit visit) {

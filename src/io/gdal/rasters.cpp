@@ -7,6 +7,7 @@
 
 #include "dataset.hpp"
 #include "dem_warning.hpp"
+#include "pixels.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
@@ -125,7 +126,7 @@ void check_band(GDALRasterBand& band, const std::string& path, std::vector<std::
   warnings.push_back(path + ": unknown unit '" + band.GetUnitType() + "' of the heights: taken as metres");
 }
 
-// Rows of the file in blocks: heights in metres with NaN for what is missing.
+/// Pieces of the file: heights in metres with NaN for what is missing.
 class HeightReader {
  public:
   HeightReader(GDALRasterBand& band, std::string path) : band_(band), path_(std::move(path)) {
@@ -137,24 +138,25 @@ class HeightReader {
     masked_ = (band.GetMaskFlags() & GMF_ALL_VALID) == 0;
   }
 
-  // Row `row`, 0 in the north.
-  const std::vector<double>& row(int row) {
-    const int columns = band_.GetXSize();
-    values_.resize(columns);
-    mask_.assign(columns, 255);
-    if (band_.RasterIO(GF_Read, 0, row, columns, 1, values_.data(), columns, 1, GDT_Float64, 0, 0, nullptr) !=
-            CE_None ||
-        (masked_ && band_.GetMaskBand()->RasterIO(GF_Read, 0, row, columns, 1, mask_.data(), columns, 1, GDT_Byte, 0, 0,
-                                                  nullptr) != CE_None))
-      throw InputError(path_ + ": row " + std::to_string(row) + " cannot be read: " + messages_.take());
-    for (int i = 0; i < columns; ++i) {
+  /// The heights of a piece, row by row from the north.
+  const std::vector<double>& read(const RasterPart& part) {
+    const int columns = part.columns(), rows = part.rows();
+    values_.resize(std::size_t(columns) * rows);
+    mask_.assign(values_.size(), 255);
+    if (band_.RasterIO(GF_Read, part.left, part.top, columns, rows, values_.data(), columns, rows, GDT_Float64, 0, 0,
+                       nullptr) != CE_None ||
+        (masked_ && band_.GetMaskBand()->RasterIO(GF_Read, part.left, part.top, columns, rows, mask_.data(), columns,
+                                                  rows, GDT_Byte, 0, 0, nullptr) != CE_None))
+      throw InputError(path_ + ": rows " + std::to_string(part.top) + " to " + std::to_string(part.bottom - 1) +
+                       " cannot be read: " + messages_.take());
+    for (std::size_t i = 0; i < values_.size(); ++i) {
       const bool there = mask_[i] != 0 && std::isfinite(values_[i]);
       values_[i] = there ? values_[i] * scale_ + offset_ : std::numeric_limits<double>::quiet_NaN();
     }
     return values_;
   }
 
-  // The value of a height as stored in the file.
+  /// The value of a height as stored in the file.
   double stored(double height) const { return (height - offset_) / scale_; }
 
  private:
@@ -181,21 +183,22 @@ void read_heights(GDALRasterBand& band, const std::string& path, Terrain& terrai
   HeightReader reader(band, path);
   std::uint64_t known = 0, zeros = 0;
   double lowest_other = std::numeric_limits<double>::infinity();
-  for (int row = 0; row < grid.rows; ++row) {
-    const std::vector<double>& heights = reader.row(row);
-    if (row % 64 == 0) terrain.heights.values.memory().keep_below_limit();
-    float* out = terrain.heights.values.data() + grid.index(0, grid.rows - 1 - row);
-    for (int column = 0; column < grid.columns; ++column) {
-      const double height = heights[column];
-      out[column] = static_cast<float>(height);
-      if (std::isnan(height)) continue;
-      if (!(height >= kLowest && height <= kHighest))
-        refuse_height(path, column, row, height, text_of(reader.stored(height)));
-      ++known;
-      if (height == 0.0)
-        ++zeros;
-      else
-        lowest_other = std::min(lowest_other, height);
+  for (const RasterPart& part : pieces_of(band, {0, 0, grid.columns, grid.rows})) {
+    const double* height = reader.read(part).data();
+    for (int row = part.top; row < part.bottom; ++row) {
+      if (row % 64 == 0) terrain.heights.values.memory().keep_below_limit();
+      float* out = terrain.heights.values.data() + grid.index(part.left, grid.rows - 1 - row);
+      for (int column = part.left; column < part.right; ++column, ++height, ++out) {
+        *out = static_cast<float>(*height);
+        if (std::isnan(*height)) continue;
+        if (!(*height >= kLowest && *height <= kHighest))
+          refuse_height(path, column, row, *height, text_of(reader.stored(*height)));
+        ++known;
+        if (*height == 0.0)
+          ++zeros;
+        else
+          lowest_other = std::min(lowest_other, *height);
+      }
     }
   }
   if (known == 0)
