@@ -97,7 +97,8 @@ struct DiagnosisRules {
   double many_blocks = 72.0;
   /// Multiple of the trials per block, at most [-], so that five blocks do not ask for thousands.
   double most_of_one = 4.0;
-  /// Trials per block, at least [-]: with fewer, a block that rarely stops is not scored and hides behind the climatology.
+  /// Trials per block, at least [-]: with fewer, a block that rarely stops is not scored and hides behind the
+  /// climatology.
   std::uint32_t fewest_of_one = 20;
 };
 
