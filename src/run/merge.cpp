@@ -18,7 +18,7 @@ namespace {
 
 using io::LoadedScenario;
 
-LoadedScenario scenario_of(const std::string& part, MemoryPolicy memory) {
+LoadedScenario scenario_of(const std::string& part, MemoryPolicy memory, int threads) {
   const fs::path file = fs::path(part) / "scenario.toml";
   for (const fs::path& needed : {fs::path(part) / kCheckpointManifest, file})
     if (!fs::exists(needed))
@@ -26,7 +26,7 @@ LoadedScenario scenario_of(const std::string& part, MemoryPolicy memory) {
                        "); give the folders that talus run --part I/N has written");
   io::RunFlags flags;
   flags.scenario = file.string();
-  return io::load_scenario(flags, nullptr, {memory});
+  return io::load_scenario(flags, nullptr, {memory}, threads);
 }
 
 std::string name_of(const Part& part) {
@@ -85,7 +85,7 @@ Outcome merge(const MergeRequest& request, Observer& observer) {
   const std::unique_ptr<ScratchFile> scratch =
       scratch_file_beside(request.out, memory_limit_of(request.memory, threads));
   const MemoryPolicy memory(scratch.get());
-  LoadedScenario loaded = scenario_of(request.parts.front(), memory);
+  LoadedScenario loaded = scenario_of(request.parts.front(), memory, threads);
   const std::vector<Checkpoint> checkpoints = opened(request.parts, loaded);
   observer.inputs_read();
   io::OutputFolder folder(request.out, request.overwrite);

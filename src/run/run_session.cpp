@@ -99,7 +99,7 @@ void RunSession::load(std::size_t memory) {
 
 void RunSession::read_plan(std::size_t memory, SharedMemory* shared) {
   scratch_ = scratch_file_beside(request_.out, memory);
-  plan_.loaded = io::load_scenario(request_.flags, nullptr, {this->memory(), shared});
+  plan_.loaded = io::load_scenario(request_.flags, nullptr, {this->memory(), shared}, threads_);
   check_number(plan_.rounds, plan_.loaded.scenario);
 }
 

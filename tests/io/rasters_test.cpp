@@ -1,5 +1,6 @@
 #include "talus/io/gdal/rasters.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -165,6 +166,30 @@ TEST_F(Terrains, AnAsciiGridIsReadAndToldHowToGetASystem) {
   EXPECT_FLOAT_EQ(t.heights.at(1, 1), 2.0F);
   EXPECT_TRUE(std::isnan(t.heights.at(1, 0)));
   EXPECT_DOUBLE_EQ(t.heights.grid.cell_x, 5.0);
+}
+
+/// A raster of several pieces: 2 million cells each. Heights follow from the place.
+RasterFile large_raster() {
+  RasterFile file{.columns = 2100, .rows = 2100};
+  for (int row = 0; row < file.rows; ++row)
+    for (int column = 0; column < file.columns; ++column) file.values.push_back(500.0 + 0.25 * row + 0.125 * column);
+  return file;
+}
+
+TEST_F(Terrains, ThreadsDoNotChangeTheHeights) {
+  const std::string dem = large_raster().write(path("dem.tif"));
+  const Terrain one = read_terrain(dem), four = read_terrain(dem, {}, 4);
+  for (const auto& [column, row] : {std::pair{0, 0}, {2099, 0}, {1050, 1234}, {2099, 2099}})
+    EXPECT_FLOAT_EQ(four.heights.at(column, row), static_cast<float>(500.0 + 0.25 * (2099 - row) + 0.125 * column));
+  EXPECT_TRUE(std::ranges::equal(one.heights.values, four.heights.values));
+}
+
+TEST_F(Terrains, ThreadsDoNotChangeTheFaultThatIsNamed) {
+  RasterFile file = large_raster();
+  for (const int row : {300, 1100, 1101, 2099}) file.values[static_cast<std::size_t>(row) * 2100 + 17] = 99999.0;
+  const std::string dem = file.write(path("dem.tif"));
+  for (const int threads : {1, 2, 4})
+    expect_input_error([&] { read_terrain(dem, {}, threads); }, {"99999 m", "column 17, row 300 "});
 }
 
 TEST_F(Terrains, WhatIsNoRasterIsRefused) {

@@ -7,7 +7,7 @@
 
 #include "dataset.hpp"
 #include "dem_warning.hpp"
-#include "pixels.hpp"
+#include "heights.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
@@ -16,8 +16,6 @@
 namespace talus::io {
 
 namespace {
-
-constexpr double kLowest = -500.0, kHighest = 9000.0;  // heights on the earth, with room to spare [m]
 
 std::string numbers_text(const std::array<double, 6>& numbers) {
   std::string text;
@@ -126,91 +124,6 @@ void check_band(GDALRasterBand& band, const std::string& path, std::vector<std::
   warnings.push_back(path + ": unknown unit '" + band.GetUnitType() + "' of the heights: taken as metres");
 }
 
-/// Pieces of the file: heights in metres with NaN for what is missing.
-class HeightReader {
- public:
-  HeightReader(GDALRasterBand& band, std::string path) : band_(band), path_(std::move(path)) {
-    int given = 0;
-    scale_ = band.GetScale(&given);
-    if (given == 0) scale_ = 1.0;
-    offset_ = band.GetOffset(&given);
-    if (given == 0) offset_ = 0.0;
-    masked_ = (band.GetMaskFlags() & GMF_ALL_VALID) == 0;
-  }
-
-  /// The heights of a piece, row by row from the north.
-  const std::vector<double>& read(const RasterPart& part) {
-    const int columns = part.columns(), rows = part.rows();
-    values_.resize(std::size_t(columns) * rows);
-    mask_.assign(values_.size(), 255);
-    if (band_.RasterIO(GF_Read, part.left, part.top, columns, rows, values_.data(), columns, rows, GDT_Float64, 0, 0,
-                       nullptr) != CE_None ||
-        (masked_ && band_.GetMaskBand()->RasterIO(GF_Read, part.left, part.top, columns, rows, mask_.data(), columns,
-                                                  rows, GDT_Byte, 0, 0, nullptr) != CE_None))
-      throw InputError(path_ + ": rows " + std::to_string(part.top) + " to " + std::to_string(part.bottom - 1) +
-                       " cannot be read: " + messages_.take());
-    for (std::size_t i = 0; i < values_.size(); ++i) {
-      const bool there = mask_[i] != 0 && std::isfinite(values_[i]);
-      values_[i] = there ? values_[i] * scale_ + offset_ : std::numeric_limits<double>::quiet_NaN();
-    }
-    return values_;
-  }
-
-  /// The value of a height as stored in the file.
-  double stored(double height) const { return (height - offset_) / scale_; }
-
- private:
-  GDALRasterBand& band_;
-  std::string path_;
-  double scale_ = 1.0, offset_ = 0.0;
-  bool masked_ = false;
-  std::vector<double> values_;
-  std::vector<std::uint8_t> mask_;
-  GdalMessages messages_;
-};
-
-[[noreturn]] void refuse_height(const std::string& path, int column, int row, double height,
-                                const std::string& stored) {
-  throw InputError(path + ": height " + text_of(height) + " m in column " + std::to_string(column) + ", row " +
-                   std::to_string(row) + " (from 0 in the north-west), must be " + text_of(kLowest) + " to " +
-                   text_of(kHighest) + " m: if it stands for missing values, declare it with " +
-                   edit_command(path, "-a_nodata " + stored) +
-                   (height > kHighest && height < 1e5 ? "; or are the heights in feet?" : ""));
-}
-
-void read_heights(GDALRasterBand& band, const std::string& path, Terrain& terrain) {
-  Grid& grid = terrain.heights.grid;
-  HeightReader reader(band, path);
-  std::uint64_t known = 0, zeros = 0;
-  double lowest_other = std::numeric_limits<double>::infinity();
-  for (const RasterPart& part : pieces_of(band, {0, 0, grid.columns, grid.rows})) {
-    const double* height = reader.read(part).data();
-    for (int row = part.top; row < part.bottom; ++row) {
-      if (row % 64 == 0) terrain.heights.values.memory().keep_below_limit();
-      float* out = terrain.heights.values.data() + grid.index(part.left, grid.rows - 1 - row);
-      for (int column = part.left; column < part.right; ++column, ++height, ++out) {
-        *out = static_cast<float>(*height);
-        if (std::isnan(*height)) continue;
-        if (!(*height >= kLowest && *height <= kHighest))
-          refuse_height(path, column, row, *height, text_of(reader.stored(*height)));
-        ++known;
-        if (*height == 0.0)
-          ++zeros;
-        else
-          lowest_other = std::min(lowest_other, *height);
-      }
-    }
-  }
-  if (known == 0)
-    throw InputError(path + ": all cells are missing values, must hold heights: is its nodata value right? (gdalinfo " +
-                     shell_word(path) + ")");
-  if (zeros > 0 && lowest_other > 50.0 && zeros < known)
-    terrain.warnings.push_back(
-        path + ": " + std::to_string(zeros) + " cells have the height 0 and all others more than " +
-        text_of(std::floor(lowest_other)) + " m: if 0 stands for missing values, declare it with " +
-        edit_command(path, "-a_nodata 0"));
-}
-
 }  // namespace
 
 MapExtent Terrain::extent() const {
@@ -218,7 +131,7 @@ MapExtent Terrain::extent() const {
   return {g.west, g.south, g.west + g.width(), g.south + g.height()};
 }
 
-Terrain read_terrain(const std::string& path, const RasterMemory& memory) {
+Terrain read_terrain(const std::string& path, const RasterMemory& memory, int threads) {
   const Dataset dataset = open_dataset(path, GDAL_OF_RASTER);
   GdalMessages messages;
   if (dataset->GetRasterCount() < 1)
@@ -244,7 +157,7 @@ Terrain read_terrain(const std::string& path, const RasterMemory& memory) {
                                " bands: the first is taken as heights");
   terrain.heights.grid = grid;
   fill_raster(terrain.heights, std::numeric_limits<float>::quiet_NaN(), memory,
-              [&] { read_heights(band, path, terrain); });
+              [&] { read_heights(path, terrain, threads); });
   for (std::string& line : dem_warnings(path, dem_figures(terrain.heights), std::min(grid.cell_x, grid.cell_y)))
     terrain.warnings.push_back(std::move(line));
   return terrain;

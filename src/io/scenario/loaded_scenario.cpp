@@ -163,7 +163,8 @@ void record_inputs(const ScenarioSpec& spec, LoadedScenario& out) {
 
 }  // namespace
 
-LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* all_faults, const RasterMemory& memory) {
+LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* all_faults, const RasterMemory& memory,
+                             int threads) {
   std::vector<std::string> faults;
   ScenarioSpec spec = read_spec(flags, faults);
   check_files(spec, faults);
@@ -181,7 +182,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
       faults.emplace_back(error.what());
     }
   };
-  Terrain terrain = read_terrain(spec.dem.path, memory);
+  Terrain terrain = read_terrain(spec.dem.path, memory, threads);
   out.warnings = terrain.warnings;
   out.geo = terrain.geo;
   Scenario parts = spec.values;

@@ -22,6 +22,8 @@ struct Terrain {
 /// Missing (NaN): nodata value, mask, alpha, NaN, infinity. Scale and offset of the band are applied. Throws
 /// InputError if it is rotated, upside down, without place or system, in degrees or feet, has less than 2 x 2 cells or
 /// none with a height, or holds heights outside [-500, 9000] m that are not declared as missing.
-Terrain read_terrain(const std::string& path, const RasterMemory& memory = {});
+///
+/// @param threads  that read pieces of the file at once; heights and messages do not depend on it
+Terrain read_terrain(const std::string& path, const RasterMemory& memory = {}, int threads = 1);
 
 }  // namespace talus::io

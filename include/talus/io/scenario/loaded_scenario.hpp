@@ -40,9 +40,10 @@ struct RunFlags {
 /// Reads and checks everything. Throws InputError, one line; `all_faults` gets every fault of the settings (for
 /// `check`).
 ///
-/// @param memory  for the rasters
+/// @param memory   for the rasters
+/// @param threads  that read the DEM
 LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* all_faults = nullptr,
-                             const RasterMemory& memory = {});
+                             const RasterMemory& memory = {}, int threads = 1);
 
 /// Multiplies the trajectories by the number of rounds. Leaves `settings` as they are.
 void set_rounds(LoadedScenario& loaded, std::uint32_t rounds);

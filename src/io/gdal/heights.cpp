@@ -1,0 +1,178 @@
+#include "heights.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <mutex>
+
+#include "dataset.hpp"
+#include "pixels.hpp"
+#include "talus/base/error.hpp"
+#include "talus/base/shell.hpp"
+#include "talus/base/text.hpp"
+
+namespace talus::io {
+namespace {
+
+constexpr double kLowest = -500.0, kHighest = 9000.0;  // heights on the earth, with room to spare [m]
+constexpr int kMostReaders = 4;                        // pieces at once, of 18 MB each
+
+/// Pieces of the file: heights in metres with NaN for what is missing.
+class HeightReader {
+ public:
+  explicit HeightReader(const std::string& path)
+      : path_(path), dataset_(open_dataset(path, GDAL_OF_RASTER)), band_(*dataset_->GetRasterBand(1)) {
+    int given = 0;
+    scale_ = band_.GetScale(&given);
+    if (given == 0) scale_ = 1.0;
+    offset_ = band_.GetOffset(&given);
+    if (given == 0) offset_ = 0.0;
+    masked_ = (band_.GetMaskFlags() & GMF_ALL_VALID) == 0;
+  }
+
+  /// The heights of a piece, row by row from the north.
+  const std::vector<double>& read(const RasterPart& part) {
+    const int columns = part.columns(), rows = part.rows();
+    values_.resize(std::size_t(columns) * rows);
+    mask_.assign(values_.size(), 255);
+    if (band_.RasterIO(GF_Read, part.left, part.top, columns, rows, values_.data(), columns, rows, GDT_Float64, 0, 0,
+                       nullptr) != CE_None ||
+        (masked_ && band_.GetMaskBand()->RasterIO(GF_Read, part.left, part.top, columns, rows, mask_.data(), columns,
+                                                  rows, GDT_Byte, 0, 0, nullptr) != CE_None))
+      throw InputError(path_ + ": rows " + std::to_string(part.top) + " to " + std::to_string(part.bottom - 1) +
+                       " cannot be read: " + messages_.take());
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      const bool there = mask_[i] != 0 && std::isfinite(values_[i]);
+      values_[i] = there ? values_[i] * scale_ + offset_ : std::numeric_limits<double>::quiet_NaN();
+    }
+    return values_;
+  }
+
+  /// The value of a height as stored in the file.
+  double stored(double height) const { return (height - offset_) / scale_; }
+
+ private:
+  const std::string& path_;
+  const Dataset dataset_;
+  GDALRasterBand& band_;
+  double scale_ = 1.0, offset_ = 0.0;
+  bool masked_ = false;
+  std::vector<double> values_;
+  std::vector<std::uint8_t> mask_;
+  GdalMessages messages_;
+};
+
+[[noreturn]] void refuse_height(const std::string& path, int column, int row, double height,
+                                const std::string& stored) {
+  throw InputError(path + ": height " + text_of(height) + " m in column " + std::to_string(column) + ", row " +
+                   std::to_string(row) + " (from 0 in the north-west), must be " + text_of(kLowest) + " to " +
+                   text_of(kHighest) + " m: if it stands for missing values, declare it with " +
+                   edit_command(path, "-a_nodata " + stored) +
+                   (height > kHighest && height < 1e5 ? "; or are the heights in feet?" : ""));
+}
+
+/// Counts of heights: the same in any order of the pieces.
+struct Counts {
+  std::uint64_t known = 0, zeros = 0;
+  double lowest_other = std::numeric_limits<double>::infinity();  // of those that are not 0 [m]
+
+  void add(double height) {
+    ++known;
+    if (height == 0.0)
+      ++zeros;
+    else
+      lowest_other = std::min(lowest_other, height);
+  }
+  void add(const Counts& other) {
+    known += other.known;
+    zeros += other.zeros;
+    lowest_other = std::min(lowest_other, other.lowest_other);
+  }
+};
+
+/// Reads one piece. Throws InputError if it cannot be read or holds what is no height.
+void read_piece(HeightReader& reader, const std::string& path, const RasterPart& part, Raster<float>& heights,
+                Counts& counts) {
+  const Grid& grid = heights.grid;
+  const double* height = reader.read(part).data();
+  for (int row = part.top; row < part.bottom; ++row) {
+    if (row % 64 == 0) heights.values.memory().keep_below_limit();
+    float* out = heights.values.data() + grid.index(part.left, grid.rows - 1 - row);
+    for (int column = part.left; column < part.right; ++column, ++height, ++out) {
+      *out = static_cast<float>(*height);
+      if (std::isnan(*height)) continue;
+      if (!(*height >= kLowest && *height <= kHighest))
+        refuse_height(path, column, row, *height, text_of(reader.stored(*height)));
+      counts.add(*height);
+    }
+  }
+}
+
+/// Reads all pieces, several at once. Pieces are handed out in their order; after a fault those before it are still
+/// read, so that the fault that is thrown is the first one of the file.
+class ParallelReading {
+ public:
+  ParallelReading(const std::string& path, std::vector<RasterPart> pieces, Raster<float>& heights)
+      : path_(path), pieces_(std::move(pieces)), heights_(heights), first_fault_(pieces_.size()) {}
+
+  Counts read(int threads) {
+#pragma omp parallel num_threads(threads)
+    work();
+    if (fault_) std::rethrow_exception(fault_);
+    return counts_;
+  }
+
+ private:
+  void work() noexcept {
+    std::size_t piece = 0;  // a file that cannot be opened is a fault of the first one
+    try {
+      HeightReader reader(path_);
+      Counts mine;
+      while (next(piece)) read_piece(reader, path_, pieces_[piece], heights_, mine);
+      const std::lock_guard guard(mutex_);
+      counts_.add(mine);
+    } catch (...) {
+      const std::lock_guard guard(mutex_);
+      if (fault_ && piece >= first_fault_) return;
+      fault_ = std::current_exception();
+      first_fault_ = piece;
+    }
+  }
+
+  bool next(std::size_t& piece) {
+    const std::lock_guard guard(mutex_);
+    piece = next_;
+    if (piece >= first_fault_) return false;
+    ++next_;
+    return true;
+  }
+
+  const std::string& path_;
+  const std::vector<RasterPart> pieces_;
+  Raster<float>& heights_;
+  std::mutex mutex_;  // guards the members below
+  std::size_t next_ = 0, first_fault_;
+  std::exception_ptr fault_;
+  Counts counts_;
+};
+
+}  // namespace
+
+void read_heights(const std::string& path, Terrain& terrain, int threads) {
+  const Grid& grid = terrain.heights.grid;
+  const Dataset dataset = open_dataset(path, GDAL_OF_RASTER);
+  std::vector<RasterPart> pieces = pieces_of(*dataset->GetRasterBand(1), {0, 0, grid.columns, grid.rows});
+  const int at_once = std::clamp(std::min(threads, static_cast<int>(pieces.size())), 1, kMostReaders);
+  const Counts found = ParallelReading(path, std::move(pieces), terrain.heights).read(at_once);
+  if (found.known == 0)
+    throw InputError(path + ": all cells are missing values, must hold heights: is its nodata value right? (gdalinfo " +
+                     shell_word(path) + ")");
+  if (found.zeros > 0 && found.lowest_other > 50.0 && found.zeros < found.known)
+    terrain.warnings.push_back(
+        path + ": " + std::to_string(found.zeros) + " cells have the height 0 and all others more than " +
+        text_of(std::floor(found.lowest_other)) + " m: if 0 stands for missing values, declare it with " +
+        edit_command(path, "-a_nodata 0"));
+}
+
+}  // namespace talus::io
