@@ -6,6 +6,7 @@
 #include <nlopt.hpp>
 
 #include "local_model.hpp"
+#include "talus/base/elementary.hpp"
 
 namespace talus {
 namespace {
@@ -104,12 +105,12 @@ class Search {
     std::vector<Eigen::VectorXd> starts{problem_.start()};
     if (options_.starts <= 1) return starts;
     double root = 2.0;  // of x^(n + 1) = x + 1: the generalised golden ratio (Roberts 2018)
-    for (int k = 0; k < 40; ++k) root = std::pow(1.0 + root, 1.0 / static_cast<double>(n + 1));
+    for (int k = 0; k < 40; ++k) root = power(1.0 + root, 1.0 / static_cast<double>(n + 1));
     std::vector<std::pair<double, Eigen::VectorXd>> tried;
     for (int k = 1; k <= kScreened * static_cast<int>(n); ++k) {
       Eigen::VectorXd z(n);
       for (Eigen::Index i = 0; i < n; ++i) {
-        const double u = std::fmod(0.5 + k * std::pow(root, -static_cast<double>(i + 1)), 1.0);
+        const double u = std::fmod(0.5 + k * power(root, -static_cast<double>(i + 1)), 1.0);
         z[i] = std::clamp(3.0 * u - 1.5, lower_[i], upper_[i]);
       }
       tried.emplace_back(at(z, {options_.trials}).objective, z);

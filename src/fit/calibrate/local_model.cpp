@@ -5,11 +5,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/base/elementary.hpp"
 #include "talus/base/random.hpp"
 #include "talus/fit/score/bootstrap.hpp"
 
 namespace talus {
 namespace {
+
+/// Eigen cuts large products by the sizes of the processor's caches, which changes the order of their sums. These are
+/// the sizes of a common processor (first, second, third level), for every machine.
+[[maybe_unused]] const bool kSameSumsEverywhere = [] {
+  Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20);
+  return true;
+}();
 
 /// Weight of each row in the total, for weights of the blocks: the weighted mean over the groups of weighted means.
 Eigen::VectorXd row_weights(const Score& score, std::span<const double> block) {
@@ -65,7 +73,7 @@ LocalModel::LocalModel(const FitProblem& problem, const FitOptions& options, con
     values.row(i) = e.rows;
     const double away = places.col(i).squaredNorm() / static_cast<double>(n);  // 1 is typical of the design
     const double precision = static_cast<double>(e.trials) / options.trials;
-    weights[i] = away <= options.rules.local ? precision * std::exp(-0.5 * away) : 0.0;
+    weights[i] = away <= options.rules.local ? precision * exponential(-0.5 * away) : 0.0;
     noise_factor_[i] = 1.0 / std::sqrt(precision);
   }
   const Eigen::VectorXd ones = row_weights(score_, std::vector<double>(problem.rows().size(), 1.0));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/base/elementary.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
@@ -15,12 +16,12 @@ constexpr double kReach = 2.5;  // bounds of a ground parameter, in sd from its 
 }  // namespace
 
 double Parameter::value(double z) const {
-  const double free = scale == Scale::Log ? centre * std::exp(sd * z) : centre + sd * z;
+  const double free = scale == Scale::Log ? centre * exponential(sd * z) : centre + sd * z;
   return std::clamp(free, lower, upper);
 }
 
 double Parameter::z(double value) const {
-  return scale == Scale::Log ? std::log(value / centre) / sd : (value - centre) / sd;
+  return scale == Scale::Log ? natural_log(value / centre) / sd : (value - centre) / sd;
 }
 
 std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& start,
@@ -44,8 +45,8 @@ std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& 
       if (p.scale == Parameter::Scale::Log) p.centre = std::max(p.centre, 0.01);
       p.lower = field->min;
       p.upper = field->max;
-      const double low = p.scale == Parameter::Scale::Log ? p.centre * std::exp(-kReach) : p.centre - kReach * p.sd;
-      const double high = p.scale == Parameter::Scale::Log ? p.centre * std::exp(kReach) : p.centre + kReach * p.sd;
+      const double low = p.scale == Parameter::Scale::Log ? p.centre * exponential(-kReach) : p.centre - kReach * p.sd;
+      const double high = p.scale == Parameter::Scale::Log ? p.centre * exponential(kReach) : p.centre + kReach * p.sd;
       p.lower = std::max(p.lower, low);
       p.upper = std::min(p.upper, high);
       p.get = [get = field->get, zone](const Model& model) { return get(model.grounds[zone]); };

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "fit/calibrate/amount.hpp"
+#include "talus/base/elementary.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace talus {
@@ -47,7 +48,7 @@ Candidate band(const Campaign& campaign, const Axis& axis, double from, double t
   const auto ratio = [](double Ground::*member) {
     return [member](const Model& m) {
       const std::size_t n = m.grounds.size() / 2;
-      return std::log(m.grounds[n].*member / (m.grounds[0].*member));
+      return natural_log(m.grounds[n].*member / (m.grounds[0].*member));
     };
   };
   return {"undeclared-zone",
@@ -59,8 +60,8 @@ Candidate band(const Campaign& campaign, const Axis& axis, double from, double t
                  const std::size_t n = m.grounds.size() / 2;
                  for (std::size_t zone = 0; zone < n; ++zone) {
                    m.grounds[n + zone] = m.grounds[zone];
-                   multiply(m.grounds[n + zone], "En50", std::exp(-v));
-                   multiply(m.grounds[n + zone], "Et50", std::exp(-v));
+                   multiply(m.grounds[n + zone], "En50", exponential(-v));
+                   multiply(m.grounds[n + zone], "Et50", exponential(-v));
                  }
                }),
            amount("undeclared-zone.roughness", "1", 0.0, 0.7, -3.0, 3.0, ratio(&Ground::theta_scale),
@@ -68,7 +69,7 @@ Candidate band(const Campaign& campaign, const Axis& axis, double from, double t
                     const std::size_t n = m.grounds.size() / 2;
                     for (std::size_t zone = 0; zone < n; ++zone) {
                       m.grounds[n + zone].theta_scale = m.grounds[zone].theta_scale;
-                      multiply(m.grounds[n + zone], "theta_scale", std::exp(v));
+                      multiply(m.grounds[n + zone], "theta_scale", exponential(v));
                     }
                   })},
           2,

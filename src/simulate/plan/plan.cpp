@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "talus/base/elementary.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/simulate/scenario/block_class.hpp"
 
@@ -11,8 +12,8 @@ namespace {
 /// Volume at a share, 0..1, of the power law N(>= V) = A V^-b between two bounds: the inverse of its distribution.
 /// Equal bounds give that volume.
 double volume_at(const VolumePowerLaw& law, double share) {
-  const double low = std::pow(law.volume.low, -law.exponent), high = std::pow(law.volume.high, -law.exponent);
-  return std::pow(low - share * (low - high), -1.0 / law.exponent);
+  const double low = power(law.volume.low, -law.exponent), high = power(law.volume.high, -law.exponent);
+  return power(low - share * (low - high), -1.0 / law.exponent);
 }
 
 double diameter_at(const Blocks& blocks, double share_of_class, double share) {
