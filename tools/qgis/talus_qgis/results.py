@@ -2,8 +2,9 @@
 import os
 import re
 
-from qgis.core import (QgsLayerTreeGroup, QgsProcessingContext, QgsProcessingLayerPostProcessorInterface, QgsProject,
-                       QgsProviderRegistry, QgsRasterLayer, QgsVectorLayer)
+from qgis.core import (Qgis, QgsGraduatedSymbolRenderer, QgsLayerTree, QgsLayerTreeGroup, QgsLineSymbol, QgsProcessingContext,
+                       QgsProcessingLayerPostProcessorInterface, QgsProject, QgsProviderRegistry, QgsRasterLayer,
+                       QgsRendererRange, QgsVectorLayer, QgsWkbTypes)
 
 from .texts import tr
 
@@ -24,6 +25,9 @@ HAZARD_CLASS = ORDER.index("hazard_class.tif")
 
 GROUP_MARK = "talus/folder"  # property of the group: the folder of its results
 RANK_MARK = "talus/rank"     # property of a layer: its place in the group
+
+LINES_OF_OBJECTS = "1.4"  # mm, as in src/io/results/vector_style.cpp
+ONE_KIND = "|geometrytype="  # in the source of a layer: one kind of geometry of a file that holds several
 
 CLOCKS = 2.0  # s by which the clock of a disk may be behind
 
@@ -64,10 +68,12 @@ def files_of(folder, begin):
         if kind == ".tif":
             found.append((path, title_of(name), name, rank, shown))
             continue
-        for layer in _layers_in(path):
+        for layer, one_kind in _layers_in(path):
             title = title_of(name if layer in ("", stem) else layer)
-            uri = path if not layer else f"{path}|layername={layer}"
-            found.append((uri, title, name, rank, shown))
+            uri = path if not layer else f"{path}|layername={layer}{one_kind}"
+            lines = one_kind.startswith(ONE_KIND + "LineString")  # as there: the lines lie above the areas
+            found.append((uri, tr("{title} (lines)").format(title=title) if lines else title, name,
+                          rank - 0.5 if lines else rank, shown))
     return sorted(found, key=lambda row: _place(row[3], row[1]))
 
 
@@ -77,9 +83,38 @@ def _place(rank, title):
 
 
 def _layers_in(path):
-    details = QgsProviderRegistry.instance().querySublayers(path) if hasattr(QgsProviderRegistry.instance(),
-                                                                             "querySublayers") else []
-    return [d.name() for d in details] or [""]
+    """(name, kind of geometry) of the layers in a file: QGIS draws one kind per layer; "" where there is only one."""
+    details = QgsProviderRegistry.instance().querySublayers(path, Qgis.SublayerQueryFlag.ResolveGeometryType)
+    names = [d.name() for d in details]
+    return [(d.name(), ONE_KIND + QgsWkbTypes.displayString(QgsWkbTypes.flatType(d.wkbType()))
+             if names.count(d.name()) > 1 else "") for d in details] or [("", "")]
+
+
+def _same_layer(source, other):
+    """Whether two sources show the same features of a file, or one of them a part of those of the other."""
+    return source == other or (source.split(ONE_KIND)[0] == other.split(ONE_KIND)[0] and
+                               (ONE_KIND in source) != (ONE_KIND in other))
+
+
+def _apply_style_in_file(layer):
+    """The style that the program has written into the GeoPackage: Processing loads layers without it."""
+    if layer.loadDefaultStyle()[1] or ONE_KIND not in layer.source():
+        return
+    areas = QgsVectorLayer(layer.source().split(ONE_KIND)[0] + ONE_KIND + "Polygon", "", "ogr")  # with its style
+    if layer.geometryType() == QgsWkbTypes.LineGeometry and isinstance(areas.renderer(), QgsGraduatedSymbolRenderer):
+        layer.setRenderer(_in_lines(areas.renderer()))
+
+
+def _in_lines(of_areas):
+    """The same classes and colours for lines."""
+    classes = [QgsRendererRange(entry.lowerValue(), entry.upperValue(), QgsLineSymbol.createSimple(
+        {"line_color": entry.symbol().color().name(), "line_width": LINES_OF_OBJECTS}), entry.label())
+        for entry in of_areas.ranges()]
+    return QgsGraduatedSymbolRenderer(of_areas.classAttribute(), classes)
+
+
+def _rank(layer):
+    return float(layer.customProperty(RANK_MARK, 0))
 
 
 def load(folder, rows, title, context, group_folder=None):
@@ -104,7 +139,9 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
 
     def postProcessLayer(self, layer, context, feedback):
         layer.setName(self.name)
-        if os.path.exists(self.style) and not (isinstance(layer, QgsVectorLayer) and self._is_of_raster()):
+        if isinstance(layer, QgsVectorLayer) and "|layername=" in layer.source():
+            _apply_style_in_file(layer)
+        elif os.path.exists(self.style) and not (isinstance(layer, QgsVectorLayer) and self._is_of_raster()):
             layer.loadNamedStyle(self.style)
         layer.setCustomProperty(RANK_MARK, self.rank)
         project = layer.project() or context.project() or QgsProject.instance()
@@ -119,27 +156,32 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
 
     def _move(self, node, root):
         group = self._group(root)
-        place, shown = 0, self.shown
+        shown = self.shown
         for other in group.findLayers():
             layer = other.layer()
             if layer is None or layer.id() == node.layerId():
                 continue
-            if layer.source() == node.layer().source():  # of an earlier run into the same folder
+            if _same_layer(layer.source(), node.layer().source()):  # of an earlier run into the same folder
                 node.layer().project().removeMapLayer(layer.id())
                 continue
-            rank = int(layer.customProperty(RANK_MARK, 0))
             if isinstance(layer, QgsRasterLayer) and isinstance(node.layer(), QgsRasterLayer):
                 if self.rank == HAZARD_CLASS:  # nothing shines through the hazard class, whichever of the two comes first
                     other.setItemVisibilityChecked(False)
-                elif rank == HAZARD_CLASS:
+                elif _rank(layer) == HAZARD_CLASS:
                     shown = False
-            if _place(rank, layer.name()) < _place(self.rank, self.name):
-                place += 1
+        # QGIS may have put the node itself into the group, before the layer that was current
+        place = next((i for i, child in enumerate(group.children()) if self._is_below(child, node)), len(group.children()))
         copy = node.clone()
         copy.setItemVisibilityChecked(shown)
         copy.setExpanded(shown)
         group.insertChildNode(place, copy)
         node.parent().removeChildNode(node)
+
+    def _is_below(self, child, node):
+        """Whether a child of the group has its place below the layer."""
+        if not QgsLayerTree.isLayer(child) or child.layer() is None or child.layerId() == node.layerId():
+            return False
+        return _place(_rank(child.layer()), child.layer().name()) > _place(self.rank, self.name)
 
     def _group(self, root):
         for group in root.findGroups():

@@ -181,6 +181,7 @@ GERMAN = {
     "Band of the raster that holds the heights.": "Band des Rasters mit den Höhen.",
     "Field of the sources that is read as {field}.": "Feld der Anbruchgebiete, das als {field} gelesen wird.",
     "Folder of the results": "Ordner der Ergebnisse",
+    "{title} (lines)": "{title} (Linien)",
     "Talus runs the program talus of this computer. Every parameter is explained on the pages of its documentation.":
         "Talus startet das Programm talus dieses Rechners. Seine Dokumentation erklärt jeden Parameter.",
     "round": "Runde",

@@ -1,0 +1,130 @@
+"""The plug-in in the window of QGIS, drawn off the screen: the dialog runs an algorithm in a task of its own and loads the
+results, as the button Run does, and layers come to where QGIS puts new ones, before the layer that is current.
+
+Run by tools/scripts/checks/qgis.sh, which sets HOME, QGIS_PLUGINPATH and TALUS.
+"""
+import os
+import shutil
+import sys
+import tempfile
+import time
+import unittest
+
+from osgeo import gdal
+from qgis.core import (QgsApplication, QgsLayerTreeModel, QgsLayerTreeRegistryBridge, QgsProject, QgsVectorLayer)
+from qgis.gui import QgsGui, QgsLayerTreeView
+from qgis.PyQt.QtWidgets import QTextEdit
+
+sys.path.append("/usr/share/qgis/python/plugins")  # of Processing
+sys.path.append(os.environ["QGIS_PLUGINPATH"])
+
+VALLEY = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../data/valley")
+PATIENCE = 120.0  # s for a run of a few hundred paths
+POINTS, LINES, AREAS = range(3)
+
+application = None
+
+
+def setUpModule():
+    global application
+    application = QgsApplication([], True)
+    application.initQgis()
+    from processing.core.Processing import Processing
+    Processing.initialize()
+    from talus_qgis.provider import TalusProvider
+    application.talus = TalusProvider()
+    QgsApplication.processingRegistry().addProvider(application.talus)
+    QgsGui.instance()
+
+
+class Window(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp(prefix="talus-qgis-")
+        cls.addClassCleanup(shutil.rmtree, cls.folder, True)
+        cls.out = os.path.join(cls.folder, "out")
+        cls.view = QgsLayerTreeView()
+        cls.model = QgsLayerTreeModel(QgsProject.instance().layerTreeRoot())
+        cls.view.setModel(cls.model)
+        bridge = QgsProject.instance().layerTreeRegistryBridge()
+        bridge.addedLayersToLayerTree.connect(cls.select)  # as QgisApp::autoSelectAddedLayer
+        cls.view.selectionModel().currentChanged.connect(cls.insert_before_current)
+        cls.logs = [cls.run_dialog("run", {"DEM": os.path.join(VALLEY, "dem.tif"), "OUT": cls.out, "TRAJECTORIES": 5,
+                                           "SOURCES": os.path.join(VALLEY, "cliffs.shp"), "FREQUENCY_FIELD": "frequency",
+                                           "SCREENS": os.path.join(VALLEY, "screens.gpkg")}),
+                    cls.run_dialog("hazard", {"FOLDER": cls.out, "OBJECTS": cls.objects()}),
+                    cls.run_dialog("barrier", {"FOLDER": cls.out, "SCREEN": "road"})]
+        cls.group = QgsProject.instance().layerTreeRoot().findGroup("Talus: out")
+        cls.project = QgsProject()
+        cls.project.read(os.path.join(cls.out, "talus.qgs"))
+
+    @classmethod
+    def select(cls, layers):
+        cls.view.setCurrentLayer(layers[0])
+
+    @classmethod
+    def insert_before_current(cls, *_):
+        """As QgisApp::updateNewLayerInsertionPoint of QGIS 3.22."""
+        index, node = cls.view.currentIndex(), cls.view.currentNode()
+        parent = (node if node.nodeType() == 0 else node.parent()) if node else None
+        QgsProject.instance().layerTreeRegistryBridge().setLayerInsertionPoint(QgsLayerTreeRegistryBridge.InsertionPoint(
+            parent or QgsProject.instance().layerTreeRoot(), index.row() if index.isValid() else 0))
+
+    @classmethod
+    def objects(cls):
+        """The road, 6 m wide, and the houses in one layer, as docs/road-job.md makes it."""
+        path = os.path.join(cls.folder, "objects.gpkg")
+        gdal.VectorTranslate(path, os.path.join(VALLEY, "screens.gpkg"), format="GPKG", layerName="objects",
+                             geometryType="GEOMETRY", SQLDialect="sqlite", SQLStatement="SELECT geom, 'forest road' AS name,"
+                             " CAST(6 AS REAL) AS width FROM screens WHERE id = 'road'")
+        gdal.VectorTranslate(path, os.path.join(VALLEY, "houses.gpkg"), format="GPKG", layerName="objects",
+                             accessMode="append")
+        return path
+
+    @classmethod
+    def run_dialog(cls, name, values):
+        """Presses Run in the dialog; returns the text of its log."""
+        from processing.gui.AlgorithmDialog import AlgorithmDialog
+        dialog, done = AlgorithmDialog(QgsApplication.processingRegistry().createAlgorithmById("talus:" + name)), []
+        log = dialog.findChild(QTextEdit, "txtLog")
+        dialog.mainWidget().setParameters(values)
+        dialog.algorithmFinished.connect(lambda good, _: done.extend([good, log.toPlainText()]))  # then it closes
+        dialog.runAlgorithm()
+        last = time.monotonic() + PATIENCE
+        while not done and time.monotonic() < last:
+            application.processEvents()
+            time.sleep(0.01)
+        for _ in range(20):  # what the tree of layers does later
+            application.processEvents()
+        if not done or not done[0]:
+            raise AssertionError(done)
+        return done[1]
+
+    maxDiff = None
+
+    def test_order_and_titles_are_those_of_the_project(self):
+        wanted = [node.name() for node in self.project.layerTreeRoot().findLayers()][:-1]  # to the hillshade
+        found = [node.name() for node in self.group.findLayers() if node.name() != "Vertices of the paths"]
+        self.assertGreater(len(wanted), 25)
+        self.assertEqual(found, wanted)
+
+    def test_vector_layers_have_the_classes_of_the_project(self):
+        wanted = {node.name(): node.layer() for node in self.project.layerTreeRoot().findLayers()
+                  if isinstance(node.layer(), QgsVectorLayer)}
+        self.assertGreaterEqual(len(wanted), 6)
+        found = {node.name(): node.layer() for node in self.group.findLayers()}
+        for name, layer in wanted.items():
+            loaded = found[name]
+            self.assertEqual(loaded.geometryType(), layer.geometryType(), name)
+            self.assertEqual(loaded.featureCount(), layer.featureCount(), name)
+            self.assertEqual(loaded.renderer().type(), "graduatedSymbol", name)
+            self.assertEqual(self.classes(loaded), self.classes(layer), name)
+
+    @staticmethod
+    def classes(layer):
+        return [(entry.lowerValue(), entry.upperValue(), entry.label(), entry.symbol().color().name(),
+                 type(entry.symbol()).__name__) for entry in layer.renderer().ranges()]
+
+
+if __name__ == "__main__":
+    unittest.main()
