@@ -2,6 +2,7 @@
 
 Run by tools/scripts/checks/qgis.sh, which sets HOME, QGIS_PLUGINPATH and TALUS.
 """
+import csv
 import glob
 import json
 import os
@@ -18,7 +19,8 @@ import xml.etree.ElementTree as xml
 from osgeo import gdal, ogr, osr
 from qgis.core import (QgsApplication, QgsFeature, QgsField, QgsGeometry, QgsMapRendererParallelJob, QgsMapSettings, QgsProcessingContext,
                        QgsProcessingFeatureSourceDefinition, QgsProcessingFeedback, QgsProcessingModelAlgorithm,
-                       QgsProcessingModelChildAlgorithm, QgsProcessingModelChildParameterSource, QgsProject,
+                       QgsProcessingModelChildAlgorithm, QgsProcessingModelChildParameterSource,
+                       QgsProcessingOutputLayerDefinition, QgsProcessingParameterDefinition, QgsProject,
                        QgsRasterLayer, QgsVectorLayer, QgsVectorLayerJoinInfo)
 from qgis.PyQt.QtCore import QLocale, QSize, QVariant
 from qgis.PyQt.QtGui import QColor
@@ -144,6 +146,23 @@ class Provider(Case):
         self.assertIn("lower-talus-3d", run.parameterDefinition("PRESET").options())
         good, message = run.checkParameterValues({"OUT": "x"}, QgsProcessingContext())
         self.assertFalse(good)
+
+    def test_what_a_newcomer_needs_is_not_under_advanced(self):
+        run = QgsApplication.processingRegistry().algorithmById("talus:run")
+        for name in ("OVERWRITE", "DIAMETER_MIN_FIELD", "DIAMETER_MAX_FIELD", "DIAMETER_FIELD", "OUT", "RESUME"):
+            self.assertFalse(run.parameterDefinition(name).flags() & QgsProcessingParameterDefinition.FlagAdvanced, name)
+        for name in ("DEM", "SOURCES"):
+            self.assertIn("needed without a scenario", run.parameterDefinition(name).description())
+        self.assertIn("their field named frequency is read", run.parameterDefinition("FREQUENCY_FIELD").help())
+        self.assertIn("is read where no field is picked", run.shortHelpString())
+
+    def test_no_parameter_is_called_by_its_flag(self):
+        """Each has words of its own in both languages."""
+        from talus_qgis import texts
+        for algorithm in application.talus.algorithms():
+            for p in algorithm.described():
+                if p["name"] not in ("quiet", "progress", "allow-network", "sources-layer", "field", "memory", "part", "checkpoint"):
+                    self.assertIn(p["name"], texts.LABELS, algorithm.id())
 
     def test_german(self):
         from talus_qgis import texts
@@ -279,7 +298,7 @@ class Commands(Case):
         process.PATIENCE = 0.5
         try:
             with self.assertRaisesRegex(Exception, "Cancelled"):
-                process.run([script], log, ["write"])
+                process.run([script], log, process.Progress(log, ["write"]))
         finally:
             process.PATIENCE = before
         self.assertLess(time.monotonic() - log.cancelled, 2.0)
@@ -289,10 +308,34 @@ class Commands(Case):
         from talus_qgis import process
         said = "echo '{\"phase\": \"write\", \"share\": 1}' >&2"
         log = Log(cancel_at=99.0)
-        process.run([self.script("last", "trap '' TERM", said, "sleep 0.3")], log, ["write"])
+        process.run([self.script("last", "trap '' TERM", said, "sleep 0.3")], log, process.Progress(log, ["write"]))
         self.assertIsNotNone(log.cancelled)
         with self.assertRaisesRegex(Exception, "Cancelled"):
-            process.run([self.script("early", said, "sleep 5")], Log(cancel_at=99.0), ["write"])
+            log = Log(cancel_at=99.0)
+            process.run([self.script("early", said, "sleep 5")], log, process.Progress(log, ["write"]))
+
+    def test_notes_below_a_table_are_warnings(self):
+        from talus_qgis import process
+        log = Log()
+        process.run([self.script("talus", "echo 'table  1'", "echo 'note: too low'", "echo 'warning: too few'")], log,
+                    process.Progress(log, []))
+        self.assertEqual(log.warnings, ["note: too low", "warning: too few"])
+
+    def test_the_help_is_a_page_where_there_is_one(self):
+        from talus_qgis import program
+        here = os.path.dirname(program.__file__)
+        self.assertEqual(program.help_page(), "file://" + os.path.normpath(os.path.join(here, "../../../docs/qgis.md")))
+        os.makedirs(self.path("bin"))
+        os.makedirs(self.path("share/doc/talus/html"))
+        shutil.copy(shutil.which("true"), self.path("bin/talus"))
+        before, os.environ["TALUS"] = os.environ["TALUS"], self.path("bin/talus")
+        try:
+            for name in ("share/doc/talus/qgis.md", "share/doc/talus/html/qgis.html"):
+                with open(self.path(name), "w", encoding="utf-8") as file:
+                    file.write("x")
+            self.assertEqual(program.help_page(), "file://" + self.path("share/doc/talus/html/qgis.html"))
+        finally:
+            os.environ["TALUS"] = before
 
     def test_the_command_of_the_log_can_be_pasted_into_a_shell(self):
         from talus_qgis import process
@@ -454,8 +497,8 @@ class FromPython(Case):
 
     def as_source(self, layer):
         algorithm = QgsApplication.processingRegistry().createAlgorithmById("talus:run")
-        self.kept = algorithm, layer
         context = QgsProcessingContext()
+        self.kept = [*getattr(self, "kept", []), (algorithm, layer, context)]
         context.setProject(QgsProject.instance())
         return algorithm.parameterAsSource({"SOURCES": layer}, "SOURCES", context)
 
@@ -524,6 +567,116 @@ class FromPython(Case):
         self.run_algorithm("run", given)
         self.assertEqual(self.record("virtual")["ends"], self.record("joined")["ends"])
         self.assertEqual(self.record("virtual")["ends"], self.record("given")["ends"])
+
+    def road(self, **more):
+        """The road of the valley alone, in EPSG:4326, with its `id` and a width."""
+        gdal.VectorTranslate(self.path("road.gpkg"), os.path.join(VALLEY, "screens.gpkg"), format="GPKG", layerName="road",
+                             dstSRS="EPSG:4326", SQLDialect="sqlite", SQLStatement="SELECT geom, id, CAST(6 AS INTEGER) AS width"
+                             " FROM screens WHERE id = 'road'", **more)
+        return self.path("road.gpkg") + "|layername=road"
+
+    def test_road_and_houses_are_objects_together(self):
+        """As one layer that GDAL has joined; a single layer is read as it is."""
+        _, good = self.run_algorithm("run", self.inputs(FREQUENCY_FIELD="frequency", TRAJECTORIES=2))
+        self.assertTrue(good)
+        houses = os.path.join(VALLEY, "houses.gpkg")
+        for name, objects in (("one", houses), ("list", [houses]), ("both", [houses, self.road()])):
+            shutil.copytree(self.path("out"), self.path(name))
+            log = Log()
+            _, good = self.run_algorithm("objects", {"FOLDER": self.path(name), "OBJECTS": objects, "LOAD": False}, log)
+            self.assertTrue(good, log.textLog())
+        self.assertEqual((self.written("one_inputs"), self.written("list_inputs")), ([], []))
+        self.assertEqual(len(self.written("both_inputs/objects_*/objects.gpkg")), 1)
+        gdal.VectorTranslate(self.path("by_gdal.gpkg"), houses, format="GPKG", layerName="objects", geometryType="GEOMETRY")
+        gdal.VectorTranslate(self.path("by_gdal.gpkg"), os.path.join(VALLEY, "screens.gpkg"), format="GPKG", layerName="objects",
+                             accessMode="append", SQLDialect="sqlite", addFields=True, SQLStatement="SELECT geom, id, id AS name, "
+                             "6 AS width FROM screens WHERE id = 'road'")
+        shutil.copytree(self.path("out"), self.path("gdal"))
+        subprocess.run([os.environ["TALUS"], "hazard", self.path("gdal"), "--objects", self.path("by_gdal.gpkg"), "-q"], check=True)
+        found, wanted = (self.rows(name + "/objects.csv") for name in ("both", "gdal"))
+        self.assertEqual([row["object"] for row in wanted], [row["object"] for row in found])
+        self.assertEqual(wanted[-1]["object"], "road")
+        self.assertGreater(float(wanted[-1]["trajectories"]), 50.0)
+        self.assertEqual((found[-1]["id"], float(found[-1]["width"])), ("road", 6.0))
+        # to EPSG:4326 and back: some mm, and so a block more or less at the edge
+        self.assertAlmostEqual(float(found[-1]["trajectories"]) / float(wanted[-1]["trajectories"]), 1.0, delta=0.02)
+
+    def test_a_script_may_give_selected_objects(self):
+        self.run_algorithm("run", self.inputs(FREQUENCY_FIELD="frequency", TRAJECTORIES=2))
+        houses = QgsVectorLayer(os.path.join(VALLEY, "houses.gpkg"), "houses", "ogr")
+        houses.selectByIds([2])
+        QgsProject.instance().addMapLayer(houses)
+        self.addCleanup(QgsProject.instance().removeMapLayer, houses.id())
+        chosen = QgsProcessingFeatureSourceDefinition(houses.id(), True)
+        log = Log()
+        _, good = self.run_algorithm("objects", {"FOLDER": self.path("out"), "OBJECTS": chosen, "LOAD": False}, log)
+        self.assertTrue(good, log.textLog())
+        self.assertEqual([row["object"] for row in self.rows("out/objects.csv")], [houses.getFeature(2)["name"]])
+
+    def rows(self, name):
+        with open(self.path(name), encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def test_an_object_layer_that_is_not_there_is_refused(self):
+        self.run_algorithm("run", self.inputs(FREQUENCY_FIELD="frequency", TRAJECTORIES=2))
+        algorithm = QgsApplication.processingRegistry().createAlgorithmById("talus:objects")
+        log, context = Log(), QgsProcessingContext()
+        objects = [os.path.join(VALLEY, "houses.gpkg"), self.path("nowhere.gpkg")]
+        _, good = algorithm.run({"FOLDER": self.path("out"), "OBJECTS": objects, "LOAD": False}, context, log)
+        self.assertFalse(good)
+        self.assertIn("nowhere.gpkg", log.textLog())
+
+    def test_joined_fields_keep_their_values(self):
+        from talus_qgis import layers
+        layer = QgsVectorLayer("LineString?crs=EPSG:2056&field=id:string&field=WIDTH:integer&field=note:integer", "a", "memory")
+        other = QgsVectorLayer("Polygon?crs=EPSG:2056&field=name:string&field=width:double&field=note:string", "b", "memory")
+        for target, shape, values in ((layer, "LineString(2650000 1170000, 2650010 1170000)", ["r", 6, 7]),
+                                      (other, "Polygon((2650000 1170000, 2650010 1170000, 2650000 1170010, 2650000 1170000))",
+                                       ["h", 1.5, "x"])):
+            feature = QgsFeature(target.fields())
+            feature.setGeometry(QgsGeometry.fromWkt(shape))
+            feature.setAttributes(values)
+            target.dataProvider().addFeatures([feature])
+        sources = [self.as_source(layer), self.as_source(other)]
+        joined = layers.Joined(sources, QgsProcessingContext(), Log())
+        file = layers.write_vector(joined, self.path("in"), "objects.gpkg", QgsProcessingContext(), Log())
+        written = ogr.Open(file)
+        rows = [[row.GetField(name) for name in ("id", "width", "note", "name")] + [row.GetGeometryRef().GetGeometryName()]
+                for row in written.GetLayer(0)]
+        self.assertEqual(rows, [["r", 6.0, "7", "r", "LINESTRING"], [None, 1.5, "x", "h", "POLYGON"]])
+
+    def test_an_error_says_what_the_dialog_calls_its_flags(self):
+        inputs = self.inputs(SOURCES=os.path.join(VALLEY, "houses.gpkg"))
+        del inputs["DIAMETER"]
+        log = Log()
+        _, good = self.run_algorithm("run", inputs, log)
+        self.assertFalse(good)
+        line = log.textLog().strip().splitlines()[-1]
+        self.assertIn('In this dialog --diameter / [blocks] diameter is "Diameter of the blocks"', line)
+        self.assertIn('--field is "Field: diameter of the block [m]"', line)
+        os.makedirs(self.path("out"))
+        with open(self.path("out/mine.txt"), "w", encoding="utf-8") as file:
+            file.write("x")
+        log = Log()
+        self.run_algorithm("run", self.inputs(), log)
+        self.assertIn('In this dialog --overwrite is "Replace earlier results"', log.textLog())
+        log = Log()
+        self.run_algorithm("check", self.inputs(SOURCES=os.path.join(VALLEY, "houses.gpkg"), ZONE_FIELD="x"), log)
+        self.assertIn('--zones is "Zones of ground (polygons)"', log.textLog())
+
+    def test_a_temporary_folder_is_not_resumed(self):
+        log = Log(cancel_at=10.0)
+        temporary = self.inputs(OUT="TEMPORARY_OUTPUT", TRAJECTORIES=150)
+        _, good = self.run_algorithm("run", temporary, log)
+        self.assertFalse(good)
+        self.assertIn("A run into a temporary folder cannot be resumed", log.textLog())
+        run = QgsApplication.processingRegistry().createAlgorithmById("talus:run")
+        for folder in ("TEMPORARY_OUTPUT", QgsProcessingOutputLayerDefinition("TEMPORARY_OUTPUT")):
+            good, message = run.checkParameterValues({**temporary, "OUT": folder, "RESUME": True}, QgsProcessingContext())
+            self.assertFalse(good)
+            self.assertIn("needs the folder of the run", message)
+        good, message = run.checkParameterValues({**temporary, "OUT": self.path("out"), "RESUME": True}, QgsProcessingContext())
+        self.assertTrue(good, message)
 
     def test_warnings_and_progress_reach_the_log(self):
         log = Log()

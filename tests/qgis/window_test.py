@@ -5,6 +5,7 @@ Run by tools/scripts/checks/qgis.sh, which sets HOME, QGIS_PLUGINPATH and TALUS.
 """
 import os
 import shutil
+import subprocess
 import sys
 import tempfile
 import time
@@ -49,10 +50,11 @@ class Window(unittest.TestCase):
         bridge = QgsProject.instance().layerTreeRegistryBridge()
         bridge.addedLayersToLayerTree.connect(cls.select)  # as QgisApp::autoSelectAddedLayer
         cls.view.selectionModel().currentChanged.connect(cls.insert_before_current)
+        objects = cls.road_and_houses()
         cls.logs = [cls.run_dialog("run", {"DEM": os.path.join(VALLEY, "dem.tif"), "OUT": cls.out, "TRAJECTORIES": 5,
                                            "SOURCES": os.path.join(VALLEY, "cliffs.shp"), "FREQUENCY_FIELD": "frequency",
                                            "SCREENS": os.path.join(VALLEY, "screens.gpkg")}),
-                    cls.run_dialog("hazard", {"FOLDER": cls.out, "OBJECTS": cls.objects()}),
+                    cls.run_dialog("hazard", {"FOLDER": cls.out, "OBJECTS": objects}),
                     cls.run_dialog("barrier", {"FOLDER": cls.out, "SCREEN": "road"})]
         cls.group = QgsProject.instance().layerTreeRoot().findGroup("Talus: out")
         cls.project = QgsProject()
@@ -71,15 +73,15 @@ class Window(unittest.TestCase):
             parent or QgsProject.instance().layerTreeRoot(), index.row() if index.isValid() else 0))
 
     @classmethod
-    def objects(cls):
-        """The road, 6 m wide, and the houses in one layer, as docs/road-job.md makes it."""
-        path = os.path.join(cls.folder, "objects.gpkg")
-        gdal.VectorTranslate(path, os.path.join(VALLEY, "screens.gpkg"), format="GPKG", layerName="objects",
-                             geometryType="GEOMETRY", SQLDialect="sqlite", SQLStatement="SELECT geom, 'forest road' AS name,"
-                             " CAST(6 AS REAL) AS width FROM screens WHERE id = 'road'")
-        gdal.VectorTranslate(path, os.path.join(VALLEY, "houses.gpkg"), format="GPKG", layerName="objects",
-                             accessMode="append")
-        return path
+    def road_and_houses(cls):
+        """Two layers of the map; the road has the width 6 m."""
+        path = os.path.join(cls.folder, "road.gpkg")
+        gdal.VectorTranslate(path, os.path.join(VALLEY, "screens.gpkg"), format="GPKG", layerName="road", SQLDialect="sqlite",
+                             SQLStatement="SELECT geom, id, CAST(6 AS REAL) AS width FROM screens WHERE id = 'road'")
+        layers = [QgsVectorLayer(path, "road"), QgsVectorLayer(os.path.join(VALLEY, "houses.gpkg"), "houses")]
+        for layer in layers:
+            QgsProject.instance().addMapLayer(layer)
+        return [layer.id() for layer in layers]
 
     @classmethod
     def run_dialog(cls, name, values):
@@ -119,6 +121,15 @@ class Window(unittest.TestCase):
             self.assertEqual(loaded.featureCount(), layer.featureCount(), name)
             self.assertEqual(loaded.renderer().type(), "graduatedSymbol", name)
             self.assertEqual(self.classes(loaded), self.classes(layer), name)
+
+    def test_the_log_keeps_the_columns_of_a_table(self):
+        told = subprocess.run([os.environ["TALUS"], "barrier", self.out, "--screen", "road"], capture_output=True, text=True,
+                              check=True).stdout.splitlines()
+        table = [line for line in told if "  " in line]
+        self.assertGreater(len(table), 20)
+        log = self.logs[-1].splitlines()
+        for line in table:
+            self.assertIn(line, log)
 
     @staticmethod
     def classes(layer):

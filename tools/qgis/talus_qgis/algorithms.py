@@ -1,16 +1,17 @@
 """The algorithms: one class for all commands. Their parameters are what `talus help --json` says; ALGORITHMS holds only what
 QGIS needs in addition: which inputs are layers, whose fields are picked, which files come out."""
 import os
+import re
 import time
 
 from qgis.core import (QgsProcessing, QgsProcessingAlgorithm, QgsProcessingException, QgsProcessingFeatureSourceDefinition,
-                       QgsProcessingOutputFile, QgsProcessingOutputFolder, QgsProcessingOutputRasterLayer,
-                       QgsProcessingOutputVectorLayer, QgsProcessingParameterBand, QgsProcessingParameterBoolean,
-                       QgsProcessingParameterDefinition, QgsProcessingParameterEnum, QgsProcessingParameterFeatureSource,
-                       QgsProcessingParameterField, QgsProcessingParameterFile, QgsProcessingParameterFileDestination,
-                       QgsProcessingParameterFolderDestination, QgsProcessingParameterMultipleLayers,
-                       QgsProcessingParameterNumber, QgsProcessingParameterRasterLayer, QgsProcessingParameterString,
-                       QgsProcessingUtils, QgsProperty, QgsVectorLayer)
+                       QgsProcessingOutputFile, QgsProcessingOutputFolder, QgsProcessingOutputLayerDefinition,
+                       QgsProcessingOutputRasterLayer, QgsProcessingOutputVectorLayer, QgsProcessingParameterBand,
+                       QgsProcessingParameterBoolean, QgsProcessingParameterDefinition, QgsProcessingParameterEnum,
+                       QgsProcessingParameterFeatureSource, QgsProcessingParameterField, QgsProcessingParameterFile,
+                       QgsProcessingParameterFileDestination, QgsProcessingParameterFolderDestination,
+                       QgsProcessingParameterMultipleLayers, QgsProcessingParameterNumber, QgsProcessingParameterRasterLayer,
+                       QgsProcessingParameterString, QgsProcessingUtils, QgsProperty, QgsVectorLayer)
 from qgis.PyQt.QtGui import QIcon
 
 from . import layers, process, program, results
@@ -21,8 +22,9 @@ NOT_IN_DIALOG = {"quiet", "progress", "allow-network", "sources-layer", "field",
 ALWAYS_ADVANCED = {"threads", "allow-folder", "seed", "surface"}
 
 # Fields of the sources that can be picked, by the program's name of them.
-SOURCE_FIELDS = [("diameter", False), ("release_height", False), ("frequency", False), ("diameter_min", True),
-                 ("diameter_max", True), ("name", True)]
+SOURCE_FIELDS = [("diameter", False), ("release_height", False), ("frequency", False), ("diameter_min", False),
+                 ("diameter_max", False), ("name", True)]
+KEYS_OF_SCENARIO = {"diameter": "[blocks] diameter", "sources": "[sources] file"}  # as messages name them
 SHAPES = [QgsProcessing.TypeVectorPoint, QgsProcessing.TypeVectorLine, QgsProcessing.TypeVectorPolygon]
 
 RUN_RASTERS = ["impact_probability", "reach_probability", "energy", "velocity", "jump_height", "passages", "deposits",
@@ -36,7 +38,7 @@ SCENARIO_INPUTS = {
     "fields": {"sources": SOURCE_FIELDS},
     "field of": {"zone-field": "zones"},
     "raster too": {"zones"},
-    "advanced": {"scenario", "surface", "thresholds", "seed", "energy-total", "bounds", "overwrite", "rounds", "until-error",
+    "advanced": {"scenario", "surface", "thresholds", "seed", "energy-total", "bounds", "rounds", "until-error",
                  "above", "most-rounds", "zones-raster", "pits"},
     "needs": [("scenario",), ("dem", "sources")],
 }
@@ -50,11 +52,11 @@ ALGORITHMS = [
      "geopackage": ("out", ["source_polygons", "source_points"])},
     {"id": "hazard", "command": "hazard", "order": ["folder", "width", "curves", "objects", "overwrite"],
      "advanced": {"matrix", "frequency"}, "phases": ["evaluate", "write", "simulate"], "folder": "folder",
-     "shapes": {"objects": [QgsProcessing.TypeVectorLine, QgsProcessing.TypeVectorPolygon]},
+     "several": {"objects"},
      "rasters": ["hazard_class", "annual_frequency"], "vectors": ["objects"], "record": "hazard.json"},
     {"id": "objects", "command": "hazard", "order": ["folder", "objects", "width", "overwrite"], "required": {"objects"},
      "advanced": {"matrix", "frequency", "curves"}, "phases": ["evaluate", "write", "simulate"], "folder": "folder",
-     "shapes": {"objects": [QgsProcessing.TypeVectorLine, QgsProcessing.TypeVectorPolygon]},
+     "several": {"objects"},
      "rasters": ["hazard_class", "annual_frequency"], "vectors": ["objects"],
      "files": {"table": "objects.csv", "curves": "objects_curves.csv"}, "record": "hazard.json"},
     {"id": "barrier", "command": "barrier", "order": ["folder", "screen"], "is folder": {"folder"},
@@ -75,6 +77,15 @@ ALGORITHMS = [
 def key_of(name):
     """The name of a parameter in QGIS: ZONE_FIELD of --zone-field."""
     return name.upper().replace("-", "_")
+
+
+def _is_temporary(value):
+    """Whether a folder is left to QGIS to name."""
+    if isinstance(value, QgsProcessingOutputLayerDefinition):
+        value = value.sink
+    if isinstance(value, QgsProperty):
+        value = value.staticValue()
+    return value == QgsProcessing.TEMPORARY_OUTPUT
 
 
 class TalusAlgorithm(QgsProcessingAlgorithm):
@@ -111,7 +122,10 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         lines = [tr("about " + self.table["id"])]
         for p in self.described():
             if p["name"] not in NOT_IN_DIALOG:
-                lines.append(f"<b>{self._title(p)}</b>: {tr(p['text'])}")
+                lines.append(f"<b>{self._title(p)}</b>: {self._help(p)}")
+        if self.table.get("fields"):
+            lines.append(tr("A field of the sources that is named diameter, diameter_min, diameter_max, release_height, "
+                            "frequency or name is read where no field is picked for it."))
         lines.append(tr("Talus runs the program talus of this computer. Every parameter is explained on the pages of its "
                         "documentation."))
         return "<p>" + "</p><p>".join(lines) + "</p>"
@@ -153,14 +167,15 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             if p["name"] in NOT_IN_DIALOG:
                 continue
             advanced = p["name"] in self.table.get("advanced", ()) or p["name"] in ALWAYS_ADVANCED
-            self._add(self._definition(p), p["text"], advanced)
+            self._add(self._definition(p), self._help(p), advanced)
             if p["name"] in self.table.get("bands", ()):
                 band = QgsProcessingParameterBand("DEM_BAND", label("dem-band"), 1, key_of(p["name"]), True)
                 self._add(band, tr("Band of the raster that holds the heights."), False)
             for field, rare in self.table.get("fields", {}).get(p["name"], ()):
                 self._add(QgsProcessingParameterField(key_of(field) + "_FIELD", label(field + "-field"), None,
                                                       key_of(p["name"]), QgsProcessingParameterField.Any, False, True),
-                          tr("Field of the sources that is read as {field}.").format(field=field), rare)
+                          tr("Field of the sources that is read as {field}. Where none is picked, their field named {field} "
+                             "is read, if they have one.").format(field=field), rare)
             if p["name"] in self.table.get("raster too", ()):
                 self._add(QgsProcessingParameterRasterLayer(key_of(p["name"]) + "_RASTER", label(p["name"] + "-raster"), None,
                                                             True), p["text"], True)
@@ -192,11 +207,21 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             return self._file(p, key, title, optional)
         return QgsProcessingParameterString(key, title, self._default(p), False, optional)
 
-    def _title(self, p):
+    def _help(self, p):
+        several = p["name"] in self.table.get("several", ())
+        return tr(p["text"]) + (". " + tr("Several layers, as a road and houses, are joined into one.") if several else "")
+
+    @staticmethod
+    def _label(p):
         name = "folder" if p["type"] == "folder" and p["name"] == "out" and not p["written"] else p["name"]
-        title = label("weighting" if p["type"] == "file" and name == "frequency" else name)
+        return label("weighting" if p["type"] == "file" and name == "frequency" else name)
+
+    def _title(self, p):
+        title = self._label(p)
         if p.get("unit"):
             title += f" [{p['unit']}]"
+        if self.by_scenario() and any(p["name"] in names for names in self.table.get("needs", ())[1:]):
+            title += ", " + tr("needed without a scenario")
         if self.by_scenario() and p["type"] != "flag" and "default" in p:
             title += " (" + tr("{value} if not set").format(value=p["default"]) + ")"
         return title
@@ -222,6 +247,10 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         if p["repeatable"]:
             several = QgsProcessingParameterMultipleLayers(key, title, QgsProcessing.TypeFile, None, optional)
             several.setMinimumNumberInputs(1)
+            return several
+        if p["name"] in self.table.get("several", ()):
+            several = QgsProcessingParameterMultipleLayers(key, title, QgsProcessing.TypeVectorAnyGeometry, None, optional)
+            several.setMinimumNumberInputs(0 if optional else 1)
             return several
         if "vector" in p["holds"]:
             return QgsProcessingParameterFeatureSource(key, title, self.table.get("shapes", {}).get(p["name"], []), None,
@@ -255,7 +284,15 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         needs = self.table.get("needs")
         if needs and not any(all(parameters.get(key_of(name)) not in (None, "") for name in names) for names in needs):
             return False, tr("Give the terrain and the sources, or a scenario file.")
-        return super().checkParameterValues(parameters, context)
+        if parameters.get("RESUME") and self.parameterAsBool(parameters, "RESUME", context) and _is_temporary(
+                parameters.get("OUT")):
+            return False, tr("\"Resume\" needs the folder of the run that was cancelled: name it under \"Results\". A "
+                             "temporary folder is a new one at every run.")
+        given = dict(parameters)
+        for key in map(key_of, self.table.get("several", ())):  # a script may still give the selected features of one layer
+            if isinstance(given.get(key), QgsProcessingFeatureSourceDefinition):
+                given[key] = given[key].source.staticValue()
+        return super().checkParameterValues(given, context)
 
     def prepareAlgorithm(self, parameters, context, feedback):
         """Takes the layers in the main thread, to which they belong."""
@@ -270,9 +307,28 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
                 if layer is None and parameters.get(name):
                     raise QgsProcessingException(self.invalidRasterError(parameters, name))
                 self.layers[name] = layer.clone() if layer is not None else None
-            if "vector" in p["holds"] and parameters.get(key) not in (None, ""):
-                self.layers[key] = self._vector(parameters, key, context)
+            if "vector" in p["holds"] and parameters.get(key) not in (None, "", []):
+                several = p["name"] in self.table.get("several", ())
+                self.layers[key] = [self._vector(one, key, context) for one in (
+                    self._each(parameters, key, context) if several else [parameters])]
         return True
+
+    def _each(self, parameters, key, context):
+        """A parameter of several layers as parameters of one layer each."""
+        value = parameters[key]
+        if isinstance(value, QgsProperty):
+            value = value.staticValue()
+        given = value if isinstance(value, (list, tuple)) else [value]
+        found = []
+        for one in given:
+            if isinstance(one, QgsProcessingFeatureSourceDefinition):
+                found.append({key: one})
+                continue
+            layer = self.parameterAsVectorLayer({key: one}, key, context)
+            if layer is None:
+                raise QgsProcessingException(self.invalidSourceError({key: one}, key))
+            found.append({key: layer})
+        return found
 
     def _vector(self, parameters, key, context):
         """(file of the layer if that is all of it, its source of features, kind of file in which they can be written)."""
@@ -297,8 +353,43 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         words = self._words(parameters, context, feedback, layers.folder_beside(folder))
         rounds = self.parameterAsInt(parameters, "ROUNDS", context) if parameters.get("ROUNDS") else 1
         begin = time.time()
-        process.run(command + words, feedback, self._phases(parameters), rounds)
+        progress = process.Progress(feedback, self._phases(parameters), rounds)
+        try:
+            process.run(command + words, feedback, progress, self._explained)
+        except process.Cancelled as cancelled:
+            raise QgsProcessingException(f"{cancelled} {self._after_cancel(folder)}".strip()) from cancelled
         return self._results(parameters, context, folder, begin)
+
+    def _after_cancel(self, folder):
+        """How to go on."""
+        if not any(p["name"] == "resume" for p in self.described()):
+            return ""
+        if folder.startswith(os.path.normpath(QgsProcessingUtils.tempFolder()) + os.sep):
+            return tr("A run into a temporary folder cannot be resumed, as QGIS takes another one at the next run: name a "
+                      "folder under \"Results\" where you want to go on.")
+        return tr("What a run has traced is kept: start it again with the same inputs and \"Resume\".")
+
+    def _explained(self, text):
+        """An error, with a line that says what the dialog calls the flags in it."""
+        hints = []
+        for p in self.described():
+            names = [*p["flags"], *filter(None, [KEYS_OF_SCENARIO.get(p["name"])])]
+            places = {name: re.search(r"(?<![\w-])" + re.escape(name) + r"(?![\w-])", text) for name in names}
+            found = [name for name in places if places[name]]
+            if found and self._in_dialog(p, text):
+                hints.append((min(places[name].start() for name in found), tr("{flag} is \"{field}\"").format(
+                    flag=" / ".join(found), field=self._in_dialog(p, text))))
+        return text + ("\n" + tr("In this dialog ") + ", ".join(hint for _, hint in sorted(hints)) if hints else "")
+
+    def _in_dialog(self, p, text):
+        """Where in the dialog a parameter is; empty where it is not."""
+        advanced = p["name"] in self.table.get("advanced", ()) or p["name"] in ALWAYS_ADVANCED
+        if p["name"] == "field":
+            named = re.search(r"--field (\w+)=", text)
+            return label(named[1] + "-field" if named else "field")
+        if p["name"] in NOT_IN_DIALOG:
+            return ""
+        return self._label(p) + (tr(", under Advanced Parameters") if advanced else "")
 
     def _phases(self, parameters):
         phases = self.table["phases"]
@@ -375,7 +466,10 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         key = key_of(p["name"])
         words = []
         if "vector" in p["holds"] and self.layers.get(key):
-            plain, source, suffix = self.layers[key]
+            plain, source, suffix = self.layers[key][0]
+            if len(self.layers[key]) > 1:
+                plain, suffix = None, ".gpkg"
+                source = layers.Joined([source for _, source, _ in self.layers[key]], context, feedback)
             words.append(plain or layers.write_vector(source, inputs, p["name"] + suffix, context, feedback))
         raster = self.layers.get(key + "_RASTER" if p["name"] in self.table.get("raster too", ()) else key)
         if "raster" in p["holds"] and raster:

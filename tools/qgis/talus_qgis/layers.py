@@ -13,11 +13,14 @@ import tempfile
 from contextlib import contextmanager
 
 from osgeo import gdal
-from qgis.core import (QgsFeature, QgsFeatureSink, QgsProcessingException, QgsProcessingFeatureSourceDefinition,
-                       QgsProviderRegistry, QgsRasterLayer, QgsVectorFileWriter, QgsVectorLayer)
+from qgis.core import (QgsCoordinateTransform, QgsCsException, QgsFeature, QgsFeatureSink, QgsField, QgsFields,
+                       QgsProcessingException, QgsProcessingFeatureSourceDefinition, QgsProviderRegistry, QgsRasterLayer,
+                       QgsVectorFileWriter, QgsVectorLayer, QgsWkbTypes)
+from qgis.PyQt.QtCore import QVariant
 
 from .texts import tr
 
+NO_SYSTEM = "{name} has no coordinate system: set it in QGIS (layer > Set CRS)"
 READ_AS_THEY_ARE = (".gpkg", ".shp", ".geojson", ".json", ".fgb")
 
 
@@ -122,8 +125,7 @@ def _stop_if_cancelled(feedback):
 def write_vector(source, inputs, file, context, feedback):
     """Writes the features of a source, with their CRS, into a GeoPackage or Shapefile; equal features give equal bytes."""
     if not source.sourceCrs().isValid():
-        raise QgsProcessingException(tr("{name} has no coordinate system: set it in QGIS (layer > Set CRS)").format(
-            name=source.sourceName()))
+        raise QgsProcessingException(tr(NO_SYSTEM).format(name=source.sourceName()))
     with _kept(inputs, os.path.splitext(file)[0]) as (fresh, place):
         dated = gdal.GetThreadLocalConfigOption("OGR_CURRENT_DATE")  # of this thread alone: QGIS goes on writing in others
         gdal.SetThreadLocalConfigOption("OGR_CURRENT_DATE", "2000-01-01T00:00:00.000Z")  # not the time of writing
@@ -138,6 +140,95 @@ def write_vector(source, inputs, file, context, feedback):
     feedback.pushInfo(tr("{name}: {count} features are written to {path}").format(name=source.sourceName(), count=count,
                                                                                  path=path))
     return path
+
+
+class Joined:
+    """Several layers as one, in the CRS of the first: its fields are those of all, which differ in more than the case of
+    their names. A layer with `id` and without `name` is named by its `id`, as the program does it for a layer alone."""
+
+    def __init__(self, sources, context, feedback):
+        self.sources = sources
+        for source in sources:
+            if not source.sourceCrs().isValid():
+                raise QgsProcessingException(tr(NO_SYSTEM).format(name=source.sourceName()))
+        self.transforms = [QgsCoordinateTransform(source.sourceCrs(), self.sourceCrs(), context.transformContext())
+                           for source in sources]
+        for source, transform in zip(sources, self.transforms):
+            if not transform.isShortCircuited():
+                self._tell(source, transform, feedback)
+
+    def _tell(self, source, transform, feedback):
+        """With which accuracy a layer comes into the CRS of the first."""
+        names = {"name": source.sourceName(), "from": source.sourceCrs().authid(), "to": self.sourceCrs().authid()}
+        accuracy = transform.instantiatedCoordinateOperationDetails().accuracy
+        if accuracy < 0.0:
+            feedback.pushWarning(tr("{name}: QGIS brings it from {from} to {to}, with an unknown accuracy").format(**names))
+        else:
+            feedback.pushInfo(tr("{name}: QGIS brings it from {from} to {to}, accurate to {metres} m").format(
+                metres=f"{accuracy:g}", **names))
+
+    def sourceName(self):
+        return " + ".join(source.sourceName() for source in self.sources)
+
+    def sourceCrs(self):
+        return self.sources[0].sourceCrs()
+
+    def wkbType(self):
+        kinds = {source.wkbType() for source in self.sources}
+        return kinds.pop() if len(kinds) == 1 else QgsWkbTypes.Unknown
+
+    def fields(self):
+        found = {}
+        for source in self.sources:
+            for field in source.fields():
+                first = found.get(field.name().lower())
+                found[field.name().lower()] = (first[0], _common_type(first[1], field)) if first else (field.name(),
+                                                                                                     field.type())
+        fields = QgsFields()
+        for name, kind in found.values():
+            fields.append(QgsField(name, kind))
+        return fields
+
+    def getFeatures(self):
+        fields = self.fields()
+        for source, transform in zip(self.sources, self.transforms):
+            columns = _columns(fields, source.fields())
+            for feature in source.getFeatures():
+                copy, values, geometry = QgsFeature(fields), feature.attributes(), feature.geometry()
+                try:
+                    geometry.transform(transform)
+                except QgsCsException as fault:
+                    raise QgsProcessingException(f"{source.sourceName()}: {fault}") from fault
+                copy.setGeometry(geometry)
+                copy.setAttributes([None if column < 0 else _as_type(values[column], field.type())
+                                    for field, column in zip(fields, columns)])
+                yield copy
+
+
+def _common_type(kind, field):
+    numbers = (QVariant.Int, QVariant.LongLong, QVariant.Double)
+    if kind == field.type():
+        return kind
+    return QVariant.Double if kind in numbers and field.type() in numbers else QVariant.String
+
+
+def _columns(fields, own):
+    """The column of a layer for each field of all; -1 where it has none."""
+    by_name = {field.name().lower(): i for i, field in enumerate(own)}
+    columns = [by_name.get(field.name().lower(), -1) for field in fields]
+    name = fields.lookupField("name")
+    if name >= 0 and columns[name] < 0:
+        columns[name] = by_name.get("id", -1)
+    return columns
+
+
+def _as_type(value, kind):
+    if value is None or (isinstance(value, QVariant) and value.isNull()):
+        return None
+    if kind == QVariant.String and not isinstance(value, str):
+        return f"{value:.15g}" if isinstance(value, float) else value.toString("yyyy-MM-dd hh:mm:ss") if hasattr(
+            value, "toString") else str(value)
+    return float(value) if kind == QVariant.Double else value
 
 
 def _write_features(source, path, context, feedback):

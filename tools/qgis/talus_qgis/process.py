@@ -5,6 +5,7 @@ Not by QgsBlockingProcess, which in QGIS 3.22 shows no progress in qgis_process 
 import json
 import os
 import queue
+import re
 import shlex
 import signal
 import subprocess
@@ -18,6 +19,10 @@ from .texts import tr
 
 POLL = 0.1      # s between two looks at the button Cancel
 PATIENCE = 20.0  # s until a program that was asked to end is ended by force; a run ends within 2 s
+
+
+class Cancelled(QgsProcessingException):
+    """The user has ended the program before its end."""
 
 
 class Progress:
@@ -49,11 +54,12 @@ class Progress:
 
 
 class Messages:
-    """Sorts what the program says into the log; keeps the error."""
+    """Sorts what the program says into the log; keeps the error. `explain` adds to an error what the dialog calls its flags."""
 
-    def __init__(self, feedback, progress):
+    def __init__(self, feedback, progress, explain):
         self.feedback = feedback
         self.progress = progress
+        self.explain = explain
         self.error = ""
 
     def take(self, stream, text):
@@ -85,14 +91,22 @@ class Messages:
             self._fail(text[len("talus: error: "):])
         elif stream == "stdout" and text.startswith("warning "):  # of talus check
             self.feedback.pushWarning(text[len("warning "):].strip())
+        elif text.startswith(("note: ", "warning: ")):  # below the table of talus barrier
+            self.feedback.pushWarning(text)
         else:
-            self.feedback.pushConsoleInfo(text)
+            self.feedback.pushConsoleInfo(aligned(text))
 
     def _fail(self, text):
+        text = self.explain(text)
         if self.error:
             self.feedback.reportError(text)  # check lists every fault
         else:
             self.error = text
+
+
+def aligned(text):
+    """A line of a table in which the log, which is HTML, keeps the columns: spaces side by side do not break."""
+    return re.sub("^ +|  +", lambda spaces: "\u00a0" * len(spaces[0]), text)
 
 
 def _read(name, stream, lines):
@@ -149,11 +163,11 @@ def shown(command):
     return subprocess.list2cmdline(command) if os.name == "nt" else shlex.join(command)
 
 
-def run(command, feedback, phases, parts=1):
-    """Runs a command to its end. Raises QgsProcessingException with the program's own line where it fails, or with how to
-    go on where the user has cancelled it before its end."""
+def run(command, feedback, progress, explain=str):
+    """Runs a command to its end. Raises QgsProcessingException with the program's own line, as `explain` completes it, where
+    it fails, and Cancelled where the user has cancelled it before its end."""
     feedback.pushCommandInfo(shown(command))
-    messages = Messages(feedback, Progress(feedback, phases, parts))
+    messages = Messages(feedback, progress, explain)
     lines = queue.Queue()
     process = _start(command)
     readers = [threading.Thread(target=_read, args=(name, getattr(process, name), lines), daemon=True)
@@ -183,6 +197,5 @@ def run(command, feedback, phases, parts=1):
     if code == 0:
         return  # whatever was asked in its last moments, it has written its results
     if feedback.isCanceled():
-        raise QgsProcessingException(tr("Cancelled. What a run has traced is kept: start it again with the same inputs and "
-                                        "\"Resume\"."))
+        raise Cancelled(tr("Cancelled."))
     raise QgsProcessingException(messages.error or tr("talus ended with code {code}").format(code=code))

@@ -69,13 +69,13 @@ def command(name):
 def help_page():
     """docs/qgis as installed with the program or beside the plug-in; empty if there is none."""
     here = os.path.dirname(os.path.realpath(__file__))
-    folders = [os.path.join(here, "../../../docs"), "/usr/share/doc/talus", "/usr/share/doc/talus/html"]
+    folders = [os.path.join(here, "../../../docs"), "/usr/share/doc/talus"]
     try:
         folders.insert(0, os.path.join(os.path.dirname(os.path.realpath(path())), "../share/doc/talus"))
     except ProgramMissing:
         pass
-    for folder in folders:
-        for name in ("qgis.html", "html/qgis.html", "qgis.md"):
+    for name in ("html/qgis.html", "qgis.html", "qgis.md"):  # a page that a browser shows, wherever it is, before the text
+        for folder in folders:
             page = os.path.normpath(os.path.join(folder, name))
             if os.path.exists(page):
                 return "file://" + page

@@ -12,6 +12,7 @@ LABELS = {
     "diameter_min-field": ("Field: smallest diameter [m]", "Feld: kleinster Durchmesser [m]"),
     "diameter_max-field": ("Field: largest diameter [m]", "Feld: grösster Durchmesser [m]"),
     "name-field": ("Field: name", "Feld: Name"),
+    "field": ("Field: ...", "Feld: ..."),
     "diameter": ("Diameter of the blocks", "Durchmesser der Blöcke"),
     "preset": ("Ground", "Boden"),
     "trajectories": ("Trajectories per source cell", "Sturzbahnen pro Anbruchzelle"),
@@ -58,6 +59,20 @@ LABELS = {
     "stretch": ("Longest stretch with a design of its own", "Längster Abschnitt mit eigener Bemessung"),
     "unweighted": ("Count every block alike", "Jeden Block gleich zählen"),
     "profile": ("Profile (TOML)", "Profil (TOML)"),
+    "fit": ("Parameters of the ground that are fitted", "Bodenparameter, die angepasst werden"),
+    "trials": ("Trajectories per block in the searches", "Sturzbahnen pro Block beim Suchen"),
+    "starts": ("Searches from different starts", "Suchen von verschiedenen Startwerten aus"),
+    "share": ("Parameters that all campaigns have in common", "Parameter, die alle Messkampagnen gemeinsam haben"),
+    "parameters": ("Model from which the fit starts (TOML)", "Modell, von dem die Anpassung ausgeht (TOML)"),
+    "test-trials": ("Trajectories per block in the tests", "Sturzbahnen pro Block in den Tests"),
+    "most-effects": ("Largest number of effects that are added", "Höchste Zahl der Effekte, die dazukommen"),
+    "level": ("Level of significance", "Signifikanzniveau"),
+    "base-fits": ("Independent fits that are compared", "Unabhängige Anpassungen, die verglichen werden"),
+    "all-rows": ("Fit the rows that are held out, too", "Auch die zurückgehaltenen Zeilen anpassen"),
+    "nested": ("Repeat the diagnosis without each fold", "Diagnose ohne jeden Teil der Zeilen wiederholen"),
+    "no-nested": ("Never repeat it without a fold", "Sie nie ohne einen Teil wiederholen"),
+    "folds": ("Number of folds", "Zahl der Teile"),
+    "quick-folds": ("Do not choose the effects anew in a fold", "In den Teilen die Effekte nicht neu wählen"),
     "campaign": ("Campaigns (campaign.toml)", "Messkampagnen (campaign.toml)"),
     "title": ("Title", "Titel"),
     "attribution": ("Attribution of terrain and maps", "Quellenangabe zu Gelände und Karten"),
@@ -162,8 +177,20 @@ GERMAN = {
         "in den PATH legen.",
     "{path} does not describe itself (talus help --json): is it another program, or an older version? {way_out}":
         "{path} beschreibt sich nicht (talus help --json): ein anderes Programm oder eine ältere Version? {way_out}",
-    "Cancelled. What a run has traced is kept: start it again with the same inputs and \"Resume\".":
-        "Abgebrochen. Was ein Lauf gerechnet hat, ist behalten: mit denselben Eingaben und «Fortsetzen» neu starten.",
+    "Cancelled.": "Abgebrochen.",
+    "What a run has traced is kept: start it again with the same inputs and \"Resume\".":
+        "Was ein Lauf gerechnet hat, ist behalten: mit denselben Eingaben und «Fortsetzen» neu starten.",
+    "A run into a temporary folder cannot be resumed, as QGIS takes another one at the next run: name a folder under \"Results\" "
+    "where you want to go on.":
+        "Ein Lauf in einen temporären Ordner lässt sich nicht fortsetzen, weil QGIS beim nächsten Lauf einen anderen nimmt: unter "
+        "«Ergebnisse» einen Ordner nennen, um weitermachen zu können.",
+    "\"Resume\" needs the folder of the run that was cancelled: name it under \"Results\". A temporary folder is a new one at "
+    "every run.":
+        "«Fortsetzen» braucht den Ordner des abgebrochenen Laufs: ihn unter «Ergebnisse» nennen. Ein temporärer Ordner ist bei "
+        "jedem Lauf ein neuer.",
+    "In this dialog ": "In diesem Dialog ist ",
+    "{flag} is \"{field}\"": "{flag} «{field}»",
+    ", under Advanced Parameters": ", unter «Fortgeschrittene Parameter»",
     "Cancelled before the program was started.": "Abgebrochen, bevor das Programm gestartet war.",
     "talus ended with code {code}": "talus endete mit Code {code}",
     "{name} has no coordinate system: set it in QGIS (layer > Set CRS)":
@@ -179,7 +206,20 @@ GERMAN = {
     "Give the terrain and the sources, or a scenario file.": "Gelände und Anbruchgebiete angeben, oder eine Szenario-Datei.",
     "Loads the results as a group of layers.": "Lädt die Ergebnisse als Gruppe von Ebenen.",
     "Band of the raster that holds the heights.": "Band des Rasters mit den Höhen.",
-    "Field of the sources that is read as {field}.": "Feld der Anbruchgebiete, das als {field} gelesen wird.",
+    "Field of the sources that is read as {field}. Where none is picked, their field named {field} is read, if they have one.":
+        "Feld der Anbruchgebiete, das als {field} gelesen wird. Ist keines gewählt, wird ihr Feld mit dem Namen {field} gelesen, "
+        "wenn sie eines haben.",
+    "A field of the sources that is named diameter, diameter_min, diameter_max, release_height, frequency or name is read where "
+    "no field is picked for it.":
+        "Ein Feld der Anbruchgebiete mit dem Namen diameter, diameter_min, diameter_max, release_height, frequency oder name wird "
+        "gelesen, wo dafür kein Feld gewählt ist.",
+    "needed without a scenario": "nötig ohne Szenario",
+    "Several layers, as a road and houses, are joined into one.":
+        "Mehrere Ebenen, wie Strasse und Häuser, werden zu einer zusammengefügt.",
+    "{name}: QGIS brings it from {from} to {to}, with an unknown accuracy":
+        "{name}: QGIS bringt es von {from} nach {to}, mit unbekannter Genauigkeit",
+    "{name}: QGIS brings it from {from} to {to}, accurate to {metres} m":
+        "{name}: QGIS bringt es von {from} nach {to}, auf {metres} m genau",
     "Folder of the results": "Ordner der Ergebnisse",
     "{title} (lines)": "{title} (Linien)",
     "Talus runs the program talus of this computer. Every parameter is explained on the pages of its documentation.":
