@@ -157,12 +157,13 @@ class Provider(Case):
         self.assertIn("is read where no field is picked", run.shortHelpString())
 
     def test_no_parameter_is_called_by_its_flag(self):
-        """Each has words of its own in both languages."""
+        """Each has words of its own in both languages, and a help in German."""
         from talus_qgis import texts
         for algorithm in application.talus.algorithms():
             for p in algorithm.described():
                 if p["name"] not in ("quiet", "progress", "allow-network", "sources-layer", "field", "memory", "part", "checkpoint"):
                     self.assertIn(p["name"], texts.LABELS, algorithm.id())
+                    self.assertIn(p["text"], texts.GERMAN, algorithm.id())
 
     def test_german(self):
         from talus_qgis import texts
@@ -183,7 +184,7 @@ class Provider(Case):
         with open(texts.__file__, encoding="utf-8") as source:
             of_program = source.read().split("# of the program")[1]
         for text in texts.GERMAN:
-            if f'"{text[:40]}' in of_program:
+            if (f'"{text}"' if len(text) < 40 else f'"{text[:40]}') in of_program:
                 self.assertIn(text, said)
 
     def test_a_missing_program_is_said(self):

@@ -47,7 +47,7 @@ ALGORITHMS = [
     {"id": "run", "command": "run", **SCENARIO_INPUTS, "phases": ["simulate", "write"], "folder": "out",
      "rasters": RUN_RASTERS, "vectors": ["stops", "trajectories"], "files": {"record": "run.json",
                                                                               "complete-scenario": "scenario.toml"}},
-    {"id": "check", "command": "check", **SCENARIO_INPUTS, "phases": []},
+    {"id": "check", "command": "check", **SCENARIO_INPUTS, "advanced": SCENARIO_INPUTS["advanced"] | {"overwrite"}, "phases": []},
     {"id": "sources", "command": "sources", "bands": {"dem"}, "order": ["dem", "slope", "out"], "phases": [],
      "geopackage": ("out", ["source_polygons", "source_points"])},
     {"id": "hazard", "command": "hazard", "order": ["folder", "width", "curves", "objects", "overwrite"],

@@ -291,6 +291,75 @@ GERMAN = {
         "längster Abschnitt der Linie mit eigener Bemessung [m]: 30 (Vorgabe)",
     "count every block alike, also where the sources have frequencies":
         "jeden Block gleich zählen, auch wo die Anbruchgebiete Häufigkeiten haben",
+    "all processors where it is not given, of several processes one each; the results are the same":
+        "alle Prozessoren, wenn nicht angegeben; die Ergebnisse sind dieselben",
+    "how often the scenario's trajectories are traced": "wie oft die Sturzbahnen des Szenarios gerechnet werden",
+    "rounds until the relative 95 % half-width of the impact probability is below this":
+        "Runden, bis die relative halbe Breite des 95-%-Intervalls der Trefferwahrscheinlichkeit kleiner ist",
+    "the error counts in all cells with a larger probability; 0.01":
+        "der Fehler zählt in allen Zellen mit grösserer Wahrscheinlichkeit; 0.01",
+    "--until-error: never more; 100": "nie mehr Runden als so viele; 100",
+    "a VRT may name files below this folder, not only below its own and the scenario's; may be repeated":
+        "ein VRT darf Dateien unter diesem Ordner nennen, nicht nur unter seinem eigenen und dem des Szenarios",
+    "GeoPackage to write: pits, the cells that are lower than all eight neighbours, and dammed cells, whose way down is only "
+    "diagonal":
+        "GeoPackage zum Schreiben: Mulden, die tiefer sind als alle acht Nachbarn, und gestaute Zellen, die sich nur über "
+        "eine Diagonale entleeren",
+    "replace the file of --pits if it is there": "die Datei der Mulden ersetzen, wenn sie da ist",
+    "of the run whose time is estimated; all processors where it is not given":
+        "des Laufs, dessen Zeit geschätzt wird; alle Prozessoren, wenn nicht angegeben",
+    "file of the profile (TOML): docs/profile.md": "Datei des Profils (TOML): docs/profile.md",
+    "how many blocks": "wie viele Blöcke",
+    "CSV of observed crossings (as screens.csv or a campaign's passages.csv); the probabilities are of them, else of the "
+    "simulated ones":
+        "CSV beobachteter Durchgänge (wie screens.csv oder passages.csv einer Messkampagne); die Wahrscheinlichkeiten gelten "
+        "für sie, sonst für die simulierten",
+    "another weighting (TOML: [frequency], [features]), as of talus hazard":
+        "andere Gewichtung (TOML: [frequency], [features]), wie bei den Gefahrenkarten",
+    "of the bootstrap: 1 (default)": "des Bootstraps: 1 (Vorgabe)",
+    "measured data: campaign.toml; several: docs/several-campaigns.md":
+        "Messdaten: campaign.toml; mehrere: docs/several-campaigns.md",
+    "parameters, in every zone: theta_scale,psi_scale,En50,Et50,phi":
+        "Parameter, in jeder Zone: theta_scale,psi_scale,En50,Et50,phi",
+    "trajectories per block in the searches (48)": "Sturzbahnen pro Block beim Suchen (48)",
+    "of the random numbers (1)": "der Zufallszahlen (1)",
+    "model from which the fit starts, whose effects it keeps; else upper-talus-3d without effects":
+        "Modell, von dem die Anpassung ausgeht und dessen Effekte sie behält; sonst upper-talus-3d ohne Effekte",
+    "searches from different starts (3)": "Suchen von verschiedenen Startwerten aus (3)",
+    "parameters that several campaigns share; all others each has its own":
+        "Parameter, die mehrere Messkampagnen gemeinsam haben; alle anderen hat jede für sich",
+    "trajectories per block in the searches (24)": "Sturzbahnen pro Block beim Suchen (24)",
+    "trajectories per block in the tests (100)": "Sturzbahnen pro Block in den Tests (100)",
+    "that are added, one a round (3)": "die dazukommen, einer pro Runde (3)",
+    "of significance, over all families of effects (0.05)": "der Signifikanz, über alle Familien von Effekten (0.05)",
+    "independent fits of the ground whose verdicts are compared (5)":
+        "unabhängige Anpassungen des Bodens, deren Urteile verglichen werden (5)",
+    "fit the rows that the campaign holds out, too": "auch die Zeilen anpassen, die die Messkampagne zurückhält",
+    "repeat the whole diagnosis without each fold of the fitting rows, as is done where no row is held out: the error is "
+    "then one of rows that were neither fitted nor chosen by":
+        "die ganze Diagnose ohne jeden Teil der Zeilen wiederholen, wie es ohne zurückgehaltene Zeilen geschieht: der Fehler "
+        "gilt dann für Zeilen, die weder angepasst wurden noch mitgewählt haben",
+    "never do so": "nie wiederholen",
+    "parts that are left out in turn: groups, or blocks (5)":
+        "Teile, die der Reihe nach weggelassen werden: Gruppen oder Blöcke (5)",
+    "the folds fit the effects that all rows chose, without choosing anew: half the time, and an error that has seen the "
+    "choice":
+        "die Teile passen die Effekte an, die alle Zeilen gewählt haben, ohne neu zu wählen: halbe Zeit, und ein Fehler, der "
+        "die Wahl kennt",
+    "GeoPackage to write: the cells as polygons and as points":
+        "GeoPackage zum Schreiben: die Zellen als Flächen und als Punkte",
+    "cells at least so steep [deg]; without it 55 cell^-0.075, which is 48.7 at 5 m":
+        "Zellen, die mindestens so steil sind [Grad]; sonst 55 Zellweite^-0.075, bei 5 m also 48.7",
+    "replace the file if it is there": "die Datei ersetzen, wenn sie da ist",
+    "OUT of talus run, with what hazard and barrier have added":
+        "Ordner eines Laufs, mit seinen Gefahrenkarten und Bemessungen",
+    "file of the page (.html); report.html in the folder where it is not given":
+        "Datei der Seite (.html); report.html im Ordner, wenn nicht angegeben",
+    "title of the page; the name of the folder where it is not given":
+        "Titel der Seite; der Name des Ordners, wenn nicht angegeben",
+    "whose terrain and maps these are, below every map; what the DEM states where it is not given":
+        "von wem Gelände und Karten sind, unter jeder Karte; was das DGM angibt, wenn nicht angegeben",
+    "replace an earlier page of talus report": "eine frühere Seite ersetzen",
 }
 
 
