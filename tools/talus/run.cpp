@@ -57,19 +57,27 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags) {
        default_of("zone"));
   command
       .add_option("--field", flags.fields,
-                  "NAME=COLUMN: a field of the sources under another name, as release_height=HEIGHT; may be repeated")
+                  "NAME=COLUMN: a field of the sources under another name, as release_height=HEIGHT; NAME= alone: that "
+                  "field is not read; may be repeated")
       ->allow_extra_args(false);
   with(command.add_option("--preset", flags.preset, "parameter set of the ground; talus presets lists them"),
        preset_choice());
+  with(command.add_option("--parameters", flags.parameters,
+                          "a ground that talus calibrate or diagnose has fitted (fitted.toml), in place of --preset"),
+       file_of({"toml"}));
   with(command.add_option("--surface", flags.surface,
                           "bilinear or creased (creased): heights between the cells' centres"),
        surface_choice());
   with(command.add_option("--diameter", flags.diameter, "of the blocks [m]"),
        number_of(talus::bounds_of("blocks.diameter")));
+  with(command.add_option("--deformation-coefficient", flags.deformation_coefficient,
+                          "c of the impact law (0.25): a lower one gives higher energies and jumps"),
+       scalar_of("model.deformation_coefficient"));
   with(command.add_option("--frequency", flags.frequency, "events per year of all sources together, for talus hazard"),
        number_of(talus::bounds_of("frequency.total")));
   with(command
-           .add_option("--thresholds", flags.thresholds, "energies of the maps of exceedance [kJ], as 30,300 (default)")
+           .add_option("--thresholds", flags.thresholds,
+                       "energies of the maps of exceedance [kJ], with commas and no spaces: 30,300 (default)")
            ->delimiter(',')
            ->allow_extra_args(false),
        number_of(talus::bounds_of("output.energy_thresholds"), default_thresholds()));

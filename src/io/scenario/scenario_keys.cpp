@@ -329,6 +329,7 @@ static void keep_vrt_folders(ScenarioSpec& spec) {
 ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) {
   ScenarioSpec spec;
   start_with_preset(spec, flags, faults);
+  start_with_model(spec, flags, faults);
   if (!flags.scenario.empty()) {
     spec.scenario = {std::filesystem::absolute(flags.scenario).lexically_normal().string(), flags.scenario};
     allow_folder_of(flags.scenario);
