@@ -89,7 +89,7 @@ Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool ground
     const double p_from = p, q_from = q;
     p = u0 + rate_u * t - at.column;
     q = v0 + rate_v * t - at.row;
-    Span& span = path.spans.emplace_back();
+    Span& span = path.spans.emplace_back(Span{});
     set_place(span, at, {p_from, q_from, p, q});
     set_height(span, f0, landed ? 0.0 : std::max(0.0, f0 + dt * (f1 + dt * f2)), f2 * dt * dt);
     set_speed(span, plan2, rise, v.z() - kGravity * t);

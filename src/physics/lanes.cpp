@@ -16,10 +16,14 @@ int most_lanes() {
   return 1;
 }
 
-Tracer::Tracer(const World& world, int lanes) : world_(world), lanes_(lanes == 0 ? most_lanes() : lanes) {
-  TALUS_EXPECT(lanes_ <= most_lanes(), "lanes that this processor has");
-  if (world.effects != nullptr || world.barriers != nullptr) lanes_ = 1;
-  if (lanes_ > 1) pool_ = std::make_unique<Pool>(world);
+int lanes_in(const World& world, int asked) {
+  TALUS_EXPECT(asked <= most_lanes(), "lanes that this processor has");
+  if (world.effects != nullptr || world.barriers != nullptr) return 1;
+  return asked == 0 ? most_lanes() : asked;
+}
+
+Tracer::Tracer(const World& world, int lanes) : world_(world), lanes_(lanes_in(world, lanes)) {
+  if (lanes_ > 1) pool_ = std::make_unique<Pool>(world, lanes_);
 }
 
 Tracer::~Tracer() = default;

@@ -14,17 +14,22 @@ inline constexpr int kLaneChoices[] = {1, 4, 8};
 /// The most lanes that this processor and this build have.
 int most_lanes();
 
-/// Gives the next block and a number for it that comes back with its path; false: there is none.
+/// The lanes in which blocks are traced in this world, if `asked` of them are asked for: 1 with effects or barriers.
+/// @param asked  0: the most
+int lanes_in(const World& world, int asked);
+
+/// Gives the next block and a number for it that comes back with its path; false: there is none, and it is not called
+/// again in this run.
 using NextRelease = std::function<bool(Release&, std::uint64_t& tag)>;
-/// Receives a path. It may be changed by nobody, and is valid during the call.
+/// Receives a path, which is valid during the call.
 using PathDone = std::function<void(const Release&, const Path&, std::uint64_t tag)>;
 
 class Pool;
 
 /// Traces many blocks. Its buffers are reused.
 ///
-/// The paths have the same bits as those of `trace`, for any number of lanes. With more lanes than one they end in any
-/// order. In a world with effects or barriers blocks are traced one by one.
+/// The paths have the same bits as those of `trace`, for any number of lanes, and come in the order of the releases. In
+/// a world with effects or barriers blocks are traced one by one.
 class Tracer {
  public:
   /// @param lanes  1, 4 or 8, at most `most_lanes()`; 0: the most

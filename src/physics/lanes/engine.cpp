@@ -29,9 +29,10 @@ class Engine {
     for (int lane = 0; lane < N; ++lane) slots_[lane] = nullptr;
     do {
       fly();
-      while (pool_.landed.size >= N) land(N);
-      if (flights_.active == 0 && pool_.flying.size == 0 && pool_.landed.size > 0) land(pool_.landed.size);
-    } while (flights_.active != 0 || pool_.flying.size > 0 || pool_.landed.size > 0);
+      while (pool_.landed.size() >= N) land(N);
+      if (flights_.active == 0 && pool_.flying.size() == 0 && pool_.landed.size() > 0) land(pool_.landed.size());
+      pool_.landed.pack();
+    } while (flights_.active != 0 || pool_.flying.size() > 0 || pool_.landed.size() > 0);
   }
 
  private:
@@ -65,14 +66,15 @@ class Engine {
     auto& queue = pool_.flying;
     unsigned free = ~f.active & ((1U << N) - 1), take = 0;
     int count = 0;
-    for (; free != 0 && count < queue.size; ++count) {
+    for (; free != 0 && count < queue.size(); ++count) {
       take |= free & -free;
       free &= free - 1;
     }
-    queue.size -= count;
+    const int first = queue.first;
+    queue.first += count;
     const Mask into = Mask::of(take);
     const auto next = [&](L& lanes, int number) {
-      lanes = spread(lanes, into, L::load(queue.at[number] + queue.size));
+      lanes = spread(lanes, into, L::load(queue.at[number] + first));
     };
     L slots = L::load(reinterpret_cast<const double*>(slots_)), grounded(0.0);
     next(slots, flight::Place);
@@ -96,6 +98,7 @@ class Engine {
     f.z = choose(into, f.z0, f.z);
     f.p = choose(into, f.u0 - f.column, f.p);
     f.q = choose(into, f.v0 - f.row, f.q);
+    if (queue.size() == 0) queue.first = queue.end = 0;
     f.leaving |= (grounded > 0.0).number() & take;
     f.active |= take;
   }
@@ -105,8 +108,8 @@ class Engine {
     Flights f = flights_;
     for (;;) {
       if (f.active != (1U << N) - 1) {
-        if (pool_.flying.size > 0) refill(f);
-        if (f.active == 0 || (f.active != (1U << N) - 1 && pool_.landed.size >= N)) break;
+        if (pool_.flying.size() > 0) refill(f);
+        if (f.active == 0 || (f.active != (1U << N) - 1 && pool_.landed.size() >= N)) break;
       }
       step(f);
     }
@@ -144,11 +147,11 @@ class Engine {
     f.q = f.v0 + f.rate_v * f.t - f.row;
     const L end_height =
         choose(lands, L(0.0), larger(L(0.0), clearance.f0 + dt * (clearance.f1 + dt * clearance.f2)));
-    write_spans(goes, f, pair_of(I::float_bits(p_from.x), I::float_bits(q_from.x)),
+    const unsigned gone = write_spans(goes, f, pair_of(I::float_bits(p_from.x), I::float_bits(q_from.x)),
                 pair_of(I::float_bits(clearance.f0.x), I::float_bits(end_height.x)),
                 pair_of(I::float_bits((clearance.f2 * dt * dt).x), I::float_bits(f.plan2.x)),
                 pair_of(I::float_bits(course.rise.x), I::float_bits((f.v_z - kGravity * f.t).x)));
-    const Mask landed = goes & lands, left = active & opposite(goes);
+    const Mask landed = goes & lands & opposite(Mask::of(gone)), left = active & opposite(goes);
     if (any(landed)) push_landed(landed, f, patch.height(f.p, f.q));
     const unsigned out = left.number();
     if (out != 0) {
@@ -157,7 +160,7 @@ class Engine {
       for (int lane = 0; lane < N; ++lane)
         if ((out >> lane & 1U) != 0) pool_.leave(*slots_[lane], time[lane]);
     }
-    f.active &= ~(landed.number() | out);
+    f.active &= ~(landed.number() | out | gone);
     f.leaving = 0;
     f.z = f.z0 + f.t * (f.v_z - 0.5 * kGravity * f.t);
     const Mask crosses = opposite(crease_after < edge);
@@ -180,26 +183,38 @@ class Engine {
     return I::reals_of(low | I::template up<32>(high));
   }
 
+  /// Cells over which the blocks will be three patches later: their heights are fetched ahead. The cell, if it is in the
+  /// grid, is in the last digits; other numbers do no harm.
+  [[gnu::always_inline]] L places_ahead(const Flights& f) const {
+    const L time = 3.0 * smaller(f.every_column, f.every_row);
+    return whole_below(f.row + f.rate_v * time) * world_.columns + whole_below(f.column + f.rate_u * time) + 0x1p52;
+  }
+
   /// Writes one span for each of these blocks.
-  [[gnu::always_inline]] void write_spans(Mask goes, const Flights& f, L from, L heights, L bend_plan2, L rises) {
+  /// Returns the lanes whose blocks are no longer there.
+  [[gnu::always_inline]] unsigned write_spans(Mask goes, const Flights& f, L from, L heights, L bend_plan2, L rises) {
     L rows[8] = {pair_of(I::whole_bits(f.column.x), I::whole_bits(f.row.x)), from,
                  pair_of(I::float_bits(f.p.x), I::float_bits(f.q.x)), heights, bend_plan2, rises, L(0.0), L(0.0)};
     transpose(rows);
     const unsigned lanes = goes.number();
+    unsigned gone = 0;
     alignas(64) std::uint64_t soon[N];
-    const L every = 3.0 * smaller(f.every_column, f.every_row);
-    const L ahead = whole_below(f.row + f.rate_v * every) * world_.columns + whole_below(f.column + f.rate_u * every);
-    (ahead + 0x1.8p52).store(reinterpret_cast<double*>(soon));
+    places_ahead(f).store(reinterpret_cast<double*>(soon));
     in_each_lane([&](auto lane) {
-      __builtin_prefetch(world_.heights + static_cast<std::int64_t>(soon[lane] << 13U) / 8192);
+      __builtin_prefetch(reinterpret_cast<const void*>(reinterpret_cast<std::uintptr_t>(world_.heights) +
+                                                       sizeof(float) * (soon[lane] & 0xFFFF'FFFF'FFFF)));
       if ((lanes >> lane & 1U) == 0) return;
       Slot& slot = *slots_[lane];
       if (slot.span == slot.last_span) [[unlikely]]
-        pool_.more_spans(slot);
+        if (!pool_.more_spans(slot)) {
+          gone |= 1U << lane;
+          return;
+        }
       double* to = reinterpret_cast<double*>(slot.span);
       for (int part = 0; part < 8 / N; ++part) rows[lane + part * N].store(to + part * N);
       slot.span += 1;
     });
+    return gone;
   }
 
   template <class Work>
@@ -223,13 +238,13 @@ class Engine {
 
   [[gnu::always_inline]] void push_landed(Mask landed, const Flights& f, L height) {
     auto& queue = pool_.landed;
-    const auto put = [&](int number, L lanes) { together(landed, lanes).store(queue.at[number] + queue.size); };
+    const auto put = [&](int number, L lanes) { together(landed, lanes).store(queue.at[number] + queue.end); };
     put(landing::Place, L::load(reinterpret_cast<const double*>(slots_)));
     put(landing::Time, f.t);
     put(landing::Z, height);
     put(landing::Column, f.column);
     put(landing::Row, f.row);
-    queue.size += __builtin_popcount(landed.number());
+    queue.end += __builtin_popcount(landed.number());
   }
 
   /// The numbers of the blocks of a pack, and what the steps of their impact find.
@@ -295,11 +310,12 @@ class Engine {
   /// Takes the last blocks of the queue, and moves them to the ends of their flights.
   [[gnu::always_inline]] void end_flights(Pack& pack, int count) {
     auto& queue = pool_.landed;
-    queue.size -= count;
+    const int first = queue.first;
+    queue.first += count;
     pack.there = Mask::of((1U << count) - 1);
-    const auto next = [&](int number) { return choose(pack.there, L::load(queue.at[number] + queue.size), L(0.0)); };
+    const auto next = [&](int number) { return choose(pack.there, L::load(queue.at[number] + first), L(0.0)); };
     for (int lane = 0; lane < N; ++lane)
-      pack.slots[lane] = reinterpret_cast<Slot* const*>(queue.at[landing::Place])[queue.size + (lane < count ? lane : 0)];
+      pack.slots[lane] = reinterpret_cast<Slot* const*>(queue.at[landing::Place])[first + (lane < count ? lane : 0)];
     const L t = next(landing::Time);
     pack.column = next(landing::Column);
     pack.row = next(landing::Row);
@@ -424,7 +440,7 @@ class Engine {
   [[gnu::always_inline]] void push_flights(const Pack& pack, Mask m) {
     if (!any(m)) return;
     auto& queue = pool_.flying;
-    const auto put = [&](int number, L lanes) { together(m, lanes).store(queue.at[number] + queue.size); };
+    const auto put = [&](int number, L lanes) { together(m, lanes).store(queue.at[number] + queue.end); };
     const auto& s = pack.state;
     const L v_x = s[field::VelocityX], v_y = s[field::VelocityY];
     const L rate_u = v_x * world_.per_cell_x, rate_v = v_y * world_.per_cell_y;
@@ -445,7 +461,7 @@ class Engine {
     put(flight::Column, pack.column);
     put(flight::Row, pack.row);
     put(flight::Grounded, L(1.0));
-    queue.size += __builtin_popcount(m.number());
+    queue.end += __builtin_popcount(m.number());
   }
 
   /// Blocks for which one-lane code does the next step.

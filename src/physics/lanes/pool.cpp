@@ -8,11 +8,14 @@
 #include "physics/staying.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/physics/slide.hpp"
+#include "talus/physics/trace.hpp"
 
 namespace talus {
 namespace {
 
-constexpr std::size_t kFirstSpans = 256, kFirstVertices = 64;  // of a path's buffers, which grow
+constexpr std::size_t kFirstSpans = 512, kFirstVertices = 128;  // of a path's buffers, which grow
+constexpr std::size_t kLongPath = 16'384;  // spans: a longer path is traced in one lane, so that one at a time is there
+constexpr std::size_t kMostWaiting = 200'000;  // spans and vertices of paths that wait for their turn: some 12 MB
 
 static_assert(sizeof(Motion) == 10 * sizeof(double) && offsetof(Vertex, motion) == 0);
 static_assert(sizeof(Span) == 52 && offsetof(Span, p_from) == 8 && offsetof(Span, height_from) == 24 &&
@@ -43,22 +46,34 @@ LaneWorld lane_world(const World& world) {
 
 }  // namespace
 
-Pool::Pool(const World& world)
-    : terrain(lane_world(world)), world_(world), slots_(new Slot[Queue<1>::kMost]) {}
+Pool::Pool(const World& world, int lanes)
+    : terrain(lane_world(world)), world_(world), size_(4 * lanes), slots_(new Slot[4 * lanes]) {
+  TALUS_EXPECT(size_ <= Queue<1>::kMost, "the queues hold all blocks of a pool");
+}
 
 Pool::~Pool() = default;
 
 void Pool::fill(const NextRelease& next, const PathDone& done) {
   next_ = &next;
   done_ = &done;
-  flying.size = landed.size = 0;
-  for (int i = 0; i < Queue<1>::kMost; ++i) start(slots_[i]);
+  flying.first = flying.end = landed.first = landed.end = 0;
+  exhausted_ = false;
+  order_.clear();
+  waiting_ = 0;
+  idle_.clear();
+  for (int i = 0; i < size_; ++i) start(slots_[i]);
 }
 
-/// Starts the next block, if there is one, in this place.
+/// Starts the next block in this slot, if there is one and not too many wait.
 void Pool::start(Slot& slot) {
   slot.release = Release{};
-  if (!(*next_)(slot.release, slot.tag)) return;
+  exhausted_ = exhausted_ || (waiting_ < kMostWaiting && !(*next_)(slot.release, slot.tag));
+  if (exhausted_ || waiting_ >= kMostWaiting) {
+    idle_.push_back(&slot);
+    return;
+  }
+  slot.number = first_ + order_.size();
+  order_.emplace_back();
   const Release& release = slot.release;
   open(slot);
   set_motion(slot, release.motion);
@@ -95,17 +110,23 @@ void Pool::open(Slot& slot) {
   slot.impacts = slot.psi_dropped = 0;
 }
 
-void Pool::more_spans(Slot& slot) {
+bool Pool::more_spans(Slot& slot) {
   const auto used = slot.span - slot.first_span;
-  slot.path.spans.resize(slot.path.spans.size() + slot.path.spans.size() / 4);
+  if (static_cast<std::size_t>(used) > kLongPath) {
+    trace(world_, slot.release, long_);
+    hand_over(slot, long_);
+    return false;
+  }
+  slot.path.spans.resize(2 * slot.path.spans.size());
   slot.first_span = slot.path.spans.data();
   slot.span = slot.first_span + used;
   slot.last_span = slot.first_span + (slot.path.spans.size() - 2);
+  return true;
 }
 
 void Pool::more_vertices(Slot& slot) {
   const auto used = slot.vertex - slot.first_vertex, spins = slot.spin - slot.path.spins.data();
-  slot.path.vertices.resize(slot.path.vertices.size() + kFirstVertices);
+  slot.path.vertices.resize(2 * slot.path.vertices.size());
   slot.path.spins.resize(slot.path.vertices.size());
   slot.first_vertex = slot.path.vertices.data();
   slot.vertex = slot.first_vertex + used;
@@ -131,11 +152,12 @@ void Pool::push_vertex(Slot& slot, Event event) {
 }
 
 void Pool::push_flight(Slot& slot, PatchIndex at, bool grounded) {
+  if (flying.end == 2 * Queue<1>::kMost) flying.pack();
   const Motion motion = motion_of(slot);
   const double rate_u = motion.velocity.x() * terrain.per_cell_x, rate_v = motion.velocity.y() * terrain.per_cell_y;
   const double u0 = world_.surface.u_of(motion.position.x()), v0 = world_.surface.v_of(motion.position.y());
   const Lines<double> columns(u0 - at.column, rate_u), rows(v0 - at.row, rate_v);
-  const auto put = [&](int number, double value) { flying.at[number][flying.size] = value; };
+  const auto put = [&](int number, double value) { flying.at[number][flying.end] = value; };
   put(flight::Place, std::bit_cast<double>(&slot));
   put(flight::U0, u0);
   put(flight::V0, v0);
@@ -151,7 +173,7 @@ void Pool::push_flight(Slot& slot, PatchIndex at, bool grounded) {
   put(flight::Column, at.column);
   put(flight::Row, at.row);
   put(flight::Grounded, grounded ? 1.0 : 0.0);
-  flying.size += 1;
+  flying.end += 1;
 }
 
 void Pool::leave(Slot& slot, double t) {
@@ -188,7 +210,7 @@ void Pool::slide(Slot& slot, const double* normal, int column, int row) {
   slot.state[field::Length] = slide_.length;
   slot.state[field::PlanLength] = slide_.plan_length;
   for (const Span& span : slide_.spans) {
-    if (slot.span == slot.last_span) more_spans(slot);
+    if (slot.span == slot.last_span && !more_spans(slot)) return;
     *slot.span++ = span;
   }
   for (const Vertex& vertex : slide_.vertices) {
@@ -209,13 +231,13 @@ void Pool::slide(Slot& slot, const double* normal, int column, int row) {
     push_vertex(slot, Event::Takeoff);
     return push_flight(slot, at, true);
   }
-  const auto put = [&](int number, double value) { landed.at[number][landed.size] = value; };
+  const auto put = [&](int number, double value) { landed.at[number][landed.end] = value; };
   put(landing::Place, std::bit_cast<double>(&slot));
   put(landing::Time, 0.0);
   put(landing::Z, motion.position.z());
   put(landing::Column, at.column);
   put(landing::Row, at.row);
-  landed.size += 1;
+  landed.end += 1;
 }
 
 void Pool::end(Slot& slot, End end) {
@@ -231,8 +253,44 @@ void Pool::end(Slot& slot, End end) {
   path.plan_length = slot.state[field::PlanLength];
   path.mass = slot.release.body.mass;
   TALUS_EXPECT(path.vertices.back().motion.time >= slot.release.motion.time, "time goes on");
-  (*done_)(slot.release, path, slot.tag);
+  hand_over(slot, path);
+}
+
+/// Hands out the path of a block, or keeps it until those before it are handed out; then starts other blocks.
+void Pool::hand_over(Slot& slot, Path& path) {
+  if (slot.number == first_) {
+    (*done_)(slot.release, path, slot.tag);
+    order_.pop_front();
+    ++first_;
+    hand_out();
+  } else {
+    Waiting& waiting = order_[slot.number - first_];
+    waiting.ended = true;
+    waiting.tag = slot.tag;
+    waiting.release = slot.release;
+    if (!spare_.empty()) {
+      std::swap(waiting.path, spare_.back());
+      spare_.pop_back();
+    }
+    std::swap(waiting.path, path);
+    waiting_ += waiting.path.spans.size() + waiting.path.vertices.size();
+  }
   start(slot);
+  while (!idle_.empty() && !exhausted_ && waiting_ < kMostWaiting) {
+    Slot& other = *idle_.back();
+    idle_.pop_back();
+    start(other);
+  }
+}
+
+/// Hands out the paths whose turn has come.
+void Pool::hand_out() {
+  for (; !order_.empty() && order_.front().ended; order_.pop_front(), ++first_) {
+    Waiting& waiting = order_.front();
+    (*done_)(waiting.release, waiting.path, waiting.tag);
+    waiting_ -= waiting.path.spans.size() + waiting.path.vertices.size();
+    if (waiting.path.spans.size() <= kLongPath) spare_.push_back(std::move(waiting.path));
+  }
 }
 
 }  // namespace talus

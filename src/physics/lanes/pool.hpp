@@ -1,7 +1,8 @@
 #pragma once
 #include <cstdint>
-#include <functional>
+#include <deque>
 #include <memory>
+#include <vector>
 
 #include "talus/physics/lanes.hpp"
 #include "talus/physics/path.hpp"
@@ -27,17 +28,26 @@ struct alignas(64) Slot {
   Vertex *first_vertex, *vertex, *last_vertex;
   SpinFrom* spin;
   std::uint32_t impacts, psi_dropped;
-  std::uint64_t tag;
+  std::uint64_t number, tag;  ///< in the order of the releases; of the caller
   Release release;
   Path path;  ///< its buffers; complete at the end only
 };
 
-/// Blocks that wait: number by number, so that several are taken by one instruction.
+/// Blocks that wait: number by number, so that several are taken by one instruction. The first come first: what was
+/// written last is not in the cache yet, and reading it would wait for that.
 template <int kFields>
 struct Queue {
-  static constexpr int kMost = 64;
-  alignas(64) double at[kFields][kMost + 8];
-  int size = 0;
+  static constexpr int kMost = 32;  // blocks
+  alignas(64) double at[kFields][2 * kMost + 8];
+  int first = 0, end = 0;
+
+  [[gnu::always_inline]] int size() const { return end - first; }
+  /// Moves the blocks to the beginning.
+  [[gnu::always_inline]] void pack() {
+    for (auto& numbers : at) __builtin_memmove(numbers, numbers + first, sizeof(double) * static_cast<std::size_t>(size()));
+    end -= first;
+    first = 0;
+  }
 };
 
 /// Blocks that start a flight.
@@ -67,7 +77,9 @@ struct LaneWorld {
 /// The blocks on their way. All functions are for one block at a time.
 class Pool {
  public:
-  Pool(const World& world);
+  /// @param lanes  of the engine. Twice as many blocks would keep all lanes busy: while too few for an impact have landed,
+  ///               at least as many fly as there are lanes. More leave time between writing and reading a queue
+  Pool(const World& world, int lanes);
   ~Pool();
 
   LaneWorld terrain;
@@ -77,7 +89,9 @@ class Pool {
   /// Fills the pool with blocks. From then on each block that ends makes room for the next.
   void fill(const NextRelease& next, const PathDone& done);
 
-  void more_spans(Slot& slot);
+  /// Makes room for spans. False: the path is too long for the pool; it was traced in one lane instead, and the slot has
+  /// another block or none.
+  bool more_spans(Slot& slot);
   void more_vertices(Slot& slot);
   /// The flight of a block left the terrain after this time [s].
   void leave(Slot& slot, double time);
@@ -88,7 +102,17 @@ class Pool {
   void end(Slot& slot, End end);
 
  private:
+  /// A block of the order of the releases: on its way, or ended before one that was released earlier.
+  struct Waiting {
+    bool ended = false;
+    std::uint64_t tag = 0;
+    Release release;
+    Path path;
+  };
+
   void start(Slot& slot);
+  void hand_over(Slot& slot, Path& path);
+  void hand_out();
   void push_flight(Slot& slot, PatchIndex at, bool grounded);
   void open(Slot& slot);
   Motion motion_of(const Slot& slot) const;
@@ -98,8 +122,15 @@ class Pool {
   const World& world_;
   const NextRelease* next_ = nullptr;
   const PathDone* done_ = nullptr;
+  int size_;
   std::unique_ptr<Slot[]> slots_;
-  Path slide_;
+  std::vector<Slot*> idle_;     // slots without a block
+  bool exhausted_ = false;      // no release is left
+  std::deque<Waiting> order_;   // the blocks that are not handed out
+  std::uint64_t first_ = 0;     // number of the first of them
+  std::size_t waiting_ = 0;     // spans and vertices of those that ended
+  std::vector<Path> spare_;     // buffers
+  Path slide_, long_;
 };
 
 }  // namespace talus
