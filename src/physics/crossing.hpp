@@ -37,8 +37,8 @@ struct Course {
 
 /// @param leaving  the block is on the surface and moves away from it, in spite of rounding
 template <class Number>
-[[gnu::always_inline]] inline Clearance<Number> clearance_over(const BasicPatch<Number>& patch,
-                                                               const Course<Number>& c, MaskOf<Number> leaving) {
+[[gnu::always_inline]] inline Clearance<Number> clearance_over(const BasicPatch<Number>& patch, const Course<Number>& c,
+                                                               MaskOf<Number> leaving) {
   const Number slope = patch.east * c.rate_u + patch.north * c.rate_v + patch.twist * (c.p * c.rate_v + c.q * c.rate_u);
   const Number f1 = c.rise - slope;  // NaN stays NaN
   return {choose(leaving, Number(0.0), larger(c.z - patch.height(c.p, c.q), Number(0.0))),
@@ -50,7 +50,8 @@ template <class Number>
 [[gnu::always_inline]] inline Number time_to_crease(MaskOf<Number> rising, MaskOf<Number> north,
                                                     const Course<Number>& c) {
   const Number rate = rate_across<Number>(rising, c.rate_u, c.rate_v);
-  const MaskOf<Number> meets = (north & (rate < 0.0)) | (opposite(north) & (rate > 0.0));
+  const MaskOf<Number> south = opposite(north), falls = rate<0.0, rises = rate> 0.0;
+  const MaskOf<Number> meets = (north & falls) | (south & rises);
   return choose(meets, -across<Number>(rising, c.p, c.q) / rate, Number(kNever));
 }
 

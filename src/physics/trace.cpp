@@ -52,7 +52,7 @@ class Walk {
         if (how == SlideEnd::Stopped) return End::Stopped;
         if (how == SlideEnd::Trapped) return End::Trapped;
         if (how == SlideEnd::Caught) return End::Caught;
-        if (how == SlideEnd::Asperity) continue;
+        if (how == SlideEnd::NextAsperity) continue;
         path_.vertices.push_back({motion_, Event::Takeoff});
       }
       if (const auto end = fly_on()) return *end;
@@ -107,7 +107,7 @@ class Walk {
   SlideEnd slide_on() {
     motion_.velocity -= motion_.velocity.dot(normal_) * normal_;
     const SlideEnd end = effects_.slide(motion_, at_, body_, path_);
-    const bool goes_on = end == SlideEnd::Takeoff || end == SlideEnd::Asperity;
+    const bool goes_on = end == SlideEnd::Takeoff || end == SlideEnd::NextAsperity;
     return end == SlideEnd::Trapped || (goes_on && anchor_.traps(motion_)) ? end_of_staying() : end;
   }
 

@@ -116,7 +116,7 @@ class Simulation::Advance {
  private:
   /// A unit of work of which some blocks are not done.
   struct Unit {
-    std::uint64_t number;  // as WorkUnits::Taken
+    std::uint64_t number;             // as WorkUnits::Taken
     std::uint32_t source, next, end;  // next block to be released, block after the last
     std::uint32_t left;               // blocks that are not done
     std::uint32_t count;              // blocks

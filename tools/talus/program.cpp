@@ -222,10 +222,10 @@ CLI::Validator lanes_of_machine() {
     const auto choice = std::ranges::find(talus::kLaneChoices, text, [](int lanes) { return std::to_string(lanes); });
     if (choice == std::end(talus::kLaneChoices)) return "Value " + text + ": must be 1, 4 or 8";
     const int most = talus::most_lanes();
-    return *choice <= most ? ""
-                           : "Value " + text + ": this processor has " + std::to_string(most) +
-                                 (most == 1 ? " lane" : " lanes") +
-                                 " (8 need AVX-512, 4 need AVX2); give less, or leave it out: the results are the same";
+    return *choice <= most
+               ? ""
+               : "Value " + text + ": this processor has " + std::to_string(most) + (most == 1 ? " lane" : " lanes") +
+                     " (8 need AVX-512, 4 need AVX2); give less, or leave it out: the results are the same";
   };
   return {check, "INT: 1, 4 or 8"};
 }

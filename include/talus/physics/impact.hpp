@@ -146,8 +146,9 @@ template <class Number>
   const Number cos_psi = 1.0 / root(1.0 + asperity.tan_psi * asperity.tan_psi);
   const Vector n2 = cos_psi * Vector(n1 + asperity.tan_psi * side);
   const MaskOf<Number> meets = tilts & (velocity.dot(n2) < 0.0);
-  if (all(meets)) return {n2, opposite(meets)};
-  return {choose(meets, n2, without_psi()), tilts & opposite(meets)};
+  const MaskOf<Number> misses = opposite(meets), dropped = tilts & misses;
+  if (all(meets)) return {n2, misses};
+  return {choose(meets, n2, without_psi()), dropped};
 }
 RoughPlane rough_plane(const Vec3& normal, const Vec3& velocity, const Asperity& asperity);
 
@@ -275,7 +276,7 @@ template <class Number, class Body, class Moving, class Changes>
   const Number v_n = larger(Number(0.0), -before.velocity.dot(plane.normal));                // step 3
   auto k = restitution<Number>(ground, model.deformation_coefficient * block.diameter * v_n * v_n);
   changes.restitution(k);
-  const Number arm = asperity.shape * block.radius();                                                   // step 4
+  const Number arm = asperity.shape * block.radius();                                                // step 4
   auto after = rebound<Number>(before.velocity, before.spin, plane.normal, k, arm, ground.tan_phi);  // step 5
   changes.rebound(after, BasicImpactMoment<Number, Body>{block, normal, plane.normal, v_n, k});
   const Number into_slope = smaller(Number(0.0), after.velocity.dot(normal));  // step 6

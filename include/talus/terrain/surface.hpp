@@ -99,10 +99,11 @@ inline constexpr double kOnCrease = 1e-9;
 template <class Number>
 [[gnu::always_inline]] inline BasicPatch<Number> half_of(const BasicPatch<Number>& patch, MaskOf<Number> rising,
                                                          MaskOf<Number> north) {
-  const MaskOf<Number> turned = (north & opposite(rising)) | (rising & opposite(north));
-  return {choose(north & opposite(rising), patch.corner - patch.twist, patch.corner),
-          choose(north, patch.east + patch.twist, patch.east),
-          choose(turned, patch.north + patch.twist, patch.north), Number(0.0)};
+  const MaskOf<Number> over_falling = north & opposite(rising), under_rising = rising & opposite(north);
+  const MaskOf<Number> turned = over_falling | under_rising;
+  return {choose(over_falling, patch.corner - patch.twist, patch.corner),
+          choose(north, patch.east + patch.twist, patch.east), choose(turned, patch.north + patch.twist, patch.north),
+          Number(0.0)};
 }
 inline Patch half_of(const Patch& patch, Crease crease, bool north) {
   return half_of<double>(patch, crease == Crease::Rising, north);
@@ -115,7 +116,9 @@ template <class Number>
                                                               Number rate_q) {
   const Number side = across<Number>(rising, p, q);
   const MaskOf<Number> beside = magnitude(side) > kOnCrease;
-  return (beside & (side > 0.0)) | (opposite(beside) & (rate_across<Number>(rising, rate_p, rate_q) > 0.0));
+  const MaskOf<Number> on_it = opposite(beside), north_of_it = side > 0.0;
+  const MaskOf<Number> moves_north = rate_across<Number>(rising, rate_p, rate_q) > 0.0;
+  return (beside & north_of_it) | (on_it & moves_north);
 }
 inline bool on_northern_half(Crease crease, double p, double q, double rate_p, double rate_q) {
   return on_northern_half<double>(crease == Crease::Rising, p, q, rate_p, rate_q);
@@ -135,7 +138,8 @@ template <class Number>
                                (magnitude(rate_across<Number>(rising, rate_p, rate_q)) <= kAlongCrease * speed);
   if (!any(along)) return half;
   const MaskOf<Number> every = along | opposite(along);
-  const BasicPatch<Number> south = half_of<Number>(patch, rising, opposite(every)), north = half_of<Number>(patch, rising, every);
+  const BasicPatch<Number> south = half_of<Number>(patch, rising, opposite(every)),
+                           north = half_of<Number>(patch, rising, every);
   return {choose(along, 0.5 * (south.corner + north.corner), half.corner),
           choose(along, 0.5 * (south.east + north.east), half.east),
           choose(along, 0.5 * (south.north + north.north), half.north), Number(0.0)};

@@ -213,10 +213,9 @@ class Observation {
       Instrument instrument(campaign_, model_, world_.cover, screens_, options_.effort);
       Tracer tracer(world_, options_.lanes);
       Unit unit{};
-      tracer.run([&](Release& release, std::uint64_t& tag) { return next(unit, release, tag); },
-                 [&](const Release& release, const Path& path, std::uint64_t tag) {
-                   done(instrument, release, path, tag);
-                 });
+      tracer.run(
+          [&](Release& release, std::uint64_t& tag) { return next(unit, release, tag); },
+          [&](const Release& release, const Path& path, std::uint64_t tag) { done(instrument, release, path, tag); });
     } catch (...) {
 #pragma omp critical
       if (!failure_) failure_ = std::current_exception();

@@ -73,9 +73,7 @@ class Engine {
     const int first = queue.first;
     queue.first += count;
     const Mask into = Mask::of(take);
-    const auto next = [&](L& lanes, int number) {
-      lanes = spread(lanes, into, L::load(queue.at[number] + first));
-    };
+    const auto next = [&](L& lanes, int number) { lanes = spread(lanes, into, L::load(queue.at[number] + first)); };
     L slots = L::load(reinterpret_cast<const double*>(slots_)), grounded(0.0);
     next(slots, flight::Place);
     slots.store(reinterpret_cast<double*>(slots_));
@@ -145,12 +143,11 @@ class Engine {
     const L p_from = f.p, q_from = f.q;
     f.p = f.u0 + f.rate_u * f.t - f.column;
     f.q = f.v0 + f.rate_v * f.t - f.row;
-    const L end_height =
-        choose(lands, L(0.0), larger(L(0.0), clearance.f0 + dt * (clearance.f1 + dt * clearance.f2)));
+    const L end_height = choose(lands, L(0.0), larger(L(0.0), clearance.f0 + dt * (clearance.f1 + dt * clearance.f2)));
     const unsigned gone = write_spans(goes, f, pair_of(I::float_bits(p_from.x), I::float_bits(q_from.x)),
-                pair_of(I::float_bits(clearance.f0.x), I::float_bits(end_height.x)),
-                pair_of(I::float_bits((clearance.f2 * dt * dt).x), I::float_bits(f.plan2.x)),
-                pair_of(I::float_bits(course.rise.x), I::float_bits((f.v_z - kGravity * f.t).x)));
+                                      pair_of(I::float_bits(clearance.f0.x), I::float_bits(end_height.x)),
+                                      pair_of(I::float_bits((clearance.f2 * dt * dt).x), I::float_bits(f.plan2.x)),
+                                      pair_of(I::float_bits(course.rise.x), I::float_bits((f.v_z - kGravity * f.t).x)));
     const Mask landed = goes & lands & opposite(Mask::of(gone)), left = active & opposite(goes);
     if (any(landed)) push_landed(landed, f, patch.height(f.p, f.q));
     const unsigned out = left.number();
@@ -183,8 +180,8 @@ class Engine {
     return I::reals_of(low | I::template up<32>(high));
   }
 
-  /// Cells over which the blocks will be three patches later: their heights are fetched ahead. The cell, if it is in the
-  /// grid, is in the last digits; other numbers do no harm.
+  /// Cells over which the blocks will be three patches later: their heights are fetched ahead. The cell, if it is in
+  /// the grid, is in the last digits; other numbers do no harm.
   [[gnu::always_inline]] L places_ahead(const Flights& f) const {
     const L time = 3.0 * smaller(f.every_column, f.every_row);
     return whole_below(f.row + f.rate_v * time) * world_.columns + whole_below(f.column + f.rate_u * time) + 0x1p52;
@@ -193,8 +190,14 @@ class Engine {
   /// Writes one span for each of these blocks.
   /// Returns the lanes whose blocks are no longer there.
   [[gnu::always_inline]] unsigned write_spans(Mask goes, const Flights& f, L from, L heights, L bend_plan2, L rises) {
-    L rows[8] = {pair_of(I::whole_bits(f.column.x), I::whole_bits(f.row.x)), from,
-                 pair_of(I::float_bits(f.p.x), I::float_bits(f.q.x)), heights, bend_plan2, rises, L(0.0), L(0.0)};
+    L rows[8] = {pair_of(I::whole_bits(f.column.x), I::whole_bits(f.row.x)),
+                 from,
+                 pair_of(I::float_bits(f.p.x), I::float_bits(f.q.x)),
+                 heights,
+                 bend_plan2,
+                 rises,
+                 L(0.0),
+                 L(0.0)};
     transpose(rows);
     const unsigned lanes = goes.number();
     unsigned gone = 0;
@@ -225,8 +228,8 @@ class Engine {
     (std::make_integer_sequence<int, N>());
   }
 
-  /// Turns eight numbers of each lane into the eight numbers of lane 0, those of lane 1, ... (with four lanes: the first
-  /// four of each lane, then the others), or back.
+  /// Turns eight numbers of each lane into the eight numbers of lane 0, those of lane 1, ... (with four lanes: the
+  /// first four of each lane, then the others), or back.
   [[gnu::always_inline]] static void transpose(L (&numbers)[8]) {
     for (int part = 0; part < 8 / N; ++part) {
       typename I::Reals square[N];
@@ -275,7 +278,9 @@ class Engine {
     Pack pack;
     end_flights(pack, count);
     const Mask stays = pack.there & (pack.state[field::Time] - pack.state[field::AnchorTime] > world_.trap_time);
-    const Mask bounded = opposite(stays) & (pack.there & (Mask::of(at_limits(pack)) | opposite(pack.state[field::Time] < world_.time_limit)));
+    const Mask bounded =
+        opposite(stays) &
+        (pack.there & (Mask::of(at_limits(pack)) | opposite(pack.state[field::Time] < world_.time_limit)));
     const Mask meets = pack.there & opposite(stays) & opposite(bounded);
 
     Patches patch = read(pack.column, pack.row);
@@ -349,7 +354,8 @@ class Engine {
     unsigned bounded = 0;
     for (int lane = 0; lane < N; ++lane) {
       const Slot& slot = *pack.slots[lane];
-      const auto vertices = reinterpret_cast<const char*>(slot.vertex) - reinterpret_cast<const char*>(slot.first_vertex);
+      const auto vertices =
+          reinterpret_cast<const char*>(slot.vertex) - reinterpret_cast<const char*>(slot.first_vertex);
       const auto spans = reinterpret_cast<const char*>(slot.span) - reinterpret_cast<const char*>(slot.first_span);
       if (slot.impacts >= world_.impact_limit || static_cast<std::size_t>(vertices) >= world_.most_vertices ||
           static_cast<std::size_t>(spans) >= world_.most_spans)
@@ -444,7 +450,8 @@ class Engine {
     const auto& s = pack.state;
     const L v_x = s[field::VelocityX], v_y = s[field::VelocityY];
     const L rate_u = v_x * world_.per_cell_x, rate_v = v_y * world_.per_cell_y;
-    const L u0 = patch_coordinate(s[field::X], world_.per_cell_x), v0 = patch_coordinate(s[field::Y], world_.per_cell_y);
+    const L u0 = patch_coordinate(s[field::X], world_.per_cell_x),
+            v0 = patch_coordinate(s[field::Y], world_.per_cell_y);
     const Lines<L> columns(u0 - pack.column, rate_u), rows(v0 - pack.row, rate_v);
     put(flight::Place, L::load(reinterpret_cast<const double*>(pack.slots)));
     put(flight::U0, u0);

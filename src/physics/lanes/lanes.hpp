@@ -190,7 +190,7 @@ struct Lanes {
   typename I::Reals x;
 
   Lanes() = default;
-  [[gnu::always_inline]] Lanes(typename I::Reals reals) : x(reals) {}   // NOLINT
+  [[gnu::always_inline]] Lanes(typename I::Reals reals) : x(reals) {}    // NOLINT
   [[gnu::always_inline]] Lanes(double number) : x(I::repeat(number)) {}  // NOLINT: a number is the same in all lanes
   [[gnu::always_inline]] static Lanes load(const double* from) { return I::load(from); }
   [[gnu::always_inline]] void store(double* to) const { I::store(to, x); }

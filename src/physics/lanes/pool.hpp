@@ -14,9 +14,28 @@ namespace talus {
 /// Numbers of a block, in the order in which they lie in `Slot::state`: first those of Motion.
 namespace field {
 enum : std::uint8_t {
-  Time, X, Y, Z, VelocityX, VelocityY, VelocityZ, SpinX, SpinY, SpinZ,  // clang-format: one line
-  Length, PlanLength, AnchorX, AnchorY, AnchorTime, Diameter,
-  Event, PurposeWord, Source, BlockNumber, KeyLow, KeyHigh,  // words of its random numbers, as whole numbers
+  Time,
+  X,
+  Y,
+  Z,
+  VelocityX,
+  VelocityY,
+  VelocityZ,
+  SpinX,
+  SpinY,
+  SpinZ,  // clang-format: one line
+  Length,
+  PlanLength,
+  AnchorX,
+  AnchorY,
+  AnchorTime,
+  Diameter,
+  Event,
+  PurposeWord,
+  Source,
+  BlockNumber,
+  KeyLow,
+  KeyHigh,  // words of its random numbers, as whole numbers
   Count = 24
 };
 }  // namespace field
@@ -24,7 +43,7 @@ enum : std::uint8_t {
 /// One block of the pool, at the start of its flight, or on the ground.
 struct alignas(64) Slot {
   double state[field::Count];
-  Span *first_span, *span, *last_span;        ///< of its path: first, next, and the last that may be written
+  Span *first_span, *span, *last_span;  ///< of its path: first, next, and the last that may be written
   Vertex *first_vertex, *vertex, *last_vertex;
   SpinFrom* spin;
   std::uint32_t impacts, psi_dropped;
@@ -44,7 +63,8 @@ struct Queue {
   [[gnu::always_inline]] int size() const { return end - first; }
   /// Moves the blocks to the beginning.
   [[gnu::always_inline]] void pack() {
-    for (auto& numbers : at) __builtin_memmove(numbers, numbers + first, sizeof(double) * static_cast<std::size_t>(size()));
+    for (auto& numbers : at)
+      __builtin_memmove(numbers, numbers + first, sizeof(double) * static_cast<std::size_t>(size()));
     end -= first;
     first = 0;
   }
@@ -52,8 +72,24 @@ struct Queue {
 
 /// Blocks that start a flight.
 namespace flight {
-enum : std::uint8_t { Place, U0, V0, RateU, RateV, Z0, Rise, NextColumn, EveryColumn, NextRow, EveryRow, Plan2, Column,
-  Row, Grounded, Count };
+enum : std::uint8_t {
+  Place,
+  U0,
+  V0,
+  RateU,
+  RateV,
+  Z0,
+  Rise,
+  NextColumn,
+  EveryColumn,
+  NextRow,
+  EveryRow,
+  Plan2,
+  Column,
+  Row,
+  Grounded,
+  Count
+};
 }  // namespace flight
 /// Blocks that came to the ground: after a flight of this time, at this height, in this patch.
 namespace landing {
@@ -77,7 +113,8 @@ struct LaneWorld {
 /// The blocks on their way. All functions are for one block at a time.
 class Pool {
  public:
-  /// @param lanes  of the engine. Twice as many blocks would keep all lanes busy: while too few for an impact have landed,
+  /// @param lanes  of the engine. Twice as many blocks would keep all lanes busy: while too few for an impact have
+  /// landed,
   ///               at least as many fly as there are lanes. More leave time between writing and reading a queue
   Pool(const World& world, int lanes);
   ~Pool();
@@ -89,8 +126,8 @@ class Pool {
   /// Fills the pool with blocks. From then on each block that ends makes room for the next.
   void fill(const NextRelease& next, const PathDone& done);
 
-  /// Makes room for spans. False: the path is too long for the pool; it was traced in one lane instead, and the slot has
-  /// another block or none.
+  /// Makes room for spans. False: the path is too long for the pool; it was traced in one lane instead, and the slot
+  /// has another block or none.
   bool more_spans(Slot& slot);
   void more_vertices(Slot& slot);
   /// The flight of a block left the terrain after this time [s].
@@ -124,12 +161,12 @@ class Pool {
   const PathDone* done_ = nullptr;
   int size_;
   std::unique_ptr<Slot[]> slots_;
-  std::vector<Slot*> idle_;     // slots without a block
-  bool exhausted_ = false;      // no release is left
-  std::deque<Waiting> order_;   // the blocks that are not handed out
-  std::uint64_t first_ = 0;     // number of the first of them
-  std::size_t waiting_ = 0;     // spans and vertices of those that ended
-  std::vector<Path> spare_;     // buffers
+  std::vector<Slot*> idle_;    // slots without a block
+  bool exhausted_ = false;     // no release is left
+  std::deque<Waiting> order_;  // the blocks that are not handed out
+  std::uint64_t first_ = 0;    // number of the first of them
+  std::size_t waiting_ = 0;    // spans and vertices of those that ended
+  std::vector<Path> spare_;    // buffers
   Path slide_, long_;
 };
 

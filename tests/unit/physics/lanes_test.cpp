@@ -201,7 +201,7 @@ TEST_P(InLanes, AnExceptionReachesTheCallerAndTheNextRunIsWhole) {
 
 TEST(Lanes, OneInAWorldWithBarriers) {
   const Scene scene(0);
-  const Barriers barriers({{"net", {{{0.0, 50.0}, {120.0, 50.0}}}, 3.0, 1e4}});
+  const Barriers barriers({{"net", {{{0.0, 50.0}, {120.0, 50.0}}}, 100.0, std::numeric_limits<double>::infinity()}});
   World world = scene.world;
   EXPECT_EQ(lanes_in(world, 0), most_lanes());
   EXPECT_EQ(lanes_in(world, 1), 1);
@@ -241,7 +241,10 @@ TEST_P(FormulasInLanes, SineAndCosine) {
   std::vector<double> turn = numbers(2, 0.0, 1.0), sine(kCount), cosine(kCount);
   for (int eighth = 0; eighth <= 8; ++eighth)
     for (int side = 0; side < 3; ++side)
-      turn[3 * eighth + side] = std::clamp(std::nextafter(eighth / 8.0, side == 0 ? -1.0 : side == 1 ? 2.0 : eighth / 8.0), 0.0, 1.0);
+      turn[3 * eighth + side] = std::clamp(std::nextafter(eighth / 8.0, side == 0   ? -1.0
+                                                                        : side == 1 ? 2.0
+                                                                                    : eighth / 8.0),
+                                           0.0, 1.0);
   formulas().sine_cosine(turn.data(), sine.data(), cosine.data(), kCount);
   for (int i = 0; i < kCount; ++i) {
     const SineCosine one = sine_cosine_of_turn(turn[i]);
@@ -263,7 +266,8 @@ TEST_P(FormulasInLanes, RandomWords) {
     const auto of = [&](const std::vector<std::uint64_t>& from, int word) {
       return static_cast<std::uint32_t>(from[word * kCount + i]);
     };
-    const Words one = philox4x32({of(before, 0), of(before, 1), of(before, 2), of(before, 3)}, {of(key, 0), of(key, 1)});
+    const Words one =
+        philox4x32({of(before, 0), of(before, 1), of(before, 2), of(before, 3)}, {of(key, 0), of(key, 1)});
     for (int word = 0; word < 4; ++word) ASSERT_EQ(words[word * kCount + i], one[word]) << i;
   }
 }

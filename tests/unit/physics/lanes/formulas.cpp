@@ -32,8 +32,9 @@ void mix(std::uint64_t* words, const std::uint64_t* key, int count) {
     for (int lane = 0; lane < N; ++lane) to[lane] = static_cast<std::uint64_t>(numbers[lane]);
   };
   for (int i = 0; i < count; i += N) {
-    Philox<LaneWords<N>> philox{load(words + i),         load(words + count + i), load(words + 2 * count + i),
-                                load(words + 3 * count + i), load(key + i),         load(key + count + i)};
+    Philox<LaneWords<N>> philox{
+        load(words + i), load(words + count + i), load(words + 2 * count + i), load(words + 3 * count + i),
+        load(key + i),   load(key + count + i)};
     philox.mix();
     store(philox.c0, words + i);
     store(philox.c1, words + count + i);
