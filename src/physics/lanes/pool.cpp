@@ -15,11 +15,17 @@ namespace {
 
 constexpr std::size_t kFirstSpans = 512, kFirstVertices = 128;  // of a path's buffers, which grow
 constexpr std::size_t kLongPath = 16'384;  // spans: a longer path is traced in one lane, so that one at a time is there
-constexpr std::size_t kMostWaiting = 200'000;  // spans and vertices of paths that wait for their turn: some 12 MB
+constexpr std::size_t kMostWaiting = 16U << 20U;  // bytes of paths that wait for their turn
+constexpr std::size_t kMostSpare = 64;            // buffers that are kept
 
 static_assert(sizeof(Motion) == 10 * sizeof(double) && offsetof(Vertex, motion) == 0);
 static_assert(sizeof(Span) == 52 && offsetof(Span, p_from) == 8 && offsetof(Span, height_from) == 24 &&
               offsetof(Span, bend) == 32 && offsetof(Span, rise_from) == 40 && offsetof(Span, impacts) == 48);
+
+std::size_t bytes_of(const Path& path) {
+  return path.spans.capacity() * sizeof(Span) + path.vertices.capacity() * sizeof(Vertex) +
+         path.spins.capacity() * sizeof(SpinFrom);
+}
 
 LaneWorld lane_world(const World& world) {
   const Grid& grid = world.surface.grid();
@@ -273,7 +279,7 @@ void Pool::hand_over(Slot& slot, Path& path) {
       spare_.pop_back();
     }
     std::swap(waiting.path, path);
-    waiting_ += waiting.path.spans.size() + waiting.path.vertices.size();
+    waiting_ += bytes_of(waiting.path);
   }
   start(slot);
   while (!idle_.empty() && !exhausted_ && waiting_ < kMostWaiting) {
@@ -288,8 +294,9 @@ void Pool::hand_out() {
   for (; !order_.empty() && order_.front().ended; order_.pop_front(), ++first_) {
     Waiting& waiting = order_.front();
     (*done_)(waiting.release, waiting.path, waiting.tag);
-    waiting_ -= waiting.path.spans.size() + waiting.path.vertices.size();
-    if (waiting.path.spans.size() <= kLongPath) spare_.push_back(std::move(waiting.path));
+    waiting_ -= bytes_of(waiting.path);
+    if (spare_.size() < kMostSpare && bytes_of(waiting.path) < kMostWaiting / kMostSpare)
+      spare_.push_back(std::move(waiting.path));
   }
 }
 

@@ -165,7 +165,7 @@ class Pool {
   bool exhausted_ = false;     // no release is left
   std::deque<Waiting> order_;  // the blocks that are not handed out
   std::uint64_t first_ = 0;    // number of the first of them
-  std::size_t waiting_ = 0;    // spans and vertices of those that ended
+  std::size_t waiting_ = 0;    // bytes of the paths of those that ended
   std::vector<Path> spare_;    // buffers
   Path slide_, long_;
 };
