@@ -10,6 +10,7 @@
 #include "talus/base/memory.hpp"
 #include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/physics/flight.hpp"
+#include "talus/physics/lanes.hpp"
 #include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/simulate.hpp"
 
@@ -82,6 +83,27 @@ void trace_only(benchmark::State& state) {
       trace(world, release, path);
       benchmark::DoNotOptimize(path.length);
     }
+  per(state, "ns_per_patch", s.spans);
+  per(state, "ns_per_plan_m", static_cast<std::uint64_t>(s.plan_length));
+}
+
+/// The engine without tallies, with several trajectories in the lanes of one instruction. Argument: lanes.
+void trace_in_lanes(benchmark::State& state) {
+  const Sample& s = sample();
+  const int lanes = static_cast<int>(state.range(0));
+  if (lanes > most_lanes()) return state.SkipWithError("this processor has fewer lanes");
+  const World world = g_scenario->world();
+  Tracer tracer(world, lanes);
+  for (auto _ : state) {
+    std::size_t next = 0;
+    tracer.run(
+        [&](Release& release, std::uint64_t&) {
+          if (next == s.releases.size()) return false;
+          release = s.releases[next++];
+          return true;
+        },
+        [](const Release&, const Path& path, std::uint64_t) { benchmark::DoNotOptimize(path.length); });
+  }
   per(state, "ns_per_patch", s.spans);
   per(state, "ns_per_plan_m", static_cast<std::uint64_t>(s.plan_length));
 }
@@ -165,6 +187,7 @@ void score(benchmark::State& state) {
 BENCHMARK(run)->Args({10, 1})->Args({100, 1})->Args({10, 2})->Args({100, 2})->UseManualTime()->Iterations(1)->Unit(
     benchmark::kSecond);
 BENCHMARK(trace_only)->Unit(benchmark::kMillisecond);
+BENCHMARK(trace_in_lanes)->Arg(1)->Arg(4)->Arg(8)->Unit(benchmark::kMillisecond);
 BENCHMARK(floor_walk)->Unit(benchmark::kMillisecond);
 BENCHMARK(impact_law)->Unit(benchmark::kMillisecond);
 BENCHMARK(score)->Unit(benchmark::kMillisecond);

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "talus/base/text.hpp"
+#include "talus/physics/lanes.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 
@@ -90,6 +91,12 @@ Facts surface_choice() {
   Facts facts;
   facts.choices = {"creased", "bilinear"};
   facts.standard = facts.choices.front();
+  return facts;
+}
+
+Facts lane_choice() {
+  Facts facts;
+  for (const int lanes : talus::kLaneChoices) facts.choices.push_back(std::to_string(lanes));
   return facts;
 }
 

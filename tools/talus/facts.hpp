@@ -46,4 +46,6 @@ Facts with_unit(std::string unit, double value);
 
 /// Facts of the choice of a surface and of a preset.
 Facts surface_choice();
+/// A number of lanes.
+Facts lane_choice();
 Facts preset_choice();

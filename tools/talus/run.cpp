@@ -98,6 +98,12 @@ void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes) {
       ->add_option("--threads", request.threads,
                    "all processors where it is not given, of several processes one each; the results are the same")
       ->check(startable_threads());
+  with(command
+           ->add_option("--lanes", request.lanes,
+                        "trajectories in one instruction; as many as the processor has where it is not given; the "
+                        "results are the same")
+           ->check(lanes_of_machine()),
+       lane_choice());
   command->add_option("--part", request.part, "I/N: only part I of N of the source cells, for talus merge");
   command->add_flag("--resume", request.resume, "go on with an interrupted run of the same command");
   command->add_option("--memory", request.memory, "such as 2G: what does not fit lies in a file beside the results");
