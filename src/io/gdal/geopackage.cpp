@@ -1,5 +1,6 @@
 #include "geopackage.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "cause_of_failure.hpp"
@@ -71,31 +72,41 @@ OGRLayer* GeoPackage::add_layer(const char* name, OGRwkbGeometryType type, const
   return create_layer(name, type, columns);
 }
 
-OGRLayer* GeoPackage::add_point_layer(const char* name, const std::vector<Column>& columns) {
+OGRLayer* GeoPackage::add_bulk_layer(const char* name, OGRwkbGeometryType type, const std::vector<Column>& columns) {
   const Configured date("OGR_CURRENT_DATE", kDate);  // the lines below write the dates of earlier layers
-  points_ = create_layer(name, wkbPoint, columns);
+  OGRLayer* layer = create_layer(name, type, columns);
   create_index(name);
-  // GDAL's triggers would insert the points one by one.
-  const std::string of_layer = std::string(" FROM sqlite_master WHERE type = 'trigger' AND tbl_name = '") + name + "'";
-  triggers_ = execute("SELECT sql" + of_layer + " ORDER BY name");
-  for (const std::string& trigger : execute("SELECT name" + of_layer)) execute("DROP TRIGGER \"" + trigger + "\"");
-  index_.emplace(std::string("rtree_") + name + "_geom", [this](const std::string& sql) { execute(sql); });
-  return points_;
+  bulk_.push_back(std::make_unique<BulkLayer>(*dataset_, *layer));
+  return layer;
 }
 
 void GeoPackage::append(OGRLayer* layer, OGRFeature& feature) {
-  feature.SetFID(OGRNullFID);
-  if (layer->CreateFeature(&feature) != OGRERR_NONE) fail(CPLGetLastErrorMsg());
-  if (layer != points_) return;
-  const OGRPoint* point = feature.GetGeometryRef()->toPoint();
-  index_->add(point->getX(), point->getY());
+  const auto bulk = std::ranges::find_if(bulk_, [&](const auto& one) { return one->is(layer); });
+  if (bulk == bulk_.end()) {
+    feature.SetFID(OGRNullFID);
+    if (layer->CreateFeature(&feature) != OGRERR_NONE) fail(CPLGetLastErrorMsg());
+    return;
+  }
+  try {
+    (*bulk)->append(feature);
+  } catch (const std::runtime_error& error) {
+    fail(error.what());
+  }
+}
+
+void GeoPackage::finish_bulk() {
+  try {
+    for (const auto& layer : bulk_) layer->finish();
+  } catch (const std::runtime_error& error) {
+    fail(error.what());
+  }
+  bulk_.clear();
 }
 
 void GeoPackage::finish() {
   GdalMessages messages;
   const Configured date("OGR_CURRENT_DATE", kDate);
-  if (index_) index_->finish();
-  for (const std::string& trigger : triggers_) execute(trigger);
+  finish_bulk();
   for (const std::string& layer : layers_) create_index(layer);
   write_styles();
   require(dataset_->CommitTransaction() == OGRERR_NONE, messages);

@@ -1,11 +1,11 @@
 #pragma once
 #include <filesystem>
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "bulk_layer.hpp"
 #include "dataset.hpp"
-#include "point_index.hpp"
 #include "talus/io/origin/origin.hpp"
 
 namespace talus::io {
@@ -21,12 +21,12 @@ class GeoPackage {
 
   GeoPackage(std::filesystem::path file, const GeoReference& geo);
 
-  /// A new layer, which gets its spatial index from `finish`.
+  /// A new layer, which gets its spatial index from `finish`. For a few rows, of fields of any type.
   OGRLayer* add_layer(const char* name, OGRwkbGeometryType type, const std::vector<Column>& columns);
 
-  /// A new layer of points, of which there may be millions: its spatial index is packed while they are appended. All
-  /// its features must go through `append`. At most one layer of this kind.
-  OGRLayer* add_point_layer(const char* name, const std::vector<Column>& columns);
+  /// A new layer of which there may be millions of rows: `BulkLayer` inserts them and packs the spatial index. All its
+  /// features must go through `append`. Fields are of the types OFTInteger64, OFTReal and OFTString.
+  OGRLayer* add_bulk_layer(const char* name, OGRwkbGeometryType type, const std::vector<Column>& columns);
 
   /// Appends a row, which gets the next number as its fid. The feature may be used again.
   void append(OGRLayer* layer, OGRFeature& feature);
@@ -42,6 +42,7 @@ class GeoPackage {
   std::vector<std::string> execute(const std::string& sql);
   void write_styles();
   void create_index(const std::string& layer);
+  void finish_bulk();
   [[noreturn]] void fail(const std::string& cause) const;
   void require(bool good, GdalMessages& messages) const;
 
@@ -49,10 +50,8 @@ class GeoPackage {
   OGRSpatialReference system_;
   std::vector<std::string> layers_;                          // still without an index
   std::vector<std::pair<std::string, std::string>> styles_;  // by layer
-  OGRLayer* points_ = nullptr;
-  std::optional<PointIndex> index_;    // of points_
-  std::vector<std::string> triggers_;  // of points_, to be set again
   Dataset dataset_;
+  std::vector<std::unique_ptr<BulkLayer>> bulk_;  // closed before the file
 };
 
 }  // namespace talus::io

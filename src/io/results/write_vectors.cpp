@@ -91,20 +91,21 @@ struct StopsWriter::State {
         scenario(loaded.scenario),
         place(loaded.geo, loaded.scenario.surface.grid()),
         names(feature_names(loaded.scenario)) {
-    layer = file.add_point_layer("stops", {{"source", OFTInteger64},
-                                           {"block", OFTInteger64},
-                                           {"end", OFTString},
-                                           {"feature", OFTString},
-                                           {"diameter_m", OFTReal},
-                                           {"mass_kg", OFTReal},
-                                           {"x_release", OFTReal},
-                                           {"y_release", OFTReal},
-                                           {"z", OFTReal},
-                                           {"seconds", OFTReal},
-                                           {"max_speed_ms", OFTReal},
-                                           {"length_m", OFTReal},
-                                           {"impacts", OFTInteger64},
-                                           {"energy_line_deg", OFTReal}});
+    layer = file.add_bulk_layer("stops", wkbPoint,
+                                {{"source", OFTInteger64},
+                                 {"block", OFTInteger64},
+                                 {"end", OFTString},
+                                 {"feature", OFTString},
+                                 {"diameter_m", OFTReal},
+                                 {"mass_kg", OFTReal},
+                                 {"x_release", OFTReal},
+                                 {"y_release", OFTReal},
+                                 {"z", OFTReal},
+                                 {"seconds", OFTReal},
+                                 {"max_speed_ms", OFTReal},
+                                 {"length_m", OFTReal},
+                                 {"impacts", OFTInteger64},
+                                 {"energy_line_deg", OFTReal}});
     feature.reset(OGRFeature::CreateFeature(layer->GetLayerDefn()));
     point = new OGRPoint(0.0, 0.0);
     feature->SetGeometryDirectly(point);
@@ -160,15 +161,16 @@ struct ExitsWriter::State {
         scenario(loaded.scenario),
         place(loaded.geo, loaded.scenario.surface.grid()),
         names(feature_names(loaded.scenario)) {
-    layer = file.add_point_layer("exits", {{"source", OFTInteger64},
-                                           {"block", OFTInteger64},
-                                           {"feature", OFTString},
-                                           {"diameter_m", OFTReal},
-                                           {"mass_kg", OFTReal},
-                                           {"z", OFTReal},
-                                           {"seconds", OFTReal},
-                                           {"speed_ms", OFTReal},
-                                           {"energy_kj", OFTReal}});
+    layer = file.add_bulk_layer("exits", wkbPoint,
+                                {{"source", OFTInteger64},
+                                 {"block", OFTInteger64},
+                                 {"feature", OFTString},
+                                 {"diameter_m", OFTReal},
+                                 {"mass_kg", OFTReal},
+                                 {"z", OFTReal},
+                                 {"seconds", OFTReal},
+                                 {"speed_ms", OFTReal},
+                                 {"energy_kj", OFTReal}});
     feature.reset(OGRFeature::CreateFeature(layer->GetLayerDefn()));
   }
 
@@ -215,14 +217,14 @@ void ExitsWriter::finish() {
 struct TrajectoriesWriter::State {
   State(const std::filesystem::path& name, const GeoReference& geo, const Grid& grid)
       : file(name, geo), place(geo, grid) {
-    layer = file.add_layer("trajectories", wkbLineStringZM,
-                           {{"source", OFTInteger64},
-                            {"block", OFTInteger64},
-                            {"end", OFTString},
-                            {"diameter_m", OFTReal},
-                            {"max_speed_ms", OFTReal},
-                            {"length_m", OFTReal},
-                            {"impacts", OFTInteger64}});
+    layer = file.add_bulk_layer("trajectories", wkbLineStringZM,
+                                {{"source", OFTInteger64},
+                                 {"block", OFTInteger64},
+                                 {"end", OFTString},
+                                 {"diameter_m", OFTReal},
+                                 {"max_speed_ms", OFTReal},
+                                 {"length_m", OFTReal},
+                                 {"impacts", OFTInteger64}});
   }
 
   GeoPackage file;
@@ -263,16 +265,16 @@ void TrajectoriesWriter::write(const RecordedPath& path) {
 void TrajectoriesWriter::write_vertices(const Path& path) {
   const GdalMessages messages;
   State& s = *state_;
-  OGRLayer* layer = s.file.add_layer("vertices", wkbPointZM,
-                                     {{"time_s", OFTReal},
-                                      {"speed_ms", OFTReal},
-                                      {"vx", OFTReal},
-                                      {"vy", OFTReal},
-                                      {"vz", OFTReal},
-                                      {"wx", OFTReal},
-                                      {"wy", OFTReal},
-                                      {"wz", OFTReal},
-                                      {"event", OFTString}});
+  OGRLayer* layer = s.file.add_bulk_layer("vertices", wkbPointZM,
+                                          {{"time_s", OFTReal},
+                                           {"speed_ms", OFTReal},
+                                           {"vx", OFTReal},
+                                           {"vy", OFTReal},
+                                           {"vz", OFTReal},
+                                           {"wx", OFTReal},
+                                           {"wy", OFTReal},
+                                           {"wz", OFTReal},
+                                           {"event", OFTString}});
   const Feature feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
   for (const Vertex& vertex : path.vertices) {
     const Motion& motion = vertex.motion;
