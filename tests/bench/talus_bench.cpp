@@ -164,9 +164,10 @@ void score(benchmark::State& state) {
       benchmark::Counter(1e-9 * static_cast<double>(scored), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-/// A file that is removed at the end.
+/// A file that is removed at the end. Its ending is that of the argument: 0 GeoPackage, 1 FlatGeobuf.
 struct TemporaryFile {
-  explicit TemporaryFile(const char* name) : path(std::filesystem::temp_directory_path() / name) {
+  explicit TemporaryFile(const benchmark::State& state)
+      : path(std::filesystem::temp_directory_path() / (state.range(0) == 0 ? "talus-bench.gpkg" : "talus-bench.fgb")) {
     std::filesystem::remove(path);
   }
   ~TemporaryFile() { std::filesystem::remove(path); }
@@ -185,7 +186,7 @@ void write_stops(benchmark::State& state) {
       rows.back().x += 0.01 * block;
     }
   for (auto _ : state) {
-    const TemporaryFile file("talus-bench-stops.gpkg");
+    const TemporaryFile file(state);
     io::StopsWriter writer(file.path, *g_loaded);
     for (std::size_t at = 0; at < rows.size(); at += 128)
       writer.write(std::span(rows).subspan(at, std::min<std::size_t>(128, rows.size() - at)));
@@ -205,7 +206,7 @@ void write_paths(benchmark::State& state) {
     points += paths.back().points.size();
   }
   for (auto _ : state) {
-    const TemporaryFile file("talus-bench-trajectories.gpkg");
+    const TemporaryFile file(state);
     io::TrajectoriesWriter writer(file.path, g_loaded->geo, grid);
     for (int repeat = 0; repeat < 10; ++repeat)
       for (const RecordedPath& path : paths) writer.write(path);
@@ -221,8 +222,8 @@ BENCHMARK(trace_only)->Unit(benchmark::kMillisecond);
 BENCHMARK(floor_walk)->Unit(benchmark::kMillisecond);
 BENCHMARK(impact_law)->Unit(benchmark::kMillisecond);
 BENCHMARK(score)->Unit(benchmark::kMillisecond);
-BENCHMARK(write_stops)->Unit(benchmark::kMillisecond);
-BENCHMARK(write_paths)->Unit(benchmark::kMillisecond);
+BENCHMARK(write_stops)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(write_paths)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

@@ -29,7 +29,7 @@ constexpr double kCrossing = 150.0;        // a row of screens.csv [byte]
 constexpr double kKeptCell = 344.0;        // of a touched cell in the saved tally [byte]
 constexpr double kEmptyCell = 4e-10;       // of the grid, per band, to write [s]
 constexpr double kTouchedCell = 1.3e-7;    // of a touched cell, per band, to write [s]
-constexpr double kWriteTrajectory = 5e-6;  // a row of stops.gpkg [s]
+constexpr double kWriteTrajectory = 2e-6;  // a row of stops.gpkg [s]
 constexpr double kWriteFiles = 0.6;        // to create all files [s]
 
 double thresholds(const Scenario& scenario) {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "cause_of_failure.hpp"
-
 namespace talus::io {
 namespace {
 
@@ -38,17 +36,16 @@ constexpr const char* kDate = "1970-01-01T00:00:00.000Z";
 
 }  // namespace
 
-GeoPackage::GeoPackage(std::filesystem::path file, const GeoReference& geo) : file_(std::move(file)) {
+GeoPackage::GeoPackage(const std::filesystem::path& file, const GeoReference& geo)
+    : LayerFile(file), system_(system_of(geo)) {
   GdalMessages messages;
   // The file has its final name only when it is complete: nothing has to survive a crash, no journal is needed.
   const Configured date("OGR_CURRENT_DATE", kDate), journal("OGR_SQLITE_JOURNAL", "OFF"),
       synchronous("OGR_SQLITE_SYNCHRONOUS", "OFF");
-  if (!geo.crs_wkt.empty()) system_.importFromWkt(geo.crs_wkt.c_str());
-  system_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
   if (driver == nullptr) fail("this GDAL has no driver GPKG");
   const char* const options[] = {"ADD_GPKG_OGR_CONTENTS=NO", nullptr};
-  dataset_.reset(driver->Create(file_.c_str(), 0, 0, 0, GDT_Unknown, options));
+  dataset_.reset(driver->Create(path().c_str(), 0, 0, 0, GDT_Unknown, options));
   require(dataset_ != nullptr, messages);
   require(dataset_->StartTransaction() == OGRERR_NONE, messages);
 }
@@ -148,15 +145,6 @@ void GeoPackage::write_styles() {
 void GeoPackage::create_index(const std::string& layer) {
   if (execute("SELECT CreateSpatialIndex('" + layer + "', 'geom')") != std::vector<std::string>{"1"})
     fail("the spatial index of " + layer + " cannot be made");
-}
-
-void GeoPackage::fail(const std::string& cause) const {
-  throw std::runtime_error(file_.filename().string() +
-                           ": cannot be written: " + cause_of_failure(file_.parent_path(), cause));
-}
-
-void GeoPackage::require(bool good, GdalMessages& messages) const {
-  if (!good || messages.failed()) fail(messages.take());
 }
 
 }  // namespace talus::io

@@ -27,7 +27,8 @@ struct LoadedScenario {
 /// Settings of the command line. They override a scenario file or replace it.
 struct RunFlags {
   std::string scenario;  ///< path of the TOML file; empty: from flags alone
-  std::optional<std::string> dem, sources, sources_layer, screens, barriers, zones, zone_field, preset, surface;
+  std::optional<std::string> dem, sources, sources_layer, screens, barriers, zones, zone_field, preset, surface,
+      vectors;
   std::optional<double> diameter;   ///< [m]
   std::optional<double> frequency;  ///< of all sources together [1/year]
   std::vector<double> thresholds;   ///< of the energy [kJ]; empty: not given

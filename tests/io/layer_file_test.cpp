@@ -1,7 +1,9 @@
-// Rows that are inserted without GDAL are those that GDAL inserts, to the byte.
+// Layers of many rows: those that are inserted without GDAL are those that GDAL inserts, to the byte; those of a
+// FlatGeobuf file are those of a GeoPackage.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "io/gdal/geopackage.hpp"
@@ -83,6 +85,51 @@ TEST(BulkLayer, WritesWhatGdalWrites) {
   EXPECT_EQ(answer(bulk, contents), answer(gdal, contents)) << "GDAL keeps 15 digits of the extent";
   fs::remove(bulk);
   fs::remove(gdal);
+}
+
+/// Every row of the layer `paths` as GDAL reads it, sorted.
+std::vector<std::string> rows_of(const fs::path& path) {
+  const Dataset file(GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR, nullptr, nullptr, nullptr));
+  OGRLayer* layer = file->GetLayerByName("paths");
+  std::vector<std::string> rows;
+  while (const Feature row{layer->GetNextFeature()}) {
+    std::string& text = rows.emplace_back(row->GetGeometryRef()->WkbSize(), '\0');
+    row->GetGeometryRef()->exportToWkb(wkbNDR, reinterpret_cast<unsigned char*>(text.data()), wkbVariantIso);
+    for (int i = 0; i < row->GetFieldCount(); ++i)
+      text += row->IsFieldSetAndNotNull(i) ? std::string("|") + row->GetFieldAsString(i) : "|null";
+  }
+  std::ranges::sort(rows);
+  return rows;
+}
+
+TEST(FlatGeobuf, HasTheRowsOfAGeoPackageInTheOrderOfItsIndex) {
+  start_gdal();
+  const fs::path folder = fs::temp_directory_path() / ("talus-fgb-" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  const auto write_paths = [&](const std::string& name, int rows) {
+    const auto file = new_layer_file(folder / name, {});
+    OGRLayer* layer = file->add_bulk_layer("paths", wkbLineStringZM, kColumns);
+    const Feature row(OGRFeature::CreateFeature(layer->GetLayerDefn()));
+    for (int i = 0; i < rows; ++i) {
+      OGRLineString line;
+      for (int k = 0; k < 3; ++k) line.addPoint(i * 7919 % 997 + k / 3.0, i % 31, 900.0 - k, 0.25 * k);
+      row->SetField(0, i);
+      i % 3 == 2 ? row->SetFieldNull(1) : row->SetField(1, i / 7.0);
+      row->SetField(2, i % 4 == 0 ? "" : "Weisse Wand \xc3\xbc");
+      row->SetGeometry(&line);
+      file->append(layer, *row);
+    }
+    file->finish();
+  };
+  for (const int rows : {0, 1, 2000}) {
+    write_paths("paths.gpkg", rows);
+    write_paths("paths.fgb", rows);
+    EXPECT_EQ(rows_of(folder / "paths.fgb").size(), static_cast<std::size_t>(rows));
+    EXPECT_EQ(rows_of(folder / "paths.fgb"), rows_of(folder / "paths.gpkg"));
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 2) << "nothing beside the files";
+    for (const char* name : {"paths.gpkg", "paths.fgb"}) fs::remove(folder / name);
+  }
+  fs::remove_all(folder);
 }
 
 }  // namespace
