@@ -9,7 +9,7 @@
 namespace talus::io {
 
 /// Writers of what `simulate` hands out while it runs: rows go to the file as they come, memory does not grow with
-/// them (of a FlatGeobuf file by some 100 bytes a row). The format is that of the file's ending, .gpkg or .fgb. Called
+/// them (of a FlatGeobuf file by some 160 bytes a row). The format is that of the file's ending, .gpkg or .fgb. Called
 /// from any thread, one at a time. `finish` completes the file; without it the file is worthless. All throw
 /// std::runtime_error, one line with the file and the cause (a full disk).
 
