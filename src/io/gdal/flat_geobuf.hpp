@@ -3,9 +3,9 @@
 
 namespace talus::io {
 
-/// A FlatGeobuf file of one layer, which is being written by GDAL. GDAL appends the rows to a file beside it, and copies
-/// them from there when the file is finished: in the order of its spatial index, which takes 160 bytes of memory a row
-/// (docs/performance.md).
+/// A FlatGeobuf file of one layer, which is being written by GDAL. GDAL appends the rows to a file beside it, and
+/// copies them from there when the file is finished: in the order of its spatial index, which takes 160 bytes of memory
+/// a row (docs/performance.md).
 class FlatGeobuf final : public LayerFile {
  public:
   FlatGeobuf(const std::filesystem::path& file, const GeoReference& geo);
