@@ -1,5 +1,7 @@
 #include "flat_geobuf.hpp"
 
+#include "talus/base/error.hpp"
+
 namespace talus::io {
 
 FlatGeobuf::FlatGeobuf(const std::filesystem::path& file, const GeoReference& geo)
@@ -39,8 +41,11 @@ void FlatGeobuf::finish() {
 
 /// GDAL does not say whether the last bytes have reached the disk.
 bool FlatGeobuf::has_last_row() const {
-  const Dataset file(GDALDataset::Open(path().c_str(), GDAL_OF_VECTOR));
-  return file && Feature(file->GetLayer(0)->GetFeature(rows_ - 1)) != nullptr;
+  try {
+    return Feature(open_dataset(path().string(), GDAL_OF_VECTOR)->GetLayer(0)->GetFeature(rows_ - 1)) != nullptr;
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 }  // namespace talus::io
