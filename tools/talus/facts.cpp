@@ -100,6 +100,13 @@ Facts lane_choice() {
   return facts;
 }
 
+Facts vectors_choice() {
+  Facts facts;
+  for (const talus::VectorFormat format : talus::kVectorFormats) facts.choices.emplace_back(name_of(format));
+  facts.standard = facts.choices.front();
+  return facts;
+}
+
 Facts preset_choice() {
   Facts facts;
   for (const talus::Preset& preset : talus::presets()) facts.choices.emplace_back(preset.name);

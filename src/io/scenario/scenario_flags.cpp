@@ -134,6 +134,12 @@ void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::strin
     spec.values.output.bounds = true;
     spec.origins["output.bounds"] = "flag --bounds";
   }
+  if (flags.vectors) {
+    const auto format = vector_format(*flags.vectors);
+    if (!format) faults.push_back("flag --vectors = '" + *flags.vectors + "': " + kVectorsRule);
+    spec.values.output.vectors = format.value_or(VectorFormat::GeoPackage);
+    spec.origins["output.vectors"] = "flag --vectors";
+  }
   if (flags.frequency) {
     spec.values.frequency.total = *flags.frequency;
     spec.origins["frequency.total"] = "flag --frequency";

@@ -6,6 +6,9 @@
 
 namespace talus::io {
 
+/// Rule of `[output] vectors` and `--vectors`.
+inline constexpr const char* kVectorsRule = "must be 'gpkg' (GeoPackage) or 'fgb' (FlatGeobuf)";
+
 /// Sets the default ground to the preset of the flag, else to the default preset.
 void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults);
 

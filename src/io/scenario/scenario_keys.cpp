@@ -267,6 +267,12 @@ class SpecReader {
     }
     truth(table, "energy_total", spec_.values.output.energy_total);
     truth(table, "bounds", spec_.values.output.bounds);
+    if (const auto name = table.text("vectors")) {
+      const auto format = vector_format(*name);
+      if (!format) table.fault("vectors", *table.value()->find("vectors"), kVectorsRule);
+      spec_.values.output.vectors = format.value_or(VectorFormat::GeoPackage);
+      given("output.vectors");
+    }
     table.finish();
   }
 

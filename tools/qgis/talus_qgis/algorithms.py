@@ -36,8 +36,8 @@ SCENARIO_INPUTS = {
     "fields": {"sources": SOURCE_FIELDS},
     "field of": {"zone-field": "zones"},
     "raster too": {"zones"},
-    "advanced": {"scenario", "surface", "thresholds", "seed", "energy-total", "bounds", "overwrite", "rounds", "until-error",
-                 "above", "most-rounds", "zones-raster", "pits"},
+    "advanced": {"scenario", "surface", "thresholds", "seed", "energy-total", "bounds", "vectors", "overwrite", "rounds",
+                 "until-error", "above", "most-rounds", "zones-raster", "pits"},
     "needs": [("scenario",), ("dem", "sources")],
 }
 

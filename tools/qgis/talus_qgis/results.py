@@ -113,9 +113,9 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
             self._move(node, project.layerTreeRoot())
 
     def _is_of_raster(self):
-        """Whether the style is that of the raster of the same name (exits.tif beside exits.gpkg)."""
+        """Whether the style is that of the raster of the same name alone (exits.tif beside exits.gpkg)."""
         with open(self.style, encoding="utf-8") as file:
-            return "<rasterrenderer" in file.read()
+            return "<renderer-v2" not in file.read()
 
     def _move(self, node, root):
         group = self._group(root)

@@ -27,6 +27,7 @@ LABELS = {
     "seed": ("Seed of the random numbers", "Startwert der Zufallszahlen"),
     "energy-total": ("Energy with rotation, too", "Auch die Energie mit Rotation"),
     "bounds": ("95 % bounds of the percentiles, too", "Auch 95-%-Schranken der Perzentile"),
+    "vectors": ("Format of the layers", "Format der Layer"),
     "out": ("Results", "Ergebnisse"),
     "overwrite": ("Replace earlier results", "Frühere Ergebnisse ersetzen"),
     "threads": ("Processors (threads)", "Prozessoren (Threads)"),
@@ -207,6 +208,8 @@ GERMAN = {
     "also energy_total.tif: the energy with rotation": "auch energy_total.tif: die Energie mit Rotation",
     "also 95 % bounds of the percentiles: energy_bounds.tif and others":
         "auch 95-%-Schranken der Perzentile: energy_bounds.tif und andere",
+    "gpkg or fgb (gpkg): GeoPackage or FlatGeobuf for stops, exits, paths and screens":
+        "gpkg: GeoPackage (Vorgabe), fgb: FlatGeobuf; für Haltepunkte, Austritte, Bahnen und Nachweislinien",
     "scenario file (TOML)": "Szenario-Datei (TOML); was hier angegeben ist, geht vor",
     "new folder for the results": "neuer Ordner für die Ergebnisse",
     "replace the folder if it holds an earlier result": "den Ordner ersetzen, wenn er ein früheres Ergebnis enthält",

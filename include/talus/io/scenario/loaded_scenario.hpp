@@ -28,7 +28,7 @@ struct LoadedScenario {
 struct RunFlags {
   std::string scenario;  ///< path of the TOML file; empty: from flags alone
   std::optional<std::string> dem, sources, sources_layer, screens, barriers, zones, zone_field, preset, surface,
-      parameters;                                 ///< `parameters`: a fitted model
+      vectors, parameters;                        ///< `parameters`: a fitted model
   std::optional<double> diameter;                 ///< [m]
   std::optional<double> deformation_coefficient;  ///< c of the impact law
   std::optional<double> frequency;                ///< of all sources together [1/year]
