@@ -158,6 +158,8 @@ class Content(Report):
                 self.assertEqual(value_of(code), three_digits(float(value), nodata), title)
         cells = [band_of(self.path("out/hazard_class.tif"), band, left, top, columns, rows)[0] for band in (1, 4)]
         has_class = (cells[0] > 0) | (cells[1] > 0)
+        self.assertIn("<tr><th>30 to 300 kJ</th><td>high</td><td>medium</td><td>medium</td><td>residual</td></tr>", page.text)
+        self.assertIn("<th>once in up to 30 years</th><th>once in 30 to 100 years</th>", page.text)
         self.assertIn(f"{100 * np.mean(cells[1][has_class]):.2g} % of the pixels with a class", page.text)
         for code, value, has in zip(codes(page.maps()["Class not decided"], columns).ravel(), cells[1].ravel(), has_class.ravel()):
             self.assertEqual(value_of(code), float(value) if has else None)
