@@ -29,8 +29,9 @@ come through, how fast, how high and with how much energy. From that follow
 annual frequencies, return periods, classes of hazard and design values of
 barriers. Terrain and layers are read by GDAL; results open in QGIS.
 
-This package has the program, its manual, the example valley, completions of
-bash, zsh and fish, and the plug-in of QGIS (Processing provider Talus).")
+This package has the program, its manual, the examples of the manual,
+completions of bash, zsh and fish, and the plug-in of QGIS (Processing provider
+Talus).")
 
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libtalus-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)

@@ -8,7 +8,7 @@ endif()
 
 install(FILES README.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
-install(DIRECTORY data/valley DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT program)
+install(DIRECTORY data/valley data/elm data/profile DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT program)
 
 # QGIS looks for plug-ins of the system in /usr/share only.
 install(DIRECTORY tools/qgis/talus_qgis DESTINATION ${CMAKE_INSTALL_DATADIR}/qgis/python/plugins COMPONENT program OPTIONAL

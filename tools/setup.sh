@@ -2,7 +2,7 @@
 # Installs what Talus needs (Debian 12), builds it and runs the example valley. Run from anywhere; root or sudo.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-tools/install_packages.sh g++ cmake ninja-build libgdal-dev libdeflate-dev libproj-dev proj-data gdal-bin libeigen3-dev libboost-dev \
+tools/install_packages.sh g++ cmake ninja-build libgdal-dev libsqlite3-dev libdeflate-dev libproj-dev proj-data gdal-bin libeigen3-dev libboost-dev \
   libnlopt-cxx-dev libssl-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libgtest-dev libgmock-dev libbenchmark-dev libopenmpi-dev \
   python3 python3-gdal python3-numpy python3-matplotlib
 cmake --preset release

@@ -18,6 +18,9 @@ class Anchor {
     return m.time - time_ > patience_;
   }
 
+  const Eigen::Vector2d& place() const { return place_; }
+  double time() const { return time_; }
+
  private:
   double reach_, patience_;  // [m], [s]
   Eigen::Vector2d place_ = Eigen::Vector2d::Zero();

@@ -58,7 +58,7 @@ class BehindBarriers : public Acting {
       if (met == Meeting::Over) return end;
       if (met == Meeting::Caught) return SlideEnd::Caught;
     }
-    return SlideEnd::Asperity;
+    return SlideEnd::NextAsperity;
   }
 
  private:

@@ -4,25 +4,17 @@
 #include <array>
 #include <cmath>
 
+#include "crossing.hpp"
 #include "talus/base/expect.hpp"
 
 namespace talus {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
+/// Grid lines of one direction, with the step to the patch beyond.
+struct Steps : Lines<double> {
+  int step;  // -1 or +1
 
-/// Times at which a straight line in plan crosses the successive grid lines of one direction.
-struct Lines {
-  double next, every;  // [s], infinite if the line is parallel to these grid lines
-  int step;            // -1 or +1
-
-  /// @param share  position in the patch, 0..1
-  /// @param rate   speed [patches/s]
-  Lines(double share, double rate) : next(kNever), every(kNever), step(rate < 0.0 ? -1 : 1) {
-    if (rate == 0.0) return;
-    every = 1.0 / std::abs(rate);
-    next = std::max(0.0, rate > 0.0 ? 1.0 - share : share) * every;
-  }
+  Steps(double share, double rate) : Lines(share, rate), step(rate < 0.0 ? -1 : 1) {}
 
   /// Moves a patch index and a position in the patch across the next line.
   void cross(int& index, double& share) {
@@ -34,11 +26,10 @@ struct Lines {
 
 /// Replaces a creased patch by the half over which the block is. Returns the time until the block is over the other
 /// half [s]; infinite if it never is.
-double enter_half(Patch& patch, Crease crease, double p, double q, double rate_u, double rate_v) {
-  const bool north = on_northern_half(crease, p, q, rate_u, rate_v);
-  const double rate = rate_across(crease, rate_u, rate_v);
-  patch = half_of(patch, crease, north);
-  return (north ? rate < 0.0 : rate > 0.0) ? -across(crease, p, q) / rate : kNever;
+double enter_half(Patch& patch, bool rising, const Course<double>& course) {
+  const bool north = on_northern_half<double>(rising, course.p, course.q, course.rate_u, course.rate_v);
+  patch = half_of<double>(patch, rising, north);
+  return time_to_crease<double>(rising, north, course);
 }
 
 /// The three parts of a span.
@@ -71,7 +62,7 @@ Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool ground
   const double rate_u = v.x() * surface.per_cell_x(), rate_v = v.y() * surface.per_cell_y();
   const double u0 = surface.u_of(start.x()), v0 = surface.v_of(start.y());
   const auto plan2 = static_cast<float>(v.x() * v.x() + v.y() * v.y());
-  Lines columns(u0 - at.column, rate_u), rows(v0 - at.row, rate_v);
+  Steps columns(u0 - at.column, rate_u), rows(v0 - at.row, rate_v);
   double t = 0.0, p = u0 - at.column, q = v0 - at.row, z = start.z();
   Outcome outcome = Outcome::Left;
   const int most = (kCreased ? 2 : 1) * (surface.grid().columns + surface.grid().rows + 2);
@@ -80,18 +71,15 @@ Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool ground
     if (!surface.read(at, patch)) break;
     double crease_after = kNever;
     if constexpr (kCreased)
-      if (const Crease crease = crease_of(patch); crease != Crease::None) [[unlikely]]
-        crease_after = enter_half(patch, crease, p, q, rate_u, rate_v);
+      if (const Creases<double> creases = creases_of(patch); creases.there()) [[unlikely]]
+        crease_after = enter_half(patch, creases.rising, {p, q, z, rate_u, rate_v, 0.0});
     const double edge = std::min(columns.next, rows.next) - t;
     const double ahead = kCreased ? std::min(edge, crease_after) : edge;
     const double until = kBounded ? std::min(ahead, longest - t) : ahead;
     const double rise = v.z() - kGravity * t;
     const bool leaving = grounded && crossed == 0;  // on the surface and moving away from it, in spite of rounding
     TALUS_EXPECT(crossed == 0 || !(z < patch.height(p, q) - 1e-3), "a block that flies on is not below the ground");
-    const double f0 = leaving ? 0.0 : std::max(z - patch.height(p, q), 0.0);
-    const double slope = patch.east * rate_u + patch.north * rate_v + patch.twist * (p * rate_v + q * rate_u);
-    const double f1 = leaving ? std::max(rise - slope, 0.0) : rise - slope;  // NaN stays NaN
-    const double f2 = -0.5 * kGravity - patch.twist * rate_u * rate_v;
+    const auto [f0, f1, f2] = clearance_over<double>(patch, {p, q, z, rate_u, rate_v, rise}, leaving);
     const double contact = first_contact(f0, f1, f2, until);
     const bool landed = contact < kNever;
     const double dt = landed ? contact : until;
@@ -101,7 +89,7 @@ Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool ground
     const double p_from = p, q_from = q;
     p = u0 + rate_u * t - at.column;
     q = v0 + rate_v * t - at.row;
-    Span& span = path.spans.emplace_back();
+    Span& span = path.spans.emplace_back(Span{});
     set_place(span, at, {p_from, q_from, p, q});
     set_height(span, f0, landed ? 0.0 : std::max(0.0, f0 + dt * (f1 + dt * f2)), f2 * dt * dt);
     set_speed(span, plan2, rise, v.z() - kGravity * t);
@@ -118,7 +106,7 @@ Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool ground
     if (kCreased && crease_after < edge) continue;  // over the other half of the same patch
     columns.next <= rows.next ? columns.cross(at.column, p) : rows.cross(at.row, q);
   }
-  path.length += arc_length(v, t);
+  path.length += arc_length<double>(v, t);
   path.plan_length += std::sqrt(v.x() * v.x() + v.y() * v.y()) * t;
   motion.time += t;
   motion.position = {start.x() + v.x() * t, start.y() + v.y() * t,
@@ -137,13 +125,7 @@ Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool ground
 }  // namespace
 
 double arc_length(const Vec3& v, double duration) {
-  constexpr double kNode = 0.7745966692414834;  // sqrt(3/5)
-  const double plan2 = v.x() * v.x() + v.y() * v.y();
-  const auto speed = [&](double share) {
-    const double rise = v.z() - kGravity * duration * share;
-    return std::sqrt(plan2 + rise * rise);
-  };
-  return duration / 18.0 * (5.0 * speed(0.5 - 0.5 * kNode) + 8.0 * speed(0.5) + 5.0 * speed(0.5 + 0.5 * kNode));
+  return arc_length<double>(v, duration);
 }
 
 [[gnu::flatten]] Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path) {

@@ -234,17 +234,17 @@ SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, Patch
       }
     }
     slid += way;
-    if (slid >= diameter * (1.0 - 1e-6)) return SlideEnd::Asperity;
+    if (slid >= diameter * (1.0 - 1e-6)) return SlideEnd::NextAsperity;
     if (way >= tolerance) short_crossings = 0;
     if (step.crossed && way < tolerance &&
         ++short_crossings > kMaxShort) {  // a pit: it rubs there for the rest of one diameter
       motion.time += (diameter - slid) / std::max(stop_speed, motion.velocity.norm());
-      if (motion.velocity.norm() > stop_speed) return SlideEnd::Asperity;
+      if (motion.velocity.norm() > stop_speed) return SlideEnd::NextAsperity;
       Slope here{surface, at, tan_phi};
       return here.read(on) ? rest_between(slope, here, motion) : SlideEnd::Trapped;
     }
   }
-  return SlideEnd::Asperity;
+  return SlideEnd::NextAsperity;
 }
 
 }  // namespace talus

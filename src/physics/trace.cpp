@@ -7,16 +7,13 @@
 #include "anchor.hpp"
 #include "barrier_watch.hpp"
 #include "physics/effects/active_effects.hpp"
+#include "staying.hpp"
 #include "talus/base/expect.hpp"
 
 namespace talus {
 namespace {
 
 [[maybe_unused]] constexpr double kPatchError = 1e-6;  // of the place of a block in its patch, by rounding [patches]
-
-/// Patches crossed after which a trajectory ends at its limit, as with `Effort::most_vertices`: they bound its memory
-/// and time where it flies over many patches between few vertices. docs/physics.md, "End of a trajectory".
-constexpr std::size_t kMostSpans = 4'000'000;
 
 /// The half of a creased patch that a block meets. (Apart, and by value, so that the usual patch stays in registers.)
 [[gnu::noinline]] Patch facet_of(const Surface& surface, Patch patch, double p, double q, const Vec3& velocity) {
@@ -55,7 +52,7 @@ class Walk {
         if (how == SlideEnd::Stopped) return End::Stopped;
         if (how == SlideEnd::Trapped) return End::Trapped;
         if (how == SlideEnd::Caught) return End::Caught;
-        if (how == SlideEnd::Asperity) continue;
+        if (how == SlideEnd::NextAsperity) continue;
         path_.vertices.push_back({motion_, Event::Takeoff});
       }
       if (const auto end = fly_on()) return *end;
@@ -110,7 +107,7 @@ class Walk {
   SlideEnd slide_on() {
     motion_.velocity -= motion_.velocity.dot(normal_) * normal_;
     const SlideEnd end = effects_.slide(motion_, at_, body_, path_);
-    const bool goes_on = end == SlideEnd::Takeoff || end == SlideEnd::Asperity;
+    const bool goes_on = end == SlideEnd::Takeoff || end == SlideEnd::NextAsperity;
     return end == SlideEnd::Trapped || (goes_on && anchor_.traps(motion_)) ? end_of_staying() : end;
   }
 
@@ -121,22 +118,8 @@ class Walk {
     return end_of_staying() == SlideEnd::Stopped ? End::Stopped : End::Trapped;
   }
 
-  /// How a block that does not get away ends. Walls hold it if the ground under it is steeper than phi, but does not
-  /// fall as steeply over the next two diameters downhill: then it is trapped. On other ground friction holds it, or
-  /// nearly so: it has stopped. docs/physics.md, "End of a trajectory".
   SlideEnd end_of_staying() {
-    decltype(auto) ground = effects_.ground(motion_.position, body_);
-    Patch patch;
-    if (!world_.surface.read(at_, patch)) return SlideEnd::Stopped;
-    const double p = world_.surface.u_of(motion_.position.x()) - at_.column;
-    const double q = world_.surface.v_of(motion_.position.y()) - at_.row;
-    const Eigen::Vector2d gradient = world_.surface.gradient(world_.surface.facet(patch, p, q, motion_.velocity), p, q);
-    if (gradient.norm() <= ground.tan_phi) return SlideEnd::Stopped;
-    const double reach = 2.0 * body_.diameter;
-    const Eigen::Vector2d below = motion_.position.head<2>() - reach * gradient.normalized();
-    const std::optional<double> height = world_.surface.height(below.x(), below.y());
-    const bool open = !height || motion_.position.z() - *height > reach * ground.tan_phi;
-    return open ? SlideEnd::Stopped : SlideEnd::Trapped;
+    return talus::end_of_staying(world_, effects_.ground(motion_.position, body_), motion_, at_, body_.diameter);
   }
 
   const World& world_;

@@ -10,6 +10,7 @@
 #include "talus/base/text.hpp"
 #include "talus/io/results/hazard_file.hpp"
 #include "talus/io/results/qgis_project.hpp"
+#include "talus/io/results/vector_style.hpp"
 #include "talus/io/results/write_crossings.hpp"
 #include "talus/io/results/write_lines.hpp"
 #include "talus/io/results/write_screens.hpp"
@@ -39,11 +40,11 @@ class Vectors {
         scenario_(loaded.scenario),
         folder_(folder),
         observer_(observer),
-        stops_(folder / "stops.gpkg", loaded),
-        exits_(folder / "exits.gpkg", loaded),
+        stops_(file_of("stops"), loaded),
+        exits_(file_of("exits"), loaded),
         summary_(scenario_.screens.size()) {
     if (loaded.scenario.output.paths > 0)
-      paths_.emplace(folder / "trajectories.gpkg", loaded.geo, loaded.scenario.surface.grid());
+      paths_.emplace(file_of("trajectories"), loaded.geo, loaded.scenario.surface.grid());
     if (!loaded.scenario.screens.empty()) crossings_.emplace(folder / "screens.csv", loaded.scenario, loaded.geo);
   }
 
@@ -74,12 +75,16 @@ class Vectors {
     if (crossings_) {
       crossings_->finish();
       io::write_text(folder_ / "screens_summary.csv", io::screens_summary_csv(scenario_, summary_));
-      io::write_screens(folder_ / "screens.gpkg", loaded_, summary_);
+      io::write_screens(file_of("screens"), loaded_, summary_);
     }
     if (!scenario_.barriers.empty()) io::write_text(folder_ / "barriers.csv", io::barriers_csv(scenario_, totals));
   }
 
  private:
+  std::filesystem::path file_of(const std::string& layer) const {
+    return folder_ / (layer + "." + std::string(name_of(scenario_.output.vectors)));
+  }
+
   const LoadedScenario& loaded_;
   const Scenario& scenario_;
   std::filesystem::path folder_;
@@ -144,6 +149,7 @@ void write_results(const ResultSource& source, Observer& observer, Stopwatch& wa
     io::write_hazard(folder / io::kHazardFile, loaded, source.tally, record.totals.left_weight);
   StopFigures stops = writing.get();
   record.energy_lines = std::move(stops.energy_lines);
+  io::write_styles_beside(folder);
   io::write_text(folder / "scenario.toml", loaded.complete_toml);
   io::write_text(folder / io::kProjectFile,
                  io::project_of(io::files_in(folder), folder, source.final_folder, io::ground_of(loaded)));

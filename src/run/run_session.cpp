@@ -10,6 +10,7 @@
 #include "results.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"
+#include "talus/physics/lanes.hpp"
 #include "talus/run/in_every_process.hpp"
 #include "talus/run/memory_limit.hpp"
 #include "talus/run/summary.hpp"
@@ -164,6 +165,7 @@ void RunSession::begin_record() {
   record_.warnings = plan_.loaded.warnings;
   record_.threads = threads_ * processes_.size();
   record_.ranks = processes_.size();
+  record_.lanes = lanes_in(plan_.loaded.scenario.world(), request_.lanes);
 }
 
 void RunSession::trace() {
@@ -174,7 +176,7 @@ void RunSession::trace() {
   const Stopwatch::Lap read = watch_.lap();
   record_.cpu.read = read.cpu;
   record_.wall.read = read.wall;
-  with_hint([&] { tracing_->trace(threads_); });
+  with_hint([&] { tracing_->trace(threads_, request_.lanes); });
   const Stopwatch::Lap simulated = watch_.lap();
   record_.totals = tracing_->totals();
   record_.cpu.simulate = record_.totals.cpu_seconds - record_.totals.sink_cpu_seconds;

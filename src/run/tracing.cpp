@@ -76,13 +76,13 @@ Checkpoint Tracing::resumed(const fs::path& work) const {
   return checkpoint;
 }
 
-void Tracing::trace(int threads) {
+void Tracing::trace(int threads, int lanes) {
   while (!enough()) {
     if (simulation_.round_done()) simulation_.next_round();
     if (plan_.rounds.several() && simulation_.position().unit == 0)
       observer_.begin_part("round " + std::to_string(simulation_.position().round + 1));
     all_saved_ = false;
-    simulation_.advance(threads);
+    simulation_.advance(threads, lanes);
     if (in_any_process(simulation_.totals().interrupted || observer_.interrupted())) interrupt();
     if (simulation_.round_done()) checkpoint().end_round(simulation_.position().round);
     if (in_any_process(seconds_since_checkpoint() > request_.checkpoint)) save_checkpoint();

@@ -36,7 +36,7 @@ class Tracing {
   std::uint64_t traced() const { return simulation_.totals().released; }
 
   /// Traces all rounds. If the user ends the program, saves the work and throws `Interrupted`.
-  void trace(int threads);
+  void trace(int threads, int lanes);
   /// Sum of the totals of all processes. Only the leader gets it.
   Totals totals();
   void save_checkpoint();

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <deque>
 #include <exception>
 #include <numeric>
 
 #include "talus/base/expect.hpp"
+#include "talus/physics/lanes.hpp"
 #include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/plan/work_order.hpp"
 #include "talus/simulate/plan/work_units.hpp"
@@ -85,8 +87,9 @@ void add(Totals& totals, const Release& release, const Path& path) {
 /// One call of `advance`: the state that its workers share.
 class Simulation::Advance {
  public:
-  explicit Advance(Simulation& simulation)
+  Advance(Simulation& simulation, int lanes)
       : run_(simulation),
+        lanes_(lanes),
         scenario_(simulation.scenario_),
         order_(simulation.sinks_),
         units_(simulation.processes_, {simulation.position_.unit, simulation.units_}, simulation.chunk_,
@@ -95,34 +98,7 @@ class Simulation::Advance {
   }
 
   /// Takes units until none is left. No exception may leave an OpenMP region: the first one is stored.
-  void work() noexcept {
-    Totals mine;
-    mine.barriers = BarrierTally(scenario_.barriers);
-    const double start = thread_cpu_seconds();
-    try {
-      VisitBatch batch(scenario_.surface.grid(), length_rules(scenario_.output));
-      if (run_.tally_.keeps_energy_total()) batch.keep_energy_total();
-      Path path;
-      while (!failed_) {
-        const std::optional<WorkUnits::Taken> taken = units_.next();  // always completed: a pause leaves none out
-        if (!taken) break;
-        Rows rows = trace_unit(taken->unit, path, batch, mine);
-        if (batch.full()) score(batch, mine);
-        const double before = thread_cpu_seconds();
-        order_.finish(taken->number, std::move(rows));
-        mine.sink_cpu_seconds += thread_cpu_seconds() - before;
-        report();
-      }
-      score(batch, mine);
-    } catch (...) {
-      const std::lock_guard guard(mutex_);
-      if (!failure_) failure_ = std::current_exception();
-      failed_ = true;
-    }
-    mine.cpu_seconds = thread_cpu_seconds() - start;
-    const std::lock_guard guard(mutex_);
-    add(totals_, mine);
-  }
+  void work() noexcept;
 
   /// Called when all workers are done. True: all units of the process group are done. False: there are more to take.
   /// Throws the exception of a worker.
@@ -138,46 +114,16 @@ class Simulation::Advance {
   }
 
  private:
-  void score(VisitBatch& batch, Totals& totals) {
-    totals.cells_scored += run_.tally_.add(batch);
-    batch.clear();
-  }
-
-  Rows trace_unit(std::uint64_t unit, Path& path, VisitBatch& batch, Totals& totals) {
-    const std::uint32_t place = run_.first_place_ + static_cast<std::uint32_t>(unit / run_.units_per_source_);
-    const std::uint32_t source = run_.order_[place];
-    const auto first = static_cast<std::uint32_t>(unit % run_.units_per_source_) * kBlocksPerUnit;
-    const std::uint32_t count = std::min(scenario_.trajectories - first, kBlocksPerUnit);
-    const std::uint32_t round = run_.position_.round, begin = round * scenario_.trajectories + first;
-    const World world = scenario_.world();
-    const std::shared_ptr<SourceReach> reach = run_.reaches_.of(place);
+  /// A unit of work of which some blocks are not done.
+  struct Unit {
+    std::uint64_t number;             // as WorkUnits::Taken
+    std::uint32_t source, next, end;  // next block to be released, block after the last
+    std::uint32_t left;               // blocks that are not done
+    std::uint32_t count;              // blocks
+    std::shared_ptr<SourceReach> reach;
     Rows rows;
-    rows.unit = unit;
-    for (std::uint32_t block = begin; block < begin + count; ++block) {
-      const Release release = make_release(scenario_, source, block);
-      trace(world, release, path);
-      if (const AnnualWeights* weights = run_.tally_.weights()) {
-        const std::int64_t weight = weights->weight(scenario_, source, block);
-        batch.set_stake({weight, round * run_.units_ + unit, count});
-        totals.left_weight += path.end == End::Left ? weight : 0;
-      }
-      batch.add(path, release.body, source, reach);
-      add(totals, release, path);
-      if (run_.sinks_.walked) run_.sinks_.walked(release, path);
-      if (run_.sinks_.stops) rows.stops.push_back(stop_row(release, path));
-      if (run_.sinks_.crossings) run_.screens_.find(release, path, rows.crossings);
-      if (run_.sinks_.paths && round == 0 && is_recorded(scenario_, source, block))
-        rows.paths.push_back({stop_row(release, path), points_of(path, spacing())});
-      if (!path.pieces.empty())
-        trace_pieces(world, path, [&](const Release& piece, const Path& way) {
-          batch.add(way, piece.body, source, reach, true);
-          totals.pieces += 1;
-          add_way(totals, way);
-          if (run_.sinks_.crossings) run_.screens_.find(piece, way, rows.crossings);
-        });
-    }
-    return rows;
-  }
+  };
+  class Worker;
 
   double spacing() const {
     const double asked = run_.sinks_.path_spacing;
@@ -208,6 +154,7 @@ class Simulation::Advance {
   }
 
   Simulation& run_;
+  int lanes_;
   const Scenario& scenario_;
   InOrder order_;
   WorkUnits units_;
@@ -218,6 +165,116 @@ class Simulation::Advance {
   std::exception_ptr failure_;
   bool stopped_ = false, interrupted_ = false;
 };
+
+/// The work of one thread: takes units, traces their blocks and scores the paths. The units that it traces at the same
+/// time lie in `units_`; paths come in the order in which the blocks were released.
+class Simulation::Advance::Worker {
+ public:
+  Worker(Advance& work, Totals& totals)
+      : work_(work),
+        run_(work.run_),
+        scenario_(work.scenario_),
+        totals_(totals),
+        world_(scenario_.world()),
+        tracer_(world_, work.lanes_),
+        batch_(scenario_.surface.grid(), length_rules(scenario_.output)) {
+    if (run_.tally_.keeps_energy_total()) batch_.keep_energy_total();
+  }
+
+  void work() {
+    while (!all_taken_ && !work_.failed_) {
+      tracer_.run([this](Release& release, std::uint64_t&) { return next(release); },
+                  [this](const Release& release, const Path& path, std::uint64_t) { done(release, path); });
+      totals_.cells_scored += run_.tally_.add(batch_);
+      batch_.clear();
+    }
+  }
+
+ private:
+  /// The next block: of the unit taken last, or of another. No unit is taken while the batch is full: the batch holds
+  /// all paths of its units.
+  bool next(Release& release) {
+    if (units_.empty() || units_.back().next == units_.back().end)
+      if (work_.failed_ || batch_.full() || !take()) return false;
+    Unit& unit = units_.back();
+    release = make_release(scenario_, unit.source, unit.next++);
+    return true;
+  }
+
+  bool take() {
+    const std::optional<WorkUnits::Taken> taken = work_.units_.next();  // always completed: a pause leaves none out
+    all_taken_ = !taken;
+    if (!taken) return false;
+    const std::uint32_t place = run_.first_place_ + static_cast<std::uint32_t>(taken->unit / run_.units_per_source_);
+    const auto first = static_cast<std::uint32_t>(taken->unit % run_.units_per_source_) * kBlocksPerUnit;
+    const std::uint32_t count = std::min(scenario_.trajectories - first, kBlocksPerUnit);
+    const std::uint32_t begin = run_.position_.round * scenario_.trajectories + first;
+    units_.push_back(
+        {taken->number, run_.order_[place], begin, begin + count, count, count, run_.reaches_.of(place), {}});
+    units_.back().rows.unit = taken->unit;
+    return true;
+  }
+
+  void done(const Release& release, const Path& path) {
+    Unit& unit = units_.front();
+    const std::uint32_t round = run_.position_.round;
+    if (const AnnualWeights* weights = run_.tally_.weights()) {
+      const std::int64_t weight = weights->weight(scenario_, unit.source, release.block);
+      batch_.set_stake({weight, round * run_.units_ + unit.rows.unit, unit.count});
+      totals_.left_weight += path.end == End::Left ? weight : 0;
+    }
+    batch_.add(path, release.body, unit.source, unit.reach);
+    add(totals_, release, path);
+    if (run_.sinks_.walked) run_.sinks_.walked(release, path);
+    if (run_.sinks_.stops) unit.rows.stops.push_back(stop_row(release, path));
+    if (run_.sinks_.crossings) run_.screens_.find(release, path, unit.rows.crossings);
+    if (run_.sinks_.paths && round == 0 && is_recorded(scenario_, unit.source, release.block))
+      unit.rows.paths.push_back({stop_row(release, path), points_of(path, work_.spacing())});
+    if (!path.pieces.empty()) trace_pieces(world_, path, [&](const auto&... piece) { add_piece(unit, piece...); });
+    if (--unit.left == 0) finish(unit);
+  }
+
+  void add_piece(Unit& unit, const Release& piece, const Path& path) {
+    batch_.add(path, piece.body, unit.source, unit.reach, true);
+    totals_.pieces += 1;
+    add_way(totals_, path);
+    if (run_.sinks_.crossings) run_.screens_.find(piece, path, unit.rows.crossings);
+  }
+
+  void finish(Unit& unit) {
+    const double before = thread_cpu_seconds();
+    work_.order_.finish(unit.number, std::move(unit.rows));
+    totals_.sink_cpu_seconds += thread_cpu_seconds() - before;
+    units_.pop_front();
+    work_.report();
+  }
+
+  Advance& work_;
+  Simulation& run_;
+  const Scenario& scenario_;
+  Totals& totals_;
+  const World world_;
+  Tracer tracer_;
+  VisitBatch batch_;
+  std::deque<Unit> units_;
+  bool all_taken_ = false;
+};
+
+void Simulation::Advance::work() noexcept {
+  Totals mine;
+  mine.barriers = BarrierTally(scenario_.barriers);
+  const double start = thread_cpu_seconds();
+  try {
+    Worker(*this, mine).work();
+  } catch (...) {
+    const std::lock_guard guard(mutex_);
+    if (!failure_) failure_ = std::current_exception();
+    failed_ = true;
+  }
+  mine.cpu_seconds = thread_cpu_seconds() - start;
+  const std::lock_guard guard(mutex_);
+  add(totals_, mine);
+}
 
 Simulation::Simulation(const Scenario& scenario, const Part& part, bool further_rounds, Tally& tally,
                        const Sinks& sinks, ProcessGroup& processes)
@@ -240,8 +297,8 @@ Simulation::Simulation(const Scenario& scenario, const Part& part, bool further_
   chunk_ = std::max<std::uint64_t>(1, sources) * units_per_source_;
 }
 
-void Simulation::advance(int threads) {
-  Advance work(*this);
+void Simulation::advance(int threads, int lanes) {
+  Advance work(*this, lanes);
   do {
 #pragma omp parallel num_threads(threads > 0 ? threads : omp_get_num_procs()) default(none) shared(work)
     work.work();

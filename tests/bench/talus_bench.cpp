@@ -5,11 +5,14 @@
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 
 #include "talus/base/memory.hpp"
+#include "talus/io/results/write_vectors.hpp"
 #include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/physics/flight.hpp"
+#include "talus/physics/lanes.hpp"
 #include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/simulate.hpp"
 
@@ -17,11 +20,11 @@ namespace {
 
 using namespace talus;
 
-std::optional<Scenario> g_scenario;  // read once, before the benchmarks
+std::optional<io::LoadedScenario> g_loaded;  // read once, before the benchmarks
 
 Scenario& scenario_with(std::int64_t trajectories) {
-  g_scenario->trajectories = static_cast<std::uint32_t>(trajectories);
-  return *g_scenario;
+  g_loaded->scenario.trajectories = static_cast<std::uint32_t>(trajectories);
+  return g_loaded->scenario;
 }
 
 /// Trace, tally and merge with every raster on. Arguments: trajectories per source, threads.
@@ -75,13 +78,34 @@ void per(benchmark::State& state, const char* unit, std::uint64_t count) {
 /// The engine without tallies.
 void trace_only(benchmark::State& state) {
   const Sample& s = sample();
-  const World world = g_scenario->world();
+  const World world = g_loaded->scenario.world();
   Path path;
   for (auto _ : state)
     for (const Release& release : s.releases) {
       trace(world, release, path);
       benchmark::DoNotOptimize(path.length);
     }
+  per(state, "ns_per_patch", s.spans);
+  per(state, "ns_per_plan_m", static_cast<std::uint64_t>(s.plan_length));
+}
+
+/// The engine without tallies, with several trajectories in the lanes of one instruction. Argument: lanes.
+void trace_in_lanes(benchmark::State& state) {
+  const Sample& s = sample();
+  const int lanes = static_cast<int>(state.range(0));
+  if (lanes > most_lanes()) return state.SkipWithError("this processor has fewer lanes");
+  const World world = g_scenario->world();
+  Tracer tracer(world, lanes);
+  for (auto _ : state) {
+    std::size_t next = 0;
+    tracer.run(
+        [&](Release& release, std::uint64_t&) {
+          if (next == s.releases.size()) return false;
+          release = s.releases[next++];
+          return true;
+        },
+        [](const Release&, const Path& path, std::uint64_t) { benchmark::DoNotOptimize(path.length); });
+  }
   per(state, "ns_per_patch", s.spans);
   per(state, "ns_per_plan_m", static_cast<std::uint64_t>(s.plan_length));
 }
@@ -115,7 +139,7 @@ void floor_walk(benchmark::State& state) {
   for (auto _ : state)
     for (const Path& path : s.paths)
       for (std::size_t i = 1; i < path.vertices.size(); ++i)
-        benchmark::DoNotOptimize(walk(g_scenario->surface, path.vertices[i - 1], path.vertices[i]));
+        benchmark::DoNotOptimize(walk(g_loaded->scenario.surface, path.vertices[i - 1], path.vertices[i]));
   per(state, "ns_per_patch", s.spans);
   per(state, "ns_per_plan_m", static_cast<std::uint64_t>(s.plan_length));
 }
@@ -123,7 +147,7 @@ void floor_walk(benchmark::State& state) {
 /// The impact law alone, with its random numbers, on the impacts of the sample.
 void impact_law(benchmark::State& state) {
   const Sample& s = sample();
-  const World world = g_scenario->world();
+  const World world = g_loaded->scenario.world();
   const Ground& ground = world.cover.grounds.front();
   const Vec3 normal = normal_of({0.3, -0.6});
   for (auto _ : state)
@@ -148,8 +172,8 @@ void score(benchmark::State& state) {
   const Sample& s = sample();
   std::uint64_t scored = 0;
   for (auto _ : state) {
-    Tally tally(g_scenario->surface.grid(), {30.0, 300.0, 500.0}, {1.0, 2.0, 4.0});
-    VisitBatch batch(g_scenario->surface.grid());
+    Tally tally(g_loaded->scenario.surface.grid(), {30.0, 300.0, 500.0}, {1.0, 2.0, 4.0});
+    VisitBatch batch(g_loaded->scenario.surface.grid());
     for (int repeat = 0; repeat < 10; ++repeat)
       for (std::size_t k = 0; k < s.paths.size(); ++k) {
         batch.add(s.paths[k], 2400.0, s.releases[k].source, nullptr);
@@ -162,12 +186,67 @@ void score(benchmark::State& state) {
       benchmark::Counter(1e-9 * static_cast<double>(scored), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
+/// A file that is removed at the end. Its ending is that of the argument: 0 GeoPackage, 1 FlatGeobuf.
+struct TemporaryFile {
+  explicit TemporaryFile(const benchmark::State& state)
+      : path(std::filesystem::temp_directory_path() / (state.range(0) == 0 ? "talus-bench.gpkg" : "talus-bench.fgb")) {
+    std::filesystem::remove(path);
+  }
+  ~TemporaryFile() { std::filesystem::remove(path); }
+  std::filesystem::path path;
+};
+
+/// A million stops with their index: those of the sample, one centimetre further with every block.
+void write_stops(benchmark::State& state) {
+  constexpr std::uint32_t kBlocks = 1000;
+  const Sample& s = sample();
+  std::vector<StopRow> rows;
+  for (std::size_t k = 0; k < s.paths.size(); ++k)
+    for (std::uint32_t block = 0; block < kBlocks; ++block) {
+      rows.push_back(stop_row(s.releases[k], s.paths[k]));
+      rows.back().block = block;
+      rows.back().x += 0.01 * block;
+    }
+  for (auto _ : state) {
+    const TemporaryFile file(state);
+    io::StopsWriter writer(file.path, *g_loaded);
+    for (std::size_t at = 0; at < rows.size(); at += 128)
+      writer.write(std::span(rows).subspan(at, std::min<std::size_t>(128, rows.size() - at)));
+    writer.finish();
+  }
+  per(state, "ns_per_row", rows.size());
+}
+
+/// The paths of the sample with their index.
+void write_paths(benchmark::State& state) {
+  const Sample& s = sample();
+  const Grid& grid = g_loaded->scenario.surface.grid();
+  std::vector<RecordedPath> paths;
+  std::uint64_t points = 0;
+  for (std::size_t k = 0; k < s.paths.size(); ++k) {
+    paths.push_back({stop_row(s.releases[k], s.paths[k]), points_of(s.paths[k], grid.cell_x)});
+    points += paths.back().points.size();
+  }
+  for (auto _ : state) {
+    const TemporaryFile file(state);
+    io::TrajectoriesWriter writer(file.path, g_loaded->geo, grid);
+    for (int repeat = 0; repeat < 10; ++repeat)
+      for (const RecordedPath& path : paths) writer.write(path);
+    writer.finish();
+  }
+  per(state, "ns_per_row", 10 * paths.size());
+  per(state, "ns_per_point", 10 * points);
+}
+
 BENCHMARK(run)->Args({10, 1})->Args({100, 1})->Args({10, 2})->Args({100, 2})->UseManualTime()->Iterations(1)->Unit(
     benchmark::kSecond);
 BENCHMARK(trace_only)->Unit(benchmark::kMillisecond);
+BENCHMARK(trace_in_lanes)->Arg(1)->Arg(4)->Arg(8)->Unit(benchmark::kMillisecond);
 BENCHMARK(floor_walk)->Unit(benchmark::kMillisecond);
 BENCHMARK(impact_law)->Unit(benchmark::kMillisecond);
 BENCHMARK(score)->Unit(benchmark::kMillisecond);
+BENCHMARK(write_stops)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(write_paths)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 
@@ -183,7 +262,7 @@ int main(int argc, char** argv) {
     flags.dem = argv[1];
     flags.sources = argv[2];
     flags.diameter = 1.2;
-    g_scenario = io::load_scenario(flags).scenario;
+    g_loaded = io::load_scenario(flags);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "talus-bench: %s\n", error.what());
     return 2;

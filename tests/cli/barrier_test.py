@@ -121,7 +121,7 @@ class Design(Case):
             self.write("out/run.json", json.dumps(record))
             notes = " ".join(self.design()[1]["notes"])
             self.assertEqual("energies and jumps may be too low (unsafe): c = " + str(c) in notes, said, notes)
-            self.assertEqual("run with c = 0.15 as well" in notes, said, notes)
+            self.assertEqual("run with --deformation-coefficient 0.15 as well" in notes, said, notes)
 
     def test_sizes_of_the_run_are_said_again(self):
         with open(self.path("out/run.json"), encoding="utf-8") as file:

@@ -122,6 +122,56 @@ class Fields(InputCase):
                      sources="s.geojson", more=["--field", "diameter=DiaMeter"])
 
 
+class FlagsForKeys(InputCase):
+    """Flags that do what a key of a scenario does: the same maps, byte for byte."""
+
+    def scenario(self, text, sources="sources.gpkg"):
+        self.write("s.toml", text + f'dem = "dem.tif"\ntrajectories = 5\n[sources]\nfile = "{sources}"\n[blocks]\ndiameter = 1.2\n')
+        self.run_well("run", self.path("s.toml"), "-o", self.path("by-key"))
+
+    def assert_as_by_key(self):
+        for name in ("energy.tif", "passages.tif"):
+            with open(self.path(f"out/{name}"), "rb") as one, open(self.path(f"by-key/{name}"), "rb") as other:
+                self.assertEqual(one.read(), other.read(), name)
+
+    def test_a_fitted_ground(self):
+        self.write("fitted.toml", "fitted_cell = 5\n[ground.zones.default]\ntheta_scale = 0.4\nEn50 = 7\n")
+        self.scenario('include = "fitted.toml"\n')
+        self.run_flags("--parameters", self.path("fitted.toml"))
+        self.assert_as_by_key()
+        settings = {s["key"]: s for s in self.record()["settings"]}
+        self.assertEqual(settings["ground.default.theta_scale"]["source"], "flag --parameters")
+        self.assertIn("include", [i["role"] for i in self.record()["inputs"]])
+        self.run_well("run", self.path("out/scenario.toml"), "-o", self.path("by-key"), "--overwrite")
+        self.assert_as_by_key()
+
+    def test_a_fitted_ground_beside_others(self):
+        self.write("fitted.toml", "[ground.zones.default]\nEn50 = 7\n")
+        self.refused("flag --parameters = ", "must not come with --preset",
+                     more=["--parameters", self.path("fitted.toml"), "--preset", "lower-talus-3d"])
+        self.refused("no such file", more=["--parameters", self.path("missing.toml")])
+        self.write("s.toml", 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1\n')
+        self.fails(2, "flag --parameters = ", 'include = "FILE"',
+                   arguments=["check", self.path("s.toml"), "--parameters", self.path("fitted.toml")])
+
+    def test_the_deformation_coefficient(self):
+        self.scenario("model.deformation_coefficient = 0.15\n")
+        self.run_flags("--deformation-coefficient", "0.15")
+        self.assert_as_by_key()
+        self.refused("flag --deformation-coefficient = -1", more=["--deformation-coefficient", "-1"])
+
+    def test_a_field_that_is_not_read(self):
+        points = [(f"POINT ({WEST + 152.5 + 10 * i} {NORTH - 62.5})", [0.5]) for i in range(3)]
+        write_features(self.path("often.gpkg"), "often", points, [("frequency", ogr.OFTReal)])
+        self.refused("--field frequency= leaves out the field", sources="often.gpkg", more=["--frequency", "3"])
+        done = self.run_flags("--frequency", "3", "--field", "frequency=", sources="often.gpkg")
+        self.assertIn("no field is read", done.stderr)
+        self.run_well("hazard", self.path("out"), "-q")
+        settings = {s["key"]: s for s in self.record()["settings"]}
+        self.assertEqual(settings["frequency.total"]["value"], 3)
+        self.run_well("run", self.path("out/scenario.toml"), "-o", self.path("again"), "-q")
+
+
 class Tables(InputCase):
     def table(self, text, name="t.csv"):
         self.write(name, text)

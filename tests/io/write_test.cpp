@@ -10,7 +10,6 @@
 #include "io/files/cog_file.hpp"
 #include "io/files/compression.hpp"
 #include "io/gdal/dataset.hpp"
-#include "io/gdal/point_index.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/results/run_record.hpp"

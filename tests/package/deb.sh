@@ -16,7 +16,7 @@ cd "$work/root"
 
 # Each package has what it is for, and depends on what its program needs.
 for file in usr/bin/talus usr/share/man/man1/talus.1.gz usr/share/doc/talus/products.md usr/lib/libtalus.a \
-  usr/share/doc/talus/examples/valley/scenario.toml usr/share/bash-completion/completions/talus \
+  usr/share/doc/talus/examples/{valley/scenario,elm/campaign,profile/profile}.toml usr/share/bash-completion/completions/talus \
   usr/share/zsh/vendor-completions/_talus usr/share/fish/vendor_completions.d/talus.fish usr/include/talus/talus.hpp \
   usr/share/qgis/python/plugins/talus_qgis/metadata.txt \
   usr/share/doc/{talus,libtalus-dev}/{copyright,changelog.gz,changelog.Debian.gz}; do

@@ -12,7 +12,8 @@ os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
 from osgeo import gdal  # noqa: E402
 from qgis.core import (QgsApplication, QgsExpression, QgsExpressionContext, QgsExpressionContextUtils,  # noqa: E402
-                       QgsMapRendererParallelJob, QgsMapSettings, QgsProject, QgsRectangle, QgsVectorLayer)
+                       QgsMapRendererParallelJob, QgsMapSettings, QgsProject, QgsRasterLayer, QgsRectangle,
+                       QgsVectorLayer)
 from qgis.PyQt.QtCore import QSize  # noqa: E402
 from qgis.PyQt.QtGui import QColor  # noqa: E402
 
@@ -56,6 +57,22 @@ class Project(unittest.TestCase):
         self.assertTrue(self.project.read(os.path.join(self.out, "talus.qgs")), self.project.error())
         self.group = self.project.layerTreeRoot().children()[0]
         self.layers = {layer.name(): layer.layer() for layer in self.group.findLayers()}
+
+    def test_flatgeobuf_has_its_styles_beside_it(self):
+        out = os.path.join(self.moved, "fgb")
+        subprocess.run([TALUS, "run", os.path.join(self.moved, "valley/scenario.toml"), "--trajectories", "5", "--vectors",
+                        "fgb", "-o", out, "-q"], check=True)
+        project = QgsProject()
+        self.assertTrue(project.read(os.path.join(out, "talus.qgs")), project.error())
+        shown = {os.path.basename(layer.source()): layer for layer in project.mapLayers().values()}
+        self.assertTrue(all(layer.isValid() for layer in shown.values()))
+        for name, attribute in (("stops", "max_speed_ms"), ("exits", "energy_kj"), ("trajectories", "max_speed_ms"),
+                                ("screens", "energy_kj_p95")):
+            for layer in (shown[name + ".fgb"], QgsVectorLayer(f"{out}/{name}.fgb", name, "ogr")):
+                self.assertEqual(layer.renderer().type(), "graduatedSymbol")
+                self.assertIn(attribute, layer.renderer().classAttribute())
+        for layer in (shown["exits.tif"], QgsRasterLayer(f"{out}/exits.tif", "exits")):  # exits.qml is of both
+            self.assertEqual(layer.renderer().type(), "singlebandpseudocolor")
 
     def test_opens_everything_as_one_group(self):
         self.assertEqual(len(self.project.layerTreeRoot().children()), 1)

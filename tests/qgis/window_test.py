@@ -122,6 +122,23 @@ class Window(unittest.TestCase):
             self.assertEqual(loaded.renderer().type(), "graduatedSymbol", name)
             self.assertEqual(self.classes(loaded), self.classes(layer), name)
 
+    def test_flatgeobuf_has_its_classes(self):
+        out = os.path.join(self.folder, "fgb")
+        self.run_dialog("run", {"DEM": os.path.join(VALLEY, "dem.tif"), "SOURCES": os.path.join(VALLEY, "cliffs.shp"),
+                                "TRAJECTORIES": 2, "SCREENS": os.path.join(VALLEY, "screens.gpkg"), "VECTORS": "fgb", "OUT": out})
+        project = QgsProject()
+        project.read(os.path.join(out, "talus.qgs"))
+        group = QgsProject.instance().layerTreeRoot().findGroup("Talus: fgb")
+        layers = [node.layer() for node in group.findLayers()]
+        self.assertEqual([layer.name() for layer in layers],
+                         [node.name() for node in project.layerTreeRoot().findLayers()][:-1])
+        wanted = {layer.name(): layer for layer in project.mapLayers().values()}
+        vectors = [layer for layer in layers if isinstance(layer, QgsVectorLayer)]
+        self.assertEqual(len(vectors), 4)
+        for layer in vectors:
+            self.assertEqual(self.classes(layer), self.classes(wanted[layer.name()]), layer.name())
+            self.assertEqual(layer.renderer().type(), "graduatedSymbol", layer.name())
+
     def test_the_log_keeps_the_columns_of_a_table(self):
         told = subprocess.run([os.environ["TALUS"], "barrier", self.out, "--screen", "road"], capture_output=True, text=True,
                               check=True).stdout.splitlines()

@@ -15,6 +15,8 @@
 #include "talus/io/gdal/pit_points.hpp"
 #include "talus/io/results/run_record.hpp"
 #include "talus/io/scenario/loaded_scenario.hpp"
+#include "talus/physics/lanes.hpp"
+#include "talus/physics/trace.hpp"
 #include "talus/products/expected_cells.hpp"
 #include "talus/products/held_at_release.hpp"
 #include "talus/run/summary.hpp"
@@ -60,17 +62,19 @@ Sample trace_sample(const Scenario& scenario) {
   if (scenario.output.energy_total) batch.keep_energy_total();
   const talus::ScreenFinder screens(scenario);
   std::vector<talus::Crossing> crossings;
-  talus::Path path;
   Sample sample;
   const Clock::time_point start = Clock::now();
-  const std::uint64_t all = scenario.released();
-  while (sample.traced < std::min<std::uint64_t>(all, 20'000) && sample.seconds < kSampleSeconds) {
-    const double share = std::fmod(0.6180339887498949 * static_cast<double>(sample.traced), 1.0);
-    const auto release_number = std::min(all - 1, static_cast<std::uint64_t>(share * static_cast<double>(all)));
-    const talus::Release release =
-        talus::make_release(scenario, static_cast<std::uint32_t>(release_number / scenario.trajectories),
-                            static_cast<std::uint32_t>(release_number % scenario.trajectories));
-    talus::trace(world, release, path);
+  const std::uint64_t all = scenario.released(), most = std::min<std::uint64_t>(all, 20'000);
+  std::uint64_t begun = 0;
+  const auto next = [&](talus::Release& release, std::uint64_t&) {
+    if (begun == most || !(sample.seconds < kSampleSeconds)) return false;
+    const double share = std::fmod(0.6180339887498949 * static_cast<double>(begun++), 1.0);
+    const auto number = std::min(all - 1, static_cast<std::uint64_t>(share * static_cast<double>(all)));
+    release = talus::make_release(scenario, static_cast<std::uint32_t>(number / scenario.trajectories),
+                                  static_cast<std::uint32_t>(number % scenario.trajectories));
+    return true;
+  };
+  talus::Tracer(world).run(next, [&](const talus::Release& release, const talus::Path& path, std::uint64_t) {
     if (weights) batch.set_stake({weights->weight(scenario, release.source, release.block), sample.traced, 1});
     batch.add(path, release.body, release.source, nullptr);
     talus::trace_pieces(world, path, [&](const talus::Release& piece, const talus::Path& way) {
@@ -86,7 +90,7 @@ Sample trace_sample(const Scenario& scenario) {
     ++sample.totals.released;
     sample.held += talus::held_at_release(talus::stop_row(release, path)) ? 1U : 0U;
     sample.seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  }
+  });
   tally.add(batch);
   sample.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   sample.touched_cells = tally.touched_cells();

@@ -57,6 +57,9 @@ CLI::Validator seed_number();
 /// processes the library of threads would end the program without an error of ours.
 CLI::Validator startable_threads();
 
+/// Check of an option with a number of lanes: 1, 4 or 8, and no more than the processor has.
+CLI::Validator lanes_of_machine();
+
 /// Throws InputError if the seed is out of bounds. (A negative number arrives as a huge one.)
 void require_seed(std::uint64_t seed);
 

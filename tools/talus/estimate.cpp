@@ -24,12 +24,14 @@ constexpr double kKeptTotal = 90.0;        // of the energy with rotation of a t
 constexpr double kRasterCell = 3.4;        // of a touched cell in a band of a compressed raster [byte]
 constexpr double kHazardFile = 77.0;       // of a touched cell [byte]
 constexpr double kStop = 172.0;            // a row of stops.gpkg [byte]
+constexpr double kFlatStop = 260.0;        // a row of stops.fgb [byte]
+constexpr double kFlatRow = 160.0;         // of stops.fgb in memory while it is written [byte]
 constexpr double kPathPoint = 36.0;        // of trajectories.gpkg [byte]
 constexpr double kCrossing = 150.0;        // a row of screens.csv [byte]
 constexpr double kKeptCell = 344.0;        // of a touched cell in the saved tally [byte]
 constexpr double kEmptyCell = 4e-10;       // of the grid, per band, to write [s]
 constexpr double kTouchedCell = 1.3e-7;    // of a touched cell, per band, to write [s]
-constexpr double kWriteTrajectory = 5e-6;  // a row of stops.gpkg [s]
+constexpr double kWriteTrajectory = 2e-6;  // a row of stops.gpkg [s]
 constexpr double kWriteFiles = 0.6;        // to create all files [s]
 
 double thresholds(const Scenario& scenario) {
@@ -71,20 +73,24 @@ double bands_at_once(const Scenario& scenario) {
   return static_cast<double>(numbers[0] + numbers[1]);
 }
 
+bool is_flat(const Scenario& scenario) {
+  return scenario.output.vectors == talus::VectorFormat::FlatGeobuf;
+}
+
 }  // namespace
 
 double bytes_in_memory(const Scenario& scenario, const RunSize& size) {
   const double cell = sizeof(talus::CellRecord) + talus::kQuantities * kHistogram + 16.0 + 4.0 * thresholds(scenario) +
                       length_bytes(scenario) + total_bytes(scenario) +
                       (size.with_hazard ? hazard_bytes(scenario) : 0.0);
-  return kBase + size.touched_cells * cell;
+  return kBase + size.touched_cells * cell + (is_flat(scenario) ? kFlatRow * size.trajectories : 0.0);
 }
 
 double bytes_of_results(const Scenario& scenario, const RunSize& size) {
   const talus::Grid& grid = scenario.surface.grid();
   const double paths = std::min<double>(scenario.output.paths, size.trajectories);
   return size.touched_cells * (kRasterCell * bands(scenario) + (size.with_hazard ? kHazardFile : 0.0)) +
-         size.trajectories * kStop + size.crossings * kCrossing +
+         size.trajectories * (is_flat(scenario) ? kFlatStop : kStop) + size.crossings * kCrossing +
          paths * (500.0 + kPathPoint * size.metres_per_path / grid.cell_x);
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "talus/base/text.hpp"
+#include "talus/physics/lanes.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 
@@ -89,6 +90,19 @@ Facts scalar_of(std::string_view key) {
 Facts surface_choice() {
   Facts facts;
   facts.choices = {"creased", "bilinear"};
+  facts.standard = facts.choices.front();
+  return facts;
+}
+
+Facts lane_choice() {
+  Facts facts;
+  for (const int lanes : talus::kLaneChoices) facts.choices.push_back(std::to_string(lanes));
+  return facts;
+}
+
+Facts vectors_choice() {
+  Facts facts;
+  for (const talus::VectorFormat format : talus::kVectorFormats) facts.choices.emplace_back(name_of(format));
   facts.standard = facts.choices.front();
   return facts;
 }

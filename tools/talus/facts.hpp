@@ -44,6 +44,9 @@ Facts default_of(double value);
 Facts default_of(std::string value);
 Facts with_unit(std::string unit, double value);
 
-/// Facts of the choice of a surface and of a preset.
+/// Facts of the choice of a surface, of a format of layers, and of a preset.
 Facts surface_choice();
+Facts vectors_choice();
 Facts preset_choice();
+/// A number of lanes.
+Facts lane_choice();

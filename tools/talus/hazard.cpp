@@ -53,8 +53,8 @@ void check_width(const talus::io::HazardHeader& header, const talus::HazardMatri
   for (const double energy : matrix.energies)
     if (std::ranges::count(header.rules.bins.thresholds(), energy) == 0)
       throw talus::InputError("--width: the matrix has a class limit of " + talus::text_of(energy) +
-                              " kJ, must be one of the run's energy_thresholds; add it to [output] "
-                              "energy_thresholds and run again, or leave out --width");
+                              " kJ, must be one of the run's energy thresholds; run again with it in "
+                              "--thresholds ([output] energy_thresholds), or leave out --width");
 }
 
 /// Reads the hazard file of the run and evaluates every cell.

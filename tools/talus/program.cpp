@@ -21,6 +21,7 @@
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/gdal/input_access.hpp"
+#include "talus/physics/lanes.hpp"
 #include "talus/run/startable_threads.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 
@@ -214,6 +215,19 @@ CLI::Validator startable_threads() {
                                  "or less";
   };
   return {check, "INT in [1 - 4096]"};
+}
+
+CLI::Validator lanes_of_machine() {
+  const auto check = [](std::string& text) -> std::string {
+    const auto choice = std::ranges::find(talus::kLaneChoices, text, [](int lanes) { return std::to_string(lanes); });
+    if (choice == std::end(talus::kLaneChoices)) return "Value " + text + ": must be 1, 4 or 8";
+    const int most = talus::most_lanes();
+    return *choice <= most
+               ? ""
+               : "Value " + text + ": this processor has " + std::to_string(most) + (most == 1 ? " lane" : " lanes") +
+                     " (8 need AVX-512, 4 need AVX2); give less, or leave it out: the results are the same";
+  };
+  return {check, "INT: 1, 4 or 8"};
 }
 
 void require_seed(std::uint64_t seed) {

@@ -57,19 +57,27 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags) {
        default_of("zone"));
   command
       .add_option("--field", flags.fields,
-                  "NAME=COLUMN: a field of the sources under another name, as release_height=HEIGHT; may be repeated")
+                  "NAME=COLUMN: a field of the sources under another name, as release_height=HEIGHT; NAME= alone: that "
+                  "field is not read; may be repeated")
       ->allow_extra_args(false);
   with(command.add_option("--preset", flags.preset, "parameter set of the ground; talus presets lists them"),
        preset_choice());
+  with(command.add_option("--parameters", flags.parameters,
+                          "a ground that talus calibrate or diagnose has fitted (fitted.toml), in place of --preset"),
+       file_of({"toml"}));
   with(command.add_option("--surface", flags.surface,
                           "bilinear or creased (creased): heights between the cells' centres"),
        surface_choice());
   with(command.add_option("--diameter", flags.diameter, "of the blocks [m]"),
        number_of(talus::bounds_of("blocks.diameter")));
+  with(command.add_option("--deformation-coefficient", flags.deformation_coefficient,
+                          "c of the impact law (0.25): a lower one gives higher energies and jumps"),
+       scalar_of("model.deformation_coefficient"));
   with(command.add_option("--frequency", flags.frequency, "events per year of all sources together, for talus hazard"),
        number_of(talus::bounds_of("frequency.total")));
   with(command
-           .add_option("--thresholds", flags.thresholds, "energies of the maps of exceedance [kJ], as 30,300 (default)")
+           .add_option("--thresholds", flags.thresholds,
+                       "energies of the maps of exceedance [kJ], with commas and no spaces: 30,300 (default)")
            ->delimiter(',')
            ->allow_extra_args(false),
        number_of(talus::bounds_of("output.energy_thresholds"), default_thresholds()));
@@ -77,6 +85,9 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags) {
   with(command.add_option("--seed", flags.seed, "of the random numbers")->check(seed_number()), scalar_of("seed"));
   command.add_flag("--energy-total", flags.energy_total, "also energy_total.tif: the energy with rotation");
   command.add_flag("--bounds", flags.bounds, "also 95 % bounds of the percentiles: energy_bounds.tif and others");
+  with(command.add_option("--vectors", flags.vectors,
+                          "gpkg or fgb (gpkg): GeoPackage or FlatGeobuf for stops, exits, paths and screens"),
+       vectors_choice());
 }
 
 void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes) {
@@ -90,6 +101,12 @@ void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes) {
       ->add_option("--threads", request.threads,
                    "all processors where it is not given, of several processes one each; the results are the same")
       ->check(startable_threads());
+  with(command
+           ->add_option("--lanes", request.lanes,
+                        "trajectories in one instruction; as many as the processor has where it is not given; the "
+                        "results are the same")
+           ->check(lanes_of_machine()),
+       lane_choice());
   command->add_option("--part", request.part, "I/N: only part I of N of the source cells, for talus merge");
   command->add_flag("--resume", request.resume, "go on with an interrupted run of the same command");
   command->add_option("--memory", request.memory, "such as 2G: what does not fit lies in a file beside the results");

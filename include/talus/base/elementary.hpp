@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "talus/base/lane.hpp"
 #include "talus/base/vector.hpp"
 
 namespace talus {
@@ -12,24 +13,32 @@ namespace talus {
 /// the same bits on every IEEE 754 machine. Those of the C library differ between processors with and without fused
 /// multiply-add. The logarithm and the sine/cosine have no branches, so that the processor can overlap several calls.
 
+/// x = mantissa 2^exponent, with the mantissa in [sqrt(1/2), sqrt(2)).
+template <class Number>
+struct Scaled {
+  Number mantissa, exponent;
+};
+inline constexpr std::uint64_t kRootHalf = 0x3FE6A09E00000000ULL;  // sqrt(1/2), its upper half
+inline Scaled<double> scaled(double x) {
+  const auto bits = std::bit_cast<std::uint64_t>(x);
+  const auto exponent = static_cast<std::int32_t>((bits - kRootHalf) >> 32U) >> 20;
+  return {std::bit_cast<double>(bits - (static_cast<std::uint64_t>(static_cast<std::int64_t>(exponent)) << 52U)),
+          static_cast<double>(exponent)};
+}
+
 /// ln(x).
 ///
 /// @param x  (0, inf), a normal number; anything else is undefined
 ///
-/// Error: below 2 ulp, and below 1e-16 absolute near x = 1. Source: atanh series on the mantissa in [sqrt(1/2),
-/// sqrt(2)).
-inline double natural_log(double x) {
-  constexpr std::uint64_t kRootHalf = 0x3FE6A09E00000000ULL;  // sqrt(1/2), its upper half
-  const auto bits = std::bit_cast<std::uint64_t>(x);
-  const auto exponent = static_cast<std::int32_t>((bits - kRootHalf) >> 32U) >> 20;
-  const double m =
-      std::bit_cast<double>(bits - (static_cast<std::uint64_t>(static_cast<std::int64_t>(exponent)) << 52U));
-  const double s = (m - 1.0) / (m + 1.0);  // ln m = 2 atanh s, |s| < 0.1716
-  const double q = s * s, q2 = q * q, q4 = q2 * q2;
-  const double series = q * ((1.0 / 3 + q * (1.0 / 5)) + q2 * (1.0 / 7 + q * (1.0 / 9)) +
+/// Error: below 2 ulp, and below 1e-16 absolute near x = 1. Source: atanh series on the mantissa.
+template <class Number>
+inline Number natural_log(Number x) {
+  const auto [m, e] = scaled(x);
+  const Number s = (m - 1.0) / (m + 1.0);  // ln m = 2 atanh s, |s| < 0.1716
+  const Number q = s * s, q2 = q * q, q4 = q2 * q2;
+  const Number series = q * ((1.0 / 3 + q * (1.0 / 5)) + q2 * (1.0 / 7 + q * (1.0 / 9)) +
                              q4 * ((1.0 / 11 + q * (1.0 / 13)) + q2 * (1.0 / 15 + q * (1.0 / 17)) + q4 * (1.0 / 19)));
   constexpr double kLn2High = 0x1.62e42fefa3800p-1, kLn2Low = 0x1.ef35793c76730p-45;
-  const auto e = static_cast<double>(exponent);
   return e * kLn2High + (2.0 * s + (2.0 * s * series + e * kLn2Low));
 }
 
@@ -63,30 +72,42 @@ inline double power(double x, double p) {
   return exponential(p * natural_log(x));
 }
 
-struct SineCosine {
-  double sine;
-  double cosine;
+template <class Number>
+struct BasicSineCosine {
+  Number sine;
+  Number cosine;
 };
+using SineCosine = BasicSineCosine<double>;
+
+/// The quarter turn nearest to a fraction of a turn: 0 .. 4.
+inline int nearest_quarter(double turn) {
+  return (static_cast<int>(8.0 * turn) + 1) / 2;
+}
+/// Sine and cosine of an angle that is larger by some quarter turns.
+inline SineCosine turned(int quarter, double sine, double cosine) {
+  const bool swap = (quarter & 1) != 0;
+  const double sine_sign = (quarter & 2) != 0 ? -1.0 : 1.0;          // quarters 2 and 3
+  const double cosine_sign = ((quarter + 1) & 2) != 0 ? -1.0 : 1.0;  // quarters 1 and 2
+  return {sine_sign * (swap ? cosine : sine), cosine_sign * (swap ? sine : cosine)};
+}
 
 /// Sine and cosine of a fraction u of a full turn: sin(2 pi u), cos(2 pi u).
 ///
 /// @param turn  u in [0, 1]
 ///
 /// Error: below 3e-16 absolute. Source: Taylor polynomials on an eighth of a turn.
-inline SineCosine sine_cosine_of_turn(double turn) {
-  const int quarter = (static_cast<int>(8.0 * turn) + 1) / 2;  // nearest quarter turn, 0 .. 4
-  const double x = (turn - 0.25 * quarter) * (2.0 * kPi);      // |x| <= pi/4; the difference is exact
-  const double q = x * x, q2 = q * q, q4 = q2 * q2;
-  const double sine = x * ((1.0 - q * (1.0 / 6)) + q2 * (1.0 / 120 - q * (1.0 / 5040)) +
+template <class Number>
+inline BasicSineCosine<Number> sine_cosine_of_turn(Number turn) {
+  const auto quarter = nearest_quarter(turn);
+  const Number x = (turn - 0.25 * quarter) * (2.0 * kPi);  // |x| <= pi/4; the difference is exact
+  const Number q = x * x, q2 = q * q, q4 = q2 * q2;
+  const Number sine = x * ((1.0 - q * (1.0 / 6)) + q2 * (1.0 / 120 - q * (1.0 / 5040)) +
                            q4 * ((1.0 / 362880 - q * (1.0 / 39916800)) +
                                  q2 * (1.0 / 6227020800 - q * (1.0 / 1307674368000)) + q4 * (1.0 / 355687428096000)));
-  const double cosine = (1.0 - q * 0.5) + q2 * (1.0 / 24 - q * (1.0 / 720)) +
+  const Number cosine = (1.0 - q * 0.5) + q2 * (1.0 / 24 - q * (1.0 / 720)) +
                         q4 * ((1.0 / 40320 - q * (1.0 / 3628800)) + q2 * (1.0 / 479001600 - q * (1.0 / 87178291200)) +
                               q4 * (1.0 / 20922789888000));
-  const bool swap = (quarter & 1) != 0;
-  const double sine_sign = (quarter & 2) != 0 ? -1.0 : 1.0;          // quarters 2 and 3
-  const double cosine_sign = ((quarter + 1) & 2) != 0 ? -1.0 : 1.0;  // quarters 1 and 2
-  return {sine_sign * (swap ? cosine : sine), cosine_sign * (swap ? sine : cosine)};
+  return turned(quarter, sine, cosine);
 }
 
 }  // namespace talus

@@ -24,22 +24,42 @@ enum class Outcome {
 /// @return       time in [0, until] [s]; infinity if there is no contact
 ///
 /// Closed form: the smallest root at which the clearance falls. Error: 4 eps relative. NaN gives infinity.
-inline double first_contact(double f0, double f1, double f2, double until) {
+template <class Number>
+[[gnu::always_inline]] inline Number first_contact(Number f0, Number f1, Number f2, Number until) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
-  const double last = f0 + until * (f1 + until * f2);
-  if (f2 <= 0.0 && last > 0.0) return kNever;  // concave: lowest at the ends
-  const double discriminant = f1 * f1 - 4.0 * f2 * f0;
-  if (!(discriminant >= 0.0)) return kNever;
-  const double root = std::sqrt(discriminant);
-  const double contact = f1 < 0.0 ? 2.0 * f0 / (root - f1) : f2 < 0.0 ? (f1 + root) / (-2.0 * f2) : kNever;
-  if (contact <= until) return contact;
-  return f2 <= 0.0 && last < 0.0 ? until : kNever;  // below the ground at the end: rounding put the contact later
+  const Number last = f0 + until * (f1 + until * f2);
+  const MaskOf<Number> concave = f2 <= 0.0;
+  const MaskOf<Number> above = concave & (last > 0.0);  // concave: lowest at the ends
+  if (all(above)) return kNever;
+  const Number discriminant = f1 * f1 - 4.0 * f2 * f0;
+  const MaskOf<Number> meets = opposite(above) & (discriminant >= 0.0);
+  if (!any(meets)) return kNever;
+  const Number speed = root(discriminant);
+  const MaskOf<Number> falls = f1 < 0.0;
+  const Number quotient = choose(falls, 2.0 * f0, f1 + speed) / choose(falls, speed - f1, -2.0 * f2);
+  const Number contact = choose(falls | (f2 < 0.0), quotient, Number(kNever));
+  // Below the ground at the end: rounding put the contact later.
+  const Number late = choose(concave & (last < 0.0), until, Number(kNever));
+  return choose(meets, choose(contact <= until, contact, late), Number(kNever));
+}
+inline double first_contact(double f0, double f1, double f2, double until) {
+  return first_contact<double>(f0, f1, f2, until);
 }
 
 /// Length of a parabola in space [m], by three Gauss points on the speed (exact for polynomials up to degree 5).
 ///
 /// @param v         velocity at its start [m/s]
 /// @param duration  [s]
+template <class Number>
+[[gnu::always_inline]] inline Number arc_length(const VectorOf<Number>& v, Number duration) {
+  constexpr double kNode = 0.7745966692414834;  // sqrt(3/5)
+  const Number plan2 = v.x() * v.x() + v.y() * v.y();
+  const auto speed = [&](double share) {
+    const Number rise = v.z() - kGravity * duration * share;
+    return root(plan2 + rise * rise);
+  };
+  return duration / 18.0 * (5.0 * speed(0.5 - 0.5 * kNode) + 8.0 * speed(0.5) + 5.0 * speed(0.5 + 0.5 * kNode));
+}
 double arc_length(const Vec3& v, double duration);
 
 /// Follows a free parabola patch by patch until it meets the ground, by one quadratic per patch (two if it crosses

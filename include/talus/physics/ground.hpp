@@ -8,14 +8,16 @@
 namespace talus {
 
 /// The parameters of one kind of ground: PIERRE 2, Tables 1-3. docs/physics.md, "Parameter sets".
-struct Ground {
-  double theta_scale = 0.0;                 ///< longitudinal roughness [-]
-  double psi_scale = 0.0;                   ///< transverse roughness [-]
-  double En50 = 15.0;                       ///< D v_n^2 at which half of the normal momentum is kept [m^3/s^2]
-  double Et50 = 50.0;                       ///< D v_n^2 at which half of the tangential momentum is kept [m^3/s^2]
-  double tan_phi = 0.57735026918962573;     ///< tangent of the friction angle phi [-]
-  double shape_min = 1.0, shape_max = 1.0;  ///< range of the factor on the radius at impact [-]
+template <class Number>
+struct BasicGround {
+  Number theta_scale = 0.0;                 ///< longitudinal roughness [-]
+  Number psi_scale = 0.0;                   ///< transverse roughness [-]
+  Number En50 = 15.0;                       ///< D v_n^2 at which half of the normal momentum is kept [m^3/s^2]
+  Number Et50 = 50.0;                       ///< D v_n^2 at which half of the tangential momentum is kept [m^3/s^2]
+  Number tan_phi = 0.57735026918962573;     ///< tangent of the friction angle phi [-]
+  Number shape_min = 1.0, shape_max = 1.0;  ///< range of the factor on the radius at impact [-]
 };
+using Ground = BasicGround<double>;
 
 /// The kinds of ground and their zones. A place has the ground of its cell.
 struct Cover {

@@ -1,4 +1,6 @@
 #pragma once
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "talus/physics/barriers.hpp"
@@ -64,11 +66,26 @@ struct Broken {
   Block body;
 };
 
+/// Allocator of a buffer whose elements are not set when `resize` adds them.
+template <class T>
+struct NotSet : std::allocator<T> {
+  template <class Other>
+  struct rebind {
+    using other = NotSet<Other>;
+  };
+  template <class Element, class... Values>
+  void construct(Element* element, Values&&... values) {
+    if constexpr (sizeof...(Values) > 0) ::new (static_cast<void*>(element)) Element{std::forward<Values>(values)...};
+  }
+};
+template <class T>
+using Buffer = std::vector<T, NotSet<T>>;
+
 /// One trajectory: plain data between the engine and its readers (tallies, screens, recordings). Reused as a buffer.
 struct Path {
-  std::vector<Vertex> vertices;
-  std::vector<Span> spans;
-  std::vector<SpinFrom> spins;  ///< in the order of time
+  Buffer<Vertex> vertices;
+  Buffer<Span> spans;
+  Buffer<SpinFrom> spins;  ///< in the order of time
   End end = End::Limit;
   std::uint32_t impacts = 0;
   std::uint32_t psi_dropped = 0;         ///< impacts at which psi was left out

@@ -7,12 +7,12 @@ namespace talus {
 
 /// How a slide ended. docs/physics.md, "Sliding", rules (a) to (c).
 enum class SlideEnd {
-  Stopped,   ///< (a) friction holds the block
-  Trapped,   ///< walls hold the block, on ground where friction alone would not
-  Takeoff,   ///< (b) the ground falls away below the free parabola
-  Asperity,  ///< (c) it has slid one diameter and meets the next asperity
-  Caught,    ///< in a barrier
-  Left       ///< beyond the edge of the terrain or onto missing data
+  Stopped,       ///< (a) friction holds the block
+  Trapped,       ///< walls hold the block, on ground where friction alone would not
+  Takeoff,       ///< (b) the ground falls away below the free parabola
+  NextAsperity,  ///< (c) it has slid one diameter and meets the next asperity
+  Caught,        ///< in a barrier
+  Left           ///< beyond the edge of the terrain or onto missing data
 };
 
 /// Acceleration in plan of a block that slides on a patch [m/s^2]: gravity along the surface, Coulomb friction

@@ -25,6 +25,7 @@ struct RunRequest {
   std::string memory;                ///< "2G"; empty: no limit
   double checkpoint = 30.0;          ///< least time between two checkpoints [s]
   int threads = 0;                   ///< 0: all processors; with several processes one per process
+  int lanes = 0;                     ///< trajectories in one instruction; 0: as many as the processor has
   std::vector<std::string> command;  ///< words of the command line
   bool overwrite = false, resume = false;
 };

@@ -29,8 +29,9 @@ class Simulation {
   /// All processes of the process group must call it. Tally, totals and rows then cover what this process has traced.
   ///
   /// @param threads  0: as many as the machine has
+  /// @param lanes    trajectories in one instruction, as for Tracer; 0: as many as the processor has
   /// After an exception of a sink the simulation must not be used any more.
-  void advance(int threads);
+  void advance(int threads, int lanes = 0);
 
   bool round_done() const { return position_.unit == units_; }
   void next_round() { position_ = {position_.round + 1, 0}; }

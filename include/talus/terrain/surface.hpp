@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "talus/base/lane.hpp"
 #include "talus/base/vector.hpp"
 #include "talus/terrain/raster.hpp"
 
@@ -17,11 +18,15 @@ namespace talus {
 ///
 /// Height and normal come from this one surface, so that a block is never "inside" the ground. docs/physics.md,
 /// "Terrain".
-struct Patch {
-  double corner = 0.0, east = 0.0, north = 0.0, twist = 0.0;  // [m]
+template <class Number>
+struct BasicPatch {
+  Number corner = 0.0, east = 0.0, north = 0.0, twist = 0.0;  // [m]
 
-  double height(double p, double q) const { return corner + east * p + north * q + twist * p * q; }
+  [[gnu::always_inline]] Number height(Number p, Number q) const {
+    return corner + east * p + north * q + twist * p * q;
+  }
 };
+using Patch = BasicPatch<double>;
 
 /// How heights between the centres of cells are made. docs/physics.md, "Terrain".
 enum class SurfaceKind : std::uint8_t {
@@ -43,43 +48,101 @@ enum class Crease : std::uint8_t {
   Falling  ///< from the north-western corner to the south-eastern one
 };
 
+/// Patches that have a crease, and along which diagonal.
+template <class Number>
+struct Creases {
+  MaskOf<Number> rising, falling;
+
+  [[gnu::always_inline]] MaskOf<Number> there() const { return rising | falling; }
+};
+
 /// The crease of a patch on a creased surface: the diagonal that holds the lowest corner, if the bilinear patch rises
 /// along it from its higher end: a dam between the two ends. Comparisons of heights only, without rounding.
+template <class Number>
+[[gnu::always_inline]] inline Creases<Number> creases_of(const BasicPatch<Number>& patch) {
+  const Number se = patch.east, nw = patch.north, ne = se + nw + patch.twist;  // above the south-western corner
+  const Number rising = se + nw - 2.0 * larger(Number(0.0), ne);               // twice the slope at the higher end
+  const Number falling = ne - 2.0 * larger(se, nw);
+  const MaskOf<Number> dam = larger(rising, falling) > 0.0;
+  if (!any(dam)) return {dam, dam};
+  const Number on_rising = smaller(Number(0.0), ne), on_falling = smaller(se, nw);  // the lowest corner of each
+  const MaskOf<Number> steeper = rising > falling;
+  const MaskOf<Number> along_rising = dam & steeper & (on_rising <= on_falling);
+  const MaskOf<Number> along_falling = dam & opposite(steeper) & (on_falling <= on_rising);
+  return {along_rising, along_falling};
+}
 inline Crease crease_of(const Patch& patch) {
-  const double se = patch.east, nw = patch.north, ne = se + nw + patch.twist;  // above the south-western corner
-  const double rising = se + nw - 2.0 * std::max(0.0, ne);                     // twice the slope at the higher end
-  const double falling = ne - 2.0 * std::max(se, nw);
-  if (!(std::max(rising, falling) > 0.0)) return Crease::None;
-  if (rising > falling) return std::min(0.0, ne) <= std::min(se, nw) ? Crease::Rising : Crease::None;
-  return std::min(se, nw) <= std::min(0.0, ne) ? Crease::Falling : Crease::None;
+  const Creases<double> creases = creases_of(patch);
+  return creases.rising ? Crease::Rising : creases.falling ? Crease::Falling : Crease::None;
 }
 
 /// Position across a crease [patches]: positive north of it, 0 on it.
+template <class Number>
+[[gnu::always_inline]] inline Number across(MaskOf<Number> rising, Number p, Number q) {
+  return choose(rising, q - p, p + q - 1.0);
+}
 inline double across(Crease crease, double p, double q) {
-  return crease == Crease::Rising ? q - p : p + q - 1.0;
+  return across<double>(crease == Crease::Rising, p, q);
 }
 /// Its rate, from the rates of p and q.
+template <class Number>
+[[gnu::always_inline]] inline Number rate_across(MaskOf<Number> rising, Number rate_p, Number rate_q) {
+  return choose(rising, rate_q - rate_p, rate_p + rate_q);
+}
 inline double rate_across(Crease crease, double rate_p, double rate_q) {
-  return crease == Crease::Rising ? rate_q - rate_p : rate_p + rate_q;
+  return rate_across<double>(crease == Crease::Rising, rate_p, rate_q);
 }
 /// Largest distance at which a place counts as on the crease [patches]: far above rounding, far below any effect.
 inline constexpr double kOnCrease = 1e-9;
 
 /// The plane north or south of the crease of a patch. It holds the crease and the corner on its side.
+template <class Number>
+[[gnu::always_inline]] inline BasicPatch<Number> half_of(const BasicPatch<Number>& patch, MaskOf<Number> rising,
+                                                         MaskOf<Number> north) {
+  const MaskOf<Number> over_falling = north & opposite(rising), under_rising = rising & opposite(north);
+  const MaskOf<Number> turned = over_falling | under_rising;
+  return {choose(over_falling, patch.corner - patch.twist, patch.corner),
+          choose(north, patch.east + patch.twist, patch.east), choose(turned, patch.north + patch.twist, patch.north),
+          Number(0.0)};
+}
 inline Patch half_of(const Patch& patch, Crease crease, bool north) {
-  const double twist = patch.twist;
-  if (crease == Crease::Rising)
-    return north ? Patch{patch.corner, patch.east + twist, patch.north, 0.0}
-                 : Patch{patch.corner, patch.east, patch.north + twist, 0.0};
-  return north ? Patch{patch.corner - twist, patch.east + twist, patch.north + twist, 0.0}
-               : Patch{patch.corner, patch.east, patch.north, 0.0};
+  return half_of<double>(patch, crease == Crease::Rising, north);
 }
 
 /// Whether a block at (p, q) is on the northern half of a creased patch. On the crease: the half that it moves into;
 /// a block that moves along the crease is on the southern half.
+template <class Number>
+[[gnu::always_inline]] inline MaskOf<Number> on_northern_half(MaskOf<Number> rising, Number p, Number q, Number rate_p,
+                                                              Number rate_q) {
+  const Number side = across<Number>(rising, p, q);
+  const MaskOf<Number> beside = magnitude(side) > kOnCrease;
+  const MaskOf<Number> on_it = opposite(beside), north_of_it = side > 0.0;
+  const MaskOf<Number> moves_north = rate_across<Number>(rising, rate_p, rate_q) > 0.0;
+  return (beside & north_of_it) | (on_it & moves_north);
+}
 inline bool on_northern_half(Crease crease, double p, double q, double rate_p, double rate_q) {
-  const double side = across(crease, p, q);
-  return std::abs(side) > kOnCrease ? side > 0.0 : rate_across(crease, rate_p, rate_q) > 0.0;
+  return on_northern_half<double>(crease == Crease::Rising, p, q, rate_p, rate_q);
+}
+
+inline constexpr double kAlongCrease = 1e-9;  // share of the speed across it below which a block moves along a crease
+
+/// The plane on which a block meets a creased patch: the half on which it is, on the crease the half that it moves
+/// into; along the crease, the plane that holds it, with the mean of the slopes of both halves.
+template <class Number>
+[[gnu::always_inline]] inline BasicPatch<Number> facet_of(const BasicPatch<Number>& patch, MaskOf<Number> rising,
+                                                          Number p, Number q, Number rate_p, Number rate_q) {
+  const BasicPatch<Number> half =
+      half_of<Number>(patch, rising, on_northern_half<Number>(rising, p, q, rate_p, rate_q));
+  const Number speed = magnitude(rate_p) + magnitude(rate_q);
+  const MaskOf<Number> along = (magnitude(across<Number>(rising, p, q)) <= kOnCrease) &
+                               (magnitude(rate_across<Number>(rising, rate_p, rate_q)) <= kAlongCrease * speed);
+  if (!any(along)) return half;
+  const MaskOf<Number> every = along | opposite(along);
+  const BasicPatch<Number> south = half_of<Number>(patch, rising, opposite(every)),
+                           north = half_of<Number>(patch, rising, every);
+  return {choose(along, 0.5 * (south.corner + north.corner), half.corner),
+          choose(along, 0.5 * (south.east + north.east), half.east),
+          choose(along, 0.5 * (south.north + north.north), half.north), Number(0.0)};
 }
 
 /// Index of a patch: its south-western corner is the centre of cell (column, row).
@@ -87,6 +150,12 @@ struct PatchIndex {
   int column = 0, row = 0;
   bool operator==(const PatchIndex&) const = default;
 };
+
+/// Patch coordinate of a place [m].
+template <class Number>
+[[gnu::always_inline]] inline Number patch_coordinate(Number place, double per_cell) {
+  return place * per_cell - 0.5;
+}
 
 /// The terrain: one continuous surface over a grid of heights. A patch is bilinear, or two planes if it has a crease.
 /// Both have the same straight edges between the centres of cells.
@@ -102,8 +171,8 @@ class Surface {
   const Raster<float>& heights() const { return heights_; }
 
   /// Patch coordinates of a place: u = column + p, v = row + q.
-  double u_of(double x) const { return x * per_cell_x_ - 0.5; }
-  double v_of(double y) const { return y * per_cell_y_ - 0.5; }
+  double u_of(double x) const { return patch_coordinate(x, per_cell_x_); }
+  double v_of(double y) const { return patch_coordinate(y, per_cell_y_); }
   double x_of(double u) const { return (u + 0.5) * grid().cell_x; }
   double y_of(double v) const { return (v + 0.5) * grid().cell_y; }
 
@@ -157,9 +226,13 @@ class Surface {
   SurfaceKind kind_;
 };
 
-/// Outward unit normal of a surface with this gradient.
+/// Outward unit normal of a surface that rises by `east` and `north` [m/m].
+template <class Number>
+[[gnu::always_inline]] inline VectorOf<Number> normal_of(Number east, Number north) {
+  return VectorOf<Number>(-east, -north, 1.0) * (1.0 / root(1.0 + (east * east + north * north)));
+}
 inline Vec3 normal_of(const Eigen::Vector2d& gradient) {
-  return Vec3(-gradient.x(), -gradient.y(), 1.0) * (1.0 / std::sqrt(1.0 + gradient.squaredNorm()));
+  return normal_of(gradient.x(), gradient.y());
 }
 
 }  // namespace talus

@@ -8,6 +8,7 @@
 #include <exception>
 
 #include "talus/fit/campaign/deposits.hpp"
+#include "talus/physics/lanes.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 #include "talus/simulate/screens/screens.hpp"
 
@@ -186,6 +187,74 @@ std::vector<Unit> units_of(const Campaign& campaign, std::size_t zones, const Ob
   return units;
 }
 
+/// All trials that are asked for, and the threads that trace them.
+class Observation {
+ public:
+  Observation(const Campaign& campaign, const Model& model, const ObserveOptions& options, const World& world)
+      : campaign_(campaign),
+        model_(model),
+        options_(options),
+        world_(world),
+        screens_(campaign.surface, campaign.screens),
+        runs_(campaign.blocks.size()),
+        units_(units_of(campaign, model.grounds.size(), options, runs_)) {}
+
+  std::vector<BlockRuns> run() {
+#pragma omp parallel num_threads(options_.threads > 0 ? options_.threads : omp_get_num_procs()) default(none)
+    work();
+    if (failure_) std::rethrow_exception(failure_);
+    return std::move(runs_);
+  }
+
+ private:
+  /// Traces trials until none is left. Nothing may leave a parallel region: the first exception is stored.
+  void work() noexcept {
+    try {
+      Instrument instrument(campaign_, model_, world_.cover, screens_, options_.effort);
+      Tracer tracer(world_, options_.lanes);
+      Unit unit{};
+      tracer.run(
+          [&](Release& release, std::uint64_t& tag) { return next(unit, release, tag); },
+          [&](const Release& release, const Path& path, std::uint64_t tag) { done(instrument, release, path, tag); });
+    } catch (...) {
+#pragma omp critical
+      if (!failure_) failure_ = std::current_exception();
+      stop_ = true;
+    }
+  }
+
+  /// The next trial of the unit of a thread, or of another that it takes.
+  bool next(Unit& unit, Release& release, std::uint64_t& tag) {
+    if (unit.first == unit.end) {
+      const std::size_t place = stop_ ? units_.size() : taken_++;
+      if (place >= units_.size()) return false;
+      unit = units_[place];
+    }
+    const std::uint32_t trial = unit.first++;
+    release = release_of(campaign_, unit.block, options_.seed, options_.first_trial + trial);
+    tag = std::uint64_t{unit.block} << 32U | trial;
+    return true;
+  }
+
+  void done(Instrument& instrument, const Release& release, const Path& path, std::uint64_t tag) {
+    const auto block = static_cast<std::uint32_t>(tag >> 32U), trial = static_cast<std::uint32_t>(tag);
+    instrument.measure(campaign_.blocks[block], release, path, trial, runs_[block]);
+    const bool ends_unit = trial + 1 == options_.trials || (trial + 1) % kTrialsPerUnit == 0;
+    if (ends_unit && options_.proceed && !options_.proceed()) stop_ = true;
+  }
+
+  const Campaign& campaign_;
+  const Model& model_;
+  const ObserveOptions& options_;
+  const World& world_;
+  ScreenFinder screens_;
+  std::vector<BlockRuns> runs_;
+  std::vector<Unit> units_;
+  std::atomic<std::size_t> taken_{0};
+  std::atomic<bool> stop_{false};
+  std::exception_ptr failure_;
+};
+
 /// Moves the release of a mapped block to a source: each is as likely as its area.
 void release_from_source(const Campaign& campaign, const Words& words, Release& release) {
   const DepositSource& source = source_at(*campaign.deposits, uniform(words[0]));
@@ -224,8 +293,6 @@ Release release_of(const Campaign& campaign, std::uint32_t block, std::uint64_t 
 }
 
 std::vector<BlockRuns> observe(const Campaign& campaign, const Model& model, const ObserveOptions& options) {
-  std::vector<BlockRuns> runs(campaign.blocks.size());
-  const std::vector<Unit> units = units_of(campaign, model.grounds.size(), options, runs);
   const Cover cover{model.grounds, model.zones.values.empty() ? campaign.zones : model.zones};
   const Barriers barriers(model.barriers);
   const World world{campaign.surface,
@@ -235,33 +302,7 @@ std::vector<BlockRuns> observe(const Campaign& campaign, const Model& model, con
                     model.effects.any() ? &model.effects : nullptr,
                     barriers.empty() ? nullptr : &barriers,
                     options.effort};
-  const ScreenFinder screens(campaign.surface, campaign.screens);
-  std::exception_ptr failure;
-  std::atomic<bool> stop{false};
-#pragma omp parallel num_threads(options.threads > 0 ? options.threads : omp_get_num_procs()) default(none) \
-    shared(campaign, model, options, runs, units, cover, world, screens, failure, stop)
-  {
-    Instrument instrument(campaign, model, cover, screens, options.effort);
-    Path path;
-#pragma omp for schedule(dynamic, 1)
-    for (const Unit& unit : units) {
-      if (stop) continue;
-      try {
-        for (std::uint32_t trial = unit.first; trial < unit.end; ++trial) {
-          const Release release = release_of(campaign, unit.block, options.seed, options.first_trial + trial);
-          trace(world, release, path);
-          instrument.measure(campaign.blocks[unit.block], release, path, trial, runs[unit.block]);
-        }
-        if (options.proceed && !options.proceed()) stop = true;
-      } catch (...) {  // nothing may leave a parallel region
-#pragma omp critical
-        if (!failure) failure = std::current_exception();
-        stop = true;
-      }
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
-  return runs;
+  return Observation(campaign, model, options, world).run();
 }
 
 }  // namespace talus

@@ -1,8 +1,7 @@
 #include "geopackage.hpp"
 
+#include <algorithm>
 #include <stdexcept>
-
-#include "cause_of_failure.hpp"
 
 namespace talus::io {
 namespace {
@@ -37,17 +36,16 @@ constexpr const char* kDate = "1970-01-01T00:00:00.000Z";
 
 }  // namespace
 
-GeoPackage::GeoPackage(std::filesystem::path file, const GeoReference& geo) : file_(std::move(file)) {
+GeoPackage::GeoPackage(const std::filesystem::path& file, const GeoReference& geo)
+    : LayerFile(file), system_(system_of(geo)) {
   GdalMessages messages;
   // The file has its final name only when it is complete: nothing has to survive a crash, no journal is needed.
   const Configured date("OGR_CURRENT_DATE", kDate), journal("OGR_SQLITE_JOURNAL", "OFF"),
       synchronous("OGR_SQLITE_SYNCHRONOUS", "OFF");
-  if (!geo.crs_wkt.empty()) system_.importFromWkt(geo.crs_wkt.c_str());
-  system_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
   if (driver == nullptr) fail("this GDAL has no driver GPKG");
   const char* const options[] = {"ADD_GPKG_OGR_CONTENTS=NO", nullptr};
-  dataset_.reset(driver->Create(file_.c_str(), 0, 0, 0, GDT_Unknown, options));
+  dataset_.reset(driver->Create(path().c_str(), 0, 0, 0, GDT_Unknown, options));
   require(dataset_ != nullptr, messages);
   require(dataset_->StartTransaction() == OGRERR_NONE, messages);
 }
@@ -71,31 +69,41 @@ OGRLayer* GeoPackage::add_layer(const char* name, OGRwkbGeometryType type, const
   return create_layer(name, type, columns);
 }
 
-OGRLayer* GeoPackage::add_point_layer(const char* name, const std::vector<Column>& columns) {
+OGRLayer* GeoPackage::add_bulk_layer(const char* name, OGRwkbGeometryType type, const std::vector<Column>& columns) {
   const Configured date("OGR_CURRENT_DATE", kDate);  // the lines below write the dates of earlier layers
-  points_ = create_layer(name, wkbPoint, columns);
+  OGRLayer* layer = create_layer(name, type, columns);
   create_index(name);
-  // GDAL's triggers would insert the points one by one.
-  const std::string of_layer = std::string(" FROM sqlite_master WHERE type = 'trigger' AND tbl_name = '") + name + "'";
-  triggers_ = execute("SELECT sql" + of_layer + " ORDER BY name");
-  for (const std::string& trigger : execute("SELECT name" + of_layer)) execute("DROP TRIGGER \"" + trigger + "\"");
-  index_.emplace(std::string("rtree_") + name + "_geom", [this](const std::string& sql) { execute(sql); });
-  return points_;
+  bulk_.push_back(std::make_unique<BulkLayer>(*dataset_, *layer));
+  return layer;
 }
 
 void GeoPackage::append(OGRLayer* layer, OGRFeature& feature) {
-  feature.SetFID(OGRNullFID);
-  if (layer->CreateFeature(&feature) != OGRERR_NONE) fail(CPLGetLastErrorMsg());
-  if (layer != points_) return;
-  const OGRPoint* point = feature.GetGeometryRef()->toPoint();
-  index_->add(point->getX(), point->getY());
+  const auto bulk = std::ranges::find_if(bulk_, [&](const auto& one) { return one->is(layer); });
+  if (bulk == bulk_.end()) {
+    feature.SetFID(OGRNullFID);
+    if (layer->CreateFeature(&feature) != OGRERR_NONE) fail(CPLGetLastErrorMsg());
+    return;
+  }
+  try {
+    (*bulk)->append(feature);
+  } catch (const std::runtime_error& error) {
+    fail(error.what());
+  }
+}
+
+void GeoPackage::finish_bulk() {
+  try {
+    for (const auto& layer : bulk_) layer->finish();
+  } catch (const std::runtime_error& error) {
+    fail(error.what());
+  }
+  bulk_.clear();
 }
 
 void GeoPackage::finish() {
   GdalMessages messages;
   const Configured date("OGR_CURRENT_DATE", kDate);
-  if (index_) index_->finish();
-  for (const std::string& trigger : triggers_) execute(trigger);
+  finish_bulk();
   for (const std::string& layer : layers_) create_index(layer);
   write_styles();
   require(dataset_->CommitTransaction() == OGRERR_NONE, messages);
@@ -137,15 +145,6 @@ void GeoPackage::write_styles() {
 void GeoPackage::create_index(const std::string& layer) {
   if (execute("SELECT CreateSpatialIndex('" + layer + "', 'geom')") != std::vector<std::string>{"1"})
     fail("the spatial index of " + layer + " cannot be made");
-}
-
-void GeoPackage::fail(const std::string& cause) const {
-  throw std::runtime_error(file_.filename().string() +
-                           ": cannot be written: " + cause_of_failure(file_.parent_path(), cause));
-}
-
-void GeoPackage::require(bool good, GdalMessages& messages) const {
-  if (!good || messages.failed()) fail(messages.take());
 }
 
 }  // namespace talus::io

@@ -1,58 +1,39 @@
 #pragma once
-#include <filesystem>
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "dataset.hpp"
-#include "point_index.hpp"
-#include "talus/io/origin/origin.hpp"
+#include "bulk_layer.hpp"
+#include "layer_file.hpp"
 
 namespace talus::io {
 
-/// A GeoPackage that is being written, in one transaction. Its rows and all its bytes are the same for the same input:
-/// the dates that the format asks for are those of 1970.
-class GeoPackage {
+/// A GeoPackage that is being written, in one transaction. The dates that the format asks for are those of 1970. Rows
+/// of bulk layers are inserted by `BulkLayer`.
+class GeoPackage final : public LayerFile {
  public:
-  struct Column {
-    const char* name;
-    OGRFieldType type;
-  };
+  GeoPackage(const std::filesystem::path& file, const GeoReference& geo);
 
-  GeoPackage(std::filesystem::path file, const GeoReference& geo);
-
-  /// A new layer, which gets its spatial index from `finish`.
+  /// A new layer, which gets its spatial index from `finish`. For a few rows, of fields of any type.
   OGRLayer* add_layer(const char* name, OGRwkbGeometryType type, const std::vector<Column>& columns);
 
-  /// A new layer of points, of which there may be millions: its spatial index is packed while they are appended. All
-  /// its features must go through `append`. At most one layer of this kind.
-  OGRLayer* add_point_layer(const char* name, const std::vector<Column>& columns);
-
-  /// Appends a row, which gets the next number as its fid. The feature may be used again.
-  void append(OGRLayer* layer, OGRFeature& feature);
-
-  /// Sets the style that QGIS gives a layer when it opens the file.
-  void set_style(const std::string& layer, const std::string& style) { styles_.emplace_back(layer, style); }
-
-  /// Writes the styles, builds the spatial indices and closes the file.
-  void finish();
+  OGRLayer* add_bulk_layer(const char* name, OGRwkbGeometryType type, const std::vector<Column>& columns) override;
+  void append(OGRLayer* layer, OGRFeature& feature) override;
+  void set_style(const std::string& layer, const std::string& style) override { styles_.emplace_back(layer, style); }
+  void finish() override;
 
  private:
   OGRLayer* create_layer(const char* name, OGRwkbGeometryType type, const std::vector<Column>& columns);
   std::vector<std::string> execute(const std::string& sql);
   void write_styles();
   void create_index(const std::string& layer);
-  [[noreturn]] void fail(const std::string& cause) const;
-  void require(bool good, GdalMessages& messages) const;
+  void finish_bulk();
 
-  std::filesystem::path file_;
   OGRSpatialReference system_;
   std::vector<std::string> layers_;                          // still without an index
   std::vector<std::pair<std::string, std::string>> styles_;  // by layer
-  OGRLayer* points_ = nullptr;
-  std::optional<PointIndex> index_;    // of points_
-  std::vector<std::string> triggers_;  // of points_, to be set again
   Dataset dataset_;
+  std::vector<std::unique_ptr<BulkLayer>> bulk_;  // closed before the file
 };
 
 }  // namespace talus::io

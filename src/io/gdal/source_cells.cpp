@@ -123,7 +123,7 @@ void write_polygons(GeoPackage& file, const Cells& cells, OGRLayer& outlines, So
 
 void write_points(GeoPackage& file, const Cells& cells, const std::function<bool()>& keep_going) {
   const Grid& grid = cells.grid();
-  OGRLayer* layer = file.add_point_layer(kPoints, {{"slope_deg", OFTReal}, {"area_m2", OFTReal}});
+  OGRLayer* layer = file.add_bulk_layer(kPoints, wkbPoint, {{"slope_deg", OFTReal}, {"area_m2", OFTReal}});
   const Feature row(OGRFeature::CreateFeature(layer->GetLayerDefn()));
   for (int j = grid.rows - 1; j >= 0 && keep_going(); --j)
     for (int i = 0; i < grid.columns; ++i) {

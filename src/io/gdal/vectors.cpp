@@ -27,17 +27,18 @@ std::string_view key_of(const std::string& name) {
   return name.starts_with("diameter") ? "blocks.diameter" : "sources.velocity";
 }
 
-/// The fields of a layer that are read: those that the map names, else those of the names themselves.
+/// The fields of a layer that are read: those that the map names, else those of the names themselves; none where the
+/// map names none.
 std::vector<FieldUse> columns_of(const Layer& layer, const std::string& path, const FieldMap& map) {
   std::vector<std::pair<std::string, int>> mapped;
   for (const auto& [name, given] : map) {
-    const int index = layer.only_field(given.field);
-    if (index < 0)
+    const int index = given.field.empty() ? -1 : layer.only_field(given.field);
+    if (index < 0 && !given.field.empty())
       throw InputError(given.where + ": " + path + " has no field '" + given.field + "'" +
                        known_names(given.field, layer.field_names()));
     mapped.emplace_back(name, index);
   }
-  const auto taken = [&](int index) {
+  const auto taken = [&](int index) {  // by another name
     return std::ranges::any_of(mapped, [index](const auto& entry) { return entry.second == index; });
   };
   std::vector<FieldUse> columns;

@@ -40,8 +40,9 @@ class ZoneIndex {
     if (found == names_.end())
       throw InputError(where + ": zone '" + zone + "' is not described, must be one of [" + request_.table +
                        "]: " + (names_.empty() ? "none is there" : joined(names_)) + ": " +
-                       (request_.table == "ground.zones" ? "add [ground.zones." + quoted(zone) +
-                                                               "] with a preset, or call it by a preset (talus presets)"
+                       (request_.table == "ground.zones" ? "call the zone by a preset (talus presets), also in another "
+                                                           "field (--zone-field), or add [ground.zones." +
+                                                               quoted(zone) + "] with a preset to a scenario"
                                                          : "add " + quoted(zone) + " = \"NAME\" there"));
     const auto index = static_cast<std::size_t>(found - names_.begin());
     seen_[index] = true;

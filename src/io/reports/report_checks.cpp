@@ -258,8 +258,7 @@ Markup assumptions_html(const CheckedRun& checked) {
   html += "</li>\n<li>";
   html += checked.hazard
               ? "Frequencies, return periods and classes follow from the frequencies that were given (settings, "
-                "above); impact "
-                "probabilities are not weighted by them."
+                "under Record); impact probabilities are not weighted by them."
               : "Probabilities are given that one block falls, each source cell as likely as any other. They "
                 "are not per year.";
   html +=

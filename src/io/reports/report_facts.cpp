@@ -140,6 +140,17 @@ RunFacts read_facts(const std::filesystem::path& folder) {
   return run;
 }
 
+/// Puts the classes of hazard.json into words.
+static void read_classes(const Json& matrix, HazardFacts& hazard) {
+  hazard.energies = matrix.at("energies_kj").get<std::vector<double>>();
+  hazard.years = matrix.at("years").get<std::vector<double>>();
+  const std::vector<std::string> names = texts_of(matrix, "names");
+  for (const Json& row : matrix.at("classes")) {
+    hazard.classes.emplace_back();
+    for (const Json& number : row) hazard.classes.back().push_back(names.at(number.get<std::size_t>()));
+  }
+}
+
 std::optional<HazardFacts> read_hazard_facts(const std::filesystem::path& folder, const RunFacts& run) {
   const std::filesystem::path file = folder / "hazard.json";
   std::error_code none;
@@ -151,6 +162,7 @@ std::optional<HazardFacts> read_hazard_facts(const std::filesystem::path& folder
     hazard.left_per_year = number_of(json, "left_per_year");
     const Json object = json.value("object", Json());
     hazard.object = object.is_object() ? "an object " + text_of(number_of(object, "width_m")) + " m wide" : "a cell";
+    if (json.contains("matrix")) read_classes(json.at("matrix"), hazard);
     hazard.warnings = texts_of(json, "warnings");
     const Json of_run = json.value("run", Json::object());
     hazard.same_run = of_run.value("plan", "") == run.plan;

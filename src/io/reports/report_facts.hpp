@@ -51,6 +51,8 @@ struct RunFacts {
 struct HazardFacts {
   std::string command, object;
   double events_per_year = 0.0, left_per_year = 0.0;
+  std::vector<double> energies, years;  ///< between the classes of intensity [kJ] and of return period [years]
+  std::vector<std::vector<std::string>> classes;  ///< names: a row for each class of intensity, the shortest time first
   std::vector<std::string> warnings;
   bool same_run = true;  ///< of the plan of run.json
 };

@@ -173,6 +173,7 @@ void add_undecided(const fs::path& folder, const RunFacts& run, MapSheet& sheet)
   map.style = {
       undecided.band(), true, {{0.0, "decided", {200, 200, 200}}, {1.0, "not decided by this number", {213, 94, 0}}}};
   map.classes_only = true;
+  map.in_print = open > 0.0;
   map.picture = picture_of(values, sheet.window.width(), map.style);
   map.values = packed_values(values);
   sheet.maps.push_back(std::move(map));

@@ -121,8 +121,31 @@ Markup settings_html(const RunFacts& run) {
   };
   const auto given = [](const RecordedSetting& s) { return !s.is_default() && !s.is_of_preset(); };
   return "<h3>Settings that were given</h3>\n"_html + table(given) +
-         "<details><summary>Settings of presets and defaults</summary>\n" +
+         "<details open><summary>Settings of presets and defaults</summary>\n" +
          table([&](const RecordedSetting& s) { return !given(s); }) + "</details>\n";
+}
+
+/// "30 to 300 kJ": the class of that number between limits.
+std::string between(const std::vector<double>& limits, std::size_t number, const std::string& unit) {
+  if (number == 0) return "up to " + readable(limits.front()) + unit;
+  if (number >= limits.size()) return "above " + readable(limits.back()) + unit;
+  return readable(limits[number - 1]) + " to " + readable(limits[number]) + unit;
+}
+
+/// The matrix of the classes of hazard.
+Markup classes_html(const HazardFacts& hazard) {
+  if (hazard.classes.empty() || hazard.energies.empty() || hazard.years.empty()) return {};
+  Markup html = "<h3>Classes of hazard</h3>\n<p>For "_html + hazard.object +
+                ", by how often it is hit with an energy of each class.</p>\n<table><tr><th>energy</th>";
+  for (std::size_t k = 0; k < hazard.classes.front().size(); ++k)
+    html += "<th>once in "_html + between(hazard.years, k, " years") + "</th>";
+  html += "</tr>\n";
+  for (std::size_t i = 0; i < hazard.classes.size(); ++i) {
+    html += "<tr><th>"_html + between(hazard.energies, i, " kJ") + "</th>";
+    for (const std::string& name : hazard.classes[i]) html += "<td>"_html + name + "</td>";
+    html += "</tr>\n";
+  }
+  return html + "</table>\n";
 }
 
 Markup maps_html(const RunReport& report, const MapImprint& imprint) {
@@ -136,6 +159,7 @@ Markup maps_html(const RunReport& report, const MapImprint& imprint) {
             "than they are.</p>\n";
   if (!sheet.relief_note.empty()) html += "<p class='act'>"_html + sheet.relief_note + "</p>\n";
   for (const std::string& note : sheet.notes) html += "<p class='note'>"_html + note + "</p>\n";
+  if (report.hazard) html += classes_html(*report.hazard);
   if (sheet.maps.empty()) return html + "<p>The folder has no maps.</p>\n";
   return html + map_store(sheet, report.run, imprint) + map_viewer(sheet) + map_figures(sheet, imprint);
 }

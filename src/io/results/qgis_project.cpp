@@ -86,8 +86,8 @@ Shown lines_of(Shown& objects) {
   return lines;
 }
 
-std::string style_beside(const fs::path& raster) {
-  const fs::path file = fs::path(raster).replace_extension(".qml");
+std::string style_beside(const fs::path& layer) {
+  const fs::path file = fs::path(layer).replace_extension(".qml");
   try {
     return read_file(file.string(), file.string(), "a style of QGIS", kMostStyle);
   } catch (const InputError&) {
@@ -105,7 +105,8 @@ std::vector<Shown> shown_layers(const std::vector<std::string>& files, const fs:
   for (const ProjectLayer& layer : project_layers())
     for (const std::string& name : names) {
       const fs::path file(name);
-      if (file.extension() != (layer.vector ? ".gpkg" : ".tif")) continue;
+      const bool beside = file.extension() == (layer.vector ? ".fgb" : ".tif");  // its style, not in the file
+      if (!beside && !(layer.vector && file.extension() == ".gpkg")) continue;
       const std::string stem = file.stem().string();
       const auto number = number_in(stem, layer);
       if (!number) continue;
@@ -113,9 +114,9 @@ std::vector<Shown> shown_layers(const std::vector<std::string>& files, const fs:
       one.id = std::string(layer.vector ? "talus_layer_" : "talus_map_") + stem;
       one.title = layer.title;
       if (const std::size_t at = one.title.find("<n>"); at != std::string::npos) one.title.replace(at, 3, *number);
-      one.source = "./" + name + (layer.vector ? "|layername=" + stem : "");
+      one.source = "./" + name + (beside ? "" : "|layername=" + stem);
       one.vector = layer.vector;
-      one.style = parsed_xml(layer.vector ? style_in(folder / name, stem) : style_beside(folder / name));
+      one.style = parsed_xml(beside ? style_beside(folder / name) : style_in(folder / name, stem));
       if (stem == "objects" && has_lines_beside_areas(folder / name, stem)) shown.push_back(lines_of(one));
       shown.push_back(std::move(one));
     }

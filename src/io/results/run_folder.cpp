@@ -61,9 +61,8 @@ std::optional<std::string> coefficient_note(const std::filesystem::path& folder)
   if (!c || !(*c > kLowC)) return std::nullopt;
   return "energies and jumps may be too low (unsafe): c = " + text_of(*c) +
          " (model.deformation_coefficient) is not given by the paper, and a lower c raises both. Unless the ground was "
-         "fitted to observed speeds, run with c = 0.15 as well and take the higher values: docs/barrier.md, \"The "
-         "value "
-         "of c\"";
+         "fitted to observed speeds, run with --deformation-coefficient 0.15 as well and take the higher values: "
+         "docs/barrier.md, \"The value of c\"";
 }
 
 RunSummary read_run(const std::filesystem::path& folder) {

@@ -177,6 +177,7 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   json["files"] = record.files;
   json["threads"] = record.threads;
   if (record.ranks > 1) json["ranks"] = record.ranks;
+  if (record.lanes > 0) json["lanes"] = record.lanes;
   json["cpu_seconds"] = seconds(record.cpu);
   json["wall_seconds"] = seconds(record.wall);
   json["peak_memory_mb"] = std::round(peak_memory_mb() * 10.0) / 10.0;

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "io/gdal/regular_file.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/files/output_folder.hpp"
 #include "talus/io/results/style.hpp"
 #include "talus/products/raster_table.hpp"
 #include "xml.hpp"
@@ -130,6 +132,23 @@ void add_renderer(const Element& root, const Look& look) {
   }
 }
 
+std::string style_in(const std::string& file) {
+  return read_file(file, file, "a style of QGIS", std::size_t{1} << 20U);
+}
+
+/// A style with the elements of another one after its own; of those that both have it keeps its own.
+std::string joined_styles(const std::string& first, const std::string& second) {
+  const QgisDocument document;
+  document.root().set("styleCategories", "Symbology");
+  const XmlTree one = parsed_xml(first), other = parsed_xml(second);
+  const CPLXMLNode* const root = CPLGetXMLNode(one.get(), "=qgis");
+  document.root().add_children_of(*root);
+  for (const CPLXMLNode* child = CPLGetXMLNode(other.get(), "=qgis")->psChild; child != nullptr; child = child->psNext)
+    if (child->eType == CXT_Element && CPLGetXMLNode(root, child->pszValue) == nullptr)
+      document.root().add_copy_of(*child);
+  return document.text();
+}
+
 }  // namespace
 
 std::string style_of(StyledLayer layer) {
@@ -141,6 +160,21 @@ std::string style_of(StyledLayer layer) {
   document.root().add("featureBlendMode", "0");
   document.root().add("layerGeometryType", std::to_string(static_cast<int>(look.symbol)));
   return document.text();
+}
+
+void write_styles_beside(const std::filesystem::path& folder) {
+  static constexpr std::array<std::pair<const char*, StyledLayer>, 4> kLayers{
+      {{"stops", StyledLayer::Stops},
+       {"exits", StyledLayer::Exits},
+       {"trajectories", StyledLayer::Trajectories},
+       {"screens", StyledLayer::Screens}}};
+  for (const auto& [name, layer] : kLayers) {
+    const std::filesystem::path file = folder / name;
+    if (!std::filesystem::exists(file.string() + ".fgb")) continue;
+    std::string text = style_of(layer);
+    if (std::filesystem::exists(file.string() + ".qml")) text = joined_styles(style_in(file.string() + ".qml"), text);
+    write_text(file.string() + ".qml", text);
+  }
 }
 
 }  // namespace talus::io

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "io/gdal/geopackage.hpp"
+#include "io/gdal/layer_file.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/results/vector_style.hpp"
@@ -45,10 +45,10 @@ void write_screens(const std::filesystem::path& file, const LoadedScenario& load
   std::vector<std::string> names;
   for (const auto& [quantity, name] : kQuantities)
     for (const char* figure : {"_p50", "_p95", "_max"}) names.push_back(std::string(name) + figure);
-  std::vector<GeoPackage::Column> columns{{"id", OFTString}, {"crossings", OFTInteger64}, {"blocks", OFTInteger64}};
+  std::vector<LayerFile::Column> columns{{"id", OFTString}, {"crossings", OFTInteger64}, {"blocks", OFTInteger64}};
   for (const std::string& name : names) columns.push_back({name.c_str(), OFTReal});
-  GeoPackage package(file, loaded.geo);
-  OGRLayer* layer = package.add_layer("screens", wkbMultiLineString, columns);
+  const std::unique_ptr<LayerFile> layers = new_layer_file(file, loaded.geo);
+  OGRLayer* layer = layers->add_bulk_layer("screens", wkbMultiLineString, columns);
   const Grid& grid = loaded.scenario.surface.grid();
   const double south = loaded.geo.north - grid.rows * loaded.geo.cell_y;
   for (std::size_t s = 0; s < loaded.scenario.screens.size(); ++s) {
@@ -67,10 +67,10 @@ void write_screens(const std::filesystem::path& file, const LoadedScenario& load
       }
     }
     row->SetGeometryDirectly(lines_of(loaded.scenario.screens[s], loaded.geo.west, south).release());
-    package.append(layer, *row);
+    layers->append(layer, *row);
   }
-  package.set_style("screens", style_of(StyledLayer::Screens));
-  package.finish();
+  layers->set_style("screens", style_of(StyledLayer::Screens));
+  layers->finish();
 }
 
 }  // namespace talus::io

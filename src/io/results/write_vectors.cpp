@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "io/gdal/geopackage.hpp"
+#include "io/gdal/layer_file.hpp"
 #include "talus/io/results/vector_style.hpp"
 
 namespace talus::io {
@@ -87,24 +87,25 @@ const char* name_of(Event event) {
 
 struct StopsWriter::State {
   State(const std::filesystem::path& name, const LoadedScenario& loaded)
-      : file(name, loaded.geo),
+      : file(new_layer_file(name, loaded.geo)),
         scenario(loaded.scenario),
         place(loaded.geo, loaded.scenario.surface.grid()),
         names(feature_names(loaded.scenario)) {
-    layer = file.add_point_layer("stops", {{"source", OFTInteger64},
-                                           {"block", OFTInteger64},
-                                           {"end", OFTString},
-                                           {"feature", OFTString},
-                                           {"diameter_m", OFTReal},
-                                           {"mass_kg", OFTReal},
-                                           {"x_release", OFTReal},
-                                           {"y_release", OFTReal},
-                                           {"z", OFTReal},
-                                           {"seconds", OFTReal},
-                                           {"max_speed_ms", OFTReal},
-                                           {"length_m", OFTReal},
-                                           {"impacts", OFTInteger64},
-                                           {"energy_line_deg", OFTReal}});
+    layer = file->add_bulk_layer("stops", wkbPoint,
+                                 {{"source", OFTInteger64},
+                                  {"block", OFTInteger64},
+                                  {"end", OFTString},
+                                  {"feature", OFTString},
+                                  {"diameter_m", OFTReal},
+                                  {"mass_kg", OFTReal},
+                                  {"x_release", OFTReal},
+                                  {"y_release", OFTReal},
+                                  {"z", OFTReal},
+                                  {"seconds", OFTReal},
+                                  {"max_speed_ms", OFTReal},
+                                  {"length_m", OFTReal},
+                                  {"impacts", OFTInteger64},
+                                  {"energy_line_deg", OFTReal}});
     feature.reset(OGRFeature::CreateFeature(layer->GetLayerDefn()));
     point = new OGRPoint(0.0, 0.0);
     feature->SetGeometryDirectly(point);
@@ -128,10 +129,10 @@ struct StopsWriter::State {
     fields.add_or_null(decimals(row.energy_line * 180.0 / kPi, 1e3));
     point->setX(place.x(row.x));
     point->setY(place.y(row.y));
-    file.append(layer, *feature);
+    file->append(layer, *feature);
   }
 
-  GeoPackage file;
+  std::unique_ptr<LayerFile> file;
   const Scenario& scenario;
   Place place;
   std::vector<std::string> names;  // of the features
@@ -150,25 +151,26 @@ void StopsWriter::write(std::span<const StopRow> rows) {
 }
 
 void StopsWriter::finish() {
-  state_->file.set_style("stops", style_of(StyledLayer::Stops));
-  state_->file.finish();
+  state_->file->set_style("stops", style_of(StyledLayer::Stops));
+  state_->file->finish();
 }
 
 struct ExitsWriter::State {
   State(const std::filesystem::path& name, const LoadedScenario& loaded)
-      : file(name, loaded.geo),
+      : file(new_layer_file(name, loaded.geo)),
         scenario(loaded.scenario),
         place(loaded.geo, loaded.scenario.surface.grid()),
         names(feature_names(loaded.scenario)) {
-    layer = file.add_point_layer("exits", {{"source", OFTInteger64},
-                                           {"block", OFTInteger64},
-                                           {"feature", OFTString},
-                                           {"diameter_m", OFTReal},
-                                           {"mass_kg", OFTReal},
-                                           {"z", OFTReal},
-                                           {"seconds", OFTReal},
-                                           {"speed_ms", OFTReal},
-                                           {"energy_kj", OFTReal}});
+    layer = file->add_bulk_layer("exits", wkbPoint,
+                                 {{"source", OFTInteger64},
+                                  {"block", OFTInteger64},
+                                  {"feature", OFTString},
+                                  {"diameter_m", OFTReal},
+                                  {"mass_kg", OFTReal},
+                                  {"z", OFTReal},
+                                  {"seconds", OFTReal},
+                                  {"speed_ms", OFTReal},
+                                  {"energy_kj", OFTReal}});
     feature.reset(OGRFeature::CreateFeature(layer->GetLayerDefn()));
   }
 
@@ -186,10 +188,10 @@ struct ExitsWriter::State {
     fields.add(decimals(0.5e-3 * row.mass * speed * speed, 1e3));
     const OGRPoint point(place.x(row.x), place.y(row.y));
     feature->SetGeometry(&point);
-    file.append(layer, *feature);
+    file->append(layer, *feature);
   }
 
-  GeoPackage file;
+  std::unique_ptr<LayerFile> file;
   const Scenario& scenario;
   Place place;
   std::vector<std::string> names;  // of the features
@@ -208,24 +210,24 @@ void ExitsWriter::write(std::span<const StopRow> rows) {
 }
 
 void ExitsWriter::finish() {
-  state_->file.set_style("exits", style_of(StyledLayer::Exits));
-  state_->file.finish();
+  state_->file->set_style("exits", style_of(StyledLayer::Exits));
+  state_->file->finish();
 }
 
 struct TrajectoriesWriter::State {
   State(const std::filesystem::path& name, const GeoReference& geo, const Grid& grid)
-      : file(name, geo), place(geo, grid) {
-    layer = file.add_layer("trajectories", wkbLineStringZM,
-                           {{"source", OFTInteger64},
-                            {"block", OFTInteger64},
-                            {"end", OFTString},
-                            {"diameter_m", OFTReal},
-                            {"max_speed_ms", OFTReal},
-                            {"length_m", OFTReal},
-                            {"impacts", OFTInteger64}});
+      : file(new_layer_file(name, geo)), place(geo, grid) {
+    layer = file->add_bulk_layer("trajectories", wkbLineStringZM,
+                                 {{"source", OFTInteger64},
+                                  {"block", OFTInteger64},
+                                  {"end", OFTString},
+                                  {"diameter_m", OFTReal},
+                                  {"max_speed_ms", OFTReal},
+                                  {"length_m", OFTReal},
+                                  {"impacts", OFTInteger64}});
   }
 
-  GeoPackage file;
+  std::unique_ptr<LayerFile> file;
   Place place;
   OGRLayer* layer = nullptr;
   std::vector<double> x, y, z, m;
@@ -257,22 +259,22 @@ void TrajectoriesWriter::write(const RecordedPath& path) {
   auto line = std::make_unique<OGRLineString>();
   line->setPoints(static_cast<int>(s.x.size()), s.x.data(), s.y.data(), s.z.data(), s.m.data());
   feature->SetGeometryDirectly(line.release());
-  s.file.append(s.layer, *feature);
+  s.file->append(s.layer, *feature);
 }
 
 void TrajectoriesWriter::write_vertices(const Path& path) {
   const GdalMessages messages;
   State& s = *state_;
-  OGRLayer* layer = s.file.add_layer("vertices", wkbPointZM,
-                                     {{"time_s", OFTReal},
-                                      {"speed_ms", OFTReal},
-                                      {"vx", OFTReal},
-                                      {"vy", OFTReal},
-                                      {"vz", OFTReal},
-                                      {"wx", OFTReal},
-                                      {"wy", OFTReal},
-                                      {"wz", OFTReal},
-                                      {"event", OFTString}});
+  OGRLayer* layer = s.file->add_bulk_layer("vertices", wkbPointZM,
+                                           {{"time_s", OFTReal},
+                                            {"speed_ms", OFTReal},
+                                            {"vx", OFTReal},
+                                            {"vy", OFTReal},
+                                            {"vz", OFTReal},
+                                            {"wx", OFTReal},
+                                            {"wy", OFTReal},
+                                            {"wz", OFTReal},
+                                            {"event", OFTString}});
   const Feature feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
   for (const Vertex& vertex : path.vertices) {
     const Motion& motion = vertex.motion;
@@ -285,13 +287,13 @@ void TrajectoriesWriter::write_vertices(const Path& path) {
     const OGRPoint point(s.place.x(motion.position.x()), s.place.y(motion.position.y()), motion.position.z(),
                          motion.time);
     feature->SetGeometry(&point);
-    s.file.append(layer, *feature);
+    s.file->append(layer, *feature);
   }
 }
 
 void TrajectoriesWriter::finish() {
-  state_->file.set_style("trajectories", style_of(StyledLayer::Trajectories));
-  state_->file.finish();
+  state_->file->set_style("trajectories", style_of(StyledLayer::Trajectories));
+  state_->file->finish();
 }
 
 }  // namespace talus::io

@@ -18,13 +18,15 @@ std::string allowed(std::string text) {
 
 }  // namespace
 
+void Element::add_copy_of(const CPLXMLNode& other) const {
+  CPLXMLNode one = other;
+  one.psNext = nullptr;  // the element alone, without those after it
+  CPLAddXMLChild(node_, CPLCloneXMLTree(&one));
+}
+
 void Element::add_children_of(const CPLXMLNode& other) const {
-  for (const CPLXMLNode* child = other.psChild; child != nullptr; child = child->psNext) {
-    if (child->eType != CXT_Element) continue;
-    CPLXMLNode one = *child;
-    one.psNext = nullptr;  // the element alone, without those after it
-    CPLAddXMLChild(node_, CPLCloneXMLTree(&one));
-  }
+  for (const CPLXMLNode* child = other.psChild; child != nullptr; child = child->psNext)
+    if (child->eType == CXT_Element) add_copy_of(*child);
 }
 
 QgisDocument::QgisDocument()

@@ -20,6 +20,7 @@ class Element {
   }
   void text(const std::string& text) const { CPLCreateXMLNode(node_, CXT_Text, text.c_str()); }
   void append_to(CPLXMLNode* sibling) const { CPLAddXMLSibling(sibling, node_); }
+  void add_copy_of(const CPLXMLNode& other) const;
   /// Adds copies of the elements inside another.
   void add_children_of(const CPLXMLNode& other) const;
 

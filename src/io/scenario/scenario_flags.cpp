@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "scenario_keys.hpp"
 #include "surface_key.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
@@ -15,8 +16,9 @@ namespace talus::io {
 
 namespace {
 
-void lay_flag(ScenarioSpec& spec, const char* key, double value, std::vector<std::string>& faults) {
-  const std::string flag = std::string("flag --") + key;
+void lay_flag(ScenarioSpec& spec, const std::string& key, const std::string& name, double value,
+              std::vector<std::string>& faults) {
+  const std::string flag = "flag " + name;
   for (const auto& field : scenario_fields()) {
     if (field.key != key) continue;
     if (const auto rule = fault_of(field, value)) {
@@ -44,9 +46,9 @@ void lay_fields(ScenarioSpec& spec, const std::vector<std::string>& flags, std::
     const std::size_t equals = flag.find('=');
     const std::string name = flag.substr(0, equals);
     const std::vector<std::string>& names = source_field_names();
-    if (equals == std::string::npos || equals + 1 == flag.size())
-      faults.push_back(where + ": must be NAME=COLUMN, for example release_height=HEIGHT (names: " + joined(names) +
-                       ")");
+    if (equals == std::string::npos)
+      faults.push_back(where + ": must be NAME=COLUMN, for example release_height=HEIGHT, or NAME= for none (names: " +
+                       joined(names) + ")");
     else if (std::ranges::find(names, name) == names.end())
       faults.push_back(where + ": unknown name '" + name + "'" + known_names(name, names));
     else if (!given.insert({name, {flag.substr(equals + 1), where}}).second)
@@ -86,6 +88,19 @@ void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::vector<st
   }
 }
 
+void start_with_model(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults) {
+  if (!flags.parameters) return;
+  const std::string flag = "flag --parameters = '" + *flags.parameters + "'";
+  if (!flags.scenario.empty())
+    faults.push_back(flag + ": a scenario names its model itself: include = \"FILE\" at its top");
+  if (flags.preset) faults.push_back(flag + ": must not come with --preset; leave out one of the two");
+  if (!flags.scenario.empty() || flags.preset) return;
+  spec.include = {absolute_path(*flags.parameters, std::filesystem::current_path()), flag};
+  std::error_code none;
+  if (!std::filesystem::exists(spec.include.path, none)) return;  // reported later, with the other files
+  read_model_keys(spec, spec.include.path, *flags.parameters, "flag --parameters", faults);
+}
+
 void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults) {
   lay_file(spec, "--dem", flags.dem, spec.dem, "dem");
   lay_file(spec, "--sources", flags.sources, spec.sources, "sources.file");
@@ -106,8 +121,11 @@ void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::strin
       spec.surface = *kind;
       spec.origins["surface"] = "flag --surface";
     }
-  if (flags.trajectories) lay_flag(spec, "trajectories", *flags.trajectories, faults);
-  if (flags.seed) lay_flag(spec, "seed", static_cast<double>(*flags.seed), faults);
+  if (flags.trajectories) lay_flag(spec, "trajectories", "--trajectories", *flags.trajectories, faults);
+  if (flags.seed) lay_flag(spec, "seed", "--seed", static_cast<double>(*flags.seed), faults);
+  if (flags.deformation_coefficient)
+    lay_flag(spec, "model.deformation_coefficient", "--deformation-coefficient", *flags.deformation_coefficient,
+             faults);
   if (flags.energy_total) {
     spec.values.output.energy_total = true;
     spec.origins["output.energy_total"] = "flag --energy-total";
@@ -115,6 +133,12 @@ void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::strin
   if (flags.bounds) {
     spec.values.output.bounds = true;
     spec.origins["output.bounds"] = "flag --bounds";
+  }
+  if (flags.vectors) {
+    const auto format = vector_format(*flags.vectors);
+    if (!format) faults.push_back("flag --vectors = '" + *flags.vectors + "': " + kVectorsRule);
+    spec.values.output.vectors = format.value_or(VectorFormat::GeoPackage);
+    spec.origins["output.vectors"] = "flag --vectors";
   }
   if (flags.frequency) {
     spec.values.frequency.total = *flags.frequency;

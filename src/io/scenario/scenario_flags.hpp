@@ -6,8 +6,14 @@
 
 namespace talus::io {
 
+/// Rule of `[output] vectors` and `--vectors`.
+inline constexpr const char* kVectorsRule = "must be 'gpkg' (GeoPackage) or 'fgb' (FlatGeobuf)";
+
 /// Sets the default ground to the preset of the flag, else to the default preset.
 void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults);
+
+/// Reads the model of --parameters over the default ground. A scenario names its model itself, by `include`.
+void start_with_model(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults);
 
 /// Overrides the scenario file with the other flags.
 void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::string>& faults);

@@ -267,6 +267,12 @@ class SpecReader {
     }
     truth(table, "energy_total", spec_.values.output.energy_total);
     truth(table, "bounds", spec_.values.output.bounds);
+    if (const auto name = table.text("vectors")) {
+      const auto format = vector_format(*name);
+      if (!format) table.fault("vectors", *table.value()->find("vectors"), kVectorsRule);
+      spec_.values.output.vectors = format.value_or(VectorFormat::GeoPackage);
+      given("output.vectors");
+    }
     table.finish();
   }
 
@@ -329,6 +335,7 @@ static void keep_vrt_folders(ScenarioSpec& spec) {
 ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) {
   ScenarioSpec spec;
   start_with_preset(spec, flags, faults);
+  start_with_model(spec, flags, faults);
   if (!flags.scenario.empty()) {
     spec.scenario = {std::filesystem::absolute(flags.scenario).lexically_normal().string(), flags.scenario};
     allow_folder_of(flags.scenario);

@@ -96,6 +96,7 @@ class Lines {
       add("output", "passages_below", text_of(spec.values.output.passages_below), "m");
       add("output", "energy_total", spec.values.output.energy_total ? "true" : "false", "");
       add("output", "bounds", spec.values.output.bounds ? "true" : "false", "");
+      add("output", "vectors", toml_text(std::string(name_of(spec.values.output.vectors))), "");
     }
     file("screens", "file", spec.screens);
     file("barriers", "file", spec.barriers);

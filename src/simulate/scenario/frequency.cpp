@@ -44,7 +44,8 @@ void check_contradictions(const Scenario& s, const Sources& found) {
     refuse(std::string("is given by ") + (found.features ? "the field frequency of the sources, " : "") +
            (found.classes ? "the classes of blocks.diameter, " : "") +
            (found.total ? "frequency.total (--frequency), " : "") + (found.area ? "frequency.per_area, " : "") +
-           (found.law ? "frequency.power_law, " : "") + "must be given by one of them: leave out the others");
+           (found.law ? "frequency.power_law, " : "") + "must be given by one of them: leave out the others" +
+           (found.features ? " (--field frequency= leaves out the field)" : ""));
   if (found.features)
     for (const SourceCell& cell : s.sources)
       if (std::isnan(s.features[cell.feature].frequency))

@@ -57,7 +57,7 @@ TEST(SlideAcrossAnEdge, TakesOffWhereTheGroundFallsAway) {
 TEST(SlideAcrossAnEdge, KeepsItsSpeedWhereTheGroundTurnsUp) {
   for (const double after : {-0.6875, 0.0, 0.5}) {
     const auto o = slide_from(kinked(-0.75, after), kTan30, {38.6, 9.3}, {8.0, 0.0}, 5.0);
-    ASSERT_EQ(o.end, SlideEnd::Asperity) << after;
+    ASSERT_EQ(o.end, SlideEnd::NextAsperity) << after;
     const double at_edge2 = 100.0 + 2 * pull(0.75, kTan30) * 3.0;
     EXPECT_NEAR(o.motion.velocity.norm(), std::sqrt(at_edge2 + 2 * pull(-after, kTan30) * 2.0), 1e-5);
     EXPECT_NEAR((o.motion.position.x() - 41.0) * std::hypot(1.0, after), 2.0, 1e-4);
@@ -67,7 +67,7 @@ TEST(SlideAcrossAnEdge, KeepsItsSpeedWhereTheGroundTurnsUp) {
 
 TEST(SlideAcrossAnEdge, OnAPlaneEdgesDoNothing) {
   const auto o = slide_from(kinked(-0.75, -0.75), kTan30, {38.6, 9.3}, {0.0, 4.0}, 12.0);
-  EXPECT_EQ(o.end, SlideEnd::Asperity);
+  EXPECT_EQ(o.end, SlideEnd::NextAsperity);
   const Surface large(
       test::terrain(test::grid_of(4, 4, 128.0, 128.0), [](double x, double) { return 300.0 - 0.75 * x; }));
   const auto one = slide_from(large, kTan30, {168.6, 150.3}, {0.0, 4.0}, 12.0);
@@ -85,9 +85,9 @@ TEST(SlideOnATwist, TakesOffWhereTheSurfaceCurvesAwayFasterThanTheParabola) {
                                       [&](double x, double y) { return 300.0 + k * (x - 16.0) * (y - 16.0); }));
   const double limit = std::sqrt(kGravity / (2 * k));  // of |vx| = |vy|
   EXPECT_EQ(slide_from(surface, 0.0, {16.0, 16.0}, {1.01 * limit, -1.01 * limit}, 0.2).end, SlideEnd::Takeoff);
-  EXPECT_EQ(slide_from(surface, 0.0, {16.0, 16.0}, {0.9 * limit, -0.9 * limit}, 0.2).end, SlideEnd::Asperity);
+  EXPECT_EQ(slide_from(surface, 0.0, {16.0, 16.0}, {0.9 * limit, -0.9 * limit}, 0.2).end, SlideEnd::NextAsperity);
   EXPECT_EQ(slide_from(surface, 0.0, {16.0, 16.0}, {1.5 * limit, 1.5 * limit}, 0.2).end,
-            SlideEnd::Asperity);  // curves up
+            SlideEnd::NextAsperity);  // curves up
 }
 
 class SlideWithoutFriction : public testing::TestWithParam<SurfaceKind> {};
@@ -126,7 +126,7 @@ TEST(SlideAcrossACrease, CrossesTheThalwegAndKeepsItsEnergy) {
   for (const double turned : {0.2, 0.5, 0.9}) {  // of the velocity from the thalweg
     const Vec2 v(6.0 * std::cos(kPi / 4 + turned), 6.0 * std::sin(kPi / 4 + turned));
     const auto o = slide_from(surface, 0.0, {40.7, 40.2}, v, 3.0);
-    ASSERT_EQ(o.end, SlideEnd::Asperity);
+    ASSERT_EQ(o.end, SlideEnd::NextAsperity);
     EXPECT_GT(o.motion.position.y() - o.motion.position.x(), 0.01);  // on the other wall
     const Motion& start = o.path.vertices.front().motion;
     EXPECT_NEAR(o.motion.velocity.squaredNorm() + 2 * kGravity * o.motion.position.z(),
@@ -139,14 +139,14 @@ TEST(SlideAlongACrease, GoesDownTheThalwegAsOnAPlaneOfItsSlope) {
   const Surface surface = diagonal_gully(SurfaceKind::Creased);
   const double beta = std::atan(std::sqrt(0.5)), way = 12.0;
   const auto o = slide_from(surface, 0.0, {41.0, 41.0}, {1.0, 1.0}, way);
-  ASSERT_EQ(o.end, SlideEnd::Asperity);
+  ASSERT_EQ(o.end, SlideEnd::NextAsperity);
   const double start2 = o.path.vertices.front().motion.velocity.squaredNorm();
   EXPECT_NEAR(o.motion.velocity.norm(), std::sqrt(start2 + 2 * kGravity * std::sin(beta) * way), 1e-3);
   EXPECT_NEAR(o.motion.position.x(), 41.0 + way * std::cos(beta) * std::sqrt(0.5), 1e-3);
   EXPECT_NEAR(o.motion.position.y(), o.motion.position.x(), 1e-6);
   EXPECT_EQ(slide_from(diagonal_gully(SurfaceKind::Bilinear), 0.3, {41.0, 41.0}, {0.1, 0.1}, way).end,
             SlideEnd::Trapped);
-  EXPECT_EQ(slide_from(surface, 0.3, {41.0, 41.0}, {0.1, 0.1}, way).end, SlideEnd::Asperity);
+  EXPECT_EQ(slide_from(surface, 0.3, {41.0, 41.0}, {0.1, 0.1}, way).end, SlideEnd::NextAsperity);
 }
 
 TEST(SlidePath, PiecesFollowEachOtherOnTheSurface) {
@@ -200,7 +200,7 @@ TEST(SlideInAGully, RunsAlongTheBottomInClosedForm) {
       EXPECT_NEAR((o.motion.position.x() - 50.3) * std::hypot(1.0, fall), way, 0.01) << fall << ' ' << v0;
       EXPECT_NEAR(o.motion.velocity.norm(), std::sqrt(std::max(0.0, v2)), 0.01);
       EXPECT_NEAR(o.motion.position.y(), 61.0, 1e-6);
-      EXPECT_EQ(o.end, v2 > 1e-9 ? SlideEnd::Asperity : SlideEnd::Trapped);
+      EXPECT_EQ(o.end, v2 > 1e-9 ? SlideEnd::NextAsperity : SlideEnd::Trapped);
     }
   }
 }

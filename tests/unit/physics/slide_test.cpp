@@ -49,7 +49,7 @@ TEST(SlideOnAPlane, TurnsOnASteepSlope) {
   const double up = kGravity * (std::sin(b) + kTan30 * std::cos(b)),
                down = kGravity * (std::sin(b) - kTan30 * std::cos(b));
   const Slide s(plane(std::tan(b), 0.0), kTan30, {200.3, 150.7}, {v0 * std::cos(b), 0.0}, diameter);
-  ASSERT_EQ(s.end, SlideEnd::Asperity);
+  ASSERT_EQ(s.end, SlideEnd::NextAsperity);
   const double back = std::sqrt(2.0 * down * (diameter - v0 * v0 / (2.0 * up)));
   EXPECT_LT(s.motion.velocity.x(), 0.0);
   EXPECT_NEAR(s.speed(), back, 1e-4 * back);
@@ -62,7 +62,7 @@ TEST(SlideOnAPlane, SpeedAfterOneDiameterDownTheSlope) {  // v^2 = v0^2 + 2 g (s
       for (const double diameter : {0.4, 1.2, 6.0}) {
         const double b = std::atan(tan_b), a = kGravity * (std::sin(b) - kTan30 * std::cos(b));
         const Slide s(plane(-tan_b, 0.0), kTan30, {200.3, 150.7}, {v0 * std::cos(b), 0.0}, diameter);
-        ASSERT_EQ(s.end, SlideEnd::Asperity);
+        ASSERT_EQ(s.end, SlideEnd::NextAsperity);
         EXPECT_NEAR(s.speed(), std::sqrt(v0 * v0 + 2 * a * diameter), 1e-6 * s.speed());
         EXPECT_NEAR(s.path.length, diameter, 2e-6 * diameter);  // rule (c): exactly one diameter
         EXPECT_NEAR(s.motion.time, (s.speed() - v0) / a, 1e-6 * s.motion.time);
@@ -89,7 +89,7 @@ TEST(SlideOnAPlane, UphillItStopsOrTurnsRoundWhereTheSlopeIsSteeper) {
                down = kGravity * (std::sin(b) - kTan30 * std::cos(b));
   const Slide s(plane(-1.0, 0.0), kTan30, {200.3, 150.7}, {-5.0 * std::cos(b), 0.0}, 2.0);
   const double climb = 25.0 / (2 * up);  // 1.616 m, then 2 - 1.616 m down again
-  ASSERT_EQ(s.end, SlideEnd::Asperity);
+  ASSERT_EQ(s.end, SlideEnd::NextAsperity);
   EXPECT_NEAR(s.path.length, 2.0, 0.06);  // the piece that turns round counts its chord only
   EXPECT_NEAR(s.speed(), std::sqrt(2 * down * (2.0 - climb)), 0.02);
   EXPECT_GT(s.motion.velocity.x(), 0.0);
@@ -104,7 +104,8 @@ TEST(SlideOnAPlane, HeldWhereFrictionExceedsGravity) {
     EXPECT_EQ(s.motion.time, 0.0);
     EXPECT_TRUE(s.path.spans.empty());
   }
-  EXPECT_EQ(Slide(plane(-0.625, 0.0), kTan30, {200.3, 150.7}, {0.0, 0.0}, 1.0).end, SlideEnd::Asperity);  // 32 degrees
+  EXPECT_EQ(Slide(plane(-0.625, 0.0), kTan30, {200.3, 150.7}, {0.0, 0.0}, 1.0).end,
+            SlideEnd::NextAsperity);  // 32 degrees
 }
 
 TEST(SlideOnAPlane, AnyDirectionOfDipIsTheSame) {
@@ -140,7 +141,7 @@ TEST(SlideOnAPlane, BendsDownASideSlopeAsRungeKuttaSays) {
   for (const double tan_b : {0.25, 0.75, 1.0}) {
     const double b = std::atan(tan_b), diameter = 1.0;
     const Slide s(plane(-tan_b, 0.0), kTan30, {200.3, 150.7}, {1.0 * std::cos(b), 4.0}, diameter);
-    ASSERT_EQ(s.end, SlideEnd::Asperity);
+    ASSERT_EQ(s.end, SlideEnd::NextAsperity);
     const Tilted t = rk4_on_plane(b, 1.0, 4.0, diameter);
     const double pieces = static_cast<double>(s.path.spans.size());
     EXPECT_NEAR((s.motion.position.x() - 200.3) / std::cos(b), t.along, pieces * diameter * 1e-3);  // the stated bound

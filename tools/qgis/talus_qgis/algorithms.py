@@ -19,7 +19,7 @@ from .texts import label, tr
 
 LARGEST_IN_DIALOG = 2147483647  # a spin box of QGIS takes no more
 NOT_IN_DIALOG = {"quiet", "progress", "allow-network", "sources-layer", "field", "memory", "part", "checkpoint"}
-ALWAYS_ADVANCED = {"threads", "allow-folder", "seed", "surface"}
+ALWAYS_ADVANCED = {"threads", "lanes", "allow-folder", "seed", "surface"}
 
 # Fields of the sources that can be picked, by the program's name of them.
 SOURCE_FIELDS = [("diameter", False), ("release_height", False), ("frequency", False), ("diameter_min", False),
@@ -30,7 +30,7 @@ SHAPES = [QgsProcessing.TypeVectorPoint, QgsProcessing.TypeVectorLine, QgsProces
 RUN_RASTERS = ["impact_probability", "reach_probability", "energy", "velocity", "jump_height", "passages", "deposits",
                "release"]
 SCENARIO_INPUTS = {
-    "order": ["dem", "sources", "diameter", "preset", "trajectories", "frequency", "screens", "barriers", "zones",
+    "order": ["dem", "sources", "diameter", "preset", "parameters", "trajectories", "frequency", "screens", "barriers", "zones",
               "zone-field"],
     "bands": {"dem"},
     "shapes": {"sources": SHAPES, "screens": [QgsProcessing.TypeVectorLine],
@@ -38,8 +38,9 @@ SCENARIO_INPUTS = {
     "fields": {"sources": SOURCE_FIELDS},
     "field of": {"zone-field": "zones"},
     "raster too": {"zones"},
-    "advanced": {"scenario", "surface", "thresholds", "seed", "energy-total", "bounds", "rounds", "until-error",
-                 "above", "most-rounds", "zones-raster", "pits"},
+    "advanced": {"scenario", "surface", "thresholds", "seed", "energy-total", "bounds", "vectors", "rounds", "until-error",
+                 "deformation-coefficient", "above", "most-rounds", "zones-raster", "pits"},
+    "labels": {"parameters": "ground-parameters"},
     "needs": [("scenario",), ("dem", "sources")],
 }
 
@@ -211,9 +212,9 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         several = p["name"] in self.table.get("several", ())
         return tr(p["text"]) + (". " + tr("Several layers, as a road and houses, are joined into one.") if several else "")
 
-    @staticmethod
-    def _label(p):
+    def _label(self, p):
         name = "folder" if p["type"] == "folder" and p["name"] == "out" and not p["written"] else p["name"]
+        name = self.table.get("labels", {}).get(name, name)
         return label("weighting" if p["type"] == "file" and name == "frequency" else name)
 
     def _title(self, p):

@@ -16,7 +16,7 @@ from osgeo import gdal
 from qgis.core import (QgsCoordinateTransform, QgsCsException, QgsFeature, QgsFeatureSink, QgsField, QgsFields,
                        QgsProcessingException, QgsProcessingFeatureSourceDefinition, QgsProviderRegistry, QgsRasterLayer,
                        QgsVectorFileWriter, QgsVectorLayer, QgsWkbTypes)
-from qgis.PyQt.QtCore import QVariant
+from qgis.PyQt.QtCore import Qt, QVariant
 
 from .texts import tr
 
@@ -225,10 +225,13 @@ def _columns(fields, own):
 def _as_type(value, kind):
     if value is None or (isinstance(value, QVariant) and value.isNull()):
         return None
-    if kind == QVariant.String and not isinstance(value, str):
-        return f"{value:.15g}" if isinstance(value, float) else value.toString("yyyy-MM-dd hh:mm:ss") if hasattr(
-            value, "toString") else str(value)
-    return float(value) if kind == QVariant.Double else value
+    if kind == QVariant.Double:
+        return float(value)
+    if kind != QVariant.String or isinstance(value, str):
+        return value
+    if isinstance(value, float):
+        return f"{value:.15g}"
+    return value.toString(Qt.ISODate) if hasattr(value, "toString") else str(value)
 
 
 def _write_features(source, path, context, feedback):

@@ -139,7 +139,7 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
 
     def postProcessLayer(self, layer, context, feedback):
         layer.setName(self.name)
-        if isinstance(layer, QgsVectorLayer) and "|layername=" in layer.source():
+        if isinstance(layer, QgsVectorLayer) and ".gpkg|layername=" in layer.source():
             _apply_style_in_file(layer)
         elif os.path.exists(self.style) and not (isinstance(layer, QgsVectorLayer) and self._is_of_raster()):
             layer.loadNamedStyle(self.style)
@@ -150,9 +150,9 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
             self._move(node, project.layerTreeRoot())
 
     def _is_of_raster(self):
-        """Whether the style is that of the raster of the same name (exits.tif beside exits.gpkg)."""
+        """Whether the style is that of the raster of the same name alone (exits.tif beside exits.gpkg)."""
         with open(self.style, encoding="utf-8") as file:
-            return "<rasterrenderer" in file.read()
+            return "<renderer-v2" not in file.read()
 
     def _move(self, node, root):
         group = self._group(root)

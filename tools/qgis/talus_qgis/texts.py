@@ -28,6 +28,7 @@ LABELS = {
     "seed": ("Seed of the random numbers", "Startwert der Zufallszahlen"),
     "energy-total": ("Energy with rotation, too", "Auch die Energie mit Rotation"),
     "bounds": ("95 % bounds of the percentiles, too", "Auch 95-%-Schranken der Perzentile"),
+    "vectors": ("Format of the layers", "Format der Layer"),
     "out": ("Results", "Ergebnisse"),
     "overwrite": ("Replace earlier results", "Frühere Ergebnisse ersetzen"),
     "threads": ("Processors (threads)", "Prozessoren (Threads)"),
@@ -63,6 +64,9 @@ LABELS = {
     "trials": ("Trajectories per block in the searches", "Sturzbahnen pro Block beim Suchen"),
     "starts": ("Searches from different starts", "Suchen von verschiedenen Startwerten aus"),
     "share": ("Parameters that all campaigns have in common", "Parameter, die alle Messkampagnen gemeinsam haben"),
+    "ground-parameters": ("Fitted ground (TOML), in place of the above", "Angepasster Boden (TOML), anstelle des obigen"),
+    "deformation-coefficient": ("Deformation coefficient c", "Deformationskoeffizient c"),
+    "lanes": ("Trajectories in one instruction (lanes)", "Sturzbahnen in einem Befehl (Lanes)"),
     "parameters": ("Model from which the fit starts (TOML)", "Modell, von dem die Anpassung ausgeht (TOML)"),
     "test-trials": ("Trajectories per block in the tests", "Sturzbahnen pro Block in den Tests"),
     "most-effects": ("Largest number of effects that are added", "Höchste Zahl der Effekte, die dazukommen"),
@@ -241,13 +245,21 @@ GERMAN = {
     "of the blocks [m]": "der Blöcke [m]; ein Feld der Anbruchgebiete geht vor",
     "events per year of all sources together, for talus hazard":
         "Ereignisse pro Jahr aller Anbruchgebiete zusammen, für die Gefahrenkarten",
-    "energies of the maps of exceedance [kJ], as 30,300 (default)":
-        "Energien der Überschreitungskarten [kJ], wie 30,300 (Vorgabe)",
+    "energies of the maps of exceedance [kJ], with commas and no spaces: 30,300 (default)":
+        "Energien der Überschreitungskarten [kJ], mit Kommas und ohne Leerzeichen: 30,300 (Vorgabe)",
+    "a ground that talus calibrate or diagnose has fitted (fitted.toml), in place of --preset":
+        "ein Boden, den Kalibrieren oder Diagnose angepasst hat (fitted.toml), anstelle von «Boden»",
+    "c of the impact law (0.25): a lower one gives higher energies and jumps":
+        "c des Aufprallgesetzes (0.25): ein kleineres gibt höhere Energien und Sprünge",
+    "trajectories in one instruction; as many as the processor has where it is not given; the results are the same":
+        "Sturzbahnen in einem Befehl; so viele, wie der Prozessor kann, wenn nicht angegeben; die Ergebnisse sind dieselben",
     "per source cell": "pro Anbruchzelle",
     "of the random numbers": "der Zufallszahlen; gleicher Startwert, gleiche Ergebnisse",
     "also energy_total.tif: the energy with rotation": "auch energy_total.tif: die Energie mit Rotation",
     "also 95 % bounds of the percentiles: energy_bounds.tif and others":
         "auch 95-%-Schranken der Perzentile: energy_bounds.tif und andere",
+    "gpkg or fgb (gpkg): GeoPackage or FlatGeobuf for stops, exits, paths and screens":
+        "gpkg: GeoPackage (Vorgabe), fgb: FlatGeobuf; für Haltepunkte, Austritte, Bahnen und Nachweislinien",
     "scenario file (TOML)": "Szenario-Datei (TOML); was hier angegeben ist, geht vor",
     "new folder for the results": "neuer Ordner für die Ergebnisse",
     "replace the folder if it holds an earlier result": "den Ordner ersetzen, wenn er ein früheres Ergebnis enthält",

@@ -19,7 +19,7 @@ import sys
 import tempfile
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../.."))
-VOLATILE = {"plan", "cpu_seconds", "wall_seconds", "peak_memory_mb", "command", "version", "ranks", "threads", "date", "started", "seconds", "times"}
+VOLATILE = {"plan", "cpu_seconds", "wall_seconds", "peak_memory_mb", "command", "version", "ranks", "threads", "lanes", "date", "started", "seconds", "times"}
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_btl_base_warn_component_unused": "0"}
 
 EFFECTS = """

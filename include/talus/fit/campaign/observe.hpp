@@ -71,6 +71,7 @@ struct ObserveOptions {
   std::vector<bool> blocks;       ///< true for those that are simulated; empty: all
   std::function<bool()> proceed;  ///< called now and then, from any thread; false ends the work. May be empty
   Effort effort = {};             ///< what each trajectory may cost; searches bound it
+  int lanes = 0;                  ///< trajectories in one instruction, as for Tracer; 0: as many as the processor has
 };
 
 /// Simulates every block of a campaign and measures the paths as the campaign did.

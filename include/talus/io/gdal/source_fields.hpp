@@ -11,7 +11,7 @@ const std::vector<std::string>& source_field_names();
 
 /// A field of a source layer that holds one of these under another name.
 struct MappedField {
-  std::string field;  ///< its name in the layer
+  std::string field;  ///< its name in the layer; empty: not read
   std::string where;  ///< "flag --field diameter=Durchmesser", for messages
 };
 

@@ -41,6 +41,7 @@ struct RunRecord {
   StageSeconds cpu, wall;
   int threads = 0;  ///< of all processes
   int ranks = 1;    ///< processes
+  int lanes = 0;    ///< trajectories in one instruction; 0: not known
   RoundsRecord rounds;
   std::uint32_t parts = 1;  ///< number of parts that were joined
   std::string plan;         ///< `plan_checksum` of one round
@@ -49,8 +50,8 @@ struct RunRecord {
 /// Whether too many trajectories ended at a limit (`kAllowedLimitShare`).
 bool too_many_limits(const Totals& totals);
 
-/// The text of run.json. Equal runs differ only in command, threads, ranks, cpu_seconds, wall_seconds and
-/// peak_memory_mb.
+/// The text of run.json. Equal runs differ only in command, threads, ranks, lanes, cpu_seconds, wall_seconds
+/// and peak_memory_mb.
 std::string run_json(const RunRecord& record, const LoadedScenario& loaded);
 
 /// `status` of a run whose results are good.

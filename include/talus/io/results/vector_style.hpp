@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <string>
 
 namespace talus::io {
@@ -11,5 +12,10 @@ enum class StyledLayer { Stops, Exits, Trajectories, Screens, AreaObjects, LineO
 /// Features in the classes of a legend that a raster has too: `stops` and `exits` by energy, `trajectories` by speed,
 /// `screens` by the P95 of the energy, objects by return period. docs/products.md, "Styles".
 std::string style_of(StyledLayer layer);
+
+/// Writes X.qml beside each layer X.fgb of a run, in which there is no room for a style. Where a raster has a style of
+/// this name (exits.qml), the file gets both: QGIS takes from it what fits the kind of a layer. Call it when all layers
+/// and rasters are there.
+void write_styles_beside(const std::filesystem::path& folder);
 
 }  // namespace talus::io

@@ -6,7 +6,7 @@
 
 namespace talus::io {
 
-/// Writes `screens.gpkg`: the lines of each screen with the figures of its crossings. docs/products.md.
+/// Writes `screens.gpkg` (or `.fgb`): the lines of each screen with the figures of its crossings. docs/products.md.
 void write_screens(const std::filesystem::path& file, const LoadedScenario& loaded, const ScreenSummary& summary);
 
 }  // namespace talus::io

@@ -9,10 +9,11 @@
 namespace talus::io {
 
 /// Writers of what `simulate` hands out while it runs: rows go to the file as they come, memory does not grow with
-/// them. Called from any thread, one at a time. `finish` completes the file; without it the file is worthless. All
-/// throw std::runtime_error, one line with the file and the cause (a full disk).
+/// them (of a FlatGeobuf file by some 160 bytes a row). The format is that of the file's ending, .gpkg or .fgb. Called
+/// from any thread, one at a time. `finish` completes the file; without it the file is worthless. All throw
+/// std::runtime_error, one line with the file and the cause (a full disk).
 
-/// Where every block ended: the layer `stops` of a GeoPackage, points in the system of the DEM.
+/// Where every block ended: the layer `stops`, points in the system of the DEM.
 ///
 /// Fields: source, block, end (stopped, trapped, left, caught, limit), feature (name of the source's feature, else its
 /// number from 0), diameter_m, mass_kg, x_release, y_release (map coordinates), z, seconds, max_speed_ms, length_m,
@@ -29,7 +30,7 @@ class StopsWriter {
   std::unique_ptr<State> state_;
 };
 
-/// Where paths left the terrain: the layer `exits` of a GeoPackage, points in the system of the DEM, one per row that
+/// Where paths left the terrain: the layer `exits`, points in the system of the DEM, one per row that
 /// ended so; without any the layer is empty.
 ///
 /// Fields: source, block, feature, diameter_m, mass_kg, z, seconds as in the layer `stops`; speed_ms and energy_kj
@@ -46,7 +47,7 @@ class ExitsWriter {
   std::unique_ptr<State> state_;
 };
 
-/// Paths of recorded blocks: the layer `trajectories` of a GeoPackage, LineString ZM with M = time since the release
+/// Paths of recorded blocks: the layer `trajectories`, LineString ZM with M = time since the release
 /// [s].
 class TrajectoriesWriter {
  public:

@@ -27,10 +27,12 @@ struct LoadedScenario {
 /// Settings of the command line. They override a scenario file or replace it.
 struct RunFlags {
   std::string scenario;  ///< path of the TOML file; empty: from flags alone
-  std::optional<std::string> dem, sources, sources_layer, screens, barriers, zones, zone_field, preset, surface;
-  std::optional<double> diameter;   ///< [m]
-  std::optional<double> frequency;  ///< of all sources together [1/year]
-  std::vector<double> thresholds;   ///< of the energy [kJ]; empty: not given
+  std::optional<std::string> dem, sources, sources_layer, screens, barriers, zones, zone_field, preset, surface,
+      vectors, parameters;                        ///< `parameters`: a fitted model
+  std::optional<double> diameter;                 ///< [m]
+  std::optional<double> deformation_coefficient;  ///< c of the impact law
+  std::optional<double> frequency;                ///< of all sources together [1/year]
+  std::vector<double> thresholds;                 ///< of the energy [kJ]; empty: not given
   std::optional<std::uint32_t> trajectories;
   std::optional<std::uint64_t> seed;
   std::vector<std::string> fields;  ///< "diameter=Durchmesser": names of fields of the sources

@@ -6,6 +6,7 @@
 #include "talus/base/bounds.hpp"
 #include "talus/physics/effects/registry.hpp"
 #include "talus/physics/trace.hpp"
+#include "talus/simulate/scenario/vector_format.hpp"
 
 namespace talus {
 
@@ -76,6 +77,7 @@ struct OutputSettings {
   double passages_below = 0.0;  ///< only passages lower than this count in passage densities [m]; 0: at any height
   bool energy_total = false;    ///< the energy with rotation is kept per cell
   bool bounds = false;          ///< bounds of percentiles are written
+  VectorFormat vectors = VectorFormat::GeoPackage;  ///< of stops, exits, paths and screens
 };
 
 /// All settings and data of a run: built by `make_scenario`, then constant. Everything is on one grid, in local metres.

@@ -33,7 +33,7 @@ std::vector<Place> places(int count) {
 
 void write(const fs::path& path, const std::vector<Place>& points) {
   GeoPackage file(path, {});
-  OGRLayer* layer = file.add_point_layer("points", {{"number", OFTInteger}});
+  OGRLayer* layer = file.add_bulk_layer("points", wkbPoint, {{"number", OFTInteger64}});
   const Feature feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
   for (const Place& place : points) {
     const OGRPoint point(place.x, place.y);
@@ -53,7 +53,7 @@ std::string first_text(GDALDataset& file, const char* sql) {
 }
 
 // 0: an empty tree; 51 and 52: one node and two; 3000: three levels; 300 000: two runs, four levels.
-TEST(PointIndex, FindsWhatAScanFinds) {
+TEST(PackedIndex, FindsWhatAScanFinds) {
   const fs::path path = fs::temp_directory_path() / ("talus-points-" + std::to_string(getpid()) + ".gpkg");
   for (const int count : {0, 1, 51, 52, 3000, 300'000}) {
     const std::vector<Place> points = places(count);
