@@ -27,13 +27,14 @@ Scenario& scenario_with(std::int64_t trajectories) {
   return g_loaded->scenario;
 }
 
-/// Trace, tally and merge with every raster on. Arguments: trajectories per source, threads.
-void run(benchmark::State& state) {
+/// Trace, tally and merge with every raster on.
+void run_with(benchmark::State& state, int threads, int lanes) {
+  if (lanes > most_lanes()) return state.SkipWithError("this processor has fewer lanes");
   const Scenario& scenario = scenario_with(state.range(0));
   for (auto _ : state) {
     Tally tally(scenario.surface.grid(), {30.0, 300.0, 500.0}, {1.0, 2.0, 4.0});
     const auto start = std::chrono::steady_clock::now();
-    const Totals totals = simulate(scenario, tally, {}, static_cast<int>(state.range(1)));
+    const Totals totals = simulate(scenario, tally, {}, threads, lanes);
     state.counters["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const double n = static_cast<double>(totals.released), cpu = totals.cpu_seconds;
     state.SetIterationTime(cpu);
@@ -43,6 +44,15 @@ void run(benchmark::State& state) {
     state.counters["cells_per_trajectory"] = static_cast<double>(totals.cells_scored) / n;
     state.counters["touched_cells"] = static_cast<double>(tally.touched_cells());
   }
+}
+
+/// Arguments: trajectories per source, threads.
+void run(benchmark::State& state) {
+  run_with(state, static_cast<int>(state.range(1)), 0);
+}
+/// Arguments: trajectories per source, lanes; one thread.
+void run_in_lanes(benchmark::State& state) {
+  run_with(state, 1, static_cast<int>(state.range(1)));
 }
 
 /// A sample of trajectories for the parts below.
@@ -240,6 +250,13 @@ void write_paths(benchmark::State& state) {
 
 BENCHMARK(run)->Args({10, 1})->Args({100, 1})->Args({10, 2})->Args({100, 2})->UseManualTime()->Iterations(1)->Unit(
     benchmark::kSecond);
+BENCHMARK(run_in_lanes)
+    ->Args({100, 1})
+    ->Args({100, 4})
+    ->Args({100, 8})
+    ->UseManualTime()
+    ->Iterations(1)
+    ->Unit(benchmark::kSecond);
 BENCHMARK(trace_only)->Unit(benchmark::kMillisecond);
 BENCHMARK(trace_in_lanes)->Arg(1)->Arg(4)->Arg(8)->Unit(benchmark::kMillisecond);
 BENCHMARK(floor_walk)->Unit(benchmark::kMillisecond);

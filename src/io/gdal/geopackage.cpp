@@ -69,11 +69,21 @@ OGRLayer* GeoPackage::add_layer(const char* name, OGRwkbGeometryType type, const
   return create_layer(name, type, columns);
 }
 
+/// Adds the name of the file to the errors of bulk layers.
+template <class Work>
+void GeoPackage::with_name(Work work) const {
+  try {
+    work();
+  } catch (const std::runtime_error& error) {
+    fail(error.what());
+  }
+}
+
 OGRLayer* GeoPackage::add_bulk_layer(const char* name, OGRwkbGeometryType type, const std::vector<Column>& columns) {
   const Configured date("OGR_CURRENT_DATE", kDate);  // the lines below write the dates of earlier layers
   OGRLayer* layer = create_layer(name, type, columns);
   create_index(name);
-  bulk_.push_back(std::make_unique<BulkLayer>(*dataset_, *layer));
+  with_name([&] { bulk_.push_back(std::make_unique<BulkLayer>(*dataset_, *layer)); });
   return layer;
 }
 
@@ -84,26 +94,16 @@ void GeoPackage::append(OGRLayer* layer, OGRFeature& feature) {
     if (layer->CreateFeature(&feature) != OGRERR_NONE) fail(CPLGetLastErrorMsg());
     return;
   }
-  try {
-    (*bulk)->append(feature);
-  } catch (const std::runtime_error& error) {
-    fail(error.what());
-  }
-}
-
-void GeoPackage::finish_bulk() {
-  try {
-    for (const auto& layer : bulk_) layer->finish();
-  } catch (const std::runtime_error& error) {
-    fail(error.what());
-  }
-  bulk_.clear();
+  with_name([&] { (*bulk)->append(feature); });
 }
 
 void GeoPackage::finish() {
   GdalMessages messages;
   const Configured date("OGR_CURRENT_DATE", kDate);
-  finish_bulk();
+  with_name([&] {
+    for (const auto& bulk : bulk_) bulk->finish();
+  });
+  bulk_.clear();
   for (const std::string& layer : layers_) create_index(layer);
   write_styles();
   require(dataset_->CommitTransaction() == OGRERR_NONE, messages);

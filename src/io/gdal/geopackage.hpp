@@ -27,7 +27,8 @@ class GeoPackage final : public LayerFile {
   std::vector<std::string> execute(const std::string& sql);
   void write_styles();
   void create_index(const std::string& layer);
-  void finish_bulk();
+  template <class Work>
+  void with_name(Work work) const;
 
   OGRSpatialReference system_;
   std::vector<std::string> layers_;                          // still without an index

@@ -145,7 +145,10 @@ class SpecReader {
 
   void read_fields(TableReader table) {
     for (const std::string& name : source_field_names()) {
-      const auto field = table.text(name);
+      const TomlValue* const value = table.find(name);
+      if (value == nullptr) continue;
+      const bool none = value->kind == Kind::Text && value->text.empty();  // that field is not read
+      const auto field = none ? std::optional<std::string>("") : table.text(name);
       if (!field) continue;
       spec_.source_fields[name] = {*field, table.where(name, *table.value()->find(name))};
       given(table.full(name));

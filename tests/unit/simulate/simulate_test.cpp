@@ -11,6 +11,7 @@
 
 #include "support/paths.hpp"
 #include "support/scenarios.hpp"
+#include "talus/physics/lanes.hpp"
 #include "talus/simulate/plan/plan.hpp"
 
 namespace talus {
@@ -125,15 +126,16 @@ TEST(Simulate, TotalsAndCellsAddUp) {
   EXPECT_GE(totals.length_mm, totals.plan_length_mm);
 }
 
-TEST(Simulate, EqualBitsForAnyNumberOfThreads) {
+TEST(Simulate, EqualBitsForAnyNumberOfThreadsAndLanes) {
   const Scenario s = scenario();
   Tally one = tally_of(s);
   Collected first;
-  const Totals totals = simulate(s, one, sinks_into(first), 1);
-  for (const int threads : {2, 7, 0}) {
+  const Totals totals = simulate(s, one, sinks_into(first), 1, 1);
+  for (const auto& [threads, lanes] : {std::pair{2, 1}, {1, 4}, {7, 4}, {1, 8}, {7, 8}, {0, 0}}) {
+    if (lanes > most_lanes()) continue;
     Tally tally = tally_of(s);
     Collected all;
-    expect_same(simulate(s, tally, sinks_into(all), threads), totals);
+    expect_same(simulate(s, tally, sinks_into(all), threads, lanes), totals);
     test::expect_same_records(tally, one);
     ASSERT_EQ(all.stops.size(), first.stops.size());
     for (std::size_t i = 0; i < all.stops.size(); ++i) {

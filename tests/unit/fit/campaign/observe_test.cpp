@@ -1,6 +1,7 @@
 #include "talus/fit/campaign/observe.hpp"
 
 #include "support/campaigns.hpp"
+#include "talus/physics/lanes.hpp"
 #include "talus/simulate/screens/screens.hpp"
 
 namespace talus::test {
@@ -38,6 +39,24 @@ TEST(Observe, SameBitsForAnyNumberOfThreadsAndChoiceOfBlocks) {
       expect_same(a[i], b[i]);
     else
       EXPECT_EQ(b[i].trials, 0U);
+  }
+}
+
+TEST(Observe, SameBitsForAnyNumberOfLanes) {
+  const Campaign c = campaign_on_slope(7);
+  for (const std::uint32_t most_vertices : {Effort{}.most_vertices, 70U}) {
+    ObserveOptions one;
+    one.trials = 70;
+    one.lanes = 1;
+    one.effort.most_vertices = most_vertices;
+    const auto a = observe(c, model_of_slope(), one);
+    for (const int lanes : {4, 8}) {
+      if (lanes > most_lanes()) continue;
+      ObserveOptions more = one;
+      more.lanes = lanes;
+      const auto b = observe(c, model_of_slope(), more);
+      for (std::size_t i = 0; i < 7; ++i) expect_same(a[i], b[i]);
+    }
   }
 }
 

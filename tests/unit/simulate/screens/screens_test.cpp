@@ -31,7 +31,7 @@ std::vector<Crossing> crossings_of(const Scenario& scenario, std::vector<Vertex>
   release.block = 9;
   release.body = {1.5, 4000.0};
   Path path;
-  path.vertices = std::move(vertices);
+  path.vertices.assign(vertices.begin(), vertices.end());
   std::vector<Crossing> crossings;
   ScreenFinder(scenario).find(release, path, crossings);
   return crossings;
