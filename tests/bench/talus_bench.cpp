@@ -104,7 +104,7 @@ void trace_in_lanes(benchmark::State& state) {
   const Sample& s = sample();
   const int lanes = static_cast<int>(state.range(0));
   if (lanes > most_lanes()) return state.SkipWithError("this processor has fewer lanes");
-  const World world = g_scenario->world();
+  const World world = g_loaded->scenario.world();
   Tracer tracer(world, lanes);
   for (auto _ : state) {
     std::size_t next = 0;
