@@ -44,8 +44,6 @@ class Engine {
     unsigned leaving;  // lanes whose block is on the surface and moves away from it
   };
 
-  [[gnu::always_inline]] static double* numbers(typename I::Words* words) { return reinterpret_cast<double*>(words); }
-
   /// Reads the patches of these indices, which are whole numbers within the grid.
   [[gnu::always_inline]] Patches read(L column, L row) const {
     const L index = row * world_.columns + column + 0x1p52;  // its last digits are the index

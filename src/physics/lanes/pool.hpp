@@ -113,9 +113,10 @@ struct LaneWorld {
 /// The blocks on their way. All functions are for one block at a time.
 class Pool {
  public:
-  /// @param lanes  of the engine. Twice as many blocks would keep all lanes busy: while too few for an impact have
-  /// landed,
-  ///               at least as many fly as there are lanes. More leave time between writing and reading a queue
+  /// Holds four blocks for each lane. Two would keep all lanes busy: while too few for an impact have landed, at least
+  /// as many fly as there are lanes. More leave time between writing and reading a queue.
+  ///
+  /// @param lanes  of the engine
   Pool(const World& world, int lanes);
   ~Pool();
 
