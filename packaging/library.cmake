@@ -1,7 +1,7 @@
 # The library for other programs, find_package(talus): the engine (terrain and physics), which needs Eigen alone. Scenario
 # files, tallies and maps are the work of the program `talus`. docs/library.md
 set(public_headers talus.hpp
-  base/elementary.hpp base/random.hpp base/scratch.hpp base/shared_memory.hpp base/vector.hpp base/version.hpp
+  base/elementary.hpp base/expect.hpp base/lane.hpp base/random.hpp base/scratch.hpp base/shared_memory.hpp base/vector.hpp base/version.hpp
   terrain/grid.hpp terrain/raster.hpp terrain/surface.hpp
   physics/barriers.hpp physics/block.hpp physics/ground.hpp physics/impact.hpp physics/path.hpp physics/trace.hpp
   physics/world.hpp)
@@ -9,6 +9,11 @@ list(TRANSFORM public_headers PREPEND ${PROJECT_SOURCE_DIR}/include/talus/)
 
 # Objects that the other libraries hold already: nothing is compiled twice.
 set(engine_objects "$<FILTER:$<TARGET_OBJECTS:talus_core>,INCLUDE,/src/(base|terrain|physics)/>")
+foreach(lanes 4 8)
+  if(TARGET talus_lanes_${lanes})
+    list(APPEND engine_objects $<TARGET_OBJECTS:talus_lanes_${lanes}>)
+  endif()
+endforeach()
 add_library(talus_library STATIC ${engine_objects})
 set_target_properties(talus_library PROPERTIES LINKER_LANGUAGE CXX OUTPUT_NAME talus EXPORT_NAME talus)
 add_library(talus::talus ALIAS talus_library)

@@ -276,7 +276,7 @@ class Hazard(Case):
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn("must be above 0 and at most 1000 m", done.stderr)
         matrix = self.write("m.toml", 'energies = [100]\nyears = [50]\nclasses = [[1, 0], [2, 1]]\n')
-        self.refused("must be one of the run's energy_thresholds", "hazard", self.path("out"), "--width", "10", "--matrix", matrix)
+        self.refused("must be one of the run's energy thresholds", "hazard", self.path("out"), "--width", "10", "--matrix", matrix)
 
     def test_only_passages_below_a_height(self):
         """Over 0.5 m less is counted than over 1 km, which is as at any height."""
