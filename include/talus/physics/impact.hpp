@@ -212,8 +212,8 @@ template <class Number>
   const MaskOf<Number> slips = slip > 0.0;
   Vector friction = friction_impulse<Number>(slip, impulse, tan_phi) / slip * u;
   if (!all(slips)) friction = choose(slips, friction, Vector(Vector::Zero()));
-  const BasicRebound<Number> after{k.tangential * v_tan - friction + k.normal * v_n * n,
-                                   k.tangential * w_tan + 2.5 / arm * n.cross(friction) + w_normal};
+  BasicRebound<Number> after{k.tangential * v_tan - friction + k.normal * v_n * n,
+                             k.tangential * w_tan + 2.5 / arm * n.cross(friction) + w_normal};
   if constexpr (std::is_same_v<Number, double>)
     TALUS_EXPECT(after.velocity.squaredNorm() + 0.4 * arm * arm * after.spin.squaredNorm() <=
                      (1.0 + 1e-9) * (velocity.squaredNorm() + 0.4 * arm * arm * spin.squaredNorm()),

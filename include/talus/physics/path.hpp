@@ -70,7 +70,7 @@ struct Broken {
 template <class T>
 struct NotSet : std::allocator<T> {
   template <class Other>
-  struct rebind {
+  struct rebind {  // NOLINT(readability-identifier-naming): the standard's name
     using other = NotSet<Other>;
   };
   template <class Element, class... Values>

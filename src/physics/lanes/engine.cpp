@@ -317,8 +317,8 @@ class Engine {
     queue.first += count;
     pack.there = Mask::of((1U << count) - 1);
     const auto next = [&](int number) { return choose(pack.there, L::load(queue.at[number] + first), L(0.0)); };
-    for (int lane = 0; lane < N; ++lane)  // lanes without a block look at the first one's
-      __builtin_memcpy(&pack.slots[lane], queue.at[landing::Place] + first + (lane < count ? lane : 0), sizeof(Slot*));
+    for (int lane = 0; lane < N; ++lane)  // lanes without a block look at the first one's; a pointer lies in a double
+      __builtin_memcpy(&pack.slots[lane], queue.at[landing::Place] + first + (lane < count ? lane : 0), sizeof(double));
     const L t = next(landing::Time);
     pack.column = next(landing::Column);
     pack.row = next(landing::Row);

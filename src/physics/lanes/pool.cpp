@@ -1,7 +1,8 @@
 #include "pool.hpp"
 
+#include <algorithm>
 #include <bit>
-#include <cstring>
+#include <iterator>
 
 #include "physics/anchor.hpp"
 #include "physics/crossing.hpp"
@@ -149,7 +150,9 @@ Motion Pool::motion_of(const Slot& slot) const {
 }
 
 void Pool::set_motion(Slot& slot, const Motion& motion) const {
-  std::memcpy(slot.state, &motion, sizeof(Motion));
+  const Vec3 &x = motion.position, &v = motion.velocity, &w = motion.spin;
+  const double numbers[] = {motion.time, x.x(), x.y(), x.z(), v.x(), v.y(), v.z(), w.x(), w.y(), w.z()};
+  std::copy(std::begin(numbers), std::end(numbers), slot.state);
 }
 
 void Pool::push_vertex(Slot& slot, Event event) {
