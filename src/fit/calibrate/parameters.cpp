@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "talus/base/elementary.hpp"
 #include "talus/base/error.hpp"
@@ -21,7 +22,8 @@ double Parameter::value(double z) const {
 }
 
 double Parameter::z(double value) const {
-  return scale == Scale::Log ? natural_log(value / centre) / sd : (value - centre) / sd;
+  if (scale == Scale::Linear) return (value - centre) / sd;
+  return value > 0.0 ? natural_log(value / centre) / sd : -std::numeric_limits<double>::infinity();
 }
 
 std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& start,

@@ -48,7 +48,8 @@ Candidate band(const Campaign& campaign, const Axis& axis, double from, double t
   const auto ratio = [](double Ground::*member) {
     return [member](const Model& m) {
       const std::size_t n = m.grounds.size() / 2;
-      return natural_log(m.grounds[n].*member / (m.grounds[0].*member));
+      const double there = m.grounds[n].*member, beside = m.grounds[0].*member;
+      return there > 0.0 && beside > 0.0 ? natural_log(there / beside) : std::numeric_limits<double>::quiet_NaN();
     };
   };
   return {"undeclared-zone",

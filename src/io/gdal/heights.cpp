@@ -157,13 +157,23 @@ class ParallelReading {
   Counts counts_;
 };
 
+/// Whether one piece can be read without the others. A text is read from its beginning, and a block that is larger than
+/// a piece would be unpacked, and kept, by each thread.
+bool reads_pieces_apart(GDALDataset& dataset, const RasterPart& piece) {
+  const std::string driver = dataset.GetDriver() == nullptr ? "" : dataset.GetDriver()->GetDescription();
+  int block_columns = 1, block_rows = 1;
+  dataset.GetRasterBand(1)->GetBlockSize(&block_columns, &block_rows);
+  return (driver == "GTiff" || driver == "VRT") && block_rows <= piece.rows();
+}
+
 }  // namespace
 
 void read_heights(const std::string& path, Terrain& terrain, int threads) {
   const Grid& grid = terrain.heights.grid;
   const Dataset dataset = open_dataset(path, GDAL_OF_RASTER);
   std::vector<RasterPart> pieces = pieces_of(*dataset->GetRasterBand(1), {0, 0, grid.columns, grid.rows});
-  const int at_once = std::clamp(std::min(threads, static_cast<int>(pieces.size())), 1, kMostReaders);
+  const int most = reads_pieces_apart(*dataset, pieces.front()) ? kMostReaders : 1;
+  const int at_once = std::clamp(std::min(threads, static_cast<int>(pieces.size())), 1, most);
   const Counts found = ParallelReading(path, std::move(pieces), terrain.heights).read(at_once);
   if (found.known == 0)
     throw InputError(path + ": all cells are missing values, must hold heights: is its nodata value right? (gdalinfo " +

@@ -145,9 +145,19 @@ static void read_classes(const Json& matrix, HazardFacts& hazard) {
   hazard.energies = matrix.at("energies_kj").get<std::vector<double>>();
   hazard.years = matrix.at("years").get<std::vector<double>>();
   const std::vector<std::string> names = texts_of(matrix, "names");
-  for (const Json& row : matrix.at("classes")) {
+  const Json& rows = matrix.at("classes");
+  if (!rows.is_array() || rows.size() != hazard.energies.size() + 1)
+    throw InputError("its matrix must have one row of classes more than energies");
+  for (const Json& row : rows) {
+    if (!row.is_array() || row.size() != hazard.years.size() + 1)
+      throw InputError("each row of its matrix must have one class more than years");
     hazard.classes.emplace_back();
-    for (const Json& number : row) hazard.classes.back().push_back(names.at(number.get<std::size_t>()));
+    for (const Json& number : row) {
+      if (!number.is_number_unsigned() || number.get<std::size_t>() >= names.size())
+        throw InputError("a class of its matrix must be the number of one of its " + std::to_string(names.size()) +
+                         " names, from 0");
+      hazard.classes.back().push_back(names[number.get<std::size_t>()]);
+    }
   }
 }
 

@@ -119,7 +119,7 @@ void Pool::open(Slot& slot) {
 
 bool Pool::more_spans(Slot& slot) {
   const auto used = slot.span - slot.first_span;
-  if (static_cast<std::size_t>(used) > kLongPath) {
+  if (2 * slot.path.spans.size() > kLongPath) {
     trace(world_, slot.release, long_);
     hand_over(slot, long_);
     return false;
@@ -240,6 +240,7 @@ void Pool::slide(Slot& slot, const double* normal, int column, int row) {
     push_vertex(slot, Event::Takeoff);
     return push_flight(slot, at, true);
   }
+  if (landed.end == 2 * Queue<1>::kMost) landed.pack();  // many slides in turn, with no flight between
   const auto put = [&](int number, double value) { landed.at[number][landed.end] = value; };
   put(landing::Place, std::bit_cast<double>(&slot));
   put(landing::Time, 0.0);

@@ -169,6 +169,28 @@ TEST_P(InLanes, LongPathsAreTracedOneByOne) {  // 20 000 patches down a smooth s
   compare(world, releases, GetParam());
 }
 
+TEST_P(InLanes, ManyBlocksThatSlideTurnAfterTurn) {  // on smooth steep ground no flight comes between
+  Raster<float> heights(Grid{60, 400, 2.0, 2.0}, 0.0F);
+  for (int row = 0; row < 400; ++row)
+    for (int column = 0; column < 60; ++column) heights.at(column, row) = 1.6F * static_cast<float>(row);
+  const Surface surface(std::move(heights));
+  for (const double roughness : {0.0, 0.1, 1.0}) {
+    SCOPED_TRACE(roughness);
+    const Cover cover{{{roughness, roughness, 15, 50, 0.577, 1.0, 1.5}}, {}};
+    const World world{surface, cover, {}, {}};
+    Numbers numbers(7);
+    std::vector<Release> releases(300);
+    for (std::uint32_t block = 0; block < releases.size(); ++block) {
+      Release& release = releases[block];
+      release.block = block;
+      release.body = block_of(numbers.uniform(0.3, 2.0), 2500.0);
+      const double x = numbers.uniform(5.0, 115.0), y = numbers.uniform(600.0, 790.0);
+      release.motion.position = {x, y, *surface.height(x, y) + 0.5 * (block % 3)};
+    }
+    compare(world, releases, GetParam());
+  }
+}
+
 TEST_P(InLanes, NothingToTrace) {
   const Scene scene(1);
   compare(scene.world, {}, GetParam());
