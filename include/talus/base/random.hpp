@@ -71,7 +71,7 @@ inline NormalPair<Number> box_muller(Number u, Number turn) {
   const BasicSineCosine<Number> direction = sine_cosine_of_turn(turn);
   return {radius * direction.cosine, radius * direction.sine};
 }
-/// The same from two words.
+/// Two standard normal numbers from two random words.
 inline std::array<double, 2> normal_pair(std::uint32_t first, std::uint32_t second) {
   const NormalPair<double> pair = box_muller(uniform(first), uniform(second));
   return {pair.first, pair.second};

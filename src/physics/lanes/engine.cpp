@@ -262,7 +262,7 @@ class Engine {
       state[first + 2] = choose(m, v.z(), state[first + 2]);
     }
   };
-  /// What an impact needs of a block and its motion.
+  /// Size and motion of the blocks, for the impact law.
   struct Ball {
     L diameter;
     [[gnu::always_inline]] L radius() const { return 0.5 * diameter; }

@@ -7,7 +7,7 @@
 #include "talus/physics/lanes.hpp"
 #include "talus/physics/path.hpp"
 
-/// What the code in lanes and the code for one lane share: plain data, so that the former calls no inline function that
+/// Data shared by the code in lanes and the code for one lane: plain, so that the former calls no inline function that
 /// others use (see lanes.hpp).
 namespace talus {
 
