@@ -10,6 +10,18 @@ install(FILES README.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONE
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(DIRECTORY data/valley data/elm data/profile DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT program)
 
+# The same pages for a browser, where mkdocs is there to make them. Their pictures are those beside the text.
+find_program(MKDOCS mkdocs)
+set(html ${PROJECT_BINARY_DIR}/manual/html)
+if(MKDOCS)
+  install(CODE "execute_process(COMMAND \"${PROJECT_SOURCE_DIR}/tools/scripts/checks/manual.sh\" \"${html}\" COMMAND_ERROR_IS_FATAL ANY)
+    file(REMOVE_RECURSE \"${html}/pictures\" \"${html}/sitemap.xml\" \"${html}/sitemap.xml.gz\")
+    file(CREATE_LINK ../pictures \"${html}/pictures\" SYMBOLIC)" COMPONENT program)
+  install(DIRECTORY ${html} DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+else()
+  message(STATUS "mkdocs is not installed: the manual will be installed as text, without HTML")
+endif()
+
 # QGIS looks for plug-ins of the system in /usr/share only.
 install(DIRECTORY tools/qgis/talus_qgis DESTINATION ${CMAKE_INSTALL_DATADIR}/qgis/python/plugins COMPONENT program OPTIONAL
   PATTERN __pycache__ EXCLUDE)

@@ -7,7 +7,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 site=$(realpath -m "${1:-$work/site}")
 cp -r docs "$work/docs"
-sed "s|^docs_dir: .*|docs_dir: $work/docs|; s|^site_dir: .*|site_dir: $site|" mkdocs.yml > "$work/mkdocs.yml"
+sed "s|^docs_dir: .*|docs_dir: $work/docs|; s|^site_dir: .*|site_dir: $site|; s|custom_dir: |&$PWD/|" mkdocs.yml > "$work/mkdocs.yml"
 mkdocs build --quiet --strict --clean -f "$work/mkdocs.yml"
 if grep -rlE '<(script|link|img|iframe)[^>]*(src|href)="(https?:)?//' --include='*.html' "$site" | head -5 | grep .; then
   echo "manual.sh: these pages ask the network for something" >&2

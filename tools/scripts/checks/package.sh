@@ -8,13 +8,14 @@ cd "$(dirname "$0")/../../.."
 build="$(realpath "${1:-build/release}")"
 stage() { printf '\n== %s (%d s so far)\n' "$1" "$SECONDS"; }
 
-tools/install_packages.sh debootstrap lintian dpkg-dev file
+tools/install_packages.sh debootstrap lintian dpkg-dev file mkdocs
 work="$(mktemp -d)"
 trap 'rm -rf --one-file-system "$work"' EXIT
 root="$work/root"
 
 stage "packages"
 export SOURCE_DATE_EPOCH="${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct 2>/dev/null || date +%s)}"
+cmake "$build" > /dev/null  # mkdocs may have come since
 cmake --build "$build" --target talus talus-mpi
 rm -rf "$build/packages"
 (cd "$build" && cpack)
@@ -49,6 +50,7 @@ in_root bash -euc '
   talus run scenario.toml --trajectories 5 -o out --quiet
   talus hazard out
   ls out | tr "\n" " " && echo
+  grep -o "<h1[^>]*>.*</h1>" /usr/share/doc/talus/html/hazard.html && ls /usr/share/doc/talus/html/pictures/hazard* | head -1
   man --no-hyphenation -l /usr/share/man/man1/talus-run.1.gz | head -20
   . /usr/share/bash-completion/bash_completion
   . /usr/share/bash-completion/completions/talus
