@@ -43,6 +43,8 @@ class Layers(Case):
         for part in ("|geometrytype=Polygon", "|layerid=abc"):
             self.fails(2, f"'{part}' is not read", arguments=[*check, site + "|layername=cliffs" + part])
         self.fails(2, "has a layer already", arguments=[*check, site + "|layername=cliffs", "--sources-layer", "houses"])
+        self.fails(2, "flag --sources-layer = '': must name a layer", arguments=[*check, site, "--sources-layer", ""])
+        self.fails(2, "flag --parameters", "must name a file", arguments=[*check, site + "|layername=cliffs", "--parameters", ""])
         self.fails(2, "must come with --zones", arguments=[*check, site + "|layername=cliffs", "--zone-field", "kind"])
         self.fails(2, "flag --frequency = 0: must be above 0", arguments=[*check, site + "|layername=cliffs", "--frequency", "0"])
         self.run_well("sources", "--dem", self.path("dem.tif"), "-o", self.path("s.gpkg"), "--slope", "10")

@@ -386,6 +386,13 @@ class Files(Report):
         for change in ({"columns": 10**9}, {"columns": -5}, {"cell_x_m": 0}, {"cell_x_m": 1e999}, {"crs_wkt": 7}):
             refused("run.json", json.dumps({**record, "grid": {**record["grid"], **change}}), "cannot be understood")
         refused("hazard.json", '{"warnings": 3, "events_per_year": "many"}', "cannot be understood")
+        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
+            hazard = json.load(file)
+        for classes, words in ((hazard["matrix"]["classes"][:-1], "one row of classes more than energies"),
+                               ([row[:-1] for row in hazard["matrix"]["classes"]], "one class more than years"),
+                               ([[99 for _ in row] for row in hazard["matrix"]["classes"]], "the number of one of its"),
+                               ([[-1 for _ in row] for row in hazard["matrix"]["classes"]], "the number of one of its")):
+            refused("hazard.json", json.dumps({**hazard, "matrix": {**hazard["matrix"], "classes": classes}}), words)
         refused("barrier_road.json", '{"screen": ["road"]}', "cannot be understood")
         refused("screens_summary.csv", "screen,speed\nroad\n")
         refused("objects_curves.csv", "object,energy_kj,frequency\nmill,much,1\n", "must be a number")
