@@ -30,8 +30,9 @@ struct Piece {
 };
 
 /// A long piece from `place` with an error of the position below `tolerance`; it lasts at most `duration`.
-Piece make_piece(const Slope& slope, const Vec2& place, const Vec2& v, double duration, double tolerance) {
-  const Vec2 first = slope.acceleration(place, v);
+/// @param first  acceleration at its start
+Piece make_piece(const Slope& slope, const Vec2& place, const Vec2& v, const Vec2& first, double duration,
+                 double tolerance) {
   Piece piece{first, duration};
   for (int halving = 0; halving < kMaxHalvings; ++halving) {
     const double half = 0.5 * piece.duration;
@@ -55,6 +56,7 @@ Edge edge_of(const Slope& slope, const Vec2& place, const Vec2& v, const Piece& 
   const double p = slope.p_of(place), q = slope.q_of(place);
   Edge edge{std::numeric_limits<double>::infinity()};
   const auto meet = [&](double clearance, double f1, double f2, int columns, int rows) {
+    if (f1 >= 0.0 && f2 >= 0.0) return;  // the block moves away from this edge
     const double time = first_contact(std::max(0.0, clearance), f1, f2, piece.duration);
     if (time < edge.time) edge = {time, columns, rows};
   };
@@ -132,14 +134,15 @@ void slow_down(Vec3& velocity, double fall) {
 Step next_step(const Slope& slope, const Motion& motion, double farthest, double tolerance, double stop_speed) {
   const Vec2 place = motion.position.head<2>(), v = motion.velocity.head<2>(), gradient = slope.gradient(place);
   const double speed = motion.velocity.norm();
-  const Vec3 force = along(slope.acceleration(place, v), gradient);
+  const Vec2 first = sliding_acceleration(gradient, slope.twist(), v, slope.tan_phi);
+  const Vec3 force = along(first, gradient);
   const double pull = speed > 0.0 ? motion.velocity.dot(force) / speed : force.norm();
   double longest = time_to_cover(farthest, speed, pull, kLongestPiece);
   if (pull < 0.0) {  // until friction holds it; on steep ground until it turns back, because friction turns too
     const double left = gradient.norm() <= slope.tan_phi ? std::max(0.0, speed - stop_speed) : speed;
     longest = std::min(longest, left / -pull + 1e-9);
   }
-  const Piece piece = make_piece(slope, place, v, longest, tolerance);
+  const Piece piece = make_piece(slope, place, v, first, longest, tolerance);
   const Edge edge = edge_of(slope, place, v, piece);
   const auto place_after = [&](double t) -> Vec2 { return place + t * v + 0.5 * t * t * piece.acceleration; };
   const double whole = std::min(edge.time, piece.duration);
