@@ -315,6 +315,17 @@ class Commands(Case):
             log = Log(cancel_at=99.0)
             process.run([self.script("early", said, "sleep 5")], log, process.Progress(log, ["write"]))
 
+    def test_the_time_that_is_left(self):
+        """Ten percent of the bar in 60 s: 40 % are left four times as long. A resumed run counts from where it goes on."""
+        from talus_qgis import process
+        log, times = Log(), iter((0.0, 5.0, 60.0, 100.0, 118.0))
+        said = []
+        log.setProgressText = said.append
+        progress = process.Progress(log, ["simulate"], clock=lambda: next(times))
+        for share in 0.5, 0.51, 0.6, 0.9, 0.99:
+            progress.show({"phase": "simulate", "share": share})
+        self.assertEqual(said, ["Simulating", "Simulating (about 4 min left)", "Simulating (less than a minute left)"])
+
     def test_notes_below_a_table_are_warnings(self):
         from talus_qgis import process
         log = Log()

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "svg.hpp"
 #include "talus/base/printable.hpp"
@@ -48,38 +49,61 @@ std::string points_of(const std::vector<Eigen::Vector2d>& places, const MapScale
   return points;
 }
 
-/// Writes names on the map, each beside its place, where it is within the map and covers no earlier one; a name
-/// without such a place is left out.
+/// A rectangle in pixels.
+struct Box {
+  double left, top, right, low;
+};
+
+Box box_around(const std::vector<Eigen::Vector2d>& places, const MapScale& scale) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  Box box{kNever, kNever, -kNever, -kNever};
+  for (const Eigen::Vector2d& place : places) {
+    const double x = scale.x(place.x()), y = scale.y(place.y());
+    box = {std::min(box.left, x), std::min(box.top, y), std::max(box.right, x), std::max(box.low, y)};
+  }
+  return box;
+}
+
+/// Writes names on the map, each beside what it names, where it is within the map and covers no object and no earlier
+/// name; a name without such a place is left out.
 class Names {
  public:
   Names(Svg& svg, const MapScale& scale) : svg_(svg), scale_(scale) {}
 
-  bool put(const std::string& name, const Eigen::Vector2d& place, const char* colour) {
-    constexpr double kLetter = 7.2, kLine = 13.0;  // of bold letters, generous [px]
+  void keep_free(const Box& box) { taken_.push_back(box); }
+
+  bool put(const std::string& name, const Box& of, const char* colour) {
+    constexpr double kLetter = 6.8, kLine = 13.0, kGap = 5.0;  // of bold letters, generous [px]
     const std::string text = shortened(name, 32);
-    const double x = scale_.x(place.x()), y = scale_.y(place.y()), width = kLetter * static_cast<double>(text.size());
-    for (const double down : {-4.0, 14.0, 5.0})
-      for (const double right : {6.0, -6.0 - width}) {
-        const Box box{x + right, y + down - kLine, x + right + width, y + down};
-        if (!is_free(box)) continue;
-        taken_.push_back(box);
-        svg_.words({{"x", box.left},
-                    {"y", box.low - 2.0},
-                    {"fill", colour},
-                    {"font-weight", "bold"},
-                    {"stroke", "#fff"},
-                    {"stroke-width", 3},
-                    {"paint-order", "stroke"}},
-                   text);
-        return true;
-      }
+    const double width = kLetter * static_cast<double>(text.size()), beside = 0.5 * (of.top + of.low + kLine);
+    const double right = of.right + kGap, left = of.left - kGap - width,
+                 centred = std::min(0.5 * (of.left + of.right - width), scale_.width - width);  // or at the map's rim
+    const double above = of.top - 2.0, below = of.low + kLine + 2.0;
+    for (const auto& [x, y] : {std::pair{right, beside},
+                               {left, beside},
+                               {centred, above},
+                               {centred, below},
+                               {right, above},
+                               {right, below},
+                               {left, above},
+                               {left, below}}) {
+      const Box box{x, y - kLine, x + width, y};
+      if (!is_free(box)) continue;
+      taken_.push_back(box);
+      svg_.words({{"x", x},
+                  {"y", y - 2.0},
+                  {"fill", colour},
+                  {"font-weight", "bold"},
+                  {"stroke", "#fff"},
+                  {"stroke-width", 3},
+                  {"paint-order", "stroke"}},
+                 text);
+      return true;
+    }
     return false;
   }
 
  private:
-  struct Box {
-    double left, top, right, low;
-  };
   bool is_free(const Box& box) const {
     if (!(box.left >= 0.0 && box.top >= 0.0 && box.right <= scale_.width && box.low <= scale_.height)) return false;
     return std::ranges::none_of(taken_, [&](const Box& other) {
@@ -102,7 +126,8 @@ void draw_screens(Svg& svg, const std::vector<Screen>& screens, const MapScale& 
                                {"stroke-dasharray", "7 3"}});
   for (const Screen& screen : screens)
     for (const auto& line : screen.lines)
-      if (std::ranges::any_of(line, [&](const auto& place) { return names.put(screen.id, place, kScreenColour); }))
+      if (std::ranges::any_of(
+              line, [&](const auto& place) { return names.put(screen.id, box_around({place}, scale), kScreenColour); }))
         break;
 }
 
@@ -124,7 +149,8 @@ void draw_objects(Svg& svg, const Outlines& objects, const MapScale& scale, Name
                                                          {"stroke-width", 2}});
   }
   if (objects.list.size() > kMostNames) return;
-  for (const Outline& object : objects.list) names.put(object.name, object.places.front(), kObjectColour);
+  for (const Outline& object : objects.list) names.keep_free(box_around(object.places, scale));
+  for (const Outline& object : objects.list) names.put(object.name, box_around(object.places, scale), kObjectColour);
 }
 
 /// Ticks with coordinates at the lower and the left rim.

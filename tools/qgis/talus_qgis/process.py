@@ -29,20 +29,19 @@ class Progress:
     """One bar for all phases: each takes its share of it, and the bar never goes back."""
 
     SHARES = {"simulate": 8.0, "diagnose": 8.0, "fit": 8.0, "evaluate": 1.0, "write": 1.0}
+    SOON = 10.0  # s until the time that is left is foretold
 
-    def __init__(self, feedback, phases, parts=1):
+    def __init__(self, feedback, phases, parts=1, clock=time.monotonic):
         self.feedback = feedback
         self.phases = phases
         self.parts = parts
         self.shown = 0.0
-        self.phase = None
+        self.title = None
+        self.clock = clock
+        self.first = None  # when the first share was said, and what the bar showed then: a resumed run begins far along
 
     def show(self, line):
         phase, share = line.get("phase", ""), float(line.get("share", 0.0))
-        title = " ".join(filter(None, (tr("phase " + phase), line.get("part", "").replace("round", tr("round")))))
-        if title != self.phase:
-            self.phase = title
-            self.feedback.setProgressText(title)
         if line.get("part") and self.parts > 1:
             done = int("".join(c for c in line["part"] if c.isdigit()) or 1)
             share = min(1.0, (done - 1 + share) / self.parts)
@@ -51,6 +50,20 @@ class Progress:
         percent = 100.0 * (before + share * self.SHARES.get(phase, 1.0)) / whole
         self.shown = max(self.shown, min(100.0, percent))
         self.feedback.setProgress(self.shown)
+        title = " ".join(filter(None, (tr("phase " + phase), line.get("part", "").replace("round", tr("round")), self._left())))
+        if title != self.title:
+            self.title = title
+            self.feedback.setProgressText(title)
+
+    def _left(self):
+        """What is left of the time, in words, if all goes on as until now; nothing at the start."""
+        now = self.clock()
+        self.first = self.first or (now, self.shown)
+        passed, gained = now - self.first[0], self.shown - self.first[1]
+        if passed < self.SOON or gained <= 0.0:
+            return ""
+        minutes = passed * (100.0 - self.shown) / gained / 60.0
+        return tr("(less than a minute left)") if minutes < 1.0 else tr("(about {minutes} min left)").format(minutes=round(minutes))
 
 
 class Messages:

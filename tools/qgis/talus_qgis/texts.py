@@ -181,6 +181,8 @@ GERMAN = {
         "in den PATH legen.",
     "{path} does not describe itself (talus help --json): is it another program, or an older version? {way_out}":
         "{path} beschreibt sich nicht (talus help --json): ein anderes Programm oder eine ältere Version? {way_out}",
+    "(less than a minute left)": "(weniger als eine Minute übrig)",
+    "(about {minutes} min left)": "(noch etwa {minutes} min)",
     "Cancelled.": "Abgebrochen.",
     "What a run has traced is kept: start it again with the same inputs and \"Resume\".":
         "Was ein Lauf gerechnet hat, ist behalten: mit denselben Eingaben und «Fortsetzen» neu starten.",
