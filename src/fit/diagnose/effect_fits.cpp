@@ -285,8 +285,13 @@ Score EffectFits::score_in_folds(const LocalModel& local, const FittedModel& fit
                                  const std::vector<std::size_t>& order) const {
   const std::size_t count = options_.rules.folds;
   std::vector<std::vector<std::size_t>> folds(count);
-  for (std::size_t i = 0; i < order.size(); ++i) folds[i % count].push_back(order[i]);
-  return weigh_groups(score(campaign_, runs_in_folds(local, fitted, std::move(how), folds), rows_));
+  ScoreOptions rule;
+  rule.folds.assign(campaign_.blocks.size(), static_cast<std::uint32_t>(count));
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    folds[i % count].push_back(order[i]);
+    rule.folds[order[i]] = static_cast<std::uint32_t>(i % count);
+  }
+  return weigh_groups(score(campaign_, runs_in_folds(local, fitted, std::move(how), folds), rows_, rule));
 }
 
 std::vector<BlockRuns> EffectFits::runs_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,

@@ -230,6 +230,27 @@ Residual ResidualSpace::of_trial(std::size_t block, const BlockRuns& runs, std::
   return residual(block, values_of(block, seen_of_trial(block, runs, trial)));
 }
 
+ResidualSpace::Moments ResidualSpace::moments(std::size_t block, std::size_t observable) const {
+  const Sorted& values = distributions_[block][observable];
+  if (std::ranges::adjacent_find(values) == values.end()) return {};
+  std::vector<std::pair<double, double>> places;  // share of the values, z of each among the others
+  const auto n = static_cast<double>(values.size());
+  for (auto low = values.begin(); low != values.end();) {
+    const auto high = std::upper_bound(low, values.end(), *low);
+    const auto equal = static_cast<double>(high - low), below = static_cast<double>(low - values.begin());
+    places.emplace_back(equal / n, normal_quantile((below + 0.5 * equal) / n));
+    low = high;
+  }
+  Moments m{0.0, 0.0, 0.0};
+  for (const auto& [share, z] : places) m.mean += share * z;
+  for (const auto& [share, z] : places) {
+    const double square = (z - m.mean) * (z - m.mean);
+    m.variance += share * square;
+    m.fourth += share * square * square;
+  }
+  return m;
+}
+
 void ResidualSpace::correlate(const std::vector<BlockRuns>& runs) {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size(), size()), count = sum;
   for (std::size_t b = 0; b < runs.size(); ++b)

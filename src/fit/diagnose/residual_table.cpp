@@ -58,18 +58,30 @@ void add_crossing(std::vector<ResidualRow>& table, const std::string& name, cons
   table.push_back({name, property, statistic, two_sided(tail), 1.0, z.size()});
 }
 
-void add_moments(std::vector<ResidualRow>& table, const std::string& name, const std::vector<double>& z) {
+/// Adds the tests of mean and spread of z against those of a right model. The sum of squares goes by the chi squared
+/// distribution of its mean and variance (Satterthwaite 1946).
+void add_moments(std::vector<ResidualRow>& table, const std::string& name, const std::vector<double>& z,
+                 const std::vector<ResidualSpace::Moments>& expected) {
   const auto n = static_cast<double>(z.size());
-  const double mean = std::accumulate(z.begin(), z.end(), 0.0) / n;
-  const boost::math::normal standard;
+  double mean = 0.0, variance = 0.0, scatter = 0.0;
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    mean += (z[i] - expected[i].mean) / n;
+    variance += expected[i].variance / n;
+    scatter += (expected[i].fourth - expected[i].variance * expected[i].variance) / n;
+  }
+  if (!(variance > 0.0 && scatter > 0.0)) return;  // the model gives every block one value
+  const double standard = std::abs(mean) * std::sqrt(n / variance);
   table.push_back({name, "mean", mean,
-                   two_sided(boost::math::cdf(boost::math::complement(standard, std::abs(mean) * std::sqrt(n)))), 1.0,
+                   two_sided(boost::math::cdf(boost::math::complement(boost::math::normal(), standard))), 1.0,
                    z.size()});
   double squares = 0.0;
-  for (const double v : z) squares += (v - mean) * (v - mean);
-  const boost::math::chi_squared spread(n - 1.0);
-  const double below = boost::math::cdf(spread, squares);
-  table.push_back({name, "spread", squares / (n - 1.0), two_sided(std::min(below, 1.0 - below)), 1.0, z.size()});
+  for (std::size_t i = 0; i < z.size(); ++i) squares += std::pow(z[i] - expected[i].mean - mean, 2);
+  const double share = squares / ((n - 1.0) * variance);  // of what is expected
+  const double freedom = 2.0 * (n - 1.0) * variance * variance / scatter;
+  const boost::math::chi_squared law(freedom);
+  const double tail =
+      std::min(boost::math::cdf(law, share * freedom), boost::math::cdf(boost::math::complement(law, share * freedom)));
+  table.push_back({name, "spread", share, two_sided(tail), 1.0, z.size()});
 }
 
 void correct(std::vector<ResidualRow>& table) {
@@ -121,7 +133,9 @@ std::vector<ResidualRow> residual_table(const Campaign& campaign, const Residual
       if (!std::isnan(z)) seen.push_back(b), all.push_back(z);
     }
     if (seen.size() < rules.fewest_blocks) continue;
-    if (!crossing) add_moments(table, name, all);
+    std::vector<ResidualSpace::Moments> expected;
+    for (const std::size_t b : seen) expected.push_back(space.moments(b, o));
+    if (!crossing) add_moments(table, name, all, expected);
     for (const Property& property : properties()) {
       std::vector<double> z, variance, of;  // of the blocks whose property is known
       for (std::size_t i = 0; i < seen.size(); ++i) {

@@ -65,7 +65,10 @@ std::string clusters_text(const BeforeAfter& e, const DiagnosisRecord& record) {
   const bool groups = e.clusters.given && e.clusters.count < e.after.blocks;
   const bool few = !e.clusters.given && !record.clusters.empty();
   return std::to_string(e.clusters.count) + (groups ? " groups" : " blocks") +
-         (few ? " (fewer than three groups: blocks are taken to be independent)" : "");
+         (few ? " (fewer than three groups: blocks are taken to be independent)" : "") +
+         (e.clusters.by_block.empty()
+              ? ""
+              : " (seen in fewer than three of them, by block: " + joined(e.clusters.by_block) + ")");
 }
 
 }  // namespace

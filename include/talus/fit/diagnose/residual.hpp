@@ -17,7 +17,8 @@ struct Observable {
   std::string name;        ///< "runout", "speed S1", "sample spin late", ...
 };
 
-/// A block's residual: standard normal numbers, each zero on average and of variance one if the model is right.
+/// A block's residual: about standard normal numbers if the model is right; where simulated values are equal, their
+/// variance is smaller (`ResidualSpace::moments`).
 ///
 /// Per observable its place, z = Phi^-1(rank of the measured value among the simulated ones), and its spread,
 /// (z^2 - 1) / sqrt(2); for a crossing (c - p) / sqrt(p (1 - p)). NaN where nothing was measured.
@@ -30,6 +31,13 @@ class ResidualSpace {
   ResidualSpace(const Campaign& campaign, const std::vector<BlockRuns>& runs, const DiagnosisRules& rules = {});
 
   const std::vector<Observable>& observables() const { return observables_; }
+  /// Moments of z of an observable of a block in a right model.
+  struct Moments {
+    double mean = 0.0, variance = 1.0, fourth = 3.0;  ///< the variance and the fourth moment about the mean
+  };
+  /// Those of a normal number, but where simulated values are equal (jumps of 0): then those of each simulated value
+  /// among the others.
+  Moments moments(std::size_t block, std::size_t observable) const;
   /// Number of components of a residual: places first, then spreads.
   Eigen::Index size() const { return 2 * static_cast<Eigen::Index>(observables_.size()); }
 

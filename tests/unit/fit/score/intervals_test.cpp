@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
 #include "support/campaigns.hpp"
@@ -40,6 +41,52 @@ TEST(Intervals, BlocksOfAClusterCountOnce) {
   clusters.assign(30, 5);
   EXPECT_EQ(used_clusters(s, clusters).count, 30U) << "one cluster shows no scatter: each block is its own";
   EXPECT_FALSE(used_clusters(s, clusters).given);
+}
+
+/// Two sites, each with a group of scores: at one the blocks have no group, at the other three groups of two equal
+/// blocks. The mean of the two means has half their standard deviations: variances 2.5 / 5 and 7 / 3 over 4, on 4 and 2
+/// degrees of freedom (Satterthwaite: (0.125 + 0.583333)^2 / (0.125^2 / 4 + 0.583333^2 / 2) = 2.883).
+TEST(Intervals, OfTwoSitesAddTheirVariances) {
+  Score s = score_of_rows({1.0, 2.0, 3.0, 4.0, 5.0});
+  s.groups.push_back(s.groups[0]);
+  std::uint32_t block = 5;
+  for (const double v : {1.0, 1.0, 2.0, 2.0, 6.0, 6.0}) s.rows.push_back({1, block++, v});
+  const std::vector<std::uint32_t> clusters{77, 77, 77, 77, 77, 1, 1, 2, 2, 3, 3};  // of the first site: one group
+  const ScoreIntervals i = score_intervals(s, clusters);
+  EXPECT_NEAR(0.5 * (i.total.low + i.total.high), 3.0, 1e-12);
+  const boost::math::students_t t(0.708333333 * 0.708333333 / (0.125 * 0.125 / 4.0 + 0.583333333 * 0.583333333 / 2.0));
+  EXPECT_NEAR(0.5 * (i.total.high - i.total.low), boost::math::quantile(t, 0.975) * std::sqrt(0.708333333), 1e-6);
+  EXPECT_NEAR(i.groups[0].high - i.groups[0].low, 2.0 * 2.776445 * std::sqrt(0.5), 1e-5);  // each on its own freedom
+  EXPECT_NEAR(i.groups[1].high - i.groups[1].low, 2.0 * 4.302653 * std::sqrt(7.0 / 3.0), 1e-5);
+  EXPECT_EQ(used_clusters(s, clusters).by_block, std::vector<std::string>{s.groups[0].name});
+}
+
+/// Ten clusters of eight blocks; a second observable is read in only k of them. Its own interval covers as often as it
+/// says (with the freedom of all ten: 0, 80 and 88 % for k = 1, 2, 3).
+TEST(Intervals, OfAnObservableSeenInFewClustersCover) {
+  constexpr int kSets = 2000, kClusters = 10, kBlocks = 8;
+  for (const int k : {1, 2, 3, 5}) {
+    Numbers numbers(40 + static_cast<std::uint64_t>(k));
+    const double common = k < 3 ? 0.0 : 0.5;  // by block the interval cannot know of a common part
+    int covered = 0;
+    for (int set = 0; set < kSets; ++set) {
+      std::vector<double> values;
+      std::vector<std::uint32_t> clusters;
+      for (int c = 0; c < kClusters; ++c)
+        for (int b = 0; b < kBlocks; ++b) values.push_back(1.0), clusters.push_back(static_cast<std::uint32_t>(c));
+      Score s = score_of_rows(values);
+      s.groups.push_back(s.groups[0]);
+      for (int c = 0; c < k; ++c) {
+        const double shared = common * numbers.normal();
+        for (int b = 0; b < kBlocks; ++b)
+          s.rows.push_back({1, static_cast<std::uint32_t>(c * kBlocks + b), 2.0 + shared + numbers.normal()});
+      }
+      const Interval i = score_intervals(s, clusters).groups[1];
+      covered += i.low <= 2.0 && 2.0 <= i.high ? 1 : 0;
+    }
+    EXPECT_GE(covered / static_cast<double>(kSets), 0.93) << k;
+    EXPECT_LE(covered / static_cast<double>(kSets), 0.97) << k;
+  }
 }
 
 /// The order of the rows and the names of the clusters change nothing.
