@@ -3,6 +3,7 @@ import csv
 import hashlib
 import json
 import os
+import re
 import unittest
 
 import numpy as np
@@ -161,6 +162,12 @@ class Hazard(Case):
         self.assertIn("repeats the run for the objects: 3 200 trajectories of the recorded plan", done.stderr)
         rows = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
         self.assertEqual([rows[name]["people"] for name in "ABC"], [3, 4, 1])
+        said = dict(re.findall(r"talus: ([ABC]): (.*)", done.stderr))  # the most often hit first
+        for name in "AB":
+            self.assertTrue(said[name].startswith(f"hit {rows[name]['frequency']:.3g} times per year, once in "
+                                                  f"{rows[name]['return_period']:.3g} years (95 %: "), said[name])
+        self.assertEqual(said["C"], f"hit by no block of this run; at most {rows['C']['frequency_upper']:.3g} times per year (95 %)")
+        self.assertEqual(list(said)[-1], "C")
         with open(self.path("out/objects.csv"), encoding="utf-8", newline="") as file:
             table = list(csv.DictReader(file))
         self.assertEqual([(row["object"], row["name"], row["people"]) for row in table],

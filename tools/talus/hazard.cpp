@@ -152,8 +152,9 @@ std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, c
   return survey;
 }
 
-/// Runs the recorded plan again and writes the hazard of each object.
-void write_objects(const Options& options, const fs::path& folder, talus::io::HazardRecord& record) {
+/// Runs the recorded plan again and writes the hazard of each object. Returns how often each is hit, in words.
+std::vector<std::string> write_objects(const Options& options, const fs::path& folder,
+                                       talus::io::HazardRecord& record) {
   const talus::io::LoadedScenario loaded = recorded_plan(options, record.header.plan);
   const talus::io::ObjectLayer layer(options.objects, loaded, options.width);
   for (const std::string& warning : layer.warnings()) record.warnings.push_back(warning);
@@ -174,6 +175,7 @@ void write_objects(const Options& options, const fs::path& folder, talus::io::Ha
   progress.finish();
   record.objects_file = options.objects;
   record.replayed = true;
+  return layer.hits_text(rules, hits);
 }
 
 /// Says whose hazard the maps show.
@@ -227,7 +229,8 @@ int hazard(const Options& options) {
       {staged.temporary(), record.header.geo, grid.columns, grid.rows, [] { return !interrupted(); }},
       options.threads > 0 ? options.threads : omp_get_num_procs());
   progress.finish();
-  if (!options.objects.empty()) write_objects(options, staged.temporary(), record);
+  std::vector<std::string> objects;
+  if (!options.objects.empty()) objects = write_objects(options, staged.temporary(), record);
   record.files = staged.files();
   talus::io::write_text(staged.temporary() / "hazard.json", talus::io::hazard_json(record));
   const std::vector<std::string> removed = staged.to_remove();
@@ -238,6 +241,7 @@ int hazard(const Options& options) {
     say("", "removed, as not asked for this time: " + talus::joined(removed) +
                 " (of the earlier talus hazard in this folder)");
   for (const std::string& warning : record.warnings) say("warning", warning);
+  for (const std::string& object : objects) say("", object);
   say("", object_text(record) + ": " + count_text(record.cells) + " cells that something passes, " +
               talus::with_digits(record.header.rules.scale.total, 4) + " events per year; results are in " +
               fs::absolute(folder).lexically_normal().string());

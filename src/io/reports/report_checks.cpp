@@ -148,8 +148,9 @@ void check_inputs(const CheckedRun& checked, Checks& checks) {
                           (one.accuracy_m ? with_digits(*one.accuracy_m, 3) + " m" : std::string("unknown")),
                       "By: " + one.operation});
   }
-  checks.push_back({run.warnings.empty() ? Mark::Fine : Mark::Act, "Warnings of the run",
-                    run.warnings.empty() ? "none" : std::to_string(run.warnings.size()) + ", listed above",
+  const std::size_t warnings = all_warnings(run, checked.hazard).size();
+  checks.push_back({warnings == 0 ? Mark::Fine : Mark::Act, "Warnings of the run",
+                    warnings == 0 ? "none" : std::to_string(warnings) + ", listed above",
                     "Say of each why it does not matter here, or mend it."});
 }
 

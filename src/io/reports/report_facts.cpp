@@ -161,6 +161,14 @@ static void read_classes(const Json& matrix, HazardFacts& hazard) {
   }
 }
 
+std::vector<std::string> all_warnings(const RunFacts& run, const std::optional<HazardFacts>& hazard) {
+  std::vector<std::string> warnings = run.warnings;
+  if (!hazard) return warnings;
+  for (const std::string& warning : hazard->warnings)
+    if (std::ranges::count(warnings, warning) == 0) warnings.push_back(warning);
+  return warnings;
+}
+
 std::optional<HazardFacts> read_hazard_facts(const std::filesystem::path& folder, const RunFacts& run) {
   const std::filesystem::path file = folder / "hazard.json";
   std::error_code none;

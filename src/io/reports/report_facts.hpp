@@ -63,6 +63,9 @@ RunFacts read_facts(const std::filesystem::path& folder);
 /// Reads OUT/hazard.json; nothing if it is not there. Throws InputError if it cannot be understood.
 std::optional<HazardFacts> read_hazard_facts(const std::filesystem::path& folder, const RunFacts& run);
 
+/// The warnings of the run and of its hazard maps, each once.
+std::vector<std::string> all_warnings(const RunFacts& run, const std::optional<HazardFacts>& hazard);
+
 /// Day on which a file was written last (UTC): "2026-11-23"; empty if it is not known.
 std::string day_of(const std::filesystem::path& file);
 

@@ -55,10 +55,7 @@ RunReport read_report(const fs::path& folder) {
 }
 
 Markup warnings_html(const RunReport& report) {
-  std::vector<std::string> warnings = report.run.warnings;
-  if (report.hazard)
-    for (const std::string& warning : report.hazard->warnings)
-      if (std::ranges::count(warnings, warning) == 0) warnings.push_back(warning);
+  const std::vector<std::string> warnings = all_warnings(report.run, report.hazard);
   if (warnings.empty()) return "<p>The run gave no warnings.</p>\n"_html;
   Markup html = "<h3>Warnings</h3>\n<ul>\n"_html;
   for (const std::string& warning : warnings) html += "<li class='look'>"_html + warning + "</li>\n";

@@ -6,6 +6,7 @@
 #include "io/gdal/geopackage.hpp"
 #include "io/gdal/layer.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/results/vector_style.hpp"
@@ -249,6 +250,13 @@ class ObjectsTable {
   std::string text_;
 };
 
+/// Three digits: "22.4", "10500".
+std::string years_text(double years) {
+  if (!(years >= 1000.0)) return with_digits(years, 3);
+  const double step = std::pow(10.0, std::floor(std::log10(years)) - 2.0);
+  return text_of(std::round(years / step) * step);
+}
+
 std::string curve_rows(const std::string& object, const HazardCurve& curve, const EnergyBins& bins) {
   std::string rows;
   for (std::size_t i = 0; i < curve.size(); ++i) {
@@ -261,6 +269,30 @@ std::string curve_rows(const std::string& object, const HazardCurve& curve, cons
 }
 
 }  // namespace
+
+std::vector<std::string> ObjectLayer::hits_text(const HazardRules& rules, const std::vector<ObjectHits>& hits,
+                                                std::size_t most) const {
+  std::vector<std::pair<Bounded, std::size_t>> order;
+  for (std::size_t i = 0; i < hits.size(); ++i)
+    if (state_->on_map[i]) order.emplace_back(HazardCurve(rules, hits[i].largest).at(0), i);
+  std::ranges::stable_sort(order, std::ranges::greater{}, [](const auto& one) { return one.first.value; });
+  std::vector<std::string> lines;
+  for (const auto& [f, i] : order) {
+    if (lines.size() == most) {
+      lines.push_back("and " + std::to_string(order.size() - most) + " more, hit less often: objects.csv");
+      break;
+    }
+    const std::string name = printable(state_->names[i]) + ": ";
+    if (f.value > 0.0)
+      lines.push_back(name + "hit " + with_digits(f.value, 3) + " times per year, once in " +
+                      years_text(1.0 / f.value) + " years (95 %: " + with_digits(f.low, 3) + " to " +
+                      with_digits(f.high, 3) + " per year)");
+    else
+      lines.push_back(name + "hit by no block of this run; at most " + with_digits(f.high, 3) +
+                      " times per year (95 %)");
+  }
+  return lines;
+}
 
 void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenario& loaded, const HazardRules& rules,
                         const std::vector<ObjectHits>& hits, const std::vector<double>& years) const {

@@ -160,7 +160,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         return sorted(found, key=lambda p: order.index(p["name"]) if p["name"] in order else len(order))
 
     def by_scenario(self):
-        """Whether a scenario file may give the values: then no default of the dialog may hide its own."""
+        """Whether a scenario file may give the values."""
         return any(p["name"] == "scenario" for p in self.described())
 
     def initAlgorithm(self, configuration=None):
@@ -189,6 +189,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         self.addParameter(definition)
 
     def _definition(self, p):
+        """No default is set in a dialog: it would hide what a scenario, a campaign or a profile says."""
         key, title, optional = key_of(p["name"]), self._title(p), not p["required"]
         kind = p["type"]
         if p["name"] in self.table.get("field of", {}):
@@ -197,7 +198,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         if kind == "flag":
             return QgsProcessingParameterBoolean(key, title, False)
         if kind == "choice":
-            return QgsProcessingParameterEnum(key, title, p["choices"], False, self._default(p), optional, True)
+            return QgsProcessingParameterEnum(key, title, p["choices"], False, None, optional, True)
         if kind in ("number", "integer"):
             return self._number(p, key, title, optional)
         if kind == "folder":
@@ -206,11 +207,12 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             return QgsProcessingParameterFile(key, title, QgsProcessingParameterFile.Folder, "", None, optional)
         if kind == "file":
             return self._file(p, key, title, optional)
-        return QgsProcessingParameterString(key, title, self._default(p), False, optional)
+        return QgsProcessingParameterString(key, title, None, False, optional)
 
     def _help(self, p):
         several = p["name"] in self.table.get("several", ())
-        return tr(p["text"]) + (". " + tr("Several layers, as a road and houses, are joined into one.") if several else "")
+        least = ". " + tr("At least {value}.").format(value=p["low"]) if p["type"] == "integer" and p.get("low", 0) > 1 else ""
+        return tr(p["text"]) + least + (". " + tr("Several layers, as a road and houses, are joined into one.") if several else "")
 
     def _label(self, p):
         name = "folder" if p["type"] == "folder" and p["name"] == "out" and not p["written"] else p["name"]
@@ -223,12 +225,9 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             title += f" [{p['unit']}]"
         if self.by_scenario() and any(p["name"] in names for names in self.table.get("needs", ())[1:]):
             title += ", " + tr("needed without a scenario")
-        if self.by_scenario() and p["type"] != "flag" and "default" in p:
+        if p["type"] != "flag" and "default" in p:
             title += " (" + tr("{value} if not set").format(value=p["default"]) + ")"
         return title
-
-    def _default(self, p):
-        return None if self.by_scenario() else p.get("default")
 
     def _number(self, p, key, title, optional):
         whole = p["type"] == "integer"
@@ -236,7 +235,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         low, high = p.get("low", -1e300), p.get("high", 1e300)
         if whole:
             low, high = max(low, -LARGEST_IN_DIALOG), min(high, LARGEST_IN_DIALOG)
-        return QgsProcessingParameterNumber(key, title, kind, self._default(p), optional, low, high)
+        return QgsProcessingParameterNumber(key, title, kind, None, optional, low, high)
 
     def _file(self, p, key, title, optional):
         if p["written"]:

@@ -122,10 +122,16 @@ def _stop_if_cancelled(feedback):
         raise QgsProcessingException(tr("Cancelled before the program was started."))
 
 
+def refuse_without_system(source):
+    """Raises for a layer without a coordinate system; QGIS takes the "undefined" one of a GeoPackage for a valid one."""
+    system = source.sourceCrs()
+    if not system.isValid() or system.toWkt().startswith(("LOCAL_CS", "ENGCRS")):
+        raise QgsProcessingException(tr(NO_SYSTEM).format(name=source.sourceName()))
+
+
 def write_vector(source, inputs, file, context, feedback):
     """Writes the features of a source, with their CRS, into a GeoPackage or Shapefile; equal features give equal bytes."""
-    if not source.sourceCrs().isValid():
-        raise QgsProcessingException(tr(NO_SYSTEM).format(name=source.sourceName()))
+    refuse_without_system(source)
     with _kept(inputs, os.path.splitext(file)[0]) as (fresh, place):
         dated = gdal.GetThreadLocalConfigOption("OGR_CURRENT_DATE")  # of this thread alone: QGIS goes on writing in others
         gdal.SetThreadLocalConfigOption("OGR_CURRENT_DATE", "2000-01-01T00:00:00.000Z")  # not the time of writing
@@ -149,8 +155,7 @@ class Joined:
     def __init__(self, sources, context, feedback):
         self.sources = sources
         for source in sources:
-            if not source.sourceCrs().isValid():
-                raise QgsProcessingException(tr(NO_SYSTEM).format(name=source.sourceName()))
+            refuse_without_system(source)
         self.transforms = [QgsCoordinateTransform(source.sourceCrs(), self.sourceCrs(), context.transformContext())
                            for source in sources]
         for source, transform in zip(sources, self.transforms):

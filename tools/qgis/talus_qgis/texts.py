@@ -183,6 +183,7 @@ GERMAN = {
         "{path} beschreibt sich nicht (talus help --json): ein anderes Programm oder eine ältere Version? {way_out}",
     "(less than a minute left)": "(weniger als eine Minute übrig)",
     "(about {minutes} min left)": "(noch etwa {minutes} min)",
+    "At least {value}.": "Mindestens {value}.",
     "Cancelled.": "Abgebrochen.",
     "What a run has traced is kept: start it again with the same inputs and \"Resume\".":
         "Was ein Lauf gerechnet hat, ist behalten: mit denselben Eingaben und «Fortsetzen» neu starten.",
@@ -378,7 +379,10 @@ GERMAN = {
 
 
 def german():
-    return QgsApplication.instance() is not None and QgsApplication.locale().lower().startswith("de")
+    application = QgsApplication.instance()
+    if application is None:
+        return False
+    return (application.translation() or application.locale()).lower().startswith("de")  # that of --lang, else the setting
 
 
 def tr(text):

@@ -25,6 +25,10 @@ class ObjectLayer {
   /// How wide the lines are, in words; empty if there are none.
   std::string lines_text() const;
 
+  /// How often each object is hit, in words, a line each, the most often hit first; at most `most` of them.
+  std::vector<std::string> hits_text(const HazardRules& rules, const std::vector<ObjectHits>& hits,
+                                     std::size_t most = 12) const;
+
   /// Writes objects.gpkg (the geometries in the system of the DEM, their attributes, and the hazard), objects.csv (the
   /// same as a table), objects_curves.csv (how often each energy is exceeded) and objects_sources.csv (from which
   /// sources).
