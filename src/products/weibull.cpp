@@ -4,6 +4,7 @@
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 
+#include "beta_draw.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/base/random.hpp"
 #include "talus/base/sample.hpp"
@@ -57,28 +58,36 @@ Weibull fit_to_standard(std::size_t n, std::uint32_t draw, std::uint64_t seed, s
 }
 
 template <class Value>
-Interval middle(const std::vector<Weibull>& draws, double confidence, Value value) {
+Interval middle(const std::vector<WeibullDraw>& draws, double confidence, Value value) {
   std::vector<double> values;
   values.reserve(draws.size());
-  for (const Weibull& law : draws) values.push_back(value(law));
+  for (const WeibullDraw& draw : draws) values.push_back(value(draw));
   std::sort(values.begin(), values.end());
   const double tail = 0.5 * (1.0 - confidence);
   return {quantile(values, tail), quantile(values, 1.0 - tail)};
 }
 
 /// Bootstrap sample of the law behind n values with this fit: the pivots of simulated fits, solved for shape and scale.
-std::vector<Weibull> laws_of(const Weibull& fit, std::size_t n, const BootstrapOptions& options) {
+std::vector<WeibullDraw> laws_of(const Weibull& fit, std::size_t n, const BootstrapOptions& options) {
   const std::size_t simulated = std::min(n, kMostSimulated);
   const double shrink = std::sqrt(static_cast<double>(simulated) / static_cast<double>(n));
-  std::vector<Weibull> laws;
-  laws.reserve(options.draws);
+  std::vector<WeibullDraw> draws;
+  draws.reserve(options.draws);
   std::vector<double> logs;
   for (std::uint32_t draw = 0; draw < options.draws; ++draw) {
     const Weibull pivot = fit_to_standard(simulated, draw, options.seed, logs);
     const double shape = fit.shape / std::exp(shrink * std::log(pivot.shape));
-    laws.push_back({shape, fit.scale * std::exp(-shrink * std::log(pivot.scale) / shape)});
+    draws.push_back({{shape, fit.scale * std::exp(-shrink * std::log(pivot.scale) / shape)}});
   }
-  return laws;
+  return draws;
+}
+
+/// Adds the share of the values above 0 to each draw: of the posterior of a binomial share under Jeffreys' prior.
+void draw_shares(WeibullFit& fit, std::uint64_t seed) {
+  if (fit.zeros == 0) return;
+  const auto zeros = static_cast<double>(fit.zeros), others = static_cast<double>(fit.values - fit.zeros);
+  for (std::uint32_t draw = 0; draw < fit.draws.size(); ++draw)
+    fit.draws[draw].positive = beta_draw(Random(seed, 1, draw, Purpose::Bootstrap), others + 0.5, zeros + 0.5);
 }
 
 }  // namespace
@@ -116,8 +125,9 @@ WeibullFit fit_weibull(std::span<const double> values, const BootstrapOptions& o
   fit.distance = anderson_darling(positive, fit.law);
   fit.confidence = options.confidence;
   fit.draws = laws_of(fit.law, positive.size(), options);
-  fit.shape = middle(fit.draws, options.confidence, [](const Weibull& law) { return law.shape; });
-  fit.scale = middle(fit.draws, options.confidence, [](const Weibull& law) { return law.scale; });
+  draw_shares(fit, options.seed);
+  fit.shape = middle(fit.draws, options.confidence, [](const WeibullDraw& draw) { return draw.law.shape; });
+  fit.scale = middle(fit.draws, options.confidence, [](const WeibullDraw& draw) { return draw.law.scale; });
   return fit;
 }
 
@@ -125,8 +135,8 @@ Exceedance exceedance(const WeibullFit& fit, std::span<const double> values, dou
   const double positive = 1.0 - static_cast<double>(fit.zeros) / static_cast<double>(fit.values);
   const auto above =
       static_cast<std::uint64_t>(std::count_if(values.begin(), values.end(), [&](double v) { return v > limit; }));
-  const auto by = [&](const Weibull& law) { return positive * law.exceedance(limit); };
-  return {by(fit.law), middle(fit.draws, fit.confidence, by),
+  const auto by = [&](const WeibullDraw& draw) { return draw.positive * draw.law.exceedance(limit); };
+  return {by({fit.law, positive}), middle(fit.draws, fit.confidence, by),
           static_cast<double>(above) / static_cast<double>(values.size()),
           probability_bounds(above, values.size(), fit.confidence)};
 }

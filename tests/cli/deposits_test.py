@@ -69,7 +69,11 @@ class Score(Deposits):
         self.assertLess(right["score"], right["climatology"]["score"])
         for pattern in right["deposits"]["patterns"]:
             self.assertGreater(pattern["p_value"], 0.01)
-        self.assertLess(min(p["p_value"] for p in wrong["deposits"]["patterns"]), 0.011)
+            self.assertGreaterEqual(pattern["p_corrected"], pattern["p_value"])
+        found = wrong["deposits"]["patterns"]
+        least = min(p["p_value"] for p in found)
+        self.assertLess(least, 0.011)
+        self.assertAlmostEqual(min(p["p_corrected"] for p in found), least * len(found), 9)  # Holm's of the smallest
 
     def test_the_order_of_rows_and_the_threads_change_nothing(self):
         one = self.score("-q", "--threads", "1")

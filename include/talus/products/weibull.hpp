@@ -44,14 +44,20 @@ struct BootstrapOptions {
   double confidence = 0.95;
 };
 
+/// One of a bootstrap sample.
+struct WeibullDraw {
+  Weibull law;            ///< of the values above 0
+  double positive = 1.0;  ///< their share
+};
+
 /// A Weibull distribution fitted to the values above 0. Some values may be 0, such as the jump height of a sliding
 /// block.
 struct WeibullFit {
   Weibull law;
   std::size_t values = 0, zeros = 0;
   Interval shape{}, scale{};
-  double distance = 0.0;       ///< anderson_darling
-  std::vector<Weibull> draws;  ///< bootstrap sample of the law
+  double distance = 0.0;           ///< anderson_darling
+  std::vector<WeibullDraw> draws;  ///< bootstrap sample
   double confidence = 0.95;
 
   bool accepted() const { return distance <= kAndersonDarling5; }
@@ -64,7 +70,11 @@ struct WeibullFit {
 /// Parametric bootstrap of the pivots: k^/k and (lambda^/lambda)^k have a distribution that does not depend on k and
 /// lambda (Thoman, Bain & Antle 1969). So the intervals of shape, scale and every exceedance are exact for every n,
 /// apart from the finite number of draws. For n > 2000 the deviations of 2000 values are multiplied by sqrt(2000 / n).
-/// Philox streams of (seed, draw): the same bits for the same n and seed.
+///
+/// Of n values m are above 0: each draw has a share of Beta(m + 1/2, n - m + 1/2) (Jeffreys' prior; Brown, Cai &
+/// DasGupta 2001). With no 0 among the values it is 1, as for a quantity that is never 0.
+///
+/// Philox streams of (seed, draw): the same bits for the same n, m and seed.
 WeibullFit fit_weibull(std::span<const double> values, const BootstrapOptions& options);
 
 /// Probability that a limit is exceeded.

@@ -5,12 +5,15 @@
 
 #include "fitting_values.hpp"
 #include "talus/base/expect.hpp"
+#include "talus/base/holm.hpp"
+#include "talus/fit/campaign/block_draws.hpp"
 #include "talus/fit/campaign/deposits.hpp"
 
 namespace talus {
 namespace {
 
-constexpr std::size_t kPatterns = 99;        // of simulated blocks, for a p-value
+constexpr std::uint32_t kPatterns = 99;  // of exchanged places, for a p-value
+constexpr std::uint64_t kPatternSeed = 1;
 constexpr std::size_t kStopsCompared = 100;  // of each block: more cost time and tell little
 
 using Places = std::vector<Eigen::Vector2d>;
@@ -137,35 +140,72 @@ struct Mean {
   double value() const { return sum / count; }
 };
 
-/// The share of simulated patterns that are at least as far from the simulated ones as the mapped one is.
-double p_value_of(double distance, std::span<const Places> simulated) {
+/// The blocks of one class that have enough simulated stops.
+struct ClassOfBlocks {
+  Places mapped;
+  std::vector<Places> simulated;       // by block
+  std::vector<std::uint32_t> streams;  // by block
+};
+
+/// Share of the patterns that are at least as far from their other places as the mapped one is. For a right model the
+/// place of a block on the map and its simulated stops are alike, in any order. So each pattern begins these places at
+/// a random one, block by block: that is its place, the others are its stops. Rotations are a group, which makes the
+/// rank exact for any number of stops. Source: Hemerik & Goeman (2018), "Exact testing with random permutations".
+double p_value_of(double distance, const ClassOfBlocks& blocks) {
   std::size_t as_far = 1;
-  for (std::size_t pattern = 0; pattern < kPatterns; ++pattern) {
-    Places drawn;
-    for (const Places& stops : simulated) drawn.push_back(stops[pattern % stops.size()]);
-    if (pattern_distance(drawn, simulated, pattern).distance >= distance) ++as_far;
+  Places mapped = blocks.mapped;
+  std::vector<Places> simulated = blocks.simulated;
+  for (std::uint32_t pattern = 0; pattern < kPatterns; ++pattern) {
+    for (std::size_t b = 0; b < mapped.size(); ++b) {
+      Places all = blocks.simulated[b];
+      all.insert(all.begin(), blocks.mapped[b]);
+      const double draw = draw_of_block(kPatternSeed, blocks.streams[b], pattern, BlockDraw::Trial);
+      const auto first = static_cast<std::ptrdiff_t>(draw * static_cast<double>(all.size()));
+      std::rotate(all.begin(), all.begin() + first, all.end());
+      mapped[b] = all.front();
+      simulated[b].assign(all.begin() + 1, all.end());
+    }
+    if (pattern_distance(mapped, simulated).distance >= distance) ++as_far;
   }
   return static_cast<double>(as_far) / (kPatterns + 1);
 }
 
+/// The blocks of a class among those asked for.
+ClassOfBlocks blocks_of(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
+                        std::size_t number) {
+  ClassOfBlocks blocks;
+  for (std::size_t b = 0; b < runs.size(); ++b) {
+    if (!ask[b] || class_of(campaign, campaign.blocks[b]) != number) continue;
+    Places stops = stops_of(runs[b]);
+    if (stops.size() < kFewestSimulated) continue;
+    stops.resize(std::min(stops.size(), kStopsCompared));
+    blocks.mapped.push_back(*campaign.blocks[b].stop);
+    blocks.simulated.push_back(std::move(stops));
+    blocks.streams.push_back(campaign.blocks[b].stream);
+  }
+  return blocks;
+}
+
+void correct(std::vector<PatternDistance>& patterns) {
+  std::vector<double> p;
+  for (const PatternDistance& pattern : patterns) p.push_back(pattern.p_value);
+  const std::vector<double> corrected = holm(p);
+  for (std::size_t i = 0; i < patterns.size(); ++i) patterns[i].corrected = corrected[i];
+}
+
 }  // namespace
 
-PatternDistance pattern_distance(std::span<const Eigen::Vector2d> mapped, std::span<const Places> simulated,
-                                 std::optional<std::size_t> left_out) {
+PatternDistance pattern_distance(std::span<const Eigen::Vector2d> mapped, std::span<const Places> simulated) {
   TALUS_EXPECT(mapped.size() == simulated.size(), "each mapped block has its simulated stops");
   Mean across, within_simulated, within_mapped;
-  const auto skipped = [&](const Places& of, std::size_t t) { return left_out && t == *left_out % of.size(); };
   for (std::size_t i = 0; i < mapped.size(); ++i)
     for (std::size_t k = 0; k < mapped.size(); ++k) {
       if (k == i) continue;
       Mean to, between;
       for (std::size_t t = 0; t < simulated[k].size(); ++t) {
-        if (skipped(simulated[k], t)) continue;
         to.add((mapped[i] - simulated[k][t]).norm());
-        if (t < simulated[i].size() && !skipped(simulated[i], t))
-          between.add((simulated[i][t] - simulated[k][t]).norm());
+        if (t < simulated[i].size()) between.add((simulated[i][t] - simulated[k][t]).norm());
       }
-      if (to.count == 0.0 || between.count == 0.0) continue;
       across.add(to.value());
       within_simulated.add(between.value());
       within_mapped.add((mapped[i] - mapped[k]).norm());
@@ -191,22 +231,14 @@ DepositCheck check_deposits(const Campaign& campaign, std::span<const BlockRuns>
     for (std::uint32_t t = 0; ask[b] && t < runs[b].trials; ++t) inside.add(std::isnan(runs[b].x[t]) ? 0.0 : 1.0);
   check.inside = inside.value();
   for (std::size_t number = 0; number <= campaign.deposits->limits.size(); ++number) {
-    Places mapped;
-    std::vector<Places> simulated;
-    for (std::size_t b = 0; b < runs.size(); ++b) {
-      if (!ask[b] || class_of(campaign, campaign.blocks[b]) != number) continue;
-      Places stops = stops_of(runs[b]);
-      if (stops.size() < kFewestSimulated) continue;
-      stops.resize(std::min(stops.size(), kStopsCompared));
-      mapped.push_back(*campaign.blocks[b].stop);
-      simulated.push_back(std::move(stops));
-    }
-    if (mapped.size() < kFewestRows) continue;
-    PatternDistance pattern = pattern_distance(mapped, simulated);
+    const ClassOfBlocks blocks = blocks_of(campaign, runs, ask, number);
+    if (blocks.mapped.size() < kFewestRows) continue;
+    PatternDistance pattern = pattern_distance(blocks.mapped, blocks.simulated);
     pattern.group = class_name(*campaign.deposits, number);
-    pattern.p_value = p_value_of(pattern.distance, simulated);
+    pattern.p_value = p_value_of(pattern.distance, blocks);
     check.patterns.push_back(std::move(pattern));
   }
+  correct(check.patterns);
   return check;
 }
 

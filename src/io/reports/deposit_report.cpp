@@ -7,11 +7,17 @@
 namespace talus::io {
 namespace {
 
+std::string p_text(const PatternDistance& pattern) {
+  std::string text = "p " + with_decimals(pattern.p_value, 2);
+  if (pattern.corrected > pattern.p_value)
+    text += " (" + with_decimals(pattern.corrected, 2) + " corrected for the number of classes)";
+  return text + (pattern.corrected < 0.05 ? ": not the simulated pattern" : "");
+}
+
 std::string sentence_of(const std::string& rows, const PatternDistance& pattern) {
   return rows + " rows: " + pattern.group + ": energy distance of the patterns " + with_decimals(pattern.distance, 2) +
-         " m (" + with_decimals(100.0 * pattern.share, 1) + " % of what it can be, 0 for a right model), p " +
-         with_decimals(pattern.p_value, 2) + (pattern.p_value < 0.05 ? ": not the simulated pattern" : "") + ", " +
-         std::to_string(pattern.blocks) + " blocks";
+         " m (" + with_decimals(100.0 * pattern.share, 1) + " % of what it can be, 0 for a right model), " +
+         p_text(pattern) + ", " + std::to_string(pattern.blocks) + " blocks";
 }
 
 }  // namespace
@@ -34,7 +40,8 @@ Json deposits_json(const ScoredRows& s) {
                         {"blocks", pattern.blocks},
                         {"energy_distance_m", json_of(pattern.distance, six_decimals)},
                         {"share", json_of(pattern.share, six_decimals)},
-                        {"p_value", json_of(pattern.p_value, six_decimals)}});
+                        {"p_value", json_of(pattern.p_value, six_decimals)},
+                        {"p_corrected", json_of(pattern.corrected, six_decimals)}});
   return {{"inside", json_of(s.deposits->inside, six_decimals)}, {"patterns", patterns}};
 }
 

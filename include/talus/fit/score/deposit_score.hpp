@@ -21,10 +21,11 @@ inline constexpr double kLeastAngleSpread = 0.0087;  // half a degree
 /// Distance between the mapped and the simulated pattern of one class of size.
 struct PatternDistance {
   std::string group;
-  std::uint32_t blocks = 0;     ///< with enough simulated stops in the mapped region
-  double distance = kNotGiven;  ///< energy distance [m], fair: 0 on average if the model is right; may be negative
-  double share = kNotGiven;     ///< of twice the mean distance between mapped and simulated places, at most 1
-  double p_value = kNotGiven;   ///< share of patterns of simulated blocks that are as far from the others
+  std::uint32_t blocks = 0;      ///< with enough simulated stops in the mapped region
+  double distance = kNotGiven;   ///< energy distance [m], fair: 0 on average if the model is right; may be negative
+  double share = kNotGiven;      ///< of twice the mean distance between mapped and simulated places, at most 1
+  double p_value = kNotGiven;    ///< share of patterns of exchanged places that are at least as far apart
+  double corrected = kNotGiven;  ///< for the number of classes (Holm)
 };
 
 /// Checks of a model against mapped blocks, beside the score: the pattern of each class and the share that counts.
@@ -38,19 +39,17 @@ struct DepositCheck {
 ///   2 mean |y_i - x_kt| - mean |x_it - x_kt| - mean |y_i - y_k|
 ///
 /// each a mean over the pairs i, k of the mean over t. Own trials are left out, and both patterns have the same sizes,
-/// so that it is 0 on average for the right model at any number of blocks and trials. The p-value is a rank among 99
-/// patterns that take one simulated stop of each block for its place. Source: Szekely & Rizzo (2013), "Energy
-/// statistics: a class of statistics based on distances".
+/// so that it is 0 on average for the right model at any number of blocks and trials. The p-value is an exact rank
+/// among 99 patterns, for which a random one of the places of each block, mapped or simulated, stands for its place on
+/// the map. Source: Szekely & Rizzo (2013), "Energy statistics: a class of statistics based on distances".
 DepositCheck check_deposits(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask);
 
 /// The distance of two patterns of n blocks, as above.
 ///
 /// @param mapped     the place of each block
 /// @param simulated  by block, at least one place each. Of two blocks the first places are compared, the second, ...
-/// @param left_out   a trial that does not count, by its number modulo those of a block
 /// @return           distance and share alone
 PatternDistance pattern_distance(std::span<const Eigen::Vector2d> mapped,
-                                 std::span<const std::vector<Eigen::Vector2d>> simulated,
-                                 std::optional<std::size_t> left_out = {});
+                                 std::span<const std::vector<Eigen::Vector2d>> simulated);
 
 }  // namespace talus
