@@ -58,7 +58,7 @@ Legend with_names(Legend legend) {
 }
 
 Legend count_legend() {
-  return {{1, 10, 100, 1000, 10000}, 1.0, "", Palette::Cividis};
+  return {{1, 10, 100, 1000, 10000}, 1.0, "", Palette::YlGnBu};
 }
 
 std::vector<Map::Band> bounded_bands(const std::string& name, const std::string& unit) {
@@ -344,7 +344,7 @@ std::vector<RunRaster> make_run_rasters() {
       release(),
       count("sources", "Source cells that reach the cell",
             "source cells of which at least one trajectory reaches the cell",
-            {{1, 3, 10, 30, 100}, 1.0, "", Palette::Cividis}, &CellRecord::sources),
+            {{1, 3, 10, 30, 100}, 1.0, "", Palette::YlGnBu}, &CellRecord::sources),
   };
 }
 

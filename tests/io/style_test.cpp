@@ -153,7 +153,7 @@ TEST(Colours, AsSeenByMachado) {  // greys stay grey, and pure red is dark witho
   EXPECT_LT(lab_of(eyes().at("protanopia") * linear("#ff0000"))[0], 45.0);
 }
 
-constexpr Palette kPalettes[]{Palette::Plasma, Palette::PlasmaFromDark, Palette::Viridis, Palette::Cividis,
+constexpr Palette kPalettes[]{Palette::Plasma, Palette::PlasmaFromDark, Palette::Viridis, Palette::YlGnBu,
                               Palette::HazardClasses};
 
 TEST(Colours, NeighboursDifferForAllEyes) {

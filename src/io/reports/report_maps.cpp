@@ -171,7 +171,7 @@ void add_undecided(const fs::path& folder, const RunFacts& run, MapSheet& sheet)
   }
   ReportMap map{"hazard_class_undecided", "Class not decided", "1", {}, {}, {}};
   map.style = {
-      undecided.band(), true, {{0.0, "decided", {200, 200, 200}}, {1.0, "not decided by this number", {213, 94, 0}}}};
+      undecided.band(), true, {{0.0, "decided", {200, 200, 200}}, {1.0, "not decided by so few blocks", {213, 94, 0}}}};
   map.classes_only = true;
   map.in_print = open > 0.0;
   map.picture = picture_of(values, sheet.window.width(), map.style);

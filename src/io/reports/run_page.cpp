@@ -133,9 +133,9 @@ std::string between(const std::vector<double>& limits, std::size_t number, const
 Markup classes_html(const HazardFacts& hazard) {
   if (hazard.classes.empty() || hazard.energies.empty() || hazard.years.empty()) return {};
   Markup html = "<h3>Classes of hazard</h3>\n<p>For "_html + hazard.object +
-                ", by how often it is hit with an energy of each class.</p>\n<table><tr><th>energy</th>";
+                ", by how often it is hit with an energy of each class.</p>\n<table><tr><th>energy, return period</th>";
   for (std::size_t k = 0; k < hazard.classes.front().size(); ++k)
-    html += "<th>once in "_html + between(hazard.years, k, " years") + "</th>";
+    html += "<th>"_html + between(hazard.years, k, " years") + "</th>";
   html += "</tr>\n";
   for (std::size_t i = 0; i < hazard.classes.size(); ++i) {
     html += "<tr><th>"_html + between(hazard.energies, i, " kJ") + "</th>";

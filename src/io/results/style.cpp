@@ -18,13 +18,14 @@ namespace {
 constexpr std::size_t kColours = 6;
 using Colours = std::array<const char*, kColours>;
 
-// Six colours each of matplotlib's plasma, viridis and cividis (CC0), from light to dark in even steps. The darkest of
-// plasma is darker here: without the red cones (protanopia) it would be too near to the one before it. How far apart
-// the colours are for the colour-blind is tested (tests/io/style_test.cpp).
+// Six colours each of plasma and viridis of matplotlib (CC0) and of YlGnBu of ColorBrewer (Apache), from light to dark;
+// none is grey, as the hillshade below is. The darkest of plasma is darker here: without the red cones (protanopia) it
+// would be too near to the one before it. How far apart the colours are for the colour-blind is tested
+// (tests/io/style_test.cpp).
 constexpr Colours kPlasma{"#f0f921", "#fca636", "#e16462", "#b12a90", "#6a00a8", "#08054f"};
 constexpr Colours kPlasmaFromDark{"#08054f", "#6a00a8", "#b12a90", "#e16462", "#fca636", "#f0f921"};
 constexpr Colours kViridis{"#fde725", "#7ad151", "#22a884", "#2a788e", "#414487", "#440154"};
-constexpr Colours kCividis{"#ffea46", "#cbba69", "#958f78", "#666970", "#31446b", "#00204d"};
+constexpr Colours kYlGnBu{"#c7e9b4", "#7fcdbb", "#41b6c4", "#1d91c0", "#225ea8", "#0c2c84"};
 // The classes of the Swiss matrix: yellow and white, yellow, blue, red; further ones, should there be any, darker.
 constexpr Colours kHazardClasses{"#fff9c4", "#ffd600", "#2979ff", "#d50000", "#7f0000", "#3e0000"};
 
@@ -36,8 +37,8 @@ const Colours& colours(Palette palette) {
       return kPlasmaFromDark;
     case Palette::Viridis:
       return kViridis;
-    case Palette::Cividis:
-      return kCividis;
+    case Palette::YlGnBu:
+      return kYlGnBu;
     case Palette::HazardClasses:
       return kHazardClasses;
   }
