@@ -7,9 +7,9 @@ namespace talus::io::test {
 namespace {
 
 constexpr const char* kBlocks =
-    "id,x,y,release_height_m,vx,vy,vz,mass_kg,density_kgm3,L1_m,L2_m,L3_m,day,group,holdout\n"
-    "a,600050,5200040,1.5,0,-1,0,1000,2650,1.1,0.9,0.7,3,g,0\n"
-    "b,600060,5200040,2,,,,500,,,,,,,1\n";
+    "id,x,y,release_height_m,vx,vy,vz,mass_kg,density_kgm3,L1_m,L2_m,L3_m,day,group,rock,holdout\n"
+    "a,600050,5200040,1.5,0,-1,0,1000,2650,1.1,0.9,0.7,3,g,K2,0\n"
+    "b,600060,5200040,2,,,,500,,,,,,,,1\n";
 
 class Campaigns : public Files {
  protected:
@@ -37,6 +37,8 @@ TEST_F(Campaigns, BlocksInLocalMetres) {
   EXPECT_EQ(a.axes, Vec3(1.1, 0.9, 0.7));
   EXPECT_EQ(a.day, 3);
   EXPECT_EQ(a.group, "g");
+  EXPECT_EQ(a.rock, "K2");
+  EXPECT_EQ(b.rock, "");
   EXPECT_FALSE(a.holdout);
   EXPECT_TRUE(b.holdout);
   EXPECT_EQ(b.density, 2700.0);

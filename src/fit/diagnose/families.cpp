@@ -25,9 +25,15 @@ std::string rocks_word(std::size_t n) {
 }
 
 /// How the permutations were counted, for the reports.
-std::string permutations_note(const PermutationTest& test, const char* what) {
+std::string permutations_note(const PermutationTest& test, const std::string& what) {
   return std::string(test.exact ? "p from all " : "p from ") + std::to_string(test.arrangements) +
          " arrangements of the " + what;
+}
+
+/// What changed places in a test of a property.
+std::string units_word(const PropertyTest& test) {
+  return std::string(test.by_rock ? "rocks" : "blocks") + (test.sites > 1 ? " within their sites" : "") +
+         (test.by_rock ? ", not of their releases" : "");
 }
 
 /// A family with a test of its own.
@@ -45,15 +51,12 @@ FamilyTest block_property(std::span<const BlockNumbers> sites, const FamilyOptio
   family.may_name = test.rocks >= options.rules.fewest_rocks;
   if (!family.may_name) family.note = rocks_word(test.rocks) + ": a property of the block cannot be named from them";
   if (!test.tested) {
-    if (family.may_name) family.note = "fewer than ten blocks";
+    if (family.may_name)
+      family.note = test.blocks < options.rules.fewest_blocks ? "fewer than ten blocks" : "no two rocks to compare";
     return family;
   }
   family.p_value = test.regression.permuted.p_value;
-  if (test.by_rock)
-    family.note += std::string(family.note.empty() ? "" : "; ") +
-                   permutations_note(test.regression.permuted, "rocks, not of their releases");
-  else
-    family.note = permutations_note(test.regression.permuted, test.sites > 1 ? "blocks within their sites" : "blocks");
+  family.note += (family.may_name ? "" : "; ") + permutations_note(test.regression.permuted, units_word(test));
   for (std::size_t i = 0; i < test.slopes.size(); ++i)
     if (!std::isnan(test.slopes[i].correlation))
       family.parts.push_back(

@@ -1,10 +1,11 @@
 #include "talus/fit/diagnose/property_test.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <set>
+
+#include "rocks.hpp"
 
 namespace talus {
 namespace {
@@ -12,13 +13,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// What makes a rock: releases of equal axes, mass and density are taken to be of the same one.
-using Rock = std::array<double, 5>;
-
-Rock rock_of(const MeasuredBlock& b) {
-  return {b.axes.x(), b.axes.y(), b.axes.z(), b.mass, b.density};
-}
 
 /// Blocks with a number, in the order of their streams, so that sums do not hang on the order of the file.
 std::vector<std::size_t> used_blocks(const Campaign& campaign, const std::vector<double>& energy) {
@@ -53,12 +47,16 @@ struct Releases {
   }
 };
 
+std::size_t count_of(const std::vector<std::size_t>& numbers) {
+  return std::set<std::size_t>(numbers.begin(), numbers.end()).size();
+}
+
 /// Whether different rocks were released in one of the groups: groups are then sites.
-bool groups_are_sites(const Campaign& campaign, const Releases& releases) {
-  std::map<std::size_t, std::set<Rock>> rocks;
-  for (std::size_t i = 0; i < releases.blocks.size(); ++i)
-    rocks[releases.units.strata[i]].insert(rock_of(campaign.blocks[releases.blocks[i]]));
-  return std::ranges::any_of(rocks, [](const auto& group) { return group.second.size() > 1; });
+bool groups_are_sites(const std::vector<std::size_t>& groups, const std::vector<std::size_t>& rocks) {
+  std::map<std::size_t, std::size_t> rock_of_group;
+  for (std::size_t i = 0; i < groups.size(); ++i)
+    if (rock_of_group.emplace(groups[i], rocks[i]).first->second != rocks[i]) return true;
+  return false;
 }
 
 /// Logarithms of L1/L2, L1/L3 and the mass.
@@ -72,49 +70,49 @@ MatrixXd properties_of(const Campaign& campaign, const std::vector<std::size_t>&
   return x;
 }
 
-/// Releases of one rock become one unit: the mean of their numbers, less the means of their sites.
-void join_rocks(const Campaign& campaign, Releases& releases) {
-  const VectorXd rest = within_strata(releases.energy, releases.units.strata);
-  std::map<Rock, std::vector<Index>> rocks;
-  for (std::size_t i = 0; i < releases.blocks.size(); ++i)
-    rocks[rock_of(campaign.blocks[releases.blocks[i]])].push_back(static_cast<Index>(i));
-  Releases joined = releases;
-  joined.energy.resize(std::ssize(rocks));
-  joined.blocks.clear(), joined.units.streams.clear();
-  for (const auto& [rock, members] : rocks) {
-    const auto first = static_cast<std::size_t>(members.front());
-    joined.energy[std::ssize(joined.blocks)] = rest(members).mean();
-    joined.blocks.push_back(releases.blocks[first]);
-    joined.units.streams.push_back(releases.units.streams[first]);
-  }
-  joined.units.strata.assign(joined.blocks.size(), 0);
-  releases = std::move(joined);
-}
-
-/// What a campaign brings to a test: units that may change places, with their numbers and their properties.
+/// What a campaign brings to a test: rocks that may change places, each with the means of its releases.
 struct SiteUnits {
   VectorXd energy;
   MatrixXd x;
   Units units;
-  std::size_t blocks = 0, rocks = 0, sites = 0;
-  bool by_rock = false;
+  std::size_t blocks = 0, rocks = 0, sites = 0, strata = 0;
 };
 
+/// Rocks change places with those that were released at the same sites: only these have numbers of one distribution, as
+/// the mean of a site was taken away with more or fewer releases elsewhere.
+void set_strata(const std::map<std::size_t, std::set<std::size_t>>& sites_of_rock, SiteUnits& out) {
+  std::map<std::set<std::size_t>, std::size_t> strata;
+  for (const auto& [rock, sites] : sites_of_rock) strata.emplace(sites, 0);
+  for (auto& [sites, number] : strata) number = out.strata++;
+  for (const auto& [rock, sites] : sites_of_rock) out.units.strata.push_back(strata.at(sites));
+}
+
+/// Releases of one rock become one unit: the means of their numbers and properties, less the means of their sites.
 SiteUnits units_of(const BlockNumbers& site) {
-  const Campaign& campaign = site.campaign;
-  Releases releases(campaign, used_blocks(campaign, site.values), site.values);
+  const Releases releases(site.campaign, used_blocks(site.campaign, site.values), site.values);
+  const std::vector<std::size_t> rocks = rocks_of(site.campaign, releases.blocks);
+  std::vector<std::size_t> sites = releases.units.strata;
+  if (!groups_are_sites(sites, rocks)) sites.assign(sites.size(), 0);
   SiteUnits out;
   out.blocks = releases.blocks.size();
-  std::set<Rock> rocks;
-  for (const std::size_t b : releases.blocks) rocks.insert(rock_of(campaign.blocks[b]));
-  out.rocks = rocks.size();
-  if (!groups_are_sites(campaign, releases)) releases.units.strata.assign(out.blocks, 0);
-  out.sites = std::set<std::size_t>(releases.units.strata.begin(), releases.units.strata.end()).size();
-  out.by_rock = 2 * out.rocks <= out.blocks;
-  if (out.by_rock && out.blocks > 0) join_rocks(campaign, releases);
-  out.energy = std::move(releases.energy);
-  out.x = properties_of(campaign, releases.blocks);
-  out.units = std::move(releases.units);
+  out.rocks = count_of(rocks);
+  out.sites = count_of(sites);
+  std::map<std::size_t, std::vector<Index>> members;
+  std::map<std::size_t, std::set<std::size_t>> sites_of_rock;
+  for (std::size_t i = 0; i < rocks.size(); ++i) {
+    if (members[rocks[i]].empty()) out.units.streams.push_back(releases.units.streams[i]);
+    members[rocks[i]].push_back(static_cast<Index>(i));
+    sites_of_rock[rocks[i]].insert(sites[i]);
+  }
+  set_strata(sites_of_rock, out);
+  const VectorXd energy = within_strata(releases.energy, sites);
+  const MatrixXd x = within_strata(properties_of(site.campaign, releases.blocks), sites);
+  out.energy.resize(std::ssize(members));
+  out.x.resize(std::ssize(members), x.cols());
+  for (const auto& [rock, rows] : members) {
+    out.energy[static_cast<Index>(rock)] = energy(rows).mean();
+    out.x.row(static_cast<Index>(rock)) = x(rows, Eigen::all).colwise().mean();
+  }
   return out;
 }
 
@@ -128,12 +126,12 @@ SiteUnits joined(std::vector<SiteUnits> sites) {
     all.energy.tail(more) = site.energy;
     all.x.conservativeResize(before + more, 3);
     all.x.bottomRows(more) = site.x;
-    for (const std::size_t stratum : site.units.strata) all.units.strata.push_back(all.sites + stratum);
+    for (const std::size_t stratum : site.units.strata) all.units.strata.push_back(all.strata + stratum);
     all.units.streams.insert(all.units.streams.end(), site.units.streams.begin(), site.units.streams.end());
     all.blocks += site.blocks;
     all.rocks += site.rocks;
     all.sites += site.sites;
-    all.by_rock = all.by_rock || site.by_rock;
+    all.strata += site.strata;
   }
   return all;
 }
@@ -151,10 +149,10 @@ PropertyTest property_test(std::span<const BlockNumbers> sites, const DiagnosisR
   const SiteUnits all = joined(std::move(each));
   PropertyTest test;
   test.blocks = all.blocks;
-  if (test.blocks < rules.fewest_blocks) return test;
   test.rocks = all.rocks;
   test.sites = all.sites;
-  test.by_rock = all.by_rock;
+  test.by_rock = all.rocks < all.blocks;
+  if (test.blocks < rules.fewest_blocks) return test;
   test.names = {"log L1/L2", "log L1/L3", "log mass"};
   test.slopes = slopes(all.energy, all.x, all.units.strata);
   test.regression = regression_test(all.energy, all.x, all.units, rules.arrangements, seed);

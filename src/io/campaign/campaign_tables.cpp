@@ -47,7 +47,7 @@ class Tables {
   void read_blocks() {
     const CsvTable table(files_.blocks,
                          {"id", "x", "y", "release_height_m", "release_radius_m", "vx", "vy", "vz", "mass_kg",
-                          "density_kgm3", "L1_m", "L2_m", "L3_m", "day", "group", "holdout"},
+                          "density_kgm3", "L1_m", "L2_m", "L3_m", "day", "group", "rock", "holdout"},
                          {"id", "x", "y", "release_height_m", "mass_kg"});
     for (const Row& row : table.rows()) {
       MeasuredBlock block;
@@ -68,6 +68,7 @@ class Tables {
       block.axes = axes_of(table, row, equivalent_diameter(block.mass, block.density));
       block.day = static_cast<int>(table.number(row, "day", kDay).value_or(0.0));
       block.group = table.text(row, "group");
+      block.rock = table.text(row, "rock");
       block.holdout = table.number(row, "holdout", kHoldout).value_or(0.0) == 1.0;
       block.passages.resize(campaign_.screens.size());
       check_release(table, row, block);

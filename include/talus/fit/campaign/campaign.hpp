@@ -38,6 +38,7 @@ struct MeasuredBlock {
   Vec3 axes = Vec3::Ones();      ///< L1 >= L2 >= L3 [m]; of a sphere of this mass where they are not given
   int day = 0;                   ///< of the release; 0: not given
   std::string group;             ///< empty: none
+  std::string rock;              ///< its name, the same for each release of it; empty: known by its size
   bool holdout = false;          ///< never enters a fit
 
   std::optional<Eigen::Vector2d> stop;           ///< place of rest [m, local]

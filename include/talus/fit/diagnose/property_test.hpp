@@ -14,12 +14,13 @@ struct PropertyTest {
   std::vector<std::string> names;  ///< of the properties: "log L1/L2", "log L1/L3", "log mass"
   std::vector<Slope> slopes;       ///< by property
   std::size_t blocks = 0, rocks = 0, sites = 0;
-  bool by_rock = false;  ///< rocks were released several times: they change places, not their releases
+  bool by_rock = false;  ///< a rock was released twice: rocks change places, not their releases
 };
 
 /// Regresses `energy` on log L1/L2, log L1/L3 and log mass with an intercept for each site. Groups are sites where
 /// different rocks were released in one of them; where each group is one rock, its intercept would take all that a rock
-/// can show, and there is one intercept for all.
+/// can show, and there is one intercept for all. The unit is the rock (docs/diagnosis-method.md, "Rocks"), with the
+/// means of its releases; it changes places with rocks that were released at the same sites.
 ///
 /// @param energy  by block of the campaign (EnergyComponent); NaN: not used
 PropertyTest property_test(const Campaign& campaign, const std::vector<double>& energy, const DiagnosisRules& rules,
@@ -32,7 +33,7 @@ struct BlockNumbers {
 };
 
 /// The same for the blocks of several campaigns together, each with intercepts of its own: blocks of different
-/// campaigns never change places. Rocks that were released several times are one unit in their own campaign.
+/// campaigns never change places. A rock is one unit in its own campaign.
 PropertyTest property_test(std::span<const BlockNumbers> sites, const DiagnosisRules& rules, std::uint64_t seed);
 
 /// Test whether a number per block depends on the day of release.

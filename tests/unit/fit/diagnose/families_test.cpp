@@ -201,6 +201,35 @@ TEST(Families, ThreeRocksAreSaidAndTakeNoPartOfTheLevel) {
   EXPECT_GT(all[1].p_corrected, three[1].p_corrected);
 }
 
+/// The family of some blocks of `rocks` sizes, each with a number.
+FamilyTest property_of(std::size_t blocks, std::size_t rocks, const std::string& group = {}) {
+  Campaign c = measured().campaign;
+  c.blocks.resize(blocks);
+  std::vector<double> energy;
+  Numbers numbers(9);
+  for (std::size_t b = 0; b < blocks; ++b) {
+    c.blocks[b].mass = 500.0 * std::pow(1.1, static_cast<double>(b % rocks));
+    c.blocks[b].axes.setConstant(equivalent_diameter(c.blocks[b].mass, c.blocks[b].density));
+    c.blocks[b].group = group.empty() ? "" : group + std::to_string(b % rocks % 2);
+    energy.push_back(numbers.normal());
+  }
+  return test_block_property(std::vector<BlockNumbers>{{c, energy}}, {});
+}
+
+TEST(Families, SayWhyNoPropertyWasTestedAndWhatChangedPlaces) {
+  EXPECT_EQ(property_of(8, 8).note, "fewer than ten blocks");
+  EXPECT_TRUE(std::isnan(property_of(8, 8).p_value));
+  EXPECT_TRUE(property_of(8, 8).may_name);
+  EXPECT_EQ(property_of(5, 5).note, "five rocks: a property of the block cannot be named from them");
+  EXPECT_EQ(property_of(9, 1).note, "one rock: a property of the block cannot be named from them");
+  EXPECT_EQ(property_of(0, 1).note, "no rocks: a property of the block cannot be named from them");
+  EXPECT_EQ(property_of(12, 12).note, "p from 10000 arrangements of the blocks");
+  EXPECT_EQ(property_of(12, 6).note, "p from all 720 arrangements of the rocks, not of their releases");
+  EXPECT_EQ(property_of(12, 12, "s").note, "p from 10000 arrangements of the blocks within their sites");
+  EXPECT_EQ(property_of(24, 6, "s").note,
+            "p from all 36 arrangements of the rocks within their sites, not of their releases");
+}
+
 TEST(Families, AdmitTheirMembersWhereTheyAreSignificant) {
   FamilyTest property, dispersion;
   property.name = "block property";
