@@ -26,10 +26,11 @@ std::vector<Members> linked(const std::vector<Size>& sizes, Members rest, double
     rest.pop_back();
     for (std::size_t k = 0; k < part.size(); ++k) {
       const Size from = sizes[part[k]];
-      const auto near = std::ranges::stable_partition(
-          rest, [&](std::size_t other) { return !((sizes[other] - from).abs().maxCoeff() <= step); });
-      part.insert(part.end(), near.begin(), near.end());
-      rest.erase(near.begin(), near.end());
+      const auto near = std::stable_partition(rest.begin(), rest.end(), [&](std::size_t other) {
+        return !((sizes[other] - from).abs().maxCoeff() <= step);
+      });
+      part.insert(part.end(), near, rest.end());
+      rest.erase(near, rest.end());
     }
     parts.push_back(std::move(part));
   }

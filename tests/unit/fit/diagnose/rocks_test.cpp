@@ -44,7 +44,7 @@ TEST(Rocks, WeighedAgainAreTheSameInAnyOrder) {
     made.push_back(i % 3);
   }
   EXPECT_EQ(rocks_in(blocks), made);
-  std::ranges::rotate(blocks, blocks.begin() + 20);
+  std::rotate(blocks.begin(), blocks.begin() + 20, blocks.end());
   std::ranges::reverse(blocks);
   for (std::size_t i = 0; i < made.size(); ++i) made[i] = i % 3;  // every third, in whatever order
   EXPECT_EQ(rocks_in(blocks), made);
