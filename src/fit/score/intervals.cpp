@@ -115,12 +115,13 @@ struct Stratum {
 Interval interval_of(double estimate, std::span<const Stratum> strata) {
   double variance = 0.0, terms = 0.0;
   for (const Stratum& stratum : strata) {
+    if (std::isnan(stratum.squares)) return {};
     if (stratum.clusters < kFewestClusters && (stratum.squares > 0.0 || strata.size() == 1)) return {};
     if (!(stratum.squares > 0.0)) continue;
     variance += stratum.variance();
     terms += stratum.variance() * stratum.variance() / stratum.freedom();
   }
-  if (std::isnan(estimate) || std::isnan(variance)) return {};
+  if (std::isnan(estimate)) return {};
   if (!(variance > 0.0)) return {estimate, estimate};
   const double freedom = strata.size() == 1 ? strata.front().freedom() : variance * variance / terms;
   const double reach =
