@@ -62,6 +62,22 @@ std::string with_decimals(double value, int decimals) {
   return printed(value, std::chars_format::fixed, decimals);
 }
 
+std::string readable(double number) {
+  if (!(std::abs(number) >= 1e3 && std::abs(number) < 1e12)) return with_digits(number, 3);
+  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(number))) - 2.0);
+  return grouped(std::round(number / unit) * unit);
+}
+
+std::string grouped(double number) {
+  const std::string digits = with_decimals(std::round(std::abs(number)), 0);
+  std::string text = number <= -0.5 ? "-" : "";
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) text += "\u00a0";
+    text += digits[i];
+  }
+  return text;
+}
+
 std::string padded(std::string text, std::size_t width) {
   text.resize(std::max(width, text.size()), ' ');
   return text;

@@ -135,7 +135,11 @@ class Content(Report):
         for entry in record["inputs"]:
             self.assertIn(entry["sha256"], page.text)
             self.assertIn(entry["path"], page.text)
-        for warning in record["warnings"]:
+        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
+            warnings = set(record["warnings"] + json.load(file)["warnings"])
+        self.assertGreater(len(warnings), len(record["warnings"]))
+        self.assertIn(f"{len(warnings)}, listed above", page.text)
+        for warning in warnings:
             self.assertIn(warning, page.text)
         self.assertIn(", ".join(f"{end} {count:,}".replace(",", "\u00a0") for end, count in record["ends"].items()), page.text)
         self.assertLessEqual({"Impact probability", "Energy, P95", "Jump height, P95", "Deposits", "Released blocks",

@@ -17,10 +17,12 @@ import unittest
 import xml.etree.ElementTree as xml
 
 from osgeo import gdal, ogr, osr
-from qgis.core import (QgsApplication, QgsFeature, QgsField, QgsGeometry, QgsMapRendererParallelJob, QgsMapSettings, QgsProcessingContext,
+from qgis.core import (QgsApplication, QgsCoordinateReferenceSystem, QgsFeature, QgsField, QgsGeometry, QgsMapRendererParallelJob, QgsMapSettings,
+                       QgsProcessingContext,
                        QgsProcessingFeatureSourceDefinition, QgsProcessingFeedback, QgsProcessingModelAlgorithm,
                        QgsProcessingModelChildAlgorithm, QgsProcessingModelChildParameterSource,
-                       QgsProcessingOutputLayerDefinition, QgsProcessingParameterDefinition, QgsProject,
+                       QgsProcessingOutputLayerDefinition, QgsProcessingParameterBand, QgsProcessingParameterBoolean,
+                       QgsProcessingParameterDefinition, QgsProject,
                        QgsRasterLayer, QgsVectorLayer, QgsVectorLayerJoinInfo)
 from qgis.PyQt.QtCore import QLocale, QSize, QVariant
 from qgis.PyQt.QtGui import QColor
@@ -138,6 +140,27 @@ class Provider(Case):
             for parameter in command["parameters"]:
                 if parameter["name"] not in left_out:
                     self.assertIn(parameter["name"].upper().replace("-", "_"), names, algorithm.id())
+
+    def test_no_default_hides_what_a_file_says(self):
+        """A campaign gives its surface, a profile its number of blocks: untouched dialogs pass neither."""
+        for algorithm in application.talus.algorithms():
+            for p in algorithm.parameterDefinitions():
+                if not isinstance(p, (QgsProcessingParameterBoolean, QgsProcessingParameterBand)) and not p.isDestination():
+                    self.assertIsNone(p.defaultValue(), f"{algorithm.id()} {p.name()}")
+        calibrate = QgsApplication.processingRegistry().algorithmById("talus:calibrate")
+        self.assertIn("(creased if not set)", calibrate.parameterDefinition("SURFACE").description())
+        self.assertIn("At least 20.", calibrate.parameterDefinition("TRIALS").help())
+
+    def test_a_layer_of_the_undefined_system_is_refused(self):
+        from talus_qgis import layers
+        layer = QgsVectorLayer("Point?crs=EPSG:2056", "houses", "memory")
+        layers.refuse_without_system(layer)
+        undefined = QgsCoordinateReferenceSystem()
+        undefined.createFromWkt('LOCAL_CS["Undefined Cartesian SRS",UNIT["metre",1]]')
+        for system in undefined, QgsCoordinateReferenceSystem():
+            layer.setCrs(system)
+            with self.assertRaisesRegex(Exception, "houses has no coordinate system"):
+                layers.refuse_without_system(layer)
 
     def test_bounds_and_choices(self):
         run = QgsApplication.processingRegistry().algorithmById("talus:run")

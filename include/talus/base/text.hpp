@@ -15,6 +15,12 @@ std::string with_digits(double value, int digits);
 /// A number with `decimals` digits after the point, like "%.1f" of printf for 1: "12.0".
 std::string with_decimals(double value, int decimals);
 
+/// A number for a reader: three digits, large ones with their thousands apart and without an exponent: "2 360".
+std::string readable(double number);
+
+/// A whole number with its thousands apart: "47 850".
+std::string grouped(double number);
+
 /// A text filled up with blanks to a width [bytes]; a longer text is unchanged.
 std::string padded(std::string text, std::size_t width);
 

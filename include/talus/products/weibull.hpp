@@ -71,8 +71,9 @@ struct WeibullFit {
 /// lambda (Thoman, Bain & Antle 1969). So the intervals of shape, scale and every exceedance are exact for every n,
 /// apart from the finite number of draws. For n > 2000 the deviations of 2000 values are multiplied by sqrt(2000 / n).
 ///
-/// Of n values m are above 0: each draw has a share of Beta(m + 1/2, n - m + 1/2) (Jeffreys' prior; Brown, Cai &
-/// DasGupta 2001). With no 0 among the values it is 1, as for a quantity that is never 0.
+/// The share of the values above 0 is uncertain, too. Let m of n values be above 0: each draw takes its share from the
+/// distribution Beta(m + 1/2, n - m + 1/2) (Jeffreys' prior; Brown, Cai & DasGupta 2001). The share is 1 if no value is
+/// 0.
 ///
 /// Philox streams of (seed, draw): the same bits for the same n, m and seed.
 WeibullFit fit_weibull(std::span<const double> values, const BootstrapOptions& options);

@@ -30,7 +30,7 @@ std::string permutations_note(const PermutationTest& test, const std::string& wh
          " arrangements of the " + what;
 }
 
-/// What changed places in a test of a property.
+/// The units that the permutations exchanged in a test of a property, in words.
 std::string units_word(const PropertyTest& test) {
   return std::string(test.by_rock ? "rocks" : "blocks") + (test.sites > 1 ? " within their sites" : "") +
          (test.by_rock ? ", not of their releases" : "");

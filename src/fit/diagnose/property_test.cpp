@@ -70,7 +70,7 @@ MatrixXd properties_of(const Campaign& campaign, const std::vector<std::size_t>&
   return x;
 }
 
-/// What a campaign brings to a test: rocks that may change places, each with the means of its releases.
+/// The rocks of a campaign, which the permutations exchange: of each the means over its releases.
 struct SiteUnits {
   VectorXd energy;
   MatrixXd x;

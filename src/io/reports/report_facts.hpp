@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/files/json.hpp"
+#include "talus/base/text.hpp"
 #include "talus/simulate/scenario/scenario.hpp"
 
 /// What a page shows of a run: plain values, read from the records of its folder. docs/report.md.
@@ -93,11 +94,5 @@ std::vector<std::string> texts_of(const Json& json, const char* key);
 
 /// A number of a record that is finite; `otherwise` if it is not there or null.
 double number_of(const Json& json, const char* key, double otherwise = 0.0);
-
-/// A number for a reader: three digits, large ones with their thousands apart and without an exponent: "2 360".
-std::string readable(double number);
-
-/// A whole number with its thousands apart: "47 850".
-std::string grouped(double number);
 
 }  // namespace talus::io

@@ -250,13 +250,6 @@ class ObjectsTable {
   std::string text_;
 };
 
-/// Three digits: "22.4", "10500".
-std::string years_text(double years) {
-  if (!(years >= 1000.0)) return with_digits(years, 3);
-  const double step = std::pow(10.0, std::floor(std::log10(years)) - 2.0);
-  return text_of(std::round(years / step) * step);
-}
-
 std::string curve_rows(const std::string& object, const HazardCurve& curve, const EnergyBins& bins) {
   std::string rows;
   for (std::size_t i = 0; i < curve.size(); ++i) {
@@ -284,9 +277,8 @@ std::vector<std::string> ObjectLayer::hits_text(const HazardRules& rules, const 
     }
     const std::string name = printable(state_->names[i]) + ": ";
     if (f.value > 0.0)
-      lines.push_back(name + "hit " + with_digits(f.value, 3) + " times per year, once in " +
-                      years_text(1.0 / f.value) + " years (95 %: " + with_digits(f.low, 3) + " to " +
-                      with_digits(f.high, 3) + " per year)");
+      lines.push_back(name + "hit " + with_digits(f.value, 3) + " times per year, once in " + readable(1.0 / f.value) +
+                      " years (95 %: " + with_digits(f.low, 3) + " to " + with_digits(f.high, 3) + " per year)");
     else
       lines.push_back(name + "hit by no block of this run; at most " + with_digits(f.high, 3) +
                       " times per year (95 %)");

@@ -35,8 +35,8 @@ class ResidualSpace {
   struct Moments {
     double mean = 0.0, variance = 1.0, fourth = 3.0;  ///< the variance and the fourth moment about the mean
   };
-  /// Those of a normal number, but where simulated values are equal (jumps of 0): then those of each simulated value
-  /// among the others.
+  /// If all simulated values differ, these are the moments of a standard normal number. If some are equal (jumps of 0),
+  /// each simulated value is ranked among the others, and the moments are those of the resulting z.
   Moments moments(std::size_t block, std::size_t observable) const;
   /// Number of components of a residual: places first, then spreads.
   Eigen::Index size() const { return 2 * static_cast<Eigen::Index>(observables_.size()); }

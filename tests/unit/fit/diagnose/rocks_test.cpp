@@ -50,7 +50,7 @@ TEST(Rocks, WeighedAgainAreTheSameInAnyOrder) {
   EXPECT_EQ(rocks_in(blocks), made);
 }
 
-/// Of 1000 kg and 1 m: ln 1.019 = 0.0188 is one rock, ln 1.021 = 0.0208 is another one.
+/// A block 1.9 % heavier or longer (ln 1.019 = 0.0188) is the same rock, one 2.1 % larger (0.0208) is another rock.
 TEST(Rocks, AreEqualToTwoPercentInMassAndAllAxes) {
   const MeasuredBlock one = block_of(1000.0, {1.0, 0.8, 0.6});
   EXPECT_EQ(rocks_in({one, block_of(1019.0, {1.019, 0.8, 0.6 / 1.019})}), (Rocks{0, 0}));

@@ -249,10 +249,10 @@ struct NormalPlaces {
   DepositCheck check() const { return check_deposits(campaign, runs, std::vector<bool>(kBlocks, true)); }
 };
 
-/// Of 99 patterns and the mapped one each is the farthest with probability 1/100 if the model is right, however few
-/// stops a block has: p <= a for a share of a of the maps, within 3.5 standard errors of a binomial number. Patterns
-/// that repeat after 10 stops gave p <= 0.01 for one map in eleven. With two classes a false alarm comes once in twenty
-/// maps at most.
+/// If the model is right, the mapped pattern is the farthest of 100 (99 random ones and itself) with probability 1/100,
+/// however few stops a block has. So p <= a holds for a share of a of the maps, within 3.5 standard errors of a
+/// binomial number. Patterns that repeat after 10 stops gave p <= 0.01 for one map in eleven. With two classes a false
+/// alarm comes once in twenty maps at most.
 TEST(DepositCheck, PValuesAreExactForAnyNumberOfStops) {
   constexpr int kSets = 1000;
   const auto error = [](double share) { return 3.5 * std::sqrt(share * (1.0 - share) * kSets); };
