@@ -3,6 +3,7 @@ results, as the button Run does, and layers come to where QGIS puts new ones, be
 
 Run by tools/scripts/checks/qgis.sh, which sets HOME, QGIS_PLUGINPATH and TALUS.
 """
+import csv
 import os
 import shutil
 import subprocess
@@ -106,9 +107,18 @@ class Window(unittest.TestCase):
 
     def test_order_and_titles_are_those_of_the_project(self):
         wanted = [node.name() for node in self.project.layerTreeRoot().findLayers()][:-1]  # to the hillshade
-        found = [node.name() for node in self.group.findLayers() if node.name() != "Vertices of the paths"]
+        found = [node.name() for node in self.group.findLayers() if node.name() != "Vertices of the paths"
+                 and not node.name().startswith("Barrier at ")]
         self.assertGreater(len(wanted), 25)
         self.assertEqual(found, wanted)
+
+    def test_tables_of_the_barrier_lie_on_top(self):
+        values, stretches = [node.layer() for node in self.group.findLayers()][:2]
+        self.assertEqual([values.name(), stretches.name()], ["Barrier at road: design values", "Barrier at road: stretches"])
+        with open(os.path.join(self.out, "barrier_road.csv"), encoding="utf-8") as file:
+            written = {row["name"]: float(row["value"]) for row in csv.DictReader(file)}
+        self.assertEqual({f["name"]: f["value"] for f in values.getFeatures()}, written)
+        self.assertGreater(stretches.featureCount(), 3)
 
     def test_vector_layers_have_the_classes_of_the_project(self):
         wanted = {node.name(): node.layer() for node in self.project.layerTreeRoot().findLayers()

@@ -111,10 +111,19 @@ std::vector<std::vector<BlockRuns>> JointFits::observe_all(const std::vector<Mod
   return runs;
 }
 
-Score JointFits::joined_score(const std::vector<std::vector<BlockRuns>>& runs) const {
+Score JointFits::joined_score(const std::vector<std::vector<BlockRuns>>& runs,
+                              std::span<const std::uint32_t> folds) const {
   std::vector<SiteScore> scores;
-  for (std::size_t i = 0; i < sites_.size(); ++i)
-    scores.push_back({sites_[i].name, score(*sites_[i].campaign, runs[i], rows_[i]), rows_[i].size()});
+  std::size_t before = 0;
+  for (std::size_t i = 0; i < sites_.size(); ++i) {
+    ScoreOptions rule;
+    if (!folds.empty()) {
+      const auto of_site = folds.subspan(before, rows_[i].size());
+      rule.folds.assign(of_site.begin(), of_site.end());
+    }
+    scores.push_back({sites_[i].name, score(*sites_[i].campaign, runs[i], rows_[i], rule), rows_[i].size()});
+    before += rows_[i].size();
+  }
   return joined_scores(scores);
 }
 
@@ -248,8 +257,8 @@ Score JointFits::score_in_folds(const LocalModel& local, const JointModel& fitte
   for (const std::vector<bool>& rows : rows_) used.insert(used.end(), rows.begin(), rows.end());
   const std::vector<std::size_t> order = random_order(streams_, used, options_.seed, number);
   const std::size_t folds = options_.rules.folds;
-  std::vector<std::size_t> fold_of(streams_.size(), folds);
-  for (std::size_t i = 0; i < order.size(); ++i) fold_of[order[i]] = i % folds;
+  std::vector<std::uint32_t> fold_of(streams_.size(), static_cast<std::uint32_t>(folds));
+  for (std::size_t i = 0; i < order.size(); ++i) fold_of[order[i]] = static_cast<std::uint32_t>(i % folds);
   std::vector<std::vector<BlockRuns>> runs;
   for (const std::vector<bool>& rows : rows_) runs.emplace_back(rows.size());
   for (std::size_t fold = 0; fold < folds; ++fold) {
@@ -269,7 +278,7 @@ Score JointFits::score_in_folds(const LocalModel& local, const JointModel& fitte
       before += rows_[i].size();
     }
   }
-  return weigh_groups(joined_score(runs));
+  return weigh_groups(joined_score(runs, fold_of));
 }
 
 bool JointFits::confirmed(const JointModel& base, const JointCandidate& candidate, const LeastGain& least) const {

@@ -261,7 +261,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
 
     def _declare_outputs(self):
         table = self.table
-        loads = (table.get("folder") and not table.get("nothing to load")) or table.get("geopackage")
+        loads = (table.get("folder") and not table.get("nothing to load")) or table.get("geopackage") or table["id"] == "barrier"
         if loads:
             self._add(QgsProcessingParameterBoolean("LOAD", label("load"), True), tr("Loads the results as a group of layers."),
                       False)
@@ -529,6 +529,11 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         folder = self.parameterAsFile(parameters, "FOLDER", context)
         written = [os.path.join(folder, name) for name in os.listdir(folder)
                    if name.startswith("barrier_") and name.endswith(".csv") and not name.endswith("_stretches.csv")]
-        return {"TABLE": max(written, key=os.path.getmtime)} if written else {}
+        if not written:
+            return {}
+        table = max(written, key=os.path.getmtime)
+        if self.parameterAsBool(parameters, "LOAD", context):
+            results.load(folder, results.tables_of_barrier(table), "Talus: " + os.path.basename(folder), context)
+        return {"TABLE": table}
 
 

@@ -77,6 +77,14 @@ def files_of(folder, begin):
     return sorted(found, key=lambda row: _place(row[3], row[1]))
 
 
+def tables_of_barrier(path):
+    """The tables of a barrier's design, on top of the group: values and stretches; rows as files_of() has them."""
+    screen = os.path.basename(path)[len("barrier_"):-len(".csv")]
+    tables = [(path, "title barrier"), (path[:-len(".csv")] + "_stretches.csv", "title stretches")]
+    return [(file + "|option:AUTODETECT_TYPE=YES", tr(title).format(screen), os.path.basename(file), -2 + i, False)
+            for i, (file, title) in enumerate(tables) if os.path.exists(file)]
+
+
 def _place(rank, title):
     """What layers are sorted by: shorter titles first, as 30 kJ before 300 kJ."""
     return rank, len(title), title

@@ -137,6 +137,8 @@ KEYS = {
     "title exits.gpkg": ("Ends off the map: energy", "Enden ausserhalb der Karte: Energie"),
     "title stops": ("Stops: largest energy of the path", "Haltepunkte: grösste Energie der Bahn"),
     "title trajectories": ("Paths: largest speed", "Bahnen: grösste Geschwindigkeit"),
+    "title barrier": ("Barrier at {}: design values", "Schutznetz an {}: Bemessungswerte"),
+    "title stretches": ("Barrier at {}: stretches", "Schutznetz an {}: Abschnitte"),
     "title vertices": ("Vertices of the paths", "Stützpunkte der Bahnen"),
     "title hazard_class": ("Hazard class", "Gefahrenstufe"),
     "title annual_frequency": ("Blocks per year", "Blöcke pro Jahr"),

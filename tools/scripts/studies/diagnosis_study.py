@@ -8,7 +8,8 @@
 Each campaign has a slope of its own (length, steepness, a gully, bumps), three zones, blocks of many sizes and shapes, three
 screens and four days. One effect of a known size acts (or none). One simulated trial per block, with errors of measurement,
 serves as the measurement. A third of the blocks is held out. Prints the confusion matrix, the false alarms and the power by
-magnitude, and the error on the held-out rows of three models: the ground alone, the model that was found, the model that made
+magnitude, how many are named of those above the detection limit that the diagnosis gives (of the place where the effect would
+be strongest), and the error on the held-out rows of three models: the ground alone, the model that was found, the model that made
 the data. Campaigns without an effect are of the kinds of --null in turn: `plain`; `scatter`, whose stops, speeds, jumps and spins
 scatter 1.6 times as much in variance as trials of the model; `grouped`, six blocks a group, which share an error of the
 release of 6 m and a ground of their own (each parameter 15 % up or down); `outside`, a ground far from the start of the fit
@@ -226,6 +227,17 @@ def diagnose(o, folder):
     return found, truth["holdout"]["score"]
 
 
+def above_limit(found, effect, magnitude):
+    """Whether the effect acts more strongly than the diagnosis's own detection limit; None where it gives none."""
+    for limit in found["detection_limits"]:
+        if limit["effect"] != effect or limit["amount"] is None:
+            continue
+        key = limit["parameter"].split(".")[-1]
+        size = EFFECTS[effect][key.removeprefix("1/")][0]
+        return (magnitude / size if key.startswith("1/") else magnitude * size) >= limit["amount"]
+    return None
+
+
 def one(o, effect, magnitude, count, k):
     """Makes and diagnoses one campaign, and prints what came out."""
     null = o.null[k % len(o.null)] if effect == "none" else "plain"
@@ -238,7 +250,7 @@ def one(o, effect, magnitude, count, k):
     families = {f["name"]: f["p_value"] for f in found["families"]}
     row = dict(effect=made, magnitude=magnitude, blocks=count, found=found["effect"], alike=" ".join(found["indistinguishable_from"]),
                p=found["rounds"][0]["p_value"], before=e["before"], after=e["after"], truth=truth, seconds=found["times"]["cpu"],
-               **{name: families.get(name) for name in FAMILIES})
+               above_limit=above_limit(found, effect, magnitude), **{name: families.get(name) for name in FAMILIES})
     print(f"{made} x{magnitude:g}, {count} blocks, {k}: {row['found']} ({row['alike']}) p {row['p']:.4f}, held-out {row['before']:.3f} -> "
           f"{row['after']:.3f}, truth {truth:.3f}, {row['seconds']:.0f} s", flush=True)
     return row
@@ -279,6 +291,15 @@ def report(table):
         listed = sum(r["effect"] in [r["found"]] + r["alike"].split() for r in of)
         seen = sum(r["found"] != "none" for r in of)
         print(f"magnitude {size:g}: {len(of)} campaigns, residual seen {seen}, right effect named {named}, named or listed as alike {listed}")
+    above = [r for r in effects if r["above_limit"]]
+    named = sum(r["found"] == r["effect"] for r in above)
+    listed = sum(r["effect"] in [r["found"]] + r["alike"].split() for r in above)
+    if effects:
+        print(f"above the detection limit: {len(above)} campaigns, right effect named {named}, named or listed as alike {listed}")
+        wrong = sum(r["found"] not in ("none", "unexplained", r["effect"]) and r["effect"] not in r["alike"].split() for r in effects)
+        named = [r for r in effects if r["found"] == r["effect"]]
+        print(f"another effect named: {wrong} of {len(effects)}; error after within 5 % of the true model's in "
+              f"{sum(r['after'] <= 1.05 * r['truth'] for r in named)} of {len(named)} named")
 
 
 def main():

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
+#include "fit/diagnose/joint_fits.hpp"
 #include "support/campaigns.hpp"
 #include "talus/fit/diagnose/candidates.hpp"
 #include "talus/fit/diagnose/diagnose.hpp"
@@ -87,6 +90,60 @@ TEST(EffectFits, WhatIsNoBetterIsNotConfirmed) {
   EXPECT_EQ(anew.z, good.z);
   EXPECT_NE(anew.objective.total, good.objective.total) << "random numbers of its own";
   EXPECT_NE(later.objective.total, anew.objective.total);
+}
+
+/// The slope with a screen that no simulated block comes to, where speeds were measured.
+struct SlopeWithScreenBeyond : SlopeFits {
+  explicit SlopeWithScreenBeyond(std::size_t blocks) : SlopeFits(blocks) {
+    campaign.screens.push_back({"S2", {{{318.0, 0.0}, {318.0, 140.0}}}});
+    Numbers numbers(5);
+    for (MeasuredBlock& block : campaign.blocks) {
+      block.passages.resize(2);
+      block.passages[1] = Passage{numbers.uniform(2.0, 9.0), kNotGiven, kNotGiven};
+    }
+    rows = fitting_rows(campaign);
+    options.rules.folds = static_cast<std::size_t>(std::ranges::count(rows, true));  // each block is a fold
+    options.rules.fold_orders = 1;
+  }
+};
+
+/// Rows of the group that ends in `name`, by block.
+std::map<std::uint32_t, double> rows_of(const Score& score, const std::string& name) {
+  std::map<std::uint32_t, double> rows;
+  for (const RowScore& row : score.rows)
+    if (score.groups[row.group].name.ends_with(name)) rows[row.block] = row.score;
+  return rows;
+}
+
+/// What cannot be simulated scores as the measurements of the other folds: here as the climatology, which leaves each
+/// block out of its own.
+TEST(EffectFits, ABlockOutOfItsFoldDoesNotKnowItsOwnMeasurement) {
+  const SlopeWithScreenBeyond slope(30);
+  const auto expected = rows_of(score_of_climatology(slope.campaign, slope.rows), "speed S2");
+  ASSERT_EQ(expected.size(), 20U);
+  const EffectFits fits(slope.campaign, slope.options, slope.rows, [](double) { return true; });
+  const FittedModel ground = fits.fit_ground(model_of_slope(), true);
+  EXPECT_EQ(rows_of(fits.cross_validated(ground).front(), "speed S2"), expected);
+  EXPECT_NE(rows_of(ground.score, "speed S2"), expected) << "in a fit it does";
+}
+
+TEST(JointFits, ABlockOutOfItsFoldDoesNotKnowItsOwnMeasurement) {
+  SlopeWithScreenBeyond slope(30);
+  const auto expected = rows_of(score_of_climatology(slope.campaign, slope.rows), "speed S2");
+  const EffectFits fits(slope.campaign, slope.options, slope.rows, [](double) { return true; });
+  const std::vector<Site> sites{{"one", &slope.campaign}, {"two", &slope.campaign}};
+  const FittedModel ground = fits.fit_ground(model_of_slope(), true);
+  const SiteDiagnosis alone{"one", ground, slope.options.trials, {}};
+  DiagnoseOptions options = slope.options;
+  options.rules.folds *= 2;
+  const JointFits joint(sites, options, [](double) { return true; });
+  const std::vector<SiteDiagnosis> both{alone, alone};
+  const Score out_of_fold = joint.cross_validated(joint.fit_ground(both), 0).front();
+  const auto first = rows_of(out_of_fold, "one: speed S2"), second = rows_of(out_of_fold, "two: speed S2");
+  ASSERT_EQ(first.size(), 20U);
+  EXPECT_EQ(first, expected);
+  ASSERT_EQ(second.size(), expected.size());
+  for (const auto& [block, value] : expected) EXPECT_EQ(second.at(block + 30U), value);
 }
 
 TEST(EffectFits, WhatOnlyHarmsIsNotFitted) {
