@@ -34,7 +34,7 @@ cmake --preset asan ${TALUS_DATA:+-DTALUS_DATA="$TALUS_DATA"}
 cmake --build --preset asan
 stage "asan: tests of core and files"
 # Long where nothing is optimised, and run above: tests of laws by many blocks.
-statistics="ScoreTest|Calibrate|FreePaths|EffectFits|Nested|ResidualTable|SceneSymmetry|PlaneTable|PlaneSigns|PlaneScaling"
+statistics="ScoreTest|Calibrate|FreePaths|EffectFits|JointFits|Nested|ResidualTable|SceneSymmetry|PlaneTable|PlaneSigns|PlaneScaling"
 statistics+="|LogScore|DepositScore|DepositCheck|WithZerosToo|Dispersion|Evaluate|EnergyComponent|CoverageOf|PropertyTest|TheFreePathAmong"
 ctest --preset asan -j 2 -LE "slow|cli|example|package|qgis" -E "$statistics"
 stage "the same bytes from gcc with optimisation and from clang without"
