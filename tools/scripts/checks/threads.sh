@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Looks for races: builds with clang's thread sanitizer and runs what is parallel with four threads: the engine on the fuzz corpus,
 # a run with all its files, parts and their merge, hazard, a score. libarcher tells the sanitizer what OpenMP does (it knows no
-# OpenMP by itself). Ends with an error at the first race. Not in CI: ten minutes of building for code that rarely changes.
+# OpenMP by itself). Ends with an error at the first race. Not in CI: minutes of building for code that rarely changes.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 archer=$(ls /usr/lib/llvm-*/lib/libarcher.so | tail -1)
 cmake --preset tsan > /dev/null
-cmake --build --preset tsan
+cmake --build --preset tsan --target talus fuzz_engine
 export OMP_TOOL_LIBRARIES="$archer" TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1" OMP_NUM_THREADS=4
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
