@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Looks for races: builds with clang's thread sanitizer and runs what is parallel with four threads: the engine on the fuzz corpus,
 # a run with all its files, parts and their merge, hazard, a score. libarcher tells the sanitizer what OpenMP does (it knows no
-# OpenMP by itself). Ends with an error at the first race. Not in CI: minutes of building for code that rarely changes.
+# OpenMP by itself). Ends with an error at the first race. Not in CI: four minutes of building for code that rarely changes.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 archer=$(ls /usr/lib/llvm-*/lib/libarcher.so | tail -1)

@@ -10,12 +10,13 @@ screens and four days. One effect of a known size acts (or none). One simulated 
 serves as the measurement. A third of the blocks is held out. Prints the confusion matrix, the false alarms and the power by
 magnitude, how many effects were not named though they act above the detection limit that the diagnosis gives (of the place
 where the effect would be strongest), and the error on the held-out rows of three models: the ground alone, the model that was
-found, the model that made the data. Campaigns without an effect are of the kinds of --null in turn: `plain`; `scatter`, whose stops, speeds, jumps and spins
-scatter 1.6 times as much in variance as trials of the model; `grouped`, six blocks a group, which share an error of the
-release of 6 m and a ground of their own (each parameter 15 % up or down); `outside`, a ground far from the start of the fit
-(theta_scale of talus and rock beyond 2.5 standard deviations of the prior). Printed for these: how often each family is below
-1, 5 and 10 %, and how far the fitted ground lies from the true one (towards the prior). The same engine makes and judges the data: this measures the statistics, not the physics. Campaigns that are finished,
-with the same seed, options and program, are not run again.
+found, the model that made the data. Campaigns without an effect are of the kinds of --null in turn: `plain`; `scatter`, whose
+stops, speeds, jumps and spins scatter 1.6 times as much in variance as trials of the model; `grouped`, six blocks a group,
+which share an error of the release of 6 m and a ground of their own (each parameter 15 % up or down); `outside`, a ground far
+from the start of the fit (theta_scale of talus and rock beyond 2.5 standard deviations of the prior). Printed for these: how
+often each family is below 1, 5 and 10 %, and how far the fitted ground lies from the true one (towards the prior). The same
+engine makes and judges the data: this measures the statistics, not the physics. Campaigns that are finished, with the same
+seed, options and program, are not run again.
 """
 import argparse
 import csv

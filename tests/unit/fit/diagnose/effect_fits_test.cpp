@@ -115,8 +115,8 @@ std::map<std::uint32_t, double> rows_of(const Score& score, const std::string& n
   return rows;
 }
 
-/// What cannot be simulated scores as the measurements of the other folds: here as the climatology, which leaves each
-/// block out of its own.
+/// A block that no trial brings to the screen is scored by the speeds of the blocks in other folds. With one block in
+/// each fold these are all blocks but itself, as in the climatology.
 TEST(EffectFits, ABlockOutOfItsFoldDoesNotKnowItsOwnMeasurement) {
   const SlopeWithScreenBeyond slope(30);
   const auto expected = rows_of(score_of_climatology(slope.campaign, slope.rows), "speed S2");
