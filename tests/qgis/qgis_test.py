@@ -761,6 +761,33 @@ class FromPython(Case):
         self.assertGreater(len(hazard.renderer().legendSymbologyItems()), 2)
         QgsProject.instance().clear()
 
+    def test_german_legends(self):
+        from talus_qgis import results
+        before = QLocale()
+        QgsApplication.setLocale(QLocale("de_CH"))
+        try:
+            told = {"up to 30 kJ": "bis 30 kJ", "30 to 100 kJ": "30 bis 100 kJ", "above 3000 kJ": "über 3000 kJ",
+                    "10 to 30 years": "10 bis 30 Jahre", "above 1000 years, or never hit": "über 1000 Jahre, oder nie getroffen",
+                    "0 %": "0 %", "above 1 1/year": "über 1 1/Jahr", "up to 10": "bis 10", "residual": "Restgefährdung"}
+            for english, german in told.items():
+                self.assertEqual(results.legend_text(english), german)
+            context = QgsProcessingContext()
+            for name, parameters in (("run", self.inputs(LOAD=True)), ("hazard", {"FOLDER": self.path("out"), "LOAD": True})):
+                _, good = self.run_algorithm(name, parameters, context=context)
+                self.assertTrue(good)
+            self.load(context)
+            layers = {node.name(): node.layer() for node in QgsProject.instance().layerTreeRoot().findLayers()}
+            classes = [label for label, _ in layers["Gefahrenstufe"].renderer().legendSymbologyItems()]
+            self.assertEqual(classes, ["keine", "Restgefährdung", "gering", "mittel", "erheblich"])
+            english = re.compile("up to|above|none|low|year| to ")
+            for layer in layers.values():
+                labels = ([label for label, _ in layer.renderer().legendSymbologyItems()] if isinstance(layer, QgsRasterLayer)
+                          else [item.label() for item in layer.renderer().legendSymbolItems()])
+                self.assertEqual([label for label in labels if english.search(label)], [], layer.name())
+        finally:
+            QgsApplication.setLocale(before)
+            QgsProject.instance().clear()
+
     def assert_as_in_project(self):
         """The one group of the results has the titles, the order and the visibility of the project that the program has
         written (to the hillshade and to what lies second in a GeoPackage)."""

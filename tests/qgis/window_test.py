@@ -140,14 +140,26 @@ class Window(unittest.TestCase):
         project.read(os.path.join(out, "talus.qgs"))
         group = QgsProject.instance().layerTreeRoot().findGroup("Talus: fgb")
         layers = [node.layer() for node in group.findLayers()]
+        # the group Talus: out has layers of these titles, too
         self.assertEqual([layer.name() for layer in layers],
-                         [node.name() for node in project.layerTreeRoot().findLayers()][:-1])
-        wanted = {layer.name(): layer for layer in project.mapLayers().values()}
+                         [node.name() + " (fgb)" for node in project.layerTreeRoot().findLayers()][:-1])
+        wanted = {layer.name() + " (fgb)": layer for layer in project.mapLayers().values()}
         vectors = [layer for layer in layers if isinstance(layer, QgsVectorLayer)]
         self.assertEqual(len(vectors), 4)
         for layer in vectors:
             self.assertEqual(self.classes(layer), self.classes(wanted[layer.name()]), layer.name())
             self.assertEqual(layer.renderer().type(), "graduatedSymbol", layer.name())
+
+    def test_the_folder_of_the_results_on_top_is_preselected(self):
+        tree = QgsProject.instance().layerTreeRoot()
+        on_top = tree.insertGroup(0, "Talus: gone")
+        on_top.setCustomProperty("talus/folder", os.path.join(self.folder, "gone"))  # is no longer there
+        others = [group for group in tree.findGroups() if group.customProperty("talus/folder")][1:]
+        hazard = QgsApplication.processingRegistry().createAlgorithmById("talus:hazard")
+        folder = hazard.parameterDefinition("FOLDER").defaultValue()
+        self.assertEqual(folder, others[0].customProperty("talus/folder"))
+        self.assertTrue(os.path.exists(os.path.join(folder, "run.json")))
+        tree.removeChildNode(on_top)
 
     def test_the_log_keeps_the_columns_of_a_table(self):
         told = subprocess.run([os.environ["TALUS"], "barrier", self.out, "--screen", "road"], capture_output=True, text=True,

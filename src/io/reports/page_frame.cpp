@@ -23,6 +23,7 @@ Markup style() {
          ".look{background:#fff6d6}.act{background:#fde2de}.note{color:#555;font-size:13px}"
          "@page{margin:14mm}@media print{body{max-width:none;margin:0;padding:0;font-size:11pt}.screen{display:none}"
          "figure,tr{break-inside:avoid}h2,h3{break-after:avoid}.wide{overflow:visible}"
+         ".low{margin:0 0 4mm}.low svg{max-height:112mm}"
          "*{print-color-adjust:exact;-webkit-print-color-adjust:exact}}</style>"_html;
 }
 

@@ -154,11 +154,13 @@ Markup map_viewer(const MapSheet& sheet) {
 }
 
 Markup map_figures(const MapSheet& sheet, const MapImprint& imprint) {
+  constexpr double kTwoOnAPage = 1.25;  // width of a drawing by its height from which two fit on a printed page
   const MapScale scale(sheet);
+  const bool low = scale.width + kLegendGap + kLegendWidth > kTwoOnAPage * scale.drawing_height();
   Markup html;
   for (std::size_t i = 0; i < sheet.maps.size(); ++i) {
     if (!sheet.maps[i].in_print) continue;
-    html += "<figure class='map'><svg "_html;
+    html += low ? "<figure class='map low'><svg "_html : "<figure class='map'><svg "_html;
     set_attribute(html, "viewBox", box_of(scale, true));
     set_attribute(html, "width", tenth(scale.width + kLegendGap + kLegendWidth));
     html += ">"_html + use("relief") + use("map-" + std::to_string(i)) + use("outlines") + use("furniture") +

@@ -34,7 +34,7 @@ std::string direction(bool larger, bool smaller) {
   if (larger) text += "; larger blocks: run-out and speed too low (unsafe)";
   if (smaller) text += "; smaller blocks: they run too far and too fast";
   if (text.empty()) text = "; small blocks run faster and jump higher than large ones, against field experience";
-  return text + " (E_d grows with D, the roughness ignores it): see docs/physics.md, \"Parameter sets\"";
+  return text + ": see docs/physics.md, \"Parameter sets\"";
 }
 
 /// Whether block-mass acts with the numbers of its preset on sizes that the preset was not fitted to. At its reference

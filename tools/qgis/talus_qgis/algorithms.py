@@ -11,7 +11,8 @@ from qgis.core import (QgsProcessing, QgsProcessingAlgorithm, QgsProcessingExcep
                        QgsProcessingParameterFeatureSource, QgsProcessingParameterField, QgsProcessingParameterFile,
                        QgsProcessingParameterFileDestination, QgsProcessingParameterFolderDestination,
                        QgsProcessingParameterMultipleLayers, QgsProcessingParameterNumber, QgsProcessingParameterRasterLayer,
-                       QgsProcessingParameterString, QgsProcessingUtils, QgsProperty, QgsVectorLayer)
+                       QgsProcessingParameterString, QgsProcessingUtils, QgsProject, QgsProperty,
+                       QgsVectorLayer)
 from qgis.PyQt.QtGui import QIcon
 
 from . import layers, process, program, results
@@ -189,7 +190,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         self.addParameter(definition)
 
     def _definition(self, p):
-        """No default is set in a dialog: it would hide what a scenario, a campaign or a profile says."""
+        """No default is set in a dialog: it would hide what a scenario, a campaign or a profile says. A folder that is read
+        is that of the results on top of the map, if there are any."""
         key, title, optional = key_of(p["name"]), self._title(p), not p["required"]
         kind = p["type"]
         if p["name"] in self.table.get("field of", {}):
@@ -204,7 +206,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         if kind == "folder":
             if p["written"]:
                 return QgsProcessingParameterFolderDestination(key, title, None, optional)
-            return QgsProcessingParameterFile(key, title, QgsProcessingParameterFile.Folder, "", None, optional)
+            return QgsProcessingParameterFile(key, title, QgsProcessingParameterFile.Folder, "",
+                                              results.latest_folder(QgsProject.instance()), optional)
         if kind == "file":
             return self._file(p, key, title, optional)
         return QgsProcessingParameterString(key, title, None, False, optional)

@@ -4,7 +4,8 @@ import re
 
 from qgis.core import (Qgis, QgsGraduatedSymbolRenderer, QgsLayerTree, QgsLayerTreeGroup, QgsLineSymbol, QgsProcessingContext,
                        QgsProcessingLayerPostProcessorInterface, QgsProject, QgsProviderRegistry, QgsRasterLayer,
-                       QgsRendererRange, QgsVectorLayer, QgsWkbTypes)
+                       QgsRendererRange, QgsSingleBandPseudoColorRenderer, QgsVectorLayer, QgsWkbTypes)
+from qgis.PyQt.QtCore import QCoreApplication, QThread
 
 from .texts import tr
 
@@ -25,6 +26,7 @@ HAZARD_CLASS = ORDER.index("hazard_class.tif")
 
 GROUP_MARK = "talus/folder"  # property of the group: the folder of its results
 RANK_MARK = "talus/rank"     # property of a layer: its place in the group
+TITLE_MARK = "talus/title"   # property of a layer: its title; its name may say the folder, too
 
 LINES_OF_OBJECTS = "1.4"  # mm, as in src/io/results/vector_style.cpp
 ONE_KIND = "|geometrytype="  # in the source of a layer: one kind of geometry of a file that holds several
@@ -125,6 +127,42 @@ def _rank(layer):
     return float(layer.customProperty(RANK_MARK, 0))
 
 
+def legend_text(text):
+    """A label of a legend in the language of QGIS: `up to 30 kJ`, `30 to 100 kJ`, `above 3000 kJ`."""
+    for pattern, words in ((r"up to (\S+)(.*)", "up to {}{}"), (r"above (\S+)(.*)", "above {}{}"),
+                           (r"(\S+) to (\S+)(.*)", "{} to {}{}")):
+        found = re.fullmatch(pattern, text)
+        if found:
+            *limits, rest = found.groups()
+            return tr(words).format(*limits, ", ".join(tr(part) for part in rest.split(", ")))
+    return tr(text)
+
+
+def _translate_legend(layer):
+    if isinstance(layer, QgsVectorLayer):
+        if isinstance(layer.renderer(), QgsGraduatedSymbolRenderer):
+            for i, entry in enumerate(layer.renderer().ranges()):
+                layer.renderer().updateRangeLabel(i, legend_text(entry.label()))
+        return
+    shader = layer.renderer().shader() if isinstance(layer.renderer(), QgsSingleBandPseudoColorRenderer) else None
+    if shader is None:
+        return
+    colours = shader.rasterShaderFunction()
+    items = colours.colorRampItemList()
+    for item in items:
+        item.label = legend_text(item.label)
+    colours.setColorRampItemList(items)
+
+
+def latest_folder(project):
+    """The folder of the topmost group of results in a project; None where there is none, or it is gone, and in a task:
+    the tree of layers belongs to the main thread."""
+    if QThread.currentThread() != QCoreApplication.instance().thread():
+        return None
+    marked = [group.customProperty(GROUP_MARK) for group in project.layerTreeRoot().findGroups()]
+    return next((folder for folder in marked if folder and os.path.exists(os.path.join(folder, "run.json"))), None)
+
+
 def load(folder, rows, title, context, group_folder=None):
     """Asks QGIS to load the layers when the algorithm is done, as a group."""
     project = context.project() or QgsProject.instance()
@@ -152,6 +190,8 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
         elif os.path.exists(self.style) and not (isinstance(layer, QgsVectorLayer) and self._is_of_raster()):
             layer.loadNamedStyle(self.style)
         layer.setCustomProperty(RANK_MARK, self.rank)
+        layer.setCustomProperty(TITLE_MARK, self.name)
+        _translate_legend(layer)
         project = layer.project() or context.project() or QgsProject.instance()
         node = project.layerTreeRoot().findLayer(layer.id())
         if node is not None:
@@ -165,6 +205,8 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
     def _move(self, node, root):
         group = self._group(root)
         shown = self.shown
+        if self._is_title_elsewhere(root, group):  # so that a list of layers tells the two apart
+            node.layer().setName(f"{self.name} ({os.path.basename(self.folder)})")
         for other in group.findLayers():
             layer = other.layer()
             if layer is None or layer.id() == node.layerId():
@@ -185,11 +227,18 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
         group.insertChildNode(place, copy)
         node.parent().removeChildNode(node)
 
+    def _is_title_elsewhere(self, root, group):
+        """Whether the results of another folder have a layer of this title."""
+        own = {node.layerId() for node in group.findLayers()}
+        return any(other.layer() is not None and other.layer().customProperty(TITLE_MARK) == self.name
+                   for results in root.findGroups() if results is not group
+                   for other in results.findLayers() if other.layerId() not in own)
+
     def _is_below(self, child, node):
         """Whether a child of the group has its place below the layer."""
         if not QgsLayerTree.isLayer(child) or child.layer() is None or child.layerId() == node.layerId():
             return False
-        return _place(_rank(child.layer()), child.layer().name()) > _place(self.rank, self.name)
+        return _place(_rank(child.layer()), child.layer().customProperty(TITLE_MARK, "")) > _place(self.rank, self.name)
 
     def _group(self, root):
         for group in root.findGroups():

@@ -234,6 +234,20 @@ GERMAN = {
     "Talus runs the program talus of this computer. Every parameter is explained on the pages of its documentation.":
         "Talus startet das Programm talus dieses Rechners. Seine Dokumentation erklärt jeden Parameter.",
     "round": "Runde",
+    # of the legends, whose words the program writes: src/io/results/style.cpp, vector_style.cpp
+    "up to {}{}": "bis {}{}",
+    "above {}{}": "über {}{}",
+    "{} to {}{}": "{} bis {}{}",
+    " years": " Jahre",
+    " 1/year": " 1/Jahr",
+    "0 1/year": "0 1/Jahr",
+    "0 years": "0 Jahre",
+    "or never hit": "oder nie getroffen",
+    "none": "keine",
+    "residual": "Restgefährdung",
+    "low": "gering",
+    "medium": "mittel",
+    "high": "erheblich",
     "{value} if not set": "{value}, wenn leer",
     # of the program
     "terrain: a raster in a projected system in metres": "Gelände: ein Raster in einem projizierten System in Metern",
