@@ -18,6 +18,7 @@ from osgeo import gdal, ogr
 from support import NORTH, TALUS, WEST, RunCase, box, write_features
 
 HOSTILE = "<script>alert(1)</script>&amp;'\"\u202e</svg>"
+VALLEY = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../data/valley")
 CHROMIUM = next((path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if path), None)
 VOID = {"meta", "br", "input", "rect", "line", "circle", "polygon", "polyline", "path", "image", "use"}
 
@@ -512,11 +513,25 @@ class Browser(Report):
         picture = gdal.Open(self.path("page.png")).ReadAsArray()
         self.assertEqual(picture.shape[1:], (1600, 1200))
         self.assertGreater(len(np.unique(picture.reshape(picture.shape[0], -1)[:3], axis=1).T), 100)
-        self.chromium("--print-to-pdf=" + self.path("page.pdf"), "file://" + self.path("out/report.html"))
-        with open(self.path("page.pdf"), "rb") as file:
-            pdf = file.read()
+        pdf = self.printed(self.path("out/report.html"))
         self.assertTrue(pdf.startswith(b"%PDF"))
         self.assertGreater(len(pdf), 50_000)
+
+    def test_two_low_maps_share_a_printed_page(self):
+        self.run_well("run", os.path.join(VALLEY, "scenario.toml"), "--trajectories", "2", "-q", "-o", self.path("valley"))
+        self.run_well("report", self.path("valley"))
+        with open(self.path("valley/report.html"), encoding="utf-8") as file:
+            html = file.read()
+        maps = html.count("<figure class='map low'>")
+        self.assertGreater(maps, 5)
+        self.write("alone.html", html.replace("class='map low'", "class='map'"))  # one on a page
+        pages = [self.printed(self.path(name)).count(b"/Type /Page\n") for name in ("valley/report.html", "alone.html")]
+        self.assertLessEqual(pages[0], pages[1] - maps // 2 + 1)
+
+    def printed(self, page):
+        self.chromium("--print-to-pdf=" + self.path("page.pdf"), "file://" + page)
+        with open(self.path("page.pdf"), "rb") as file:
+            return file.read()
 
 
 if __name__ == "__main__":
