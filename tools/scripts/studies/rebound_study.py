@@ -4,7 +4,7 @@
   tools/scripts/studies/rebound_study.py [--shared ../shared] [-o PICTURE.png] [--draws 60] [--repeats 2000] [--seed 3] [--in-plane]
 
 Reads SHARED/data/literature/wang2018_limestone_on_concrete.csv (75 drops on a concrete slab) and
-SHARED/data/chant_sura/contact_events.csv (17 usable contacts of 11 runs). Neither is in the repository.
+SHARED/data/chant_sura/contact_events.csv (17 usable contacts of 10 runs). Neither is in the repository.
 Exit code 77 if they are missing. One core, a few minutes.
 """
 import argparse
