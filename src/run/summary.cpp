@@ -30,6 +30,11 @@ std::string ends_text(const Totals& totals) {
          " at a limit";
 }
 
+std::string barrier_text(const std::string& id, const BarrierCounts& counts) {
+  return "barrier " + id + ": " + count_text(counts.caught) + " caught, " + count_text(counts.over) + " over it, " +
+         count_text(counts.broken) + " through it (it broke)";
+}
+
 std::string limits_text(const Totals& totals) {
   const std::uint64_t limits = count_of(totals, End::Limit);
   return count_text(limits) + " of " + count_text(totals.released) + " trajectories (" +

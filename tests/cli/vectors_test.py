@@ -92,7 +92,7 @@ class Vectors(RunCase):
             style = xml.parse(self.path(f"out/{name}.qml")).getroot()
             self.assertEqual(style.find("renderer-v2").get("type"), "graduatedSymbol")
             self.assertEqual(style.find("pipe/rasterrenderer") is not None, name == "exits")  # of exits.tif
-            layer = layers["talus_layer_" + name]
+            layer = layers[name + "_talus_layer"]
             self.assertEqual(layer.findtext("datasource"), f"./{name}.fgb")
             self.assertEqual(layer.find("renderer-v2").get("attr"), style.find("renderer-v2").get("attr"))
         self.run_well("report", self.path("out"))

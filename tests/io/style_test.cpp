@@ -243,9 +243,9 @@ TEST_F(Project, NamesOfFilesAreEscaped) {
   EXPECT_NE(text.find(">../a \"b\" &lt;c&gt; &amp; 'd'.tif</datasource>"), std::string::npos) << text;
   EXPECT_EQ(text.find("mine"), std::string::npos) << "only results are shown";
   EXPECT_EQ(text.find("&lt;b&gt;.tif"), std::string::npos);
-  EXPECT_LT(text.find("talus_layer_stops"), text.find("talus_map_hazard_class"));
-  EXPECT_LT(text.find("talus_map_hazard_class"), text.find("talus_map_return_period_30"));
-  EXPECT_LT(text.find("\"talus_map_return_period_30\""), text.find("\"talus_map_return_period_300\""));
+  EXPECT_LT(text.find("stops_talus_layer"), text.find("hazard_class_talus_map"));
+  EXPECT_LT(text.find("hazard_class_talus_map"), text.find("return_period_30_talus_map"));
+  EXPECT_LT(text.find("\"return_period_30_talus_map\""), text.find("\"return_period_300_talus_map\""));
   EXPECT_NE(text.find("<datasource>./stops.gpkg|layername=stops<"), std::string::npos) << text;
 }
 

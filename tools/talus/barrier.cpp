@@ -83,7 +83,7 @@ CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
   CrossingTable crossings = talus::io::read_crossings(file.string(), o.screen);
   if (crossings.blocks == 0)
     throw talus::InputError(file.string() + ": no block crosses screen '" + o.screen +
-                            "', so that no barrier is needed there or more trajectories are");
+                            "': a barrier is not needed there, or the run has too few trajectories to say");
   for (const std::size_t told : {crossings.speed.size(), crossings.energy.size(), crossings.height.size(),
                                  crossings.mass.size(), crossings.places.size()})
     if (told != crossings.blocks)

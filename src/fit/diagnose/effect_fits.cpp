@@ -263,6 +263,20 @@ void EffectFits::continue_with_more_trials(const FittedModel& base, FittedCandid
   continue_with(base, candidate, how);
 }
 
+FittedModel EffectFits::completed(FittedModel chosen) const {
+  const Timesheet::Phase phase(times_, "chosen model");
+  FitOptions how = fit_options();
+  how.trials *= 2;
+  how.comparison_trials *= 2;
+  how.starts = 1;
+  how.rounds = options_.rules.last_rounds;
+  how.enough = options_.rules.worth_a_round;
+  how.known = chosen.evaluations;
+  FittedModel longer =
+      fitted_model(fit_parameters(campaign_, chosen.model, chosen.free, rows_, how), chosen.free);
+  return better_of(std::move(chosen), std::move(longer));
+}
+
 void EffectFits::continue_with(const FittedModel& base, FittedCandidate& candidate, const FitOptions& how) const {
   FittedModel longer = continued(candidate.fitted, how);
   take_fit(better_of(std::move(candidate.fitted), std::move(longer)), candidate);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "svg.hpp"
 #include "talus/base/printable.hpp"
@@ -149,8 +150,18 @@ void draw_objects(Svg& svg, const Outlines& objects, const MapScale& scale, Name
                                                          {"stroke-width", 2}});
   }
   if (objects.list.size() > kMostNames) return;
-  for (const Outline& object : objects.list) names.keep_free(box_around(object.places, scale));
-  for (const Outline& object : objects.list) names.put(object.name, box_around(object.places, scale), kObjectColour);
+  const auto is_line = [](const Outline& object) { return !object.closed && object.places.size() > 1; };
+  for (const Outline& object : objects.list)
+    if (!is_line(object)) names.keep_free(box_around(object.places, scale));
+  for (const Outline& object : objects.list) {
+    const auto beside = [&](std::span<const Eigen::Vector2d> places) {
+      return names.put(object.name, box_around({places.begin(), places.end()}, scale), kObjectColour);
+    };
+    if (!is_line(object))
+      beside(object.places);
+    else  // beside one of its vertices: a line may be far from the middle of its box
+      std::ranges::any_of(object.places, [&](const Eigen::Vector2d& place) { return beside({&place, 1}); });
+  }
 }
 
 /// Ticks with coordinates at the lower and the left rim.

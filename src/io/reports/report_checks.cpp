@@ -131,7 +131,11 @@ void check_ground(const CheckedRun& checked, Checks& checks) {
                       other ? "a warning of the run says that they differ" : "like cells and surface",
                       "A fitted ground makes up for what its DEM does not show."});
   }
-  if (checked.low_c) checks.push_back({Mark::Look, "Deformation coefficient c", *checked.low_c, ""});
+  if (checked.low_c) {
+    const std::size_t end = checked.low_c->find(". ");  // what is; then what to do
+    checks.push_back({Mark::Look, "Deformation coefficient c", checked.low_c->substr(0, end),
+                      end == std::string::npos ? "" : checked.low_c->substr(end + 2)});
+  }
 }
 
 void check_inputs(const CheckedRun& checked, Checks& checks) {

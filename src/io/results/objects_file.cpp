@@ -267,7 +267,7 @@ std::vector<std::string> ObjectLayer::hits_text(const HazardRules& rules, const 
                                                 std::size_t most) const {
   std::vector<std::pair<Bounded, std::size_t>> order;
   for (std::size_t i = 0; i < hits.size(); ++i)
-    if (state_->on_map[i]) order.emplace_back(HazardCurve(rules, hits[i].largest).at(0), i);
+    if (state_->on_map[i]) order.emplace_back(HazardCurve(rules, hits[i].largest).passage(), i);
   std::ranges::stable_sort(order, std::ranges::greater{}, [](const auto& one) { return one.first.value; });
   std::vector<std::string> lines;
   for (const auto& [f, i] : order) {

@@ -74,10 +74,16 @@ bool has_lines_beside_areas(const fs::path& file, const std::string& layer) {
   return lines && areas;
 }
 
+/// The id of a layer. None is the beginning of another one: QGIS 3.22 looks layers up by the beginning of their id when it
+/// takes them out of its lists, and falls over the one that stays there.
+std::string id_of(const std::string& name, bool vector) {
+  return name + (vector ? "_talus_layer" : "_talus_map");
+}
+
 /// Takes the lines out of a layer of objects of both kinds: QGIS draws one kind of geometry per layer.
 Shown lines_of(Shown& objects) {
   Shown lines;
-  lines.id = objects.id + "_lines";
+  lines.id = id_of("objects_lines", true);
   lines.title = objects.title + " (lines)";
   lines.source = objects.source + "|geometrytype=LineString";
   lines.vector = true;
@@ -111,7 +117,7 @@ std::vector<Shown> shown_layers(const std::vector<std::string>& files, const fs:
       const auto number = number_in(stem, layer);
       if (!number) continue;
       Shown one;
-      one.id = std::string(layer.vector ? "talus_layer_" : "talus_map_") + stem;
+      one.id = id_of(stem, layer.vector);
       one.title = layer.title;
       if (const std::size_t at = one.title.find("<n>"); at != std::string::npos) one.title.replace(at, 3, *number);
       one.source = "./" + name + (beside ? "" : "|layername=" + stem);
@@ -130,10 +136,8 @@ void check_layers(std::vector<Shown>& shown) {
     if (found != shown.end()) found->checked = true;
     return found != shown.end();
   };
-  check("talus_layer_objects");
-  check("talus_layer_objects_lines");
-  check("talus_layer_screens");
-  if (!check("talus_map_hazard_class")) check("talus_map_impact_probability");
+  for (const char* name : {"objects", "objects_lines", "screens"}) check(id_of(name, true));
+  if (!check(id_of("hazard_class", false))) check(id_of("impact_probability", false));
 }
 
 /// A layer that QGIS shades: the DEM itself, with light from the north-west and from the sides.

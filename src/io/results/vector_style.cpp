@@ -22,7 +22,7 @@ struct Look {
   std::string value;  ///< expression of QGIS for what the colour shows
   Legend legend;
   double smallest, largest;      ///< size or width in the first and the last class [mm]
-  std::string above_label = "";  ///< added to the label of the last class
+  std::string never = "";        ///< label of a grey class of its own for 1e99; empty: there is none
 };
 
 /// The legend of a raster, without its band.
@@ -34,7 +34,7 @@ Legend legend_of(const std::string& name) {
   throw std::logic_error("no raster " + name);
 }
 
-/// Objects that nothing hits have no return period, and belong to the longest; those off the map have no class.
+/// Objects that nothing hits have no return period and a class of their own; those off the map have no class.
 constexpr const char* kReturnPeriod =
     R"(CASE WHEN "trajectories" IS NULL THEN NULL ELSE coalesce("return_period", 1e99) END)";
 /// [kJ], of the largest speed of the path
@@ -51,9 +51,9 @@ Look look_of(StyledLayer layer) {
     case StyledLayer::Screens:
       return {Symbol::Line, "\"energy_kj_p95\"", legend_of("energy"), 1.0, 1.6};
     case StyledLayer::AreaObjects:
-      return {Symbol::Area, kReturnPeriod, legend_of("return_period_<kJ>"), 0.4, 0.4, ", or never hit"};
+      return {Symbol::Area, kReturnPeriod, legend_of("return_period_<kJ>"), 0.4, 0.4, "hit by no block"};
     case StyledLayer::LineObjects:
-      return {Symbol::Line, kReturnPeriod, legend_of("return_period_<kJ>"), 1.4, 1.4, ", or never hit"};
+      return {Symbol::Line, kReturnPeriod, legend_of("return_period_<kJ>"), 1.4, 1.4, "hit by no block"};
   }
   throw std::logic_error("a layer without a style");
 }
@@ -110,12 +110,17 @@ void add_symbol(const Element& symbols, const Look& look, std::size_t number, co
 }
 
 void add_renderer(const Element& root, const Look& look) {
-  constexpr double kMost = 1e100;  // of the last class; QGIS reads no infinite number here
+  constexpr double kMost = 1e100;    // of the last class; QGIS reads no infinite number here
+  constexpr double kLongest = 1e98;  // years; below the 1e99 of `kReturnPeriod`
   const Element renderer = root.add("renderer-v2");
   renderer.set("type", "graduatedSymbol").set("attr", look.value).set("graduatedMethod", "GraduatedColor");
   renderer.set("symbollevels", "0").set("enableorderby", "0").set("forceraster", "0");
   const Element ranges = renderer.add("ranges"), symbols = renderer.add("symbols");
-  const std::vector<LegendClass> classes = classes_of(look.legend, false);
+  std::vector<LegendClass> classes = classes_of(look.legend, false);
+  if (!look.never.empty()) {
+    classes.back().limit = kLongest;
+    classes.push_back({kMost, look.never, "#bdbdbd"});
+  }
   double low = 0.0;
   for (std::size_t i = 0; i < classes.size(); ++i) {
     const bool last = i + 1 == classes.size();
@@ -125,7 +130,7 @@ void add_renderer(const Element& root, const Look& look) {
         .set("lower", text_of(low))
         .set("upper", text_of(high))
         .set("symbol", std::to_string(i))
-        .set("label", classes[i].label + (last ? look.above_label : ""))
+        .set("label", classes[i].label)
         .set("render", "true");
     add_symbol(symbols, look, i, classes[i].colour, look.smallest + share * (look.largest - look.smallest));
     low = high;

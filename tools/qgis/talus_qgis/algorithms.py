@@ -207,10 +207,15 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             if p["written"]:
                 return QgsProcessingParameterFolderDestination(key, title, None, optional)
             return QgsProcessingParameterFile(key, title, QgsProcessingParameterFile.Folder, "",
-                                              results.latest_folder(QgsProject.instance()), optional)
+                                              self._preselected(p), optional)
         if kind == "file":
             return self._file(p, key, title, optional)
         return QgsProcessingParameterString(key, title, None, False, optional)
+
+    @staticmethod
+    def _preselected(p):
+        """The folder of the results on top of the map, where the folder of a run is asked for."""
+        return results.latest_folder(QgsProject.instance()) if p["positional"] else None
 
     def _help(self, p):
         several = p["name"] in self.table.get("several", ())

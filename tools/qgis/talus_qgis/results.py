@@ -205,7 +205,8 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
     def _move(self, node, root):
         group = self._group(root)
         shown = self.shown
-        if self._is_title_elsewhere(root, group):  # so that a list of layers tells the two apart
+        self._remove_layers_without_file(group)
+        if self._is_title_elsewhere(root, group, node.layerId()):  # so that a list of layers tells the two apart
             node.layer().setName(f"{self.name} ({os.path.basename(self.folder)})")
         for other in group.findLayers():
             layer = other.layer()
@@ -227,9 +228,17 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
         group.insertChildNode(place, copy)
         node.parent().removeChildNode(node)
 
-    def _is_title_elsewhere(self, root, group):
-        """Whether the results of another folder have a layer of this title."""
-        own = {node.layerId() for node in group.findLayers()}
+    @staticmethod
+    def _remove_layers_without_file(group):
+        """Takes out results of an earlier command that this one has removed."""
+        for other in group.findLayers():
+            layer = other.layer()
+            if layer is not None and layer.customProperty(TITLE_MARK) and not os.path.exists(layer.source().split("|")[0]):
+                layer.project().removeMapLayer(layer.id())
+
+    def _is_title_elsewhere(self, root, group, layer_id):
+        """Whether the results of another folder have a layer of this title. QGIS may have put the layer itself anywhere."""
+        own = {node.layerId() for node in group.findLayers()} | {layer_id}
         return any(other.layer() is not None and other.layer().customProperty(TITLE_MARK) == self.name
                    for results in root.findGroups() if results is not group
                    for other in results.findLayers() if other.layerId() not in own)
@@ -244,6 +253,9 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
         for group in root.findGroups():
             if group.customProperty(GROUP_MARK) == self.folder:
                 return group
+        for earlier in root.findGroups():  # their colours would shine through
+            if earlier.customProperty(GROUP_MARK):
+                earlier.setItemVisibilityChecked(False)
         group = QgsLayerTreeGroup(self.title)
         group.setCustomProperty(GROUP_MARK, self.folder)
         root.insertChildNode(0, group)

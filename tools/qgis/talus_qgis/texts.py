@@ -242,7 +242,7 @@ GERMAN = {
     " 1/year": " 1/Jahr",
     "0 1/year": "0 1/Jahr",
     "0 years": "0 Jahre",
-    "or never hit": "oder nie getroffen",
+    "hit by no block": "von keinem Block getroffen",
     "none": "keine",
     "residual": "Restgefährdung",
     "low": "gering",

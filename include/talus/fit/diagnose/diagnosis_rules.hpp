@@ -70,6 +70,8 @@ struct DiagnosisRules {
   /// Height above its minimum at which a first fit may have ended [objective]: an effect that is further behind cannot
   /// win any more.
   double unfinished = 0.02;
+  /// Rounds by which the fit of the model that was chosen goes on, at most [-].
+  int last_rounds = 6;
   /// Rise of the objective over that without an effect at which larger amounts of it are not tried [objective]:
   /// fourteen times the noise of a total. An effect whose smallest amount costs as much is not fitted.
   double hopeless = 0.1;

@@ -92,6 +92,20 @@ TEST(EffectFits, WhatIsNoBetterIsNotConfirmed) {
   EXPECT_NE(later.objective.total, anew.objective.total);
 }
 
+/// The quadratic model of what was tried before has its minimum at the wrong place here: rounds of it alone stay there.
+TEST(EffectFits, AChosenModelFarFromItsOptimumIsBroughtThere) {
+  const SlopeFits slope(45);
+  const EffectFits fits(slope.campaign, slope.options, slope.rows, [](double) { return true; });
+  const FittedModel good = fits.fit_ground(model_of_slope());
+  const FittedModel bad = fits.simulated_anew(too_rough(slope.campaign, slope.rows, good));
+  const FittedModel completed = fits.completed(bad);
+  const auto roughness = [](const FittedModel& fitted) { return fitted.free[0].get(fitted.model); };
+  const double truth = good.free[0].get(model_of_slope());
+  EXPECT_LT(std::abs(std::log(roughness(completed) / truth)), 0.15);
+  ASSERT_NEAR(std::log(roughness(bad) / roughness(good)), std::log(1.5), 1e-9);
+  EXPECT_LT(completed.objective.total, bad.objective.total - 0.8 * (bad.objective.total - good.objective.total));
+}
+
 /// The slope with a screen that no simulated block comes to, where speeds were measured.
 struct SlopeWithScreenBeyond : SlopeFits {
   explicit SlopeWithScreenBeyond(std::size_t blocks) : SlopeFits(blocks) {
