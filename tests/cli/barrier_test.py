@@ -318,7 +318,7 @@ class Walk(Case):
 
     def test_one_that_holds_all(self):
         self.nets((125.0, "wall", 100.0, math.inf))
-        self.run_well("run", self.scenario(), "-o", self.path("out"))
+        done = self.run_well("run", self.scenario(), "-o", self.path("out"))
         self.assertIn("above", self.screens("out"))
         self.assertNotIn("below", self.screens("out"))
         record = self.record()
@@ -326,6 +326,8 @@ class Walk(Case):
         self.assertEqual((wall["id"], wall["capacity_kj"], wall["over"], wall["broken"]), ("wall", "inf", 0, 0))
         self.assertEqual(wall["caught"], record["ends"]["caught"])
         self.assertGreater(wall["caught"], 100)
+        caught = f"{wall['caught']:,}".replace(",", " ")
+        self.assertIn(f"barrier wall: {caught} caught, 0 over it, 0 through it (it broke)", done.stdout + done.stderr)
         self.assertEqual(sum(record["ends"].values()), record["released"])
         with open(self.path("out/barriers.csv"), encoding="utf-8") as file:
             rows = list(csv.DictReader(file))

@@ -143,6 +143,22 @@ class Hazard(Case):
         self.assertIsNone(rows["far"]["frequency"])
         self.assertIsNone(rows["far"]["trajectories"])
 
+    def test_what_a_reader_leaves_beside_a_raster_goes_with_it(self):
+        """QGIS writes statistics beside a raster when it closes it, also when the raster has been removed before."""
+        self.simulate()
+        self.run_well("hazard", self.path("out"))
+        ours = self.path("out/intensity_T100.tif.aux.xml")
+        with open(ours, encoding="utf-8") as file:
+            names = file.read()
+        self.run_well("hazard", self.path("out"), "--width", "10", "--overwrite")
+        self.assertFalse(os.path.exists(ours))
+        for name in ("intensity_T100.tif", "return_period_30.tif"):
+            self.write(f"out/{name}.aux.xml", "<PAMDataset/>")
+        self.run_well("hazard", self.path("out"), "--overwrite")
+        with open(ours, encoding="utf-8") as file:
+            self.assertEqual(file.read(), names)
+        self.assertFalse(os.path.exists(self.path("out/return_period_30.tif.aux.xml")))  # those of the earlier map
+
     def test_contradicting_frequencies(self):
         self.write("s.toml", RUN + "[frequency]\nper_area = 0.01\n")
         self.refused("must be given by one of them", "run", self.path("s.toml"), "-o", self.path("out"))
@@ -164,8 +180,9 @@ class Hazard(Case):
         self.assertEqual([rows[name]["people"] for name in "ABC"], [3, 4, 1])
         said = dict(re.findall(r"talus: ([ABC]): (.*)", done.stderr))  # the most often hit first
         for name in "AB":
-            self.assertTrue(said[name].startswith(f"hit {rows[name]['frequency']:.3g} times per year, once in "
-                                                  f"{rows[name]['return_period']:.3g} years (95 %: "), said[name])
+            self.assertEqual(said[name], f"hit {rows[name]['frequency']:.3g} times per year, once in "
+                             f"{rows[name]['return_period']:.3g} years (95 %: {rows[name]['frequency_lower']:.3g} to "
+                             f"{rows[name]['frequency_upper']:.3g} per year)")
         self.assertEqual(said["C"], f"hit by no block of this run; at most {rows['C']['frequency_upper']:.3g} times per year (95 %)")
         self.assertEqual(list(said)[-1], "C")
         with open(self.path("out/objects.csv"), encoding="utf-8", newline="") as file:

@@ -249,6 +249,20 @@ TEST_F(Project, NamesOfFilesAreEscaped) {
   EXPECT_NE(text.find("<datasource>./stops.gpkg|layername=stops<"), std::string::npos) << text;
 }
 
+TEST_F(Project, NoIdOfALayerBeginsAnother) {
+  std::vector<std::string> files;
+  for (const ProjectLayer& layer : project_layers())
+    for (const char* number : {"", "30", "300"})
+      files.push_back(layer.name + number + (layer.vector ? ".gpkg" : ".tif"));
+  std::string text = project_of(files, path(""), path("out"), {{"", 0.0, 100.0, 1.0, 1.0}, 10, 10, ""});
+  std::vector<std::string> ids;
+  for (std::size_t at = 0; (at = text.find("<id>", at)) != std::string::npos; ++at)
+    ids.push_back(text.substr(at + 4, text.find('<', at + 4) - at - 4));
+  ASSERT_GT(ids.size(), 29U);
+  for (const std::string& one : ids)
+    EXPECT_EQ(std::ranges::count_if(ids, [&](const std::string& id) { return id.starts_with(one); }), 1) << one;
+}
+
 TEST_F(Project, AFileThatIsNotThereHasNoHillshade) {
   for (const std::string& dem :
        {path("none.tif"), std::string("/vsicurl/http://example.org/dem.tif"), std::string("x.tif")})

@@ -12,8 +12,9 @@ import tempfile
 import time
 import unittest
 
+import numpy as np
 from osgeo import gdal
-from qgis.core import (QgsApplication, QgsLayerTreeModel, QgsLayerTreeRegistryBridge, QgsProject, QgsVectorLayer)
+from qgis.core import (QgsApplication, QgsLayerTreeModel, QgsLayerTreeRegistryBridge, QgsProject, QgsRasterLayer, QgsVectorLayer)
 from qgis.gui import QgsGui, QgsLayerTreeView
 from qgis.PyQt.QtWidgets import QTextEdit
 
@@ -150,6 +151,22 @@ class Window(unittest.TestCase):
             self.assertEqual(self.classes(layer), self.classes(wanted[layer.name()]), layer.name())
             self.assertEqual(layer.renderer().type(), "graduatedSymbol", layer.name())
 
+    def test_z_maps_that_are_replaced_are_read_anew(self):
+        """Last, as it changes the results: other widths, so that rasters get other values, come and go."""
+        for values in ({"WIDTH": 10.0, "OVERWRITE": True}, {"OVERWRITE": True}):
+            self.run_dialog("hazard", {"FOLDER": self.out, **values})
+            layers = [node.layer() for node in self.group.findLayers()]
+            rasters = {os.path.basename(layer.source()): layer for layer in layers if isinstance(layer, QgsRasterLayer)}
+            self.assertEqual("intensity_T30.tif" in rasters, "WIDTH" not in values)  # a layer goes with its file
+            self.assertNotIn("objects.gpkg", [os.path.basename(layer.source().split("|")[0]) for layer in layers])
+            for name in ("hazard_class.tif", "annual_frequency.tif"):
+                layer = rasters[name]
+                shown = layer.dataProvider().block(1, layer.extent(), layer.width(), layer.height())
+                values_in_file = gdal.Open(layer.source()).ReadAsArray()[0]
+                told = [[shown.value(row, column) for column in range(0, layer.width(), 7)]
+                        for row in range(0, layer.height(), 7)]
+                np.testing.assert_array_equal(np.array(told), np.array(values_in_file[::7, ::7], dtype=float), name)
+
     def test_the_folder_of_the_results_on_top_is_preselected(self):
         tree = QgsProject.instance().layerTreeRoot()
         on_top = tree.insertGroup(0, "Talus: gone")
@@ -160,6 +177,14 @@ class Window(unittest.TestCase):
         self.assertEqual(folder, others[0].customProperty("talus/folder"))
         self.assertTrue(os.path.exists(os.path.join(folder, "run.json")))
         tree.removeChildNode(on_top)
+
+    def test_the_only_raster_is_the_terrain_where_there_must_be_one(self):
+        for only in (True, False):  # the second raster leaves the choice to the user
+            layer = QgsRasterLayer(os.path.join(VALLEY, "dem.tif"), "dem")
+            QgsProject.instance().addMapLayer(layer)
+            for name, wanted in (("sources", layer.id() if only else None), ("run", None)):
+                algorithm = QgsApplication.processingRegistry().createAlgorithmById("talus:" + name)
+                self.assertEqual(algorithm.parameterDefinition("DEM").defaultValue(), wanted)
 
     def test_the_log_keeps_the_columns_of_a_table(self):
         told = subprocess.run([os.environ["TALUS"], "barrier", self.out, "--screen", "road"], capture_output=True, text=True,

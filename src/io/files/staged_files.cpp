@@ -52,10 +52,12 @@ std::vector<std::string> StagedFiles::to_remove() const {
 }
 
 void StagedFiles::commit() {
-  const auto is_earlier = [&](const std::string& name) {  // or what a reader has left beside an earlier one
-    constexpr std::string_view kBeside = ".aux.xml";
-    return std::ranges::count(earlier_, name) > 0 ||
-           (name.ends_with(kBeside) && std::ranges::count(earlier_, name.substr(0, name.size() - kBeside.size())) > 0);
+  constexpr std::string_view kBeside = ".aux.xml";
+  const auto is_earlier = [&](const std::string& name) {  // or what a reader has left beside an earlier one, or after it
+    if (std::ranges::count(earlier_, name) > 0) return true;
+    if (!name.ends_with(kBeside)) return false;
+    const std::string raster = name.substr(0, name.size() - kBeside.size());
+    return std::ranges::count(earlier_, raster) > 0 || !fs::exists(folder_ / raster);
   };
   for (const std::string& name : files())
     if (fs::exists(folder_ / name) && !is_earlier(name))
@@ -67,6 +69,9 @@ void StagedFiles::commit() {
   for (const std::string& name : names)
     if (name != record_) give_name(name);  // in place of an earlier file, which is there until then
   for (const std::string& name : without_successor) fs::remove(folder_ / name, ignored);
+  for (const std::string& name : names)  // statistics of an earlier raster of this name
+    if (std::ranges::count(names, name + std::string(kBeside)) == 0)
+      fs::remove(folder_ / (name + std::string(kBeside)), ignored);
   if (std::ranges::count(names, record_) > 0) give_name(record_);
 }
 

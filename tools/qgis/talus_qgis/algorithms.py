@@ -264,7 +264,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             return QgsProcessingParameterFeatureSource(key, title, self.table.get("shapes", {}).get(p["name"], []), None,
                                                        optional)
         if "raster" in p["holds"]:
-            return QgsProcessingParameterRasterLayer(key, title, None, optional)
+            only = None if optional else results.only_raster(QgsProject.instance())  # a scenario may name another terrain
+            return QgsProcessingParameterRasterLayer(key, title, only, optional)
         return QgsProcessingParameterFile(key, title, QgsProcessingParameterFile.File, p["holds"][0], None, optional)
 
     def _declare_outputs(self):

@@ -154,10 +154,23 @@ def _translate_legend(layer):
     colours.setColorRampItemList(items)
 
 
+def _in_main_thread():
+    """The layers and their tree belong to it; algorithms of a model are made in others."""
+    return QThread.currentThread() == QCoreApplication.instance().thread()
+
+
+def only_raster(project):
+    """The raster of a project that is no result, if there is just one."""
+    if not _in_main_thread():
+        return None
+    rasters = [layer for layer in project.mapLayers().values()
+               if isinstance(layer, QgsRasterLayer) and layer.customProperty(TITLE_MARK) is None]
+    return rasters[0].id() if len(rasters) == 1 else None
+
+
 def latest_folder(project):
-    """The folder of the topmost group of results in a project; None where there is none, or it is gone, and in a task:
-    the tree of layers belongs to the main thread."""
-    if QThread.currentThread() != QCoreApplication.instance().thread():
+    """The folder of the topmost group of results in a project; None where there is none, or it is gone."""
+    if not _in_main_thread():
         return None
     marked = [group.customProperty(GROUP_MARK) for group in project.layerTreeRoot().findGroups()]
     return next((folder for folder in marked if folder and os.path.exists(os.path.join(folder, "run.json"))), None)
@@ -185,6 +198,8 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
 
     def postProcessLayer(self, layer, context, feedback):
         layer.setName(self.name)
+        layer.dataProvider().reloadData()  # QGIS takes a layer that is there already where it has the same file
+        layer.triggerRepaint()
         if isinstance(layer, QgsVectorLayer) and ".gpkg|layername=" in layer.source():
             _apply_style_in_file(layer)
         elif os.path.exists(self.style) and not (isinstance(layer, QgsVectorLayer) and self._is_of_raster()):
