@@ -242,7 +242,7 @@ def diagnose(o, folder):
         found = json.load(file)
     truth = json.loads(run([o.talus, "score", f"{folder}/campaign.toml", "--parameters", f"{folder}/truth_model.toml", "--rows",
                             "holdout", "--trials", "200", "--json", "-q"]))
-    return found, truth["holdout"]["score"]
+    return found, truth["holdout"]
 
 
 def above_limit(found, effect, magnitude):
@@ -264,14 +264,18 @@ def one(o, effect, magnitude, count, k):
     if not os.path.exists(f"{folder}/campaign.toml"):
         make(o.talus, folder, effect, magnitude, count, o.seed + 7919 * k + sum(map(ord, effect)) + int(100 * magnitude) + count, null)
     found, truth = diagnose(o, folder)
-    e = found["error"]["holdout"]
+    e, headline = found["error"]["holdout"], found["error"]["headline"]
+    large = [g["score"] for g in truth["groups"] if g["rows"] >= headline["fewest_rows_of_a_group"]]
+    truth = truth["score"]
     families = {f["name"]: f["p_value"] for f in found["families"]}
     row = dict(effect=made, magnitude=magnitude, blocks=count, found=found["effect"], alike=" ".join(found["indistinguishable_from"]),
-               p=found["rounds"][0]["p_value"], before=e["before"], after=e["after"], truth=truth, seconds=found["times"]["cpu"],
+               p=found["rounds"][0]["p_value"], before=e["before"], after=e["after"], truth=truth,
+               large_before=headline["before"], large_after=headline["after"], large_truth=sum(large) / len(large), seconds=found["times"]["cpu"],
                above_limit=above_limit(found, effect, magnitude), **{name: families.get(name) for name in FAMILIES},
                **pull(f"{diagnosis_folder(o, folder)}/fitted.toml", f"{folder}/truth_model.toml"))
     print(f"{made} x{magnitude:g}, {count} blocks, {k}: {row['found']} ({row['alike']}) p {row['p']:.4f}, held-out {row['before']:.3f} -> "
-          f"{row['after']:.3f}, truth {truth:.3f}, {row['seconds']:.0f} s", flush=True)
+          f"{row['after']:.3f}, truth {truth:.3f}; groups of ten rows and more {row['large_before']:.3f} -> {row['large_after']:.3f}, truth "
+          f"{row['large_truth']:.3f}; {row['seconds']:.0f} s", flush=True)
     return row
 
 
@@ -319,7 +323,8 @@ def report(table):
         wrong = sum(r["found"] not in ("none", "unexplained", r["effect"]) and r["effect"] not in r["alike"].split() for r in effects)
         named = [r for r in effects if r["found"] == r["effect"]]
         print(f"another effect named: {wrong} of {len(effects)}; error after within 5 % of the true model's in "
-              f"{sum(r['after'] <= 1.05 * r['truth'] for r in named)} of {len(named)} named")
+              f"{sum(r['after'] <= 1.05 * r['truth'] for r in named)} of {len(named)} named, in groups of ten rows and more in "
+              f"{sum(r['large_after'] <= 1.05 * r['large_truth'] for r in named)}")
 
 
 def main():
