@@ -272,8 +272,7 @@ FittedModel EffectFits::completed(FittedModel chosen) const {
   how.rounds = options_.rules.last_rounds;
   how.enough = options_.rules.worth_a_round;
   how.known = chosen.evaluations;
-  FittedModel longer =
-      fitted_model(fit_parameters(campaign_, chosen.model, chosen.free, rows_, how), chosen.free);
+  FittedModel longer = fitted_model(fit_parameters(campaign_, chosen.model, chosen.free, rows_, how), chosen.free);
   return better_of(std::move(chosen), std::move(longer));
 }
 

@@ -74,8 +74,8 @@ bool has_lines_beside_areas(const fs::path& file, const std::string& layer) {
   return lines && areas;
 }
 
-/// The id of a layer. None is the beginning of another one: QGIS 3.22 looks layers up by the beginning of their id when it
-/// takes them out of its lists, and falls over the one that stays there.
+/// The id of a layer. None is the beginning of another one: QGIS 3.22 looks layers up by the beginning of their id when
+/// it takes them out of its lists, and falls over the one that stays there.
 std::string id_of(const std::string& name, bool vector) {
   return name + (vector ? "_talus_layer" : "_talus_map");
 }

@@ -21,8 +21,8 @@ struct Look {
   Symbol symbol;
   std::string value;  ///< expression of QGIS for what the colour shows
   Legend legend;
-  double smallest, largest;      ///< size or width in the first and the last class [mm]
-  std::string never = "";        ///< label of a grey class of its own for 1e99; empty: there is none
+  double smallest, largest;  ///< size or width in the first and the last class [mm]
+  std::string never = "";    ///< label of a grey class of its own for 1e99; empty: there is none
 };
 
 /// The legend of a raster, without its band.
