@@ -53,13 +53,13 @@ std::vector<std::string> StagedFiles::to_remove() const {
 
 void StagedFiles::commit() {
   constexpr std::string_view kBeside = ".aux.xml";
-  const auto is_earlier =
-      [&](const std::string& name) {  // or what a reader has left beside an earlier one, or after it
-        if (std::ranges::count(earlier_, name) > 0) return true;
-        if (!name.ends_with(kBeside)) return false;
-        const std::string raster = name.substr(0, name.size() - kBeside.size());
-        return std::ranges::count(earlier_, raster) > 0 || !fs::exists(folder_ / raster);
-      };
+  // Also what a reader, as QGIS, has left beside an earlier file, or has written after that was gone.
+  const auto is_earlier = [&](const std::string& name) {
+    if (std::ranges::count(earlier_, name) > 0) return true;
+    if (!name.ends_with(kBeside)) return false;
+    const std::string raster = name.substr(0, name.size() - kBeside.size());
+    return std::ranges::count(earlier_, raster) > 0 || !fs::exists(folder_ / raster);
+  };
   for (const std::string& name : files())
     if (fs::exists(folder_ / name) && !is_earlier(name))
       throw InputError((folder_ / name).string() + ": is there and none of the files of an earlier " + record_ +
