@@ -155,6 +155,8 @@ class Window(unittest.TestCase):
         """Last, as it changes the results: other widths, so that rasters get other values, come and go."""
         for values in ({"WIDTH": 10.0, "OVERWRITE": True}, {"OVERWRITE": True}):
             self.run_dialog("hazard", {"FOLDER": self.out, **values})
+            shown = [g.name() for g in QgsProject.instance().layerTreeRoot().findGroups() if g.itemVisibilityChecked()]
+            self.assertEqual(shown, ["Talus: out"])  # those of other folders are hidden
             layers = [node.layer() for node in self.group.findLayers()]
             rasters = {os.path.basename(layer.source()): layer for layer in layers if isinstance(layer, QgsRasterLayer)}
             self.assertEqual("intensity_T30.tif" in rasters, "WIDTH" not in values)  # a layer goes with its file

@@ -265,13 +265,15 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
         return _place(_rank(child.layer()), child.layer().customProperty(TITLE_MARK, "")) > _place(self.rank, self.name)
 
     def _group(self, root):
-        for group in root.findGroups():
-            if group.customProperty(GROUP_MARK) == self.folder:
-                return group
-        for earlier in root.findGroups():  # their colours would shine through
-            if earlier.customProperty(GROUP_MARK):
-                earlier.setItemVisibilityChecked(False)
-        group = QgsLayerTreeGroup(self.title)
-        group.setCustomProperty(GROUP_MARK, self.folder)
-        root.insertChildNode(0, group)
-        return group
+        """The group of the results, which is shown; those of other folders are hidden: their colours would shine through."""
+        marked = [group for group in root.findGroups() if group.customProperty(GROUP_MARK)]
+        own = next((group for group in marked if group.customProperty(GROUP_MARK) == self.folder), None)
+        if own is None:
+            own = QgsLayerTreeGroup(self.title)
+            own.setCustomProperty(GROUP_MARK, self.folder)
+            root.insertChildNode(0, own)
+        for group in marked:
+            if group is not own:
+                group.setItemVisibilityChecked(False)
+        own.setItemVisibilityChecked(True)
+        return own
