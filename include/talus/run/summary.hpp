@@ -21,9 +21,9 @@ std::uint64_t count_of(const Totals& totals, End end);
 std::string ends_text(const Totals& totals);
 
 /// "12 of 3 400 trajectories (0.353 %, allowed are 0.1 %) ended at the limit of impacts or time".
+std::string limits_text(const Totals& totals);
 /// "barrier net: 3 937 caught, 8 over it, 0 through it (it broke)".
 std::string barrier_text(const std::string& id, const BarrierCounts& counts);
-std::string limits_text(const Totals& totals);
 
 /// Warnings about trajectories that left the DEM or were trapped; empty if they are few.
 ///

@@ -49,8 +49,9 @@ class DiagnosisLoop {
       const DiagnosisRound& last = d.rounds.back();
       if (last.effect == "none" || last.effect == "unexplained" || scope_.first_round) break;
       found.push_back(last.effect);
-      d.with_effects = d.rounds.back().candidates.front().fitted;
-      if (!scope_.brief) d.with_effects = fits_.completed(std::move(d.with_effects));
+      FittedCandidate& chosen = d.rounds.back().candidates.front();
+      if (!scope_.brief) fits_.complete(d.with_effects, chosen);
+      d.with_effects = chosen.fitted;
     }
     if (!scope_.brief) compare_limits(d.rounds.back().limits, limits_with_further_screens(d.with_effects, found));
     if (!found.empty()) d.base = fits_.simulated_anew(std::move(d.base));

@@ -263,7 +263,7 @@ void EffectFits::continue_with_more_trials(const FittedModel& base, FittedCandid
   continue_with(base, candidate, how);
 }
 
-FittedModel EffectFits::completed(FittedModel chosen) const {
+void EffectFits::complete(const FittedModel& base, FittedCandidate& chosen) const {
   const Timesheet::Phase phase(times_, "chosen model");
   FitOptions how = fit_options();
   how.trials *= 2;
@@ -271,9 +271,11 @@ FittedModel EffectFits::completed(FittedModel chosen) const {
   how.starts = 1;
   how.rounds = options_.rules.last_rounds;
   how.enough = options_.rules.worth_a_round;
-  how.known = chosen.evaluations;
-  FittedModel longer = fitted_model(fit_parameters(campaign_, chosen.model, chosen.free, rows_, how), chosen.free);
-  return better_of(std::move(chosen), std::move(longer));
+  const FittedModel& fitted = chosen.fitted;
+  how.known = fitted.evaluations;
+  FittedModel longer = fitted_model(fit_parameters(campaign_, fitted.model, fitted.free, rows_, how), fitted.free);
+  take_fit(better_of(std::move(chosen.fitted), std::move(longer)), chosen);
+  measure_gain(base, chosen);
 }
 
 void EffectFits::continue_with(const FittedModel& base, FittedCandidate& candidate, const FitOptions& how) const {

@@ -47,7 +47,7 @@ class EffectFits {
   void continue_with_more_trials(const FittedModel& base, FittedCandidate& candidate) const;
   /// Goes on with the fit of the model that was chosen until a round gains nothing: an effect that changes much leaves
   /// the ground far from its optimum. Keeps the result where it is better.
-  FittedModel completed(FittedModel chosen) const;
+  void complete(const FittedModel& base, FittedCandidate& chosen) const;
   /// The objective of a model on blocks that its fit has not seen, for each of some random orders of the blocks. An
   /// order is cut into folds; each fold is simulated with the minimum of the quadratic model of the other folds' rows.
   std::vector<Score> cross_validated(const FittedModel& fitted) const {

@@ -1,6 +1,7 @@
 """What a command has written, as a group of layers: titles, styles, the hazard class on top."""
 import os
 import re
+from contextlib import contextmanager
 
 from qgis.core import (Qgis, QgsGraduatedSymbolRenderer, QgsLayerTree, QgsLayerTreeGroup, QgsLineSymbol, QgsProcessingContext,
                        QgsProcessingLayerPostProcessorInterface, QgsProject, QgsProviderRegistry, QgsRasterLayer,
@@ -154,6 +155,35 @@ def _translate_legend(layer):
     colours.setColorRampItemList(items)
 
 
+def _read_anew(layer):
+    """Reads the file, fields and extent of a layer again. GDAL writes statistics beside a raster that it closes, over what
+    the program has written there: that is put back."""
+    if isinstance(layer, QgsRasterLayer):
+        with _kept_beside(layer.source()):
+            layer.dataProvider().reloadData()
+        layer.dataProvider().reloadData()
+        layer.setExtent(layer.dataProvider().extent())
+    else:
+        layer.reload()
+    layer.triggerRepaint()
+
+
+@contextmanager
+def _kept_beside(path):
+    """Keeps what lies beside a raster as PATH.aux.xml."""
+    beside = path + ".aux.xml"
+    before = None
+    if os.path.exists(beside):
+        with open(beside, "rb") as file:
+            before = file.read()
+    yield
+    if before is not None:
+        with open(beside, "wb") as file:
+            file.write(before)
+    elif os.path.exists(beside):
+        os.remove(beside)
+
+
 def _in_main_thread():
     """The layers and their tree belong to it; algorithms of a model are made in others."""
     return QThread.currentThread() == QCoreApplication.instance().thread()
@@ -164,15 +194,18 @@ def only_raster(project):
     if not _in_main_thread():
         return None
     rasters = [layer for layer in project.mapLayers().values()
-               if isinstance(layer, QgsRasterLayer) and layer.customProperty(TITLE_MARK) is None]
+               if isinstance(layer, QgsRasterLayer) and layer.providerType() == "gdal"
+               and layer.customProperty(TITLE_MARK) is None
+               and not os.path.exists(os.path.join(os.path.dirname(layer.source()), "run.json"))]
     return rasters[0].id() if len(rasters) == 1 else None
 
 
 def latest_folder(project):
-    """The folder of the topmost group of results in a project; None where there is none, or it is gone."""
+    """The folder of the results that a project shows, the topmost first; None where there is none that is still there."""
     if not _in_main_thread():
         return None
-    marked = [group.customProperty(GROUP_MARK) for group in project.layerTreeRoot().findGroups()]
+    groups = sorted(project.layerTreeRoot().findGroups(), key=lambda group: not group.itemVisibilityChecked())
+    marked = [group.customProperty(GROUP_MARK) for group in groups]
     return next((folder for folder in marked if folder and os.path.exists(os.path.join(folder, "run.json"))), None)
 
 
@@ -198,8 +231,7 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
 
     def postProcessLayer(self, layer, context, feedback):
         layer.setName(self.name)
-        layer.dataProvider().reloadData()  # QGIS takes a layer that is there already where it has the same file
-        layer.triggerRepaint()
+        _read_anew(layer)  # QGIS takes a layer that is there already where it has the same file
         if isinstance(layer, QgsVectorLayer) and ".gpkg|layername=" in layer.source():
             _apply_style_in_file(layer)
         elif os.path.exists(self.style) and not (isinstance(layer, QgsVectorLayer) and self._is_of_raster()):
@@ -272,8 +304,8 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
             own = QgsLayerTreeGroup(self.title)
             own.setCustomProperty(GROUP_MARK, self.folder)
             root.insertChildNode(0, own)
-        for group in marked:
-            if group is not own:
+        for group in marked:  # candidate sources are marked by their file, and stay
+            if group is not own and os.path.isdir(self.folder) and os.path.isdir(group.customProperty(GROUP_MARK)):
                 group.setItemVisibilityChecked(False)
         own.setItemVisibilityChecked(True)
         return own

@@ -98,7 +98,14 @@ TEST(EffectFits, AChosenModelFarFromItsOptimumIsBroughtThere) {
   const EffectFits fits(slope.campaign, slope.options, slope.rows, [](double) { return true; });
   const FittedModel good = fits.fit_ground(model_of_slope());
   const FittedModel bad = fits.simulated_anew(too_rough(slope.campaign, slope.rows, good));
-  const FittedModel completed = fits.completed(bad);
+  FittedCandidate chosen;
+  chosen.fitted = bad;
+  chosen.parameters = {bad.free[0]};
+  chosen.tested = 1;
+  fits.complete(bad, chosen);
+  const FittedModel& completed = chosen.fitted;
+  EXPECT_EQ(chosen.values, std::vector<double>{bad.free[0].get(completed.model)}) << "what is reported";
+  EXPECT_EQ(chosen.gain, bad.objective.total - completed.objective.total);
   const auto roughness = [](const FittedModel& fitted) { return fitted.free[0].get(fitted.model); };
   const double truth = good.free[0].get(model_of_slope());
   EXPECT_LT(std::abs(std::log(roughness(completed) / truth)), 0.15);
