@@ -172,16 +172,23 @@ def _read_anew(layer):
 def _kept_beside(path):
     """Keeps what lies beside a raster as PATH.aux.xml."""
     beside = path + ".aux.xml"
-    before = None
-    if os.path.exists(beside):
-        with open(beside, "rb") as file:
-            before = file.read()
+    before = _bytes_of(beside)
     yield
-    if before is not None:
-        with open(beside, "wb") as file:
-            file.write(before)
-    elif os.path.exists(beside):
+    if before == _bytes_of(beside):
+        return
+    if before is None:
         os.remove(beside)
+        return
+    with open(beside, "wb") as file:
+        file.write(before)
+
+
+def _bytes_of(path):
+    """The content of a file; None where there is none."""
+    if not os.path.exists(path):
+        return None
+    with open(path, "rb") as file:
+        return file.read()
 
 
 def _in_main_thread():
