@@ -154,7 +154,9 @@ class Hazard(Case):
         self.assertFalse(os.path.exists(ours))
         for name in ("intensity_T100.tif", "return_period_30.tif"):
             self.write(f"out/{name}.aux.xml", "<PAMDataset/>")
+        self.write("out/hazard_class.tif.ovr", "overviews of the earlier raster")
         self.run_well("hazard", self.path("out"), "--overwrite")
+        self.assertFalse(os.path.exists(self.path("out/hazard_class.tif.ovr")))
         with open(ours, encoding="utf-8") as file:
             self.assertEqual(file.read(), names)
         self.assertFalse(os.path.exists(self.path("out/return_period_30.tif.aux.xml")))  # those of the earlier map

@@ -300,6 +300,14 @@ class Overwrite(InputCase):
         self.run_well(*arguments, "--overwrite")
         self.assertFalse(os.path.exists(self.path("out/hazard.json")))
         self.assertFalse(os.path.exists(self.path("out/energy.tif.aux.xml")))
+        self.write("out/return_period_30.tif.aux.xml", "<PAMDataset/>")  # QGIS wrote it after the raster had gone
+        self.run_well(*arguments, "--overwrite")
+        self.assertFalse(os.path.exists(self.path("out/return_period_30.tif.aux.xml")))
+        for name in ("mine.tif", "mine.tif.aux.xml"):
+            self.write("out/" + name, "mine")
+        self.fails(2, "mine.tif, mine.tif.aux.xml", arguments=[*arguments, "--overwrite"])
+        for name in ("mine.tif", "mine.tif.aux.xml"):
+            os.remove(self.path("out/" + name))
         self.write("out/barrier_notes.csv", "mine")
         self.fails(2, "barrier_notes.csv", arguments=[*arguments, "--overwrite"])
         self.assertTrue(os.path.exists(self.path("out/barrier_notes.csv")))

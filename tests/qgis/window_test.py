@@ -168,6 +168,21 @@ class Window(unittest.TestCase):
                 told = [[shown.value(row, column) for column in range(0, layer.width(), 7)]
                         for row in range(0, layer.height(), 7)]
                 np.testing.assert_array_equal(np.array(told), np.array(values_in_file[::7, ::7], dtype=float), name)
+            with open(rasters["hazard_class.tif"].source() + ".aux.xml", encoding="utf-8") as file:
+                self.assertIn("<Category>high</Category>", file.read())
+
+    def test_the_folder_in_a_name_tells_two_of_one_name_apart(self):
+        from talus_qgis.results import IntoGroup
+        tree = QgsProject.instance().layerTreeRoot()
+        south, north, alone = (os.path.join(self.folder, *parts) for parts in (("south", "OUT"), ("north", "OUT"), ("east", "x")))
+        groups = []
+        for folder in (south, north, alone):
+            groups.append(tree.insertGroup(0, "Talus"))
+            groups[-1].setCustomProperty("talus/folder", folder)
+        for folder, group, wanted in ((north, groups[1], "north/OUT"), (alone, groups[2], "x")):
+            self.assertEqual(IntoGroup(folder, "", "", "", 0, False)._folder_among(tree, group), wanted)
+        for group in groups:
+            tree.removeChildNode(group)
 
     def test_the_folder_of_the_results_on_top_is_preselected(self):
         tree = QgsProject.instance().layerTreeRoot()

@@ -83,13 +83,22 @@ std::set<std::string> own_names(const fs::path& folder) {
   return own;
 }
 
-bool is_beside(const std::string& name, const std::set<std::string>& own) {
-  return std::ranges::any_of(kBeside, [&](std::string_view end) {
-    return name.ends_with(end) && own.contains(name.substr(0, name.size() - end.size()));
-  });
+/// Whether a reader has left this file beside one of ours, or beside a raster that is gone: QGIS writes the statistics
+/// of a layer when it closes it.
+bool is_beside(const fs::path& folder, const std::string& name, const std::set<std::string>& own) {
+  const std::string read = read_file_of(name);
+  if (own.contains(read)) return true;
+  std::error_code none;
+  return read.ends_with(".tif") && !fs::exists(folder / read, none);
 }
 
 }  // namespace
+
+std::string read_file_of(const std::string& name) {
+  for (const std::string_view end : kBeside)
+    if (name.ends_with(end)) return name.substr(0, name.size() - end.size());
+  return "";
+}
 
 bool is_run_page(const fs::path& file) {
   std::error_code none;
@@ -122,7 +131,7 @@ std::vector<std::string> foreign_in(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     const bool is_folder = entry.is_directory() && !entry.is_symlink();
-    bool ours = is_folder ? name == OutputFolder::kWork : own.contains(name) || is_beside(name, own);
+    bool ours = is_folder ? name == OutputFolder::kWork : own.contains(name) || is_beside(folder, name, own);
     ours = ours || is_staged(entry.path()) || is_one_of(name, kOfDesktops) || (fit && is_site(entry.path()));
     if (part && !is_folder)
       ours = ours || std::ranges::any_of(kPartFiles, [&](std::string_view start) { return name.starts_with(start); });

@@ -15,8 +15,12 @@ bool is_run_page(const std::filesystem::path& file);
 /// end in "/". Talus's own are:
 ///   what the records run.json, hazard.json and part.json list, and the records;
 ///   the files of `barrier`, `calibrate`, `diagnose`, with the folders of their campaigns; the page of `report`;
-///   what readers leave beside one of these: X.aux.xml, X.ovr, X-wal, X-shm, X-journal.
+///   what readers leave beside one of these, or beside a raster that is gone (`read_file_of`).
 std::vector<std::string> foreign_in(const std::filesystem::path& folder);
+
+/// The file X beside which a reader leaves a file of this name: X.aux.xml, X.ovr, X-wal, X-shm, X-journal; empty where
+/// it is no such name.
+std::string read_file_of(const std::string& name);
 
 /// The files that a record of results lists in `files`, by their names alone.
 std::vector<std::string> files_of_record(const std::filesystem::path& record);

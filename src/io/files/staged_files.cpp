@@ -52,13 +52,11 @@ std::vector<std::string> StagedFiles::to_remove() const {
 }
 
 void StagedFiles::commit() {
-  constexpr std::string_view kBeside = ".aux.xml";
   // Also what a reader, as QGIS, has left beside an earlier file, or has written after that was gone.
   const auto is_earlier = [&](const std::string& name) {
     if (std::ranges::count(earlier_, name) > 0) return true;
-    if (!name.ends_with(kBeside)) return false;
-    const std::string raster = name.substr(0, name.size() - kBeside.size());
-    return std::ranges::count(earlier_, raster) > 0 || !fs::exists(folder_ / raster);
+    const std::string read = read_file_of(name);
+    return !read.empty() && (std::ranges::count(earlier_, read) > 0 || !fs::exists(folder_ / read));
   };
   for (const std::string& name : files())
     if (fs::exists(folder_ / name) && !is_earlier(name))
@@ -70,9 +68,9 @@ void StagedFiles::commit() {
   for (const std::string& name : names)
     if (name != record_) give_name(name);  // in place of an earlier file, which is there until then
   for (const std::string& name : without_successor) fs::remove(folder_ / name, ignored);
-  for (const std::string& name : names)  // statistics of an earlier raster of this name
-    if (std::ranges::count(names, name + std::string(kBeside)) == 0)
-      fs::remove(folder_ / (name + std::string(kBeside)), ignored);
+  for (const std::string& name : names)
+    for (const char* end : {".aux.xml", ".ovr"})  // of an earlier raster of this name: its statistics, its overviews
+      if (std::ranges::count(names, name + end) == 0) fs::remove(folder_ / (name + end), ignored);
   if (std::ranges::count(names, record_) > 0) give_name(record_);
 }
 

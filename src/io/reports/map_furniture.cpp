@@ -1,9 +1,9 @@
 #include "map_furniture.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <span>
 
 #include "svg.hpp"
 #include "talus/base/printable.hpp"
@@ -65,59 +65,86 @@ Box box_around(const std::vector<Eigen::Vector2d>& places, const MapScale& scale
   return box;
 }
 
-/// Writes names on the map, each beside what it names, where it is within the map and covers no object and no earlier
-/// name; a name without such a place is left out.
+/// The boxes of single places, as of the vertices of a line: it may be far from the middle of its own box.
+std::vector<Box> boxes_at(const std::vector<Eigen::Vector2d>& places, const MapScale& scale) {
+  std::vector<Box> boxes;
+  boxes.reserve(places.size());
+  for (const Eigen::Vector2d& place : places) boxes.push_back(box_around({place}, scale));
+  return boxes;
+}
+
+/// Writes names on the map, each beside what it names, where it is within the map and covers neither a kept box nor an
+/// earlier name, and no line where that can be had. A name without such a place is left out.
 class Names {
  public:
   Names(Svg& svg, const MapScale& scale) : svg_(svg), scale_(scale) {}
 
   void keep_free(const Box& box) { taken_.push_back(box); }
 
-  bool put(const std::string& name, const Box& of, const char* colour) {
-    constexpr double kLetter = 6.8, kLine = 13.0, kGap = 5.0;  // of bold letters, generous [px]
+  void keep_free(const std::vector<Eigen::Vector2d>& line) {
+    constexpr double kStep = 4.0;  // between points of a line that must not be covered [px]
+    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+      const Eigen::Vector2d from(scale_.x(line[i].x()), scale_.y(line[i].y())),
+          to(scale_.x(line[i + 1].x()), scale_.y(line[i + 1].y()));
+      const double steps = std::ceil((to - from).norm() / kStep);
+      for (double step = 0.0; step <= steps; ++step)
+        on_lines_.push_back(from + step / std::max(1.0, steps) * (to - from));
+    }
+  }
+
+  /// @param beside  the name may stand beside any of them
+  void put(const std::string& name, const std::vector<Box>& beside, const char* colour) {
     const std::string text = shortened(name, 32);
+    for (const bool over_lines : {false, true})
+      for (const Box& of : beside)
+        for (const Box& box : boxes_beside(of, text))
+          if (is_free(box, over_lines)) return write(text, box, colour);
+  }
+
+ private:
+  static constexpr double kLine = 13.0;  // height of a name [px]
+
+  std::array<Box, 8> boxes_beside(const Box& of, const std::string& text) const {
+    constexpr double kLetter = 6.8, kGap = 5.0;  // of bold letters, generous [px]
     const double width = kLetter * static_cast<double>(text.size()), beside = 0.5 * (of.top + of.low + kLine);
     const double right = of.right + kGap, left = of.left - kGap - width,
                  centred = std::min(0.5 * (of.left + of.right - width), scale_.width - width);  // or at the map's rim
     const double above = of.top - 2.0, below = of.low + kLine + 2.0;
-    for (const auto& [x, y] : {std::pair{right, beside},
-                               {left, beside},
-                               {centred, above},
-                               {centred, below},
-                               {right, above},
-                               {right, below},
-                               {left, above},
-                               {left, below}}) {
-      const Box box{x, y - kLine, x + width, y};
-      if (!is_free(box)) continue;
-      taken_.push_back(box);
-      svg_.words({{"x", x},
-                  {"y", y - 2.0},
-                  {"fill", colour},
-                  {"font-weight", "bold"},
-                  {"stroke", "#fff"},
-                  {"stroke-width", 3},
-                  {"paint-order", "stroke"}},
-                 text);
-      return true;
-    }
-    return false;
+    const auto box = [&](double x, double y) { return Box{x, y - kLine, x + width, y}; };
+    return {box(right, beside), box(left, beside), box(centred, above), box(centred, below),
+            box(right, above),  box(right, below), box(left, above),    box(left, below)};
   }
 
- private:
-  bool is_free(const Box& box) const {
+  bool is_free(const Box& box, bool over_lines) const {
     if (!(box.left >= 0.0 && box.top >= 0.0 && box.right <= scale_.width && box.low <= scale_.height)) return false;
-    return std::ranges::none_of(taken_, [&](const Box& other) {
+    const auto overlaps = [&](const Box& other) {
       return box.left < other.right && other.left < box.right && box.top < other.low && other.top < box.low;
-    });
+    };
+    const auto contains = [&](const Eigen::Vector2d& at) {
+      return box.left <= at.x() && at.x() <= box.right && box.top <= at.y() && at.y() <= box.low;
+    };
+    return std::ranges::none_of(taken_, overlaps) && (over_lines || std::ranges::none_of(on_lines_, contains));
+  }
+
+  void write(const std::string& text, const Box& box, const char* colour) {
+    taken_.push_back(box);
+    svg_.words({{"x", box.left},
+                {"y", box.low - 2.0},
+                {"fill", colour},
+                {"font-weight", "bold"},
+                {"stroke", "#fff"},
+                {"stroke-width", 3},
+                {"paint-order", "stroke"}},
+               text);
   }
 
   Svg& svg_;
   const MapScale& scale_;
   std::vector<Box> taken_;
+  std::vector<Eigen::Vector2d> on_lines_;  // points of lines [px]
 };
 
-void draw_screens(Svg& svg, const std::vector<Screen>& screens, const MapScale& scale, Names& names) {
+void draw_screens(Svg& svg, const std::vector<Screen>& screens, const MapScale& scale) {
   for (const Screen& screen : screens)
     for (const auto& line : screen.lines)
       svg.element("polyline", {{"points", points_of(line, scale)},
@@ -125,15 +152,9 @@ void draw_screens(Svg& svg, const std::vector<Screen>& screens, const MapScale& 
                                {"stroke", kScreenColour},
                                {"stroke-width", 2},
                                {"stroke-dasharray", "7 3"}});
-  for (const Screen& screen : screens)
-    for (const auto& line : screen.lines)
-      if (std::ranges::any_of(
-              line, [&](const auto& place) { return names.put(screen.id, box_around({place}, scale), kScreenColour); }))
-        break;
 }
 
-void draw_objects(Svg& svg, const Outlines& objects, const MapScale& scale, Names& names) {
-  constexpr std::size_t kMostNames = 40;
+void draw_objects(Svg& svg, const Outlines& objects, const MapScale& scale) {
   for (const Outline& object : objects.list) {
     if (object.places.size() == 1) {
       svg.element("circle", {{"cx", scale.x(object.places[0].x())},
@@ -149,19 +170,27 @@ void draw_objects(Svg& svg, const Outlines& objects, const MapScale& scale, Name
                                                          {"stroke", kObjectColour},
                                                          {"stroke-width", 2}});
   }
-  if (objects.list.size() > kMostNames) return;
+}
+
+void write_names(Svg& svg, const std::vector<Screen>& screens, const Outlines& objects, const MapScale& scale) {
+  constexpr std::size_t kMostNames = 40;
+  const bool few = objects.list.size() <= kMostNames;
   const auto is_line = [](const Outline& object) { return !object.closed && object.places.size() > 1; };
+  Names names(svg, scale);
+  for (const Screen& screen : screens)
+    for (const auto& line : screen.lines) names.keep_free(line);
   for (const Outline& object : objects.list)
-    if (!is_line(object)) names.keep_free(box_around(object.places, scale));
-  for (const Outline& object : objects.list) {
-    const auto beside = [&](std::span<const Eigen::Vector2d> places) {
-      return names.put(object.name, box_around({places.begin(), places.end()}, scale), kObjectColour);
-    };
-    if (!is_line(object))
-      beside(object.places);
-    else  // beside one of its vertices: a line may be far from the middle of its box
-      std::ranges::any_of(object.places, [&](const Eigen::Vector2d& place) { return beside({&place, 1}); });
-  }
+    if (is_line(object))
+      names.keep_free(object.places);
+    else if (few)
+      names.keep_free(box_around(object.places, scale));
+  for (const Outline& object : objects.list)
+    if (few)
+      names.put(object.name,
+                is_line(object) ? boxes_at(object.places, scale) : std::vector{box_around(object.places, scale)},
+                kObjectColour);
+  for (const Screen& screen : screens)
+    for (const auto& line : screen.lines) names.put(screen.id, boxes_at(line, scale), kScreenColour);
 }
 
 /// Ticks with coordinates at the lower and the left rim.
@@ -290,9 +319,9 @@ Markup outlines(const MapSheet& sheet, const RunFacts& run, const MapScale& scal
     group += "/>\n";
   }
   Svg svg;
-  Names names(svg, scale);
-  draw_objects(svg, sheet.objects, scale, names);
-  draw_screens(svg, run.screens, scale, names);
+  draw_objects(svg, sheet.objects, scale);
+  draw_screens(svg, run.screens, scale);
+  write_names(svg, run.screens, sheet.objects, scale);
   draw_coordinates(svg, scale);
   return group + svg.elements() + "</g>\n";
 }

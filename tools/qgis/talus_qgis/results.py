@@ -135,7 +135,7 @@ def legend_text(text):
         found = re.fullmatch(pattern, text)
         if found:
             *limits, rest = found.groups()
-            return tr(words).format(*limits, ", ".join(tr(part) for part in rest.split(", ")))
+            return tr(words).format(*limits, tr(rest))
     return tr(text)
 
 
@@ -261,7 +261,7 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
         shown = self.shown
         self._remove_layers_without_file(group)
         if self._is_title_elsewhere(root, group, node.layerId()):  # so that a list of layers tells the two apart
-            node.layer().setName(f"{self.name} ({os.path.basename(self.folder)})")
+            node.layer().setName(f"{self.name} ({self._folder_among(root, group)})")
         for other in group.findLayers():
             layer = other.layer()
             if layer is None or layer.id() == node.layerId():
@@ -296,6 +296,14 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
         return any(other.layer() is not None and other.layer().customProperty(TITLE_MARK) == self.name
                    for results in root.findGroups() if results is not group
                    for other in results.findLayers() if other.layerId() not in own)
+
+    def _folder_among(self, root, group):
+        """The end of the folder's path that tells it from the folders of the other groups: OUT, or north/OUT."""
+        others = [other.customProperty(GROUP_MARK) for other in root.findGroups()
+                  if other is not group and other.customProperty(GROUP_MARK)]
+        parts = self.folder.split(os.sep)
+        ends = (os.sep.join(parts[-count:]) for count in range(1, len(parts)))
+        return next((end for end in ends if not any((os.sep + other).endswith(os.sep + end) for other in others)), self.folder)
 
     def _is_below(self, child, node):
         """Whether a child of the group has its place below the layer."""
