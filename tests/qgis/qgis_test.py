@@ -357,8 +357,10 @@ class Commands(Case):
         self.assertEqual(log.warnings, ["note: too low", "warning: too few"])
 
     def test_the_help_is_a_page_where_there_is_one(self):
-        from talus_qgis import program
+        from talus_qgis import algorithms, program
         here = os.path.dirname(program.__file__)
+        for table in algorithms.ALGORITHMS:
+            self.assertTrue(program.help_page(table["help"]).endswith(f"/docs/{table['help']}.md"), table["id"])
         self.assertEqual(program.help_page(), "file://" + os.path.normpath(os.path.join(here, "../../../docs/qgis.md")))
         os.makedirs(self.path("bin"))
         os.makedirs(self.path("share/doc/talus/html"))

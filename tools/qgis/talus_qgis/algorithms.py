@@ -46,33 +46,37 @@ SCENARIO_INPUTS = {
 }
 
 ALGORITHMS = [
-    {"id": "run", "command": "run", **SCENARIO_INPUTS, "phases": ["simulate", "write"], "folder": "out",
+    {"id": "run", "command": "run", "help": "products", **SCENARIO_INPUTS, "phases": ["simulate", "write"], "folder": "out",
      "rasters": RUN_RASTERS, "vectors": ["stops", "trajectories"], "files": {"record": "run.json",
                                                                               "complete-scenario": "scenario.toml"}},
-    {"id": "check", "command": "check", **SCENARIO_INPUTS, "advanced": SCENARIO_INPUTS["advanced"] | {"overwrite"}, "phases": []},
-    {"id": "sources", "command": "sources", "bands": {"dem"}, "order": ["dem", "slope", "out"], "phases": [],
+    {"id": "check", "command": "check", "help": "prepare-data", **SCENARIO_INPUTS, "phases": [],
+     "advanced": SCENARIO_INPUTS["advanced"] | {"overwrite"}},
+    {"id": "sources", "command": "sources", "help": "sources", "bands": {"dem"}, "order": ["dem", "slope", "out"], "phases": [],
      "geopackage": ("out", ["source_polygons", "source_points"])},
-    {"id": "hazard", "command": "hazard", "order": ["folder", "width", "curves", "objects", "overwrite"],
+    {"id": "hazard", "command": "hazard", "help": "hazard", "order": ["folder", "width", "curves", "objects", "overwrite"],
      "advanced": {"matrix", "frequency"}, "phases": ["evaluate", "write", "simulate"], "folder": "folder",
      "several": {"objects"},
      "rasters": ["hazard_class", "annual_frequency"], "vectors": ["objects"], "record": "hazard.json"},
-    {"id": "objects", "command": "hazard", "order": ["folder", "objects", "width", "overwrite"], "required": {"objects"},
-     "advanced": {"matrix", "frequency", "curves"}, "phases": ["evaluate", "write", "simulate"], "folder": "folder",
+    {"id": "objects", "command": "hazard", "help": "hazard", "order": ["folder", "objects", "width", "overwrite"],
+     "required": {"objects"}, "advanced": {"matrix", "frequency", "curves"}, "phases": ["evaluate", "write", "simulate"], "folder": "folder",
      "several": {"objects"},
      "rasters": ["hazard_class", "annual_frequency"], "vectors": ["objects"],
      "files": {"table": "objects.csv", "curves": "objects_curves.csv"}, "record": "hazard.json"},
-    {"id": "barrier", "command": "barrier", "order": ["folder", "screen"], "is folder": {"folder"},
+    {"id": "barrier", "command": "barrier", "help": "barrier", "order": ["folder", "screen"], "is folder": {"folder"},
      "advanced": {"observed", "frequency", "percentile", "containment", "stretch", "unweighted"}, "phases": []},
-    {"id": "profile", "command": "profile", "phases": ["simulate", "write"],
+    {"id": "profile", "command": "profile", "help": "profile", "phases": ["simulate", "write"],
      "files": {"record": "run.json", "picture": "profile.svg"}, "folder": "out", "nothing to load": True},
-    {"id": "calibrate", "command": "calibrate", "phases": ["fit"], "folder": "out", "nothing to load": True,
+    {"id": "calibrate", "command": "calibrate", "help": "closing-the-loop", "phases": ["fit"], "folder": "out",
+     "nothing to load": True,
      "advanced": {"fit", "trials", "starts", "share", "parameters"},
      "files": {"fitted": "fitted.toml", "report": "report.md", "record": "calibration.json"}},
-    {"id": "diagnose", "command": "diagnose", "phases": ["diagnose"], "folder": "out", "nothing to load": True,
+    {"id": "diagnose", "command": "diagnose", "help": "closing-the-loop", "phases": ["diagnose"], "folder": "out",
+     "nothing to load": True,
      "advanced": {"fit", "trials", "test-trials", "most-effects", "level", "base-fits", "all-rows", "nested", "no-nested",
                   "folds", "quick-folds"},
      "files": {"fitted": "fitted.toml", "report": "report.html", "record": "diagnosis.json"}},
-    {"id": "report", "command": "report", "phases": [], "is folder": {"folder"}, "is page": {"page", "output", "out", "o"}},
+    {"id": "report", "command": "report", "help": "report", "phases": [], "is folder": {"folder"},
+     "is page": {"page", "output", "out", "o"}},
 ]
 
 
@@ -112,7 +116,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         return QIcon(os.path.join(os.path.dirname(__file__), "icon.svg"))
 
     def helpUrl(self):
-        return program.help_page()
+        return program.help_page(self.table["help"])
 
     def tags(self):
         return ["talus", "rockfall", "rock fall", "steinschlag", "naturgefahren", self.table["command"]]

@@ -66,17 +66,17 @@ def command(name):
     return next((c for c in description()["commands"] if c["name"] == name), None)
 
 
-def help_page():
-    """docs/qgis as installed with the program or beside the plug-in; empty if there is none."""
+def help_page(page="qgis"):
+    """A page of docs as installed with the program or beside the plug-in; empty if there is none."""
     here = os.path.dirname(os.path.realpath(__file__))
     folders = [os.path.join(here, "../../../docs"), "/usr/share/doc/talus"]
     try:
         folders.insert(0, os.path.join(os.path.dirname(os.path.realpath(path())), "../share/doc/talus"))
     except ProgramMissing:
         pass
-    for name in ("html/qgis.html", "qgis.html", "qgis.md"):  # a page that a browser shows, wherever it is, before the text
+    for name in (f"html/{page}.html", f"{page}.html", f"{page}.md"):  # a page that a browser shows, wherever it is, before the text
         for folder in folders:
-            page = os.path.normpath(os.path.join(folder, name))
-            if os.path.exists(page):
-                return "file://" + page
+            file = os.path.normpath(os.path.join(folder, name))
+            if os.path.exists(file):
+                return "file://" + file
     return ""
