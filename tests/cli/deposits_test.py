@@ -154,6 +154,10 @@ class Faults(Deposits):
                             ([["a", str(WEST + 20), str(NORTH - 200), "0.5"]], ["none of the 1 blocks", "inside its polygons"])):
             self.deposits(rows)
             self.refuses(*words)
+        self.deposits(self.rows[:12])
+        self.campaign("strips = 50\nholdout = [2]\n")
+        self.refuses("strips = 50, must be at most 12, the number of mapped blocks")
+        self.campaign()
         self.deposits([row + ["5"] for row in self.rows], ("id", "x", "y", "diameter_m", "mass_kg"))
         self.refuses("diameter_m", "leave the other empty")
 
@@ -192,6 +196,20 @@ class Faults(Deposits):
 
 
 class Calibrate(Deposits):
+    def test_two_maps_in_one_call(self):
+        """They have errors, and no log scores."""
+        self.campaign()
+        other = self.write("other.toml", f'name = "other"\ndem = "dem.tif"\n{TABLE}')
+        self.run_well("calibrate", self.path("campaign.toml"), other, "-o", self.path("both"), "--fit", "theta_scale", "--starts", "1",
+                      "--trials", "20", "--parameters",
+                      self.write("s.toml", '[ground.zones.default]\npreset = "forest-road-3d"\ntheta_scale = 1.0\n'), timeout=600)
+        with open(self.path("both/calibration.json"), encoding="utf-8") as file:
+            result = json.load(file)
+        self.assertEqual([s["name"] for s in result["sites"]], ["map", "other"])
+        for site in result["sites"]:
+            self.assertLess(site["error"]["fit"]["after"], site["error"]["fit"]["before"])
+            self.assertIsNone(site["evidence"][0]["fit"]["groups"][0]["log_score"])
+
     def test_a_fit_to_the_pattern(self):
         self.campaign("strips = 5\nholdout = [2, 4]\n")
         done = self.run_well("calibrate", self.path("campaign.toml"), "-o", self.path("fit"), "--fit", "theta_scale", "--starts", "1",

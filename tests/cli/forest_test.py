@@ -258,7 +258,7 @@ class Presets(Case):
         self.assertIn("none: a first guess", told)
         done = self.run_well(*self.arguments("r4"), "--preset", "rockyfor3d-4")
         self.assertIn("first guess: ground rockyfor3d-4 is for migration", done.stderr)
-        self.assertIn("run-out may be too short (unsafe)", done.stderr)
+        self.assertIn("run-out may be too short (rough types: unsafe) or too long (smooth ones)", done.stderr)
         self.assertNotIn("block sizes: ", done.stderr)
         self.run_well(*self.arguments("talus"), "--preset", "upper-talus-3d")
         metres = [self.record(n)["trajectory_metres_plan"] for n in ("r4", "talus")]

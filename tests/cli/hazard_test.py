@@ -161,6 +161,28 @@ class Hazard(Case):
             self.assertEqual(file.read(), names)
         self.assertFalse(os.path.exists(self.path("out/return_period_30.tif.aux.xml")))  # those of the earlier map
 
+    def test_a_replacement_that_was_killed(self):
+        """What is left then (tests/io/hazard_file_test.cpp has how): a record of all files, some of them not there yet."""
+        self.simulate()
+        self.run_well("hazard", self.path("out"), "--width", "10")
+        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
+            names = json.load(file)["files"]
+        self.write("out/hazard.json", json.dumps({"program": "talus", "status": "incomplete", "files": [*names, "return_period_30.tif"]}))
+        os.remove(self.path("out/hazard_class.tif"))
+        self.fails(2, "the hazard maps are incomplete", "--overwrite", arguments=["report", self.path("out")])
+        self.run_well("hazard", self.path("out"), "--overwrite")
+        self.run_well("report", self.path("out"))
+
+    def test_a_run_that_is_not_to_be_used_is_said(self):
+        self.simulate()
+        with open(self.path("out/run.json"), encoding="utf-8") as file:
+            record = json.load(file)
+        self.write("out/run.json", json.dumps({**record, "status": "too many trajectories ended at a limit"}))
+        done = self.run_well("hazard", self.path("out"))
+        self.assertIn("too many trajectories ended at a limit; its result is not to be used", done.stderr)
+        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
+            self.assertTrue(any("not to be used" in warning for warning in json.load(file)["warnings"]))
+
     def test_contradicting_frequencies(self):
         self.write("s.toml", RUN + "[frequency]\nper_area = 0.01\n")
         self.refused("must be given by one of them", "run", self.path("s.toml"), "-o", self.path("out"))

@@ -109,6 +109,8 @@ class Calibrate(Sites):
             rows = list(csv.reader(file))
         self.table("b", "blocks", ",".join(rows[0]), [[*r[:-1], "1"] for r in rows[1:]])
         self.fails(2, b, "nothing to fit to", arguments=("diagnose", a, b, *out))
+        for flag in (("--all-rows",), ("--nested",), ("--no-nested",), ("--quick-folds",), ("--base-fits", "5"), ("--folds", "5")):
+            self.fails(2, "flag " + flag[0], "not with several campaigns", arguments=("diagnose", a, b, *flag, *out))
         self.assertFalse(os.path.exists(self.path("out")))
 
 

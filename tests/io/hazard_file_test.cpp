@@ -4,6 +4,8 @@
 
 #include <fstream>
 
+#include "io/files/own_files.hpp"
+#include "io/reports/report_facts.hpp"
 #include "scenario_files.hpp"
 #include "talus/io/files/staged_files.hpp"
 #include "talus/io/results/hazard_record.hpp"
@@ -197,7 +199,16 @@ TEST_F(HazardFile, AStoppedReplacementLosesNoFile) {
   EXPECT_EQ(text_of(out / "a.tif"), "new");
   EXPECT_EQ(text_of(out / "c.tif"), "earlier");
   for (const char* name : {"b.tif", "c.tif", "hazard.json"}) EXPECT_EQ(text_of(hidden / name), "new") << name;
-  EXPECT_FALSE(std::filesystem::exists(out / "hazard.json")) << "the files count as incomplete";
+  EXPECT_EQ(files_of_record(out / "hazard.json"), (std::vector<std::string>{"a.tif", "b.tif", "c.tif"}));
+  expect_input_error([&] { read_hazard_facts(out, {}); }, {"hazard.json", "incomplete", "--overwrite"});
+  std::filesystem::remove_all(out / "b.tif");
+  StagedFiles again(out, "hazard.json", true);  // the incomplete record says what may be replaced
+  for (const char* name : {"a.tif", "d.tif"}) std::ofstream(again.temporary() / name) << "repaired";
+  std::ofstream(again.temporary() / "hazard.json") << R"({"files": ["a.tif", "d.tif"]})";
+  again.commit();
+  EXPECT_EQ(text_of(out / "a.tif"), "repaired");
+  EXPECT_FALSE(std::filesystem::exists(out / "c.tif"));
+  EXPECT_EQ(files_of_record(out / "hazard.json"), (std::vector<std::string>{"a.tif", "d.tif"}));
 }
 
 }  // namespace

@@ -237,6 +237,7 @@ int design(const Options& o) {
   const CrossingTable values = o.observed.empty() ? crossings : observed_crossings(o);
   BarrierReport report;
   Weighting weighting;
+  if (const auto note = talus::io::unusable_note(o.folder)) report.notes.push_back(*note);
   if (const auto note = talus::io::coefficient_note(o.folder)) report.notes.push_back(*note);
   const std::vector<talus::LineCrossing> blocks = crossings_of(crossings, run, o, report, weighting);
   report.screen = o.screen;

@@ -86,6 +86,7 @@ class SitesFit {
     const talus::Uncertainty uncertainty = talus::uncertainty_of(problem, how, {}, fitted);
     if (uncertainty.interrupted) stop_interrupted();
     done_ += share;
+    c_.cut_short = std::max(c_.cut_short, fitted.score.cut_short);
     for (const talus::Model& model : problem.models(fitted.z)) models_.push_back(model);
     for (std::size_t k = 0; k < joint.free.size(); ++k) {
       const talus::Parameter& p = joint.free[k];
@@ -134,6 +135,7 @@ int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how
   talus::ObserveOptions unseen{kScoreTrials, how.seed, talus::kUnseen, how.threads, {}, [] { return !interrupted(); }};
   c.evidence = talus::io::evidence_of_sites(opened.sites, work.start(), work.models(), unseen);
   if (interrupted()) stop_interrupted();
+  warn_of_sites(command, c.evidence, c.warnings);
   talus::io::write_text(opened.folder.temporary() / "calibration.json", talus::io::sites_calibration_json(c));
   talus::io::write_text(opened.folder.temporary() / "report.md", talus::io::sites_calibration_report(c));
   opened.write_models(work.models(), "fitted.toml",

@@ -21,6 +21,7 @@ namespace {
 struct Options : CampaignCommand {
   talus::DiagnoseOptions how;
   bool nested = false, no_nested = false, quick_folds = false, all_rows = false;
+  std::vector<std::string> of_one;  ///< given flags that hold for one campaign alone
 };
 
 void print_error(const char* what, const talus::io::HoldoutError& e) {
@@ -106,7 +107,13 @@ void choose_rows(const Options& options, talus::Campaign& campaign, talus::Diagn
 }
 
 int diagnose(const Options& options) {
-  if (options.campaigns.size() > 1) return diagnose_several(options, options.how);
+  if (options.campaigns.size() > 1) {
+    if (!options.of_one.empty())
+      throw talus::InputError("flag " + options.of_one.front() +
+                              ": not with several campaigns, whose held-out rows are respected and which are not "
+                              "fitted again; diagnose each campaign alone with it");
+    return diagnose_several(options, options.how);
+  }
   require_seed(options.how.seed);
   const auto start = std::chrono::steady_clock::now();
   talus::io::DiagnosisRecord record;
@@ -171,5 +178,10 @@ void add_diagnose(CLI::App& app, Action& action) {
       "four times as many, and never fewer than 20.\n\n"
       "Examples:\n  talus diagnose campaign.toml -o diagnosis\n"
       "  talus diagnose a/campaign.toml b/campaign.toml -o diagnosis\n\nThen open diagnosis/report.html.");
-  command->callback([&action, options] { action = [options] { return diagnose(*options); }; });
+  command->callback([&action, options, command] {
+    for (const char* flag : {"--base-fits", "--all-rows", "--nested", "--no-nested", "--folds", "--quick-folds"})
+      if (command->count(flag) > 0) options->of_one.emplace_back(flag);
+    options->how.later_level = std::min(options->how.later_level, options->how.first_level);
+    action = [options] { return diagnose(*options); };
+  });
 }

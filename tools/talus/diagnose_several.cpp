@@ -11,15 +11,6 @@ namespace {
 
 constexpr std::uint32_t kScoreTrials = 200;
 
-void warn(const CampaignCommand& command, talus::io::SitesRecord& record) {
-  for (const talus::io::SiteEvidence& site : record.evidence)
-    for (const talus::io::BeforeAfter& e : site.errors)
-      for (const std::string& warning : talus::io::score_warnings(e.after)) {
-        record.warnings.push_back(site.site + ": " + warning);
-        if (!command.quiet) say("warning", record.warnings.back());
-      }
-}
-
 void write_results(const OpenedSites& opened, const talus::io::SitesRecord& record) {
   const std::filesystem::path& out = opened.folder.temporary();
   talus::io::write_text(out / "diagnosis.json", talus::io::sites_json(record));
@@ -57,7 +48,7 @@ int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOption
   record.evidence =
       talus::io::evidence_of_sites(opened.sites, record.diagnosis.base, record.diagnosis.with_effects, unseen);
   if (interrupted()) stop_interrupted();
-  warn(command, record);
+  warn_of_sites(command, record.evidence, record.warnings);
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write_results(opened, record);
   opened.folder.commit();

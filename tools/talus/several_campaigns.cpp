@@ -82,3 +82,13 @@ void OpenedSites::write_models(std::span<const talus::Model> models, const char*
     talus::io::write_text(own / name, talus::io::model_text(models[i], loaded[i], heading));
   }
 }
+
+void warn_of_sites(const CampaignCommand& command, std::span<const talus::io::SiteEvidence> evidence,
+                   std::vector<std::string>& warnings) {
+  for (const talus::io::SiteEvidence& site : evidence)
+    for (const talus::io::BeforeAfter& e : site.errors)
+      for (const std::string& warning : talus::io::score_warnings(e.after)) {
+        warnings.push_back(site.site + ": " + warning);
+        if (!command.quiet) say("warning", warnings.back());
+      }
+}

@@ -4,6 +4,7 @@
 #include "talus/fit/campaign/sites.hpp"
 #include "talus/fit/diagnose/diagnosis.hpp"
 #include "talus/io/reports/fit_report.hpp"
+#include "talus/io/reports/sites_report.hpp"
 
 /// Several campaigns that were read, in the order of their names, and the new folder for their results.
 struct OpenedSites {
@@ -20,6 +21,10 @@ struct OpenedSites {
   /// Writes OUT/SITE/NAME for the models of all sites.
   void write_models(std::span<const talus::Model> models, const char* name, const std::string& heading) const;
 };
+
+/// Prints the warnings that follow from the scores of each site, and adds them to those of a record.
+void warn_of_sites(const CampaignCommand& command, std::span<const talus::io::SiteEvidence> evidence,
+                   std::vector<std::string>& warnings);
 
 /// The work of `calibrate` and `diagnose` where there are several campaigns.
 ///

@@ -79,6 +79,7 @@ LocalModel::LocalModel(const FitProblem& problem, const FitOptions& options, con
   const Eigen::VectorXd ones = row_weights(score_, std::vector<double>(problem.rows().size(), 1.0));
   const Eigen::VectorXd totals = values * ones;
   const auto used = static_cast<double>((weights.array() > 0.0).count());
+  const double of_full_trials = weights.dot(noise_factor_.cwiseAbs2());  // noise_ is that of FitOptions::trials
   noise_ = options.rules.first_noise;
   for (int pass = 0; pass < 3; ++pass) {  // the ridge depends on the noise, and the noise, weakly, on the ridge
     const double pure = noise_ / options.rules.curved, mixed = noise_ / options.rules.twisted;
@@ -86,7 +87,7 @@ LocalModel::LocalModel(const FitProblem& problem, const FitOptions& options, con
     total_ = model_->coefficients(totals);
     const Eigen::VectorXd rest = totals - model_->at_places(total_);
     const double free = std::max(0.1, 1.0 - model_->coefficients_used() / used);
-    noise_ = std::sqrt(rest.cwiseAbs2().dot(weights) / (weights.sum() * free));
+    noise_ = std::sqrt(rest.cwiseAbs2().dot(weights) / (of_full_trials * free));
   }
   rows_ = model_->coefficients(values);
   from_v_ = inverse.transpose();

@@ -1,6 +1,7 @@
 #include "talus/fit/campaign/deposits.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "nearest_source.hpp"
@@ -41,12 +42,23 @@ Eigen::Vector2d mean_of(std::span<const Eigen::Vector2d> places) {
   return sum / static_cast<double>(places.size());
 }
 
-/// Values that cut ascending numbers into pieces of like size, between two different ones; fewer where ties are long.
-std::vector<double> cuts_of(const std::vector<double>& sorted, std::size_t pieces) {
+/// Values that cut ascending numbers into pieces of like size, each of at least `fewest`. A cut through equal numbers
+/// moves to the nearer end of them, else to the other; it is left out where neither leaves enough.
+std::vector<double> cuts_of(const std::vector<double>& sorted, std::size_t pieces, std::size_t fewest) {
   std::vector<double> cuts;
+  std::size_t begin = 0;  // of the piece under way
   for (std::size_t piece = 1; piece < pieces; ++piece) {
-    const std::size_t at = piece * sorted.size() / pieces;
-    if (sorted[at - 1] < sorted[at]) cuts.push_back(0.5 * (sorted[at - 1] + sorted[at]));
+    const std::size_t wanted = piece * sorted.size() / pieces;
+    const auto [low, high] = std::ranges::equal_range(sorted, sorted[wanted]);
+    std::array<std::size_t, 2> ends{static_cast<std::size_t>(low - sorted.begin()),
+                                    static_cast<std::size_t>(high - sorted.begin())};
+    if (ends[1] - wanted < wanted - ends[0]) std::swap(ends[0], ends[1]);
+    for (const std::size_t at : ends) {
+      if (at < begin + fewest || at + fewest > sorted.size()) continue;
+      cuts.push_back(0.5 * (sorted[at - 1] + sorted[at]));
+      begin = at;
+      break;
+    }
   }
   return cuts;
 }
@@ -96,7 +108,8 @@ RunOut run_out(const Campaign& campaign, const Eigen::Vector2d& place) {
 
 std::vector<double> class_limits(std::vector<double> diameters) {
   std::sort(diameters.begin(), diameters.end());
-  return cuts_of(diameters, std::clamp<std::size_t>(diameters.size() / kFewestInClass, 1, kMostClasses));
+  return cuts_of(diameters, std::clamp<std::size_t>(diameters.size() / kFewestInClass, 1, kMostClasses),
+                 kFewestInClass);
 }
 
 std::size_t class_of(const MappedDeposits& deposits, double diameter) {
@@ -130,7 +143,7 @@ Strips strips_of(const MappedDeposits& deposits, std::span<const Eigen::Vector2d
   std::vector<double> at;
   for (const Eigen::Vector2d& block : blocks) at.push_back(strips.across.dot(block));
   std::sort(at.begin(), at.end());
-  strips.limits = cuts_of(at, count);
+  strips.limits = cuts_of(at, count, 1);
   return strips;
 }
 

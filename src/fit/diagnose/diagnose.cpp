@@ -76,7 +76,7 @@ class DiagnosisLoop {
       const Candidate merged =
           merged_candidate(campaign_, axis_of(campaign_, base.runs), candidates, placed.best.members, rules_);
       FittedCandidate fitted = fits_.fit_effect(base, placed, merged, family_of(effect));
-      fits_.continue_fit(base, fitted);
+      if (fitted.refined) fits_.continue_fit(base, fitted);
       found.push_back(effect);
       d.rounds.emplace_back();
       d.rounds.back().effect = effect;

@@ -150,7 +150,7 @@ DispersionTest dispersion_test(const Campaign& campaign, const ResidualSpace& sp
     blocks.push_back(b);
     measured.push_back(space.of_measured(b));
     trials.emplace_back();
-    for (std::size_t t = 0; t < runs[b].trials; ++t) trials.back().push_back(space.of_trial(b, runs[b], t));
+    for (std::size_t t = 0; t < runs[b].trials; ++t) trials.back().push_back(space.of_own_trial(b, runs[b], t));
   }
   const std::vector<std::size_t> groups = groups_of(campaign, blocks);
   std::vector<Scatter> scatters = scatters_of(space);

@@ -141,7 +141,7 @@ EffectFits::Start EffectFits::best_start(const FitProblem& problem, const FitOpt
   const double noticed = options_.rules.noticed;
   const VectorXd effect = start_of(candidate, verdict, noticed);
   const Index ground = std::ssize(problem.free) - effect.size();
-  const double share = std::clamp(effect[0] / std::max(1e-9, noticed * std::abs(verdict.estimate[0])), 0.0, 1.0);
+  const double share = std::min(1.0, std::abs(effect[0]) / std::max(1e-9, noticed * std::abs(verdict.estimate[0])));
   double none = 0.0;  // the objective without the effect
   Start start;
   start.best.objective = std::numeric_limits<double>::infinity();

@@ -50,7 +50,7 @@ EnergyComponent::EnergyComponent(const ResidualSpace& space, const std::vector<B
     if (carries_energy(space.observables()[o])) observables_.push_back(o);
   Pooled pooled(std::ssize(observables_));
   for (std::size_t b = 0; b < runs.size(); ++b)
-    for (std::size_t t = 0; t < runs[b].trials; ++t) pooled.add(carriers(b, space.of_trial(b, runs[b], t)));
+    for (std::size_t t = 0; t < runs[b].trials; ++t) pooled.add(carriers(b, space.of_own_trial(b, runs[b], t)));
   covariance_ = pooled.covariance();
 }
 

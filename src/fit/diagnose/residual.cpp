@@ -50,13 +50,15 @@ std::vector<Observable> observables_of(const Campaign& campaign) {
   return list;
 }
 
-/// Phi^-1 of the rank of a value among sorted ones; ties count half.
-double rank_score(const std::vector<double>& sorted, double value, std::size_t fewest) {
+/// Phi^-1 of the rank of a value among sorted ones; ties count half. A value that is one of them is ranked among the
+/// others: a measured value has as many places to fall into as there are gaps between the simulated ones.
+/// @param own  whether it is one of them
+double rank_score(const std::vector<double>& sorted, double value, bool own, std::size_t fewest) {
   if (sorted.size() < fewest || std::isnan(value)) return kNotGiven;
   const auto [low, high] = std::equal_range(sorted.begin(), sorted.end(), value);
-  const double below = static_cast<double>(low - sorted.begin()) + 0.5 * static_cast<double>(high - low);
-  const auto n = static_cast<double>(sorted.size());
-  return normal_quantile((below + 0.5) / (n + 1.0));
+  const double itself = own ? 1.0 : 0.0, equal = static_cast<double>(high - low) - itself,
+               others = static_cast<double>(sorted.size()) - itself;
+  return normal_quantile((static_cast<double>(low - sorted.begin()) + 0.5 * equal + 0.5) / (others + 1.0));
 }
 
 std::vector<double> sorted_finite(std::vector<double> values) {
@@ -101,7 +103,7 @@ ResidualSpace::ResidualSpace(const Campaign& campaign, const std::vector<BlockRu
       samples_[b].push_back({sorted_finite(sample.speed), sorted_finite(sample.spin)});
     std::vector<std::vector<double>> values(n);
     for (std::size_t t = 0; t < runs[b].trials; ++t) {
-      const std::vector<double> v = values_of(b, seen_of_trial(b, runs[b], t));
+      const std::vector<double> v = values_of(b, seen_of_trial(b, runs[b], t), true);
       for (std::size_t o = 0; o < n; ++o) values[o].push_back(v[o]);
     }
     for (std::size_t o = 0; o < n; ++o) {
@@ -117,13 +119,14 @@ ResidualSpace::ResidualSpace(const Campaign& campaign, const std::vector<BlockRu
 }
 
 /// Mean score of a block's samples of one half, of those that have one.
-double ResidualSpace::sample_score(std::size_t block, const Observable& o, const std::vector<double>& values) const {
+double ResidualSpace::sample_score(std::size_t block, const Observable& o, const std::vector<double>& values,
+                                   bool own) const {
   if (samples_[block].empty()) return kNotGiven;  // not simulated
   double sum = 0.0;
   int count = 0;
   const std::size_t which = o.kind == Observable::Kind::SampleSpeed ? 0 : 1;
   for (const std::size_t i : half_of(campaign_.blocks[block], o.late)) {
-    const double score = rank_score(samples_[block][i][which], values[i], rules_.fewest_values);
+    const double score = rank_score(samples_[block][i][which], values[i], own, rules_.fewest_values);
     if (!std::isnan(score)) sum += score, ++count;
   }
   return count > 0 ? sum / count : kNotGiven;
@@ -166,7 +169,7 @@ ResidualSpace::Seen ResidualSpace::seen_of_trial(std::size_t b, const BlockRuns&
   return seen;
 }
 
-std::vector<double> ResidualSpace::values_of(std::size_t b, const Seen& seen) const {
+std::vector<double> ResidualSpace::values_of(std::size_t b, const Seen& seen, bool own) const {
   using Kind = Observable::Kind;
   std::vector<double> values;
   for (const Observable& o : observables_) {
@@ -195,27 +198,28 @@ std::vector<double> ResidualSpace::values_of(std::size_t b, const Seen& seen) co
         values.push_back(passage.spin);
         break;
       case Kind::SampleSpeed:
-        values.push_back(sample_score(b, o, seen.sample_speed));
+        values.push_back(sample_score(b, o, seen.sample_speed, own));
         break;
       case Kind::SampleSpin:
-        values.push_back(sample_score(b, o, seen.sample_spin));
+        values.push_back(sample_score(b, o, seen.sample_spin, own));
         break;
     }
   }
   return values;
 }
 
-Residual ResidualSpace::residual(std::size_t b, const std::vector<double>& values) const {
+Residual ResidualSpace::residual(std::size_t b, const std::vector<double>& values, bool own) const {
   const std::size_t n = observables_.size();
   Residual r = Residual::Constant(size(), kNotGiven);
   for (std::size_t o = 0; o < n; ++o) {
     const auto place = static_cast<Eigen::Index>(o), spread = static_cast<Eigen::Index>(n + o);
     if (observables_[o].kind == Observable::Kind::Crossed) {
-      const double p = crossing_share(b, o);
+      const auto trials = static_cast<double>(distributions_[b][o].size());
+      const double p = own ? ((trials + 1.0) * crossing_share(b, o) - values[o]) / trials : crossing_share(b, o);
       r[place] = (values[o] - p) / std::sqrt(p * (1.0 - p));
       continue;
     }
-    const double z = rank_score(distributions_[b][o], values[o], rules_.fewest_values);
+    const double z = rank_score(distributions_[b][o], values[o], own, rules_.fewest_values);
     r[place] = z;
     r[spread] = (z * z - 1.0) / std::sqrt(2.0);
   }
@@ -223,11 +227,15 @@ Residual ResidualSpace::residual(std::size_t b, const std::vector<double>& value
 }
 
 Residual ResidualSpace::of_measured(std::size_t block) const {
-  return residual(block, values_of(block, seen_measured(block)));
+  return residual(block, values_of(block, seen_measured(block), false), false);
 }
 
 Residual ResidualSpace::of_trial(std::size_t block, const BlockRuns& runs, std::size_t trial) const {
-  return residual(block, values_of(block, seen_of_trial(block, runs, trial)));
+  return residual(block, values_of(block, seen_of_trial(block, runs, trial), false), false);
+}
+
+Residual ResidualSpace::of_own_trial(std::size_t block, const BlockRuns& runs, std::size_t trial) const {
+  return residual(block, values_of(block, seen_of_trial(block, runs, trial), true), true);
 }
 
 ResidualSpace::Moments ResidualSpace::moments(std::size_t block, std::size_t observable) const {
@@ -255,7 +263,7 @@ void ResidualSpace::correlate(const std::vector<BlockRuns>& runs) {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size(), size()), count = sum;
   for (std::size_t b = 0; b < runs.size(); ++b)
     for (std::size_t t = 0; t < runs[b].trials; ++t) {
-      const Residual r = of_trial(b, runs[b], t);
+      const Residual r = of_own_trial(b, runs[b], t);
       const Eigen::VectorXd seen = r.array().isNaN().select(Eigen::VectorXd::Zero(size()), 1.0);
       const Eigen::VectorXd clean = r.array().isNaN().select(Eigen::VectorXd::Zero(size()), r);
       sum += clean * clean.transpose();

@@ -92,7 +92,7 @@ class Directions {
       const BlockRuns& runs = base_[blocks_[i]];
       MatrixXd u(size(), runs.trials);
       for (std::size_t t = 0; t < runs.trials; ++t)
-        u.col(static_cast<Index>(t)) = scores(i, space_.whitened(space_.of_trial(blocks_[i], runs, t)));
+        u.col(static_cast<Index>(t)) = scores(i, space_.whitened(space_.of_own_trial(blocks_[i], runs, t)));
       const VectorXd mean = u.rowwise().mean();
       u.colwise() -= mean;
       measured.col(static_cast<Index>(i)) = scores(i, space_.whitened(space_.of_measured(blocks_[i]))) - mean;

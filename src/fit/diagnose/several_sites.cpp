@@ -156,7 +156,8 @@ class SitesLoop {
       const double level = number == 0 ? options_.first_level : options_.later_level;
       if (number < options_.most_effects && round.family.may_name && round.family.p_corrected <= level)
         compete(model, round);
-      if (round.effect == "none" && round.family.p_corrected <= options_.later_level) round.effect = "unexplained";
+      const double smallest = number == 0 ? d.p_value : round.family.p_corrected;  // of the families of the sites, too
+      if (round.effect == "none" && smallest <= options_.later_level) round.effect = "unexplained";
       const bool more = round.effect != "none" && round.effect != "unexplained";
       if (more) found.push_back(round.effect), model = round.candidates.front().fitted;
       d.rounds.push_back(std::move(round));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fitting_values.hpp"
+#include "score_rows.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/base/holm.hpp"
 #include "talus/fit/campaign/block_draws.hpp"
@@ -50,21 +51,21 @@ class DepositScorer {
  public:
   DepositScorer(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
                 std::size_t fewest_simulated)
-      : campaign_(campaign), ask_(ask), fewest_simulated_(fewest_simulated) {
+      : campaign_(campaign),
+        ask_(ask),
+        fewest_simulated_(fewest_simulated),
+        nothing_simulated_(runs.empty()),
+        rows_(runs) {
     for (std::uint32_t b = 0; b < campaign.blocks.size(); ++b) {
       simulated_.emplace_back();
       if (!runs.empty() && ask[b]) simulated_[b] = stops_of(runs[b]);
     }
-    nothing_simulated_ = runs.empty();
   }
 
   Score result() {
     for (std::size_t number = 0; number <= campaign_.deposits->limits.size(); ++number) places(number);
     angles();
-    double sum = 0.0;
-    for (const GroupScore& group : score_.groups) sum += group.score;
-    if (!score_.groups.empty()) score_.total = sum / static_cast<double>(score_.groups.size());
-    return std::move(score_);
+    return rows_.result(ask_);
   }
 
  private:
@@ -86,7 +87,7 @@ class DepositScorer {
       const bool unseen = too_few(simulated_[b].size());
       row(b, fair_energy_score(unseen ? anywhere(block) : simulated_[b], *block.stop) / spread, unseen);
     }
-    close(class_name(*campaign_.deposits, number));
+    rows_.close(class_name(*campaign_.deposits, number));
   }
 
   void angles() {
@@ -106,31 +107,18 @@ class DepositScorer {
       if (unseen) values = angles_of(campaign_, anywhere(block));
       row(b, fair_crps(values, angle) / spread, unseen);
     }
-    close("run-out angle");
+    rows_.close("run-out angle");
   }
 
-  void row(std::uint32_t block, double score, bool unseen) {
-    rows_.push_back({static_cast<std::uint32_t>(score_.groups.size()), block, score, unseen && !nothing_simulated_});
-  }
-
-  void close(const std::string& name) {
-    if (rows_.size() >= kFewestRows) {
-      GroupScore group{name, 0.0, static_cast<std::uint32_t>(rows_.size())};
-      for (const RowScore& r : rows_) group.score += r.score / static_cast<double>(rows_.size());
-      group.unseen = static_cast<std::uint32_t>(std::ranges::count(rows_, true, &RowScore::unseen));
-      score_.groups.push_back(std::move(group));
-      score_.rows.insert(score_.rows.end(), rows_.begin(), rows_.end());
-    }
-    rows_.clear();
-  }
+  /// @param unseen  whether what might be anywhere stands in for the simulated stops
+  void row(std::uint32_t block, double score, bool unseen) { rows_.add(block, score, unseen && !nothing_simulated_); }
 
   const Campaign& campaign_;
   const std::vector<bool>& ask_;
   const std::size_t fewest_simulated_;
-  bool nothing_simulated_;
+  const bool nothing_simulated_;
   std::vector<Places> simulated_;  // by block: its stops in the mapped region
-  std::vector<RowScore> rows_;     // of the group under way
-  Score score_;
+  ScoreRows rows_;
 };
 
 /// Sum and number of distances.

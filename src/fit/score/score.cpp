@@ -6,6 +6,7 @@
 
 #include "fitting_values.hpp"
 #include "robust_density.hpp"
+#include "score_rows.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/fit/score/deposit_score.hpp"
 
@@ -29,7 +30,7 @@ class Scorer {
  public:
   Scorer(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask,
          const ScoreOptions& options)
-      : campaign_(campaign), runs_(runs), ask_(ask), climatology_(runs.empty()), options_(options) {}
+      : campaign_(campaign), runs_(runs), ask_(ask), climatology_(runs.empty()), options_(options), rows_(runs) {}
 
   Score result() {
     TALUS_EXPECT(climatology_ || runs_.size() == campaign_.blocks.size(), "each block has its runs");
@@ -40,14 +41,9 @@ class Scorer {
     for (std::size_t screen = 0; screen < campaign_.screens.size(); ++screen) passages(screen);
     samples("sample speed", &Sample::speed, &BlockRuns::AtSample::speed);
     samples("sample spin", &Sample::spin, &BlockRuns::AtSample::spin);
-    double sum = 0.0;
-    for (const GroupScore& group : score_.groups) sum += group.score;
-    if (!score_.groups.empty()) score_.total = sum / static_cast<double>(score_.groups.size());
-    if (options_.rule == ScoreRule::LogDensity) score_.total = mean_of_blocks(score_);
-    double cut = 0.0, blocks = 0.0;
-    for_asked([&](std::uint32_t b, const MeasuredBlock&) { cut += cut_short(b), blocks += 1.0; });
-    if (blocks > 0.0) score_.cut_short = cut / blocks;
-    return std::move(score_);
+    Score score = rows_.result(ask_);
+    if (options_.rule == ScoreRule::LogDensity) score.total = mean_of_blocks(score);
+    return score;
   }
 
  private:
@@ -55,30 +51,6 @@ class Scorer {
   void for_asked(Visit visit) const {
     for (std::uint32_t b = 0; b < campaign_.blocks.size(); ++b)
       if (ask_[b]) visit(b, campaign_.blocks[b]);
-  }
-
-  /// Share of the trials of a block that came to no end in a search.
-  double cut_short(std::uint32_t block) const {
-    return climatology_ || runs_[block].cut_short == 0
-               ? 0.0
-               : static_cast<double>(runs_[block].cut_short) / static_cast<double>(runs_[block].trials);
-  }
-
-  void row(std::uint32_t block, double score, bool unseen = false) {
-    rows_.push_back(
-        {static_cast<std::uint32_t>(score_.groups.size()), block, score + kCutShort * cut_short(block), unseen});
-  }
-
-  void close(const std::string& name) {
-    if (rows_.size() >= kFewestRows) {
-      double sum = 0.0;
-      for (const RowScore& r : rows_) sum += r.score;
-      score_.groups.push_back(
-          {name, sum / static_cast<double>(rows_.size()), static_cast<std::uint32_t>(rows_.size())});
-      score_.groups.back().unseen = static_cast<std::uint32_t>(std::ranges::count(rows_, true, &RowScore::unseen));
-      score_.rows.insert(score_.rows.end(), rows_.begin(), rows_.end());
-    }
-    rows_.clear();
   }
 
   void stops() {
@@ -104,12 +76,12 @@ class Scorer {
         if (!std::isnan(runs_[b].x[t])) places.emplace_back(runs_[b].x[t], runs_[b].y[t]);
       const bool unseen = too_few(places.size());
       if (unseen) places = own_values_too() ? fitting.values : broad;
-      row(b,
-          options_.rule == ScoreRule::Fair ? fair_energy_score(places, *block.stop) / spread
-                                           : -log_density(places, broad, *block.stop, spread),
-          unseen);
+      rows_.add(b,
+                options_.rule == ScoreRule::Fair ? fair_energy_score(places, *block.stop) / spread
+                                                 : -log_density(places, broad, *block.stop, spread),
+                unseen);
     });
-    close("stop");
+    rows_.close("stop");
   }
 
   /// Scores masses only where blocks broke: at least five changed their mass by more than a twentieth.
@@ -161,10 +133,10 @@ class Scorer {
       if (!climatology_) keep_finite(runs_[b].screens[screen].speed, values_);
       const double simulated_hits = climatology_ ? their_hits : static_cast<double>(values_.size());
       const double trials = climatology_ ? others : runs_[b].trials;
-      row(b, options_.rule == ScoreRule::Fair ? fair_brier_score(simulated_hits, trials, hit) / spread
-                                              : -log_probability(simulated_hits, trials, p, hit));
+      rows_.add(b, options_.rule == ScoreRule::Fair ? fair_brier_score(simulated_hits, trials, hit) / spread
+                                                    : -log_probability(simulated_hits, trials, p, hit));
     });
-    close(name);
+    rows_.close(name);
   }
 
   /// A group of one number per block.
@@ -183,9 +155,9 @@ class Scorer {
       bool unseen = false;
       const double score =
           of_value(b, climatology_ ? kNoValues : simulated(b), fitting, y, spread, unseen) / unit_of(spread);
-      row(b, score, unseen);
+      rows_.add(b, score, unseen);
     });
-    close(name);
+    rows_.close(name);
   }
 
   /// States along the path: several of a block, which counts once, with their mean.
@@ -208,9 +180,9 @@ class Scorer {
         ++count;
         not_seen += unseen ? 1 : 0;
       }
-      if (count > 0) row(b, sum / count / unit_of(spread), not_seen == count);
+      if (count > 0) rows_.add(b, sum / count / unit_of(spread), not_seen == count);
     });
-    close(name);
+    rows_.close(name);
   }
 
   /// Score of the simulated values or, where they are too few, of the values of the fitting rows.
@@ -245,9 +217,8 @@ class Scorer {
   const std::vector<bool>& ask_;
   const bool climatology_;  // not the runs are scored, but the measurements of the other fitting rows
   const ScoreOptions options_;
-  std::vector<RowScore> rows_;  // of the group under way
+  ScoreRows rows_;
   std::vector<double> values_, broad_;
-  Score score_;
 };
 
 }  // namespace

@@ -183,6 +183,12 @@ void keep_mapped(const DepositSpec& spec, const MappedDeposits& deposits, std::v
                      " blocks lie outside the mapped polygons and are left out: " + ids);
 }
 
+void require_blocks_for(const DepositSpec& spec, std::size_t blocks) {
+  if (spec.strips > blocks)
+    throw InputError("[deposits] strips = " + std::to_string(spec.strips) + ", must be at most " +
+                     std::to_string(blocks) + ", the number of mapped blocks in " + spec.table.path);
+}
+
 /// Makes two regions of the mapped one: the strips that are fitted to, and those that are held out.
 void hold_out_strips(const DepositSpec& spec, MappedDeposits& deposits, std::vector<MeasuredBlock>& blocks) {
   std::vector<Eigen::Vector2d> places;
@@ -245,6 +251,7 @@ void read_deposits(const DepositSpec& spec, const Terrain& terrain, Campaign& ca
       mapped_deposits(sources_of(spec, terrain, warnings), mapped_cells(spec.mapped, terrain, warnings));
   keep_mapped(spec, deposits, campaign.blocks, warnings);
   if (spec.strips > 0) {
+    require_blocks_for(spec, campaign.blocks.size());
     hold_out_strips(spec, deposits, campaign.blocks);
     deposits = mapped_deposits(std::move(deposits.sources), std::move(deposits.region));
   }

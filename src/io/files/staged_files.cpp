@@ -1,9 +1,11 @@
 #include "talus/io/files/staged_files.hpp"
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 
+#include "json.hpp"
 #include "own_files.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/files/output_folder.hpp"
@@ -64,7 +66,7 @@ void StagedFiles::commit() {
                        ", so it is not replaced; move it, or give it another name");
   const std::vector<std::string> names = files(), without_successor = to_remove();
   std::error_code ignored;
-  fs::remove(folder_ / record_, ignored);  // first: without it the files count as incomplete
+  mark_incomplete(names);
   for (const std::string& name : names)
     if (name != record_) give_name(name);  // in place of an earlier file, which is there until then
   for (const std::string& name : without_successor) fs::remove(folder_ / name, ignored);
@@ -72,6 +74,16 @@ void StagedFiles::commit() {
     for (const char* end : {".aux.xml", ".ovr"})  // of an earlier raster of this name: its statistics, its overviews
       if (std::ranges::count(names, name + end) == 0) fs::remove(folder_ / (name + end), ignored);
   if (std::ranges::count(names, record_) > 0) give_name(record_);
+}
+
+/// Puts a record in place that names the earlier files and the new ones. If the program is killed now, a reader of the
+/// record refuses them, and the next command knows which to replace.
+void StagedFiles::mark_incomplete(const std::vector<std::string>& names) {
+  std::set<std::string> all(earlier_.begin(), earlier_.end());
+  all.insert(names.begin(), names.end());
+  all.erase(record_);
+  Json json{{"program", "talus"}, {"status", kIncomplete}, {"files", all}};
+  replace_text(folder_ / record_, json_text(json));
 }
 
 void StagedFiles::give_name(const std::string& name) {

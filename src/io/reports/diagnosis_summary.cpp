@@ -89,9 +89,11 @@ Markup sure(const Diagnosis& d) {
 }
 
 Markup gained(const DiagnosisRecord& record) {
-  const HoldoutError& e = record.errors.empty() || small_groups(record).empty() ? record.whole : record.headline;
+  const bool all = record.errors.empty() || small_groups(record).empty();
+  const HoldoutError& e = all ? record.whole : record.headline;
   if (std::isnan(e.before)) return "It cannot be said: no group of held-out rows is large enough."_html;
-  const ScoredRows& rows = record.errors[record.unseen].after;
+  ScoredRows rows = record.errors[record.unseen].after;
+  if (!all) rows = in_large_groups(std::move(rows), record.clusters);
   Markup text =
       "On blocks that no fit has seen the error is "_html + with_decimals(e.before, 3) + " with the ground alone";
   if (record.diagnosis.rounds.size() > 1 && !std::isnan(e.reduction.share))

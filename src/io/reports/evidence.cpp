@@ -65,10 +65,11 @@ Json tail_json(std::span<const BeforeAfter> errors) {
 
 Json judged_json(const JudgedModel& model, const JudgedModel& reference, std::span<const std::uint32_t> clusters) {
   Json groups = Json::array();
+  const std::vector<GroupScore>& logs = model.log_score.groups;  // none of mapped blocks
   for (std::size_t g = 0; g < model.score.groups.size(); ++g)
     groups.push_back({{"group", model.score.groups[g].name},
                       {"error", json_of(model.score.groups[g].score)},
-                      {"log_score", json_of(-model.log_score.groups[g].score)},
+                      {"log_score", json_of(g < logs.size() ? -logs[g].score : kNotGiven)},
                       {"rows", model.score.groups[g].rows}});
   const Reduction less = reduction(reference.score, model.score, clusters);
   const NatsGained nats = nats_gained(reference.log_score, model.log_score, clusters);

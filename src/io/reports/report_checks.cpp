@@ -199,25 +199,49 @@ void check_screens(const CheckedRun& checked, Checks& checks) {
                     "P95 of few blocks is uncertain, P99 more so."});
 }
 
+/// The numbers in a text: 1 and 1.2 of "[1, 1.2]".
+std::vector<double> numbers_of(std::string_view text) {
+  std::vector<double> numbers;
+  for (std::size_t at = 0; (at = text.find_first_of("0123456789", at)) != std::string_view::npos;) {
+    const std::size_t end = std::min(text.find_first_not_of("0123456789.e-+", at), text.size());
+    numbers.push_back(std::strtod(std::string(text.substr(at, end - at)).c_str(), nullptr));
+    at = end;
+  }
+  return numbers;
+}
+
+/// The numbers that belong to a key of tables in a text: to "diameter = " in "[{ diameter = [1, 1.2], weight = 3 }]".
+std::vector<double> numbers_after(std::string_view text, std::string_view key) {
+  std::vector<double> numbers;
+  for (std::size_t at = 0; (at = text.find(key, at)) != std::string_view::npos;) {
+    at += key.size();
+    const std::size_t end = std::min(text.find_first_of("=}", at), text.size());  // of the next key, or of the table
+    const std::size_t comma = end < text.size() && text[end] == '=' ? text.rfind(',', end) : end;
+    for (const double number : numbers_of(text.substr(at, comma - at))) numbers.push_back(number);
+  }
+  return numbers;
+}
+
 }  // namespace
 
 std::optional<std::pair<double, double>> diameters_of(const RunFacts& run) {
-  std::optional<std::pair<double, double>> range;
+  std::vector<double> all;
   const bool own = std::ranges::any_of(run.settings_of("sources.attributes.diameter"), of_all_features);
   for (const RecordedSetting& setting : run.settings) {
     if (own && setting.key.starts_with("blocks.")) continue;  // not used where all features have their own
     if (!(setting.key.starts_with("blocks.") || setting.key.starts_with("sources.attributes.")) ||
-        setting.key.find("diameter") == std::string::npos || setting.unit != "m")
+        setting.key.find("diameter") == std::string::npos)
       continue;
     const std::string text = setting.value.substr(0, setting.value.find('('));
-    for (std::size_t at = 0; (at = text.find_first_of("0123456789", at)) != std::string::npos;) {
-      const std::size_t end = std::min(text.find_first_not_of("0123456789.e-+", at), text.size());
-      if (const double d = std::strtod(text.substr(at, end - at).c_str(), nullptr); d > 0.0 && d < 1e3)
-        range = range ? std::pair(std::min(range->first, d), std::max(range->second, d)) : std::pair(d, d);
-      at = end;
-    }
+    for (const char* volume : {"volume_min = ", "volume_max = "})
+      for (const double v : numbers_after(text, volume)) all.push_back(std::cbrt(6.0 / kPi * v));
+    for (const double d : text.starts_with("[{") ? numbers_after(text, "diameter = ") : numbers_of(text))
+      if (setting.unit == "m") all.push_back(d);
   }
-  return range;
+  std::erase_if(all, [](double d) { return !(d > 0.0 && d < 1e3); });
+  if (all.empty()) return std::nullopt;
+  const auto [least, most] = std::ranges::minmax(all);
+  return std::pair(least, most);
 }
 
 std::vector<Check> checks_of(const CheckedRun& checked) {

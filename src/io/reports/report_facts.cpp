@@ -10,6 +10,7 @@
 #include "talus/base/printable.hpp"
 #include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/files/staged_files.hpp"
 #include "talus/io/gdal/crs.hpp"
 
 namespace talus::io {
@@ -173,6 +174,12 @@ std::optional<HazardFacts> read_hazard_facts(const std::filesystem::path& folder
   const std::filesystem::path file = folder / "hazard.json";
   std::error_code none;
   if (!std::filesystem::exists(file, none)) return std::nullopt;
+  const bool incomplete =
+      understood(file, [](const Json& json) { return json.value("status", "") == StagedFiles::kIncomplete; });
+  if (incomplete)
+    throw InputError(file.string() +
+                     ": the hazard maps are incomplete, as talus hazard was killed while it replaced them; repeat it "
+                     "with --overwrite");
   return understood(file, [&](const Json& json) {
     HazardFacts hazard;
     hazard.command = command_of(json);

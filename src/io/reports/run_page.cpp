@@ -132,8 +132,11 @@ std::string between(const std::vector<double>& limits, std::size_t number, const
 /// The matrix of the classes of hazard.
 Markup classes_html(const HazardFacts& hazard) {
   if (hazard.classes.empty() || hazard.energies.empty() || hazard.years.empty()) return {};
-  Markup html = "<h3>Classes of hazard</h3>\n<p>For "_html + hazard.object +
-                ", by how often it is hit with an energy of each class.</p>\n<table><tr><th>energy, return period</th>";
+  Markup html =
+      "<h3>Classes of hazard</h3>\n<p>For "_html + hazard.object +
+      ", by how often it is hit with an energy of each class: that with which blocks pass the place. A table of "
+      "objects "
+      "counts the largest within each outline, which is higher.</p>\n<table><tr><th>energy, return period</th>";
   for (std::size_t k = 0; k < hazard.classes.front().size(); ++k)
     html += "<th>"_html + between(hazard.years, k, " years") + "</th>";
   html += "</tr>\n";

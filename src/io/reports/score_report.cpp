@@ -110,6 +110,14 @@ BeforeAfter compared(const Campaign& campaign, ScoredRows before, ScoredRows aft
   return {std::move(before), std::move(after), whole, tail, nats, used};
 }
 
+ScoredRows in_large_groups(ScoredRows scored, std::span<const std::uint32_t> clusters) {
+  scored.score = of_large_groups(scored.score);
+  scored.climatology = of_large_groups(scored.climatology);
+  scored.skill = {};
+  if (!scored.score.rows.empty()) scored.skill = reduction(scored.climatology, scored.score, clusters);
+  return scored;
+}
+
 std::string skill_sentence(const ScoredRows& s) {
   if (std::isnan(s.skill.share)) return {};
   const std::string errors = with_decimals(s.score.total, 3) + " against the climatology's " +

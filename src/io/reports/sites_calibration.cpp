@@ -57,6 +57,7 @@ std::string sites_calibration_json(const SitesCalibration& c) {
             {"comparison_trials", c.options.comparison_trials},
             {"starts", c.options.starts},
             {"prior_weight", c.options.prior_weight},
+            {"cut_short", json_of(c.cut_short)},
             {"parameters", parameters_json(c)},
             {"error", errors_json(c.evidence.back())},
             {"sites", sites}};
@@ -94,6 +95,7 @@ std::string sites_calibration_summary(const SitesCalibration& c) {
         text += "error, " + e.site + ", " + name + " rows (" + std::to_string(change.blocks) +
                 " blocks): " + score_of(change.before) + " before, " + score_of(change.after) + " after (lower by " +
                 change_text(change) + "), climatology " + score_of(change.climatology) + "\n";
+  if (c.cut_short > 0.0) text += cut_short_line(c.cut_short, c.options.rules.most_vertices) + "\n";
   return text;
 }
 

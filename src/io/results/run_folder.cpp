@@ -6,6 +6,7 @@
 #include "io/gdal/regular_file.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/results/run_record.hpp"
 #include "talus/simulate/scenario/block_sizes.hpp"
 
 namespace talus::io {
@@ -63,6 +64,13 @@ std::optional<std::string> coefficient_note(const std::filesystem::path& folder)
          " (model.deformation_coefficient) is not given by the paper, and a lower c raises both. Unless the ground was "
          "fitted to observed speeds, run with --deformation-coefficient 0.15 as well and take the higher values: "
          "docs/barrier.md, \"The value of c\"";
+}
+
+std::optional<std::string> unusable_note(const std::filesystem::path& folder) {
+  const Json json = read_record_or_nothing(folder / "run.json");
+  const std::string status = json.is_object() ? json.value("status", kComplete) : kComplete;
+  if (status == kComplete) return std::nullopt;
+  return "the run says of itself: " + status + "; its result is not to be used";
 }
 
 RunSummary read_run(const std::filesystem::path& folder) {

@@ -91,6 +91,30 @@ TEST(Residual, OfTheModelsOwnTrialsIsStandardNormal) {
   EXPECT_NEAR(squares / count, 1.0, 5.0 * 2.0 * std::sqrt(2.0 / count));
 }
 
+/// A measured value falls into one of the n + 1 gaps of n simulated ones, a trial into one of the n gaps of the others:
+/// the ranks of all trials are the middles of n equal shares. So they scatter no less than measured values do.
+TEST(Residual, ATrialIsRankedAmongTheOthers) {
+  Campaign c = slope_campaign(4);
+  const Model model = model_of_preset(c, "upper-talus-3d");
+  measure(c, model, 3);
+  const auto runs = observe(c, model, {20, 1, 0, 0, {}, {}});
+  const ResidualSpace space(c, runs);
+  std::vector<double> z;
+  std::vector<double> runout;
+  for (std::size_t t = 0; t < 20; ++t)
+    if (!std::isnan(runs[0].x[t])) {
+      z.push_back(space.of_own_trial(0, runs[0], t)[0]);
+      runout.push_back(std::hypot(runs[0].x[t] - c.blocks[0].x, runs[0].y[t] - c.blocks[0].y));
+    }
+  ASSERT_GE(z.size(), 10U);
+  std::ranges::sort(z);
+  std::ranges::sort(runout);
+  ASSERT_EQ(std::ranges::adjacent_find(runout), runout.end());
+  const auto n = static_cast<double>(z.size());
+  for (std::size_t k = 0; k < z.size(); ++k)
+    EXPECT_NEAR(z[k], normal_quantile((static_cast<double>(k) + 0.5) / n), 1e-12);
+}
+
 TEST(Residual, ABlockOfWhichNothingWasSeenSaysNothing) {
   Campaign c = slope_campaign(3);
   const Model model = model_of_preset(c, "upper-talus-3d");

@@ -47,9 +47,13 @@ class ResidualSpace {
   }
 
   Residual of_measured(std::size_t block) const;
-  /// Residual of a trial of any runs, as if it had been measured. Values that were not measured of the block are
+  /// Residual of a trial of other runs, as if it had been measured. Values that were not measured of the block are
   /// missing.
   Residual of_trial(std::size_t block, const BlockRuns& runs, std::size_t trial) const;
+  /// The same of a trial of the runs that this was made of: it is ranked among the others. Ranked among all, itself
+  /// included, it would lie nearer to the middle than a measured one, and right models would seem to scatter too
+  /// little.
+  Residual of_own_trial(std::size_t block, const BlockRuns& runs, std::size_t trial) const;
 
   /// `residual` divided by the correlation of its components, pooled over all blocks. Components that are NaN are left
   /// out and become zero.
@@ -68,9 +72,10 @@ class ResidualSpace {
 
   Seen seen_measured(std::size_t block) const;
   Seen seen_of_trial(std::size_t block, const BlockRuns& runs, std::size_t trial) const;
-  std::vector<double> values_of(std::size_t block, const Seen& seen) const;
-  Residual residual(std::size_t block, const std::vector<double>& values) const;
-  double sample_score(std::size_t block, const Observable& o, const std::vector<double>& values) const;
+  /// @param own  here and below: whether the values are those of one of the simulated trials
+  std::vector<double> values_of(std::size_t block, const Seen& seen, bool own) const;
+  Residual residual(std::size_t block, const std::vector<double>& values, bool own) const;
+  double sample_score(std::size_t block, const Observable& o, const std::vector<double>& values, bool own) const;
   void correlate(const std::vector<BlockRuns>& runs);
 
   const Campaign& campaign_;

@@ -11,6 +11,8 @@ namespace talus::io {
 /// one by one at the end, a record of them last. Without `commit` nothing changes.
 class StagedFiles {
  public:
+  static constexpr const char* kIncomplete = "incomplete";  ///< status of a record whose files are being replaced
+
   /// @param record  file that names, in `files`, all that belong together: "hazard.json". If it is there, the files
   /// that it names are replaced
   /// Throws InputError if `folder` has no results, if the record is there and `overwrite` is not given, or if nothing
@@ -24,11 +26,12 @@ class StagedFiles {
   /// The earlier files that have no successor: `commit` removes them. Call it when all new files are written.
   std::vector<std::string> to_remove() const;
   /// Gives the new files their names, in place of earlier ones, and removes the earlier files that have no successor. A
-  /// program that is killed meanwhile leaves each file, earlier or new. Throws std::runtime_error; what has not got its
-  /// name yet then stays in `temporary`.
+  /// program that is killed meanwhile leaves each file, earlier or new, and a record with the status `kIncomplete`.
+  /// Throws std::runtime_error; what has not got its name yet then stays in `temporary`.
   void commit();
 
  private:
+  void mark_incomplete(const std::vector<std::string>& names);
   void give_name(const std::string& name);
   std::filesystem::path folder_;
   std::string record_;

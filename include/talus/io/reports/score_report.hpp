@@ -67,6 +67,9 @@ std::vector<std::string> score_warnings(const ScoredRows& scored);
 /// Whether the model beats the climatology, in words: "no skill: ..." where it does not. Empty where nothing was
 /// scored.
 std::string skill_sentence(const ScoredRows& scored);
+
+/// The same without the groups of fewer than ten rows: score, climatology and skill. Nothing else of it changes.
+ScoredRows in_large_groups(ScoredRows scored, std::span<const std::uint32_t> clusters);
 /// The error in the far run-outs in words. Empty where it was not scored.
 std::string tail_sentence(const ScoredRows& scored);
 

@@ -18,6 +18,7 @@ struct SitesCalibration : FitRecord {
   std::vector<std::string> share, files;
   std::vector<SitesParameter> parameters;
   std::vector<SiteEvidence> evidence;
+  double cut_short = 0.0;  ///< share of the trials of the fitted models that came to no end; of the worst site
 };
 
 /// The text of calibration.json, of report.md, and of the summary on the terminal.

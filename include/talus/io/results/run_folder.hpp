@@ -8,6 +8,9 @@
 
 namespace talus::io {
 
+/// One line that a run says of itself that its result is not to be used; nothing where it is complete.
+std::optional<std::string> unusable_note(const std::filesystem::path& folder);
+
 /// One line that energies rest on c (model.deformation_coefficient of the run.json), and which way is safe; nothing if
 /// c is low, or not there. docs/barrier.md, "The value of c".
 std::optional<std::string> coefficient_note(const std::filesystem::path& folder);

@@ -94,6 +94,31 @@ TEST(LocalModel, StepsToTheMinimumOfABowl) {
   EXPECT_NEAR(model.step(narrow).x(), 0.72, 1e-9);
 }
 
+/// The noise is that of FitOptions::trials: totals of four times the trials have half of it.
+TEST(LocalModel, TheNoiseIsThatOfTheTrialsAskedFor) {
+  const Campaign c = campaign_on_slope(6);
+  const Model start = model_of_slope();
+  const std::vector<Parameter> free = two_parameters(c, start);
+  const std::vector<bool> rows = fitting_rows(c);
+  const FitProblem problem{c, start, free, rows};
+  const FitOptions options;
+  const Eigen::Matrix2d spread = 0.04 * Eigen::Matrix2d::Identity();
+  std::mt19937 draws(1);
+  for (const std::uint32_t more : {1U, 4U}) {
+    std::normal_distribution<double> noise(0.0, 0.02 / std::sqrt(static_cast<double>(more)));
+    Fit fit;
+    fit.z = Eigen::Vector2d(0.7, -0.4);
+    fit.score.groups = {{"stop", 1.0, 6}};
+    for (std::uint32_t block = 0; block < 6; ++block) fit.score.rows.push_back({0, block, 1.0});
+    for (const Eigen::VectorXd& z : LocalModel::design(problem, 1, fit.z, spread, 400, 0)) {
+      const double value = 0.5 + (z - fit.z).squaredNorm() + noise(draws);
+      fit.evaluations.push_back({z, Eigen::VectorXd::Constant(6, value), more * options.trials, value});
+    }
+    EXPECT_NEAR(LocalModel(problem, options, fit, spread).noise(), 0.02, 0.004)
+        << more;  // some 200 count: 5 %, four times
+  }
+}
+
 /// Slope, curvature and the weight of the prior come from the blocks that count. For n blocks the optimum is the
 /// minimum of k (z - 0.8)^2 + w / n z^2, with k the mean over these n.
 TEST(LocalModel, AFoldHasItsOwnCurvatureAndPrior) {

@@ -134,6 +134,14 @@ TEST(Deposits, ClassesOfSizeHoldEnoughBlocks) {
   EXPECT_EQ(class_limits({sizes.begin(), sizes.begin() + 50}), (std::vector<double>{25.5}));
   EXPECT_TRUE(class_limits({sizes.begin(), sizes.begin() + 39}).empty());
   EXPECT_TRUE(class_limits(std::vector<double>(90, 0.5)).empty()) << "equal blocks are one class";
+  std::vector<double> rounded(21, 0.5);  // as they are in the field
+  rounded.resize(60, 1.0);
+  EXPECT_EQ(class_limits(rounded), std::vector<double>{0.75});
+  rounded.resize(62, 1.4);
+  EXPECT_EQ(class_limits(rounded), std::vector<double>{0.75}) << "two blocks are no class";
+  rounded.assign(19, 0.5);
+  rounded.resize(60, 1.0);
+  EXPECT_TRUE(class_limits(rounded).empty());
 }
 
 /// Strips run down the slope: places at one height lie in different ones, places in one fall line in the same.

@@ -37,7 +37,7 @@ TEST(EnergyComponent, OfTheModelsOwnTrialsHasMeanZeroAndVarianceOne) {
   double sum = 0.0, squares = 0.0, count = 0.0;
   for (std::size_t b = 0; b < m.runs.size(); ++b)
     for (std::size_t t = 0; t < m.runs[b].trials; ++t) {
-      const double a = energy.of(b, space.of_trial(b, m.runs[b], t));
+      const double a = energy.of(b, space.of_own_trial(b, m.runs[b], t));
       if (!std::isnan(a)) sum += a, squares += a * a, count += 1.0;
     }
   ASSERT_GT(count, 5000.0);
@@ -55,7 +55,7 @@ TEST(EnergyComponent, OfTheRunoutAloneIsItsZ) {
   double squares = 0.0, count = 0.0;  // the scale: z of many ties or few values is not quite of variance one
   for (std::size_t b = 0; b < runs.size(); ++b)
     for (std::size_t t = 0; t < runs[b].trials; ++t) {
-      const double z = space.of_trial(b, runs[b], t)[0];
+      const double z = space.of_own_trial(b, runs[b], t)[0];
       if (!std::isnan(z)) squares += z * z, count += 1.0;
     }
   for (std::size_t b = 0; b < runs.size(); ++b) {

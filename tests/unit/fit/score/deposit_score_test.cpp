@@ -150,6 +150,19 @@ TEST(DepositScore, ByItsDefinition) {
   }
 }
 
+/// A search pays for trials that it cut short, as with known releases.
+TEST(DepositScore, TrialsThatWereCutShortCost) {
+  const Campaign c = mapped_on_slope(24, model_of_slope(), 5);
+  const std::vector<bool> all(24, true);
+  auto runs = observe(c, model_of_slope(), trials(30));
+  const Score before = score(c, runs, all);
+  EXPECT_EQ(before.cut_short, 0.0);
+  for (BlockRuns& block : runs) block.cut_short = 3;  // of 30
+  const Score after = score(c, runs, all);
+  EXPECT_NEAR(after.cut_short, 0.1, 1e-12);
+  EXPECT_NEAR(after.total, before.total + 4.0 * 0.1, 1e-12);  // docs/diagnosis-time.md, "Penalty"
+}
+
 /// The sum of rows is half the energy distance and a constant of the map: for blocks of one size the difference of two
 /// models' scores is half that of their distances, within the noise of the trials.
 TEST(DepositScore, DiffersFromModelToModelAsTheEnergyDistance) {
