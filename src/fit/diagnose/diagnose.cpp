@@ -244,7 +244,7 @@ class DiagnosisLoop {
     return in_table || round.p_value <= options_.later_level ? "unexplained" : "none";
   }
 
-  /// Counts how often each candidate has the lowest error when blocks are drawn with replacement.
+  /// Counts how often each candidate has the lowest error when blocks get random weights (`bootstrap_weights`).
   void count_choices(const FittedModel& base, std::vector<FittedCandidate>& candidates) const {
     std::vector<Difference> all;
     all.reserve(candidates.size());

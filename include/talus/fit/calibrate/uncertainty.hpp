@@ -22,11 +22,11 @@ struct UncertaintyOptions {
   int draws = 400;
 };
 
-/// Posterior sample by randomised minimisation (randomise, then optimise): each draw takes the blocks anew with
-/// replacement, draws the centre of the prior from the prior, adds the noise of the trials, and moves the optimum of
-/// the fit to the new minimum within the bounds. The objective is a quadratic model of every row score around the
-/// optimum (`LocalModel`), so that a draw costs no simulation. The model is fitted to rounds of designs; each is as
-/// wide as the range in which the previous round found the objective nearly as good.
+/// Posterior sample by randomised minimisation (randomise, then optimise): each draw gives the blocks random
+/// weights (`bootstrap_weights`), draws the centre of the prior from the prior, adds the noise of the trials, and moves
+/// the optimum of the fit to the new minimum within the bounds. The objective is a quadratic model of every row score
+/// around the optimum (`LocalModel`), so that a draw costs no simulation. The model is fitted to rounds of designs;
+/// each is as wide as the range in which the previous round found the objective nearly as good.
 ///
 /// @param fit  of the same problem
 ///
