@@ -9,6 +9,7 @@
 
 #include "results.hpp"
 #include "talus/base/error.hpp"
+#include "talus/io/results/run_folder.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"
 #include "talus/physics/lanes.hpp"
 #include "talus/run/in_every_process.hpp"
@@ -150,6 +151,8 @@ void RunSession::make_folder() {
 
 void RunSession::warn_of_input() {
   for (const std::string& note : plan_.loaded.notes) observer_.message(note);
+  const auto low_c = io::coefficient_note(plan_.loaded.scenario.impact.deformation_coefficient);
+  if (low_c) observer_.message("note: " + *low_c);
   for (const std::string& warning : plan_.loaded.warnings) observer_.warning(warning);
   const Rounds& rounds = plan_.rounds;
   const std::uint64_t all = plan_.loaded.scenario.released() * (rounds.until_error ? 1 : rounds.count);

@@ -115,6 +115,15 @@ class Input(Case):
             self.assertIn(words, text)
         self.assert_nothing_left(set(before))
 
+    def test_a_high_c_is_said_before_the_run(self):
+        """0.25 is the default and may give too low energies: docs/barrier.md, "The value of c"."""
+        scenario = self.scenario("trajectories = 1")
+        for command in (["check", scenario], ["run", scenario, "-o", self.path("c")]):
+            done = self.run_well(*command)
+            self.assertIn("energies and jumps may be too low (unsafe): c = 0.25", done.stdout + done.stderr)
+        done = self.run_well("check", scenario, "--deformation-coefficient", "0.15")
+        self.assertNotIn("c = ", done.stdout)
+
     def test_cell_sizes_are_short_where_they_are_read(self):
         write_dem(self.path("dem.tif"), heights(), cell=4.997678230579)
         self.assertIn("60 x 60 cells of 4.998 m x 4.998 m", self.run_well("check", self.scenario("")).stdout)

@@ -13,6 +13,7 @@
 #include "talus/io/files/output_file.hpp"
 #include "talus/io/gdal/crs.hpp"
 #include "talus/io/gdal/pit_points.hpp"
+#include "talus/io/results/run_folder.hpp"
 #include "talus/io/results/run_record.hpp"
 #include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/physics/lanes.hpp"
@@ -228,6 +229,7 @@ void print_plan(const LoadedScenario& loaded, unsigned threads) {
   print_terrain(loaded);
   print_zones(loaded.scenario);
   for (const std::string& note : loaded.notes) line("read", note);
+  if (const auto note = talus::io::coefficient_note(loaded.scenario.impact.deformation_coefficient)) line("note", *note);
   print_blocks(loaded.scenario);
   print_estimate(loaded.scenario, threads);
   for (const std::string& warning : loaded.warnings) line("warning", warning);

@@ -49,7 +49,7 @@ std::vector<double> cuts_of(const std::vector<double>& sorted, std::size_t piece
   std::size_t begin = 0;  // of the piece under way
   for (std::size_t piece = 1; piece < pieces; ++piece) {
     const std::size_t wanted = piece * sorted.size() / pieces;
-    const auto [low, high] = std::ranges::equal_range(sorted, sorted[wanted]);
+    const auto [low, high] = std::equal_range(sorted.begin(), sorted.end(), sorted[wanted]);
     std::array<std::size_t, 2> ends{static_cast<std::size_t>(low - sorted.begin()),
                                     static_cast<std::size_t>(high - sorted.begin())};
     if (ends[1] - wanted < wanted - ends[0]) std::swap(ends[0], ends[1]);

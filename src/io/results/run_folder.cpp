@@ -57,10 +57,14 @@ std::optional<double> deformation_coefficient_of(const std::filesystem::path& fo
 }  // namespace
 
 std::optional<std::string> coefficient_note(const std::filesystem::path& folder) {
-  constexpr double kLowC = 0.15;  // the SEL of the paper's Table 4 asks for 0.09 to 0.16
   const auto c = deformation_coefficient_of(folder);
-  if (!c || !(*c > kLowC)) return std::nullopt;
-  return "energies and jumps may be too low (unsafe): c = " + text_of(*c) +
+  return c ? coefficient_note(*c) : std::nullopt;
+}
+
+std::optional<std::string> coefficient_note(double c) {
+  constexpr double kLowC = 0.15;  // the SEL of the paper's Table 4 asks for 0.09 to 0.16
+  if (!(c > kLowC)) return std::nullopt;
+  return "energies and jumps may be too low (unsafe): c = " + text_of(c) +
          " (model.deformation_coefficient) is not given by the paper, and a lower c raises both. Unless the ground was "
          "fitted to observed speeds, run with --deformation-coefficient 0.15 as well and take the higher values: "
          "docs/barrier.md, \"The value of c\"";

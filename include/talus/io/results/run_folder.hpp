@@ -11,8 +11,9 @@ namespace talus::io {
 /// One line that a run says of itself that its result is not to be used; nothing where it is complete.
 std::optional<std::string> unusable_note(const std::filesystem::path& folder);
 
-/// One line that energies rest on c (model.deformation_coefficient of the run.json), and which way is safe; nothing if
-/// c is low, or not there. docs/barrier.md, "The value of c".
+/// One line that energies rest on c (model.deformation_coefficient), and which way is safe; nothing if c is low. With a
+/// folder: of its run.json, nothing if it has none. docs/barrier.md, "The value of c".
+std::optional<std::string> coefficient_note(double c);
 std::optional<std::string> coefficient_note(const std::filesystem::path& folder);
 
 /// The part of OUT/run.json that products of a finished run need.
