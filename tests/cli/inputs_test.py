@@ -382,8 +382,8 @@ class OffTheDem(InputCase):
         self.refused("zones.gpkg: lies wholly off the DEM: its features reach over", ", the DEM over", more=self.zones(off, off))
 
     def test_a_raster_of_zones(self):
-        self.write("s.toml", 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1.2\n[ground]\nfile = "zones.tif"\n'
-                             '[ground.zones.1]\npreset = "forest-road-3d"\n')
+        self.write("s.toml", 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1.2\n'
+                             '[ground]\nfile = "zones.tif"\n[ground.zones.1]\npreset = "forest-road-3d"\n')
         whole = (WEST, 5.0, 0.0, NORTH, 0.0, -5.0)
         for columns, place, said in ((60, whole, ""), (30, whole, "gives no zone to 50 % of the cells of the DEM")):
             write_dem(self.path("zones.tif"), np.ones((60, columns)), transform=place)

@@ -37,7 +37,8 @@ class Parts(RunCase):
                        [(box(0, 200, 300, 60), ["rock"]), (box(0, 100, 300, 60), ["road"]), (box(0, 20, 300, 60), ["own"])],
                        [("zone", ogr.OFTString)])
         self.write("s.toml", RUN.replace("[0.6, 1.2]", "3") + '[ground]\nfile = "zones.gpkg"\ndefault = "rockyfor3d-4"\n'
-                   '[ground.zones.rock]\npreset = "rockyfor3d-5"\n[ground.zones.road]\npreset = "forest-road-3d"\ntheta_scale = 0.5\n'
+                   '[ground.zones.rock]\npreset = "rockyfor3d-5"\n'
+                   '[ground.zones.road]\npreset = "forest-road-3d"\ntheta_scale = 0.5\n'
                    '[ground.zones.own]\npreset = "lower-talus-3d"\ntheta_scale = 0.7\nEn50 = 9\n')
         self.run_scenario("whole")
         self.run_well("run", self.path("whole/scenario.toml"), "-o", self.path("again"), "-q")
