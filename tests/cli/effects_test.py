@@ -85,6 +85,30 @@ class Effects(Case):
         self.assertNotEqual(digests(self.path("day"))["velocity.tif"], first)
         self.assert_replays("day")
 
+    def test_effects_that_cannot_act_are_said(self):
+        wet = "[effects.wet-ground]\nsoftening = 1\ndays = [3, 5]\n"
+        shape = "[effects.block-shape]\nloss = 0.3\nelongation = 1\n"
+        spheres = HEAD.replace("axes = [1.5, 1.2, 1.0]\n", "")
+        for text, told, here in ((HEAD + wet, ["wet-ground] acts on days 3, 5, the day of this run is 0"], "does nothing here"),
+                                 ("day = 5\n" + HEAD + wet, [], ""), (HEAD + shape, [], ""),
+                                 (spheres + shape, ["block-shape] acts on blocks that are no spheres", "axes = [1, 1, 1]"],
+                                  "does nothing here"),
+                                 (HEAD.replace("1.2", "1.5") + shape, ["axes = [1.5, 1.5, 1]"], "does nothing here")):
+            with self.subTest(text):
+                self.write("s.toml", text)
+                plan = self.run_well("check", self.path("s.toml")).stdout
+                self.assertEqual(plan.count("does nothing here"), 1 if here else 0, plan)
+                for words in told:
+                    self.assertIn(words, plan)
+
+    def test_a_preset_of_the_2d_model_in_a_map_is_said(self):
+        """Its psi_scale is 0: nothing turns the blocks sideways."""
+        for preset, psi, count in (("firm-talus-2d", "", 1), ("firm-talus-2d", "psi_scale = 0.5\n", 0), ("upper-talus-3d", "", 0),
+                                   ("rockyfor3d-0", "", 0)):
+            self.write("s.toml", f'{HEAD}[ground.zones.default]\npreset = "{preset}"\n{psi}')
+            plan = self.run_well("check", self.path("s.toml")).stdout
+            self.assertEqual(plan.count(f"ground 'default' ({preset}): the preset is of the 2D model"), count, plan)
+
     def test_a_preset_gives_the_bits_of_its_numbers(self):
         record = self.run_scenario("named", '[effects.block-mass]\npreset = "measured"\n')
         own = [s for s in record["settings"] if s["key"].startswith("effects.block-mass.")]

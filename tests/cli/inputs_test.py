@@ -369,6 +369,31 @@ class OffTheDem(InputCase):
         self.assertIn("50 % of polygon 1 (half) lies where the DEM has no heights:", said)
         self.assertIn("features where the DEM has no heights, which release nothing: FID 2 (all)", said)
 
+    def zones(self, *shapes):
+        write_features(self.path("zones.gpkg"), "zones", [(wkt, ["forest-road-3d"]) for wkt in shapes], [("zone", ogr.OFTString)])
+        return "--zones", self.path("zones.gpkg")
+
+    def test_zones(self):
+        inside, off, thin = box(0, 0, 300, 100), box(0, 5000, 300, 100), box(0, 200.5, 300, 1)
+        done = self.run_well("check", *self.flags(), *self.zones(inside, off, thin))
+        self.assertIn("zones wholly off the DEM, which have no effect: FID 2 (forest-road-3d)", done.stdout)
+        self.assertIn("have no effect: FID 3 (forest-road-3d): draw them wider than a cell, 5 m", done.stdout)
+        self.assertNotIn("zones.gpkg: zones", self.run_well("check", *self.flags(), *self.zones(inside)).stdout)
+        self.refused("zones.gpkg: lies wholly off the DEM: its features reach over", ", the DEM over", more=self.zones(off, off))
+
+    def test_a_raster_of_zones(self):
+        self.write("s.toml", 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1.2\n'
+                             '[ground]\nfile = "zones.tif"\n[ground.zones.1]\npreset = "forest-road-3d"\n')
+        whole = (WEST, 5.0, 0.0, NORTH, 0.0, -5.0)
+        for columns, place, said in ((60, whole, ""), (30, whole, "gives no zone to 50 % of the cells of the DEM")):
+            write_dem(self.path("zones.tif"), np.ones((60, columns)), transform=place)
+            plan = self.run_well("check", self.path("s.toml")).stdout
+            self.assertEqual("gives no zone" in plan, said != "", plan)
+            self.assertIn(said, plan)
+        write_dem(self.path("zones.tif"), np.ones((60, 60)), transform=(WEST - 2e6, 5.0, 0.0, NORTH - 1e6, 0.0, -5.0))
+        self.fails(2, "zones.tif: gives no cell of the DEM a zone: it reaches over", "the DEM over",
+                   arguments=["check", self.path("s.toml")])
+
     def test_nothing_is_said_of_features_inside(self):
         self.assertNotIn("lies", "\n".join(self.said([(box(140, 230, 20, 10), ["cliff"])])))
 

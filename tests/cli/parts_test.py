@@ -8,8 +8,10 @@ import time
 import unittest
 
 import numpy as np
+from osgeo import ogr
 
-from support import RUN, TALUS, RunCase, bands_of
+from support import RUN, TALUS, RunCase, bands_of, box, write_features
+
 
 class Parts(RunCase):
     def test_three_parts_and_three_rounds(self):
@@ -28,6 +30,28 @@ class Parts(RunCase):
         for name in ("impact_probability", "reach_probability", "energy", "jump_height", "sources", "deposits"):
             self.assertEqual(self.hashes("whole")[name + ".tif"], self.hashes("one")[name + ".tif"], name)
         self.run_well("hazard", self.path("merged"), "-q")  # evaluates what the rounds saved
+
+    def test_warnings_about_the_ground_are_those_of_the_run(self):
+        """The complete scenario of a run has every number of a zone beside its preset: it is still the ground of the preset."""
+        write_features(self.path("zones.gpkg"), "zones",
+                       [(box(0, 200, 300, 60), ["rock"]), (box(0, 100, 300, 60), ["road"]), (box(0, 20, 300, 60), ["own"])],
+                       [("zone", ogr.OFTString)])
+        self.write("s.toml", RUN.replace("[0.6, 1.2]", "3") + '[ground]\nfile = "zones.gpkg"\ndefault = "rockyfor3d-4"\n'
+                   '[ground.zones.rock]\npreset = "rockyfor3d-5"\n'
+                   '[ground.zones.road]\npreset = "forest-road-3d"\ntheta_scale = 0.5\n'
+                   '[ground.zones.own]\npreset = "lower-talus-3d"\ntheta_scale = 0.7\nEn50 = 9\n')
+        self.run_scenario("whole")
+        self.run_well("run", self.path("whole/scenario.toml"), "-o", self.path("again"), "-q")
+        for i in (1, 2):
+            self.run_scenario(f"part{i}", "--part", f"{i}/2")
+        self.run_well("merge", self.path("merged"), self.path("part1"), self.path("part2"), "-q")
+        told = [w for w in self.record("whole")["warnings"] if w.startswith(("block sizes: ", "first guess: "))]
+        self.assertEqual(len(told), 2, told)
+        self.assertIn("forest-road-3d (1 to 1.4 m); larger blocks: run-out and speed too low (unsafe)", told[0])
+        self.assertNotIn("lower-talus-3d", told[0])  # both numbers are the user's own
+        self.assertIn("ground rockyfor3d-4, rockyfor3d-5 is", told[1])
+        for out in ("again", "merged"):
+            self.assertEqual(self.record(out)["warnings"], self.record("whole")["warnings"], out)
 
     def test_what_cannot_be_merged(self):
         for i in (1, 2):

@@ -54,6 +54,24 @@ TEST_F(Zones, LaterFeaturesLieOverEarlierOnes) {
   EXPECT_EQ(count(other, 2), 80);
 }
 
+TEST_F(Zones, FeaturesWithoutEffectAreNamedAndALayerOffTheMapIsRefused) {
+  const Row road{"POLYGON((0 0,30 0,30 10,0 10,0 0))", {"a"}}, off{"POLYGON((900 0,930 0,930 10,900 10,900 0))", {"a"}},
+      thin{"POLYGON((0 41,90 41,90 44,0 44,0 41))", {"b"}};  // between the centres of two rows
+  const ZoneLayer layer = polygons(kText, {road, off, thin, {"", {"a"}}}, {"a", "b"});
+  EXPECT_EQ(count(layer, 1), 3);
+  EXPECT_EQ(count(layer, 2), 0);
+  EXPECT_TRUE(said(layer.warnings, "wholly off the DEM, which have no effect: FID 2 (a)"));
+  EXPECT_TRUE(said(layer.warnings, "no effect: FID 3 (b): draw them wider than a cell, 10 m"));
+  EXPECT_TRUE(said(layer.warnings, "without geometry, which have no effect: FID 4 (a)"));
+  EXPECT_TRUE(polygons(kText, {road}, {"a"}).warnings.empty());
+  EXPECT_TRUE(said(polygons(kText, {}, {}).warnings, "the default ground is everywhere"));
+  expect_input_error(
+      [&] {
+        polygons(kText, {off, off}, {"a"});
+      },
+      {"z.gpkg: lies wholly off the DEM", "600900", "600930", "600000", "600100"});
+}
+
 TEST_F(Zones, WholeNumbersAndNull) {
   const ZoneLayer layer =
       polygons({{"Code", OFTInteger}},
@@ -69,8 +87,10 @@ TEST_F(Zones, AZoneThatIsNotDescribedIsNamedWithThoseThatAre) {
         polygons(kText, rows, {"road", "talus"});
       },
       {"z.gpkg: feature 1", "field zone", "zone 'raod'", "road, talus", "[ground.zones.raod]"});
-  EXPECT_NO_THROW(
-      polygons(kText, {{"POLYGON((900 900,930 900,930 910,900 900))", {"elsewhere"}}}, {"road"}));  // off the map
+  EXPECT_NO_THROW(polygons(kText,
+                           {{"POLYGON((0 0,30 0,30 10,0 10,0 0))", {"road"}},
+                            {"POLYGON((900 900,930 900,930 910,900 900))", {"elsewhere"}}},  // off the map
+                           {"road"}));
 }
 
 TEST_F(Zones, FieldsMustBeThereAndBeCodes) {
@@ -126,7 +146,8 @@ TEST_F(Zones, RasterOnTheSameGrid) {
   EXPECT_EQ(layer.zones.at(0, 7), 1);
   EXPECT_EQ(layer.zones.at(9, 0), 0);
   EXPECT_EQ(count(layer, 2), 78);
-  EXPECT_TRUE(layer.warnings.empty());
+  ASSERT_EQ(layer.warnings.size(), 1U);
+  EXPECT_TRUE(said(layer.warnings, "% of the cells of the DEM (off the raster, or nodata)"));
   EXPECT_TRUE(layer.field.empty());
 }
 
@@ -180,6 +201,20 @@ TEST_F(Zones, RasterCodesMustBeWholeAndDescribed) {
       },
       {"z.tif", "zone '3'", "2, 4", "[ground.zones.3]"});
   EXPECT_NO_THROW(raster({.type = GDT_UInt32, .values = std::vector<double>(80, 100000.0)}, {"100000"}));
+}
+
+TEST_F(Zones, ARasterThatCoversLittleIsSaidAndOneThatCoversNothingIsRefused) {
+  const RasterFile all{.type = GDT_Byte, .values = std::vector<double>(80, 2.0), .nodata = 0.0};
+  EXPECT_TRUE(raster(all, {"2"}).warnings.empty());
+  RasterFile half = all;
+  std::fill_n(half.values.begin(), 40, 0.0);
+  EXPECT_TRUE(said(raster(half, {"2"}).warnings, "gives no zone to 50 % of the cells of the DEM"));
+  RasterFile off = all, empty = all;
+  off.place[0] = 700000.0;
+  expect_input_error([&] { raster(off, {"2"}); },
+                     {"z.tif: gives no cell of the DEM a zone", "700000", "700100", "600000", "600100"});
+  std::ranges::fill(empty.values, 0.0);
+  expect_input_error([&] { raster(empty, {"2"}); }, {"gives no cell of the DEM a zone", "nodata there?"});
 }
 
 TEST_F(Zones, AFieldIsForPolygonsOnly) {

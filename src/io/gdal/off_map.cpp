@@ -95,6 +95,15 @@ double share_outside(const Parts& parts, const Grid& grid) {
   return amount.whole > 0.0 ? std::clamp(1.0 - amount.inside / amount.whole, 0.0, 1.0) : 0.0;
 }
 
+std::string off_dem_text(const std::string& path, const OGREnvelope& box, const Layer& layer, const Terrain& terrain) {
+  const Grid& grid = terrain.heights.grid;
+  return path + ": lies wholly off the DEM: its features reach over " +
+         extent_text({box.MinX + grid.west, box.MinY + grid.south, box.MaxX + grid.west, box.MaxY + grid.south}) +
+         (layer.reprojections().empty() ? "" : " (brought from " + crs_name(layer.crs_wkt()) + ")") +
+         ", the DEM over " + extent_text(terrain.extent()) + " in " + crs_name(terrain.geo.crs_wkt) +
+         ": is the coordinate system of the layer the right one?";
+}
+
 const char* kind_of(const Parts& parts) {
   const bool polygons = !parts.polygons.empty(), lines = !parts.lines.empty(), points = !parts.points.empty();
   if (polygons && !lines && !points) return "polygon";

@@ -260,17 +260,10 @@ class Placer {
       throw InputError(path + ": has no features, must have polygons, lines or points where blocks are released");
     if (without_geometry_.size() == out_.features.size())
       throw InputError(path + ": none of its features has a geometry");
-    const Grid& grid = heights_.grid;
     if (out_.cells.empty() && without_terrain_ > 0)
       throw InputError(path + ": the DEM has no heights in any of its " + std::to_string(without_terrain_) +
                        " cells, must have in one at least");
-    if (out_.cells.empty())
-      throw InputError(
-          path + ": lies wholly off the DEM: its features reach over " +
-          extent_text({box_.MinX + grid.west, box_.MinY + grid.south, box_.MaxX + grid.west, box_.MaxY + grid.south}) +
-          (layer.reprojections().empty() ? "" : " (brought from " + crs_name(layer.crs_wkt()) + ")") +
-          ", the DEM over " + extent_text(terrain.extent()) + " in " + crs_name(terrain.geo.crs_wkt) +
-          ": is the coordinate system of the layer the right one?");
+    if (out_.cells.empty()) throw InputError(off_dem_text(path, box_, layer, terrain));
     if (!without_geometry_.empty())
       out_.warnings.push_back(path + ": features without geometry: FID " + list_of(without_geometry_));
     if (!off_map_.empty())

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "layer.hpp"
+#include "off_map.hpp"
 #include "pixels.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
@@ -79,6 +80,51 @@ class ZoneIndex {
   std::vector<bool> seen_;
 };
 
+/// Features of zones that change the ground of no cell.
+class IdleZones {
+ public:
+  IdleZones(const std::string& path, const Terrain& terrain) : path_(path), terrain_(terrain) {}
+
+  void without_geometry(const std::string& name) { without_geometry_.push_back(name); }
+  /// Whether a feature lies wholly off the DEM.
+  bool off(const std::string& name, const OGREnvelope& box) {
+    const Grid& grid = terrain_.heights.grid;
+    box_.Merge(box);
+    const bool is_off = box.MaxX <= 0.0 || box.MinX >= grid.width() || box.MaxY <= 0.0 || box.MinY >= grid.height();
+    if (is_off) off_.push_back(name);
+    return is_off;
+  }
+  /// @param cells  that a feature covers @param heights  the number of them that have a height
+  void placed(const std::string& name, std::uint64_t cells, std::uint64_t heights) {
+    if (cells == 0)
+      narrow_.push_back(name);
+    else if (heights == 0)
+      without_height_.push_back(name);
+  }
+
+  /// Throws InputError if all lie off the DEM.
+  void tell(const Layer& layer, std::size_t features, std::vector<std::string>& warnings) const {
+    if (!off_.empty() && off_.size() + without_geometry_.size() == features)
+      throw InputError(off_dem_text(path_, box_, layer, terrain_));
+    if (features == 0) warnings.push_back(path_ + ": has no features: the default ground is everywhere");
+    const auto warn = [&](const std::vector<std::string>& names, const std::string& what, const std::string& way_out) {
+      if (!names.empty()) warnings.push_back(path_ + ": " + what + ": FID " + list_of(names) + way_out);
+    };
+    const Grid& grid = terrain_.heights.grid;
+    warn(without_geometry_, "zones without geometry, which have no effect", "");
+    warn(off_, "zones wholly off the DEM, which have no effect", "");
+    warn(without_height_, "zones where the DEM has no heights, which have no effect", "");
+    warn(narrow_, "zones that cover no cell of the DEM (its centre counts) and have no effect",
+         ": draw them wider than a cell, " + with_digits(std::max(grid.cell_x, grid.cell_y), 3) + " m");
+  }
+
+ private:
+  std::string path_;
+  const Terrain& terrain_;
+  OGREnvelope box_;
+  std::vector<std::string> without_geometry_, off_, narrow_, without_height_;  // "4 (road)"
+};
+
 void read_polygons(const ZoneRequest& request, const Terrain& terrain, ZoneLayer& out) {
   Layer layer("ground", request.path, terrain);
   ZoneIndex index(request, false);
@@ -92,26 +138,58 @@ void read_polygons(const ZoneRequest& request, const Terrain& terrain, ZoneLayer
   const Grid& grid = terrain.heights.grid;
   FieldUse use{name, layer.field_names()[static_cast<std::size_t>(field)], {}, field, true};
   std::size_t features = 0;
+  IdleZones idle(request.path, terrain);
   for_each_feature(layer, [&](const Feature& feature) {
     ++features;
-    if (!layer.code(*feature, field).empty()) ++use.count;
+    const std::string zone = layer.code(*feature, field);
+    const std::string called = std::to_string(feature->GetFID()) + (zone.empty() ? "" : " (" + zone + ")");
+    if (!zone.empty()) ++use.count;
     const Parts parts = layer.parts(*feature);
     if (!parts.lines.empty() || !parts.points.empty())
       throw InputError(layer.label(*feature) + ": is no polygon, must be one");
-    if (parts.empty()) return;
-    const OGREnvelope box = parts.envelope();
-    if (box.MaxX <= 0.0 || box.MinX >= grid.width() || box.MaxY <= 0.0 || box.MinY >= grid.height()) return;
-    const std::string zone = layer.code(*feature, field);
+    if (parts.empty()) return idle.without_geometry(called);
+    if (idle.off(called, parts.envelope())) return;
     const std::uint8_t value =
         zone.empty() ? std::uint8_t{0} : index.at(zone, layer.label(*feature) + ": field " + name);
+    std::uint64_t cells = 0, heights = 0;
     for (const OGRPolygon& polygon : parts.polygons)
-      for_each_cell(polygon, grid, false, [&](int column, int row) { out.zones.at(column, row) = value; });
+      for_each_cell(polygon, grid, false, [&](int column, int row) {
+        out.zones.at(column, row) = value;
+        ++cells;
+        heights += std::isnan(terrain.heights.at(column, row)) ? 0U : 1U;
+      });
+    idle.placed(called, cells, heights);
   });
+  idle.tell(layer, features, out.warnings);
   out.notes.push_back(fields_note(request.path, {use}, features));
   index.warn_unseen(out.warnings);
   out.presets = index.named_presets();
   out.reprojections = layer.reprojections();
   for (std::string& line : layer.warnings()) out.warnings.push_back(std::move(line));
+}
+
+/// Throws InputError if a raster gives no cell of the DEM a zone. Warns if it leaves out more than a few.
+/// @param cells  of the DEM that have a height @param given  those of them with a zone
+void tell_cover(GDALDataset& dataset, const std::string& wkt, const std::string& path, const Terrain& terrain,
+                std::uint64_t cells, std::uint64_t given, std::vector<std::string>& warnings) {
+  constexpr double kNoticed = 0.01;
+  if (cells == 0) return;  // the sources say so
+  if (given == 0) {
+    std::array<double, 6> g{};
+    dataset.GetGeoTransform(g.data());
+    OGREnvelope box;
+    for (const int x : {0, dataset.GetRasterXSize()})
+      for (const int y : {0, dataset.GetRasterYSize()})
+        box.Merge(g[0] + x * g[1] + y * g[2], g[3] + x * g[4] + y * g[5]);
+    throw InputError(path + ": gives no cell of the DEM a zone: it reaches over " +
+                     extent_text({box.MinX, box.MinY, box.MaxX, box.MaxY}) + " in " + crs_name(wkt) +
+                     ", the DEM over " + extent_text(terrain.extent()) + " in " + crs_name(terrain.geo.crs_wkt) +
+                     ": is its coordinate system the right one, or is it nodata there?");
+  }
+  const double share = static_cast<double>(cells - given) / static_cast<double>(cells);
+  if (share > kNoticed)
+    warnings.push_back(path + ": gives no zone to " + with_digits(100.0 * share, share < 0.995 ? 2 : 3) +
+                       " % of the cells of the DEM (off the raster, or nodata): they get the default ground");
 }
 
 void read_codes(GDALDataset& dataset, const ZoneRequest& request, const Terrain& terrain, ZoneLayer& out) {
@@ -133,12 +211,15 @@ void read_codes(GDALDataset& dataset, const ZoneRequest& request, const Terrain&
   const Grid& grid = terrain.heights.grid;
   double last = std::numeric_limits<double>::quiet_NaN();
   std::uint8_t zone = 0;
+  std::uint64_t cells = 0, given = 0;
   in_squares(grid, [&](int column, int row) {
     if (std::isnan(terrain.heights.at(column, row))) return;  // no block will ever be there
+    ++cells;
     double x = grid.west + grid.centre_x(column), y = grid.south + grid.centre_y(row);
     transformer.apply(x, y, request.path);
     const double code = reader.at(pixel.column(x, y), pixel.row(x, y));
     if (std::isnan(code)) return;
+    ++given;
     if (code != last) {
       if (code != std::floor(code) || std::abs(code) > 1e15)
         throw InputError(request.path + ": holds " + text_of(code) + ", must be whole numbers that stand for zones");
@@ -147,6 +228,7 @@ void read_codes(GDALDataset& dataset, const ZoneRequest& request, const Terrain&
     }
     out.zones.at(column, row) = zone;
   });
+  tell_cover(dataset, wkt, request.path, terrain, cells, given, out.warnings);
   index.warn_unseen(out.warnings);
   out.reprojections = transformer.used();
   for (std::string& line : transformer.warnings(std::min(grid.cell_x, grid.cell_y)))

@@ -18,6 +18,7 @@
 #include "talus/io/gdal/lines.hpp"
 #include "talus/io/gdal/vectors.hpp"
 #include "talus/io/gdal/zones.hpp"
+#include "talus/simulate/scenario/idle_effects.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 #include "talus/terrain/pits.hpp"
 
@@ -211,6 +212,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
   warn_of_dams(parts.surface, out.warnings);
   out.scenario = make_scenario(std::move(parts));
   warn_of_sizes(spec, out.scenario, out.warnings);
+  for (std::string& warning : idle_effects(out.scenario)) out.warnings.push_back(std::move(warning));
 
   out.complete_toml = toml_of(spec);
   out.settings = settings_of(spec);

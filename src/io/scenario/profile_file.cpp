@@ -12,6 +12,7 @@
 #include "size_warning.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
+#include "talus/simulate/scenario/idle_effects.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 
 namespace talus::io {
@@ -169,6 +170,7 @@ LoadedProfile load_profile(const RunFlags& flags) {
   loaded.scenario = make_scenario(std::move(parts));
   warn_of_presets(spec, loaded.warnings);
   warn_of_sizes(spec, loaded.scenario, loaded.warnings);
+  for (std::string& warning : idle_effects(loaded.scenario)) loaded.warnings.push_back(std::move(warning));
   loaded.complete_toml = toml_of(spec);
   loaded.settings = settings_of(spec);
   record_inputs(spec, loaded);

@@ -1,21 +1,59 @@
 #include "size_warning.hpp"
 
 #include <algorithm>
+#include <string_view>
 
 #include "talus/simulate/scenario/block_sizes.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace talus::io {
+namespace {
+
+/// Whether a number of a ground is that of its preset. A complete scenario, as a run writes it, gives every number
+/// beside the preset, so that there only the values tell. A model that was fitted (`include`) has its own.
+bool from_preset(const ZoneSpec& zone, std::string_view key) {
+  const auto own = zone.own.find(std::string(key));
+  if (own == zone.own.end()) return true;
+  const bool all_given = zone.own.size() == ground_fields().size() - 1;  // `shape` is one key of two numbers
+  if (!all_given || own->second != "scenario") return false;
+  const Ground& preset = find_preset(zone.preset).ground;
+  return std::ranges::any_of(ground_fields(), [&](const auto& field) {
+    return field.key == key && field.get(zone.ground) == field.get(preset);
+  });
+}
+
+/// The grounds of a scenario that are used.
+std::vector<const ZoneSpec*> used_grounds(const ScenarioSpec& spec, const Scenario& scenario) {
+  const auto& cells = scenario.cover.zones.values;
+  std::vector<const ZoneSpec*> used;
+  if (cells.empty() || std::find(cells.begin(), cells.end(), 0) != cells.end()) used.push_back(&spec.default_ground);
+  for (const ZoneSpec& zone : spec.zones) used.push_back(&zone);
+  return used;
+}
+
+/// A line if the ground of a 3D run has a preset of the 2D model, and with it no sideways roughness; else empty.
+std::string plane_warning(const std::vector<const ZoneSpec*>& grounds) {
+  std::string text;
+  for (const ZoneSpec* zone : grounds)
+    if (is_of_plane(find_preset(zone->preset)) && zone->ground.psi_scale == 0.0)
+      text += (text.empty() ? "" : ", ") + ("'" + zone->name + "' (" + zone->preset + ")");
+  if (text.empty()) return text;
+  return "ground " + text +
+         ": the preset is of the 2D model, psi_scale = 0: blocks are not turned sideways there, the endangered width "
+         "is "
+         "too small (unsafe): take a preset whose name ends in -3d, or give psi_scale";
+}
+
+}  // namespace
 
 void warn_of_sizes(const ScenarioSpec& spec, const Scenario& scenario, std::vector<std::string>& warnings) {
-  const auto& cells = scenario.cover.zones.values;
+  const std::vector<const ZoneSpec*> grounds = used_grounds(spec, scenario);
   std::vector<const Preset*> presets;
-  const auto add = [&presets](const ZoneSpec& zone) {
-    if (!zone.own.contains("theta_scale") || !zone.own.contains("En50")) presets.push_back(&find_preset(zone.preset));
-  };
-  if (cells.empty() || std::find(cells.begin(), cells.end(), 0) != cells.end()) add(spec.default_ground);
-  for (const ZoneSpec& zone : spec.zones) add(zone);
+  for (const ZoneSpec* zone : grounds)
+    if (from_preset(*zone, "theta_scale") || from_preset(*zone, "En50")) presets.push_back(&find_preset(zone->preset));
   for (std::string& warning : std::vector<std::string>{size_warning(scenario, presets), guess_warning(presets),
-                                                       sorting_warning(scenario.effects)})
+                                                       sorting_warning(scenario.effects),
+                                                       spec.profile ? std::string() : plane_warning(grounds)})
     if (!warning.empty()) warnings.push_back(std::move(warning));
 }
 

@@ -36,6 +36,11 @@ inline constexpr std::string_view kDefaultPreset = "upper-talus-3d";
 /// a block out of its plane.
 std::span<const Preset> presets();
 
+/// Whether a set is of the 2D model. Ground that swallows blocks has no roughness at all.
+inline bool is_of_plane(const Preset& preset) {
+  return preset.ground.psi_scale == 0.0 && preset.ground.theta_scale > 0.0;
+}
+
 /// The set of this name. Throws InputError with the nearest name and all names.
 const Preset& find_preset(std::string_view name);
 
