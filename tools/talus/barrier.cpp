@@ -72,6 +72,11 @@ const talus::Screen& screen_of(const RunSummary& run, const Options& o) {
   throw talus::InputError("--screen: the run has no screen '" + o.screen + "'" + talus::known_names(o.screen, ids));
 }
 
+/// Share of the screen where the DEM has no height.
+double without_height(const RunSummary& run, const Options& o) {
+  return run.without_height[static_cast<std::size_t>(&screen_of(run, o) - run.screens.data())];
+}
+
 /// The crossings of the run.
 CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
   const fs::path file = fs::path(o.folder) / "screens.csv";
@@ -79,11 +84,12 @@ CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
     throw talus::InputError(o.folder +
                             ": the run kept no crossings (no screens.csv), must have had [screens] file in its "
                             "scenario: add lines that blocks cross and run it again");
-  screen_of(run, o);
+  const auto gap = talus::io::gap_note(without_height(run, o));  // also says if there is no such screen
   CrossingTable crossings = talus::io::read_crossings(file.string(), o.screen);
   if (crossings.blocks == 0)
-    throw talus::InputError(file.string() + ": no block crosses screen '" + o.screen +
-                            "': a barrier is not needed there, or the run has too few trajectories to say");
+    throw talus::InputError(file.string() + ": no block crosses screen '" + o.screen + "': " +
+                            (gap ? "this does not say that a barrier is not needed there: " + *gap
+                                 : "a barrier is not needed there, or the run has too few trajectories to say"));
   for (const std::size_t told : {crossings.speed.size(), crossings.energy.size(), crossings.height.size(),
                                  crossings.mass.size(), crossings.places.size()})
     if (told != crossings.blocks)
@@ -239,6 +245,8 @@ int design(const Options& o) {
   Weighting weighting;
   if (const auto note = talus::io::unusable_note(o.folder)) report.notes.push_back(*note);
   if (const auto note = talus::io::coefficient_note(o.folder)) report.notes.push_back(*note);
+  report.without_height = without_height(run, o);
+  if (const auto note = talus::io::gap_note(report.without_height)) report.notes.push_back(*note);
   const std::vector<talus::LineCrossing> blocks = crossings_of(crossings, run, o, report, weighting);
   report.screen = o.screen;
   report.released = run.released;

@@ -33,6 +33,7 @@ struct StretchRow {
 /// Results of `talus barrier`.
 struct BarrierReport {
   std::string screen;
+  double without_height = 0.0;      ///< share of the line where the DEM has no height, and no block can cross
   double released = 0.0;            ///< trajectories of the run
   std::size_t crossings = 0;        ///< blocks that crossed the screen
   std::string weighting;            ///< what each block counts: "alike: ...", "by the annual frequency ..."
@@ -60,6 +61,9 @@ std::string barrier_csv(const BarrierReport& report);
 
 /// The stretches as a table, one row each.
 std::string stretches_csv(const BarrierReport& report);
+
+/// A sentence if a part of the line lies where the DEM has no height.
+std::optional<std::string> gap_note(double without_height);
 
 /// A sentence if some stretch needs more than the one design of the whole line.
 std::optional<std::string> stretch_note(const BarrierReport& report);
