@@ -265,6 +265,18 @@ class Hazard(Case):
         self.fails(2, "gap.gpkg: none of its objects lies where the DEM has a height", "fill the gaps of the DEM",
                    arguments=["hazard", self.path("out"), "--objects", self.path("gap.gpkg"), "--overwrite", "-q"])
 
+    def test_objects_of_one_name(self):
+        self.simulate()
+        shapes = [(box(105, 150, 10, 8), ["house"]), (box(205, 150, 10, 8), ["house"]), (box(5, 5, 8, 8), [None]),
+                  (box(205, 120, 10, 8), ["3"]), (box(105, 120, 10, 8), ["barn"])]
+        write_features(self.path("o.gpkg"), "o", shapes, [("name", ogr.OFTString)])
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("o.gpkg"))
+        self.assertIn("several objects have the same name (field name, else id, else the number of the feature), so that their rows in "
+                      "objects_curves.csv and objects_sources.csv cannot be told apart: 3, house\n", done.stderr)
+        write_features(self.path("p.gpkg"), "o", shapes[1:3], [("name", ogr.OFTString)])
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("p.gpkg"), "--overwrite")
+        self.assertNotIn("the same name", done.stderr)
+
     def titles(self, name):
         """Title of a raster, and names of its bands."""
         file = gdal.Open(self.path(name))

@@ -32,6 +32,17 @@ TEST_F(Screens, WithoutIdTheNumberOfTheFeature) {
       "2");
 }
 
+TEST_F(Screens, ANumberThatIsTheIdOfAnotherIsRefused) {
+  for (const auto& rows : {std::vector<Row>{{"LINESTRING(11 11,12 12)", {"NULL"}}, {"LINESTRING(11 11,12 12)", {"1"}}},
+                           std::vector<Row>{{"LINESTRING(11 11,12 12)", {"2"}}, {"LINESTRING(11 11,12 12)", {"NULL"}}}})
+    expect_input_error(
+        [&] {
+          read({{"id", OFTString}}, rows);
+        },
+        {"s.gpkg: feature " + std::string(rows[0].values[0] == "NULL" ? "1" : "2") + ": has no id",
+         "is the id of another line, must have an id of its own"});
+}
+
 TEST_F(Screens, FeaturesOfTheSameIdAreOneScreen) {
   const ScreenLayer layer =
       read({{"id", OFTInteger}},

@@ -1,6 +1,7 @@
 #include "talus/io/gdal/lines.hpp"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "layer.hpp"
@@ -29,8 +30,14 @@ class LineReader {
   /// The field `id`, else the number of the feature.
   std::string id_of(const OGRFeature& feature) {
     const std::string id = id_ < 0 ? "" : layer_.code(feature, id_);
-    if (!id.empty()) ++uses_.front().count;
-    return id.empty() ? std::to_string(feature.GetFID()) : id;
+    if (id.empty()) {
+      const std::string number = std::to_string(feature.GetFID());
+      numbered_.emplace(number, layer_.label(feature));
+      return number;
+    }
+    ++uses_.front().count;
+    given_.insert(id);
+    return id;
   }
 
   /// The number in a field, which must be there; nothing and a fault of the layer if it is not.
@@ -64,10 +71,15 @@ class LineReader {
     return !off;
   }
 
-  /// Throws InputError if the layer is empty. Fills the warnings and reprojections of `out`.
+  /// Throws InputError if the layer is empty, or if the number of a feature without an id is the id of another. Fills
+  /// the warnings and reprojections of `out`.
   template <class Out>
   void finish(Out& out) {
     if (features_ == 0) throw InputError(path_ + ": has no features, must be " + meant_);
+    for (const auto& [number, label] : numbered_)
+      if (given_.contains(number))
+        throw InputError(label + ": has no id, and its number " + number +
+                         " is the id of another line, must have an id of its own");
     if (!off_map_.empty())
       out.warnings.push_back(path_ + ": lines wholly off the DEM, which nothing will cross: features " +
                              list_of(off_map_));
@@ -90,7 +102,9 @@ class LineReader {
   const Grid& grid_;
   Layer layer_;
   int id_;
-  std::vector<FieldUse> uses_;  // of `id` first
+  std::vector<FieldUse> uses_;                   // of `id` first
+  std::set<std::string> given_;                  // ids of features that have one
+  std::map<std::string, std::string> numbered_;  // the others: number and label
   std::size_t features_ = 0;
   std::vector<std::int64_t> off_map_;
 };
