@@ -177,6 +177,23 @@ class Design(Case):
         self.assertEqual(sorted(first), ["barrier_road.csv", "barrier_road.json", "barrier_road_stretches.csv", "run.json",
                                          "screens.csv"])
 
+    def test_what_is_not_its_own_stays(self):
+        """A file of the same name without a design of Talus beside it is someone's own."""
+        for name in ("barrier_road.csv", "barrier_road_stretches.csv", "barrier_road.json"):
+            self.write("out/" + name, '{"program": "mine"}')
+            self.refused(name + ": is there and of no earlier design by talus barrier", "move it or give it another name")
+            self.assertEqual(self.content()[name], b'{"program": "mine"}')
+            os.remove(self.path("out/" + name))
+        self.design()
+
+    def test_another_design_that_is_replaced_is_said(self):
+        call = ["barrier", self.path("out"), "--screen", "road"]
+        values, _, _ = self.design()
+        self.assertNotIn("replaces", self.run_well(*call).stderr)  # the same again
+        self.assertIn(f"talus: replaces the earlier design of screen road (SEL {values['SEL']:.4g} kJ, h_i {values['h_i']:.4g} m)\n",
+                      self.run_well(*call, "--gTr", "1.02").stderr)
+        self.assertEqual(self.run_well(*call, "-q").stderr, "")
+
     def test_name_of_the_files(self):
         self.save([(0, i, "fe/nce", 5.0 + i, 1.0 + i, 3000.0, 1.0 + i) for i in range(20)])
         self.run_well("barrier", self.path("out"), "--screen", "fe/nce")

@@ -9,7 +9,6 @@
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/file_name.hpp"
-#include "talus/io/files/output_folder.hpp"
 #include "talus/io/gdal/crossings_file.hpp"
 #include "talus/io/reports/barrier_report.hpp"
 #include "talus/io/results/run_folder.hpp"
@@ -267,9 +266,8 @@ int design(const Options& o) {
   for (const talus::Screen& screen : run.screens) ids.push_back(screen.id);
   const std::string name = "barrier_" + talus::io::file_name_of(o.screen, ids);
   catch_signals();  // from here on: all three files or none
-  talus::io::replace_text(fs::path(o.folder) / (name + ".csv"), talus::io::barrier_csv(report));
-  talus::io::replace_text(fs::path(o.folder) / (name + "_stretches.csv"), talus::io::stretches_csv(report));
-  talus::io::replace_text(fs::path(o.folder) / (name + ".json"), talus::io::barrier_json(report));
+  const auto replaced = talus::io::write_barrier(o.folder, name, report);
+  if (replaced && !o.quiet) say("", *replaced);
   if (!o.quiet) print_text(talus::io::barrier_text(report));
   return 0;
 }

@@ -158,8 +158,8 @@ std::string stretches_csv(const BarrierReport& r) {
 
 std::optional<std::string> gap_note(double without_height) {
   if (!(without_height > 0.0)) return std::nullopt;
-  return with_digits(100.0 * without_height, without_height < 0.995 ? 2 : 4) +
-         " % of the line lie where the DEM has no height (off it, in its outer half cell or in a gap): no block gets "
+  return percent(without_height) +
+         " of the line lie where the DEM has no height (off it, in its outer half cell or in a gap): no block gets "
          "there, so that nothing is told of this part, and the crossings are a lower bound (unsafe)";
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,6 +59,13 @@ struct BarrierReport {
 std::string barrier_text(const BarrierReport& report);
 std::string barrier_json(const BarrierReport& report);
 std::string barrier_csv(const BarrierReport& report);
+
+/// Writes NAME.json, NAME.csv and NAME_stretches.csv into a folder. Throws InputError, before anything is written, if a
+/// file of such a name is there that no design of Talus has left: it is someone's own.
+///
+/// @return a line that says which design is replaced, if it was another one
+std::optional<std::string> write_barrier(const std::filesystem::path& folder, const std::string& name,
+                                         const BarrierReport& report);
 
 /// The stretches as a table, one row each.
 std::string stretches_csv(const BarrierReport& report);
