@@ -132,6 +132,19 @@ class Design(Case):
         self.assertEqual(done.stderr, "talus: warning: block sizes: diameters are 0.3 m\n")
         self.assertEqual(self.run_well("barrier", self.path("out"), "--screen", "road", "-q").stderr, "")
 
+    def test_a_line_where_blocks_do_not_get(self):
+        """A part where the DEM has no height is not known to be safe."""
+        with open(self.path("out/run.json"), encoding="utf-8") as file:
+            run = json.load(file)
+        for screen in run["screens"]:
+            screen["share_without_height"] = 0.53
+        self.write("out/run.json", json.dumps(run))
+        self.refused("no block crosses screen 'fe/nce': this does not say that a barrier is not needed there: 53 % of the line lie "
+                     "where the DEM has no height", "(unsafe)", arguments=["--screen", "fe/nce"])
+        _, report, text = self.design()
+        self.assertIn("nothing crosses the other 2 stretches: not all of them are safe, see the note below\n", text)
+        self.assertEqual(sum(note.startswith("53 % of the line lie where the DEM has no height") for note in report["notes"]), 1)
+
     def test_options(self):
         values, _, _ = self.design("--gE", "1.2", "--percentile", "50", "--volume", "1", "--density", "2700")
         self.assertAlmostEqual(values["MEL"] / values["SEL"], 1.2, 12)
@@ -164,6 +177,23 @@ class Design(Case):
         self.assertEqual(sorted(first), ["barrier_road.csv", "barrier_road.json", "barrier_road_stretches.csv", "run.json",
                                          "screens.csv"])
 
+    def test_what_is_not_its_own_stays(self):
+        """A file of the same name without a design of Talus beside it is someone's own."""
+        for name in ("barrier_road.csv", "barrier_road_stretches.csv", "barrier_road.json"):
+            self.write("out/" + name, '{"program": "mine"}')
+            self.refused(name + ": is there and of no earlier design by talus barrier", "move it or give it another name")
+            self.assertEqual(self.content()[name], b'{"program": "mine"}')
+            os.remove(self.path("out/" + name))
+        self.design()
+
+    def test_another_design_that_is_replaced_is_said(self):
+        call = ["barrier", self.path("out"), "--screen", "road"]
+        values, _, _ = self.design()
+        self.assertNotIn("replaces", self.run_well(*call).stderr)  # the same again
+        self.assertIn(f"talus: replaces the earlier design of screen road (SEL {values['SEL']:.4g} kJ, h_i {values['h_i']:.4g} m)\n",
+                      self.run_well(*call, "--gTr", "1.02").stderr)
+        self.assertEqual(self.run_well(*call, "-q").stderr, "")
+
     def test_name_of_the_files(self):
         self.save([(0, i, "fe/nce", 5.0 + i, 1.0 + i, 3000.0, 1.0 + i) for i in range(20)])
         self.run_well("barrier", self.path("out"), "--screen", "fe/nce")
@@ -188,7 +218,7 @@ class Design(Case):
     def test_wrong_input(self):
         self.refused("no screen 'raod'", "did you mean 'road'", arguments=["--screen", "raod"])
         self.refused("only 19 blocks", "20 at least", arguments=["--screen", "low"])
-        self.refused("no block crosses", arguments=["--screen", "fe/nce"])
+        self.refused("no block crosses screen 'fe/nce': a barrier is not needed there, or", arguments=["--screen", "fe/nce"])
         self.refused("--gTr = 0.9", "1 to 3", arguments=["--screen", "road", "--gTr", "0.9"])
         self.refused("--gE = nan", arguments=["--screen", "road", "--gE", "nan"])
         self.refused("abc", arguments=["--screen", "road", "--gDp", "abc"])
@@ -381,6 +411,20 @@ class Walk(Case):
         self.run_well("barrier", self.path("out"), "--screen", "above")
         self.fails(2, "did you mean 'above'", "below",
                    arguments=["barrier", self.path("out"), "--screen", "abvoe"])
+
+    def test_screens_where_the_dem_has_no_height(self):
+        scenario = self.scenario(False)
+        write_features(self.path("lines.gpkg"), "lines", [(line(150.0), ["above"]), (line(100.0, 197.5, 397.5), ["half off"])],
+                       [("id", ogr.OFTString)])
+        wanted = ("lines.gpkg: where the DEM has no height (off it, in its outer half cell or in a gap) lie 50 % of screen half off: "
+                  "blocks do not get there, so that the crossings are lower bounds (unsafe)")
+        done = self.run_well("run", scenario, "-o", self.path("out"))
+        self.assertIn(wanted, done.stderr)
+        told = self.run_well("check", scenario)
+        self.assertIn(wanted, told.stdout + told.stderr)
+        above, half = self.record()["screens"]
+        self.assertNotIn("share_without_height", above)
+        self.assertAlmostEqual(half["share_without_height"], 0.5, 2)
 
     def test_wrong_nets(self):
         self.nets((125.0, "a", -1.0, 100.0))

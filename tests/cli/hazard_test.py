@@ -239,6 +239,44 @@ class Hazard(Case):
         again = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
         self.assertEqual(rows, again)
 
+    def test_objects_where_blocks_do_not_get(self):
+        """A gap of the DEM, its outer half cell and what is off it are not safe: blocks end there."""
+        z = heights()
+        z[28:32, 20:24] = -9999.0  # no height from x = 97.5 to 122.5 and y = 137.5 to 162.5
+        write_dem(self.path("dem.tif"), z, nodata=-9999.0)
+        road = f"LINESTRING ({2600000 + 1} {1200000 + 50},{2600000 + 1} {1200000 + 250})"
+        shapes = [(box(105, 145, 10, 8), ["gap"]), (road, ["edge"]), (box(280, 100, 350, 20), ["mostly off"]),
+                  (box(205, 150, 10, 8), ["well"]), (box(102.5, 157.5, 10, 20), ["rim"]), (box(5000, 0, 9, 9), ["far"])]
+        write_features(self.path("o.gpkg"), "o", shapes, [("name", ogr.OFTString)])
+        self.simulate()
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("o.gpkg"))
+        self.assertIn("objects wholly off the DEM, of which nothing is told: far\n", done.stderr)
+        self.assertIn("objects wholly in gaps of the DEM or in its outer half cell, of which nothing is told: gap, edge\n", done.stderr)
+        self.assertIn("where the DEM has no height (off it, in its outer half cell or in a gap) lie 95 % of object mostly off, "
+                      "25 % of object rim: blocks do not get there, so that the frequencies are lower bounds (unsafe)", done.stderr)
+        self.assertRegex(done.stderr, r"talus: mostly off: .*; nothing is told of the 95 % of it where the DEM has no height\n")
+        self.assertNotRegex(done.stderr, r"talus: (gap|edge|far): ")
+        self.assertNotRegex(done.stderr, r"talus: well: .* nothing is told")
+        rows = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
+        for name in ("gap", "edge", "far"):
+            self.assertEqual([rows[name][key] for key in ("trajectories", "frequency", "frequency_upper")], [None] * 3, name)
+        self.assertIsNotNone(rows["mostly off"]["frequency"])
+        write_features(self.path("gap.gpkg"), "o", shapes[:1], [("name", ogr.OFTString)])
+        self.fails(2, "gap.gpkg: none of its objects lies where the DEM has a height", "fill the gaps of the DEM",
+                   arguments=["hazard", self.path("out"), "--objects", self.path("gap.gpkg"), "--overwrite", "-q"])
+
+    def test_objects_of_one_name(self):
+        self.simulate()
+        shapes = [(box(105, 150, 10, 8), ["house"]), (box(205, 150, 10, 8), ["house"]), (box(5, 5, 8, 8), [None]),
+                  (box(205, 120, 10, 8), ["3"]), (box(105, 120, 10, 8), ["barn"])]
+        write_features(self.path("o.gpkg"), "o", shapes, [("name", ogr.OFTString)])
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("o.gpkg"))
+        self.assertIn("several objects have the same name (field name, else id, else the number of the feature), so that their rows in "
+                      "objects_curves.csv and objects_sources.csv cannot be told apart: 3, house\n", done.stderr)
+        write_features(self.path("p.gpkg"), "o", shapes[1:3], [("name", ogr.OFTString)])
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("p.gpkg"), "--overwrite")
+        self.assertNotIn("the same name", done.stderr)
+
     def titles(self, name):
         """Title of a raster, and names of its bands."""
         file = gdal.Open(self.path(name))

@@ -38,6 +38,11 @@ TEST_F(BarrierFile, WrongOnesAreRefused) {
   refused({"LINESTRING(1 1,2 2)", {"a", "NULL", "1"}}, {"n.gpkg: feature 1", "has no height"});
   refused({"LINESTRING(1 1,2 2)", {"a", "4", "NULL"}}, {"n.gpkg: feature 1", "has no capacity"});
   refused({"POLYGON((0 0,1 0,1 1,0 0))", {"a", "4", "1"}}, {"is no line", "height (m) and capacity (kJ)"});
+  expect_input_error(
+      [&] {
+        read(fields_, {{"LINESTRING(1 1,2 2)", {"2", "4", "1"}}, {"LINESTRING(1 1,2 2)", {"NULL", "4", "1"}}});
+      },
+      {"n.gpkg: feature 2: has no id", "its number 2 is the id of another line"});
   expect_input_error([&] { read(fields_, {}); }, {"n.gpkg", "no features"});
   expect_input_error(
       [&] {

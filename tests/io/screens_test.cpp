@@ -14,7 +14,7 @@ class Screens : public Files {
 
 TEST_F(Screens, LinesWithTheirIds) {
   const ScreenLayer layer = read({{"ID", OFTString}}, {{"LINESTRING(10 20,30 40,50 40)", {"road"}},
-                                                       {"MULTILINESTRING((1 1,2 2),(3 3,4 5))", {"net"}}});
+                                                       {"MULTILINESTRING((11 11,12 12),(13 13,14 15))", {"net"}}});
   ASSERT_EQ(layer.screens.size(), 2U);
   EXPECT_EQ(layer.screens[0].id, "road");
   ASSERT_EQ(layer.screens[0].lines.size(), 1U);
@@ -32,6 +32,17 @@ TEST_F(Screens, WithoutIdTheNumberOfTheFeature) {
       "2");
 }
 
+TEST_F(Screens, ANumberThatIsTheIdOfAnotherIsRefused) {
+  for (const auto& rows : {std::vector<Row>{{"LINESTRING(11 11,12 12)", {"NULL"}}, {"LINESTRING(11 11,12 12)", {"1"}}},
+                           std::vector<Row>{{"LINESTRING(11 11,12 12)", {"2"}}, {"LINESTRING(11 11,12 12)", {"NULL"}}}})
+    expect_input_error(
+        [&] {
+          read({{"id", OFTString}}, rows);
+        },
+        {"s.gpkg: feature " + std::string(rows[0].values[0] == "NULL" ? "1" : "2") + ": has no id",
+         "is the id of another line, must have an id of its own"});
+}
+
 TEST_F(Screens, FeaturesOfTheSameIdAreOneScreen) {
   const ScreenLayer layer =
       read({{"id", OFTInteger}},
@@ -42,11 +53,11 @@ TEST_F(Screens, FeaturesOfTheSameIdAreOneScreen) {
 
 TEST_F(Screens, ACsvIsInTheSystemOfTheDem) {
   const std::string file =
-      write_text("s.csv", "id,wkt\nS1,\"LINESTRING (600004.00 5200010.00, 600096.00 5200012.50)\"\n");
+      write_text("s.csv", "id,wkt\nS1,\"LINESTRING (600006.00 5200010.00, 600094.00 5200012.50)\"\n");
   const ScreenLayer layer = read_screens(file, terrain_);
   ASSERT_EQ(layer.screens.size(), 1U);
   EXPECT_EQ(layer.screens[0].id, "S1");
-  EXPECT_NEAR(layer.screens[0].lines[0][1].x(), 96.0, 1e-9);
+  EXPECT_NEAR(layer.screens[0].lines[0][1].x(), 94.0, 1e-9);
   EXPECT_NEAR(layer.screens[0].lines[0][1].y(), 12.5, 1e-9);
   EXPECT_TRUE(layer.warnings.empty());
 }
@@ -64,7 +75,21 @@ TEST_F(Screens, OtherGeometriesAreRefused) {
 }
 
 TEST_F(Screens, OffTheMapIsWarnedOf) {
-  EXPECT_TRUE(said(read({}, {{"LINESTRING(500 1,500 2)"}}).warnings, "which nothing will cross: features 1"));
+  const std::vector<std::string> warnings = read({}, {{"LINESTRING(500 1,500 2)"}}).warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(said(warnings, "which nothing will cross: features 1"));
+}
+
+TEST_F(Screens, WhereTheDemHasNoHeightIsWarnedOf) {
+  const auto warnings =
+      read({{"id", OFTString}}, {{"LINESTRING(50 40,140 40)", {"half"}},      // the last height at 95
+                                 {"LINESTRING(10 2,80 2)", {"at the edge"}},  // in the outer half cell
+                                 {"LINESTRING(10 40,80 40)", {"well"}}})
+          .warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(said(warnings,
+                   "s.gpkg: where the DEM has no height (off it, in its outer half cell or in a gap) lie 50 % of "
+                   "screen half, 100 % of screen at the edge: blocks do not get there"));
 }
 
 }  // namespace talus::io::test

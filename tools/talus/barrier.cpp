@@ -9,7 +9,6 @@
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/file_name.hpp"
-#include "talus/io/files/output_folder.hpp"
 #include "talus/io/gdal/crossings_file.hpp"
 #include "talus/io/reports/barrier_report.hpp"
 #include "talus/io/results/run_folder.hpp"
@@ -72,6 +71,11 @@ const talus::Screen& screen_of(const RunSummary& run, const Options& o) {
   throw talus::InputError("--screen: the run has no screen '" + o.screen + "'" + talus::known_names(o.screen, ids));
 }
 
+/// Share of the screen where the DEM has no height.
+double without_height(const RunSummary& run, const Options& o) {
+  return run.without_height[static_cast<std::size_t>(&screen_of(run, o) - run.screens.data())];
+}
+
 /// The crossings of the run.
 CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
   const fs::path file = fs::path(o.folder) / "screens.csv";
@@ -79,11 +83,12 @@ CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
     throw talus::InputError(o.folder +
                             ": the run kept no crossings (no screens.csv), must have had [screens] file in its "
                             "scenario: add lines that blocks cross and run it again");
-  screen_of(run, o);
+  const auto gap = talus::io::gap_note(without_height(run, o));  // also says if there is no such screen
   CrossingTable crossings = talus::io::read_crossings(file.string(), o.screen);
   if (crossings.blocks == 0)
-    throw talus::InputError(file.string() + ": no block crosses screen '" + o.screen +
-                            "': a barrier is not needed there, or the run has too few trajectories to say");
+    throw talus::InputError(file.string() + ": no block crosses screen '" + o.screen + "': " +
+                            (gap ? "this does not say that a barrier is not needed there: " + *gap
+                                 : "a barrier is not needed there, or the run has too few trajectories to say"));
   for (const std::size_t told : {crossings.speed.size(), crossings.energy.size(), crossings.height.size(),
                                  crossings.mass.size(), crossings.places.size()})
     if (told != crossings.blocks)
@@ -239,6 +244,8 @@ int design(const Options& o) {
   Weighting weighting;
   if (const auto note = talus::io::unusable_note(o.folder)) report.notes.push_back(*note);
   if (const auto note = talus::io::coefficient_note(o.folder)) report.notes.push_back(*note);
+  report.without_height = without_height(run, o);
+  if (const auto note = talus::io::gap_note(report.without_height)) report.notes.push_back(*note);
   const std::vector<talus::LineCrossing> blocks = crossings_of(crossings, run, o, report, weighting);
   report.screen = o.screen;
   report.released = run.released;
@@ -259,9 +266,8 @@ int design(const Options& o) {
   for (const talus::Screen& screen : run.screens) ids.push_back(screen.id);
   const std::string name = "barrier_" + talus::io::file_name_of(o.screen, ids);
   catch_signals();  // from here on: all three files or none
-  talus::io::replace_text(fs::path(o.folder) / (name + ".csv"), talus::io::barrier_csv(report));
-  talus::io::replace_text(fs::path(o.folder) / (name + "_stretches.csv"), talus::io::stretches_csv(report));
-  talus::io::replace_text(fs::path(o.folder) / (name + ".json"), talus::io::barrier_json(report));
+  const auto replaced = talus::io::write_barrier(o.folder, name, report);
+  if (replaced && !o.quiet) say("", *replaced);
   if (!o.quiet) print_text(talus::io::barrier_text(report));
   return 0;
 }

@@ -43,16 +43,6 @@ bool is_staged(const fs::path& path) {
          !fs::exists(path / OutputFolder::kWork / "part.json", none);
 }
 
-/// Whether a file is the design that `talus barrier` has written.
-bool is_design(const fs::path& file) {
-  try {
-    const Json json = read_record(file);
-    return json.is_object() && json.value("program", "") == "talus" && json.contains("screen");
-  } catch (const std::exception&) {
-    return false;
-  }
-}
-
 /// A folder of one of several campaigns: it holds a fitted model, and only files of such.
 bool is_site(const fs::path& folder) {
   std::error_code none;
@@ -98,6 +88,15 @@ std::string read_file_of(const std::string& name) {
   for (const std::string_view end : kBeside)
     if (name.ends_with(end)) return name.substr(0, name.size() - end.size());
   return "";
+}
+
+bool is_design(const fs::path& file) {
+  try {
+    const Json json = read_record(file);
+    return json.is_object() && json.value("program", "") == "talus" && json.contains("screen");
+  } catch (const std::exception&) {
+    return false;
+  }
 }
 
 bool is_run_page(const fs::path& file) {

@@ -8,6 +8,9 @@ namespace talus::io {
 /// Beginning of what a page of ours says that made it (its `generator`): "talus report".
 inline const std::string kPageMark = "talus ";
 
+/// Whether a file is the design (barrier_ID.json) that `talus barrier` has written.
+bool is_design(const std::filesystem::path& file);
+
 /// Whether a file is a page that `talus report` has written.
 bool is_run_page(const std::filesystem::path& file);
 

@@ -1,9 +1,13 @@
 #include "talus/io/gdal/lines.hpp"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "layer.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
+#include "talus/terrain/no_height.hpp"
 
 namespace talus::io {
 namespace {
@@ -26,8 +30,14 @@ class LineReader {
   /// The field `id`, else the number of the feature.
   std::string id_of(const OGRFeature& feature) {
     const std::string id = id_ < 0 ? "" : layer_.code(feature, id_);
-    if (!id.empty()) ++uses_.front().count;
-    return id.empty() ? std::to_string(feature.GetFID()) : id;
+    if (id.empty()) {
+      const std::string number = std::to_string(feature.GetFID());
+      numbered_.emplace(number, layer_.label(feature));
+      return number;
+    }
+    ++uses_.front().count;
+    given_.insert(id);
+    return id;
   }
 
   /// The number in a field, which must be there; nothing and a fault of the layer if it is not.
@@ -42,8 +52,8 @@ class LineReader {
     return value;
   }
 
-  /// Appends the lines of a feature.
-  void read(const OGRFeature& feature, std::vector<std::vector<Eigen::Vector2d>>& lines) {
+  /// Appends the lines of a feature. Returns false if they lie wholly off the DEM.
+  bool read(const OGRFeature& feature, std::vector<std::vector<Eigen::Vector2d>>& lines) {
     ++features_;
     const Parts parts = layer_.parts(feature);
     if (!parts.polygons.empty() || !parts.points.empty() || parts.lines.empty())
@@ -56,14 +66,20 @@ class LineReader {
       for (int i = 0; i < line.getNumPoints(); ++i) places.emplace_back(line.getX(i), line.getY(i));
     }
     const OGREnvelope box = parts.envelope();
-    if (box.MaxX < 0.0 || box.MinX > grid_.width() || box.MaxY < 0.0 || box.MinY > grid_.height())
-      off_map_.push_back(feature.GetFID());
+    const bool off = box.MaxX < 0.0 || box.MinX > grid_.width() || box.MaxY < 0.0 || box.MinY > grid_.height();
+    if (off) off_map_.push_back(feature.GetFID());
+    return !off;
   }
 
-  /// Throws InputError if the layer is empty. Fills the warnings and reprojections of `out`.
+  /// Throws InputError if the layer is empty, or if the number of a feature without an id is the id of another. Fills
+  /// the warnings and reprojections of `out`.
   template <class Out>
   void finish(Out& out) {
     if (features_ == 0) throw InputError(path_ + ": has no features, must be " + meant_);
+    for (const auto& [number, label] : numbered_)
+      if (given_.contains(number))
+        throw InputError(label + ": has no id, and its number " + number +
+                         " is the id of another line, must have an id of its own");
     if (!off_map_.empty())
       out.warnings.push_back(path_ + ": lines wholly off the DEM, which nothing will cross: features " +
                              list_of(off_map_));
@@ -86,23 +102,49 @@ class LineReader {
   const Grid& grid_;
   Layer layer_;
   int id_;
-  std::vector<FieldUse> uses_;  // of `id` first
+  std::vector<FieldUse> uses_;                   // of `id` first
+  std::set<std::string> given_;                  // ids of features that have one
+  std::map<std::string, std::string> numbered_;  // the others: number and label
   std::size_t features_ = 0;
   std::vector<std::int64_t> off_map_;
 };
 
+/// A warning of the screens that lie, wholly or partly, where the terrain has no height.
+/// @param on_map  ids of the screens that are not wholly off the DEM: of those the reader has warned
+void warn_of_gaps(ScreenLayer& layer, const std::string& path, const Terrain& terrain,
+                  const std::set<std::string>& on_map) {
+  std::vector<std::string> lacks;
+  for (const Screen& screen : layer.screens) {
+    const double share = share_without_height(screen, terrain.heights);
+    if (share >= kNoticedWithoutHeight && on_map.contains(screen.id))
+      lacks.push_back(with_digits(100.0 * share, share < 0.995 ? 2 : 4) + " % of screen " + screen.id);
+  }
+  if (!lacks.empty())
+    layer.warnings.push_back(path + ": where the DEM has no height (off it, in its outer half cell or in a gap) lie " +
+                             list_of(lacks) +
+                             ": blocks do not get there, so that the crossings are lower bounds (unsafe)");
+}
+
 }  // namespace
+
+double share_without_height(const Screen& screen, const Raster<float>& heights) {
+  WithoutHeight length;
+  for (const auto& line : screen.lines) add_line(length, heights, line);
+  return length.share();
+}
 
 ScreenLayer read_screens(const std::string& path, const Terrain& terrain) {
   LineReader reader("screens", path, terrain, "lines that blocks may cross");
   ScreenLayer out;
+  std::set<std::string> on_map;
   for_each_feature(reader.layer(), [&](const Feature& feature) {
     const std::string id = reader.id_of(*feature);
     auto screen = std::find_if(out.screens.begin(), out.screens.end(), [&](const Screen& s) { return s.id == id; });
     if (screen == out.screens.end()) screen = out.screens.insert(screen, Screen{id, {}});
-    reader.read(*feature, screen->lines);
+    if (reader.read(*feature, screen->lines)) on_map.insert(id);
   });
   reader.finish(out);
+  warn_of_gaps(out, path, terrain, on_map);
   return out;
 }
 

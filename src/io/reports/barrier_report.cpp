@@ -4,8 +4,12 @@
 #include <cmath>
 
 #include "barrier_stretches.hpp"
+#include "io/files/json.hpp"
+#include "io/files/own_files.hpp"
+#include "talus/base/error.hpp"
 #include "talus/base/vector.hpp"
 #include "talus/base/version.hpp"
+#include "talus/io/files/output_folder.hpp"
 
 namespace talus::io {
 namespace {
@@ -111,7 +115,41 @@ Json reliability_of(const Reliability& r) {
           {"exceeded", std::move(limits)}};
 }
 
+/// " (SEL 120 kJ, h_i 3.2 m)" of a design that was written; empty if it does not say.
+std::string written_values(const Json& design) {
+  std::vector<std::string> texts;
+  try {
+    for (const Json& row : design.at("design"))
+      for (const char* name : {"SEL", "h_i"})
+        if (row.at("name") == name)
+          texts.push_back(std::string(name) + " " + with_digits(row.at("value").get<double>(), 4) + " " +
+                          row.at("unit").get<std::string>());
+  } catch (const Json::exception&) {
+    return "";
+  }
+  return texts.empty() ? "" : " (" + joined(texts) + ")";
+}
+
 }  // namespace
+
+std::optional<std::string> write_barrier(const std::filesystem::path& folder, const std::string& name,
+                                         const BarrierReport& report) {
+  const std::filesystem::path file = folder / (name + ".json");
+  const bool earlier = is_design(file);
+  for (const char* end : {".json", ".csv", "_stretches.csv"})
+    if (const auto own = folder / (name + end); !earlier && std::filesystem::exists(own))
+      throw InputError(own.string() + ": is there and of no earlier design by talus barrier (no " +
+                       file.filename().string() + " of it), must not be replaced: move it or give it another name");
+  const std::string json = barrier_json(report);
+  std::optional<std::string> replaced;
+  if (earlier)
+    if (const Json design = read_record(file); json_text(design) != json)
+      replaced = "replaces the earlier design of screen " + report.screen + written_values(design);
+  replace_text(file, json);  // first: it says that the tables are ours
+  replace_text(folder / (name + ".csv"), barrier_csv(report));
+  replace_text(folder / (name + "_stretches.csv"), stretches_csv(report));
+  return replaced;
+}
 
 std::string barrier_text(const BarrierReport& r) {
   std::string text = "screen " + r.screen + ": " + std::to_string(r.crossings) + " blocks cross it, " +

@@ -112,7 +112,9 @@ std::string stretches_text(const BarrierReport& r) {
       ++empty;
     else
       text += stretch_line(row);
-  if (empty > 0) text += "  nothing crosses the other " + std::to_string(empty) + " stretches\n";
+  if (empty > 0)
+    text += "  nothing crosses the other " + std::to_string(empty) + " stretches" +
+            (r.without_height > 0.0 ? ": not all of them are safe, see the note below" : "") + "\n";
   const StretchDesign *energy = highest_of(r, &BarrierDesign::sel), *height = highest_of(r, &BarrierDesign::height);
   if (energy != nullptr)
     text += "  highest: SEL " + kilojoules(energy->design->sel) + " kJ " + from_to(energy->stretch) + ", h_i " +
@@ -152,6 +154,13 @@ std::string stretches_csv(const BarrierReport& r) {
     text += '\n';
   }
   return text;
+}
+
+std::optional<std::string> gap_note(double without_height) {
+  if (!(without_height > 0.0)) return std::nullopt;
+  return percent(without_height) +
+         " of the line lie where the DEM has no height (off it, in its outer half cell or in a gap): no block gets "
+         "there, so that nothing is told of this part, and the crossings are a lower bound (unsafe)";
 }
 
 std::optional<std::string> stretch_note(const BarrierReport& r) {

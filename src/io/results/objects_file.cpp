@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "io/gdal/geopackage.hpp"
 #include "io/gdal/layer.hpp"
@@ -10,6 +11,7 @@
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/results/vector_style.hpp"
+#include "talus/terrain/no_height.hpp"
 
 namespace talus::io {
 namespace {
@@ -32,6 +34,18 @@ HazardObject object_of(const Parts& parts, double line_width) {
   }
   for (const OGRLineString& line : parts.lines) object.lines.push_back(ring_of(line));
   return object;
+}
+
+/// Share of an object where the terrain has no height, so that blocks do not get there: of the area of its polygons and
+/// of the length of its lines, the larger one; of what has neither, of its places.
+double share_without_height(const HazardObject& object, const Raster<float>& heights) {
+  WithoutHeight area, length, places;
+  for (const auto& rings : object.polygons) add_polygon(area, heights, rings);
+  for (const HazardObject::Ring& line : object.lines) {
+    add_line(length, heights, line);
+    for (const Eigen::Vector2d& place : line) places.whole += 1.0, places.without += has_height(heights, place) ? 0 : 1;
+  }
+  return area.whole + length.whole > 0.0 ? std::max(area.share(), length.share()) : places.share();
 }
 
 /// The geometry of an object in map coordinates: a multipolygon or a multiline; a collection if it has both.
@@ -60,15 +74,15 @@ std::unique_ptr<OGRGeometry> geometry_of(const Parts& parts, double west, double
 /// Figures of an object, with the names of their columns. NaN and infinity are written as NULL or an empty field.
 using Figures = std::vector<std::pair<std::string, double>>;
 
-/// @param on_map  false: the figures of the object are not known
-Figures figures_of(const HazardRules& rules, const ObjectHits& hits, bool on_map, const std::vector<double>& years) {
+/// @param known  false: the figures of the object are not known
+Figures figures_of(const HazardRules& rules, const ObjectHits& hits, bool known, const std::vector<double>& years) {
   const HazardCurve curve(rules, hits.largest), entry(rules, hits.entry);
   const std::vector<double>& thresholds = rules.bins.thresholds();
-  Figures figures{{"trajectories", on_map ? static_cast<double>(hits.trajectories) : kNotGiven}};
-  const auto add = [&figures, on_map](const std::string& name, const Bounded& b) {
-    figures.emplace_back(name, on_map ? b.value : kNotGiven);
-    figures.emplace_back(name + "_lower", on_map ? b.low : kNotGiven);
-    figures.emplace_back(name + "_upper", on_map ? b.high : kNotGiven);
+  Figures figures{{"trajectories", known ? static_cast<double>(hits.trajectories) : kNotGiven}};
+  const auto add = [&figures, known](const std::string& name, const Bounded& b) {
+    figures.emplace_back(name, known ? b.value : kNotGiven);
+    figures.emplace_back(name + "_lower", known ? b.low : kNotGiven);
+    figures.emplace_back(name + "_upper", known ? b.high : kNotGiven);
   };
   add("frequency", curve.passage());
   figures.emplace_back("return_period", return_period(curve.passage()).value);
@@ -88,10 +102,19 @@ struct ObjectLayer::State {
   std::vector<std::string> names;
   std::vector<Parts> parts;
   std::vector<HazardObject> objects;
-  std::vector<bool> on_map;
+  std::vector<double> without_height;  // share of each where the terrain has no height
   std::vector<std::string> warnings;
   double line_width = 0.0;
   std::size_t lines_of_their_width = 0, lines_of_given_width = 0, polygons_with_width = 0;
+
+  bool known(std::size_t i) const { return without_height[i] < 1.0; }
+  bool is_partial(std::size_t i) const { return known(i) && without_height[i] >= kNoticedWithoutHeight; }
+  /// "95 %": how much of an object has no height.
+  std::string lack(std::size_t i) const {
+    return with_digits(100.0 * without_height[i], without_height[i] < 0.995 ? 2 : 4) + " %";
+  }
+  void warn_of_places(const std::string& path, const std::vector<bool>& off_map);
+  void warn_of_names(const std::string& path);
 
   /// Features whose blocks reach an object, the largest share first: index and share.
   static std::vector<std::pair<std::size_t, double>> sources_of(const ObjectHits& hits) {
@@ -105,6 +128,50 @@ struct ObjectLayer::State {
   }
 };
 
+/// Throws InputError if blocks get to no object at all.
+void ObjectLayer::State::warn_of_places(const std::string& path, const std::vector<bool>& off_map) {
+  constexpr std::size_t kShown = 8;
+  std::vector<std::string> off, gaps;
+  std::vector<std::size_t> partial;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (is_partial(i)) partial.push_back(i);
+    if (!known(i)) (off_map[i] ? off : gaps).push_back(names[i]);
+  }
+  if (off.size() == names.size())
+    throw InputError(path + ": lies wholly off the DEM: is the coordinate system of the layer the right one?");
+  if (off.size() + gaps.size() == names.size())
+    throw InputError(path +
+                     ": none of its objects lies where the DEM has a height (it has none in its gaps and in its "
+                     "outer half cell), so that no block gets to them: fill the gaps of the DEM, or take a larger one");
+  if (!off.empty())
+    warnings.push_back(path + ": objects wholly off the DEM, of which nothing is told: " + list_of(off));
+  if (!gaps.empty())
+    warnings.push_back(
+        path +
+        ": objects wholly in gaps of the DEM or in its outer half cell, of which nothing is told: " + list_of(gaps));
+  if (partial.empty()) return;
+  std::ranges::stable_sort(partial, std::ranges::greater{}, [this](std::size_t i) { return without_height[i]; });
+  std::string text;
+  for (std::size_t i = 0; i < std::min(partial.size(), kShown); ++i)
+    text += (i > 0 ? ", " : "") + lack(partial[i]) + " of object " + names[partial[i]];
+  if (partial.size() > kShown) text += " and parts of " + std::to_string(partial.size() - kShown) + " more";
+  warnings.push_back(path + ": where the DEM has no height (off it, in its outer half cell or in a gap) lie " + text +
+                     ": blocks do not get there, so that the frequencies are lower bounds (unsafe)");
+}
+
+/// Objects of one name cannot be told apart in the tables.
+void ObjectLayer::State::warn_of_names(const std::string& path) {
+  std::set<std::string> seen, twice;
+  for (const std::string& name : names)
+    if (!seen.insert(name).second) twice.insert(name);
+  if (!twice.empty())
+    warnings.push_back(path +
+                       ": several objects have the same name (field name, else id, else the number of the "
+                       "feature), so that their rows in objects_curves.csv and objects_sources.csv cannot be told "
+                       "apart: " +
+                       list_of(std::vector<std::string>(twice.begin(), twice.end())));
+}
+
 ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, double line_width)
     : state_(std::make_unique<State>()) {
   Terrain terrain;
@@ -113,7 +180,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
   const Grid& grid = terrain.heights.grid;
   Layer layer("objects", path, terrain);
   const int id = layer.field("name") >= 0 ? layer.field("name") : layer.field("id");
-  std::string off;
+  std::vector<bool> off_map;
   for_each_feature(layer, [&](Feature& feature) {
     Parts parts = layer.parts(*feature);
     if (parts.empty() || !parts.points.empty())
@@ -122,9 +189,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
     const OGREnvelope box = parts.envelope();
     const std::string name = id >= 0 ? feature->GetFieldAsString(id) : "";
     state_->names.push_back(name.empty() ? std::to_string(feature->GetFID()) : name);
-    state_->on_map.push_back(box.MaxX >= 0.0 && box.MinX <= grid.width() && box.MaxY >= 0.0 &&
-                             box.MinY <= grid.height());
-    if (!state_->on_map.back()) off += (off.empty() ? "" : ", ") + state_->names.back();
+    off_map.push_back(box.MaxX < 0.0 || box.MinX > grid.width() || box.MaxY < 0.0 || box.MinY > grid.height());
     std::optional<double> width;
     if (!parts.lines.empty()) {
       width = layer.number(*feature, "width", kWidth);
@@ -133,13 +198,13 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
       ++state_->polygons_with_width;
     }
     state_->objects.push_back(object_of(parts, width.value_or(line_width)));
+    state_->without_height.push_back(share_without_height(state_->objects.back(), loaded.scenario.surface.heights()));
     state_->parts.push_back(std::move(parts));
     state_->features.push_back(std::move(feature));
   });
   if (state_->objects.empty()) throw InputError(path + ": has no features, must have polygons or lines");
-  if (std::ranges::count(state_->on_map, true) == 0)
-    throw InputError(path + ": lies wholly off the DEM: is the coordinate system of the layer the right one?");
-  if (!off.empty()) state_->warnings.push_back(path + ": objects wholly off the DEM, of which nothing is told: " + off);
+  state_->warn_of_places(path, off_map);
+  state_->warn_of_names(path);
   if (state_->polygons_with_width > 0)
     state_->warnings.push_back(path + ": the field width of " + std::to_string(state_->polygons_with_width) +
                                " polygons is not used: it is for lines; a polygon is what it covers");
@@ -267,7 +332,7 @@ std::vector<std::string> ObjectLayer::hits_text(const HazardRules& rules, const 
                                                 std::size_t most) const {
   std::vector<std::pair<Bounded, std::size_t>> order;
   for (std::size_t i = 0; i < hits.size(); ++i)
-    if (state_->on_map[i]) order.emplace_back(HazardCurve(rules, hits[i].largest).passage(), i);
+    if (state_->known(i)) order.emplace_back(HazardCurve(rules, hits[i].largest).passage(), i);
   std::ranges::stable_sort(order, std::ranges::greater{}, [](const auto& one) { return one.first.value; });
   std::vector<std::string> lines;
   for (const auto& [f, i] : order) {
@@ -275,13 +340,16 @@ std::vector<std::string> ObjectLayer::hits_text(const HazardRules& rules, const 
       lines.push_back("and " + std::to_string(order.size() - most) + " more, hit less often: objects.csv");
       break;
     }
-    const std::string name = printable(state_->names[i]) + ": ";
+    const std::string name = printable(state_->names[i]) + ": ",
+                      lack = state_->is_partial(i)
+                                 ? "; nothing is told of the " + state_->lack(i) + " of it where the DEM has no height"
+                                 : "";
     if (f.value > 0.0)
       lines.push_back(name + "hit " + with_digits(f.value, 3) + " times per year, once in " + readable(1.0 / f.value) +
-                      " years (95 %: " + with_digits(f.low, 3) + " to " + with_digits(f.high, 3) + " per year)");
+                      " years (95 %: " + with_digits(f.low, 3) + " to " + with_digits(f.high, 3) + " per year)" + lack);
     else
       lines.push_back(name + "hit by no block of this run; at most " + with_digits(f.high, 3) +
-                      " times per year (95 %)");
+                      " times per year (95 %)" + lack);
   }
   return lines;
 }
@@ -295,10 +363,10 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
               from = "object,feature,frequency,share\n";
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const HazardCurve curve(rules, hits[i].largest);
-    const Figures figures = figures_of(rules, hits[i], state_->on_map[i], years);
+    const Figures figures = figures_of(rules, hits[i], state_->known(i), years);
     const std::string object = csv_field(state_->names[i]);
     std::string sources;
-    for (const auto& [feature, share] : State::sources_of(hits[i])) {
+    for (const auto& [feature, share] : State::sources_of(state_->known(i) ? hits[i] : ObjectHits{})) {
       const std::string& given = loaded.scenario.features[feature].name;
       const std::string name = given.empty() ? std::to_string(feature) : given;
       sources += (sources.empty() ? "" : "; ") + name + ' ' + with_digits(100.0 * share, 3) + " %";
@@ -311,7 +379,7 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
       writer = std::make_unique<ObjectsWriter>(folder / "objects.gpkg", loaded, *state_->features[i], figures);
     writer->write(*state_->features[i], *geometry_of(state_->parts[i], grid.west, grid.south), figures, sources);
     table.add(object, *state_->features[i], figures, sources);
-    if (state_->on_map[i]) curves += curve_rows(object, curve, rules.bins);
+    if (state_->known(i)) curves += curve_rows(object, curve, rules.bins);
   }
   const bool lines = std::ranges::all_of(state_->parts, [](const Parts& parts) { return parts.polygons.empty(); });
   writer->finish(lines ? StyledLayer::LineObjects : StyledLayer::AreaObjects);

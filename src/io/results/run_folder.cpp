@@ -90,7 +90,10 @@ RunSummary read_run(const std::filesystem::path& folder) {
     run.released = json.at("released").get<double>();
     run.density = setting_of(json, "blocks.density");
     run.cell = json.at("grid").at("cell_x_m").get<double>();
-    for (const Json& screen : json.value("screens", Json::array())) run.screens.push_back(screen_of(screen));
+    for (const Json& screen : json.value("screens", Json::array())) {
+      run.screens.push_back(screen_of(screen));
+      run.without_height.push_back(screen.value("share_without_height", 0.0));
+    }
     run.size_warnings = size_warnings_of(json);
   } catch (const std::exception& error) {
     throw InputError(file.string() + ": cannot be understood (" + error.what() +

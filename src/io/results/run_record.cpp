@@ -8,7 +8,9 @@
 #include "io/gdal/regular_file.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/gdal/input_access.hpp"
+#include "talus/io/gdal/lines.hpp"
 #include "talus/simulate/tally/histogram.hpp"
+#include "talus/terrain/no_height.hpp"
 
 namespace talus::io {
 namespace {
@@ -43,7 +45,8 @@ Json grid_of(const LoadedScenario& loaded) {
           {"west", geo.west},        {"north", geo.north}, {"crs_wkt", geo.crs_wkt}};
 }
 
-/// The screens in map coordinates, to the millimetre: products of the folder need places along them.
+/// The screens in map coordinates, to the millimetre: products of the folder need places along them. And, from 1 % of
+/// its length, how much of a screen has no height, where no block can cross it.
 Json screens_of(const LoadedScenario& loaded) {
   const double south = loaded.geo.north - loaded.scenario.surface.grid().rows * loaded.geo.cell_y;
   const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3; };
@@ -57,6 +60,9 @@ Json screens_of(const LoadedScenario& loaded) {
       lines.push_back(std::move(places));
     }
     list.push_back({{"id", screen.id}, {"lines", std::move(lines)}});
+    if (const double share = share_without_height(screen, loaded.scenario.surface.heights());
+        share >= kNoticedWithoutHeight)
+      list.back()["share_without_height"] = share;
   }
   return list;
 }

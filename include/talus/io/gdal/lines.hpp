@@ -16,8 +16,12 @@ struct ScreenLayer {
 };
 
 /// Reads screens: lines with a field `id` (text or whole number; else the number of the feature). Lines of the same id,
-/// and the parts of a multiline, are one screen. A plain CSV with columns id,wkt is in the system of the DEM.
+/// and the parts of a multiline, are one screen. A plain CSV with columns id,wkt is in the system of the DEM. Warns of
+/// screens that lie, wholly or partly, where the DEM has no height.
 ScreenLayer read_screens(const std::string& path, const Terrain& terrain);
+
+/// Share of the length of a screen where the terrain has no height: blocks do not get there.
+double share_without_height(const Screen& screen, const Raster<float>& heights);
 
 /// Barriers from a vector file.
 struct BarrierLayer {

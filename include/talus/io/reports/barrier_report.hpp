@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,7 @@ struct StretchRow {
 /// Results of `talus barrier`.
 struct BarrierReport {
   std::string screen;
+  double without_height = 0.0;      ///< share of the line where the DEM has no height, and no block can cross
   double released = 0.0;            ///< trajectories of the run
   std::size_t crossings = 0;        ///< blocks that crossed the screen
   std::string weighting;            ///< what each block counts: "alike: ...", "by the annual frequency ..."
@@ -58,8 +60,18 @@ std::string barrier_text(const BarrierReport& report);
 std::string barrier_json(const BarrierReport& report);
 std::string barrier_csv(const BarrierReport& report);
 
+/// Writes NAME.json, NAME.csv and NAME_stretches.csv into a folder. Throws InputError, before anything is written, if a
+/// file of such a name is there that no design of Talus has left: it is someone's own.
+///
+/// @return a line that says which design is replaced, if it was another one
+std::optional<std::string> write_barrier(const std::filesystem::path& folder, const std::string& name,
+                                         const BarrierReport& report);
+
 /// The stretches as a table, one row each.
 std::string stretches_csv(const BarrierReport& report);
+
+/// A sentence if a part of the line lies where the DEM has no height.
+std::optional<std::string> gap_note(double without_height);
 
 /// A sentence if some stretch needs more than the one design of the whole line.
 std::optional<std::string> stretch_note(const BarrierReport& report);

@@ -14,7 +14,8 @@ namespace talus::io {
 class ObjectLayer {
  public:
   /// Reads them in any coordinate system. Throws InputError for points, for features without geometry, for a field
-  /// `width` that is no width, and if all lie off the DEM.
+  /// `width` that is no width, and if no object lies where the DEM has heights. Warns of
+  /// each that lies partly, or wholly, where it has none: blocks do not get there.
   ///
   /// @param line_width  of lines without a field `width` [m]
   ObjectLayer(const std::string& path, const LoadedScenario& loaded, double line_width = 0.0);
