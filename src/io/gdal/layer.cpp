@@ -134,9 +134,9 @@ Feature Layer::next() {
 
 int Layer::field(const char* name) const {
   const int index = fields().GetFieldIndex(name);
-  if (index >= 0 || !EQUAL(dataset_->GetDriverName(), "ESRI Shapefile")) return index;
+  if (index >= 0) return index;
   // A Shapefile cuts names to ten characters: GDAL and QGIS write the pair diameter_min, diameter_max as
-  // diameter_m, diameter_1.
+  // diameter_m, diameter_1. A layer that was made of one keeps them.
   if (EQUAL(name, "release_height")) return fields().GetFieldIndex("release_he");
   const int low = fields().GetFieldIndex("diameter_m"), high = fields().GetFieldIndex("diameter_1");
   if (low < 0 || high < 0) return index;
@@ -276,13 +276,24 @@ void Layer::move(OGRSimpleCurve& line, const std::string& where) {
   }
 }
 
+std::string Layer::fault_on_map(const OGRPolygon& polygon) const {
+  OGRPolygon on_map(polygon);
+  const Grid& grid = terrain_.heights.grid;
+  for (OGRLinearRing* ring : on_map)
+    for (int i = 0; i < ring->getNumPoints(); ++i)
+      ring->setPoint(i, ring->getX(i) + grid.west, ring->getY(i) + grid.south);
+  GdalMessages messages;
+  on_map.IsValid();  // says where
+  return messages.take("invalid");
+}
+
 void Layer::add_valid(const OGRPolygon& polygon, Parts& parts, const std::string& where) {
   GdalMessages messages;
   if (!OGRGeometryFactory::haveGEOS() || polygon.IsValid() != 0) {
     parts.polygons.push_back(polygon);
     return;
   }
-  const std::string reason = messages.take("invalid");
+  const std::string reason = fault_on_map(polygon);
   const std::unique_ptr<OGRGeometry> mended(polygon.MakeValid());
   const std::size_t before = parts.polygons.size();
   const auto keep = [&](const auto& self, const OGRGeometry& geometry) -> void {

@@ -49,7 +49,8 @@ class Layer {
   /// The geometries of a feature. Empty if it has none.
   Parts parts(const OGRFeature& feature);
 
-  /// Index of a field, in any case of letters, also if a Shapefile has cut its name; -1 if there is none.
+  /// Index of a field, in any case of letters, also if a Shapefile has cut its name, this or an earlier one; -1 if
+  /// there is none.
   int field(const char* name) const;
   /// Index of a field that is spelt so, else of the only one that is in another case of letters; -1 if there is none.
   /// Throws InputError if several differ from it only in their case.
@@ -85,6 +86,8 @@ class Layer {
   bool is_csv() const;
   void collect(OGRGeometry& geometry, Parts& parts, const std::string& where);
   void move(OGRSimpleCurve& line, const std::string& where);
+  /// Why a polygon in local metres is invalid, with the place in map coordinates.
+  std::string fault_on_map(const OGRPolygon& polygon) const;
   void add_valid(const OGRPolygon& polygon, Parts& parts, const std::string& where);
 
   std::string path_, crs_wkt_;
