@@ -84,6 +84,9 @@ class Fields(InputCase):
         stops = [sorted((f["source"], f["block"], f["z"], p.GetX(), p.GetY()) for f, p in rows_of(self.path(out + "/stops.gpkg"), "stops"))
                  for out in ("out", "again")]
         self.assertEqual(stops[0], stops[1])
+        for option, other, count in (("--source", "--block", "sources"), ("--block", "--source", "blocks")):
+            self.fails(2, f"{option}: -1 is not there; this scenario has {count} 0 to ",
+                       arguments=["trace", self.path("out/scenario.toml"), option, "-1", other, "0"])
         path = self.run_well("trace", self.path("out/scenario.toml"), "--source", "1", "--block", "2").stdout.splitlines()
         last = dict(zip(path[0].split(","), path[-1].split(",")))
         stop = next(f for f, _ in rows_of(self.path("out/stops.gpkg"), "stops") if (f["source"], f["block"]) == (1, 2))
