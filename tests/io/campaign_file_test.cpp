@@ -157,6 +157,10 @@ TEST_F(Campaigns, FaultsOfBlocks) {
   refused("", {"blocks.csv:2", "mass_kg = ''", "must be given"});
   with(head + "a,600050,5200040,1\n");
   refused("", {"blocks.csv:2", "4 cells", "8"});
+  with(std::string("\xFF\xFEi\0d\0", 6));
+  refused("", {"blocks.csv: is UTF-16, must be UTF-8"});
+  with(head + good + std::string("b,600050\0", 9));
+  refused("", {"blocks.csv:3: holds a zero byte (NUL)", "UTF-8"});
   with("id,x,y,release_height_m,mass\n");
   refused("", {"blocks.csv:1", "unknown column 'mass'", "mass_kg"});
   with("id,x,y,release_height_m\n");

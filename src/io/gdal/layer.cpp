@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
 
 #include "csv_table.hpp"
+#include "input_name.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
@@ -63,6 +65,11 @@ OGREnvelope Parts::envelope() const {
 Layer::Layer(std::string role, const std::string& path, const Terrain& terrain)
     : path_(path), terrain_(terrain), dataset_(open_dataset(path, GDAL_OF_VECTOR)) {
   choose_layer();
+  if (is_csv()) {
+    commas_ = comma_numbers(name_for_gdal(file_of_layer(path)));
+    for (const char* place : {"x", "y"})
+      if (fields().GetFieldIndex(place) < 0) refuse_comma(place, "");  // a coordinate, no field
+  }
   const OGRSpatialReference* system = layer_->GetSpatialRef();
   crs_wkt_ = wkt_of(system);
   if (crs_wkt_.empty()) {
@@ -180,6 +187,7 @@ std::optional<double> Layer::number(const OGRFeature& feature, int index, const 
   if (index < 0 || feature.IsFieldSetAndNotNull(index) == 0) return std::nullopt;
   const OGRFieldType type = fields().GetFieldDefn(index)->GetType();
   const std::string unit = bounds.unit == "1" ? "" : " in " + std::string(bounds.unit);
+  if (is_csv() && type == OFTReal) refuse_comma(fields().GetFieldDefn(index)->GetNameRef(), unit);
   if (type == OFTString && *feature.GetFieldAsString(index) == '\0') return std::nullopt;
   const std::string where = label(feature) + ": field " + name + " = ";
   double value = feature.GetFieldAsDouble(index);
@@ -198,6 +206,14 @@ std::optional<double> Layer::number(const OGRFeature& feature, int index, const 
   if (const auto fault = fault_of(bounds, value))
     throw InputError(where + text_of(value) + ": " + *fault + ", or NULL where it is not known");
   return value;
+}
+
+void Layer::refuse_comma(std::string column, const std::string& unit) const {
+  std::ranges::transform(column, column.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto found = commas_.find(column);
+  if (found == commas_.end()) return;
+  throw InputError(path_ + ":" + std::to_string(found->second.line) + ": " + column + " = '" + found->second.text +
+                   "': " + no_number_text(found->second.text, unit, false));
 }
 
 bool Layer::holds_text(int field) const {

@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "talus/base/input_faults.hpp"
 #include "talus/io/gdal/rasters.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
+#include "vector_file.hpp"
 
 namespace talus::io {
 
@@ -84,6 +86,8 @@ class Layer {
   [[noreturn]] void refuse_without_geometry();
   void choose_layer();
   bool is_csv() const;
+  /// Throws InputError if a column of a CSV has a number with a decimal comma.
+  void refuse_comma(std::string column, const std::string& unit) const;
   void collect(OGRGeometry& geometry, Parts& parts, const std::string& where);
   void move(OGRSimpleCurve& line, const std::string& where);
   /// Why a polygon in local metres is invalid, with the place in map coordinates.
@@ -95,7 +99,8 @@ class Layer {
   Dataset dataset_;
   OGRLayer* layer_ = nullptr;
   std::optional<Transformer> transformer_;
-  bool north_first_ = false;  // the file has its coordinates in the order of the axes: latitude first
+  std::map<std::string, CsvCell> commas_;  // of a CSV
+  bool north_first_ = false;               // the file has its coordinates in the order of the axes: latitude first
   std::vector<std::string> warnings_;
   std::size_t mended_ = 0;
   FaultList faults_;
