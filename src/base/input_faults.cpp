@@ -1,5 +1,8 @@
 #include "talus/base/input_faults.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace talus {
 namespace {
 
@@ -15,6 +18,11 @@ InputFaults::InputFaults(std::vector<std::string> faults)
     : InputError(summary_of(faults)), faults_(std::move(faults)) {}
 
 void FaultList::add(std::string fault) {
+  constexpr std::ptrdiff_t kLatest = 16;  // more than the columns that a feature is read from
+  if (std::find(faults_.end() - std::min(kLatest, std::ssize(faults_)), faults_.end(), fault) != faults_.end()) {
+    ++repeated_;
+    return;
+  }
   if (++count_ <= kMost) faults_.push_back(std::move(fault));
 }
 

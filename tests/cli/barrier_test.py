@@ -222,6 +222,8 @@ class Design(Case):
         self.refused("--gTr = 0.9", "1 to 3", arguments=["--screen", "road", "--gTr", "0.9"])
         self.refused("--gE = nan", arguments=["--screen", "road", "--gE", "nan"])
         self.refused("abc", arguments=["--screen", "road", "--gDp", "abc"])
+        self.refused("--percentile = 0.95", "50 to 99.99 %", "not 0.95", arguments=["--screen", "road", "--percentile", "0.95"])
+        self.refused("--containment = 0.99", "1 to 100 %", arguments=["--screen", "road", "--containment", "0.99"])
         self.refused("--percentile = 100", arguments=["--screen", "road", "--percentile", "100"])
         self.refused("must be 1000 at least", arguments=["--screen", "road", "--percentile", "99.9"])
         self.refused("--volume = 0", arguments=["--screen", "road", "--volume", "0"])
@@ -233,6 +235,15 @@ class Design(Case):
             self.assertIn("9 values of the jump height above 0: too few for a Weibull fit", " ".join(json.load(file)["notes"]))
         other = self.write("other.csv", "id,screen,jump_height_m\na,S1,1\n")
         self.refused("no row of screen 'road'", arguments=["--screen", "road", "--observed", other])
+
+    def test_shortened_crossings(self):
+        head = "screen,quantity,unit,crossings,blocks,share_of_released,mean,p50,p95,p99,maximum\n"
+        self.write("out/screens_summary.csv", head + "low,speed,m/s,19,19,0.019,1,1,1,1,1\nroad,speed,m/s,101,101,0.1,1,1,1,1,1\n")
+        self.design()
+        with open(self.path("out/screens.csv"), encoding="utf-8") as file:
+            lines = file.readlines()
+        self.write("out/screens.csv", "".join(lines[:60]))
+        self.refused("screens.csv: has 59 crossings of screen 'road'", "screens_summary.csv beside it says 101")
 
     def test_folders_that_are_none(self):
         self.fails(2, "no run.json", arguments=["barrier", self.folder, "--screen", "road"])

@@ -129,6 +129,17 @@ class Hazard(Case):
         self.refused("no such feature", "hazard", self.path("other"), "--overwrite", "--frequency",
                      self.write("bad.toml", "[features]\neats = 1\n"))
 
+    def test_features_of_one_name_are_named_by_number(self):  # each got the value
+        write_features(self.path("sources.gpkg"), "sources",
+                       [(box(100, 230, 20, 10), ["a", 0.5]), (box(200, 230, 20, 10), ["a", 0.2])],
+                       [("name", ogr.OFTString), ("frequency", ogr.OFTReal)])
+        self.simulate()
+        self.refused("2 features are called a (numbers 1, 2), must be one: name them by number", "hazard",
+                     self.path("out"), "--frequency", self.write("w.toml", "[features]\na = 1\n"))
+        self.run_well("hazard", self.path("out"), "-q", "--frequency", self.write("w.toml", "[features]\n1 = 0.5\n2 = 0.3\n"))
+        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
+            self.assertAlmostEqual(json.load(file)["events_per_year"], 0.8, 9)
+
     def test_what_is_not_its_own_stays(self):
         self.simulate()
         write_features(self.path("out/objects.gpkg"), "mine", [(box(105, 150, 10, 8), ["A"]), (box(5000, 0, 9, 9), ["far"])],

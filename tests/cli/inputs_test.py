@@ -84,6 +84,9 @@ class Fields(InputCase):
         stops = [sorted((f["source"], f["block"], f["z"], p.GetX(), p.GetY()) for f, p in rows_of(self.path(out + "/stops.gpkg"), "stops"))
                  for out in ("out", "again")]
         self.assertEqual(stops[0], stops[1])
+        for option, other, count in (("--source", "--block", "sources"), ("--block", "--source", "blocks")):
+            self.fails(2, f"{option}: -1 is not there; this scenario has {count} 0 to ",
+                       arguments=["trace", self.path("out/scenario.toml"), option, "-1", other, "0"])
         path = self.run_well("trace", self.path("out/scenario.toml"), "--source", "1", "--block", "2").stdout.splitlines()
         last = dict(zip(path[0].split(","), path[-1].split(",")))
         stop = next(f for f, _ in rows_of(self.path("out/stops.gpkg"), "stops") if (f["source"], f["block"]) == (1, 2))
@@ -196,6 +199,21 @@ class Tables(InputCase):
         self.refused("t.csv:3: has 2 cells, must have 3", sources=self.table(f"x,y,diameter\n{X},{Y},2.5\n{X},{Y}\n"))
         self.refused("t.csv:2: has 5 cells, must have 3", sources=self.table(f"x,y,diameter\n{X},{Y},2.5,7,8\n"))
         self.refused("t.csv:4: has 1 cell, must have 3", sources=self.table(f'x,y,name\n{X},{Y},"a\nb"\n{X}\n'))
+
+    def test_a_decimal_comma(self):  # 1,200 was read as 1.2, it may be 1200
+        rule = "must be a number{}, with a point for decimals"
+        self.refused("t.csv:3: diameter = '1,200': " + rule.format(" in m"),
+                     sources=self.table(f"x;y;Diameter\n{X};{Y};2\n{X};{Y};1,200\n"))
+        self.refused("t.csv:2: x = '2600152,5': " + rule.format(""), sources=self.table(f"x;y;diameter\n2600152,5;{Y};2\n"))
+        unread = self.table(f"x;y;diameter;note\n{X};{Y};2;1,5\n")
+        self.assertIn("diameter 2 m", self.run_well("check", *self.flags(unread)).stdout)
+
+    def test_other_encodings(self):
+        for encoding, text in (("utf-16", f"x,y\n{X},{Y}\n"), ("utf-16-be", f"\ufeffx,y\n{X},{Y}\n")):
+            with open(self.path("t.csv"), "w", encoding=encoding) as file:
+                file.write(text)
+            self.refused("t.csv: is UTF-16, must be UTF-8", sources="t.csv")
+        self.refused("t.csv:2: holds a zero byte (NUL)", sources=self.table(f"x,y\n{X},{Y}\0\n"))
 
     def test_good_tables_pass(self):
         rows = f'\ufeffname;x;y;diameter\r\n"a ""quoted"" name";{X};{Y};2\r\n\r\n;{X};{Y};\r\n" two\r\nlines ";{X};{Y};3'

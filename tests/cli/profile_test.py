@@ -221,6 +221,8 @@ class Faults(Files):
                    arguments=["profile", self.path("p.toml"), "-o", self.path("new")])
         self.scenario("x = 500")
         self.fails_with("sources.x = 500", "0 to 400 m")
+        self.scenario("x = 400")
+        self.fails_with("sources.x = 400", "is the end of the profile", "must be below 400 m")
         self.write("p.toml", 'profile = "p.csv"\n[blocks]\ndiameter = 1\n')
         self.fails_with("no sources")
         self.write("p.toml", 'profile = "p.csv"\n[sources]\nx = 20\n')

@@ -114,6 +114,15 @@ TEST_F(Attributes, AShapefileCutsThePairOfDiameters) {  // GDAL writes diameter_
   EXPECT_EQ(diameter.high, 1.8);
 }
 
+TEST_F(Attributes, NamesThatAShapefileHasCutAreReadInEveryFormat) {  // ogr2ogr cliffs.gpkg cliffs.shp
+  const Fields fields{{"diameter_m", OFTReal}, {"diameter_1", OFTReal}, {"release_he", OFTReal}};
+  const SourceFeature feature = read(fields, {{"0.5", "1.8", "3"}}).features[0];
+  EXPECT_EQ(feature.diameter.low, 0.5);
+  EXPECT_EQ(feature.diameter.high, 1.8);
+  EXPECT_EQ(feature.release_height.high, 3.0);
+  EXPECT_TRUE(std::isnan(read({{"diameter_m", OFTReal}}, {{"0.5"}}).features[0].diameter.low));  // alone: of no pair
+}
+
 TEST_F(Attributes, NumbersInATextFieldAreRead) {
   const SourceLayer layer = read({{"diameter", OFTString}}, {{"1.25"}, {" 2 "}, {"NULL"}});
   EXPECT_EQ(layer.features[0].diameter.low, 1.25);

@@ -73,6 +73,40 @@ TEST_F(Campaigns, Measurements) {
   EXPECT_EQ(loaded.inputs.size(), 7U);
 }
 
+TEST_F(Campaigns, DoubledPassagesAreSaidOnce) {
+  const std::string rows = "id,screen,speed_ms\na,S1,12\nb,S1,5\n";
+  const auto warnings = [&](const std::string& more) {
+    write_text("passages.csv", rows + more);
+    return read("passages = \"passages.csv\"\nscreens = \"screens.csv\"\n").warnings;
+  };
+  EXPECT_TRUE(warnings("").empty());
+  const std::vector<std::string> one = warnings("a,S1,99\n"), two = warnings("a,S1,99\nb,S1,1\n");
+  ASSERT_EQ(one.size(), 1U);
+  EXPECT_TRUE(one[0].ends_with("passages.csv:4: block 'a' has a passage of screen 'S1' already: the first one counts"))
+      << one[0];
+  ASSERT_EQ(two.size(), 1U);
+  EXPECT_TRUE(two[0].ends_with("the first one counts; so it is in 1 more rows")) << two[0];
+}
+
+TEST_F(Campaigns, MassesInAnotherUnitAreSaid) {
+  const std::string head = "id,x,y,release_height_m,mass_kg,L1_m,L2_m,L3_m\n", sphere = "b,600060,5200040,1,0.5,,,\n";
+  const auto warnings = [&](const std::string& mass) {
+    write_text("blocks.csv", head + "a,600050,5200040,1," + mass + ",1,1,1\n" + sphere);
+    return read().warnings;
+  };
+  EXPECT_TRUE(warnings("2700").empty());  // a cube; its ellipsoid has 1414 kg
+  EXPECT_TRUE(warnings("480").empty());
+  for (const std::string mass : {"2.7", "460", "4300"}) {
+    const std::vector<std::string> said = warnings(mass);
+    ASSERT_EQ(said.size(), 1U);
+    for (const char* part :
+         {"blocks.csv: the mass of 1 of 2 blocks", "block 'a' has ", "its ellipsoid 1414 kg", "in kg"})
+      EXPECT_NE(said[0].find(part), std::string::npos) << said[0];
+  }
+  write_text("stops.csv", "id,x,y,mass_kg\na,600052,5200010,6400\nb,600052,5200010,0.8\n");
+  refused("stops = \"stops.csv\"\n", {"stops.csv:3", "mass_kg = '0.8'", "1.5 times the 0.5 kg", "in kg?"});
+}
+
 TEST_F(Campaigns, ZonesOfARaster) {
   RasterFile zones;
   zones.type = GDT_Byte;
@@ -123,6 +157,10 @@ TEST_F(Campaigns, FaultsOfBlocks) {
   refused("", {"blocks.csv:2", "mass_kg = ''", "must be given"});
   with(head + "a,600050,5200040,1\n");
   refused("", {"blocks.csv:2", "4 cells", "8"});
+  with(std::string("\xFF\xFEi\0d\0", 6));
+  refused("", {"blocks.csv: is UTF-16, must be UTF-8"});
+  with(head + good + std::string("b,600050\0", 9));
+  refused("", {"blocks.csv:3: holds a zero byte (NUL)", "UTF-8"});
   with("id,x,y,release_height_m,mass\n");
   refused("", {"blocks.csv:1", "unknown column 'mass'", "mass_kg"});
   with("id,x,y,release_height_m\n");
@@ -164,6 +202,31 @@ TEST_F(Campaigns, AModelReadsBackTheSame) {
   faulty("dem = \"x\"\n", {"m.toml:1", "unknown key 'dem'"});
   faulty("[model]\nstop_speed = 1\n", {"m.toml:2", "unknown key 'stop_speed'"});
   faulty("[ground.zones.default]\nEn50 = -3\n", {"m.toml:2", "En50 = -3"});
+}
+
+TEST_F(Campaigns, ZonesThatAModelLeavesToTheDefaultAreSaid) {
+  RasterFile zones;
+  zones.type = GDT_Byte;
+  zones.values.assign(80, 1.0);
+  zones.write(path("zones.tif"));
+  const LoadedCampaign loaded =
+      read("zones = \"zones.tif\"\n[zone_names]\n1 = \"talus\"\n2 = \"meadow\"\n3 = \"rock\"\n");
+  const auto warnings = [&](const std::string& text) {
+    std::vector<std::string> said;
+    read_model(write_text("m.toml", text), loaded.campaign, &said);
+    return said;
+  };
+  EXPECT_TRUE(warnings("[ground]\ndefault = \"forest-road-3d\"\n").empty());
+  EXPECT_TRUE(warnings("[ground.zones.default]\nEn50 = 3\n").empty());
+  EXPECT_TRUE(
+      warnings("[ground.zones.talus]\nEn50 = 3\n[ground.zones.meadow]\nEn50 = 3\n[ground.zones.rock]\nEn50 = 3\n")
+          .empty());
+  const std::vector<std::string> said =
+      warnings("[ground]\ndefault = \"forest-road-3d\"\n[ground.zones.talus]\nEn50 = 3\n");
+  ASSERT_EQ(said.size(), 1U);
+  for (const char* part :
+       {"m.toml: does not describe the zones meadow, rock", "default ground (forest-road-3d)", "[ground.zones.meadow]"})
+    EXPECT_NE(said[0].find(part), std::string::npos) << said[0];
 }
 
 TEST_F(Campaigns, AModelKeepsItsBarriersAndTheBiasOfItsInstruments) {

@@ -39,6 +39,22 @@ TEST(CsvStructure, NamesTheLine) {
   refuses("x,y\n1,2\n\"3,4\n5,6\n", {"t.csv:3: the quotation mark that opens here is not closed"});
   refuses("x,y\n\"1,2\n\"3,4\n", {"t.csv:3: text stands after a quotation mark", "opened in line 2"});
   refuses("x,y\n1,\"2\" \"3\"\n", {"t.csv:2: a quotation mark stands inside a cell"});
+  refuses(std::string("x,y\n1,2\n1,\0\n", 13), {"t.csv:3: holds a zero byte"});
+}
+
+TEST(CsvStructure, FindsDecimalCommasWhereSemicolonsSeparate) {
+  const auto found = [](const std::string& text) {
+    CsvStructure csv("t.csv", text.substr(0, text.find_first_of("\r\n")));
+    csv.take(text);
+    csv.finish();
+    std::string words;
+    for (const auto& [column, cell] : csv.comma_numbers())
+      words += column + ":" + std::to_string(cell.line) + "=" + cell.text + " ";
+    return words;
+  };
+  EXPECT_EQ(found("x;Name;D\n1;a;2.5\n\n1,5;a, b;\"1,200\" \n1,6;c;7\n"), "d:4=1,200 x:4=1,5 ");
+  EXPECT_EQ(found("x;wkt\n1;LINESTRING (1 2,3 4)\n1,2,3;1.2,5\n"), "");
+  EXPECT_EQ(found("x,d\n1,\"1,5\"\n"), "");  // GDAL takes it for a text
 }
 
 }  // namespace talus::io::test

@@ -36,9 +36,10 @@ struct Options {
 constexpr Bounds factor(std::string_view key, std::string_view meaning) {
   return {key, "1", meaning, 1.0, 3.0};
 }
-constexpr Bounds kPercentile{"--percentile", "%", "of speed and jump height", 0.0, 100.0, Bounds::Between};
-constexpr Bounds kContainment{"--containment", "%", "share of the crossings that the width holds", 0.0, 100.0,
-                              Bounds::AboveMin};
+constexpr Bounds kPercentile{"--percentile", "%", "percentile of speed and jump height, such as 95: not 0.95", 50.0,
+                             99.99};
+constexpr Bounds kContainment{"--containment", "%", "share of the crossings that the width holds, such as 99: not 0.99",
+                              1.0, 100.0};
 constexpr Bounds kStretch{"--stretch", "m", "longest stretch with a design of its own", 1.0, 1e6};
 constexpr Bounds kVolume{"--volume", "m3", "of the design block", 0.0, 65000.0, Bounds::AboveMin};
 constexpr Bounds kDensity{"--density", "kg/m3", "mass per volume of the rock", 500.0, 8000.0};
@@ -85,6 +86,11 @@ CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
                             "scenario: add lines that blocks cross and run it again");
   const auto gap = talus::io::gap_note(without_height(run, o));  // also says if there is no such screen
   CrossingTable crossings = talus::io::read_crossings(file.string(), o.screen);
+  const auto told = talus::io::crossings_in_summary((fs::path(o.folder) / "screens_summary.csv").string(), o.screen);
+  if (told && *told != crossings.rows)
+    throw talus::InputError(file.string() + ": has " + std::to_string(crossings.rows) + " crossings of screen '" +
+                            o.screen + "', screens_summary.csv beside it says " + std::to_string(*told) +
+                            ": must be as talus run has written it; copy it again, or run the scenario again");
   if (crossings.blocks == 0)
     throw talus::InputError(file.string() + ": no block crosses screen '" + o.screen + "': " +
                             (gap ? "this does not say that a barrier is not needed there: " + *gap

@@ -17,11 +17,11 @@ namespace {
 
 struct Options {
   std::string scenario, out;
-  std::uint64_t source = 0, block = 0;
+  std::int64_t source = 0, block = 0;
 };
 
-void check_range(const char* option, std::uint64_t value, std::uint64_t count, const char* what) {
-  if (value >= count)
+void check_range(const char* option, std::int64_t value, std::uint64_t count, const char* what) {
+  if (value < 0 || static_cast<std::uint64_t>(value) >= count)
     throw talus::InputError(std::string(option) + ": " + std::to_string(value) + " is not there; this scenario has " +
                             what + " 0 to " + std::to_string(count - 1));
 }

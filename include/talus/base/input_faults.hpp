@@ -33,14 +33,16 @@ class FaultList {
   }
   /// Throws InputFaults if there is any.
   void stop() const;
-  std::size_t count() const { return count_; }
+  /// How often work failed.
+  std::size_t count() const { return count_ + repeated_; }
 
  private:
   void add(std::string fault);
 
   static constexpr std::size_t kMost = 1000;  // of a layer of millions of bad features the rest are only counted
   std::vector<std::string> faults_;
-  std::size_t count_ = 0;
+  std::size_t count_ = 0;     // different faults
+  std::size_t repeated_ = 0;  // of a column, met at each feature again
 };
 
 }  // namespace talus

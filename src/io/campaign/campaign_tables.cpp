@@ -75,6 +75,7 @@ class Tables {
       campaign_.blocks.push_back(std::move(block));
     }
     if (campaign_.blocks.empty()) throw InputError(files_.blocks + ": has no blocks, must have one row for each");
+    warn_of_masses(files_.blocks, campaign_.blocks, warnings_);
   }
 
   void check_release(const CsvTable& table, const Row& row, const MeasuredBlock& block) const {
@@ -126,13 +127,26 @@ class Tables {
         continue;
       }
       if (placed) block.stop = place_on_map(table, row);
-      if (const auto mass = table.number(row, "mass_kg", kMass)) block.stop_mass = mass;
+      if (const auto mass = stop_mass_of(table, row, block)) block.stop_mass = mass;
     }
+  }
+
+  /// Throws InputError if far more arrived than was released: one of them is in another unit.
+  std::optional<double> stop_mass_of(const CsvTable& table, const Row& row, const MeasuredBlock& block) const {
+    constexpr double kMost = 1.5;  // of the released mass: weighing and density are not exact
+    const auto mass = table.number(row, "mass_kg", kMass);
+    if (mass && *mass > kMost * block.mass)
+      table.refuse(row, "mass_kg",
+                   "is more than 1.5 times the " + text_of(block.mass) + " kg that " + files_.blocks +
+                       " says was released, must not be: are both in kg?");
+    return mass;
   }
 
   void read_passages() {
     const CsvTable table(files_.passages, {"id", "screen", "speed_ms", "jump_height_m", "angular_velocity_rads"},
                          {"id", "screen"});
+    std::size_t doubled = 0;
+    std::string first;
     for (const Row& row : table.rows()) {
       MeasuredBlock& block = block_of_row(table, row);
       const std::size_t screen = screen_of(table, row);
@@ -140,8 +154,14 @@ class Tables {
       passage.speed = table.number(row, "speed_ms", kSpeed).value_or(kNotGiven);
       passage.jump = table.number(row, "jump_height_m", kJump).value_or(kNotGiven);
       passage.spin = table.number(row, "angular_velocity_rads", kSpin).value_or(kNotGiven);
-      if (!block.passages[screen]) block.passages[screen] = passage;  // the first crossing counts
+      if (!block.passages[screen])
+        block.passages[screen] = passage;
+      else if (++doubled == 1)
+        first = files_.passages + ":" + std::to_string(row.line) + ": block '" + block.id +
+                "' has a passage of screen '" + campaign_.screens[screen].id + "' already: the first one counts";
     }
+    if (doubled > 1) first += "; so it is in " + std::to_string(doubled - 1) + " more rows";
+    if (doubled > 0) warnings_.push_back(first);
   }
 
   std::size_t screen_of(const CsvTable& table, const Row& row) const {
@@ -205,6 +225,22 @@ Vec3 axes_of(const CsvTable& table, const CsvTable::Row& row, double diameter) {
           row, kColumns[i],
           std::string("must not be above ") + kColumns[i - 1] + " = " + text_of(*axes[i - 1]) + " (L1 >= L2 >= L3)");
   return {*axes[0], *axes[1], *axes[2]};
+}
+
+void warn_of_masses(const std::string& path, std::span<const MeasuredBlock> blocks,
+                    std::vector<std::string>& warnings) {
+  constexpr double kFactor = 3.0;  // a cuboid has 1.9 times the volume of the ellipsoid in it
+  const auto ellipsoid = [](const MeasuredBlock& b) { return b.density * kPi / 6.0 * b.axes.prod(); };
+  const auto differs = [&](const MeasuredBlock& b) {
+    return b.mass > kFactor * ellipsoid(b) || ellipsoid(b) > kFactor * b.mass;
+  };
+  const auto first = std::ranges::find_if(blocks, differs);
+  if (first == blocks.end()) return;
+  warnings.push_back(path + ": the mass of " + std::to_string(std::ranges::count_if(blocks, differs)) + " of " +
+                     std::to_string(blocks.size()) +
+                     " blocks is more than 3 times above or below that of an ellipsoid of their axes and density: " +
+                     "block '" + first->id + "' has " + with_digits(first->mass, 4) + " kg, its ellipsoid " +
+                     with_digits(ellipsoid(*first), 4) + " kg; are masses in kg, axes in m and densities in kg/m3?");
 }
 
 void read_tables(const CampaignFiles& files, Campaign& campaign, std::vector<std::string>& warnings) {

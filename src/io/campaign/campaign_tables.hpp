@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,5 +19,8 @@ void read_tables(const CampaignFiles& files, Campaign& campaign, std::vector<std
 
 /// The axes of a block in a row of a table: L1_m >= L2_m >= L3_m, or none of them and those of a sphere.
 Vec3 axes_of(const CsvTable& table, const CsvTable::Row& row, double diameter);
+
+/// Warns once if masses contradict axes and density: a mass in tonnes, axes in cm. Spheres of their mass never do.
+void warn_of_masses(const std::string& path, std::span<const MeasuredBlock> blocks, std::vector<std::string>& warnings);
 
 }  // namespace talus::io

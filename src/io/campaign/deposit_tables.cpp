@@ -241,6 +241,7 @@ void read_deposits(const DepositSpec& spec, const Terrain& terrain, Campaign& ca
   campaign.blocks = DepositTable(spec.table.path, terrain).read(campaign.surface);
   if (campaign.blocks.empty())
     throw InputError(spec.table.path + ": has no blocks, must have one row for each that was mapped");
+  warn_of_masses(spec.table.path, campaign.blocks, warnings);
   if (spec.strips > 0 && std::ranges::any_of(campaign.blocks, &MeasuredBlock::holdout))
     throw InputError(spec.table.path + ": has a column holdout beside [deposits] strips, must be one of them");
   if (spec.mapped.path.empty())

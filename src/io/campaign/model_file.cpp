@@ -115,6 +115,20 @@ std::size_t instrument_of(const InstrumentBias& bias, const Campaign& campaign) 
                    known_names(bias.screen, known));
 }
 
+/// Says which zones of the campaign a model leaves to the default ground although it describes others.
+void warn_of_undescribed_zones(const ScenarioSpec& spec, const Campaign& campaign, const std::string& path,
+                               std::vector<std::string>& warnings) {
+  if (spec.zones.empty()) return;
+  std::vector<std::string> left;
+  for (std::size_t i = 1; i < campaign.zone_names.size(); ++i)
+    if (std::ranges::find(spec.zones, campaign.zone_names[i], &ZoneSpec::name) == spec.zones.end())
+      left.push_back(campaign.zone_names[i]);
+  if (!left.empty())
+    warnings.push_back(path + ": does not describe the zones " + joined(left) + " of the campaign: they have the " +
+                       "default ground (" + spec.default_ground.preset + "); if they must not, give [ground.zones." +
+                       toml_key(left.front()) + "]");
+}
+
 }  // namespace
 
 Model read_model(const std::string& path, const Campaign& campaign, std::vector<std::string>* warnings) {
@@ -129,10 +143,12 @@ Model read_model(const std::string& path, const Campaign& campaign, std::vector<
   for (const auto& [name, effect] : spec.effects) check_places(name, effect, campaign, path, faults);
   if (!faults.empty()) throw InputError(faults.front());
   const SurfaceKind kind = campaign.surface.kind();
-  if (warnings != nullptr)
+  if (warnings != nullptr) {
+    warn_of_undescribed_zones(spec, campaign, path, *warnings);
     warn_of_other_terrain(
         spec, campaign.surface.grid(), kind, path, "the campaign is simulated",
         ": give --surface " + std::string(name_of(spec.model_surface.value_or(kind))) + ", or fit again", *warnings);
+  }
   Model model;
   model.impact = spec.values.impact;
   model.effects = spec.values.effects;

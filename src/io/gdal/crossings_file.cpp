@@ -1,5 +1,6 @@
 #include "talus/io/gdal/crossings_file.hpp"
 
+#include <filesystem>
 #include <unordered_set>
 
 #include "csv_table.hpp"
@@ -30,6 +31,7 @@ CrossingTable read_crossings(const std::string& path, const std::string& screen)
   std::unordered_set<std::string> seen;
   for (const CsvTable::Row& row : table.rows()) {
     if (table.text(row, "screen") != screen) continue;
+    ++out.rows;
     const std::string block = block_of(table, row);
     if (!block.empty() && !seen.insert(block).second) continue;
     ++out.blocks;
@@ -48,6 +50,16 @@ CrossingTable read_crossings(const std::string& path, const std::string& screen)
     if (x && y) out.places.emplace_back(*x, *y);
   }
   return out;
+}
+
+std::optional<std::size_t> crossings_in_summary(const std::string& path, const std::string& screen) {
+  constexpr Bounds kCount{"crossings", "1", "crossings of the screen", 0.0, 1e15, Bounds::Closed, true};
+  std::error_code none;
+  if (!std::filesystem::exists(path, none)) return std::nullopt;
+  const CsvTable table(path, {}, {"screen", "crossings"});
+  for (const CsvTable::Row& row : table.rows())
+    if (table.text(row, "screen") == screen) return static_cast<std::size_t>(table.required(row, "crossings", kCount));
+  return std::nullopt;
 }
 
 }  // namespace talus::io

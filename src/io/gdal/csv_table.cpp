@@ -18,6 +18,7 @@ std::string trimmed(const std::string& text) {
 
 std::string content_of(const std::string& path) {
   std::string text = read_file(path, path, "a table (CSV)", kMostTable);
+  refuse_utf16(path, text);
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // byte order mark
   return text;
 }
@@ -41,6 +42,7 @@ void split(const std::string& text, const std::string& path, const std::function
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (c == '\n') ++line;
+    if (c == '\0') throw InputError(path + ":" + std::to_string(line) + ": " + kNulFault);
     if (quoted) {
       if (c != '"')
         cell += c;
@@ -66,6 +68,13 @@ void split(const std::string& text, const std::string& path, const std::function
 }
 
 }  // namespace
+
+void refuse_utf16(const std::string& path, std::string_view text) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw InputError(path +
+                     ": is UTF-16, must be UTF-8: in a spreadsheet save it as \"CSV UTF-8\", or convert it with " +
+                     "iconv -f UTF-16 -t UTF-8");
+}
 
 std::optional<double> number_of_cell(const std::string& text) {
   const std::string value = trimmed(text);

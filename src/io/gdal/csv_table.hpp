@@ -2,6 +2,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "talus/simulate/scenario/parameter_table.hpp"
@@ -10,6 +11,11 @@ namespace talus::io {
 
 /// A number as a text table holds it: with a point for decimals, blanks around it; nothing for any other text.
 std::optional<double> number_of_cell(const std::string& text);
+
+/// Throws InputError if the text of a file begins as UTF-16 does.
+void refuse_utf16(const std::string& path, std::string_view text);
+/// The fault of a zero byte in a table.
+inline constexpr const char* kNulFault = "holds a zero byte (NUL), must be text in UTF-8: save the table as CSV again";
 
 /// A text table with a header: commas, quotation marks as in RFC 4180. Every fault names file, line,
 /// column, value and what is allowed.

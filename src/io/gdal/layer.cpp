@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
 
 #include "csv_table.hpp"
+#include "input_name.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
@@ -63,6 +65,11 @@ OGREnvelope Parts::envelope() const {
 Layer::Layer(std::string role, const std::string& path, const Terrain& terrain)
     : path_(path), terrain_(terrain), dataset_(open_dataset(path, GDAL_OF_VECTOR)) {
   choose_layer();
+  if (is_csv()) {
+    commas_ = comma_numbers(name_for_gdal(file_of_layer(path)));
+    for (const char* place : {"x", "y"})
+      if (fields().GetFieldIndex(place) < 0) refuse_comma(place, "");  // a coordinate, no field
+  }
   const OGRSpatialReference* system = layer_->GetSpatialRef();
   crs_wkt_ = wkt_of(system);
   if (crs_wkt_.empty()) {
@@ -134,9 +141,9 @@ Feature Layer::next() {
 
 int Layer::field(const char* name) const {
   const int index = fields().GetFieldIndex(name);
-  if (index >= 0 || !EQUAL(dataset_->GetDriverName(), "ESRI Shapefile")) return index;
+  if (index >= 0) return index;
   // A Shapefile cuts names to ten characters: GDAL and QGIS write the pair diameter_min, diameter_max as
-  // diameter_m, diameter_1.
+  // diameter_m, diameter_1. A layer that was made of one keeps them.
   if (EQUAL(name, "release_height")) return fields().GetFieldIndex("release_he");
   const int low = fields().GetFieldIndex("diameter_m"), high = fields().GetFieldIndex("diameter_1");
   if (low < 0 || high < 0) return index;
@@ -180,6 +187,7 @@ std::optional<double> Layer::number(const OGRFeature& feature, int index, const 
   if (index < 0 || feature.IsFieldSetAndNotNull(index) == 0) return std::nullopt;
   const OGRFieldType type = fields().GetFieldDefn(index)->GetType();
   const std::string unit = bounds.unit == "1" ? "" : " in " + std::string(bounds.unit);
+  if (is_csv() && type == OFTReal) refuse_comma(fields().GetFieldDefn(index)->GetNameRef(), unit);
   if (type == OFTString && *feature.GetFieldAsString(index) == '\0') return std::nullopt;
   const std::string where = label(feature) + ": field " + name + " = ";
   double value = feature.GetFieldAsDouble(index);
@@ -198,6 +206,14 @@ std::optional<double> Layer::number(const OGRFeature& feature, int index, const 
   if (const auto fault = fault_of(bounds, value))
     throw InputError(where + text_of(value) + ": " + *fault + ", or NULL where it is not known");
   return value;
+}
+
+void Layer::refuse_comma(std::string column, const std::string& unit) const {
+  std::ranges::transform(column, column.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto found = commas_.find(column);
+  if (found == commas_.end()) return;
+  throw InputError(path_ + ":" + std::to_string(found->second.line) + ": " + column + " = '" + found->second.text +
+                   "': " + no_number_text(found->second.text, unit, false));
 }
 
 bool Layer::holds_text(int field) const {
@@ -276,13 +292,24 @@ void Layer::move(OGRSimpleCurve& line, const std::string& where) {
   }
 }
 
+std::string Layer::fault_on_map(const OGRPolygon& polygon) const {
+  OGRPolygon on_map(polygon);
+  const Grid& grid = terrain_.heights.grid;
+  for (OGRLinearRing* ring : on_map)
+    for (int i = 0; i < ring->getNumPoints(); ++i)
+      ring->setPoint(i, ring->getX(i) + grid.west, ring->getY(i) + grid.south);
+  GdalMessages messages;
+  on_map.IsValid();  // says where
+  return messages.take("invalid");
+}
+
 void Layer::add_valid(const OGRPolygon& polygon, Parts& parts, const std::string& where) {
   GdalMessages messages;
   if (!OGRGeometryFactory::haveGEOS() || polygon.IsValid() != 0) {
     parts.polygons.push_back(polygon);
     return;
   }
-  const std::string reason = messages.take("invalid");
+  const std::string reason = fault_on_map(polygon);
   const std::unique_ptr<OGRGeometry> mended(polygon.MakeValid());
   const std::size_t before = parts.polygons.size();
   const auto keep = [&](const auto& self, const OGRGeometry& geometry) -> void {

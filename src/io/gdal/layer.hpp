@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "talus/base/input_faults.hpp"
 #include "talus/io/gdal/rasters.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
+#include "vector_file.hpp"
 
 namespace talus::io {
 
@@ -49,7 +51,8 @@ class Layer {
   /// The geometries of a feature. Empty if it has none.
   Parts parts(const OGRFeature& feature);
 
-  /// Index of a field, in any case of letters, also if a Shapefile has cut its name; -1 if there is none.
+  /// Index of a field, in any case of letters, also if a Shapefile has cut its name, this or an earlier one; -1 if
+  /// there is none.
   int field(const char* name) const;
   /// Index of a field that is spelt so, else of the only one that is in another case of letters; -1 if there is none.
   /// Throws InputError if several differ from it only in their case.
@@ -83,8 +86,12 @@ class Layer {
   [[noreturn]] void refuse_without_geometry();
   void choose_layer();
   bool is_csv() const;
+  /// Throws InputError if a column of a CSV has a number with a decimal comma.
+  void refuse_comma(std::string column, const std::string& unit) const;
   void collect(OGRGeometry& geometry, Parts& parts, const std::string& where);
   void move(OGRSimpleCurve& line, const std::string& where);
+  /// Why a polygon in local metres is invalid, with the place in map coordinates.
+  std::string fault_on_map(const OGRPolygon& polygon) const;
   void add_valid(const OGRPolygon& polygon, Parts& parts, const std::string& where);
 
   std::string path_, crs_wkt_;
@@ -92,7 +99,8 @@ class Layer {
   Dataset dataset_;
   OGRLayer* layer_ = nullptr;
   std::optional<Transformer> transformer_;
-  bool north_first_ = false;  // the file has its coordinates in the order of the axes: latitude first
+  std::map<std::string, CsvCell> commas_;  // of a CSV
+  bool north_first_ = false;               // the file has its coordinates in the order of the axes: latitude first
   std::vector<std::string> warnings_;
   std::size_t mended_ = 0;
   FaultList faults_;

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "csv_table.hpp"
 #include "dataset.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/shell.hpp"
@@ -54,20 +55,31 @@ File opened(const std::string& path) {
   return File(VSIFOpenL(path.c_str(), "rb"));
 }
 
-void check_csv(const std::string& path) {
+/// Reads the structure of a CSV to its end; nothing if it cannot be read (GDAL says why) or is empty.
+std::optional<CsvStructure> structure_of(const std::string& path) {
   const File file = opened(path);
-  if (!file) return;  // GDAL says why
+  if (!file) return std::nullopt;
   std::string piece(std::size_t{1} << 16, '\0');
   std::optional<CsvStructure> structure;
   while (const std::size_t count = VSIFReadL(piece.data(), 1, piece.size(), file.get())) {
     std::string_view text(piece.data(), count);
     if (!structure) {
+      refuse_utf16(path, text);
       if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
       structure.emplace(path, text.substr(0, text.find_first_of("\r\n")));
     }
     structure->take(text);
   }
   if (structure) structure->finish();
+  return structure;
+}
+
+bool is_text_table(const std::string& path) {
+  return ends_with(path, ".csv") || ends_with(path, ".tsv") || ends_with(path, ".psv");
+}
+
+std::string without_prefix(const std::string& path) {
+  return path.starts_with("CSV:") ? path.substr(4) : path;
 }
 
 std::optional<std::uint64_t> size_of(const std::string& path) {
@@ -126,11 +138,17 @@ void check_vector_file(const std::string& path) {
   if (std::filesystem::is_directory(path, none)) {
     for (const auto& entry : std::filesystem::directory_iterator(path, none))
       if (entry.is_regular_file(none)) check_vector_file(entry.path().string());
-  } else if (ends_with(path, ".csv") || ends_with(path, ".tsv") || ends_with(path, ".psv")) {
-    check_csv(path.starts_with("CSV:") ? path.substr(4) : path);
+  } else if (is_text_table(path)) {
+    structure_of(without_prefix(path));
   } else if (ends_with(path, ".shp")) {
     check_shapefile(path);
   }
+}
+
+std::map<std::string, CsvCell> comma_numbers(const std::string& path) {
+  if (!is_text_table(path)) return {};
+  const auto structure = structure_of(without_prefix(path));
+  return structure ? structure->comma_numbers() : std::map<std::string, CsvCell>{};
 }
 
 CsvStructure::CsvStructure(std::string path, std::string_view header)
@@ -141,6 +159,7 @@ void CsvStructure::take(std::string_view text) {
 }
 
 void CsvStructure::take(char c) {
+  if (c == '\0') refuse(line_, kNulFault);
   const bool second = c == '\n' && last_ == '\r', line_end = c == '\n' || c == '\r';
   last_ = c;
   if (second) return;
@@ -148,22 +167,27 @@ void CsvStructure::take(char c) {
   if (c == '"') {
     take_quote();
   } else if (place_ == Place::Quoted) {
-    if (in_header_) cell_ += c;
+    keep(c);
   } else if (line_end) {
     end_row();
   } else if (c == separator_) {
     if (c != ' ' || place_ != Place::Start) end_cell();  // several blanks separate once
   } else if (c == ' ' || c == '\t') {
     if (place_ == Place::AfterQuote) place_ = Place::Closed;
-    if (in_header_) cell_ += c;
+    keep(c);
   } else {
     if (place_ == Place::AfterQuote || place_ == Place::Closed)
       refuse(line_, "text stands after a quotation mark that closes a cell (opened in line " +
                         std::to_string(quote_line_) +
                         "), must be a separator or the end of the line: is a quotation mark missing?");
     place_ = Place::Plain;
-    if (in_header_) cell_ += c;
+    keep(c);
   }
+}
+
+void CsvStructure::keep(char c) {
+  constexpr std::size_t kLongestNumber = 40;
+  if (in_header_ || (separator_ == ';' && cell_.size() < kLongestNumber)) cell_ += c;
 }
 
 void CsvStructure::take_quote() {
@@ -183,7 +207,13 @@ void CsvStructure::end_cell() {
   ++cells_;
   if (place_ != Place::Start) filled_ = cells_;
   place_ = Place::Start;
-  if (in_header_) columns_.push_back(lower_trimmed(cell_));
+  if (in_header_)
+    columns_.push_back(lower_trimmed(cell_));
+  else if (const auto comma = cell_.find(','); comma != std::string::npos && cells_ <= columns_.size()) {
+    std::string number = cell_;
+    number[comma] = '.';
+    if (number_of_cell(number)) commas_.try_emplace(columns_[cells_ - 1], CsvCell{row_line_, lower_trimmed(cell_)});
+  }
   cell_.clear();
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,11 +11,21 @@ namespace talus::io {
 /// passes, also what is not there. Throws InputError.
 void check_vector_file(const std::string& path);
 
+/// A cell of a CSV.
+struct CsvCell {
+  int line;  ///< in the file, from 1
+  std::string text;
+};
+
+/// The first number with a decimal comma of each column (in small letters) of a CSV with semicolons: there GDAL takes
+/// it for a decimal point. None for other files.
+std::map<std::string, CsvCell> comma_numbers(const std::string& path);
+
 /// The structure of a CSV, read before GDAL reads it. GDAL 3.6 ends with a crash where x stands twice in the header,
 /// loses what comes after a quotation mark that is not closed, and takes rows that are too short or too long.
 ///
 /// Throws InputError, with file and line, for a column that is there twice (in any case of letters), a quotation mark
-/// that is not closed or stands inside a cell, and a row that has not as many cells as the header.
+/// that is not closed or stands inside a cell, a zero byte, and a row that has not as many cells as the header.
 class CsvStructure {
  public:
   /// @param header  first line of the file, which says what separates cells: a comma, semicolon, tab or blanks
@@ -25,11 +36,15 @@ class CsvStructure {
   /// The end of the file.
   void finish();
 
+  /// As the function of this name, of what was taken.
+  const std::map<std::string, CsvCell>& comma_numbers() const { return commas_; }
+
  private:
   /// Place of the next character.
   enum class Place { Start, Plain, Quoted, AfterQuote, Closed };
 
   void take(char c);
+  void keep(char c);
   void take_quote();
   void end_cell();
   void end_row();
@@ -45,7 +60,8 @@ class CsvStructure {
   std::size_t filled_ = 0;  // the same up to the last with text
   bool in_header_ = true;
   std::vector<std::string> columns_;  // of the header
-  std::string cell_;                  // of the header
+  std::string cell_;                  // of the header; with semicolons the beginning of any
+  std::map<std::string, CsvCell> commas_;
 };
 
 }  // namespace talus::io

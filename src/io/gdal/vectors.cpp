@@ -72,7 +72,8 @@ class AttributeReader {
     SourceFeature f;
     ++features_;
     f.name = text(feature, "name");
-    if (f.name.empty()) f.name = std::to_string(feature.GetFID());
+    f.id = feature.GetFID();
+    if (f.name.empty()) f.name = std::to_string(f.id);
     f.frequency = get(feature, "frequency").value_or(kNotGiven);
     f.diameter = diameter(feature);
     f.release_height = release_height_;

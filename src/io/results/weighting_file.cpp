@@ -1,6 +1,5 @@
 #include "talus/io/results/weighting_file.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "io/scenario/frequency_keys.hpp"
@@ -10,18 +9,39 @@
 namespace talus::io {
 namespace {
 
-/// Reads the frequencies of features. The file names a feature by its name or, without one, by its number (FID).
+/// The features that a word of the file means: those of this name, else the one of this number (FID).
+std::vector<std::size_t> meant_by(const std::string& word, const std::vector<SourceFeature>& features) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < features.size(); ++i)
+    if (features[i].name == word) found.push_back(i);
+  for (std::size_t i = 0; found.empty() && i < features.size(); ++i)
+    if (std::to_string(features[i].id) == word) found.push_back(i);
+  return found;
+}
+
+/// Reads the frequencies of features.
 void read_features(TableReader& table, Scenario& scenario) {
   if (table.value() == nullptr) return;
-  std::vector<std::string> known;
-  for (std::size_t i = 0; i < scenario.features.size(); ++i) {
-    SourceFeature& feature = scenario.features[i];
-    known.push_back(feature.name.empty() ? std::to_string(i) : feature.name);
-    if (const auto value = table.number(known.back(), bounds_of("sources.frequency"))) feature.frequency = *value;
+  std::vector<SourceFeature>& features = scenario.features;
+  std::vector<std::string> known, given(features.size());  // given: the word that meant the feature
+  for (const SourceFeature& feature : features) known.push_back(feature.name);
+  for (const auto& [word, value] : table.value()->members) {
+    const std::vector<std::size_t> found = meant_by(word, features);
+    std::vector<std::string> numbers;
+    for (const std::size_t i : found) numbers.push_back(std::to_string(features[i].id));
+    if (found.empty())
+      table.fault(word, value, "there is no such feature" + known_names(word, known));
+    else if (found.size() > 1)
+      table.fault(word, value,
+                  std::to_string(found.size()) + " features are called " + word + " (numbers " + joined(numbers) +
+                      "), must be one: name them by number");
+    else if (const std::string& earlier = given[found.front()]; !earlier.empty())
+      table.fault(word, value, "is the feature " + earlier + ", which has a frequency here already");
+    if (found.size() != 1) continue;
+    given[found.front()] = word;
+    if (const auto frequency = table.number(word, bounds_of("sources.frequency")))
+      features[found.front()].frequency = *frequency;
   }
-  for (const auto& [name, value] : table.value()->members)
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      table.fault(name, value, "there is no such feature" + known_names(name, known));
 }
 
 }  // namespace

@@ -28,10 +28,24 @@ void check_inside(const Profile& profile, double x, const std::string& key) {
                    text_of(profile.to()) + " m");
 }
 
-void place_sources(const ScenarioSpec& spec, const Profile& profile, double west, Scenario& parts) {
+/// Throws InputError if blocks would be released at the last column or beyond, where there is no ground.
+void check_before_end(const ProfileSpec& p, const Grid& grid, const std::string& key) {
+  const double last = std::round((grid.west + grid.centre_x(grid.columns - 1)) * 1e6) / 1e6, nearest = 1e-6;
+  if (p.source.low > last - nearest)
+    throw InputError(key + " = " + text_of(p.source.low) +
+                     ": is the end of the profile, and a block released there leaves it at once: must be below " +
+                     text_of(last) + " m");
+  if (p.source.high > last + nearest)
+    throw InputError(key + " = [" + text_of(p.source.low) + ", " + text_of(p.source.high) + "]: must end at " +
+                     text_of(last) + " m at most, the last column of the profile (step = " + text_of(p.step) + " m)");
+}
+
+void place_sources(const ScenarioSpec& spec, const Profile& profile, const Grid& grid, Scenario& parts) {
   const ProfileSpec& p = *spec.profile;
+  const double west = grid.west;
   check_inside(profile, p.source.low, spec.scenario.where + ": sources.x");
   check_inside(profile, p.source.high, spec.scenario.where + ": sources.x");
+  check_before_end(p, grid, spec.scenario.where + ": sources.x");
   SourceFeature feature;
   feature.release_height = spec.release_height;
   feature.velocity = {p.vx, 0.0, p.vz};
@@ -160,7 +174,7 @@ LoadedProfile load_profile(const RunFlags& flags) {
 
   Scenario parts = spec.values;
   parts.impact.in_plane = true;
-  place_sources(spec, out.profile, grid.west, parts);
+  place_sources(spec, out.profile, grid, parts);
   if (parts.blocks.classes.empty() && parts.blocks.power_law.volume.high == 0.0)
     throw InputError(spec.scenario.where + ": no block diameter, must have one: give [blocks] diameter, in m");
   place_screens(spec, out.profile, grid.west, parts);

@@ -11,7 +11,8 @@ namespace talus::io {
 /// [[instrument_bias]]. A zone that the file does not name has the default ground. Throws InputError with file, line,
 /// key, value and what is allowed, also for a zone or a screen that the campaign lacks.
 ///
-/// @param warnings  gets one if the model was fitted on another surface than that of the campaign
+/// @param warnings  gets one if the model was fitted on another surface than that of the campaign, and one of the zones
+///                  that it leaves to the default ground although it describes others
 Model read_model(const std::string& path, const Campaign& campaign, std::vector<std::string>* warnings = nullptr);
 
 /// The text of such a file. It reads back as exactly this model, except that the places of barriers are rounded. A

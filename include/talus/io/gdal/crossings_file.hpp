@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct CrossingTable {
   std::vector<Eigen::Vector2d> places;     ///< in map coordinates [m]
   std::vector<std::string> source, block;  ///< as the table names them, one for each of `blocks`
   std::size_t blocks = 0;
+  std::size_t rows = 0;  ///< of the screen: with those of blocks that cross again
 };
 
 /// Reads crossings: `screens.csv` of a run, `passages.csv` of a campaign, or any table with columns of these.
@@ -25,5 +27,8 @@ struct CrossingTable {
 /// there. Only the first row of a block (same id, source, block and mass) counts: a block that rolls back meets a
 /// barrier only once. Throws InputError with line and column; a screen without rows gives empty lists.
 CrossingTable read_crossings(const std::string& path, const std::string& screen);
+
+/// How many crossings of a screen `screens_summary.csv` tells; nothing if it is not there or does not know the screen.
+std::optional<std::size_t> crossings_in_summary(const std::string& path, const std::string& screen);
 
 }  // namespace talus::io

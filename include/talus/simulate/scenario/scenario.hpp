@@ -24,6 +24,7 @@ struct SourceFeature {
   Range diameter{kNotGiven, kNotGiven};  ///< [m]
   Range release_height{1.0, 1.0};        ///< above the terrain [m]
   Vec3 velocity = Vec3::Zero();          ///< at the release [m/s]
+  std::int64_t id = -1;                  ///< number in its file (FID); -1: of no file
 };
 
 /// One place of release: a cell of the grid, or a point of its own.
