@@ -13,7 +13,7 @@ class Layers(Case):
     def setUp(self):
         super().setUp()
         file = ogr.GetDriverByName("GPKG").CreateDataSource(self.path("site.gpkg"))
-        for name, x in (("houses", 300), ("cliffs", 140)):
+        for name, x in (("houses", 280), ("cliffs", 140)):
             layer = file.CreateLayer(name, system(2056), ogr.wkbPolygon)
             layer.CreateField(ogr.FieldDefn("diameter", ogr.OFTReal))
             feature = ogr.Feature(layer.GetLayerDefn())

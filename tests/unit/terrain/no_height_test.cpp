@@ -65,7 +65,7 @@ TEST(WithoutHeight, PolygonsByTheirArea) {
   EXPECT_EQ(of_polygon({box(15.0, 10.0, 27.0, 34.0), box(18.0, 16.0, 24.0, 28.0)}), 0.0);  // with a hole there
   EXPECT_NEAR(of_polygon({box(29.0, 10.0, 229.0, 11.0)}), 0.95, 0.01);                     // the last height at 39
   EXPECT_NEAR(of_polygon({{{29.0, 5.0}, {49.0, 5.0}, {29.0, 25.0}}}), 0.25, 0.02);         // a triangle
-  EXPECT_NEAR(of_polygon({{{5.0, 5.0}, {5.1, 5.0}, {45.1, 35.0}, {45.0, 35.0}}}), 6.0 / 40.0, 0.01);  // thin
+  EXPECT_NEAR(of_polygon({{{5.0, 5.0}, {5.1, 5.0}, {45.1, 35.0}, {45.0, 35.0}}}), 6.0 / 40.0, 0.02);  // thin
   EXPECT_EQ(of_polygon({{}}), 0.0);
   EXPECT_EQ(of_polygon({}), 0.0);
 }
