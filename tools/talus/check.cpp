@@ -229,7 +229,8 @@ void print_plan(const LoadedScenario& loaded, unsigned threads) {
   print_terrain(loaded);
   print_zones(loaded.scenario);
   for (const std::string& note : loaded.notes) line("read", note);
-  if (const auto note = talus::io::coefficient_note(loaded.scenario.impact.deformation_coefficient)) line("note", *note);
+  if (const auto note = talus::io::coefficient_note(loaded.scenario.impact.deformation_coefficient))
+    line("note", *note);
   print_blocks(loaded.scenario);
   print_estimate(loaded.scenario, threads);
   for (const std::string& warning : loaded.warnings) line("warning", warning);
