@@ -92,7 +92,7 @@ class OwnCampaign(Case):
         blocks = "id,x,y,release_height_m,mass_kg,holdout\n" + "".join(
             f"b{i},{WEST + 40 + 5 * i},{NORTH - 40},1,{400 + 20 * i},{int(i % 3 == 2)}\n" for i in range(45))
         self.write("blocks.csv", blocks)
-        self.write("screens.csv", f'id,wkt\nS1,"LINESTRING ({WEST} {NORTH - 150}, {WEST + 300} {NORTH - 150})"\n')
+        self.write("screens.csv", f'id,wkt\nS1,"LINESTRING ({WEST + 3} {NORTH - 150}, {WEST + 297} {NORTH - 150})"\n')
         head = 'name = "own"\ndem = "dem.tif"\nblocks = "blocks.csv"\nscreens = "screens.csv"\n'
         errors = "[measurement_error]\nposition_m = 0.3\nspeed_fraction = 0.03\njump_height_m = 0.1\n"
         self.write("truth.toml", self.TRUTH)

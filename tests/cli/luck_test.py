@@ -18,7 +18,7 @@ class Luck(Case):
         super().setUp()
         self.blocks = [[f"b{i}", str(WEST + 40 + 5 * i), str(NORTH - 40), "1", str(400 + 20 * i), str(1 + i % 2), str(int(i % 3 == 2))]
                        for i in range(self.count)]
-        self.screens = [[f"S{k}", f"LINESTRING ({WEST} {NORTH - y}, {WEST + 300} {NORTH - y})"] for k, y in ((1, 120), (2, 150))]
+        self.screens = [[f"S{k}", f"LINESTRING ({WEST + 3} {NORTH - y}, {WEST + 297} {NORTH - y})"] for k, y in ((1, 120), (2, 150))]
         self.tables(self.path("."), self.blocks, [], [], [])
         self.write("truth.toml", "[ground.zones.default]\ntheta_scale = 0.3\nEn50 = 4\n")
         self.run_well("score", self.path("campaign.toml"), "--parameters", self.path("truth.toml"), "--trials", "10",
