@@ -86,10 +86,11 @@ CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
                             "scenario: add lines that blocks cross and run it again");
   const auto gap = talus::io::gap_note(without_height(run, o));  // also says if there is no such screen
   CrossingTable crossings = talus::io::read_crossings(file.string(), o.screen);
-  const auto told = talus::io::crossings_in_summary((fs::path(o.folder) / "screens_summary.csv").string(), o.screen);
-  if (told && *told != crossings.rows)
+  const auto in_summary =
+      talus::io::crossings_in_summary((fs::path(o.folder) / "screens_summary.csv").string(), o.screen);
+  if (in_summary && *in_summary != crossings.rows)
     throw talus::InputError(file.string() + ": has " + std::to_string(crossings.rows) + " crossings of screen '" +
-                            o.screen + "', screens_summary.csv beside it says " + std::to_string(*told) +
+                            o.screen + "', screens_summary.csv beside it says " + std::to_string(*in_summary) +
                             ": must be as talus run has written it; copy it again, or run the scenario again");
   if (crossings.blocks == 0)
     throw talus::InputError(file.string() + ": no block crosses screen '" + o.screen + "': " +
