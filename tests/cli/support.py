@@ -115,7 +115,7 @@ class Case(unittest.TestCase):
         stdout."""
         done = self.call(*arguments, **options)
         self.assertEqual(done.returncode, code, done.stderr)
-        notes = ("talus: warning: ", ": fields read: ", ": no field is read", " is not read")
+        notes = ("talus: warning: ", "talus: note: ", ": fields read: ", ": no field is read", " is not read")
         errors = [line for line in done.stderr.splitlines()
                   if line.startswith("talus: error: ") or not any(note in line for note in notes)]
         self.assertEqual(len(errors), 1, done.stderr)
