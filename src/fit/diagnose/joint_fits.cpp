@@ -152,6 +152,13 @@ JointModel JointFits::fitted(const FitProblem& problem, const JointParameters& p
   return simulated_anew(std::move(out));
 }
 
+/// The better one, with the evaluations of the longer fit.
+JointModel JointFits::better_of(JointModel before, JointModel longer) {
+  if (longer.objective.total < before.objective.total) return longer;
+  before.evaluations = std::move(longer.evaluations);
+  return before;
+}
+
 /// A fit continued from where it ended; the better one, with the evaluations of both.
 JointModel JointFits::continued(JointModel before, int rounds, std::uint32_t times_trials) const {
   FitOptions how = fit_options();
@@ -162,9 +169,19 @@ JointModel JointFits::continued(JointModel before, int rounds, std::uint32_t tim
   how.spread = before.spread;
   how.known = before.evaluations;
   JointModel longer = fitted(problem_of(before.parameters, before.models), before.parameters, how);
-  if (longer.objective.total < before.objective.total) return longer;
-  before.evaluations = std::move(longer.evaluations);
-  return before;
+  return better_of(std::move(before), std::move(longer));
+}
+
+void JointFits::complete(const JointModel& base, JointCandidate& chosen) const {
+  FitOptions how = fit_options();
+  how.trials *= 2;
+  how.comparison_trials *= 2;
+  how.starts = 1;
+  how.rounds = options_.rules.last_rounds;
+  how.known = chosen.fitted.evaluations;
+  const JointModel& before = chosen.fitted;
+  JointModel longer = fitted(problem_of(before.parameters, before.models), before.parameters, how);
+  take_fit(base, better_of(std::move(chosen.fitted), std::move(longer)), chosen);
 }
 
 JointModel JointFits::fit_ground(std::span<const SiteDiagnosis> sites) const {
@@ -228,14 +245,21 @@ JointCandidate JointFits::fit_effect(const JointModel& base, const SiteCandidate
   how.spread = extended(base.spread, MatrixXd(reach.asDiagonal()));
   std::vector<Model> off = models_without(base, candidate);
   off = problem_of(parameters, off).models(start);
-  out.fitted = continued(continued(fitted(problem_of(parameters, off), parameters, how), 3, 1), 2, 2);
-  const VectorXd z = out.fitted.z.tail(own);
-  for (Index i = 0; i < own; ++i) out.values.push_back(out.parameters[static_cast<std::size_t>(i)].value(z[i]));
-  out.amount = z.head(static_cast<Index>(out.tested)).cwiseAbs().maxCoeff() / rules.noticed;
-  const Difference change = difference(base.objective, out.fitted.objective, streams_);
-  out.gain = -change.mean;
-  out.gain_interval = {-change.interval.high, -change.interval.low};
+  take_fit(base, continued(continued(fitted(problem_of(parameters, off), parameters, how), 3, 1), 2, 2), out);
   return out;
+}
+
+/// Gives a candidate its fit, with the values, the amount and the gain that follow from it.
+void JointFits::take_fit(const JointModel& base, JointModel&& fitted, JointCandidate& candidate) const {
+  candidate.fitted = std::move(fitted);
+  const std::vector<Parameter>& own = candidate.parameters;
+  const VectorXd z = candidate.fitted.z.tail(std::ssize(own));
+  candidate.values.clear();
+  for (std::size_t i = 0; i < own.size(); ++i) candidate.values.push_back(own[i].value(z[static_cast<Index>(i)]));
+  candidate.amount = z.head(static_cast<Index>(candidate.tested)).cwiseAbs().maxCoeff() / options_.rules.noticed;
+  const Difference change = difference(base.objective, candidate.fitted.objective, streams_);
+  candidate.gain = -change.mean;
+  candidate.gain_interval = {-change.interval.high, -change.interval.low};
 }
 
 std::vector<Score> JointFits::cross_validated(const JointModel& fitted, std::uint32_t part) const {

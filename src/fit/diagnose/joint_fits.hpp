@@ -30,6 +30,8 @@ class JointFits {
   /// The effect with the grounds, from the best start on.
   JointCandidate fit_effect(const JointModel& base, const SiteCandidates& candidate,
                             const Eigen::VectorXd& start) const;
+  /// Fits the chosen model on, from a search around where it is, until a round gains nothing.
+  void complete(const JointModel& base, JointCandidate& chosen) const;
   /// Objectives over the blocks of all sites, each simulated by a fit to the other folds; one for each order of the
   /// blocks. Random numbers are those of number `part` of the round.
   std::vector<Score> cross_validated(const JointModel& fitted, std::uint32_t part) const;
@@ -42,6 +44,8 @@ class JointFits {
   std::uint32_t first_trial() const;
   JointModel fitted(const FitProblem& problem, const JointParameters& parameters, const FitOptions& how) const;
   JointModel continued(JointModel fitted, int rounds, std::uint32_t times_trials) const;
+  static JointModel better_of(JointModel before, JointModel longer);
+  void take_fit(const JointModel& base, JointModel&& fitted, JointCandidate& candidate) const;
   JointModel simulated_anew(JointModel fitted) const;
   Score score_in_folds(const LocalModel& local, const JointModel& fitted, std::uint32_t first,
                        std::uint32_t number) const;

@@ -159,7 +159,11 @@ class SitesLoop {
       const double smallest = number == 0 ? d.p_value : round.family.p_corrected;  // of the families of the sites, too
       if (round.effect == "none" && smallest <= options_.later_level) round.effect = "unexplained";
       const bool more = round.effect != "none" && round.effect != "unexplained";
-      if (more) found.push_back(round.effect), model = round.candidates.front().fitted;
+      if (more) {
+        fits_.complete(model, round.candidates.front());
+        found.push_back(round.effect);
+        model = round.candidates.front().fitted;
+      }
       d.rounds.push_back(std::move(round));
       if (!more) break;
     }

@@ -113,6 +113,33 @@ TEST(EffectFits, AChosenModelFarFromItsOptimumIsBroughtThere) {
   EXPECT_LT(completed.objective.total, bad.objective.total - 0.8 * (bad.objective.total - good.objective.total));
 }
 
+TEST(JointFits, AChosenModelFarFromItsOptimumIsBroughtThere) {
+  const SlopeFits slope(45);
+  const EffectFits alone(slope.campaign, slope.options, slope.rows, [](double) { return true; });
+  const FittedModel ground = alone.fit_ground(model_of_slope(), true);
+  const std::vector<Site> sites{{"one", &slope.campaign}, {"two", &slope.campaign}};
+  const std::vector<SiteDiagnosis> both(2, {"one", ground, slope.options.trials, {}});
+  JointFits fits(sites, slope.options, [](double) { return true; });
+  const JointModel good = fits.begin_round(fits.fit_ground(both));
+  const Eigen::VectorXd aside = Eigen::VectorXd::Constant(2, std::log(1.5) / ground.free[0].sd);
+  JointModel bad = good;
+  bad.z += aside;
+  for (Evaluation& e : bad.evaluations) e.z += aside;
+  for (std::size_t i = 0; i < 2; ++i)
+    bad.models[i] = model_at(bad.models[i], ground.free, bad.z.segment(static_cast<Eigen::Index>(i), 1));
+  bad = fits.begin_round(std::move(bad));
+  JointCandidate chosen;
+  chosen.fitted = bad;
+  chosen.parameters = {ground.free[0]};
+  chosen.tested = 1;
+  fits.complete(bad, chosen);
+  const double truth = ground.free[0].get(model_of_slope());
+  for (const Model& model : chosen.fitted.models)
+    EXPECT_LT(std::abs(std::log(ground.free[0].get(model) / truth)), 0.15);
+  EXPECT_NEAR(chosen.gain, bad.objective.total - chosen.fitted.objective.total, 1e-12) << "what is reported";
+  EXPECT_LT(chosen.fitted.objective.total, bad.objective.total - 0.8 * (bad.objective.total - good.objective.total));
+}
+
 /// The slope with a screen that no simulated block comes to, where speeds were measured.
 struct SlopeWithScreenBeyond : SlopeFits {
   explicit SlopeWithScreenBeyond(std::size_t blocks) : SlopeFits(blocks) {
