@@ -114,7 +114,7 @@ TEST(EffectFits, AChosenModelFarFromItsOptimumIsBroughtThere) {
 }
 
 TEST(JointFits, AChosenModelFarFromItsOptimumIsBroughtThere) {
-  const SlopeFits slope(45);
+  SlopeFits slope(45);
   const EffectFits alone(slope.campaign, slope.options, slope.rows, [](double) { return true; });
   const FittedModel ground = alone.fit_ground(model_of_slope(), true);
   const std::vector<Site> sites{{"one", &slope.campaign}, {"two", &slope.campaign}};
