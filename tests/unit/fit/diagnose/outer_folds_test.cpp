@@ -103,6 +103,30 @@ TEST(Nested, AFoldNeverSeesItsOwnRows) {
   EXPECT_TRUE(others_differ) << "the other fold is fitted to what was changed";
 }
 
+/// Folds that are given an effect which does not help there leave it out, and predict as the ground alone.
+TEST(Nested, AnEffectThatHelpsNoFoldIsLeftOut) {
+  Campaign c = campaign_on_slope(45);
+  measure(c, model_of_slope(), 77);
+  DiagnoseOptions options;
+  options.keys = {"theta_scale"};
+  options.trials = {20, 20, 20};
+  options.naming_in_folds = false;
+  options.threads = 1;
+  options.rules.hopeless = -1.0;  // no amount of an effect is good enough
+  Diagnosis whole;
+  whole.rounds.emplace_back();
+  whole.rounds[0].effect = "vegetation-drag";
+  whole.trials = options.trials;
+  DiagnosisWork work(options);
+  const OuterFolds folds = outer_folds(c, fitting_rows(c), 2, options.seed);
+  const NestedValidation nested = nested_validation(c, model_of_slope(), work, folds, whole);
+  ASSERT_EQ(nested.loops.size(), 2U);
+  EXPECT_EQ(nested.loops[0].effects, std::vector<std::string>{"vegetation-drag"}) << "it was tried";
+  for (std::size_t b = 0; b < c.blocks.size(); ++b)
+    for (std::uint32_t t = 0; t < nested.base[b].trials; ++t)
+      if (!std::isnan(nested.base[b].x[t])) EXPECT_EQ(nested.found[b].x[t], nested.base[b].x[t]);
+}
+
 /// The climatology out of its fold is that of the other folds' measurements.
 TEST(Nested, TheClimatologyKnowsNoRowOfItsFold) {
   Campaign c = campaign_on_slope(45);

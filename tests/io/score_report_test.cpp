@@ -1,0 +1,43 @@
+#include "talus/io/reports/score_report.hpp"
+
+#include <gtest/gtest.h>
+
+namespace talus::io {
+namespace {
+
+/// A group of twelve rows that score `large`, and one of two rows that score `small`.
+Score of_two_groups(double large, double small) {
+  Score score;
+  score.groups = {{"stop", large, 12}, {"speed", small, 2}};
+  for (std::uint32_t block = 0; block < 12; ++block) score.rows.push_back({0, block, large + 0.01 * (block % 2)});
+  for (std::uint32_t block = 0; block < 2; ++block) score.rows.push_back({1, block, small});
+  score.total = 0.5 * (large + small);
+  return score;
+}
+
+/// The error, the climatology and the skill beside it are all of the same rows.
+TEST(InLargeGroups, ErrorClimatologyAndSkillAreOfTheSameRows) {
+  ScoredRows rows;
+  rows.rows = "holdout";
+  rows.score = of_two_groups(0.6, 9.0);
+  rows.climatology = of_two_groups(0.8, 1.0);
+  std::vector<std::uint32_t> clusters;
+  for (std::uint32_t block = 0; block < 12; ++block) clusters.push_back(block);
+  const ScoredRows large = in_large_groups(rows, clusters);
+  EXPECT_DOUBLE_EQ(large.score.total, 0.6);
+  EXPECT_DOUBLE_EQ(large.climatology.total, 0.8);
+  EXPECT_NEAR(large.skill.share, 0.25, 0.002) << "1 - 0.6 / 0.8; of all rows the model would have no skill";
+  EXPECT_NE(skill_sentence(large).find("0.600 against the climatology's 0.800"), std::string::npos);
+}
+
+TEST(InLargeGroups, NothingIsSaidOfSkillWhereNoGroupIsLarge) {
+  ScoredRows rows;
+  rows.score.groups = {{"speed", 0.4, 2}};
+  rows.score.rows = {{0, 0, 0.4}, {0, 1, 0.4}};
+  rows.climatology = rows.score;
+  rows.skill.share = 0.3;
+  EXPECT_EQ(skill_sentence(in_large_groups(rows, std::vector<std::uint32_t>{0, 1})), "");
+}
+
+}  // namespace
+}  // namespace talus::io
