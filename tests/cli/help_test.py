@@ -64,17 +64,21 @@ class Help(Case):
                 if p["type"] == "file":
                     self.assertLessEqual(set(p["holds"]), {"raster", "vector", "toml", "csv", "html"}, where)
                     self.assertTrue(p["holds"], where)
-                if p["type"] == "choice" and "default" in p:
+                if p["type"] == "choice" and p["default"] is not None:
                     self.assertIn(p["default"], p["choices"], where)
-                if "low" in p and "high" in p:
-                    self.assertLess(p["low"], p["high"], where)
+                self.assertIn("unit", p, where)
+                bounds = p["bounds"]
+                self.assertLessEqual(set(bounds), {"low", "low_excluded", "high", "high_excluded"}, where)
+                if "low" in bounds and "high" in bounds:
+                    self.assertLess(bounds["low"], bounds["high"], where)
 
     def test_bounds_are_those_that_the_program_keeps(self):
         for name, flag in (("diameter", "--diameter"), ("trajectories", "--trajectories"), ("frequency", "--frequency")):
             p = self.of("run", name)
             more = [] if flag == "--diameter" else ["--diameter", "1"]
-            for value, good in ((p["low"], not p.get("low_excluded")), (p["high"], not p.get("high_excluded")),
-                                (p["low"] - 1, False), (p["high"] * 1.5, False)):
+            b = p["bounds"]
+            for value, good in ((b["low"], not b.get("low_excluded")), (b["high"], not b.get("high_excluded")),
+                                (b["low"] - 1, False), (b["high"] * 1.5, False)):
                 done = self.call("check", "-q", "--dem", self.path("dem.tif"), "--sources", self.path("sources.gpkg"), *more,
                                  f"{flag}={value:.12g}")
                 self.assertEqual(done.returncode == 0, good, (flag, value, done.stderr))
@@ -103,7 +107,7 @@ class Help(Case):
     def test_numbers_of_a_scenario(self):
         numbers = {p["name"]: p for p in self.program["scenario"]}
         self.assertEqual(numbers["blocks.density"]["unit"], "kg/m3")
-        self.assertEqual((numbers["blocks.density"]["low"], numbers["blocks.density"]["high"]), (500, 8000))
+        self.assertEqual(numbers["blocks.density"]["bounds"], {"low": 500, "high": 8000})
         self.assertEqual(numbers["blocks.density"]["default"], 2700)
         self.assertIn("effects.rest-in-roughness.kappa", numbers)
 

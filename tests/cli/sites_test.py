@@ -133,9 +133,25 @@ class Diagnose(Sites):
         losses = {line for s in ("north", "south") for line in self.text(f"first/{s}/with_effect.toml").splitlines()
                   if line.startswith("loss")}
         self.assertEqual(len(losses), 1)  # shared
+        self.fields_of_one_campaign(first)
         page = self.text("first/report.html")
         self.assertIn("pooled", page)
         self.assertNotRegex(page, "https?:")
+
+
+    def fields_of_one_campaign(self, record):
+        """Beside its own, the record has the fields of one campaign; what is known by site names the site."""
+        error = record["error"]["holdout"]
+        self.assertEqual(record["rounds"][0]["holdout"]["before"], error["before"])
+        self.assertEqual(record["rounds"][0]["holdout"]["after"], error["after"])
+        self.assertEqual(record["candidates"][0]["holdout"], error["after"])
+        self.assertAlmostEqual(sum(c["chosen_share"] for c in record["candidates"]), 1.0)
+        self.assertEqual(record["probability"], record["candidates"][0]["chosen_share"])
+        self.assertEqual((record["stability"]["fits"], record["stability"]["verdicts"]), (1, ["block-shape"]))
+        for field in ("evidence", "residual", "detection_limits"):
+            self.assertEqual({item["site"] for item in record[field]}, {"north", "south"}, field)
+        for when in ("before", "after"):
+            self.assertEqual([c["site"] for c in record["coverage"][when]["holdout"]], ["north", "south"])
 
 
 if __name__ == "__main__":

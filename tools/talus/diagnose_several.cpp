@@ -45,8 +45,7 @@ int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOption
     stop_interrupted();
   }
   talus::ObserveOptions unseen{kScoreTrials, how.seed + 1, 0, how.threads, {}, [] { return !interrupted(); }};
-  record.evidence =
-      talus::io::evidence_of_sites(opened.sites, record.diagnosis.base, record.diagnosis.with_effects, unseen);
+  talus::io::open_holdout(opened.sites, record, unseen);
   if (interrupted()) stop_interrupted();
   warn_of_sites(command, record.evidence, record.warnings);
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

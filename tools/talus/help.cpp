@@ -63,30 +63,29 @@ Json json_of_number(double value) {
 }
 
 /// Lower and upper bound: those of the facts, else those of the option's check, "INT in [1 - 10000]".
-void add_bounds(Json& json, const CLI::Option& option) {
+Json bounds_of(const CLI::Option& option) {
   const Facts& facts = facts_of(option);
   double low = facts.low, high = facts.high;
   const std::string range = between_marks(option.get_type_name(), " in [", "]");
   if (std::isnan(low) && !range.empty() && std::sscanf(range.c_str(), "%lf - %lf", &low, &high) != 2)
     low = high = talus::kNotGiven;
+  Json json = Json::object();
   if (std::isfinite(low)) json["low"] = json_of_number(low);
   if (std::isfinite(low) && facts.above_low) json["low_excluded"] = true;
   if (std::isfinite(high)) json["high"] = json_of_number(high);
   if (std::isfinite(high) && facts.below_high) json["high_excluded"] = true;
+  return json;
 }
 
-/// The default, as a number where the option takes one.
-void add_default(Json& json, const CLI::Option& option, const std::string& type) {
+/// The default, as a number where the option takes one; null where there is none.
+Json default_of(const CLI::Option& option, const std::string& type) {
   const Facts& facts = facts_of(option);
   const std::string text = facts.standard.empty() ? option.get_default_str() : facts.standard;
-  if (type == "flag")
-    json["default"] = false;
-  else if (text.empty() || text == "[]")
-    return;
-  else if (!takes_many(option) && (type == "number" || type == "integer"))
-    json["default"] = json_of_number(std::strtod(text.c_str(), nullptr));
-  else
-    json["default"] = text;
+  if (type == "flag") return false;
+  if (text.empty() || text == "[]") return nullptr;
+  if (!takes_many(option) && (type == "number" || type == "integer"))
+    return json_of_number(std::strtod(text.c_str(), nullptr));
+  return text;
 }
 
 Json json_of(const CLI::Option& option) {
@@ -105,9 +104,9 @@ Json json_of(const CLI::Option& option) {
   if (type == "file") json["holds"] = facts.holds;
   if (type == "file" || type == "folder") json["written"] = facts.written;
   if (const auto choices = choices_of(option); !choices.empty()) json["choices"] = choices;
-  if (!facts.unit.empty()) json["unit"] = facts.unit;
-  add_bounds(json, option);
-  add_default(json, option, type);
+  json["unit"] = facts.unit.empty() ? Json() : Json(facts.unit);
+  json["bounds"] = bounds_of(option);
+  json["default"] = default_of(option, type);
   json["required"] = option.get_required();
   json["repeatable"] = !list && takes_many(option);
   json["text"] = option.get_description();
@@ -123,11 +122,13 @@ Json json_of(const CLI::App& command) {
 
 Json json_of(const talus::Bounds& bounds, const std::string& prefix) {
   Json json{{"name", prefix + std::string(bounds.key)}, {"type", bounds.whole ? "integer" : "number"}};
-  if (bounds.unit != "1") json["unit"] = bounds.unit;
-  json["low"] = json_of_number(bounds.min);
-  if (bounds.ends != talus::Bounds::Closed) json["low_excluded"] = true;
-  if (std::isfinite(bounds.max)) json["high"] = json_of_number(bounds.max);
-  if (bounds.ends == talus::Bounds::Between) json["high_excluded"] = true;
+  json["unit"] = bounds.unit == "1" ? Json() : Json(bounds.unit);
+  Json& range = json["bounds"];
+  range["low"] = json_of_number(bounds.min);
+  if (bounds.ends != talus::Bounds::Closed) range["low_excluded"] = true;
+  if (std::isfinite(bounds.max)) range["high"] = json_of_number(bounds.max);
+  if (bounds.ends == talus::Bounds::Between) range["high_excluded"] = true;
+  json["default"] = nullptr;
   json["text"] = bounds.meaning;
   return json;
 }

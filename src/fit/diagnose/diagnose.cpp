@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chosen_shares.hpp"
 #include "diagnosis_loop.hpp"
 #include "effect_fits.hpp"
 #include "outer_folds.hpp"
@@ -244,22 +245,11 @@ class DiagnosisLoop {
     return in_table || round.p_value <= options_.later_level ? "unexplained" : "none";
   }
 
-  /// Counts how often each candidate has the lowest error when blocks get random weights (`bootstrap_weights`).
   void count_choices(const FittedModel& base, std::vector<FittedCandidate>& candidates) const {
-    std::vector<Difference> all;
-    all.reserve(candidates.size());
-    for (const FittedCandidate& c : candidates) {
-      all.push_back(difference(base.objective, c.fitted.objective, streams_));
-      for (double& draw : all.back().draws) draw += c.price;
-    }
-    if (all.empty()) return;
-    const std::size_t draws = all.front().draws.size();
-    for (std::size_t draw = 0; draw < draws; ++draw) {
-      const auto best = std::min_element(all.begin(), all.end(), [draw](const Difference& a, const Difference& b) {
-        return a.draws[draw] < b.draws[draw];
-      });
-      candidates[static_cast<std::size_t>(best - all.begin())].chosen_share += 1.0 / static_cast<double>(draws);
-    }
+    std::vector<PricedObjective> priced;
+    for (const FittedCandidate& c : candidates) priced.push_back({c.fitted.objective, c.price});
+    const std::vector<double> shares = chosen_shares(base.objective, priced, streams_);
+    for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].chosen_share = shares[i];
   }
 
   bool may_be_chosen(const FittedCandidate& candidate, const LeastGain& least) const {

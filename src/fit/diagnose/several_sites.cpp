@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chosen_shares.hpp"
 #include "joint_fits.hpp"
+#include "talus/fit/diagnose/detection_limits.hpp"
 #include "talus/fit/diagnose/diagnose.hpp"
 #include "talus/fit/diagnose/families.hpp"
 
@@ -101,6 +103,9 @@ class SitesLoop {
     tests.score_test =
         score_test(campaign, {out.base.model, out.base.free, out.base.z, out.base.runs}, tests.candidates, rows, how);
     const ResidualSpace space(campaign, out.base.runs, rules_);
+    out.residual = residual_table(campaign, space, rows, rules_);
+    out.limits =
+        detection_limits(campaign, axis_of(campaign, out.base.runs), tests.score_test, tests.candidates, rules_);
     out.families = test_families({campaign, space, out.base.runs, rows, tests.score_test}, {2000, own.seed, rules_});
     tests_.push_back(std::move(tests));
     return out;
@@ -220,7 +225,15 @@ class SitesLoop {
       c.cross_validated = -change.mean;
       c.cross_validated_interval = {-change.interval.high, -change.interval.low};
     }
+    count_choices(base, round.candidates);
     choose(base, round);
+  }
+
+  void count_choices(const JointModel& base, std::vector<JointCandidate>& candidates) const {
+    std::vector<PricedObjective> priced;
+    for (const JointCandidate& c : candidates) priced.push_back({c.fitted.objective, c.price});
+    const std::vector<double> shares = chosen_shares(base.objective, priced, fits_.streams());
+    for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].chosen_share = shares[i];
   }
 
   /// The rules of `diagnose`: enough gain, also on blocks that a fit has not seen, and again with new random numbers.

@@ -14,7 +14,6 @@ namespace talus::io {
 namespace {
 
 constexpr std::uint32_t kHoldoutTrials = 200;
-constexpr std::size_t kResidualRows = 20;
 constexpr double kOpening = 0.97;  // progress when the held-out rows are scored
 
 Json parameters_of(const FittedCandidate& candidate) {
@@ -22,18 +21,6 @@ Json parameters_of(const FittedCandidate& candidate) {
   for (std::size_t i = 0; i < candidate.parameters.size(); ++i)
     json[candidate.parameters[i].key] = json_of(candidate.values[i]);
   return json;
-}
-
-Json residual_of(const std::vector<ResidualRow>& rows) {
-  Json list = Json::array();
-  for (std::size_t i = 0; i < std::min(kResidualRows, rows.size()); ++i)
-    list.push_back({{"observable", rows[i].observable},
-                    {"covariate", rows[i].covariate},
-                    {"statistic", json_of(rows[i].statistic)},
-                    {"p_value", json_of(rows[i].p_value)},
-                    {"p_corrected", json_of(rows[i].corrected)},
-                    {"blocks", rows[i].blocks}});
-  return list;
 }
 
 Json families_of(const DiagnosisRound& round) {
@@ -206,8 +193,8 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
             {"detection_limits", limits_json(d.rounds.back().limits)},
             {"stability", stability_json(d.stability)},
             {"candidates", candidates_of(first, record.candidates.front())},
-            {"residual", residual_of(first.residual)},
-            {"residual_after", residual_of(d.rounds.back().residual)},
+            {"residual", residual_json(first.residual)},
+            {"residual_after", residual_json(d.rounds.back().residual)},
             {"campaign", record.campaign},
             {"surface", {{"value", record.surface}, {"source", record.surface_from}}},
             {"seed", record.options.seed},
@@ -225,6 +212,10 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
   for (const Parameter& p : d.base.free) ground[p.key] = json_of(p.get(d.base.model));
   json["base_parameters"] = ground;
   if (d.nested) json["nested"] = nested_json(record);
+  json["sites"] = Json::array({{{"name", record.campaign},
+                                {"p_value", json_of(first.p_value)},
+                                {"error", json["error"]},
+                                {"families", json["families"]}}});
   json["inputs"] = json_of(record.inputs);
   return json_text(json);
 }

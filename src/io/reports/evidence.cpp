@@ -1,5 +1,6 @@
 #include "evidence.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "coverage_report.hpp"
@@ -8,6 +9,8 @@
 
 namespace talus::io {
 namespace {
+
+constexpr std::size_t kResidualRows = 20;
 
 std::string percent(double share) {
   return with_decimals(100.0 * share, 1);
@@ -39,6 +42,18 @@ Json entry_of(const char* name, std::span<const BeforeAfter> errors, std::span<c
 
 std::string rows_text(const GroupScore& group) {
   return std::to_string(group.rows) + (group.rows < kHeadlineRows ? " *" : "");
+}
+
+Json residual_json(std::span<const ResidualRow> rows) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < std::min(kResidualRows, rows.size()); ++i)
+    list.push_back({{"observable", rows[i].observable},
+                    {"covariate", rows[i].covariate},
+                    {"statistic", json_of(rows[i].statistic)},
+                    {"p_value", json_of(rows[i].p_value)},
+                    {"p_corrected", json_of(rows[i].corrected)},
+                    {"blocks", rows[i].blocks}});
+  return list;
 }
 
 Json coverage_json(std::span<const BeforeAfter> errors) {

@@ -4,6 +4,7 @@
 
 #include "io/files/json.hpp"
 #include "markup.hpp"
+#include "talus/fit/diagnose/residual_table.hpp"
 #include "talus/io/reports/score_report.hpp"
 
 /// What a fit is to be judged by beside its error: the climatology, the rows, the tail, the spread.
@@ -12,6 +13,8 @@ namespace talus::io {
 /// The rows of a group; with a star where they are so few that it stays out of a headline.
 std::string rows_text(const GroupScore& group);
 
+/// `residual` of a diagnosis: the most significant rows of the table.
+Json residual_json(std::span<const ResidualRow> rows);
 /// `coverage` of a report: {"before": {"fit": [...], "holdout": [...]}, "after": ...}.
 Json coverage_json(std::span<const BeforeAfter> errors);
 /// `tail` of a report: the error in the far run-outs before and after, by kind of rows.

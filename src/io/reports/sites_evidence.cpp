@@ -99,6 +99,27 @@ std::vector<SiteEvidence> evidence_of_sites(std::span<const Site> sites, std::sp
   return list;
 }
 
+double pooled_holdout_error(std::span<const Site> sites, std::span<const Model> models, ObserveOptions how) {
+  std::vector<SiteScore> scores;
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    const Campaign& campaign = *sites[i].campaign;
+    how.blocks = holdout_rows(campaign);
+    scores.push_back(
+        {sites[i].name, score(campaign, observe(campaign, models[i], how), how.blocks), campaign.blocks.size()});
+  }
+  return joined_scores(scores).total;
+}
+
+void open_holdout(std::span<const Site> sites, SitesRecord& record, const ObserveOptions& how) {
+  const SitesDiagnosis& d = record.diagnosis;
+  record.evidence = evidence_of_sites(sites, d.base, d.with_effects, how);
+  for (const JointRound& round : d.rounds) {
+    record.candidates.emplace_back();
+    for (const JointCandidate& c : round.candidates)
+      record.candidates.back().push_back(pooled_holdout_error(sites, c.fitted.models, how));
+  }
+}
+
 std::string names_in_words(std::span<const SiteEvidence> evidence) {
   std::vector<std::string> names;
   for (const SiteEvidence& e : evidence.first(evidence.size() - 1)) names.push_back(e.site);

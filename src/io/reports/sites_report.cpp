@@ -4,7 +4,9 @@
 
 #include "coverage_report.hpp"
 #include "evidence.hpp"
+#include "limits_report.hpp"
 #include "page_frame.hpp"
+#include "repeated_report.hpp"
 #include "sites_evidence.hpp"
 #include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
@@ -38,9 +40,11 @@ Json family_json(const FamilyTest& family, const std::string& site) {
           {"parts", parts}};
 }
 
-Json candidates_json(const JointRound& round) {
+/// @param holdout  error of each candidate on the held-out rows of all sites
+Json candidates_json(const JointRound& round, const std::vector<double>& holdout) {
   Json list = Json::array();
-  for (const JointCandidate& c : round.candidates) {
+  for (std::size_t number = 0; number < round.candidates.size(); ++number) {
+    const JointCandidate& c = round.candidates[number];
     Json parameters = Json::object();
     for (std::size_t i = 0; i < c.values.size(); ++i) parameters[c.parameters[i].key] = json_of(c.values[i]);
     list.push_back({{"effect", c.effect},
@@ -52,18 +56,29 @@ Json candidates_json(const JointRound& round) {
                     {"objective_gain", json_of(c.gain)},
                     {"objective_gain_ci95", json_of(c.gain_interval)},
                     {"cross_validated_objective_gain", json_of(c.cross_validated)},
-                    {"cross_validated_objective_gain_ci95", json_of(c.cross_validated_interval)}});
+                    {"cross_validated_objective_gain_ci95", json_of(c.cross_validated_interval)},
+                    {"holdout", json_of(holdout[number])},
+                    {"chosen_share", json_of(c.chosen_share)},
+                    {"p_value", json_of(round.family.p_value)}});
   }
   return list;
 }
 
-Json rounds_json(const SitesDiagnosis& d) {
+Json rounds_json(const SitesRecord& record) {
   Json rounds = Json::array();
-  for (const JointRound& round : d.rounds) {
+  double before = record.evidence.back().holdout.before;
+  for (std::size_t i = 0; i < record.diagnosis.rounds.size(); ++i) {
+    const JointRound& round = record.diagnosis.rounds[i];
     Json turn{{"effect", round.effect}, {"p_value", json_of(round.family.p_corrected)}};
-    if (found(round)) turn["where"] = round.where, turn["indistinguishable_from"] = round.alike;
+    if (found(round)) {
+      const double after = record.candidates[i].front();
+      turn["where"] = round.where;
+      turn["indistinguishable_from"] = round.alike;
+      turn["holdout"] = {{"before", json_of(before)}, {"after", json_of(after)}};
+      before = after;
+    }
     turn["family"] = family_json(round.family, "pooled");
-    turn["candidates"] = candidates_json(round);
+    turn["candidates"] = candidates_json(round, record.candidates[i]);
     rounds.push_back(turn);
   }
   return rounds;
@@ -104,6 +119,52 @@ Json sites_of(const SitesRecord& record) {
                     {"files", {site.name + "/fitted.toml", site.name + "/with_effect.toml"}}});
   }
   return list;
+}
+
+/// What is known of each site, one list after another, each item with its `site`.
+template <class ListOfSite>
+Json by_site(const SitesDiagnosis& d, ListOfSite&& list_of) {
+  Json all = Json::array();
+  for (std::size_t i = 0; i < d.sites.size(); ++i)
+    for (Json& item : list_of(i)) {
+      item["site"] = d.sites[i].name;
+      all.push_back(std::move(item));
+    }
+  return all;
+}
+
+Json evidence_by_site(const SitesRecord& record) {
+  return by_site(record.diagnosis, [&](std::size_t i) {
+    const SiteEvidence& e = record.evidence[i];
+    return evidence_json(e.errors, e.clusters, "ground", "found");
+  });
+}
+
+/// As `coverage_json`, each observable with its `site`.
+Json coverage_by_site(const SitesRecord& record) {
+  Json coverage;
+  for (const char* when : {"before", "after"})
+    for (const char* rows : {"fit", "holdout"})
+      coverage[when][rows] = by_site(record.diagnosis, [&](std::size_t i) {
+        return coverage_json(record.evidence[i].errors)[when].value(rows, Json::array());
+      });
+  return coverage;
+}
+
+/// As of one campaign: for an effect the share of the bootstraps in which it is the best. None is a probability of
+/// being right.
+double probability_of(const SitesDiagnosis& d) {
+  const JointRound& first = d.rounds.front();
+  if (found(first)) return first.candidates.front().chosen_share;
+  return first.effect == "none" ? d.p_value : 1.0 - d.p_value;
+}
+
+/// Each site is fitted once.
+Json stability_of(const SitesRecord& record) {
+  const JointRound& first = record.diagnosis.rounds.front();
+  Stability once;
+  once.fits.push_back({record.options.seed, first.effect, first.where, record.diagnosis.p_value, {first.family}});
+  return stability_json(once);
 }
 
 /// What was found, in words.
@@ -218,13 +279,19 @@ std::string sites_json(const SitesRecord& record) {
   Json json{{"effect", first.effect},
             {"effects", effects},
             {"where", first.where},
+            {"probability", json_of(probability_of(d))},
             {"indistinguishable_from", first.alike},
             {"p_value", json_of(d.p_value)},
             {"error", error},
             {"sites", sites_of(record)},
-            {"rounds", rounds_json(d)},
+            {"rounds", rounds_json(record)},
             {"families", families_json(d)},
-            {"candidates", candidates_json(first)},
+            {"evidence", evidence_by_site(record)},
+            {"coverage", coverage_by_site(record)},
+            {"detection_limits", by_site(d, [&](std::size_t i) { return limits_json(d.sites[i].limits); })},
+            {"stability", stability_of(record)},
+            {"candidates", candidates_json(first, record.candidates.front())},
+            {"residual", by_site(d, [&](std::size_t i) { return residual_json(d.sites[i].residual); })},
             {"findings_of_single_sites", own_findings(record)},
             {"seed", record.options.seed},
             {"trials_per_block", {{"search", d.trials.search}, {"test", d.trials.test}, {"compare", d.trials.compare}}},

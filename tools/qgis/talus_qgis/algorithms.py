@@ -223,7 +223,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
 
     def _help(self, p):
         several = p["name"] in self.table.get("several", ())
-        least = ". " + tr("At least {value}.").format(value=p["low"]) if p["type"] == "integer" and p.get("low", 0) > 1 else ""
+        low = p["bounds"].get("low", 0)
+        least = ". " + tr("At least {value}.").format(value=low) if p["type"] == "integer" and low > 1 else ""
         return tr(p["text"]) + least + (". " + tr("Several layers, as a road and houses, are joined into one.") if several else "")
 
     def _label(self, p):
@@ -233,18 +234,18 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
 
     def _title(self, p):
         title = self._label(p)
-        if p.get("unit"):
+        if p["unit"]:
             title += f" [{p['unit']}]"
         if self.by_scenario() and any(p["name"] in names for names in self.table.get("needs", ())[1:]):
             title += ", " + tr("needed without a scenario")
-        if p["type"] != "flag" and "default" in p:
+        if p["type"] != "flag" and p["default"] is not None:
             title += " (" + tr("{value} if not set").format(value=p["default"]) + ")"
         return title
 
     def _number(self, p, key, title, optional):
         whole = p["type"] == "integer"
         kind = QgsProcessingParameterNumber.Integer if whole else QgsProcessingParameterNumber.Double
-        low, high = p.get("low", -1e300), p.get("high", 1e300)
+        low, high = p["bounds"].get("low", -1e300), p["bounds"].get("high", 1e300)
         if whole:
             low, high = max(low, -LARGEST_IN_DIALOG), min(high, LARGEST_IN_DIALOG)
         return QgsProcessingParameterNumber(key, title, kind, None, optional, low, high)

@@ -50,26 +50,28 @@ def placeholder(parameter):
 
 def bounds_text(parameter):
     """'1 to 4096', 'above 0'; empty without bounds."""
-    low, high = parameter.get("low"), parameter.get("high")
+    bounds = parameter["bounds"]
+    low, high = bounds.get("low"), bounds.get("high")
     if low is None:
         return ""
     if high is None:
-        return f"above {low}" if parameter.get("low_excluded") else f"{low} or more"
-    excluded = [value for value, name in ((low, "low_excluded"), (high, "high_excluded")) if parameter.get(name)]
+        return f"above {low}" if bounds.get("low_excluded") else f"{low} or more"
+    excluded = [value for value, name in ((low, "low_excluded"), (high, "high_excluded")) if bounds.get(name)]
     return f"{low} to {high}" + (f", without {' and '.join(map(str, excluded))}" if excluded else "")
 
 
 def remarks_of(parameter):
     """Unit, bounds, default and the like, where the text does not say them."""
     text, remarks = parameter["text"], []
-    if parameter.get("unit") and f"[{parameter['unit']}]" not in text:
+    if parameter["unit"] and f"[{parameter['unit']}]" not in text:
         remarks.append(f"Unit: {parameter['unit']}.")
     if "choices" in parameter and not few_choices(parameter):
         remarks.append(f"One of {', '.join(parameter['choices'])}.")
     if bounds_text(parameter):
         remarks.append(f"Allowed: {bounds_text(parameter)}.")
-    if takes_value(parameter) and str(parameter.get("default", "")) not in ("", *text.replace("(", " ").replace(")", " ").split()):
-        remarks.append(f"Default: {parameter['default']}.")
+    default = parameter["default"]
+    if takes_value(parameter) and default is not None and str(default) not in ("", *text.replace("(", " ").replace(")", " ").split()):
+        remarks.append(f"Default: {default}.")
     if parameter["required"]:
         remarks.append("Required.")
     if parameter["repeatable"] and "repeated" not in text:

@@ -29,6 +29,7 @@ struct JointCandidate {
   double price = 0.0, amount = 0.0;
   double cross_validated = kNotGiven;  ///< gain on blocks that its fit has not seen
   Interval cross_validated_interval;   ///< 95 %, over the blocks of all
+  double chosen_share = 0.0;           ///< as FittedCandidate
   JointModel fitted;
 };
 
@@ -47,6 +48,8 @@ struct SiteDiagnosis {
   TrialsPerBlock trials;  ///< of that fit and these tests
   std::vector<FamilyTest>
       families;  ///< Holm over those of all sites and the pooled one; "block property" takes no part
+  std::vector<ResidualRow> residual = {};   ///< of the fitting rows, with the ground alone
+  std::vector<DetectionLimit> limits = {};  ///< of effects at this site alone, with the ground alone
 };
 
 struct SitesDiagnosis {

@@ -27,14 +27,26 @@ struct SiteEvidence {
 std::vector<SiteEvidence> evidence_of_sites(std::span<const Site> sites, std::span<const Model> before,
                                             std::span<const Model> after, const ObserveOptions& how);
 
+/// The error on the held-out rows of all sites together; NaN where there are none.
+///
+/// @param models  by site
+/// @param how     trials, seed, first trial, threads
+double pooled_holdout_error(std::span<const Site> sites, std::span<const Model> models, ObserveOptions how);
+
 /// Results of `talus diagnose` with several campaigns.
 struct SitesRecord : FitRecord {
   DiagnoseOptions options;
   SitesDiagnosis diagnosis;
   std::vector<SiteEvidence> evidence;
-  std::vector<std::string> files;  ///< by site: its campaign.toml
+  std::vector<std::vector<double>> candidates;  ///< by round: held-out error of each, of all sites together
+  std::vector<std::string> files;               ///< by site: its campaign.toml
   double seconds = 0.0;
 };
+
+/// Scores the models before and after what was found, and every candidate, on the rows of all sites.
+///
+/// @param how  trials, seed, first trial, threads
+void open_holdout(std::span<const Site> sites, SitesRecord& record, const ObserveOptions& how);
 
 /// The text of diagnosis.json, of report.html, and of the summary on the terminal. docs/several-campaigns.md.
 std::string sites_json(const SitesRecord& record);
