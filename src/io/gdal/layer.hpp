@@ -51,20 +51,18 @@ class Layer {
   /// The geometries of a feature. Empty if it has none.
   Parts parts(const OGRFeature& feature);
 
-  /// Index of a field, in any case of letters, also if a Shapefile has cut its name, this or an earlier one; -1 if
-  /// there is none.
-  int field(const char* name) const;
-  /// Index of a field that is spelt so, else of the only one that is in another case of letters; -1 if there is none.
-  /// Throws InputError if several differ from it only in their case.
-  int only_field(const std::string& name) const;
+  /// Index of a field that is spelt so, else of the only one that is in another case of letters, also if a Shapefile
+  /// has cut its name, this or an earlier one; -1 if there is none. Throws InputError if several differ from it only in
+  /// their case.
+  /// @param way_out  what the user may do then
+  int field(const std::string& name, const std::string& way_out = "rename all but one") const;
   std::vector<std::string> field_names() const;
   const OGRFeatureDefn& fields() const { return *layer_->GetLayerDefn(); }
   /// "cliffs.shp: feature 12", of a CSV "trees.csv: row 12 below the header", for messages.
   std::string label(const OGRFeature& feature) const;
-  /// The value of a numeric field, or of any field of a CSV; nothing if it is NULL or the field is not there. Throws
-  /// InputError if it is no number, or out of bounds.
-  std::optional<double> number(const OGRFeature& feature, const char* name, const Bounds& bounds) const;
-  /// The same for the field of an index (-1: none); `name` is for messages.
+  /// The value of a numeric field, or of any field of a CSV; nothing if it is NULL or the field is not there (-1).
+  /// Throws InputError if it is no number, or out of bounds.
+  /// @param name  of the field, for messages
   std::optional<double> number(const OGRFeature& feature, int index, const std::string& name,
                                const Bounds& bounds) const;
   /// The value of a text or whole-number field; empty if it is NULL. Throws InputError for other fields.
@@ -85,6 +83,8 @@ class Layer {
   std::vector<OGRLayer*> layers_with_geometry() const;
   [[noreturn]] void refuse_without_geometry();
   void choose_layer();
+  /// Index of a field whose name a Shapefile has cut; -1 if there is none.
+  int cut_field(const std::string& name) const;
   bool is_csv() const;
   /// Throws InputError if a column of a CSV has a number with a decimal comma.
   void refuse_comma(std::string column, const std::string& unit) const;

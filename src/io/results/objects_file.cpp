@@ -95,6 +95,17 @@ Figures figures_of(const HazardRules& rules, const ObjectHits& hits, bool known,
   return figures;
 }
 
+/// Throws InputError if the layer has fields that differ only in their case: a GeoPackage cannot hold copies of both.
+void refuse_same_fields(const Layer& layer, const std::string& path) {
+  const std::vector<std::string> names = layer.field_names();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (EQUAL(names[i].c_str(), names[k].c_str()))
+        throw InputError(path + ": has the fields " + names[k] + ", " + names[i] +
+                         ", which differ only in the case of their letters, so that objects.gpkg cannot hold both: "
+                         "rename one or leave it out");
+}
+
 }  // namespace
 
 struct ObjectLayer::State {
@@ -179,7 +190,8 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
   terrain.heights.grid = loaded.scenario.surface.grid();
   const Grid& grid = terrain.heights.grid;
   Layer layer("objects", path, terrain);
-  const int id = layer.field("name") >= 0 ? layer.field("name") : layer.field("id");
+  refuse_same_fields(layer, path);
+  const int id = layer.field("name") >= 0 ? layer.field("name") : layer.field("id"), width_field = layer.field("width");
   std::vector<bool> off_map;
   for_each_feature(layer, [&](Feature& feature) {
     Parts parts = layer.parts(*feature);
@@ -192,9 +204,9 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
     off_map.push_back(box.MaxX < 0.0 || box.MinX > grid.width() || box.MaxY < 0.0 || box.MinY > grid.height());
     std::optional<double> width;
     if (!parts.lines.empty()) {
-      width = layer.number(*feature, "width", kWidth);
+      width = layer.number(*feature, width_field, "width", kWidth);
       (width ? state_->lines_of_their_width : state_->lines_of_given_width) += 1;
-    } else if (const int field = layer.field("width"); field >= 0 && feature->IsFieldSetAndNotNull(field) != 0) {
+    } else if (width_field >= 0 && feature->IsFieldSetAndNotNull(width_field) != 0) {
       ++state_->polygons_with_width;
     }
     state_->objects.push_back(object_of(parts, width.value_or(line_width)));
