@@ -157,6 +157,8 @@ TEST_F(Campaigns, FaultsOfBlocks) {
   refused("", {"blocks.csv:2", "mass_kg = ''", "must be given"});
   with(head + "a,600050,5200040,1\n");
   refused("", {"blocks.csv:2", "4 cells", "8"});
+  with(head + good + "Stra\xDF,600050,5200040,1,100,,,\n");
+  refused("", {"blocks.csv:3", "is not in UTF-8", "CSV UTF-8"});
   with(std::string("\xFF\xFEi\0d\0", 6));
   refused("", {"blocks.csv: is UTF-16, must be UTF-8"});
   with(head + good + std::string("b,600050\0", 9));

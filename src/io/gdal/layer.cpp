@@ -12,6 +12,7 @@
 #include "csv_table.hpp"
 #include "input_name.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/printable.hpp"
 #include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/gdal/layer_name.hpp"
@@ -213,11 +214,19 @@ bool Layer::holds_text(int field) const {
   return !is_csv() && fields().GetFieldDefn(field)->GetType() == OFTString;
 }
 
+std::string Layer::text(const OGRFeature& feature, int index) const {
+  if (index < 0 || feature.IsFieldSetAndNotNull(index) == 0) return {};
+  std::string text = trimmed(feature.GetFieldAsString(index));
+  if (!is_utf8(text))
+    throw InputError(label(feature) + ": field " + fields().GetFieldDefn(index)->GetNameRef() + " = '" + text + "' " +
+                     kEncodingFault);
+  return text;
+}
+
 std::string Layer::code(const OGRFeature& feature, int index) const {
   if (feature.IsFieldSetAndNotNull(index) == 0) return {};
   const OGRFieldType type = fields().GetFieldDefn(index)->GetType();
-  if (type == OFTString) return feature.GetFieldAsString(index);
-  if (type == OFTInteger || type == OFTInteger64) return std::to_string(feature.GetFieldAsInteger64(index));
+  if (type == OFTString || type == OFTInteger || type == OFTInteger64) return text(feature, index);
   throw InputError(label(feature) + ": field " + fields().GetFieldDefn(index)->GetNameRef() + " = " +
                    feature.GetFieldAsString(index) + " is of the type " + OGRFieldDefn::GetFieldTypeName(type) +
                    ", must be text or a whole number");

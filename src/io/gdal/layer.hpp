@@ -65,7 +65,10 @@ class Layer {
   /// @param name  of the field, for messages
   std::optional<double> number(const OGRFeature& feature, int index, const std::string& name,
                                const Bounds& bounds) const;
-  /// The value of a text or whole-number field; empty if it is NULL. Throws InputError for other fields.
+  /// The text of a field of any type, without blanks around it; empty if it is NULL or the field is not there (-1).
+  /// Throws InputError if it is not UTF-8.
+  std::string text(const OGRFeature& feature, int field) const;
+  /// The same of a text or whole-number field. Throws InputError for other fields.
   std::string code(const OGRFeature& feature, int field) const;
 
   /// Whether a field is a text field; of a CSV, whose cells are all text, no.

@@ -142,7 +142,7 @@ class AttributeReader {
     FieldUse* const c = column(name);
     if (c == nullptr || feature.IsFieldSetAndNotNull(c->index) == 0) return {};
     ++c->count;
-    return feature.GetFieldAsString(c->index);
+    return layer_.text(feature, c->index);
   }
 
   /// The value of a field; nothing where there is none, or a faulty one.
