@@ -288,6 +288,19 @@ class Hazard(Case):
         done = self.run_well("hazard", self.path("out"), "--objects", self.path("p.gpkg"), "--overwrite")
         self.assertNotIn("the same name", done.stderr)
 
+    def test_objects_without_a_name_are_called_by_their_id(self):  # by their number, which may be the id of another
+        self.simulate()
+        shapes = [(box(105, 150, 10, 8), [None, "2"]), (box(205, 150, 10, 8), ["house", "1"]), (box(5, 5, 8, 8), [" ", None])]
+        write_features(self.path("o.gpkg"), "o", shapes, [("name", ogr.OFTString), ("id", ogr.OFTString)])
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("o.gpkg"))
+        with open(self.path("out/objects.csv"), encoding="utf-8", newline="") as file:
+            self.assertEqual([row["object"] for row in csv.DictReader(file)], ["2", "house", "3"])
+        self.assertNotIn("the same name", done.stderr)
+        shapes[2][1][:] = ["2", None]
+        write_features(self.path("p.gpkg"), "o", shapes, [("name", ogr.OFTString), ("id", ogr.OFTString)])
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("p.gpkg"), "--overwrite")
+        self.assertIn("several objects have the same name", done.stderr)
+
     def titles(self, name):
         """Title of a raster, and names of its bands."""
         file = gdal.Open(self.path(name))

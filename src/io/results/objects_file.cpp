@@ -106,6 +106,15 @@ void refuse_same_fields(const Layer& layer, const std::string& path) {
                          "rename one or leave it out");
 }
 
+/// The first of some fields (-1: not there) that holds a text, else the number of the feature. All texts must be UTF-8:
+/// they are copied.
+std::string name_of(const Layer& layer, const OGRFeature& feature, std::initializer_list<int> of_name) {
+  for (int field = 0; field < feature.GetFieldCount(); ++field) layer.text(feature, field);
+  for (const int field : of_name)
+    if (std::string name = layer.text(feature, field); !name.empty()) return name;
+  return std::to_string(feature.GetFID());
+}
+
 }  // namespace
 
 struct ObjectLayer::State {
@@ -191,7 +200,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
   const Grid& grid = terrain.heights.grid;
   Layer layer("objects", path, terrain);
   refuse_same_fields(layer, path);
-  const int id = layer.field("name") >= 0 ? layer.field("name") : layer.field("id"), width_field = layer.field("width");
+  const int width_field = layer.field("width");
   std::vector<bool> off_map;
   for_each_feature(layer, [&](Feature& feature) {
     Parts parts = layer.parts(*feature);
@@ -199,8 +208,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
       throw InputError(layer.label(*feature) + ": " + (parts.empty() ? "has no geometry" : "is a point") +
                        ", must be a polygon or a line that blocks may hit");
     const OGREnvelope box = parts.envelope();
-    const std::string name = id >= 0 ? feature->GetFieldAsString(id) : "";
-    state_->names.push_back(name.empty() ? std::to_string(feature->GetFID()) : name);
+    state_->names.push_back(name_of(layer, *feature, {layer.field("name"), layer.field("id")}));
     off_map.push_back(box.MaxX < 0.0 || box.MinX > grid.width() || box.MaxY < 0.0 || box.MinY > grid.height());
     std::optional<double> width;
     if (!parts.lines.empty()) {
