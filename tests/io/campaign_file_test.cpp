@@ -134,6 +134,17 @@ TEST_F(Campaigns, FaultsNameFileLineColumnAndValue) {
   refused("passages = \"passages.csv\"\n", {"passages.csv:2", "screens = "});
 }
 
+TEST_F(Campaigns, IdsOfScreensStayAsTheyStand) {
+  write_text("screens.csv",
+             "id,wkt\n01,\"LINESTRING (600010 5200020, 600090 5200020)\"\n1,\"LINESTRING (600010 5200030, 600090 "
+             "5200030)\"\n");
+  write_text("passages.csv", "id,screen\na,01\n");
+  const LoadedCampaign loaded = read("passages = \"passages.csv\"\nscreens = \"screens.csv\"\n");
+  ASSERT_EQ(loaded.campaign.screens.size(), 2U);
+  EXPECT_EQ(loaded.campaign.screens[0].id, "01");
+  EXPECT_EQ(loaded.campaign.screens[1].id, "1");
+}
+
 TEST_F(Campaigns, FaultsOfBlocks) {
   const std::string head = "id,x,y,release_height_m,mass_kg,L1_m,L2_m,L3_m\n", good = "a,600050,5200040,1,100,,,\n";
   const auto with = [&](const std::string& text) { write_text("blocks.csv", text); };

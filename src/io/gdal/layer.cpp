@@ -181,12 +181,11 @@ std::optional<double> Layer::number(const OGRFeature& feature, int index, const 
   if (index < 0 || feature.IsFieldSetAndNotNull(index) == 0) return std::nullopt;
   const OGRFieldType type = fields().GetFieldDefn(index)->GetType();
   const std::string unit = bounds.unit == "1" ? "" : " in " + std::string(bounds.unit);
-  if (is_csv() && type == OFTReal) refuse_comma(fields().GetFieldDefn(index)->GetNameRef(), unit);
+  if (is_csv()) refuse_comma(fields().GetFieldDefn(index)->GetNameRef(), unit);
   if (type == OFTString && *feature.GetFieldAsString(index) == '\0') return std::nullopt;
   const std::string where = label(feature) + ": field " + name + " = ";
   double value = feature.GetFieldAsDouble(index);
-  const bool of_cells = is_csv() && type != OFTReal;  // one cell that is no number makes text of the whole column
-  if (of_cells || type == OFTString) {
+  if (type == OFTString) {
     const std::string text = feature.GetFieldAsString(index);
     const auto number = number_of_cell(text);
     if (!number && text.find_first_not_of(' ') == std::string::npos) return std::nullopt;

@@ -71,6 +71,8 @@ class Layer {
   /// The same of a text or whole-number field. Throws InputError for other fields.
   std::string code(const OGRFeature& feature, int field) const;
 
+  /// Whether it is a text table, whose fields are all text.
+  bool is_csv() const;
   /// Whether a field is a text field; of a CSV, whose cells are all text, no.
   bool holds_text(int field) const;
 
@@ -88,7 +90,6 @@ class Layer {
   void choose_layer();
   /// Index of a field whose name a Shapefile has cut; -1 if there is none.
   int cut_field(const std::string& name) const;
-  bool is_csv() const;
   /// Throws InputError if a column of a CSV has a number with a decimal comma.
   void refuse_comma(std::string column, const std::string& unit) const;
   void collect(OGRGeometry& geometry, Parts& parts, const std::string& where);

@@ -140,9 +140,10 @@ class AttributeReader {
 
   std::string text(const OGRFeature& feature, const char* name) {
     FieldUse* const c = column(name);
-    if (c == nullptr || feature.IsFieldSetAndNotNull(c->index) == 0) return {};
-    ++c->count;
-    return layer_.text(feature, c->index);
+    if (c == nullptr) return {};
+    std::string text = layer_.text(feature, c->index);
+    if (!text.empty()) ++c->count;
+    return text;
   }
 
   /// The value of a field; nothing where there is none, or a faulty one.

@@ -6,6 +6,7 @@
 
 #include "io/gdal/geopackage.hpp"
 #include "io/gdal/layer.hpp"
+#include "io/gdal/typed_cells.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
@@ -214,7 +215,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
     if (!parts.lines.empty()) {
       width = layer.number(*feature, width_field, "width", kWidth);
       (width ? state_->lines_of_their_width : state_->lines_of_given_width) += 1;
-    } else if (width_field >= 0 && feature->IsFieldSetAndNotNull(width_field) != 0) {
+    } else if (!layer.text(*feature, width_field).empty()) {
       ++state_->polygons_with_width;
     }
     state_->objects.push_back(object_of(parts, width.value_or(line_width)));
@@ -223,6 +224,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
     state_->features.push_back(std::move(feature));
   });
   if (state_->objects.empty()) throw InputError(path + ": has no features, must have polygons or lines");
+  if (layer.is_csv()) state_->features = with_numbers(state_->features);
   state_->warn_of_places(path, off_map);
   state_->warn_of_names(path);
   if (state_->polygons_with_width > 0)
