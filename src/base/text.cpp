@@ -98,7 +98,9 @@ std::string escaped(std::string_view text) {
 }
 
 std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  const auto blank = [](char c) { return c == ' ' || c == '\t'; };  // readers cut outer ones off
+  const bool outer_blank = !text.empty() && (blank(text.front()) || blank(text.back()));
+  if (!outer_blank && text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted + '"';

@@ -244,6 +244,8 @@ class Design(Case):
             lines = file.readlines()
         self.write("out/screens.csv", "".join(lines[:60]))
         self.refused("screens.csv: has 59 crossings of screen 'road'", "screens_summary.csv beside it says 101")
+        self.write("out/screens_summary.csv", head + "low,speed,m/s,19,19,0.019,1,1,1,1,1\n")
+        self.refused("screens_summary.csv: has no row of screen 'road'")  # not: no block crosses it
 
     def test_folders_that_are_none(self):
         self.fails(2, "no run.json", arguments=["barrier", self.folder, "--screen", "road"])

@@ -179,7 +179,11 @@ class Faults(Deposits):
     def test_places(self):
         write_features(self.path("mapped.gpkg"), "mapped", [(box(5000, 10, 100, 190), [])])
         self.refuses("cover no cell of the DEM")
-        write_features(self.path("mapped.gpkg"), "mapped", [(f"POINT ({WEST + 100} {NORTH - 100})", [])])
+        point, line = f"POINT ({WEST + 100} {NORTH - 100})", f"LINESTRING ({WEST + 100} {NORTH - 100},{WEST + 200} {NORTH - 100})"
+        for other in (point, line):  # beside a polygon both were left out without a word
+            write_features(self.path("mapped.gpkg"), "mapped", [(box(100, 10, 100, 190), []), (other, [])])
+            self.refuses("mapped.gpkg: feature 2: is no polygon, must be one")
+        write_features(self.path("mapped.gpkg"), "mapped", [])
         self.refuses("has no polygons")
         write_features(self.path("mapped.gpkg"), "mapped", [(box(100, 10, 100, 190), [])])
         write_features(self.path("sources.gpkg"), "sources", [(box(5000, 230, 20, 10), ["far"])], [("name", ogr.OFTString)])

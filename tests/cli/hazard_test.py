@@ -288,6 +288,39 @@ class Hazard(Case):
         done = self.run_well("hazard", self.path("out"), "--objects", self.path("p.gpkg"), "--overwrite")
         self.assertNotIn("the same name", done.stderr)
 
+    def test_objects_without_a_name_are_called_by_their_id(self):  # by their number, which may be the id of another
+        self.simulate()
+        shapes = [(box(105, 150, 10, 8), [None, "2"]), (box(205, 150, 10, 8), ["house", "1"]), (box(5, 5, 8, 8), [" ", None])]
+        write_features(self.path("o.gpkg"), "o", shapes, [("name", ogr.OFTString), ("id", ogr.OFTString)])
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("o.gpkg"))
+        with open(self.path("out/objects.csv"), encoding="utf-8", newline="") as file:
+            self.assertEqual([row["object"] for row in csv.DictReader(file)], ["2", "house", "3"])
+        self.assertNotIn("the same name", done.stderr)
+        shapes[2][1][:] = ["2", None]
+        write_features(self.path("p.gpkg"), "o", shapes, [("name", ogr.OFTString), ("id", ogr.OFTString)])
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("p.gpkg"), "--overwrite")
+        self.assertIn("several objects have the same name", done.stderr)
+
+    def test_objects_of_a_table(self):
+        """Names stay as they stand (0123 was 123, a date changed its look), numbers are numbers in the GeoPackage."""
+        self.simulate()
+        shapes = [(box(105, 150, 10, 8), "0123,2020-01-01,5,1.50,"), (box(205, 150, 10, 8), "12345678901234567891,,,2,"),
+                  (box(5, 5, 8, 8), "7,x,-3,,")]
+        self.write("o.csv", "wkt,name,built,people,value,width\n" + "".join(f'"{wkt}",{cells}\n' for wkt, cells in shapes))
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("o.csv"))
+        self.assertNotIn("the field width of", done.stderr)  # it is empty
+        names = ["0123", "12345678901234567891", "7"]
+        with open(self.path("out/objects.csv"), encoding="utf-8", newline="") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual([row["object"] for row in table], names)
+        self.assertEqual([row["name"] for row in table], names)
+        self.assertEqual([row["people"] for row in table], ["5", "", "-3"])
+        rows = [row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")]
+        self.assertEqual([row["name"] for row in rows], names)
+        self.assertEqual([row["built"] for row in rows], ["2020-01-01", "", "x"])
+        self.assertEqual([row["people"] for row in rows], [5, None, -3])
+        self.assertEqual([row["value"] for row in rows], [1.5, 2.0, None])
+
     def titles(self, name):
         """Title of a raster, and names of its bands."""
         file = gdal.Open(self.path(name))

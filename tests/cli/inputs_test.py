@@ -1,4 +1,5 @@
 """Inputs that once passed in silence: fields, tables, Shapefiles, rasters that are no DEM, folders with other files."""
+import json
 import os
 import shutil
 import struct
@@ -123,6 +124,33 @@ class Fields(InputCase):
         self.assertIn("diameter 3 m (2 of 2", self.run_well("check", *self.flags("s.geojson"), "--field", "diameter=Diameter").stdout)
         self.refused("s.geojson: has the fields diameter, Diameter, DIAMETER, which differ only in the case",
                      sources="s.geojson", more=["--field", "diameter=DiaMeter"])
+
+    def geojson(self, name, geometry, properties):
+        crs = '"crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::2056"}}'
+        self.write(name, '{"type":"FeatureCollection",' + crs + ',"features":[{"type":"Feature","properties":' +
+                   json.dumps(properties) + ',"geometry":' + ogr.CreateGeometryFromWkt(geometry).ExportToJson() + "}]}")
+        return self.path(name)
+
+    def test_names_that_differ_only_in_their_case_in_other_layers(self):  # the first was read
+        line = f"LINESTRING ({X - 50} {Y - 20},{X + 50} {Y - 20})"
+        scenario = 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1\n'
+        barrier = self.write("b.toml", scenario + '[barriers]\nfile = "b.geojson"\n')
+        self.geojson("b.geojson", line, {"id": "net", "HEIGHT": 50.0, "height": 1.0, "capacity": 500.0})
+        self.assertIn("height 1 m (1 of 1 features)", self.run_well("check", barrier).stdout)
+        self.geojson("b.geojson", line, {"id": "net", "HEIGHT": 50.0, "Height": 1.0, "capacity": 500.0})
+        self.fails(2, "b.geojson: has the fields HEIGHT, Height, which differ only in the case of their letters, and none is spelt "
+                   "height: rename all but one", arguments=["check", barrier])
+        zones = self.geojson("z.geojson", box(100, 10, 100, 190), {"Zone": "no preset", "zone": "upper-talus-3d"})
+        self.run_well("check", *self.flags(), "--zones", zones, "--zone-field", "zone")
+        self.refused("zone 'no preset' is not described", more=["--zones", zones, "--zone-field", "Zone"])
+        self.refused("z.geojson: has the fields Zone, zone, which differ only in the case", more=["--zones", zones, "--zone-field", "ZONE"])
+
+    def test_objects_with_fields_that_differ_only_in_their_case(self):  # the run was repeated, then an error of SQL
+        write_features(self.path("sources.gpkg"), "sources", [(f"POINT ({X} {Y})", [0.1])], [("frequency", ogr.OFTReal)])
+        self.run_flags("-q")
+        objects = self.geojson("o.geojson", box(105, 150, 10, 8), {"Name": "x", "name": "y"})
+        self.fails(2, "o.geojson: has the fields Name, name, which differ only in the case of their letters",
+                   arguments=["hazard", self.path("out"), "--objects", objects])
 
 
 class FlagsForKeys(InputCase):

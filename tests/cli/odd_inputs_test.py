@@ -62,6 +62,23 @@ class NamesOfFiles(Case):
         self.screens("", "road")
         self.fails(2, "the run has no screen ''", arguments=["barrier", self.path("out"), "--screen", ""])
 
+    def test_blanks_around_an_id_do_not_count(self):  # talus barrier said that no block crosses the line
+        self.screens("road ", "\tpath")
+        self.assertEqual([screen["id"] for screen in self.record()["screens"]], ["road", "path"])
+        for name in ("road", "path"):
+            self.assertEqual(len(self.files_of(name)), 3)
+        self.fails(2, "the run has no screen 'road '; did you mean 'road'?",
+                   arguments=["barrier", self.path("out"), "--screen", "road "])
+
+    def test_texts_in_another_encoding(self):  # run.json and screens.csv had different names
+        self.screens("road")
+        table = 'wkt,{}\n"LINESTRING (2600000 1200100,2600300 1200100)",Stra\xdfe\n'
+        for column, flag in (("id", "--screens"), ("name", "--sources")):
+            with open(self.path("l.csv"), "w", encoding="latin-1") as file:
+                file.write(table.format(column))
+            self.fails(2, f"l.csv: row 1 below the header: field {column} = 'Stra\\xdfe' is not in UTF-8, must be",
+                       arguments=["check", self.path("s.toml"), flag, self.path("l.csv")])
+
     def test_the_picture_finds_the_files(self):
         ids = ["a/b", "a_b", "L123 km 4,2"]
         self.screens(*ids)

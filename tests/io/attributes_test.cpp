@@ -157,7 +157,21 @@ TEST_F(Attributes, ATextFieldWithoutTextIsNotGiven) {
   EXPECT_TRUE(std::isnan(read({{"diameter", OFTString}}, {{"NULL"}, {""}}).features[0].diameter.low));
 }
 
-TEST_F(Attributes, ACsvHasItsTypesGuessed) {
+TEST_F(Attributes, TheNamesOfACsvStayAsTheyStand) {
+  const SourceLayer layer = read_sources(write_text("s.csv",
+                                                    "x,y,name,diameter\n600005,5200005,0123, 1.5 \n600006,5200005,"
+                                                    "2020-01-01,+2\n600007,5200005,12345678901234567891,1e-1\n"),
+                                         terrain_, {1, 1});
+  ASSERT_EQ(layer.features.size(), 3U);
+  EXPECT_EQ(layer.features[0].name, "0123");
+  EXPECT_EQ(layer.features[1].name, "2020-01-01");
+  EXPECT_EQ(layer.features[2].name, "12345678901234567891");
+  EXPECT_EQ(layer.features[0].diameter, (Range{1.5, 1.5}));
+  EXPECT_EQ(layer.features[1].diameter, (Range{2, 2}));
+  EXPECT_EQ(layer.features[2].diameter, (Range{0.1, 0.1}));
+}
+
+TEST_F(Attributes, ACsvHoldsNumbers) {
   const std::string file =
       write_text("s.csv",
                  "id,wkt,diameter,vx,release_height\n1,POINT (600005 5200005),1.5,,3\n2,\"LINESTRING "

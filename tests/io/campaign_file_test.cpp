@@ -134,6 +134,17 @@ TEST_F(Campaigns, FaultsNameFileLineColumnAndValue) {
   refused("passages = \"passages.csv\"\n", {"passages.csv:2", "screens = "});
 }
 
+TEST_F(Campaigns, IdsOfScreensStayAsTheyStand) {
+  write_text("screens.csv",
+             "id,wkt\n01,\"LINESTRING (600010 5200020, 600090 5200020)\"\n1,\"LINESTRING (600010 5200030, 600090 "
+             "5200030)\"\n");
+  write_text("passages.csv", "id,screen\na,01\n");
+  const LoadedCampaign loaded = read("passages = \"passages.csv\"\nscreens = \"screens.csv\"\n");
+  ASSERT_EQ(loaded.campaign.screens.size(), 2U);
+  EXPECT_EQ(loaded.campaign.screens[0].id, "01");
+  EXPECT_EQ(loaded.campaign.screens[1].id, "1");
+}
+
 TEST_F(Campaigns, FaultsOfBlocks) {
   const std::string head = "id,x,y,release_height_m,mass_kg,L1_m,L2_m,L3_m\n", good = "a,600050,5200040,1,100,,,\n";
   const auto with = [&](const std::string& text) { write_text("blocks.csv", text); };
@@ -157,6 +168,8 @@ TEST_F(Campaigns, FaultsOfBlocks) {
   refused("", {"blocks.csv:2", "mass_kg = ''", "must be given"});
   with(head + "a,600050,5200040,1\n");
   refused("", {"blocks.csv:2", "4 cells", "8"});
+  with(head + good + "Stra\xDF,600050,5200040,1,100,,,\n");
+  refused("", {"blocks.csv:3", "is not in UTF-8", "CSV UTF-8"});
   with(std::string("\xFF\xFEi\0d\0", 6));
   refused("", {"blocks.csv: is UTF-16, must be UTF-8"});
   with(head + good + std::string("b,600050\0", 9));

@@ -9,6 +9,9 @@ namespace talus {
 /// tabs stay.
 std::string printable(std::string_view text);
 
+/// Whether all bytes of a text are UTF-8.
+bool is_utf8(std::string_view text);
+
 /// The first `most` bytes of a text, with "..." in the place of the rest; no character is cut.
 std::string shortened(std::string_view text, std::size_t most);
 

@@ -146,14 +146,18 @@ Raster<std::uint8_t> mapped_cells(const NamedFile& mapped, const Terrain& terrai
   Raster<std::uint8_t> cells(grid, std::uint8_t{0});
   Layer layer("mapped", mapped.path, terrain);
   std::size_t polygons = 0, marked = 0;
-  while (const Feature feature = layer.next())
-    for (const OGRPolygon& polygon : layer.parts(*feature).polygons) {
+  for_each_feature(layer, [&](const Feature& feature) {
+    const Parts parts = layer.parts(*feature);
+    if (!parts.lines.empty() || !parts.points.empty())
+      throw InputError(layer.label(*feature) + ": is no polygon, must be one: blocks were mapped inside");
+    for (const OGRPolygon& polygon : parts.polygons) {
       ++polygons;
       for_each_cell(polygon, grid, false, [&](int column, int row) {
         cells.at(column, row) = 1;
         ++marked;
       });
     }
+  });
   for (std::string& line : layer.warnings()) warnings.push_back(std::move(line));
   if (marked == 0)
     throw InputError(mapped.where + ": " +

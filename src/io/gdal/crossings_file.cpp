@@ -4,6 +4,7 @@
 #include <unordered_set>
 
 #include "csv_table.hpp"
+#include "talus/base/error.hpp"
 
 namespace talus::io {
 namespace {
@@ -59,7 +60,8 @@ std::optional<std::size_t> crossings_in_summary(const std::string& path, const s
   const CsvTable table(path, {}, {"screen", "crossings"});
   for (const CsvTable::Row& row : table.rows())
     if (table.text(row, "screen") == screen) return static_cast<std::size_t>(table.required(row, "crossings", kCount));
-  return std::nullopt;
+  throw InputError(path + ": has no row of screen '" + screen +
+                   "', must be as talus run has written it; run the scenario again");
 }
 
 }  // namespace talus::io

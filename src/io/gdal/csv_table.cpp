@@ -6,15 +6,11 @@
 #include "regular_file.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/expect.hpp"
+#include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
 
 namespace talus::io {
 namespace {
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
-  return first == std::string::npos ? std::string() : text.substr(first, last - first + 1);
-}
 
 std::string content_of(const std::string& path) {
   std::string text = read_file(path, path, "a table (CSV)", kMostTable);
@@ -30,6 +26,7 @@ void split(const std::string& text, const std::string& path, const std::function
   int line = 1, start = 1;
   bool quoted = false, was_quoted = false;
   const auto end_cell = [&] {
+    if (!is_utf8(cell)) throw InputError(path + ":" + std::to_string(start) + ": '" + cell + "' " + kEncodingFault);
     cells.push_back(was_quoted ? cell : trimmed(cell));
     cell.clear();
     was_quoted = false;
@@ -68,6 +65,11 @@ void split(const std::string& text, const std::string& path, const std::function
 }
 
 }  // namespace
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
+  return first == std::string::npos ? std::string() : text.substr(first, last - first + 1);
+}
 
 void refuse_utf16(const std::string& path, std::string_view text) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))

@@ -12,10 +12,17 @@ namespace talus::io {
 /// A number as a text table holds it: with a point for decimals, blanks around it; nothing for any other text.
 std::optional<double> number_of_cell(const std::string& text);
 
+/// A text without the blanks around it.
+std::string trimmed(const std::string& text);
+
 /// Throws InputError if the text of a file begins as UTF-16 does.
 void refuse_utf16(const std::string& path, std::string_view text);
 /// The fault of a zero byte in a table.
 inline constexpr const char* kNulFault = "holds a zero byte (NUL), must be text in UTF-8: save the table as CSV again";
+/// The fault of a text in another encoding.
+inline constexpr const char* kEncodingFault =
+    "is not in UTF-8, must be: in a spreadsheet save the table as \"CSV UTF-8\", in QGIS export the layer with the "
+    "encoding UTF-8";
 
 /// A text table with a header: commas, quotation marks as in RFC 4180. Every fault names file, line,
 /// column, value and what is allowed.

@@ -90,14 +90,10 @@ Dataset open_dataset(const std::string& path, unsigned kinds) {
   const std::string file = (kinds & GDAL_OF_VECTOR) != 0 ? file_of_layer(path) : path;
   check_input(file);
   if ((kinds & GDAL_OF_VECTOR) != 0) check_vector_file(name_for_gdal(file));
-  // A text table does not declare its types and geometry: GDAL has to guess them.
-  const char* const csv[] = {"AUTODETECT_TYPE=YES",
-                             "AUTODETECT_SIZE_LIMIT=0",
-                             "GEOM_POSSIBLE_NAMES=wkt,geometry,geom",
-                             "X_POSSIBLE_NAMES=x",
-                             "Y_POSSIBLE_NAMES=y",
-                             "KEEP_GEOM_COLUMNS=NO",
-                             nullptr};
+  // A text table does not declare its geometry. Its cells stay text, so that an id 01 does not become 1.
+  const char* const csv[] = {"AUTODETECT_TYPE=NO",   "GEOM_POSSIBLE_NAMES=wkt,geometry,geom",
+                             "X_POSSIBLE_NAMES=x",   "Y_POSSIBLE_NAMES=y",
+                             "KEEP_GEOM_COLUMNS=NO", nullptr};
   const char* const* options = ends_with(file, ".csv") ? csv : nullptr;
   Dataset dataset(GDALDataset::Open(name_for_gdal(file).c_str(), kinds | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
                                     nullptr, options, nullptr));

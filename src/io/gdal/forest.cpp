@@ -232,8 +232,12 @@ class RasterForest {
 class TreeReader {
  public:
   TreeReader(const std::string& path, const Terrain& terrain)
-      : path_(path), terrain_(terrain), layer_(kRole, path, terrain), species_(layer_.field("species")) {
-    if (layer_.field("diameter") < 0)
+      : path_(path),
+        terrain_(terrain),
+        layer_(kRole, path, terrain),
+        diameter_(layer_.field("diameter")),
+        species_(layer_.field("species")) {
+    if (diameter_ < 0)
       throw InputError(path + ": has no field 'diameter'" + known_names("diameter", layer_.field_names()) +
                        ": must hold the diameter of each stem at breast height, in m");
   }
@@ -279,7 +283,7 @@ class TreeReader {
   std::optional<double> diameter_of(const OGRFeature& feature) const {
     constexpr Bounds kAny{"diameter", "m", "of the stem", -1e300, 1e300};
     const Bounds& bounds = bounds_of_number("diameter");
-    const auto value = layer_.number(feature, "diameter", kAny);
+    const auto value = layer_.number(feature, diameter_, "diameter", kAny);
     if (!value) return value;
     if (const auto fault = fault_of(bounds, *value))
       throw InputError(layer_.label(feature) + ": field diameter = " + text_of(*value) + ": " + *fault +
@@ -325,9 +329,8 @@ class TreeReader {
     warn(without_species_, "features have no species: taken as silver fir");
     warn(twice_, "trees stand at the very place of an earlier one: not used");
     std::vector<std::string> unused;
-    for (const std::string& name : layer_.field_names())
-      if (layer_.field(name.c_str()) != layer_.field("diameter") && layer_.field(name.c_str()) != species_)
-        unused.push_back(name);
+    for (int i = 0; const std::string& name : layer_.field_names())
+      if (const int field = i++; field != diameter_ && field != species_) unused.push_back(name);
     if (!unused.empty()) out.warnings.push_back(path_ + ": fields that are not read: " + joined(unused));
     const auto& used = layer_.reprojections();
     out.reprojections.insert(out.reprojections.end(), used.begin(), used.end());
@@ -337,7 +340,7 @@ class TreeReader {
   std::string path_;
   const Terrain& terrain_;
   Layer layer_;
-  int species_;
+  int diameter_, species_;
   std::vector<Tree> trees_;
   std::set<std::pair<double, double>> places_;
   Spread diameters_;

@@ -12,6 +12,7 @@
 #include "csv_table.hpp"
 #include "input_name.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/printable.hpp"
 #include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/gdal/layer_name.hpp"
@@ -139,32 +140,29 @@ Feature Layer::next() {
   return feature;
 }
 
-int Layer::field(const char* name) const {
-  const int index = fields().GetFieldIndex(name);
-  if (index >= 0) return index;
-  // A Shapefile cuts names to ten characters: GDAL and QGIS write the pair diameter_min, diameter_max as
-  // diameter_m, diameter_1. A layer that was made of one keeps them.
-  if (EQUAL(name, "release_height")) return fields().GetFieldIndex("release_he");
-  const int low = fields().GetFieldIndex("diameter_m"), high = fields().GetFieldIndex("diameter_1");
-  if (low < 0 || high < 0) return index;
-  return EQUAL(name, "diameter_min") ? low : EQUAL(name, "diameter_max") ? high : index;
-}
-
-int Layer::only_field(const std::string& name) const {
-  const std::vector<std::string> names = field_names();
+int Layer::field(const std::string& name, const std::string& way_out) const {
   std::vector<std::string> same;
-  int index = -1;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (names[i] == name) return static_cast<int>(i);
-    if (!EQUAL(names[i].c_str(), name.c_str())) continue;
-    same.push_back(names[i]);
-    index = static_cast<int>(i);
+  int found = -1;
+  for (int i = 0; i < fields().GetFieldCount(); ++i) {
+    const char* const other = fields().GetFieldDefn(i)->GetNameRef();
+    if (name == other) return i;
+    if (!EQUAL(other, name.c_str())) continue;
+    same.emplace_back(other);
+    found = i;
   }
   if (same.size() > 1)
     throw InputError(path_ + ": has the fields " + joined(same) +
-                     ", which differ only in the case of their letters: " + "say which is " + name + " with --field " +
-                     shell_word(name + "=" + same.front()) + " or in [sources.fields], or rename one");
-  return index >= 0 ? index : field(name.c_str());
+                     ", which differ only in the case of their letters, and none is spelt " + name + ": " + way_out);
+  return found >= 0 ? found : cut_field(name);
+}
+
+int Layer::cut_field(const std::string& name) const {
+  // A Shapefile cuts names to ten characters: GDAL and QGIS write the pair diameter_min, diameter_max as
+  // diameter_m, diameter_1. A layer that was made of one keeps them.
+  if (EQUAL(name.c_str(), "release_height")) return fields().GetFieldIndex("release_he");
+  const int low = fields().GetFieldIndex("diameter_m"), high = fields().GetFieldIndex("diameter_1");
+  if (low < 0 || high < 0) return -1;
+  return EQUAL(name.c_str(), "diameter_min") ? low : EQUAL(name.c_str(), "diameter_max") ? high : -1;
 }
 
 std::vector<std::string> Layer::field_names() const {
@@ -178,21 +176,16 @@ std::string Layer::label(const OGRFeature& feature) const {
   return path_ + (is_csv() ? ": row " + number + " below the header" : ": feature " + number);
 }
 
-std::optional<double> Layer::number(const OGRFeature& feature, const char* name, const Bounds& bounds) const {
-  return number(feature, field(name), name, bounds);
-}
-
 std::optional<double> Layer::number(const OGRFeature& feature, int index, const std::string& name,
                                     const Bounds& bounds) const {
   if (index < 0 || feature.IsFieldSetAndNotNull(index) == 0) return std::nullopt;
   const OGRFieldType type = fields().GetFieldDefn(index)->GetType();
   const std::string unit = bounds.unit == "1" ? "" : " in " + std::string(bounds.unit);
-  if (is_csv() && type == OFTReal) refuse_comma(fields().GetFieldDefn(index)->GetNameRef(), unit);
+  if (is_csv()) refuse_comma(fields().GetFieldDefn(index)->GetNameRef(), unit);
   if (type == OFTString && *feature.GetFieldAsString(index) == '\0') return std::nullopt;
   const std::string where = label(feature) + ": field " + name + " = ";
   double value = feature.GetFieldAsDouble(index);
-  const bool of_cells = is_csv() && type != OFTReal;  // one cell that is no number makes text of the whole column
-  if (of_cells || type == OFTString) {
+  if (type == OFTString) {
     const std::string text = feature.GetFieldAsString(index);
     const auto number = number_of_cell(text);
     if (!number && text.find_first_not_of(' ') == std::string::npos) return std::nullopt;
@@ -220,11 +213,19 @@ bool Layer::holds_text(int field) const {
   return !is_csv() && fields().GetFieldDefn(field)->GetType() == OFTString;
 }
 
+std::string Layer::text(const OGRFeature& feature, int index) const {
+  if (index < 0 || feature.IsFieldSetAndNotNull(index) == 0) return {};
+  std::string text = trimmed(feature.GetFieldAsString(index));
+  if (!is_utf8(text))
+    throw InputError(label(feature) + ": field " + fields().GetFieldDefn(index)->GetNameRef() + " = '" + text + "' " +
+                     kEncodingFault);
+  return text;
+}
+
 std::string Layer::code(const OGRFeature& feature, int index) const {
   if (feature.IsFieldSetAndNotNull(index) == 0) return {};
   const OGRFieldType type = fields().GetFieldDefn(index)->GetType();
-  if (type == OFTString) return feature.GetFieldAsString(index);
-  if (type == OFTInteger || type == OFTInteger64) return std::to_string(feature.GetFieldAsInteger64(index));
+  if (type == OFTString || type == OFTInteger || type == OFTInteger64) return text(feature, index);
   throw InputError(label(feature) + ": field " + fields().GetFieldDefn(index)->GetNameRef() + " = " +
                    feature.GetFieldAsString(index) + " is of the type " + OGRFieldDefn::GetFieldTypeName(type) +
                    ", must be text or a whole number");

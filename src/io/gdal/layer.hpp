@@ -51,25 +51,28 @@ class Layer {
   /// The geometries of a feature. Empty if it has none.
   Parts parts(const OGRFeature& feature);
 
-  /// Index of a field, in any case of letters, also if a Shapefile has cut its name, this or an earlier one; -1 if
-  /// there is none.
-  int field(const char* name) const;
-  /// Index of a field that is spelt so, else of the only one that is in another case of letters; -1 if there is none.
-  /// Throws InputError if several differ from it only in their case.
-  int only_field(const std::string& name) const;
+  /// Index of a field that is spelt so, else of the only one that is in another case of letters, also if a Shapefile
+  /// has cut its name, this or an earlier one; -1 if there is none. Throws InputError if several differ from it only in
+  /// their case.
+  /// @param way_out  what the user may do then
+  int field(const std::string& name, const std::string& way_out = "rename all but one") const;
   std::vector<std::string> field_names() const;
   const OGRFeatureDefn& fields() const { return *layer_->GetLayerDefn(); }
   /// "cliffs.shp: feature 12", of a CSV "trees.csv: row 12 below the header", for messages.
   std::string label(const OGRFeature& feature) const;
-  /// The value of a numeric field, or of any field of a CSV; nothing if it is NULL or the field is not there. Throws
-  /// InputError if it is no number, or out of bounds.
-  std::optional<double> number(const OGRFeature& feature, const char* name, const Bounds& bounds) const;
-  /// The same for the field of an index (-1: none); `name` is for messages.
+  /// The value of a numeric field, or of any field of a CSV; nothing if it is NULL or the field is not there (-1).
+  /// Throws InputError if it is no number, or out of bounds.
+  /// @param name  of the field, for messages
   std::optional<double> number(const OGRFeature& feature, int index, const std::string& name,
                                const Bounds& bounds) const;
-  /// The value of a text or whole-number field; empty if it is NULL. Throws InputError for other fields.
+  /// The text of a field of any type, without blanks around it; empty if it is NULL or the field is not there (-1).
+  /// Throws InputError if it is not UTF-8.
+  std::string text(const OGRFeature& feature, int field) const;
+  /// The same of a text or whole-number field. Throws InputError for other fields.
   std::string code(const OGRFeature& feature, int field) const;
 
+  /// Whether it is a text table, whose fields are all text.
+  bool is_csv() const;
   /// Whether a field is a text field; of a CSV, whose cells are all text, no.
   bool holds_text(int field) const;
 
@@ -85,7 +88,8 @@ class Layer {
   std::vector<OGRLayer*> layers_with_geometry() const;
   [[noreturn]] void refuse_without_geometry();
   void choose_layer();
-  bool is_csv() const;
+  /// Index of a field whose name a Shapefile has cut; -1 if there is none.
+  int cut_field(const std::string& name) const;
   /// Throws InputError if a column of a CSV has a number with a decimal comma.
   void refuse_comma(std::string column, const std::string& unit) const;
   void collect(OGRGeometry& geometry, Parts& parts, const std::string& where);

@@ -40,15 +40,16 @@ class LineReader {
     return id;
   }
 
-  /// The number in a field, which must be there; nothing and a fault of the layer if it is not.
-  std::optional<double> number(const OGRFeature& feature, const char* field, std::string_view key) {
+  /// The number in a field of the layer (-1: none), which must be there; nothing and a fault of the layer if it is not.
+  /// @param key  "barriers.height"
+  std::optional<double> number(const OGRFeature& feature, int index, const std::string& key) {
+    const std::string field = key.substr(key.find('.') + 1);
     std::optional<double> value;
     layer_.faults().attempt([&] {
-      value = layer_.number(feature, field, bounds_of(key));
+      value = layer_.number(feature, index, field, bounds_of(key));
       if (!value) throw InputError(layer_.label(feature) + ": has no " + field + ", must be " + meant_);
     });
-    if (const int index = layer_.field(field); value && index >= 0)
-      use_of(index, field, std::string(bounds_of(key).unit)).add(*value);
+    if (value) use_of(index, field, std::string(bounds_of(key).unit)).add(*value);
     return value;
   }
 
@@ -151,11 +152,12 @@ ScreenLayer read_screens(const std::string& path, const Terrain& terrain) {
 BarrierLayer read_barriers(const std::string& path, const Terrain& terrain) {
   LineReader reader("barriers", path, terrain, "lines with the fields height (m) and capacity (kJ)");
   BarrierLayer out;
+  const int height = reader.layer().field("height"), capacity = reader.layer().field("capacity");
   for_each_feature(reader.layer(), [&](const Feature& feature) {
     Barrier& barrier = out.barriers.emplace_back();
     barrier.id = reader.id_of(*feature);
-    barrier.height = reader.number(*feature, "height", "barriers.height").value_or(0.0);
-    barrier.capacity = 1e3 * reader.number(*feature, "capacity", "barriers.capacity").value_or(0.0);
+    barrier.height = reader.number(*feature, height, "barriers.height").value_or(0.0);
+    barrier.capacity = 1e3 * reader.number(*feature, capacity, "barriers.capacity").value_or(0.0);
     reader.read(*feature, barrier.lines);
   });
   reader.finish(out);

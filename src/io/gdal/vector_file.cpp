@@ -39,8 +39,7 @@ char separator_of(std::string_view header) {
 }
 
 std::string lower_trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
-  std::string word = first == std::string::npos ? std::string() : text.substr(first, last - first + 1);
+  std::string word = trimmed(text);
   std::ranges::transform(word, word.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return word;
 }

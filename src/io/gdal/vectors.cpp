@@ -27,12 +27,18 @@ std::string_view key_of(const std::string& name) {
   return name.starts_with("diameter") ? "blocks.diameter" : "sources.velocity";
 }
 
+/// Index of the field that holds a quantity.
+int field_of(const Layer& layer, const std::string& name, const std::string& field) {
+  return layer.field(field, "say which is " + name + " with --field " + name +
+                                "=COLUMN or in [sources.fields], or rename all but one");
+}
+
 /// The fields of a layer that are read: those that the map names, else those of the names themselves; none where the
 /// map names none.
 std::vector<FieldUse> columns_of(const Layer& layer, const std::string& path, const FieldMap& map) {
   std::vector<std::pair<std::string, int>> mapped;
   for (const auto& [name, given] : map) {
-    const int index = given.field.empty() ? -1 : layer.only_field(given.field);
+    const int index = given.field.empty() ? -1 : field_of(layer, name, given.field);
     if (index < 0 && !given.field.empty())
       throw InputError(given.where + ": " + path + " has no field '" + given.field + "'" +
                        known_names(given.field, layer.field_names()));
@@ -44,7 +50,7 @@ std::vector<FieldUse> columns_of(const Layer& layer, const std::string& path, co
   std::vector<FieldUse> columns;
   for (const std::string& name : source_field_names()) {
     const auto entry = std::ranges::find(mapped, name, &std::pair<std::string, int>::first);
-    const int index = entry != mapped.end() ? entry->second : layer.only_field(name);
+    const int index = entry != mapped.end() ? entry->second : field_of(layer, name, name);
     if (index < 0 || (entry == mapped.end() && taken(index))) continue;
     FieldUse use{name, layer.field_names()[static_cast<std::size_t>(index)], {}, index};
     use.is_text = name == "name";
@@ -134,9 +140,10 @@ class AttributeReader {
 
   std::string text(const OGRFeature& feature, const char* name) {
     FieldUse* const c = column(name);
-    if (c == nullptr || feature.IsFieldSetAndNotNull(c->index) == 0) return {};
-    ++c->count;
-    return feature.GetFieldAsString(c->index);
+    if (c == nullptr) return {};
+    std::string text = layer_.text(feature, c->index);
+    if (!text.empty()) ++c->count;
+    return text;
   }
 
   /// The value of a field; nothing where there is none, or a faulty one.

@@ -129,7 +129,7 @@ void read_polygons(const ZoneRequest& request, const Terrain& terrain, ZoneLayer
   Layer layer("ground", request.path, terrain);
   ZoneIndex index(request, false);
   const std::string name = request.field.empty() ? "zone" : request.field;
-  const int field = layer.field(name.c_str());
+  const int field = layer.field(name, "name one of them (--zone-field)");
   out.field = name;
   if (field < 0) {
     throw InputError(request.path + ": has no field '" + name + "'" + known_names(name, layer.field_names()) +

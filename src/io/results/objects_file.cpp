@@ -6,6 +6,7 @@
 
 #include "io/gdal/geopackage.hpp"
 #include "io/gdal/layer.hpp"
+#include "io/gdal/typed_cells.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
@@ -95,6 +96,26 @@ Figures figures_of(const HazardRules& rules, const ObjectHits& hits, bool known,
   return figures;
 }
 
+/// Throws InputError if the layer has fields that differ only in their case: a GeoPackage cannot hold copies of both.
+void refuse_same_fields(const Layer& layer, const std::string& path) {
+  const std::vector<std::string> names = layer.field_names();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (EQUAL(names[i].c_str(), names[k].c_str()))
+        throw InputError(path + ": has the fields " + names[k] + ", " + names[i] +
+                         ", which differ only in the case of their letters, so that objects.gpkg cannot hold both: "
+                         "rename one or leave it out");
+}
+
+/// The first of some fields (-1: not there) that holds a text, else the number of the feature. All texts must be UTF-8:
+/// they are copied.
+std::string name_of(const Layer& layer, const OGRFeature& feature, std::initializer_list<int> of_name) {
+  for (int field = 0; field < feature.GetFieldCount(); ++field) layer.text(feature, field);
+  for (const int field : of_name)
+    if (std::string name = layer.text(feature, field); !name.empty()) return name;
+  return std::to_string(feature.GetFID());
+}
+
 }  // namespace
 
 struct ObjectLayer::State {
@@ -179,7 +200,8 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
   terrain.heights.grid = loaded.scenario.surface.grid();
   const Grid& grid = terrain.heights.grid;
   Layer layer("objects", path, terrain);
-  const int id = layer.field("name") >= 0 ? layer.field("name") : layer.field("id");
+  refuse_same_fields(layer, path);
+  const int width_field = layer.field("width");
   std::vector<bool> off_map;
   for_each_feature(layer, [&](Feature& feature) {
     Parts parts = layer.parts(*feature);
@@ -187,14 +209,13 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
       throw InputError(layer.label(*feature) + ": " + (parts.empty() ? "has no geometry" : "is a point") +
                        ", must be a polygon or a line that blocks may hit");
     const OGREnvelope box = parts.envelope();
-    const std::string name = id >= 0 ? feature->GetFieldAsString(id) : "";
-    state_->names.push_back(name.empty() ? std::to_string(feature->GetFID()) : name);
+    state_->names.push_back(name_of(layer, *feature, {layer.field("name"), layer.field("id")}));
     off_map.push_back(box.MaxX < 0.0 || box.MinX > grid.width() || box.MaxY < 0.0 || box.MinY > grid.height());
     std::optional<double> width;
     if (!parts.lines.empty()) {
-      width = layer.number(*feature, "width", kWidth);
+      width = layer.number(*feature, width_field, "width", kWidth);
       (width ? state_->lines_of_their_width : state_->lines_of_given_width) += 1;
-    } else if (const int field = layer.field("width"); field >= 0 && feature->IsFieldSetAndNotNull(field) != 0) {
+    } else if (!layer.text(*feature, width_field).empty()) {
       ++state_->polygons_with_width;
     }
     state_->objects.push_back(object_of(parts, width.value_or(line_width)));
@@ -203,6 +224,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
     state_->features.push_back(std::move(feature));
   });
   if (state_->objects.empty()) throw InputError(path + ": has no features, must have polygons or lines");
+  if (layer.is_csv()) state_->features = with_numbers(state_->features);
   state_->warn_of_places(path, off_map);
   state_->warn_of_names(path);
   if (state_->polygons_with_width > 0)

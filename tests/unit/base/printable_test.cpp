@@ -37,6 +37,18 @@ TEST(Printable, BytesThatAreNoUtf8AreShown) {
   EXPECT_EQ(printable("\xF5\x80\x80\x80"), "\\xf5\\x80\\x80\\x80");
 }
 
+TEST(IsUtf8, KnowsOtherEncodings) {
+  EXPECT_TRUE(is_utf8(""));
+  EXPECT_TRUE(
+      is_utf8("Stra\xC3\x9F"
+              "e"));
+  EXPECT_FALSE(
+      is_utf8("Stra\xDF"
+              "e"));
+  EXPECT_FALSE(is_utf8("\xED\xA0\x80"));  // half of a pair of UTF-16
+  EXPECT_FALSE(is_utf8("ab\xC3"));
+}
+
 TEST(Shortened, CutsNoCharacter) {
   EXPECT_EQ(shortened("abc", 3), "abc");
   EXPECT_EQ(shortened("abcd", 3), "abc...");

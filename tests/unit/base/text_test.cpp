@@ -40,6 +40,8 @@ TEST(CsvField, IsInQuotationMarksWhereItMust) {
   EXPECT_EQ(csv_field("a b"), "a b");
   EXPECT_EQ(csv_field("a,b"), "\"a,b\"");
   EXPECT_EQ(csv_field("5\" pipe"), "\"5\"\" pipe\"");
+  EXPECT_EQ(csv_field("a "), "\"a \"");  // readers cut outer blanks off
+  EXPECT_EQ(csv_field("\ta"), "\"\ta\"");
   EXPECT_EQ(csv_field(0.125), "0.125");
   EXPECT_EQ(csv_field(std::nan("")), "");
 }

@@ -28,7 +28,8 @@ struct CrossingTable {
 /// barrier only once. Throws InputError with line and column; a screen without rows gives empty lists.
 CrossingTable read_crossings(const std::string& path, const std::string& screen);
 
-/// How many crossings of a screen `screens_summary.csv` tells; nothing if it is not there or does not know the screen.
+/// How many crossings of a screen `screens_summary.csv` tells; nothing if it is not there. Throws InputError
+/// if it does not know the screen.
 std::optional<std::size_t> crossings_in_summary(const std::string& path, const std::string& screen);
 
 }  // namespace talus::io
