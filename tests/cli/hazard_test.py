@@ -272,6 +272,10 @@ class Hazard(Case):
         for name in ("gap", "edge", "far"):
             self.assertEqual([rows[name][key] for key in ("trajectories", "frequency", "frequency_upper")], [None] * 3, name)
         self.assertIsNotNone(rows["mostly off"]["frequency"])
+        write_features(self.path("far.gpkg"), "o", [(box(5000, 0, 9, 9), ["far"])], [("name", ogr.OFTString)])
+        self.fails(2, "far.gpkg: lies wholly off the DEM: its features reach over east 2605000 to 2605009",
+                   "the DEM over east 2600000 to 2600300", "is the coordinate system of the layer the right one?",
+                   arguments=["hazard", self.path("out"), "--objects", self.path("far.gpkg"), "--overwrite", "-q"])
         write_features(self.path("gap.gpkg"), "o", shapes[:1], [("name", ogr.OFTString)])
         self.fails(2, "gap.gpkg: none of its objects lies where the DEM has a height", "fill the gaps of the DEM",
                    arguments=["hazard", self.path("out"), "--objects", self.path("gap.gpkg"), "--overwrite", "-q"])

@@ -6,6 +6,7 @@
 
 #include "io/gdal/geopackage.hpp"
 #include "io/gdal/layer.hpp"
+#include "io/gdal/off_map.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
@@ -137,8 +138,6 @@ void ObjectLayer::State::warn_of_places(const std::string& path, const std::vect
     if (is_partial(i)) partial.push_back(i);
     if (!known(i)) (off_map[i] ? off : gaps).push_back(names[i]);
   }
-  if (off.size() == names.size())
-    throw InputError(path + ": lies wholly off the DEM: is the coordinate system of the layer the right one?");
   if (off.size() + gaps.size() == names.size())
     throw InputError(path +
                      ": none of its objects lies where the DEM has a height (it has none in its gaps and in its "
@@ -181,6 +180,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
   Layer layer("objects", path, terrain);
   const int id = layer.field("name") >= 0 ? layer.field("name") : layer.field("id");
   std::vector<bool> off_map;
+  OGREnvelope all;
   for_each_feature(layer, [&](Feature& feature) {
     Parts parts = layer.parts(*feature);
     if (parts.empty() || !parts.points.empty())
@@ -189,7 +189,8 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
     const OGREnvelope box = parts.envelope();
     const std::string name = id >= 0 ? feature->GetFieldAsString(id) : "";
     state_->names.push_back(name.empty() ? std::to_string(feature->GetFID()) : name);
-    off_map.push_back(box.MaxX < 0.0 || box.MinX > grid.width() || box.MaxY < 0.0 || box.MinY > grid.height());
+    off_map.push_back(wholly_off(box, grid));
+    all.Merge(box);
     std::optional<double> width;
     if (!parts.lines.empty()) {
       width = layer.number(*feature, "width", kWidth);
@@ -203,6 +204,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
     state_->features.push_back(std::move(feature));
   });
   if (state_->objects.empty()) throw InputError(path + ": has no features, must have polygons or lines");
+  if (std::ranges::count(off_map, false) == 0) throw InputError(off_dem_text(path, all, layer, terrain));
   state_->warn_of_places(path, off_map);
   state_->warn_of_names(path);
   if (state_->polygons_with_width > 0)
