@@ -320,6 +320,10 @@ class Weights(Case):
         other = self.write("w.toml", "[features]\nwest = 0.1\neast = 5.0\n")
         swapped = self.report("--frequency", other)
         self.expect(swapped, 0.1, 5.0)
+        self.assertNotIn("frequency", weighted)
+        self.assertEqual(swapped["frequency"]["file"], other)
+        self.assertEqual(swapped["frequency"]["given"], {"frequency": {}, "features": {"west": 0.1, "east": 5.0}})
+        self.assertAlmostEqual(swapped["frequency"]["events_per_year"], 5.1, 9)
         none = self.report("--frequency", self.write("z.toml", "[features]\nwest = 3.0\neast = 0.0\n"))
         self.assertIn("are of sources with a frequency of 0 and count nothing", " ".join(none["notes"]))
         self.assertAlmostEqual(none["design"][2]["value"], math.pi / 6 * 0.5**3, 4)  # the largest that ever falls

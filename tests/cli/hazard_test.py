@@ -129,6 +129,35 @@ class Hazard(Case):
         self.refused("no such feature", "hazard", self.path("other"), "--overwrite", "--frequency",
                      self.write("bad.toml", "[features]\neats = 1\n"))
 
+    def test_the_record_says_what_another_weighting_was(self):
+        """Also when its file is gone."""
+        self.simulate()
+
+        def record(text, *more):
+            new = self.write("new.toml", text)
+            with open(new, "rb") as file:
+                digest = hashlib.sha256(file.read()).hexdigest()
+            self.run_well("hazard", self.path("out"), "--frequency", new, "--overwrite", "-q", *more)
+            os.remove(new)
+            with open(self.path("out/hazard.json"), encoding="utf-8") as file:
+                whole = json.load(file)
+            frequency = whole["frequency"]
+            self.assertEqual((frequency["file"], frequency["sha256"], frequency["replayed"]), (new, digest, True))
+            self.assertEqual(frequency["events_per_year"], whole["events_per_year"])
+            return frequency
+
+        one = record("[features]\neast = 3.0\n")
+        self.assertEqual(one["given"], {"frequency": {}, "features": {"east": 3.0}})
+        self.assertAlmostEqual(one["events_per_year"], 3.5, 9)
+        area = record("[frequency]\nby_true_area = true\nper_area = 0.001\n[features]\n")
+        self.assertEqual(area["given"], {"frequency": {"by_true_area": True, "per_area": 0.001}, "features": {}})
+        total = record("[frequency]\ntotal = 7\n")
+        self.assertEqual(total["given"], {"frequency": {"total": 7.0}, "features": {}})
+        self.assertAlmostEqual(total["events_per_year"], 7.0, 6)
+        self.run_well("hazard", self.path("out"), "--overwrite", "-q")
+        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
+            self.assertNotIn("frequency", json.load(file))
+
     def test_features_of_one_name_are_named_by_number(self):  # each got the value
         write_features(self.path("sources.gpkg"), "sources",
                        [(box(100, 230, 20, 10), ["a", 0.5]), (box(200, 230, 20, 10), ["a", 0.2])],
@@ -272,6 +301,10 @@ class Hazard(Case):
         for name in ("gap", "edge", "far"):
             self.assertEqual([rows[name][key] for key in ("trajectories", "frequency", "frequency_upper")], [None] * 3, name)
         self.assertIsNotNone(rows["mostly off"]["frequency"])
+        write_features(self.path("far.gpkg"), "o", [(box(5000, 0, 9, 9), ["far"])], [("name", ogr.OFTString)])
+        self.fails(2, "far.gpkg: lies wholly off the DEM: its features reach over east 2605000 to 2605009",
+                   "the DEM over east 2600000 to 2600300", "is the coordinate system of the layer the right one?",
+                   arguments=["hazard", self.path("out"), "--objects", self.path("far.gpkg"), "--overwrite", "-q"])
         write_features(self.path("gap.gpkg"), "o", shapes[:1], [("name", ogr.OFTString)])
         self.fails(2, "gap.gpkg: none of its objects lies where the DEM has a height", "fill the gaps of the DEM",
                    arguments=["hazard", self.path("out"), "--objects", self.path("gap.gpkg"), "--overwrite", "-q"])

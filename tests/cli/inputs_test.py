@@ -440,6 +440,24 @@ class OffTheDem(InputCase):
         self.fails(2, "zones.tif: gives no cell of the DEM a zone: it reaches over", "the DEM over",
                    arguments=["check", self.path("s.toml")])
 
+    def test_barriers(self):
+        """Those of a file and those of the scenario, with east and north exchanged: both are called, with their extent."""
+        west, east, north = WEST + 20, WEST + 280, NORTH - 180
+        exchanged = f"LINESTRING ({north} {west},{north} {east})"
+        write_features(self.path("nets.gpkg"), "nets", [(exchanged, [3.0, 1000.0])],
+                       [("height", ogr.OFTReal), ("capacity", ogr.OFTReal)])
+        head = 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1.2\n[barriers]\n'
+        line = 'line = [{{ id = "fence", height = 3, from = [{}, {}], to = [{}, {}] }}]\n'
+        off = "lines wholly off the DEM, which nothing will cross: "
+        place = (f"; they reach over east {north:.0f} to {north:.0f}, north {west:.0f} to {east:.0f}, "
+                 f"the DEM over east {WEST:.0f} to {WEST + 300:.0f}, north {NORTH - 300:.0f} to {NORTH:.0f} in EPSG:2056")
+        for text, said in (('file = "nets.gpkg"\n', "nets.gpkg: " + off + "features 1" + place),
+                           (line.format(north, west, north, east), "barriers.line (scenario): " + off + "barriers fence" + place),
+                           (line.format(west, north, east, north), "")):
+            plan = self.run_well("check", self.write("s.toml", head + text)).stdout
+            self.assertEqual("wholly off" in plan, said != "", plan)
+            self.assertIn(said, plan)
+
     def test_nothing_is_said_of_features_inside(self):
         self.assertNotIn("lies", "\n".join(self.said([(box(140, 230, 20, 10), ["cliff"])])))
 

@@ -256,6 +256,33 @@ class Content(Report):
             file.write("# another\n")
         self.assertIn("has changed since the run", self.page("--overwrite").text)
 
+    def test_frequencies_of_another_file(self):
+        """The page names those that the maps were made with, and a barrier that was designed by others."""
+        self.run_scenario("out")
+        note = "this design counts by other frequencies than the hazard maps"
+
+        def text(*given):
+            self.run_well("hazard", self.path("out"), "--overwrite", "-q", *given)
+            return self.page("--overwrite").text
+
+        self.run_well("barrier", self.path("out"), "--screen", "road", "-q")
+        page = text()
+        self.assertIn("follow from those of the run (settings, under Record): 0.52 events per year together", page)
+        self.assertNotIn(note, page)
+        new = self.write("w.toml", "[features]\nwest = 5\n")
+        page = text("--frequency", new)
+        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
+            digest = json.load(file)["frequency"]["sha256"]
+        of_file = (f"those in {new} ([features] west = 5; SHA-256 {digest}), "
+                   "which take the place of those of the run (settings, under Record)")
+        self.assertIn(f"follow from {of_file}: 5.02 events per year together", page)
+        self.assertIn(f"{note}: those of the run (settings, under Record); the maps by {of_file}", page)
+        self.run_well("barrier", self.path("out"), "--screen", "road", "--frequency", new, "-q")
+        self.assertNotIn(note, self.page("--overwrite").text)
+        self.assertIn(f"{note}: {of_file}; the maps by those of the run", text())
+        self.run_well("barrier", self.path("out"), "--screen", "road", "--unweighted", "-q")
+        self.assertNotIn(note, self.page("--overwrite").text)
+
     def test_hostile_names_stay_text(self):
         road = f"road{HOSTILE}"
         write_features(self.path("screens.gpkg"), "screens",

@@ -4,6 +4,7 @@ import json
 import math
 import os
 import random
+import shutil
 import unittest
 
 from support import NORTH, WEST, Case
@@ -103,6 +104,16 @@ class Calibrate(Sites):
         a, b = self.measure("a", 0, 5, GROUND), self.measure("b", 40, 6, GROUND)
         out = ("-o", self.path("out"))
         self.fails(2, "the same name", arguments=("calibrate", a, a, *out))
+        for name, words in (("report.md", "must not be the name of a file of the results"),
+                            ("diagnosis.json", "must not be the name of a file of the results"),
+                            ("long " * 52, "has 260 bytes, must have at most 255")):
+            os.makedirs(self.path("named"), exist_ok=True)
+            shutil.copytree(self.path("a"), self.path("named"), dirs_exist_ok=True)
+            named = self.write("named/campaign.toml", self.text("a/campaign.toml").replace('name = "a"', f'name = "{name}"'))
+            for command in ("calibrate", "diagnose"):
+                self.fails(2, "named/campaign.toml: name = '", words, 'another name = "..."',
+                           arguments=(command, a, named, "-o", self.path("none"), "-q"))
+        self.assertFalse(os.path.exists(self.path("none")))
         self.fails(2, "--share phi", "--fit", arguments=("calibrate", a, b, "--fit", "En50", "--share", "phi", *out))
         self.fails(2, "--share En50", "must be several", arguments=("calibrate", a, "--fit", "En50", "--share", "En50", *out))
         with open(self.path("b/blocks.csv"), encoding="utf-8") as file:

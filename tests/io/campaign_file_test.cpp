@@ -123,6 +123,24 @@ TEST_F(Campaigns, ZonesOfARaster) {
   refused("zones = \"zones.tif\"\n[zone_names]\n1 = \"default\"\n7 = \"rock\"\n", {"c.toml:5", "another name"});
 }
 
+/// `code` of the fitted model could not hold them.
+TEST_F(Campaigns, CodesOfZonesAreThoseOfAScenario) {
+  RasterFile zones;
+  zones.type = GDT_Int16;
+  zones.values.assign(80, -1.0);
+  zones.write(path("zones.tif"));
+  const std::string head = "zones = \"zones.tif\"\n[zone_names]\n";
+  refused(head + "\"-1\" = \"scree\"\n",
+          {"c.toml:5: zone_names.-1 = 'scree': the code '-1' must be a whole number, 0 to 1e+15"});
+  refused(head + "x = \"rock\"\n", {"c.toml:5", "the code 'x' must be a whole number, 0 to 1e+15"});
+  refused(head + "\"1.5\" = \"rock\"\n", {"c.toml:5", "the code '1.5' must be a whole number"});
+  refused(head + "01 = \"rock\"\n", {"c.toml:5", "the code '01' must be written as", "1"});
+  refused(head + "2 = \"rock\"\n", {"zones.tif", "zone '-1'", "codes are 0 and above", "nodata"});
+  std::string many;
+  for (int i = 0; i < 256; ++i) many += std::to_string(i) + " = \"zone " + std::to_string(i) + "\"\n";
+  refused(head + many, {"c.toml", "[zone_names] has 256 zones", "at most 255"});
+}
+
 TEST_F(Campaigns, FaultsNameFileLineColumnAndValue) {
   refused("colour = 1\n", {"c.toml:3", "unknown key 'colour'"});
   refused("stops = \"none.csv\"\n", {"c.toml:3", "none.csv", "no such file"});

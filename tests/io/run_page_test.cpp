@@ -15,6 +15,7 @@
 #include "io/reports/report_map_page.hpp"
 #include "io/reports/report_objects.hpp"
 #include "io/reports/report_screens.hpp"
+#include "io/results/frequency_record.hpp"
 
 namespace talus::io {
 namespace {
@@ -160,6 +161,25 @@ TEST(Facts, DiametersOfBlocksAreNotTheirWeights) {
   ASSERT_TRUE(spheres);
   EXPECT_NEAR(spheres->first, 0.5759, 1e-4);  // (6 V / pi)^(1/3)
   EXPECT_NEAR(spheres->second, 1.9695, 1e-4);
+}
+
+TEST(Frequency, OfARecord) {
+  const FrequencyFacts run = frequency_of(Json::object());
+  const FrequencyFacts earlier = frequency_of({{"frequency", {{"file", "w.toml"}, {"replayed", true}}}});
+  GivenFrequencies given{"w.toml", "12ab", {}, true, {{"north cliff", 0.25}}};
+  given.rules.scale = 0.01, given.rules.exponent = 0.6;
+  const FrequencyFacts file = frequency_of({{"frequency", json_of(given, 5.2)}});
+  EXPECT_EQ(frequency_text(run), "those of the run (settings, under Record)");
+  EXPECT_THAT(frequency_text(earlier), HasSubstr("those in w.toml (what it said is not recorded), which take"));
+  EXPECT_THAT(frequency_text(file), HasSubstr("those in w.toml ([frequency] by_true_area = true, power_law = "
+                                              "{\"A\":0.01,\"b\":0.6}; [features] north cliff = 0.25; SHA-256 12ab)"));
+  const std::string by = "by the annual frequency of its source";
+  EXPECT_EQ(other_frequency_note(by, run, run), "");
+  EXPECT_EQ(other_frequency_note(by, file, file), "");
+  EXPECT_EQ(other_frequency_note(by, earlier, file), "");  // the name is all that is known
+  EXPECT_THAT(other_frequency_note(by, run, file),
+              HasSubstr("other frequencies than the hazard maps: those of the run"));
+  EXPECT_EQ(other_frequency_note("alike, as --unweighted asks", run, file), "");
 }
 
 TEST(Escaping, EveryFieldOfEverySection) {

@@ -127,6 +127,8 @@ std::vector<talus::LineCrossing> crossings_of(const CrossingTable& table, const 
                            " of the crossings are of sources with a frequency of 0 and count "
                            "nothing");
   report.weighting = weighting.text;
+  report.frequency = weighting.given;
+  if (weighting.scale) report.events_per_year = weighting.scale->total;
   report.effective = talus::effective_number(crossings);
   const std::size_t fewest = talus::fewest_for_percentile(0.01 * o.percentile);
   if (report.effective < static_cast<double>(fewest) - 1e-9)

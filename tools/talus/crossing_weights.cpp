@@ -60,9 +60,11 @@ Weighting weigh_crossings(std::vector<talus::LineCrossing>& crossings, const Cro
   try {
     const auto header = talus::io::read_hazard(
         file, [](const talus::io::HazardHeader&) {}, [](const talus::io::HazardRow&) {});
-    const auto loaded = talus::io::recorded_plan(o.folder, header.plan, o.frequency);
+    auto loaded = talus::io::recorded_plan(o.folder, header.plan);
+    talus::io::GivenFrequencies given;
+    if (!o.frequency.empty()) given = talus::io::apply_weighting(o.frequency, loaded.scenario);
     const auto scale = weigh(crossings, table, loaded.scenario, o);
-    return {"by the annual frequency " + (o.frequency.empty() ? "of its source" : "in " + o.frequency), scale};
+    return {"by the annual frequency " + (o.frequency.empty() ? "of its source" : "in " + o.frequency), scale, given};
   } catch (const talus::InputError& error) {
     throw talus::InputError(std::string(error.what()) + " (--unweighted counts every block alike)");
   }

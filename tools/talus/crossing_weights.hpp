@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "talus/io/gdal/crossings_file.hpp"
+#include "talus/io/results/weighting_file.hpp"
 #include "talus/products/barrier_design.hpp"
 #include "talus/products/hazard.hpp"
 
@@ -11,6 +12,7 @@
 struct Weighting {
   std::string text;                         ///< "alike: ...", "by the annual frequency ..."
   std::optional<talus::WeightScale> scale;  ///< nothing where all count alike
+  talus::io::GivenFrequencies given{};      ///< another weighting than the run's
 
   /// Crossings per year of which the sum of the weights and of their squares is known.
   std::optional<talus::Bounded> per_year(double sum, double squares) const;

@@ -105,9 +105,11 @@ std::string warning_of_objects(const Options& options, const talus::io::HazardHe
          " m holds for passage densities and the maps of --width only";
 }
 
-/// The recorded plan, with the weighting that is asked for.
-talus::io::LoadedScenario recorded_plan(const Options& options, const std::string& plan) {
-  return talus::io::recorded_plan(options.folder, plan, options.frequency);
+/// The recorded plan, with the weighting that is asked for, which goes into the record.
+talus::io::LoadedScenario recorded_plan(const Options& options, talus::io::HazardRecord& record) {
+  talus::io::LoadedScenario loaded = talus::io::recorded_plan(options.folder, record.header.plan);
+  if (!options.frequency.empty()) record.frequency = talus::io::apply_weighting(options.frequency, loaded.scenario);
+  return loaded;
 }
 
 /// Traces the recorded plan again with other weights and evaluates every cell.
@@ -116,7 +118,7 @@ std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, c
   record.header = talus::io::read_hazard(
       file, [](const talus::io::HazardHeader&) {}, [](const talus::io::HazardRow&) {});
   if (record.width > 0.0) check_width(record.header, record.matrix);
-  const talus::io::LoadedScenario loaded = recorded_plan(options, record.header.plan);
+  const talus::io::LoadedScenario loaded = recorded_plan(options, record);
   const talus::Scenario& scenario = loaded.scenario;
   auto weights = talus::AnnualWeights::of(scenario);
   if (!weights)
@@ -132,7 +134,6 @@ std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, c
   if (totals.interrupted || interrupted()) stop_interrupted();
   record.header.rules = tally.hazard_rules();
   record.header.left_weight = totals.left_weight;
-  record.frequency_file = options.frequency;
   record.replayed = true;
   auto survey = std::make_unique<talus::HazardSurvey>(record.header.grid, record.header.rules, record.matrix,
                                                       talus::ObjectWidth{record.width, record.header.passages_below},
@@ -155,7 +156,7 @@ std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, c
 /// Runs the recorded plan again and writes the hazard of each object. Returns how often each is hit, in words.
 std::vector<std::string> write_objects(const Options& options, const fs::path& folder,
                                        talus::io::HazardRecord& record) {
-  const talus::io::LoadedScenario loaded = recorded_plan(options, record.header.plan);
+  const talus::io::LoadedScenario loaded = recorded_plan(options, record);
   const talus::io::ObjectLayer layer(options.objects, loaded, options.width);
   for (const std::string& warning : layer.warnings()) record.warnings.push_back(warning);
   if (!options.quiet && !layer.lines_text().empty()) say("", options.objects + ": " + layer.lines_text());

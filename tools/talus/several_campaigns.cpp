@@ -7,6 +7,7 @@
 #include <set>
 
 #include "talus/base/error.hpp"
+#include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/campaign/model_file.hpp"
 
@@ -21,6 +22,17 @@ std::string folder_name(std::string name) {
 
 bool all_differ(const std::vector<std::string>& names) {
   return std::set<std::string>(names.begin(), names.end()).size() == names.size();
+}
+
+/// Throws InputError if a site cannot have a folder of its name among the results, which are written last.
+void check_folder(const std::string& name, const std::string& path) {
+  constexpr std::size_t kLongest = 255;  // [byte], of a file system
+  std::string fault;
+  if (talus::io::is_fit_file(name)) fault = "must not be the name of a file of the results";
+  if (name.size() > kLongest) fault = "has " + std::to_string(name.size()) + " bytes, must have at most 255";
+  if (!fault.empty())
+    throw talus::InputError(path + ": name = '" + talus::shortened(name, 60) + "': becomes that of a folder and " +
+                            fault + "; give it another name = \"...\"");
 }
 
 /// Names of the sites: of the campaigns or, where two are the same, of their folders.
@@ -56,6 +68,7 @@ OpenedSites::OpenedSites(const CampaignCommand& command, talus::io::FitRecord& r
     : paths(command.campaigns), loaded(read_campaigns(command)), folder(command.out, command.overwrite) {
   for (std::size_t i = 0; i < paths.size(); ++i) require_measurements(paths[i], loaded[i].campaign);
   std::vector<std::string> names = site_names(paths, loaded, record.warnings);
+  for (std::size_t i = 0; i < paths.size(); ++i) check_folder(names[i], paths[i]);
   std::vector<std::size_t> order(paths.size());
   std::iota(order.begin(), order.end(), 0U);
   std::ranges::sort(order, {}, [&](std::size_t i) { return names[i]; });

@@ -7,6 +7,7 @@
 #include "deposit_tables.hpp"
 #include "io/files/checksum.hpp"
 #include "io/gdal/dataset.hpp"
+#include "io/scenario/ground_keys.hpp"
 #include "io/scenario/named_file.hpp"
 #include "io/scenario/surface_key.hpp"
 #include "io/scenario/table_reader.hpp"
@@ -100,13 +101,20 @@ class CampaignReader {
     for (const auto& [code, value] : table.value()->members) {
       const auto name = table.text(code);
       if (!name) continue;
-      if (*name == "default")
+      if (const auto fault = fault_of_code(code))
+        table.fault(code, value,
+                    "the code '" + code + "' " + *fault + ": give the zone such a number, in the raster, too");
+      else if (*name == "default")
         table.fault(code, value, "must be another name: default is what no zone covers");
       else if (std::count(spec_.zone_names.begin(), spec_.zone_names.end(), *name) > 0)
         table.fault(code, value, "is the name of two zones, must be of one");
       spec_.zone_codes.push_back(code);
       spec_.zone_names.push_back(*name);
     }
+    constexpr std::size_t kMostZones = 255;  // as of [ground.zones]
+    if (spec_.zone_names.size() > kMostZones)
+      faults_.push_back(path_ + ": [zone_names] has " + std::to_string(spec_.zone_names.size()) +
+                        " zones, must be at most " + std::to_string(kMostZones));
   }
 
   void read_error(TableReader table) {

@@ -49,7 +49,7 @@ bool is_site(const fs::path& folder) {
   if (!fs::is_directory(folder, none) || fs::is_symlink(folder, none) || !fs::exists(folder / "fitted.toml", none))
     return false;
   return std::ranges::all_of(fs::directory_iterator(folder), [](const fs::directory_entry& entry) {
-    return is_one_of(entry.path().filename().string(), kFitFiles);
+    return is_fit_file(entry.path().filename().string());
   });
 }
 
@@ -83,6 +83,10 @@ bool is_beside(const fs::path& folder, const std::string& name, const std::set<s
 }
 
 }  // namespace
+
+bool is_fit_file(const std::string& name) {
+  return is_one_of(name, kFitFiles);
+}
 
 std::string read_file_of(const std::string& name) {
   for (const std::string_view end : kBeside)

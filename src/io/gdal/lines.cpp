@@ -5,12 +5,43 @@
 #include <set>
 
 #include "layer.hpp"
+#include "off_map.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/terrain/no_height.hpp"
 
 namespace talus::io {
 namespace {
+
+/// Lines that lie wholly off the DEM: one warning of all.
+class LinesOff {
+ public:
+  explicit LinesOff(const Terrain& terrain) : terrain_(terrain) {}
+
+  /// Keeps the name of lines if they lie wholly off the DEM. Returns whether they do.
+  bool add(const std::string& name, const std::vector<std::vector<Eigen::Vector2d>>& lines) {
+    OGREnvelope box;
+    for (const auto& line : lines)
+      for (const Eigen::Vector2d& place : line) box.Merge(place.x(), place.y());
+    if (!wholly_off(box, terrain_.heights.grid)) return false;
+    names_.push_back(name);
+    box_.Merge(box);
+    return true;
+  }
+
+  /// @param what  the names are of: "features" @param from  see `extents_text`
+  void warn(const std::string& where, const std::string& what, const std::string& from,
+            std::vector<std::string>& warnings) const {
+    if (!names_.empty())
+      warnings.push_back(where + ": lines wholly off the DEM, which nothing will cross: " + what + " " +
+                         list_of(names_) + "; they reach over " + extents_text(box_, from, terrain_));
+  }
+
+ private:
+  const Terrain& terrain_;
+  std::vector<std::string> names_;
+  OGREnvelope box_;
+};
 
 /// Reads the lines of a layer, feature by feature, for screens and barriers.
 class LineReader {
@@ -19,7 +50,7 @@ class LineReader {
   LineReader(std::string role, const std::string& path, const Terrain& terrain, std::string meant)
       : path_(path),
         meant_(std::move(meant)),
-        grid_(terrain.heights.grid),
+        off_(terrain),
         layer_(std::move(role), path, terrain),
         id_(layer_.field("id")) {
     if (id_ >= 0) use_of(id_, "id", "").is_text = true;
@@ -60,15 +91,15 @@ class LineReader {
     if (!parts.polygons.empty() || !parts.points.empty() || parts.lines.empty())
       throw InputError(layer_.label(feature) + ": " + (parts.empty() ? "has no geometry" : "is no line") +
                        ", must be " + meant_);
+    std::vector<std::vector<Eigen::Vector2d>> own;
     for (const OGRLineString& line : parts.lines) {
       if (line.getNumPoints() < 2 || line.get_Length() == 0.0)
         throw InputError(layer_.label(feature) + ": line has no length, must have two places at least");
-      std::vector<Eigen::Vector2d>& places = lines.emplace_back();
+      std::vector<Eigen::Vector2d>& places = own.emplace_back();
       for (int i = 0; i < line.getNumPoints(); ++i) places.emplace_back(line.getX(i), line.getY(i));
     }
-    const OGREnvelope box = parts.envelope();
-    const bool off = box.MaxX < 0.0 || box.MinX > grid_.width() || box.MaxY < 0.0 || box.MinY > grid_.height();
-    if (off) off_map_.push_back(feature.GetFID());
+    const bool off = off_.add(std::to_string(feature.GetFID()), own);
+    lines.insert(lines.end(), own.begin(), own.end());
     return !off;
   }
 
@@ -81,9 +112,7 @@ class LineReader {
       if (given_.contains(number))
         throw InputError(label + ": has no id, and its number " + number +
                          " is the id of another line, must have an id of its own");
-    if (!off_map_.empty())
-      out.warnings.push_back(path_ + ": lines wholly off the DEM, which nothing will cross: features " +
-                             list_of(off_map_));
+    off_.warn(path_, "features", brought_from(layer_), out.warnings);
     if (id_ < 0) out.notes.push_back(path_ + ": no field id: the lines are called by the numbers of their features");
     if (!uses_.empty()) out.notes.push_back(fields_note(path_, uses_, features_));
     out.reprojections = layer_.reprojections();
@@ -100,14 +129,13 @@ class LineReader {
   }
 
   std::string path_, meant_;
-  const Grid& grid_;
+  LinesOff off_;
   Layer layer_;
   int id_;
   std::vector<FieldUse> uses_;                   // of `id` first
   std::set<std::string> given_;                  // ids of features that have one
   std::map<std::string, std::string> numbered_;  // the others: number and label
   std::size_t features_ = 0;
-  std::vector<std::int64_t> off_map_;
 };
 
 /// A warning of the screens that lie, wholly or partly, where the terrain has no height.
@@ -162,6 +190,13 @@ BarrierLayer read_barriers(const std::string& path, const Terrain& terrain) {
   });
   reader.finish(out);
   return out;
+}
+
+void warn_of_barriers_off(const std::string& where, std::span<const Barrier> barriers, const Terrain& terrain,
+                          std::vector<std::string>& warnings) {
+  LinesOff off(terrain);
+  for (const Barrier& barrier : barriers) off.add(barrier.id, barrier.lines);
+  off.warn(where, "barriers", "", warnings);
 }
 
 }  // namespace talus::io

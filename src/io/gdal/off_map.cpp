@@ -95,13 +95,24 @@ double share_outside(const Parts& parts, const Grid& grid) {
   return amount.whole > 0.0 ? std::clamp(1.0 - amount.inside / amount.whole, 0.0, 1.0) : 0.0;
 }
 
-std::string off_dem_text(const std::string& path, const OGREnvelope& box, const Layer& layer, const Terrain& terrain) {
+bool wholly_off(const OGREnvelope& box, const Grid& grid) {
+  return box.MaxX < 0.0 || box.MinX > grid.width() || box.MaxY < 0.0 || box.MinY > grid.height();
+}
+
+std::string brought_from(const Layer& layer) {
+  return layer.reprojections().empty() ? "" : crs_name(layer.crs_wkt());
+}
+
+std::string extents_text(const OGREnvelope& box, const std::string& from, const Terrain& terrain) {
   const Grid& grid = terrain.heights.grid;
+  return extent_text({box.MinX + grid.west, box.MinY + grid.south, box.MaxX + grid.west, box.MaxY + grid.south}) +
+         (from.empty() ? "" : " (brought from " + from + ")") + ", the DEM over " + extent_text(terrain.extent()) +
+         " in " + crs_name(terrain.geo.crs_wkt);
+}
+
+std::string off_dem_text(const std::string& path, const OGREnvelope& box, const Layer& layer, const Terrain& terrain) {
   return path + ": lies wholly off the DEM: its features reach over " +
-         extent_text({box.MinX + grid.west, box.MinY + grid.south, box.MaxX + grid.west, box.MaxY + grid.south}) +
-         (layer.reprojections().empty() ? "" : " (brought from " + crs_name(layer.crs_wkt()) + ")") +
-         ", the DEM over " + extent_text(terrain.extent()) + " in " + crs_name(terrain.geo.crs_wkt) +
-         ": is the coordinate system of the layer the right one?";
+         extents_text(box, brought_from(layer), terrain) + ": is the coordinate system of the layer the right one?";
 }
 
 const char* kind_of(const Parts& parts) {

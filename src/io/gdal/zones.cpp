@@ -40,11 +40,7 @@ class ZoneIndex {
     }
     if (found == names_.end())
       throw InputError(where + ": zone '" + zone + "' is not described, must be one of [" + request_.table +
-                       "]: " + (names_.empty() ? "none is there" : joined(names_)) + ": " +
-                       (request_.table == "ground.zones" ? "call the zone by a preset (talus presets), also in another "
-                                                           "field (--zone-field), or add [ground.zones." +
-                                                               quoted(zone) + "] with a preset to a scenario"
-                                                         : "add " + quoted(zone) + " = \"NAME\" there"));
+                       "]: " + (names_.empty() ? "none is there" : joined(names_)) + ": " + way_out(zone));
     const auto index = static_cast<std::size_t>(found - names_.begin());
     seen_[index] = true;
     return static_cast<std::uint8_t>(index + 1);
@@ -61,6 +57,15 @@ class ZoneIndex {
   }
 
  private:
+  /// What to do about a zone that is not described.
+  std::string way_out(const std::string& zone) const {
+    if (request_.table == "ground.zones")
+      return "call the zone by a preset (talus presets), also in another field (--zone-field), or add [ground.zones." +
+             quoted(zone) + "] with a preset to a scenario";
+    if (zone.starts_with('-'))
+      return "codes are 0 and above: make these cells nodata (the default ground), or give them such a code";
+    return "add " + quoted(zone) + " = \"NAME\" there";
+  }
   [[noreturn]] void refuse_both(const std::string& code, const std::string& one, const std::string& other) const {
     throw InputError(request_.path + ": '" + code + "' stands for both " + one + " and " + other +
                      ": give each a code of its own");

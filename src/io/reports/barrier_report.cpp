@@ -6,6 +6,7 @@
 #include "barrier_stretches.hpp"
 #include "io/files/json.hpp"
 #include "io/files/own_files.hpp"
+#include "io/results/frequency_record.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/vector.hpp"
 #include "talus/base/version.hpp"
@@ -177,6 +178,7 @@ std::string barrier_json(const BarrierReport& r) {
   json["released"] = r.released;
   json["crossings"] = r.crossings;
   json["weighting"] = r.weighting;
+  if (!r.frequency.file.empty()) json["frequency"] = json_of(r.frequency, r.events_per_year);
   json["effective_crossings"] = r.effective;
   json["crossings_per_year"] = r.per_year ? bounded_of(*r.per_year) : Json();
   json["factors"] = {{"gTr", r.factors.trajectory},

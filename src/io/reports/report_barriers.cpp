@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report_facts.hpp"
 #include "svg.hpp"
 #include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
@@ -53,6 +52,7 @@ BarrierPart part_of(const Json& json) {
     part.stretches.push_back(stretch);
   }
   part.notes = texts_of(json, "notes");
+  part.frequency = frequency_of(json);
   return part;
 }
 
@@ -154,7 +154,7 @@ double BarrierPart::value(const std::string& name) const {
   return found == design.end() ? 0.0 : found->value;
 }
 
-std::vector<BarrierPart> read_barrier_parts(const fs::path& folder) {
+std::vector<BarrierPart> read_barrier_parts(const fs::path& folder, const std::optional<HazardFacts>& hazard) {
   std::vector<fs::path> files;
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder, none))
@@ -163,7 +163,12 @@ std::vector<BarrierPart> read_barrier_parts(const fs::path& folder) {
   std::ranges::sort(files);
   if (files.size() > kMostBarriers) files.resize(kMostBarriers);
   std::vector<BarrierPart> parts;
-  for (const fs::path& file : files) parts.push_back(understood(file, part_of));
+  for (const fs::path& file : files) {
+    BarrierPart& part = parts.emplace_back(understood(file, part_of));
+    if (!hazard) continue;
+    std::string note = other_frequency_note(part.weighting, part.frequency, hazard->frequency);
+    if (!note.empty()) part.notes.push_back(std::move(note));
+  }
   return parts;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "markup.hpp"
+#include "report_facts.hpp"
 
 namespace talus::io {
 
@@ -27,12 +28,15 @@ struct BarrierPart {
   std::vector<Limit> limits;
   std::vector<Stretch> stretches;
   std::vector<std::string> notes;
+  FrequencyFacts frequency{};  ///< of the design
 
   double value(const std::string& name) const;  ///< 0 if there is none
 };
 
-/// The files barrier_*.json of a folder, by name. Throws InputError if one cannot be understood.
-std::vector<BarrierPart> read_barrier_parts(const std::filesystem::path& folder);
+/// The files barrier_*.json of a folder, by name; with a note if one counts by other frequencies than the hazard maps.
+/// Throws InputError if one cannot be understood.
+std::vector<BarrierPart> read_barrier_parts(const std::filesystem::path& folder,
+                                            const std::optional<HazardFacts>& hazard);
 Markup barriers_html(const std::vector<BarrierPart>& parts);
 
 }  // namespace talus::io

@@ -170,6 +170,9 @@ void check_hazard(const CheckedRun& checked, Checks& checks) {
     return;
   }
   const HazardFacts& hazard = *checked.hazard;
+  checks.push_back({Mark::Look, "Frequency",
+                    with_digits(hazard.events_per_year, 4) + " events per year, by " + frequency_text(hazard.frequency),
+                    "Every return period and class is as good as they are."});
   const bool left = hazard.left_per_year > 0.01 * hazard.events_per_year;
   checks.push_back(
       {left ? Mark::Act : Mark::Fine, "Events that leave the DEM",
@@ -286,8 +289,9 @@ Markup assumptions_html(const CheckedRun& checked) {
   html += acting.empty() ? std::string("No further effect acts.") : "Further effects: " + joined(acting) + ".";
   html += "</li>\n<li>";
   html += checked.hazard
-              ? "Frequencies, return periods and classes follow from the frequencies that were given (settings, "
-                "under Record); impact probabilities are not weighted by them."
+              ? "Frequencies, return periods and classes follow from " + frequency_text(checked.hazard->frequency) +
+                    ": " + with_digits(checked.hazard->events_per_year, 4) +
+                    " events per year together. Impact probabilities are not weighted by them."
               : "Probabilities are given that one block falls, each source cell as likely as any other. They "
                 "are not per year.";
   html +=

@@ -189,6 +189,7 @@ std::optional<HazardFacts> read_hazard_facts(const std::filesystem::path& folder
     hazard.object = object.is_object() ? "an object " + text_of(number_of(object, "width_m")) + " m wide" : "a cell";
     if (json.contains("matrix")) read_classes(json.at("matrix"), hazard);
     hazard.warnings = texts_of(json, "warnings");
+    hazard.frequency = frequency_of(json);
     const Json of_run = json.value("run", Json::object());
     hazard.same_run = of_run.value("plan", "") == run.plan;
     return hazard;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/files/json.hpp"
+#include "report_frequency.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/scenario.hpp"
 
@@ -55,6 +56,7 @@ struct HazardFacts {
   std::vector<double> energies, years;  ///< between the classes of intensity [kJ] and of return period [years]
   std::vector<std::vector<std::string>> classes;  ///< names: a row for each class of intensity, the shortest time first
   std::vector<std::string> warnings;
+  FrequencyFacts frequency;
   bool same_run = true;  ///< of the plan of run.json
 };
 

@@ -46,7 +46,7 @@ RunReport read_report(const fs::path& folder) {
   report.hazard = read_hazard_facts(folder, report.run);
   report.sheet = read_sheet(folder, report.run);
   report.screens = read_screens_part(folder);
-  report.barriers = read_barrier_parts(folder);
+  report.barriers = read_barrier_parts(folder, report.hazard);
   report.objects = read_objects_part(folder);
   report.fit = read_fit_part(report.run);
   report.has_frequencies = fs::exists(folder / "hazard_tally.gz");

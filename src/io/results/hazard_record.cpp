@@ -1,5 +1,6 @@
 #include "talus/io/results/hazard_record.hpp"
 
+#include "frequency_record.hpp"
 #include "io/files/json.hpp"
 #include "io/scenario/table_reader.hpp"
 #include "talus/base/error.hpp"
@@ -90,7 +91,10 @@ std::string hazard_json(const HazardRecord& record) {
     json["curve_energies_kj"] = energies_of_curves(record.header.rules, {record.width, record.header.passages_below});
   json["cells"] = record.cells;
   if (!record.objects_file.empty()) json["objects"] = {{"file", record.objects_file}, {"replayed", record.replayed}};
-  if (!record.frequency_file.empty()) json["frequency"] = {{"file", record.frequency_file}, {"replayed", true}};
+  if (!record.frequency.file.empty()) {
+    json["frequency"] = json_of(record.frequency, scale.total);
+    json["frequency"]["replayed"] = true;
+  }
   json["warnings"] = record.warnings;
   json["files"] = record.files;
   return json_text(json);

@@ -6,6 +6,7 @@
 
 #include "io/gdal/geopackage.hpp"
 #include "io/gdal/layer.hpp"
+#include "io/gdal/off_map.hpp"
 #include "io/gdal/typed_cells.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
@@ -158,8 +159,6 @@ void ObjectLayer::State::warn_of_places(const std::string& path, const std::vect
     if (is_partial(i)) partial.push_back(i);
     if (!known(i)) (off_map[i] ? off : gaps).push_back(names[i]);
   }
-  if (off.size() == names.size())
-    throw InputError(path + ": lies wholly off the DEM: is the coordinate system of the layer the right one?");
   if (off.size() + gaps.size() == names.size())
     throw InputError(path +
                      ": none of its objects lies where the DEM has a height (it has none in its gaps and in its "
@@ -203,6 +202,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
   refuse_same_fields(layer, path);
   const int width_field = layer.field("width");
   std::vector<bool> off_map;
+  OGREnvelope all;
   for_each_feature(layer, [&](Feature& feature) {
     Parts parts = layer.parts(*feature);
     if (parts.empty() || !parts.points.empty())
@@ -210,7 +210,8 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
                        ", must be a polygon or a line that blocks may hit");
     const OGREnvelope box = parts.envelope();
     state_->names.push_back(name_of(layer, *feature, {layer.field("name"), layer.field("id")}));
-    off_map.push_back(box.MaxX < 0.0 || box.MinX > grid.width() || box.MaxY < 0.0 || box.MinY > grid.height());
+    off_map.push_back(wholly_off(box, grid));
+    all.Merge(box);
     std::optional<double> width;
     if (!parts.lines.empty()) {
       width = layer.number(*feature, width_field, "width", kWidth);
@@ -224,6 +225,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
     state_->features.push_back(std::move(feature));
   });
   if (state_->objects.empty()) throw InputError(path + ": has no features, must have polygons or lines");
+  if (std::ranges::count(off_map, false) == 0) throw InputError(off_dem_text(path, all, layer, terrain));
   if (layer.is_csv()) state_->features = with_numbers(state_->features);
   state_->warn_of_places(path, off_map);
   state_->warn_of_names(path);

@@ -1,13 +1,11 @@
 #include "talus/io/results/recorded_plan.hpp"
 
 #include "talus/base/error.hpp"
-#include "talus/io/results/weighting_file.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"
 
 namespace talus::io {
 
-LoadedScenario recorded_plan(const std::filesystem::path& folder, const std::string& plan,
-                             const std::string& weighting) {
+LoadedScenario recorded_plan(const std::filesystem::path& folder, const std::string& plan) {
   RunFlags flags;
   flags.scenario = (folder / "scenario.toml").string();
   LoadedScenario loaded = load_scenario(flags);
@@ -15,7 +13,6 @@ LoadedScenario recorded_plan(const std::filesystem::path& folder, const std::str
     throw InputError(flags.scenario +
                      ": it, or a file that it names, has changed since the run, so that the run "
                      "cannot be repeated; run again (the checksums are in run.json)");
-  if (!weighting.empty()) apply_weighting(weighting, loaded.scenario);
   return loaded;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "io/files/checksum.hpp"
 #include "io/scenario/frequency_keys.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
@@ -19,8 +20,8 @@ std::vector<std::size_t> meant_by(const std::string& word, const std::vector<Sou
   return found;
 }
 
-/// Reads the frequencies of features.
-void read_features(TableReader& table, Scenario& scenario) {
+/// Reads the frequencies of features. Adds what is given to `read`.
+void read_features(TableReader& table, Scenario& scenario, GivenFrequencies& read) {
   if (table.value() == nullptr) return;
   std::vector<SourceFeature>& features = scenario.features;
   std::vector<std::string> known, given(features.size());  // given: the word that meant the feature
@@ -39,31 +40,38 @@ void read_features(TableReader& table, Scenario& scenario) {
       table.fault(word, value, "is the feature " + earlier + ", which has a frequency here already");
     if (found.size() != 1) continue;
     given[found.front()] = word;
-    if (const auto frequency = table.number(word, bounds_of("sources.frequency")))
-      features[found.front()].frequency = *frequency;
+    const auto frequency = table.number(word, bounds_of("sources.frequency"));
+    if (!frequency) continue;
+    features[found.front()].frequency = *frequency;
+    read.features.emplace_back(word, *frequency);
   }
 }
 
 }  // namespace
 
-void apply_weighting(const std::string& file, Scenario& scenario) {
+GivenFrequencies apply_weighting(const std::string& file, Scenario& scenario) {
   const TomlValue root = read_toml(file, file);
   std::vector<std::string> faults;
   TableReader top(&root, "", file, faults);
   ScenarioSpec spec;
   read_frequency(spec, top.table("frequency"), file);
   const FrequencyRules& given = spec.values.frequency;
+  GivenFrequencies read{file, sha256_of_file(file), given, {}, {}};
   if (!std::isnan(given.total) || !std::isnan(given.per_area) || !std::isnan(given.scale)) {
     scenario.frequency = {};
     for (SourceFeature& feature : scenario.features) feature.frequency = kNotGiven;
     for (BlockClass& block : scenario.blocks.classes) block.frequency = kNotGiven;
     scenario.frequency = given;
   }
-  if (spec.origins.contains("frequency.by_true_area")) scenario.frequency.by_true_area = given.by_true_area;
+  if (spec.origins.contains("frequency.by_true_area")) {
+    read.by_true_area = given.by_true_area;
+    scenario.frequency.by_true_area = given.by_true_area;
+  }
   TableReader features = top.table("features");
-  read_features(features, scenario);
+  read_features(features, scenario, read);
   top.finish();
   if (!faults.empty()) throw InputError(faults.front());
+  return read;
 }
 
 }  // namespace talus::io

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,10 @@
 #include "table_reader.hpp"
 
 namespace talus::io {
+
+/// What is wrong with a text that stands for a zone in a raster, by the rule of `code`; nothing if a raster can hold it
+/// and `code` reads it back.
+std::optional<std::string> fault_of_code(const std::string& text);
 
 /// Reads the kinds of ground of a scenario, or of a file that it includes: [ground], [ground.zones.NAME].
 class GroundReader {

@@ -90,7 +90,10 @@ void load_barriers(const ScenarioSpec& spec, const Terrain& terrain, Scenario& p
     layer = read_barriers(spec.barriers.path, terrain);
     take_all(out, layer);
   }
+  const std::size_t of_layer = layer.barriers.size();
   for (const BarrierLine& line : spec.barrier_lines) layer.barriers.push_back(barrier_of(line, terrain.heights.grid));
+  warn_of_barriers_off("barriers.line (" + spec.origin("barriers.line") + ")",
+                       std::span(layer.barriers).subspan(of_layer), terrain, out.warnings);
   parts.barriers = Barriers(std::move(layer.barriers));
 }
 

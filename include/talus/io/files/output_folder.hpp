@@ -76,6 +76,9 @@ void write_text(const std::filesystem::path& file, std::string_view text);
 /// earlier file of this name is replaced. Throws as `write_text`.
 void replace_text(const std::filesystem::path& file, std::string_view text);
 
+/// Whether `calibrate` and `diagnose` write a file of this name, so that no folder among their results can have it.
+bool is_fit_file(const std::string& name);
+
 /// The names of the files in a folder, in the order of the alphabet.
 std::vector<std::string> files_in(const std::filesystem::path& folder);
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,5 +35,10 @@ struct BarrierLayer {
 /// Reads barriers: lines with the fields `height` [m] and `capacity` [kJ], which must be there, and `id` as for
 /// screens. Each feature is one barrier.
 BarrierLayer read_barriers(const std::string& path, const Terrain& terrain);
+
+/// Warns of barriers that lie wholly off the DEM, as `read_barriers` does, but by their ids.
+/// @param where  that names them: "barriers.line (scenario)"
+void warn_of_barriers_off(const std::string& where, std::span<const Barrier> barriers, const Terrain& terrain,
+                          std::vector<std::string>& warnings);
 
 }  // namespace talus::io

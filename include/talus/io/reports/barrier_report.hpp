@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "talus/io/results/weighting_file.hpp"
 #include "talus/products/barrier_design.hpp"
 #include "talus/products/hazard.hpp"
 #include "talus/products/weibull.hpp"
@@ -38,6 +39,8 @@ struct BarrierReport {
   double released = 0.0;            ///< trajectories of the run
   std::size_t crossings = 0;        ///< blocks that crossed the screen
   std::string weighting;            ///< what each block counts: "alike: ...", "by the annual frequency ..."
+  GivenFrequencies frequency;       ///< another weighting than the run's
+  double events_per_year = 0.0;     ///< of all blocks of the run; 0 where all count alike
   double effective = 0.0;           ///< number of crossings of equal weight that say as much
   std::optional<Bounded> per_year;  ///< crossings [1/year]; nothing without frequencies
   std::string values;               ///< data of the fits: "simulated crossings", or the file of the observed ones

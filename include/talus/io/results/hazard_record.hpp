@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "talus/io/results/hazard_file.hpp"
+#include "talus/io/results/weighting_file.hpp"
 #include "talus/products/hazard_matrix.hpp"
 
 namespace talus::io {
@@ -21,7 +22,7 @@ struct HazardRecord {
   double width = 0.0;       ///< of the object [m]; 0: the cell
   bool curves = false;      ///< hazard_curves.tif was asked for
   std::string objects_file;
-  std::string frequency_file;  ///< another weighting than the run's; empty: the run's
+  GivenFrequencies frequency;  ///< another weighting than the run's
   bool replayed = false;       ///< the plan was run again, for the objects or the weighting
   std::vector<std::string> warnings, files;
 };

@@ -8,10 +8,8 @@ namespace talus::io {
 
 /// The plan of a finished run, read again from the scenario.toml in its folder.
 ///
-/// @param plan       `plan_checksum` of the run
-/// @param weighting  file of another weighting (weighting_file.hpp); empty: that of the run
+/// @param plan  `plan_checksum` of the run
 /// Throws InputError if the scenario, or a file that it names, has changed since the run.
-LoadedScenario recorded_plan(const std::filesystem::path& folder, const std::string& plan,
-                             const std::string& weighting);
+LoadedScenario recorded_plan(const std::filesystem::path& folder, const std::string& plan);
 
 }  // namespace talus::io
