@@ -11,7 +11,11 @@ std::string absolute_path(const std::string& given, const std::filesystem::path&
   std::error_code none;
   const std::string file = file_of_layer(given);
   const std::filesystem::path path = (base / file).lexically_normal();
-  if (file.find(':') != std::string::npos && !std::filesystem::exists(path, none)) return given;
+  if (file.find(':') != std::string::npos && !std::filesystem::exists(path, none)) {
+    const auto part = part_name(file, base);
+    if (!part || part->file.empty()) return given;
+    return same_layer_in(part->before + absolute_path(part->file, base) + part->after, given);
+  }
   return same_layer_in(std::filesystem::absolute(path).lexically_normal().string(), given);
 }
 

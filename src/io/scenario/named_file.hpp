@@ -11,8 +11,8 @@ struct NamedFile {
   std::string where;  ///< "scenario.toml:3: dem = 'dem.tif'" or "flag --dem = 'dem.tif'", for messages
 };
 
-/// The absolute path of a file given relative to `base`. Names that are no files (/vsizip/..., NETCDF:..., https:...)
-/// stay as they are, for GDAL.
+/// The absolute path of a file given relative to `base`; of a part of a file (NETCDF:file.nc:height) its name with that
+/// of the file. Names that are no files (/vsizip/..., https:...) stay as they are, for GDAL.
 std::string absolute_path(const std::string& given, const std::filesystem::path& base);
 
 /// Adds a fault for each file that is named and not there, or not allowed (docs/security.md).
