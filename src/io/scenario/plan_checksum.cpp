@@ -29,8 +29,9 @@ bool fields_changed_meaning(const LoadedScenario& loaded) {
 
 }  // namespace
 
-std::string plan_checksum(const LoadedScenario& loaded) {
+std::string plan_checksum(const LoadedScenario& loaded, std::uint32_t rounds) {
   ScenarioSpec spec = *loaded.spec;
+  spec.values.trajectories /= rounds;
   spec.vrt_folders.clear();
   for (NamedFile* file : {&spec.dem, &spec.sources, &spec.ground, &spec.screens, &spec.barriers}) strip_folder(*file);
   for (auto& [name, effect] : spec.effects) {

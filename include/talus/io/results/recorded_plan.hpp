@@ -14,4 +14,8 @@ namespace talus::io {
 LoadedScenario recorded_plan(const std::filesystem::path& folder, const std::string& plan,
                              const std::string& weighting);
 
+/// A scenario of any origin. If it is the scenario.toml of a run or of a part, whose record (run.json, part.json) lies
+/// beside it, throws InputError as `recorded_plan` does.
+LoadedScenario recorded_or_own_plan(const std::string& scenario);
+
 }  // namespace talus::io
