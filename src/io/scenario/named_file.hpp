@@ -15,6 +15,12 @@ struct NamedFile {
 /// of the file. Names that are no files (/vsizip/..., https:...) stay as they are, for GDAL.
 std::string absolute_path(const std::string& given, const std::filesystem::path& base);
 
+/// Why a scenario cannot hold a name, which is text in UTF-8; empty: it can.
+std::string fault_of_encoding(const std::string& name);
+
+/// Adds a fault for each file whose path the complete scenario of a run could not hold (`fault_of_encoding`).
+void check_encoding(const std::vector<const NamedFile*>& files, std::vector<std::string>& faults);
+
 /// Adds a fault for each file that is named and not there, or not allowed (docs/security.md).
 void check_files(const std::vector<const NamedFile*>& files, std::vector<std::string>& faults);
 
