@@ -37,4 +37,39 @@ TEST_F(Sha256Files, AShapefileIsItsPartsOneAfterTheOther) {
   EXPECT_EQ(sha256_of_file(path("nothing")), "");
 }
 
+std::string content(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST_F(Sha256Files, ARasterIsAllThatIsReadWithItButItsStatistics) {
+  RasterFile placed, unplaced;
+  unplaced.placed = false;
+  const std::string alone = placed.write(path("alone.tif")), beside = unplaced.write(path("beside.tif"));
+  EXPECT_EQ(sha256_of_file(alone), sum(content(alone)));
+  EXPECT_EQ(sha256_of_file(beside), sum(content(beside)));
+  write_text("beside.tfw", "10\n0\n0\n-10\n600005\n5200075\n");
+  const std::string both = sum(content(beside) + content(path("beside.tfw")));
+  EXPECT_EQ(sha256_of_file(beside), both);
+  write_text("beside.tif.aux.xml", "<PAMDataset><Metadata><MDI key=\"A\">b</MDI></Metadata></PAMDataset>");
+  EXPECT_EQ(sha256_of_file(beside), both);
+  EXPECT_EQ(sha256_of_file("GTIFF_DIR:1:" + alone), sum(content(alone)));
+}
+
+TEST_F(Sha256Files, ALayerIsAllThatIsReadWithIt) {
+  for (const char* end : {"tab", "dat", "map", "id"}) write_text(std::string("a.") + end, end);
+  EXPECT_EQ(sha256_of_file(path("a.tab")), sum("tabdatmapid"));
+  write_text("B.SHP", "shp");
+  write_text("B.DBF", "dbf");
+  EXPECT_EQ(sha256_of_file(path("B.SHP")), sum("shpdbf")) << "capitals";
+  write_text("c.gpkg", "gpkg");
+  write_text("c.gpkg-wal", "wal");
+  EXPECT_EQ(sha256_of_file(path("c.gpkg") + "|layername=cliffs"), sum("gpkgwal"));
+}
+
+TEST_F(Sha256Files, WhatWasReadHasAChecksum) {
+  EXPECT_EQ(recorded_input("dem", write_text("b.csv", "abc")).sha256, sum("abc"));
+  EXPECT_THROW(recorded_input("dem", path("nothing")), InputError);
+}
+
 }  // namespace talus::io::test

@@ -8,8 +8,8 @@
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_file.hpp"
+#include "talus/io/results/recorded_plan.hpp"
 #include "talus/io/results/write_vectors.hpp"
-#include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/simulate.hpp"
 
@@ -62,9 +62,7 @@ void write_geopackage(talus::io::OutputFile& out, const talus::io::LoadedScenari
 int trace_one(const Options& options) {
   std::optional<talus::io::OutputFile> out;
   if (!options.out.empty()) out.emplace(options.out, ".gpkg", false);
-  talus::io::RunFlags flags;
-  flags.scenario = options.scenario;
-  const talus::io::LoadedScenario loaded = talus::io::load_scenario(flags);
+  const talus::io::LoadedScenario loaded = talus::io::recorded_or_own_plan(options.scenario);
   const talus::Scenario& scenario = loaded.scenario;
   check_range("--source", options.source, scenario.sources.size(), "sources");
   check_range("--block", options.block, scenario.trajectories, "blocks");

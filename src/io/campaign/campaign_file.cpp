@@ -204,7 +204,7 @@ LoadedCampaign read_campaign(const std::string& path, const std::optional<std::s
       {"sources", spec.deposits.sources.path},
       {"mapped", spec.deposits.mapped.path}};
   for (const auto& [role, file] : files)
-    if (!file.empty()) out.inputs.push_back({role, file, sha256_of_file(file)});
+    if (!file.empty()) out.inputs.push_back(recorded_input(role, file));
   return out;
 }
 

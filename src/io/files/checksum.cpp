@@ -9,6 +9,7 @@
 #include "input_files.hpp"
 #include "io/gdal/dataset.hpp"
 #include "io/gdal/input_name.hpp"
+#include "talus/base/error.hpp"
 
 namespace talus::io {
 
@@ -59,6 +60,13 @@ std::string sha256_of_file(const std::string& path) {
   bool any = false;
   for (const std::string& file : files_of_input(path)) any = add_file(sum, file) || any;
   return any ? sum.digits() : "";
+}
+
+InputFile recorded_input(const std::string& role, const std::string& path) {
+  InputFile input{role, path, sha256_of_file(path)};
+  if (input.sha256.empty())
+    throw InputError(path + ": was read, but cannot be read again for its checksum; is it still there?");
+  return input;
 }
 
 std::string sha256_of_bytes(std::string_view bytes) {

@@ -3,6 +3,8 @@
 #include <string>
 #include <string_view>
 
+#include "talus/io/origin/origin.hpp"
+
 struct evp_md_ctx_st;
 
 namespace talus::io {
@@ -25,8 +27,11 @@ class Sha256 {
 /// SHA-256 of bytes.
 std::string sha256_of_bytes(std::string_view bytes);
 
-/// SHA-256 of an input: of the bytes of its files (`files_of_input`), one after the other, without those that are not
-/// there. Empty if nothing can be read (a web service, say).
+/// SHA-256 of an input: of the bytes of its files (`files_of_input`), one after the other. Empty if none can be read.
 std::string sha256_of_file(const std::string& path);
+
+/// The record of an input that was read. Throws InputError if it cannot be read again: a run without its checksum could
+/// not be compared with another.
+InputFile recorded_input(const std::string& role, const std::string& path);
 
 }  // namespace talus::io

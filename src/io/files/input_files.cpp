@@ -1,11 +1,17 @@
 #include "input_files.hpp"
 
+#include <cpl_vsi.h>
+
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
+#include <set>
 #include <string_view>
 
 #include "io/gdal/dataset.hpp"
+#include "io/gdal/input_name.hpp"
+#include "io/gdal/vrt_check.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/gdal/layer_name.hpp"
 
@@ -14,6 +20,40 @@ namespace talus::io {
 namespace fs = std::filesystem;
 
 namespace {
+
+/// What stands beside a file of this ending under the same name, and is read with it, where GDAL does not list it.
+struct Companions {
+  std::string_view of;
+  std::vector<std::string_view> ends;
+};
+
+const std::array<Companions, 8>& companions() {
+  static const std::array<Companions, 8> list{{{".shp", {".dbf", ".shx", ".prj", ".cpg"}},
+                                               {".shx", {".shp", ".dbf", ".prj", ".cpg"}},
+                                               {".dbf", {".shp", ".shx", ".prj", ".cpg"}},
+                                               {".tab", {".dat", ".map", ".id", ".ind", ".dbf"}},
+                                               {".mif", {".mid"}},
+                                               {".mid", {".mif"}},
+                                               {".csv", {".csvt", ".prj"}},
+                                               {".bmp", {".wld", ".bpw", ".bmpw"}}}};
+  return list;
+}
+
+std::string with_letters(std::string text, int (*change)(int)) {
+  std::ranges::transform(text, text.begin(), [=](unsigned char c) { return static_cast<char>(change(c)); });
+  return text;
+}
+
+bool is_there(const std::string& file) {
+  VSIStatBufL status;
+  return VSIStatExL(name_for_gdal(file).c_str(), &status, VSI_STAT_EXISTS_FLAG) == 0;
+}
+
+/// Statistics and overviews, which programs that show a raster write beside it.
+bool is_for_display(std::string_view file) {
+  constexpr std::array<std::string_view, 6> kEnds{".aux.xml", ".aux", ".ovr", ".rrd", ".stx", "/sta.adf"};
+  return std::ranges::any_of(kEnds, [&](std::string_view end) { return file.ends_with(end); });
+}
 
 std::vector<std::string> files_in_folder(const std::string& folder) {
   std::error_code none;
@@ -24,49 +64,61 @@ std::vector<std::string> files_in_folder(const std::string& folder) {
   return files;
 }
 
-/// The rasters that a VRT is made of, in the order of their names.
-std::vector<std::string> rasters_of_vrt(const std::string& path) {
-  Dataset mosaic;
-  std::vector<std::string> files;
-  try {
-    mosaic = open_dataset(path, GDAL_OF_RASTER);
-  } catch (const InputError&) {
-    return files;
-  }
-  char** const names = mosaic->GetFileList();
-  for (char** name = names; name != nullptr && *name != nullptr; ++name)
-    if (*name != path && !std::string_view(*name).ends_with(".aux.xml") && !std::string_view(*name).ends_with(".ovr"))
-      files.emplace_back(*name);
-  CSLDestroy(names);
-  std::sort(files.begin(), files.end());
+/// The file with those beside it: with names in capitals if there is none in small letters.
+std::vector<std::string> with_companions(const std::string& file) {
+  std::vector<std::string> files{file};
+  const std::size_t dot = std::min(file.rfind('.'), file.size());
+  const std::string stem = file.substr(0, dot), end = with_letters(file.substr(dot), std::tolower);
+  for (const Companions& known : companions())
+    if (known.of == end)
+      for (const std::string_view other : known.ends) {
+        const std::string small(other), large = with_letters(small, std::toupper);
+        if (is_there(stem + small))
+          files.push_back(stem + small);
+        else if (is_there(stem + large))
+          files.push_back(stem + large);
+      }
+  for (const char* more : {".msk", "-wal"})  // a mask; what SQLite has not yet brought into the file
+    if (is_there(file + more)) files.push_back(file + more);
+  std::vector<std::string> listed = files_of_raster(file);
+  std::erase_if(listed, is_for_display);
+  std::ranges::sort(listed);
+  files.insert(files.end(), listed.begin(), listed.end());
   return files;
 }
 
-/// The files beside a .shp, with names in capitals if there is none in small letters.
-std::vector<std::string> parts_of_shapefile(const std::string& path) {
-  std::error_code none;
-  std::vector<std::string> files;
-  for (const char* part : {".dbf", ".shx", ".prj"}) {
-    std::string name = path.substr(0, path.size() - 4) + part;
-    if (!fs::exists(name, none))
-      std::transform(name.end() - 3, name.end(), name.end() - 3,
-                     [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    files.push_back(name);
+/// The file that a name stands for, as GDAL takes it: of a part of a file that file.
+std::string file_behind(const std::string& name) {
+  if (name.starts_with("/vsi")) return name;
+  const InputName found = looked_up(name);
+  if (!found.file.empty()) return found.file;
+  const auto part = part_name(name);
+  return part ? part->file : name;
+}
+
+std::vector<std::string> named_in_vrt(const std::string& file) {
+  const InputName found = looked_up(file);
+  if (!found.fault.empty() || found.file.empty()) return {};
+  try {
+    return files_of_vrt(file, found.file);
+  } catch (const InputError&) {
+    return {};
   }
-  return files;
 }
 
 }  // namespace
 
 std::vector<std::string> files_of_input(const std::string& name) {
   std::error_code none;
-  const std::string path = file_of_layer(name);
-  if (fs::is_directory(path, none)) return files_in_folder(path);
-  const std::string end = path.size() > 4 ? path.substr(path.size() - 4) : "";
-  std::vector<std::string> files{path}, others;
-  if (end == ".vrt" || end == ".VRT") others = rasters_of_vrt(path);
-  if (end == ".shp" || end == ".SHP") others = parts_of_shapefile(path);
-  files.insert(files.end(), others.begin(), others.end());
+  const std::string file = file_behind(file_of_layer(name));
+  if (fs::is_directory(file, none)) return files_in_folder(file);
+  start_gdal();
+  std::vector<std::string> heads{file}, files;
+  for (std::string& named : named_in_vrt(file)) heads.push_back(std::move(named));
+  std::set<std::string> seen;
+  for (const std::string& head : heads)
+    for (const std::string& part : with_companions(head))
+      if (seen.insert(part).second) files.push_back(part);
   return files;
 }
 

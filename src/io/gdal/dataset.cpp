@@ -107,6 +107,22 @@ Dataset open_dataset(const std::string& path, unsigned kinds) {
   return dataset;
 }
 
+std::vector<std::string> files_of_raster(const std::string& path) {
+  // Those whose data may lie in several files. Others would read all of a large text to open it.
+  const char* const drivers[] = {"GTiff", "AAIGrid", "GRASSASCIIGrid", "HFA",         "ENVI",
+                                 "EHdr",  "AIG",     "SAGA",           "RST",         "NWT_GRD",
+                                 "PNG",   "BMP",     "JPEG",           "JP2OpenJPEG", nullptr};
+  const GdalMessages quiet;
+  std::vector<std::string> files;
+  if (!looked_up(path).fault.empty()) return files;
+  const Dataset raster(
+      GDALDataset::Open(name_for_gdal(path).c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers, nullptr, nullptr));
+  char** const names = raster ? raster->GetFileList() : nullptr;
+  for (char** name = names; name != nullptr && *name != nullptr; ++name) files.emplace_back(*name);
+  CSLDestroy(names);
+  return files;
+}
+
 Dataset memory_dataset(int columns, int rows, GDALDataType type) {
   GdalMessages messages;
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("MEM");

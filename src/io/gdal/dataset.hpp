@@ -45,6 +45,10 @@ using Feature = std::unique_ptr<OGRFeature, DropFeature>;
 /// fields without a message (`check_vector_file`).
 Dataset open_dataset(const std::string& path, unsigned kinds);
 
+/// The files that GDAL reads with a raster, as it lists them itself: header (.hdr), world file, mask (.msk), .prj. None
+/// if the input is no raster, is a VRT (`files_of_vrt`), or is not allowed. Reads no pixels.
+std::vector<std::string> files_of_raster(const std::string& path);
+
 /// A dataset in memory, of zeros. Throws std::runtime_error if there is no memory for it.
 Dataset memory_dataset(int columns, int rows, GDALDataType type);
 

@@ -100,30 +100,49 @@ InputName of_virtual(std::string name) {
   return refused("is no file that is read, must be a local file, or one in an archive (/vsizip/, /vsitar/, /vsigzip/)");
 }
 
-bool names_part(const std::string& name) {
+/// One of `kParts` in capitals, if the name is one of a part of a file; else nothing.
+std::string kind_of_part(const std::string& name) {
   std::string start = name.substr(0, name.find(':') + 1);
   std::ranges::transform(start, start.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return std::ranges::count(kParts, std::string_view(start)) > 0;
+  return std::ranges::count(kParts, std::string_view(start)) > 0 ? start : "";
 }
 
-/// The file in "NETCDF:file.nc:height" or "GTIFF_DIR:2:dem.tif": the longest stretch between colons that is one.
-InputName of_part(const std::string& name, const fs::path& base) {
+bool names_part(const std::string& name) {
+  return !kind_of_part(name).empty();
+}
+
+/// A name of a part with the file that it stands for.
+struct FoundPart {
+  PartName name;
+  InputName input;  // no file: none is there
+};
+
+/// A name taken apart at two places: a colon before the file, and a colon or the end behind it.
+PartName taken_apart(const std::string& name, std::size_t before, std::size_t behind) {
+  std::size_t from = before + 1, to = behind;
+  if (from < to && name[from] == '"') ++from;
+  if (from < to && name[to - 1] == '"') --to;
+  return {name.substr(0, from), name.substr(from, to - from), name.substr(to)};
+}
+
+/// Takes "NETCDF:file.nc:height" or "GTIFF_DIR:2:dem.tif" apart. The file is the longest stretch between colons that is
+/// one; where none is there, what stands in its place.
+FoundPart of_part(const std::string& name, const fs::path& base) {
   std::vector<std::size_t> colons;
   for (std::size_t at = name.find(':'); at != std::string::npos; at = name.find(':', at + 1)) colons.push_back(at);
+  const std::size_t before = kind_of_part(name) == "GTIFF_DIR:" ? colons.back() : colons.front();
   colons.push_back(name.size());
   std::error_code none;
   for (std::size_t from = 0; from + 1 < colons.size(); ++from)
     for (std::size_t to = colons.size() - 1; to > from; --to) {
-      std::string file = name.substr(colons[from] + 1, colons[to] - colons[from] - 1);
-      std::erase(file, '"');
-      if (file.empty()) continue;
-      const InputName found = file.starts_with("/vsi") || begins_with_one(file, kWeb)
-                                  ? looked_up(file)
-                                  : of_local((base / file).lexically_normal().string());
-      if (!found.fault.empty() || found.network) return found;
-      if (fs::is_regular_file(found.file, none)) return found;
+      const PartName part = taken_apart(name, colons[from], colons[to]);
+      if (part.file.empty()) continue;
+      const InputName found = part.file.starts_with("/vsi") || begins_with_one(part.file, kWeb)
+                                  ? looked_up(part.file)
+                                  : of_local((base / part.file).lexically_normal().string());
+      if (!found.fault.empty() || found.network || fs::is_regular_file(found.file, none)) return {part, found};
     }
-  return {};
+  return {taken_apart(name, before, std::min(name.find(':', before + 1), name.size())), {}};
 }
 
 }  // namespace
@@ -133,7 +152,7 @@ InputName looked_up(const std::string& name, const fs::path& base) {
   if (name.starts_with('<')) return refused("is a text, must be the name of a file");
   if (name.starts_with("/vsi")) return of_virtual(name);
   if (fs::exists(name, none)) return of_local(name);
-  if (names_part(name)) return of_part(name, base);
+  if (names_part(name)) return of_part(name, base).input;
   if (begins_with_one(name, kWeb)) return of_network(name);
   if (name.starts_with("file:")) return refused("is an address, must be the path of a file: leave out file://");
   if (name.find(':') != std::string::npos)
@@ -141,6 +160,10 @@ InputName looked_up(const std::string& name, const fs::path& base) {
         "must be a file that is there (databases and services are not read): export it first, with gdal_translate or "
         "ogr2ogr, and name that file");
   return {};
+}
+
+std::optional<PartName> part_name(const std::string& name, const fs::path& base) {
+  return names_part(name) ? std::optional(of_part(name, base).name) : std::nullopt;
 }
 
 void check_input(const std::string& name) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,15 @@ struct InputName {
 /// Looks at a name without opening anything.
 /// @param base  the folder of relative names of parts, as in NETCDF:file.nc:height; empty: the current one
 InputName looked_up(const std::string& name, const std::filesystem::path& base = {});
+
+/// The name of a part of a file, as "NETCDF:file.nc:height" or "GTIFF_DIR:2:dem.tif", taken apart.
+struct PartName {
+  std::string before, file, after;  ///< "NETCDF:", "file.nc", ":height"
+};
+
+/// Takes the name of a part apart; nothing for every other name.
+/// @param base  the folder of relative names, as in `looked_up`
+std::optional<PartName> part_name(const std::string& name, const std::filesystem::path& base = {});
 
 /// Throws InputError if the name of an input is not allowed, if it stands for no regular file, or if it is a VRT that
 /// names what it may not. Called before GDAL opens the name.

@@ -41,6 +41,10 @@ std::string content_of(const std::string& name, std::size_t most) {
   return text;
 }
 
+bool has_mark(const std::string& name) {
+  return content_of(name, kHead).find(kMark) != std::string::npos;
+}
+
 /// A name in a VRT.
 struct Source {
   std::string name;
@@ -98,9 +102,12 @@ class VrtCheck {
     check(name, 0);
   }
 
+  /// The files that it names.
+  const std::set<std::string>& files() const { return files_; }
+
  private:
   void check(const std::string& name, int depth) {
-    if (content_of(name, kHead).find(kMark) == std::string::npos) return;
+    if (!has_mark(name)) return;
     if (depth > kDeepest)
       throw InputError(name_ + ": VRTs in VRTs, more than " + std::to_string(kDeepest) +
                        " deep: does one name itself?");
@@ -120,9 +127,11 @@ class VrtCheck {
     if (!seen_.insert(name).second) return;
     const InputName found = looked_up(name, source.relative ? folder : fs::path());
     if (!found.fault.empty()) throw InputError(vrt + ": names '" + source.name + "', which " + found.fault);
+    if (found.network || name.starts_with("/vsi")) files_.insert(name);
     if (found.network) return;
     if (found.file.empty()) throw InputError(vrt + ": names '" + source.name + "', which is not there");
     require_below(vrt, found.file);
+    if (!name.starts_with("/vsi")) files_.insert(found.file);
     check(name, depth + 1);
   }
 
@@ -139,13 +148,23 @@ class VrtCheck {
 
   std::string name_;
   std::vector<fs::path> folders_;
-  std::set<std::string> seen_;
+  std::set<std::string> seen_, files_;
 };
 
 }  // namespace
 
+bool is_vrt(const std::string& name) {
+  const InputName found = looked_up(name);
+  return found.fault.empty() && !found.file.empty() && has_mark(name);
+}
+
 void check_vrt(const std::string& name, const std::string& file) {
   VrtCheck(name, file);
+}
+
+std::vector<std::string> files_of_vrt(const std::string& name, const std::string& file) {
+  const VrtCheck vrt(name, file);
+  return {vrt.files().begin(), vrt.files().end()};
 }
 
 }  // namespace talus::io

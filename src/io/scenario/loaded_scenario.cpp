@@ -28,12 +28,10 @@ namespace {
 
 // Adds a fault for each file that is not there, before any is opened.
 void check_files(const ScenarioSpec& spec, std::vector<std::string>& faults) {
-  std::vector<const NamedFile*> files{&spec.include, &spec.dem,     &spec.sources,
-                                      &spec.ground,  &spec.screens, &spec.barriers};
-  for (const auto& [name, effect] : spec.effects) {
-    files.push_back(&effect.file);
-    for (const auto& [key, map] : effect.maps) files.push_back(&map);
-  }
+  std::vector<const NamedFile*> files;
+  for (const auto& [role, file] : spec.inputs())
+    if (file != &spec.scenario) files.push_back(file);
+  check_encoding(files, faults);
   check_files(files, faults);
 }
 
@@ -153,18 +151,6 @@ SourceLayer load_sources(const ScenarioSpec& spec, const Terrain& terrain, const
   return sources;
 }
 
-void record_inputs(const ScenarioSpec& spec, LoadedScenario& out) {
-  std::vector<std::pair<std::string, const NamedFile*>> files{
-      {"scenario", &spec.scenario}, {"include", &spec.include}, {"dem", &spec.dem},          {"sources", &spec.sources},
-      {"ground", &spec.ground},     {"screens", &spec.screens}, {"barriers", &spec.barriers}};
-  for (const auto& [name, effect] : spec.effects) {
-    files.emplace_back("effects." + name, &effect.file);
-    for (const auto& [key, map] : effect.maps) files.emplace_back("effects." + name + "." + key, &map);
-  }
-  for (const auto& [role, file] : files)
-    if (!file->path.empty()) out.inputs.push_back({role, file->path, sha256_of_file(file->path)});
-}
-
 }  // namespace
 
 LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* all_faults, const RasterMemory& memory,
@@ -221,7 +207,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
   out.settings = settings_of(spec);
   out.spec = std::make_shared<ScenarioSpec>(spec);
   out.settings.insert(out.settings.end(), sources.attributes.begin(), sources.attributes.end());
-  record_inputs(spec, out);
+  for (const auto& [role, file] : spec.inputs()) out.inputs.push_back(recorded_input(role, file->path));
   return out;
 }
 

@@ -1,5 +1,7 @@
 #include "named_file.hpp"
 
+#include <cpl_string.h>
+
 #include "io/gdal/dataset.hpp"
 #include "io/gdal/input_name.hpp"
 #include "talus/io/gdal/layer_name.hpp"
@@ -11,8 +13,23 @@ std::string absolute_path(const std::string& given, const std::filesystem::path&
   std::error_code none;
   const std::string file = file_of_layer(given);
   const std::filesystem::path path = (base / file).lexically_normal();
-  if (file.find(':') != std::string::npos && !std::filesystem::exists(path, none)) return given;
+  if (file.find(':') != std::string::npos && !std::filesystem::exists(path, none)) {
+    const auto part = part_name(file, base);
+    if (!part || part->file.empty()) return given;
+    return same_layer_in(part->before + absolute_path(part->file, base) + part->after, given);
+  }
   return same_layer_in(std::filesystem::absolute(path).lexically_normal().string(), given);
+}
+
+std::string fault_of_encoding(const std::string& name) {
+  if (CPLIsUTF8(name.c_str(), static_cast<int>(name.size())) != 0) return {};
+  return "its path is not UTF-8, which the scenario of a run cannot hold (" + name + "): rename the file or the folder";
+}
+
+void check_encoding(const std::vector<const NamedFile*>& files, std::vector<std::string>& faults) {
+  for (const NamedFile* file : files)
+    if (const std::string fault = fault_of_encoding(file->path); !fault.empty())
+      faults.push_back(file->where + ": " + fault);
 }
 
 void check_files(const std::vector<const NamedFile*>& files, std::vector<std::string>& faults) {

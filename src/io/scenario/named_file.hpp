@@ -11,9 +11,15 @@ struct NamedFile {
   std::string where;  ///< "scenario.toml:3: dem = 'dem.tif'" or "flag --dem = 'dem.tif'", for messages
 };
 
-/// The absolute path of a file given relative to `base`. Names that are no files (/vsizip/..., NETCDF:..., https:...)
-/// stay as they are, for GDAL.
+/// The absolute path of a file given relative to `base`; of a part of a file (NETCDF:file.nc:height) its name with that
+/// of the file. Names that are no files (/vsizip/..., https:...) stay as they are, for GDAL.
 std::string absolute_path(const std::string& given, const std::filesystem::path& base);
+
+/// Why a scenario cannot hold a name, which is text in UTF-8; empty: it can.
+std::string fault_of_encoding(const std::string& name);
+
+/// Adds a fault for each file whose path the complete scenario of a run could not hold (`fault_of_encoding`).
+void check_encoding(const std::vector<const NamedFile*>& files, std::vector<std::string>& faults);
 
 /// Adds a fault for each file that is named and not there, or not allowed (docs/security.md).
 void check_files(const std::vector<const NamedFile*>& files, std::vector<std::string>& faults);

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "io/files/checksum.hpp"
+#include "io/gdal/input_name.hpp"
 #include "scenario_text.hpp"
 #include "talus/io/gdal/layer_name.hpp"
 
@@ -12,8 +13,10 @@ namespace {
 
 /// Removes the folder: machines may have the same files in other folders. Name and content count.
 void strip_folder(NamedFile& file) {
-  const std::filesystem::path path(file_of_layer(file.path));
-  if (path.is_absolute()) file.path = same_layer_in(path.filename().string(), file.path);
+  const std::string name = file_of_layer(file.path);
+  const PartName part = part_name(name).value_or(PartName{"", name, ""});
+  const std::filesystem::path path(part.file);
+  if (path.is_absolute()) file.path = same_layer_in(part.before + path.filename().string() + part.after, file.path);
 }
 
 /// Whether the sources have a field `height`, which earlier builds read as the height of release, or
@@ -26,8 +29,9 @@ bool fields_changed_meaning(const LoadedScenario& loaded) {
 
 }  // namespace
 
-std::string plan_checksum(const LoadedScenario& loaded) {
+std::string plan_checksum(const LoadedScenario& loaded, std::uint32_t rounds) {
   ScenarioSpec spec = *loaded.spec;
+  spec.values.trajectories /= rounds;
   spec.vrt_folders.clear();
   for (NamedFile* file : {&spec.dem, &spec.sources, &spec.ground, &spec.screens, &spec.barriers}) strip_folder(*file);
   for (auto& [name, effect] : spec.effects) {

@@ -119,7 +119,7 @@ void record_inputs(const ScenarioSpec& spec, LoadedScenario& out) {
                                    {"profile", &spec.profile->csv},
                                    {"dem", &spec.dem},
                                    {"line", &spec.profile->line}})
-    if (!file->path.empty()) out.inputs.push_back({role, file->path, sha256_of_file(file->path)});
+    if (!file->path.empty()) out.inputs.push_back(recorded_input(role, file->path));
 }
 
 }  // namespace
@@ -154,7 +154,9 @@ Profile read_profile_csv(const std::string& path, double step) {
 LoadedProfile load_profile(const RunFlags& flags) {
   std::vector<std::string> faults;
   const ScenarioSpec spec = read_profile_spec(flags, faults);
-  check_files({&spec.dem, &spec.profile->csv, &spec.profile->line}, faults);
+  const std::vector<const NamedFile*> files{&spec.dem, &spec.profile->csv, &spec.profile->line};
+  check_encoding(files, faults);
+  check_files(files, faults);
   if (!faults.empty())
     throw InputError(faults.front() +
                      (faults.size() == 1 ? "" : " (and " + std::to_string(faults.size() - 1) + " more)"));

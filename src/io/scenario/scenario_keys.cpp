@@ -10,6 +10,7 @@
 #include "frequency_keys.hpp"
 #include "ground_keys.hpp"
 #include "io/gdal/input_name.hpp"
+#include "io/gdal/vrt_check.hpp"
 #include "scenario_flags.hpp"
 #include "surface_key.hpp"
 #include "talus/base/error.hpp"
@@ -327,12 +328,15 @@ void read_model_keys(ScenarioSpec& spec, const std::string& path, const std::str
   SpecReader(spec, path, name, origin, faults).read_model_keys(read_toml(path, name));
 }
 
-/// Where a raster is a VRT, the scenario that a run leaves has to allow what this one does.
-static void keep_vrt_folders(ScenarioSpec& spec) {
-  const auto is_vrt = [](const NamedFile& file) { return file.path.ends_with(".vrt") || file.path.ends_with(".VRT"); };
-  if (!is_vrt(spec.dem) && !is_vrt(spec.ground)) return;
-  for (const std::filesystem::path& folder : allowed_folders())
+/// Where an input is a VRT, the scenario that a run leaves has to allow what this one does.
+static void keep_vrt_folders(ScenarioSpec& spec, std::vector<std::string>& faults) {
+  const auto names_vrt = [](const auto& input) { return is_vrt(input.second->path); };
+  if (!std::ranges::any_of(spec.inputs(), names_vrt)) return;
+  for (const std::filesystem::path& folder : allowed_folders()) {
     if (std::ranges::count(spec.vrt_folders, folder.string()) == 0) spec.vrt_folders.push_back(folder.string());
+    if (const std::string fault = fault_of_encoding(folder.string()); !fault.empty())
+      faults.push_back("a folder below which a VRT may name files: " + fault);
+  }
 }
 
 ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) {
@@ -346,7 +350,7 @@ ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) 
         .read(read_toml(flags.scenario, flags.scenario));
   }
   lay_flags(spec, flags, faults);
-  keep_vrt_folders(spec);
+  keep_vrt_folders(spec, faults);
   check_effect_zones(spec, faults);
   sort_by_line(faults, flags.scenario);
   const std::string in = flags.scenario.empty() ? "" : flags.scenario + ": ";

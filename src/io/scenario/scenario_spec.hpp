@@ -73,6 +73,9 @@ struct ScenarioSpec {
   Scenario values;                             ///< its settings; without terrain, sources and screens
   std::map<std::string, std::string> origins;  ///< of the keys that are given: "scenario", "flag --seed"
 
+  /// The files that it names, with their roles in run.json: "dem", "effects.forest-stems.density".
+  std::vector<std::pair<std::string, const NamedFile*>> inputs() const;
+
   std::string origin(const std::string& key) const {
     const auto found = origins.find(key);
     return found == origins.end() ? "default" : found->second;

@@ -19,7 +19,7 @@ struct InputFile {
   std::string role;  ///< "dem", "sources", "ground", "screens", "scenario"
   std::string path;  ///< absolute
   std::string
-      sha256;  ///< of the file's bytes (a shapefile: of .shp, .dbf, .shx, .prj in this order, one after the other)
+      sha256;  ///< of the bytes of all its files, one after the other (a shapefile: of .shp, .dbf, .shx, .prj, .cpg)
 };
 
 /// How a layer in another coordinate system was brought to the DEM's.
