@@ -266,8 +266,10 @@ class DiagnosisLoop {
                        if (may(a) != may(b)) return may(a);
                        return may(a) ? a.unseen_gain() > b.unseen_gain() : net_gain(a) > net_gain(b);
                      });
-    const auto chosen = std::find_if(round.candidates.begin(), round.candidates.end(), [&](const FittedCandidate& c) {
-      return !noise && may(c) && fits_.confirmed(base, c, least);
+    const auto chosen = std::find_if(round.candidates.begin(), round.candidates.end(), [&](FittedCandidate& c) {
+      if (noise || !may(c)) return false;
+      c.confirmation = fits_.confirmation(base, c);
+      return least.are_in(c.confirmation);
     });
     if (chosen == round.candidates.end()) {
       round.effect = verdict_without_effect(round);

@@ -335,20 +335,19 @@ std::vector<BlockRuns> EffectFits::out_of_fold(const FittedModel& fitted, std::s
   return runs_in_folds(local, fitted, std::move(how), blocks);
 }
 
-bool EffectFits::confirmed(const FittedModel& base, const FittedCandidate& candidate, const LeastGain& least) const {
+Confirmation EffectFits::confirmation(const FittedModel& base, const FittedCandidate& candidate) const {
   const Timesheet::Phase phase(times_, "confirmation");
   const DiagnosisRules& rules = options_.rules;
   ObserveOptions unseen = observe_options(options_.trials.compare);
   unseen.first_trial += (1 + rules.fold_orders) * options_.trials.compare;  // after those of the choice
   const Difference change =
       mean_difference(cross_validated(base, unseen), cross_validated(candidate.fitted, unseen), streams_of(campaign_));
-  if (-change.mean - candidate.place_price < least.unseen) return false;
   unseen.first_trial += rules.fold_orders * options_.trials.compare;
   unseen.trials *= rules.confirming;
   const auto error = [&](const FittedModel& fitted) {
     return weigh_groups(score(campaign_, observe(campaign_, fitted.model, unseen), rows_)).total;
   };
-  return error(base) - error(candidate.fitted) >= least.fitted;
+  return {error(base) - error(candidate.fitted), -change.mean - candidate.place_price};
 }
 
 }  // namespace talus

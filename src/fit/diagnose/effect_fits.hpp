@@ -10,6 +10,8 @@ class LocalModel;
 struct LeastGain {
   double fitted;  ///< on the fitting rows
   double unseen;  ///< in cross-validation
+
+  bool are_in(const Confirmation& gains) const { return gains.fitted >= fitted && gains.unseen >= unseen; }
 };
 
 /// The fits of one diagnosis: of the ground, and of each effect on top of the model so far.
@@ -61,9 +63,8 @@ class EffectFits {
   /// @param fold_of  by block: below `folds`, else the block is left out
   std::vector<BlockRuns> out_of_fold(const FittedModel& fitted, std::span<const std::uint32_t> fold_of,
                                      std::size_t folds, ObserveOptions how) const;
-  /// Whether a candidate gains as much again, on its rows and in cross-validation, with random numbers that no choice
-  /// has used: the gain of the best of several effects is partly chance.
-  bool confirmed(const FittedModel& base, const FittedCandidate& candidate, const LeastGain& least) const;
+  /// What a candidate gains, on its rows and in cross-validation, with random numbers that no choice has used.
+  Confirmation confirmation(const FittedModel& base, const FittedCandidate& candidate) const;
   /// The time sheet of these fits; whoever does other work of the diagnosis enters it here.
   Timesheet& times() const { return times_; }
   /// The fit with the lower objective, with the evaluations of both.

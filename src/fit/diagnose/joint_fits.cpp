@@ -305,16 +305,15 @@ Score JointFits::score_in_folds(const LocalModel& local, const JointModel& fitte
   return weigh_groups(joined_score(runs, fold_of));
 }
 
-bool JointFits::confirmed(const JointModel& base, const JointCandidate& candidate, const LeastGain& least) const {
+Confirmation JointFits::confirmation(const JointModel& base, const JointCandidate& candidate) const {
   const DiagnosisRules& rules = options_.rules;
-  if (-mean_difference(cross_validated(base, 1), cross_validated(candidate.fitted, 1), streams_).mean < least.unseen)
-    return false;
+  const Difference change = mean_difference(cross_validated(base, 1), cross_validated(candidate.fitted, 1), streams_);
   const std::uint32_t first = first_trial() + (1 + 2 * rules.fold_orders) * options_.trials.compare;
   const auto error = [&](const JointModel& fitted) {
     return weigh_groups(joined_score(observe_all(fitted.models, rules.confirming * options_.trials.compare, first)))
         .total;
   };
-  return error(base) - error(candidate.fitted) >= least.fitted;
+  return {error(base) - error(candidate.fitted), -change.mean};
 }
 
 }  // namespace talus

@@ -35,8 +35,8 @@ class JointFits {
   /// Objectives over the blocks of all sites, each simulated by a fit to the other folds; one for each order of the
   /// blocks. Random numbers are those of number `part` of the round.
   std::vector<Score> cross_validated(const JointModel& fitted, std::uint32_t part) const;
-  /// Whether a candidate gains as much again with random numbers that no choice has used.
-  bool confirmed(const JointModel& base, const JointCandidate& candidate, const LeastGain& least) const;
+  /// What a candidate gains with random numbers that no choice has used.
+  Confirmation confirmation(const JointModel& base, const JointCandidate& candidate) const;
 
  private:
   FitProblem problem_of(const JointParameters& parameters, const std::vector<Model>& start) const;

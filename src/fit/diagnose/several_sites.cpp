@@ -246,8 +246,11 @@ class SitesLoop {
       if (may(a) != may(b)) return may(a);
       return may(a) ? a.cross_validated > b.cross_validated : net_gain(a) > net_gain(b);
     });
-    const auto chosen = std::ranges::find_if(
-        round.candidates, [&](const JointCandidate& c) { return may(c) && fits_.confirmed(base, c, least); });
+    const auto chosen = std::ranges::find_if(round.candidates, [&](JointCandidate& c) {
+      if (!may(c)) return false;
+      c.confirmation = fits_.confirmation(base, c);
+      return least.are_in(c.confirmation);
+    });
     if (chosen == round.candidates.end()) return;
     std::rotate(round.candidates.begin(), chosen, chosen + 1);
     const JointCandidate& best = round.candidates.front();

@@ -60,6 +60,8 @@ Json candidates_of(const DiagnosisRound& round, const std::vector<HoldoutError>&
                     {"objective_gain_ci95", json_of(c.gain_interval)},
                     {"cross_validated_objective_gain", json_of(c.cross_validated)},
                     {"cross_validated_objective_gain_ci95", json_of(c.cross_validated_interval)},
+                    {"confirmed_objective_gain", json_of(c.confirmation.fitted)},
+                    {"confirmed_unseen_gain", json_of(c.confirmation.unseen)},
                     {"holdout", json_of(holdout[i].after)},
                     {"holdout_reduction_ci95", json_of(holdout[i].reduction.interval)},
                     {"chosen_share", json_of(c.chosen_share)},

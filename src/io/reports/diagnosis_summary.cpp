@@ -112,6 +112,13 @@ std::string undecided(const Diagnosis& d) {
   for (const DiagnosisRound& round : d.rounds)
     if (found(round) && !round.alike.empty())
       text += round.effect + " cannot be told apart from " + listed(round.alike) + " on these data. ";
+  for (const DiagnosisRound& round : d.rounds)
+    for (const FittedCandidate& c : round.candidates)
+      if (c.effect != round.effect && !std::isnan(c.confirmation.fitted))
+        text += c.effect + " gains enough to be named (" + with_decimals(c.gain, 3) +
+                " of the objective), but with new random numbers not again (" +
+                with_decimals(c.confirmation.fitted, 3) + "; in cross-validation " +
+                with_decimals(c.confirmation.unseen, 3) + "). ";
   for (const FamilyTest& family : d.rounds.front().families)
     if (!family.may_name) text += family.note + ". ";
   std::vector<std::string> hidden;

@@ -57,6 +57,8 @@ Json candidates_json(const JointRound& round, const std::vector<double>& holdout
                     {"objective_gain_ci95", json_of(c.gain_interval)},
                     {"cross_validated_objective_gain", json_of(c.cross_validated)},
                     {"cross_validated_objective_gain_ci95", json_of(c.cross_validated_interval)},
+                    {"confirmed_objective_gain", json_of(c.confirmation.fitted)},
+                    {"confirmed_unseen_gain", json_of(c.confirmation.unseen)},
                     {"holdout", json_of(holdout[number])},
                     {"chosen_share", json_of(c.chosen_share)},
                     {"p_value", json_of(round.family.p_value)}});

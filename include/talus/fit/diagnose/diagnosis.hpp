@@ -25,6 +25,13 @@ struct FittedModel {
   std::vector<Evaluation> evaluations;  ///< of this fit and those before it; the next fit uses them
 };
 
+/// Gains of a candidate that may be chosen, with random numbers that no choice has used: those of the best of several
+/// are partly chance. NaN: not asked for.
+struct Confirmation {
+  double fitted = kNotGiven;  ///< of the objective of the fitting rows
+  double unseen = kNotGiven;  ///< in cross-validation, less the price of its place
+};
+
 /// A candidate at its best place, fitted together with the parameters of the base.
 struct FittedCandidate {
   std::string effect, where;
@@ -42,8 +49,9 @@ struct FittedCandidate {
   double place_price = 0.0;            ///< the part of the price for its place, which was chosen by all blocks
   double cross_validated = kNotGiven;  ///< gain on blocks that its fit has not seen; NaN: not cross-validated
   Interval cross_validated_interval;   ///< 95 %, paired bootstrap over blocks
-  double amount = 0.0;                 ///< largest of its tested parameters, in units of what one would notice
-  double chosen_share = 0.0;           ///< share of the bootstraps in which it has the lowest objective of all
+  Confirmation confirmation;
+  double amount = 0.0;        ///< largest of its tested parameters, in units of what one would notice
+  double chosen_share = 0.0;  ///< share of the bootstraps in which it has the lowest objective of all
   FittedModel fitted;
 
   /// Gain on blocks that its fit has not seen, less the price of its place. NaN: not cross-validated.

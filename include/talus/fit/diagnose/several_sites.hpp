@@ -29,6 +29,7 @@ struct JointCandidate {
   double price = 0.0, amount = 0.0;
   double cross_validated = kNotGiven;  ///< gain on blocks that its fit has not seen
   Interval cross_validated_interval;   ///< 95 %, over the blocks of all
+  Confirmation confirmation;           ///< as FittedCandidate
   double chosen_share = 0.0;           ///< as FittedCandidate
   JointModel fitted;
 };
