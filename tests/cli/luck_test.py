@@ -98,9 +98,9 @@ class Luck(Case):
         """What hangs on the fitting rows alone."""
         for key in ("distributions", "warnings", "indistinguishable_from"):
             record.pop(key, None)
-        for part in ("error", "tail"):
-            record[part].pop("holdout", None)
-            record[part].pop("headline", None)
+        for part in (record["error"], record["tail"], *(site["error"] for site in record.get("sites", []))):
+            part.pop("holdout", None)
+            part.pop("headline", None)
         for when in record["coverage"].values():
             when.pop("holdout")
         for entry in record.get("evidence", []):
