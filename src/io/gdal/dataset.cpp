@@ -109,9 +109,9 @@ Dataset open_dataset(const std::string& path, unsigned kinds) {
 
 std::vector<std::string> files_of_raster(const std::string& path) {
   // Those whose data may lie in several files. Others would read all of a large text to open it.
-  const char* const drivers[] = {"GTiff", "AAIGrid", "GRASSASCIIGrid", "HFA",         "ENVI",
-                                 "EHdr",  "AIG",     "SAGA",           "RST",         "NWT_GRD",
-                                 "PNG",   "BMP",     "JPEG",           "JP2OpenJPEG", nullptr};
+  const char* const drivers[] = {"GTiff",   "AAIGrid", "GRASSASCIIGrid", "HFA", "ENVI", "EHdr", "AIG",
+                                 "SAGA",    "RST",     "NWT_GRD",        "PNG", "BMP",  "JPEG", "JP2OpenJPEG",
+                                 "RRASTER", "BT",      nullptr};
   const GdalMessages quiet;
   std::vector<std::string> files;
   if (!looked_up(path).fault.empty()) return files;
