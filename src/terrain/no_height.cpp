@@ -20,10 +20,10 @@ void add_way(WithoutHeight& sum, const Raster<float>& heights, const Place& from
   constexpr double kMostPieces = 1e5;  // of a way far off the DEM
   const double length = (to - from).norm();
   if (!(length > 0.0)) return;
-  const double pieces = std::clamp(std::ceil(length / step), 1.0, kMostPieces);
+  const int pieces = static_cast<int>(std::clamp(std::ceil(length / step), 1.0, kMostPieces));
   double without = 0.0;
-  for (double i = 0.5; i < pieces; i += 1.0)
-    if (!has_height(heights, from + (i / pieces) * (to - from))) without += 1.0;
+  for (int i = 0; i < pieces; ++i)
+    if (!has_height(heights, from + ((i + 0.5) / pieces) * (to - from))) without += 1.0;
   sum.whole += weight * length;
   sum.without += weight * length * (without / pieces);  // exactly as much as `whole` where all are without
 }
@@ -64,11 +64,11 @@ void add_polygon(WithoutHeight& sum, const Raster<float>& heights, std::span<con
   if (rings.empty() || rings.front().empty()) return;
   Place low = rings.front().front(), high = low;
   for (const Place& place : rings.front()) low = low.cwiseMin(place), high = high.cwiseMax(place);
-  const double rows = std::clamp(std::ceil((high.y() - low.y()) / half_cell(heights.grid)), 16.0, 256.0),
-               height = (high.y() - low.y()) / rows,
+  const int rows = static_cast<int>(std::clamp(std::ceil((high.y() - low.y()) / half_cell(heights.grid)), 16.0, 256.0));
+  const double height = (high.y() - low.y()) / rows,
                step = std::max(half_cell(heights.grid), (high.x() - low.x()) / 256.0);
-  for (double row = 0.5; row < rows; row += 1.0) {
-    const double y = low.y() + row * height;
+  for (int row = 0; row < rows; ++row) {
+    const double y = low.y() + (row + 0.5) * height;
     const std::vector<double> x = crossings_of(rings, y);
     for (std::size_t i = 1; i < x.size(); i += 2) add_way(sum, heights, {x[i - 1], y}, {x[i], y}, step, height);
   }
