@@ -258,8 +258,7 @@ void add_progress(CLI::App& command, std::string& progress) {
             says_json = form == "json";
           },
           "machine: lines `progress 42` for other programs; json: lines {\"phase\": \"simulate\", \"share\": 0.42}, "
-          "and "
-          "{\"warning\": \"...\"} in the place of each message")
+          "and {\"warning\": ...}, {\"error\": ...} or {\"message\": ...} in the place of each message")
       ->check(CLI::IsMember({"machine", "json"}));
 }
 
