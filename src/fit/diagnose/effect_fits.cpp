@@ -265,12 +265,7 @@ void EffectFits::continue_with_more_trials(const FittedModel& base, FittedCandid
 
 void EffectFits::complete(const FittedModel& base, FittedCandidate& chosen) const {
   const Timesheet::Phase phase(times_, "chosen model");
-  FitOptions how = fit_options();
-  how.trials *= 2;
-  how.comparison_trials *= 2;
-  how.starts = 1;
-  how.rounds = options_.rules.last_rounds;
-  how.enough = options_.rules.worth_a_round;
+  FitOptions how = last_fit_options(fit_options(), options_.rules);
   const FittedModel& fitted = chosen.fitted;
   how.known = fitted.evaluations;
   FittedModel longer = fitted_model(fit_parameters(campaign_, fitted.model, fitted.free, rows_, how), fitted.free);

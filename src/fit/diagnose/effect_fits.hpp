@@ -14,6 +14,16 @@ struct LeastGain {
   bool are_in(const Confirmation& gains) const { return gains.fitted >= fitted && gains.unseen >= unseen; }
 };
 
+/// The fit of a chosen model from where it is: a search, then rounds until one gains nothing.
+inline FitOptions last_fit_options(FitOptions how, const DiagnosisRules& rules) {
+  how.trials *= 2;
+  how.comparison_trials *= 2;
+  how.starts = 1;
+  how.rounds = rules.last_rounds;
+  how.enough = rules.worth_a_round;
+  return how;
+}
+
 /// The fits of one diagnosis: of the ground, and of each effect on top of the model so far.
 ///
 /// Each fit passes its evaluations on to the next one, so that an effect is added to a ground whose neighbourhood is
@@ -63,7 +73,7 @@ class EffectFits {
   /// @param fold_of  by block: below `folds`, else the block is left out
   std::vector<BlockRuns> out_of_fold(const FittedModel& fitted, std::span<const std::uint32_t> fold_of,
                                      std::size_t folds, ObserveOptions how) const;
-  /// What a candidate gains, on its rows and in cross-validation, with random numbers that no choice has used.
+  /// Simulates a candidate and its base once more, with new random numbers. @return its gains then
   Confirmation confirmation(const FittedModel& base, const FittedCandidate& candidate) const;
   /// The time sheet of these fits; whoever does other work of the diagnosis enters it here.
   Timesheet& times() const { return times_; }

@@ -173,11 +173,7 @@ JointModel JointFits::continued(JointModel before, int rounds, std::uint32_t tim
 }
 
 void JointFits::complete(const JointModel& base, JointCandidate& chosen) const {
-  FitOptions how = fit_options();
-  how.trials *= 2;
-  how.comparison_trials *= 2;
-  how.starts = 1;
-  how.rounds = options_.rules.last_rounds;
+  FitOptions how = last_fit_options(fit_options(), options_.rules);
   how.known = chosen.fitted.evaluations;
   const JointModel& before = chosen.fitted;
   JointModel longer = fitted(problem_of(before.parameters, before.models), before.parameters, how);

@@ -35,7 +35,7 @@ class JointFits {
   /// Objectives over the blocks of all sites, each simulated by a fit to the other folds; one for each order of the
   /// blocks. Random numbers are those of number `part` of the round.
   std::vector<Score> cross_validated(const JointModel& fitted, std::uint32_t part) const;
-  /// What a candidate gains with random numbers that no choice has used.
+  /// As EffectFits::confirmation.
   Confirmation confirmation(const JointModel& base, const JointCandidate& candidate) const;
 
  private:

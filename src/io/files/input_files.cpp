@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What stands beside a file of this ending under the same name, and is read with it, where GDAL does not list it.
+/// Endings of the files of one name that are read together. GDAL does not list these.
 struct Companions {
   std::string_view of;
   std::vector<std::string_view> ends;

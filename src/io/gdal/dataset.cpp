@@ -108,7 +108,7 @@ Dataset open_dataset(const std::string& path, unsigned kinds) {
 }
 
 std::vector<std::string> files_of_raster(const std::string& path) {
-  // Those whose data may lie in several files. Others would read all of a large text to open it.
+  // Formats of several files. Other formats stay closed here: GDAL reads a whole text file (XYZ) to open it.
   const char* const drivers[] = {"GTiff",   "AAIGrid", "GRASSASCIIGrid", "HFA", "ENVI", "EHdr", "AIG",
                                  "SAGA",    "RST",     "NWT_GRD",        "PNG", "BMP",  "JPEG", "JP2OpenJPEG",
                                  "RRASTER", "BT",      nullptr};

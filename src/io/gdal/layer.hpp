@@ -68,7 +68,7 @@ class Layer {
   /// The text of a field of any type, without blanks around it; empty if it is NULL or the field is not there (-1).
   /// Throws InputError if it is not UTF-8.
   std::string text(const OGRFeature& feature, int field) const;
-  /// The same of a text or whole-number field. Throws InputError for other fields.
+  /// The code in a text or whole-number field, as `text` gives it. Throws InputError for fields of other types.
   std::string code(const OGRFeature& feature, int field) const;
 
   /// Whether it is a text table, whose fields are all text.

@@ -73,6 +73,18 @@ std::string markdown_row(const std::string& site, const char* rows, const ErrorC
          change_text(c) + " |\n";
 }
 
+/// The error on the held-out rows of all sites together; NaN where there are none.
+double pooled_holdout_error(std::span<const Site> sites, std::span<const Model> models, ObserveOptions how) {
+  std::vector<SiteScore> scores;
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    const Campaign& campaign = *sites[i].campaign;
+    how.blocks = holdout_rows(campaign);
+    scores.push_back(
+        {sites[i].name, score(campaign, observe(campaign, models[i], how), how.blocks), campaign.blocks.size()});
+  }
+  return joined_scores(scores).total;
+}
+
 }  // namespace
 
 std::vector<SiteEvidence> evidence_of_sites(std::span<const Site> sites, std::span<const Model> before,
@@ -97,17 +109,6 @@ std::vector<SiteEvidence> evidence_of_sites(std::span<const Site> sites, std::sp
   pooled.headline = change_of(large_groups(held), holdout, clusters);
   list.push_back(std::move(pooled));
   return list;
-}
-
-double pooled_holdout_error(std::span<const Site> sites, std::span<const Model> models, ObserveOptions how) {
-  std::vector<SiteScore> scores;
-  for (std::size_t i = 0; i < sites.size(); ++i) {
-    const Campaign& campaign = *sites[i].campaign;
-    how.blocks = holdout_rows(campaign);
-    scores.push_back(
-        {sites[i].name, score(campaign, observe(campaign, models[i], how), how.blocks), campaign.blocks.size()});
-  }
-  return joined_scores(scores).total;
 }
 
 void open_holdout(std::span<const Site> sites, SitesRecord& record, const ObserveOptions& how) {

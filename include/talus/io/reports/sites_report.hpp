@@ -27,12 +27,6 @@ struct SiteEvidence {
 std::vector<SiteEvidence> evidence_of_sites(std::span<const Site> sites, std::span<const Model> before,
                                             std::span<const Model> after, const ObserveOptions& how);
 
-/// The error on the held-out rows of all sites together; NaN where there are none.
-///
-/// @param models  by site
-/// @param how     trials, seed, first trial, threads
-double pooled_holdout_error(std::span<const Site> sites, std::span<const Model> models, ObserveOptions how);
-
 /// Results of `talus diagnose` with several campaigns.
 struct SitesRecord : FitRecord {
   DiagnoseOptions options;

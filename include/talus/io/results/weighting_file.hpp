@@ -8,7 +8,7 @@
 
 namespace talus::io {
 
-/// What a file of another weighting says, for the record of what is made with it.
+/// The frequencies in a file of another weighting, as hazard.json and barrier_ID.json record them.
 struct GivenFrequencies {
   std::string file, sha256;  ///< file: empty if none was given
   FrequencyRules rules;      ///< total, per_area and law of [frequency]; `kNotGiven` where it does not say
