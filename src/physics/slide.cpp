@@ -152,7 +152,7 @@ Step next_step(const Slope& slope, const Motion& motion, double farthest, double
   const Vec2 there = place_after(dt);
   Motion next = motion;
   next.time += dt;
-  next.position = {there.x(), there.y(), slope.height(there)};
+  next.position = {there.x(), there.y(), std::min(slope.height(there), top)};  // at a corner two facets may differ
   next.velocity = along(v + dt * piece.acceleration, slope.gradient(there));
   slow_down(next.velocity, top - next.position.z());
   return {next, edge, dt == whole && edge.time <= piece.duration};

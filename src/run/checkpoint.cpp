@@ -110,7 +110,7 @@ std::vector<Setting> Checkpoint::settings(std::uint32_t rounds) const {
   for (Setting& setting : settings)
     if (setting.key == "trajectories" && rounds > 1) {
       setting.source = std::to_string(rounds) + " rounds of " + setting.value + ", " + setting.source;
-      setting.value = std::to_string(std::stoull(setting.value) * rounds);
+      setting.value = std::to_string(std::uint64_t{loaded_->scenario.trajectories} * rounds);
     }
   return settings;
 }
@@ -156,17 +156,14 @@ void Checkpoint::save(const Simulation& simulation, const Tally& tally) {
                     reach = numbered("reach", next, processes_->rank());
   const std::vector<SavedFile> tallies = gathered({name, write_tally(folder_ / name, tally)});
   const std::vector<SavedFile> reaches = gathered({reach, write_reaches(folder_ / reach, simulation)});
-  ByteWriter totals;
-  put_totals(totals_of_all(simulation.totals()), totals);
+  const Totals totals = totals_of_all(simulation.totals());
   close_rows(simulation.position().round);
   generation_ = next;
   rounds_ = simulation.position().round + (simulation.round_done() ? 1U : 0U);
   units_done_ = simulation.round_done() ? 0 : simulation.position().unit;
   round_ = rounds_;
   if (processes_->leads()) {
-    CheckpointFileWriter rest(folder_ / numbered("rest", next));
-    rest.put(totals.bytes());
-    rest_sha256_ = rest.finish();
+    rest_sha256_ = write_totals(folder_ / numbered("rest", next), totals);
     const std::vector<SavedFile> old_tallies = std::exchange(tallies_, tallies);
     const std::vector<SavedFile> old_reaches = std::exchange(reaches_, reaches);
     write_manifest();
@@ -200,9 +197,11 @@ Totals Checkpoint::totals_of_all(const Totals& mine) const {
 
 Totals Checkpoint::add_to(Tally& tally) const {
   for (const SavedFile& file : tallies_) read_tally(folder_ / file.name, file.sha256, tally);
-  const std::string bytes = checked(numbered("rest", generation_), rest_sha256_);
-  ByteReader rest(bytes);
-  return get_totals(loaded_->scenario.barriers, rest);
+  return saved_totals();
+}
+
+Totals Checkpoint::saved_totals() const {
+  return read_totals(folder_ / numbered("rest", generation_), rest_sha256_, loaded_->scenario.barriers);
 }
 
 void Checkpoint::restore(Simulation& simulation, Tally& tally) const {
@@ -210,11 +209,9 @@ void Checkpoint::restore(Simulation& simulation, Tally& tally) const {
   const auto size = static_cast<std::size_t>(processes_->size()), me = static_cast<std::size_t>(processes_->rank());
   for (std::size_t i = me; i < tallies_.size(); i += size)
     read_tally(folder_ / tallies_[i].name, tallies_[i].sha256, tally);
-  const std::string bytes = checked(numbered("rest", generation_), rest_sha256_);
-  ByteReader rest(bytes);
-  Totals totals = get_totals(loaded_->scenario.barriers, rest), none;
+  Totals none;
   none.barriers = BarrierTally(loaded_->scenario.barriers);
-  simulation.restore({rounds_, units_done_}, processes_->leads() ? totals : none);
+  simulation.restore({rounds_, units_done_}, processes_->leads() ? saved_totals() : none);
   for (const SavedFile& file : reaches_) read_reaches(folder_ / file.name, file.sha256, simulation);
 }
 
@@ -226,14 +223,6 @@ void Checkpoint::replay(std::uint32_t round, const Sinks& sinks) const {
       if (file->round == round) files.push_back(std::make_unique<RowsReader>(folder_ / file->name, file->sha256));
     replay_rows(files, sinks);
   }
-}
-
-std::string Checkpoint::checked(const std::string& name, const std::string& sha256) const {
-  CheckpointFileReader in(folder_ / name, sha256);
-  std::error_code error;
-  std::string bytes = in.get(fs::file_size(folder_ / name, error));
-  in.finish();
-  return bytes;
 }
 
 void Checkpoint::write_manifest() const {

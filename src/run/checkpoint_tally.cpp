@@ -38,6 +38,26 @@ Totals get_totals(const Barriers& barriers, ByteReader& in) {
   return totals;
 }
 
+std::string write_totals(const fs::path& file, const Totals& totals) {
+  CheckpointFileWriter out(file);
+  ByteWriter bytes;
+  put_totals(totals, bytes);
+  out.put(bytes.bytes());
+  return out.finish();
+}
+
+Totals read_totals(const fs::path& file, const std::string& sha256, const Barriers& barriers) {
+  CheckpointFileReader in(file, sha256);
+  const std::string bytes = in.get(in.left());
+  ByteReader reader(bytes);
+  try {
+    const Totals totals = get_totals(barriers, reader);
+    if (reader.empty()) return totals;
+  } catch (const std::out_of_range&) {  // too few bytes
+  }
+  in.fail();
+}
+
 std::string write_tally(const fs::path& file, const Tally& tally) {
   CheckpointFileWriter out(file);
   ByteWriter region;

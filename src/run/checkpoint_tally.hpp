@@ -7,10 +7,15 @@
 
 namespace talus::run {
 
-/// Writes and reads totals as a `Checkpoint` saves them.
+/// Totals as bytes, between processes and in a `Checkpoint`.
 void put_totals(const Totals& totals, ByteWriter& out);
 /// @param barriers  of the run that saved the totals
 Totals get_totals(const Barriers& barriers, ByteReader& in);
+
+/// Writes them into a file. Returns the checksum.
+std::string write_totals(const std::filesystem::path& file, const Totals& totals);
+/// Throws InputError if the file is damaged.
+Totals read_totals(const std::filesystem::path& file, const std::string& sha256, const Barriers& barriers);
 
 /// Writes a tally region by region: number, length, bytes. Returns the checksum.
 std::string write_tally(const std::filesystem::path& file, const Tally& tally);

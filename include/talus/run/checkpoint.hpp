@@ -88,7 +88,7 @@ class Checkpoint {
   };
   Checkpoint(std::filesystem::path folder, const LoadedScenario& loaded, ProcessGroup& processes);
   std::vector<SavedFile> gathered(const SavedFile& mine) const;
-  std::string checked(const std::string& name, const std::string& sha256) const;
+  Totals saved_totals() const;
   void close_rows(std::uint32_t round);
   void write_manifest() const;
   void read_manifest();

@@ -340,7 +340,8 @@ Confirmation EffectFits::confirmation(const FittedModel& base, const FittedCandi
   unseen.first_trial += rules.fold_orders * options_.trials.compare;
   unseen.trials *= rules.confirming;
   const auto error = [&](const FittedModel& fitted) {
-    return weigh_groups(score(campaign_, observe(campaign_, fitted.model, unseen), rows_)).total;
+    const auto runs = observe(campaign_, fitted.model, unseen);
+    return weigh_groups(score(campaign_, runs, rows_, rules.confirming * kFewestSimulated)).total;
   };
   return {error(base) - error(candidate.fitted), -change.mean - candidate.place_price};
 }

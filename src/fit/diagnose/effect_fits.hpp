@@ -73,7 +73,9 @@ class EffectFits {
   /// @param fold_of  by block: below `folds`, else the block is left out
   std::vector<BlockRuns> out_of_fold(const FittedModel& fitted, std::span<const std::uint32_t> fold_of,
                                      std::size_t folds, ObserveOptions how) const;
-  /// Simulates a candidate and its base once more, with new random numbers. @return its gains then
+  /// Simulates a candidate and its base once more, with new random numbers and more of them. A row is scored where the
+  /// same share of the trials gives a value as in the choice: with a fixed number of values, rows that the choice left
+  /// to the climatology would decide. @return its gains then
   Confirmation confirmation(const FittedModel& base, const FittedCandidate& candidate) const;
   /// The time sheet of these fits; whoever does other work of the diagnosis enters it here.
   Timesheet& times() const { return times_; }

@@ -111,12 +111,13 @@ std::vector<std::vector<BlockRuns>> JointFits::observe_all(const std::vector<Mod
   return runs;
 }
 
-Score JointFits::joined_score(const std::vector<std::vector<BlockRuns>>& runs,
-                              std::span<const std::uint32_t> folds) const {
+Score JointFits::joined_score(const std::vector<std::vector<BlockRuns>>& runs, std::span<const std::uint32_t> folds,
+                              std::size_t fewest_simulated) const {
   std::vector<SiteScore> scores;
   std::size_t before = 0;
   for (std::size_t i = 0; i < sites_.size(); ++i) {
     ScoreOptions rule;
+    rule.fewest_simulated = fewest_simulated;
     if (!folds.empty()) {
       const auto of_site = folds.subspan(before, rows_[i].size());
       rule.folds.assign(of_site.begin(), of_site.end());
@@ -306,8 +307,8 @@ Confirmation JointFits::confirmation(const JointModel& base, const JointCandidat
   const Difference change = mean_difference(cross_validated(base, 1), cross_validated(candidate.fitted, 1), streams_);
   const std::uint32_t first = first_trial() + (1 + 2 * rules.fold_orders) * options_.trials.compare;
   const auto error = [&](const JointModel& fitted) {
-    return weigh_groups(joined_score(observe_all(fitted.models, rules.confirming * options_.trials.compare, first)))
-        .total;
+    const auto runs = observe_all(fitted.models, rules.confirming * options_.trials.compare, first);
+    return weigh_groups(joined_score(runs, {}, rules.confirming * kFewestSimulated)).total;
   };
   return {error(base) - error(candidate.fitted), -change.mean};
 }

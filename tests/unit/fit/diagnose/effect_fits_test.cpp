@@ -197,6 +197,35 @@ TEST(JointFits, ABlockOutOfItsFoldDoesNotKnowItsOwnMeasurement) {
   for (const auto& [block, value] : expected) EXPECT_EQ(second.at(block + 30U), value);
 }
 
+/// Random speeds at a screen that one trial in twenty comes to. The choice sees a row there from a fifth of its trials
+/// on; with more trials it is not more of them, and the speeds do not matter.
+TEST(EffectFits, RowsThatTheChoiceLeavesToTheClimatologyDoNotConfirmIt) {
+  SlopeFits slope(45);
+  Campaign& campaign = slope.campaign;
+  std::vector<double> run_out;
+  for (const BlockRuns& runs : observe(campaign, model_of_slope(), {50, 1, 0, 0, slope.rows, {}}))
+    std::ranges::copy_if(runs.x, std::back_inserter(run_out), [](double x) { return !std::isnan(x); });
+  std::ranges::sort(run_out);
+  const double far = quantile(run_out, 0.95);
+  campaign.screens.push_back({"S2", {{{far, 0.0}, {far, 140.0}}}});
+  const auto with_speeds = [&](std::uint64_t seed) {
+    Campaign measured = campaign;
+    Numbers numbers(seed);
+    for (MeasuredBlock& block : measured.blocks) {
+      block.passages.resize(2);
+      block.passages[1] = Passage{numbers.uniform(2.0, 9.0), kNotGiven, kNotGiven};
+    }
+    return measured;
+  };
+  const Campaign one = with_speeds(5), other = with_speeds(6);
+  const EffectFits fits(one, slope.options, slope.rows, [](double) { return true; });
+  const EffectFits others(other, slope.options, slope.rows, [](double) { return true; });
+  FittedCandidate good;
+  good.fitted = fits.fit_ground(model_of_slope(), true);
+  const FittedModel bad = too_rough(one, slope.rows, good.fitted);
+  EXPECT_NEAR(fits.confirmation(bad, good).fitted, others.confirmation(bad, good).fitted, 1e-12);
+}
+
 TEST(EffectFits, WhatOnlyHarmsIsNotFitted) {
   const SlopeFits slope(30);
   const Campaign& campaign = slope.campaign;
