@@ -68,7 +68,8 @@ Score score_at(const FitProblem& problem, const FitOptions& options, const Eigen
     const ObserveOptions how{
         trials.count, options.seed, trials.first, options.threads, site.rows, {}, effort_of(options.rules)};
     const std::vector<BlockRuns> runs = observe(site.campaign, problem.model(site, z), how);
-    scores.push_back({site.name, score(site.campaign, runs, site.rows, fewest), site.campaign.blocks.size()});
+    scores.push_back(
+        {site.name, score(site.campaign, runs, site.rows, fit_scoring(fewest)), site.campaign.blocks.size()});
   }
   return weigh_groups(joined_scores(scores));
 }

@@ -89,7 +89,7 @@ FittedModel EffectFits::better_of(FittedModel fitted, FittedModel longer) {
 FittedModel EffectFits::simulated_anew(FittedModel fitted) const {
   fitted.runs = observe(campaign_, fitted.model, observe_options(options_.trials.compare));
   fitted.score = score(campaign_, fitted.runs, rows_);
-  fitted.objective = weigh_groups(fitted.score);
+  fitted.objective = weigh_groups(score(campaign_, fitted.runs, rows_, fit_scoring()));
   return fitted;
 }
 
@@ -341,7 +341,7 @@ Confirmation EffectFits::confirmation(const FittedModel& base, const FittedCandi
   unseen.trials *= rules.confirming;
   const auto error = [&](const FittedModel& fitted) {
     const auto runs = observe(campaign_, fitted.model, unseen);
-    return weigh_groups(score(campaign_, runs, rows_, rules.confirming * kFewestSimulated)).total;
+    return weigh_groups(score(campaign_, runs, rows_, fit_scoring(rules.confirming * kFewestSimulated))).total;
   };
   return {error(base) - error(candidate.fitted), -change.mean - candidate.place_price};
 }

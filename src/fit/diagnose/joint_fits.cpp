@@ -111,15 +111,13 @@ std::vector<std::vector<BlockRuns>> JointFits::observe_all(const std::vector<Mod
   return runs;
 }
 
-Score JointFits::joined_score(const std::vector<std::vector<BlockRuns>>& runs, std::span<const std::uint32_t> folds,
-                              std::size_t fewest_simulated) const {
+Score JointFits::joined_score(const std::vector<std::vector<BlockRuns>>& runs, const ScoreOptions& how) const {
   std::vector<SiteScore> scores;
   std::size_t before = 0;
   for (std::size_t i = 0; i < sites_.size(); ++i) {
-    ScoreOptions rule;
-    rule.fewest_simulated = fewest_simulated;
-    if (!folds.empty()) {
-      const auto of_site = folds.subspan(before, rows_[i].size());
+    ScoreOptions rule = how;
+    if (!how.folds.empty()) {
+      const auto of_site = std::span(how.folds).subspan(before, rows_[i].size());
       rule.folds.assign(of_site.begin(), of_site.end());
     }
     scores.push_back({sites_[i].name, score(*sites_[i].campaign, runs[i], rows_[i], rule), rows_[i].size()});
@@ -130,8 +128,8 @@ Score JointFits::joined_score(const std::vector<std::vector<BlockRuns>>& runs, s
 
 JointModel JointFits::simulated_anew(JointModel fitted) const {
   fitted.runs = observe_all(fitted.models, options_.trials.compare, first_trial());
-  fitted.score = joined_score(fitted.runs);
-  fitted.objective = weigh_groups(fitted.score);
+  fitted.score = joined_score(fitted.runs, {});
+  fitted.objective = weigh_groups(joined_score(fitted.runs, fit_scoring()));
   return fitted;
 }
 
@@ -299,7 +297,7 @@ Score JointFits::score_in_folds(const LocalModel& local, const JointModel& fitte
       before += rows_[i].size();
     }
   }
-  return weigh_groups(joined_score(runs, fold_of));
+  return weigh_groups(joined_score(runs, {ScoreRule::Fair, kFewestSimulated, fold_of}));
 }
 
 Confirmation JointFits::confirmation(const JointModel& base, const JointCandidate& candidate) const {
@@ -308,7 +306,7 @@ Confirmation JointFits::confirmation(const JointModel& base, const JointCandidat
   const std::uint32_t first = first_trial() + (1 + 2 * rules.fold_orders) * options_.trials.compare;
   const auto error = [&](const JointModel& fitted) {
     const auto runs = observe_all(fitted.models, rules.confirming * options_.trials.compare, first);
-    return weigh_groups(joined_score(runs, {}, rules.confirming * kFewestSimulated)).total;
+    return weigh_groups(joined_score(runs, fit_scoring(rules.confirming * kFewestSimulated))).total;
   };
   return {error(base) - error(candidate.fitted), -change.mean};
 }

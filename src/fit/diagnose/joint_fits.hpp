@@ -49,9 +49,8 @@ class JointFits {
   JointModel simulated_anew(JointModel fitted) const;
   Score score_in_folds(const LocalModel& local, const JointModel& fitted, std::uint32_t first,
                        std::uint32_t number) const;
-  /// @param folds  as ScoreOptions::folds, of the blocks of all sites one after another
-  Score joined_score(const std::vector<std::vector<BlockRuns>>& runs, std::span<const std::uint32_t> folds = {},
-                     std::size_t fewest_simulated = kFewestSimulated) const;
+  /// @param how  folds: of the blocks of all sites one after another
+  Score joined_score(const std::vector<std::vector<BlockRuns>>& runs, const ScoreOptions& how) const;
   std::vector<std::vector<BlockRuns>> observe_all(const std::vector<Model>& models, std::uint32_t trials,
                                                   std::uint32_t first) const;
 

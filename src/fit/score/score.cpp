@@ -206,9 +206,10 @@ class Scorer {
   bool together(std::uint32_t a, std::uint32_t b) const {
     return options_.folds.empty() ? a == b : options_.folds[a] == options_.folds[b];
   }
-  /// A fitting row that is not simulated often enough scores as all fitting rows, itself among them: so do the
-  /// objective of a fit and score.py. Not so out of its fold, and not by log density.
-  bool own_values_too() const { return options_.folds.empty() && options_.rule == ScoreRule::Fair; }
+  /// Out of its fold, and by log density, a row never knows its own value.
+  bool own_values_too() const {
+    return options_.own_value_too && options_.folds.empty() && options_.rule == ScoreRule::Fair;
+  }
   bool too_few(std::size_t simulated) const { return !climatology_ && simulated < options_.fewest_simulated; }
 
   static inline const std::vector<double> kNoValues{};

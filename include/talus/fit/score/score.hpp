@@ -57,7 +57,16 @@ struct ScoreOptions {
   /// By block: blocks of one number were left out together of a cross-validation, and none of them enters the
   /// climatology of another. Empty: each block is left out of its own climatology alone.
   std::vector<std::uint32_t> folds;
+  /// A row with too few simulated values scores as all fitting rows, itself among them, as in score.py. Not so in what
+  /// a fit minimises: a block's own value makes the climatology better than a right model, and a fit would do well to
+  /// keep the blocks from a screen where few were measured.
+  bool own_value_too = true;
 };
+
+/// How the rows are scored that a fit minimises, and that decide between fits.
+inline ScoreOptions fit_scoring(std::size_t fewest_simulated = kFewestSimulated) {
+  return {ScoreRule::Fair, fewest_simulated, {}, false};
+}
 
 /// Scores the simulations of the asked blocks against their measurements, as defined in docs/closing-the-loop.md, "The
 /// score".
