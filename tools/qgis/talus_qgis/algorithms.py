@@ -345,7 +345,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         return found
 
     def _vector(self, parameters, key, context):
-        """(file of the layer if that is all of it, its source of features, kind of file in which they can be written)."""
+        """(file of the layer if that is all of it, its source of features)."""
         source = self.parameterAsSource(parameters, key, context)
         if source is None:
             raise QgsProcessingException(self.invalidSourceError(parameters, key))
@@ -356,7 +356,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         layer = self.parameterAsVectorLayer({key: plain}, key, context)
         if isinstance(layer, QgsVectorLayer):
             layers.refuse_unnamed(layer)
-        return layers.plain_vector(value, layer), source, layers.suffix_for(layer)
+        return layers.plain_vector(value, layer), source
 
     def processAlgorithm(self, parameters, context, feedback):
         try:
@@ -480,11 +480,10 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         key = key_of(p["name"])
         words = []
         if "vector" in p["holds"] and self.layers.get(key):
-            plain, source, suffix = self.layers[key][0]
+            plain, source = self.layers[key][0]
             if len(self.layers[key]) > 1:
-                plain, suffix = None, ".gpkg"
-                source = layers.Joined([source for _, source, _ in self.layers[key]], context, feedback)
-            words.append(plain or layers.write_vector(source, inputs, p["name"] + suffix, context, feedback))
+                plain, source = None, layers.Joined([source for _, source in self.layers[key]], context, feedback)
+            words.append(plain or layers.write_vector(source, inputs, p["name"] + ".gpkg", context, feedback))
         raster = self.layers.get(key + "_RASTER" if p["name"] in self.table.get("raster too", ()) else key)
         if "raster" in p["holds"] and raster:
             if words:
