@@ -4,15 +4,15 @@ import os
 import re
 import time
 
-from qgis.core import (QgsProcessing, QgsProcessingAlgorithm, QgsProcessingException, QgsProcessingFeatureSourceDefinition,
-                       QgsProcessingOutputFile, QgsProcessingOutputFolder, QgsProcessingOutputLayerDefinition,
-                       QgsProcessingOutputRasterLayer, QgsProcessingOutputVectorLayer, QgsProcessingParameterBand,
-                       QgsProcessingParameterBoolean, QgsProcessingParameterDefinition, QgsProcessingParameterEnum,
-                       QgsProcessingParameterFeatureSource, QgsProcessingParameterField, QgsProcessingParameterFile,
-                       QgsProcessingParameterFileDestination, QgsProcessingParameterFolderDestination,
-                       QgsProcessingParameterMultipleLayers, QgsProcessingParameterNumber, QgsProcessingParameterRasterLayer,
-                       QgsProcessingParameterString, QgsProcessingUtils, QgsProject, QgsProperty,
-                       QgsVectorLayer)
+from qgis.core import (QgsFeatureRequest, QgsProcessing, QgsProcessingAlgorithm, QgsProcessingException,
+                       QgsProcessingFeatureSourceDefinition, QgsProcessingOutputFile, QgsProcessingOutputFolder,
+                       QgsProcessingOutputLayerDefinition, QgsProcessingOutputRasterLayer, QgsProcessingOutputVectorLayer,
+                       QgsProcessingParameterBand, QgsProcessingParameterBoolean, QgsProcessingParameterDefinition,
+                       QgsProcessingParameterEnum, QgsProcessingParameterFeatureSource, QgsProcessingParameterField,
+                       QgsProcessingParameterFile, QgsProcessingParameterFileDestination,
+                       QgsProcessingParameterFolderDestination, QgsProcessingParameterMultipleLayers,
+                       QgsProcessingParameterNumber, QgsProcessingParameterRasterLayer, QgsProcessingParameterString,
+                       QgsProcessingUtils, QgsProject, QgsProperty, QgsVectorLayer)
 from qgis.PyQt.QtGui import QIcon
 
 from . import layers, process, program, results
@@ -65,6 +65,7 @@ ALGORITHMS = [
     {"id": "barrier", "command": "barrier", "help": "barrier", "order": ["folder", "screen"], "is folder": {"folder"},
      "advanced": {"observed", "frequency", "percentile", "containment", "stretch", "unweighted"}, "phases": []},
     {"id": "profile", "command": "profile", "help": "profile", "phases": ["simulate", "write"],
+     "labels": {"trajectories": "number-of-blocks"},
      "files": {"record": "run.json", "picture": "profile.svg"}, "folder": "out", "nothing to load": True},
     {"id": "calibrate", "command": "calibrate", "help": "closing-the-loop", "phases": ["fit"], "folder": "out",
      "nothing to load": True,
@@ -349,6 +350,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         source = self.parameterAsSource(parameters, key, context)
         if source is None:
             raise QgsProcessingException(self.invalidSourceError(parameters, key))
+        # By default Processing stops at an invalid polygon, and QGIS itself ends. The program mends them and says so.
+        source.setInvalidGeometryCheck(QgsFeatureRequest.GeometryNoCheck)
         value = parameters[key]
         plain = value.source if isinstance(value, QgsProcessingFeatureSourceDefinition) else value
         if isinstance(plain, QgsProperty):

@@ -14,8 +14,8 @@ from contextlib import contextmanager
 
 from osgeo import gdal
 from qgis.core import (QgsCoordinateTransform, QgsCsException, QgsFeature, QgsFeatureRequest, QgsFeatureSink, QgsField,
-                       QgsFields, QgsProcessingException, QgsProcessingFeatureSourceDefinition, QgsProviderRegistry, QgsRasterLayer,
-                       QgsVectorFileWriter, QgsVectorLayer, QgsWkbTypes)
+                       QgsFields, QgsProcessingException, QgsProcessingFeatureSourceDefinition, QgsProviderRegistry,
+                       QgsRasterLayer, QgsVectorFileWriter, QgsVectorLayer, QgsWkbTypes)
 from qgis.PyQt.QtCore import Qt, QVariant
 
 from .texts import tr

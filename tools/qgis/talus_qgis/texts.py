@@ -16,6 +16,7 @@ LABELS = {
     "diameter": ("Diameter of the blocks", "Durchmesser der Blöcke"),
     "preset": ("Ground", "Boden"),
     "trajectories": ("Trajectories per source cell", "Sturzbahnen pro Anbruchzelle"),
+    "number-of-blocks": ("Number of blocks", "Zahl der Blöcke"),
     "frequency": ("Frequency of all sources together", "Häufigkeit aller Anbruchgebiete zusammen"),
     "screens": ("Screens (lines where crossings are recorded)", "Nachweislinien (Durchgänge werden festgehalten)"),
     "barriers": ("Barriers (lines; fields height [m], capacity [kJ])", "Schutzbauten (Linien; Felder height [m], capacity [kJ])"),
