@@ -155,4 +155,17 @@ std::string wkt_of(const OGRSpatialReference* system) {
   return wkt;
 }
 
+std::string without_heights(const std::string& wkt) {
+  const GdalMessages quiet;
+  OGRSpatialReference system;
+  if (system.importFromWkt(wkt.c_str()) != OGRERR_NONE || system.IsCompound() != 0 || system.IsProjected() == 0 ||
+      system.GetAxesCount() != 3 || system.DemoteTo2D(nullptr) != OGRERR_NONE)
+    return wkt;
+  struct Release {
+    void operator()(OGRSpatialReference* known) const { known->Release(); }
+  };
+  const std::unique_ptr<OGRSpatialReference, Release> known(system.FindBestMatch(100));  // with its code
+  return wkt_of(known ? known.get() : &system);
+}
+
 }  // namespace talus::io
