@@ -4,6 +4,7 @@ import os
 import shutil
 import struct
 import unittest
+import zipfile
 
 import numpy as np
 from osgeo import gdal, ogr, osr
@@ -262,6 +263,37 @@ class Tables(InputCase):
         write_features(self.path("sources.gpkg"), "sources", [(f"POINT ({X} {Y})", [0.1])], [("frequency", ogr.OFTReal)])
         self.run_flags("-q")
         self.fails(2, bad + ":2: has 3 cells", arguments=["hazard", self.path("out"), "--objects", self.path(bad)])
+
+
+class Archives(InputCase):
+    def zipped(self, folder, west):
+        """d.zip in a folder, with a DEM that begins at `west`, and sources on it."""
+        os.makedirs(self.path(folder))
+        write_dem(self.path("z.tif"), heights(), transform=(west, 5.0, 0.0, NORTH, 0.0, -5.0))
+        with zipfile.ZipFile(self.path(folder + "/d.zip"), "w") as archive:
+            archive.write(self.path("z.tif"), "sub/dem.tif")
+            archive.writestr("s.csv", f"x,y,diameter\n{west + 150},{Y},1\n")
+
+    def test_their_names_are_relative_to_the_scenario(self):  # an archive of the current folder was read
+        self.zipped("one", WEST)
+        self.zipped("two", WEST + 1000)
+        for dem, sources in (("/vsizip/d.zip/sub/dem.tif", "/vsizip/d.zip/s.csv"),
+                             ("/vsizip/{d.zip}/sub/dem.tif", "/vsizip/../one/d.zip/s.csv"),
+                             (f"/vsizip/{self.path('one/d.zip')}/sub/dem.tif", f"/vsizip/{self.path('one/d.zip')}/s.csv")):
+            scenario = self.write("one/s.toml", f'dem = "{dem}"\ntrajectories = 1\n[sources]\nfile = "{sources}"\n')
+            for folder in ("one", "two", "."):
+                done = self.run_well("check", scenario, cwd=self.path(folder))
+                self.assertIn(f"extent        {WEST:.3f} to {WEST + 300:.3f} east", done.stdout)
+            self.run_well("run", "s.toml", "-o", self.path("out"), "--overwrite", "-q", cwd=self.path("one"))
+            self.run_well("check", self.path("out/scenario.toml"), cwd="/")
+            for given in self.record()["inputs"][1:]:
+                self.assertIn(self.path("one/d.zip"), given["path"])
+
+    def test_flags_are_relative_to_the_current_folder(self):
+        self.zipped("one", WEST)
+        self.run_well("run", "--dem", "/vsizip/d.zip/sub/dem.tif", "--sources", "/vsizip/d.zip/s.csv", "--trajectories", "1",
+                      "-o", self.path("out"), "-q", cwd=self.path("one"))
+        self.run_well("check", self.path("out/scenario.toml"), cwd="/")
 
 
 class Shapefiles(InputCase):
