@@ -73,6 +73,7 @@ void OutputFile::protect(const fs::path& input) const {
 }
 
 void OutputFile::commit() {
+  remove_beside(staged_.path());
   if (const std::error_code error = staged_.commit()) throw fs::filesystem_error("rename", staged_.path(), error);
 }
 
