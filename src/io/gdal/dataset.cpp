@@ -94,7 +94,7 @@ Dataset open_dataset(const std::string& path, unsigned kinds) {
   const char* const csv[] = {"AUTODETECT_TYPE=NO",   "GEOM_POSSIBLE_NAMES=wkt,geometry,geom",
                              "X_POSSIBLE_NAMES=x",   "Y_POSSIBLE_NAMES=y",
                              "KEEP_GEOM_COLUMNS=NO", nullptr};
-  const char* const* options = ends_with(file, ".csv") ? csv : nullptr;
+  const char* const* options = is_text_table(file) ? csv : nullptr;
   Dataset dataset(GDALDataset::Open(name_for_gdal(file).c_str(), kinds | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
                                     nullptr, options, nullptr));
   if (!dataset) {
