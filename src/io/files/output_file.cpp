@@ -63,6 +63,7 @@ fs::path checked(const fs::path& path, const std::string& extension, bool overwr
 OutputFile::OutputFile(const fs::path& path, const std::string& extension, bool overwrite)
     : staged_(StagedPath::Kind::File, checked(path, extension, overwrite), extension) {
   parents_.make(staged_.path().parent_path());
+  refuse_unwritable(path.parent_path());
 }
 
 void OutputFile::protect(const fs::path& input) const {
