@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <tuple>
 
@@ -221,6 +222,17 @@ TEST_F(ScenarioFile, FlagsWinOverTheScenario) {
       std::string("seed = 4\n") + kFiles + "[blocks]\ndiameter = 1\n[ground]\ndefault = \"lower-talus-3d\"\n", flags);
   EXPECT_DOUBLE_EQ(l.scenario.cover.grounds[0].theta_scale, 0.4);
   EXPECT_EQ(l.scenario.seed, 5U);
+}
+
+TEST_F(ScenarioFile, TheRecordHasNamesAsTheyAre) {
+  for (const std::string name : {"say \"dem\".tif", "a\\b.tif", "line\nend\x01.tif"}) {
+    RunFlags flags;
+    flags.dem = RasterFile{}.write(path(name));
+    const LoadedScenario l = load(std::string(kFiles) + "[blocks]\ndiameter = 1.2\n", flags);
+    const auto dem = std::ranges::find(l.settings, "dem", &Setting::key);
+    ASSERT_NE(dem, l.settings.end());
+    EXPECT_EQ(dem->value, path(name));
+  }
 }
 
 /// The map: 10 x 8 cells of 10 m, counts by hand. What is said of zones is said of the polygons of an effect.
