@@ -103,6 +103,46 @@ class Disks(Faults):
         self.assertEqual(error.count("talus: error"), 1, error)
 
 
+class AnotherUser(Faults):
+    """The tests run as root, who may write everywhere: the program runs as `nobody`."""
+
+    def setUp(self):
+        super().setUp()
+        self.user = {"user": 65534, "group": 65534, "extra_groups": []} if os.geteuid() == 0 else {}
+        os.chmod(self.folder, 0o755)
+        try:
+            able = subprocess.run([TALUS, "--version"], capture_output=True, check=False, **self.user).returncode == 0
+        except PermissionError:
+            able = False
+        if not able:
+            self.skipTest("another user cannot run the program there")
+
+    def closed(self, folder):
+        os.chmod(self.path(folder), 0o555)
+        self.addCleanup(os.chmod, self.path(folder), 0o755)
+
+    def test_a_folder_for_a_single_file(self):
+        """Named as it was given, before the work; it was a hidden name, and code 1, at the end."""
+        self.write("s.toml", RUN)
+        self.run_scenario("out")
+        os.mkdir(self.path("ro"))
+        self.closed("out")
+        self.closed("ro")
+        before = {folder: sorted(os.listdir(self.path(folder))) for folder in ("out", "ro")}
+        scenario = "out/scenario.toml"
+        for folder, arguments in (("out", ["report", "out"]), ("ro", ["report", "out", "-o", "ro/page.html"]),
+                                  ("out", ["barrier", "out", "--screen", "road"]),
+                                  ("ro", ["sources", "--dem", "dem.tif", "--slope", "30", "-o", "ro/cells.gpkg"]),
+                                  ("ro", ["trace", scenario, "--source", "0", "--block", "0", "-o", "ro/path.gpkg"]),
+                                  ("ro", ["check", scenario, "--pits", "ro/pits.gpkg"])):
+            with self.subTest(arguments[0], folder=folder):
+                self.fails(2, f"talus: error: {folder}: nothing can be written there (Permission denied)", arguments=arguments,
+                           cwd=self.folder, **self.user)
+        self.fails(2, f"{self.path('ro')}: nothing can be written there", cwd=self.path("ro"),
+                   arguments=["sources", "--dem", self.path("dem.tif"), "--slope", "30", "-o", "cells.gpkg"], **self.user)
+        self.assertEqual({folder: sorted(os.listdir(self.path(folder))) for folder in before}, before)
+
+
 class Inputs(Faults):
     def test_files_that_change_while_they_are_used(self):
         """All is read at the start: the results, and the checksums in run.json, are of what was read."""

@@ -9,7 +9,7 @@ import unittest
 import numpy as np
 from osgeo import gdal, ogr
 
-from support import Case, bands_of, box, heights, rows_of, write_dem, write_features
+from support import Case, bands_of, box, heights, log_left_by_a_viewer, rows_of, sqlite_rows, write_dem, write_features
 
 RUN = """dem = "dem.tif"
 trajectories = 200
@@ -200,6 +200,22 @@ class Hazard(Case):
         with open(ours, encoding="utf-8") as file:
             self.assertEqual(file.read(), names)
         self.assertFalse(os.path.exists(self.path("out/return_period_30.tif.aux.xml")))  # those of the earlier map
+
+    def test_the_log_of_earlier_objects_goes_with_them(self):  # the earlier objects were read, or a damaged file
+        self.simulate()
+        for name, x in (("first", 100), ("second", 200)):
+            write_features(self.path(name + ".gpkg"), name, [(box(x, 150, 10, 8), [name])], [("name", ogr.OFTString)])
+        self.run_well("hazard", self.path("out"), "--objects", self.path("first.gpkg"))
+        log_left_by_a_viewer(self.path("out/objects.gpkg"))
+        self.run_well("hazard", self.path("out"), "--objects", self.path("second.gpkg"), "--overwrite")
+        self.assertFalse(os.path.exists(self.path("out/objects.gpkg-wal")))
+        self.assertEqual(sqlite_rows(self.path("out/objects.gpkg"), "pragma integrity_check"), [("ok",)])
+        self.assertEqual(sqlite_rows(self.path("out/objects.gpkg"), "select name from objects"), [("second",)])
+        longest = "select max(length(description)) from gpkg_contents"
+        self.assertLess(sqlite_rows(self.path("out/objects.gpkg"), longest)[0][0], 1000)
+        log_left_by_a_viewer(self.path("out/objects.gpkg"))
+        self.run_well("hazard", self.path("out"), "--overwrite")  # without objects
+        self.assertEqual([name for name in os.listdir(self.path("out")) if name.startswith("objects")], [])
 
     def test_a_replacement_that_was_killed(self):
         """What is left then (tests/io/hazard_file_test.cpp has how): a record of all files, some of them not there yet."""

@@ -1,9 +1,11 @@
 """Inputs that once passed in silence: fields, tables, Shapefiles, rasters that are no DEM, folders with other files."""
+import gzip
 import json
 import os
 import shutil
 import struct
 import unittest
+import zipfile
 
 import numpy as np
 from osgeo import gdal, ogr, osr
@@ -253,6 +255,38 @@ class Tables(InputCase):
         self.run_well("check", *self.flags(self.table(f"x,y\n{X},{Y},,\n")))  # as spreadsheets write it
         self.run_well("check", *self.flags(self.table(f'wkt,diameter\n"LINESTRING ({X} {Y}, {X + 9} {Y})",\n')))
 
+    def test_a_coordinate_that_is_no_number(self):  # the row counted as one without geometry
+        good = f"x,y,diameter\n{X},{Y},1\n"
+        for cell in ("abc", "2'650'304", "2650304m", "nan", "0x11DCB8", "2600152,5"):
+            self.refused(f"t.csv:3: x = '{cell}': must be a number, with a point for decimals",
+                         sources=self.table(good + f'"{cell}",{Y},1\n'))
+            self.refused(f"t.csv:3: y = '{cell}': must be a number, with a point for decimals",
+                         sources=self.table(good + f'{X},"{cell}",1\n'))
+        for cell in ("", " "):
+            said = self.run_well("check", *self.flags(self.table(good + f"{cell},{Y},1\n"))).stdout
+            self.assertIn("features without geometry: FID 2", said)
+        self.run_well("check", *self.flags(self.table(f'wkt,x,y\n"POINT ({X} {Y})",west,a\n')))  # x and y are fields
+        self.write("s.toml", 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1\n[effects.forest-stems]\n'
+                   'trees = "t.csv"\n')
+        self.table(f"x,y,diameter\n{X},{Y},0.3\n{X}m,{Y},0.3\n")
+        self.fails(2, f"t.csv:3: x = '{X}m': must be a number", arguments=["check", self.path("s.toml")])
+
+    def test_tables_of_other_names(self):  # refused: "must have the columns x and y; has x, y, diameter"
+        rows = f"x,y,diameter,name\n{X},{Y},1.5,01\n{X + 10},{Y},2,b\n"
+        self.table(rows, "plain.csv")
+        self.table(rows.replace(",", "\t"), "tabs.tsv")
+        with gzip.open(self.path("packed.csv.gz"), "wt", encoding="utf-8") as file:
+            file.write(rows)
+        said = []
+        for given in (self.path("plain.csv"), self.path("tabs.tsv"), "/vsigzip/" + self.path("packed.csv.gz")):
+            lines = self.run_well("check", "--dem", self.path("dem.tif"), "--sources", given, "--trajectories", "5").stdout
+            said.append([line.replace(given, "FILE") for line in lines.splitlines() if line.startswith(("read ", "sources "))])
+        self.assertIn("diameter 1.5 to 2 m (2 of 2 features)", said[0][0])
+        self.assertIn("2 features, 2 source cells", said[0][1])
+        self.assertEqual(said[1:], said[:1] * 2)
+        self.table(f"x\ty\n{X}\t{Y}\t3\n", "tabs.tsv")
+        self.refused("tabs.tsv:2: has 3 cells, must have 2", sources="tabs.tsv")
+
     def test_every_other_layer_is_checked(self):
         bad = self.table(f'wkt,id,height,capacity,zone\n"LINESTRING ({X} {Y},{X + 9} {Y})",a,1\n')
         for table in ('[screens]\nfile = "t.csv"', '[barriers]\nfile = "t.csv"',
@@ -262,6 +296,37 @@ class Tables(InputCase):
         write_features(self.path("sources.gpkg"), "sources", [(f"POINT ({X} {Y})", [0.1])], [("frequency", ogr.OFTReal)])
         self.run_flags("-q")
         self.fails(2, bad + ":2: has 3 cells", arguments=["hazard", self.path("out"), "--objects", self.path(bad)])
+
+
+class Archives(InputCase):
+    def zipped(self, folder, west):
+        """d.zip in a folder, with a DEM that begins at `west`, and sources on it."""
+        os.makedirs(self.path(folder))
+        write_dem(self.path("z.tif"), heights(), transform=(west, 5.0, 0.0, NORTH, 0.0, -5.0))
+        with zipfile.ZipFile(self.path(folder + "/d.zip"), "w") as archive:
+            archive.write(self.path("z.tif"), "sub/dem.tif")
+            archive.writestr("s.csv", f"x,y,diameter\n{west + 150},{Y},1\n")
+
+    def test_their_names_are_relative_to_the_scenario(self):  # an archive of the current folder was read
+        self.zipped("one", WEST)
+        self.zipped("two", WEST + 1000)
+        for dem, sources in (("/vsizip/d.zip/sub/dem.tif", "/vsizip/d.zip/s.csv"),
+                             ("/vsizip/{d.zip}/sub/dem.tif", "/vsizip/../one/d.zip/s.csv"),
+                             (f"/vsizip/{self.path('one/d.zip')}/sub/dem.tif", f"/vsizip/{self.path('one/d.zip')}/s.csv")):
+            scenario = self.write("one/s.toml", f'dem = "{dem}"\ntrajectories = 1\n[sources]\nfile = "{sources}"\n')
+            for folder in ("one", "two", "."):
+                done = self.run_well("check", scenario, cwd=self.path(folder))
+                self.assertIn(f"extent        {WEST:.3f} to {WEST + 300:.3f} east", done.stdout)
+            self.run_well("run", "s.toml", "-o", self.path("out"), "--overwrite", "-q", cwd=self.path("one"))
+            self.run_well("check", self.path("out/scenario.toml"), cwd="/")
+            for given in self.record()["inputs"][1:]:
+                self.assertIn(self.path("one/d.zip"), given["path"])
+
+    def test_flags_are_relative_to_the_current_folder(self):
+        self.zipped("one", WEST)
+        self.run_well("run", "--dem", "/vsizip/d.zip/sub/dem.tif", "--sources", "/vsizip/d.zip/s.csv", "--trajectories", "1",
+                      "-o", self.path("out"), "-q", cwd=self.path("one"))
+        self.run_well("check", self.path("out/scenario.toml"), cwd="/")
 
 
 class Shapefiles(InputCase):

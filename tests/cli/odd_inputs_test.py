@@ -175,6 +175,28 @@ class Places(Case):
         self.assertRegex(done.stdout, "sources +1 feature, 8 source cells")
 
 
+    def axes(self, path, layer):
+        return ogr.Open(self.path(path)).GetLayerByName(layer).GetSpatialRef().GetAxesCount()
+
+    def test_a_system_with_an_axis_of_heights(self):
+        """All was traced, then no GeoPackage could be written in such a system: the layers have the plane one."""
+        tall = system(2056)
+        tall.PromoteTo3D()
+        gdal.GetDriverByName("GTiff").CreateCopy(self.path("tall.tif"), gdal.Open(self.path("dem.tif"))).SetSpatialRef(tall)
+        self.assertEqual(gdal.Open(self.path("tall.tif")).GetSpatialRef().GetAxesCount(), 3)
+        flags = ["--dem", self.path("tall.tif"), "--sources", self.path("sources.gpkg"), "--diameter", "0.8",
+                 "--trajectories", "5", "--frequency", "1"]
+        self.assertRegex(self.run_well("check", *flags).stdout, r"system +EPSG:2056 \(CH1903\+ / LV95\)")
+        for vectors in ("gpkg", "fgb"):
+            self.run_well("run", *flags, "--vectors", vectors, "-o", self.path(vectors), "-q")
+            self.assertEqual(self.axes(f"{vectors}/stops.{vectors}", "stops"), 2)
+        self.assertEqual(gdal.Open(self.path("gpkg/energy.tif")).GetSpatialRef().GetAuthorityCode(None), "2056")
+        self.run_well("hazard", self.path("gpkg"), "--objects", self.path("sources.gpkg"), "-q")
+        self.assertEqual(self.axes("gpkg/objects.gpkg", "objects"), 2)
+        self.run_well("sources", "--dem", self.path("tall.tif"), "--slope", "30", "-o", self.path("cells.gpkg"))
+        self.assertEqual(self.axes("cells.gpkg", "source_points"), 2)
+
+
 class Options(Case):
     def test_seeds(self):
         for seed in ("-1", "18446744073709551615"):

@@ -6,7 +6,7 @@ import unittest
 import numpy as np
 from osgeo import gdal, ogr
 
-from support import NORTH, WEST, Case, heights, rows_of, write_dem
+from support import NORTH, WEST, Case, edited_by_a_viewer, heights, rows_of, sqlite_rows, write_dem
 
 CELL = 5.0
 
@@ -99,6 +99,18 @@ class Sources(Case):
         count = len(self.layers()[1])
         self.find("--slope", "34.9", "--overwrite")
         self.assertLess(len(self.layers()[1]), count)
+
+    def test_the_log_of_an_earlier_file_goes_with_it(self):  # the new file was read as damaged
+        self.find("--slope", "30")
+        viewer = edited_by_a_viewer(self.path("cells.gpkg"))
+        self.addCleanup(viewer.close)
+        self.assertGreater(os.path.getsize(self.path("cells.gpkg-wal")), 100_000)
+        self.find("--slope", "34.9", "--overwrite")
+        self.find("--slope", "34.9", out="fresh.gpkg")
+        self.assertEqual([name for name in os.listdir(self.folder) if name.startswith("cells.gpkg")], ["cells.gpkg"])
+        self.assertEqual(sqlite_rows(self.path("cells.gpkg"), "pragma integrity_check"), [("ok",)])
+        for rows in ("select fid, slope_deg, hex(geom) from source_points", "select table_name, description from gpkg_contents"):
+            self.assertEqual(sqlite_rows(self.path("cells.gpkg"), rows), sqlite_rows(self.path("fresh.gpkg"), rows))
 
 
 if __name__ == "__main__":

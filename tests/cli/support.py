@@ -3,6 +3,7 @@ import hashlib
 import json
 import os
 import shutil
+import sqlite3
 import subprocess
 import tempfile
 import unittest
@@ -69,6 +70,35 @@ def rows_of(path, layer_name):
     file = ogr.Open(path)
     layer = file.GetLayerByName(layer_name)
     return [(f.items(), f.GetGeometryRef().Clone()) for f in layer]
+
+
+def edited_by_a_viewer(path):
+    """A connection that has written into a GeoPackage; what it wrote is in the log beside the file (NAME-wal) until it is
+    closed."""
+    viewer = sqlite3.connect(path)
+    viewer.execute("pragma journal_mode = wal")
+    viewer.execute("update gpkg_contents set description = ?", ("x" * 150_000,))
+    viewer.commit()
+    return viewer
+
+
+def log_left_by_a_viewer(path):
+    """Writes into a GeoPackage as a viewer that is killed before its log has come into the file."""
+    viewer = edited_by_a_viewer(path)
+    for end in ("", "-wal"):
+        shutil.copy(path + end, path + end + ".kept")
+    viewer.close()
+    for end in ("", "-wal"):
+        os.replace(path + end + ".kept", path + end)
+
+
+def sqlite_rows(path, command):
+    """Rows of a GeoPackage as any viewer reads them: with the log that lies beside it."""
+    reader = sqlite3.connect(path)
+    try:
+        return reader.execute(command).fetchall()
+    finally:
+        reader.close()
 
 
 def bands_of(path):

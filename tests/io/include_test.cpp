@@ -1,3 +1,6 @@
+#include <cmath>
+#include <tuple>
+
 #include "scenario_files.hpp"
 
 namespace talus::io::test {
@@ -62,6 +65,49 @@ TEST_F(ScenarioFile, TheDefaultGroundHasACodeOfItsOwn) {
   const LoadedScenario again = load(l.complete_toml);  // the complete scenario of a run can be run again
   EXPECT_EQ(again.scenario.cover.zones.values, cells);
   EXPECT_EQ(again.complete_toml, l.complete_toml);
+}
+
+/// The numbers of a ground; those of presets are of Table 3 of the paper.
+struct Numbers {
+  double theta_scale, En50, phi;  // [-], [m3/s2], [deg]
+  void expect_of(const LoadedScenario& l) const {
+    const Ground& ground = l.scenario.cover.grounds[0];
+    EXPECT_EQ(ground.theta_scale, theta_scale);
+    EXPECT_EQ(ground.En50, En50);
+    EXPECT_NEAR(ground.tan_phi, std::tan(phi * std::acos(-1.0) / 180.0), 1e-12);
+  }
+};
+
+TEST_F(ScenarioFile, APresetOfTheCommandLineReplacesTheDefaultGroundOfAnInclude) {
+  const std::string every =
+      "[ground.zones.default]\npreset = \"upper-talus-3d\"\ntheta_scale = 1.7\npsi_scale = 0.9\nEn50 = 22\nEt50 = 50\n"
+      "phi = 33\nshape = [1, 1.5]\n";
+  write_text("fitted.toml", every);
+  const Numbers fitted{1.7, 22.0, 33.0}, lower{1.5, 15.0, 30.0}, road{0.4, 15.0, 30.0};
+  const std::string alone = std::string("include = \"fitted.toml\"\n") + kFiles + "[blocks]\ndiameter = 1.2\n";
+  const std::string with_default = alone + "[ground]\ndefault = \"lower-talus-3d\"\n";
+  RunFlags to_lower, to_road;
+  to_lower.preset = "lower-talus-3d";
+  to_road.preset = "forest-road-3d";
+  fitted.expect_of(load(alone));
+  lower.expect_of(load(with_default));
+  for (const auto& [text, flags, numbers] :
+       {std::tuple{alone, to_lower, lower}, std::tuple{with_default, to_road, road}}) {
+    const LoadedScenario l = load(text, flags);
+    numbers.expect_of(l);
+    EXPECT_EQ(origin(l, "ground.default"), "flag --preset");
+    EXPECT_EQ(origin(l, "ground.default.En50"), "preset " + *flags.preset);
+    EXPECT_FALSE(said(l.warnings, "changes nothing"));
+    numbers.expect_of(load(l.complete_toml));
+  }
+  // numbers of the scenario itself count more than the flag
+  const std::string own = std::string(kFiles) + "[blocks]\ndiameter = 1.2\n";
+  const LoadedScenario hidden = load(own + every, to_lower);
+  fitted.expect_of(hidden);
+  EXPECT_TRUE(said(hidden.warnings, "flag --preset = 'lower-talus-3d' changes nothing"));
+  const LoadedScenario one = load(own + "[ground.zones.default]\nEn50 = 22\n", to_lower);
+  Numbers{lower.theta_scale, 22.0, lower.phi}.expect_of(one);
+  EXPECT_FALSE(said(one.warnings, "changes nothing"));
 }
 
 TEST_F(ScenarioFile, AnIncludedEffectGivesWayToTheScenario) {

@@ -1,5 +1,7 @@
 #include "io/files/own_files.hpp"
 
+#include <algorithm>
+
 #include "files.hpp"
 
 namespace talus::io::test {
@@ -61,6 +63,19 @@ TEST_F(OwnFiles, OfPartsAndFitsAreKnownByTheirNames) {
   EXPECT_EQ(foreign(), Names{});
   file("out/alder/notes.txt");
   EXPECT_EQ(foreign(), Names{"alder/"});
+}
+
+TEST_F(OwnFiles, WhatReadersLeaveBesideAFileIsRemovedWithoutTheFile) {
+  for (const char* name : {"a.tif", "a.tif.aux.xml", "a.tif.ovr", "b.gpkg", "b.gpkg-wal", "b.gpkg-shm",
+                           "b.gpkg-journal", "c.gpkg-wal", "b.gpkg.bak"})
+    file(std::string("out/") + name);
+  remove_beside(path("out/a.tif"), {"a.tif.aux.xml"});
+  remove_beside(path("out/b.gpkg"));
+  Names left;
+  for (const auto& entry : std::filesystem::directory_iterator(path("out")))
+    left.push_back(entry.path().filename().string());
+  std::ranges::sort(left);
+  EXPECT_EQ(left, (Names{"a.tif", "a.tif.aux.xml", "b.gpkg", "b.gpkg.bak", "c.gpkg-wal"}));
 }
 
 TEST(ShownNames, AreTheFirstFive) {

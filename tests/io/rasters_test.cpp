@@ -125,6 +125,37 @@ TEST_F(Terrains, HeightsOfACompoundSystemCountInFormatsWithoutAUnitOfTheBandToo)
   expect_input_error([&] { read_terrain(dem); }, {"dem.vrt", "NAVD88", "US survey foot", "gdal_calc.py"});
 }
 
+/// A system of EPSG with an axis of ellipsoidal heights, as WKT.
+std::string with_heights(int code) {
+  OGRSpatialReference system;
+  system.importFromEPSG(code);
+  system.PromoteTo3D(nullptr);
+  const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
+  char* text = nullptr;
+  system.exportToWkt(&text, options);
+  const std::string wkt = text;
+  CPLFree(text);
+  return wkt;
+}
+
+TEST_F(Terrains, AnAxisOfHeightsIsChecked) {  // GeoPackages cannot hold such a system
+  std::string wkt = with_heights(32632);
+  const Terrain terrain = read_terrain(RasterFile{.system = wkt}.write(path("dem.tif")));
+  OGRSpatialReference map;
+  ASSERT_EQ(map.importFromWkt(terrain.geo.crs_wkt.c_str()), OGRERR_NONE);
+  EXPECT_EQ(map.GetAxesCount(), 2);
+  EXPECT_EQ(crs_name(terrain.geo.crs_wkt), "EPSG:32632 (WGS 84 / UTM zone 32N)");
+  EXPECT_TRUE(terrain.warnings.empty());
+
+  const std::string metre = "LENGTHUNIT[\"metre\",1,ID[\"EPSG\",9001]]";
+  const std::size_t unit = wkt.rfind(metre);  // of the third axis
+  ASSERT_NE(unit, std::string::npos) << wkt;
+  wkt.replace(unit, metre.size(), "LENGTHUNIT[\"foot\",0.3048]");
+  const std::string file = RasterFile{.system = wkt}.write(path("feet.tif"));
+  expect_input_error([&] { read_terrain(file); },
+                     {"feet.tif", "heights are in 'foot'", "must be metres", "gdal_calc.py", "A*0.3048"});
+}
+
 TEST_F(Terrains, LocalSystemsInMetresAreTaken) {
   const std::string local = "LOCAL_CS[\"quarry\",UNIT[\"metre\",1],AXIS[\"Easting\",EAST],AXIS[\"Northing\",NORTH]]";
   EXPECT_NO_THROW(read_terrain(RasterFile{.place = {0, 1, 0, 8, 0, -1}, .system = local}.write(path("local.tif"))));

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "scenario_files.hpp"
 
@@ -220,6 +222,43 @@ TEST_F(ScenarioFile, FlagsWinOverTheScenario) {
       std::string("seed = 4\n") + kFiles + "[blocks]\ndiameter = 1\n[ground]\ndefault = \"lower-talus-3d\"\n", flags);
   EXPECT_DOUBLE_EQ(l.scenario.cover.grounds[0].theta_scale, 0.4);
   EXPECT_EQ(l.scenario.seed, 5U);
+}
+
+TEST_F(ScenarioFile, TheRecordHasNamesAsTheyAre) {
+  for (const std::string name : {"say \"dem\".tif", "a\\b.tif", "line\nend\x01.tif"}) {
+    RunFlags flags;
+    flags.dem = RasterFile{}.write(path(name));
+    const LoadedScenario l = load(std::string(kFiles) + "[blocks]\ndiameter = 1.2\n", flags);
+    const auto dem = std::ranges::find(l.settings, "dem", &Setting::key);
+    ASSERT_NE(dem, l.settings.end());
+    EXPECT_EQ(dem->value, path(name));
+  }
+}
+
+/// The map: 10 x 8 cells of 10 m, counts by hand. What is said of zones is said of the polygons of an effect.
+TEST_F(ScenarioFile, PolygonsThatActNowhereAreNamed) {
+  const std::string zone = "lower-talus-3d";
+  write_vector(path("p.gpkg"), "EPSG:32632", {{"zone", OFTString}},
+               {{"POLYGON((0 0,30 0,30 10,0 10,0 0))", {zone}},
+                {"POLYGON((900 0,930 0,930 10,900 10,900 0))", {zone}},  // off the map
+                {"POLYGON((0 41,90 41,90 44,0 44,0 41))", {zone}},       // between the centres of two rows
+                {"", {zone}}});
+  const LoadedScenario zones = with("[ground]\nfile = \"p.gpkg\"\n");
+  const LoadedScenario effect = with("[effects.vegetation-drag]\nfile = \"p.gpkg\"\ncoefficient = 400\n");
+  const std::string drag = "polygons of [effects.vegetation-drag]";
+  for (const auto& [loaded, kind, name] :
+       {std::tuple{&zones, std::string("zones"), " (" + zone + ")"}, {&effect, drag, std::string()}}) {
+    const std::vector<std::string>& warnings = loaded->warnings;
+    EXPECT_TRUE(said(warnings, "p.gpkg: " + kind + " wholly off the DEM, which have no effect: FID 2" + name));
+    EXPECT_TRUE(said(warnings, "p.gpkg: " + kind +
+                                   " that cover no cell of the DEM (its centre counts) and have no effect: " + "FID 3" +
+                                   name + ": draw them wider than a cell, 10 m"));
+    EXPECT_TRUE(said(warnings, "p.gpkg: " + kind + " without geometry, which have no effect: FID 4" + name));
+  }
+  EXPECT_TRUE(said(effect.notes, "p.gpkg: [effects.vegetation-drag] acts in 3 of 80 cells"));
+  EXPECT_FALSE(said(effect.warnings, "acts nowhere"));
+  write_vector(path("q.gpkg"), "EPSG:32632", {}, {{"POLYGON((0 41,90 41,90 44,0 44,0 41))"}});
+  EXPECT_TRUE(said(with("[effects.vegetation-drag]\nfile = \"q.gpkg\"\ncoefficient = 400\n").warnings, "acts nowhere"));
 }
 
 }  // namespace talus::io::test

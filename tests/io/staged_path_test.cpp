@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include "files.hpp"
+#include "talus/io/files/output_folder.hpp"
 
 namespace talus::io {
 namespace {
@@ -50,6 +51,22 @@ TEST_F(Staged, WhatIsKeptStays) {
     staged.keep();
   }
   EXPECT_EQ(names(), std::vector<std::string>{".run.2.talus-" + pid_});
+}
+
+TEST_F(Staged, AFolderThatCannotBeWrittenIsNamed) {  // of another user: tests/cli/faults_test.py
+  EXPECT_NO_THROW(refuse_unwritable(path("")));
+  EXPECT_NO_THROW(refuse_unwritable(""));
+  test::expect_input_error([&] { refuse_unwritable(path("none")); },
+                           {path("none") + ": nothing can be written there (No such file or directory)"});
+}
+
+TEST_F(Staged, AFileThatCannotBeWrittenIsCalledByItsName) {
+  try {
+    replace_text(path("none/run.json"), "{}");
+    FAIL() << "no error";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "run.json: cannot be written: No such file or directory");
+  }
 }
 
 TEST_F(Staged, SaysWhyANameCannotBeGiven) {

@@ -12,6 +12,7 @@
 #include <set>
 
 #include "files.hpp"
+#include "talus/io/files/output_folder.hpp"
 #include "talus/io/results/class_names.hpp"
 #include "talus/io/results/qgis_project.hpp"
 #include "talus/io/results/vector_style.hpp"
@@ -266,6 +267,21 @@ TEST_F(Project, NoIdOfALayerBeginsAnother) {
   ASSERT_GT(ids.size(), 29U);
   for (const std::string& one : ids)
     EXPECT_EQ(std::ranges::count_if(ids, [&](const std::string& id) { return id.starts_with(one); }), 1) << one;
+}
+
+TEST_F(Project, TheHillshadeIsFoundByEveryPathToTheProject) {
+  namespace fs = std::filesystem;
+  fs::create_directories(path("real/out"));
+  fs::create_directory_symlink(path("real"), path("link"));
+  std::ofstream(path("real/dem.tif")) << "heights";
+  for (const char* given : {"real/dem.tif", "link/dem.tif", "link/../real/out/../dem.tif"}) {
+    const std::string text = project_of({}, path("real/out"), full_name(path("link/out")),
+                                        {{"", 0.0, 100.0, 1.0, 1.0}, 10, 10, path(given)});
+    const std::size_t from = text.find("<datasource>") + 12;
+    const std::string way = text.substr(from, text.find('<', from) - from);
+    for (const char* opened : {"real/out", "link/out"})  // QGIS takes a way from the path that it was given
+      EXPECT_TRUE(fs::exists((fs::path(path(opened)) / way).lexically_normal())) << opened << ' ' << way;
+  }
 }
 
 TEST_F(Project, AFileThatIsNotThereHasNoHillshade) {

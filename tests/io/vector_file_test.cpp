@@ -42,19 +42,40 @@ TEST(CsvStructure, NamesTheLine) {
   refuses(std::string("x,y\n1,2\n1,\0\n", 13), {"t.csv:3: holds a zero byte"});
 }
 
+OddCells odd_cells_in(const std::string& text) {
+  CsvStructure csv("t.csv", text.substr(0, text.find_first_of("\r\n")));
+  csv.take(text);
+  csv.finish();
+  return csv.odd_cells();
+}
+
+std::string words_of(const std::map<std::string, CsvCell>& cells) {
+  std::string words;
+  for (const auto& [column, cell] : cells) words += column + ":" + std::to_string(cell.line) + "=" + cell.text + " ";
+  return words;
+}
+
 TEST(CsvStructure, FindsDecimalCommasWhereSemicolonsSeparate) {
-  const auto found = [](const std::string& text) {
-    CsvStructure csv("t.csv", text.substr(0, text.find_first_of("\r\n")));
-    csv.take(text);
-    csv.finish();
-    std::string words;
-    for (const auto& [column, cell] : csv.comma_numbers())
-      words += column + ":" + std::to_string(cell.line) + "=" + cell.text + " ";
-    return words;
-  };
+  const auto found = [](const std::string& text) { return words_of(odd_cells_in(text).commas); };
   EXPECT_EQ(found("x;Name;D\n1;a;2.5\n\n1,5;a, b;\"1,200\" \n1,6;c;7\n"), "d:4=1,200 x:4=1,5 ");
   EXPECT_EQ(found("x;wkt\n1;LINESTRING (1 2,3 4)\n1,2,3;1.2,5\n"), "");
   EXPECT_EQ(found("x,d\n1,\"1,5\"\n"), "");  // GDAL takes it for a text
+}
+
+TEST(CsvStructure, FindsWhatIsNoNumberInThePlaceOfACoordinate) {
+  const auto found = [](const std::string& text) { return words_of(odd_cells_in(text).places); };
+  EXPECT_EQ(found("name,X,y\na, 2650304 ,+1.5e3\n,,\nb,\" 7 \",-.5\n"), "");
+  EXPECT_EQ(found("name,X,y\na,1,2\nb, 12 m,3\nc,x,4\n"), "x:3=12 m ");
+  EXPECT_EQ(found("y\tx\n\"1'170'600\"\tnan\n"), "x:2=nan y:2=1'170'600 ");
+  EXPECT_EQ(found("y;x\n0x10;1,5\n"), "x:2=1,5 y:2=0x10 ");
+  EXPECT_EQ(found("y x\n5d3 1e400\n"), "x:2=1e400 y:2=5d3 ");  // which GDAL takes for 5 and for infinity
+}
+
+TEST(TextTable, IsKnownByItsName) {
+  for (const char* name : {"a.csv", "a.CSV", "b/a.tsv", "a.psv", "/vsigzip/a.csv.gz", "/vsigzip/a.tsv.GZ"})
+    EXPECT_TRUE(is_text_table(name)) << name;
+  for (const char* name : {"a.txt", "csv", "a.csv.gz", "/vsizip/a.zip", "/vsigzip/a.gz", "a.csv.shp"})
+    EXPECT_FALSE(is_text_table(name)) << name;
 }
 
 }  // namespace talus::io::test

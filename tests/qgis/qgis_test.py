@@ -17,14 +17,14 @@ import unittest
 import xml.etree.ElementTree as xml
 
 from osgeo import gdal, ogr, osr
-from qgis.core import (QgsApplication, QgsCoordinateReferenceSystem, QgsFeature, QgsField, QgsGeometry, QgsMapRendererParallelJob, QgsMapSettings,
-                       QgsProcessingContext,
+from qgis.core import (QgsApplication, QgsCoordinateReferenceSystem, QgsFeature, QgsFeatureRequest, QgsField, QgsGeometry,
+                       QgsMapRendererParallelJob, QgsMapSettings, QgsProcessingAlgRunnerTask, QgsProcessingContext,
                        QgsProcessingFeatureSourceDefinition, QgsProcessingFeedback, QgsProcessingModelAlgorithm,
                        QgsProcessingModelChildAlgorithm, QgsProcessingModelChildParameterSource,
                        QgsProcessingOutputLayerDefinition, QgsProcessingParameterBand, QgsProcessingParameterBoolean,
                        QgsProcessingParameterDefinition, QgsProject,
                        QgsRasterLayer, QgsVectorLayer, QgsVectorLayerJoinInfo)
-from qgis.PyQt.QtCore import QLocale, QSize, QVariant
+from qgis.PyQt.QtCore import QEventLoop, QLocale, QSize, QTimer, QVariant
 from qgis.PyQt.QtGui import QColor
 
 sys.path.append("/usr/share/qgis/python/plugins")  # of Processing
@@ -187,6 +187,15 @@ class Provider(Case):
                 if p["name"] not in ("quiet", "progress", "allow-network", "sources-layer", "field", "memory", "part", "checkpoint"):
                     self.assertIn(p["name"], texts.LABELS, algorithm.id())
                     self.assertIn(p["text"], texts.GERMAN, algorithm.id())
+
+    def test_a_profile_has_a_number_of_blocks(self):
+        """It has one source, and no cells."""
+        from talus_qgis import texts
+        profile = QgsApplication.processingRegistry().algorithmById("talus:profile")
+        self.assertTrue(profile.parameterDefinition("TRAJECTORIES").description().startswith("Number of blocks"))
+        self.assertEqual(texts.LABELS["number-of-blocks"][1], "Zahl der Blöcke")
+        run = QgsApplication.processingRegistry().algorithmById("talus:run")
+        self.assertTrue(run.parameterDefinition("TRAJECTORIES").description().startswith("Trajectories per source cell"))
 
     def test_german(self):
         from talus_qgis import texts
@@ -393,6 +402,88 @@ class FromPython(Case):
         a, b = (gdal.Open(self.path(out + "/passages.tif")).ReadAsArray() for out in ("file", "memory"))
         self.assertTrue((a == b).all())
 
+    def three_lines(self):
+        """Lines from south to north, 450, 550 and 650 m from the western edge, with the numbers (FID) 1 to 3 and no field."""
+        layer = QgsVectorLayer("LineString?crs=EPSG:2056", "lines", "memory")
+        for x in (2650450, 2650550, 2650650):
+            feature = QgsFeature()
+            feature.setGeometry(QgsGeometry.fromWkt(f"LineString({x} 1170050, {x} 1170950)"))
+            layer.dataProvider().addFeatures([feature])
+        QgsProject.instance().addMapLayer(layer)
+        self.addCleanup(QgsProject.instance().removeMapLayer, layer.id())
+        return layer
+
+    def screens(self, out):
+        """The distance of each screen from the western edge [m]."""
+        return {screen["id"]: round(screen["lines"][0][0][0]) - 2650000 for screen in self.record(out)["screens"]}
+
+    def test_selected_features_keep_their_numbers(self):
+        lines = self.three_lines()
+        lines.selectByIds([2, 3])
+        _, good = self.run_algorithm("run", self.inputs(SCREENS=QgsProcessingFeatureSourceDefinition(lines.id(), True)))
+        self.assertTrue(good)
+        self.assertEqual(self.screens("out"), {"2": 550, "3": 650})
+        # a copy of the copy: its column of numbers is a field in QGIS
+        copy = QgsVectorLayer(self.written("out_inputs/screens_*/screens.gpkg")[0], "copy", "ogr")
+        QgsProject.instance().addMapLayer(copy)
+        self.addCleanup(QgsProject.instance().removeMapLayer, copy.id())
+        copy.selectByIds([3])
+        _, good = self.run_algorithm("run", self.inputs(SCREENS=QgsProcessingFeatureSourceDefinition(copy.id(), True),
+                                                        OUT=self.path("again")))
+        self.assertTrue(good)
+        self.assertEqual(self.screens("again"), {"3": 650})
+
+    def test_the_numbers_of_a_shapefile_begin_at_0(self):
+        cliffs = self.cliffs()
+        cliffs.selectByIds([0, 3, 5])
+        QgsProject.instance().addMapLayer(cliffs)
+        self.addCleanup(QgsProject.instance().removeMapLayer, cliffs.id())
+        names = {feature.id(): feature["name"] for feature in cliffs.getSelectedFeatures()}
+        self.run_algorithm("run", self.inputs(SOURCES=QgsProcessingFeatureSourceDefinition(cliffs.id(), True)))
+        written = ogr.Open(self.written("out_inputs/sources_*/sources.gpkg")[0])
+        self.assertEqual({feature.GetFID(): feature.GetField("name") for feature in written.GetLayer(0)}, names)
+        self.assertEqual(sorted(names), [0, 3, 5])
+
+    def test_features_that_are_not_saved_are_numbered_anew_and_that_is_said(self):
+        lines = self.three_lines()
+        lines.startEditing()
+        self.addCleanup(lines.rollBack)
+        feature = QgsFeature(lines.fields())
+        feature.setGeometry(QgsGeometry.fromWkt("LineString(2650350 1170050, 2650350 1170950)"))
+        lines.addFeature(feature)
+        lines.deleteFeature(1)
+        log = Log()
+        _, good = self.run_algorithm("run", self.inputs(SCREENS=lines), log)
+        self.assertTrue(good, log.textLog())
+        self.assertEqual(sorted(self.screens("out")), ["1", "2", "3"])
+        self.assertEqual(sorted(self.screens("out").values()), [350, 550, 650])
+        self.assertTrue(any("lines: some features have no number yet" in text for text in log.warnings), log.warnings)
+
+    def test_an_invalid_polygon_is_mended_by_the_program(self):
+        """In a task, as from the dialog, and as Processing is set by default: it stops at an invalid geometry, and QGIS 3.22
+        itself ended."""
+        bow = QgsVectorLayer("Polygon?crs=EPSG:2056", "bow-tie", "memory")
+        feature = QgsFeature()
+        feature.setGeometry(QgsGeometry.fromWkt("Polygon((2650300 1170600, 2650340 1170640, 2650340 1170600, 2650300 1170640, "
+                                                "2650300 1170600))"))
+        bow.dataProvider().addFeatures([feature])
+        QgsProject.instance().addMapLayer(bow)
+        self.addCleanup(QgsProject.instance().removeMapLayer, bow.id())
+        context, log, ended = QgsProcessingContext(), Log(), []
+        context.setProject(QgsProject.instance())
+        context.setInvalidGeometryCheck(QgsFeatureRequest.GeometryAbortOnInvalid)
+        algorithm = QgsApplication.processingRegistry().createAlgorithmById("talus:run")
+        task = QgsProcessingAlgRunnerTask(algorithm, self.inputs(SOURCES=bow), context, log)
+        loop = QEventLoop()
+        task.executed.connect(lambda good, results: (ended.append(good), loop.quit()))
+        QTimer.singleShot(60000, loop.quit)
+        QgsApplication.taskManager().addTask(task)
+        loop.exec_()
+        self.assertEqual(ended, [True], log.textLog())
+        self.assertTrue(any("mended" in text for text in log.warnings), log.warnings)
+        # two triangles of 40 x 20 m / 2 in cells of 4 m: 50 cells, to those on the edges
+        self.assertAlmostEqual(self.record()["released"] / 5, 50, delta=12)
+
     def test_a_selection_of_a_shapefile_keeps_the_fields_that_it_cuts(self):
         cliffs = self.cliffs()
         cliffs.selectAll()
@@ -405,7 +496,7 @@ class FromPython(Case):
             _, good = self.run_algorithm("run", {**inputs, "SOURCES": source, "OUT": self.path(out)})
             self.assertTrue(good)
         self.assertEqual(self.record("all")["ends"], self.record("selected")["ends"])
-        self.assertEqual(len(self.written("selected_inputs/sources_*/sources.shp")), 1)
+        self.assertEqual(len(self.written("selected_inputs/sources_*/sources.gpkg")), 1)
 
     def test_selected_features_and_filters(self):
         cliffs = self.cliffs()
@@ -425,7 +516,7 @@ class FromPython(Case):
         share = (area[1] + area[2]) / sum(area.values())
         self.assertAlmostEqual(some / everything, share, delta=0.05)
         self.assertEqual(self.record("filtered")["released"], everything)
-        self.assertEqual(len(self.written("selected_inputs/sources_*/sources.shp")), 1)
+        self.assertEqual(len(self.written("selected_inputs/sources_*/sources.gpkg")), 1)
         self.assertFalse(os.path.exists(self.path("all_inputs")))
 
     def test_an_empty_selection_is_refused(self):
@@ -598,8 +689,8 @@ class FromPython(Case):
             log = Log()
             _, good = self.run_algorithm("run", inputs, log)
             self.assertTrue(good, log.textLog())
-        self.assertEqual(len(self.written("virtual_inputs/*/sources.shp")), 1)
-        self.assertEqual(len(self.written("joined_inputs/*/sources.gpkg")), 1)  # a Shapefile would cut the name
+        for out in ("virtual", "joined"):
+            self.assertEqual(len(self.written(out + "_inputs/*/sources.gpkg")), 1)  # a Shapefile would cut the name
         given = self.inputs(SOURCES=self.path("names.shp"), OUT=self.path("given"), DIAMETER=1.5)
         self.run_algorithm("run", given)
         self.assertEqual(self.record("virtual")["ends"], self.record("joined")["ends"])

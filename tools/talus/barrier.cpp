@@ -9,6 +9,7 @@
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/file_name.hpp"
+#include "talus/io/files/staged_path.hpp"
 #include "talus/io/gdal/crossings_file.hpp"
 #include "talus/io/reports/barrier_report.hpp"
 #include "talus/io/results/run_folder.hpp"
@@ -245,6 +246,7 @@ int design(const Options& o) {
   require_seed(o.seed);
   check_numbers(o);
   const RunSummary run = talus::io::read_run(o.folder);
+  talus::io::refuse_unwritable(o.folder);
   const CrossingTable crossings = simulated_crossings(run, o);
   if (!o.quiet)
     for (const std::string& warning : run.size_warnings) say("warning", warning);

@@ -27,14 +27,15 @@ struct Companions {
   std::vector<std::string_view> ends;
 };
 
-const std::array<Companions, 8>& companions() {
-  static const std::array<Companions, 8> list{{{".shp", {".dbf", ".shx", ".prj", ".cpg"}},
+const std::array<Companions, 9>& companions() {
+  static const std::array<Companions, 9> list{{{".shp", {".dbf", ".shx", ".prj", ".cpg"}},
                                                {".shx", {".shp", ".dbf", ".prj", ".cpg"}},
                                                {".dbf", {".shp", ".shx", ".prj", ".cpg"}},
                                                {".tab", {".dat", ".map", ".id", ".ind", ".dbf"}},
                                                {".mif", {".mid"}},
                                                {".mid", {".mif"}},
                                                {".csv", {".csvt", ".prj"}},
+                                               {".tsv", {".csvt", ".prj"}},
                                                {".bmp", {".wld", ".bpw", ".bmpw"}}}};
   return list;
 }

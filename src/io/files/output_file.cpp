@@ -63,6 +63,7 @@ fs::path checked(const fs::path& path, const std::string& extension, bool overwr
 OutputFile::OutputFile(const fs::path& path, const std::string& extension, bool overwrite)
     : staged_(StagedPath::Kind::File, checked(path, extension, overwrite), extension) {
   parents_.make(staged_.path().parent_path());
+  refuse_unwritable(path.parent_path());
 }
 
 void OutputFile::protect(const fs::path& input) const {
@@ -73,6 +74,7 @@ void OutputFile::protect(const fs::path& input) const {
 }
 
 void OutputFile::commit() {
+  remove_beside(staged_.path());
   if (const std::error_code error = staged_.commit()) throw fs::filesystem_error("rename", staged_.path(), error);
 }
 

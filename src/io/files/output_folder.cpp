@@ -204,7 +204,10 @@ void OutputFolder::commit(const fs::path& folder) {
     fs::remove_all(aside, error);  // else a file has come a moment ago: it stays
 }
 
-void write_text(const fs::path& file, std::string_view text) {
+namespace {
+
+/// @param name  of the file in the message
+void write_text_as(const fs::path& file, std::string_view text, const std::string& name) {
   std::FILE* stream = std::fopen(file.c_str(), "wb");
   bool good = stream != nullptr && std::fwrite(text.data(), 1, text.size(), stream) == text.size();
   int cause = good ? 0 : errno;
@@ -215,14 +218,21 @@ void write_text(const fs::path& file, std::string_view text) {
   if (good) return;
   std::error_code ignored;
   fs::remove(file, ignored);
-  throw std::runtime_error(file.filename().string() + ": cannot be written: " + std::system_category().message(cause));
+  throw std::runtime_error(name + ": cannot be written: " + std::system_category().message(cause));
+}
+
+}  // namespace
+
+void write_text(const fs::path& file, std::string_view text) {
+  write_text_as(file, text, file.filename().string());
 }
 
 void replace_text(const fs::path& file, std::string_view text) {
+  const std::string name = file.filename().string();  // not the hidden one
   StagedPath staged(StagedPath::Kind::File, file, file.extension().string());
-  write_text(staged.hidden(), text);
+  write_text_as(staged.hidden(), text, name);
   if (const std::error_code error = staged.commit())
-    throw std::runtime_error(file.filename().string() + ": cannot be written: " + error.message());
+    throw std::runtime_error(name + ": cannot be written: " + error.message());
 }
 
 std::vector<std::string> files_in(const fs::path& folder) {

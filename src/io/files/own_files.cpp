@@ -94,6 +94,14 @@ std::string read_file_of(const std::string& name) {
   return "";
 }
 
+void remove_beside(const fs::path& file, const std::vector<std::string>& but) {
+  for (const std::string_view end : kBeside) {
+    const std::string name = file.filename().string() + std::string(end);
+    std::error_code ignored;
+    if (std::ranges::find(but, name) == but.end()) fs::remove(file.parent_path() / name, ignored);
+  }
+}
+
 bool is_design(const fs::path& file) {
   try {
     const Json json = read_record(file);

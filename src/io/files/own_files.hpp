@@ -25,6 +25,11 @@ std::vector<std::string> foreign_in(const std::filesystem::path& folder);
 /// it is no such name.
 std::string read_file_of(const std::string& name);
 
+/// Removes what readers have left beside a file (`read_file_of`), before another file gets its name: SQLite takes the
+/// log of an earlier GeoPackage for one of the new file, and damages it.
+/// @param but  names of files that stay
+void remove_beside(const std::filesystem::path& file, const std::vector<std::string>& but = {});
+
 /// The files that a record of results lists in `files`, by their names alone.
 std::vector<std::string> files_of_record(const std::filesystem::path& record);
 

@@ -67,12 +67,15 @@ void StagedFiles::commit() {
   const std::vector<std::string> names = files(), without_successor = to_remove();
   std::error_code ignored;
   mark_incomplete(names);
-  for (const std::string& name : names)
-    if (name != record_) give_name(name);  // in place of an earlier file, which is there until then
-  for (const std::string& name : without_successor) fs::remove(folder_ / name, ignored);
-  for (const std::string& name : names)
-    for (const char* end : {".aux.xml", ".ovr"})  // of an earlier raster of this name: its statistics, its overviews
-      if (std::ranges::count(names, name + end) == 0) fs::remove(folder_ / (name + end), ignored);
+  for (const std::string& name : names) {
+    if (name == record_) continue;
+    remove_beside(folder_ / name, names);
+    give_name(name);  // in place of an earlier file, which is there until then
+  }
+  for (const std::string& name : without_successor) {
+    remove_beside(folder_ / name, names);
+    fs::remove(folder_ / name, ignored);
+  }
   if (std::ranges::count(names, record_) > 0) give_name(record_);
 }
 

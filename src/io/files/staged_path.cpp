@@ -19,6 +19,13 @@ void refuse_dangling_link(const fs::path& path) {
                    ", which is not there; remove the link, or give another name");
 }
 
+void refuse_unwritable(const fs::path& folder) {
+  const fs::path place = folder.empty() ? fs::current_path() : folder;
+  if (access(place.c_str(), W_OK | X_OK) == 0) return;
+  throw InputError(place.string() + ": nothing can be written there (" + std::generic_category().message(errno) +
+                   "); get the right to write there, or use another folder");
+}
+
 StagedPath::StagedPath(Kind kind, const fs::path& path, const std::string& extension)
     : path_(path),
       hidden_(path.parent_path() / (hidden_prefix(path, extension) + std::to_string(getpid()) + extension)),

@@ -38,9 +38,25 @@ Context make_context() {
   return context;
 }
 
+struct Axis {
+  double unit = 0.0;  // in metres, or in radians
+  std::string unit_name;
+};
+
+// An axis of a system; without a name of its unit if there is none of this index.
+Axis axis_of(PJ_CONTEXT* context, const PJ* system, int index) {
+  const Object axes(proj_crs_get_coordinate_system(context, system));
+  Axis axis;
+  const char* name = nullptr;
+  if (axes && proj_cs_get_axis_info(context, axes.get(), index, nullptr, nullptr, nullptr, &axis.unit, &name, nullptr,
+                                    nullptr) != 0)
+    axis.unit_name = name == nullptr ? "" : name;
+  return axis;
+}
+
 // The plane part, without a height system and without a transformation tied to it.
 Object plane_part(PJ_CONTEXT* context, const std::string& wkt) {
-  Object object(proj_create(context, wkt.c_str()));
+  Object object(proj_create(context, without_heights(wkt).c_str()));
   for (int depth = 0; object && depth < 4; ++depth) {
     const PJ_TYPE type = proj_get_type(object.get());
     if (type == PJ_TYPE_COMPOUND_CRS)
@@ -73,21 +89,6 @@ Object to_degrees(PJ_CONTEXT* context, const PJ* system) {
 
 PJ_COORD transformed(PJ* operation, double x, double y) {
   return proj_trans(operation, PJ_FWD, proj_coord(x, y, 0.0, HUGE_VAL));
-}
-
-struct Axis {
-  double unit = 0.0;  // in metres, or in radians
-  std::string name;
-};
-
-Axis axis_of(PJ_CONTEXT* context, const PJ* system, int index) {
-  const Object axes(proj_crs_get_coordinate_system(context, system));
-  Axis axis;
-  const char* name = nullptr;
-  if (axes && proj_cs_get_axis_info(context, axes.get(), index, nullptr, nullptr, nullptr, &axis.unit, &name, nullptr,
-                                    nullptr) != 0)
-    axis.name = name == nullptr ? "" : name;
-  return axis;
 }
 
 bool is_metre(const Axis& axis) {
@@ -127,14 +128,21 @@ std::string percent(double share) {
   return text_of(std::round(share * 1000.0) / 10.0) + " %";
 }
 
+// The axis of heights of a compound system, or of one with three axes.
+Axis height_axis(PJ_CONTEXT* context, const std::string& wkt) {
+  Object system(proj_create(context, wkt.c_str()));
+  if (system && proj_get_type(system.get()) == PJ_TYPE_BOUND_CRS)
+    system.reset(proj_get_source_crs(context, system.get()));
+  if (!system) return {};
+  if (proj_get_type(system.get()) != PJ_TYPE_COMPOUND_CRS) return axis_of(context, system.get(), 2);
+  const Object heights(proj_crs_get_sub_crs(context, system.get(), 1));
+  return heights ? axis_of(context, heights.get(), 0) : Axis{};
+}
+
 void check_heights(PJ_CONTEXT* context, const std::string& path, const std::string& wkt) {
-  const Object whole(proj_create(context, wkt.c_str()));
-  if (!whole || proj_get_type(whole.get()) != PJ_TYPE_COMPOUND_CRS) return;
-  const Object heights(proj_crs_get_sub_crs(context, whole.get(), 1));
-  if (!heights) return;
-  const Axis up = axis_of(context, heights.get(), 0);
-  if (!up.name.empty() && !is_metre(up))
-    throw InputError(path + ": heights are in '" + up.name + "' (coordinate system " + crs_name(wkt) +
+  const Axis up = height_axis(context, wkt);
+  if (!up.unit_name.empty() && !is_metre(up))
+    throw InputError(path + ": heights are in '" + up.unit_name + "' (coordinate system " + crs_name(wkt) +
                      "), must be metres: convert them with gdal_calc.py --calc='A*" + text_of(up.unit) +
                      "' and give the result a system in metres with gdal_edit.py -a_srs");
 }
@@ -177,8 +185,8 @@ std::optional<std::string> check_metric(const std::string& path, const std::stri
     throw InputError(path + ": " + crs_name(wkt) + " is not a projected coordinate system" + way_out);
   const Axis east = axis_of(context.get(), system.get(), 0), north = axis_of(context.get(), system.get(), 1);
   if (!is_metre(east) || !is_metre(north))
-    throw InputError(path + ": coordinates are in '" + (is_metre(east) ? north : east).name + "' (" + crs_name(wkt) +
-                     "), must be metres" + way_out);
+    throw InputError(path + ": coordinates are in '" + (is_metre(east) ? north : east).unit_name + "' (" +
+                     crs_name(wkt) + "), must be metres" + way_out);
   check_heights(context.get(), path, wkt);
 
   const double ratio = stretch(context.get(), system.get(), extent);

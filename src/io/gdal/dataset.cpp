@@ -94,7 +94,7 @@ Dataset open_dataset(const std::string& path, unsigned kinds) {
   const char* const csv[] = {"AUTODETECT_TYPE=NO",   "GEOM_POSSIBLE_NAMES=wkt,geometry,geom",
                              "X_POSSIBLE_NAMES=x",   "Y_POSSIBLE_NAMES=y",
                              "KEEP_GEOM_COLUMNS=NO", nullptr};
-  const char* const* options = ends_with(file, ".csv") ? csv : nullptr;
+  const char* const* options = is_text_table(file) ? csv : nullptr;
   Dataset dataset(GDALDataset::Open(name_for_gdal(file).c_str(), kinds | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
                                     nullptr, options, nullptr));
   if (!dataset) {
@@ -153,6 +153,19 @@ std::string wkt_of(const OGRSpatialReference* system) {
   if (system->exportToWkt(&text, options) == OGRERR_NONE && text != nullptr) wkt = text;
   CPLFree(text);
   return wkt;
+}
+
+std::string without_heights(const std::string& wkt) {
+  const GdalMessages quiet;
+  OGRSpatialReference system;
+  if (system.importFromWkt(wkt.c_str()) != OGRERR_NONE || system.IsCompound() != 0 || system.IsProjected() == 0 ||
+      system.GetAxesCount() != 3 || system.DemoteTo2D(nullptr) != OGRERR_NONE)
+    return wkt;
+  struct Release {
+    void operator()(OGRSpatialReference* known) const { known->Release(); }
+  };
+  const std::unique_ptr<OGRSpatialReference, Release> known(system.FindBestMatch(100));  // with its code
+  return wkt_of(known ? known.get() : &system);
 }
 
 }  // namespace talus::io

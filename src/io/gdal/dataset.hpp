@@ -66,4 +66,8 @@ std::string edit_command(const std::string& path, const std::string& option);
 /// Coordinate system as WKT; empty if there is none.
 std::string wkt_of(const OGRSpatialReference* system);
 
+/// A projected system with three axes (ellipsoidal heights) without the third; any other as it is. Layers in a
+/// GeoPackage or FlatGeobuf cannot have such a system.
+std::string without_heights(const std::string& wkt);
+
 }  // namespace talus::io

@@ -166,6 +166,21 @@ std::optional<PartName> part_name(const std::string& name, const fs::path& base)
   return names_part(name) ? std::optional(of_part(name, base).name) : std::nullopt;
 }
 
+std::size_t archive_in(const std::string& name) {
+  std::string_view rest = name;
+  bool archive = false;
+  const auto begins = [&](std::string_view kind) {  // GDAL takes an inner name with or without the first slash
+    return rest.starts_with(kind) || (archive && rest.starts_with(kind.substr(1)));
+  };
+  while (std::ranges::any_of(kArchives, begins)) {
+    archive = true;
+    rest.remove_prefix(rest.find('/', 1) + 1);
+    if (rest.starts_with('{')) rest.remove_prefix(1);
+  }
+  const bool local = archive && !rest.starts_with("vsi") && !rest.starts_with("/vsi");
+  return local ? name.size() - rest.size() : std::string::npos;
+}
+
 void check_input(const std::string& name) {
   const InputName found = looked_up(name);
   if (!found.fault.empty()) throw InputError(name + ": " + found.fault);

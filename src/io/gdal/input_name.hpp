@@ -29,6 +29,10 @@ struct PartName {
 /// @param base  the folder of relative names, as in `looked_up`
 std::optional<PartName> part_name(const std::string& name, const std::filesystem::path& base = {});
 
+/// Where the local file begins in the name of a file in archives ("/vsizip/a.zip/dem.tif", also "{a.zip}"): that of the
+/// outermost archive. npos for every other name.
+std::size_t archive_in(const std::string& name);
+
 /// Throws InputError if the name of an input is not allowed, if it stands for no regular file, or if it is a VRT that
 /// names what it may not. Called before GDAL opens the name.
 void check_input(const std::string& name);

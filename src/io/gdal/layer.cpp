@@ -67,9 +67,9 @@ Layer::Layer(std::string role, const std::string& path, const Terrain& terrain)
     : path_(path), terrain_(terrain), dataset_(open_dataset(path, GDAL_OF_VECTOR)) {
   choose_layer();
   if (is_csv()) {
-    commas_ = comma_numbers(name_for_gdal(file_of_layer(path)));
+    odd_ = odd_cells(name_for_gdal(file_of_layer(path)));
     for (const char* place : {"x", "y"})
-      if (fields().GetFieldIndex(place) < 0) refuse_comma(place, "");  // a coordinate, no field
+      if (fields().GetFieldIndex(place) < 0) refuse_odd(odd_.places, place, "");  // a coordinate, no field
   }
   const OGRSpatialReference* system = layer_->GetSpatialRef();
   crs_wkt_ = wkt_of(system);
@@ -181,7 +181,7 @@ std::optional<double> Layer::number(const OGRFeature& feature, int index, const 
   if (index < 0 || feature.IsFieldSetAndNotNull(index) == 0) return std::nullopt;
   const OGRFieldType type = fields().GetFieldDefn(index)->GetType();
   const std::string unit = bounds.unit == "1" ? "" : " in " + std::string(bounds.unit);
-  if (is_csv()) refuse_comma(fields().GetFieldDefn(index)->GetNameRef(), unit);
+  if (is_csv()) refuse_odd(odd_.commas, fields().GetFieldDefn(index)->GetNameRef(), unit);
   if (type == OFTString && *feature.GetFieldAsString(index) == '\0') return std::nullopt;
   const std::string where = label(feature) + ": field " + name + " = ";
   double value = feature.GetFieldAsDouble(index);
@@ -201,10 +201,10 @@ std::optional<double> Layer::number(const OGRFeature& feature, int index, const 
   return value;
 }
 
-void Layer::refuse_comma(std::string column, const std::string& unit) const {
+void Layer::refuse_odd(const std::map<std::string, CsvCell>& cells, std::string column, const std::string& unit) const {
   std::ranges::transform(column, column.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const auto found = commas_.find(column);
-  if (found == commas_.end()) return;
+  const auto found = cells.find(column);
+  if (found == cells.end()) return;
   throw InputError(path_ + ":" + std::to_string(found->second.line) + ": " + column + " = '" + found->second.text +
                    "': " + no_number_text(found->second.text, unit, false));
 }

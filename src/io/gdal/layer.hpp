@@ -90,8 +90,8 @@ class Layer {
   void choose_layer();
   /// Index of a field whose name a Shapefile has cut; -1 if there is none.
   int cut_field(const std::string& name) const;
-  /// Throws InputError if a column of a CSV has a number with a decimal comma.
-  void refuse_comma(std::string column, const std::string& unit) const;
+  /// Throws InputError if one of the cells of a CSV is in this column.
+  void refuse_odd(const std::map<std::string, CsvCell>& cells, std::string column, const std::string& unit) const;
   void collect(OGRGeometry& geometry, Parts& parts, const std::string& where);
   void move(OGRSimpleCurve& line, const std::string& where);
   /// Why a polygon in local metres is invalid, with the place in map coordinates.
@@ -103,8 +103,8 @@ class Layer {
   Dataset dataset_;
   OGRLayer* layer_ = nullptr;
   std::optional<Transformer> transformer_;
-  std::map<std::string, CsvCell> commas_;  // of a CSV
-  bool north_first_ = false;               // the file has its coordinates in the order of the axes: latitude first
+  OddCells odd_;              // of a CSV
+  bool north_first_ = false;  // the file has its coordinates in the order of the axes: latitude first
   std::vector<std::string> warnings_;
   std::size_t mended_ = 0;
   FaultList faults_;

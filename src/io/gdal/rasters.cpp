@@ -148,6 +148,7 @@ Terrain read_terrain(const std::string& path, const RasterMemory& memory, int th
                      " cells, must have at least 2 x 2");
   const MapExtent extent{grid.west, grid.south, grid.west + grid.width(), terrain.geo.north};
   if (const auto warning = check_metric(path, terrain.geo.crs_wkt, extent)) terrain.warnings.push_back(*warning);
+  terrain.geo.crs_wkt = without_heights(terrain.geo.crs_wkt);
   check_cell(path, grid.cell_x);
   check_cell(path, grid.cell_y);
   GDALRasterBand& band = *dataset->GetRasterBand(1);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -73,10 +74,6 @@ std::optional<CsvStructure> structure_of(const std::string& path) {
   return structure;
 }
 
-bool is_text_table(const std::string& path) {
-  return ends_with(path, ".csv") || ends_with(path, ".tsv") || ends_with(path, ".psv");
-}
-
 std::string without_prefix(const std::string& path) {
   return path.starts_with("CSV:") ? path.substr(4) : path;
 }
@@ -132,6 +129,12 @@ void check_shapefile(const std::string& path) {
 
 }  // namespace
 
+bool is_text_table(const std::string& path) {
+  const bool packed = path.starts_with("/vsigzip/") && ends_with(path, ".gz");
+  const std::string name = packed ? path.substr(0, path.size() - 3) : path;
+  return ends_with(name, ".csv") || ends_with(name, ".tsv") || ends_with(name, ".psv");
+}
+
 void check_vector_file(const std::string& path) {
   std::error_code none;
   if (std::filesystem::is_directory(path, none)) {
@@ -144,10 +147,10 @@ void check_vector_file(const std::string& path) {
   }
 }
 
-std::map<std::string, CsvCell> comma_numbers(const std::string& path) {
+OddCells odd_cells(const std::string& path) {
   if (!is_text_table(path)) return {};
   const auto structure = structure_of(without_prefix(path));
-  return structure ? structure->comma_numbers() : std::map<std::string, CsvCell>{};
+  return structure ? structure->odd_cells() : OddCells{};
 }
 
 CsvStructure::CsvStructure(std::string path, std::string_view header)
@@ -186,7 +189,8 @@ void CsvStructure::take(char c) {
 
 void CsvStructure::keep(char c) {
   constexpr std::size_t kLongestNumber = 40;
-  if (in_header_ || (separator_ == ';' && cell_.size() < kLongestNumber)) cell_ += c;
+  const bool may_be_number = separator_ == ';' || (cells_ < is_place_.size() && is_place_[cells_]);
+  if (in_header_ || (may_be_number && cell_.size() < kLongestNumber)) cell_ += c;
 }
 
 void CsvStructure::take_quote() {
@@ -208,12 +212,21 @@ void CsvStructure::end_cell() {
   place_ = Place::Start;
   if (in_header_)
     columns_.push_back(lower_trimmed(cell_));
-  else if (const auto comma = cell_.find(','); comma != std::string::npos && cells_ <= columns_.size()) {
+  else if (!cell_.empty() && cells_ <= columns_.size())
+    judge_cell();
+  cell_.clear();
+}
+
+void CsvStructure::judge_cell() {
+  const std::string text = trimmed(cell_);
+  const std::string& column = columns_[cells_ - 1];
+  if (const auto comma = cell_.find(','); separator_ == ';' && comma != std::string::npos) {
     std::string number = cell_;
     number[comma] = '.';
-    if (number_of_cell(number)) commas_.try_emplace(columns_[cells_ - 1], CsvCell{row_line_, lower_trimmed(cell_)});
+    if (number_of_cell(number)) odd_.commas.try_emplace(column, CsvCell{row_line_, text});
   }
-  cell_.clear();
+  const bool is_number = std::isfinite(number_of_cell(text).value_or(INFINITY));
+  if (is_place_[cells_ - 1] && !text.empty() && !is_number) odd_.places.try_emplace(column, CsvCell{row_line_, text});
 }
 
 void CsvStructure::end_row() {
@@ -223,6 +236,7 @@ void CsvStructure::end_row() {
   if (!empty && in_header_) {
     check_header();
     in_header_ = false;
+    for (const std::string& column : columns_) is_place_.push_back(column == "x" || column == "y");
   } else if (!empty && (cells_ < columns_.size() || filled_ > columns_.size())) {  // spreadsheets end rows with ",,,"
     refuse(row_line_, "has " + std::to_string(cells_) + (cells_ == 1 ? " cell" : " cells") + ", must have " +
                           std::to_string(columns_.size()) + " as the header");

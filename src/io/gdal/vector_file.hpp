@@ -17,9 +17,19 @@ struct CsvCell {
   std::string text;
 };
 
-/// The first number with a decimal comma of each column (in small letters) of a CSV with semicolons: there GDAL takes
-/// it for a decimal point. None for other files.
-std::map<std::string, CsvCell> comma_numbers(const std::string& path);
+/// Cells of a CSV that are no numbers as they stand, by column (in small letters): the first of each.
+struct OddCells {
+  /// Numbers with a decimal comma where semicolons separate: GDAL takes it for a decimal point.
+  std::map<std::string, CsvCell> commas;
+  /// What stands in the columns x and y in place of a number: GDAL leaves such a feature without a place.
+  std::map<std::string, CsvCell> places;
+};
+
+/// Those of a CSV; none of other files.
+OddCells odd_cells(const std::string& path);
+
+/// Whether GDAL takes a file for a text table by its name; one that is packed too, where GDAL unpacks it (/vsigzip/).
+bool is_text_table(const std::string& path);
 
 /// The structure of a CSV, read before GDAL reads it. GDAL 3.6 ends with a crash where x stands twice in the header,
 /// loses what comes after a quotation mark that is not closed, and takes rows that are too short or too long.
@@ -37,7 +47,7 @@ class CsvStructure {
   void finish();
 
   /// As the function of this name, of what was taken.
-  const std::map<std::string, CsvCell>& comma_numbers() const { return commas_; }
+  const OddCells& odd_cells() const { return odd_; }
 
  private:
   /// Place of the next character.
@@ -45,6 +55,7 @@ class CsvStructure {
 
   void take(char c);
   void keep(char c);
+  void judge_cell();
   void take_quote();
   void end_cell();
   void end_row();
@@ -60,8 +71,9 @@ class CsvStructure {
   std::size_t filled_ = 0;  // the same up to the last with text
   bool in_header_ = true;
   std::vector<std::string> columns_;  // of the header
-  std::string cell_;                  // of the header; with semicolons the beginning of any
-  std::map<std::string, CsvCell> commas_;
+  std::string cell_;                  // of the header, and of x and y; with semicolons the beginning of any
+  std::vector<bool> is_place_;        // for each column: x or y
+  OddCells odd_;
 };
 
 }  // namespace talus::io

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "idle_features.hpp"
 #include "layer.hpp"
 #include "off_map.hpp"
 #include "pixels.hpp"
@@ -85,51 +86,6 @@ class ZoneIndex {
   std::vector<bool> seen_;
 };
 
-/// Features of zones that change the ground of no cell.
-class IdleZones {
- public:
-  IdleZones(const std::string& path, const Terrain& terrain) : path_(path), terrain_(terrain) {}
-
-  void without_geometry(const std::string& name) { without_geometry_.push_back(name); }
-  /// Whether a feature lies wholly off the DEM.
-  bool off(const std::string& name, const OGREnvelope& box) {
-    const Grid& grid = terrain_.heights.grid;
-    box_.Merge(box);
-    const bool is_off = box.MaxX <= 0.0 || box.MinX >= grid.width() || box.MaxY <= 0.0 || box.MinY >= grid.height();
-    if (is_off) off_.push_back(name);
-    return is_off;
-  }
-  /// @param cells  that a feature covers @param heights  the number of them that have a height
-  void placed(const std::string& name, std::uint64_t cells, std::uint64_t heights) {
-    if (cells == 0)
-      narrow_.push_back(name);
-    else if (heights == 0)
-      without_height_.push_back(name);
-  }
-
-  /// Throws InputError if all lie off the DEM.
-  void tell(const Layer& layer, std::size_t features, std::vector<std::string>& warnings) const {
-    if (!off_.empty() && off_.size() + without_geometry_.size() == features)
-      throw InputError(off_dem_text(path_, box_, layer, terrain_));
-    if (features == 0) warnings.push_back(path_ + ": has no features: the default ground is everywhere");
-    const auto warn = [&](const std::vector<std::string>& names, const std::string& what, const std::string& way_out) {
-      if (!names.empty()) warnings.push_back(path_ + ": " + what + ": FID " + list_of(names) + way_out);
-    };
-    const Grid& grid = terrain_.heights.grid;
-    warn(without_geometry_, "zones without geometry, which have no effect", "");
-    warn(off_, "zones wholly off the DEM, which have no effect", "");
-    warn(without_height_, "zones where the DEM has no heights, which have no effect", "");
-    warn(narrow_, "zones that cover no cell of the DEM (its centre counts) and have no effect",
-         ": draw them wider than a cell, " + with_digits(std::max(grid.cell_x, grid.cell_y), 3) + " m");
-  }
-
- private:
-  std::string path_;
-  const Terrain& terrain_;
-  OGREnvelope box_;
-  std::vector<std::string> without_geometry_, off_, narrow_, without_height_;  // "4 (road)"
-};
-
 void read_polygons(const ZoneRequest& request, const Terrain& terrain, ZoneLayer& out) {
   Layer layer("ground", request.path, terrain);
   ZoneIndex index(request, false);
@@ -143,7 +99,7 @@ void read_polygons(const ZoneRequest& request, const Terrain& terrain, ZoneLayer
   const Grid& grid = terrain.heights.grid;
   FieldUse use{name, layer.field_names()[static_cast<std::size_t>(field)], {}, field, true};
   std::size_t features = 0;
-  IdleZones idle(request.path, terrain);
+  IdleFeatures idle(request.path, "zones", terrain);
   for_each_feature(layer, [&](const Feature& feature) {
     ++features;
     const std::string zone = layer.code(*feature, field);
@@ -165,7 +121,9 @@ void read_polygons(const ZoneRequest& request, const Terrain& terrain, ZoneLayer
       });
     idle.placed(called, cells, heights);
   });
-  idle.tell(layer, features, out.warnings);
+  if (idle.all_off(features)) throw InputError(off_dem_text(request.path, idle.box(), layer, terrain));
+  if (features == 0) out.warnings.push_back(request.path + ": has no features: the default ground is everywhere");
+  idle.warn(out.warnings);
   out.notes.push_back(fields_note(request.path, {use}, features));
   index.warn_unseen(out.warnings);
   out.presets = index.named_presets();

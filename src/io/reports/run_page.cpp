@@ -221,13 +221,11 @@ void check_page_name(const fs::path& file, bool overwrite, const fs::path& folde
   }
   if (const fs::path parent = file.parent_path(); !parent.empty() && !fs::is_directory(parent, none))
     throw InputError(parent.string() + ": is no folder, must be one; make it first, or give another -o");
+  refuse_unwritable(file.parent_path());
 }
 
 void write_run_page(const fs::path& file, const std::string& page) {
-  StagedPath staged(StagedPath::Kind::File, file, ".html");
-  write_text(staged.hidden(), page);
-  if (const std::error_code error = staged.commit())
-    throw std::runtime_error(file.string() + ": cannot be given this name: " + error.message());
+  replace_text(file, page);
 }
 
 }  // namespace talus::io

@@ -148,7 +148,9 @@ std::optional<Shown> hillshade_of(const fs::path& dem, const fs::path& project) 
   shown.id = "talus_hillshade";
   shown.title = "Hillshade of the DEM";
   shown.checked = true;
-  const std::string way = dem.lexically_normal().lexically_relative(project).string();
+  // Without links on the way, as `project`: then it is the same from every path that leads to the project.
+  const fs::path folder = fs::weakly_canonical(dem.parent_path(), none);
+  const std::string way = (folder / dem.filename()).lexically_relative(project).string();
   shown.source = way.starts_with("..") ? way : "./" + way;
   shown.style = parsed_xml(
       "<qgis><pipe><rasterrenderer type=\"hillshade\" band=\"1\" azimuth=\"315\" angle=\"45\" zfactor=\"1\" "

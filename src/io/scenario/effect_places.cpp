@@ -1,7 +1,9 @@
 #include "effect_places.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "io/gdal/idle_features.hpp"
 #include "io/gdal/layer.hpp"
 #include "talus/base/error.hpp"
 #include "talus/io/gdal/forest.hpp"
@@ -18,18 +20,29 @@ Raster<std::uint8_t> read_mask(const std::string& name, const std::string& path,
   const Grid& grid = terrain.heights.grid;
   Raster<std::uint8_t> mask(grid, 0, terrain.heights.values.memory());
   Layer layer("effects." + name, path, terrain);
+  const std::string effect = "[effects." + name + "]";
+  IdleFeatures idle(path, "polygons of " + effect, terrain);
   for_each_feature(layer, [&](const Feature& feature) {
+    const std::string number = std::to_string(feature->GetFID());
     const Parts parts = layer.parts(*feature);
     if (!parts.lines.empty() || !parts.points.empty())
-      throw InputError(layer.label(*feature) + ": is no polygon, must be one: [effects." + name + "] acts inside");
-    if (parts.empty()) return;
-    const OGREnvelope box = parts.envelope();
-    if (box.MaxX <= 0.0 || box.MinX >= grid.width() || box.MaxY <= 0.0 || box.MinY >= grid.height()) return;
+      throw InputError(layer.label(*feature) + ": is no polygon, must be one: " + effect + " acts inside");
+    if (parts.empty()) return idle.without_geometry(number);
+    if (idle.off(number, parts.envelope())) return;
+    std::uint64_t cells = 0, heights = 0;
     for (const OGRPolygon& polygon : parts.polygons)
-      for_each_cell(polygon, grid, false, [&](int column, int row) { mask.at(column, row) = 1; });
+      for_each_cell(polygon, grid, false, [&](int column, int row) {
+        mask.at(column, row) = 1;
+        ++cells;
+        heights += std::isnan(terrain.heights.at(column, row)) ? 0U : 1U;
+      });
+    idle.placed(number, cells, heights);
   });
-  if (std::find(mask.values.begin(), mask.values.end(), 1) == mask.values.end())
-    out.warnings.push_back(path + ": covers no cell of the DEM: [effects." + name + "] acts nowhere");
+  const auto covered = std::count(mask.values.begin(), mask.values.end(), 1);
+  if (covered == 0) out.warnings.push_back(path + ": covers no cell of the DEM: " + effect + " acts nowhere");
+  out.notes.push_back(path + ": " + effect + " acts in " + std::to_string(covered) + " of " +
+                      std::to_string(grid.cells()) + " cells");
+  idle.warn(out.warnings);
   const auto& used = layer.reprojections();
   out.reprojections.insert(out.reprojections.end(), used.begin(), used.end());
   for (std::string& line : layer.warnings()) out.warnings.push_back(std::move(line));

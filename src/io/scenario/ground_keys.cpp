@@ -49,8 +49,14 @@ std::optional<std::string> fault_of_code(const std::string& text) {
   return std::nullopt;
 }
 
+void lay_preset_over_include(ScenarioSpec& spec) {
+  if (spec.origin("ground.default") != kPresetFlag) return;
+  spec.default_ground.ground = find_preset(spec.default_ground.preset).ground;
+  spec.default_ground.own.clear();
+}
+
 void GroundReader::read(TableReader& ground) {
-  flag_ = spec_.origin("ground.default").starts_with("flag");
+  flag_ = spec_.origin("ground.default") == kPresetFlag;
   if (const auto name = ground.text("default")) {
     ZoneSpec asked = spec_.default_ground;
     if (set_preset(ground, "default", *name, asked) && !flag_) {

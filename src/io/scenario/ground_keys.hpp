@@ -13,6 +13,9 @@ namespace talus::io {
 /// and `code` reads it back.
 std::optional<std::string> fault_of_code(const std::string& text);
 
+/// The preset of the command line in place of the default ground that an included file describes.
+void lay_preset_over_include(ScenarioSpec& spec);
+
 /// Reads the kinds of ground of a scenario, or of a file that it includes: [ground], [ground.zones.NAME].
 class GroundReader {
  public:

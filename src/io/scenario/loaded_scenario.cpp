@@ -124,6 +124,14 @@ void warn_unused_diameter(const ScenarioSpec& spec, const SourceLayer& layer, st
                      " to " + text_of(all.high) + " m");
 }
 
+/// A preset of the command line under numbers of the scenario that hide it: easily overlooked.
+void warn_unused_preset(const ScenarioSpec& spec, std::vector<std::string>& warnings) {
+  if (spec.origin("ground.default") != kPresetFlag || !spec.default_ground.gives_all()) return;
+  warnings.push_back("flag --preset = '" + spec.default_ground.preset + "' changes nothing: " + spec.scenario.where +
+                     " gives every number of the default ground, which counts more: take out its "
+                     "[ground.zones.default], or leave the flag out");
+}
+
 /// Steep gullies narrower than two cells are sampled as staircases, whose treads hold blocks.
 void warn_of_dams(const Surface& surface, std::vector<std::string>& warnings) {
   constexpr double kManyDams = 2e-3;  // of the cells; steep terrain with gullies in cells of 5 m has 0.2 to 0.3 %
@@ -200,6 +208,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
   parts.surface = Surface(std::move(terrain.heights), spec.surface);
   warn_of_dams(parts.surface, out.warnings);
   out.scenario = make_scenario(std::move(parts));
+  warn_unused_preset(spec, out.warnings);
   warn_of_sizes(spec, out.scenario, out.warnings);
   for (std::string& warning : idle_effects(out.scenario)) out.warnings.push_back(std::move(warning));
 

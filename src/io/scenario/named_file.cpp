@@ -8,10 +8,21 @@
 
 namespace talus::io {
 
+namespace {
+
+/// The name of a file in an archive with the absolute path of the archive; any other name of GDAL's as it is.
+std::string in_archive(const std::string& name, const std::filesystem::path& base) {
+  const std::size_t at = archive_in(name);
+  if (at == std::string::npos) return name;
+  return name.substr(0, at) + std::filesystem::absolute(base / name.substr(at)).lexically_normal().string();
+}
+
+}  // namespace
+
 std::string absolute_path(const std::string& given, const std::filesystem::path& base) {
-  if (given.starts_with("/vsi")) return given;
   std::error_code none;
   const std::string file = file_of_layer(given);
+  if (file.starts_with("/vsi")) return same_layer_in(in_archive(file, base), given);
   const std::filesystem::path path = (base / file).lexically_normal();
   if (file.find(':') != std::string::npos && !std::filesystem::exists(path, none)) {
     const auto part = part_name(file, base);

@@ -11,8 +11,9 @@ struct NamedFile {
   std::string where;  ///< "scenario.toml:3: dem = 'dem.tif'" or "flag --dem = 'dem.tif'", for messages
 };
 
-/// The absolute path of a file given relative to `base`; of a part of a file (NETCDF:file.nc:height) its name with that
-/// of the file. Names that are no files (/vsizip/..., https:...) stay as they are, for GDAL.
+/// The absolute path of a file given relative to `base`; of a part of a file (NETCDF:file.nc:height) or a file in an
+/// archive (/vsizip/a.zip/dem.tif) its name with that of the file or archive. Other names (/vsicurl/..., https:...)
+/// stay as they are, for GDAL.
 std::string absolute_path(const std::string& given, const std::filesystem::path& base);
 
 /// Why a scenario cannot hold a name, which is text in UTF-8; empty: it can.

@@ -86,7 +86,7 @@ void start_with_preset(ScenarioSpec& spec, const RunFlags& flags, std::vector<st
   try {
     spec.default_ground.ground = find_preset(*flags.preset).ground;
     spec.default_ground.preset = *flags.preset;
-    spec.origins["ground.default"] = "flag --preset";
+    spec.origins["ground.default"] = kPresetFlag;
   } catch (const InputError& error) {
     faults.push_back("flag --preset = '" + *flags.preset + "': " + error.what());
   }

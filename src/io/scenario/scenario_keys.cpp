@@ -40,6 +40,7 @@ class SpecReader {
   void read(const TomlValue& root) {
     TableReader top(&root, "", file_, faults_);
     read_include(top);
+    lay_preset_over_include(spec_);
     read_vrt_folders(top);
     named_file(top, "dem", spec_.dem);
     surface(top);

@@ -2,11 +2,13 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "named_file.hpp"
 #include "talus/io/gdal/source_fields.hpp"
 #include "talus/io/scenario/loaded_scenario.hpp"
+#include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace talus::io {
 
@@ -18,7 +20,13 @@ struct ZoneSpec {
   std::map<std::string, std::string> own;  ///< origin of each parameter given beside the preset
   std::string code;                        ///< code of the zone in a raster; empty: its name
   std::vector<Range> intervals{};          ///< of x, on a profile [m]
+
+  /// Whether every number is given beside the preset, as in the complete scenario of a run.
+  bool gives_all() const { return own.size() == ground_fields().size() - 1; }  // `shape` is one key of two numbers
 };
+
+/// Origin of `ground.default` where the command line gives it.
+inline constexpr std::string_view kPresetFlag = "flag --preset";
 
 /// Places where an effect of the input acts, and its maps. Its numbers are in `values`.
 struct EffectSpec {

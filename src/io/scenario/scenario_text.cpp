@@ -246,13 +246,26 @@ std::string toml_of(const ScenarioSpec& spec) {
   return text;
 }
 
+/// The text that `toml_text` has put in quotation marks.
+static std::string unquoted(const std::string& quoted) {
+  std::string text;
+  for (std::size_t i = 1; i + 1 < quoted.size(); ++i) {
+    if (quoted[i] == '\\' && quoted[++i] == 'u') {  // four digits
+      text += static_cast<char>(std::stoi(quoted.substr(i + 1, 4), nullptr, 16));
+      i += 4;
+    } else {
+      text += quoted[i];
+    }
+  }
+  return text;
+}
+
 std::vector<Setting> settings_of(const ScenarioSpec& spec) {
   std::vector<Setting> settings;
   const Lines lines(spec);
   for (const Line& line : lines.lines()) {
-    std::string value = line.value;
-    if (value.size() >= 2 && value.front() == '"') value = value.substr(1, value.size() - 2);
-    settings.push_back({line.full, value, line.unit, line.source});
+    const bool is_text = line.value.starts_with('"');
+    settings.push_back({line.full, is_text ? unquoted(line.value) : line.value, line.unit, line.source});
   }
   return settings;
 }

@@ -14,8 +14,7 @@ namespace {
 bool from_preset(const ZoneSpec& zone, std::string_view key) {
   const auto own = zone.own.find(std::string(key));
   if (own == zone.own.end()) return true;
-  const bool all_given = zone.own.size() == ground_fields().size() - 1;  // `shape` is one key of two numbers
-  if (!all_given || own->second != "scenario") return false;
+  if (!zone.gives_all() || own->second != "scenario") return false;
   const Ground& preset = find_preset(zone.preset).ground;
   return std::ranges::any_of(ground_fields(), [&](const auto& field) {
     return field.key == key && field.get(zone.ground) == field.get(preset);

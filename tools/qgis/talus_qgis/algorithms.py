@@ -4,15 +4,15 @@ import os
 import re
 import time
 
-from qgis.core import (QgsProcessing, QgsProcessingAlgorithm, QgsProcessingException, QgsProcessingFeatureSourceDefinition,
-                       QgsProcessingOutputFile, QgsProcessingOutputFolder, QgsProcessingOutputLayerDefinition,
-                       QgsProcessingOutputRasterLayer, QgsProcessingOutputVectorLayer, QgsProcessingParameterBand,
-                       QgsProcessingParameterBoolean, QgsProcessingParameterDefinition, QgsProcessingParameterEnum,
-                       QgsProcessingParameterFeatureSource, QgsProcessingParameterField, QgsProcessingParameterFile,
-                       QgsProcessingParameterFileDestination, QgsProcessingParameterFolderDestination,
-                       QgsProcessingParameterMultipleLayers, QgsProcessingParameterNumber, QgsProcessingParameterRasterLayer,
-                       QgsProcessingParameterString, QgsProcessingUtils, QgsProject, QgsProperty,
-                       QgsVectorLayer)
+from qgis.core import (QgsFeatureRequest, QgsProcessing, QgsProcessingAlgorithm, QgsProcessingException,
+                       QgsProcessingFeatureSourceDefinition, QgsProcessingOutputFile, QgsProcessingOutputFolder,
+                       QgsProcessingOutputLayerDefinition, QgsProcessingOutputRasterLayer, QgsProcessingOutputVectorLayer,
+                       QgsProcessingParameterBand, QgsProcessingParameterBoolean, QgsProcessingParameterDefinition,
+                       QgsProcessingParameterEnum, QgsProcessingParameterFeatureSource, QgsProcessingParameterField,
+                       QgsProcessingParameterFile, QgsProcessingParameterFileDestination,
+                       QgsProcessingParameterFolderDestination, QgsProcessingParameterMultipleLayers,
+                       QgsProcessingParameterNumber, QgsProcessingParameterRasterLayer, QgsProcessingParameterString,
+                       QgsProcessingUtils, QgsProject, QgsProperty, QgsVectorLayer)
 from qgis.PyQt.QtGui import QIcon
 
 from . import layers, process, program, results
@@ -65,6 +65,7 @@ ALGORITHMS = [
     {"id": "barrier", "command": "barrier", "help": "barrier", "order": ["folder", "screen"], "is folder": {"folder"},
      "advanced": {"observed", "frequency", "percentile", "containment", "stretch", "unweighted"}, "phases": []},
     {"id": "profile", "command": "profile", "help": "profile", "phases": ["simulate", "write"],
+     "labels": {"trajectories": "number-of-blocks"},
      "files": {"record": "run.json", "picture": "profile.svg"}, "folder": "out", "nothing to load": True},
     {"id": "calibrate", "command": "calibrate", "help": "closing-the-loop", "phases": ["fit"], "folder": "out",
      "nothing to load": True,
@@ -345,10 +346,12 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         return found
 
     def _vector(self, parameters, key, context):
-        """(file of the layer if that is all of it, its source of features, kind of file in which they can be written)."""
+        """(file of the layer if that is all of it, its source of features)."""
         source = self.parameterAsSource(parameters, key, context)
         if source is None:
             raise QgsProcessingException(self.invalidSourceError(parameters, key))
+        # By default Processing stops at an invalid polygon, and QGIS itself ends. The program mends them and says so.
+        source.setInvalidGeometryCheck(QgsFeatureRequest.GeometryNoCheck)
         value = parameters[key]
         plain = value.source if isinstance(value, QgsProcessingFeatureSourceDefinition) else value
         if isinstance(plain, QgsProperty):
@@ -356,7 +359,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         layer = self.parameterAsVectorLayer({key: plain}, key, context)
         if isinstance(layer, QgsVectorLayer):
             layers.refuse_unnamed(layer)
-        return layers.plain_vector(value, layer), source, layers.suffix_for(layer)
+        return layers.plain_vector(value, layer), source
 
     def processAlgorithm(self, parameters, context, feedback):
         try:
@@ -480,11 +483,10 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         key = key_of(p["name"])
         words = []
         if "vector" in p["holds"] and self.layers.get(key):
-            plain, source, suffix = self.layers[key][0]
+            plain, source = self.layers[key][0]
             if len(self.layers[key]) > 1:
-                plain, suffix = None, ".gpkg"
-                source = layers.Joined([source for _, source, _ in self.layers[key]], context, feedback)
-            words.append(plain or layers.write_vector(source, inputs, p["name"] + suffix, context, feedback))
+                plain, source = None, layers.Joined([source for _, source in self.layers[key]], context, feedback)
+            words.append(plain or layers.write_vector(source, inputs, p["name"] + ".gpkg", context, feedback))
         raster = self.layers.get(key + "_RASTER" if p["name"] in self.table.get("raster too", ()) else key)
         if "raster" in p["holds"] and raster:
             if words:

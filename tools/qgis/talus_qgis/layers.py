@@ -13,9 +13,9 @@ import tempfile
 from contextlib import contextmanager
 
 from osgeo import gdal
-from qgis.core import (QgsCoordinateTransform, QgsCsException, QgsFeature, QgsFeatureSink, QgsField, QgsFields,
-                       QgsProcessingException, QgsProcessingFeatureSourceDefinition, QgsProviderRegistry, QgsRasterLayer,
-                       QgsVectorFileWriter, QgsVectorLayer, QgsWkbTypes)
+from qgis.core import (QgsCoordinateTransform, QgsCsException, QgsFeature, QgsFeatureRequest, QgsFeatureSink, QgsField,
+                       QgsFields, QgsProcessingException, QgsProcessingFeatureSourceDefinition, QgsProviderRegistry,
+                       QgsRasterLayer, QgsVectorFileWriter, QgsVectorLayer, QgsWkbTypes)
 from qgis.PyQt.QtCore import Qt, QVariant
 
 from .texts import tr
@@ -77,13 +77,6 @@ def _restricted(definition):
     return (definition.selectedFeaturesOnly or definition.featureLimit >= 0 or bool(getattr(definition, "filterExpression", "")))
 
 
-def suffix_for(layer):
-    """A Shapefile stays one: the program knows the names of fields that it cuts, as diameter_m of diameter_min. Not so
-    where a joined or virtual field has a name that would be cut anew."""
-    shapefile = isinstance(layer, QgsVectorLayer) and layer.dataProvider().storageType() == "ESRI Shapefile"
-    return ".shp" if shapefile and all(len(name.encode()) <= 10 for name in _names(layer)) else ".gpkg"
-
-
 @contextmanager
 def _kept(inputs, name):
     """A temporary folder to write an input into, and a list for the place at which it is kept: a folder of `inputs` named
@@ -130,7 +123,7 @@ def refuse_without_system(source):
 
 
 def write_vector(source, inputs, file, context, feedback):
-    """Writes the features of a source, with their CRS, into a GeoPackage or Shapefile; equal features give equal bytes."""
+    """Writes the features of a source, with their CRS, into a GeoPackage; equal features give equal bytes."""
     refuse_without_system(source)
     with _kept(inputs, os.path.splitext(file)[0]) as (fresh, place):
         dated = gdal.GetThreadLocalConfigOption("OGR_CURRENT_DATE")  # of this thread alone: QGIS goes on writing in others
@@ -240,23 +233,27 @@ def _as_type(value, kind):
 
 
 def _write_features(source, path, context, feedback):
+    """Writes the features under the numbers (FID) that QGIS shows: where a layer has no ids and no names, the program calls
+    features by them."""
+    numbered = _are_numbered(source, feedback)
+    fields = QgsFields(source.fields())
+    column = _free_name("talus_fid", fields)  # a field fid of the layer stays a field
+    if numbered:
+        fields.append(QgsField(column, QVariant.LongLong))
     options = QgsVectorFileWriter.SaveVectorOptions()
-    shapefile = path.endswith(".shp")
-    options.driverName = "ESRI Shapefile" if shapefile else "GPKG"
+    options.driverName = "GPKG"
     options.fileEncoding = "UTF-8"
     options.layerName = os.path.splitext(os.path.basename(path))[0]
-    # a field fid of the layer stays a field
-    options.layerOptions = ["DBF_DATE_LAST_UPDATE=2000-01-01"] if shapefile else ["FID=talus_fid"]
-    writer = QgsVectorFileWriter.create(path, source.fields(), source.wkbType(), source.sourceCrs(),
-                                        context.transformContext(), options)
+    options.layerOptions = ["FID=" + column]
+    writer = QgsVectorFileWriter.create(path, fields, source.wkbType(), source.sourceCrs(), context.transformContext(), options)
     if writer.hasError() != QgsVectorFileWriter.NoError:
         raise QgsProcessingException(f"{path}: {writer.errorMessage()}")
     count = 0
     try:
         for feature in source.getFeatures():
             _stop_if_cancelled(feedback)
-            copy = QgsFeature(source.fields())
-            copy.setAttributes(feature.attributes())
+            copy = QgsFeature(fields)
+            copy.setAttributes(feature.attributes() + ([feature.id()] if numbered else []))
             copy.setGeometry(feature.geometry())
             if not writer.addFeature(copy, QgsFeatureSink.FastInsert):
                 raise QgsProcessingException(f"{path}: {writer.errorMessage()}")
@@ -264,6 +261,28 @@ def _write_features(source, path, context, feedback):
     finally:
         del writer  # closes the file
     return count
+
+
+def _are_numbered(source, feedback):
+    """Whether each feature has a number of its own. Those of several layers together and those that are not saved yet have
+    none: GDAL numbers them from 1."""
+    if isinstance(source, Joined):
+        return False
+    request = QgsFeatureRequest().setFlags(QgsFeatureRequest.NoGeometry).setNoAttributes()
+    numbers = [feature.id() for feature in source.getFeatures(request)]
+    numbered = all(number >= 0 for number in numbers) and len(set(numbers)) == len(numbers)
+    if not numbered:
+        feedback.pushWarning(tr("{name}: some features have no number yet, so that all are numbered anew from 1. With saved "
+                                "edits the results keep the numbers of QGIS.").format(name=source.sourceName()))
+    return numbered
+
+
+def _free_name(wanted, fields):
+    """A name that no field has, in any case of letters."""
+    name = wanted
+    while fields.lookupField(name) >= 0:
+        name += "_"
+    return name
 
 
 def raster_file(layer, band, inputs, name, feedback):

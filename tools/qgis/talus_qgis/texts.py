@@ -16,6 +16,7 @@ LABELS = {
     "diameter": ("Diameter of the blocks", "Durchmesser der Blöcke"),
     "preset": ("Ground", "Boden"),
     "trajectories": ("Trajectories per source cell", "Sturzbahnen pro Anbruchzelle"),
+    "number-of-blocks": ("Number of blocks", "Zahl der Blöcke"),
     "frequency": ("Frequency of all sources together", "Häufigkeit aller Anbruchgebiete zusammen"),
     "screens": ("Screens (lines where crossings are recorded)", "Nachweislinien (Durchgänge werden festgehalten)"),
     "barriers": ("Barriers (lines; fields height [m], capacity [kJ])", "Schutzbauten (Linien; Felder height [m], capacity [kJ])"),
@@ -225,6 +226,10 @@ GERMAN = {
     "needed without a scenario": "nötig ohne Szenario",
     "Several layers, as a road and houses, are joined into one.":
         "Mehrere Ebenen, wie Strasse und Häuser, werden zu einer zusammengefügt.",
+    "{name}: some features have no number yet, so that all are numbered anew from 1. With saved edits the results keep the "
+    "numbers of QGIS.":
+        "{name}: einige Objekte haben noch keine Nummer, darum werden alle neu ab 1 nummeriert. Mit gespeicherten Änderungen "
+        "behalten die Ergebnisse die Nummern von QGIS.",
     "{name}: QGIS brings it from {from} to {to}, with an unknown accuracy":
         "{name}: QGIS bringt es von {from} nach {to}, mit unbekannter Genauigkeit",
     "{name}: QGIS brings it from {from} to {to}, accurate to {metres} m":

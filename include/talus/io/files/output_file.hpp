@@ -16,7 +16,8 @@ class OutputFile {
  public:
   /// @param extension  ".gpkg": what the name must end in
   /// @param overwrite  a file of this name may be replaced, if all its layers are of `talus sources` or `check --pits`
-  /// Throws InputError if the name has another extension or is taken, or if its folder cannot be made.
+  /// Throws InputError if the name has another extension or is taken, or if its folder cannot be made or
+  /// written.
   OutputFile(const std::filesystem::path& path, const std::string& extension, bool overwrite);
 
   /// Where to write until `commit`.

@@ -8,6 +8,10 @@ namespace talus::io {
 /// Throws InputError if a name for results is a link to something that is not there.
 void refuse_dangling_link(const std::filesystem::path& path);
 
+/// Throws InputError if no file can be written into a folder: before the work, not after it. @param folder  empty: the
+/// current one
+void refuse_unwritable(const std::filesystem::path& folder);
+
 /// A file or folder that appears under its name complete, or not at all: it is written under a hidden name beside it,
 /// `.NAME.talus-PROCESS`, and renamed when it is on the disk. Without `commit` (an exception, an interruption, a full
 /// disk) the hidden file or folder is removed.
