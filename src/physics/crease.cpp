@@ -60,12 +60,13 @@ CreaseEnd slide_along_crease(const Slope& slope, const Slope& beyond, Motion& mo
   const double way = std::min({to_corner, farthest, kLargestShare * edge.length});
   double duration = time_to_cover(way, speed, pull, 1.0);
   if (pull < 0.0) duration = std::min(duration, speed / -pull);  // comes to rest earlier
-  Motion next = motion;
+  Motion turned = motion, next = motion;
+  turned.velocity = sign * speed * edge.direction;
   const double distance = std::clamp(duration * (speed + 0.5 * pull * duration), 0.0, to_corner);
   next.time += duration;
   next.position += sign * distance * edge.direction;
   next.velocity = sign * std::max(0.0, speed + pull * duration) * edge.direction;
-  record_piece(path, slope, motion, next);
+  record_piece(path, slope, turned, next);
   motion = next;
   return CreaseEnd::Moved;
 }
