@@ -8,6 +8,7 @@
 
 #include "support/scenes.hpp"
 #include "talus/physics/trace.hpp"
+#include "talus/simulate/tally/visits.hpp"
 
 namespace talus {
 namespace {
@@ -154,6 +155,21 @@ TEST_F(Sliding, BreaksAndSlidesOn) {
   EXPECT_EQ(path.barriers[0].how, Meeting::Broken);
   EXPECT_EQ(path.end, End::Caught);
   EXPECT_NEAR(path.vertices.back().motion.position.x(), 50.0, 2e-3);
+}
+
+/// The speed at the end of a span that is cut, and in the map of its cell: v^2 = 2 a s, from rest at x = 20.
+TEST_F(Sliding, TheMapSeesTheSpeedAtTheBarrier) {
+  for (const double x : {20.05, 20.25, 20.7, 21.6}) {  // its first slide is of 0.78 m in plan
+    const Path path = walked({net(x, 3.0, kInfinity)});
+    EXPECT_EQ(path.end, End::Caught);
+    const double squared = 2.0 * energy_at(x - 0.001) / 1000.0;
+    EXPECT_NEAR(path.spans.back().rise_to, std::sqrt(squared), 1e-4) << x;
+    VisitBatch batch(surface_.grid());
+    batch.add(path, release_.body, 0, nullptr);
+    ASSERT_EQ(batch.regions().size(), 1U);
+    ASSERT_EQ(batch.regions().begin()->second.visits.size(), 1U);
+    EXPECT_NEAR(batch.regions().begin()->second.visits[0].speed_squared, squared, 1e-4 * squared) << x;
+  }
 }
 
 /// 45 degrees, phi = 30 degrees, D = 4 m (90 478 kg), at rest on the ground: E = m g (sin b - tan(phi) cos b) s is
