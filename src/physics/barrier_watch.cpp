@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "talus/physics/barriers.hpp"
+#include "talus/physics/span_speed.hpp"
 
 namespace talus {
 namespace {
@@ -26,12 +27,12 @@ float mixed(float from, float to, float share) {
 
 /// Shortens a span to its first share.
 void shorten(Span& span, float share) {
+  span.rise_to = rise_at(span, share);
   span.p_to = mixed(span.p_from, span.p_to, share);
   span.q_to = mixed(span.q_from, span.q_to, share);
   const float rise = span.height_to - span.height_from - span.bend * (1.0F - share);
   span.height_to = std::max(0.0F, span.height_from + share * rise);
   span.bend *= share * share;
-  span.rise_to = mixed(span.rise_from, span.rise_to, share);
 }
 
 }  // namespace

@@ -36,6 +36,14 @@ Edge edge_between(const Slope& slope, const Slope& beyond, const Eigen::Vector2d
   return {direction / length, length, northward ? slope.q_of(place) : slope.p_of(place)};
 }
 
+/// The share of an edge from the block to its end, or to the border of two cells in its middle if friction changes
+/// there.
+double share_ahead(const Slope& slope, double share, double sign) {
+  const bool ends_in_the_middle = slope.bounded_to && in_far_half(share, sign) != (sign > 0.0);
+  const double end = ends_in_the_middle ? 0.5 : sign > 0.0 ? 1.0 : 0.0;
+  return std::max(0.0, sign * (end - share));
+}
+
 double cosine_of_slope(const Slope& slope, const Eigen::Vector2d& place) {
   return 1.0 / std::sqrt(1.0 + slope.gradient(place).squaredNorm());
 }
@@ -56,16 +64,17 @@ CreaseEnd slide_along_crease(const Slope& slope, const Slope& beyond, Motion& mo
   const double pull = -sign * kGravity * edge.direction.z() - friction;
   if (!(speed > 0.0) && !(pull > 0.0)) return CreaseEnd::Held;
 
-  const double to_corner = edge.length * std::max(0.0, sign > 0.0 ? 1.0 - edge.share : edge.share);
-  const double way = std::min({to_corner, farthest, kLargestShare * edge.length});
+  const double to_end = edge.length * share_ahead(slope, edge.share, sign);
+  const double way = std::min({to_end, farthest, kLargestShare * edge.length});
   double duration = time_to_cover(way, speed, pull, 1.0);
   if (pull < 0.0) duration = std::min(duration, speed / -pull);  // comes to rest earlier
-  Motion next = motion;
-  const double distance = std::clamp(duration * (speed + 0.5 * pull * duration), 0.0, to_corner);
+  Motion turned = motion, next = motion;
+  turned.velocity = sign * speed * edge.direction;
+  const double distance = std::clamp(duration * (speed + 0.5 * pull * duration), 0.0, to_end);
   next.time += duration;
   next.position += sign * distance * edge.direction;
   next.velocity = sign * std::max(0.0, speed + pull * duration) * edge.direction;
-  record_piece(path, slope, motion, next);
+  record_piece(path, slope, turned, next);
   motion = next;
   return CreaseEnd::Moved;
 }

@@ -8,7 +8,8 @@ enum class CreaseEnd { Moved, Held };
 
 /// Slides a block along the concave edge between two patches that both press it back onto the edge. This is the limit
 /// of crossing the edge to and fro. The block turns along the edge and keeps its speed. Gravity acts along the edge;
-/// friction is the mean of the two slopes. The piece ends at the end of the edge, or after a quarter of a cell.
+/// friction is the mean of the two slopes. The piece ends at the end of the edge, where the friction of the ground
+/// changes, or after a quarter of a cell.
 /// docs/physics.md, "Sliding".
 ///
 /// @param slope     the patch of the block

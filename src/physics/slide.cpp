@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "crease.hpp"
-#include "slope.hpp"
+#include "sliding_friction.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/physics/flight.hpp"
 
@@ -73,6 +73,18 @@ Edge edge_of(const Slope& slope, const Vec2& place, const Vec2& v, const Piece& 
   return edge;
 }
 
+/// Time until a piece leaves the cell at whose border it has to end [s]; infinite if it does not leave it.
+double time_to_border(const Slope& slope, const Vec2& place, const Vec2& v, const Piece& piece) {
+  const auto time = [&](bool far_half, double share, double rate, double bend) {
+    const double inwards = far_half ? 1.0 : -1.0;
+    return first_contact(std::max(0.0, inwards * (share - 0.5)), inwards * rate, inwards * bend, piece.duration);
+  };
+  const Vec2 bend = 0.5 * piece.acceleration;
+  const double per_x = slope.surface.per_cell_x(), per_y = slope.surface.per_cell_y();
+  return std::min(time(slope.bounded_to->east, slope.p_of(place), v.x() * per_x, bend.x() * per_x),
+                  time(slope.bounded_to->north, slope.q_of(place), v.y() * per_y, bend.y() * per_y));
+}
+
 /// Reads the facet beyond an edge. Returns false if there is none.
 bool read_beyond(const Slope& slope, const Edge& edge, const Motion& motion, Slope& beyond) {
   if (edge.columns == 0 && edge.rows == 0) return beyond.read(Facet{slope.at, !slope.north});
@@ -112,7 +124,7 @@ Facet first_facet(const Surface& surface, PatchIndex at, Motion& motion) {
   return slope.facet();
 }
 
-/// Result of one piece of sliding, to the end of the piece or of the facet.
+/// Result of one piece of sliding, to the end of the piece, of the facet or of the cell.
 struct Step {
   Motion motion;
   Edge edge;
@@ -136,7 +148,8 @@ void slow_down(Vec3& velocity, double fall) {
   if (squared > most) velocity *= std::sqrt(most / squared);
 }
 
-/// One piece. It is shortened until its end is no higher than the energy of the block allows.
+/// One piece. It is shortened until its end is no higher than the energy of the block allows. A border of cells ends it
+/// after the way of `tolerance` at the earliest: on a border it would otherwise have no length.
 Step next_step(const Slope& slope, const Motion& motion, double farthest, double tolerance, double stop_speed) {
   const Vec2 place = motion.position.head<2>(), v = motion.velocity.head<2>(), gradient = slope.gradient(place);
   const double speed = motion.velocity.norm();
@@ -151,7 +164,10 @@ Step next_step(const Slope& slope, const Motion& motion, double farthest, double
   const Piece piece = make_piece(slope, place, v, first, longest, tolerance);
   const Edge edge = edge_of(slope, place, v, piece);
   const auto place_after = [&](double t) -> Vec2 { return place + t * v + 0.5 * t * t * piece.acceleration; };
-  const double whole = std::min(edge.time, piece.duration);
+  const double border = slope.bounded_to ? std::max(time_to_border(slope, place, v, piece),
+                                                    time_to_cover(tolerance, speed, pull, piece.duration))
+                                         : std::numeric_limits<double>::infinity();
+  const double whole = std::min({edge.time, border, piece.duration});
   const double top = height_of_energy(motion) + kHeightRounding;
   double dt = whole;
   for (int halving = 0; halving < kMaxHalvings && slope.height(place_after(dt)) > top; ++halving) dt *= 0.5;
@@ -161,7 +177,7 @@ Step next_step(const Slope& slope, const Motion& motion, double farthest, double
   next.position = {there.x(), there.y(), std::min(slope.height(there), top)};  // at a corner two facets may differ
   next.velocity = along(v + dt * piece.acceleration, slope.gradient(there));
   slow_down(next.velocity, top - next.position.z());
-  return {next, edge, dt == whole && edge.time <= piece.duration};
+  return {next, edge, dt == edge.time};
 }
 
 /// Whether friction alone would hold the block at rest on one of two patches that meet at its place. Otherwise they
@@ -207,16 +223,14 @@ SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, Patch
                double stop_speed, Path& path, const RollingResistance* resistance) {
   double slid = 0.0;
   const double tolerance = kErrorShare * diameter;
+  const SlidingFriction friction(cover, resistance);
   int short_crossings = 0;  // in succession, with less way than the tolerance between them
   Facet on = first_facet(surface, at, motion), came_from = on;
   for (int pieces = 0; pieces < kMaxPieces; ++pieces) {
-    const std::uint8_t zone = cover.zone_at(motion.position.x(), motion.position.y());
-    const bool resists =
-        resistance != nullptr && resistance->where.covers(zone, motion.position.x(), motion.position.y());
-    const double tan_phi = cover.grounds[zone].tan_phi + (resists ? resistance->coefficient : 0.0);
-    Slope slope{surface, at, tan_phi};
+    Slope slope{surface, at, 0.0};
     if (!slope.read(on)) return SlideEnd::Left;
-    const double speed = motion.velocity.norm();
+    friction.set(slope, motion);
+    const double tan_phi = slope.tan_phi, speed = motion.velocity.norm();
     if (speed <= stop_speed && slope.gradient(motion.position.head<2>()).norm() <= tan_phi) return SlideEnd::Stopped;
     if (!(slope.press(motion.velocity.head<2>()) >= 0.0)) return SlideEnd::Takeoff;
 

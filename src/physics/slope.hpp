@@ -1,5 +1,6 @@
 #pragma once
 #include <cmath>
+#include <optional>
 
 #include "talus/physics/slide.hpp"
 
@@ -12,6 +13,23 @@ struct Facet {
   bool operator==(const Facet&) const = default;
 };
 
+/// Largest distance from the border of two cells at which a block counts as on it [patches].
+inline constexpr double kOnBorder = 1e-9;
+
+/// Whether a place is in the far half of a patch, or of an edge of it. In the middle is the border of two cells: there
+/// it is the half that a block moves into.
+///
+/// @param share  of the patch or edge, 0..1
+/// @param ahead  above 0 if the block moves towards the far half, 0 if it does not move across the border
+inline bool in_far_half(double share, double ahead) {
+  return std::abs(share - 0.5) > kOnBorder || ahead == 0.0 ? share >= 0.5 : ahead > 0.0;
+}
+
+/// A quarter of a patch: the part of one of the four cells whose centres are its corners.
+struct Quarter {
+  bool east = false, north = false;
+};
+
 /// A facet in metres, with its friction.
 struct Slope {
   const Surface& surface;
@@ -20,6 +38,7 @@ struct Slope {
   Patch patch{}, whole{};  ///< of the facet; of the patch that it is a part of
   Crease crease = Crease::None;
   bool north = false;
+  std::optional<Quarter> bounded_to{};  ///< the cell at whose border a slide stops, since friction changes there
 
   /// Reads the facet. Returns false if there is none.
   bool read(const Facet& facet) {

@@ -37,10 +37,14 @@ struct Vertex {
   Event event;
 };
 
-/// The motion between two successive vertices of a path: a parabola with constant spin, or a piece of sliding with
-/// constant acceleration.
+/// The motion between two successive vertices of a path, on the straight line in plan between them.
 ///
-/// @param share  of the time, 0 at `from`, 1 at `to`; also the share of the way in plan
+/// @param share  of the way in plan, 0 at `from`, 1 at `to`
+///
+/// In a flight, a parabola with constant spin, the velocity in plan is constant: `share` is also that of the time. A
+/// piece of sliding has a constant acceleration: the square of its speed is linear in `share`, its time is not, and a
+/// block that starts at rest has used sqrt(share) of the time. The speed at its end follows from the way, the time and
+/// the velocity at its start: 2 way / duration - velocity. docs/physics.md, "Sliding".
 Motion motion_between(const Vertex& from, const Vertex& to, double share);
 
 /// The way across one patch, from `from` to `to` in patch coordinates. The clearance is quadratic in the share s of the

@@ -36,7 +36,8 @@ Eigen::Vector2d sliding_acceleration(const Eigen::Vector2d& slope, double twist,
 /// @param resistance  rolling resistance, added to tan(phi) where it acts; null: none
 ///
 /// Solved in pieces of constant acceleration, evaluated at their middle. A piece ends at the edge of its patch at the
-/// latest. Its length is chosen so that the error of the position is less than D/1000 in it. At most 1 000 pieces.
+/// latest, and at the border of its cell if friction changes there. Its length is chosen so that the error of the
+/// position is less than D/1000 in it. At most 1 000 pieces.
 SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, PatchIndex& at, double diameter,
                double stop_speed, Path& path, const RollingResistance* resistance = nullptr);
 

@@ -1,4 +1,6 @@
 #pragma once
+#include <cmath>
+
 #include "talus/physics/path.hpp"
 
 namespace talus {
@@ -25,6 +27,12 @@ inline Quadratic speed_squared_along(const Span& span) {
 inline double speed_squared_at(const Span& span, double share) {
   const Quadratic f = speed_squared_along(span);
   return f.a + share * (f.b + share * f.c);
+}
+
+/// The rise at a share of the way along a span [m/s]: the vertical speed of a flight, the whole speed of a slide.
+inline float rise_at(const Span& span, float share) {
+  if (is_slide(span)) return static_cast<float>(std::sqrt(speed_squared_at(span, share)));
+  return span.rise_from + (span.rise_to - span.rise_from) * share;
 }
 
 }  // namespace talus

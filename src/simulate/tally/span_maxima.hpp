@@ -1,6 +1,5 @@
 #pragma once
 #include <algorithm>
-#include <cmath>
 
 #include "talus/physics/span_speed.hpp"
 #include "talus/simulate/tally/quantities.hpp"
@@ -14,8 +13,7 @@ struct Moment {
 
 inline Moment moment_of(const Span& span, float share) {
   const float height = span.height_from + share * (span.height_to - span.height_from - span.bend * (1.0F - share));
-  if (is_slide(span)) return {share, height, static_cast<float>(std::sqrt(speed_squared_at(span, share)))};
-  return {share, height, span.rise_from + (span.rise_to - span.rise_from) * share};
+  return {share, height, rise_at(span, share)};
 }
 
 /// The largest clearance on a part of a span [m]: at an end, or at the apex if the block rises from the first end and

@@ -8,6 +8,7 @@
 
 #include "support/scenes.hpp"
 #include "talus/physics/trace.hpp"
+#include "talus/simulate/tally/visits.hpp"
 
 namespace talus {
 namespace {
@@ -149,11 +150,44 @@ TEST_F(Sliding, BreaksAndSlidesOn) {
   EXPECT_EQ((broken - 1)->event, Event::Slide);
   EXPECT_EQ((broken + 1)->event, Event::Slide);
   EXPECT_NEAR(broken->motion.position.x(), 40.0, 1e-9);
-  EXPECT_NEAR(broken->motion.velocity.squaredNorm() * 500.0, energy_at(40.0) - capacity, 0.01 * energy_at(40.0));
+  EXPECT_NEAR(broken->motion.velocity.squaredNorm() * 500.0, energy_at(40.0) - capacity, 1e-4 * energy_at(40.0));
   ASSERT_EQ(path.barriers.size(), 2U);
   EXPECT_EQ(path.barriers[0].how, Meeting::Broken);
   EXPECT_EQ(path.end, End::Caught);
   EXPECT_NEAR(path.vertices.back().motion.position.x(), 50.0, 2e-3);
+}
+
+/// The speed at the end of a span that is cut, and in the map of its cell: v^2 = 2 a s, from rest at x = 20.
+TEST_F(Sliding, TheMapSeesTheSpeedAtTheBarrier) {
+  for (const double x : {20.05, 20.25, 20.7, 21.6}) {  // its first slide is of 0.78 m in plan
+    const Path path = walked({net(x, 3.0, kInfinity)});
+    EXPECT_EQ(path.end, End::Caught);
+    const double squared = 2.0 * energy_at(x - 0.001) / 1000.0;
+    EXPECT_NEAR(path.spans.back().rise_to, std::sqrt(squared), 1e-4) << x;
+    VisitBatch batch(surface_.grid());
+    batch.add(path, release_.body, 0, nullptr);
+    ASSERT_EQ(batch.regions().size(), 1U);
+    ASSERT_EQ(batch.regions().begin()->second.visits.size(), 1U);
+    EXPECT_NEAR(batch.regions().begin()->second.visits[0].speed_squared, squared, 1e-4 * squared) << x;
+  }
+}
+
+/// 45 degrees, phi = 30 degrees, D = 4 m (90 478 kg), at rest on the ground: E = m g (sin b - tan(phi) cos b) s is
+/// 187.6 kJ after 0.5 m in plan, in the middle of a piece. A barrier of 100 kJ breaks and leaves the rest; one of 190
+/// kJ holds.
+TEST_F(Sliding, ABarrierInTheMiddleOfAPieceTakesItsCapacity) {
+  surface_ = Surface(test::terrain(test::grid_of(40, 9, 5.0, 5.0), [](double x, double) { return 500.0 - x; }));
+  release_.body = block_of(4.0, 2700.0);
+  release_.motion.position = {22.5, 22.5, 500.0 - 22.5};
+  const double energy = release_.body.mass * 9.81 * (1.0 - 0.57735026918962573) * 0.5;
+  ASSERT_NEAR(energy, 187.6e3, 50.0);
+  const Path path = walked({net(23.0, 3.0, 100e3)});
+  const auto broken = std::find_if(path.vertices.begin(), path.vertices.end(),
+                                   [](const Vertex& v) { return v.event == Event::Barrier; });
+  ASSERT_NE(broken, path.vertices.end());
+  EXPECT_NEAR(0.5 * release_.body.mass * broken->motion.velocity.squaredNorm(), energy - 100e3, 1.0);
+  EXPECT_EQ(walked({net(23.0, 3.0, 187e3)}).barriers.at(0).how, Meeting::Broken);
+  EXPECT_EQ(walked({net(23.0, 3.0, 188e3)}).end, End::Caught);
 }
 
 TEST(Barrier, NeverNegativeNeverNaN) {

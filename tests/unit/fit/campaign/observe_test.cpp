@@ -209,6 +209,27 @@ TEST(Observe, SampleOfAParabola) {
   EXPECT_EQ(runs[0].samples[1].speed[0], 10.0);
 }
 
+/// A slide from rest down 45 degrees: at the distance r in plan v^2 = 2 g (1 - tan(phi)) r.
+TEST(Observe, SampleOfASlide) {
+  Campaign c;
+  c.surface = Surface(terrain(grid_of(40, 9, 5.0, 5.0), [](double x, double) { return 500.0 - x; }));
+  c.zone_names = {"default"};
+  MeasuredBlock b;
+  b.x = b.y = 22.5;
+  b.release_height = 0.0;
+  b.mass = block_of(4.0, b.density).mass;
+  b.samples = {{0, 0, 0, 0.02, 1.0, 1.0}, {0, 0, 0, 0.5, 1.0, 1.0}};
+  c.blocks = {b};
+  Model model;
+  model.grounds = {Ground{}};  // smooth, phi = 30 degrees
+  ObserveOptions options;
+  options.trials = 1;
+  const auto runs = observe(c, model, options);
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_NEAR(runs[0].samples[i].speed[0],
+                std::sqrt(2.0 * 9.81 * (1.0 - 1.0 / std::sqrt(3.0)) * b.samples[i].distance), 1e-6);
+}
+
 /// Mean and spread of the place of release in a disc of radius R: 0, and R/2 in each direction.
 TEST(Observe, ReleasesFillTheirDisc) {
   Campaign c = campaign_on_slope(1);

@@ -194,11 +194,10 @@ TEST(ScreenFinder, SlidesHaveNoHeight) {  // in plan from 6 m/s at -1 m/s^2 for 
                                        vertex(Event::End, 3.0, {50, 40, 25.0}, {4, 0, -2})});
   ASSERT_EQ(crossings.size(), 1U);
   EXPECT_EQ(crossings[0].height, 0.0);
-  EXPECT_NEAR(crossings[0].speed, std::sqrt(1.25) * std::sqrt(36.0 - 2.0 * 5.0), 0.03 * 6.0);
+  EXPECT_NEAR(crossings[0].speed, std::sqrt(1.25) * std::sqrt(36.0 - 2.0 * 5.0), 1e-12);
   EXPECT_NEAR(crossings[0].spin, 5.0, 1e-14);
   EXPECT_NEAR(crossings[0].along, 40.0, 1e-12);
-  EXPECT_GT(crossings[0].time, 1.0);
-  EXPECT_LT(crossings[0].time, 3.0);
+  EXPECT_NEAR(crossings[0].time, 1.0 + 6.0 - std::sqrt(26.0), 1e-12);  // 6 t - t^2/2 = 5
 }
 
 TEST(ScreenFinder, ASlideIntoAnImpactHasTheSpeedBeforeIt) {  // the impact leaves 1 m/s only, of 4 m/s
@@ -207,7 +206,32 @@ TEST(ScreenFinder, ASlideIntoAnImpactHasTheSpeedBeforeIt) {  // the impact leave
       {vertex(Event::Slide, 1.0, {40, 40, 30.0}, {6, 0, 0}), vertex(Event::Impact, 3.0, {50, 40, 30.0}, {0.8, 0, 0.6}),
        vertex(Event::End, 4.0, {50.8, 40, 25.0}, {0.8, 0, -3})});
   ASSERT_EQ(crossings.size(), 1U);
-  EXPECT_NEAR(crossings[0].speed, std::sqrt(36.0 - 2.0 * 9.0), 0.03 * 6.0);
+  EXPECT_NEAR(crossings[0].speed, std::sqrt(36.0 - 2.0 * 9.0), 1e-12);
+}
+
+/// A block of 4 m at rest on a smooth slope of 45 degrees: v^2 = 2 g (sin b - tan(phi) cos b) s, from the first
+/// centimetres on, and t = v / a.
+TEST(ScreenFinder, ASlideFromRestInClosedForm) {
+  Scenario s =
+      test::scenario_on(test::terrain(test::grid_of(40, 9, 5.0, 5.0), [](double x, double) { return 500.0 - x; }));
+  const std::vector<std::pair<double, double>> exact{{0.02, 0.407}, {0.25, 1.440}, {0.5, 2.036}, {1.0, 2.880}};
+  for (const auto& [way, speed] : exact) s.screens.push_back({"", {{{22.5 + way, 0.0}, {22.5 + way, 45.0}}}});
+  Release release;
+  release.body = block_of(4.0, 2700.0);
+  release.motion.position = {22.5, 22.5, 500.0 - 22.5};
+  Path path;
+  trace(s.world(), release, path);
+  std::vector<Crossing> crossings;
+  ScreenFinder(s).find(release, path, crossings);
+  ASSERT_EQ(crossings.size(), exact.size());
+  const double pull = 9.81 * (1.0 - 1.0 / std::sqrt(3.0)) / std::sqrt(2.0);
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    const double v = std::sqrt(2.0 * pull * std::sqrt(2.0) * exact[i].first);
+    EXPECT_NEAR(exact[i].second, v, 0.0006);  // the figures by hand
+    EXPECT_NEAR(crossings[i].speed, v, 1e-6) << i;
+    EXPECT_NEAR(crossings[i].time, v / pull, 1e-6) << i;
+    EXPECT_NEAR(crossings[i].dip, radians(45.0), 1e-6) << i;
+  }
 }
 
 TEST(ScreenFinder, NeverBelowTheGround) {  // a landing that rounding puts a little under the surface
