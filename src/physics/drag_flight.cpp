@@ -31,9 +31,25 @@ PlanWay way_between(const Vec3& from, const Vec3& to) {
   return out;
 }
 
-/// Speed in the middle of a piece, to first order in time. With the rate there the error of a piece is of third order.
-double speed_in_the_middle(const Vec3& v, const DragRate& drag, double time) {
-  return (v - 0.5 * time * (drag.at(v.norm()) * v + Vec3(0.0, 0.0, kGravity))).norm();
+/// Constant drag rates that do in a piece what drag does [1/s].
+struct PieceRates {
+  double way = 0.0;    ///< shortens the way as much
+  double speed = 0.0;  ///< takes as much speed
+};
+
+/// Rates of a piece. Drag takes the speed (linear + quadratic v) v dt, so the rate for the speed is that of the mean of
+/// v^2 over the mean of v. For the way each loss counts by the time that is left of the piece. Both means are by
+/// Simpson's rule, with the speeds at the start, in the middle and at the end, to first order in time. Where drag is
+/// linear, both rates are exact.
+PieceRates rates_of_piece(const Vec3& velocity, const DragRate& drag, double time) {
+  if (!drag.any()) return {};
+  const Vec3 braking = drag.at(velocity.norm()) * velocity + Vec3(0.0, 0.0, kGravity);
+  const double first = velocity.norm(), middle = (velocity - 0.5 * time * braking).norm(),
+               last = (velocity - time * braking).norm();
+  if (!(first + middle > 0.0)) return {drag.linear, drag.linear};
+  const double first2 = first * first, middle2 = middle * middle, last2 = last * last;
+  return {drag.at((first2 + 2.0 * middle2) / (first + 2.0 * middle)),
+          drag.at((first2 + 4.0 * middle2 + last2) / (first + 4.0 * middle + last))};
 }
 
 }  // namespace
@@ -81,8 +97,8 @@ double DragFlight::longest_piece(const Site& site, const Motion& motion) const {
   return std::max(kShortestPiece, std::min(over_a_cell, world_.effort.drag_loss / rate));
 }
 
-/// If the block lands within the piece, the parabola was that of a longer piece. So it flies again, with the parabola
-/// for the time to the landing. The error left in this time is of second order in the drag.
+/// If the block lands within the piece, the parabola and the rates were those of a longer piece. So it flies again,
+/// with those of the time to the landing. The error left in this time is of second order in the drag.
 Outcome DragFlight::fly_piece(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path) {
   const Motion start = motion;
   const PatchIndex start_at = at;
@@ -94,16 +110,17 @@ Outcome DragFlight::fly_piece(Motion& motion, PatchIndex& at, bool grounded, con
     const double speed = std::sqrt(plan_squared(motion.velocity));
     time = std::min(time, stems_->way_left(plan_way(start, speed * time), body.diameter) / speed);
   }
-  const double rate = site.drag.any() ? site.drag.at(speed_in_the_middle(start.velocity, site.drag, time)) : 0.0;
+  PieceRates rate = rates_of_piece(start.velocity, site.drag, time);
 
-  Vec3 began = DampedFall(rate, time).parabola(start.velocity);
+  Vec3 began = DampedFall(rate.way, time).parabola(start.velocity);
   motion.velocity = began;
   Outcome outcome = talus::fly(world_.surface, motion, at, grounded, path, time);
-  if (rate > 0.0 && outcome == Outcome::Landed) {
+  if (rate.way > 0.0 && outcome == Outcome::Landed) {
     const double landed = motion.time - start.time;
     motion = start, at = start_at;
     path.spans.resize(first_span), path.length = length, path.plan_length = plan_length;
-    began = DampedFall(rate, landed).parabola(start.velocity);
+    rate = rates_of_piece(start.velocity, site.drag, landed);
+    began = DampedFall(rate.way, landed).parabola(start.velocity);
     motion.velocity = began;
     outcome = talus::fly(world_.surface, motion, at, grounded, path, time);
   }
@@ -111,8 +128,8 @@ Outcome DragFlight::fly_piece(Motion& motion, PatchIndex& at, bool grounded, con
     path.vertices.push_back({start, Event::Air});
     path.vertices.back().motion.velocity = began;
   }
-  if (rate > 0.0) {
-    motion.velocity = DampedFall(rate, motion.time - start.time).velocity_after(start.velocity);
+  if (rate.way > 0.0) {
+    motion.velocity = DampedFall(rate.speed, motion.time - start.time).velocity_after(start.velocity);
     if (path.spans.size() > first_span) {  // speeds at the ends are those of the block, not of its parabola
       path.spans[first_span].plan_speed_squared = static_cast<float>(plan_squared(start.velocity));
       path.spans[first_span].rise_from = static_cast<float>(start.velocity.z());

@@ -13,8 +13,9 @@ namespace talus {
 /// drag".
 ///
 /// In a piece the block moves at most one cell, and drag takes at most 4 % of its speed (`Effort::drag_loss`). Linear
-/// drag is exact. Quadratic drag has the rate of the middle of the piece; the relative error of the speed per piece is
-/// below 1e-3. A piece lasts at least 0.01 s, so that the number of pieces is limited for a block stuck in vegetation.
+/// drag is exact. Quadratic drag has mean rates of the piece; the speed at a landing is right to 1e-3, at a landing
+/// from rest to 2e-4. A piece lasts at least 0.01 s, so that the number of pieces is limited for a block stuck in
+/// vegetation.
 class DragFlight {
  public:
   DragFlight(const World& world, const Release& release);

@@ -261,7 +261,7 @@ SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, Patch
     if (slid >= diameter * (1.0 - 1e-6)) return SlideEnd::NextAsperity;
     if (way >= tolerance) short_crossings = 0;
     if (step.crossed && way < tolerance &&
-        ++short_crossings > kMaxShort) {  // a pit: it rubs there for the rest of one diameter
+        ++short_crossings > kMaxShort) {  // a pit: it spends the time of the rest of one diameter there, at its speed
       motion.time += (diameter - slid) / std::max(stop_speed, motion.velocity.norm());
       if (motion.velocity.norm() > stop_speed) return SlideEnd::NextAsperity;
       Slope here{surface, at, tan_phi};

@@ -36,7 +36,7 @@ class Walk {
         path_(path),
         motion_(release.motion),
         at_(world.surface.patch_at(motion_.position.x(), motion_.position.y())),
-        anchor_(body_.diameter, world.rules.trap_time) {}
+        anchor_(world.rules.trap_time) {}
 
   End run() {
     path_.vertices.push_back({motion_, Event::Release});
@@ -108,13 +108,13 @@ class Walk {
     motion_.velocity -= motion_.velocity.dot(normal_) * normal_;
     const SlideEnd end = effects_.slide(motion_, at_, body_, path_);
     const bool goes_on = end == SlideEnd::Takeoff || end == SlideEnd::NextAsperity;
-    return end == SlideEnd::Trapped || (goes_on && anchor_.traps(motion_)) ? end_of_staying() : end;
+    return end == SlideEnd::Trapped || (goes_on && anchor_.holds(motion_, body_.diameter)) ? end_of_staying() : end;
   }
 
   /// Flies from the surface to the next contact.
   std::optional<End> fly_on() {
     if (const auto end = end_of(effects_.fly(motion_, at_, true, body_, path_))) return *end;
-    if (!anchor_.traps(motion_)) return std::nullopt;
+    if (!anchor_.holds(motion_, body_.diameter)) return std::nullopt;
     return end_of_staying() == SlideEnd::Stopped ? End::Stopped : End::Trapped;
   }
 

@@ -166,6 +166,33 @@ TEST(Trap,
   }
 }
 
+/// Slopes of 33 degrees above and below a vertical wall of 100 m, cells of 1 m: in plan a block of 4 m is at the foot
+/// of the wall still within its diameter from the edge, 4.5 s later. It has not stayed there: it arrives with sqrt(2 g
+/// 100 m) = 44.3 m/s, and a block that has had no more than one diameter to fall in has v^2 <= 2 g D.
+TEST(Trap, AFallDownAWallIsNoStay) {
+  const double wall = 100.0, diameter = 4.0, speed = std::sqrt(2.0 * kGravity * wall);
+  const Surface surface(test::terrain(test::grid_of(200, 60, 1.0, 1.0),
+                                      [&](double x, double) { return 1000.0 - 0.65 * x - (x > 60.0 ? wall : 0.0); }));
+  const Scene scene{surface, {{kUpperTalus}, {}}};
+  int fell = 0, stays = 0;
+  for (std::uint32_t block = 0; block < 2000; ++block) {
+    const double x = 59.5 - 0.02 * (block % 100);
+    const Path path = scene.run({x, 30.0, *surface.height(x, 30.0) + 0.5}, Vec3::Zero(), diameter, block);
+    for (std::size_t i = 0; i + 1 < path.vertices.size(); ++i) {
+      const Motion &from = path.vertices[i].motion, &to = path.vertices[i + 1].motion;
+      if (from.position.z() - to.position.z() < 0.9 * wall) continue;
+      ++fell;
+      EXPECT_EQ(path.vertices[i + 1].event, Event::Impact) << block;
+      EXPECT_NEAR(kGravity * (to.time - from.time) - from.velocity.z(), speed, 0.1 * speed) << block;
+    }
+    if (!rests(path.end)) continue;
+    ++stays;
+    EXPECT_LE(path.vertices.back().motion.velocity.squaredNorm(), 2.0 * kGravity * diameter) << block;
+  }
+  EXPECT_GT(fell, 1000);
+  EXPECT_GT(stays, 20);
+}
+
 TEST(Trap, AFoldSteeperThanPhiEndsSoon) {  // crossings of the bottom of a gully or a pit shrink without end (Zeno)
   for (const double along : {0.0, 0.25, 1.0})
     for (const Ground& ground : {Ground{}, kUpperTalus}) {

@@ -340,10 +340,18 @@ class Engine {
     s[field::Y] = s[field::Y] + v.y() * t;
     s[field::Z] = next(landing::Z);
     s[field::VelocityZ] = v.z() - kGravity * t;
-    const L x = s[field::X] - s[field::AnchorX], y = s[field::Y] - s[field::AnchorY], reach = s[field::Diameter];
-    const Mask away = x * x + y * y > reach * reach;
+    move_anchor(s);
+  }
+
+  /// As Anchor::holds of one block.
+  [[gnu::always_inline]] static void move_anchor(L (&s)[field::Count]) {
+    const L x = s[field::X] - s[field::AnchorX], y = s[field::Y] - s[field::AnchorY],
+            z = s[field::Z] - s[field::AnchorZ];
+    const L farthest = s[field::Diameter] * s[field::Diameter];
+    const Mask away = (x * x + y * y > farthest) | (z * z > farthest);
     s[field::AnchorX] = choose(away, s[field::X], s[field::AnchorX]);
     s[field::AnchorY] = choose(away, s[field::Y], s[field::AnchorY]);
+    s[field::AnchorZ] = choose(away, s[field::Z], s[field::AnchorZ]);
     s[field::AnchorTime] = choose(away, s[field::Time], s[field::AnchorTime]);
   }
 

@@ -85,7 +85,7 @@ void Pool::start(Slot& slot) {
   open(slot);
   set_motion(slot, release.motion);
   slot.state[field::Length] = slot.state[field::PlanLength] = 0.0;
-  slot.state[field::AnchorX] = slot.state[field::AnchorY] = kNever;  // set at the first contact
+  slot.state[field::AnchorX] = slot.state[field::AnchorY] = slot.state[field::AnchorZ] = kNever;  // till a contact
   slot.state[field::AnchorTime] = 0.0;
   slot.state[field::Diameter] = release.body.diameter;
   const auto word = [&](int number, std::uint32_t value) {
@@ -206,6 +206,20 @@ void Pool::stay(Slot& slot, int column, int row) {
   end(slot, how == SlideEnd::Stopped ? End::Stopped : End::Trapped);
 }
 
+/// Asks the anchor of a block that has slid: see Anchor::holds.
+bool Pool::holds(Slot& slot, const Motion& motion) const {
+  double* s = slot.state;
+  Anchor anchor(world_.rules.trap_time);
+  const Vec3 place(s[field::AnchorX], s[field::AnchorY], s[field::AnchorZ]);
+  anchor.set({s[field::AnchorTime], place, Vec3::Zero(), Vec3::Zero()});
+  const bool held = anchor.holds(motion, slot.release.body.diameter);
+  s[field::AnchorTime] = anchor.time();
+  s[field::AnchorX] = anchor.place().x();
+  s[field::AnchorY] = anchor.place().y();
+  s[field::AnchorZ] = anchor.place().z();
+  return held;
+}
+
 void Pool::slide(Slot& slot, const double* normal, int column, int row) {
   const Vec3 n(normal[0], normal[1], normal[2]);
   Motion motion = motion_of(slot);
@@ -229,13 +243,7 @@ void Pool::slide(Slot& slot, const double* normal, int column, int row) {
   set_motion(slot, motion);
   if (how == SlideEnd::Left) return end(slot, End::Left);
   if (how == SlideEnd::Stopped) return end(slot, End::Stopped);
-  Anchor anchor(slot.release.body.diameter, world_.rules.trap_time);
-  double* s = slot.state;
-  anchor.set({s[field::AnchorTime], {s[field::AnchorX], s[field::AnchorY], 0.0}, Vec3::Zero(), Vec3::Zero()});
-  if (how == SlideEnd::Trapped || anchor.traps(motion)) return stay(slot, at.column, at.row);
-  s[field::AnchorTime] = anchor.time();
-  s[field::AnchorX] = anchor.place().x();
-  s[field::AnchorY] = anchor.place().y();
+  if (how == SlideEnd::Trapped || holds(slot, motion)) return stay(slot, at.column, at.row);
   if (how == SlideEnd::Takeoff) {
     push_vertex(slot, Event::Takeoff);
     return push_flight(slot, at, true);

@@ -28,7 +28,8 @@ enum : std::uint8_t {
   PlanLength,
   AnchorX,
   AnchorY,
-  AnchorTime,
+  AnchorZ,
+  AnchorTime,  // the last that an impact may change: see write_impacts
   Diameter,
   Event,
   PurposeWord,
@@ -155,6 +156,7 @@ class Pool {
   void open(Slot& slot);
   Motion motion_of(const Slot& slot) const;
   void set_motion(Slot& slot, const Motion& motion) const;
+  bool holds(Slot& slot, const Motion& motion) const;
   void push_vertex(Slot& slot, Event event);
 
   const World& world_;

@@ -191,6 +191,24 @@ TEST_P(InLanes, ManyBlocksThatSlideTurnAfterTurn) {  // on smooth steep ground n
   }
 }
 
+TEST_P(InLanes, BlocksThatFallDownAWall) {  // within their diameter in plan: the height of the anchor counts
+  Raster<float> heights(Grid{60, 120, 1.0, 1.0}, 0.0F);
+  for (int row = 0; row < 120; ++row)
+    for (int column = 0; column < 60; ++column)
+      heights.at(column, row) = 0.65F * static_cast<float>(row) + (row < 60 ? 0.0F : 100.0F);
+  const Surface surface(std::move(heights));
+  const Cover cover{{{1.0, 0.9, 15, 50, 0.577, 1.0, 1.5}}, {}};
+  const World world{surface, cover, {}, {}};
+  std::vector<Release> releases(1000);
+  for (std::uint32_t block = 0; block < releases.size(); ++block) {
+    const double y = 60.5 + 0.02 * (block % 100);
+    releases[block].block = block;
+    releases[block].body = block_of(4.0, 2700.0);
+    releases[block].motion.position = {30.0, y, *surface.height(30.0, y) + 0.5};
+  }
+  compare(world, releases, GetParam());
+}
+
 TEST_P(InLanes, NothingToTrace) {
   const Scene scene(1);
   compare(scene.world, {}, GetParam());

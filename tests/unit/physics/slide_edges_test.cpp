@@ -205,6 +205,36 @@ TEST(SlideInAGully, RunsAlongTheBottomInClosedForm) {
   }
 }
 
+/// A pyramid upside down: all walls have one slope, so friction is f = tan(phi) g cos(beta) everywhere. A block that
+/// has come down to the bottom, a way L, has v^2 = v0^2 + 2 g h - 2 f L. At that speed it meets the next asperity,
+/// after the time of the rest of its diameter, (D - L)/v seconds.
+TEST(SlideInAPit, TheBlockKeepsItsSpeedForTheTimeOfTheRestOfOneDiameter) {
+  const double wall = 1.25, diameter = 1.0, friction = kTan30 * kGravity / std::sqrt(1.0 + 2.0 * wall * wall);
+  const Surface pit(test::terrain(test::grid_of(61, 61, 2.0, 2.0), [&](double x, double y) {
+    return wall * (std::abs(x - 61.0) + std::abs(y - 61.0));
+  }));
+  Numbers numbers(4);
+  int compared = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const Vec2 place(numbers.uniform(60.5, 61.5), numbers.uniform(60.5, 61.5)),
+        v(numbers.uniform(-6, 6), numbers.uniform(-6, 6));
+    const auto o = slide_from(pit, kTan30, place, v, diameter);
+    if (o.end == SlideEnd::Takeoff || (o.motion.position - Vec3(61.0, 61.0, 0.0)).norm() > 0.01) continue;
+    const Motion &start = o.path.vertices.front().motion, &last = o.path.vertices.back().motion;
+    const double left = diameter - o.path.length;
+    const double squared =
+        start.velocity.squaredNorm() + 2.0 * kGravity * start.position.z() - 2.0 * friction * o.path.length;
+    if (left < 0.02 || squared < 1.0) continue;
+    const double speed = std::sqrt(squared);
+    ASSERT_EQ(o.end, SlideEnd::NextAsperity) << i;
+    ASSERT_NEAR(o.motion.velocity.norm(), speed, 0.02) << i;  // L is the sum of chords
+    const double down = 2.0 * (o.motion.position - last.position).norm() / (last.velocity.norm() + speed);
+    ASSERT_NEAR(o.motion.time - last.time, down + left / speed, 0.05 * (down + left / speed)) << i;
+    ++compared;
+  }
+  EXPECT_GT(compared, 50);
+}
+
 TEST(SlideOffTheTerrain, IsLeft) {
   const Surface edge = kinked(-0.75, -0.75);
   EXPECT_EQ(slide_from(edge, kTan30, {117.5, 9.3}, {8.0, 0.0}, 50.0).end, SlideEnd::Left);

@@ -54,6 +54,60 @@ TEST(AirDrag, FallsAtItsTerminalSpeed) {  // v = sqrt(4 D rho_r g / (3 rho_a C_d
   EXPECT_NEAR((before.position.z() - last.position.z()) / (last.time - before.time), terminal, 1e-4 * terminal);
 }
 
+/// Ground that sends a block back with the speed that it comes with.
+constexpr Ground kMirror{.En50 = 1e300, .Et50 = 1e300, .tan_phi = 0.0};
+
+const Motion& first_rebound(const Path& path) {
+  return std::find_if(path.vertices.begin(), path.vertices.end(),
+                      [](const Vertex& v) { return v.event == Event::Impact; })
+      ->motion;
+}
+
+/// From rest v^2 = g/k (1 - exp(-2 k h)), k the loss per metre: in one piece of the flight, in several, and in a part
+/// of one.
+TEST(AirDrag, LandsAfterAFallFromRestAsTheClosedFormSays) {
+  test::Numbers numbers(6);
+  for (int i = 0; i < 300; ++i) {
+    const double cell = std::pow(30.0, numbers.uniform(0.0, 1.0)),
+                 height = 0.2 * std::pow(150.0, numbers.uniform(0, 1));
+    Hillside hill(0.0, cell, 6);
+    hill.cover.grounds[0] = kMirror;
+    hill.effects.air_drag.coefficient = numbers.uniform(0.3, 3.0);
+    const Release release = block_at({2.2 * cell, 2.3 * cell, 1000.0 + height}, Vec3::Zero(), numbers.uniform(0.05, 1));
+    const double k = air_drag_rate(hill.effects.air_drag, release.body);
+    const double speed = std::sqrt(-kGravity / k * std::expm1(-2.0 * k * height));
+    ASSERT_NEAR(first_rebound(hill.run(release)).velocity.z(), speed, 2e-4 * speed)
+        << cell << ' ' << height << ' ' << k;
+  }
+}
+
+/// Thrown in any direction, against steps of the midpoint rule of 0.1 ms.
+TEST(AirDrag, LandsAfterAThrowAsSmallStepsSay) {
+  test::Numbers numbers(7);
+  for (int i = 0; i < 200; ++i) {
+    const double cell = std::pow(30.0, numbers.uniform(0.0, 1.0)), height = numbers.uniform(0.2, 30.0);
+    Hillside hill(0.0, cell, 400);
+    hill.cover.grounds[0] = kMirror;
+    hill.effects.air_drag.coefficient = 1.0;
+    Vec3 v(numbers.uniform(0.0, 40.0), 0.0, numbers.uniform(-5.0, 15.0)), x(2.2 * cell, 2.3 * cell, height);
+    const Release release = block_at(x + Vec3(0, 0, 1000), v, numbers.uniform(0.05, 0.5));
+    const double k = air_drag_rate(hill.effects.air_drag, release.body);
+    const auto change = [&](const Vec3& u) -> Vec3 { return -k * u.norm() * u - Vec3(0.0, 0.0, kGravity); };
+    for (constexpr double kStep = 1e-4; x.z() > 0.0;) {
+      const Vec3 middle = v + 0.5 * kStep * change(v);
+      const double step = middle.z() < 0.0 ? std::min(kStep, x.z() / -middle.z() + 1e-12) : kStep;  // to the ground
+      x += step * middle;
+      v += step * change(middle);
+    }
+    const Path path = hill.run(release);
+    if (path.impacts == 0) continue;  // off the terrain
+    const Motion& landed = first_rebound(path);
+    const double way = x.x() - release.motion.position.x();
+    ASSERT_LT((landed.velocity - Vec3(v.x(), v.y(), -v.z())).norm(), 1e-3 * v.norm()) << i;
+    ASSERT_NEAR(landed.position.x(), x.x(), 2e-3 * (way + height)) << i;
+  }
+}
+
 TEST(VegetationDrag, SpeedFallsLinearlyWithThePath) {  // dv/ds = -c/m: level way until the block has fallen 1 000 m
   Hillside hill(0.0);
   hill.effects.vegetation_drag = {.coefficient = 500.0, .height = 1e9, .where = {}};

@@ -146,5 +146,41 @@ TEST(Fragmentation, PiecesAreTracedWithStreamsOfTheirOwnAndAtMostSixteen) {
   EXPECT_GT(broke_again, 5);
 }
 
+/// A block of 4 m breaks where it lands; the rest then hops over ground that takes nothing, 1.2 m in 1.8 s. At the
+/// third contact, 5.4 s and 3.6 m from the break, it is farther than its diameter (0.5^(1/3) 4 m = 3.17 m) and goes on;
+/// a whole block would not be, and would have stayed.
+TEST(Fragmentation, WhatIsLeftStaysByItsOwnDiameter) {
+  const double hop = 1.2, time = 1.8, kept = std::sqrt(kBreakKeeps), fall = std::sqrt(2.0 * kGravity * 10.0);
+  const double k_n = 0.5 * kGravity * time / (kept * fall), energy = 0.25 * 4.0 * fall * fall;
+  Hillside hill(0.0, 4.0, 20);
+  Ground smooth = test::kPerfect, hard = test::kPerfect;
+  smooth.tan_phi = hard.tan_phi = 0.0;
+  hard.En50 = energy * k_n / (1.0 - k_n);  // k_n = En50 / (En50 + c D v^2)
+  hill.cover.grounds = {smooth, hard};
+  hill.cover.zones = Raster<std::uint8_t>(hill.surface.grid(), 0);
+  hill.cover.zones.at(4, 10) = 1;  // x from 16 to 20 m
+  Release release = block_at({19.9, 42.0, 1010.0}, {hop / time / kept, 0.0, 0.0}, 4.0);
+  release.motion.position.x() -= release.motion.velocity.x() * fall / kGravity;
+  release.pieces_left = 4;
+
+  const Path whole = hill.run(release);
+  EXPECT_EQ(whole.end, End::Stopped);
+  hill.effects.fragmentation = {.threshold = 10.0, .largest = 0.5, .where = {}};
+  const Path path = hill.run(release);
+  ASSERT_EQ(path.breaks.size(), 1U);
+  EXPECT_NEAR(path.breaks[0].body.diameter, 4.0 * std::cbrt(0.5), 1e-12);
+  EXPECT_NEAR(path.vertices[4].motion.position.x() - path.vertices[1].motion.position.x(), 3.0 * hop, 1e-9);
+  EXPECT_NEAR(path.vertices[4].motion.time - path.vertices[1].motion.time, 3.0 * time, 1e-9);
+  EXPECT_EQ(path.end, End::Left);
+
+  Release alone = release;  // the same piece, released where it broke
+  alone.body = path.breaks[0].body;
+  alone.motion = path.vertices[1].motion;
+  alone.pieces_left = 0;
+  const Path same = hill.run(alone);
+  EXPECT_EQ(same.end, path.end);
+  EXPECT_LT((same.vertices.back().motion.position - path.vertices.back().motion.position).norm(), 1e-6);
+}
+
 }  // namespace
 }  // namespace talus
