@@ -43,9 +43,12 @@ struct DayTest {
   std::vector<int> days;
   std::vector<double> means;  ///< by day: of the energy, without the means of the groups
   std::size_t blocks = 0;
+  bool by_rock = false;  ///< a rock was released twice
 };
 
-/// The factor of the day, with an intercept for each group, permuted within groups.
+/// The factor of the day, with an intercept for each group, permuted within groups. Releases of one rock are not
+/// independent: a rock of one day is one unit, with the mean of its releases, which changes places with rocks that were
+/// released in the same groups; the days of a rock of several days change places within the rock.
 DayTest day_test(const Campaign& campaign, const std::vector<double>& energy, const DiagnosisRules& rules,
                  std::uint64_t seed);
 
