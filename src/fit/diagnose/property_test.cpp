@@ -1,6 +1,7 @@
 #include "talus/fit/diagnose/property_test.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <set>
@@ -79,9 +80,10 @@ struct SiteUnits {
 };
 
 /// Units of one stratum change places. Only these have numbers of one distribution: the mean of a site was taken away
-/// with more or fewer releases elsewhere.
+/// with more or fewer releases elsewhere, and a mean of few releases scatters more than one of many.
 struct Stratum {
   std::set<std::size_t> sites;  ///< at which the unit was released
+  int often = 0;                ///< number of its releases in binary digits: 1, 2 to 3, 4 to 7, ...
   std::size_t rock = 0;         ///< of single releases of a rock 1 + its number, else 0
 
   auto operator<=>(const Stratum&) const = default;
@@ -111,6 +113,7 @@ std::vector<Unit> joined_releases(const Parts& parts) {
     Unit& own = units[unit];
     own.releases.push_back(static_cast<Index>(i));
     own.stratum.sites.insert(parts.sites[i]);
+    own.stratum.often = std::bit_width(own.releases.size());
     if (parts.alone[i]) own.stratum.rock = rock + 1;
   }
   return units;
