@@ -231,6 +231,38 @@ TEST(FurtherScreens, HaveNoBiasAndTheSamplesKeepTheirs) {
   EXPECT_GT(crossed, 20.0);
 }
 
+/// Who measures more knows more: what a campaign shows, it shows with further speeds, too; from no larger amount on,
+/// but for the noise of the trials.
+TEST(FurtherScreens, RaiseNoLimit) {
+  Campaign campaign = slope_campaign(24);
+  const Model model = model_of_preset(campaign, "upper-talus-3d");
+  measure(campaign, model, 3);
+  const std::vector<bool> rows(campaign.blocks.size(), true);
+  const ObserveOptions unseen{100, 7, 1000, 0, {}, {}};
+  const auto runs = observe(campaign, model, unseen);
+  const Axis axis = axis_of(campaign, runs);
+  const auto list = candidates_of(campaign, model, runs, {});
+  const auto free = ground_parameters(campaign, model, std::vector<std::string>{"theta_scale", "En50"}, {true});
+  const Eigen::VectorXd z = Eigen::VectorXd::Zero(2);
+  ScoreTestOptions how;
+  how.trials = 40;
+  how.replicates = 0;
+  const auto tested = [&](const Campaign& c) {
+    return score_test(c, {model, free, z, observe(c, model, unseen)}, list, rows, how);
+  };
+  const Campaign more = with_further_screens(campaign, axis);
+  std::vector<DetectionLimit> limits = detection_limits(campaign, axis, tested(campaign), list);
+  compare_limits(limits, limits_by_parameter(more, axis, tested(more), list));
+  int finite = 0;
+  for (const DetectionLimit& limit : limits) {
+    if (std::isnan(limit.amount)) continue;
+    ++finite;
+    EXPECT_LE(std::abs(limit.with_further_speeds - limit.off), 1.05 * std::abs(limit.amount - limit.off))
+        << limit.effect << ' ' << limit.key;
+  }
+  EXPECT_GE(finite, 3);
+}
+
 TEST(Candidates, ABarrierAboveEveryJumpLetsNothingPassAndABiasMultiplies) {
   Campaign c = slope_campaign(6);
   c.error = {};
