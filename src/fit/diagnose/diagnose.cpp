@@ -43,7 +43,7 @@ class DiagnosisLoop {
     if (scope_.given) return with_given_effects(std::move(d));
     std::vector<std::string> found;
     for (int round = 0; round <= options_.most_effects; ++round) {
-      const double level = round == 0 ? options_.first_level : options_.later_level;
+      const double level = options_.level_of_round(d.rounds.size());
       d.with_effects = fits_.begin_round(std::move(d.with_effects));
       if (round == 0) d.base = d.with_effects;
       d.rounds.push_back(run_round(d.with_effects, found, level, round < options_.most_effects));
