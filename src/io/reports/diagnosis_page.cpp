@@ -286,9 +286,10 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
       html += "<h3>Round "_html + std::to_string(i + 1) + (i > 0 ? ", with what was found before in the model" : "") +
               "</h3>\n" + candidates_table(d.rounds[i], record.candidates[i]);
   html +=
-      "<h2>What could not have been seen</h2>\n<p>The amount of each effect that these data would show, after the "
-      "ground "
-      "has been fitted anew.</p>\n"_html +
+      "<h2>What could not have been seen</h2>\n<p>The amount from which on these data begin to show each effect, "
+      "after the ground has been fitted anew: 4.5 standard errors of a linear test. Effects that do not grow linearly "
+      "are "
+      "seen from larger amounts on (on one synthetic campaign the printed amounts had 1.8 to 4.9).</p>\n"_html +
       limits_html(d.rounds.back().limits);
   html +=
       "<h2>Residuals</h2>\n<p>Each point is a block; z is where its measurement lies among what the model "
