@@ -161,6 +161,8 @@ class Diagnose(Sites):
         self.assertEqual((record["stability"]["fits"], record["stability"]["verdicts"]), (1, ["block-shape"]))
         for field in ("evidence", "residual", "detection_limits"):
             self.assertEqual({item["site"] for item in record[field]}, {"north", "south"}, field)
+        for limit in record["detection_limits"]:
+            self.assertNotIn("amount_with_further_speeds", limit)  # not computed for several campaigns
         for when in ("before", "after"):
             self.assertEqual([c["site"] for c in record["coverage"][when]["holdout"]], ["north", "south"])
 

@@ -13,17 +13,35 @@ double within_bounds(const Parameter& parameter, double z) {
   return value > parameter.lower && value < parameter.upper ? value : kNotGiven;
 }
 
+DetectionLimit limit_of(const std::string& effect, const Candidate& candidate, const Sharpest& sharpest,
+                        const DiagnosisRules& rules) {
+  const Parameter& parameter = candidate.parameters[sharpest.parameter];
+  const double z = rules.shown * rules.noticed * sharpest.standard_error;
+  return {effect, candidate.where, parameter.key, parameter.unit, parameter.value(0.0), within_bounds(parameter, z)};
+}
+
 }  // namespace
+
+std::vector<DetectionLimit> limits_by_parameter(const Campaign& campaign, const Axis& axis, const ScoreTest& test,
+                                                std::span<const Candidate> candidates, const DiagnosisRules& rules) {
+  std::vector<DetectionLimit> limits;
+  for (const EffectVerdict& effect : test.effects)
+    for (const auto& [key, sharpest] : effect.sharpest)
+      if (!sharpest.members.empty())
+        limits.push_back(limit_of(effect.effect, merged_candidate(campaign, axis, candidates, sharpest.members, rules),
+                                  sharpest, rules));
+  return limits;
+}
 
 std::vector<DetectionLimit> detection_limits(const Campaign& campaign, const Axis& axis, const ScoreTest& test,
                                              std::span<const Candidate> candidates, const DiagnosisRules& rules) {
   std::vector<DetectionLimit> limits;
   for (const EffectVerdict& effect : test.effects) {
-    const Candidate candidate = merged_candidate(campaign, axis, candidates, effect.sharpest.members, rules);
-    const Parameter& parameter = candidate.parameters[effect.sharpest.parameter];
-    const double z = rules.shown * rules.noticed * effect.sharpest.standard_error;
-    limits.push_back({effect.effect, candidate.where, parameter.key, parameter.unit, parameter.value(0.0),
-                      within_bounds(parameter, z)});
+    const auto best = std::ranges::min_element(
+        effect.sharpest, {}, [](const auto& of_parameter) { return of_parameter.second.standard_error; });
+    if (best == effect.sharpest.end() || best->second.members.empty()) continue;
+    const Candidate candidate = merged_candidate(campaign, axis, candidates, best->second.members, rules);
+    limits.push_back(limit_of(effect.effect, candidate, best->second, rules));
   }
   return limits;
 }

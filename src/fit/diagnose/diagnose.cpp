@@ -43,7 +43,7 @@ class DiagnosisLoop {
     if (scope_.given) return with_given_effects(std::move(d));
     std::vector<std::string> found;
     for (int round = 0; round <= options_.most_effects; ++round) {
-      const double level = round == 0 ? options_.first_level : options_.later_level;
+      const double level = options_.level_of_round(d.rounds.size());
       d.with_effects = fits_.begin_round(std::move(d.with_effects));
       if (round == 0) d.base = d.with_effects;
       d.rounds.push_back(run_round(d.with_effects, found, level, round < options_.most_effects));
@@ -114,7 +114,8 @@ class DiagnosisLoop {
     return score_test(campaign_, {base.model, base.free, base.z, base.runs}, candidates, rows_, test_options());
   }
 
-  /// What the campaign would show if it had further screens: simulated anew with them.
+  /// What the campaign would show if it had further screens: the trials of the last round, seen at them too. An
+  /// instrument's bias is sought at the screens that there are.
   std::vector<DetectionLimit> limits_with_further_screens(const FittedModel& base,
                                                           const std::vector<std::string>& found) {
     const Timesheet::Phase phase(fits_.times(), "detection limits");
@@ -122,11 +123,10 @@ class DiagnosisLoop {
     const Campaign more = with_further_screens(campaign_, axis, rules_);
     ScoreTestOptions how = test_options();
     how.replicates = 0;
-    const auto runs =
-        observe(more, base.model, {how.trials, how.seed, kUnseen, how.threads, rows_, {}, effort_of(rules_.search)});
-    const std::vector<Candidate> candidates = candidates_of(more, base.model, runs, found, rules_);
+    const auto runs = fits_.observed_in(more, base.model);
+    const std::vector<Candidate> candidates = candidates_of(campaign_, base.model, base.runs, found, rules_);
     const ScoreTest test = score_test(more, {base.model, base.free, base.z, runs}, candidates, rows_, how);
-    return detection_limits(more, axis, test, candidates, rules_);
+    return limits_by_parameter(more, axis, test, candidates, rules_);
   }
 
   /// @param base   the model with all that was found so far

@@ -92,20 +92,29 @@ std::vector<double> about_groups(const Places& places, Index observable, const s
   return about;
 }
 
-/// Mean square about the means of the groups, over the freedom that they leave; of a tail the share beyond P95.
-Scattered measure(const Scatter& scatter, const Places& places, const std::vector<std::size_t>& groups) {
-  Scattered out;
-  double squares = 0.0, beyond = 0.0, seen = 0.0;
-  for (const std::size_t o : scatter.observables) {
-    double freedom = 0.0;
-    for (const double z : about_groups(places, static_cast<Index>(o), groups, freedom)) {
-      squares += z * z;
+/// Share of z beyond P95: of z itself, as about the mean of a group nothing would be beyond where all are.
+double share_beyond_p95(const Scatter& scatter, const Places& places) {
+  double beyond = 0.0, seen = 0.0;
+  for (const std::size_t o : scatter.observables)
+    for (const Residual& place : places) {
+      const double z = place[static_cast<Index>(o)];
+      if (std::isnan(z)) continue;
       beyond += z > kP95 ? 1.0 : 0.0;
       seen += 1.0;
     }
+  return beyond / seen;
+}
+
+/// Mean square about the means of the groups, over the freedom that they leave; of a tail the share beyond P95.
+Scattered measure(const Scatter& scatter, const Places& places, const std::vector<std::size_t>& groups) {
+  Scattered out;
+  double squares = 0.0;
+  for (const std::size_t o : scatter.observables) {
+    double freedom = 0.0;
+    for (const double z : about_groups(places, static_cast<Index>(o), groups, freedom)) squares += z * z;
     out.freedom += freedom;
   }
-  if (out.freedom > 0.0) out.statistic = scatter.tail ? beyond / seen : squares / out.freedom;
+  if (out.freedom > 0.0) out.statistic = scatter.tail ? share_beyond_p95(scatter, places) : squares / out.freedom;
   return out;
 }
 

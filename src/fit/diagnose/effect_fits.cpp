@@ -86,8 +86,12 @@ FittedModel EffectFits::better_of(FittedModel fitted, FittedModel longer) {
   return fitted;
 }
 
+std::vector<BlockRuns> EffectFits::observed_in(const Campaign& campaign, const Model& model) const {
+  return observe(campaign, model, observe_options(options_.trials.compare));
+}
+
 FittedModel EffectFits::simulated_anew(FittedModel fitted) const {
-  fitted.runs = observe(campaign_, fitted.model, observe_options(options_.trials.compare));
+  fitted.runs = observed_in(campaign_, fitted.model);
   fitted.score = score(campaign_, fitted.runs, rows_);
   fitted.objective = weigh_groups(score(campaign_, fitted.runs, rows_, fit_scoring()));
   return fitted;

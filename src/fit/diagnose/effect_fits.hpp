@@ -38,6 +38,8 @@ class EffectFits {
   /// Begins a round, in which fits are compared with random numbers that no earlier round has used.
   /// @return the base of the round, simulated anew
   FittedModel begin_round(FittedModel base);
+  /// The trials of the round in another campaign of the same blocks (further screens).
+  std::vector<BlockRuns> observed_in(const Campaign& campaign, const Model& model) const;
   /// Simulates and scores a fit again, with the random numbers of this round.
   FittedModel simulated_anew(FittedModel fitted) const;
   /// The ground alone, fitted as `calibrate` does, then for some rounds more: what this fit misses looks like an

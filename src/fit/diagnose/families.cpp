@@ -72,7 +72,9 @@ FamilyTest day(const FamilyInput& in, const std::vector<double>& energy, const F
     return family;
   }
   family.p_value = test.regression.permuted.p_value;
-  family.note = permutations_note(test.regression.permuted, "blocks within their groups");
+  const char* units = test.by_rock ? "rocks within their groups, and of releases of one rock on several days"
+                                   : "blocks within their groups";
+  family.note = permutations_note(test.regression.permuted, units);
   for (std::size_t i = 0; i < test.days.size(); ++i)
     family.parts.push_back({"day " + std::to_string(test.days[i]), "mean", test.means[i], kNotGiven});
   return family;

@@ -1,6 +1,7 @@
 #include "talus/fit/diagnose/property_test.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <set>
@@ -70,7 +71,7 @@ MatrixXd properties_of(const Campaign& campaign, const std::vector<std::size_t>&
   return x;
 }
 
-/// The rocks of a campaign, which the permutations exchange: of each the means over its releases.
+/// What the permutations exchange: rocks, of each the means over its releases, or single releases.
 struct SiteUnits {
   VectorXd energy;
   MatrixXd x;
@@ -78,42 +79,103 @@ struct SiteUnits {
   std::size_t blocks = 0, rocks = 0, sites = 0, strata = 0;
 };
 
-/// Rocks change places with those that were released at the same sites: only these have numbers of one distribution, as
-/// the mean of a site was taken away with more or fewer releases elsewhere.
-void set_strata(const std::map<std::size_t, std::set<std::size_t>>& sites_of_rock, SiteUnits& out) {
-  std::map<std::set<std::size_t>, std::size_t> strata;
-  for (const auto& [rock, sites] : sites_of_rock) strata.emplace(sites, 0);
-  for (auto& [sites, number] : strata) number = out.strata++;
-  for (const auto& [rock, sites] : sites_of_rock) out.units.strata.push_back(strata.at(sites));
+/// Units of one stratum change places. Only these have numbers of one distribution: the mean of a site was taken away
+/// with more or fewer releases elsewhere, and a mean of few releases scatters more than one of many.
+struct Stratum {
+  std::set<std::size_t> sites;  ///< at which the unit was released
+  int often = 0;         ///< how often it was released, as the rarest unit of its sites: 1; twice as often: 2; ...
+  std::size_t rock = 0;  ///< of single releases of a rock 1 + its number, else 0
+
+  auto operator<=>(const Stratum&) const = default;
+};
+
+/// Of each release its rock and its site, and whether it is a unit of its own. Other releases of a rock are one unit.
+struct Parts {
+  std::vector<std::size_t> rocks, sites;
+  std::vector<bool> alone;
+};
+
+/// A unit: its releases and its stratum.
+struct Unit {
+  std::vector<Index> releases;
+  Stratum stratum;
+};
+
+/// Sorts the units of the same sites into those that were released less than twice as often as the rarest of them, less
+/// than four times, ...
+void class_by_number(std::vector<Unit>& list) {
+  std::map<std::set<std::size_t>, std::size_t> rarest;
+  for (const Unit& unit : list) {
+    std::size_t& least = rarest.emplace(unit.stratum.sites, unit.releases.size()).first->second;
+    least = std::min(least, unit.releases.size());
+  }
+  for (Unit& unit : list) unit.stratum.often = std::bit_width(unit.releases.size() / rarest.at(unit.stratum.sites));
 }
 
-/// Releases of one rock become one unit: the means of their numbers and properties, less the means of their sites.
-SiteUnits units_of(const BlockNumbers& site) {
-  const Releases releases(site.campaign, used_blocks(site.campaign, site.values), site.values);
-  const std::vector<std::size_t> rocks = rocks_of(site.campaign, releases.blocks);
-  std::vector<std::size_t> sites = releases.units.strata;
-  if (!groups_are_sites(sites, rocks)) sites.assign(sites.size(), 0);
+/// In the order of their first releases.
+std::vector<Unit> joined_releases(const Parts& parts) {
+  std::vector<Unit> units;
+  std::map<std::size_t, std::size_t> unit_of_rock;
+  for (std::size_t i = 0; i < parts.rocks.size(); ++i) {
+    const std::size_t rock = parts.rocks[i];
+    std::size_t unit = units.size();
+    if (!parts.alone[i]) unit = unit_of_rock.emplace(rock, unit).first->second;
+    if (unit == units.size()) units.emplace_back();
+    Unit& own = units[unit];
+    own.releases.push_back(static_cast<Index>(i));
+    own.stratum.sites.insert(parts.sites[i]);
+    if (parts.alone[i]) own.stratum.rock = rock + 1;
+  }
+  class_by_number(units);
+  return units;
+}
+
+void set_strata(const std::vector<Unit>& list, SiteUnits& out) {
+  std::map<Stratum, std::size_t> numbers;
+  for (const Unit& unit : list) numbers.emplace(unit.stratum, 0);
+  for (auto& [stratum, number] : numbers) number = out.strata++;
+  for (const Unit& unit : list) out.units.strata.push_back(numbers.at(unit.stratum));
+}
+
+/// Of each unit the means of its numbers and properties, less the means of the sites.
+SiteUnits means_of_units(const Releases& releases, const Parts& parts, const MatrixXd& properties) {
   SiteUnits out;
   out.blocks = releases.blocks.size();
-  out.rocks = count_of(rocks);
-  out.sites = count_of(sites);
-  std::map<std::size_t, std::vector<Index>> members;
-  std::map<std::size_t, std::set<std::size_t>> sites_of_rock;
-  for (std::size_t i = 0; i < rocks.size(); ++i) {
-    if (members[rocks[i]].empty()) out.units.streams.push_back(releases.units.streams[i]);
-    members[rocks[i]].push_back(static_cast<Index>(i));
-    sites_of_rock[rocks[i]].insert(sites[i]);
-  }
-  set_strata(sites_of_rock, out);
-  const VectorXd energy = within_strata(releases.energy, sites);
-  const MatrixXd x = within_strata(properties_of(site.campaign, releases.blocks), sites);
-  out.energy.resize(std::ssize(members));
-  out.x.resize(std::ssize(members), x.cols());
-  for (const auto& [rock, rows] : members) {
-    out.energy[static_cast<Index>(rock)] = energy(rows).mean();
-    out.x.row(static_cast<Index>(rock)) = x(rows, Eigen::all).colwise().mean();
+  out.rocks = count_of(parts.rocks);
+  out.sites = count_of(parts.sites);
+  const std::vector<Unit> list = joined_releases(parts);
+  set_strata(list, out);
+  const VectorXd energy = within_strata(releases.energy, parts.sites);
+  const MatrixXd x = within_strata(properties, parts.sites);
+  out.energy.resize(std::ssize(list));
+  out.x.resize(std::ssize(list), x.cols());
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::vector<Index>& rows = list[i].releases;
+    out.units.streams.push_back(releases.units.streams[static_cast<std::size_t>(rows.front())]);
+    out.energy[static_cast<Index>(i)] = energy(rows).mean();
+    out.x.row(static_cast<Index>(i)) = x(rows, Eigen::all).colwise().mean();
   }
   return out;
+}
+
+/// The rocks of a campaign.
+SiteUnits units_of(const BlockNumbers& site) {
+  const Releases releases(site.campaign, used_blocks(site.campaign, site.values), site.values);
+  Parts parts{rocks_of(site.campaign, releases.blocks), releases.units.strata, {}};
+  if (!groups_are_sites(parts.sites, parts.rocks)) parts.sites.assign(parts.sites.size(), 0);
+  parts.alone.assign(parts.rocks.size(), false);
+  return means_of_units(releases, parts, properties_of(site.campaign, releases.blocks));
+}
+
+/// A rock of one day is a unit. Of a rock of several days each release is one: its days change places within the rock
+/// and the group.
+Parts parts_of_days(const Campaign& campaign, const Releases& releases) {
+  Parts parts{rocks_of(campaign, releases.blocks), releases.units.strata, {}};
+  std::map<std::size_t, std::set<int>> days;
+  for (std::size_t i = 0; i < parts.rocks.size(); ++i)
+    days[parts.rocks[i]].insert(campaign.blocks[releases.blocks[i]].day);
+  for (const std::size_t rock : parts.rocks) parts.alone.push_back(days.at(rock).size() > 1);
+  return parts;
 }
 
 /// The units of several campaigns. Their strata stay apart, so that none changes places with one of another campaign.
@@ -178,7 +240,9 @@ DayTest day_test(const Campaign& campaign, const std::vector<double>& energy, co
     test.days.push_back(day);
     test.means.push_back(rest(members).mean());
   }
-  test.regression = regression_test(releases.energy, x, releases.units, rules.arrangements, seed);
+  const SiteUnits all = means_of_units(releases, parts_of_days(campaign, releases), x);
+  test.by_rock = all.rocks < all.blocks;
+  test.regression = regression_test(all.energy, all.x, all.units, rules.arrangements, seed);
   test.tested = test.regression.properties > 0;
   return test;
 }

@@ -4,6 +4,9 @@
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 
+#include "talus/fit/campaign/block_draws.hpp"
+#include "talus/fit/score/coverage.hpp"
+
 namespace talus {
 namespace {
 
@@ -228,6 +231,15 @@ Residual ResidualSpace::residual(std::size_t b, const std::vector<double>& value
 
 Residual ResidualSpace::of_measured(std::size_t block) const {
   return residual(block, values_of(block, seen_measured(block), false), false);
+}
+
+double ResidualSpace::rank_of_measured(std::size_t block, std::size_t observable) const {
+  const Sorted& simulated = distributions_[block][observable];
+  const double measured = values_of(block, seen_measured(block), false)[observable];
+  if (simulated.size() < rules_.fewest_values || std::isnan(measured)) return kNotGiven;
+  const std::uint32_t number = stream_of_name(observables_[observable].name);
+  return random_rank(simulated, measured,
+                     draw_of_block(0, campaign_.blocks[block].stream, number, BlockDraw::RankOfTie));
 }
 
 Residual ResidualSpace::of_trial(std::size_t block, const BlockRuns& runs, std::size_t trial) const {

@@ -166,11 +166,14 @@ void rank(const Verdict& verdict, EffectVerdict& effect) {
   }
 }
 
-/// Keeps a place of an effect where it is measured better than at those before.
-void sharpen(const Eigen::VectorXd& errors, const std::vector<std::size_t>& members, Sharpest& sharpest) {
-  Index parameter = 0;
-  const double least = errors.minCoeff(&parameter);
-  if (least < sharpest.standard_error) sharpest = {members, static_cast<std::size_t>(parameter), least};
+/// Keeps a place of an effect for each parameter that is measured better there than at those before.
+void sharpen(const Eigen::VectorXd& errors, const std::vector<std::size_t>& members, const Candidate& candidate,
+             EffectVerdict& effect) {
+  for (Index p = 0; p < errors.size(); ++p) {
+    const auto parameter = static_cast<std::size_t>(p);
+    Sharpest& sharpest = effect.sharpest[candidate.parameters[parameter].key];
+    if (errors[p] < sharpest.standard_error) sharpest = {members, parameter, errors[p]};
+  }
 }
 
 /// The step of a parameter of the base, away from its upper bound [z].
@@ -257,7 +260,7 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
       effect = test.effects.insert(effect, {name, verdict, {}, 1.0, {}, {}});
     else
       rank(verdict, *effect);
-    sharpen(projections.back().standard_errors(), place.members, effect->sharpest);
+    sharpen(projections.back().standard_errors(), place.members, candidates[place.members.front()], *effect);
     effect_of.push_back(static_cast<std::size_t>(effect - test.effects.begin()));
   }
   correct(test, smallest_drawn(test.effects.size(), projections, effect_of, trials, directions.streams(), options));

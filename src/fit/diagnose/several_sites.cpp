@@ -158,7 +158,7 @@ class SitesLoop {
         round.family = pooled_family(runs, found);
         round.family.p_corrected = round.family.p_value;
       }
-      const double level = number == 0 ? options_.first_level : options_.later_level;
+      const double level = options_.level_of_round(static_cast<std::size_t>(number));
       if (number < options_.most_effects && round.family.may_name && round.family.p_corrected <= level)
         compete(model, round);
       const double smallest = number == 0 ? d.p_value : round.family.p_corrected;  // of the families of the sites, too

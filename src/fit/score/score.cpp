@@ -130,11 +130,12 @@ class Scorer {
       for (std::uint32_t other = 0; other < campaign_.blocks.size(); ++other)
         if (!campaign_.blocks[other].holdout && !together(b, other))
           others += 1.0, their_hits += crossed(campaign_.blocks[other]) ? 1.0 : 0.0;
+      const double broad = others > 0.0 ? their_hits / others : p;
       if (!climatology_) keep_finite(runs_[b].screens[screen].speed, values_);
       const double simulated_hits = climatology_ ? their_hits : static_cast<double>(values_.size());
       const double trials = climatology_ ? others : runs_[b].trials;
       rows_.add(b, options_.rule == ScoreRule::Fair ? fair_brier_score(simulated_hits, trials, hit) / spread
-                                                    : -log_probability(simulated_hits, trials, p, hit));
+                                                    : -log_probability(simulated_hits, trials, broad, hit));
     });
     rows_.close(name);
   }

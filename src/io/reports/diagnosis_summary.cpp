@@ -7,7 +7,6 @@
 namespace talus::io {
 namespace {
 
-constexpr double kRare = 0.05;        // p-value below which a family is called significant
 constexpr double kSharper = 0.5;      // share of a limit at which further measurements are worth a word
 constexpr std::size_t kFewRows = 50;  // held-out rows below which more blocks are advised
 
@@ -74,11 +73,12 @@ std::string gain_in_doubt(const FittedCandidate& chosen) {
          with_decimals(gain.high, 3) + ").";
 }
 
-Markup sure(const Diagnosis& d) {
+/// @param level  p-value from which down a family of the first round is significant
+Markup sure(const Diagnosis& d, double level) {
   const DiagnosisRound& first = d.rounds.front();
   std::vector<std::string> rare;
   for (const FamilyTest& family : first.families)
-    if (family.p_corrected <= kRare) rare.push_back(family.name + " (p " + with_digits(family.p_corrected, 1) + ")");
+    if (family.p_corrected <= level) rare.push_back(family.name + " (p " + with_digits(family.p_corrected, 1) + ")");
   std::string text = rare.empty() ? "No family of effects is significant (smallest p " + with_digits(first.p_value, 2) +
                                         ", corrected for their number)."
                                   : "What the ground alone leaves depends on: " + listed(rare) +
@@ -151,7 +151,7 @@ std::string next(const DiagnosisRecord& record) {
 Markup summary_html(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
   const std::pair<const char*, Markup> rows[] = {{"What is missing", missing(d)},
-                                                 {"How sure that is", sure(d)},
+                                                 {"How sure that is", sure(d, record.options.level_of_round(0))},
                                                  {"What was gained", gained(record)},
                                                  {"What could not be decided", Markup() + undecided(d)},
                                                  {"What to measure next", Markup() + next(record)}};

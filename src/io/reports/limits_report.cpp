@@ -15,16 +15,17 @@ std::string amount_text(const DetectionLimit& limit, double amount) {
 
 }  // namespace
 
-Json limits_json(std::span<const DetectionLimit> limits) {
+Json limits_json(std::span<const DetectionLimit> limits, bool further) {
   Json list = Json::array();
-  for (const DetectionLimit& limit : limits)
+  for (const DetectionLimit& limit : limits) {
     list.push_back({{"effect", limit.effect},
                     {"where", limit.where},
                     {"parameter", limit.key},
                     {"amount", json_of(limit.amount)},
                     {"unit", limit.unit},
-                    {"off", json_of(limit.off)},
-                    {"amount_with_further_speeds", json_of(limit.with_further_speeds)}});
+                    {"off", json_of(limit.off)}});
+    if (further) list.back()["amount_with_further_speeds"] = json_of(limit.with_further_speeds);
+  }
   return list;
 }
 

@@ -10,7 +10,8 @@
 namespace talus::io {
 
 /// `detection_limits` of diagnosis.json.
-Json limits_json(std::span<const DetectionLimit> limits);
+/// @param further  whether the limits with further speeds were computed (not for several campaigns)
+Json limits_json(std::span<const DetectionLimit> limits, bool further = true);
 /// The limits as an HTML table.
 Markup limits_html(std::span<const DetectionLimit> limits);
 

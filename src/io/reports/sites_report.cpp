@@ -290,7 +290,7 @@ std::string sites_json(const SitesRecord& record) {
             {"families", families_json(d)},
             {"evidence", evidence_by_site(record)},
             {"coverage", coverage_by_site(record)},
-            {"detection_limits", by_site(d, [&](std::size_t i) { return limits_json(d.sites[i].limits); })},
+            {"detection_limits", by_site(d, [&](std::size_t i) { return limits_json(d.sites[i].limits, false); })},
             {"stability", stability_of(record)},
             {"candidates", candidates_json(first, record.candidates.front())},
             {"residual", by_site(d, [&](std::size_t i) { return residual_json(d.sites[i].residual); })},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "support/scenes.hpp"
@@ -173,6 +174,89 @@ TEST(ResidualTable, IsSilentAboutEqualValuesAsOftenAsItSays) {
   EXPECT_LE(alarms, kTables * 0.05 + 4.0 * std::sqrt(kTables * 0.05 * 0.95));  // four standard errors
 }
 
+/// Runs in which every block crosses the screen, with the jumps of `jump`.
+std::vector<BlockRuns> runs_with_jumps(std::size_t blocks, std::size_t trials,
+                                       const std::function<double(std::size_t block)>& jump) {
+  std::vector<BlockRuns> runs(blocks);
+  for (std::size_t b = 0; b < blocks; ++b) {
+    runs[b].trials = static_cast<std::uint32_t>(trials);
+    runs[b].x.assign(trials, kNotGiven);
+    runs[b].y = runs[b].mass_share = runs[b].x;
+    runs[b].screens.assign(1, {std::vector<double>(trials, 10.0), {}, runs[b].x});
+    for (std::size_t t = 0; t < trials; ++t) runs[b].screens[0].jump.push_back(jump(b));
+  }
+  return runs;
+}
+
+/// Of the first block 60 % of the jumps are zero, of the second 40 %, others are uniform: the first ranks above the
+/// second in half of the right models. With mean ranks of equal values it was 56 %.
+TEST(ResidualTable, RanksBlocksAlikeWhoseSharesOfEqualValuesDiffer) {
+  constexpr int kSets = 4000;
+  Campaign c = slope_campaign(2);
+  test::Numbers numbers(61);
+  const auto jump = [&](std::size_t b) { return std::max(0.0, numbers.uniform(b == 0 ? -1.5 : -1.0 / 1.5, 1.0)); };
+  for (MeasuredBlock& b : c.blocks) b.passages[0] = Passage{10.0, 0.0, kNotGiven};
+  const ResidualSpace space(c, runs_with_jumps(2, 2000, jump));
+  const auto& observables = space.observables();
+  const auto at = std::ranges::find(observables, "jump S1", &Observable::name) - observables.begin();
+  double above = 0.0;
+  for (int set = 0; set < kSets; ++set) {
+    for (std::size_t b = 0; b < 2; ++b) {
+      c.blocks[b].stream = stream_of_name(std::to_string(b) + " of " + std::to_string(set));
+      c.blocks[b].passages[0]->jump = jump(b);
+    }
+    const auto o = static_cast<std::size_t>(at);
+    above += space.rank_of_measured(0, o) > space.rank_of_measured(1, o) ? 1.0 : 0.0;
+  }
+  EXPECT_NEAR(above / kSets, 0.5, 5.0 * std::sqrt(0.25 / kSets));
+}
+
+/// 24 blocks, whose mass decides whether 50 or 74 % of their jumps are zero. The right model is below 1 % in 1 % of the
+/// tables; three standard errors.
+TEST(ResidualTable, IsSilentWhereTheShareOfEqualValuesGoesWithTheMass) {
+  constexpr int kBlocks = 24, kTables = 1000;
+  Campaign c = slope_campaign(kBlocks);
+  test::Numbers numbers(62);
+  const auto zeros = [&](std::size_t b) {
+    return 0.74 - 0.24 * std::log(c.blocks[b].mass / 60.0) / std::log(4000.0 / 60.0);
+  };
+  const auto jump = [&](std::size_t b) { return std::max(0.0, numbers.uniform(-zeros(b), 1.0 - zeros(b))); };
+  const auto runs = runs_with_jumps(kBlocks, 100, jump);
+  int alarms = 0;
+  for (int table = 0; table < kTables; ++table) {
+    for (std::size_t b = 0; b < kBlocks; ++b) {
+      c.blocks[b].passages[0] = Passage{kNotGiven, jump(b), kNotGiven};
+      c.blocks[b].stream = stream_of_name(std::to_string(b) + " of " + std::to_string(table));
+    }
+    const auto rows = residual_table(c, ResidualSpace(c, runs), std::vector<bool>(kBlocks, true));
+    alarms += rows.front().corrected < 0.01 ? 1 : 0;
+  }
+  std::printf("tables below 1 %%: %.2f %%\n", 100.0 * alarms / kTables);
+  EXPECT_LE(alarms, kTables * 0.01 + 3.0 * std::sqrt(kTables * 0.01 * 0.99));
+}
+
+/// Eight blocks in the order of their masses but for two neighbours. By hand: of the 8! orders 8 are as near to that of
+/// the masses (itself and seven swaps of neighbours) and 8 to its reverse; Student's t would say 3e-5.
+TEST(ResidualTable, ThePOfACorrelationOfFewBlocksIsThatOfTheirOrders) {
+  constexpr double kExact = 16.0 / 40320.0;
+  Campaign c = slope_campaign(8);
+  const std::vector<double> jumps{0.1, 0.2, 0.3, 0.5, 0.4, 0.6, 0.7, 0.8};
+  for (std::size_t b = 0; b < 8; ++b) {
+    c.blocks[b].mass = 100.0 * static_cast<double>(b + 1);
+    c.blocks[b].passages[0] = Passage{kNotGiven, jumps[b], kNotGiven};
+  }
+  const auto runs = runs_with_jumps(8, 99, [t = 0](std::size_t) mutable { return 0.01 * (t++ % 99) + 0.005; });
+  DiagnosisRules rules;
+  rules.fewest_blocks = 8;
+  int rows = 0;
+  for (const ResidualRow& row : residual_table(c, ResidualSpace(c, runs), std::vector<bool>(8, true), rules)) {
+    if (row.observable != "jump S1" || row.covariate != "mass") continue;
+    ++rows;
+    EXPECT_NEAR(row.p_value, kExact, 5.0 * kExact / std::sqrt(50.0));  // 50 arrangements as large are drawn
+  }
+  EXPECT_EQ(rows, 1);
+}
+
 TEST(Candidates, OffChangesNoBit) {
   Campaign c = slope_campaign(6);
   const Model model = model_of_preset(c, "upper-talus-3d");
@@ -229,6 +313,38 @@ TEST(FurtherScreens, HaveNoBiasAndTheSamplesKeepTheirs) {
     }
   EXPECT_GT(seen, 20.0);
   EXPECT_GT(crossed, 20.0);
+}
+
+/// Who measures more knows more: what a campaign shows, it shows with further speeds, too; from no larger amount on,
+/// but for the noise of the trials.
+TEST(FurtherScreens, RaiseNoLimit) {
+  Campaign campaign = slope_campaign(24);
+  const Model model = model_of_preset(campaign, "upper-talus-3d");
+  measure(campaign, model, 3);
+  const std::vector<bool> rows(campaign.blocks.size(), true);
+  const ObserveOptions unseen{100, 7, 1000, 0, {}, {}};
+  const auto runs = observe(campaign, model, unseen);
+  const Axis axis = axis_of(campaign, runs);
+  const auto list = candidates_of(campaign, model, runs, {});
+  const auto free = ground_parameters(campaign, model, std::vector<std::string>{"theta_scale", "En50"}, {true});
+  const Eigen::VectorXd z = Eigen::VectorXd::Zero(2);
+  ScoreTestOptions how;
+  how.trials = 40;
+  how.replicates = 0;
+  const auto tested = [&](const Campaign& c) {
+    return score_test(c, {model, free, z, observe(c, model, unseen)}, list, rows, how);
+  };
+  const Campaign more = with_further_screens(campaign, axis);
+  std::vector<DetectionLimit> limits = detection_limits(campaign, axis, tested(campaign), list);
+  compare_limits(limits, limits_by_parameter(more, axis, tested(more), list));
+  int finite = 0;
+  for (const DetectionLimit& limit : limits) {
+    if (std::isnan(limit.amount)) continue;
+    ++finite;
+    EXPECT_LE(std::abs(limit.with_further_speeds - limit.off), 1.05 * std::abs(limit.amount - limit.off))
+        << limit.effect << ' ' << limit.key;
+  }
+  EXPECT_GE(finite, 3);
 }
 
 TEST(Candidates, ABarrierAboveEveryJumpLetsNothingPassAndABiasMultiplies) {

@@ -93,6 +93,8 @@ struct DiagnoseOptions {
   int most_effects = 3;
   double first_level = 0.05;  ///< over all families: the false alarms that are accepted
   double later_level = 0.01;  ///< after the first effect: its form is a guess, which leaves a residual
+  /// @param round  from 0
+  double level_of_round(std::size_t round) const { return round == 0 ? first_level : later_level; }
   int base_fits = 5;          ///< whose verdicts are compared; 1: this diagnosis alone
   bool nested = false;        ///< also repeats the loop without each outer fold
   std::size_t outer_folds = 5;

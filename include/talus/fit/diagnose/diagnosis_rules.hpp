@@ -50,8 +50,9 @@ struct DiagnosisRules {
   std::size_t fewest_rocks = 6;
 
   // The detection limits
-  /// Standard errors at which an effect would be seen [-]: the test then finds it in nearly all campaigns, also after
-  /// the correction for the other families and places.
+  /// Standard errors at which an effect would be seen [-]: a test of a linear model then finds it in nearly all
+  /// campaigns, also after the correction for the other families and places. docs/detection-limits.md has what is lost
+  /// where the effect is not linear.
   double shown = 4.5;
   /// Screens across the slope that the limits with further speeds assume [-].
   int further_screens = 12;

@@ -20,7 +20,7 @@ struct DispersionTest {
 
 /// The places z of a quantity of a block less their mean over the blocks of its group, so that neither a group that is
 /// off as a whole nor a mean that is off counts as scatter. Their mean square is compared with that of data sets drawn
-/// from the model: one trial of each block stands in for what was measured.
+/// from the model: one trial of each block stands in for what was measured. The share beyond P95 is that of z itself.
 ///
 /// @param runs  of which `space` was made
 /// @param rows  the blocks that are used

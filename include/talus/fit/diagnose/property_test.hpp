@@ -20,7 +20,7 @@ struct PropertyTest {
 /// Regresses `energy` on log L1/L2, log L1/L3 and log mass with an intercept for each site. Groups are sites where
 /// different rocks were released in one of them; where each group is one rock, its intercept would take all that a rock
 /// can show, and there is one intercept for all. The unit is the rock (docs/diagnosis-method.md, "Rocks"), with the
-/// means of its releases; it changes places with rocks that were released at the same sites.
+/// means of its releases; it changes places with rocks that were released at the same sites, and about as often.
 ///
 /// @param energy  by block of the campaign (EnergyComponent); NaN: not used
 PropertyTest property_test(const Campaign& campaign, const std::vector<double>& energy, const DiagnosisRules& rules,
@@ -43,9 +43,12 @@ struct DayTest {
   std::vector<int> days;
   std::vector<double> means;  ///< by day: of the energy, without the means of the groups
   std::size_t blocks = 0;
+  bool by_rock = false;  ///< a rock was released twice
 };
 
-/// The factor of the day, with an intercept for each group, permuted within groups.
+/// The factor of the day, with an intercept for each group, permuted within groups. Releases of one rock are not
+/// independent: a rock of one day is one unit, with the mean of its releases, which changes places with rocks that were
+/// released in the same groups and about as often; the days of a rock of several days change places within the rock.
 DayTest day_test(const Campaign& campaign, const std::vector<double>& energy, const DiagnosisRules& rules,
                  std::uint64_t seed);
 

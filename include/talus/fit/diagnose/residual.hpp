@@ -47,6 +47,10 @@ class ResidualSpace {
   }
 
   Residual of_measured(std::size_t block) const;
+  /// Rank of a measured value among the simulated ones, in (0, 1); between equal ones at a random place, the same in
+  /// every call. In a right model it is uniform for every block, also where many simulated values are equal: blocks can
+  /// be compared by it. Not of a crossing. NaN as z.
+  double rank_of_measured(std::size_t block, std::size_t observable) const;
   /// Residual of a trial of other runs, as if it had been measured. Values that were not measured of the block are
   /// missing.
   Residual of_trial(std::size_t block, const BlockRuns& runs, std::size_t trial) const;

@@ -11,7 +11,7 @@ struct ResidualRow {
   std::string covariate;   ///< "mean", "spread", "mass", "L1/L2", "L1/L3", "day", "release height", "east", "north"
   double statistic;  ///< of "mean" the mean of z, less the expected one; of "spread" its variance over the expected
                      ///< one; of a crossing a standard normal number, positive where more cross than should; else
-                     ///< Spearman's rank correlation
+                     ///< Spearman's rank correlation (ResidualSpace::rank_of_measured)
   double p_value;    ///< of this row alone, two-sided
   double corrected;  ///< for the number of rows (Holm)
   std::size_t blocks;

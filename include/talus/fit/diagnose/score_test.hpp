@@ -1,12 +1,13 @@
 #pragma once
 #include <limits>
+#include <map>
 
 #include "talus/fit/diagnose/candidates.hpp"
 #include "talus/fit/diagnose/verdict.hpp"
 
 namespace talus {
 
-/// The place and parameter of an effect that a campaign measures best.
+/// The place of an effect at which a campaign measures one of its parameters best.
 struct Sharpest {
   std::vector<std::size_t> members;                                 ///< indices into the candidates
   std::size_t parameter = 0;                                        ///< of the candidate
@@ -20,7 +21,7 @@ struct EffectVerdict {
   Verdict second;             ///< the next best place; without members where there is no other
   double p_value = 1.0;       ///< corrected for the number of its places, from simulated data sets
   std::vector<double> drawn;  ///< by simulated data set: the smallest p-value over its places
-  Sharpest sharpest = {};     ///< follows from the model alone, not from what was measured
+  std::map<std::string, Sharpest> sharpest = {};  ///< by key of the parameter; follows from the model alone
 };
 
 struct ScoreTest {

@@ -16,7 +16,7 @@ Candidate drag() {
 
 ScoreTest test_with_error(double standard_error) {
   ScoreTest test;
-  test.effects.push_back({"air-drag", {}, {}, 1.0, {}, {{0}, 0, standard_error}});
+  test.effects.push_back({"air-drag", {}, {}, 1.0, {}, {{"drag", {{0}, 0, standard_error}}}});
   return test;
 }
 
@@ -41,6 +41,23 @@ TEST(DetectionLimits, OfFurtherMeasurementsStandBesideTheirOwnEffect) {
   compare_limits(limits, further);
   EXPECT_TRUE(std::isnan(limits[0].with_further_speeds));
   EXPECT_DOUBLE_EQ(limits[1].with_further_speeds, 0.3);
+}
+
+/// Of two numbers the first is measured best, with further measurements the second: the first stands beside the first.
+TEST(DetectionLimits, CompareTheSameParameter) {
+  Candidate two = drag();
+  two.parameters.push_back(two.parameters.front());
+  two.parameters[0].key = "softening", two.parameters[1].key = "drag";
+  two.tested = 2;
+  ScoreTest test;
+  test.effects.push_back({"air-drag", {}, {}, 1.0, {}, {{"softening", {{0}, 0, 1.0}}, {"drag", {{0}, 1, 2.0}}}});
+  std::vector<DetectionLimit> limits = detection_limits(Campaign{}, Axis{}, test, std::vector<Candidate>{two});
+  test.effects[0].sharpest = {{"softening", {{0}, 0, 0.5}}, {"drag", {{0}, 1, 0.25}}};
+  compare_limits(limits, limits_by_parameter(Campaign{}, Axis{}, test, std::vector<Candidate>{two}));
+  ASSERT_EQ(limits.size(), 1U);
+  EXPECT_EQ(limits[0].key, "softening");
+  EXPECT_DOUBLE_EQ(limits[0].amount, 0.9);
+  EXPECT_DOUBLE_EQ(limits[0].with_further_speeds, 0.45);  // not 0.225, of the drag
 }
 
 TEST(FurtherScreens, StandAcrossThePathAtEqualDistances) {

@@ -106,6 +106,21 @@ TEST(Dispersion, FindsAScatterThatIsTooLargeOrTooSmall) {
   EXPECT_NEAR(wide.rows.back().expected, 0.05, 0.02);
 }
 
+/// 24 blocks that all went beyond everything simulated: about their mean none of them is beyond anything.
+TEST(Dispersion, OfBlocksThatAllWentFartherTheWholeTailIsBeyondP95) {
+  constexpr std::size_t kBlocks = 24;
+  Campaign c = measured().campaign;
+  c.blocks.resize(kBlocks);
+  const std::vector<BlockRuns> runs(measured().runs.begin(), measured().runs.begin() + kBlocks);
+  for (MeasuredBlock& b : c.blocks) b.stop = Eigen::Vector2d(b.x + 1000.0, b.y);
+  const DispersionTest test =
+      dispersion_test(c, ResidualSpace(c, runs), runs, std::vector<bool>(kBlocks, true), 500, 1);
+  ASSERT_EQ(test.rows.back().what, "runout beyond P95");
+  EXPECT_DOUBLE_EQ(test.rows.back().statistic, 1.0);
+  EXPECT_DOUBLE_EQ(test.rows.back().p_value, 1.0 / 501.0);
+  EXPECT_NEAR(test.rows.back().expected, 0.05, 0.02);
+}
+
 /// One trial of each block is data of the right model: the p-values are uniform.
 TEST(Dispersion, HasItsSizeOnTheModelsOwnTrials) {
   Campaign c = measured().campaign;

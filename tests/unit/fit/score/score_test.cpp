@@ -285,6 +285,21 @@ TEST_F(Scores, OfTheClimatology) {
   }
 }
 
+/// 8 of the 16 fitting blocks crossed, and 13 of 20 trials of each. By hand: the climatology of a block that crossed is
+/// 7 of 15, of another 8 of 15, not 8 of 16.
+TEST_F(Scores, TheLogScoreOfACrossingMixesTheClimatologyOfTheOthers) {
+  ScoreOptions log;
+  log.rule = ScoreRule::LogDensity;
+  const auto score_of = [](double if_crossed, double if_not) {
+    return -0.5 * (std::log(if_crossed) + std::log(1.0 - if_not));
+  };
+  const double simulated = 0.95 * 13.5 / 21.0;
+  EXPECT_NEAR(group(score(campaign_, runs_, fitting_rows(campaign_), log), "crossed S1", 16),
+              score_of(simulated + 0.05 * 7.0 / 15.0, simulated + 0.05 * 8.0 / 15.0), 1e-12);
+  EXPECT_NEAR(group(score_of_climatology(campaign_, fitting_rows(campaign_), log), "crossed S1", 16),
+              score_of(0.95 * 7.5 / 16.0 + 0.05 * 7.0 / 15.0, 0.95 * 8.5 / 16.0 + 0.05 * 8.0 / 15.0), 1e-12);
+}
+
 /// Of a held-out row it is that of all fitting rows, which is what a row without simulated values scores.
 TEST_F(Scores, OfTheClimatologyOnHeldOutRows) {
   std::vector<Eigen::Vector2d> fitting;
