@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "talus/base/sample.hpp"
@@ -51,9 +54,8 @@ StretchDesign design_stretch(std::span<const LineCrossing> crossings, const Stre
   s.stretch = stretch;
   s.crossings = crossings.size();
   if (crossings.empty()) return s;
+  s.sums = sums_of(crossings);
   for (const LineCrossing& crossing : crossings) {
-    s.weight += crossing.weight;
-    s.squares += crossing.weight * crossing.weight;
     s.largest_energy = std::max(s.largest_energy, crossing.energy());
     s.largest_height = std::max(s.largest_height, crossing.height);
   }
@@ -64,6 +66,21 @@ StretchDesign design_stretch(std::span<const LineCrossing> crossings, const Stre
   s.beyond = exceeded_by(crossings, *s.design);
   return s;
 }
+
+/// Number of blocks among crossings.
+std::size_t blocks_of(std::span<const LineCrossing> crossings) {
+  std::unordered_set<std::size_t> blocks;
+  for (const LineCrossing& crossing : crossings) blocks.insert(crossing.block);
+  return blocks.size();
+}
+
+/// What the blocks of a stratum sum up to.
+struct Stratum {
+  double sum = 0.0, squares = 0.0;
+  std::uint32_t blocks = 0;  // of all that were released
+
+  double overlap() const { return blocks > 1 ? std::max(0.0, sum * sum - squares) / (blocks - 1.0) : 0.0; }
+};
 
 }  // namespace
 
@@ -86,6 +103,33 @@ double weighted_quantile(std::span<const double> values, std::span<const double>
     place += way;
   }
   return ascending.back();
+}
+
+CrossingSums sums_of(std::span<const LineCrossing> crossings) {
+  CrossingSums sums;
+  std::unordered_map<std::size_t, double> blocks;
+  std::map<std::uint64_t, Stratum> strata;  // in order: their sum must not depend on the library
+  for (const LineCrossing& crossing : crossings) {
+    const auto [block, first] = blocks.try_emplace(crossing.block, 0.0);
+    const double before = block->second, w = crossing.weight;
+    const double squares = w * (2.0 * before + w);  // (before + w)^2 - before^2
+    block->second += w;
+    sums.sum += w;
+    sums.squares += squares;
+    sums.largest = std::max(sums.largest, block->second);
+    sums.pieces = sums.pieces || !first;
+    Stratum& stratum = strata[crossing.stratum];
+    stratum.sum += w;
+    stratum.squares += squares;
+    stratum.blocks = crossing.stratum_blocks;
+  }
+  for (const auto& [number, stratum] : strata) sums.overlap += stratum.overlap();
+  return sums;
+}
+
+Bounded crossings_per_year(const CrossingSums& counted, const CrossingSums& line, const WeightScale& scale) {
+  if (!line.pieces) return annual_frequency({counted.sum, counted.squares, counted.overlap}, scale);
+  return gamma_interval(counted.sum, counted.squares, std::max(line.largest, scale.largest_weight()));
 }
 
 double effective_number(std::span<const LineCrossing> crossings) {
@@ -142,7 +186,7 @@ std::optional<Stretch> stretch_above(std::span<const LineCrossing> crossings, do
     const double from = std::floor(first->along / bin) * bin;
     const auto end = std::ranges::lower_bound(first, s.end(), from + bin, {}, &LineCrossing::along);
     const auto next = std::max(end, first + 1);  // rounding must not stop the progress
-    if (static_cast<double>(next - first) > probability * released) {
+    if (static_cast<double>(blocks_of({first, next})) > probability * released) {
       if (!found) found = Stretch{from, from + bin, 0.0};
       found->to = from + bin;
     }

@@ -25,9 +25,9 @@ int samples_inside(double radius, int column, int row, double cell_x, double cel
 }  // namespace
 
 std::vector<PassageDensity> densities_of(const HazardCell& cell, const WeightScale& scale, double cell_area) {
-  const double length = scale.unit * WeightedLengths::kLengthUnit / cell_area,
-               by_diameter = scale.unit * WeightedLengths::kDiameterUnit / cell_area,
-               squares = scale.square_unit * WeightedLengths::kLengthUnit / cell_area;
+  const double area = cell_area * scale.room, length = scale.unit * WeightedLengths::kLengthUnit / area,
+               by_diameter = scale.unit * WeightedLengths::kDiameterUnit / area,
+               squares = scale.square_unit * WeightedLengths::kLengthUnit / area;
   std::vector<PassageDensity> levels;
   for (const WeightedLengths& sums : cell.lengths())
     levels.push_back({static_cast<double>(sums.length) * length, static_cast<double>(sums.by_diameter) * by_diameter,

@@ -25,7 +25,7 @@ namespace {
 using io::plan_checksum;
 using io::replace_text;
 using Json = nlohmann::ordered_json;
-constexpr int kFormat = 6;
+constexpr int kFormat = 7;
 constexpr std::int64_t kMostRounds = 10'000;  // that talus run takes
 constexpr std::int64_t kLargest32 = 0xFFFF'FFFF;
 
@@ -264,8 +264,9 @@ void Checkpoint::read_manifest() {
     const std::string sha256 = json.at("sha256");
     json.erase("sha256");
     if (sha256 != io::sha256_of_bytes(text_of(json))) throw InputError("its checksum is another");
-    if (json.at("format").get<int>() != kFormat || json.at("version").get<std::string>() != version())
-      throw InputError("was written by Talus " + json.at("version").get<std::string>());
+    if (const int format = json.at("format"); format != kFormat || json.at("version").get<std::string>() != version())
+      throw InputError("was written by Talus " + json.at("version").get<std::string>() + " in format " +
+                       std::to_string(format) + ", this one reads format " + std::to_string(kFormat));
     plan = json.at("plan");
     const std::uint32_t of = number_of(json, "of", 1, kLargest32);
     part_ = {number_of(json, "part", 1, of), of};

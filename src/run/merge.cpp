@@ -51,6 +51,10 @@ std::vector<Checkpoint> opened(const std::vector<std::string>& folders, const Lo
     if (!checkpoints[i].between_rounds() || checkpoints[i].rounds() != first.rounds())
       throw InputError(name + "has " + std::to_string(checkpoints[i].rounds()) + " rounds, another part " +
                        std::to_string(first.rounds()) + "; run all parts with the same --rounds");
+    if (checkpoints[i].asked().at_most() != first.asked().at_most())  // their weights have other units
+      throw InputError(name + "was to have " + std::to_string(checkpoints[i].asked().at_most()) +
+                       " rounds, another part " + std::to_string(first.asked().at_most()) +
+                       "; run all parts with the same --rounds, to their end");
   }
   if (checkpoints.size() != first.part().of) {
     std::uint32_t missing = 1;
@@ -92,7 +96,7 @@ Outcome merge(const MergeRequest& request, Observer& observer) {
   protect_inputs(folder, request, loaded);
   const Scenario& scenario = loaded.scenario;
   Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds, memory);
-  if (auto weights = AnnualWeights::of(scenario, checkpoints.front().asked().several()))
+  if (auto weights = AnnualWeights::of(scenario, checkpoints.front().asked().at_most()))
     tally.keep_hazard(std::move(*weights));
   if (scenario.output.energy_total) tally.keep_energy_total();
   io::RunRecord record = new_record(request, loaded, threads);

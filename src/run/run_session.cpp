@@ -38,7 +38,7 @@ Part part_of(const std::optional<std::string>& given) {
 
 /// Throws InputError for more than 1e9 blocks of a source cell: they are numbered with 32 bits.
 void check_number(const Rounds& rounds, const Scenario& scenario) {
-  const std::uint32_t rounds_at_most = rounds.until_error ? rounds.most : rounds.count;
+  const std::uint32_t rounds_at_most = rounds.at_most();
   if (std::uint64_t{scenario.trajectories} * rounds_at_most > 1'000'000'000)
     throw InputError(
         std::to_string(rounds_at_most) + " rounds of trajectories = " + std::to_string(scenario.trajectories) +

@@ -29,7 +29,7 @@ Tracing::Tracing(const RunRequest& request, const RunPlan& plan, const Means& me
       checkpoints_(opened()),
       sinks_(checkpoint().sinks()),
       simulation_(plan.loaded.scenario, plan.part, plan.rounds.several(), tally_, sinks_, processes_) {
-  if (auto weights = AnnualWeights::of(plan.loaded.scenario, plan.rounds.several()))
+  if (auto weights = AnnualWeights::of(plan.loaded.scenario, plan.rounds.at_most()))
     tally_.keep_hazard(std::move(*weights));
   if (plan.loaded.scenario.output.energy_total) tally_.keep_energy_total();
   in_every_process(processes_, [this] { checkpoint().restore(simulation_, tally_); });

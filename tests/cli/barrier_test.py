@@ -4,7 +4,9 @@ import json
 import math
 import os
 import unittest
+from collections import Counter
 
+import numpy as np
 from osgeo import ogr
 
 from support import NORTH, WEST, Case, box, heights, write_dem, write_features
@@ -341,6 +343,134 @@ class Weights(Case):
         other = self.write("w.toml", "[features]\nwest = 0.1\neast = 5.0\n")
         self.fails(2, "--frequency", "no annual frequencies",
                    arguments=["barrier", self.path("out"), "--screen", "road", "--frequency", other])
+
+
+class Plane(Case):
+    """A plane of 40 degrees, 200 m wide, too steep to stop on or to climb: below the sources nothing crosses a line twice."""
+
+    POINTS = {"A": (100, 30), "B": (60, 30), "C": (140, 50)}  # m from the west and from the north
+
+    def setUp(self):
+        super().setUp()
+        rows = np.arange(150)[::-1, None]
+        z = 500.0 + math.tan(math.radians(40)) * 2.0 * rows * np.ones((1, 100))
+        write_dem(self.path("dem.tif"), z.astype(np.float32), cell=2.0)
+        write_features(self.path("lines.gpkg"), "lines", [(line(100.0, 1.0, 199.0), ["low"])], [("id", ogr.OFTString)])
+
+    def run_plane(self, frequencies, trajectories, blocks):
+        """The rows of screens.csv, of sources with these frequencies."""
+        points = [(f"POINT ({WEST + x} {NORTH - y})", [name, frequencies[name]])
+                  for name, (x, y) in self.POINTS.items() if name in frequencies]
+        write_features(self.path("points.gpkg"), "points", points, [("name", ogr.OFTString), ("frequency", ogr.OFTReal)])
+        self.write("s.toml", f'dem = "dem.tif"\nseed = 1\ntrajectories = {trajectories}\n[sources]\nfile = "points.gpkg"\n'
+                   f'[screens]\nfile = "lines.gpkg"\n{blocks}')
+        self.run_well("run", self.path("s.toml"), "-o", self.path("out"))
+        return self.crossings()
+
+    def crossings(self):
+        with open(self.path("out/screens.csv"), encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def design(self, *arguments):
+        done = self.run_well("barrier", self.path("out"), "--screen", "low", *arguments)
+        with open(self.path("out/barrier_low.json"), encoding="utf-8") as file:
+            return json.load(file), done.stdout
+
+
+class AllReleased(Plane):
+    """Every block of three sources crosses: what counts is known without a simulation."""
+
+    def test_bounds_are_those_of_the_objects(self):
+        """Every block of B and C crosses, none of A ever falls. The number of blocks is fixed, so that only a block more or less
+        could be: 3.69 blocks of the largest weight, 1/150, are the upper Poisson bound of none, -ln 0.025."""
+        rows = self.run_plane({"A": 0.0, "B": 1.0, "C": 0.3}, 150, "[blocks]\ndiameter = 1.0\n")
+        self.assertEqual(len(rows), 450)
+        report, _ = self.design()
+        per_year = report["crossings_per_year"]
+        self.assertAlmostEqual(per_year["value"], 1.3, 9)
+        self.assertAlmostEqual(per_year["high"], 1.3, 9)
+        self.assertAlmostEqual(per_year["low"], 1.3 + math.log(0.025) / 150, 4)
+        self.run_well("hazard", self.path("out"), "--objects", self.path("lines.gpkg"))
+        with open(self.path("out/objects.csv"), encoding="utf-8") as file:
+            (hit,) = csv.DictReader(file)
+        for key, name in (("value", "frequency"), ("low", "frequency_lower"), ("high", "frequency_upper")):
+            self.assertAlmostEqual(per_year[key] / float(hit[name]), 1.0, 4)
+
+    def test_the_width_by_the_map_is_of_all_released_blocks(self):
+        """Bins of 2 m that more than 1 % of the released blocks cross, counted by hand. Those of B and C, at the sides, never fall
+        but count."""
+        rows = self.run_plane({"A": 1.0, "B": 0.0, "C": 0.0}, 150, "[blocks]\ndiameter = 1.0\n")
+        bins = Counter(math.floor((float(row["x"]) - WEST - 1.0) / 2.0) for row in rows)
+        wide = [2.0 * place for place, count in bins.items() if count > 0.01 * 450]
+        report, _ = self.design()
+        by_map = report["containment"]["by_impact_probability"]
+        self.assertEqual((by_map["from_m"], by_map["to_m"]), (min(wide), max(wide) + 2.0))
+        falling = [float(row["x"]) - WEST - 1.0 for row in rows if row["source"] == "0"]
+        self.assertAlmostEqual(by_map["share"], sum(min(wide) <= x <= max(wide) + 2.0 for x in falling) / len(falling), 9)
+        self.assertEqual(self.design("--unweighted")[0]["containment"]["by_impact_probability"]["width_m"], by_map["width_m"])
+
+
+class Pieces(Plane):
+    """Blocks that break above the line; every piece that crosses is a crossing."""
+
+    def run_broken(self, diameter, threshold):
+        return self.run_plane({"A": 1.0}, 200, f"[blocks]\ndiameter = {diameter}\n[effects.fragmentation]\nthreshold = {threshold}\n")
+
+    def test_pieces_of_equal_mass_are_several_crossings(self):
+        """A block of 0.16 m (5.8 kg) breaks into two of 2.9 kg, these into four of 1.45 kg; smaller ones stay whole."""
+        rows = self.run_broken(0.16, 20)
+        self.assertEqual(len({(row["source"], row["block"], row["piece"]) for row in rows}), len(rows))
+        self.assertLessEqual({int(row["piece"]) for row in rows}, set(range(17)))
+        masses = {(row["source"], row["block"], row["mass_kg"]) for row in rows}
+        self.assertLess(len(masses), 0.4 * len(rows))
+        mass = Counter()
+        for row in rows:
+            mass[row["block"]] += float(row["mass_kg"])
+        self.assertLess(max(mass.values()), 2700 * math.pi / 6 * 0.16**3 * (1 + 1e-4))  # each piece is there once
+        report, _ = self.design()
+        self.assertEqual(report["crossings"], len(rows))
+        self.assertEqual(report["blocks"], len(mass))
+        self.assertEqual(sum(row["crossings"] for row in report["stretches"]), len(rows))
+        with open(self.path("out/screens.csv"), encoding="utf-8") as file:  # as an earlier version wrote it: by mass
+            text = "".join(row.rsplit(",", 1)[0] + "\n" for row in file)
+        self.write("out/screens.csv", text)
+        self.assertEqual(self.design()[0]["crossings"], len(masses))
+
+    def test_pieces_cross_more_often_than_blocks_fall(self):
+        """One event per year, 200 blocks: each crossing stands for 1/200 per year, and there are many for each block."""
+        rows = self.run_broken(1.0, 5)
+        of_block = Counter(row["block"] for row in rows)
+        self.assertGreater(len(rows), 10 * len(of_block))
+        report, text = self.design()
+        per_year, stretches = report["crossings_per_year"], [row["crossings_per_year"] for row in report["stretches"]]
+        self.assertAlmostEqual(per_year["value"], len(rows) / 200, 9)
+        self.assertGreaterEqual(per_year["value"], sum(row["value"] for row in stretches) - 1e-9)
+        for stretch, row in zip(stretches, report["stretches"]):
+            self.assertAlmostEqual(stretch["value"], row["crossings"] / 200, 9)
+            self.assertTrue(stretch["low"] <= stretch["value"] <= stretch["high"])
+        self.assertIn(f"screen low: {len(rows)} crossings (blocks and pieces) of {len(of_block)} blocks, 100 % of those released", text)
+        self.assertIn("every block and piece counts by the annual frequency of its source", text)
+        # The gamma quantiles of Fay and Feuer by Wilson and Hilferty's formula: each block is one count, with its pieces.
+        largest = max(of_block.values()) / 200
+        def quantile(total, squares, z):
+            shape = total**2 / squares
+            return total * (1 - 1 / (9 * shape) + z / (3 * math.sqrt(shape)))**3
+        total, squares = len(rows) / 200, sum((n / 200)**2 for n in of_block.values())
+        self.assertAlmostEqual(per_year["low"] / quantile(total, squares, -1.959964), 1.0, 3)
+        self.assertAlmostEqual(per_year["high"] / quantile(total + largest, squares + largest**2, 1.959964), 1.0, 3)
+        speed = next(row["value"] for row in report["design"] if row["name"] == "v_d")
+        limit = next(limit for quantity in report["reliability"] for limit in quantity["exceeded"] if limit["name"] == "v_d")
+        above = sum(float(row["speed_ms"]) > speed for row in rows)
+        self.assertAlmostEqual(limit["per_year"]["value"], above / 200, 9)
+        self.assertAlmostEqual(limit["share_by_frequency"], above / len(rows), 9)
+
+    def test_a_block_counts_once_in_a_bin_of_the_map(self):
+        rows = self.run_broken(1.0, 5)
+        bins = Counter(place for _, place in {(row["block"], math.floor((float(row["x"]) - WEST - 1.0) / 2.0)) for row in rows})
+        for containment, most in ((99, 2), (95, 10), (85, 30)):  # 1, 5 and 15 % of 200 blocks
+            wide = [2.0 * place for place, count in bins.items() if count > most]
+            by_map = self.design("--containment", str(containment))[0]["containment"]["by_impact_probability"]
+            self.assertEqual((by_map["from_m"], by_map["to_m"]), (min(wide), max(wide) + 2.0), containment)
 
 
 class Walk(Case):

@@ -397,6 +397,31 @@ class Hazard(Case):
         self.run_well("hazard", self.path("out"), "--overwrite", "--width", "20", "-q", "--threads", "1")
         self.assertTrue((bands_of(self.path("out/annual_frequency.tif"))[0] == value).all())
 
+    def test_rare_blocks_in_several_rounds(self):
+        """A source of 1e-5 events per year beside one of 1000: where only its blocks pass, an object of 1 m (less than a cell) is hit
+        w (W + D) times the length of their paths over the area, which passage_density.tif has; in any number of rounds."""
+        points, fields = ("POINT (2600060 1200235)", "POINT (2600240 1200235)"), [("name", ogr.OFTString), ("frequency", ogr.OFTReal)]
+        write_features(self.path("sources.gpkg"), "sources", [(points[0], ["often", 1000.0])], fields)
+        self.simulate("often", "--diameter", "1")
+        write_features(self.path("sources.gpkg"), "sources", [(points[0], ["often", 1000.0]), (points[1], ["rare", 1e-5])], fields)
+        reached = bands_of(self.path("often/passages.tif")) > 0
+        maps = {}
+        for out, rounds in (("one", ()), ("two", ("--rounds", "2", "--trajectories", "100")),
+                            ("until", ("--until-error", "0.001", "--most-rounds", "4", "--trajectories", "50")),
+                            ("many", ("--until-error", "10", "--most-rounds", "10000"))):
+            self.simulate(out, "--diameter", "1", *rounds)
+            self.run_well("hazard", self.path(out), "--width", "1", "-q")
+            self.assertEqual(self.record(out)["released"], 400)
+            frequency, density = (bands_of(self.path(f"{out}/{name}.tif"))[0] for name in ("annual_frequency", "passage_density"))
+            rare = (density > 0) & ~reached
+            self.assertGreater(np.count_nonzero(rare), 100)
+            by_hand = density[rare] * 400 * (1e-5 / 200) * (1.0 + 1.0)
+            np.testing.assert_allclose(frequency[rare], by_hand, rtol=5e-4, atol=2e-11, err_msg=out)  # atol: of paths that only graze
+            self.assertAlmostEqual(frequency[rare].sum() / by_hand.sum(), 1.0, 4)
+            maps[out] = frequency[rare]
+        for out in ("two", "until", "many"):
+            np.testing.assert_allclose(maps[out], maps["one"], rtol=5e-4, atol=2e-11, err_msg=out)
+
     def test_hazard_curves(self):
         """At 0 and at the thresholds they are the other maps, they fall with the energy, and with --width they are its maps."""
         self.simulate()

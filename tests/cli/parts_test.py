@@ -1,7 +1,10 @@
 """Parts and merge, rounds, interruption and resume: however the work is divided, the bits are those of one run."""
 import contextlib
+import csv
+import hashlib
 import os
 import random
+import re
 import signal
 import subprocess
 import time
@@ -88,6 +91,29 @@ class Parts(RunCase):
         os.remove(f"{one}/scenario.toml")
         self.fails(2, "it has no scenario.toml", arguments=["merge", self.path("m"), one, two])
         self.assertFalse(os.path.exists(self.path("m")))
+
+    def test_pieces_keep_their_numbers(self):
+        self.write("s.toml", RUN + "[effects.fragmentation]\nthreshold = 20\n")
+        self.run_scenario("whole", "--rounds", "2")
+        for i in (1, 2):
+            self.run_scenario(f"part{i}", "--rounds", "2", "--part", f"{i}/2")
+        self.run_well("merge", self.path("merged"), self.path("part2"), self.path("part1"), "-q")
+        self.assert_same("whole", "merged")
+        with open(self.path("merged/screens.csv"), encoding="utf-8") as file:
+            pieces = {int(row["piece"]) for row in csv.DictReader(file)}
+        self.assertLess({0, 1, 2}, pieces)
+        self.assertLessEqual(pieces, set(range(17)))  # a block gives 16 at most
+
+    def test_rows_of_an_earlier_format_are_not_read(self):
+        self.run_scenario("part1", "--part", "1/1")
+        with open(self.path("part1/part.json"), encoding="utf-8") as file:
+            manifest = file.read()
+        number = int(re.search(r'"format": (\d+)', manifest)[1])
+        earlier = re.sub(r',\n  "sha256": "[0-9a-f]{64}"\n}\n$', "\n}\n", manifest.replace(f'"format": {number}', f'"format": {number - 1}'))
+        checksum = hashlib.sha256(earlier.encode()).hexdigest()  # of the text without its line
+        self.write("part1/part.json", earlier[:-3] + f',\n  "sha256": "{checksum}"\n}}\n')
+        self.fails(2, "part.json", f"in format {number - 1}, this one reads format {number}", "run this part again",
+                   arguments=["merge", self.path("m"), self.path("part1")])
 
     def start(self, out, *more):
         return subprocess.Popen([TALUS, "run", self.path("s.toml"), "-o", self.path(out), "-q", "--trajectories", "400", *more],

@@ -10,6 +10,7 @@
 #include "talus/io/files/staged_files.hpp"
 #include "talus/io/results/hazard_record.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"
+#include "talus/products/object_width.hpp"
 #include "talus/simulate/simulate.hpp"
 
 namespace talus::io {
@@ -107,9 +108,29 @@ TEST_F(HazardFile, DamagedForeignOrLaterFilesAreRefused) {
   plain[plain.size() - 80] = static_cast<char>(plain[plain.size() - 80] ^ 1);  // packed well, but another number
   refused(packed(plain), "is damaged");
   refused(packed("something else altogether"), "is no file that talus run wrote");
-  refused(packed(std::string("talus-hazard") + std::string("\x03\0\0\0", 4)), "later version of Talus (format 3, this");
+  refused(packed(std::string("talus-hazard") + std::string("\x04\0\0\0", 4)), "later version of Talus (format 4, this");
   refused(packed(std::string("talus-hazard") + std::string("\x01\0\0\0", 4)), "earlier version of Talus (format 1,");
   refused("", "is");
+}
+
+/// A file of the format before, of 5 blocks of 1 m and 0.1 events per year each: run.json beside it said 154.856 m of
+/// paths in plan.
+TEST_F(HazardFile, ReadsTheFormatBefore) {
+  double length = 0.0, by_diameter = 0.0;
+  HazardRules rules{EnergyBins({30.0, 300.0}), {}};
+  const HazardHeader header = read_hazard(
+      TALUS_SOURCE_DIR "/tests/cases/hazard_format_2.gz", [&](const HazardHeader& h) { rules = h.rules; },
+      [&](const HazardRow& row) {
+        for (const auto& [column, cell, exit] : row.touched) {
+          const PassageDensity density = densities_of(cell, rules.scale, 1.0).front();
+          length += density.length;
+          by_diameter += density.by_diameter;
+        }
+      });
+  EXPECT_EQ(header.rules.scale.room, 1.0);
+  EXPECT_EQ(header.rules.scale.trajectories, 5U);
+  EXPECT_NEAR(length, 0.1 * 154.856, 1e-4);
+  EXPECT_NEAR(by_diameter, 0.1 * 154.856, 1e-4);
 }
 
 TEST_F(HazardFile, ThePlanChangesWithEverySetting) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -93,13 +94,13 @@ CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
     throw talus::InputError(file.string() + ": has " + std::to_string(crossings.rows) + " crossings of screen '" +
                             o.screen + "', screens_summary.csv beside it says " + std::to_string(*in_summary) +
                             ": must be as talus run has written it; copy it again, or run the scenario again");
-  if (crossings.blocks == 0)
+  if (crossings.count == 0)
     throw talus::InputError(file.string() + ": no block crosses screen '" + o.screen + "': " +
                             (gap ? "this does not say that a barrier is not needed there: " + *gap
                                  : "a barrier is not needed there, or the run has too few trajectories to say"));
   for (const std::size_t told : {crossings.speed.size(), crossings.energy.size(), crossings.height.size(),
                                  crossings.mass.size(), crossings.places.size()})
-    if (told != crossings.blocks)
+    if (told != crossings.count)
       throw talus::InputError(file.string() +
                               ": has rows without speed, jump height, mass or place, must be as talus run "
                               "has written it; run the scenario again");
@@ -108,28 +109,35 @@ CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
 
 CrossingTable observed_crossings(const Options& o) {
   CrossingTable crossings = talus::io::read_crossings(o.observed, o.screen);
-  if (crossings.blocks == 0)
+  if (crossings.count == 0)
     throw talus::InputError(o.observed + ": has no row of screen '" + o.screen + "', must have one per observed block");
   return crossings;
 }
 
-/// The blocks at the line, without those that never fall. Throws InputError if they are too few for the percentile.
+/// The blocks and pieces at the line with their weights: 0 for those that never fall.
 std::vector<talus::LineCrossing> crossings_of(const CrossingTable& table, const RunSummary& run, const Options& o,
                                               BarrierReport& report, Weighting& weighting) {
   const talus::Screen& screen = screen_of(run, o);
   std::vector<talus::LineCrossing> crossings;
-  for (std::size_t i = 0; i < table.blocks; ++i)
-    crossings.push_back(
-        {table.speed[i], table.height[i], table.mass[i], talus::place_along(screen, table.places[i]), 1.0});
+  for (std::size_t i = 0; i < table.count; ++i)
+    crossings.push_back({table.speed[i], table.height[i], table.mass[i], talus::place_along(screen, table.places[i]),
+                         1.0, table.number[i]});
   weighting = weigh_crossings(crossings, table, {o.folder, o.frequency, o.unweighted});
+  report.weighting = weighting.text;
+  report.frequency = weighting.given;
+  if (weighting.scale) report.events_per_year = weighting.scale->total;
+  return crossings;
+}
+
+/// Leaves out what never falls. Throws InputError if the others are too few for the percentile.
+void keep_falling(std::vector<talus::LineCrossing>& crossings, const Options& o, BarrierReport& report,
+                  Weighting& weighting) {
   const std::size_t never = std::erase_if(crossings, [](const auto& c) { return !(c.weight > 0.0); });
   if (never > 0)
     report.notes.push_back(std::to_string(never) +
                            " of the crossings are of sources with a frequency of 0 and count "
                            "nothing");
-  report.weighting = weighting.text;
-  report.frequency = weighting.given;
-  if (weighting.scale) report.events_per_year = weighting.scale->total;
+  weighting.line = talus::sums_of(crossings);
   report.effective = talus::effective_number(crossings);
   const std::size_t fewest = talus::fewest_for_percentile(0.01 * o.percentile);
   if (report.effective < static_cast<double>(fewest) - 1e-9)
@@ -140,22 +148,17 @@ std::vector<talus::LineCrossing> crossings_of(const CrossingTable& table, const 
                                              : "") +
                             ", must be " + std::to_string(fewest) + " at least for percentile " +
                             talus::text_of(o.percentile) + ": run more trajectories, or give a lower --percentile");
-  return crossings;
 }
 
 /// How often the crossings that `exceeds` accepts come: their share by weight, and per year.
 template <class Exceeds>
 void add_frequency(talus::io::Reliability::Limit& limit, std::span<const talus::LineCrossing> crossings,
                    const Weighting& weighting, Exceeds exceeds) {
-  double all = 0.0, sum = 0.0, squares = 0.0;
-  for (const talus::LineCrossing& c : crossings) {
-    all += c.weight;
-    if (!exceeds(c, limit.value)) continue;
-    sum += c.weight;
-    squares += c.weight * c.weight;
-  }
-  limit.by_frequency = sum / all;
-  limit.per_year = weighting.per_year(sum, squares);
+  std::vector<talus::LineCrossing> above;
+  std::ranges::copy_if(crossings, std::back_inserter(above), [&](const auto& c) { return exceeds(c, limit.value); });
+  const talus::CrossingSums counted = talus::sums_of(above);
+  limit.by_frequency = counted.sum / weighting.line.sum;
+  limit.per_year = weighting.per_year(counted);
 }
 
 /// Adds to each design value how often a simulated block exceeds it.
@@ -223,23 +226,21 @@ void add_design(BarrierReport& report, std::span<const talus::LineCrossing> cros
   if (const auto note = talus::io::stretch_note(report)) report.notes.push_back(*note);
 }
 
-void add_width(BarrierReport& report, std::span<const talus::LineCrossing> crossings, const RunSummary& run,
-               const Options& o) {
-  report.containment = 0.01 * o.containment;
-  report.shortest = talus::shortest_stretch(crossings, report.containment);
+/// Adds the paper's width. @param crossings  also of blocks that never fall: the rule is of all released blocks
+void add_width_by_map(BarrierReport& report, std::span<const talus::LineCrossing> crossings, const RunSummary& run) {
   report.bin = run.cell;
   report.above = talus::stretch_above(crossings, run.cell, run.released, 1.0 - report.containment);
 }
 
-/// Adds how often blocks cross the line and each of its stretches.
+/// Adds how often blocks cross the line and each of its stretches. The line has the sum of the stretches, to the bit.
 void add_crossings_per_year(BarrierReport& report, const Weighting& weighting) {
-  double sum = 0.0, squares = 0.0;
+  talus::CrossingSums line = weighting.line;
+  line.sum = 0.0;
   for (talus::io::StretchRow& row : report.stretches) {
-    row.per_year = weighting.per_year(row.values.weight, row.values.squares);
-    sum += row.values.weight;
-    squares += row.values.squares;
+    row.per_year = weighting.per_year(row.values.sums);
+    line.sum += row.values.sums.sum;
   }
-  report.per_year = weighting.per_year(sum, squares);
+  report.per_year = weighting.per_year(line);
 }
 
 int design(const Options& o) {
@@ -257,10 +258,15 @@ int design(const Options& o) {
   if (const auto note = talus::io::coefficient_note(o.folder)) report.notes.push_back(*note);
   report.without_height = without_height(run, o);
   if (const auto note = talus::io::gap_note(report.without_height)) report.notes.push_back(*note);
-  const std::vector<talus::LineCrossing> blocks = crossings_of(crossings, run, o, report, weighting);
+  std::vector<talus::LineCrossing> blocks = crossings_of(crossings, run, o, report, weighting);
   report.screen = o.screen;
   report.released = run.released;
-  report.crossings = crossings.blocks;
+  report.crossings = crossings.count;
+  report.blocks = crossings.blocks;
+  report.containment = 0.01 * o.containment;
+  add_width_by_map(report, blocks, run);
+  keep_falling(blocks, o, report, weighting);
+  report.shortest = talus::shortest_stretch(blocks, report.containment);
   report.values = o.observed.empty() ? "the simulated crossings" : "the observed crossings of " + o.observed;
   add_design(report, blocks, run, o);
   add_crossings_per_year(report, weighting);
@@ -271,7 +277,6 @@ int design(const Options& o) {
   add_reliability(report, "energy", "kJ", kilojoules,
                   {{"SEL", report.design.sel * 1e-3}, {"MEL", report.design.mel * 1e-3}}, o.seed);
   if (weighting.scale) add_frequencies(report, blocks, weighting);
-  add_width(report, blocks, run, o);
 
   std::vector<std::string> ids;
   for (const talus::Screen& screen : run.screens) ids.push_back(screen.id);

@@ -1,11 +1,13 @@
 #include "crossing_weights.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 
 #include "talus/base/error.hpp"
 #include "talus/io/results/hazard_file.hpp"
 #include "talus/io/results/recorded_plan.hpp"
+#include "talus/simulate/plan/work_units.hpp"
 #include "talus/simulate/scenario/frequency.hpp"
 
 namespace {
@@ -22,26 +24,39 @@ std::uint32_t number_of(const std::string& text, const std::string& what) {
   return number;
 }
 
-/// Gives each crossing the events per year that its block stands for in the plan of the run.
+/// A source cell or a block that the plan does not have.
+[[noreturn]] void refuse(const std::string& value, std::uint64_t count, const std::string& what) {
+  throw talus::InputError("screens.csv: " + value + ", but the plan has " + std::to_string(count) + " " + what +
+                          "; run the scenario again");
+}
+
+/// Gives each crossing the events per year that its block stands for in the plan of the run, and the stratum of the
+/// block: a unit of work, as for `talus hazard --objects`.
 talus::WeightScale weigh(std::vector<talus::LineCrossing>& crossings, const CrossingTable& table,
                          const talus::Scenario& scenario, const WeightingOptions& o) {
   const auto weights = talus::AnnualWeights::of(scenario);
   if (!weights) throw talus::InputError(o.frequency + ": no blocks fall with these frequencies; give one above 0");
+  const std::uint64_t units = (scenario.trajectories + talus::kBlocksPerUnit - 1) / talus::kBlocksPerUnit;
   for (std::size_t i = 0; i < crossings.size(); ++i) {
     const std::uint32_t source = number_of(table.source[i], "source"), block = number_of(table.block[i], "block");
     if (source >= scenario.sources.size())
-      throw talus::InputError("screens.csv: source = " + table.source[i] + ", but the plan has " +
-                              std::to_string(scenario.sources.size()) + " source cells; run the scenario again");
-    crossings[i].weight = static_cast<double>(weights->weight(scenario, source, block)) * weights->scale().unit;
+      refuse("source = " + table.source[i], scenario.sources.size(), "source cells");
+    if (block >= scenario.trajectories)
+      refuse("block = " + table.block[i], scenario.trajectories, "blocks of a source cell");
+    const std::uint32_t unit = block / talus::kBlocksPerUnit;
+    talus::LineCrossing& crossing = crossings[i];
+    crossing.weight = static_cast<double>(weights->weight(scenario, source, block)) * weights->scale().unit;
+    crossing.stratum = source * units + unit;
+    crossing.stratum_blocks = std::min(scenario.trajectories - unit * talus::kBlocksPerUnit, talus::kBlocksPerUnit);
   }
   return weights->scale();
 }
 
 }  // namespace
 
-std::optional<talus::Bounded> Weighting::per_year(double sum, double squares) const {
+std::optional<talus::Bounded> Weighting::per_year(const talus::CrossingSums& counted) const {
   if (!scale) return std::nullopt;
-  return talus::annual_frequency({sum, squares, 0.0}, *scale);
+  return talus::crossings_per_year(counted, line, *scale);
 }
 
 Weighting weigh_crossings(std::vector<talus::LineCrossing>& crossings, const CrossingTable& table,

@@ -13,9 +13,10 @@ struct Weighting {
   std::string text;                         ///< "alike: ...", "by the annual frequency ..."
   std::optional<talus::WeightScale> scale;  ///< nothing where all count alike
   talus::io::GivenFrequencies given{};      ///< another weighting than the run's
+  talus::CrossingSums line{};               ///< of all crossings of the line, once they have their weights
 
-  /// Crossings per year of which the sum of the weights and of their squares is known.
-  std::optional<talus::Bounded> per_year(double sum, double squares) const;
+  /// How often crossings of the line come; nothing where all count alike.
+  std::optional<talus::Bounded> per_year(const talus::CrossingSums& counted) const;
 };
 
 /// The weighting that is asked for.

@@ -19,7 +19,7 @@ using talus::Scenario;
 constexpr double kBase = 64e6;             // of the process [byte]
 constexpr double kHistogram = 40.0;        // of a quantity of a touched cell [byte]
 constexpr double kHazardCell = 664.0;      // annual frequencies of a touched cell [byte]: 32 bins, containers
-constexpr double kHazardLevel = 24.0;      // the same: lengths of all passages, and above each energy threshold [byte]
+constexpr double kHazardLevel = 48.0;      // the same: lengths of all passages, and above each energy threshold [byte]
 constexpr double kKeptTotal = 90.0;        // of the energy with rotation of a touched cell in the saved tally [byte]
 constexpr double kRasterCell = 3.4;        // of a touched cell in a band of a compressed raster [byte]
 constexpr double kHazardFile = 77.0;       // of a touched cell [byte]

@@ -13,6 +13,7 @@ struct Rounds {
   double above = 0.01;                ///< only cells with a larger impact probability are checked [-]
   std::uint32_t most = 100;           ///< largest number of rounds, even if the error is not reached
   bool several() const { return count > 1 || until_error.has_value(); }
+  std::uint32_t at_most() const { return until_error ? most : count; }  ///< largest number of rounds there can be
   bool operator==(const Rounds&) const = default;
 };
 

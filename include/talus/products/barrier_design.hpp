@@ -1,7 +1,10 @@
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
+
+#include "talus/products/hazard.hpp"
 
 namespace talus {
 
@@ -23,13 +26,16 @@ struct DesignBlock {
   double density = 2700.0;  ///< rho [kg/m^3]
 };
 
-/// A block where it first crosses a line.
+/// A block, or a piece of one, where it first crosses a line.
 struct LineCrossing {
-  double speed = 0.0;   ///< [m/s]
-  double height = 0.0;  ///< vertical, ground to centre [m]
-  double mass = 0.0;    ///< [kg]
-  double along = 0.0;   ///< distance from the start of the line [m]
-  double weight = 1.0;  ///< events per year that it stands for, or 1 for every block; > 0
+  double speed = 0.0;                ///< [m/s]
+  double height = 0.0;               ///< vertical, ground to centre [m]
+  double mass = 0.0;                 ///< [kg]
+  double along = 0.0;                ///< distance from the start of the line [m]
+  double weight = 1.0;               ///< events per year that it stands for, or 1 for every block; 0: it never falls
+  std::size_t block = 0;             ///< number of the block: the pieces of a block have one
+  std::uint64_t stratum = 0;         ///< of the block, as `Stake::stratum`
+  std::uint32_t stratum_blocks = 0;  ///< number of blocks in the stratum; 0: strata do not matter
 
   double energy() const { return 0.5 * mass * speed * speed; }  ///< translational [J]
 };
@@ -39,6 +45,25 @@ struct LineCrossing {
 ///
 /// @param values, weights  of equal number, not empty, any order; weights > 0;  share: 0..1
 double weighted_quantile(std::span<const double> values, std::span<const double> weights, double share);
+
+/// The weights of crossings, summed.
+struct CrossingSums {
+  double sum = 0.0;      ///< of all crossings
+  double squares = 0.0;  ///< over the blocks, of the square of the sum of their crossings
+  double overlap = 0.0;  ///< as `WeightSums::overlap`
+  double largest = 0.0;  ///< largest sum of a block
+  bool pieces = false;   ///< a block has several crossings: of its pieces
+};
+CrossingSums sums_of(std::span<const LineCrossing> crossings);
+
+/// How often blocks and pieces cross a line, or a part of it, with 95 % bounds [1/year].
+///
+/// Where no block has several crossings, `annual_frequency`: at most all events per year. Pieces cross more often than
+/// blocks fall. They come together, so that the count is of blocks, each with the sum of its crossings:
+/// `gamma_interval`, with the largest sum of a block at the line, but at least the largest weight of a block.
+///
+/// @param counted  the crossings that count; @param line  all crossings of the line
+Bounded crossings_per_year(const CrossingSums& counted, const CrossingSums& line, const WeightScale& scale);
 
 /// Number of crossings of equal weight that say as much: (sum w)^2 / sum w^2. Source: Kish, Survey Sampling (1965).
 double effective_number(std::span<const LineCrossing> crossings);
@@ -76,8 +101,8 @@ struct Stretch {
 Stretch shortest_stretch(std::span<const LineCrossing> crossings, double containment);
 
 /// The paper's rule: the stretch from the first to the last bin that is crossed by more than the share `probability` of
-/// all released blocks. It may hold far fewer than 1 - probability of the crossings: its share says how many, by
-/// weight.
+/// all released blocks, whatever their weights; the pieces of a block count once in a bin. It may hold far fewer than 1
+/// - probability of the crossings: its share says how many, by weight.
 ///
 /// @param bin       width of the bins from the start of the line [m], > 0
 /// @param released  number of all released blocks, each counting as one; `crossings` has only those that crossed
@@ -98,9 +123,9 @@ struct DesignExceeded {
 
 /// Design of the barrier along one stretch of a line, by the crossings of this stretch alone.
 struct StretchDesign {
-  Stretch stretch;                       ///< with its share of the crossings of the whole line, by weight
-  std::size_t crossings = 0;             ///< blocks
-  double weight = 0.0, squares = 0.0;    ///< sum of their weights, and of the squares
+  Stretch stretch;            ///< with its share of the crossings of the whole line, by weight
+  std::size_t crossings = 0;  ///< blocks and pieces
+  CrossingSums sums;
   double effective = 0.0;                ///< `effective_number`
   double largest_energy = 0.0;           ///< of any crossing [J]
   double largest_height = 0.0;           ///< of any crossing [m]

@@ -1,6 +1,7 @@
 #include "talus/io/gdal/crossings_file.hpp"
 
 #include <filesystem>
+#include <unordered_map>
 #include <unordered_set>
 
 #include "csv_table.hpp"
@@ -18,26 +19,51 @@ constexpr Bounds kPlace{"x", "m", "map coordinate", -1e8, 1e8};
 /// Key of the block of a row; empty if the table does not identify it.
 std::string block_of(const CsvTable& table, const CsvTable::Row& row) {
   const std::string name = table.text(row, "id") + ',' + table.text(row, "source") + ',' + table.text(row, "block");
-  return name == ",," ? std::string() : name + ',' + table.text(row, "mass_kg");
+  return name == ",," ? std::string() : name;
 }
+
+/// Key of the piece of a block: its number; its mass in tables that do not number pieces (observed crossings, runs of
+/// earlier versions), where pieces of equal mass are one.
+std::string piece_of(const CsvTable& table, const CsvTable::Row& row) {
+  const std::string& piece = table.text(row, "piece");
+  return piece.empty() ? "mass " + table.text(row, "mass_kg") : piece;
+}
+
+/// Numbers the blocks in the order of their first rows; a row without a key is a block of its own.
+class BlockNumbers {
+ public:
+  std::size_t of(const std::string& block) {
+    if (block.empty()) return count_++;
+    const auto [known, is_new] = numbers_.try_emplace(block, count_);
+    count_ += is_new ? 1U : 0U;
+    return known->second;
+  }
+  std::size_t count() const { return count_; }
+
+ private:
+  std::unordered_map<std::string, std::size_t> numbers_;
+  std::size_t count_ = 0;
+};
 
 }  // namespace
 
 CrossingTable read_crossings(const std::string& path, const std::string& screen) {
   const CsvTable table(path,
                        {"id", "source", "block", "screen", "speed_ms", "energy_kj", "total_energy_kj", "jump_height_m",
-                        "angular_velocity_rads", "mass_kg", "x", "y"},
+                        "angular_velocity_rads", "mass_kg", "x", "y", "piece"},
                        {"screen"});
   CrossingTable out;
+  BlockNumbers blocks;
   std::unordered_set<std::string> seen;
   for (const CsvTable::Row& row : table.rows()) {
     if (table.text(row, "screen") != screen) continue;
     ++out.rows;
     const std::string block = block_of(table, row);
-    if (!block.empty() && !seen.insert(block).second) continue;
-    ++out.blocks;
+    if (!block.empty() && !seen.insert(block + ',' + piece_of(table, row)).second) continue;
+    ++out.count;
     out.source.push_back(table.text(row, "source"));
     out.block.push_back(table.text(row, "block"));
+    out.number.push_back(blocks.of(block));
     const auto speed = table.number(row, "speed_ms", kSpeed), energy = table.number(row, "energy_kj", kEnergy),
                height = table.number(row, "jump_height_m", kHeight), mass = table.number(row, "mass_kg", kMass),
                x = table.number(row, "x", kPlace), y = table.number(row, "y", kPlace);
@@ -50,6 +76,7 @@ CrossingTable read_crossings(const std::string& path, const std::string& screen)
       out.energy.push_back(0.5 * *mass * *speed * *speed);
     if (x && y) out.places.emplace_back(*x, *y);
   }
+  out.blocks = blocks.count();
   return out;
 }
 

@@ -116,6 +116,12 @@ Json reliability_of(const Reliability& r) {
           {"exceeded", std::move(limits)}};
 }
 
+/// "12 blocks cross it"; with pieces "40 crossings (blocks and pieces) of 12 blocks".
+std::string crossings_text(const BarrierReport& r) {
+  if (!r.pieces()) return std::to_string(r.crossings) + " blocks cross it";
+  return std::to_string(r.crossings) + " crossings (blocks and pieces) of " + std::to_string(r.blocks) + " blocks";
+}
+
 /// " (SEL 120 kJ, h_i 3.2 m)" of a design that was written; empty if it does not say.
 std::string written_values(const Json& design) {
   std::vector<std::string> texts;
@@ -153,13 +159,15 @@ std::optional<std::string> write_barrier(const std::filesystem::path& folder, co
 }
 
 std::string barrier_text(const BarrierReport& r) {
-  std::string text = "screen " + r.screen + ": " + std::to_string(r.crossings) + " blocks cross it, " +
-                     percent(static_cast<double>(r.crossings) / r.released) + " of those released";
+  std::string text = "screen " + r.screen + ": " + crossings_text(r) + ", " +
+                     percent(static_cast<double>(r.blocks) / r.released) + " of those released";
   if (r.per_year) text += "; " + with_digits(r.per_year->value, 3) + " per year " + between(*r.per_year);
-  text += "\nevery block counts " + r.weighting + "\n\ndesign values\n";
+  text += std::string("\nevery block") + (r.pieces() ? " and piece" : "") + " counts " + r.weighting +
+          "\n\ndesign values\n";
   for (const DesignRow& row : design_rows(r))
     text += "  " + cell(row.name, 8) + cell(with_digits(row.value, 4) + " " + row.unit, 14) + row.from + "\n";
-  text += "\nprobability that a block exceeds them, by " + r.values + " [95 %]\n";
+  text += std::string("\nprobability that a block") + (r.pieces() ? " or piece" : "") + " exceeds them, by " +
+          r.values + " [95 %]\n";
   for (const Reliability& quantity : r.reliability) text += reliability_text(quantity);
   text += stretches_text(r);
   text += "\nwidth\n  for a containment of " + percent(r.containment) + "  " + stretch_text(r.shortest) + "\n";
@@ -177,6 +185,7 @@ std::string barrier_json(const BarrierReport& r) {
   json["screen"] = r.screen;
   json["released"] = r.released;
   json["crossings"] = r.crossings;
+  json["blocks"] = r.blocks;
   json["weighting"] = r.weighting;
   if (!r.frequency.file.empty()) json["frequency"] = json_of(r.frequency, r.events_per_year);
   json["effective_crossings"] = r.effective;

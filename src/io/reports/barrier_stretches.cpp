@@ -16,10 +16,15 @@ std::string kilojoules(double joules) {
   return with_digits(joules * 1e-3, 4);
 }
 
-std::string stretch_line(const StretchRow& row) {
+/// Width of the column of crossings.
+std::size_t crossings_width(const BarrierReport& r) {
+  return r.pieces() ? 11 : 9;
+}
+
+std::string stretch_line(const BarrierReport& r, const StretchRow& row) {
   const StretchDesign& s = row.values;
   std::string text = right(with_decimals(s.stretch.from, 1), 10) + right(with_decimals(s.stretch.to, 1), 10) +
-                     right(std::to_string(s.crossings), 9) + right(percent(s.stretch.share), 10);
+                     right(std::to_string(s.crossings), crossings_width(r)) + right(percent(s.stretch.share), 10);
   if (row.per_year) text += right(with_digits(row.per_year->value, 3), 10);
   text += right(kilojoules(s.largest_energy), 11) + right(with_digits(s.largest_height, 3), 11);
   if (!s.design || !s.beyond)
@@ -103,15 +108,16 @@ std::string stretches_text(const BarrierReport& r) {
   if (r.stretches.empty()) return "";
   std::string text = "\ndesign by stretch, each of " + with_digits(r.longest, 4) +
                      " m at most (--stretch) and by its own crossings\n" + right("from m", 10) + right("to m", 10) +
-                     right("blocks", 9) + right("share", 10) + (r.per_year ? right("1/year", 10) : "") +
-                     right("largest kJ", 11) + right("largest m", 11) + right("SEL kJ", 10) + right("MEL kJ", 10) +
-                     right("h_i m", 8) + right("above SEL", 11) + right("above h_i", 11) + "\n";
+                     right(r.pieces() ? "crossings" : "blocks", crossings_width(r)) + right("share", 10) +
+                     (r.per_year ? right("1/year", 10) : "") + right("largest kJ", 11) + right("largest m", 11) +
+                     right("SEL kJ", 10) + right("MEL kJ", 10) + right("h_i m", 8) + right("above SEL", 11) +
+                     right("above h_i", 11) + "\n";
   std::size_t empty = 0;
   for (const StretchRow& row : r.stretches)
     if (row.values.crossings == 0)
       ++empty;
     else
-      text += stretch_line(row);
+      text += stretch_line(r, row);
   if (empty > 0)
     text += "  nothing crosses the other " + std::to_string(empty) + " stretches" +
             (r.without_height > 0.0 ? ": not all of them are safe, see the note below" : "") + "\n";

@@ -37,6 +37,7 @@ BarrierPart part_of(const Json& json) {
   part.screen = json.at("screen").get<std::string>();
   part.weighting = json.value("weighting", "");
   part.crossings = number_of(json, "crossings");
+  part.blocks = number_of(json, "blocks", part.crossings);  // not in earlier designs
   for (const Json& one : json.at("design"))
     part.design.push_back(
         {one.at("name").get<std::string>(), one.value("unit", ""), one.value("from", ""), number_of(one, "value")});
@@ -131,9 +132,11 @@ Markup limits_table(const BarrierPart& part) {
 }
 
 Markup barrier_html(const BarrierPart& part) {
+  const bool pieces = part.crossings > part.blocks;
   Markup html = "<h3>Barrier at "_html + part.screen + "</h3>\n<p>" + grouped(part.crossings) +
-                " blocks cross the line; every block counts " + part.weighting +
-                ".</p>\n<table><tr><th>design value</th><th></th><th>from</th></tr>\n";
+                (pieces ? " crossings (blocks and pieces) of " + grouped(part.blocks) + " blocks; every block and piece"
+                        : std::string(" blocks cross the line; every block")) +
+                " counts " + part.weighting + ".</p>\n<table><tr><th>design value</th><th></th><th>from</th></tr>\n";
   for (const BarrierPart::Value& value : part.design)
     html += "<tr><td>"_html + value.name + "</td><td class='n'>" + with_digits(value.value, 4) + " " + value.unit +
             "</td><td>" + value.from + "</td></tr>\n";

@@ -23,7 +23,7 @@ struct BarrierPart {
     double from = 0.0, to = 0.0, crossings = 0.0, sel = 0.0, mel = 0.0, height = 0.0;  ///< 0: too few for a design
   };
   std::string screen, weighting;
-  double crossings = 0.0;
+  double crossings = 0.0, blocks = 0.0;  ///< fewer blocks: pieces of them cross, too
   std::vector<Value> design;
   std::vector<Limit> limits;
   std::vector<Stretch> stretches;

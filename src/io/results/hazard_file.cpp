@@ -21,7 +21,8 @@ namespace {
 constexpr unsigned kTerrain = 1, kTouched = 2, kExit = 4;
 
 constexpr const char* kMark = "talus-hazard";
-constexpr int kFormat = 2;
+constexpr int kFormat = 3;
+constexpr int kNarrowFormat = 2;  // read as well: sums of lengths in 64 bits, no room for rounds
 constexpr std::size_t kMostThresholds = 32;
 constexpr double kMostPerByte = 1040.0;  // bytes that one byte of a gzip file can hold
 
@@ -44,6 +45,7 @@ Json json_of(const LoadedScenario& loaded, const HazardRules& rules, std::int64_
           {"largest", scale.largest},
           {"trajectories", scale.trajectories},
           {"equal", scale.equal},
+          {"room", scale.room},
           {"left", left_weight},
           {"largest_diameter", scale.largest_diameter},
           {"passages_below", loaded.scenario.output.passages_below}};
@@ -59,7 +61,8 @@ bool is_possible(const HazardHeader& header) {
          std::ranges::is_sorted(thresholds) &&
          std::ranges::all_of(thresholds, [&](double kj) { return within("output.energy_thresholds", kj); }) &&
          scale.unit > 0.0 && scale.square_unit > 0.0 && scale.total >= 0.0 && std::isfinite(scale.total) &&
-         header.left_weight >= 0 && within("output.passages_below", header.passages_below);
+         scale.room >= 1.0 && std::isfinite(scale.room) && header.left_weight >= 0 &&
+         within("output.passages_below", header.passages_below);
 }
 
 HazardHeader header_of(const std::string& text) {
@@ -82,6 +85,7 @@ HazardHeader header_of(const std::string& text) {
                         json.at("equal"),
                         0.0};
   header.rules.scale.largest_diameter = json.at("largest_diameter");
+  header.rules.scale.room = json.value("room", 1.0);
   if (!is_possible(header)) throw std::out_of_range("a number");
   return header;
 }
@@ -94,10 +98,15 @@ void put_cell(HazardWriter& out, const HazardCell& cell) {
   for (const std::int64_t overlap : cell.overlaps()) out.put(overlap);
   out.put(static_cast<std::uint32_t>(cell.lengths().size()));
   for (const WeightedLengths& sums : cell.lengths())
-    out.put(sums.length), out.put(sums.by_diameter), out.put(sums.squares);
+    for (const WideSum& sum : {sums.length, sums.by_diameter, sums.squares}) out.put(sum.low), out.put(sum.high);
 }
 
-HazardCell get_cell(HazardReader& in, const HazardRules& rules) {
+WideSum get_sum(HazardReader& in, int format) {
+  const auto low = in.get<std::uint64_t>();
+  return {low, format == kNarrowFormat ? 0 : in.get<std::uint64_t>()};
+}
+
+HazardCell get_cell(HazardReader& in, const HazardRules& rules, int format) {
   const auto first = in.get<std::int32_t>();
   std::vector<HazardCell::Bin> bins(in.get_count(static_cast<std::size_t>(rules.bins.count())));
   if (first < 0 || first + static_cast<std::int64_t>(bins.size()) > rules.bins.count()) in.fail();
@@ -105,19 +114,26 @@ HazardCell get_cell(HazardReader& in, const HazardRules& rules) {
   std::vector<std::int64_t> overlaps(in.get_count(rules.levels()));
   for (std::int64_t& overlap : overlaps) overlap = in.get<std::int64_t>();
   std::vector<WeightedLengths> lengths(in.get_count(rules.levels()));
-  for (WeightedLengths& sums : lengths) sums = {in.get<std::int64_t>(), in.get<std::int64_t>(), in.get<std::int64_t>()};
+  for (WeightedLengths& sums : lengths) sums = {get_sum(in, format), get_sum(in, format), get_sum(in, format)};
   return HazardCell::restored(first, bins, overlaps, lengths);
 }
 
-/// Reads the mark, the format, the length of the header, and the header.
-HazardHeader get_header(HazardReader& in) {
+/// Reads the mark and the format.
+int get_format(HazardReader& in) {
   std::string mark(std::strlen(kMark), ' ');
   in.get(mark.data(), mark.size());
   if (mark != kMark) throw InputError(in.name() + ": is no file that talus run wrote; give the folder of a run");
-  if (const auto format = in.get<std::int32_t>(); format != kFormat)
+  const auto format = in.get<std::int32_t>();
+  if (format != kFormat && format != kNarrowFormat)
     throw InputError(in.name() + ": was written by " + (format > kFormat ? "a later" : "an earlier") +
                      " version of Talus (format " + std::to_string(format) + ", this one reads " +
-                     std::to_string(kFormat) + "); use that version, or run again");
+                     std::to_string(kNarrowFormat) + " and " + std::to_string(kFormat) +
+                     "); use that version, or run again");
+  return format;
+}
+
+/// Reads the length of the header, and the header.
+HazardHeader get_header(HazardReader& in) {
   std::string text(in.get_count(1U << 20U), ' ');
   in.get(text.data(), text.size());
   try {
@@ -156,6 +172,7 @@ void write_hazard(const std::filesystem::path& file, const LoadedScenario& loade
 HazardHeader read_hazard(const std::filesystem::path& file, const std::function<void(const HazardHeader&)>& begin,
                          const std::function<void(const HazardRow&)>& visit) {
   HazardReader in(file);
+  const int format = get_format(in);
   const HazardHeader header = get_header(in);
   const double least =
       static_cast<double>(header.grid.columns) * header.grid.rows;  // bytes: each cell has one byte at least
@@ -169,7 +186,8 @@ HazardHeader read_hazard(const std::filesystem::path& file, const std::function<
     for (const std::uint8_t state : states) cells.terrain.push_back((state & kTerrain) != 0);
     for (std::size_t column = 0; column < states.size(); ++column)
       if ((states[column] & kTouched) != 0)
-        cells.touched.push_back({static_cast<int>(column), get_cell(in, header.rules), (states[column] & kExit) != 0});
+        cells.touched.push_back(
+            {static_cast<int>(column), get_cell(in, header.rules, format), (states[column] & kExit) != 0});
     visit(cells);
   }
   in.finish();

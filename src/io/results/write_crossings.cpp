@@ -15,7 +15,7 @@ CrossingsWriter::CrossingsWriter(const std::filesystem::path& file, const Scenar
       south_(geo.north - scenario.surface.grid().rows * geo.cell_y) {
   if (!file_) fail();
   for (const Screen& screen : scenario.screens) screens_.push_back(csv_field(screen.id));
-  put("source,block,screen,speed_ms,energy_kj,total_energy_kj,jump_height_m,angular_velocity_rads,mass_kg,x,y\n");
+  put("source,block,screen,speed_ms,energy_kj,total_energy_kj,jump_height_m,angular_velocity_rads,mass_kg,x,y,piece\n");
 }
 
 void CrossingsWriter::write(std::span<const Crossing> crossings) {
@@ -29,7 +29,7 @@ void CrossingsWriter::write(std::span<const Crossing> crossings) {
       (text += ',') += with_digits(value, 6);
     (text += ',') += with_decimals(west_ + c.x, 3);
     (text += ',') += with_decimals(south_ + c.y, 3);
-    text += '\n';
+    text += ',' + std::to_string(c.piece) + '\n';
   }
   put(text);
 }

@@ -1,8 +1,10 @@
 #include "talus/simulate/scenario/frequency.hpp"
 
 #include <algorithm>
+#include <bit>
 
 #include "talus/base/error.hpp"
+#include "talus/base/expect.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/block_class.hpp"
 #include "talus/simulate/scenario/block_sizes.hpp"
@@ -11,7 +13,6 @@ namespace talus {
 namespace {
 
 constexpr int kBits = 62;                    // of the sum over all trajectories of all rounds
-constexpr int kRoundBits = 14;               // of the number of rounds
 constexpr std::int64_t kLeastWeight = 1024;  // below it the unit would change a weight by more than 0.05 %
 
 /// The inputs that give frequencies.
@@ -169,8 +170,9 @@ double true_area(const Raster<float>& heights, int column, int row) {
   return grid.cell_x * grid.cell_y * std::sqrt(1.0 + east * east + north * north);  // 1 / cos(slope)
 }
 
-std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, bool further_rounds) {
-  const int bits = kBits - (further_rounds ? kRoundBits : 0);
+std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, std::uint32_t rounds) {
+  TALUS_EXPECT(rounds >= 1, "there is one round at least");
+  const int room_bits = std::bit_width(rounds - 1), bits = kBits - room_bits;  // of the rounds, of the sum over one
   const Sources found = sources_of(s);
   check_contradictions(s, found);
   if (found.count() == 0) return std::nullopt;
@@ -189,6 +191,7 @@ std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, bool further_r
   out.classes_ = factors.size();
   scale.trajectories = s.released();
   scale.largest_diameter = diameters_of(s).high;
+  scale.room = std::ldexp(1.0, room_bits);
   double most = 0.0, squares = 0.0;  // bounds of the sums over all trajectories
   for (const double cell : cells) {
     const double weight = cell * largest_factor / s.trajectories;

@@ -71,9 +71,9 @@ void ScreenFinder::cross(const Release& release, const Block& body, const Vertex
     const double share = side_from / (side_from - side_to);
     const Motion m = motion_between(from, to, share);
     const double ground = surface_.height(m.position.x(), m.position.y()).value_or(m.position.z());
-    crossings.push_back({release.source, release.block, s.screen, m.position.x(), m.position.y(), m.velocity.norm(),
-                         from.event == Event::Slide ? 0.0 : std::max(0.0, m.position.z() - ground), m.spin.norm(),
-                         body.mass, body.diameter, s.along + line.norm() * (low / (low - high)), m.time,
+    crossings.push_back({release.source, release.block, s.screen, release.piece, m.position.x(), m.position.y(),
+                         m.velocity.norm(), from.event == Event::Slide ? 0.0 : std::max(0.0, m.position.z() - ground),
+                         m.spin.norm(), body.mass, body.diameter, s.along + line.norm() * (low / (low - high)), m.time,
                          std::atan2(-m.velocity.z(), m.velocity.head<2>().norm()),
                          std::atan2(std::abs(way.dot(line)), std::abs(cross_product(way, line)))});
   }

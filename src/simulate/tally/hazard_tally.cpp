@@ -14,8 +14,8 @@ double squares_per_unit(const WeightScale& scale) {
   return scale.unit * (scale.unit / scale.square_unit);
 }
 
-std::int64_t rounded(double value) {
-  return static_cast<std::int64_t>(value + 0.5);
+std::uint64_t rounded(double value) {
+  return static_cast<std::uint64_t>(value + 0.5);
 }
 
 }  // namespace
@@ -92,13 +92,13 @@ void HazardCell::add_lengths(const HazardRules& rules, std::span<const float> le
   if (stake.weight == 0) return;
   if (lengths_.empty()) lengths_.resize(rules.levels());
   const auto weight = static_cast<double>(stake.weight);
-  const double square = weight * weight * squares_per_unit(rules.scale);
+  const double square = weight * weight * squares_per_unit(rules.scale), room = rules.scale.room;
   for (std::size_t level = 0; level < lengths.size() && lengths[level] > 0.0F; ++level) {
     const double length = lengths[level];
     WeightedLengths& sums = lengths_[level];
-    sums.length += rounded(weight * length / WeightedLengths::kLengthUnit);
-    sums.by_diameter += rounded(weight * length * diameter / WeightedLengths::kDiameterUnit);
-    sums.squares += static_cast<std::int64_t>(std::ceil(square * length / WeightedLengths::kLengthUnit));
+    sums.length += rounded(weight * length * room / WeightedLengths::kLengthUnit);
+    sums.by_diameter += rounded(weight * length * diameter * room / WeightedLengths::kDiameterUnit);
+    sums.squares += static_cast<std::uint64_t>(std::ceil(square * length * room / WeightedLengths::kLengthUnit));
   }
 }
 
@@ -113,9 +113,9 @@ void HazardCell::merge(const HazardCell& other) {
   for (std::size_t i = 0; i < other.overlaps_.size(); ++i) add_checked(overlaps_[i], other.overlaps_[i]);
   lengths_.resize(std::max(lengths_.size(), other.lengths_.size()));
   for (std::size_t i = 0; i < other.lengths_.size(); ++i) {
-    add_checked(lengths_[i].length, other.lengths_[i].length);
-    add_checked(lengths_[i].by_diameter, other.lengths_[i].by_diameter);
-    add_checked(lengths_[i].squares, other.lengths_[i].squares);
+    lengths_[i].length += other.lengths_[i].length;
+    lengths_[i].by_diameter += other.lengths_[i].by_diameter;
+    lengths_[i].squares += other.lengths_[i].squares;
   }
 }
 

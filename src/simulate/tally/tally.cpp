@@ -285,7 +285,7 @@ std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const 
     if (i + 8 < groups.size()) {
       const std::size_t soon = groups[i + 8].record;
       fetch(region.lengths.data() + soon * energy_thresholds(), sizeof(std::int64_t));
-      if (hazard_) fetch(region.hazards[soon].lengths().data(), 128);
+      if (hazard_) fetch(region.hazards[soon].lengths().data(), 192);
       if (keep_total_) fetch(region.totals[soon].histogram.counts(), 128);
     }
     CellRecord& record = region.records[groups[i].record];

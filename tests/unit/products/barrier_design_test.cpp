@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "talus/base/random.hpp"
 #include "talus/base/sample.hpp"
@@ -19,9 +20,10 @@ std::vector<LineCrossing> hundred(double speed_unit, double height_unit) {
   return crossings;
 }
 
+/// Each a block of its own.
 std::vector<LineCrossing> at_places(const std::vector<double>& places) {
   std::vector<LineCrossing> crossings;
-  for (const double place : places) crossings.push_back({1.0, 1.0, 1.0, place, 1.0});
+  for (const double place : places) crossings.push_back({1.0, 1.0, 1.0, place, 1.0, crossings.size()});
   return crossings;
 }
 
@@ -135,6 +137,82 @@ TEST(StretchAbove, ThePapersRule) {
   EXPECT_EQ(s->share, 1.0);
   EXPECT_EQ(stretch_above(at_places(places), 5.0, 1000.0, 0.0115)->from, 30.0);
   EXPECT_FALSE(stretch_above(at_places(places), 5.0, 1000.0, 0.012).has_value());
+}
+
+/// Eleven pieces of ten blocks in a bin, and eleven blocks in another: of 1000 released blocks only the second has more
+/// than 1 %. A weight of 0 changes nothing.
+TEST(StretchAbove, CountsBlocksNotPieces) {
+  std::vector<LineCrossing> crossings = at_places(std::vector<double>(22, 12.0));
+  for (std::size_t i = 11; i < 22; ++i) crossings[i].along = 31.0;
+  for (LineCrossing& crossing : crossings) crossing.weight = crossing.along > 20.0 ? 0.0 : 1.0;
+  EXPECT_EQ(stretch_above(crossings, 5.0, 1000.0, 0.01)->from, 10.0);
+  crossings[10].block = 0;
+  const auto s = stretch_above(crossings, 5.0, 1000.0, 0.01);
+  ASSERT_TRUE(s.has_value());
+  EXPECT_EQ(s->from, 30.0);
+  EXPECT_EQ(s->to, 35.0);
+  EXPECT_EQ(s->share, 0.0);
+}
+
+/// By hand: a block of two pieces of weight 2 and one of weight 3, both of a stratum of 4 blocks; a block of weight 5,
+/// alone in its stratum. Squares 4^2 + 3^2 + 5^2; overlap ((4 + 3)^2 - 4^2 - 3^2) / 3.
+TEST(CrossingSums, ByHand) {
+  std::vector<LineCrossing> crossings;
+  for (const auto& [weight, block, stratum, blocks] :
+       {std::tuple{2.0, 0U, 0U, 4U}, {3.0, 1U, 0U, 4U}, {5.0, 2U, 1U, 1U}, {2.0, 0U, 0U, 4U}})
+    crossings.push_back({1.0, 1.0, 1.0, 0.0, weight, block, stratum, blocks});
+  const CrossingSums sums = sums_of(crossings);
+  EXPECT_EQ(sums.sum, 12.0);
+  EXPECT_EQ(sums.squares, 50.0);
+  EXPECT_EQ(sums.overlap, 8.0);
+  EXPECT_EQ(sums.largest, 5.0);
+  EXPECT_TRUE(sums.pieces);
+  crossings.pop_back();
+  EXPECT_FALSE(sums_of(crossings).pieces);
+}
+
+/// 200 blocks of 1/200 event per year.
+WeightScale of_200_blocks() {
+  return {0x1p-40, 0x1p-60, 1.0, std::llround(0.005 * 0x1p40), 200, true};
+}
+
+/// Clopper-Pearson of 10 in 200: 0.0242 to 0.0900 (their tables).
+TEST(CrossingsPerYear, OfWholeBlocksIsTheirAnnualFrequency) {
+  std::vector<LineCrossing> crossings = at_places(std::vector<double>(10, 1.0));
+  for (LineCrossing& crossing : crossings) crossing.weight = 0.005;
+  const CrossingSums sums = sums_of(crossings);
+  const Bounded often = crossings_per_year(sums, sums, of_200_blocks());
+  EXPECT_NEAR(often.value, 0.05, 1e-12);
+  EXPECT_NEAR(often.low, 0.0242, 5e-5);
+  EXPECT_NEAR(often.high, 0.0900, 5e-5);
+}
+
+/// Numbers of pieces at random, of 100 blocks that fall once a year together: the bounds hold the true mean.
+TEST(CrossingsPerYear, BoundsOfPiecesCoverAtLeast95Percent) {
+  std::mt19937_64 engine(3);
+  constexpr int kBlocks = 100, kTrials = 2000;
+  const WeightScale scale{0x1p-40, 0x1p-60, 1.0, std::llround(0.01 * 0x1p40), kBlocks, true};
+  struct Breaking {
+    int pieces;  // together, or none
+    int times;   // of them, each by chance
+    double chance;
+  };
+  for (const Breaking& b : {Breaking{1, 5, 0.1}, {1, 5, 0.9}, {17, 1, 0.05}, {17, 1, 0.2}, {17, 1, 0.9}, {3, 4, 0.3}}) {
+    const double truth = b.pieces * b.times * b.chance;
+    int misses = 0;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      std::binomial_distribution<int> draw(b.times, b.chance);
+      std::vector<LineCrossing> crossings;
+      for (std::size_t block = 0; block < kBlocks; ++block)
+        for (int left = b.pieces * draw(engine); left > 0; --left)
+          crossings.push_back({1.0, 1.0, 1.0, 0.0, 1.0 / kBlocks, block, block / 50, 50});
+      const CrossingSums sums = sums_of(crossings);
+      const Bounded often = crossings_per_year(sums, sums, scale);
+      EXPECT_EQ(often.value, sums.sum);
+      misses += often.low > truth || often.high < truth ? 1 : 0;
+    }
+    EXPECT_LE(misses / double{kTrials}, 0.05 + 5.0 * std::sqrt(0.05 * 0.95 / kTrials)) << b.pieces << ' ' << b.chance;
+  }
 }
 
 /// 86 of 100 blocks cross in one bin of 5 m, the others one to a bin: the paper's rule finds that bin alone and says

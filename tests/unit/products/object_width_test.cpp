@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "support/scenes.hpp"
+#include "support/scenarios.hpp"
 #include "talus/products/hazard_maps.hpp"
 
 namespace talus {
@@ -58,6 +58,43 @@ TEST(HitsOfObject, BoundsCoverStraightPathsAtRandom) {
     }
     EXPECT_LE(missed / double{kDraws}, 0.05 + 5.0 * std::sqrt(0.05 * 0.95 / kDraws)) << mean;
   }
+}
+
+/// A block of 2.5e-6 events per year beside one of 250, which passes a cell of 2 m: w L and w L D to 0.05 %, however
+/// many rounds there may be.
+TEST(DensitiesOf, RareBlocksAreRoundedAsLittleInRoundsAsInOne) {
+  Scenario s = test::scenario_on(test::terrain(test::grid_of(8, 8, 2.0, 2.0), [](double, double) { return 0.0; }));
+  s.features.assign(2, SourceFeature{});
+  s.features[0].frequency = 1000.0;
+  s.features[1].frequency = 1e-5;
+  s.sources = {{0, 3.0, 3.0, false}, {1, 9.0, 9.0, false}};
+  s.trajectories = 4;
+  for (const std::uint32_t rounds : {1U, 2U, 100U, 10'000U}) {
+    const AnnualWeights weights = AnnualWeights::of(s, rounds).value();
+    const HazardRules rules{EnergyBins({30.0}), weights.scale()};
+    HazardCell cell;
+    for (const float length : {0.3F, 1.1F, 2.0F})
+      cell.add_lengths(rules, std::vector<float>{length, 0.0F}, {weights.weight(s, 1, 0), 0, 4}, 0.5);
+    const PassageDensity density = densities_of(cell, rules.scale, 4.0).front();
+    EXPECT_NEAR(density.length / (2.5e-6 * 3.4 / 4.0), 1.0, 5e-4) << rounds;
+    EXPECT_NEAR(density.by_diameter / (2.5e-6 * 1.7 / 4.0), 1.0, 5e-4) << rounds;
+  }
+}
+
+/// The sum of all rounds fits: each adds a block that is all events of the year and stays 1 km in the cell.
+TEST(DensitiesOf, ManyRoundsOfLongWaysFit) {
+  Scenario s = test::scenario_on(test::terrain(test::grid_of(8, 8, 100.0, 100.0), [](double, double) { return 0.0; }));
+  s.sources.assign(1, {0, 150.0, 150.0, false});
+  s.features[0].frequency = 3.0;
+  s.trajectories = 1;
+  const AnnualWeights weights = AnnualWeights::of(s, 10'000).value();
+  const HazardRules rules{EnergyBins({30.0}), weights.scale()};
+  HazardCell cell, all;
+  cell.add_lengths(rules, std::vector<float>{1000.0F, 0.0F}, {weights.weight(s, 0, 0), 0, 1}, 50.0);
+  for (int round = 0; round < 10'000; ++round) all.merge(cell);
+  const PassageDensity density = densities_of(all, rules.scale, 1e4).front();
+  EXPECT_NEAR(density.length / (10'000 * 3.0 * 1000.0 / 1e4), 1.0, 1e-9);
+  EXPECT_NEAR(density.by_diameter / (10'000 * 3.0 * 50.0 * 1000.0 / 1e4), 1.0, 1e-9);
 }
 
 /// Over all places across a flow of 0.5 blocks per year, the hits add up to 0.5 (W + D), whatever the cell.

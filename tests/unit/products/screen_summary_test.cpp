@@ -8,7 +8,7 @@ namespace talus {
 namespace {
 
 Crossing crossing(std::uint32_t block, double speed) {
-  Crossing c{0, block, 1, 0, 0, speed, 2.0, 1.0, 1000.0, 1.0, 30.0, 0.0};
+  Crossing c{0, block, 1, 0, 0, 0, speed, 2.0, 1.0, 1000.0, 1.0, 30.0, 0.0};
   c.dip = radians(30.0);
   c.incidence = radians(45.0);
   return c;

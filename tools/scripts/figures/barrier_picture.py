@@ -3,8 +3,9 @@
 
   tools/scripts/figures/barrier_picture.py OUT --screen ID -o picture.png [--bin 10]
 
-OUT is a folder of `talus run` in which `talus barrier OUT --screen ID` has been run. Every block counts once, with its first
-crossing. Bins with fewer than 20 blocks show no percentile. Grey: the designs by stretch. Needs numpy and matplotlib.
+OUT is a folder of `talus run` in which `talus barrier OUT --screen ID` has been run. Every block, or piece of a broken one,
+counts once, with its first crossing. Bins with fewer than 20 blocks show no percentile. Grey: the designs by stretch. Needs
+numpy and matplotlib.
 """
 import argparse
 import csv
@@ -52,9 +53,9 @@ def first_crossings(path, screen):
     seen, rows = set(), []
     with open(path, encoding="utf-8", newline="") as file:
         for row in csv.DictReader(file):
-            block = (row["source"], row["block"])
-            if row["screen"] == screen and block not in seen:
-                seen.add(block)
+            piece = (row["source"], row["block"], row.get("piece") or row["mass_kg"])  # earlier runs do not number pieces
+            if row["screen"] == screen and piece not in seen:
+                seen.add(piece)
                 rows.append([float(row[k]) for k in ("x", "y", "energy_kj", "jump_height_m")])
     return np.array(rows).T
 

@@ -37,8 +37,9 @@ struct BarrierReport {
   std::string screen;
   double without_height = 0.0;      ///< share of the line where the DEM has no height, and no block can cross
   double released = 0.0;            ///< trajectories of the run
-  std::size_t crossings = 0;        ///< blocks that crossed the screen
-  std::string weighting;            ///< what each block counts: "alike: ...", "by the annual frequency ..."
+  std::size_t crossings = 0;        ///< of the screen by blocks and pieces
+  std::size_t blocks = 0;           ///< blocks of which something crossed
+  std::string weighting;            ///< what each block and piece counts: "alike: ...", "by the annual frequency ..."
   GivenFrequencies frequency;       ///< another weighting than the run's
   double events_per_year = 0.0;     ///< of all blocks of the run; 0 where all count alike
   double effective = 0.0;           ///< number of crossings of equal weight that say as much
@@ -56,6 +57,8 @@ struct BarrierReport {
   double longest = 30.0;         ///< of a stretch [m]
   std::vector<StretchRow> stretches;
   std::vector<std::string> notes;
+
+  bool pieces() const { return crossings > blocks; }  ///< pieces of broken blocks cross, too
 };
 
 /// The report as a page for people, as JSON and as a table of one row per value. Energies in kJ.

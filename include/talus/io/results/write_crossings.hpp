@@ -11,12 +11,14 @@
 
 namespace talus::io {
 
-/// Writes `screens.csv`: one row for every time a block crossed a screen, in the order (source, block, time).
+/// Writes `screens.csv`: one row for every time a block or a piece of it crossed a screen, in the order (source, block,
+/// piece, time).
 ///
-///   source,block,screen,speed_ms,energy_kj,total_energy_kj,jump_height_m,angular_velocity_rads,mass_kg,x,y
+///   source,block,screen,speed_ms,energy_kj,total_energy_kj,jump_height_m,angular_velocity_rads,mass_kg,x,y,piece
 ///
 /// speed_ms is the speed in space; energy_kj = 1/2 m v^2, total_energy_kj adds the rotation 1/2 (2/5 m R^2) w^2. Six
-/// digits; x and y in map coordinates, to the millimetre. Throws std::runtime_error on a full disk.
+/// digits; x and y in map coordinates, to the millimetre. piece: 0 is the block or its largest piece. Throws
+/// std::runtime_error on a full disk.
 class CrossingsWriter {
  public:
   CrossingsWriter(const std::filesystem::path& file, const Scenario& scenario, const GeoReference& geo);

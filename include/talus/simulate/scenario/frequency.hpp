@@ -21,24 +21,26 @@ struct WeightScale {
   std::uint64_t trajectories = 0;  ///< number of trajectories
   bool equal = true;               ///< all have the same weight
   double largest_diameter = 0.0;   ///< of the blocks of the scenario [m]
+  double room = 1.0;               ///< number of rounds that the units leave room for, a power of two
 
   double largest_weight() const { return static_cast<double>(largest) * unit; }  ///< [1/year]
   bool operator==(const WeightScale&) const = default;
 };
 
 /// Events per year of every source cell and class of blocks, as whole multiples of a unit: sums over trajectories are
-/// equal in any order. The unit is a power of two, chosen so that the sum over all trajectories stays below 2^62; it
-/// follows from the scenario alone, so that parts of one plan have the same.
+/// equal in any order. The unit is a power of two, chosen so that the sum over all trajectories of all rounds stays
+/// below 2^62; it follows from the scenario and the number of rounds asked for, so that parts of one plan have the
+/// same.
 ///
 /// A source cell releases n blocks, and a class has the share p of them. A trajectory of the class stands for
 /// (events per year of cell and class) / (n p). docs/hazard.md, "Weights".
 class AnnualWeights {
  public:
-  /// @param further_rounds  leaves room for the sum over up to 10 000 rounds
+  /// @param rounds  most rounds that are summed, >= 1: they take bits from the weights, ceil(log2(rounds))
   /// @return nothing if the scenario has no frequency, or 0 everywhere
   /// Throws InputError if frequencies contradict each other or are incomplete, or if one is so small beside the others
   /// that the unit would change it by more than 0.05 %.
-  static std::optional<AnnualWeights> of(const Scenario& scenario, bool further_rounds = false);
+  static std::optional<AnnualWeights> of(const Scenario& scenario, std::uint32_t rounds = 1);
 
   /// Weight of block `block` of a source cell [units].
   std::int64_t weight(const Scenario& scenario, std::uint32_t source, std::uint32_t block) const;

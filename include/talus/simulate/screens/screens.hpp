@@ -5,9 +5,10 @@
 
 namespace talus {
 
-/// A block that crossed a screen.
+/// A block, or a piece of it, that crossed a screen.
 struct Crossing {
   std::uint32_t source, block, screen;  ///< index of the screen in the scenario
+  std::uint32_t piece;                  ///< `Release::piece`: 0 is the block or its largest piece
   double x, y;                          // [m, local]
   double speed, height, spin;           // [m/s], vertical above the terrain [m], [rad/s]
   double mass, diameter;                // [kg], [m]

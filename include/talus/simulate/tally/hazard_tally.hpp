@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "talus/base/scratch.hpp"
+#include "talus/base/wide_sum.hpp"
 #include "talus/simulate/scenario/frequency.hpp"
 #include "talus/simulate/tally/bytes.hpp"
 #include "talus/simulate/tally/energy_bins.hpp"
@@ -19,13 +20,17 @@ struct HazardRules {
 
 /// Sums over the passages of a cell, each weighted by its annual frequency w: of its length L in plan, of L D with the
 /// diameter D of the block, and of w L. Sums of parts of paths: they add up over cells, whatever the size of the cells.
+///
+/// The more rounds the weights leave room for, the coarser are their units, and the finer those of the lengths: a
+/// passage is rounded as in a run of one round. It has less than 2^63 units: a weight has up to 2^62 / room, and no
+/// passage of a cell is longer than 2 km. So 128 bits hold the sum of any number of passages.
 struct WeightedLengths {
-  static constexpr double kLengthUnit = 0x1p10;    ///< [m]: a weight has up to 2^62 units, and the sums must fit
-  static constexpr double kDiameterUnit = 0x1p16;  ///< [m^2]
+  static constexpr double kLengthUnit = 0x1p10;    ///< [m]
+  static constexpr double kDiameterUnit = 0x1p16;  ///< [m^2]: 2 km of a block of 50 m
 
-  std::int64_t length = 0;       ///< [WeightScale::unit * kLengthUnit]
-  std::int64_t by_diameter = 0;  ///< [WeightScale::unit * kDiameterUnit]
-  std::int64_t squares = 0;      ///< [square_unit * kLengthUnit]
+  WideSum length;       ///< [WeightScale::unit * kLengthUnit / WeightScale::room]
+  WideSum by_diameter;  ///< [WeightScale::unit * kDiameterUnit / WeightScale::room]
+  WideSum squares;      ///< [square_unit * kLengthUnit / WeightScale::room]
   bool operator==(const WeightedLengths&) const = default;
 };
 

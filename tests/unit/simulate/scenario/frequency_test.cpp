@@ -60,6 +60,27 @@ TEST(AnnualWeights, AFeaturesFrequencyIsDividedOverItsCells) {
   EXPECT_LT(1e9 * scale.unit, 1e-9);            // and 1e-9 events per year are very many units
 }
 
+/// The weights of all blocks of all rounds stay below 2^62 units, of which one round is 2^62 / 2^ceil(log2(rounds)).
+TEST(AnnualWeights, RoundsTakeTheBitsThatTheyNeed) {
+  Scenario s = plane(30.0, {0, 0, 0, 1});
+  s.features[0].frequency = 0.3;
+  s.features[1].frequency = 2.0;
+  const WeightScale one = AnnualWeights::of(s)->scale();
+  EXPECT_EQ(one.room, 1.0);
+  for (const auto& [rounds, room] :
+       {std::pair{1U, 1.0}, {2U, 2.0}, {3U, 4.0}, {4U, 4.0}, {100U, 128.0}, {10'000U, 16'384.0}}) {
+    const WeightScale scale = AnnualWeights::of(s, rounds)->scale();
+    EXPECT_EQ(scale.room, room);
+    EXPECT_EQ(scale.unit, room * one.unit);
+    EXPECT_EQ(scale.square_unit, room * one.square_unit);
+    EXPECT_LT(rounds * (scale.total / scale.unit), 0x1p62);
+    EXPECT_NEAR(scale.largest_weight(), 0.2, 1e-9);
+  }
+  s.features[0].frequency = 2e-11;  // of 30 blocks: 3e-13 of all events each, which 10 000 rounds cannot hold to 0.05 %
+  EXPECT_TRUE(AnnualWeights::of(s, 100).has_value());
+  EXPECT_THROW(AnnualWeights::of(s, 10'000), InputError);
+}
+
 /// Walls of 45 and of 80 degrees of one true area, 4 * 4 m^2 * cos: the steeper one has fewer cells in plan.
 TEST(AnnualWeights, EqualTrueAreasHaveEqualFrequencies) {
   const double ratio = std::cos(radians(45.0)) / std::cos(radians(80.0));  // of the true areas of one cell

@@ -2,12 +2,71 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <map>
 #include <set>
+#include <sstream>
 
 #include "talus/simulate/scenario/presets.hpp"
 
 namespace talus {
+
+/// The bounds of keys in docs/scenario.md, by "section.key": column "bounds" of its tables under "### `[section]`".
+std::map<std::string, std::string> bounds_in_the_manual() {
+  std::ifstream file(std::string(TALUS_SOURCE_DIR) + "/docs/scenario.md");
+  std::map<std::string, std::string> found;
+  std::string section;
+  std::ptrdiff_t column = -1;  // of the bounds in this table
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("#")) section = line.starts_with("### `[") ? line.substr(6, line.find(']') - 6) + "." : "";
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; line.starts_with("| ") && std::getline(row, cell, '|');) cells.push_back(cell);
+    if (cells.empty()) column = -1;
+    if (cells.empty() || column < 0) {
+      const auto name = std::ranges::find(cells, " bounds ");
+      column = name == cells.end() ? -1 : name - cells.begin();
+      continue;
+    }
+    const std::string& keys = cells[1];  // "`volume_min`, `volume_max`"
+    for (std::size_t at = keys.find('`'); at != keys.npos; at = keys.find('`', keys.find('`', at + 1) + 1))
+      found.emplace(section + keys.substr(at + 1, keys.find('`', at + 1) - at - 1),
+                    cells[static_cast<std::size_t>(column)]);
+  }
+  return found;
+}
+
+/// The numbers in a text like "above 0, at most 1e6".
+std::vector<double> numbers_in(const std::string& text) {
+  std::vector<double> numbers;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    char* end = nullptr;
+    const double value = std::strtod(word.c_str(), &end);
+    if (end != word.c_str()) numbers.push_back(value);
+  }
+  return numbers;
+}
+
+TEST(Fields, TheManualHasTheirBounds) {
+  const auto manual = bounds_in_the_manual();
+  std::vector<Bounds> all(scenario_fields().begin(), scenario_fields().end());
+  all.insert(all.end(), list_bounds().begin(), list_bounds().end());
+  int compared = 0;
+  for (const Bounds& bounds : all) {
+    const auto row = manual.find(std::string(bounds.key));
+    if (row == manual.end()) continue;  // of a file of features, or told in words
+    const std::string& text = row->second;
+    EXPECT_EQ(numbers_in(text), (std::vector<double>{bounds.min, bounds.max})) << bounds.key << ':' << text;
+    EXPECT_EQ(text.find("above") != text.npos, bounds.ends != Bounds::Closed) << bounds.key << ':' << text;
+    EXPECT_EQ(text.find("whole") != text.npos, bounds.whole) << bounds.key << ':' << text;
+    ++compared;
+  }
+  EXPECT_GE(compared, 22);
+}
 
 TEST(Fields, WhatIsSetIsGot) {
   for (const auto& field : ground_fields())
