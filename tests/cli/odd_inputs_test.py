@@ -176,7 +176,8 @@ class Places(Case):
 
 
     def axes(self, path, layer):
-        return ogr.Open(self.path(path)).GetLayerByName(layer).GetSpatialRef().GetAxesCount()
+        file = ogr.Open(self.path(path))
+        return file.GetLayerByName(layer).GetSpatialRef().GetAxesCount()
 
     def test_a_system_with_an_axis_of_heights(self):
         """All was traced, then no GeoPackage could be written in such a system: the layers have the plane one."""
