@@ -109,7 +109,8 @@ void class_by_number(std::vector<Unit>& list) {
     std::size_t& least = rarest.emplace(unit.stratum.sites, unit.releases.size()).first->second;
     least = std::min(least, unit.releases.size());
   }
-  for (Unit& unit : list) unit.stratum.often = std::bit_width(unit.releases.size() / rarest.at(unit.stratum.sites));
+  for (Unit& unit : list)
+    unit.stratum.often = static_cast<int>(std::bit_width(unit.releases.size() / rarest.at(unit.stratum.sites)));
 }
 
 /// In the order of their first releases.
