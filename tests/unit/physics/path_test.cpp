@@ -13,7 +13,6 @@ namespace {
 
 using test::Numbers;
 
-const double kTan30 = 1.0 / std::sqrt(3.0);
 
 /// A piece of sliding with these velocities at its start and constant acceleration, in closed form.
 std::pair<Vertex, Vertex> piece(const Vec3& velocity, const Vec3& acceleration, double duration) {
