@@ -13,7 +13,6 @@ namespace {
 
 using test::Numbers;
 
-
 /// A piece of sliding with these velocities at its start and constant acceleration, in closed form.
 std::pair<Vertex, Vertex> piece(const Vec3& velocity, const Vec3& acceleration, double duration) {
   Vertex from{{7.0, {100.0, 50.0, 30.0}, velocity, {1.0, 2.0, 3.0}}, Event::Slide}, to = from;

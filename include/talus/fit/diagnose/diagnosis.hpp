@@ -95,8 +95,8 @@ struct DiagnoseOptions {
   double later_level = 0.01;  ///< after the first effect: its form is a guess, which leaves a residual
   /// @param round  from 0
   double level_of_round(std::size_t round) const { return round == 0 ? first_level : later_level; }
-  int base_fits = 5;          ///< whose verdicts are compared; 1: this diagnosis alone
-  bool nested = false;        ///< also repeats the loop without each outer fold
+  int base_fits = 5;    ///< whose verdicts are compared; 1: this diagnosis alone
+  bool nested = false;  ///< also repeats the loop without each outer fold
   std::size_t outer_folds = 5;
   bool naming_in_folds = true;          ///< false: the folds take the effects that all rows chose
   DiagnosisRules rules;                 ///< numbers that no user sets

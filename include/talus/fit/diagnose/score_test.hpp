@@ -18,9 +18,9 @@ struct Sharpest {
 struct EffectVerdict {
   std::string effect;
   Verdict best;
-  Verdict second;             ///< the next best place; without members where there is no other
-  double p_value = 1.0;       ///< corrected for the number of its places, from simulated data sets
-  std::vector<double> drawn;  ///< by simulated data set: the smallest p-value over its places
+  Verdict second;                                 ///< the next best place; without members where there is no other
+  double p_value = 1.0;                           ///< corrected for the number of its places, from simulated data sets
+  std::vector<double> drawn;                      ///< by simulated data set: the smallest p-value over its places
   std::map<std::string, Sharpest> sharpest = {};  ///< by key of the parameter; follows from the model alone
 };
 
