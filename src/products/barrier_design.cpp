@@ -181,12 +181,13 @@ Stretch shortest_stretch(std::span<const LineCrossing> crossings, double contain
 std::optional<Stretch> stretch_above(std::span<const LineCrossing> crossings, double bin, double released,
                                      double probability) {
   const std::vector<LineCrossing> s = along_the_line(crossings);
+  const double most = probability * released + 1e-6;  // of a whole number of blocks: 0.05 of 200 are 10, not 9.999...
   std::optional<Stretch> found;
   for (auto first = s.begin(); first != s.end();) {
     const double from = std::floor(first->along / bin) * bin;
     const auto end = std::ranges::lower_bound(first, s.end(), from + bin, {}, &LineCrossing::along);
     const auto next = std::max(end, first + 1);  // rounding must not stop the progress
-    if (static_cast<double>(blocks_of({first, next})) > probability * released) {
+    if (static_cast<double>(blocks_of({first, next})) > most) {
       if (!found) found = Stretch{from, from + bin, 0.0};
       found->to = from + bin;
     }
