@@ -35,7 +35,7 @@ cmake --build --preset asan
 stage "asan: tests of core and files"
 # Long where nothing is optimised, and run above: tests of laws by many blocks.
 statistics="ScoreTest|Calibrate|FreePaths|EffectFits|JointFits|Nested|ResidualTable|SceneSymmetry|PlaneTable|PlaneSigns|PlaneScaling"
-statistics+="|LogScore|DepositScore|DepositCheck|WithZerosToo|Dispersion|Evaluate|EnergyComponent|CoverageOf|PropertyTest|TheFreePathAmong"
+statistics+="|LogScore|DepositScore|DepositCheck|WithZerosToo|Dispersion|Evaluate|EnergyComponent|CoverageOf|PropertyTest|TheFreePathAmong|DayTest|FurtherScreens"
 ctest --preset asan -j 2 -LE "slow|cli|example|package|qgis" -E "$statistics"
 stage "the same bytes from gcc with optimisation and from clang without"
 tools/scripts/checks/same_bytes.sh build/release/talus build/asan/talus
