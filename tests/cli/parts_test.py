@@ -2,6 +2,7 @@
 import contextlib
 import csv
 import hashlib
+import json
 import os
 import random
 import re
@@ -56,6 +57,19 @@ class Parts(RunCase):
         for out in ("again", "merged"):
             self.assertEqual(self.record(out)["warnings"], self.record("whole")["warnings"], out)
 
+    @staticmethod
+    @contextlib.contextmanager
+    def manifest(folder):
+        """part.json, to be changed: gets the right checksum."""
+        with open(f"{folder}/part.json", encoding="utf-8") as file:
+            content = json.load(file)
+        yield content
+        del content["sha256"]
+        text = json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+        content["sha256"] = hashlib.sha256(text.encode()).hexdigest()
+        with open(f"{folder}/part.json", "w", encoding="utf-8") as file:
+            file.write(json.dumps(content, indent=2, ensure_ascii=False) + "\n")
+
     def test_what_cannot_be_merged(self):
         for i in (1, 2):
             self.run_scenario(f"part{i}", "--part", f"{i}/2")
@@ -73,6 +87,12 @@ class Parts(RunCase):
         self.fails(2, "another plan", arguments=["merge", self.path("m"), one, self.path("other")])
         self.run_scenario("rounds", "--part", "2/2", "--rounds", "2")
         self.fails(2, "the same --rounds", arguments=["merge", self.path("m"), one, self.path("rounds")])
+        with self.manifest(two) as manifest:  # as if it had been interrupted after the first of two
+            manifest["rounds"]["count"] = 2
+        self.fails(2, "was to have 2 rounds, another part 1", "the same --rounds",
+                   arguments=["merge", self.path("m"), one, two])
+        with self.manifest(two) as manifest:
+            manifest["rounds"]["count"] = 1
         self.fails(2, "--until-error with --part",
                    arguments=["run", self.path("s.toml"), "-o", self.path("x"), "--part", "1/2", "--until-error", "0.1"])
         for text in ("0/2", "3/2", "1", "1/2x"):

@@ -101,8 +101,8 @@ struct Stretch {
 Stretch shortest_stretch(std::span<const LineCrossing> crossings, double containment);
 
 /// The paper's rule: the stretch from the first to the last bin that is crossed by more than the share `probability` of
-/// all released blocks, whatever their weights; the pieces of a block count once in a bin. It may hold far fewer than 1
-/// - probability of the crossings: its share says how many, by weight.
+/// all released blocks, whatever their weights; the pieces of a block count once in a bin. It may hold far
+/// fewer than 1 - probability of the crossings: its share says how many, by weight.
 ///
 /// @param bin       width of the bins from the start of the line [m], > 0
 /// @param released  number of all released blocks, each counting as one; `crossings` has only those that crossed

@@ -114,8 +114,8 @@ class DiagnosisLoop {
     return score_test(campaign_, {base.model, base.free, base.z, base.runs}, candidates, rows_, test_options());
   }
 
-  /// What the campaign would show if it had further screens: the trials of the last round, seen at them too. An
-  /// instrument's bias is sought at the screens that there are.
+  /// The limits that the campaign would have with further screens. They come from the trials of the last round, with
+  /// the speeds of the same blocks at these screens. Biases of instruments are those of the present screens.
   std::vector<DetectionLimit> limits_with_further_screens(const FittedModel& base,
                                                           const std::vector<std::string>& found) {
     const Timesheet::Phase phase(fits_.times(), "detection limits");

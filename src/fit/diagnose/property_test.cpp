@@ -71,7 +71,7 @@ MatrixXd properties_of(const Campaign& campaign, const std::vector<std::size_t>&
   return x;
 }
 
-/// What the permutations exchange: rocks, of each the means over its releases, or single releases.
+/// The units that a permutation exchanges. A unit is a rock, with the means of its releases, or a single release.
 struct SiteUnits {
   VectorXd energy;
   MatrixXd x;
@@ -89,7 +89,8 @@ struct Stratum {
   auto operator<=>(const Stratum&) const = default;
 };
 
-/// Of each release its rock and its site, and whether it is a unit of its own. Other releases of a rock are one unit.
+/// The rock and the site of each release. A release that is `alone` is a unit; the other releases of a rock are one
+/// unit.
 struct Parts {
   std::vector<std::size_t> rocks, sites;
   std::vector<bool> alone;
@@ -138,7 +139,7 @@ void set_strata(const std::vector<Unit>& list, SiteUnits& out) {
   for (const Unit& unit : list) out.units.strata.push_back(numbers.at(unit.stratum));
 }
 
-/// Of each unit the means of its numbers and properties, less the means of the sites.
+/// Takes the means of the sites away from the numbers and properties, and averages what is left over each unit.
 SiteUnits means_of_units(const Releases& releases, const Parts& parts, const MatrixXd& properties) {
   SiteUnits out;
   out.blocks = releases.blocks.size();

@@ -24,7 +24,7 @@ class IdleFeatures {
   bool all_off(std::size_t features) const {
     return !off_.empty() && off_.size() + without_geometry_.size() == features;
   }
-  /// Of all features with a geometry [m, local].
+  /// The box around all features that have a geometry [m, local].
   const OGREnvelope& box() const { return box_; }
   /// A line for each way in which features have no effect.
   void warn(std::vector<std::string>& warnings) const;

@@ -21,7 +21,7 @@ struct CsvCell {
 struct OddCells {
   /// Numbers with a decimal comma where semicolons separate: GDAL takes it for a decimal point.
   std::map<std::string, CsvCell> commas;
-  /// What stands in the columns x and y in place of a number: GDAL leaves such a feature without a place.
+  /// Cells of the columns x and y that hold a text instead of a number. GDAL gives such a feature no place.
   std::map<std::string, CsvCell> places;
 };
 

@@ -18,7 +18,7 @@ cmake --build --preset fuzz
 grep -ohE '"[A-Za-z][A-Za-z0-9_ .-]{1,30}"' -r src/io src/run src/simulate | sort -u > build/fuzz/words.dict
 [ -w /dev/shm ] && export TMPDIR=/dev/shm  # the targets write their case into a folder: no disk is needed
 export OMP_NUM_THREADS=2 OMP_WAIT_POLICY=passive
-# Leaks are for `ctest --preset asan`: to look for them after each case takes half of the time.
+# Leaks are for `ctest --preset asan`; with these options a case takes a third of the time (docs/fuzzing.md).
 export ASAN_OPTIONS=detect_leaks=0:malloc_context_size=2:quarantine_size_mb=16
 for target in "${targets[@]}"; do
   mkdir -p "build/fuzz/corpus/$target"

@@ -3,15 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <cctype>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
 #include <sstream>
 #include <string>
 
+#include "support/manual.hpp"
+
 namespace talus {
 namespace {
+
+using test::numbers_in;
 
 std::string text_of_file(const std::string& path) {
   std::ifstream file(std::string(TALUS_SOURCE_DIR) + "/" + path);
@@ -35,18 +38,6 @@ std::vector<std::string> row_of(const std::string& section, const std::string& k
   std::vector<std::string> cells;
   for (std::string cell; std::getline(row, cell, '|');) cells.push_back(cell);
   return cells;
-}
-
-/// The numbers in a text like "above 0, at most 60".
-std::vector<double> numbers_in(const std::string& text) {
-  std::vector<double> numbers;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    char* end = nullptr;
-    const double value = std::strtod(word.c_str(), &end);
-    if (end != word.c_str()) numbers.push_back(value);
-  }
-  return numbers;
 }
 
 TEST(Registry, HasEachEffectOnce) {

@@ -4,15 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
 
+#include "support/manual.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 
 namespace talus {
+
+using test::numbers_in;
 
 /// The bounds of keys in docs/scenario.md, by "section.key": column "bounds" of its tables under "### `[section]`".
 std::map<std::string, std::string> bounds_in_the_manual() {
@@ -37,18 +39,6 @@ std::map<std::string, std::string> bounds_in_the_manual() {
                     cells[static_cast<std::size_t>(column)]);
   }
   return found;
-}
-
-/// The numbers in a text like "above 0, at most 1e6".
-std::vector<double> numbers_in(const std::string& text) {
-  std::vector<double> numbers;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    char* end = nullptr;
-    const double value = std::strtod(word.c_str(), &end);
-    if (end != word.c_str()) numbers.push_back(value);
-  }
-  return numbers;
 }
 
 TEST(Fields, TheManualHasTheirBounds) {
