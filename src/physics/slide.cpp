@@ -223,7 +223,7 @@ SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, Patch
                double stop_speed, Path& path, const RollingResistance* resistance) {
   double slid = 0.0;
   const double tolerance = kErrorShare * diameter;
-  const SlidingFriction friction(cover, resistance);
+  SlidingFriction friction(cover, resistance);
   int short_crossings = 0;  // in succession, with less way than the tolerance between them
   Facet on = first_facet(surface, at, motion), came_from = on;
   for (int pieces = 0; pieces < kMaxPieces; ++pieces) {

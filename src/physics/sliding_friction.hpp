@@ -1,30 +1,39 @@
 #pragma once
+#include <optional>
+
 #include "slope.hpp"
 
 namespace talus {
 
-/// The friction of a slide: tan(phi) of the ground, with rolling resistance where it acts. Each cell has its own.
+/// The friction of a slide: tan(phi) of the ground, with rolling resistance where it acts. Each cell has its own; those
+/// of the four cells that meet in the middle of a patch are kept until the slide leaves the patch.
 class SlidingFriction {
  public:
   /// @param resistance  null: none
-  SlidingFriction(const Cover& cover, const RollingResistance* resistance)
-      : cover_(cover),
-        resistance_(resistance),
-        varies_((cover.grounds.size() > 1 && !cover.zones.values.empty()) ||
-                (resistance != nullptr && !resistance->where.mask.values.empty())) {}
+  SlidingFriction(const Cover& cover, const RollingResistance* resistance) : cover_(cover), resistance_(resistance) {}
 
   /// Sets the friction of the cell under the block, and whether the slide must stop at the border of this cell.
-  void set(Slope& slope, const Motion& motion) const {
-    const Quarter under = varies_ ? quarter_of(slope, motion) : Quarter{};
-    slope.tan_phi = of_cell(slope, under);
+  void set(Slope& slope, const Motion& motion) {
+    if (of_patch_ != slope.at) read_cells(slope);
+    slope.tan_phi = tan_phi_[0][0];
     slope.bounded_to.reset();
-    if (!varies_) return;
-    for (const bool east : {false, true})
-      for (const bool north : {false, true})
-        if (of_cell(slope, {east, north}) != slope.tan_phi) slope.bounded_to = under;
+    if (!differ_) return;
+    const Quarter under = quarter_of(slope, motion);
+    slope.tan_phi = tan_phi_[under.east][under.north];
+    slope.bounded_to = under;
   }
 
  private:
+  void read_cells(const Slope& slope) {
+    of_patch_ = slope.at;
+    differ_ = false;
+    for (const bool east : {false, true})
+      for (const bool north : {false, true}) {
+        tan_phi_[east][north] = of_cell(slope, {east, north});
+        differ_ = differ_ || tan_phi_[east][north] != tan_phi_[0][0];
+      }
+  }
+
   /// The quarter of a patch that holds the block. On the border of two cells: the one that the block moves into; for a
   /// block that does not move across the border, the one down the slope.
   static Quarter quarter_of(const Slope& slope, const Motion& motion) {
@@ -44,7 +53,9 @@ class SlidingFriction {
 
   const Cover& cover_;
   const RollingResistance* resistance_;
-  bool varies_;  // from cell to cell
+  std::optional<PatchIndex> of_patch_{};
+  double tan_phi_[2][2]{};  ///< of the cells: west or east, south or north
+  bool differ_ = false;
 };
 
 }  // namespace talus
