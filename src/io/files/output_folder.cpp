@@ -109,7 +109,7 @@ std::vector<Left> left_of(const fs::path& folder) {
   return found;
 }
 
-/// Whether this is a map that a killed run had finished: `write_map` gives a map its name last.
+/// Whether this is a map that a killed run had finished: `MapFile` gives a map its name last.
 bool is_finished_map(const fs::path& file) {
   return file.extension() == ".tif" && !file.stem().has_extension();
 }

@@ -111,10 +111,6 @@ void add_renderer(const Element& pipe, const Map& map) {
 
 }  // namespace
 
-std::span<const char* const> colours_of(Palette palette) {
-  return colours(palette);
-}
-
 std::vector<LegendClass> classes_of(const Legend& legend, bool to_one) {
   const std::string unit = legend.unit.empty() ? "" : " " + legend.unit;
   const std::size_t count = legend.limits.size() + (to_one ? 0 : 1);

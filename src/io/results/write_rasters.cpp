@@ -137,14 +137,4 @@ void MapFile::named(const Work& work) {
   }
 }
 
-bool write_map(const Map& map, const MapTarget& target) {
-  MapFile file(map, target);
-  bool whole = false;
-  for (std::size_t i = 0, parts = file.parts(); i < parts; ++i) {
-    if (target.proceed && !target.proceed()) return false;
-    whole = file.write_part(i);
-  }
-  return whole;
-}
-
 }  // namespace talus::io

@@ -1,6 +1,5 @@
 #pragma once
 #include <filesystem>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -14,9 +13,6 @@ struct LegendClass {
   std::string label;
   std::string colour;  ///< "#rrggbb"
 };
-
-/// The colours of a palette, "#rrggbb", in the order of the classes.
-std::span<const char* const> colours_of(Palette palette);
 
 /// The classes of a legend, without that of 0. @param to_one  nothing is above the last limit
 std::vector<LegendClass> classes_of(const Legend& legend, bool to_one);
