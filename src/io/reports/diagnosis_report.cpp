@@ -87,14 +87,10 @@ HoldoutError error_of(const Score& before, const Score& after, std::span<const s
   return {before.total, after.total, reduction(before, after, clusters)};
 }
 
-bool found(const DiagnosisRound& round) {
-  return round.effect != "none" && round.effect != "unexplained";
-}
-
 /// For an effect, the share of the bootstraps in which it is the best. For `none`, the p-value of the test. For
 /// `unexplained`, 1 minus the smallest p-value that shows it. None is a probability of being right.
 double probability_of(const DiagnosisRound& round) {
-  if (found(round)) return round.candidates.front().chosen_share;
+  if (names_effect(round.effect)) return round.candidates.front().chosen_share;
   if (round.effect == "none") return round.p_value;
   return 1.0 - std::min(round.p_value, round.residual.empty() ? 1.0 : round.residual.front().corrected);
 }
@@ -121,7 +117,7 @@ void open_holdout(const Campaign& campaign, DiagnosisRecord& record) {
         record.evidence[i].push_back({"holdout", std::move(after),
                                       score(campaign, runs, rows, {ScoreRule::LogDensity, kFewestSimulated, {}}),
                                       base.score, base.log_score});
-      if (i == 0 && found(round)) last = scored_holdout(runs);
+      if (i == 0 && names_effect(round.effect)) last = scored_holdout(runs);
     }
     record.rounds.push_back(error_of(before, last.score, clusters));
   }
@@ -149,7 +145,7 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
   for (std::size_t i = 0; i < d.rounds.size(); ++i) {
     const DiagnosisRound& round = d.rounds[i];
     Json turn{{"effect", round.effect}};
-    if (found(round)) {
+    if (names_effect(round.effect)) {
       effects.push_back(round.effect);
       turn["where"] = round.where;
       turn["indistinguishable_from"] = round.alike;

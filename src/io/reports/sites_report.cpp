@@ -15,10 +15,6 @@
 namespace talus::io {
 namespace {
 
-bool found(const JointRound& round) {
-  return round.effect != "none" && round.effect != "unexplained";
-}
-
 std::string p_text(double p) {
   return std::isnan(p) ? "-" : with_decimals(p, 4);
 }
@@ -72,7 +68,7 @@ Json rounds_json(const SitesRecord& record) {
   for (std::size_t i = 0; i < record.diagnosis.rounds.size(); ++i) {
     const JointRound& round = record.diagnosis.rounds[i];
     Json turn{{"effect", round.effect}, {"p_value", json_of(round.family.p_corrected)}};
-    if (found(round)) {
+    if (names_effect(round.effect)) {
       const double after = record.candidates[i].front();
       turn["where"] = round.where;
       turn["indistinguishable_from"] = round.alike;
@@ -157,7 +153,7 @@ Json coverage_by_site(const SitesRecord& record) {
 /// being right.
 double probability_of(const SitesDiagnosis& d) {
   const JointRound& first = d.rounds.front();
-  if (found(first)) return first.candidates.front().chosen_share;
+  if (names_effect(first.effect)) return first.candidates.front().chosen_share;
   return first.effect == "none" ? d.p_value : 1.0 - d.p_value;
 }
 
@@ -173,7 +169,7 @@ Json stability_of(const SitesRecord& record) {
 std::string verdict_sentence(const SitesDiagnosis& d) {
   std::string text;
   for (const JointRound& round : d.rounds) {
-    if (!found(round)) continue;
+    if (!names_effect(round.effect)) continue;
     text += (text.empty() ? "The models of all sites lack " : "; then ") + round.effect + " (" + round.where + ")";
     for (const std::string& other : round.alike) text += ", not to be told apart from " + other;
   }
@@ -274,7 +270,7 @@ std::string sites_json(const SitesRecord& record) {
   const JointRound& first = d.rounds.front();
   Json effects = Json::array();
   for (const JointRound& round : d.rounds)
-    if (found(round)) effects.push_back(round.effect);
+    if (names_effect(round.effect)) effects.push_back(round.effect);
   if (effects.empty()) effects.push_back(first.effect);
   Json error = errors_json(record.evidence.back());
   error["metric"] = "mean normalised score";
