@@ -30,6 +30,12 @@ fs::path full_name(const fs::path& path) {
   return full;
 }
 
+void require_results(const fs::path& folder) {
+  std::error_code none;
+  if (!fs::exists(folder / "run.json", none))
+    throw InputError(folder.string() + ": is no folder of results (it has no run.json); give the OUT of talus run");
+}
+
 namespace {
 
 /// A mount point can neither be renamed nor replaced: this is reported before the run, not after it.

@@ -10,6 +10,7 @@
 #include "talus/base/printable.hpp"
 #include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/files/output_folder.hpp"
 #include "talus/io/files/staged_files.hpp"
 #include "talus/io/gdal/crs.hpp"
 
@@ -132,10 +133,8 @@ void throw_not_understood(const std::filesystem::path& file, const std::string& 
 }
 
 RunFacts read_facts(const std::filesystem::path& folder) {
+  require_results(folder);
   const std::filesystem::path file = folder / "run.json";
-  std::error_code none;
-  if (!std::filesystem::exists(file, none))
-    throw InputError(folder.string() + ": is no folder of results (it has no run.json); give the OUT of talus run");
   RunFacts run = understood(file, facts_of);
   run.written = day_of(file);
   return run;
