@@ -199,8 +199,8 @@ Markup error_cells(const ErrorChange& c) {
     return "<td>"_html + (c.blocks == 0 ? "none declared" : "too few rows") +
            "</td><td>-</td><td>-</td><td>-</td><td>-</td>";
   return "<td>"_html + std::to_string(c.blocks) + " blocks, " + std::to_string(c.rows) + " rows</td><td>" +
-         score_of(c.before) + "</td><td>" + score_of(c.after) + "</td><td>" + score_of(c.climatology) + "</td><td>" +
-         change_text(c) + "</td>";
+         score_text(c.before) + "</td><td>" + score_text(c.after) + "</td><td>" + score_text(c.climatology) +
+         "</td><td>" + change_text(c) + "</td>";
 }
 
 /// p of a site, or of all sites together, that nothing depends on a property of the block.
@@ -337,8 +337,8 @@ std::string sites_summary(const SitesRecord& record) {
     text += e.site + ": p of a block property " + p_text(property_p(d, i));
     for (const auto& [name, change] : {std::pair{"fitting", e.fit}, {"held-out", e.holdout}})
       text += "; " + std::string(name) + " rows (" + std::to_string(change.rows) + "): error " +
-              score_of(change.before) + " before, " + score_of(change.after) + " after, climatology " +
-              score_of(change.climatology) + (change.rows > 0 ? ", lower by " + change_text(change) : "");
+              score_text(change.before) + " before, " + score_text(change.after) + " after, climatology " +
+              score_text(change.climatology) + (change.rows > 0 ? ", lower by " + change_text(change) : "");
     text += "\n";
   }
   return text;
