@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -13,6 +14,9 @@ struct LegendClass {
   std::string label;
   std::string colour;  ///< "#rrggbb"
 };
+
+/// Red, green and blue (0 to 255) of "#rrggbb".
+std::array<int, 3> channels_of(const std::string& colour);
 
 /// The classes of a legend, without that of 0. @param to_one  nothing is above the last limit
 std::vector<LegendClass> classes_of(const Legend& legend, bool to_one);
