@@ -185,7 +185,7 @@ struct ExitsWriter::State {
     fields.add(row.z);
     fields.add(decimals(row.seconds, 1e3));
     fields.add(decimals(speed, 1e3));
-    fields.add(decimals(0.5e-3 * row.mass * speed * speed, 1e3));
+    fields.add(decimals(kinetic_energy(row.mass, speed), 1e3));
     const OGRPoint point(place.x(row.x), place.y(row.y));
     feature->SetGeometry(&point);
     file->append(layer, *feature);
