@@ -1,7 +1,6 @@
 #include "talus/fit/diagnose/several_sites.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "chosen_shares.hpp"
 #include "joint_fits.hpp"

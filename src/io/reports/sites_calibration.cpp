@@ -1,7 +1,5 @@
 #include "talus/io/reports/sites_calibration.hpp"
 
-#include <cmath>
-
 #include "coverage_report.hpp"
 #include "evidence.hpp"
 #include "markup.hpp"

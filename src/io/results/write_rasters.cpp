@@ -3,7 +3,6 @@
 #include <ogr_spatialref.h>
 
 #include <algorithm>
-#include <atomic>
 #include <stdexcept>
 
 #include "io/files/compression.hpp"
