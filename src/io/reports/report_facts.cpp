@@ -6,6 +6,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "io/results/recorded_screens.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
 #include "talus/base/shell.hpp"
@@ -43,19 +44,6 @@ RecordedGrid grid_of(const Json& json) {
   return grid;
 }
 
-std::vector<Screen> screens_of(const Json& json) {
-  std::vector<Screen> screens;
-  for (const Json& one : json.value("screens", Json::array())) {
-    Screen screen{one.at("id").get<std::string>(), {}};
-    for (const Json& line : one.at("lines")) {
-      auto& places = screen.lines.emplace_back();
-      for (const Json& place : line) places.emplace_back(place.at(0).get<double>(), place.at(1).get<double>());
-    }
-    screens.push_back(std::move(screen));
-  }
-  return screens;
-}
-
 std::vector<RecordedSetting> settings_of_record(const Json& json) {
   std::vector<RecordedSetting> settings;
   for (const Json& one : json.at("settings")) {
@@ -88,7 +76,7 @@ RunFacts facts_of(const Json& json) {
   run.plan = json.value("plan", "");
   read_counts(json, run);
   run.grid = grid_of(json.at("grid"));
-  run.screens = screens_of(json);
+  run.screens = recorded_screens(json);
   run.settings = settings_of_record(json);
   for (const Json& one : json.value("inputs", Json::array()))
     run.inputs.push_back(
@@ -125,11 +113,6 @@ std::vector<const RecordedSetting*> RunFacts::settings_of(const std::string& beg
 std::string too_large_for_page(const std::filesystem::path& table) {
   if (std::filesystem::file_size(table) <= kMostPageTable) return "";
   return table.filename().string() + " has more than " + std::to_string(kMostPageTable >> 20U) + " MB";
-}
-
-void throw_not_understood(const std::filesystem::path& file, const std::string& cause) {
-  throw InputError(file.string() + ": cannot be understood (" + cause +
-                   "), must be as talus has written it; run that command again");
 }
 
 RunFacts read_facts(const std::filesystem::path& folder) {
