@@ -16,6 +16,7 @@
 #include "talus/io/results/class_names.hpp"
 #include "talus/io/results/qgis_project.hpp"
 #include "talus/io/results/vector_style.hpp"
+#include "talus/products/hazard_table.hpp"
 #include "talus/products/raster_table.hpp"
 
 namespace talus::io {

@@ -8,6 +8,7 @@
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/results/style.hpp"
+#include "talus/products/hazard_table.hpp"
 #include "talus/products/raster_table.hpp"
 #include "xml.hpp"
 
