@@ -15,13 +15,6 @@ namespace {
 
 constexpr std::size_t kLongestWord = 200;  // that is compared with names [byte]
 
-std::string lower(std::string_view word) {
-  std::string result(word);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
-
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -116,14 +109,20 @@ std::string joined(std::span<const std::string> words) {
   return result;
 }
 
+std::string lowercase(std::string_view text) {
+  std::string result(text);
+  std::ranges::transform(result, result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
 std::string nearest_name(std::string_view word, std::span<const std::string> names) {
-  const std::string wanted = lower(word.substr(0, kLongestWord));
+  const std::string wanted = lowercase(word.substr(0, kLongestWord));
   std::string best;
   std::size_t least = std::max<std::size_t>(2, wanted.size() / 3) + 1;
   for (const std::string& name : names) {
     const std::size_t longer = std::max(wanted.size(), name.size()) - std::min(wanted.size(), name.size());
     if (longer >= least) continue;  // so many letters are inserted or left out at least
-    const std::size_t d = distance(wanted, lower(name));
+    const std::size_t d = distance(wanted, lowercase(name));
     if (d < least && d < name.size()) {
       least = d;
       best = name;

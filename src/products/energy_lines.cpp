@@ -9,7 +9,7 @@ namespace talus {
 
 void EnergyLines::add(std::span<const StopRow> rows) {
   for (const StopRow& row : rows) {
-    if ((row.end != End::Stopped && row.end != End::Trapped) || std::isnan(row.energy_line)) continue;
+    if (!rests_on_ground(row.end) || std::isnan(row.energy_line)) continue;
     const long step = std::lround((row.energy_line * 180.0 / kPi + 90.0) * kPerDegree);
     counts_[static_cast<std::size_t>(std::clamp(step, 0L, static_cast<long>(counts_.size()) - 1))] += 1;
     count_ += 1;

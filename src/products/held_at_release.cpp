@@ -5,7 +5,7 @@
 namespace talus {
 
 bool held_at_release(const StopRow& row) {
-  if (row.end != End::Stopped && row.end != End::Trapped) return false;
+  if (!rests_on_ground(row.end)) return false;
   return std::hypot(row.x - row.x_release, row.y - row.y_release) <= 2.0 * row.diameter;
 }
 

@@ -26,7 +26,7 @@ class Replay {
         rules_{EnergyBins(scenario.output.energy_thresholds), weights.scale()},
         finder_(scenario.surface, objects, 0.5 * diameters_of(scenario).high),
         proceed_(proceed),
-        per_source_((scenario.trajectories + kBlocksPerUnit - 1) / kBlocksPerUnit),
+        per_source_(units_per_source(scenario)),
         units_(std::uint64_t{per_source_} * scenario.sources.size()),
         hits_(objects.size()) {}
 

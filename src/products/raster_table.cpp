@@ -6,7 +6,7 @@
 #include <memory>
 #include <unordered_map>
 
-#include "talus/base/expect.hpp"
+#include "raster_parts.hpp"
 #include "talus/base/text.hpp"
 #include "talus/products/interval.hpp"
 #include "talus/products/passage_bounds.hpp"
@@ -18,18 +18,7 @@ namespace {
 
 using Kind = Map::Kind;
 
-constexpr const char* kAnyHeightText = "at any height";
 constexpr const char* kUpperP95 = "P95 upper 95 % bound";
-
-std::string replaced(std::string text, const std::string& part, const std::string& by) {
-  const std::size_t at = text.find(part);
-  return at == std::string::npos ? text : text.replace(at, part.size(), by);
-}
-
-/// The words for the height at which passages count. @param below  [m]; 0: at any height
-std::string with_height(const std::string& text, double below) {
-  return below > 0.0 ? replaced(text, kAnyHeightText, "lower than " + text_of(below) + " m above the terrain") : text;
-}
 
 Legend percent_legend() {
   return {{1e-4, 1e-3, 1e-2, 1e-1, 1.0}, 100.0, "%", Palette::Plasma};
@@ -40,10 +29,6 @@ Legend reach_legend() {
   return {{0.02, 0.05, 0.1, 0.2, 0.5, 1.0}, 100.0, "%", Palette::Plasma};
 }
 
-Legend energy_legend(const std::string& band) {
-  return {{30, 100, 300, 1000, 3000}, 1.0, "kJ", Palette::Plasma, band};
-}
-
 Legend speed_legend(const std::string& band) {
   return {{5, 10, 15, 20, 30}, 1.0, "m/s", Palette::Viridis, band};
 }
@@ -52,17 +37,8 @@ Legend height_legend(const std::string& band) {
   return {{0.5, 1, 2, 4, 8}, 1.0, "m", Palette::Viridis, band};
 }
 
-Legend with_names(Legend legend) {
-  legend.names_in_file = true;
-  return legend;
-}
-
 Legend count_legend() {
   return {{1, 10, 100, 1000, 10000}, 1.0, "", Palette::YlGnBu};
-}
-
-std::vector<Map::Band> bounded_bands(const std::string& name, const std::string& unit) {
-  return {{name, unit}, {"lower 95 % bound", unit}, {"upper 95 % bound", unit}};
 }
 
 /// Plan length per area and released block, with bounds; then above each energy threshold.
@@ -348,132 +324,6 @@ std::vector<RunRaster> make_run_rasters() {
   };
 }
 
-void push(std::vector<float>& figures, const Bounded& bounded) {
-  for (const double value : {bounded.value, bounded.low, bounded.high})
-    figures.push_back(static_cast<float>(std::isfinite(value) ? value : kNotGiven));
-}
-
-/// The class; the class at the lower and at the upper bounds; 1 if these two differ: this many trajectories do not
-/// decide the class; 1 if paths leave the map here: it ends before the hazard does.
-void push_classes(const HazardPlace& place, std::vector<float>& figures) {
-  std::vector<Bounded> frequencies{place.levels[0]};
-  for (const double energy : place.matrix.energies) frequencies.push_back(place.exceedance_of(energy));
-  const auto side = [&](double Bounded::*member) {
-    std::vector<double> values;
-    for (const Bounded& f : frequencies) values.push_back(f.*member);
-    return values;
-  };
-  const std::vector<double> low = side(&Bounded::low), high = side(&Bounded::high);
-  const int here = class_of(place.matrix, side(&Bounded::value)), highest = class_of(place.matrix, high, false);
-  for (const int figure :
-       {here, class_of(place.matrix, low), std::max(here, highest),
-        static_cast<int>(class_of(place.matrix, low, false) != highest), static_cast<int>(place.exit)})
-    figures.push_back(static_cast<float>(figure));
-}
-
-/// The frequency of exceeding each of `energies_of_curves`.
-void push_curve(const HazardPlace& place, std::vector<float>& figures) {
-  if (place.curve == nullptr) {
-    for (const Bounded& level : place.levels) figures.push_back(static_cast<float>(level.value));
-    return;
-  }
-  for (const CurveEnergy& of : curve_energies(place.rules.bins))
-    figures.push_back(static_cast<float>(place.curve->frequency_from(of.bin)));
-}
-
-/// The classes of the matrix.
-HazardRaster class_raster() {
-  return {{"hazard_class",
-           "Class of hazard of the cell by intensity and return period, in plan, at any height",
-           Kind::Count,
-           {{"class", "class"},
-            {"class at lower bound", "class"},
-            {"class at upper bound", "class"},
-            {"undecided", "1"},
-            {"cut short", "1"}},
-           {{1, 2, 3, 4, 5}, 1.0, "", Palette::HazardClasses, "", true, true}},
-          "class of the matrix; `undecided` is 1 where the classes at the bounds differ, `cut short` where paths leave "
-          "the map",
-          [](const HazardPlace& place, std::size_t, std::vector<float>& figures) { push_classes(place, figures); },
-          {},
-          {},
-          true};
-}
-
-std::vector<HazardRaster> make_hazard_rasters() {
-  using Figures = std::vector<float>;
-  return {
-      {{"annual_frequency",
-        "Mean number of blocks that pass the cell in a year, in plan, at any height",
-        Kind::Quantity,
-        bounded_bands("annual frequency (in plan, at any height)", "1/year"),
-        {{1e-4, 1e-3, 1e-2, 1e-1, 1.0}, 1.0, "1/year", Palette::Plasma}},
-       "trajectories that pass the cell per year",
-       [](const HazardPlace& place, std::size_t, Figures& figures) { push(figures, place.levels[0]); }},
-      {{"return_period_<kJ>",
-        "Years between blocks of more than <kJ> kJ that pass the cell, in plan, at any height",
-        Kind::Quantity,
-        bounded_bands("return period of E > <kJ> kJ", "years"),
-        {{10, 30, 100, 300, 1000}, 1.0, "years", Palette::PlasmaFromDark, "", false},
-        true},
-       "1 / frequency of exceeding the energy; one file per energy threshold",
-       [](const HazardPlace& place, std::size_t i, Figures& figures) {
-         push(figures, return_period(place.levels[i + 1]));
-       },
-       "<kJ>",
-       [](const HazardRules& rules, const HazardMatrix&) {
-         return std::vector<double>(rules.bins.thresholds().begin(), rules.bins.thresholds().end());
-       }},
-      {{"intensity_T<years>", "Translational kinetic energy that is exceeded once in <years> years in the cell",
-        Kind::Quantity, bounded_bands("energy once in <years> years", "kJ"), with_names(energy_legend(""))},
-       "energy that is exceeded once in so many years",
-       [](const HazardPlace& place, std::size_t i, Figures& figures) {
-         push(figures, place.curve->energy_once_in(place.matrix.years[i]));
-       },
-       "<years>",
-       [](const HazardRules&, const HazardMatrix& matrix) { return matrix.years; },
-       false,
-       true},
-      class_raster(),
-      {{"hazard_curves",
-        "Mean number of blocks above an energy that pass the cell in a year, in plan, at any height",
-        Kind::Quantity,
-        {{"annual frequency of E > <kJ> kJ (in plan, at any height)", "1/year"}},
-        {{1e-4, 1e-3, 1e-2, 1e-1, 1.0}, 1.0, "1/year", Palette::Plasma}},
-       "trajectories above the energy per year; one band per energy; with `--curves`",
-       [](const HazardPlace& place, std::size_t, Figures& figures) { push_curve(place, figures); },
-       {},
-       {},
-       false,
-       false,
-       energies_of_curves},
-  };
-}
-
-Map with_number(Map map, const std::string& placeholder, double value) {
-  map.name = replaced(map.name, placeholder, text_of(value));
-  map.title = replaced(map.title, placeholder, text_of(value));
-  for (Map::Band& band : map.bands) band.name = replaced(band.name, placeholder, text_of(value));
-  return map;
-}
-
-/// A map with a copy of its only band for each energy [kJ].
-Map with_bands(Map map, const std::vector<double>& energies) {
-  const Map::Band band = map.bands.front();
-  map.bands.clear();
-  for (const double energy : energies) map.bands.push_back({replaced(band.name, "<kJ>", text_of(energy)), band.unit});
-  return map;
-}
-
-/// The texts of a map for an object of some width.
-Map of_object(Map map, const ObjectWidth& object) {
-  const std::string what = "an object " + text_of(object.width) + " m wide";
-  map.title = with_height(replaced(map.title, "the cell", what), object.below);
-  for (Map::Band& band : map.bands)
-    band.name = with_height(replaced(band.name, " (in plan", " of " + what + " (in plan"), object.below);
-  return map;
-}
-
 }  // namespace
 
 RunCounts counts_of(const Scenario& scenario) {
@@ -510,51 +360,6 @@ std::vector<Map::Band> bands_of(const RunRaster& raster, const RunCounts& run) {
   if (raster.counts_lengths)
     for (Map::Band& band : bands) band.name = with_height(band.name, run.passages_below);
   return bands;
-}
-
-const std::vector<HazardRaster>& hazard_rasters() {
-  static const std::vector<HazardRaster> all = make_hazard_rasters();
-  return all;
-}
-
-Bounded HazardPlace::exceedance_of(double energy) const {
-  if (curve != nullptr) return curve->exceedance_of(energy);
-  const auto& thresholds = rules.bins.thresholds();
-  const auto known = std::ranges::find(thresholds, energy);
-  TALUS_EXPECT(known != thresholds.end(), "without a curve the limits of the matrix are thresholds");
-  return levels[static_cast<std::size_t>(known - thresholds.begin()) + 1];
-}
-
-std::vector<double> energies_of_curves(const HazardRules& rules, const ObjectWidth& object) {
-  const auto& thresholds = rules.bins.thresholds();
-  std::vector<double> energies;
-  for (const CurveEnergy& of : curve_energies(rules.bins))
-    if (!(object.width > 0.0) || of.energy == 0.0 || std::ranges::count(thresholds, of.energy) > 0)
-      energies.push_back(of.energy);
-  return energies;
-}
-
-std::vector<HazardMap> hazard_maps_of(const HazardRules& rules, const HazardMatrix& matrix, const ObjectWidth& object,
-                                      bool curves) {
-  std::vector<HazardMap> maps;
-  for (const HazardRaster& raster : hazard_rasters()) {
-    if (raster.needs_curve && object.width > 0.0) continue;
-    if (raster.band_energies) {
-      if (curves) maps.push_back({&raster, 0, with_bands(raster.map, raster.band_energies(rules, object))});
-      continue;
-    }
-    if (raster.placeholder.empty()) {
-      maps.push_back({&raster, 0, raster.map});
-      if (raster.has_classes) maps.back().map.classes = matrix.names;
-      continue;
-    }
-    const std::vector<double> numbers = raster.numbers(rules, matrix);
-    for (std::size_t i = 0; i < numbers.size(); ++i)
-      maps.push_back({&raster, i, with_number(raster.map, raster.placeholder, numbers[i])});
-  }
-  if (object.width > 0.0)
-    for (HazardMap& map : maps) map.map = of_object(std::move(map.map), object);
-  return maps;
 }
 
 }  // namespace talus

@@ -8,11 +8,11 @@ namespace talus {
 namespace {
 
 double energy_of(const Crossing& c) {
-  return 0.5e-3 * c.mass * c.speed * c.speed;
+  return kinetic_energy(c.mass, c.speed);
 }
 
 double rotation_of(const Crossing& c) {
-  return 0.5e-3 * Block{c.diameter, c.mass}.inertia() * c.spin * c.spin;
+  return Block{c.diameter, c.mass}.rotational_energy(c.spin);
 }
 
 constexpr std::array<ScreenQuantity, 8> kAll{{

@@ -258,8 +258,7 @@ void Checkpoint::read_manifest() {
     throw InputError(folder_.string() + ": has no " + kCheckpointManifest +
                      ", must be what talus run --part has written");
   const std::string text = io::read_file(file.string(), file.string(), "the record of a part", io::kMostRecord);
-  std::string plan;
-  try {
+  const auto read = [&] {
     Json json = io::parsed_record(text);
     const std::string sha256 = json.at("sha256");
     json.erase("sha256");
@@ -267,7 +266,7 @@ void Checkpoint::read_manifest() {
     if (const int format = json.at("format"); format != kFormat || json.at("version").get<std::string>() != version())
       throw InputError("was written by Talus " + json.at("version").get<std::string>() + " in format " +
                        std::to_string(format) + ", this one reads format " + std::to_string(kFormat));
-    plan = json.at("plan");
+    const std::string plan = json.at("plan");
     const std::uint32_t of = number_of(json, "of", 1, kLargest32);
     part_ = {number_of(json, "part", 1, of), of};
     asked_ = rounds_of(json.at("rounds"));
@@ -284,11 +283,9 @@ void Checkpoint::read_manifest() {
     for (const Json& reach : json.at("reaches"))
       reaches_.push_back({file_name(reach.at("file"), "reach-"), reach.at("sha256")});
     round_ = rounds_;
-  } catch (const std::exception& error) {
-    throw InputError(file.string() + ": cannot be understood (" + error.what() +
-                     "), must be as this version of Talus has written it; run this part again");
-  }
-  if (plan != plan_)
+    return plan;
+  };
+  if (io::understood(file, "must be as this version of Talus has written it; run this part again", read) != plan_)
     throw InputError(file.string() +
                      ": belongs to another plan: the scenario, a flag or a file is not what it was when this was "
                      "traced. To go on give the same again, or begin anew (--overwrite); to merge give parts of the "

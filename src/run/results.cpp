@@ -40,8 +40,8 @@ class Vectors {
         scenario_(loaded.scenario),
         folder_(folder),
         observer_(observer),
-        stops_(file_of("stops"), loaded),
-        exits_(file_of("exits"), loaded),
+        stops_(file_of("stops"), loaded, io::PointsWriter::Layer::Stops),
+        exits_(file_of("exits"), loaded, io::PointsWriter::Layer::Exits),
         summary_(scenario_.screens.size()) {
     if (loaded.scenario.output.paths > 0)
       paths_.emplace(file_of("trajectories"), loaded.geo, loaded.scenario.surface.grid());
@@ -89,8 +89,7 @@ class Vectors {
   const Scenario& scenario_;
   std::filesystem::path folder_;
   const Observer& observer_;
-  io::StopsWriter stops_;
-  io::ExitsWriter exits_;
+  io::PointsWriter stops_, exits_;
   std::optional<io::TrajectoriesWriter> paths_;
   std::optional<io::CrossingsWriter> crossings_;
   ScreenSummary summary_;

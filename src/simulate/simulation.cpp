@@ -285,7 +285,7 @@ Simulation::Simulation(const Scenario& scenario, const Part& part, bool further_
       screens_(scenario),
       order_(work_order(scenario.surface.grid(), scenario.sources)),
       first_place_(part.first(scenario.sources.size())),
-      units_per_source_((scenario.trajectories + kBlocksPerUnit - 1) / kBlocksPerUnit),
+      units_per_source_(units_per_source(scenario)),
       units_(std::uint64_t{units_per_source_} * (part.end(scenario.sources.size()) - first_place_)),
       chunk_(1),
       further_rounds_(further_rounds),

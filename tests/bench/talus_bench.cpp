@@ -219,7 +219,7 @@ void write_stops(benchmark::State& state) {
     }
   for (auto _ : state) {
     const TemporaryFile file(state);
-    io::StopsWriter writer(file.path, *g_loaded);
+    io::PointsWriter writer(file.path, *g_loaded, io::PointsWriter::Layer::Stops);
     for (std::size_t at = 0; at < rows.size(); at += 128)
       writer.write(std::span(rows).subspan(at, std::min<std::size_t>(128, rows.size() - at)));
     writer.finish();

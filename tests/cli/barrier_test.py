@@ -253,6 +253,11 @@ class Design(Case):
         self.fails(2, "no run.json", arguments=["barrier", self.folder, "--screen", "road"])
         os.remove(self.path("out/screens.csv"))
         self.refused("no screens.csv")
+        with open(self.path("out/run.json"), encoding="utf-8") as file:
+            record = json.load(file)
+        record["screens"][0]["lines"] = [[[0.0, 0.0]]]
+        self.write("out/run.json", json.dumps(record))
+        self.refused("run.json", "cannot be understood", "has a line of less than two places")
         self.write("out/run.json", "{")
         self.refused("run.json", "cannot be understood")
 

@@ -417,6 +417,8 @@ class Files(Report):
         refused("run.json", "{}", "cannot be understood")
         for change in ({"columns": 10**9}, {"columns": -5}, {"cell_x_m": 0}, {"cell_x_m": 1e999}, {"crs_wkt": 7}):
             refused("run.json", json.dumps({**record, "grid": {**record["grid"], **change}}), "cannot be understood")
+        screens = [{"id": "road", "lines": [[[0.0, 0.0]]]}]  # talus barrier refuses it, too
+        refused("run.json", json.dumps({**record, "screens": screens}), "'road' has a line of less than two places")
         refused("hazard.json", '{"warnings": 3, "events_per_year": "many"}', "cannot be understood")
         with open(self.path("out/hazard.json"), encoding="utf-8") as file:
             hazard = json.load(file)

@@ -16,6 +16,7 @@
 #include "talus/io/results/class_names.hpp"
 #include "talus/io/results/qgis_project.hpp"
 #include "talus/io/results/vector_style.hpp"
+#include "talus/products/hazard_table.hpp"
 #include "talus/products/raster_table.hpp"
 
 namespace talus::io {
@@ -157,11 +158,19 @@ TEST(Colours, AsSeenByMachado) {  // greys stay grey, and pure red is dark witho
 constexpr Palette kPalettes[]{Palette::Plasma, Palette::PlasmaFromDark, Palette::Viridis, Palette::YlGnBu,
                               Palette::HazardClasses};
 
+/// All six colours of a palette, in the order of the classes.
+std::vector<std::string> colours_of(Palette palette) {
+  std::vector<std::string> colours;
+  for (const LegendClass& item : classes_of(Legend{{1.0, 2.0, 3.0, 4.0, 5.0}, 1.0, "", palette}, false))
+    colours.push_back(item.colour);
+  return colours;
+}
+
 TEST(Colours, NeighboursDifferForAllEyes) {
   constexpr double kLeast = 15.0;  // of CIELAB; 2.3 is just noticeable side by side (Mahy and others, 1994)
   for (const Palette palette : kPalettes)
     for (const auto& [eye, matrix] : eyes()) {
-      const auto colours = colours_of(palette);
+      const std::vector<std::string> colours = colours_of(palette);
       for (std::size_t i = 1; i < colours.size(); ++i)
         EXPECT_GE((lab_of(matrix * linear(colours[i])) - lab_of(matrix * linear(colours[i - 1]))).norm(), kLeast)
             << static_cast<int>(palette) << ": " << colours[i - 1] << " " << colours[i] << " " << eye;
@@ -171,7 +180,7 @@ TEST(Colours, NeighboursDifferForAllEyes) {
 TEST(Colours, LightnessIsMonotone) {  // in every eye: the order of the classes is seen, also in a grey copy
   for (const Palette palette : kPalettes)
     for (const auto& [eye, matrix] : eyes()) {
-      const auto colours = colours_of(palette);
+      const std::vector<std::string> colours = colours_of(palette);
       const double sign = palette == Palette::PlasmaFromDark ? 1.0 : -1.0;
       for (std::size_t i = 1; i < colours.size(); ++i)
         EXPECT_GT(sign * (lab_of(matrix * linear(colours[i]))[0] - lab_of(matrix * linear(colours[i - 1]))[0]), 1.0)

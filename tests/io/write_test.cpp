@@ -73,6 +73,17 @@ Map map_of(Map::Kind kind, std::vector<Map::Band> bands) {
   return map;
 }
 
+/// Writes a map by one thread. False if `proceed` ended it.
+bool write_map(const Map& map, const MapTarget& target) {
+  MapFile file(map, target);
+  bool whole = false;
+  for (std::size_t i = 0, parts = file.parts(); i < parts; ++i) {
+    if (target.proceed && !target.proceed()) return false;
+    whole = file.write_part(i);
+  }
+  return whole;
+}
+
 std::vector<float> read(GDALRasterBand* band) {
   std::vector<float> values(static_cast<std::size_t>(band->GetXSize()) * static_cast<std::size_t>(band->GetYSize()));
   EXPECT_EQ(band->RasterIO(GF_Read, 0, 0, band->GetXSize(), band->GetYSize(), values.data(), band->GetXSize(),

@@ -34,6 +34,33 @@ inline Campaign campaign_on_slope(std::size_t blocks) {
   return c;
 }
 
+/// A slope of 40 degrees that runs out on a plain; blocks of many sizes and shapes, one screen. Nothing measured yet.
+inline Campaign slope_campaign(int blocks) {
+  Numbers numbers(5);
+  Campaign c;
+  c.name = "slope";
+  c.surface = Surface(terrain(grid_of(60, 110, 2.0, 2.0), [](double, double y) {
+    return 0.84 * std::max(0.0, y - 80.0) + 0.1 * std::min(y, 80.0);
+  }));
+  c.zone_names = {"default"};
+  c.screens = {{"S1", {{{0.0, 90.0}, {120.0, 90.0}}}}};
+  c.error = {0.3, 0.03, 0.1, 0.05};
+  for (int i = 0; i < blocks; ++i) {
+    MeasuredBlock b;
+    b.id = "b" + std::to_string(i);
+    b.stream = stream_of_name(b.id);
+    b.x = numbers.uniform(40.0, 80.0);
+    b.y = numbers.uniform(185.0, 200.0);
+    b.velocity = {0.0, -1.0, 0.0};
+    b.mass = std::exp(numbers.uniform(std::log(60.0), std::log(4000.0)));
+    b.axes = {numbers.uniform(1.2, 2.2), 1.1, 1.0};
+    b.day = 1 + i % 3;
+    b.passages.resize(1);
+    c.blocks.push_back(b);
+  }
+  return c;
+}
+
 /// The ground of the rough slope.
 inline Model model_of_slope() {
   Model model;

@@ -1,5 +1,3 @@
-#include <cstdio>
-
 #include "progress.hpp"
 #include "several_campaigns.hpp"
 #include "talus/base/error.hpp"

@@ -1,6 +1,5 @@
 #include "crossing_weights.hpp"
 
-#include <algorithm>
 #include <charconv>
 #include <filesystem>
 
@@ -36,18 +35,17 @@ talus::WeightScale weigh(std::vector<talus::LineCrossing>& crossings, const Cros
                          const talus::Scenario& scenario, const WeightingOptions& o) {
   const auto weights = talus::AnnualWeights::of(scenario);
   if (!weights) throw talus::InputError(o.frequency + ": no blocks fall with these frequencies; give one above 0");
-  const std::uint64_t units = (scenario.trajectories + talus::kBlocksPerUnit - 1) / talus::kBlocksPerUnit;
   for (std::size_t i = 0; i < crossings.size(); ++i) {
     const std::uint32_t source = number_of(table.source[i], "source"), block = number_of(table.block[i], "block");
     if (source >= scenario.sources.size())
       refuse("source = " + table.source[i], scenario.sources.size(), "source cells");
     if (block >= scenario.trajectories)
       refuse("block = " + table.block[i], scenario.trajectories, "blocks of a source cell");
-    const std::uint32_t unit = block / talus::kBlocksPerUnit;
+    const talus::Stratum stratum = talus::stratum_of(scenario, source, block);
     talus::LineCrossing& crossing = crossings[i];
     crossing.weight = static_cast<double>(weights->weight(scenario, source, block)) * weights->scale().unit;
-    crossing.stratum = source * units + unit;
-    crossing.stratum_blocks = std::min(scenario.trajectories - unit * talus::kBlocksPerUnit, talus::kBlocksPerUnit);
+    crossing.stratum = stratum.number;
+    crossing.stratum_blocks = stratum.blocks;
   }
   return weights->scale();
 }

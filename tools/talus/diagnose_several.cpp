@@ -1,5 +1,4 @@
 #include <chrono>
-#include <cstdio>
 
 #include "progress.hpp"
 #include "several_campaigns.hpp"

@@ -40,12 +40,11 @@ struct Options {
 fs::path tally_file(const fs::path& folder) {
   const fs::path file = folder / talus::io::kHazardFile;
   if (fs::exists(file)) return file;
+  talus::io::require_results(folder);
   throw talus::InputError(
       folder.string() +
-      (fs::exists(folder / "run.json")
-           ? ": this run knows no annual frequencies; give the sources a field frequency (events per "
-             "year), or the scenario [frequency] total (--frequency), per_area or power_law, and run again"
-           : ": is no folder of results (it has no run.json); give the OUT of talus run"));
+      ": this run knows no annual frequencies; give the sources a field frequency (events per year), or the scenario "
+      "[frequency] total (--frequency), per_area or power_law, and run again");
 }
 
 /// What an object of some width needs: class limits that are thresholds of the run.

@@ -1,7 +1,5 @@
 #include "talus/simulate/scenario/presets.hpp"
 
-#include <cstdio>
-
 #include "commands.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"

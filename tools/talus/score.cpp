@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -9,6 +8,7 @@
 #include "talus/io/campaign/model_file.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/reports/score_report.hpp"
+#include "talus/io/results/write_block_runs.hpp"
 
 namespace {
 
@@ -67,7 +67,7 @@ int score_model(const Options& options) {
   const std::string text =
       options.json ? talus::io::score_json(settings, scores) : talus::io::score_table(settings, scores);
   if (dump) {
-    talus::io::write_runs(dump->temporary(), loaded, runs);
+    talus::io::write_block_runs(dump->temporary(), loaded, runs);
     dump->commit();
   }
   print_text(text);

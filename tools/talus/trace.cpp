@@ -1,6 +1,4 @@
 #include <array>
-#include <charconv>
-#include <cstdio>
 #include <memory>
 #include <optional>
 

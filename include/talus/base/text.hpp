@@ -36,6 +36,9 @@ std::string csv_field(double value);
 /// The words in one text: "a, b, c".
 std::string joined(std::span<const std::string> words);
 
+/// The text with its capital letters (ASCII) as small ones.
+std::string lowercase(std::string_view text);
+
 /// The name with the spelling nearest to `word`, upper and lower case alike; empty if none is near. Near: at most 2
 /// letters, or a third of the word if that is more, are inserted, left out or exchanged (Levenshtein distance).
 std::string nearest_name(std::string_view word, std::span<const std::string> names);

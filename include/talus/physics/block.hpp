@@ -15,6 +15,11 @@ struct Block {
   double rotational_energy(double spin) const { return 0.5e-3 * inertia() * spin * spin; }
 };
 
+/// Translational kinetic energy, 1/2 m v^2 [kJ]. @param mass  [kg] @param speed  [m/s]
+inline double kinetic_energy(double mass, double speed) {
+  return 0.5e-3 * mass * speed * speed;
+}
+
 /// A block from its equivalent diameter [m] and its density [kg/m^3].
 inline Block block_of(double diameter, double density) {
   return {diameter, density * (kPi / 6.0) * diameter * diameter * diameter, Vec3::Ones()};

@@ -13,9 +13,14 @@ namespace talus {
 enum class End : std::uint8_t { Stopped, Trapped, Left, Caught, Limit };
 inline constexpr int kEnds = 5;
 
+/// Whether the block stays on the ground where its path ended, without a barrier.
+constexpr bool rests_on_ground(End end) {
+  return end == End::Stopped || end == End::Trapped;
+}
+
 /// Whether the block stays where its path ended.
 constexpr bool rests(End end) {
-  return end == End::Stopped || end == End::Trapped || end == End::Caught;
+  return rests_on_ground(end) || end == End::Caught;
 }
 
 /// Event at a vertex of a path; it tells what follows.

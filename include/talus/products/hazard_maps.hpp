@@ -7,10 +7,10 @@
 
 #include "talus/products/hazard.hpp"
 #include "talus/products/hazard_matrix.hpp"
+#include "talus/products/hazard_table.hpp"
 #include "talus/products/maps.hpp"
 #include "talus/products/object_width.hpp"
 #include "talus/products/quiet_regions.hpp"
-#include "talus/products/raster_table.hpp"
 
 namespace talus {
 

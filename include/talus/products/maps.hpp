@@ -47,11 +47,6 @@ struct Map {
   std::function<void(const CellWindow& window, std::span<double> values)> fill{};
   /// The value of each band in all cells of a window, where it is known to be the same; else nothing. May be empty.
   std::function<std::optional<std::vector<double>>(const CellWindow& window)> everywhere{};
-
-  /// Fills a whole row: values[band * columns + column].
-  void fill_row(int row, std::span<double> values) const {
-    fill({0, row, static_cast<int>(values.size() / bands.size()), 1}, values);
-  }
 };
 
 /// All maps of a finished run, in the order in which they are written. The scenario and the tally must outlive them.

@@ -1,7 +1,6 @@
 #include "talus/fit/calibrate/effect_parameters.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "amount.hpp"
 #include "talus/base/error.hpp"

@@ -1,7 +1,6 @@
 #include "talus/fit/calibrate/parameters.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "talus/base/elementary.hpp"

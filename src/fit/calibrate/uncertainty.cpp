@@ -1,7 +1,6 @@
 #include "talus/fit/calibrate/uncertainty.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "local_model.hpp"
 #include "talus/base/sample.hpp"

@@ -48,7 +48,7 @@ class DiagnosisLoop {
       if (round == 0) d.base = d.with_effects;
       d.rounds.push_back(run_round(d.with_effects, found, level, round < options_.most_effects));
       const DiagnosisRound& last = d.rounds.back();
-      if (last.effect == "none" || last.effect == "unexplained" || scope_.first_round) break;
+      if (!names_effect(last.effect) || scope_.first_round) break;
       found.push_back(last.effect);
       FittedCandidate& chosen = d.rounds.back().candidates.front();
       if (!scope_.brief) fits_.complete(d.with_effects, chosen);

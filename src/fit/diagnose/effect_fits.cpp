@@ -139,7 +139,7 @@ double EffectFits::least_objective(const FittedModel& base, const Verdict& verdi
 
 /// The best of some places to start from: the effect in several amounts, each with the ground as it is and moved as the
 /// score test expects it to. An amount of zero, the base itself, is one of them. Beyond an amount that is much worse
-/// than none, larger ones are not tried: they would be worse still, and blocks that crawl take longest.
+/// than none, larger ones are not tried: they would be worse still, and very slow blocks take most steps.
 EffectFits::Start EffectFits::best_start(const FitProblem& problem, const FitOptions& how, const FittedModel& base,
                                          const Candidate& candidate, const Verdict& verdict) const {
   const double noticed = options_.rules.noticed;

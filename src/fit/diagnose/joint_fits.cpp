@@ -1,7 +1,6 @@
 #include "joint_fits.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "fit/calibrate/local_model.hpp"

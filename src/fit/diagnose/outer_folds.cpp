@@ -67,7 +67,7 @@ OuterFold loop_of(const Campaign& campaign, const OuterFolds& folds, std::uint32
     if (folds.by_group && std::ranges::find(loop.groups, group) == loop.groups.end()) loop.groups.push_back(group);
   }
   for (const DiagnosisRound& round : found.rounds) {
-    if (round.effect == "none" || round.effect == "unexplained") continue;
+    if (!names_effect(round.effect)) continue;
     loop.effects.push_back(round.effect);
     loop.where.push_back(round.where);
   }
@@ -158,7 +158,7 @@ NestedValidation nested_validation(const Campaign& campaign, const Model& start,
   scope.brief = true;
   scope.given = !nested.naming;
   for (const DiagnosisRound& round : whole.rounds)
-    if (round.effect != "none" && round.effect != "unexplained") scope.effects.push_back(round.effect);
+    if (names_effect(round.effect)) scope.effects.push_back(round.effect);
   const ObserveOptions how = unseen_runs(campaign, work.options(), nested.trials);
   for (std::uint32_t fold = 0; fold < folds.count; ++fold) {
     const Diagnosis part = run_loop(without_fold(campaign, folds, fold), start, work.next(true), scope);

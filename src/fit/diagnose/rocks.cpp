@@ -1,7 +1,6 @@
 #include "rocks.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 namespace talus {

@@ -1,7 +1,6 @@
 #include "talus/fit/diagnose/several_sites.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "chosen_shares.hpp"
 #include "joint_fits.hpp"
@@ -163,7 +162,7 @@ class SitesLoop {
         compete(model, round);
       const double smallest = number == 0 ? d.p_value : round.family.p_corrected;  // of the families of the sites, too
       if (round.effect == "none" && smallest <= options_.later_level) round.effect = "unexplained";
-      const bool more = round.effect != "none" && round.effect != "unexplained";
+      const bool more = names_effect(round.effect);
       if (more) {
         fits_.complete(model, round.candidates.front());
         found.push_back(round.effect);

@@ -72,27 +72,17 @@ Score scored(const Campaign& campaign, std::span<const BlockRuns> runs, const st
 
 }  // namespace
 
-double runout_of(const MeasuredBlock& block) {
+double runout_of(const Campaign& campaign, const MeasuredBlock& block) {
+  if (campaign.deposits != nullptr) return run_out(campaign, *block.stop).distance;
   return block.stop ? std::hypot(block.stop->x() - block.x, block.stop->y() - block.y) : kNotGiven;
 }
 
-std::vector<double> runouts_of(const MeasuredBlock& block, const BlockRuns& runs) {
+std::vector<double> runouts_of(const Campaign& campaign, const MeasuredBlock& block, const BlockRuns& runs) {
   std::vector<double> values;
   values.reserve(runs.trials);
   for (std::uint32_t t = 0; t < runs.trials; ++t)
-    values.push_back(std::hypot(runs.x[t] - block.x, runs.y[t] - block.y));
-  return values;
-}
-
-double runout_of(const Campaign& campaign, const MeasuredBlock& block) {
-  return campaign.deposits == nullptr ? runout_of(block) : run_out(campaign, *block.stop).distance;
-}
-
-std::vector<double> runouts_of(const Campaign& campaign, const MeasuredBlock& block, const BlockRuns& runs) {
-  if (campaign.deposits == nullptr) return runouts_of(block, runs);
-  std::vector<double> values;
-  values.reserve(runs.trials);
-  for (std::uint32_t t = 0; t < runs.trials; ++t) values.push_back(run_out(campaign, {runs.x[t], runs.y[t]}).distance);
+    values.push_back(campaign.deposits == nullptr ? std::hypot(runs.x[t] - block.x, runs.y[t] - block.y)
+                                                  : run_out(campaign, {runs.x[t], runs.y[t]}).distance);
   return values;
 }
 

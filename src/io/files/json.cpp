@@ -44,6 +44,10 @@ Json read_record(const std::filesystem::path& file) {
   return parsed_record(read_file(file.string(), file.string(), "a record of talus", kMostRecord));
 }
 
+void throw_not_understood(const std::filesystem::path& file, const std::string& cause, const std::string& way_out) {
+  throw InputError(file.string() + ": cannot be understood (" + cause + "), " + way_out);
+}
+
 std::int64_t whole_number(const Json& number, std::int64_t lowest, std::int64_t highest) {
   const bool whole = number.is_number_integer() && !(number.is_number_unsigned() && number.get<std::uint64_t>() >> 63U);
   if (!whole || number.get<std::int64_t>() < lowest || number.get<std::int64_t>() > highest)

@@ -1,4 +1,5 @@
 #pragma once
+#include <exception>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -33,6 +34,20 @@ Json parsed_record(const std::string& text);
 /// The JSON in a file that Talus wrote (run.json, part.json). Throws InputError or Json::exception if the file is no
 /// regular file, larger than any record of ours, or no JSON; before more than that is read.
 Json read_record(const std::filesystem::path& file);
+
+/// Throws InputError "FILE: cannot be understood (CAUSE), WAY_OUT".
+[[noreturn]] void throw_not_understood(const std::filesystem::path& file, const std::string& cause,
+                                       const std::string& way_out);
+
+/// What `read` makes of a record. Any exception of it becomes InputError "FILE: cannot be understood (CAUSE), WAY_OUT".
+template <class Read>
+auto understood(const std::filesystem::path& file, const std::string& way_out, Read read) {
+  try {
+    return read();
+  } catch (const std::exception& error) {
+    throw_not_understood(file, error.what(), way_out);
+  }
+}
 
 /// A whole number of a record, within bounds. (A conversion would wrap a larger one.) Throws InputError or
 /// Json::exception.

@@ -30,6 +30,12 @@ fs::path full_name(const fs::path& path) {
   return full;
 }
 
+void require_results(const fs::path& folder) {
+  std::error_code none;
+  if (!fs::exists(folder / "run.json", none))
+    throw InputError(folder.string() + ": is no folder of results (it has no run.json); give the OUT of talus run");
+}
+
 namespace {
 
 /// A mount point can neither be renamed nor replaced: this is reported before the run, not after it.
@@ -109,7 +115,7 @@ std::vector<Left> left_of(const fs::path& folder) {
   return found;
 }
 
-/// Whether this is a map that a killed run had finished: `write_map` gives a map its name last.
+/// Whether this is a map that a killed run had finished: `MapFile` gives a map its name last.
 bool is_finished_map(const fs::path& file) {
   return file.extension() == ".tif" && !file.stem().has_extension();
 }

@@ -27,8 +27,7 @@ std::vector<std::string> files_of(const fs::path& record) {
 
 StagedFiles::StagedFiles(const fs::path& folder, const std::string& record, bool overwrite)
     : folder_(folder), record_(record), staged_(StagedPath::Kind::Folder, folder / fs::path(record).stem()) {
-  if (!fs::exists(folder / "run.json"))
-    throw InputError(folder.string() + ": is no folder of results (it has no run.json); give the OUT of talus run");
+  require_results(folder);
   if (fs::exists(folder / record)) {
     if (!overwrite)
       throw InputError(folder.string() + ": has a " + record +

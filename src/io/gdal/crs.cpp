@@ -262,10 +262,6 @@ Transformer::Transformer(LayerName layer, const std::string& from_wkt, const std
 Transformer::~Transformer() = default;
 Transformer::Transformer(Transformer&&) noexcept = default;
 
-bool Transformer::is_identity() const {
-  return !projection_->operation;
-}
-
 void Transformer::apply(double& x, double& y, const std::string& where) {
   Projection& p = *projection_;
   if (!p.operation) return;

@@ -8,6 +8,7 @@
 
 #include "regular_file.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
 #include "talus/io/gdal/input_access.hpp"
 #include "vrt_check.hpp"
 
@@ -44,9 +45,7 @@ InputName of_network(const std::string& name) {
 /// A folder of ESRI, all of whose files are regular.
 bool is_geodatabase(const fs::path& path) {
   std::error_code none;
-  std::string end = path.extension().string();
-  std::ranges::transform(end, end.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (end != ".gdb" || !fs::is_directory(path, none)) return false;
+  if (lowercase(path.extension().string()) != ".gdb" || !fs::is_directory(path, none)) return false;
   for (const auto& entry : fs::directory_iterator(path, none))
     if (!entry.is_regular_file(none)) return false;
   return true;

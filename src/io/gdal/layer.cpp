@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
@@ -201,8 +200,9 @@ std::optional<double> Layer::number(const OGRFeature& feature, int index, const 
   return value;
 }
 
-void Layer::refuse_odd(const std::map<std::string, CsvCell>& cells, std::string column, const std::string& unit) const {
-  std::ranges::transform(column, column.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+void Layer::refuse_odd(const std::map<std::string, CsvCell>& cells, const std::string& name,
+                       const std::string& unit) const {
+  const std::string column = lowercase(name);
   const auto found = cells.find(column);
   if (found == cells.end()) return;
   throw InputError(path_ + ":" + std::to_string(found->second.line) + ": " + column + " = '" + found->second.text +

@@ -91,7 +91,7 @@ class Layer {
   /// Index of a field whose name a Shapefile has cut; -1 if there is none.
   int cut_field(const std::string& name) const;
   /// Throws InputError if one of the cells of a CSV is in this column.
-  void refuse_odd(const std::map<std::string, CsvCell>& cells, std::string column, const std::string& unit) const;
+  void refuse_odd(const std::map<std::string, CsvCell>& cells, const std::string& name, const std::string& unit) const;
   void collect(OGRGeometry& geometry, Parts& parts, const std::string& where);
   void move(OGRSimpleCurve& line, const std::string& where);
   /// Why a polygon in local metres is invalid, with the place in map coordinates.

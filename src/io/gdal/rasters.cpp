@@ -105,9 +105,7 @@ void check_band(GDALRasterBand& band, const std::string& path, std::vector<std::
     warnings.push_back(path +
                        ": band 1 holds bytes (0 to 255), as pictures do and hillshades: are these heights in "
                        "metres? Take the DEM that it was made of");
-  std::string unit = band.GetUnitType();
-  std::transform(unit.begin(), unit.end(), unit.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string unit = lowercase(band.GetUnitType());
   check_values(band, path, warnings);
   if (unit.empty() || unit == "m" || unit == "metre" || unit == "meter" || unit == "metres" || unit == "meters") return;
   const bool feet = unit.find("ft") != std::string::npos || unit.find("foot") != std::string::npos ||

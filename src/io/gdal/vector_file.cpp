@@ -40,9 +40,7 @@ char separator_of(std::string_view header) {
 }
 
 std::string lower_trimmed(const std::string& text) {
-  std::string word = trimmed(text);
-  std::ranges::transform(word, word.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return word;
+  return lowercase(trimmed(text));
 }
 
 struct CloseFile {

@@ -15,6 +15,7 @@
 #include "input_name.hpp"
 #include "regular_file.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
 
 namespace talus::io {
 
@@ -52,8 +53,7 @@ struct Source {
 };
 
 bool names_source(const CPLXMLNode& node) {
-  std::string name = node.pszValue;
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string name = lowercase(node.pszValue);
   constexpr std::array<std::string_view, 3> kOthers{"sourcedataset", "srcdatasource", "dempath"};
   return name.ends_with("filename") || std::ranges::count(kOthers, std::string_view(name)) > 0;
 }

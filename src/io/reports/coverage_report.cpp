@@ -1,7 +1,6 @@
 #include "coverage_report.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "svg.hpp"
 #include "talus/base/text.hpp"

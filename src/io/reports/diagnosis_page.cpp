@@ -19,10 +19,6 @@ constexpr int kWidth = 330, kHeight = 190, kMargin = 34;  // of a plot [px]
 constexpr double kHighest = 3.5;                          // z at the rim of a plot
 constexpr std::size_t kPlots = 6;
 
-std::string value_text(double value) {
-  return std::isnan(value) ? "-" : with_decimals(value, 3);
-}
-
 std::string reduction_text(const Reduction& r) {
   if (std::isnan(r.share)) return "-";
   return with_decimals(100.0 * r.share, 1) + " % (" + with_decimals(100.0 * r.interval.low, 1) + " to " +
@@ -114,7 +110,7 @@ Markup plots(const Campaign& campaign, const Diagnosis& d, const DiagnosisRules&
 Markup errors_html(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
   const auto row = [](const Markup& rows, double before, double after, const Reduction* reduction) {
-    return "<tr><td>"_html + rows + "</td><td>" + value_text(before) + "</td><td>" + value_text(after) + "</td><td>" +
+    return "<tr><td>"_html + rows + "</td><td>" + score_text(before) + "</td><td>" + score_text(after) + "</td><td>" +
            (reduction != nullptr ? reduction_text(*reduction) : "") + "</td></tr>\n";
   };
   Markup html =
@@ -183,7 +179,7 @@ Markup candidates_table(const DiagnosisRound& round, const std::vector<HoldoutEr
     const HoldoutError& e = holdout[i];
     html += "<tr><td>"_html + c.effect + "</td><td>" + c.where + "</td><td>" + numbers + "</td><td>" +
             with_decimals(c.p_value, 4) + "</td><td>" + gain_text(c.gain, c.gain_interval) + "</td><td>" +
-            gain_text(c.cross_validated, c.cross_validated_interval) + "</td><td>" + value_text(e.after) + "</td><td>" +
+            gain_text(c.cross_validated, c.cross_validated_interval) + "</td><td>" + score_text(e.after) + "</td><td>" +
             reduction_text(e.reduction) + "</td></tr>\n";
   }
   return html + "</table>\n";

@@ -87,16 +87,52 @@ HoldoutError error_of(const Score& before, const Score& after, std::span<const s
   return {before.total, after.total, reduction(before, after, clusters)};
 }
 
-bool found(const DiagnosisRound& round) {
-  return round.effect != "none" && round.effect != "unexplained";
-}
-
 /// For an effect, the share of the bootstraps in which it is the best. For `none`, the p-value of the test. For
 /// `unexplained`, 1 minus the smallest p-value that shows it. None is a probability of being right.
 double probability_of(const DiagnosisRound& round) {
-  if (found(round)) return round.candidates.front().chosen_share;
+  if (names_effect(round.effect)) return round.candidates.front().chosen_share;
   if (round.effect == "none") return round.p_value;
   return 1.0 - std::min(round.p_value, round.residual.empty() ? 1.0 : round.residual.front().corrected);
+}
+
+Json rounds_json(const DiagnosisRecord& record) {
+  Json rounds = Json::array();
+  for (std::size_t i = 0; i < record.diagnosis.rounds.size(); ++i) {
+    const DiagnosisRound& round = record.diagnosis.rounds[i];
+    Json turn{{"effect", round.effect}};
+    if (names_effect(round.effect)) {
+      turn["where"] = round.where;
+      turn["indistinguishable_from"] = round.alike;
+      turn["holdout"] = {{"before", json_of(record.rounds[i].before)}, {"after", json_of(record.rounds[i].after)}};
+    }
+    turn["p_value"] = json_of(round.p_value);
+    if (i > 0) {
+      turn["families"] = families_of(round);
+      turn["candidates"] = candidates_of(round, record.candidates[i]);
+    }
+    rounds.push_back(turn);
+  }
+  return rounds;
+}
+
+/// Adds the errors of the first and the last model on unseen rows.
+Json with_error(Json json, const HoldoutError& error) {
+  json["before"] = json_of(error.before);
+  json["after"] = json_of(error.after);
+  json["reduction"] = json_of(error.reduction.share);
+  json["ci95"] = json_of(error.reduction.interval);
+  return json;
+}
+
+Json error_json(const DiagnosisRecord& record) {
+  const Diagnosis& d = record.diagnosis;
+  const std::string& rows = record.errors[record.unseen].after.rows;
+  return {{"metric", "mean normalised score"},
+          {"fit", {{"before", json_of(d.base.score.total)}, {"after", json_of(d.with_effects.score.total)}}},
+          {"holdout", with_error({{"rows", rows}}, record.whole)},
+          {"headline",
+           with_error({{"rows", rows}, {"fewest_rows_of_a_group", kHeadlineRows}, {"left_out", small_groups(record)}},
+                      record.headline)}};
 }
 
 }  // namespace
@@ -121,7 +157,7 @@ void open_holdout(const Campaign& campaign, DiagnosisRecord& record) {
         record.evidence[i].push_back({"holdout", std::move(after),
                                       score(campaign, runs, rows, {ScoreRule::LogDensity, kFewestSimulated, {}}),
                                       base.score, base.log_score});
-      if (i == 0 && found(round)) last = scored_holdout(runs);
+      if (i == 0 && names_effect(round.effect)) last = scored_holdout(runs);
     }
     record.rounds.push_back(error_of(before, last.score, clusters));
   }
@@ -145,49 +181,18 @@ std::vector<std::string> small_groups(const DiagnosisRecord& record) {
 std::string diagnosis_json(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
   const DiagnosisRound& first = d.rounds.front();
-  Json effects = Json::array(), rounds = Json::array();
-  for (std::size_t i = 0; i < d.rounds.size(); ++i) {
-    const DiagnosisRound& round = d.rounds[i];
-    Json turn{{"effect", round.effect}};
-    if (found(round)) {
-      effects.push_back(round.effect);
-      turn["where"] = round.where;
-      turn["indistinguishable_from"] = round.alike;
-      turn["holdout"] = {{"before", json_of(record.rounds[i].before)}, {"after", json_of(record.rounds[i].after)}};
-    }
-    turn["p_value"] = json_of(round.p_value);
-    if (i > 0) {
-      turn["families"] = families_of(round);
-      turn["candidates"] = candidates_of(round, record.candidates[i]);
-    }
-    rounds.push_back(turn);
-  }
+  Json effects = Json::array();
+  for (const DiagnosisRound& round : d.rounds)
+    if (names_effect(round.effect)) effects.push_back(round.effect);
   if (effects.empty()) effects.push_back(first.effect);
-  const HoldoutError& e = record.whole;
   Json json{{"effect", first.effect},
             {"effects", effects},
             {"verdict", verdict_text(d)},
             {"where", first.where},
             {"probability", json_of(probability_of(first))},
             {"indistinguishable_from", first.alike},
-            {"rounds", rounds},
-            {"error",
-             {{"metric", "mean normalised score"},
-              {"fit", {{"before", json_of(d.base.score.total)}, {"after", json_of(d.with_effects.score.total)}}},
-              {"holdout",
-               {{"rows", record.errors[record.unseen].after.rows},
-                {"before", json_of(e.before)},
-                {"after", json_of(e.after)},
-                {"reduction", json_of(e.reduction.share)},
-                {"ci95", json_of(e.reduction.interval)}}},
-              {"headline",
-               {{"rows", record.errors[record.unseen].after.rows},
-                {"fewest_rows_of_a_group", kHeadlineRows},
-                {"left_out", small_groups(record)},
-                {"before", json_of(record.headline.before)},
-                {"after", json_of(record.headline.after)},
-                {"reduction", json_of(record.headline.reduction.share)},
-                {"ci95", json_of(record.headline.reduction.interval)}}}}},
+            {"rounds", rounds_json(record)},
+            {"error", error_json(record)},
             {"evidence", evidence_of(record)},
             {"tail", tail_json(record.errors)},
             {"coverage", coverage_json(record.errors)},

@@ -30,7 +30,7 @@ Text listed(const std::vector<Text>& words) {
 }
 
 bool found(const DiagnosisRound& round) {
-  return round.effect != "none" && round.effect != "unexplained";
+  return names_effect(round.effect);
 }
 
 std::string with_values(const DiagnosisRound& round) {

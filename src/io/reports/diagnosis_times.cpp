@@ -1,7 +1,6 @@
 #include "diagnosis_times.hpp"
 
 #include <algorithm>
-#include <map>
 
 #include "talus/base/text.hpp"
 

@@ -16,10 +16,6 @@ std::string percent(double share) {
   return with_decimals(100.0 * share, 1);
 }
 
-std::string score_text(double score) {
-  return std::isnan(score) ? "-" : with_decimals(score, 3);
-}
-
 JudgedModel of_climatology(const BeforeAfter& e) {
   return {e.after.climatology, e.after.log_climatology};
 }
@@ -107,6 +103,10 @@ std::string tail_before_after(const BeforeAfter& e) {
          " after (lower by " + percent(e.tail_reduction.share) + " %, 95 %: " + percent(e.tail_reduction.interval.low) +
          " to " + percent(e.tail_reduction.interval.high) + " %), climatology " +
          score_text(e.after.tail_climatology.total) + ".";
+}
+
+std::string score_text(double score) {
+  return std::isnan(score) ? "-" : with_decimals(score, 3);
 }
 
 std::string gain_text(double gain, const Interval& interval) {

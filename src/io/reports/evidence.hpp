@@ -35,6 +35,8 @@ Json judged_json(const JudgedModel& model, const JudgedModel& reference, std::sp
 Json evidence_json(std::span<const BeforeAfter> errors, std::span<const std::uint32_t> clusters, const char* before,
                    const char* after);
 
+/// A score with three decimals: "0.743"; "-" for NaN.
+std::string score_text(double score);
 /// A gain with its 95 % interval; empty where it is NaN.
 std::string gain_text(double gain, const Interval& interval);
 /// Skill, tail and spread after a fit, as Markdown.

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <ctime>
 
+#include "io/results/recorded_screens.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
 #include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/files/output_folder.hpp"
 #include "talus/io/files/staged_files.hpp"
 #include "talus/io/gdal/crs.hpp"
 
@@ -40,19 +42,6 @@ RecordedGrid grid_of(const Json& json) {
   if (!(grid.cell_x > 0.0 && grid.cell_y > 0.0)) throw InputError("its cells have no size");
   grid.crs = shortened(crs_name(json.at("crs_wkt").get<std::string>()), 120);
   return grid;
-}
-
-std::vector<Screen> screens_of(const Json& json) {
-  std::vector<Screen> screens;
-  for (const Json& one : json.value("screens", Json::array())) {
-    Screen screen{one.at("id").get<std::string>(), {}};
-    for (const Json& line : one.at("lines")) {
-      auto& places = screen.lines.emplace_back();
-      for (const Json& place : line) places.emplace_back(place.at(0).get<double>(), place.at(1).get<double>());
-    }
-    screens.push_back(std::move(screen));
-  }
-  return screens;
 }
 
 std::vector<RecordedSetting> settings_of_record(const Json& json) {
@@ -87,7 +76,7 @@ RunFacts facts_of(const Json& json) {
   run.plan = json.value("plan", "");
   read_counts(json, run);
   run.grid = grid_of(json.at("grid"));
-  run.screens = screens_of(json);
+  run.screens = recorded_screens(json);
   run.settings = settings_of_record(json);
   for (const Json& one : json.value("inputs", Json::array()))
     run.inputs.push_back(
@@ -126,16 +115,9 @@ std::string too_large_for_page(const std::filesystem::path& table) {
   return table.filename().string() + " has more than " + std::to_string(kMostPageTable >> 20U) + " MB";
 }
 
-void throw_not_understood(const std::filesystem::path& file, const std::string& cause) {
-  throw InputError(file.string() + ": cannot be understood (" + cause +
-                   "), must be as talus has written it; run that command again");
-}
-
 RunFacts read_facts(const std::filesystem::path& folder) {
+  require_results(folder);
   const std::filesystem::path file = folder / "run.json";
-  std::error_code none;
-  if (!std::filesystem::exists(file, none))
-    throw InputError(folder.string() + ": is no folder of results (it has no run.json); give the OUT of talus run");
   RunFacts run = understood(file, facts_of);
   run.written = day_of(file);
   return run;

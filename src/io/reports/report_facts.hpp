@@ -1,6 +1,5 @@
 #pragma once
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -78,17 +77,11 @@ inline constexpr std::uintmax_t kMostPageTable = std::uintmax_t{128} << 20U;
 /// "NAME has more than 128 MB" for a table above `kMostPageTable`; empty else.
 std::string too_large_for_page(const std::filesystem::path& table);
 
-/// Throws InputError "FILE: cannot be understood (CAUSE), ...".
-[[noreturn]] void throw_not_understood(const std::filesystem::path& file, const std::string& cause);
-
 /// Reads a record beside the run by `read`. Throws InputError "FILE: cannot be understood (...)".
 template <class Read>
 auto understood(const std::filesystem::path& file, Read read) {
-  try {
-    return read(read_record(file));
-  } catch (const std::exception& error) {
-    throw_not_understood(file, error.what());
-  }
+  return understood(file, "must be as talus has written it; run that command again",
+                    [&] { return read(read_record(file)); });
 }
 
 /// The texts of a list in a record, at most some hundred of them.

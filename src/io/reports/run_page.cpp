@@ -208,10 +208,9 @@ std::string run_page(const RunPageRequest& request) {
 }
 
 void check_page_name(const fs::path& file, bool overwrite, const fs::path& folder) {
-  std::error_code none;
-  if (!fs::exists(folder / "run.json", none))
-    throw InputError(folder.string() + ": is no folder of results (it has no run.json); give the OUT of talus run");
+  require_results(folder);
   refuse_dangling_link(file);
+  std::error_code none;
   if (fs::exists(file, none)) {
     if (!overwrite)
       throw InputError(file.string() + ": is there already; give --overwrite to replace it, or another name by -o");

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "evidence.hpp"
 #include "talus/base/text.hpp"
 #include "talus/fit/score/joined_scores.hpp"
 
@@ -69,7 +70,7 @@ std::string markdown_row(const std::string& site, const char* rows, const ErrorC
     return "| " + site + " | " + rows + " | " + (c.blocks == 0 ? "none declared" : "too few rows") +
            " | - | - | - | - |\n";
   return "| " + site + " | " + rows + " | " + std::to_string(c.blocks) + " blocks, " + std::to_string(c.rows) +
-         " rows | " + score_of(c.before) + " | " + score_of(c.after) + " | " + score_of(c.climatology) + " | " +
+         " rows | " + score_text(c.before) + " | " + score_text(c.after) + " | " + score_text(c.climatology) + " | " +
          change_text(c) + " |\n";
 }
 
@@ -131,10 +132,6 @@ Json errors_json(const SiteEvidence& evidence) {
   return {{"fit", change_json(evidence.fit)},
           {"holdout", change_json(evidence.holdout)},
           {"headline", change_json(evidence.headline)}};
-}
-
-std::string score_of(double value) {
-  return std::isnan(value) ? "-" : with_decimals(value, 3);
 }
 
 std::string change_text(const ErrorChange& change) {

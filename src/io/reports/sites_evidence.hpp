@@ -11,8 +11,6 @@ std::string names_in_words(std::span<const SiteEvidence> evidence);
 Json errors_json(const SiteEvidence& evidence);
 /// "4.3 % (95 %: 1.2 to 7.5 %)"; "-" where nothing was scored.
 std::string change_text(const ErrorChange& change);
-/// "0.743"; "-" for NaN.
-std::string score_of(double value);
 /// One line per site and one for all: rows, error before, after, climatology, reduction. Markdown.
 std::string evidence_markdown(std::span<const SiteEvidence> evidence);
 

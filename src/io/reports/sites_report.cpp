@@ -15,10 +15,6 @@
 namespace talus::io {
 namespace {
 
-bool found(const JointRound& round) {
-  return round.effect != "none" && round.effect != "unexplained";
-}
-
 std::string p_text(double p) {
   return std::isnan(p) ? "-" : with_decimals(p, 4);
 }
@@ -72,7 +68,7 @@ Json rounds_json(const SitesRecord& record) {
   for (std::size_t i = 0; i < record.diagnosis.rounds.size(); ++i) {
     const JointRound& round = record.diagnosis.rounds[i];
     Json turn{{"effect", round.effect}, {"p_value", json_of(round.family.p_corrected)}};
-    if (found(round)) {
+    if (names_effect(round.effect)) {
       const double after = record.candidates[i].front();
       turn["where"] = round.where;
       turn["indistinguishable_from"] = round.alike;
@@ -157,7 +153,7 @@ Json coverage_by_site(const SitesRecord& record) {
 /// being right.
 double probability_of(const SitesDiagnosis& d) {
   const JointRound& first = d.rounds.front();
-  if (found(first)) return first.candidates.front().chosen_share;
+  if (names_effect(first.effect)) return first.candidates.front().chosen_share;
   return first.effect == "none" ? d.p_value : 1.0 - d.p_value;
 }
 
@@ -173,7 +169,7 @@ Json stability_of(const SitesRecord& record) {
 std::string verdict_sentence(const SitesDiagnosis& d) {
   std::string text;
   for (const JointRound& round : d.rounds) {
-    if (!found(round)) continue;
+    if (!names_effect(round.effect)) continue;
     text += (text.empty() ? "The models of all sites lack " : "; then ") + round.effect + " (" + round.where + ")";
     for (const std::string& other : round.alike) text += ", not to be told apart from " + other;
   }
@@ -203,8 +199,8 @@ Markup error_cells(const ErrorChange& c) {
     return "<td>"_html + (c.blocks == 0 ? "none declared" : "too few rows") +
            "</td><td>-</td><td>-</td><td>-</td><td>-</td>";
   return "<td>"_html + std::to_string(c.blocks) + " blocks, " + std::to_string(c.rows) + " rows</td><td>" +
-         score_of(c.before) + "</td><td>" + score_of(c.after) + "</td><td>" + score_of(c.climatology) + "</td><td>" +
-         change_text(c) + "</td>";
+         score_text(c.before) + "</td><td>" + score_text(c.after) + "</td><td>" + score_text(c.climatology) +
+         "</td><td>" + change_text(c) + "</td>";
 }
 
 /// p of a site, or of all sites together, that nothing depends on a property of the block.
@@ -274,7 +270,7 @@ std::string sites_json(const SitesRecord& record) {
   const JointRound& first = d.rounds.front();
   Json effects = Json::array();
   for (const JointRound& round : d.rounds)
-    if (found(round)) effects.push_back(round.effect);
+    if (names_effect(round.effect)) effects.push_back(round.effect);
   if (effects.empty()) effects.push_back(first.effect);
   Json error = errors_json(record.evidence.back());
   error["metric"] = "mean normalised score";
@@ -341,8 +337,8 @@ std::string sites_summary(const SitesRecord& record) {
     text += e.site + ": p of a block property " + p_text(property_p(d, i));
     for (const auto& [name, change] : {std::pair{"fitting", e.fit}, {"held-out", e.holdout}})
       text += "; " + std::string(name) + " rows (" + std::to_string(change.rows) + "): error " +
-              score_of(change.before) + " before, " + score_of(change.after) + " after, climatology " +
-              score_of(change.climatology) + (change.rows > 0 ? ", lower by " + change_text(change) : "");
+              score_text(change.before) + " before, " + score_text(change.after) + " after, climatology " +
+              score_text(change.climatology) + (change.rows > 0 ? ", lower by " + change_text(change) : "");
     text += "\n";
   }
   return text;

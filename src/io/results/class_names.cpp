@@ -37,7 +37,7 @@ void add_row(const Element& table, std::size_t index, const std::vector<std::str
   const Element row = table.add("Row");
   row.set("index", std::to_string(index));
   for (const std::string& value : values) row.add("F", value);
-  for (const std::size_t at : {1, 3, 5}) row.add("F", std::to_string(std::stoi(rgb.substr(at, 2), nullptr, 16)));
+  for (const int channel : channels_of(rgb)) row.add("F", std::to_string(channel));
 }
 
 /// Values that are classes: their names by number.

@@ -5,7 +5,7 @@
 #include "io/scenario/table_reader.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/version.hpp"
-#include "talus/products/raster_table.hpp"
+#include "talus/products/hazard_table.hpp"
 
 namespace talus::io {
 namespace {

@@ -42,18 +42,18 @@ std::optional<RecordedPlan> plan_in(const fs::path& folder) {
     const fs::path file = folder / name;
     std::error_code none;
     if (!fs::exists(file, none)) continue;
-    try {
+    const auto read = [&]() -> std::optional<RecordedPlan> {
       const Json json = read_record(file);
       if (!json.contains("plan")) return std::nullopt;
       RecordedPlan plan{json.at("plan"), 1, name};
       if (plan.record == "run.json" && json.contains("rounds"))  // the scenario of a part is that of one round
         plan.rounds = static_cast<std::uint32_t>(whole_number(json["rounds"].at("done"), 1, kMostRounds));
       return plan;
-    } catch (const std::exception& error) {
-      throw InputError(file.string() + ": cannot be understood (" + error.what() +
-                       "), so that nobody can say whether the scenario beside it is still that of the run; copy the "
-                       "scenario into another folder to use it all the same");
-    }
+    };
+    return understood(file,
+                      "so that nobody can say whether the scenario beside it is still that of the run; copy the "
+                      "scenario into another folder to use it all the same",
+                      read);
   }
   return std::nullopt;
 }

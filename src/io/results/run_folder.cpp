@@ -1,9 +1,8 @@
 #include "talus/io/results/run_folder.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include "io/files/json.hpp"
 #include "io/gdal/regular_file.hpp"
+#include "recorded_screens.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/results/run_record.hpp"
@@ -16,16 +15,6 @@ double setting_of(const Json& json, const std::string& key) {
   for (const Json& setting : json.at("settings"))
     if (setting.at("key") == key) return setting.at("value").get<double>();
   throw InputError("no setting '" + key + "'");
-}
-
-Screen screen_of(const Json& json) {
-  Screen screen{json.at("id").get<std::string>(), {}};
-  for (const Json& line : json.at("lines")) {
-    auto& places = screen.lines.emplace_back();
-    for (const Json& place : line) places.emplace_back(place.at(0).get<double>(), place.at(1).get<double>());
-    if (places.size() < 2) throw InputError("screen '" + screen.id + "' has a line of less than two places");
-  }
-  return screen;
 }
 
 std::vector<std::string> size_warnings_of(const Json& run) {
@@ -84,22 +73,18 @@ RunSummary read_run(const std::filesystem::path& folder) {
     throw InputError(folder.string() +
                      ": has no run.json that can be read, must be a folder that talus run has written");
   const std::string text = read_file(file.string(), file.string(), "a record of talus run", kMostRecord);
-  RunSummary run;
-  try {
+  return understood(file, "must be as talus run has written it; run the scenario again", [&] {
     const Json json = parsed_record(text);
+    RunSummary run;
     run.released = json.at("released").get<double>();
     run.density = setting_of(json, "blocks.density");
     run.cell = json.at("grid").at("cell_x_m").get<double>();
-    for (const Json& screen : json.value("screens", Json::array())) {
-      run.screens.push_back(screen_of(screen));
+    run.screens = recorded_screens(json);
+    for (const Json& screen : json.value("screens", Json::array()))
       run.without_height.push_back(screen.value("share_without_height", 0.0));
-    }
     run.size_warnings = size_warnings_of(json);
-  } catch (const std::exception& error) {
-    throw InputError(file.string() + ": cannot be understood (" + error.what() +
-                     "), must be as talus run has written it; run the scenario again");
-  }
-  return run;
+    return run;
+  });
 }
 
 std::vector<std::string> size_warnings_of(const std::filesystem::path& folder) {

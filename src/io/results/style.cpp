@@ -111,8 +111,9 @@ void add_renderer(const Element& pipe, const Map& map) {
 
 }  // namespace
 
-std::span<const char* const> colours_of(Palette palette) {
-  return colours(palette);
+std::array<int, 3> channels_of(const std::string& colour) {
+  const auto channel = [&](std::size_t at) { return std::stoi(colour.substr(at, 2), nullptr, 16); };
+  return {channel(1), channel(3), channel(5)};
 }
 
 std::vector<LegendClass> classes_of(const Legend& legend, bool to_one) {

@@ -8,6 +8,7 @@
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/results/style.hpp"
+#include "talus/products/hazard_table.hpp"
 #include "talus/products/raster_table.hpp"
 #include "xml.hpp"
 
@@ -61,7 +62,7 @@ Look look_of(StyledLayer layer) {
 /// "#rrggbb" as QGIS writes the colours of symbols.
 std::string colour_text(const std::string& rgb) {
   std::string text;
-  for (const std::size_t at : {1, 3, 5}) text += std::to_string(std::stoi(rgb.substr(at, 2), nullptr, 16)) + ",";
+  for (const int channel : channels_of(rgb)) text += std::to_string(channel) + ",";
   return text + "255";
 }
 

@@ -22,7 +22,7 @@ void CrossingsWriter::write(std::span<const Crossing> crossings) {
   std::string text;
   for (const Crossing& c : crossings) {
     TALUS_EXPECT(c.screen < screens_.size(), "a crossing is of a screen of the scenario");
-    const double energy = 0.5e-3 * c.mass * c.speed * c.speed;
+    const double energy = kinetic_energy(c.mass, c.speed);
     const double rotation = Block{c.diameter, c.mass}.rotational_energy(c.spin);
     text += std::to_string(c.source) + ',' + std::to_string(c.block) + ',' + screens_[c.screen];
     for (const double value : {c.speed, energy, energy + rotation, c.height, c.spin, c.mass})

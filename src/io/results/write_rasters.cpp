@@ -3,7 +3,6 @@
 #include <ogr_spatialref.h>
 
 #include <algorithm>
-#include <atomic>
 #include <stdexcept>
 
 #include "io/files/compression.hpp"
@@ -135,16 +134,6 @@ void MapFile::named(const Work& work) {
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(map_.name + ".tif: " + error.what());
   }
-}
-
-bool write_map(const Map& map, const MapTarget& target) {
-  MapFile file(map, target);
-  bool whole = false;
-  for (std::size_t i = 0, parts = file.parts(); i < parts; ++i) {
-    if (target.proceed && !target.proceed()) return false;
-    whole = file.write_part(i);
-  }
-  return whole;
 }
 
 }  // namespace talus::io

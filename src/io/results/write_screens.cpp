@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 
+#include "io/files/json.hpp"
 #include "io/gdal/layer_file.hpp"
 #include "talus/base/expect.hpp"
-#include "talus/base/text.hpp"
 #include "talus/io/results/vector_style.hpp"
 
 namespace talus::io {
@@ -35,10 +34,6 @@ std::unique_ptr<OGRMultiLineString> lines_of(const Screen& screen, double west, 
   return all;
 }
 
-double six_digits_of(double value) {
-  return std::isfinite(value) ? std::strtod(with_digits(value, 6).c_str(), nullptr) : value;
-}
-
 }  // namespace
 
 void write_screens(const std::filesystem::path& file, const LoadedScenario& loaded, const ScreenSummary& summary) {
@@ -62,7 +57,7 @@ void write_screens(const std::filesystem::path& file, const LoadedScenario& load
     for (const auto& [quantity, name] : kQuantities) {
       const ScreenSummary::Row figures = summary.row(s, index_of(quantity));
       for (const double value : {figures.p50, figures.p95, figures.maximum}) {
-        if (std::isfinite(value)) row->SetField(next, six_digits_of(value));
+        if (std::isfinite(value)) row->SetField(next, six_digits(value));
         ++next;
       }
     }

@@ -1,5 +1,6 @@
 #include "talus/io/results/write_vectors.hpp"
 
+#include <array>
 #include <cmath>
 
 #include "io/gdal/layer_file.hpp"
@@ -85,27 +86,67 @@ const char* name_of(Event event) {
   return "";
 }
 
-struct StopsWriter::State {
-  State(const std::filesystem::path& name, const LoadedScenario& loaded)
+namespace {
+
+/// A row of a layer of points that is being written.
+struct PointRow {
+  Fields& fields;
+  const StopRow& stop;
+  const Place& place;
+  const std::string& feature;  // name of the source's feature
+};
+
+struct PointColumn {
+  const char* name;
+  OGRFieldType type;
+  void (*add)(const PointRow& row);
+};
+
+constexpr PointColumn kSource{"source", OFTInteger64, [](const PointRow& r) { r.fields.add(r.stop.source); }};
+constexpr PointColumn kBlock{"block", OFTInteger64, [](const PointRow& r) { r.fields.add(r.stop.block); }};
+constexpr PointColumn kEnd{"end", OFTString, [](const PointRow& r) { r.fields.add(name_of(r.stop.end)); }};
+constexpr PointColumn kFeature{"feature", OFTString, [](const PointRow& r) { r.fields.add(r.feature.c_str()); }};
+constexpr PointColumn kDiameter{"diameter_m", OFTReal,
+                                [](const PointRow& r) { r.fields.add(decimals(r.stop.diameter, 1e4)); }};
+constexpr PointColumn kMass{"mass_kg", OFTReal, [](const PointRow& r) { r.fields.add(decimals(r.stop.mass, 1e3)); }};
+constexpr PointColumn kXRelease{"x_release", OFTReal,
+                                [](const PointRow& r) { r.fields.add(decimals(r.place.x(r.stop.x_release), 1e3)); }};
+constexpr PointColumn kYRelease{"y_release", OFTReal,
+                                [](const PointRow& r) { r.fields.add(decimals(r.place.y(r.stop.y_release), 1e3)); }};
+constexpr PointColumn kZ{"z", OFTReal, [](const PointRow& r) { r.fields.add(r.stop.z); }};
+constexpr PointColumn kSeconds{"seconds", OFTReal,
+                               [](const PointRow& r) { r.fields.add(decimals(r.stop.seconds, 1e3)); }};
+constexpr PointColumn kMaxSpeed{"max_speed_ms", OFTReal,
+                                [](const PointRow& r) { r.fields.add(decimals(r.stop.max_speed, 1e3)); }};
+constexpr PointColumn kLength{"length_m", OFTReal,
+                              [](const PointRow& r) { r.fields.add(decimals(r.stop.length, 1e3)); }};
+constexpr PointColumn kImpacts{"impacts", OFTInteger64, [](const PointRow& r) { r.fields.add(r.stop.impacts); }};
+constexpr PointColumn kEnergyLine{"energy_line_deg", OFTReal, [](const PointRow& r) {
+                                    r.fields.add_or_null(decimals(r.stop.energy_line * 180.0 / kPi, 1e3));
+                                  }};
+constexpr PointColumn kSpeed{"speed_ms", OFTReal,
+                             [](const PointRow& r) { r.fields.add(decimals(r.stop.end_speed, 1e3)); }};
+constexpr PointColumn kEnergy{"energy_kj", OFTReal, [](const PointRow& r) {
+                                r.fields.add(decimals(kinetic_energy(r.stop.mass, r.stop.end_speed), 1e3));
+                              }};
+
+constexpr std::array kStops{kSource,   kBlock, kEnd,     kFeature,  kDiameter, kMass,    kXRelease,
+                            kYRelease, kZ,     kSeconds, kMaxSpeed, kLength,   kImpacts, kEnergyLine};
+constexpr std::array kExits{kSource, kBlock, kFeature, kDiameter, kMass, kZ, kSeconds, kSpeed, kEnergy};
+
+}  // namespace
+
+struct PointsWriter::State {
+  State(const std::filesystem::path& name, const LoadedScenario& loaded, std::span<const PointColumn> all,
+        const char* layer_name)
       : file(new_layer_file(name, loaded.geo)),
         scenario(loaded.scenario),
         place(loaded.geo, loaded.scenario.surface.grid()),
-        names(feature_names(loaded.scenario)) {
-    layer = file->add_bulk_layer("stops", wkbPoint,
-                                 {{"source", OFTInteger64},
-                                  {"block", OFTInteger64},
-                                  {"end", OFTString},
-                                  {"feature", OFTString},
-                                  {"diameter_m", OFTReal},
-                                  {"mass_kg", OFTReal},
-                                  {"x_release", OFTReal},
-                                  {"y_release", OFTReal},
-                                  {"z", OFTReal},
-                                  {"seconds", OFTReal},
-                                  {"max_speed_ms", OFTReal},
-                                  {"length_m", OFTReal},
-                                  {"impacts", OFTInteger64},
-                                  {"energy_line_deg", OFTReal}});
+        names(feature_names(loaded.scenario)),
+        columns(all) {
+    std::vector<LayerFile::Column> described;
+    for (const PointColumn& column : columns) described.push_back({column.name, column.type});
+    layer = file->add_bulk_layer(layer_name, wkbPoint, described);
     feature.reset(OGRFeature::CreateFeature(layer->GetLayerDefn()));
     point = new OGRPoint(0.0, 0.0);
     feature->SetGeometryDirectly(point);
@@ -113,20 +154,8 @@ struct StopsWriter::State {
 
   void append(const StopRow& row) {
     Fields fields(*feature);
-    fields.add(row.source);
-    fields.add(row.block);
-    fields.add(name_of(row.end));
-    fields.add(names[scenario.sources[row.source].feature].c_str());
-    fields.add(decimals(row.diameter, 1e4));
-    fields.add(decimals(row.mass, 1e3));
-    fields.add(decimals(place.x(row.x_release), 1e3));
-    fields.add(decimals(place.y(row.y_release), 1e3));
-    fields.add(row.z);
-    fields.add(decimals(row.seconds, 1e3));
-    fields.add(decimals(row.max_speed, 1e3));
-    fields.add(decimals(row.length, 1e3));
-    fields.add(row.impacts);
-    fields.add_or_null(decimals(row.energy_line * 180.0 / kPi, 1e3));
+    const PointRow written{fields, row, place, names[scenario.sources[row.source].feature]};
+    for (const PointColumn& column : columns) column.add(written);
     point->setX(place.x(row.x));
     point->setY(place.y(row.y));
     file->append(layer, *feature);
@@ -136,81 +165,27 @@ struct StopsWriter::State {
   const Scenario& scenario;
   Place place;
   std::vector<std::string> names;  // of the features
+  std::span<const PointColumn> columns;
   OGRLayer* layer = nullptr;
   Feature feature;
   OGRPoint* point = nullptr;  // of `feature`
 };
 
-StopsWriter::StopsWriter(const std::filesystem::path& file, const LoadedScenario& loaded)
-    : state_(std::make_unique<State>(file, loaded)) {}
-StopsWriter::~StopsWriter() = default;
+PointsWriter::PointsWriter(const std::filesystem::path& file, const LoadedScenario& loaded, Layer layer)
+    : layer_(layer),
+      state_(layer == Layer::Stops ? std::make_unique<State>(file, loaded, kStops, "stops")
+                                   : std::make_unique<State>(file, loaded, kExits, "exits")) {}
+PointsWriter::~PointsWriter() = default;
 
-void StopsWriter::write(std::span<const StopRow> rows) {
-  const GdalMessages messages;
-  for (const StopRow& row : rows) state_->append(row);
-}
-
-void StopsWriter::finish() {
-  state_->file->set_style("stops", style_of(StyledLayer::Stops));
-  state_->file->finish();
-}
-
-struct ExitsWriter::State {
-  State(const std::filesystem::path& name, const LoadedScenario& loaded)
-      : file(new_layer_file(name, loaded.geo)),
-        scenario(loaded.scenario),
-        place(loaded.geo, loaded.scenario.surface.grid()),
-        names(feature_names(loaded.scenario)) {
-    layer = file->add_bulk_layer("exits", wkbPoint,
-                                 {{"source", OFTInteger64},
-                                  {"block", OFTInteger64},
-                                  {"feature", OFTString},
-                                  {"diameter_m", OFTReal},
-                                  {"mass_kg", OFTReal},
-                                  {"z", OFTReal},
-                                  {"seconds", OFTReal},
-                                  {"speed_ms", OFTReal},
-                                  {"energy_kj", OFTReal}});
-    feature.reset(OGRFeature::CreateFeature(layer->GetLayerDefn()));
-  }
-
-  void append(const StopRow& row) {
-    const double speed = row.end_speed;
-    Fields fields(*feature);
-    fields.add(row.source);
-    fields.add(row.block);
-    fields.add(names[scenario.sources[row.source].feature].c_str());
-    fields.add(decimals(row.diameter, 1e4));
-    fields.add(decimals(row.mass, 1e3));
-    fields.add(row.z);
-    fields.add(decimals(row.seconds, 1e3));
-    fields.add(decimals(speed, 1e3));
-    fields.add(decimals(0.5e-3 * row.mass * speed * speed, 1e3));
-    const OGRPoint point(place.x(row.x), place.y(row.y));
-    feature->SetGeometry(&point);
-    file->append(layer, *feature);
-  }
-
-  std::unique_ptr<LayerFile> file;
-  const Scenario& scenario;
-  Place place;
-  std::vector<std::string> names;  // of the features
-  OGRLayer* layer = nullptr;
-  Feature feature;
-};
-
-ExitsWriter::ExitsWriter(const std::filesystem::path& file, const LoadedScenario& loaded)
-    : state_(std::make_unique<State>(file, loaded)) {}
-ExitsWriter::~ExitsWriter() = default;
-
-void ExitsWriter::write(std::span<const StopRow> rows) {
+void PointsWriter::write(std::span<const StopRow> rows) {
   const GdalMessages messages;
   for (const StopRow& row : rows)
-    if (row.end == End::Left) state_->append(row);
+    if (layer_ == Layer::Stops || row.end == End::Left) state_->append(row);
 }
 
-void ExitsWriter::finish() {
-  state_->file->set_style("exits", style_of(StyledLayer::Exits));
+void PointsWriter::finish() {
+  const bool stops = layer_ == Layer::Stops;
+  state_->file->set_style(stops ? "stops" : "exits", style_of(stops ? StyledLayer::Stops : StyledLayer::Exits));
   state_->file->finish();
 }
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+
+#include "talus/base/text.hpp"
 
 namespace talus {
 namespace {
@@ -17,8 +18,8 @@ constexpr std::array<TreeSpecies, 4> kSpecies{{
 }};
 
 std::string plain(std::string_view name) {
-  std::string text(name);
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return c == '_' ? ' ' : std::tolower(c); });
+  std::string text = lowercase(name);
+  std::ranges::replace(text, '_', ' ');
   return text;
 }
 

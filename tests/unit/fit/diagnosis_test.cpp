@@ -5,54 +5,20 @@
 #include <functional>
 #include <numeric>
 
-#include "support/scenes.hpp"
+#include "support/campaigns.hpp"
 #include "talus/fit/diagnose/candidates.hpp"
-#include "talus/fit/diagnose/detection_limits.hpp"
-#include "talus/fit/diagnose/projection.hpp"
 #include "talus/fit/diagnose/residual_table.hpp"
 #include "talus/fit/diagnose/score_test.hpp"
-#include "talus/fit/diagnose/undeclared_places.hpp"
 
 namespace talus {
 namespace {
 
-/// A slope of 40 degrees that runs out on a plain; blocks of many sizes and shapes, one screen. Nothing measured yet.
-Campaign slope_campaign(int blocks) {
-  test::Numbers numbers(5);
-  Campaign c;
-  c.name = "slope";
-  c.surface = Surface(test::terrain(test::grid_of(60, 110, 2.0, 2.0), [](double, double y) {
-    return 0.84 * std::max(0.0, y - 80.0) + 0.1 * std::min(y, 80.0);
-  }));
-  c.zone_names = {"default"};
-  c.screens = {{"S1", {{{0.0, 90.0}, {120.0, 90.0}}}}};
-  c.error = {0.3, 0.03, 0.1, 0.05};
-  for (int i = 0; i < blocks; ++i) {
-    MeasuredBlock b;
-    b.id = "b" + std::to_string(i);
-    b.stream = stream_of_name(b.id);
-    b.x = numbers.uniform(40.0, 80.0);
-    b.y = numbers.uniform(185.0, 200.0);
-    b.velocity = {0.0, -1.0, 0.0};
-    b.mass = std::exp(numbers.uniform(std::log(60.0), std::log(4000.0)));
-    b.axes = {numbers.uniform(1.2, 2.2), 1.1, 1.0};
-    b.day = 1 + i % 3;
-    b.passages.resize(1);
-    c.blocks.push_back(b);
-  }
-  return c;
-}
+using test::slope_campaign;
 
-/// Takes one trial of the model as the measurements.
+/// Takes one trial of the model as the measurements, in place of earlier ones.
 void measure(Campaign& c, const Model& model, std::uint64_t seed) {
-  const auto runs = observe(c, model, {1, seed, 0, 0, {}, {}});
-  for (std::size_t b = 0; b < c.blocks.size(); ++b) {
-    c.blocks[b].stop.reset();
-    if (!std::isnan(runs[b].x[0])) c.blocks[b].stop = Eigen::Vector2d(runs[b].x[0], runs[b].y[0]);
-    c.blocks[b].passages[0].reset();
-    const BlockRuns::AtScreen& s = runs[b].screens[0];
-    if (!std::isnan(s.speed[0])) c.blocks[b].passages[0] = Passage{s.speed[0], s.jump[0], s.spin[0]};
-  }
+  for (MeasuredBlock& block : c.blocks) block.stop.reset(), block.passages[0].reset();
+  test::measure(c, model, seed);
 }
 
 ScoreTest test_of(const Campaign& c, const Model& model, std::span<const Candidate> candidates) {
@@ -256,120 +222,6 @@ TEST(ResidualTable, ThePOfACorrelationOfFewBlocksIsThatOfTheirOrders) {
   }
   EXPECT_EQ(rows, 1);
 }
-
-TEST(Candidates, OffChangesNoBit) {
-  Campaign c = slope_campaign(6);
-  const Model model = model_of_preset(c, "upper-talus-3d");
-  measure(c, model, 3);
-  for (MeasuredBlock& b : c.blocks) b.samples.push_back({b.x, b.y - 20.0, 0.0, 20.0, 8.0, 9.0});
-  const auto runs = observe(c, model, {20, 1, 0, 0, {}, {}});
-  const auto list = candidates_of(c, model, runs, {});
-  ASSERT_GT(list.size(), 20U);
-  for (const Candidate& candidate : list) {
-    Model off = with(model, candidate, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(candidate.parameters.size())));
-    const auto same = observe(c, off, {20, 1, 0, 0, {}, {}});
-    for (std::size_t b = 0; b < runs.size(); ++b)
-      for (std::size_t t = 0; t < 20; ++t) {
-        const auto same_bits = [&](const std::vector<double>& one, const std::vector<double>& other) {
-          return one[t] == other[t] || (std::isnan(one[t]) && std::isnan(other[t]));
-        };
-        ASSERT_TRUE(same_bits(same[b].x, runs[b].x) && same_bits(same[b].y, runs[b].y) &&
-                    same_bits(same[b].screens[0].speed, runs[b].screens[0].speed) &&
-                    same_bits(same[b].screens[0].jump, runs[b].screens[0].jump) &&
-                    same_bits(same[b].screens[0].spin, runs[b].screens[0].spin) &&
-                    same_bits(same[b].samples[0].speed, runs[b].samples[0].speed) &&
-                    same_bits(same[b].samples[0].spin, runs[b].samples[0].spin))
-            << candidate.effect << ' ' << candidate.where;
-      }
-  }
-}
-
-/// A model whose samples are read 20 % too low, a campaign with a further screen: the samples keep their error, and the
-/// screen has none.
-TEST(FurtherScreens, HaveNoBiasAndTheSamplesKeepTheirs) {
-  Campaign campaign = slope_campaign(6);
-  campaign.error = {};
-  for (MeasuredBlock& block : campaign.blocks) block.samples = {{.x = block.x, .y = block.y - 20.0, .distance = 20.0}};
-  const Model plain = model_of_preset(campaign, "upper-talus-3d");
-  Model biased = plain;
-  biased.bias.resize(1);
-  biased.bias[kSampler].speed = -0.2;
-  const Campaign more = with_further_screens(campaign, {{60.0, 190.0}, {0.0, -1.0}, 0.0, 150.0});
-  const auto without = observe(more, plain, {20, 1, 0, 1, {}, {}}), with = observe(more, biased, {20, 1, 0, 1, {}, {}});
-  double seen = 0.0, crossed = 0.0;
-  for (std::size_t b = 0; b < with.size(); ++b)
-    for (std::size_t t = 0; t < 20; ++t) {
-      const double sample = with[b].samples[0].speed[t];
-      if (!std::isnan(sample)) {
-        EXPECT_NEAR(sample, 0.8 * without[b].samples[0].speed[t], 1e-12);
-        seen += 1.0;
-      }
-      for (std::size_t s = 0; s < more.screens.size(); ++s) {
-        const double speed = with[b].screens[s].speed[t];
-        if (std::isnan(speed)) continue;
-        EXPECT_EQ(speed, without[b].screens[s].speed[t]);
-        crossed += 1.0;
-      }
-    }
-  EXPECT_GT(seen, 20.0);
-  EXPECT_GT(crossed, 20.0);
-}
-
-/// Who measures more knows more: what a campaign shows, it shows with further speeds, too; from no larger amount on,
-/// but for the noise of the trials.
-TEST(FurtherScreens, RaiseNoLimit) {
-  Campaign campaign = slope_campaign(24);
-  const Model model = model_of_preset(campaign, "upper-talus-3d");
-  measure(campaign, model, 3);
-  const std::vector<bool> rows(campaign.blocks.size(), true);
-  const ObserveOptions unseen{100, 7, 1000, 0, {}, {}};
-  const auto runs = observe(campaign, model, unseen);
-  const Axis axis = axis_of(campaign, runs);
-  const auto list = candidates_of(campaign, model, runs, {});
-  const auto free = ground_parameters(campaign, model, std::vector<std::string>{"theta_scale", "En50"}, {true});
-  const Eigen::VectorXd z = Eigen::VectorXd::Zero(2);
-  ScoreTestOptions how;
-  how.trials = 40;
-  how.replicates = 0;
-  const auto tested = [&](const Campaign& c) {
-    return score_test(c, {model, free, z, observe(c, model, unseen)}, list, rows, how);
-  };
-  const Campaign more = with_further_screens(campaign, axis);
-  std::vector<DetectionLimit> limits = detection_limits(campaign, axis, tested(campaign), list);
-  compare_limits(limits, limits_by_parameter(more, axis, tested(more), list));
-  int finite = 0;
-  for (const DetectionLimit& limit : limits) {
-    if (std::isnan(limit.amount)) continue;
-    ++finite;
-    EXPECT_LE(std::abs(limit.with_further_speeds - limit.off), 1.05 * std::abs(limit.amount - limit.off))
-        << limit.effect << ' ' << limit.key;
-  }
-  EXPECT_GE(finite, 3);
-}
-
-TEST(Candidates, ABarrierAboveEveryJumpLetsNothingPassAndABiasMultiplies) {
-  Campaign c = slope_campaign(6);
-  c.error = {};
-  const Model model = model_of_preset(c, "upper-talus-3d");
-  const auto runs = observe(c, model, {20, 1, 0, 0, {}, {}});
-  Model walled = model;
-  walled.barriers.push_back({"wall", {{{0.0, 100.0}, {120.0, 100.0}}}, 1e9, std::numeric_limits<double>::infinity()});
-  Model high = model;
-  high.bias.assign(2, Bias{});
-  high.bias[instrument_of_screen(0)].speed = 0.25;
-  const auto caught = observe(c, walled, {20, 1, 0, 0, {}, {}}), read = observe(c, high, {20, 1, 0, 0, {}, {}});
-  for (std::size_t b = 0; b < runs.size(); ++b)
-    for (std::size_t t = 0; t < 20; ++t) {
-      EXPECT_TRUE(std::isnan(caught[b].screens[0].speed[t]));  // the screen is behind the barrier
-      if (caught[b].end[t] == End::Caught) {
-        EXPECT_NEAR(caught[b].y[t], 100.0, 1e-3 + 1e-6);  // a millimetre before it
-      }
-      if (!std::isnan(runs[b].screens[0].speed[t])) {
-        EXPECT_DOUBLE_EQ(read[b].screens[0].speed[t], 1.25 * runs[b].screens[0].speed[t]);
-      }
-    }
-}
-
 /// Three drawn sets, two effects; ranks by hand. The measured 0.02 is the second smallest of four by the first effect
 /// and 0.9 the largest by the second. Set 2 is the rarest by the first, set 0 by the second; set 1 is no rarer than 3
 /// of 4.
@@ -418,40 +270,6 @@ TEST(ScoreTest, FindsTheSetOfWetDays) {
   EXPECT_LT(wet->p_value, 0.01);
   EXPECT_EQ(merged_candidate(c, Axis{}, list, wet->best.members).where, "days 1, 3");
 }
-
-/// Two independent estimates of which only the second may be negative: the bounded optimum by hand.
-TEST(Projection, TheEstimateStaysWithinItsBounds) {
-  TestedPlace place{{0}, Eigen::MatrixXd::Identity(3, 3).rightCols(2), {true, false}};
-  const Projection projection(place, Eigen::MatrixXd::Identity(3, 3), Eigen::VectorXd::Ones(1), 1.0);
-  Eigen::MatrixXd scores(3, 4);
-  scores << 0.0, 0.0, 0.0, 0.0, -1.0, -0.5, 0.0, -0.5, -2.0, 0.0, 0.5, -0.5;
-  const Verdict v = projection.verdict(scores);
-  EXPECT_EQ(v.estimate[0], 0.0);
-  EXPECT_NEAR(v.estimate[1], -2.0, 1e-6);
-  EXPECT_NEAR(v.statistic, 4.0, 1e-6);  // 2^2 under the model; the blocks scatter by 3.5
-  // Half chi squared of one freedom, half of two: 0.5 erfc(sqrt(4/2)) + 0.5 exp(-4/2).
-  EXPECT_NEAR(v.p_value, 0.5 * std::erfc(std::sqrt(2.0)) + 0.5 * std::exp(-2.0), 1e-7);
-}
-
-TEST(Projection, EverySetOfFewDaysAndRunsOfMany) {
-  const auto places = [](std::size_t days) {
-    std::vector<Candidate> list(days);
-    for (Candidate& c : list) c = {"wet-ground", "", {{}}, 1, {}};
-    return places_of(list, 0, static_cast<Eigen::Index>(days)).size();
-  };
-  EXPECT_EQ(places(3), 6U);   // 2^3 - 2
-  EXPECT_EQ(places(6), 62U);  // 2^6 - 2
-  EXPECT_EQ(places(8), 35U);  // runs of 1 to 7 of 8 days: 8 + 7 + ... + 2
-}
-
-TEST(Candidates, ABandOfOtherGroundCountsWithItsZone) {
-  const Campaign c = slope_campaign(2);
-  std::vector<BlockRuns> runs(1);
-  runs[0].trials = 10;
-  runs[0].zone_hits = {0, 10};  // the zone, and the zone in the band
-  EXPECT_EQ(touched_zones(c, runs), std::vector<bool>{true});
-}
-
 TEST(ScoreTest, IsSilentAboutTheModelsOwnDataAsOftenAsItSays) {
   Campaign c = slope_campaign(30);
   const Model model = model_of_preset(c, "upper-talus-3d");

@@ -31,7 +31,7 @@ TEST(JoinedScores, MeanOverTheGroupsOfAllSites) {
   EXPECT_TRUE(std::isnan(joined_scores(std::vector<SiteScore>{{"a", {}, 3}, {"b", {}, 5}}).total));
 }
 
-TEST(StreamsOfSites, BlocksOfOneNameHaveLuckOfTheirOwn) {
+TEST(StreamsOfSites, BlocksOfOneNameHaveRandomNumbersOfTheirOwn) {
   Campaign a = campaign_on_slope(6), b = campaign_on_slope(6);  // b2 and b5 are held out
   a.blocks[0].id = "only here";
   a.blocks[0].stream = stream_of_name(a.blocks[0].id);

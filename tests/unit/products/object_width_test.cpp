@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "support/maps.hpp"
 #include "support/scenarios.hpp"
 #include "talus/products/hazard_maps.hpp"
 
@@ -116,7 +117,7 @@ TEST(HitsOfObject, AddUpOverAllPlacesAcrossAFlow) {
     const Map map = make_hazard_maps(survey).front();
     ASSERT_EQ(map.name, "annual_frequency");
     std::vector<double> values(3 * static_cast<std::size_t>(side));
-    map.fill_row(side / 2, values);
+    test::fill_row(map, side / 2, values);
     double sum = 0.0;
     for (int column = 0; column < side; ++column) sum += values[static_cast<std::size_t>(column)] * cell;
     EXPECT_NEAR(sum, 0.5 * 12.0, 1e-4) << cell;

@@ -9,6 +9,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "talus/products/hazard_table.hpp"
+
 namespace talus {
 namespace {
 
@@ -157,18 +159,6 @@ TEST(RasterTable, PercentileBoundsByHand) {  // 10 values: the median lies betwe
   EXPECT_TRUE(std::isnan(bounds[3])) << "too few for an upper bound";
 }
 
-TEST(RasterTable, HazardMapsHaveTheirNumber) {
-  const HazardRules rules{EnergyBins({30.0, 2.5}), {}};
-  HazardMatrix matrix;
-  matrix.years = {50.0};
-  std::vector<std::string> names;
-  for (const HazardMap& map : hazard_maps_of(rules, matrix)) names.push_back(map.map.name);
-  EXPECT_THAT(names, testing::UnorderedElementsAre("annual_frequency", "return_period_30", "return_period_2.5",
-                                                   "intensity_T50", "hazard_class"));
-  for (const HazardMap& map : hazard_maps_of(rules, matrix))
-    for (const Map::Band& band : map.map.bands) EXPECT_THAT(band.name, testing::Not(testing::HasSubstr("<")));
-}
-
 TEST(RasterTable, PassageDensityByHand) {  // 4 blocks of 100 cross 2 x 3 m, 12 m in all, 3 m of it above the threshold
   RunCounts run{100, 10.0, thresholds_of({30.0}, {}), 2.0, 3.0};
   CellRecord cell;
@@ -189,34 +179,6 @@ TEST(RasterTable, PassageDensityByHand) {  // 4 blocks of 100 cross 2 x 3 m, 12 
   run.passages_below = 8.0;
   EXPECT_EQ(bands_of(raster_of("passage_density"), run)[0].name,
             "passage density (in plan, lower than 8 m above the terrain)");
-}
-
-TEST(RasterTable, MapsOfAnObjectSayItsWidth) {
-  const HazardRules rules{EnergyBins({30.0}), {}};
-  for (const HazardMap& map : hazard_maps_of(rules, {}, {10.0, 8.0})) {
-    EXPECT_THAT(map.map.title, testing::HasSubstr("an object 10 m wide")) << map.map.name;
-    EXPECT_THAT(map.map.title, testing::HasSubstr("lower than 8 m above the terrain")) << map.map.name;
-    EXPECT_THAT(map.map.name, testing::Not(testing::HasSubstr("intensity")));
-  }
-  for (const HazardMap& map : hazard_maps_of(rules, {}, {10.0, 0.0}))
-    EXPECT_THAT(map.map.title, testing::HasSubstr("at any height")) << map.map.name;
-}
-
-TEST(RasterTable, HazardCurvesHaveABandPerEnergy) {
-  const HazardRules rules{EnergyBins({2.5, 64.0}), {}};
-  const auto names = [&](const ObjectWidth& object) {
-    std::vector<std::string> of;
-    for (const HazardMap& map : hazard_maps_of(rules, {}, object, true))
-      if (map.map.name == "hazard_curves")
-        for (const Map::Band& band : map.map.bands) of.push_back(band.name);
-    return of;
-  };
-  EXPECT_EQ(names({}).size(), 1U + 18U + 1U) << "0, powers of two from 1 to 131 072, and 2.5; 64 is one of them";
-  EXPECT_EQ(names({})[3], "annual frequency of E > 2.5 kJ (in plan, at any height)");
-  EXPECT_THAT(names({10.0, 0.0}),
-              testing::ElementsAre("annual frequency of E > 0 kJ of an object 10 m wide (in plan, at any height)",
-                                   "annual frequency of E > 2.5 kJ of an object 10 m wide (in plan, at any height)",
-                                   "annual frequency of E > 64 kJ of an object 10 m wide (in plan, at any height)"));
 }
 
 TEST(Quantities, OfACubicMetreOfRockAtTenMetresPerSecond) {  // 2700 kg: 135 kJ

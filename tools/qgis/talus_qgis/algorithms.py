@@ -62,7 +62,7 @@ ALGORITHMS = [
      "several": {"objects"},
      "rasters": ["hazard_class", "annual_frequency"], "vectors": ["objects"],
      "files": {"table": "objects.csv", "curves": "objects_curves.csv"}, "record": "hazard.json"},
-    {"id": "barrier", "command": "barrier", "help": "barrier", "order": ["folder", "screen"], "is folder": {"folder"},
+    {"id": "barrier", "command": "barrier", "help": "barrier", "order": ["folder", "screen"],
      "advanced": {"observed", "frequency", "percentile", "containment", "stretch", "unweighted"}, "phases": []},
     {"id": "profile", "command": "profile", "help": "profile", "phases": ["simulate", "write"],
      "labels": {"trajectories": "number-of-blocks"},
@@ -76,8 +76,7 @@ ALGORITHMS = [
      "advanced": {"fit", "trials", "test-trials", "most-effects", "level", "base-fits", "all-rows", "nested", "no-nested",
                   "folds", "quick-folds"},
      "files": {"fitted": "fitted.toml", "report": "report.html", "record": "diagnosis.json"}},
-    {"id": "report", "command": "report", "help": "report", "phases": [], "is folder": {"folder"},
-     "is page": {"page", "output", "out", "o"}},
+    {"id": "report", "command": "report", "help": "report", "phases": []},
 ]
 
 
@@ -157,10 +156,6 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             return []
         found = [dict(p) for p in command["parameters"]] if command else []
         for p in found:
-            if p["name"] in self.table.get("is folder", ()) and p["type"] == "text" and p["positional"]:
-                p.update(type="folder", written=False)
-            if p["name"] in self.table.get("is page", ()) and p["type"] == "text" and not p["positional"]:
-                p.update(type="file", written=True, holds=["html"])
             p["required"] = p["required"] or p["name"] in self.table.get("required", ())
         order = self.table.get("order", [])
         return sorted(found, key=lambda p: order.index(p["name"]) if p["name"] in order else len(order))

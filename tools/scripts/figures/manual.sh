@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Draws the pictures of the manual into docs/pictures (or the folder given): runs the example valley and the job of
 # docs/road-job.md, and draws each product over the hillshade. Two minutes. The program is TALUS, else talus of the path.
-# The last picture is drawn by QGIS; where QGIS is not installed a line says so and the rest is made.
+# The last pictures are drawn by QGIS; where QGIS is not installed a line says so and the rest is made.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 pictures=$(realpath "${1:-docs/pictures}")
@@ -54,8 +54,9 @@ draw job_hazard "$work/job/hazard_class.tif" --names none,residual,low,medium,hi
 /usr/bin/python3 $figures/barrier_picture.py "$work/job" --screen road -o "$pictures/job_barrier.png" --bin 20
 if /usr/bin/python3 -c "import qgis.core" 2>/dev/null; then
   QT_QPA_PLATFORM=offscreen HOME=$work XDG_RUNTIME_DIR=$work /usr/bin/python3 $figures/qgis_picture.py $valley/dem.tif "$out/hazard_class.tif" "$pictures/qgis.png"
+  TALUS=$talus QT_QPA_PLATFORM=offscreen HOME=$work XDG_RUNTIME_DIR=$work /usr/bin/python3 $figures/qgis_pictures.py "$pictures"
 else
-  echo "manual.sh: QGIS is not installed; $pictures/qgis.png is not drawn" >&2
+  echo "manual.sh: QGIS is not installed; qgis.png, qgis_run.png and qgis_results.png are not drawn" >&2
 fi
 for picture in "$pictures"/*.png; do
   [ "$(stat -c %s "$picture")" -le 120000 ] || echo "manual.sh: $picture is larger than 120 kB" >&2

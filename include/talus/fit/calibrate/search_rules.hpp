@@ -24,7 +24,7 @@ struct SearchRules {
   /// [objective]. With the noise they set the ridge, which holds back what few places cannot show.
   double curved = 0.03, twisted = 0.01;
   /// Vertices (impacts, pieces of slides and of flights with drag) after which a trajectory of a search ends at its
-  /// limit [-]: blocks that crawl take most of the time. docs/diagnosis-time.md has what ordinary ones need.
+  /// limit [-]: it bounds very slow blocks, which take most steps. docs/diagnosis-time.md has what ordinary ones need.
   std::uint32_t most_vertices = 20000;
   /// Share of the speed that drag may take in one piece of a flight of a search [-]: five times that of a run, with an
   /// error of millimetres.

@@ -28,10 +28,10 @@ struct Sample {
 /// A block that was released, with its measurements.
 struct MeasuredBlock {
   std::string id;
-  std::uint32_t stream = 0;      ///< of its random numbers: stream_of_name(id), else blocks have the same luck
-  double x = 0.0, y = 0.0;       ///< nominal place of release [m, local]
-  double release_height = 1.0;   ///< of the centre above the terrain [m]
-  double release_radius = 0.0;   ///< the place of release is uniform in a disc of this radius around (x, y) [m]
+  std::uint32_t stream = 0;     ///< of its random numbers: stream_of_name(id), else blocks have the same random numbers
+  double x = 0.0, y = 0.0;      ///< nominal place of release [m, local]
+  double release_height = 1.0;  ///< of the centre above the terrain [m]
+  double release_radius = 0.0;  ///< the place of release is uniform in a disc of this radius around (x, y) [m]
   Vec3 velocity = Vec3::Zero();  ///< at the release [m/s]
   double mass = 1.0;             ///< [kg], > 0
   double density = 2700.0;       ///< [kg/m^3], > 0

@@ -14,7 +14,8 @@ struct Site {
 };
 
 /// Random streams of the blocks of several campaigns: that of the block's id, as where the campaign stands alone. An id
-/// that another campaign has too gets the stream of "SITE/ID", or blocks of two sites would have the same luck.
+/// that another campaign has too gets the stream of "SITE/ID", or blocks of two sites would have the same random
+/// numbers.
 ///
 /// @return by site and block; the order of the sites changes nothing
 std::vector<std::vector<std::uint32_t>> streams_of_sites(std::span<const Site> sites);

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <string_view>
 
 #include "talus/fit/calibrate/fit_problem.hpp"
 #include "talus/fit/diagnose/detection_limit.hpp"
@@ -57,6 +58,11 @@ struct FittedCandidate {
   /// Gain on blocks that its fit has not seen, less the price of its place. NaN: not cross-validated.
   double unseen_gain() const { return cross_validated - place_price; }
 };
+
+/// Whether the verdict of a round is an effect, and neither "none" nor "unexplained".
+inline bool names_effect(std::string_view verdict) {
+  return verdict != "none" && verdict != "unexplained";
+}
 
 /// One turn of the loop.
 struct DiagnosisRound {

@@ -10,6 +10,9 @@
 namespace talus {
 
 /// A quantity of a block that is compared: one number. docs/diagnosis-method.md, "The residual".
+///
+/// Lateral: distance of the stop [m] from the line through the release towards the mean simulated stop; to the left,
+/// seen from the release, it is positive.
 struct Observable {
   enum class Kind { Runout, Lateral, Mass, Crossed, Speed, Jump, Spin, SampleSpeed, SampleSpin } kind;
   std::size_t screen = 0;  ///< of Crossed, Speed, Jump, Spin

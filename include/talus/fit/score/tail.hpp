@@ -4,13 +4,9 @@
 namespace talus {
 
 /// Run-out of a block: the plan distance from its nominal place of release to its stop [m]. NaN: no stop was measured.
-double runout_of(const MeasuredBlock& block);
-/// Run-outs of its trials [m]; NaN for those that did not stop on the terrain.
-std::vector<double> runouts_of(const MeasuredBlock& block, const BlockRuns& runs);
-
-/// Run-outs of a block of a campaign, measured and simulated. Mapped blocks have no release: theirs are counted from
-/// the nearest source (`run_out`), for mapped and simulated places alike.
+/// Mapped blocks have no release: theirs is counted from the nearest source (`run_out`).
 double runout_of(const Campaign& campaign, const MeasuredBlock& block);
+/// Run-outs of its trials [m], counted alike; NaN for those that did not stop on the terrain.
 std::vector<double> runouts_of(const Campaign& campaign, const MeasuredBlock& block, const BlockRuns& runs);
 
 /// Median of the measured run-outs of the fitting rows [m]: the tail begins there. NaN where none was measured.

@@ -69,6 +69,9 @@ class OutputFolder {
 /// no folder can have this name.
 std::filesystem::path full_name(const std::filesystem::path& path);
 
+/// Throws InputError, with the way out, where a folder holds no run.json: it is no folder of results.
+void require_results(const std::filesystem::path& folder);
+
 /// Writes a text file. Throws std::runtime_error, one line with the file and the cause; no half file is left.
 void write_text(const std::filesystem::path& file, std::string_view text);
 

@@ -47,8 +47,6 @@ class Transformer {
   ~Transformer();
   Transformer(Transformer&&) noexcept;
 
-  bool is_identity() const;
-
   /// x east, y north (or longitude, latitude), whatever the order of the axes in the system.
   /// Throws InputError "`where`: the place ..." where it cannot be transformed.
   void apply(double& x, double& y, const std::string& where);

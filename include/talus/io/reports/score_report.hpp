@@ -1,5 +1,4 @@
 #pragma once
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -83,11 +82,5 @@ std::string cut_short_line(double share, std::uint32_t most_vertices);
 std::string score_table(const ScoreSettings& settings, std::span<const ScoredRows> scores);
 /// The same as JSON. The text ends with a line end.
 std::string score_json(const ScoreSettings& settings, std::span<const ScoredRows> scores);
-
-/// Writes the simulated measurements, errors included, one row per block and trial: `stops.csv`
-/// (block,trial,end,x,y,mass_share), `passages.csv` (block,trial,screen,speed_ms,jump_height_m,angular_velocity_rads)
-/// and, if the campaign has samples, `samples.csv` (block,trial,sample,speed_ms,angular_velocity_rads). Numbers are the
-/// shortest that read back the same. Throws std::runtime_error.
-void write_runs(const std::filesystem::path& folder, const LoadedCampaign& loaded, std::span<const BlockRuns> runs);
 
 }  // namespace talus::io

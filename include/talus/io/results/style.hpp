@@ -1,6 +1,6 @@
 #pragma once
+#include <array>
 #include <filesystem>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -15,8 +15,8 @@ struct LegendClass {
   std::string colour;  ///< "#rrggbb"
 };
 
-/// The colours of a palette, "#rrggbb", in the order of the classes.
-std::span<const char* const> colours_of(Palette palette);
+/// Red, green and blue (0 to 255) of "#rrggbb".
+std::array<int, 3> channels_of(const std::string& colour);
 
 /// The classes of a legend, without that of 0. @param to_one  nothing is above the last limit
 std::vector<LegendClass> classes_of(const Legend& legend, bool to_one);

@@ -67,10 +67,4 @@ class MapFile {
   std::atomic<std::size_t> missing_;  // parts
 };
 
-/// Writes a map by one thread.
-///
-/// @return false if `proceed` ended it
-/// Throws std::runtime_error, one line with the file and the cause. Nothing half-written is left in either case.
-bool write_map(const Map& map, const MapTarget& target);
-
 }  // namespace talus::io

@@ -13,37 +13,26 @@ namespace talus::io {
 /// from any thread, one at a time. `finish` completes the file; without it the file is worthless. All throw
 /// std::runtime_error, one line with the file and the cause (a full disk).
 
-/// Where every block ended: the layer `stops`, points in the system of the DEM.
+/// Where blocks ended: a layer of points in the system of the DEM.
 ///
-/// Fields: source, block, end (stopped, trapped, left, caught, limit), feature (name of the source's feature, else its
-/// number from 0), diameter_m, mass_kg, x_release, y_release (map coordinates), z, seconds, max_speed_ms, length_m,
-/// impacts. The point and z in full precision, other numbers to three decimals (the diameter to four).
-class StopsWriter {
+/// `stops`: every block. Fields: source, block, end (stopped, trapped, left, caught, limit), feature (name of the
+/// source's feature, else its number from 0), diameter_m, mass_kg, x_release, y_release (map coordinates), z, seconds,
+/// max_speed_ms, length_m, impacts, energy_line_deg (NULL where a block ended at its release). The point and z in full
+/// precision, other numbers to three decimals (the diameter to four).
+///
+/// `exits`: one per row that left the terrain; without any the layer is empty. Fields: source, block, feature,
+/// diameter_m, mass_kg, z, seconds as in `stops`; speed_ms and energy_kj (translational) of the block there.
+class PointsWriter {
  public:
-  StopsWriter(const std::filesystem::path& file, const LoadedScenario& loaded);
-  ~StopsWriter();
+  enum class Layer { Stops, Exits };
+  PointsWriter(const std::filesystem::path& file, const LoadedScenario& loaded, Layer layer);
+  ~PointsWriter();
   void write(std::span<const StopRow> rows);
   void finish();
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
-};
-
-/// Where paths left the terrain: the layer `exits`, points in the system of the DEM, one per row that
-/// ended so; without any the layer is empty.
-///
-/// Fields: source, block, feature, diameter_m, mass_kg, z, seconds as in the layer `stops`; speed_ms and energy_kj
-/// (translational) of the block there.
-class ExitsWriter {
- public:
-  ExitsWriter(const std::filesystem::path& file, const LoadedScenario& loaded);
-  ~ExitsWriter();
-  void write(std::span<const StopRow> rows);
-  void finish();
-
- private:
-  struct State;
+  Layer layer_;
   std::unique_ptr<State> state_;
 };
 

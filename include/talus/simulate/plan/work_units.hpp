@@ -1,14 +1,34 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <mutex>
 #include <optional>
 
 #include "talus/simulate/plan/process_group.hpp"
+#include "talus/simulate/scenario/scenario.hpp"
 
 namespace talus {
 
 /// Number of blocks in a unit of work: blocks of one source cell, traced by one worker; one stratum of the hazard.
 inline constexpr std::uint32_t kBlocksPerUnit = 128;
+
+/// Number of units of a source cell; the last one has the rest of its blocks.
+inline std::uint32_t units_per_source(const Scenario& scenario) {
+  return (scenario.trajectories + kBlocksPerUnit - 1) / kBlocksPerUnit;
+}
+
+/// A unit as a stratum: its number among the units of the scenario, source cell by source cell, and its blocks.
+struct Stratum {
+  std::uint64_t number;
+  std::uint32_t blocks;
+};
+
+/// The stratum of a block of a source cell.
+inline Stratum stratum_of(const Scenario& scenario, std::uint32_t source, std::uint32_t block) {
+  const std::uint32_t unit = block / kBlocksPerUnit;
+  return {std::uint64_t{source} * units_per_source(scenario) + unit,
+          std::min(scenario.trajectories - unit * kBlocksPerUnit, kBlocksPerUnit)};
+}
 
 /// Hands out the units of work of a round, each once, to all threads of all processes that trace it.
 ///

@@ -1,7 +1,6 @@
 #pragma once
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <vector>
 
 #include "talus/simulate/tally/cell_record.hpp"
@@ -61,9 +60,9 @@ class Tally {
   /// Whether any cell of a region has a record.
   bool is_touched(std::size_t region) const;
 
-  /// Writes the records of a region; nothing if no trajectory touched it. Regions are numbered row by row from the
-  /// south-west. Not while batches are added.
+  /// Number of regions. They are numbered row by row from the south-west.
   std::size_t regions() const { return region_count_; }
+  /// Writes the records of a region; nothing if no trajectory touched it. Not while batches are added.
   void save(std::size_t region, ByteWriter& out) const;
   /// Writes the records of a region and deletes them.
   void take(std::size_t region, ByteWriter& out);

@@ -197,7 +197,7 @@ TEST(Evaluate, IsTheWeighedScoreAndThePrior) {
 }
 
 /// A later fit uses trials that no known evaluation has used, whatever the numbers of trials were.
-TEST(Calibrate, LaterPlacesHaveLuckOfTheirOwn) {
+TEST(Calibrate, LaterPlacesHaveRandomNumbersOfTheirOwn) {
   EXPECT_EQ(LocalModel::trials_of(7, 24), LocalModel::kDesigns + 168);
   std::vector<Evaluation> known(10, {Eigen::Vector2d::Zero(), {}, 48, 0.0});
   EXPECT_EQ(LocalModel::first_unused(known, 24), 20U);

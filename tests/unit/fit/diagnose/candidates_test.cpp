@@ -156,5 +156,63 @@ TEST(Residual, OfATrialHasTheGapsOfItsBlock) {
   EXPECT_GT(speeds[3], 20);
 }
 
+TEST(Candidates, OffChangesNoBit) {
+  Campaign c = slope_campaign(6);
+  const Model model = model_of_preset(c, "upper-talus-3d");
+  measure(c, model, 3);
+  for (MeasuredBlock& b : c.blocks) b.samples.push_back({b.x, b.y - 20.0, 0.0, 20.0, 8.0, 9.0});
+  const auto runs = observe(c, model, {20, 1, 0, 0, {}, {}});
+  const auto list = candidates_of(c, model, runs, {});
+  ASSERT_GT(list.size(), 20U);
+  for (const Candidate& candidate : list) {
+    Model off = with(model, candidate, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(candidate.parameters.size())));
+    const auto same = observe(c, off, {20, 1, 0, 0, {}, {}});
+    for (std::size_t b = 0; b < runs.size(); ++b)
+      for (std::size_t t = 0; t < 20; ++t) {
+        const auto same_bits = [&](const std::vector<double>& one, const std::vector<double>& other) {
+          return one[t] == other[t] || (std::isnan(one[t]) && std::isnan(other[t]));
+        };
+        ASSERT_TRUE(same_bits(same[b].x, runs[b].x) && same_bits(same[b].y, runs[b].y) &&
+                    same_bits(same[b].screens[0].speed, runs[b].screens[0].speed) &&
+                    same_bits(same[b].screens[0].jump, runs[b].screens[0].jump) &&
+                    same_bits(same[b].screens[0].spin, runs[b].screens[0].spin) &&
+                    same_bits(same[b].samples[0].speed, runs[b].samples[0].speed) &&
+                    same_bits(same[b].samples[0].spin, runs[b].samples[0].spin))
+            << candidate.effect << ' ' << candidate.where;
+      }
+  }
+}
+
+TEST(Candidates, ABarrierAboveEveryJumpLetsNothingPassAndABiasMultiplies) {
+  Campaign c = slope_campaign(6);
+  c.error = {};
+  const Model model = model_of_preset(c, "upper-talus-3d");
+  const auto runs = observe(c, model, {20, 1, 0, 0, {}, {}});
+  Model walled = model;
+  walled.barriers.push_back({"wall", {{{0.0, 100.0}, {120.0, 100.0}}}, 1e9, std::numeric_limits<double>::infinity()});
+  Model high = model;
+  high.bias.assign(2, Bias{});
+  high.bias[instrument_of_screen(0)].speed = 0.25;
+  const auto caught = observe(c, walled, {20, 1, 0, 0, {}, {}}), read = observe(c, high, {20, 1, 0, 0, {}, {}});
+  for (std::size_t b = 0; b < runs.size(); ++b)
+    for (std::size_t t = 0; t < 20; ++t) {
+      EXPECT_TRUE(std::isnan(caught[b].screens[0].speed[t]));  // the screen is behind the barrier
+      if (caught[b].end[t] == End::Caught) {
+        EXPECT_NEAR(caught[b].y[t], 100.0, 1e-3 + 1e-6);  // a millimetre before it
+      }
+      if (!std::isnan(runs[b].screens[0].speed[t])) {
+        EXPECT_DOUBLE_EQ(read[b].screens[0].speed[t], 1.25 * runs[b].screens[0].speed[t]);
+      }
+    }
+}
+
+TEST(Candidates, ABandOfOtherGroundCountsWithItsZone) {
+  const Campaign c = slope_campaign(2);
+  std::vector<BlockRuns> runs(1);
+  runs[0].trials = 10;
+  runs[0].zone_hits = {0, 10};  // the zone, and the zone in the band
+  EXPECT_EQ(touched_zones(c, runs), std::vector<bool>{true});
+}
+
 }  // namespace
 }  // namespace talus::test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "support/scenes.hpp"
+#include "support/campaigns.hpp"
 
 namespace talus::test {
 namespace {
@@ -84,6 +84,69 @@ TEST(FurtherScreens, StandAcrossThePathAtEqualDistances) {
     EXPECT_TRUE(std::isnan(block.passages[3]->jump));
   }
   EXPECT_EQ(campaign.screens.size(), 1U);
+}
+
+/// A model whose samples are read 20 % too low, a campaign with a further screen: the samples keep their error, and the
+/// screen has none.
+TEST(FurtherScreens, HaveNoBiasAndTheSamplesKeepTheirs) {
+  Campaign campaign = slope_campaign(6);
+  campaign.error = {};
+  for (MeasuredBlock& block : campaign.blocks) block.samples = {{.x = block.x, .y = block.y - 20.0, .distance = 20.0}};
+  const Model plain = model_of_preset(campaign, "upper-talus-3d");
+  Model biased = plain;
+  biased.bias.resize(1);
+  biased.bias[kSampler].speed = -0.2;
+  const Campaign more = with_further_screens(campaign, {{60.0, 190.0}, {0.0, -1.0}, 0.0, 150.0});
+  const auto without = observe(more, plain, {20, 1, 0, 1, {}, {}}), with = observe(more, biased, {20, 1, 0, 1, {}, {}});
+  double seen = 0.0, crossed = 0.0;
+  for (std::size_t b = 0; b < with.size(); ++b)
+    for (std::size_t t = 0; t < 20; ++t) {
+      const double sample = with[b].samples[0].speed[t];
+      if (!std::isnan(sample)) {
+        EXPECT_NEAR(sample, 0.8 * without[b].samples[0].speed[t], 1e-12);
+        seen += 1.0;
+      }
+      for (std::size_t s = 0; s < more.screens.size(); ++s) {
+        const double speed = with[b].screens[s].speed[t];
+        if (std::isnan(speed)) continue;
+        EXPECT_EQ(speed, without[b].screens[s].speed[t]);
+        crossed += 1.0;
+      }
+    }
+  EXPECT_GT(seen, 20.0);
+  EXPECT_GT(crossed, 20.0);
+}
+
+/// Who measures more knows more: what a campaign shows, it shows with further speeds, too; from no larger amount on,
+/// but for the noise of the trials.
+TEST(FurtherScreens, RaiseNoLimit) {
+  Campaign campaign = slope_campaign(24);
+  const Model model = model_of_preset(campaign, "upper-talus-3d");
+  measure(campaign, model, 3);
+  const std::vector<bool> rows(campaign.blocks.size(), true);
+  const ObserveOptions unseen{100, 7, 1000, 0, {}, {}};
+  const auto runs = observe(campaign, model, unseen);
+  const Axis axis = axis_of(campaign, runs);
+  const auto list = candidates_of(campaign, model, runs, {});
+  const auto free = ground_parameters(campaign, model, std::vector<std::string>{"theta_scale", "En50"}, {true});
+  const Eigen::VectorXd z = Eigen::VectorXd::Zero(2);
+  ScoreTestOptions how;
+  how.trials = 40;
+  how.replicates = 0;
+  const auto tested = [&](const Campaign& c) {
+    return score_test(c, {model, free, z, observe(c, model, unseen)}, list, rows, how);
+  };
+  const Campaign more = with_further_screens(campaign, axis);
+  std::vector<DetectionLimit> limits = detection_limits(campaign, axis, tested(campaign), list);
+  compare_limits(limits, limits_by_parameter(more, axis, tested(more), list));
+  int finite = 0;
+  for (const DetectionLimit& limit : limits) {
+    if (std::isnan(limit.amount)) continue;
+    ++finite;
+    EXPECT_LE(std::abs(limit.with_further_speeds - limit.off), 1.05 * std::abs(limit.amount - limit.off))
+        << limit.effect << ' ' << limit.key;
+  }
+  EXPECT_GE(finite, 3);
 }
 
 }  // namespace

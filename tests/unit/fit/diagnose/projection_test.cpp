@@ -91,5 +91,30 @@ TEST(Prior, ThatHoldsTheGroundBackIsHardlyTakenForAnEffect) {
   EXPECT_NEAR(projection.verdict(scores).estimate[0], moved / information, 1e-6);
 }
 
+/// Two independent estimates of which only the second may be negative: the bounded optimum by hand.
+TEST(Projection, TheEstimateStaysWithinItsBounds) {
+  TestedPlace place{{0}, Eigen::MatrixXd::Identity(3, 3).rightCols(2), {true, false}};
+  const Projection projection(place, Eigen::MatrixXd::Identity(3, 3), Eigen::VectorXd::Ones(1), 1.0);
+  Eigen::MatrixXd scores(3, 4);
+  scores << 0.0, 0.0, 0.0, 0.0, -1.0, -0.5, 0.0, -0.5, -2.0, 0.0, 0.5, -0.5;
+  const Verdict v = projection.verdict(scores);
+  EXPECT_EQ(v.estimate[0], 0.0);
+  EXPECT_NEAR(v.estimate[1], -2.0, 1e-6);
+  EXPECT_NEAR(v.statistic, 4.0, 1e-6);  // 2^2 under the model; the blocks scatter by 3.5
+  // Half chi squared of one freedom, half of two: 0.5 erfc(sqrt(4/2)) + 0.5 exp(-4/2).
+  EXPECT_NEAR(v.p_value, 0.5 * std::erfc(std::sqrt(2.0)) + 0.5 * std::exp(-2.0), 1e-7);
+}
+
+TEST(Projection, EverySetOfFewDaysAndRunsOfMany) {
+  const auto places = [](std::size_t days) {
+    std::vector<Candidate> list(days);
+    for (Candidate& c : list) c = {"wet-ground", "", {{}}, 1, {}};
+    return places_of(list, 0, static_cast<Eigen::Index>(days)).size();
+  };
+  EXPECT_EQ(places(3), 6U);   // 2^3 - 2
+  EXPECT_EQ(places(6), 62U);  // 2^6 - 2
+  EXPECT_EQ(places(8), 35U);  // runs of 1 to 7 of 8 days: 8 + 7 + ... + 2
+}
+
 }  // namespace
 }  // namespace talus::test

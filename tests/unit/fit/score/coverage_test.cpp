@@ -50,7 +50,7 @@ class CoverageOf : public testing::Test {
   void stretch(double factor) {
     for (std::size_t b = 0; b < kBlocks; ++b) {
       const MeasuredBlock& block = campaign_.blocks[b];
-      const std::vector<double> runouts = runouts_of(block, runs_[b]);
+      const std::vector<double> runouts = runouts_of(campaign_, block, runs_[b]);
       double middle = 0.0, count = 0.0;
       for (const double r : runouts)
         if (!std::isnan(r)) middle += r, count += 1.0;
@@ -138,7 +138,7 @@ TEST_F(CoverageOf, ABlockWithFewValuesIsLeftOut) {
 TEST_F(CoverageOf, TailOfTheClimatologyIsHalfOfTheMeanDistance) {
   std::vector<double> far;
   for (const MeasuredBlock& b : campaign_.blocks)
-    if (b.stop) far.push_back(std::max(runout_of(b), tail_begin(campaign_)));
+    if (b.stop) far.push_back(std::max(runout_of(campaign_, b), tail_begin(campaign_)));
   double distance = 0.0, mean = 0.0, square = 0.0;
   const auto n = static_cast<double>(far.size());
   for (const double a : far) {
@@ -157,7 +157,7 @@ TEST_F(CoverageOf, AModelThatStopsShortIsWrongInTheTail) {
   const double before = tail_score(campaign_, runs_, all_).total;
   for (std::size_t b = 0; b < kBlocks; ++b) {
     const MeasuredBlock& block = campaign_.blocks[b];
-    const std::vector<double> runouts = runouts_of(block, runs_[b]);
+    const std::vector<double> runouts = runouts_of(campaign_, block, runs_[b]);
     for (std::size_t t = 0; t < runouts.size(); ++t) {
       const double share = std::min(1.0, tail_begin(campaign_) / runouts[t]);
       runs_[b].x[t] = block.x + share * (runs_[b].x[t] - block.x);
@@ -167,10 +167,10 @@ TEST_F(CoverageOf, AModelThatStopsShortIsWrongInTheTail) {
   // All values are at the threshold then: the score is the mean distance of the measured ones from it.
   double expected = 0.0, mean = 0.0, square = 0.0, n = 0.0;
   for (const MeasuredBlock& b : campaign_.blocks)
-    if (b.stop) expected += std::max(0.0, runout_of(b) - tail_begin(campaign_)), n += 1.0;
+    if (b.stop) expected += std::max(0.0, runout_of(campaign_, b) - tail_begin(campaign_)), n += 1.0;
   mean = expected / n;
   for (const MeasuredBlock& b : campaign_.blocks)
-    if (b.stop) square += std::pow(std::max(0.0, runout_of(b) - tail_begin(campaign_)) - mean, 2) / n;
+    if (b.stop) square += std::pow(std::max(0.0, runout_of(campaign_, b) - tail_begin(campaign_)) - mean, 2) / n;
   EXPECT_NEAR(tail_score(campaign_, runs_, all_).total, mean / std::sqrt(square), 1e-9);
   EXPECT_GT(mean / std::sqrt(square), before);
 }

@@ -126,17 +126,23 @@ TEST(VegetationDrag, SpeedFallsLinearlyWithThePath) {  // dv/ds = -c/m: level wa
   EXPECT_GT(checked, 100);
 }
 
+/// When a block lands after a drop [m] under a drag of a [1/s]: Newton on drop = g/a (t - (1 - e^-at)/a) [s].
+double landing(double drop, double a) {
+  double t = std::sqrt(2.0 * drop / kGravity);
+  for (int i = 0; i < 50; ++i) {
+    const double e = std::exp(-a * t);
+    t -= (kGravity / a * (t - (1.0 - e) / a) - drop) / (kGravity / a * (1.0 - e));
+  }
+  return t;
+}
+
 TEST(VegetationDrag, LandsWhereTheClosedFormSays) {  // hops shorter than a piece are the rule in a stand
   Hillside hill(0.0);
   hill.effects.vegetation_drag = {.coefficient = 500.0, .height = 100.0, .where = {}};
   for (const double drop : {0.05, 0.4, 3.0, 20.0}) {
     const Release release = block_at({10.0, 400.0, 1000.0 + drop}, {20.0, 0.0, 0.0}, 0.82);
     const double a = 500.0 / release.body.mass;
-    double t = std::sqrt(2.0 * drop / kGravity);  // Newton on drop = g/a (t - (1 - e^-at)/a)
-    for (int i = 0; i < 50; ++i) {
-      const double e = std::exp(-a * t);
-      t -= (kGravity / a * (t - (1.0 - e) / a) - drop) / (kGravity / a * (1.0 - e));
-    }
+    const double t = landing(drop, a);
     const Path path = hill.run(release);
     const auto landed = std::find_if(path.vertices.begin(), path.vertices.end(),
                                      [](const Vertex& v) { return v.event == Event::Impact; });
@@ -155,11 +161,7 @@ TEST(VegetationDrag, LongPiecesLandWhereTheClosedFormSays) {
       hill.effects.vegetation_drag = {.coefficient = coefficient, .height = 100.0, .where = {}};
       const Release release = block_at({10.0, 400.0, 1000.0 + drop}, {20.0, 0.0, 0.0}, 0.82);
       const double a = coefficient / release.body.mass;
-      double t = std::sqrt(2.0 * drop / kGravity);  // Newton on drop = g/a (t - (1 - e^-at)/a)
-      for (int i = 0; i < 50; ++i) {
-        const double e = std::exp(-a * t);
-        t -= (kGravity / a * (t - (1.0 - e) / a) - drop) / (kGravity / a * (1.0 - e));
-      }
+      const double t = landing(drop, a);
       World world = hill.world();
       world.effort.drag_loss = 0.2;
       Path path;

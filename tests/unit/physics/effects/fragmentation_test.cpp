@@ -34,6 +34,15 @@ TEST(Fragmentation, MassesAddUp) {
   EXPECT_EQ(piece_masses({.threshold = 1.0, .largest = 0.9, .where = {}}, 9.0, 16).size(), 1U);  // 0.9 kg is too small
 }
 
+/// 500 kg are left for four pieces in the ratio 1 : 2^-1.2 : 3^-1.2 : 4^-1.2 = 1 : 0.435275 : 0.267581 : 0.189465,
+/// whose sum is 1.892320. docs/effects.md, "fragmentation".
+TEST(Fragmentation, MassesByRankByHand) {
+  const std::vector<double> masses = piece_masses({.threshold = 1.0, .largest = 0.5, .where = {}}, 1000.0, 16);
+  const std::vector<double> expected{500.0, 264.2259, 115.0110, 70.7017, 50.0614};
+  ASSERT_EQ(masses.size(), expected.size());
+  for (std::size_t i = 0; i < masses.size(); ++i) EXPECT_NEAR(masses[i], expected[i], 1e-3) << i;
+}
+
 TEST(Fragmentation, BreaksAboveItsThresholdOnly) {  // 20 m: 1/2 v^2 = 196.2 J/kg, k_n = 15 / (15 + c D v^2) = 0.1326
   for (const double threshold : {192.0, 193.5}) {
     Hillside hill(0.0);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <condition_variable>
 #include <thread>
 
@@ -93,6 +94,20 @@ Traced traced(int size, const WorkUnits::Range& range, std::uint64_t chunk, bool
   for (const auto& mine : done) all.units.insert(all.units.end(), mine.begin(), mine.end());
   std::ranges::sort(all.units);
   return all;
+}
+
+/// 300 blocks of a source cell: units of 128, 128 and 44. Source cell 2 begins after the six units of two cells.
+TEST(Stratum, IsAUnitOfWork) {
+  Scenario scenario;
+  scenario.trajectories = 300;
+  EXPECT_EQ(units_per_source(scenario), 3U);
+  for (const auto& [block, number, blocks] :
+       {std::array{0U, 6U, 128U}, {127U, 6U, 128U}, {128U, 7U, 128U}, {256U, 8U, 44U}, {299U, 8U, 44U}}) {
+    EXPECT_EQ(stratum_of(scenario, 2, block).number, number) << block;
+    EXPECT_EQ(stratum_of(scenario, 2, block).blocks, blocks) << block;
+  }
+  scenario.trajectories = 128;
+  EXPECT_EQ(units_per_source(scenario), 1U);
 }
 
 TEST(WorkUnits, EachOnceAndNoneLeftOutWhereverTheyStop) {
