@@ -51,9 +51,10 @@ class BehindBarriers : public Acting {
   }
 
   SlideEnd slide(Motion& motion, PatchIndex& at, const Block& body, Path& path) {
+    const double length = path.length;
     for (int legs = 0; legs < kMostLegs; ++legs) {
       watch_.begin(path, path.vertices.size());
-      const SlideEnd end = Acting::slide(motion, at, body, path);
+      const SlideEnd end = Acting::slide(motion, at, body, path, path.length - length);
       const Meeting met = watch_.look(motion, at, body, path);
       if (met == Meeting::Over) return end;
       if (met == Meeting::Caught) return SlideEnd::Caught;

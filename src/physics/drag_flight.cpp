@@ -191,7 +191,7 @@ Outcome DragFlight::fly(Motion& motion, PatchIndex& at, bool grounded, const Blo
   return Outcome::Aloft;
 }
 
-void DragFlight::after_slide(const Motion& before, Motion& motion, const Block& body) {
+void DragFlight::after_slide(const Motion& before, const Block& body, Motion& motion, Path& path) {
   const Site site = site_of(before, body);
   if (site.drag.any())
     motion.velocity *= exponential(-site.drag.at(motion.velocity.norm()) * (motion.time - before.time));

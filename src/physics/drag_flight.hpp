@@ -25,7 +25,7 @@ class DragFlight {
   Outcome fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path);
 
   /// Applies drag and stems of a slide, at its end.
-  void after_slide(const Motion& before, Motion& motion, const Block& body);
+  void after_slide(const Motion& before, const Block& body, Motion& motion, Path& path);
 
  private:
   struct Site {
