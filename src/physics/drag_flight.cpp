@@ -198,7 +198,7 @@ void DragFlight::after_slide(const Motion& before, const Block& body, Motion& mo
   if (!site.stems) return;
   const PlanWay gone = way_between(before.position, motion.position);
   stems_->way_left(gone, body.diameter);
-  if (stems_->go(gone, body.diameter)) meet_stem(gone, body, motion);
+  if (stems_->go(gone, body.diameter) && meet_stem(gone, body, motion)) path.vertices.push_back({motion, Event::Stem});
 }
 
 }  // namespace talus
