@@ -108,7 +108,7 @@ constexpr std::array<Bounds, 20> kLists{{
     {"blocks.volume_min", "m3", "smallest volume of the power law", 1e-6, 65000.0},
     {"blocks.volume_max", "m3", "largest volume of the power law", 1e-6, 65000.0},
     {"blocks.exponent", "1", "b in N(>= V) ~ V^-b", 1e-6, 10.0},
-    {"blocks.axes", "1", "L1 >= L2 >= L3, relative to each other", 0.0, 1000.0, kAbove},
+    {"blocks.axes", "1", "L1 >= L2 >= L3, relative to each other", 1e-3, 1000.0},
     {"sources.release_height", "m", "of the release above the terrain", 0.0, 500.0},
     {"sources.frequency", "1/year", "events per year of the whole feature", 0.0, 1e6},
     {"sources.velocity", "m/s", "component of the velocity at the release", -200.0, 200.0},

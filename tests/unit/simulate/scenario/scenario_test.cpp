@@ -95,6 +95,8 @@ TEST(MakeScenario, RefusesBlocksThatMakeNoSense) {
       },
       "blocks.diameter.exponent = 1e-15: must be 1e-06 to 10");
   refused([](Scenario& s) { s.blocks.axes = Vec3(1.0, 1.1, 0.5); }, "must be L1 >= L2 >= L3");
+  refused([](Scenario& s) { s.blocks.axes = Vec3(1000.0, 1.0, 1e-306); },
+          "blocks.axes = 1e-306: must be 0.001 to 1000");
 }
 
 TEST(MakeScenario, ThresholdsAscend) {
