@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "talus/physics/barriers.hpp"
 #include "talus/physics/span_speed.hpp"
 
 namespace talus {
@@ -59,33 +58,42 @@ Meeting BarrierWatch::look(Motion& motion, PatchIndex& at, const Block& body, Pa
 Meeting BarrierWatch::look(std::size_t vertex, const Vertex& to, Motion& motion, const Block& body, Path& path) {
   const Vertex& from = path.vertices[vertex];
   const Eigen::Vector2d a = from.motion.position.head<2>(), b = to.motion.position.head<2>();
-  std::optional<Barriers::Cut> cut;
-  while ((cut = world_.barriers->next(a, b, cut))) {
-    if (cut->segment == broken_ && a == broken_at_) continue;
-    Motion there = motion_between(from, to, cut->share);
-    const double ground = world_.surface.height(there.position.x(), there.position.y()).value_or(there.position.z());
-    const double energy = 0.5 * body.mass * there.velocity.squaredNorm();
-    const Barrier& barrier = world_.barriers->list()[cut->barrier];
-    const Meeting how = meeting(barrier, std::max(0.0, there.position.z() - ground), energy);
-    path.barriers.push_back({cut->barrier, how, cut->along});
-    if (how == Meeting::Over) continue;
-    const double share = how == Meeting::Broken ? cut->share : std::max(0.0, cut->share - kGap / (b - a).norm());
-    if (how == Meeting::Caught) {
-      there = motion_between(from, to, share);
-      there.velocity.setZero();
-      there.spin.setZero();
-    } else {
-      there.velocity *= kept_speed(energy, barrier.capacity);
-      if (from.event == Event::Slide) there.position.z() = ground;
-      broken_ = cut->segment;
-      broken_at_ = there.position.head<2>();
-    }
-    cut_off(vertex, to, share, path);
-    motion = there;
-    if (how == Meeting::Broken) path.vertices.push_back({motion, Event::Barrier});
-    return how;
+  const auto met = first(a, b, body, path, [&](double share) { return motion_between(from, to, share); });
+  if (!met) return Meeting::Over;
+  motion = motion_between(from, to, met->share);
+  if (met->how == Meeting::Broken && from.event == Event::Slide) motion.position.z() = ground_at(motion.position);
+  cut_off(vertex, to, met->share, path);
+  act(*met, body, motion, path);
+  return met->how;
+}
+
+double BarrierWatch::ground_at(const Vec3& place) const {
+  return world_.surface.height(place.x(), place.y()).value_or(place.z());
+}
+
+Meeting BarrierWatch::meet(const Barriers::Cut& cut, const Motion& there, const Block& body, Path& path) const {
+  const double clearance = std::max(0.0, there.position.z() - ground_at(there.position));
+  const double energy = 0.5 * body.mass * there.velocity.squaredNorm();
+  const Meeting how = meeting(world_.barriers->list()[cut.barrier], clearance, energy);
+  path.barriers.push_back({cut.barrier, how, cut.along});
+  return how;
+}
+
+double BarrierWatch::share_of_leg(const Barriers::Cut& cut, Meeting how, double way) {
+  return how == Meeting::Broken ? cut.share : std::max(0.0, cut.share - kGap / way);
+}
+
+void BarrierWatch::act(const BarrierMet& met, const Block& body, Motion& motion, Path& path) {
+  if (met.how == Meeting::Caught) {
+    motion.velocity.setZero();
+    motion.spin.setZero();
+    return;
   }
-  return Meeting::Over;
+  const double energy = 0.5 * body.mass * motion.velocity.squaredNorm();
+  motion.velocity *= kept_speed(energy, world_.barriers->list()[met.cut.barrier].capacity);
+  broken_ = met.cut.segment;
+  broken_at_ = motion.position.head<2>();
+  path.vertices.push_back({motion, Event::Barrier});
 }
 
 /// Spans hold no reference to their vertices. So the span with the cut is found by the length in plan from the start of

@@ -1,11 +1,20 @@
 #pragma once
 #include <limits>
+#include <optional>
 
+#include "talus/physics/barriers.hpp"
 #include "talus/physics/flight.hpp"
 #include "talus/physics/slide.hpp"
 #include "talus/physics/world.hpp"
 
 namespace talus {
+
+/// A barrier that catches the block or breaks.
+struct BarrierMet {
+  Barriers::Cut cut;
+  Meeting how;
+  double share;  ///< of the way, at which the leg ends
+};
 
 /// Checks each leg of a path (a flight or a slide) for barriers, after it was added to the path. If a barrier catches
 /// the block or breaks, the leg is cut off at the barrier. A leg without this is unchanged to the last bit.
@@ -21,8 +30,28 @@ class BarrierWatch {
   /// the rest of its speed in the same direction, and the path has a vertex there.
   Meeting look(Motion& motion, PatchIndex& at, const Block& body, Path& path);
 
+  /// The first barrier on a straight way in plan from `a` to `b` that acts on the block. Adds the meetings to the path.
+  ///
+  /// @param motion_at  motion of the block at a share of the way
+  template <class MotionAt>
+  std::optional<BarrierMet> first(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Block& body, Path& path,
+                                  const MotionAt& motion_at) const {
+    std::optional<Barriers::Cut> cut;
+    while ((cut = world_.barriers->next(a, b, cut))) {
+      if (cut->segment == broken_ && a == broken_at_) continue;
+      const Meeting how = meet(*cut, motion_at(cut->share), body, path);
+      if (how != Meeting::Over) return BarrierMet{*cut, how, share_of_leg(*cut, how, (b - a).norm())};
+    }
+    return std::nullopt;
+  }
+  /// What it does to a block whose leg and path end there.
+  void act(const BarrierMet& met, const Block& body, Motion& motion, Path& path);
+
  private:
   Meeting look(std::size_t vertex, const Vertex& to, Motion& motion, const Block& body, Path& path);
+  Meeting meet(const Barriers::Cut& cut, const Motion& there, const Block& body, Path& path) const;
+  static double share_of_leg(const Barriers::Cut& cut, Meeting how, double way);
+  double ground_at(const Vec3& place) const;
   void cut_off(std::size_t vertex, const Vertex& to, double share, Path& path) const;
 
   const World& world_;
@@ -32,13 +61,16 @@ class BarrierWatch {
   Eigen::Vector2d broken_at_ = Eigen::Vector2d::Constant(std::nan(""));  // the way from there does not cross it again
 };
 
-/// The engine with barriers: `Acting`, with a BarrierWatch on its flights and slides.
+/// The engine with barriers: `Acting`, with a BarrierWatch on its flights and slides. Flights with drag or stems end at
+/// barriers by themselves.
 template <class Acting>
 class BehindBarriers : public Acting {
  public:
   BehindBarriers(const World& world, const Release& release) : Acting(world, release), watch_(world) {}
 
   Outcome fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path) {
+    if constexpr (requires { this->drag_flight(); })
+      if (auto* drag = this->drag_flight()) return drag->fly(motion, at, grounded, body, path, &watch_);
     for (int legs = 0; legs < kMostLegs; ++legs) {
       watch_.begin(path, path.vertices.size() - 1);
       const Outcome outcome = Acting::fly(motion, at, grounded, body, path);
@@ -51,9 +83,10 @@ class BehindBarriers : public Acting {
   }
 
   SlideEnd slide(Motion& motion, PatchIndex& at, const Block& body, Path& path) {
+    const double length = path.length;
     for (int legs = 0; legs < kMostLegs; ++legs) {
       watch_.begin(path, path.vertices.size());
-      const SlideEnd end = Acting::slide(motion, at, body, path);
+      const SlideEnd end = Acting::slide(motion, at, body, path, path.length - length);
       const Meeting met = watch_.look(motion, at, body, path);
       if (met == Meeting::Over) return end;
       if (met == Meeting::Caught) return SlideEnd::Caught;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "barrier_watch.hpp"
+
 namespace talus {
 namespace {
 
@@ -97,48 +99,98 @@ double DragFlight::longest_piece(const Site& site, const Motion& motion) const {
   return std::max(kShortestPiece, std::min(over_a_cell, world_.effort.drag_loss / rate));
 }
 
-/// If the block lands within the piece, the parabola and the rates were those of a longer piece. So it flies again,
-/// with those of the time to the landing. The error left in this time is of second order in the drag.
-Outcome DragFlight::fly_piece(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path) {
+/// A piece of a flight. One that ends early, at the ground or at a barrier, is flown again: the parabola and the drag
+/// rates were those of a longer piece. The error left in the time to there is of second order in the drag.
+struct DragFlight::Piece {
+  Motion start;
+  PatchIndex start_at;
+  bool grounded;
+  DragRate drag;
+  std::size_t first_span;
+  double length, plan_length;  // of the path before
+  PieceRates rate = {};
+  Vec3 began = Vec3::Zero();  // velocity of the parabola at its start
+
+  PieceRates rates(double time) const { return rates_of_piece(start.velocity, drag, time); }
+  Vec3 parabola(double time) const { return DampedFall(rates(time).way, time).parabola(start.velocity); }
+
+  /// Flies it with the rates of this time [s], for at most `longest`.
+  Outcome fly(const Surface& surface, double time, double longest, Motion& motion, PatchIndex& at, Path& path) {
+    motion = start, at = start_at;
+    path.spans.resize(first_span), path.length = length, path.plan_length = plan_length;
+    rate = rates(time);
+    began = DampedFall(rate.way, time).parabola(start.velocity);
+    motion.velocity = began;
+    return talus::fly(surface, motion, at, grounded, path, longest);
+  }
+  /// Time of a piece that ends after this way in plan [s], at most `longest`. Halved until no digit is left.
+  double time_to(double way, double longest) const {
+    double low = 0.0, high = longest;
+    for (int halving = 0; halving < 64; ++halving) {
+      const double time = 0.5 * (low + high);
+      (time * std::sqrt(plan_squared(parabola(time))) < way ? low : high) = time;
+    }
+    return high;
+  }
+  /// Motion at the end of a piece of this time [s].
+  Motion after(double time) const {
+    Motion motion = start;
+    motion.time += time;
+    motion.position += time * parabola(time) - Vec3(0.0, 0.0, 0.5 * kGravity * time * time);
+    motion.velocity = DampedFall(rates(time).speed, time).velocity_after(start.velocity);
+    return motion;
+  }
+};
+
+/// Ends a piece at the first barrier that acts on the block, with the speed of the block there.
+std::optional<BarrierMet> DragFlight::end_at_barrier(const BarrierWatch& watch, Piece& piece, Outcome& outcome,
+                                                     Motion& motion, PatchIndex& at, const Block& body,
+                                                     Path& path) const {
+  const double way = (motion.position - piece.start.position).head<2>().norm(),
+               longest = motion.time - piece.start.time;
+  const auto met = watch.first(piece.start.position.head<2>(), motion.position.head<2>(), body, path,
+                               [&](double share) { return piece.after(piece.time_to(share * way, longest)); });
+  if (!met) return met;
+  const double time = piece.time_to(met->share * way, longest);
+  outcome = piece.fly(world_.surface, time, time, motion, at, path);
+  return met;
+}
+
+Outcome DragFlight::fly_piece(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path,
+                              BarrierWatch* watch) {
   const Motion start = motion;
-  const PatchIndex start_at = at;
-  const std::size_t first_span = path.spans.size();
-  const double length = path.length, plan_length = path.plan_length;
   const Site site = site_of(motion, body);
   double time = longest_piece(site, motion);
   if (site.stems) {
     const double speed = std::sqrt(plan_squared(motion.velocity));
-    time = std::min(time, stems_->way_left(plan_way(start, speed * time), body.diameter) / speed);
+    time = std::min(time, stems_->way_left(plan_way(motion, speed * time), body.diameter) / speed);
   }
-  PieceRates rate = rates_of_piece(start.velocity, site.drag, time);
+  Piece piece{start, at, grounded, site.drag, path.spans.size(), path.length, path.plan_length};
+  Outcome outcome = piece.fly(world_.surface, time, time, motion, at, path);
+  if (piece.rate.way > 0.0 && outcome == Outcome::Landed)
+    outcome = piece.fly(world_.surface, motion.time - start.time, time, motion, at, path);
+  std::optional<BarrierMet> met;
+  if (watch != nullptr) met = end_at_barrier(*watch, piece, outcome, motion, at, body, path);
 
-  Vec3 began = DampedFall(rate.way, time).parabola(start.velocity);
-  motion.velocity = began;
-  Outcome outcome = talus::fly(world_.surface, motion, at, grounded, path, time);
-  if (rate.way > 0.0 && outcome == Outcome::Landed) {
-    const double landed = motion.time - start.time;
-    motion = start, at = start_at;
-    path.spans.resize(first_span), path.length = length, path.plan_length = plan_length;
-    rate = rates_of_piece(start.velocity, site.drag, landed);
-    began = DampedFall(rate.way, landed).parabola(start.velocity);
-    motion.velocity = began;
-    outcome = talus::fly(world_.surface, motion, at, grounded, path, time);
-  }
-  if (began != start.velocity || path.vertices.back().motion.time != start.time) {
+  if (piece.began != start.velocity || path.vertices.back().motion.time != start.time) {
     path.vertices.push_back({start, Event::Air});
-    path.vertices.back().motion.velocity = began;
+    path.vertices.back().motion.velocity = piece.began;
   }
-  if (rate.way > 0.0) {
-    motion.velocity = DampedFall(rate.speed, motion.time - start.time).velocity_after(start.velocity);
-    if (path.spans.size() > first_span) {  // speeds at the ends are those of the block, not of its parabola
-      path.spans[first_span].plan_speed_squared = static_cast<float>(plan_squared(start.velocity));
-      path.spans[first_span].rise_from = static_cast<float>(start.velocity.z());
+  if (piece.rate.way > 0.0) {
+    motion.velocity = DampedFall(piece.rate.speed, motion.time - start.time).velocity_after(start.velocity);
+    if (path.spans.size() > piece.first_span) {  // speeds at the ends are those of the block, not of its parabola
+      path.spans[piece.first_span].plan_speed_squared = static_cast<float>(plan_squared(start.velocity));
+      path.spans[piece.first_span].rise_from = static_cast<float>(start.velocity.z());
       path.spans.back().rise_to = static_cast<float>(motion.velocity.z());
     }
   }
-  if (!site.stems) return outcome;
   const PlanWay gone = plan_way(start, (motion.position - start.position).head<2>().norm());
-  if (stems_->go(gone, body.diameter) && outcome == Outcome::Aloft && meet_stem(gone, body, motion))
+  const bool at_stem = site.stems && stems_->go(gone, body.diameter);
+  if (met) {  // a stem at the same place is met by the next piece
+    watch->act(*met, body, motion, path);
+    return met->how == Meeting::Caught ? Outcome::Caught : outcome;
+  }
+  if (at_stem && outcome == Outcome::Aloft && meet_stem(gone, body, motion))
     path.vertices.push_back({motion, Event::Stem});
   return outcome;
 }
@@ -156,10 +208,12 @@ bool DragFlight::in_a_stand(const PatchIndex& patch) const {
   return false;
 }
 
-/// The plain flight, if it touches no cell of a stand and no listed tree. Otherwise empty, and nothing is changed.
+/// The plain flight to the ground or to a barrier, `Aloft` behind one that broke, if it touches no cell of a stand and
+/// no listed tree. Otherwise empty, and nothing is changed.
 std::optional<Outcome> DragFlight::fly_clear(Motion& motion, PatchIndex& at, bool grounded, const Block& body,
-                                             Path& path) {
+                                             Path& path, BarrierWatch* watch) {
   if (in_a_stand(at)) return std::nullopt;
+  if (watch != nullptr) watch->begin(path, path.vertices.size() - 1);
   Motion landed = motion;
   PatchIndex landed_at = at;
   const std::size_t first_span = path.spans.size();
@@ -173,32 +227,37 @@ std::optional<Outcome> DragFlight::fly_clear(Motion& motion, PatchIndex& at, boo
     return std::nullopt;
   }
   motion = landed, at = landed_at;
-  return outcome;
+  const Meeting how = watch == nullptr ? Meeting::Over : watch->look(motion, at, body, path);
+  if (how == Meeting::Over) return outcome;
+  return how == Meeting::Caught ? Outcome::Caught : Outcome::Aloft;
 }
 
-Outcome DragFlight::fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path) {
+Outcome DragFlight::fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path,
+                        BarrierWatch* watch) {
   bool may_be_clear = effects_.air_drag.coefficient == 0.0;
   for (int pieces = 0; pieces < kMostSteps && motion.time < world_.rules.time_limit &&
                        path.vertices.size() < world_.effort.most_vertices;
        ++pieces) {
-    if (may_be_clear)
-      if (const auto outcome = fly_clear(motion, at, grounded, body, path)) return *outcome;
-    const Outcome outcome = fly_piece(motion, at, grounded, body, path);
-    if (outcome != Outcome::Aloft) return outcome;
+    std::optional<Outcome> outcome;
+    if (may_be_clear) outcome = fly_clear(motion, at, grounded, body, path, watch);
+    if (!outcome) {
+      outcome = fly_piece(motion, at, grounded, body, path, watch);
+      may_be_clear = may_be_clear && stems_ && stems_->of_list() && path.vertices.back().event == Event::Stem;
+    }
+    if (*outcome != Outcome::Aloft) return *outcome;
     grounded = false;
-    may_be_clear = may_be_clear && stems_ && stems_->of_list() && path.vertices.back().event == Event::Stem;
   }
   return Outcome::Aloft;
 }
 
-void DragFlight::after_slide(const Motion& before, Motion& motion, const Block& body) {
+void DragFlight::after_slide(const Motion& before, const Block& body, Motion& motion, Path& path) {
   const Site site = site_of(before, body);
   if (site.drag.any())
     motion.velocity *= exponential(-site.drag.at(motion.velocity.norm()) * (motion.time - before.time));
   if (!site.stems) return;
   const PlanWay gone = way_between(before.position, motion.position);
   stems_->way_left(gone, body.diameter);
-  if (stems_->go(gone, body.diameter)) meet_stem(gone, body, motion);
+  if (stems_->go(gone, body.diameter) && meet_stem(gone, body, motion)) path.vertices.push_back({motion, Event::Stem});
 }
 
 }  // namespace talus

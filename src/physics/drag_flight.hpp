@@ -8,6 +8,9 @@
 
 namespace talus {
 
+class BarrierWatch;
+struct BarrierMet;
+
 /// Flight through vegetation, air and stems, in pieces of constant drag rate. In a piece the block follows the parabola
 /// that ends where the damped fall ends; then it gets the velocity of the damped fall. docs/effects.md, "Flight with
 /// drag".
@@ -22,23 +25,30 @@ class DragFlight {
 
   /// Like the plain `fly`; `Aloft` if the limit of time or vertices was reached in the air. Each further parabola gets
   /// a vertex.
-  Outcome fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path);
+  ///
+  /// @param watch  for barriers, null: none. A piece ends at a barrier that catches the block or breaks
+  Outcome fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path,
+              BarrierWatch* watch = nullptr);
 
   /// Applies drag and stems of a slide, at its end.
-  void after_slide(const Motion& before, Motion& motion, const Block& body);
+  void after_slide(const Motion& before, const Block& body, Motion& motion, Path& path);
 
  private:
   struct Site {
     DragRate drag;
     bool stems;
   };
+  struct Piece;
   Site site_of(const Motion& motion, const Block& body) const;
   double longest_piece(const Site& site, const Motion& motion) const;
   bool in_a_stand(const PatchIndex& patch) const;  ///< whether one of its four cells is
   bool below_the_tops(const Vec3& position) const;
   bool meet_stem(const PlanWay& gone, const Block& body, Motion& motion);
-  std::optional<Outcome> fly_clear(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path);
-  Outcome fly_piece(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path);
+  std::optional<Outcome> fly_clear(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path,
+                                   BarrierWatch* watch);
+  std::optional<BarrierMet> end_at_barrier(const BarrierWatch& watch, Piece& piece, Outcome& outcome, Motion& motion,
+                                           PatchIndex& at, const Block& body, Path& path) const;
+  Outcome fly_piece(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path, BarrierWatch* watch);
 
   const World& world_;
   const Effects& effects_;

@@ -220,9 +220,9 @@ Eigen::Vector2d sliding_acceleration(const Eigen::Vector2d& slope, double twist,
 }
 
 SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, PatchIndex& at, double diameter,
-               double stop_speed, Path& path, const RollingResistance* resistance) {
-  double slid = 0.0;
-  const double tolerance = kErrorShare * diameter;
+               double stop_speed, Path& path, const RollingResistance* resistance, double slid) {
+  const double tolerance = kErrorShare * diameter, full = diameter * (1.0 - 1e-6);
+  if (slid >= full) return SlideEnd::NextAsperity;
   SlidingFriction friction(cover, resistance);
   int short_crossings = 0;  // in succession, with less way than the tolerance between them
   Facet on = first_facet(surface, at, motion), came_from = on;
@@ -258,7 +258,7 @@ SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, Patch
       }
     }
     slid += way;
-    if (slid >= diameter * (1.0 - 1e-6)) return SlideEnd::NextAsperity;
+    if (slid >= full) return SlideEnd::NextAsperity;
     if (way >= tolerance) short_crossings = 0;
     if (step.crossed && way < tolerance &&
         ++short_crossings > kMaxShort) {  // a pit: it spends the time of the rest of one diameter there, at its speed

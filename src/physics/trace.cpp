@@ -106,8 +106,10 @@ class Walk {
   /// Slides from the place of the block; the part of its velocity normal to the surface is lost.
   SlideEnd slide_on() {
     motion_.velocity -= motion_.velocity.dot(normal_) * normal_;
+    const Motion before = motion_;
     const SlideEnd end = effects_.slide(motion_, at_, body_, path_);
     const bool goes_on = end == SlideEnd::Takeoff || end == SlideEnd::NextAsperity;
+    if (goes_on) effects_.after_slide(before, body_, motion_, path_);
     return end == SlideEnd::Trapped || (goes_on && anchor_.holds(motion_, body_.diameter)) ? end_of_staying() : end;
   }
 

@@ -30,7 +30,7 @@ enum class Event : std::uint8_t {
   Slide,    ///< a piece of sliding
   Takeoff,  ///< a flight after sliding, without an impact
   Air,      ///< a further parabola of a flight with drag
-  Stem,     ///< a flight after a stem was hit
+  Stem,     ///< a flight after a stem was hit; at the end of a slide the impact or takeoff is at the same place
   Barrier,  ///< a flight or a slide after it broke a barrier
   End       ///< the last vertex
 };

@@ -61,14 +61,14 @@ Outcome ActiveEffects::fly(Motion& motion, PatchIndex& at, bool grounded, const 
   return drag_ ? drag_->fly(motion, at, grounded, body, path) : talus::fly(world_.surface, motion, at, grounded, path);
 }
 
-SlideEnd ActiveEffects::slide(Motion& motion, PatchIndex& at, const Block& body, Path& path) {
+SlideEnd ActiveEffects::slide(Motion& motion, PatchIndex& at, const Block& body, Path& path, double slid) {
   const RollingResistance& rolling = effects_.rolling_resistance;
-  const Motion before = motion;
-  const SlideEnd end = talus::slide(world_.surface, world_.cover, motion, at, body.diameter, world_.rules.stop_speed,
-                                    path, rolling.coefficient > 0.0 ? &rolling : nullptr);
-  const bool moves = end != SlideEnd::Left && end != SlideEnd::Stopped && end != SlideEnd::Trapped;
-  if (drag_ && moves) drag_->after_slide(before, motion, body);
-  return end;
+  return talus::slide(world_.surface, world_.cover, motion, at, body.diameter, world_.rules.stop_speed, path,
+                      rolling.coefficient > 0.0 ? &rolling : nullptr, slid);
+}
+
+void ActiveEffects::after_slide(const Motion& before, const Block& body, Motion& motion, Path& path) {
+  if (drag_) drag_->after_slide(before, body, motion, path);
 }
 
 }  // namespace talus

@@ -25,9 +25,11 @@ class Effectless {
   Outcome fly(Motion& motion, PatchIndex& at, bool grounded, const Block&, Path& path) const {
     return talus::fly(world_.surface, motion, at, grounded, path);
   }
-  SlideEnd slide(Motion& motion, PatchIndex& at, const Block& body, Path& path) const {
-    return talus::slide(world_.surface, world_.cover, motion, at, body.diameter, world_.rules.stop_speed, path);
+  SlideEnd slide(Motion& motion, PatchIndex& at, const Block& body, Path& path, double slid = 0.0) const {
+    return talus::slide(world_.surface, world_.cover, motion, at, body.diameter, world_.rules.stop_speed, path, nullptr,
+                        slid);
   }
+  static void after_slide(const Motion&, const Block&, Motion&, Path&) {}
 
  private:
   const World& world_;
@@ -50,8 +52,12 @@ class ActiveEffects {
   bool holds(const ImpactEnd& end) const;
   /// A flight with vegetation-drag, air-drag and forest-stems.
   Outcome fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path);
-  /// A slide with these three and rolling-resistance.
-  SlideEnd slide(Motion& motion, PatchIndex& at, const Block& body, Path& path);
+  /// A slide with rolling-resistance.
+  SlideEnd slide(Motion& motion, PatchIndex& at, const Block& body, Path& path, double slid = 0.0);
+  /// The three of a flight, at the end of a slide that began with the motion `before`.
+  void after_slide(const Motion& before, const Block& body, Motion& motion, Path& path);
+  /// Flights with these three; null: all flights are free.
+  DragFlight* drag_flight() { return drag_ ? &*drag_ : nullptr; }
 
  private:
   template <class Effect>

@@ -1,5 +1,6 @@
 #include "talus/simulate/plan/plan.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "talus/base/elementary.hpp"
@@ -10,10 +11,10 @@ namespace talus {
 namespace {
 
 /// Volume at a share, 0..1, of the power law N(>= V) = A V^-b between two bounds: the inverse of its distribution.
-/// Equal bounds give that volume.
+/// Equal bounds give that volume. Error: 1e-15 / b relative, hence the lower bound of `blocks.exponent`.
 double volume_at(const VolumePowerLaw& law, double share) {
   const double low = power(law.volume.low, -law.exponent), high = power(law.volume.high, -law.exponent);
-  return power(low - share * (low - high), -1.0 / law.exponent);
+  return std::clamp(power(low - share * (low - high), -1.0 / law.exponent), law.volume.low, law.volume.high);
 }
 
 double diameter_at(const Blocks& blocks, double share_of_class, double share) {

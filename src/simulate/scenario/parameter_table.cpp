@@ -107,8 +107,8 @@ constexpr std::array<Bounds, 20> kLists{{
     {"blocks.frequency", "1/year", "events per year of a class of blocks", 0.0, 1e6},
     {"blocks.volume_min", "m3", "smallest volume of the power law", 1e-6, 65000.0},
     {"blocks.volume_max", "m3", "largest volume of the power law", 1e-6, 65000.0},
-    {"blocks.exponent", "1", "b in N(>= V) ~ V^-b", 0.0, 10.0, kAbove},
-    {"blocks.axes", "1", "L1 >= L2 >= L3, relative to each other", 0.0, 1000.0, kAbove},
+    {"blocks.exponent", "1", "b in N(>= V) ~ V^-b", 1e-6, 10.0},
+    {"blocks.axes", "1", "L1 >= L2 >= L3, relative to each other", 1e-3, 1000.0},
     {"sources.release_height", "m", "of the release above the terrain", 0.0, 500.0},
     {"sources.frequency", "1/year", "events per year of the whole feature", 0.0, 1e6},
     {"sources.velocity", "m/s", "component of the velocity at the release", -200.0, 200.0},
@@ -121,7 +121,7 @@ constexpr std::array<Bounds, 20> kLists{{
     {"frequency.total", "1/year", "events per year of all sources together", 0.0, 1e6, kAbove},
     {"frequency.per_area", "1/(m2 year)", "events per area of the sources and year", 0.0, 1e3},
     {"frequency.power_law.A", "1/year", "events per year of 1 m3 and more", 0.0, 1e6},
-    {"frequency.power_law.b", "1", "b in N(>= V) = A V^-b", 0.0, 10.0, kAbove},
+    {"frequency.power_law.b", "1", "b in N(>= V) = A V^-b", 1e-6, 10.0},
     {"dem.cell", "m", "size of the cells", 0.05, 100.0},
 }};
 

@@ -105,6 +105,41 @@ TEST(ForestStems, AboveTheTreesNoneIsMet) {
     }
 }
 
+/// A block of 1 m slides through a stand on a smooth slope of 3 in 4. A slide that meets no stem ends with
+/// v^2 = v0^2 + 2 g fall - 2 tan(phi) g cos(b) way; so a lower speed has an event. A stem is on the way w in plan with
+/// the probability 1 - exp(-w / mean way), whatever was met before.
+TEST(ForestStems, AStemInASlideHasAnEvent) {
+  Hillside hill(0.75, 2.0);
+  hill.cover.grounds[0] = {.theta_scale = 0.0, .psi_scale = 0.0, .shape_min = 1.0, .shape_max = 1.0};
+  hill.effects.forest_stems = {.density = 2000.0, .diameter = 0.1, .height = 1e3, .where = {}};
+  const double mean = 1e4 / (2000.0 * (0.1 + 1.0)), friction = hill.cover.grounds[0].tan_phi * kGravity * 0.8;
+  const Vec3 normal(0.6, 0.0, 0.8);
+  double hits = 0.0, expected = 0.0, variance = 0.0;
+  for (std::uint32_t block = 0; block < 100; ++block) {
+    const Path path = hill.run(block_at({20.0, 200.0, 985.0}, Vec3::Zero(), 1.0, block));
+    for (std::size_t i = 0; i + 1 < path.vertices.size(); ++i) {
+      if (path.vertices[i].event != Event::Impact || path.vertices[i + 1].event != Event::Slide) continue;
+      const Motion& first = path.vertices[i].motion;
+      double way = 0.0;
+      for (++i; i + 1 < path.vertices.size() && path.vertices[i].event == Event::Slide; ++i)
+        way += (path.vertices[i + 1].motion.position - path.vertices[i].motion.position).norm();
+      const Vertex& end = path.vertices[i];
+      if (end.event == Event::End) break;
+      const Vec3 gone = end.motion.position - first.position;
+      const double p = 1.0 - std::exp(-gone.head<2>().norm() / mean);
+      expected += p, variance += p * (1.0 - p), hits += end.event == Event::Stem ? 1.0 : 0.0;
+      const double at_start = (first.velocity - first.velocity.dot(normal) * normal).squaredNorm();
+      const double squared = at_start - 2.0 * kGravity * gone.z() - 2.0 * friction * way;
+      if (end.event != Event::Stem) {
+        ASSERT_NEAR(end.motion.velocity.squaredNorm(), squared, 1e-3 * squared);
+      }
+      --i;  // it may be an impact
+    }
+  }
+  EXPECT_GT(expected, 500.0);
+  EXPECT_NEAR(hits, expected, 5.0 * std::sqrt(variance));
+}
+
 /// A forest whose cells are all alike is a uniform stand, bit for bit.
 TEST(ForestStems, EqualCellsAreAUniformStand) {
   Hillside uniform(0.8), cells(0.8);

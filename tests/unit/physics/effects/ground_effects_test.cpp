@@ -42,6 +42,21 @@ TEST(BlockShape, TakesTangentialSpeedAtAnImpact) {
   EXPECT_NEAR(after_first_impact(hill, release).velocity.x(), 12.0 * std::exp(-0.25), 1e-12);
 }
 
+/// The flattest block and the largest strengths that a scenario may have: L1/L3 is 10^6.
+TEST(BlockShape, TheFlattestBlockStopsAtAFinitePlace) {
+  Hillside hill(0.7, 5.0, 40);
+  for (const double lateral : {0.0, 10.0})
+    for (const double loss : {0.0, 5.0}) {
+      hill.effects.block_shape = {.lateral = lateral, .loss = loss, .where = {}};
+      for (std::uint32_t block = 0; block < 50; ++block) {
+        Release release = block_at({50.0, 100.0, 970.0}, {3.0, 0.0, 0.0}, 1.0, block);
+        release.body.axes = Vec3(1000.0, 1.0, 1e-3);
+        for (const Vertex& v : hill.run(release).vertices)
+          ASSERT_TRUE(v.motion.position.allFinite() && v.motion.velocity.allFinite()) << lateral << ' ' << loss;
+      }
+    }
+}
+
 TEST(BlockMass, PowersOfTheDiameter) {
   const BlockMass effect{.roughness = 0.5, .stiffness = 1.0, .reference_diameter = 1.0, .where = {}};
   EXPECT_NEAR(size_roughness(effect, block_of(4.0, 2700.0)), 0.5, 1e-15);

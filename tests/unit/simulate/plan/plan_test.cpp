@@ -134,6 +134,23 @@ TEST(MakeRelease, PowerLawOfVolume) {  // P(V <= v) = (a^-b - v^-b) / (a^-b - c^
   }
 }
 
+/// For b towards 0 the logarithm of the volume is uniform.
+TEST(MakeRelease, TheSmallestExponentHasAsManyBlocksInEachOctave) {
+  Scenario s = plain();
+  s.blocks.classes.clear();
+  s.blocks.power_law = {{1e-6, 65000.0}, 1e-6};
+  double below[8] = {};
+  for (std::uint32_t block = 0; block < kDraws; ++block) {
+    const double d = make_release(s, 0, block).body.diameter, volume = kPi / 6.0 * d * d * d;
+    ASSERT_TRUE(volume > 1e-6 * (1.0 - 2e-15) && volume < 65000.0 * (1.0 + 2e-15)) << volume;
+    for (int i = 0; i < 8; ++i) below[i] += std::log(volume / 1e-6) <= i / 8.0 * std::log(65000.0 / 1e-6) ? 1.0 : 0.0;
+  }
+  for (int i = 0; i < 8; ++i) {
+    const double p = i / 8.0;
+    EXPECT_NEAR(below[i] / kDraws, p, 5.0 * std::sqrt(p * (1.0 - p) / kDraws)) << i;
+  }
+}
+
 TEST(MakeRelease, PowerLawOfOneVolume) {
   Scenario s = plain();
   s.blocks.classes.clear();

@@ -89,7 +89,14 @@ TEST(MakeScenario, RefusesBlocksThatMakeNoSense) {
   refused([](Scenario& s) { s.blocks.classes.push_back({{1.0, 1.0}, 1.0, 0.5}); }, "1 of 2 classes have a frequency");
   refused([](Scenario& s) { s.blocks.power_law = {{0.1, 2.0}, 1.0}; }, "classes and a power law");
   refused([](Scenario& s) { s.blocks.classes.clear(), s.blocks.power_law = {{3.0, 2.0}, 1.0}; }, "volume_min = 3");
+  refused(
+      [](Scenario& s) {
+        s.blocks.classes.clear(), s.blocks.power_law = {{0.1, 2.0}, 1e-15};
+      },
+      "blocks.diameter.exponent = 1e-15: must be 1e-06 to 10");
   refused([](Scenario& s) { s.blocks.axes = Vec3(1.0, 1.1, 0.5); }, "must be L1 >= L2 >= L3");
+  refused([](Scenario& s) { s.blocks.axes = Vec3(1000.0, 1.0, 1e-306); },
+          "blocks.axes = 1e-306: must be 0.001 to 1000");
 }
 
 TEST(MakeScenario, ThresholdsAscend) {
