@@ -12,9 +12,9 @@ import time
 import unittest
 
 import numpy as np
-from osgeo import ogr
+from osgeo import gdal, ogr
 
-from support import RUN, TALUS, RunCase, bands_of, box, write_features
+from support import NORTH, RUN, TALUS, WEST, RunCase, bands_of, box, system, write_features
 
 
 class Parts(RunCase):
@@ -246,6 +246,27 @@ class Parts(RunCase):
         for text in ("2", "2X", "G", "500MB", "500m"):
             self.fails(2, "--memory", text, "with M or G", arguments=[*start, text])
         self.fails(2, "--memory", "1 thread:", "200M at least", arguments=[*start, "1M"])
+
+    def test_a_terrain_that_is_larger_than_the_limit_of_memory(self):
+        """576 MB of heights and 144 MB of zones, with a limit of 200 MB. The rasters are filled in pieces of 64 MB, between
+        which the process is not measured."""
+        side, small = 12000, bands_of(self.path("dem.tif"))
+        dem = gdal.GetDriverByName("GTiff").Create(self.path("large.tif"), side, side, 1, gdal.GDT_Float32,
+                                                   ["TILED=YES", "SPARSE_OK=TRUE", "COMPRESS=DEFLATE"])
+        dem.SetGeoTransform((WEST, 5.0, 0.0, NORTH - 300.0 + 5.0 * side, 0.0, -5.0))
+        dem.SetProjection(system(2056).ExportToWkt())
+        dem.GetRasterBand(1).SetNoDataValue(-9999.0)
+        dem.GetRasterBand(1).WriteArray(small, 0, side - small.shape[0])
+        dem = None
+        write_features(self.path("zones.gpkg"), "zones", [(box(0, 0, 200, 200), ["forest-road-3d"])], [("zone", ogr.OFTString)])
+        for more in ([], ["--zones", self.path("zones.gpkg")]):
+            process = subprocess.Popen([TALUS, "run", "--dem", self.path("large.tif"), "--sources", self.path("sources.gpkg"),
+                                        "--diameter", "1", "--trajectories", "2", "--memory", "200M", "--threads", "1", "-q",
+                                        "-o", self.path(f"out{len(more)}"), *more])
+            _, status, used = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            self.assertEqual(process.returncode, 0, more)
+            self.assertLess(used.ru_maxrss * 1024, 200e6 + 64 * 2**20, more)
 
     def test_options_that_contradict_each_other(self):
         start = ["run", self.path("s.toml"), "-o", self.path("x")]
