@@ -178,6 +178,19 @@ class Parts(RunCase):
         self.assert_same("whole", "out")
         self.assertEqual(self.unfinished("out"), [])
 
+    def test_the_command_that_goes_on_is_read_by_a_shell(self):
+        odd = "a b'c$d"
+        os.mkdir(self.path(odd))
+        self.run_scenario("whole", "--trajectories", "400")
+        process = self.start(odd + "/out", "--threads", "1", "--progress=machine")
+        self.wait_for_progress(process, 5)
+        process.send_signal(signal.SIGINT)
+        error = process.communicate(timeout=20)[1]
+        self.assertEqual(process.returncode, 130, error)
+        done = subprocess.run(["sh", "-c", error.split("go on with: ")[1]], capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_same("whole", odd + "/out")
+
     def test_killed_while_it_writes(self):
         """Finished maps are not written again, and the results are those of a run without interruption."""
         self.run_scenario("whole", "--trajectories", "400")
