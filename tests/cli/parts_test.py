@@ -6,6 +6,7 @@ import json
 import os
 import random
 import re
+import shutil
 import signal
 import subprocess
 import time
@@ -240,6 +241,29 @@ class Parts(RunCase):
                    arguments=["merge", self.path("result"), *parts, "--overwrite"])
         self.run_well("merge", self.path("merged"), *parts, "-q")
         self.assertTrue(os.path.exists(self.path("result/part1/mine.bin")))
+
+    def test_what_a_killed_merge_has_left(self):
+        """The next merge of the name removes it; the saved work of a run, and what is not of the program, stay."""
+        for i in (1, 2):
+            self.run_scenario(f"part{i}", "--part", f"{i}/2")
+        arguments = ["merge", self.path("out"), self.path("part1"), self.path("part2"), "-q"]
+        killed = subprocess.Popen([TALUS, *arguments])
+        hidden = f".out.talus-{killed.pid}"
+        while killed.poll() is None and not os.path.exists(self.path(f"{hidden}/unfinished/.lock")):
+            pass
+        killed.send_signal(signal.SIGSTOP)
+        self.fails(2, "another process is writing it", hidden, arguments=arguments)
+        killed.kill()
+        killed.wait()
+        self.assertEqual(self.unfinished("out"), [hidden])
+        saved = self.path(".out.talus-run/unfinished/part.json")  # of an interrupted run of the name
+        os.makedirs(os.path.dirname(saved))
+        shutil.copy(self.path("part1/part.json"), saved)
+        os.mkdir(self.path(".out.talus-mine"))
+        self.run_well(*arguments)
+        self.assertEqual(sorted(self.unfinished("out")), [".out.talus-mine", ".out.talus-run"])
+        self.assertTrue(os.path.exists(saved))
+        self.assertFalse([name for name in os.listdir(self.path("out")) if not os.path.isfile(self.path(f"out/{name}"))])
 
     def test_many_rounds_have_frequencies_of_one(self):
         """Nine rounds of few blocks: sums of weights that would not fit if one round took all the bits."""
