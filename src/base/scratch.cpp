@@ -16,6 +16,7 @@
 #include <new>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "talus/base/expect.hpp"
 
@@ -40,16 +41,16 @@ std::size_t rounded(std::size_t bytes) {
 /// The file, mapped into the address space, with lists of its free pieces by size.
 class ScratchFile::Mapping {
  public:
-  Mapping(const std::string& folder, std::size_t limit) : limit_(limit) {
-    open(folder);
+  Mapping(std::string folder, std::size_t limit) : folder_(std::move(folder)), limit_(limit) {
+    open();
     status_ = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
     void* const reserved = mmap(nullptr, kReserved, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (reserved != MAP_FAILED) begin_ = static_cast<char*>(reserved);
     if (file_ >= 0 && status_ >= 0 && begin_ != nullptr) return;
     const int cause = errno;
     close_all();
-    throw std::runtime_error(folder +
-                             ": no file for --memory can be made there: " + std::system_category().message(cause));
+    throw std::runtime_error(folder_ + ": no file for --memory can be made there (" +
+                             std::system_category().message(cause) + "); write the results to another folder");
   }
   ~Mapping() { close_all(); }
   Mapping(const Mapping&) = delete;
@@ -94,10 +95,10 @@ class ScratchFile::Mapping {
   }
 
  private:
-  void open(const std::string& folder) {
-    file_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  void open() {
+    file_ = ::open(folder_.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
     if (file_ >= 0) return;
-    std::string name = folder + "/.talus-scratch-XXXXXX";  // for a file system without O_TMPFILE
+    std::string name = folder_ + "/.talus-scratch-XXXXXX";  // for a file system without O_TMPFILE
     file_ = mkostemp(name.data(), O_CLOEXEC);
     if (file_ >= 0) unlink(name.c_str());
   }
@@ -114,8 +115,10 @@ class ScratchFile::Mapping {
       int full = EINTR;
       while (full == EINTR) full = posix_fallocate(file_, static_cast<off_t>(mapped_.load()), static_cast<off_t>(step));
       if (full != 0)
-        throw std::runtime_error("the file for --memory cannot grow to " + std::to_string((mapped_ + step) >> 20U) +
-                                 " MB: " + std::system_category().message(full));
+        throw std::runtime_error(folder_ + ": the file for --memory cannot grow to " +
+                                 std::to_string((mapped_ + step) / 1'000'000) + " MB there (" +
+                                 std::system_category().message(full) +
+                                 "); make room on this disk, or write the results to another one");
       if (mapped_ + step > kReserved || mmap(begin_ + mapped_, step, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED,
                                              file_, static_cast<off_t>(mapped_.load())) == MAP_FAILED)
         throw std::bad_alloc();
@@ -126,6 +129,7 @@ class ScratchFile::Mapping {
     return memory;
   }
 
+  std::string folder_;
   int file_ = -1, status_ = -1;
   const long page_ = sysconf(_SC_PAGESIZE);
   char* begin_ = nullptr;

@@ -32,6 +32,7 @@ std::unique_ptr<ScratchFile> scratch_file_beside(const std::filesystem::path& re
   std::filesystem::path parent = io::full_name(results).parent_path();
   while (!std::filesystem::is_directory(parent) && parent.has_relative_path())
     parent = parent.parent_path();  // those below are made with the results
+  io::refuse_unwritable(parent);
   GDALSetCacheMax64(static_cast<GIntBig>(bytes / 16));
   return std::make_unique<ScratchFile>(parent.string(), bytes);
 }

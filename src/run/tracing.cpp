@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "talus/base/error.hpp"
+#include "talus/base/shell.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"
 #include "talus/run/in_every_process.hpp"
 #include "talus/simulate/tally/tally_exchange.hpp"
@@ -14,7 +15,7 @@ namespace fs = std::filesystem;
 std::string command_to_resume(const std::vector<std::string>& command) {
   std::string again = !command.empty() && command.front().ends_with("-mpi") ? "mpirun ... " : "";
   for (const std::string& word : command)
-    if (word != "--resume") again += word + " ";
+    if (word != "--resume") again += shell_word(word) + " ";
   return again + "--resume";
 }
 

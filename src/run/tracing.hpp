@@ -12,7 +12,7 @@
 
 namespace talus::run {
 
-/// The command line with --resume.
+/// The command line with --resume, as a shell reads it.
 std::string command_to_resume(const std::vector<std::string>& command);
 
 /// Traces all rounds of a session and saves a checkpoint from time to time. Each process of a group has one; all call

@@ -45,7 +45,8 @@ DemFigures dem_figures(const Raster<float>& heights) {
   std::vector<float> tangents;
   std::uint64_t steeper = 0, flat = 0, threes = 0, bends = 0;
   StepFinder steps;
-  for (int row = 1; row + 1 < grid.rows; row += stride)
+  for (int row = 1; row + 1 < grid.rows; row += stride) {
+    heights.values.memory().keep_below_limit();
     for (int column = 1; column + 1 < grid.columns; ++column) {
       const float west = heights.at(column - 1, row), z = heights.at(column, row), east = heights.at(column + 1, row);
       if (std::isnan(z)) continue;
@@ -58,6 +59,7 @@ DemFigures dem_figures(const Raster<float>& heights) {
       steeper += tangent > steep ? 1U : 0U;
       flat += tangent == 0.0 ? 1U : 0U;
     }
+  }
   DemFigures figures;
   figures.cells = tangents.size();
   if (tangents.empty()) return figures;

@@ -24,12 +24,13 @@ double dam_height(const Raster<float>& heights, int column, int row) {
 
 DamCount count_dammed(const Raster<float>& heights) {
   DamCount count;
-  for (int row = 0; row < heights.grid.rows; ++row)
+  for_each_row(heights, [&](int row) {
     for (int column = 0; column < heights.grid.columns; ++column) {
       if (std::isnan(heights.values[heights.grid.index(column, row)])) continue;
       ++count.cells;
       if (dammed(heights, column, row)) ++count.dammed;
     }
+  });
   return count;
 }
 

@@ -42,6 +42,9 @@ class Again(RunCase):
         self.assertEqual(os.listdir(self.path("out")), ["mine.txt"])
         kept = self.unfinished("out")
         self.assertTrue(os.path.exists(self.path(f"{kept[0]}/run.json")), kept)
+        os.remove(self.path("out/mine.txt"))
+        self.run_scenario("out")  # does not take the results for what a killed run has left
+        self.assertTrue(os.path.exists(self.path(f"{kept[0]}/run.json")), self.unfinished("out"))
 
     def test_resumed_twice_at_once(self):
         for attempt in range(4):

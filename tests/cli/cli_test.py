@@ -213,6 +213,18 @@ class Trouble(Case):
         self.fails(1, "cannot be written", arguments=self.arguments(trajectories="2000"), preexec_fn=limit_files(200_000))
         self.assert_nothing_left(["dem.tif", "sources.gpkg"])
 
+    def test_full_disk_in_a_single_file(self):
+        """The file is called by its name, not by the hidden one that it has until it is complete."""
+        self.write("s.toml", 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 0.8\n')
+        for arguments in (["sources", "--dem", "dem.tif", "--slope", "30", "-q", "-o"], ["check", "s.toml", "--pits"],
+                          ["trace", "s.toml", "--source", "0", "--block", "0", "-o"]):
+            with self.subTest(arguments[0]):
+                done = self.call(*arguments, "cells.gpkg", cwd=self.folder, preexec_fn=limit_files(20_000))
+                self.assertEqual(done.returncode, 1, done.stderr)
+                self.assertIn("talus: error: cells.gpkg: cannot be written: ", done.stderr)
+                self.assertNotIn(".talus-", done.stderr)
+        self.assert_nothing_left(["dem.tif", "sources.gpkg", "s.toml"])
+
     def test_full_disk_in_the_rasters(self):
         write_dem(self.path("dem.tif"), heights(600, 600, 0.5), 0.5)
         self.write("s.toml", 'dem = "dem.tif"\ntrajectories = 1\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 0.8\n'

@@ -90,6 +90,14 @@ class Disks(Faults):
         disk = self.disk("10m")
         subprocess.run(["mount", "-o", "remount,ro", disk], check=True)
         self.fails(2, "no folder can be made there", "Read-only file system", arguments=self.begin)
+        self.fails(2, disk + ": nothing can be written there (Read-only file system)", "use another folder",
+                   arguments=[*self.begin, "--memory", "200M", "--threads", "1"])
+
+    def test_a_disk_without_room_for_the_file_of_the_limit_of_memory(self):
+        disk = self.disk("10m")
+        self.fails(1, disk + ": the file for --memory cannot grow to 67 MB there (No space left on device)",
+                   "write the results to another one", arguments=[*self.begin, "--memory", "200M", "--threads", "1"])
+        self.assertEqual(os.listdir(disk), [])
 
     def test_a_disk_that_becomes_read_only(self):
         disk = self.disk("200m")
@@ -120,6 +128,16 @@ class AnotherUser(Faults):
     def closed(self, folder):
         os.chmod(self.path(folder), 0o555)
         self.addCleanup(os.chmod, self.path(folder), 0o755)
+
+    def test_a_folder_for_the_file_of_the_limit_of_memory(self):
+        self.run_scenario("part", "--part", "1/1")
+        os.mkdir(self.path("ro"))
+        self.closed("ro")
+        for arguments in (["run", "s.toml"], ["merge", "ro/out", "part"]):
+            with self.subTest(arguments[0]):
+                out = ["-o", "ro/out"] if arguments[0] == "run" else []
+                self.fails(2, "ro: nothing can be written there (Permission denied)", "use another folder", cwd=self.folder,
+                           arguments=[*arguments, *out, "--memory", "200M", "--threads", "1"], **self.user)
 
     def test_a_folder_for_a_single_file(self):
         """Named as it was given, before the work; it was a hidden name, and code 1, at the end."""

@@ -4,12 +4,15 @@ import hashlib
 import json
 import os
 import re
+import signal
+import subprocess
 import unittest
 
 import numpy as np
 from osgeo import gdal, ogr
 
-from support import Case, bands_of, box, heights, log_left_by_a_viewer, rows_of, sqlite_rows, write_dem, write_features
+from support import (TALUS, Case, bands_of, box, heights, log_left_by_a_viewer, rows_of, sqlite_rows, write_dem,
+                     write_features)
 
 RUN = """dem = "dem.tif"
 trajectories = 200
@@ -228,6 +231,45 @@ class Hazard(Case):
         self.fails(2, "the hazard maps are incomplete", "--overwrite", arguments=["report", self.path("out")])
         self.run_well("hazard", self.path("out"), "--overwrite")
         self.run_well("report", self.path("out"))
+
+    def started(self, *more):
+        """A program that has made its hidden folder, and the name of that."""
+        process = subprocess.Popen([TALUS, "hazard", self.path("out"), "-q", "--overwrite", *more])
+        self.addCleanup(process.kill)
+        hidden = f".hazard.talus-{process.pid}"
+        while process.poll() is None and not os.path.exists(self.path(f"out/{hidden}/.lock")):
+            pass
+        return process, hidden
+
+    def hidden(self):
+        return [name for name in os.listdir(self.path("out")) if name.startswith(".")]
+
+    def test_two_at_once(self):
+        self.simulate()
+        write_features(self.path("houses.gpkg"), "houses", [(box(105, 150, 10, 8), [])])
+        self.run_well("hazard", self.path("out"), "-q")
+        first, hidden = self.started("--objects", self.path("houses.gpkg"))
+        first.send_signal(signal.SIGSTOP)
+        self.fails(2, "another process is writing its hazard.json", hidden,
+                   arguments=["hazard", self.path("out"), "--overwrite", "--width", "30", "--curves"])
+        first.send_signal(signal.SIGCONT)
+        self.assertEqual(first.wait(60), 0)
+        self.run_well("hazard", self.path("out"), "-q", "--overwrite", "--width", "30", "--curves")
+        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
+            named = json.load(file)["files"]
+        with open(self.path("out/run.json"), encoding="utf-8") as file:
+            of_run = json.load(file)["files"]
+        self.assertEqual(sorted(os.listdir(self.path("out"))), sorted({*named, *of_run, "hazard.json", "run.json"}))
+
+    def test_what_was_killed_is_removed_by_the_next(self):
+        self.simulate()
+        os.mkdir(self.path("out/.hazard.talus-mine"))  # without the lock file of a program
+        first, hidden = self.started()
+        first.kill()
+        first.wait()
+        self.assertEqual(sorted(self.hidden()), sorted([hidden, ".hazard.talus-mine"]))
+        self.run_well("hazard", self.path("out"), "-q", "--overwrite")
+        self.assertEqual(self.hidden(), [".hazard.talus-mine"])
 
     def test_a_run_that_is_not_to_be_used_is_said(self):
         self.simulate()

@@ -6,15 +6,16 @@ import json
 import os
 import random
 import re
+import shutil
 import signal
 import subprocess
 import time
 import unittest
 
 import numpy as np
-from osgeo import ogr
+from osgeo import gdal, ogr
 
-from support import RUN, TALUS, RunCase, bands_of, box, write_features
+from support import NORTH, RUN, TALUS, WEST, RunCase, bands_of, box, system, write_features
 
 
 class Parts(RunCase):
@@ -178,6 +179,19 @@ class Parts(RunCase):
         self.assert_same("whole", "out")
         self.assertEqual(self.unfinished("out"), [])
 
+    def test_the_command_that_goes_on_is_read_by_a_shell(self):
+        odd = "a b'c$d"
+        os.mkdir(self.path(odd))
+        self.run_scenario("whole", "--trajectories", "400")
+        process = self.start(odd + "/out", "--threads", "1", "--progress=machine")
+        self.wait_for_progress(process, 5)
+        process.send_signal(signal.SIGINT)
+        error = process.communicate(timeout=20)[1]
+        self.assertEqual(process.returncode, 130, error)
+        done = subprocess.run(["sh", "-c", error.split("go on with: ")[1]], capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_same("whole", odd + "/out")
+
     def test_killed_while_it_writes(self):
         """Finished maps are not written again, and the results are those of a run without interruption."""
         self.run_scenario("whole", "--trajectories", "400")
@@ -228,6 +242,29 @@ class Parts(RunCase):
         self.run_well("merge", self.path("merged"), *parts, "-q")
         self.assertTrue(os.path.exists(self.path("result/part1/mine.bin")))
 
+    def test_what_a_killed_merge_has_left(self):
+        """The next merge of the name removes it; the saved work of a run, and what is not of the program, stay."""
+        for i in (1, 2):
+            self.run_scenario(f"part{i}", "--part", f"{i}/2")
+        arguments = ["merge", self.path("out"), self.path("part1"), self.path("part2"), "-q"]
+        killed = subprocess.Popen([TALUS, *arguments])
+        hidden = f".out.talus-{killed.pid}"
+        while killed.poll() is None and not os.path.exists(self.path(f"{hidden}/unfinished/.lock")):
+            pass
+        killed.send_signal(signal.SIGSTOP)
+        self.fails(2, "another process is writing it", hidden, arguments=arguments)
+        killed.kill()
+        killed.wait()
+        self.assertEqual(self.unfinished("out"), [hidden])
+        saved = self.path(".out.talus-run/unfinished/part.json")  # of an interrupted run of the name
+        os.makedirs(os.path.dirname(saved))
+        shutil.copy(self.path("part1/part.json"), saved)
+        os.mkdir(self.path(".out.talus-mine"))
+        self.run_well(*arguments)
+        self.assertEqual(sorted(self.unfinished("out")), [".out.talus-mine", ".out.talus-run"])
+        self.assertTrue(os.path.exists(saved))
+        self.assertFalse([name for name in os.listdir(self.path("out")) if not os.path.isfile(self.path(f"out/{name}"))])
+
     def test_many_rounds_have_frequencies_of_one(self):
         """Nine rounds of few blocks: sums of weights that would not fit if one round took all the bits."""
         self.run_scenario("rounds", "--rounds", "9", "--trajectories", "10")
@@ -246,6 +283,27 @@ class Parts(RunCase):
         for text in ("2", "2X", "G", "500MB", "500m"):
             self.fails(2, "--memory", text, "with M or G", arguments=[*start, text])
         self.fails(2, "--memory", "1 thread:", "200M at least", arguments=[*start, "1M"])
+
+    def test_a_terrain_that_is_larger_than_the_limit_of_memory(self):
+        """576 MB of heights and 144 MB of zones, with a limit of 200 MB. The rasters are filled in pieces of 64 MB, between
+        which the process is not measured."""
+        side, small = 12000, bands_of(self.path("dem.tif"))
+        dem = gdal.GetDriverByName("GTiff").Create(self.path("large.tif"), side, side, 1, gdal.GDT_Float32,
+                                                   ["TILED=YES", "SPARSE_OK=TRUE", "COMPRESS=DEFLATE"])
+        dem.SetGeoTransform((WEST, 5.0, 0.0, NORTH - 300.0 + 5.0 * side, 0.0, -5.0))
+        dem.SetProjection(system(2056).ExportToWkt())
+        dem.GetRasterBand(1).SetNoDataValue(-9999.0)
+        dem.GetRasterBand(1).WriteArray(small, 0, side - small.shape[0])
+        dem = None
+        write_features(self.path("zones.gpkg"), "zones", [(box(0, 0, 200, 200), ["forest-road-3d"])], [("zone", ogr.OFTString)])
+        for more in ([], ["--zones", self.path("zones.gpkg")]):
+            process = subprocess.Popen([TALUS, "run", "--dem", self.path("large.tif"), "--sources", self.path("sources.gpkg"),
+                                        "--diameter", "1", "--trajectories", "2", "--memory", "200M", "--threads", "1", "-q",
+                                        "-o", self.path(f"out{len(more)}"), *more])
+            _, status, used = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            self.assertEqual(process.returncode, 0, more)
+            self.assertLess(used.ru_maxrss * 1024, 200e6 + 64 * 2**20, more)
 
     def test_options_that_contradict_each_other(self):
         start = ["run", self.path("s.toml"), "-o", self.path("x")]

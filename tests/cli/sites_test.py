@@ -106,6 +106,7 @@ class Calibrate(Sites):
         self.fails(2, "the same name", arguments=("calibrate", a, a, *out))
         for name, words in (("report.md", "must not be the name of a file of the results"),
                             ("diagnosis.json", "must not be the name of a file of the results"),
+                            ("unfinished", "must not be the name of the folder for saved work"),
                             ("long " * 52, "has 260 bytes, must have at most 255")):
             os.makedirs(self.path("named"), exist_ok=True)
             shutil.copytree(self.path("a"), self.path("named"), dirs_exist_ok=True)

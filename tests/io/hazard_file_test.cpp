@@ -196,6 +196,22 @@ TEST_F(HazardFile, StagedFilesReplaceOnlyTheirOwn) {
   EXPECT_EQ(left, 3U) << "run.json, hazard.json, b.tif";
 }
 
+TEST_F(HazardFile, StagedFilesAreWrittenByOneProcessAtATime) {
+  namespace fs = std::filesystem;
+  const fs::path out(path("out")), killed = out / ".hazard.talus-1", other = out / ".hazard.talus-2";
+  for (const fs::path& folder : {killed, other}) fs::create_directories(folder);
+  std::ofstream(out / "run.json") << "{}";
+  std::ofstream(killed / ".lock");  // that nobody holds
+  {
+    const StagedFiles first(out, "hazard.json", true);
+    expect_input_error([&] { StagedFiles(out, "hazard.json", true); }, {"another process is writing its hazard.json"});
+    EXPECT_TRUE(fs::exists(first.temporary()));
+    EXPECT_TRUE(first.files().empty()) << "the lock is none of the results";
+  }
+  EXPECT_FALSE(fs::exists(killed));
+  EXPECT_TRUE(fs::exists(other));
+}
+
 /// Whatever stops a replacement halfway: of each file the earlier or the new one is still there.
 TEST_F(HazardFile, AStoppedReplacementLosesNoFile) {
   const std::filesystem::path out(path("out"));

@@ -102,6 +102,18 @@ std::vector<std::string> rows_of(const fs::path& path) {
   return rows;
 }
 
+TEST(GeoPackage, ThatCannotBeMadeIsCalledByItsFinalName) {
+  start_gdal();
+  try {
+    new_layer_file("/no/such/folder/.cells.talus-123.gpkg", {});
+    FAIL() << "no error";
+  } catch (const std::runtime_error& error) {
+    const std::string text = error.what();
+    EXPECT_EQ(text.find("cells.gpkg: cannot be written: "), 0U) << text;
+    EXPECT_EQ(text.find(".talus-"), std::string::npos) << text;
+  }
+}
+
 TEST(FlatGeobuf, HasTheRowsOfAGeoPackageInTheOrderOfItsIndex) {
   start_gdal();
   const fs::path folder = fs::temp_directory_path() / ("talus-fgb-" + std::to_string(getpid()));

@@ -293,6 +293,16 @@ TEST_F(Write, FolderAppearsOnlyWhenCommitted) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
 
+TEST_F(Write, AFolderIsWrittenByOneProcessAtATime) {
+  using Unfinished = OutputFolder::Unfinished;
+  for (const Unfinished unfinished : {Unfinished::Ignore, Unfinished::Refuse, Unfinished::Resume}) {
+    const OutputFolder first(folder_ / "out", false, unfinished);
+    EXPECT_THROW(OutputFolder(folder_ / "out", false), InputError);
+    EXPECT_NO_THROW(OutputFolder(folder_ / "other", false));
+    EXPECT_TRUE(fs::exists(first.temporary()));
+  }
+}
+
 TEST_F(Write, OnlyResultsAreReplaced) {
   write_text(folder_ / "file", "");
   fs::create_directory(folder_ / "mine");

@@ -29,6 +29,7 @@ void check_folder(const std::string& name, const std::string& path) {
   constexpr std::size_t kLongest = 255;  // [byte], of a file system
   std::string fault;
   if (talus::io::is_fit_file(name)) fault = "must not be the name of a file of the results";
+  if (name == talus::io::OutputFolder::kWork) fault = "must not be the name of the folder for saved work";
   if (name.size() > kLongest) fault = "has " + std::to_string(name.size()) + " bytes, must have at most 255";
   if (!fault.empty())
     throw talus::InputError(path + ": name = '" + talus::shortened(name, 60) + "': becomes that of a folder and " +

@@ -15,7 +15,7 @@ class ScratchFile {
  public:
   /// @param folder  folder of the file
   /// @param bytes   memory limit of the whole process
-  /// Throws std::runtime_error if the file cannot be made.
+  /// Throws std::runtime_error, with the folder and a way out, if the file cannot be made.
   ScratchFile(const std::string& folder, std::size_t bytes);
   ~ScratchFile();
   ScratchFile(const ScratchFile&) = delete;

@@ -79,6 +79,18 @@ struct Raster {
   const T& at(int column, int row) const { return values[grid.index(column, row)]; }
 };
 
+/// Calls `work(row)` for each row, from the south. With a memory limit gives memory back every few rows, so that the
+/// raster can be larger than the limit.
+template <class T, class Work>
+void for_each_row(const Raster<T>& raster, Work work) {
+  constexpr int kRows = 64;
+  for (int row = 0; row < raster.grid.rows; ++row) {
+    if (row % kRows == 0) raster.values.memory().keep_below_limit();
+    work(row);
+  }
+  raster.values.memory().keep_below_limit();
+}
+
 /// Memory for the rasters of a scenario.
 struct RasterMemory {
   MemoryPolicy policy;

@@ -107,7 +107,7 @@ std::vector<Left> left_of(const fs::path& folder) {
     if (state == FolderLock::Found::InUse || taken)
       throw InputError(folder.string() + ": another process is writing it (into " + name +
                        "); wait until it has ended, or give another name");
-    if (state == FolderLock::Found::None) continue;  // of a command that saves no work
+    if (state == FolderLock::Found::None) continue;  // results that were kept, or no folder of ours
     if (fs::exists(manifest)) left.kept = fs::last_write_time(manifest);
     found.push_back(std::move(left));
   }
@@ -128,10 +128,11 @@ OutputFolder::OutputFolder(const fs::path& path, bool overwrite, Unfinished unfi
   std::vector<Left> left;
   try {
     refuse_taken_name(final, overwrite);
-    if (unfinished != Unfinished::Ignore) left = left_of(final);
+    left = left_of(final);
   } catch (const fs::filesystem_error& error) {
     throw InputError(final.string() + ": cannot be looked at (" + error.code().message() + "); give another folder");
   }
+  if (unfinished == Unfinished::Ignore) std::erase_if(left, [](const Left& folder) { return folder.kept.has_value(); });
   const bool kept = !left.empty() && left.back().kept;
   if (unfinished == Unfinished::Refuse && kept && !overwrite)
     throw InputError(final.string() + ": an interrupted run of this name is kept in " + left.back().path.string() +
@@ -147,7 +148,7 @@ OutputFolder::OutputFolder(const fs::path& path, bool overwrite, Unfinished unfi
     for (const auto& entry : fs::directory_iterator(temporary()))
       if (entry.path().filename() != kWork && !is_finished_map(entry.path())) fs::remove_all(entry.path(), ignored);
     left.clear();
-  } else if (unfinished != Unfinished::Ignore) {
+  } else {
     hold_work();
   }
   for (const Left& folder : left) fs::remove_all(folder.path, ignored);
@@ -158,6 +159,12 @@ OutputFolder::~OutputFolder() = default;
 void OutputFolder::hold_work() {
   fs::create_directories(work());
   *lock_ = FolderLock::made_in(work());
+}
+
+void OutputFolder::keep_results() {
+  keep();
+  std::error_code ignored;
+  if (!fs::exists(work() / "part.json", ignored)) fs::remove_all(work(), ignored);
 }
 
 void OutputFolder::protect(const fs::path& file) const {
@@ -188,7 +195,7 @@ void OutputFolder::commit(const fs::path& folder) {
   try {
     refuse_taken_name(final_path(), overwrite_);
   } catch (const InputError& error) {  // another process has made the folder meanwhile
-    keep();
+    keep_results();
     throw InputError(std::string(error.what()) + "; the results are kept in " + temporary().string());
   }
   synchronise_all(folder);  // before the earlier result is moved aside
@@ -202,7 +209,7 @@ void OutputFolder::commit(const fs::path& folder) {
     if (error && replace) fs::rename(aside, final_path(), ignored);
   }
   if (error) {
-    keep();
+    keep_results();
     throw std::runtime_error(final_path().string() + ": the results cannot be given this name (" + error.message() +
                              "); they are kept in " + temporary().string());
   }

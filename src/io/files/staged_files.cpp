@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "folder_lock.hpp"
 #include "json.hpp"
 #include "own_files.hpp"
 #include "talus/base/error.hpp"
@@ -26,22 +27,42 @@ std::vector<std::string> files_of(const fs::path& record) {
 }  // namespace
 
 StagedFiles::StagedFiles(const fs::path& folder, const std::string& record, bool overwrite)
-    : folder_(folder), record_(record), staged_(StagedPath::Kind::Folder, folder / fs::path(record).stem()) {
+    : folder_(folder),
+      record_(record),
+      lock_(std::make_unique<FolderLock>()),
+      staged_(StagedPath::Kind::Folder, folder / fs::path(record).stem()) {
   require_results(folder);
-  if (fs::exists(folder / record)) {
-    if (!overwrite)
-      throw InputError(folder.string() + ": has a " + record +
-                       " already; give --overwrite to replace it and its files");
-    earlier_ = files_of(folder / record);
-  }
-  std::error_code ignored;
-  fs::remove_all(temporary(), ignored);  // left by a killed process of the same number
   if (const std::error_code error = staged_.make_folder())
     throw InputError(folder.string() + ": nothing can be written there (" + error.message() + ")");
+  *lock_ = FolderLock::made_in(temporary());
+  look_at_others();
+  if (!fs::exists(folder / record)) return;
+  if (!overwrite)
+    throw InputError(folder.string() + ": has a " + record + " already; give --overwrite to replace it and its files");
+  earlier_ = files_of(folder / record);  // no other process replaces them from here on
+}
+
+StagedFiles::~StagedFiles() = default;
+
+/// Each process looks at the others after it has locked its own folder: of two at least one sees the other.
+void StagedFiles::look_at_others() const {
+  for (const auto& entry : fs::directory_iterator(folder_)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(StagedPath::hidden_prefix(staged_.path())) || name == temporary().filename()) continue;
+    FolderLock lock;
+    const FolderLock::Found state = FolderLock::take(entry.path(), false, lock);
+    if (state == FolderLock::Found::InUse)
+      throw InputError(folder_.string() + ": another process is writing its " + record_ + " (into " + name +
+                       "); wait until it has ended");
+    std::error_code ignored;
+    if (state == FolderLock::Found::Free) fs::remove_all(entry.path(), ignored);  // its process was killed
+  }
 }
 
 std::vector<std::string> StagedFiles::files() const {
-  return files_in(temporary());
+  std::vector<std::string> names = files_in(temporary());
+  std::erase(names, FolderLock::kName);
+  return names;
 }
 
 std::vector<std::string> StagedFiles::to_remove() const {
@@ -92,6 +113,8 @@ void StagedFiles::give_name(const std::string& name) {
   const std::error_code error = StagedPath::give_name(temporary() / name, folder_ / name);
   if (!error) return;
   staged_.keep();
+  std::error_code ignored;
+  fs::remove(temporary() / FolderLock::kName, ignored);  // the next command is not to remove the folder
   throw std::runtime_error(name + ": cannot be given this name: " + error.message() + "; the new files are kept in " +
                            temporary().string());
 }

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <stdexcept>
 
@@ -11,6 +12,12 @@
 namespace talus::io {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kMark = ".talus-";  // in each hidden name
+
+}  // namespace
 
 void refuse_dangling_link(const fs::path& path) {
   std::error_code error;
@@ -59,7 +66,15 @@ std::error_code StagedPath::give_name(const fs::path& hidden, const fs::path& pa
 
 std::string StagedPath::hidden_prefix(const fs::path& path, const std::string& extension) {
   const std::string name = path.filename().string();
-  return "." + name.substr(0, name.size() - extension.size()) + ".talus-";
+  return "." + name.substr(0, name.size() - extension.size()) + kMark;
+}
+
+std::string StagedPath::final_name(const fs::path& path) {
+  const std::string name = path.filename().string(), mark = kMark;
+  const std::size_t at = name.rfind(mark);
+  if (!name.starts_with('.') || at == std::string::npos || at == 0) return name;
+  const std::size_t end = std::min(name.size(), name.find_first_not_of("0123456789-", at + mark.size()));
+  return name.substr(1, at - 1) + name.substr(end);
 }
 
 void synchronise(const fs::path& path) {
@@ -69,7 +84,7 @@ void synchronise(const fs::path& path) {
   const int cause = errno;
   close(file);
   if (result != 0 && cause != EINVAL && cause != ENOTSUP)
-    throw std::runtime_error(path.filename().string() +
+    throw std::runtime_error(StagedPath::final_name(path) +
                              ": cannot be written: " + std::system_category().message(cause));
 }
 

@@ -160,7 +160,7 @@ class RasterForest {
     auto map = std::make_shared<ForestMap>();
     map->density = Raster<float>(grid, 0.0F, memory);
     if (diameter_) map->diameter = Raster<float>(grid, static_cast<float>(numbers_.diameter), memory);
-    in_squares(grid, [&](int column, int row) {
+    in_squares(terrain_.heights, [&](int column, int row) {
       if (!std::isnan(terrain_.heights.at(column, row))) read_cell(*map, column, row);
     });
     check();

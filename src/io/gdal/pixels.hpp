@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dataset.hpp"
-#include "talus/terrain/grid.hpp"
+#include "talus/terrain/raster.hpp"
 
 namespace talus::io {
 
@@ -61,14 +61,18 @@ struct RasterPart {
 /// north-west, row by row of pieces.
 std::vector<RasterPart> pieces_of(GDALRasterBand& band, const RasterPart& whole);
 
-/// Visits the cells of a grid in squares, so that a raster in any direction is read part by part.
+/// Visits the cells of a DEM in squares, so that a raster in any direction is read part by part. With a memory limit
+/// gives memory back before each square.
 template <class Visit>
-void in_squares(const Grid& grid, Visit visit) {
+void in_squares(const Raster<float>& heights, Visit visit) {
   constexpr int kSide = 256;
+  const Grid& grid = heights.grid;
   for (int top = grid.rows; top > 0; top -= kSide)
-    for (int left = 0; left < grid.columns; left += kSide)
+    for (int left = 0; left < grid.columns; left += kSide) {
+      heights.values.memory().keep_below_limit();
       for (int row = top - 1; row >= std::max(0, top - kSide); --row)
         for (int column = left; column < std::min(grid.columns, left + kSide); ++column) visit(column, row);
+    }
 }
 
 }  // namespace talus::io

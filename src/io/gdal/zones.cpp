@@ -174,7 +174,7 @@ void read_codes(GDALDataset& dataset, const ZoneRequest& request, const Terrain&
   double last = std::numeric_limits<double>::quiet_NaN();
   std::uint8_t zone = 0;
   std::uint64_t cells = 0, given = 0;
-  in_squares(grid, [&](int column, int row) {
+  in_squares(terrain.heights, [&](int column, int row) {
     if (std::isnan(terrain.heights.at(column, row))) return;  // no block will ever be there
     ++cells;
     double x = grid.west + grid.centre_x(column), y = grid.south + grid.centre_y(row);

@@ -38,7 +38,8 @@ Raster<std::uint8_t> read_mask(const std::string& name, const std::string& path,
       });
     idle.placed(number, cells, heights);
   });
-  const auto covered = std::count(mask.values.begin(), mask.values.end(), 1);
+  std::int64_t covered = 0;
+  for_each_row(mask, [&](int row) { covered += std::count(&mask.at(0, row), &mask.at(0, row) + grid.columns, 1); });
   if (covered == 0) out.warnings.push_back(path + ": covers no cell of the DEM: " + effect + " acts nowhere");
   out.notes.push_back(path + ": " + effect + " acts in " + std::to_string(covered) + " of " +
                       std::to_string(grid.cells()) + " cells");

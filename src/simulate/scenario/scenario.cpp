@@ -53,7 +53,11 @@ void check_grounds(const Scenario& s) {
   if (zones.values.empty()) return;
   if (!(zones.grid == s.surface.grid()) || zones.values.size() != zones.grid.cells())
     throw InputError("ground: the zones are not on the grid of the DEM");
-  const int last = *std::max_element(zones.values.begin(), zones.values.end());
+  int last = 0;
+  for_each_row(zones, [&](int row) {
+    const std::uint8_t* const first = &zones.at(0, row);
+    last = std::max<int>(last, *std::max_element(first, first + zones.grid.columns));
+  });
   if (last >= static_cast<int>(grounds.size()))
     throw InputError("ground: zone number " + std::to_string(last) + " has no parameters, must be below " +
                      std::to_string(grounds.size()));
@@ -176,7 +180,7 @@ void check_stands(const Scenario& s) {
   if (s.drag_and_stems || !(e.vegetation_drag.coefficient > 0.0) || !(e.forest_stems.density > 0.0)) return;
   const Grid& grid = s.surface.grid();
   const std::vector<bool> trees = cells_with_trees(e.forest_stems, grid);
-  for (int row = 0; row < grid.rows; ++row)
+  for_each_row(s.surface.heights(), [&](int row) {
     for (int column = 0; column < grid.columns; ++column) {
       const double x = grid.centre_x(column), y = grid.centre_y(row);
       const std::uint8_t zone = s.cover.zone_at(x, y);
@@ -188,6 +192,7 @@ void check_stands(const Scenario& s) {
             " m from the south-western corner), where the stand would take its energy twice: give them zones or files "
             "apart from each other, or set allow_both = true in [effects]");
     }
+  });
 }
 
 /// Checks that the map of a forest fits the terrain.

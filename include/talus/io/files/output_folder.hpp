@@ -20,17 +20,17 @@ class FolderLock;
 /// again if nothing came into them.
 class OutputFolder {
  public:
-  /// Treatment of the hidden folders that interrupted runs of this name have left. With `Refuse` and `Resume`, throws
-  /// InputError while another process writes one, and removes those without saved work.
+  /// Treatment of the hidden folders with saved work that interrupted runs of this name have left. Those without saved
+  /// work, of processes that were killed, are removed.
   enum class Unfinished {
-    Ignore,  ///< this command saves no work: others are not looked at
+    Ignore,  ///< this command saves no work: that of others stays
     Refuse,  ///< throws InputError with the way out; with `overwrite` removes them
     Resume   ///< takes over the latest, if there is one, with its finished maps
   };
 
   /// @param overwrite  an earlier result of talus (it holds a run.json, part.json, calibration.json or diagnosis.json)
-  /// may be replaced. Throws InputError if the name is taken, if there are files in it that are not of this result, or
-  /// if nothing can be written there.
+  /// may be replaced. Throws InputError if the name is taken, if another process writes a result of this name, if there
+  /// are files in it that are not of this result, or if nothing can be written there.
   OutputFolder(const std::filesystem::path& path, bool overwrite, Unfinished unfinished = Unfinished::Ignore);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
@@ -58,6 +58,9 @@ class OutputFolder {
  private:
   /// Makes `work` and marks it as in use until this process ends, even if it is killed.
   void hold_work();
+  /// Keeps finished results that cannot get their name. Without a lock no later command takes them for what a killed
+  /// process has left.
+  void keep_results();
   void commit(const std::filesystem::path& folder);
   MadeFolders parents_;  // before `staged_`: removed after it
   StagedPath staged_;
