@@ -204,6 +204,18 @@ class Options(Case):
             self.fails(2, "--seed", seed, "must be a whole number, 0 to 9007199254740991",
                        arguments=[*self.arguments(), "--seed", seed])
 
+    def test_a_file_of_settings_that_holds_none(self):
+        """Whatever reads settings from a file of its own refuses one without any."""
+        self.run_well(*self.arguments(trajectories="5"), "-q")
+        head = 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1\n'
+        self.write("s.toml", 'include = "none.toml"\n' + head)
+        for text in ("", "# nothing\n", "[model]\n"):
+            none = self.write("none.toml", text)
+            for flags in (["check", *self.arguments()[1:-2], "--parameters", none], ["check", self.path("s.toml")],
+                          ["hazard", self.path("out"), "--matrix", none], ["hazard", self.path("out"), "--frequency", none]):
+                self.fails(2, "none.toml: holds no ", arguments=flags)
+        self.assertFalse(os.path.exists(self.path("out/hazard.json")))
+
     def test_a_link_to_nothing_as_output(self):
         os.symlink("/nowhere/at/all", self.path("out"))
         os.symlink("/nowhere/at/all", self.path("pits.gpkg"))

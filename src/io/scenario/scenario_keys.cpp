@@ -326,7 +326,8 @@ void read_common_keys(ScenarioSpec& spec, TableReader& top, std::vector<std::str
 
 void read_model_keys(ScenarioSpec& spec, const std::string& path, const std::string& name, const std::string& origin,
                      std::vector<std::string>& faults) {
-  SpecReader(spec, path, name, origin, faults).read_model_keys(read_toml(path, name));
+  SpecReader(spec, path, name, origin, faults)
+      .read_model_keys(read_settings(path, name, "[ground], [model], [effects] or [barriers]"));
 }
 
 /// Where an input is a VRT, the scenario that a run leaves has to allow what this one does.
