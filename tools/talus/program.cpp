@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cctype>
 #include <csignal>
 #include <cstdarg>
 #include <cstdio>
@@ -113,6 +114,30 @@ void describe(CLI::App& app) {
       "130 interrupted, 1 anything else.");
 }
 
+bool is_number(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  return type.starts_with("INT") || type.starts_with("UINT") || type.starts_with("FLOAT");
+}
+
+/// Takes every number as decimal. CLI11 takes those that begin with 0 for octal: 010 would be 8, 0100 blocks 64.
+std::string as_decimal(std::string& text) {
+  const auto is = [&text](std::size_t at, int (*kind)(int)) {
+    return at < text.size() && kind(static_cast<unsigned char>(text[at])) != 0;
+  };
+  while (is(0, std::isspace)) text.erase(0, 1);
+  const std::size_t first = text.starts_with('-') || text.starts_with('+') ? 1 : 0;
+  while (text.substr(first, 1) == "0" && is(first + 1, std::isdigit)) text.erase(first, 1);
+  const bool other_base = text.substr(first, 1) == "0" && is(first + 1, std::isalpha) && text[first + 1] != 'e' &&
+                          text[first + 1] != 'E';
+  return other_base ? "Value " + text + " must be a decimal number" : "";
+}
+
+void take_decimal_numbers(CLI::App& app) {
+  for (CLI::App* command : app.get_subcommands(nullptr))
+    for (CLI::Option* option : command->get_options())
+      if (is_number(*option)) option->transform(CLI::Validator(as_decimal, ""));  // before its other checks
+}
+
 /// The action that prints the help of the program.
 Action help_of(const CLI::App& app) {
   return [text = app.help()] {
@@ -146,6 +171,7 @@ Action understood(int argc, char** argv, const std::vector<AddCommand>& commands
   for (const AddCommand& add : commands) add(app, action);
   for (CLI::App* command : app.get_subcommands(nullptr))
     if (command->get_name() != "presets") add_access(*command);
+  take_decimal_numbers(app);
   add_help(app, action);
   if (argc < 2) return help_of(app);
   try {
