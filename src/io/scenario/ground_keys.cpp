@@ -64,10 +64,9 @@ void check_zones_have_file(const ScenarioSpec& spec, std::vector<std::string>& f
   }
   std::vector<std::string> names;
   for (const ZoneSpec& zone : spec.zones) names.push_back(zone.name);
-  faults.push_back(spec.include.where + ": describes zones of ground (" + shortened(joined(names), 200) +
-                   "): must come with " +
-                   (spec.scenario.path.empty() ? "--zones" : "file in [ground] of the scenario") +
-                   ", which says where they are");
+  faults.push_back(
+      spec.include.where + ": describes zones of ground (" + shortened(joined(names), 200) + "): must come with " +
+      (spec.scenario.path.empty() ? "--zones" : "file in [ground] of the scenario") + ", which says where they are");
 }
 
 void GroundReader::read(TableReader& ground) {
