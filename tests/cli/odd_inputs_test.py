@@ -220,6 +220,17 @@ class Options(Case):
                     self.fails(2, p["flags"][-1], "0x10", "decimal", arguments=[command["name"], p["flags"][-1] + "=0x10"])
         self.assertGreater(numbers, 40)
 
+    def test_what_would_have_no_effect(self):
+        self.write("file", "")
+        for words, more in ((("--above", "--until-error"), ["--above", "0.2"]),
+                            (("--most-rounds", "--until-error"), ["--most-rounds", "3"]),
+                            (("--allow-folder", "there is no folder 'missing'"), ["--allow-folder", "missing"]),
+                            (("--allow-folder", "there is no folder"), ["--allow-folder", self.path("file")]),
+                            (("--thresholds", "'30,,300' has an empty item"), ["--thresholds", "30,,300"]),
+                            (("--thresholds", "'30,' has an empty item"), ["--thresholds=30,"])):
+            self.fails(2, *words, arguments=[*self.arguments(), *more])
+        self.fails(2, "--fit", "empty item", arguments=["calibrate", "campaign.toml", "-o", "fit", "--fit", "En50,,phi"])
+
     def test_a_file_of_settings_that_holds_none(self):
         """Whatever reads settings from a file of its own refuses one without any."""
         self.run_well(*self.arguments(trajectories="5"), "--frequency", "1", "-q")
