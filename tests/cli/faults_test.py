@@ -160,6 +160,18 @@ class AnotherUser(Faults):
                    arguments=["sources", "--dem", self.path("dem.tif"), "--slope", "30", "-o", "cells.gpkg"], **self.user)
         self.assertEqual({folder: sorted(os.listdir(self.path(folder))) for folder in before}, before)
 
+    def test_a_folder_in_place_of_the_terrain(self):
+        """`sources` says what `run` says; it walked through all folders below, and ended with 1 at one that is closed."""
+        os.makedirs(self.path("tiles/closed"))
+        os.chmod(self.path("tiles/closed"), 0)
+        self.addCleanup(os.chmod, self.path("tiles/closed"), 0o755)
+        os.mkdir(self.path("open"))
+        os.chmod(self.path("open"), 0o777)
+        for arguments in (["run", "--dem", "tiles", "--sources", "sources.gpkg", "--diameter", "1", "-o", "open/out"],
+                          ["sources", "--dem", "tiles", "-o", "open/cells.gpkg"]):
+            self.fails(2, "tiles", "is a folder, must be a regular file: name a file in it", arguments=arguments,
+                       cwd=self.folder, **self.user)
+
 
 class Inputs(Faults):
     def test_files_that_change_while_they_are_used(self):

@@ -165,6 +165,10 @@ class OwnCampaign(Case):
                 texts.append(file.read())
         self.assertEqual(texts[0], texts[1])
 
+    def test_a_model_that_says_nothing_is_refused(self):
+        none = self.write("none.toml", "# nothing\n")
+        self.fails(2, "none.toml: holds no [ground]", arguments=["score", self.campaign, "--parameters", none])
+
     def test_score_prints_rows_beside_the_score(self):
         done = self.run_well("score", self.campaign, "--parameters", self.path("truth.toml"), "--rows", "fit")
         self.assertRegex(done.stdout, r"stop +\d\.\d{3} +\d\.\d{3} to +\d\.\d{3} +30\n")

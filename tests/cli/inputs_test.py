@@ -187,6 +187,27 @@ class FlagsForKeys(InputCase):
         self.fails(2, "flag --parameters = ", 'include = "FILE"',
                    arguments=["check", self.path("s.toml"), "--parameters", self.path("fitted.toml")])
 
+    def test_a_fitted_ground_with_zones_needs_their_map(self):
+        """docs/scenario.md: --parameters is as the key include. Without a map no cell would have the fitted ground."""
+        fitted = self.write("fitted.toml", "[ground.zones.talus]\ntheta_scale = 0.4\n[ground.zones.rock]\nEn50 = 7\n")
+        self.refused("flag --parameters = ", "describes zones of ground (talus, rock)", "must come with --zones",
+                     more=["--parameters", fitted])
+        head = 'dem = "dem.tif"\ntrajectories = 5\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1.2\n'
+        self.write("s.toml", 'include = "fitted.toml"\n' + head)
+        self.fails(2, "s.toml:1: include = 'fitted.toml'", "describes zones of ground (talus, rock)", "file in [ground]",
+                   arguments=["check", self.path("s.toml")])
+        write_features(self.path("zones.gpkg"), "zones", [(box(0, 0, 150, 300), ["talus"]), (box(150, 0, 150, 300), ["rock"])],
+                       [("zone", ogr.OFTString)])
+        zones = ["--zones", self.path("zones.gpkg")]
+        self.run_flags("--parameters", fitted, *zones)
+        self.run_well("check", self.path("out/scenario.toml"))  # what a run leaves can be run again
+        self.write("s.toml", 'include = "fitted.toml"\n' + head + '[ground]\nfile = "zones.gpkg"\n')
+        self.run_well("run", self.path("s.toml"), "-o", self.path("by-key"))
+        self.assert_as_by_key()
+        self.write("s.toml", 'include = "fitted.toml"\n' + head)  # the map of a flag counts as that of the scenario
+        self.run_well("run", self.path("s.toml"), *zones, "-o", self.path("by-key"), "--overwrite")
+        self.assert_as_by_key()
+
     def test_the_deformation_coefficient(self):
         self.scenario("model.deformation_coefficient = 0.15\n")
         self.run_flags("--deformation-coefficient", "0.15")

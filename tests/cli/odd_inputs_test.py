@@ -204,6 +204,45 @@ class Options(Case):
             self.fails(2, "--seed", seed, "must be a whole number, 0 to 9007199254740991",
                        arguments=[*self.arguments(), "--seed", seed])
 
+    def test_numbers_are_decimal(self):
+        self.run_well(*self.arguments(trajectories="010"), "--seed=0012", "-q")
+        settings = {setting["key"]: setting["value"] for setting in self.record()["settings"]}
+        self.assertEqual((settings["trajectories"], settings["seed"]), (10, 12))
+        trace = ["trace", self.path("out/scenario.toml"), "--source", "0", "--block"]
+        self.assertEqual(self.run_well(*trace, "009").stdout, self.run_well(*trace, "9").stdout)
+
+    def test_no_number_of_any_command_is_hexadecimal(self):
+        numbers = 0
+        for command in json.loads(self.run_well("help", "--json").stdout)["commands"]:
+            for p in command["parameters"]:
+                if {p["type"], p.get("of")} & {"integer", "number"}:
+                    numbers += 1
+                    self.fails(2, p["flags"][-1], "0x10", "decimal", arguments=[command["name"], p["flags"][-1] + "=0x10"])
+        self.assertGreater(numbers, 40)
+
+    def test_what_would_have_no_effect(self):
+        self.write("file", "")
+        for words, more in ((("--above", "--until-error"), ["--above", "0.2"]),
+                            (("--most-rounds", "--until-error"), ["--most-rounds", "3"]),
+                            (("--allow-folder", "there is no folder 'missing'"), ["--allow-folder", "missing"]),
+                            (("--allow-folder", "there is no folder"), ["--allow-folder", self.path("file")]),
+                            (("--thresholds", "'30,,300' has an empty item"), ["--thresholds", "30,,300"]),
+                            (("--thresholds", "'30,' has an empty item"), ["--thresholds=30,"])):
+            self.fails(2, *words, arguments=[*self.arguments(), *more])
+        self.fails(2, "--fit", "empty item", arguments=["calibrate", "campaign.toml", "-o", "fit", "--fit", "En50,,phi"])
+
+    def test_a_file_of_settings_that_holds_none(self):
+        """Whatever reads settings from a file of its own refuses one without any."""
+        self.run_well(*self.arguments(trajectories="5"), "--frequency", "1", "-q")
+        head = 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1\n'
+        self.write("s.toml", 'include = "none.toml"\n' + head)
+        for text in ("", "# nothing\n", "[model]\n"):
+            none = self.write("none.toml", text)
+            for flags in (["check", *self.arguments()[1:-2], "--parameters", none], ["check", self.path("s.toml")],
+                          ["hazard", self.path("out"), "--matrix", none], ["hazard", self.path("out"), "--frequency", none]):
+                self.fails(2, "none.toml: holds no ", arguments=flags)
+        self.assertFalse(os.path.exists(self.path("out/hazard.json")))
+
     def test_a_link_to_nothing_as_output(self):
         os.symlink("/nowhere/at/all", self.path("out"))
         os.symlink("/nowhere/at/all", self.path("pits.gpkg"))

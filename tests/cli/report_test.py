@@ -283,6 +283,20 @@ class Content(Report):
         self.run_well("barrier", self.path("out"), "--screen", "road", "--unweighted", "-q")
         self.assertNotIn(note, self.page("--overwrite").text)
 
+    def test_what_no_block_exceeds_has_a_bound(self):
+        """As `talus barrier` prints it: the upper bound of the frequency, where no crossing exceeds a value."""
+        self.run_scenario("out")
+        said = self.run_well("barrier", self.path("out"), "--screen", "road").stdout
+        with open(self.path("out/barrier_road.json"), encoding="utf-8") as file:
+            limits = [one["per_year"] for quantity in json.load(file)["reliability"] for one in quantity["exceeded"]]
+        bounds = [1.0 / one["high"] for one in limits if one["value"] == 0.0]
+        self.assertEqual(said.count("rarer than once in "), len(bounds))
+        self.assertGreater(len(bounds), 0)
+        found = re.findall(r"rarer than once in ([\d., \xa0]+) years", self.page().text)
+        self.assertEqual(len(found), len(bounds))
+        for text, years in zip(found, bounds):
+            self.assertAlmostEqual(float(re.sub(r"[ \xa0]", "", text)) / years, 1.0, 2)
+
     def test_hostile_names_stay_text(self):
         road = f"road{HOSTILE}"
         write_features(self.path("screens.gpkg"), "screens",

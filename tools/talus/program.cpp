@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cctype>
 #include <csignal>
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -60,7 +62,11 @@ void add_access(CLI::App& command) {
                  for (const std::string& folder : folders) talus::io::allow_folder(folder);
                },
                "a VRT may name files below this folder, not only below its own and the scenario's; may be repeated")
-           ->allow_extra_args(false),
+           ->allow_extra_args(false)
+           ->check([](const std::string& folder) {
+             std::error_code none;
+             return std::filesystem::is_directory(folder, none) ? "" : "there is no folder '" + folder + "'";
+           }),
        folder_of_results());
 }
 
@@ -113,6 +119,46 @@ void describe(CLI::App& app) {
       "130 interrupted, 1 anything else.");
 }
 
+bool is_number(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  return type.starts_with("INT") || type.starts_with("UINT") || type.starts_with("FLOAT");
+}
+
+/// Takes every number as decimal. CLI11 takes those that begin with 0 for octal: 010 would be 8, 0100 blocks 64.
+std::string as_decimal(std::string& text) {
+  const auto is = [&text](std::size_t at, int (*kind)(int)) {
+    return at < text.size() && kind(static_cast<unsigned char>(text[at])) != 0;
+  };
+  while (is(0, std::isspace)) text.erase(0, 1);
+  const std::size_t first = text.starts_with('-') || text.starts_with('+') ? 1 : 0;
+  while (text.substr(first, 1) == "0" && is(first + 1, std::isdigit)) text.erase(first, 1);
+  const bool other_base =
+      text.substr(first, 1) == "0" && is(first + 1, std::isalpha) && text[first + 1] != 'e' && text[first + 1] != 'E';
+  return other_base ? "Value " + text + " must be a decimal number" : "";
+}
+
+void take_decimal_numbers(CLI::App& app) {
+  for (CLI::App* command : app.get_subcommands(nullptr))
+    for (CLI::Option* option : command->get_options())
+      if (is_number(*option)) option->transform(CLI::Validator(as_decimal, ""));  // before its other checks
+}
+
+/// Throws InputError for a list with an empty item (30,,300), which CLI11 leaves out unnoticed.
+void refuse_empty_items(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_delimiter() == '\0') continue;
+    const std::string comma(1, option->get_delimiter()), name = "--" + option->get_lnames().front();
+    for (std::size_t i = 1; i < words.size(); ++i) {
+      const bool alone = words[i] == name && i + 1 < words.size();
+      if (!alone && !words[i].starts_with(name + "=")) continue;
+      const std::string list = comma + (alone ? words[i + 1] : words[i].substr(name.size() + 1)) + comma;
+      if (list.find(comma + comma) != std::string::npos)
+        throw talus::InputError(name + ": '" + list.substr(1, list.size() - 2) + "' has an empty item; see talus " +
+                                command.get_name() + " --help");
+    }
+  }
+}
+
 /// The action that prints the help of the program.
 Action help_of(const CLI::App& app) {
   return [text = app.help()] {
@@ -146,6 +192,7 @@ Action understood(int argc, char** argv, const std::vector<AddCommand>& commands
   for (const AddCommand& add : commands) add(app, action);
   for (CLI::App* command : app.get_subcommands(nullptr))
     if (command->get_name() != "presets") add_access(*command);
+  take_decimal_numbers(app);
   add_help(app, action);
   if (argc < 2) return help_of(app);
   try {
@@ -157,6 +204,7 @@ Action understood(int argc, char** argv, const std::vector<AddCommand>& commands
     }
     throw talus::InputError(explain(app, error));
   }
+  refuse_empty_items(*app.get_subcommands().front());
   return action;
 }
 

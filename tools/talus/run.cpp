@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/run/run_session.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
@@ -122,7 +123,7 @@ void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes) {
       command->add_option("--until-error", request.rounds.until_error,
                           "rounds until the relative 95 % half-width of the impact probability is below this");
   until->check(between(1e-4, 10.0))->excludes("--rounds");
-  with(
+  CLI::Option* above = with(
       command
           ->add_option("--above", request.rounds.above, "the error counts in all cells with a larger probability; 0.01")
           ->check(between(1e-9, 1.0)),
@@ -138,6 +139,9 @@ void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes) {
       "  talus run scenario.toml -o result\n"
       "  talus run --dem dem.tif --sources cliffs.gpkg --diameter 1.2 --trajectories 100 -o result\n\n"
       "An option given here counts more than the scenario file. OUT/scenario.toml holds all settings.");
-  command->callback(
-      [&action, &processes, options] { action = [options, &processes] { return run(*options, processes); }; });
+  command->callback([&action, &processes, options, above] {
+    if (above->count() > 0 && !options->request.rounds.several())
+      throw talus::InputError("--above: must come with --until-error, or --rounds of 2 or more; see talus run --help");
+    action = [options, &processes] { return run(*options, processes); };
+  });
 }

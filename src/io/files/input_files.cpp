@@ -56,11 +56,12 @@ bool is_for_display(std::string_view file) {
   return std::ranges::any_of(kEnds, [&](std::string_view end) { return file.ends_with(end); });
 }
 
+/// The files of a geodatabase, the only folder that is an input: it has no folders in it (`looked_up`).
 std::vector<std::string> files_in_folder(const std::string& folder) {
   std::error_code none;
   std::vector<std::string> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder, none))
-    if (entry.is_regular_file(none)) files.push_back(entry.path().string());
+  for (fs::directory_iterator entry(folder, none), end; entry != end; entry.increment(none))
+    if (entry->is_regular_file(none)) files.push_back(entry->path().string());
   std::sort(files.begin(), files.end());
   return files;
 }

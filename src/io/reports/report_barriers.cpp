@@ -26,8 +26,11 @@ void read_limits(const Json& json, BarrierPart& part) {
       limit.share_low = one.at("share_interval").at(0).get<double>();
       limit.share_high = one.at("share_interval").at(1).get<double>();
       limit.agrees = quantity.value("agrees", false);
-      if (const Json per_year = one.value("per_year", Json()); per_year.is_object())
-        if (const double often = number_of(per_year, "value"); often > 0.0) limit.years = 1.0 / often;
+      if (const Json per_year = one.value("per_year", Json()); per_year.is_object()) {
+        limit.rarer = !(number_of(per_year, "value") > 0.0);
+        if (const double often = number_of(per_year, limit.rarer ? "high" : "value"); often > 0.0)
+          limit.years = 1.0 / often;
+      }
       part.limits.push_back(std::move(limit));
     }
 }
@@ -118,6 +121,11 @@ Markup stretch_chart(const BarrierPart& part, bool energy) {
   return svg.drawing({{"width", 720}, {"height", 162}, {"viewBox", "0 0 720 162"}});
 }
 
+std::string once_in(const BarrierPart::Limit& limit) {
+  if (!(limit.years > 0.0)) return "-";
+  return (limit.rarer ? "rarer than once in " : "") + readable(limit.years) + " years";
+}
+
 Markup limits_table(const BarrierPart& part) {
   Markup html =
       "<table><tr><th>quantity</th><th>value</th><th>exceeded by, of the values [95 %]</th><th>by the Weibull "
@@ -126,8 +134,7 @@ Markup limits_table(const BarrierPart& part) {
     html += "<tr><td>"_html + l.quantity + "</td><td>" + l.name + " = " + with_digits(l.value, 4) + " " + l.unit +
             "</td><td>" + with_digits(100.0 * l.share, 3) + " % [" + with_digits(100.0 * l.share_low, 3) + ", " +
             with_digits(100.0 * l.share_high, 3) + "]</td><td>" + with_digits(100.0 * l.weibull, 3) + " %" +
-            (l.agrees ? "" : " (the law does not fit: use the share)") + "</td><td>" +
-            (l.years > 0.0 ? readable(l.years) + " years" : std::string("-")) + "</td></tr>\n";
+            (l.agrees ? "" : " (the law does not fit: use the share)") + "</td><td>" + once_in(l) + "</td></tr>\n";
   return html + "</table>\n";
 }
 

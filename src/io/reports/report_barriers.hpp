@@ -17,6 +17,7 @@ struct BarrierPart {
   struct Limit {
     std::string quantity, name, unit;
     double value = 0.0, weibull = 0.0, share = 0.0, share_low = 0.0, share_high = 0.0, years = 0.0;  ///< 0: not known
+    bool rarer = false;  ///< than once in `years`, which is then a 95 % bound
     bool agrees = false;
   };
   struct Stretch {

@@ -52,7 +52,7 @@ Json json_of(const HazardMatrix& matrix) {
 
 HazardMatrix read_matrix(const std::string& path) {
   HazardMatrix matrix;
-  const TomlValue root = read_toml(path, path);
+  const TomlValue root = read_settings(path, path, "energies, years, classes or names");
   std::vector<std::string> faults;
   TableReader table(&root, "", path, faults);
   if (const auto energies = table.numbers("energies", kEnergy)) matrix.energies = *energies;

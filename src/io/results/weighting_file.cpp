@@ -50,7 +50,7 @@ void read_features(TableReader& table, Scenario& scenario, GivenFrequencies& rea
 }  // namespace
 
 GivenFrequencies apply_weighting(const std::string& file, Scenario& scenario) {
-  const TomlValue root = read_toml(file, file);
+  const TomlValue root = read_settings(file, file, "[frequency] or [features]");
   std::vector<std::string> faults;
   TableReader top(&root, "", file, faults);
   ScenarioSpec spec;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "talus/base/error.hpp"
+#include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 
@@ -55,6 +56,19 @@ void lay_preset_over_include(ScenarioSpec& spec) {
   spec.default_ground.own.clear();
 }
 
+void check_zones_have_file(const ScenarioSpec& spec, std::vector<std::string>& faults) {
+  if (spec.zones.empty() || !spec.ground.path.empty()) return;
+  if (!spec.zones_where.empty()) {
+    faults.push_back(spec.zones_where + ": [ground.zones] without file in [ground], must say where the zones are");
+    return;
+  }
+  std::vector<std::string> names;
+  for (const ZoneSpec& zone : spec.zones) names.push_back(zone.name);
+  faults.push_back(
+      spec.include.where + ": describes zones of ground (" + shortened(joined(names), 200) + "): must come with " +
+      (spec.scenario.path.empty() ? "--zones" : "file in [ground] of the scenario") + ", which says where they are");
+}
+
 void GroundReader::read(TableReader& ground) {
   flag_ = spec_.origin("ground.default") == kPresetFlag;
   if (const auto name = ground.text("default")) {
@@ -79,17 +93,6 @@ void GroundReader::read(TableReader& ground) {
   if (spec_.zones.size() > 255)
     faults_.push_back(ground.file() + ": [ground.zones] has " + std::to_string(spec_.zones.size()) +
                       " zones, must be at most 255");
-}
-
-void GroundReader::check_file(const TableReader& ground, const std::string& include) {
-  if (spec_.zones.empty() || !spec_.ground.path.empty()) return;
-  const TomlValue* zones = ground.value() == nullptr ? nullptr : ground.value()->find("zones");
-  faults_.push_back(zones != nullptr
-                        ? ground.file() + ":" + std::to_string(zones->line) +
-                              ": [ground.zones] without file in [ground], must say where the zones are"
-                        : include +
-                              ": describes zones of ground: must come with file in [ground] of the scenario, "
-                              "which says where they are");
 }
 
 bool GroundReader::set_preset(TableReader& table, const std::string& key, const std::string& name, ZoneSpec& zone) {

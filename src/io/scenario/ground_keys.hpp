@@ -16,6 +16,10 @@ std::optional<std::string> fault_of_code(const std::string& text);
 /// The preset of the command line in place of the default ground that an included file describes.
 void lay_preset_over_include(ScenarioSpec& spec);
 
+/// Adds a fault if zones are described, by the scenario or a model, and neither it nor a flag names the file that says
+/// where they are: every number of these zones would be left out unnoticed.
+void check_zones_have_file(const ScenarioSpec& spec, std::vector<std::string>& faults);
+
 /// Reads the kinds of ground of a scenario, or of a file that it includes: [ground], [ground.zones.NAME].
 class GroundReader {
  public:
@@ -32,9 +36,6 @@ class GroundReader {
     on_profile_ = true;
     read(ground);
   }
-
-  /// Adds a fault if zones are described and no file says where they are.
-  void check_file(const TableReader& ground, const std::string& include);
 
  private:
   bool set_preset(TableReader& table, const std::string& key, const std::string& name, ZoneSpec& zone);

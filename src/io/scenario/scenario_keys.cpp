@@ -237,10 +237,10 @@ class SpecReader {
       given("ground.field");
       if (spec_.ground.path.empty()) table.fault("field", *table.value()->find("field"), "must come with file");
     }
-    GroundReader ground(spec_, origin_, faults_);
-    ground.read(table);
+    GroundReader(spec_, origin_, faults_).read(table);
     table.finish();
-    ground.check_file(table, spec_.include.where);
+    const TomlValue* zones = table.value() == nullptr ? nullptr : table.value()->find("zones");
+    if (zones != nullptr) spec_.zones_where = file_ + ":" + std::to_string(zones->line);
   }
 
   /// The parts of [model] that are the impact law.
@@ -326,7 +326,8 @@ void read_common_keys(ScenarioSpec& spec, TableReader& top, std::vector<std::str
 
 void read_model_keys(ScenarioSpec& spec, const std::string& path, const std::string& name, const std::string& origin,
                      std::vector<std::string>& faults) {
-  SpecReader(spec, path, name, origin, faults).read_model_keys(read_toml(path, name));
+  SpecReader(spec, path, name, origin, faults)
+      .read_model_keys(read_settings(path, name, "[ground], [model], [effects] or [barriers]"));
 }
 
 /// Where an input is a VRT, the scenario that a run leaves has to allow what this one does.
@@ -352,6 +353,7 @@ ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) 
   }
   lay_flags(spec, flags, faults);
   keep_vrt_folders(spec, faults);
+  check_zones_have_file(spec, faults);
   check_effect_zones(spec, faults);
   sort_by_line(faults, flags.scenario);
   const std::string in = flags.scenario.empty() ? "" : flags.scenario + ": ";

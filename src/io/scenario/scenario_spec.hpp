@@ -69,6 +69,7 @@ struct ScenarioSpec {
   std::optional<SurfaceKind> model_surface;  ///< on which an included model was fitted
   std::optional<double> model_cell;          ///< side of the cells of the DEM on which it was fitted [m]
   std::vector<std::string> vrt_folders;      ///< below which a VRT may name files; where a VRT is named
+  std::string zones_where;  ///< "scenario.toml:12": [ground.zones] of the scenario, for messages; empty: it has none
   std::string ground_field;
   ZoneSpec default_ground;
   std::vector<ZoneSpec> zones;                ///< in the order of the file

@@ -133,6 +133,12 @@ const TomlValue* TomlValue::find(const std::string& key) const {
   return nullptr;
 }
 
+bool TomlValue::says_nothing() const {
+  return std::ranges::all_of(members, [](const TomlMember& member) {
+    return member.value.kind == Kind::Table && member.value.members.empty();
+  });
+}
+
 std::string TomlValue::shown() const {
   switch (kind) {
     case Kind::Boolean:
@@ -166,6 +172,12 @@ TomlValue read_toml(const std::string& path, const std::string& name) {
     std::replace(what.begin(), what.end(), '\n', ' ');
     throw InputError(name + ":" + std::to_string(error.source().begin.line) + ": is no valid TOML: " + what);
   }
+}
+
+TomlValue read_settings(const std::string& path, const std::string& name, const std::string& content) {
+  TomlValue tree = read_toml(path, name);
+  if (tree.says_nothing()) throw InputError(name + ": holds no " + content + ": is it the file that was meant?");
+  return tree;
 }
 
 }  // namespace talus::io

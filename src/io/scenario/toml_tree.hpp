@@ -19,6 +19,8 @@ struct TomlValue {
   std::vector<TomlMember> members;  ///< of a table, in the order of the file
 
   const TomlValue* find(const std::string& key) const;
+  /// Whether a file says nothing: it has no key, or only tables without one.
+  bool says_nothing() const;
   /// The value in short, for messages: "'abc'", "3.5", "a table".
   std::string shown() const;
 };
@@ -31,5 +33,9 @@ struct TomlMember {
 /// Reads a TOML file. `name` stands for it in messages.
 /// Throws InputError "name:12: ..." where it cannot be read or is no TOML.
 TomlValue read_toml(const std::string& path, const std::string& name);
+
+/// The same of a file that is given for its settings: throws InputError "name: holds no `content`" if it says nothing,
+/// as the defaults would be taken unnoticed.
+TomlValue read_settings(const std::string& path, const std::string& name, const std::string& content);
 
 }  // namespace talus::io
