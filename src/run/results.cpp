@@ -18,6 +18,7 @@
 #include "talus/products/held_at_release.hpp"
 #include "talus/products/maps.hpp"
 #include "talus/products/screen_summary.hpp"
+#include "talus/run/gullies.hpp"
 #include "talus/run/summary.hpp"
 #include "talus/run/write_maps.hpp"
 
@@ -30,6 +31,7 @@ using io::LoadedScenario;
 struct StopFigures {
   EnergyLines energy_lines;
   std::uint64_t held;  ///< `held_at_release`
+  GullyStops gullies;
 };
 
 /// Writers of stops, exits, paths and crossings.
@@ -42,7 +44,8 @@ class Vectors {
         observer_(observer),
         stops_(file_of("stops"), loaded, io::PointsWriter::Layer::Stops),
         exits_(file_of("exits"), loaded, io::PointsWriter::Layer::Exits),
-        summary_(scenario_.screens.size()) {
+        summary_(scenario_.screens.size()),
+        gullies_(scenario_) {
     if (loaded.scenario.output.paths > 0)
       paths_.emplace(file_of("trajectories"), loaded.geo, loaded.scenario.surface.grid());
     if (!loaded.scenario.screens.empty()) crossings_.emplace(folder / "screens.csv", loaded.scenario, loaded.geo);
@@ -54,6 +57,7 @@ class Vectors {
       if (observer_.interrupted()) stop_interrupted();
       stops_.write(rows);
       energy_lines_.add(rows);
+      gullies_.add(rows);
       held_ += static_cast<std::uint64_t>(std::ranges::count_if(rows, held_at_release));
       exits_.write(rows);
     };
@@ -66,7 +70,7 @@ class Vectors {
     return sinks;
   }
 
-  StopFigures figures() const { return {energy_lines_, held_}; }
+  StopFigures figures() const { return {energy_lines_, held_, gullies_}; }
 
   void finish(const Totals& totals) {
     stops_.finish();
@@ -93,6 +97,7 @@ class Vectors {
   std::optional<io::TrajectoriesWriter> paths_;
   std::optional<io::CrossingsWriter> crossings_;
   ScreenSummary summary_;
+  GullyStops gullies_;
   EnergyLines energy_lines_;
   std::uint64_t held_ = 0;
 };
@@ -148,6 +153,7 @@ void write_results(const ResultSource& source, Observer& observer, Stopwatch& wa
     io::write_hazard(folder / io::kHazardFile, loaded, source.tally, record.totals.left_weight);
   StopFigures stops = writing.get();
   record.energy_lines = std::move(stops.energy_lines);
+  record.gullies = gully_record(stops.gullies, source.tally, loaded);
   io::write_styles_beside(folder);
   io::write_text(folder / "scenario.toml", loaded.complete_toml);
   io::write_text(folder / io::kProjectFile,
@@ -157,6 +163,8 @@ void write_results(const ResultSource& source, Observer& observer, Stopwatch& wa
   record.cpu.write = written.cpu + record.totals.sink_cpu_seconds;
   record.wall.write = written.wall;
   for (const std::string& warning : warnings_of(record.totals)) record.warnings.push_back(warning);
+  for (const std::string& warning : gully_warnings(*record.gullies, record.totals.released))
+    record.warnings.push_back(warning);
   for (const std::string& warning : held_warnings(stops.held, record.totals.released, loaded.scenario.effects))
     record.warnings.push_back(warning);
   for (const std::string& warning : warnings_of(record.rounds)) record.warnings.push_back(warning);

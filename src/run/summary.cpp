@@ -4,14 +4,10 @@
 #include "talus/io/results/run_record.hpp"
 
 namespace talus::run {
-namespace {
 
-/// "3.14 %".
 std::string share_text(std::uint64_t part, std::uint64_t whole) {
   return with_digits(100.0 * static_cast<double>(part) / static_cast<double>(whole), 3) + " %";
 }
-
-}  // namespace
 
 std::string count_text(std::uint64_t count) {
   std::string text = std::to_string(count);

@@ -94,9 +94,75 @@ class Ends(Case):
             self.run_well(*arguments[:-1], self.path("part" + part[0]), "--part", part)
         self.run_well("merge", self.path("merged"), *(self.path(f"part{i}") for i in (1, 2, 3)))
         self.assertEqual(self.record("merged")["ends"], ends)
+        self.assertEqual(self.record("merged")["steep_gullies"], self.record("whole")["steep_gullies"])
         for name in ("trapped.tif", "exits.tif", "exits.gpkg", "stops.gpkg", "deposits.tif", "hazard_tally.gz"):
             with open(self.path("whole/" + name), "rb") as one, open(self.path("merged/" + name), "rb") as other:
                 self.assertEqual(one.read() == other.read(), True, name)
+
+    def in_steep_gullies(self, z, cell=5.0, tan_phi=np.tan(np.radians(30.0))):
+        """The cells of docs/physics.md, "Steep gullies"; the outermost two are none here."""
+        def at(i, j):  # the neighbours i to the east and j to the south of the cells off the rim
+            return z[1 + j:z.shape[0] - 1 + j, 1 + i:z.shape[1] - 1 + i].astype(float)
+        to_east = at(1, -1) + 2 * at(1, 0) + at(1, 1) - at(-1, -1) - 2 * at(-1, 0) - at(-1, 1)
+        to_south = at(-1, 1) + 2 * at(0, 1) + at(1, 1) - at(-1, -1) - 2 * at(0, -1) - at(1, -1)
+        steep = np.hypot(to_east, to_south) / (8 * cell) > tan_phi
+        walls = np.zeros(steep.shape, bool)
+        for i, j in ((1, 0), (0, 1), (1, 1), (1, -1)):
+            rise = tan_phi * cell * np.hypot(i, j)
+            walls |= (at(i, j) - at(0, 0) > rise) & (at(-i, -j) - at(0, 0) > rise)
+        wide = np.pad(walls & steep, 1)
+        beside = np.logical_or.reduce([wide[1 + j:wide.shape[0] - 1 + j, 1 + i:wide.shape[1] - 1 + i]
+                                       for i in (-1, 0, 1) for j in (-1, 0, 1)])
+        return np.pad(steep & beside, 1)
+
+    def test_blocks_that_stay_on_the_staircase_of_a_steep_gully(self):
+        """A straight V gully of 35 degrees at 20 degrees to the grid, with walls of 45 degrees: its floor is steeper than phi,
+        so that no block should stay in it, but more than half do (docs/physics.md, "Creases")."""
+        size, way = 70, np.radians(20.0)
+        x, y = np.meshgrid((np.arange(size) + 0.5) * 5.0, (size - 0.5 - np.arange(size)) * 5.0)
+        along = (x - 62.5) * np.cos(way) + (y - 62.5) * np.sin(way)
+        across = (y - 62.5) * np.cos(way) - (x - 62.5) * np.sin(way)
+        z = (1000.0 - np.tan(np.radians(35.0)) * along + np.abs(across)).astype(np.float32)
+        north = NORTH - 300.0 + size * 5.0  # the lower left corner of the standard DEM
+        write_dem(self.path("dem.tif"), z, transform=(WEST, 5.0, 0.0, north, 0.0, -5.0))
+        os.remove(self.path("sources.gpkg"))
+        write_features(self.path("sources.gpkg"), "sources", [(f"POINT ({WEST + 62.5} {NORTH - 237.5})", [])])
+        arguments = self.arguments(diameter="1", trajectories="200")
+        done = self.run_well(*arguments)
+        gully, kept = self.in_steep_gullies(z), np.zeros(z.shape, int)
+        for stop, point in rows_of(self.path("out/stops.gpkg"), "stops"):
+            if stop["end"] in ("stopped", "trapped"):
+                kept[int((north - point.GetY()) // 5), int((point.GetX() - WEST) // 5)] += 1
+        kept[~gully] = 0
+        told = self.record()["steep_gullies"]
+        self.assertEqual(told["blocks"], kept.sum())
+        self.assertGreater(told["blocks"], 100)
+        row, column = np.unravel_index(kept.argmax(), kept.shape)
+        worst = {"x": WEST + (column + 0.5) * 5, "y": north - (row + 0.5) * 5, "blocks": kept.max(),
+                 "passages": bands_of(self.path("out/passages.tif"))[row, column]}
+        self.assertEqual(told["worst_cell"], worst)
+        words = f"{kept.sum() / 2:g} % of the trajectories ({kept.sum()}) stay in gullies steeper than phi"
+        self.assertIn(words, done.stderr)
+        place = f"x = {worst['x']:.1f}, y = {worst['y']:.1f}: {worst['blocks']} of the {worst['passages']} blocks that cross this cell"
+        self.assertIn(place, done.stderr)
+        self.assertRegex(self.run_well("check", *arguments[1:-2]).stdout, r"(?m)^warning .* stay in gullies steeper than phi")
+        self.run_well("report", self.path("out"))
+        with open(self.path("out/report.html"), encoding="utf-8") as file:
+            page = file.read()
+        self.assertRegex(page, rf"act</td><td>Blocks that stay in steep gullies</td><td class='b'>{kept.sum()} of 200 blocks")
+        self.assertIn(f"{worst['blocks']} of the {worst['passages']} that cross this cell", page)
+
+    def test_no_block_stays_in_a_steep_gully_where_there_is_none(self):
+        """A slope with a level road, and a valley with a level floor: blocks rest there in the real terrain, too."""
+        for name, z in (("road", np.where(UP < 100.0, 0.8 * UP, 0.8 * np.maximum(100.0, UP - 15.0))),
+                        ("valley", 0.75 * np.abs(UP - 147.5))):
+            self.dem(1000.0 + z)
+            self.sources(140, 230)
+            done = self.run_well(*self.arguments(name))
+            ends = self.record(name)["ends"]
+            self.assertGreater(ends["stopped"] + ends["trapped"], 10, name)
+            self.assertEqual(self.record(name)["steep_gullies"], {"blocks": 0}, name)
+            self.assertNotIn("steep", done.stderr.replace("too steep to rest on", ""), name)
 
     def test_check_maps_the_pits(self):
         z = heights()

@@ -219,7 +219,7 @@ class RunCase(Case):
         self.maxDiff = None
         self.assertEqual(self.hashes(one), self.hashes(other))
         left, right = self.record(one), self.record(other)
-        for key in ("released", "ends", "trajectory_metres", "impacts", "cells_scored", "touched_cells", "barriers", "files"):
+        for key in ("released", "ends", "trajectory_metres", "impacts", "cells_scored", "touched_cells", "steep_gullies", "barriers", "files"):
             self.assertEqual(left[key], right[key], key)
 
     def unfinished(self, out):

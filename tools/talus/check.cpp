@@ -19,6 +19,7 @@
 #include "talus/physics/trace.hpp"
 #include "talus/products/expected_cells.hpp"
 #include "talus/products/held_at_release.hpp"
+#include "talus/run/gullies.hpp"
 #include "talus/run/summary.hpp"
 #include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/screens/screens.hpp"
@@ -49,10 +50,12 @@ struct Sample {
   double seconds = 0.0, length = 0.0;  // of one processor; in space [m]
   talus::Totals totals;                // only the ends
   std::uint64_t held = 0;              // `held_at_release`
+  talus::io::GullyRecord gullies;
 };
 
 /// Traces and scores trajectories that are spread evenly over all releases (multiples of the golden ratio, modulo 1).
-Sample trace_sample(const Scenario& scenario) {
+Sample trace_sample(const LoadedScenario& loaded) {
+  const Scenario& scenario = loaded.scenario;
   const talus::World world = scenario.world();
   talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
   const auto weights = talus::AnnualWeights::of(scenario);
@@ -62,6 +65,7 @@ Sample trace_sample(const Scenario& scenario) {
   if (scenario.output.energy_total) batch.keep_energy_total();
   const talus::ScreenFinder screens(scenario);
   std::vector<talus::Crossing> crossings;
+  talus::GullyStops gullies(scenario);
   Sample sample;
   const Clock::time_point start = Clock::now();
   const std::uint64_t all = scenario.released(), most = std::min<std::uint64_t>(all, 20'000);
@@ -88,11 +92,14 @@ Sample trace_sample(const Scenario& scenario) {
     sample.length += path.length;
     ++sample.totals.ends[static_cast<std::size_t>(path.end)];
     ++sample.totals.released;
-    sample.held += talus::held_at_release(talus::stop_row(release, path)) ? 1U : 0U;
+    const talus::StopRow stop = talus::stop_row(release, path);
+    sample.held += talus::held_at_release(stop) ? 1U : 0U;
+    gullies.add({&stop, 1});
     sample.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   });
   tally.add(batch);
   sample.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  sample.gullies = talus::run::gully_record(gullies, tally, loaded);
   sample.touched_cells = tally.touched_cells();
   sample.cells_by_passages = tally.cells_by_passages(4);
   return sample;
@@ -191,9 +198,10 @@ void print_blocks(const Scenario& scenario) {
   if (!scenario.barriers.empty()) line("barriers", count_text(scenario.barriers.list().size()));
 }
 
-void print_estimate(const Scenario& scenario, unsigned threads) {
+void print_estimate(const LoadedScenario& loaded, unsigned threads) {
+  const Scenario& scenario = loaded.scenario;
   const double so_far = talus::io::peak_memory_mb();
-  const Sample sample = trace_sample(scenario);
+  const Sample sample = trace_sample(loaded);
   const auto all = static_cast<double>(scenario.released()), traced = static_cast<double>(sample.traced);
   RunSize size;
   size.trajectories = all;
@@ -216,6 +224,8 @@ void print_estimate(const Scenario& scenario, unsigned threads) {
   line("disk", "about " + rounded_text(1e-6 * bytes_of_results(scenario, size)) + " MB of results, up to " +
                    rounded_text(1e-6 * bytes_at_work(scenario, size)) + " MB more while it goes on");
   for (const std::string& warning : talus::run::warnings_of(sample.totals, "sample")) line("warning", warning);
+  for (const std::string& warning : talus::run::gully_warnings(sample.gullies, sample.traced, "sample"))
+    line("warning", warning);
   for (const std::string& warning : talus::run::held_warnings(sample.held, sample.traced, scenario.effects, "sample"))
     line("warning", warning);
   if (talus::io::too_many_limits(sample.totals))
@@ -231,7 +241,7 @@ void print_plan(const LoadedScenario& loaded, unsigned threads) {
   if (const auto note = talus::io::coefficient_note(loaded.scenario.impact.deformation_coefficient))
     line("note", *note);
   print_blocks(loaded.scenario);
-  print_estimate(loaded.scenario, threads);
+  print_estimate(loaded, threads);
   for (const std::string& warning : loaded.warnings) line("warning", warning);
   if (const auto warning = talus::run::size_warning(loaded.scenario.released())) line("warning", *warning);
 }

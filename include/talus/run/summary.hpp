@@ -14,6 +14,9 @@ namespace talus::run {
 /// 1234567 as "1 234 567".
 std::string count_text(std::uint64_t count);
 
+/// "3.14 %".
+std::string share_text(std::uint64_t part, std::uint64_t whole);
+
 /// Number of trajectories that ended in this way.
 std::uint64_t count_of(const Totals& totals, End end);
 

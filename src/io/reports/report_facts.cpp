@@ -54,6 +54,19 @@ std::vector<RecordedSetting> settings_of_record(const Json& json) {
   return settings;
 }
 
+std::optional<GullyFacts> gullies_of(const Json& json) {
+  if (!json.contains("steep_gullies")) return std::nullopt;
+  const Json& gullies = json.at("steep_gullies");
+  GullyFacts facts{.blocks = number_of(gullies, "blocks")};
+  if (!gullies.contains("worst_cell")) return facts;
+  const Json& worst = gullies.at("worst_cell");
+  facts.x = number_of(worst, "x");
+  facts.y = number_of(worst, "y");
+  facts.worst_blocks = number_of(worst, "blocks");
+  facts.passages = number_of(worst, "passages");
+  return facts;
+}
+
 void read_counts(const Json& json, RunFacts& run) {
   run.released = json.at("released").get<double>();
   run.source_cells = number_of(json, "source_cells");
@@ -75,6 +88,7 @@ RunFacts facts_of(const Json& json) {
   run.status = json.value("status", "");
   run.plan = json.value("plan", "");
   read_counts(json, run);
+  run.gullies = gullies_of(json);
   run.grid = grid_of(json.at("grid"));
   run.screens = recorded_screens(json);
   run.settings = settings_of_record(json);

@@ -28,6 +28,13 @@ struct RecordedGrid {
   std::string crs;                                             ///< "EPSG:2056 (CH1903+ / LV95)"
 };
 
+/// Blocks that stay in gullies too steep to rest in, and the cell in which most of them stay.
+struct GullyFacts {
+  double blocks = 0.0;
+  double x = 0.0, y = 0.0;                    ///< of the cell [m]
+  double worst_blocks = 0.0, passages = 0.0;  ///< that stay in it, that cross it
+};
+
 /// run.json.
 struct RunFacts {
   std::string version, command, status, plan;
@@ -36,6 +43,7 @@ struct RunFacts {
   double touched_cells = 0.0;
   std::vector<std::pair<std::string, double>> ends;  ///< in the order of the record
   std::optional<std::array<double, 3>> energy_line;  ///< least, P5, P50 [deg]
+  std::optional<GullyFacts> gullies;                 ///< nothing in an earlier record
   RecordedGrid grid;
   std::vector<Screen> screens;  ///< in map coordinates [m]
   std::vector<RecordedSetting> settings;

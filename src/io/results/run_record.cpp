@@ -101,6 +101,15 @@ Json json_of(const EnergyLines& lines) {
           {"p50", lines.percentile(0.50)}};
 }
 
+Json json_of(const GullyRecord& gullies) {
+  const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3; };
+  Json json{{"blocks", gullies.blocks}};
+  if (const auto& worst = gullies.worst)
+    json["worst_cell"] = {
+        {"x", rounded(worst->x)}, {"y", rounded(worst->y)}, {"blocks", worst->blocks}, {"passages", worst->passages}};
+  return json;
+}
+
 Json rounds_of(const RoundsRecord& rounds) {
   Json json{{"done", rounds.done},
             {"above_probability", rounds.asked.above},
@@ -163,6 +172,7 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   json["ends"] = ends_of(totals);
   if (totals.ends[static_cast<std::size_t>(End::Limit)] > 0)
     json["first_limit"] = {{"source", totals.first_limit[0]}, {"block", totals.first_limit[1]}};
+  if (record.gullies) json["steep_gullies"] = json_of(*record.gullies);
   json["trajectory_metres"] = static_cast<double>(totals.length_mm) * 1e-3;
   json["trajectory_metres_plan"] = static_cast<double>(totals.plan_length_mm) * 1e-3;
   if (record.energy_lines.count() > 0) json["energy_line_deg"] = json_of(record.energy_lines);

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,9 @@ namespace talus::io {
 /// Largest share of trajectories that may end at a limit; above it a run counts as failed.
 inline constexpr double kAllowedLimitShare = 0.001;
 /// Shares of the trajectories above which a run warns: that left the terrain, that were trapped, that hardly left their
-/// source.
-inline constexpr double kWarnedLeftShare = 0.01, kWarnedTrappedShare = 0.03, kWarnedHeldShare = 0.03;
+/// source, that stay in gullies too steep to rest in.
+inline constexpr double kWarnedLeftShare = 0.01, kWarnedTrappedShare = 0.03, kWarnedHeldShare = 0.03,
+                        kWarnedGullyShare = 0.03;
 
 /// Seconds of the three stages of a run.
 struct StageSeconds {
@@ -30,6 +32,17 @@ struct RoundsRecord {
   bool reached_it() const { return asked.until_error && reached.cells > 0 && reached.half_width < *asked.until_error; }
 };
 
+/// Blocks that stay in gullies that are too steep to rest in: docs/physics.md, "Steep gullies".
+struct GullyRecord {
+  /// The cell in which most of them stay.
+  struct Cell {
+    double x, y;                     ///< centre [m], in the system of the DEM
+    std::uint64_t blocks, passages;  ///< that stay in it, that cross it
+  };
+  std::uint64_t blocks = 0;
+  std::optional<Cell> worst;
+};
+
 /// Record of a run.
 struct RunRecord {
   std::vector<std::string> command;  ///< words of the command line
@@ -38,6 +51,7 @@ struct RunRecord {
   std::vector<std::string> files;     ///< written beside run.json
   std::uint64_t touched_cells = 0;
   EnergyLines energy_lines;
+  std::optional<GullyRecord> gullies;  ///< nothing for a profile
   StageSeconds cpu, wall;
   int threads = 0;  ///< of all processes
   int ranks = 1;    ///< processes

@@ -1,0 +1,32 @@
+#include "talus/run/gullies.hpp"
+
+#include "talus/base/text.hpp"
+#include "talus/run/summary.hpp"
+
+namespace talus::run {
+
+io::GullyRecord gully_record(const GullyStops& stops, const Tally& tally, const io::LoadedScenario& loaded) {
+  io::GullyRecord record{stops.blocks(), std::nullopt};
+  if (const auto worst = stops.worst()) {
+    const Grid& grid = tally.grid();
+    const double south = loaded.geo.north - grid.rows * loaded.geo.cell_y;
+    const CellRecord* cell = tally.find(worst->column, worst->row);
+    record.worst = {loaded.geo.west + grid.centre_x(worst->column), south + grid.centre_y(worst->row), worst->blocks,
+                    cell != nullptr ? cell->passages : 0U};
+  }
+  return record;
+}
+
+std::vector<std::string> gully_warnings(const io::GullyRecord& gullies, std::uint64_t released,
+                                        const std::string& whole) {
+  if (!(static_cast<double>(gullies.blocks) > io::kWarnedGullyShare * static_cast<double>(released))) return {};
+  std::string text = share_text(gullies.blocks, released) + " of the " + whole + " (" + count_text(gullies.blocks) +
+                     ") stay in gullies steeper than phi: there the cells of the DEM are a staircase whose treads hold "
+                     "blocks that would go on in the real gully, so that the maps may end too early";
+  if (const auto& worst = gullies.worst)
+    text += "; most stay at x = " + with_decimals(worst->x, 1) + ", y = " + with_decimals(worst->y, 1) + ": " +
+            count_text(worst->blocks) + " of the " + count_text(worst->passages) + " blocks that cross this cell";
+  return {text + "; take a survey with smaller cells (resampling does not show more of a gully)"};
+}
+
+}  // namespace talus::run
