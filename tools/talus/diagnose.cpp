@@ -20,7 +20,7 @@ namespace {
 
 struct Options : CampaignCommand {
   talus::DiagnoseOptions how;
-  bool nested = false, no_nested = false, quick_folds = false, all_rows = false;
+  bool nested = false, no_nested = false, quick_folds = false;
   std::vector<std::string> of_one;  ///< given flags that hold for one campaign alone
 };
 
@@ -89,12 +89,9 @@ void write_results(const talus::io::OutputFolder& folder, const talus::io::Loade
                                                 : "The ground alone: talus diagnose found nothing to add."));
 }
 
-/// Settles which rows are fitted and whether the loop is repeated without each fold: by default where nothing is held
-/// out.
-void choose_rows(const Options& options, talus::Campaign& campaign, talus::DiagnoseOptions& how) {
+/// Settles whether the loop is repeated without each fold: by default where nothing is held out.
+void choose_folds(const Options& options, const talus::Campaign& campaign, talus::DiagnoseOptions& how) {
   if (options.nested && options.no_nested) throw talus::InputError("flags --nested and --no-nested exclude each other");
-  if (options.all_rows)
-    for (talus::MeasuredBlock& block : campaign.blocks) block.holdout = false;
   const auto fitting = talus::fitting_rows(campaign);
   const bool all = std::count(fitting.begin(), fitting.end(), false) == 0;
   how.nested = options.nested || (all && !options.no_nested);
@@ -121,7 +118,7 @@ int diagnose(const Options& options) {
   const talus::Campaign& campaign = opened.loaded.campaign;
   require_releases(options.campaigns.front(), campaign);
   record.options = options.how;
-  choose_rows(options, opened.loaded.campaign, record.options);
+  choose_folds(options, campaign, record.options);
   Progress progress(Progress::mode_of(options.quiet, options.progress), 0, "diagnose");
   record.options.proceed = [&progress](double share) { return progress.update(share) && !interrupted(); };
   try {
