@@ -52,7 +52,9 @@ void print_summary(const talus::io::DiagnosisRecord& record, const std::string& 
     if (!round.where.empty()) print(", %s", round.where.c_str());
     for (const std::string& other : round.alike)
       print("%s %s", &other == &round.alike.front() ? "; not to be told apart from" : ",", other.c_str());
-    print(" (p of noise %.4f)\n", round.p_value);
+    print(" (smallest corrected p of a family %.4f)\n", round.p_value);
+    if (const std::string row = talus::io::residual_text(round, record.options.later_level); !row.empty())
+      print("  residual table: %s\n", row.c_str());
     print_families(round);
   }
   print("error, fitting rows: %.3f before, %.3f after\n", d.base.score.total, d.with_effects.score.total);

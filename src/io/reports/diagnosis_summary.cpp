@@ -73,9 +73,11 @@ std::string gain_in_doubt(const FittedCandidate& chosen) {
          with_decimals(gain.high, 3) + ").";
 }
 
-/// @param level  p-value from which down a family of the first round is significant
-Markup sure(const Diagnosis& d, double level) {
+/// What of the first round is significant: families by its level, a row of the residual table by the stricter one.
+Markup sure(const DiagnosisRecord& record) {
+  const Diagnosis& d = record.diagnosis;
   const DiagnosisRound& first = d.rounds.front();
+  const double level = record.options.level_of_round(0);
   std::vector<std::string> rare;
   for (const FamilyTest& family : first.families)
     if (family.p_corrected <= level) rare.push_back(family.name + " (p " + with_digits(family.p_corrected, 1) + ")");
@@ -83,6 +85,8 @@ Markup sure(const Diagnosis& d, double level) {
                                         ", corrected for their number)."
                                   : "What the ground alone leaves depends on: " + listed(rare) +
                                         ", corrected for the number of families.";
+  if (const std::string row = residual_text(first, record.options.later_level); !row.empty())
+    text += (rare.empty() ? " But " : " And ") + row + ".";
   if (found(first) && first.alike.empty()) text += " No other effect that was allowed comes close to it.";
   if (found(first)) text += gain_in_doubt(first.candidates.front());
   return Markup() + text + repeated(d.stability);
@@ -151,7 +155,7 @@ std::string next(const DiagnosisRecord& record) {
 Markup summary_html(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
   const std::pair<const char*, Markup> rows[] = {{"What is missing", missing(d)},
-                                                 {"How sure that is", sure(d, record.options.level_of_round(0))},
+                                                 {"How sure that is", sure(record)},
                                                  {"What was gained", gained(record)},
                                                  {"What could not be decided", Markup() + undecided(d)},
                                                  {"What to measure next", Markup() + next(record)}};
