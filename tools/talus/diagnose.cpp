@@ -155,7 +155,7 @@ void add_diagnose(CLI::App& app, Action& action) {
            ->check(CLI::Range(1, 9)),
        default_of(static_cast<double>(how.most_effects)));
   with(command->add_option("--level", how.first_level, "of significance, over all families of effects (0.05)")
-           ->check(between(0.0001, 0.5)),
+           ->check(between(0.001, 0.5)),
        default_of(how.first_level));
   with(command
            ->add_option("--base-fits", how.base_fits, "independent fits of the ground whose verdicts are compared (5)")

@@ -105,6 +105,7 @@ class DiagnosisLoop {
     how.seed = options_.seed;
     how.threads = options_.threads;
     how.rules = rules_;
+    how.replicates = options_.replicates(kFamilies);
     how.proceed = [this] { return proceeds(); };
     return how;
   }
@@ -169,6 +170,7 @@ class DiagnosisLoop {
     const Timesheet::Phase phase(fits_.times(), "tests");
     FamilyOptions how;
     how.seed = options_.seed;
+    how.replicates = options_.replicates(kFamilies);
     how.rules = rules_;
     return test_families({campaign_, ResidualSpace(campaign_, base.runs, rules_), base.runs, rows_, test}, how);
   }
@@ -300,6 +302,11 @@ class DiagnosisLoop {
 }  // namespace
 
 TrialsPerBlock raised_for_few_blocks(TrialsPerBlock trials, std::size_t blocks, const DiagnosisRules& rules) {
+int DiagnoseOptions::replicates(std::size_t families) const {
+  const double rarest = std::min(first_level / 5.0, later_level) / static_cast<double>(families);
+  return std::max(2000, static_cast<int>(std::ceil(1.0 / rarest)));
+}
+
   const double more = std::clamp(rules.many_blocks / static_cast<double>(blocks), 1.0, rules.most_of_one);
   for (std::uint32_t* count : {&trials.search, &trials.test, &trials.compare})
     *count = std::max(rules.fewest_of_one, static_cast<std::uint32_t>(std::lround(more * *count)));

@@ -36,6 +36,13 @@ std::string units_word(const PropertyTest& test) {
          (test.by_rock ? ", not of their releases" : "");
 }
 
+/// A permutation test must be able to give as small a p as one by data sets.
+DiagnosisRules rules_of(const FamilyOptions& options) {
+  DiagnosisRules rules = options.rules;
+  rules.arrangements = std::max(rules.arrangements, static_cast<std::size_t>(options.replicates));
+  return rules;
+}
+
 /// A family with a test of its own.
 FamilyTest family_with_members(const char* name, std::vector<std::string> members) {
   FamilyTest family;
@@ -47,7 +54,7 @@ FamilyTest family_with_members(const char* name, std::vector<std::string> member
 
 FamilyTest block_property(std::span<const BlockNumbers> sites, const FamilyOptions& options) {
   FamilyTest family = family_with_members(kProperty, {"block-shape", "block-mass"});
-  const PropertyTest test = property_test(sites, options.rules, options.seed);
+  const PropertyTest test = property_test(sites, rules_of(options), options.seed);
   family.may_name = test.rocks >= options.rules.fewest_rocks;
   if (!family.may_name) family.note = rocks_word(test.rocks) + ": a property of the block cannot be named from them";
   if (!test.tested) {
@@ -66,7 +73,7 @@ FamilyTest block_property(std::span<const BlockNumbers> sites, const FamilyOptio
 
 FamilyTest day(const FamilyInput& in, const std::vector<double>& energy, const FamilyOptions& options) {
   FamilyTest family = family_with_members(kDay, {"wet-ground"});
-  const DayTest test = day_test(in.campaign, energy, options.rules, options.seed);
+  const DayTest test = day_test(in.campaign, energy, rules_of(options), options.seed);
   if (!test.tested) {
     family.note = "releases of several days within one group are needed";
     return family;
