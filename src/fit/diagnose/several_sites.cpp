@@ -112,6 +112,7 @@ class SitesLoop {
         detection_limits(campaign, axis_of(campaign, out.base.runs), tests.score_test, tests.candidates, rules_);
     out.families =
         test_families({campaign, space, out.base.runs, rows, tests.score_test}, {how.replicates, own.seed, rules_});
+    complete_limits(out.limits, out.families, {});
     tests_.push_back(std::move(tests));
     return out;
   }

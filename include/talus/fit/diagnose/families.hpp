@@ -41,6 +41,9 @@ void correct(std::span<FamilyTest* const> families);
 /// Name of the family to which an effect belongs.
 std::string family_of(const std::string& effect);
 
+/// Whether one of the families could name an effect, were it strong enough: the data can test it, and it may name.
+bool can_be_named(std::span<const FamilyTest> families, const std::string& effect);
+
 /// The smallest corrected p-value; 1 where no family was tested.
 double smallest_corrected(std::span<const FamilyTest> families);
 

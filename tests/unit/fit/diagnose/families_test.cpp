@@ -232,7 +232,7 @@ FamilyTest property_of(std::size_t blocks, std::size_t rocks, const std::string&
 }
 
 TEST(Families, SayWhyNoPropertyWasTestedAndWhatChangedPlaces) {
-  EXPECT_EQ(property_of(8, 8).note, "fewer than ten blocks");
+  EXPECT_EQ(property_of(8, 8).note, "ten blocks and more are needed");
   EXPECT_TRUE(std::isnan(property_of(8, 8).p_value));
   EXPECT_TRUE(property_of(8, 8).may_name);
   EXPECT_EQ(property_of(5, 5).note, "five rocks: a property of the block cannot be named from them");
