@@ -125,6 +125,18 @@ class Score(Deposits):
         result = self.score("-q")
         self.assertEqual((result["fit"]["blocks"], result["holdout"]["blocks"]), (40, 10))
 
+    def test_a_block_at_a_limit_is_of_the_class_from_there_on(self):
+        """So the rows of the classes are the counts of the written diameters; a mass in between has another last bit."""
+        sizes = ["0.3", "0.5", "0.6", "0.7"]
+        rows = [[*row[:3], sizes[i % 4], str(2600 + i)] for i, row in enumerate(self.rows)]
+        self.deposits(rows, ("id", "x", "y", "diameter_m", "density_kgm3"))
+        self.campaign("classes = [0.3, 0.5, 0.6, 0.7]\n")
+        groups = {g["group"]: g["rows"] for g in self.score("-q", "--trials", "20")["fit"]["groups"]}
+        counts = [sum(row[3] == size for row in rows) for size in sizes]
+        names = ["deposits 0.3 to 0.5 m", "deposits 0.5 to 0.6 m", "deposits 0.6 to 0.7 m", "deposits from 0.7 m"]
+        self.assertEqual([groups.get(name) for name in names], counts)
+        self.assertNotIn("deposits below 0.3 m", groups)
+
     def test_mass_and_diameter_mean_the_same(self):
         one = self.score("-q")
         self.deposits([row[:3] + [repr(2700.0 * np.pi / 6.0 * float(row[3]) ** 3)] for row in self.rows], ("id", "x", "y", "mass_kg"))

@@ -34,6 +34,10 @@ class Loop(Case):
         self.assertEqual({"diagnosis.json", "report.html", "fitted.toml", "with_effect.toml"}, set(os.listdir(out)))
         self.assertIn(found["effect"], NAMES)
         self.assertEqual(NAMES - {"none", "unexplained"} - {c["effect"] for c in found["candidates"]}, untested)
+        limits = [limit["effect"] for limit in found["detection_limits"]]  # of each effect that is not in the last model
+        self.assertEqual(sorted(limits + [e for e in found["effects"] if e not in ("none", "unexplained")]),
+                         sorted(NAMES - {"none", "unexplained"}))
+        self.assertEqual({l["amount"] for l in found["detection_limits"] if l["effect"] in untested} - {None}, set())
         for rows in ("fit", "holdout"):
             self.assertTrue(0.1 < found["error"][rows]["after"] < 2.0)  # a number; 24 blocks and few trials fit badly
         e = found["error"]["holdout"]

@@ -61,6 +61,10 @@ class Repeated(luck_test.Luck):
     def test_wrong_choices(self):
         campaign, out = self.path("campaign.toml"), self.path("out")
         self.fails(2, "--nested and --no-nested", arguments=("diagnose", campaign, "-o", out, "--nested", "--no-nested"))
+        self.tables(self.path("out-held"), [[*b[:6], "1"] for b in self.blocks], *self.own()[1:])
+        held, few = self.path("out-held/campaign.toml"), ("--folds", "13")  # a refusal of all 24 rows comes soon
+        self.fails(2, "24 fitting rows", "needs at least 26", arguments=("diagnose", held, "-o", out, "--all-rows", *few))
+        self.fails(2, "nothing to fit to", arguments=("diagnose", held, "-o", out, *few))
         self.fails(2, "needs at least 26", arguments=("diagnose", campaign, "-o", out, "--nested", "--folds", "13"))
 
 

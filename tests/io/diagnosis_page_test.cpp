@@ -39,6 +39,70 @@ std::size_t count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
+bool says(const DiagnosisRecord& record, const std::string& sentence) {
+  return summary_html(record).text().find(sentence) != std::string::npos;
+}
+
+/// A round is `unexplained` by a family or by a row of the residual table (docs/diagnosis-method.md, "The choice"): the
+/// page names the row by which it is.
+TEST(DiagnosisPage, NamesTheRowOfTheResidualTableThatIsLeft) {
+  DiagnosisRecord record = record_of(0.05, 0.01);
+  DiagnosisRound& first = record.diagnosis.rounds.front();
+  first.effect = "unexplained";
+  first.residual = {{"lateral", "release height", -0.7, 1e-6, 8e-5, 24}, {"runout", "mass", 0.1, 0.6, 1.0, 24}};
+  EXPECT_EQ(residual_text(first, 0.01),
+            "lateral depends on release height (p 8e-05, corrected for the number of rows)");
+  EXPECT_TRUE(says(record,
+                   "No family of effects is significant (smallest p 0.2, corrected for their number). But "
+                   "lateral depends on release height (p 8e-05, corrected for the number of rows)."));
+  EXPECT_EQ(count_of(diagnosis_page(Campaign{}, record), "In the residual table lateral depends on release height"),
+            1U);
+  first.residual.front().covariate = "spread";
+  EXPECT_TRUE(says(record, "But the spread of lateral is not that of the model"));
+  first.residual.front().corrected = 0.02;  // no reason for `unexplained`
+  EXPECT_EQ(residual_text(first, 0.01), "");
+  EXPECT_FALSE(says(record, "But the spread"));
+}
+
+/// A family that the data cannot test is said, and what it takes.
+TEST(DiagnosisPage, SaysWhatAFamilyWithoutATestNeeds) {
+  DiagnosisRecord record = record_of(0.05, 0.01);
+  FamilyTest& day = record.diagnosis.rounds.front().families[1];
+  EXPECT_FALSE(says(record, "could not be tested"));
+  day.p_value = day.p_corrected = kNotGiven;
+  day.note = "releases of several days within one group are needed";
+  EXPECT_TRUE(
+      says(record, "The family day could not be tested: releases of several days within one group are needed."));
+  EXPECT_TRUE(says(record, "For the family day releases of several days within one group are needed."));
+  EXPECT_FALSE(says(record, "Every effect of the library would have been seen"));
+}
+
+/// Half of an amount that there is not is none: such an effect would be shown at all.
+TEST(DiagnosisPage, SaysWhatFurtherSpeedsWouldShow) {
+  DiagnosisRecord record = record_of(0.05, 0.01);
+  record.diagnosis.rounds.back().limits = {{.effect = "air-drag", .with_further_speeds = 2.0},
+                                           {.effect = "soft-ground", .amount = 4.0, .with_further_speeds = 1.9},
+                                           {.effect = "block-mass", .amount = 4.0, .with_further_speeds = 2.1},
+                                           {.effect = "wet-ground"}};
+  EXPECT_TRUE(says(record,
+                   "Speeds at more screens (12 were assumed): they would show soft-ground at less than half the "
+                   "amount and would show a large amount of air-drag, of which these data show none."));
+}
+
+/// Where nothing was found nothing was gained: the verdict rests on the blocks that were fitted.
+TEST(DiagnosisPage, AsksForMoreBlocksByWhatTheVerdictRestsOn) {
+  DiagnosisRecord record = record_of(0.05, 0.01);
+  record.errors.resize(2);  // of 24 fitting rows and no held-out ones
+  record.errors[0].after.blocks = 24;
+  record.unseen = 1;
+  EXPECT_TRUE(says(record, "More blocks: 24 were fitted."));
+  EXPECT_FALSE(says(record, "the gain rests on"));
+  record.errors[1].after.blocks = 12;
+  record.diagnosis.rounds.front().effect = "soft-ground";
+  record.diagnosis.rounds.front().candidates.resize(1);
+  EXPECT_TRUE(says(record, "More blocks: the gain rests on 12 of them."));
+}
+
 TEST(DiagnosisPage, NamesFamiliesByTheLevelOfTheRound) {
   const std::string depends = "What is left depends on: <b>place</b>",
                     noise = "Nothing is left that differs from noise.";

@@ -61,6 +61,8 @@ OpenedCampaign::OpenedCampaign(const CampaignCommand& command, talus::io::FitRec
   for (const talus::io::InputFile& input : loaded.inputs) folder.protect(input.path);
   if (!command.quiet)
     for (const std::string& warning : loaded.warnings) say("warning", warning);
+  if (command.all_rows)
+    for (talus::MeasuredBlock& block : loaded.campaign.blocks) block.holdout = false;
   require_measurements(command.campaigns.front(), loaded.campaign);
   record.command = command_line();
   record.inputs = loaded.inputs;

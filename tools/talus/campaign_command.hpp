@@ -11,6 +11,7 @@ struct CampaignCommand {
   std::string out, progress;
   std::optional<std::string> surface;
   bool overwrite = false, quiet = false;
+  bool all_rows = false;  ///< fit the rows that the campaign holds out, too
 
   /// Adds the options, those of a search among them.
   void add_to(CLI::App& command, std::uint32_t& trials, int fewest_trials, std::vector<std::string>& keys,

@@ -19,7 +19,7 @@ namespace {
 
 struct Options : CampaignCommand {
   talus::DiagnoseOptions how;
-  bool nested = false, no_nested = false, quick_folds = false, all_rows = false;
+  bool nested = false, no_nested = false, quick_folds = false;
   std::vector<std::string> of_one;  ///< given flags that hold for one campaign alone
 };
 
@@ -51,7 +51,9 @@ void print_summary(const talus::io::DiagnosisRecord& record, const std::string& 
     if (!round.where.empty()) print(", %s", round.where.c_str());
     for (const std::string& other : round.alike)
       print("%s %s", &other == &round.alike.front() ? "; not to be told apart from" : ",", other.c_str());
-    print(" (p of noise %.4f)\n", round.p_value);
+    print(" (smallest corrected p of a family %.4f)\n", round.p_value);
+    if (const std::string row = talus::io::residual_text(round, record.options.later_level); !row.empty())
+      print("  residual table: %s\n", row.c_str());
     print_families(round);
   }
   print("error, fitting rows: %.3f before, %.3f after\n", d.base.score.total, d.with_effects.score.total);
@@ -88,12 +90,9 @@ void write_results(const talus::io::OutputFolder& folder, const talus::io::Loade
                                                 : "The ground alone: talus diagnose found nothing to add."));
 }
 
-/// Settles which rows are fitted and whether the loop is repeated without each fold: by default where nothing is held
-/// out.
-void choose_rows(const Options& options, talus::Campaign& campaign, talus::DiagnoseOptions& how) {
+/// Settles whether the loop is repeated without each fold: by default where nothing is held out.
+void choose_folds(const Options& options, const talus::Campaign& campaign, talus::DiagnoseOptions& how) {
   if (options.nested && options.no_nested) throw talus::InputError("flags --nested and --no-nested exclude each other");
-  if (options.all_rows)
-    for (talus::MeasuredBlock& block : campaign.blocks) block.holdout = false;
   const auto fitting = talus::fitting_rows(campaign);
   const bool all = std::count(fitting.begin(), fitting.end(), false) == 0;
   how.nested = options.nested || (all && !options.no_nested);
@@ -120,7 +119,7 @@ int diagnose(const Options& options) {
   const talus::Campaign& campaign = opened.loaded.campaign;
   require_releases(options.campaigns.front(), campaign);
   record.options = options.how;
-  choose_rows(options, opened.loaded.campaign, record.options);
+  choose_folds(options, campaign, record.options);
   Progress progress(Progress::mode_of(options.quiet, options.progress), 0, "diagnose");
   record.options.proceed = [&progress](double share) { return progress.update(share) && !interrupted(); };
   try {
@@ -155,7 +154,7 @@ void add_diagnose(CLI::App& app, Action& action) {
            ->check(CLI::Range(1, 9)),
        default_of(static_cast<double>(how.most_effects)));
   with(command->add_option("--level", how.first_level, "of significance, over all families of effects (0.05)")
-           ->check(between(0.0001, 0.5)),
+           ->check(between(0.001, 0.5)),
        default_of(how.first_level));
   with(command
            ->add_option("--base-fits", how.base_fits, "independent fits of the ground whose verdicts are compared (5)")

@@ -14,6 +14,13 @@ namespace {
 
 constexpr std::size_t kMostClasses = 3, kFewestInClass = 20;
 
+constexpr double kNanometres = 1e9;  // per metre
+
+/// A diameter as classes compare it: the number that was written, whatever its way through a mass and a density.
+double compared(double diameter) {
+  return std::round(kNanometres * diameter) / kNanometres;
+}
+
 Raster<std::uint32_t> sources_by_cell(const Grid& grid, std::span<const DepositSource> sources) {
   Raster<std::uint32_t> cells(grid, kNoSource);
   for (std::uint32_t i = 0; i < sources.size(); ++i)
@@ -107,13 +114,14 @@ RunOut run_out(const Campaign& campaign, const Eigen::Vector2d& place) {
 }
 
 std::vector<double> class_limits(std::vector<double> diameters) {
+  std::ranges::transform(diameters, diameters.begin(), compared);
   std::sort(diameters.begin(), diameters.end());
   return cuts_of(diameters, std::clamp<std::size_t>(diameters.size() / kFewestInClass, 1, kMostClasses),
                  kFewestInClass);
 }
 
 std::size_t class_of(const MappedDeposits& deposits, double diameter) {
-  const auto above = std::upper_bound(deposits.limits.begin(), deposits.limits.end(), diameter);
+  const auto above = std::ranges::upper_bound(deposits.limits, compared(diameter), {}, compared);
   return static_cast<std::size_t>(above - deposits.limits.begin());
 }
 

@@ -126,6 +126,13 @@ std::vector<Candidate> candidates_of(const Campaign& campaign, const Model& base
   return list;
 }
 
+std::vector<std::string> sought_names() {
+  std::vector<std::string> names;
+  for (const EffectEntry* entry : sought_effects()) names.emplace_back(entry->name);
+  names.insert(names.end(), {"instrument-bias", "undeclared-zone", "undeclared-barrier"});
+  return names;
+}
+
 Candidate merged_candidate(const Campaign& campaign, const Axis& axis, std::span<const Candidate> list,
                            std::span<const std::size_t> members, const DiagnosisRules& rules) {
   const Candidate &first = list[members.front()], &last = list[members.back()];

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "talus/fit/diagnose/candidates.hpp"
+#include "talus/fit/diagnose/families.hpp"
 
 namespace talus {
 namespace {
@@ -68,6 +69,16 @@ void compare_limits(std::vector<DetectionLimit>& limits, std::span<const Detecti
         further, [&](const DetectionLimit& f) { return f.effect == limit.effect && f.key == limit.key; });
     if (same != further.end()) limit.with_further_speeds = same->amount;
   }
+}
+
+void complete_limits(std::vector<DetectionLimit>& limits, std::span<const FamilyTest> families,
+                     std::span<const std::string> found) {
+  for (DetectionLimit& limit : limits)
+    if (!can_be_named(families, limit.effect)) limit.amount = limit.with_further_speeds = kNotGiven;
+  for (const std::string& name : sought_names())
+    if (std::ranges::find(found, name) == found.end() &&
+        std::ranges::find(limits, name, &DetectionLimit::effect) == limits.end())
+      limits.push_back({.effect = name, .off = kNotGiven});
 }
 
 }  // namespace talus

@@ -55,6 +55,7 @@ class DiagnosisLoop {
       d.with_effects = chosen.fitted;
     }
     if (!scope_.brief) compare_limits(d.rounds.back().limits, limits_with_further_screens(d.with_effects, found));
+    complete_limits(d.rounds.back().limits, d.rounds.back().families, found);
     if (!found.empty()) d.base = fits_.simulated_anew(std::move(d.base));
     d.trials = options_.trials;
     d.times = fits_.times();
@@ -104,6 +105,7 @@ class DiagnosisLoop {
     how.trials = options_.trials.test;
     how.seed = options_.seed;
     how.threads = options_.threads;
+    how.replicates = options_.replicates(kFamilies);
     how.rules = rules_;
     how.proceed = [this] { return proceeds(); };
     return how;
@@ -168,6 +170,7 @@ class DiagnosisLoop {
   std::vector<FamilyTest> tested_families(const FittedModel& base, const ScoreTest& test) const {
     const Timesheet::Phase phase(fits_.times(), "tests");
     FamilyOptions how;
+    how.replicates = options_.replicates(kFamilies);
     how.seed = options_.seed;
     how.rules = rules_;
     return test_families({campaign_, ResidualSpace(campaign_, base.runs, rules_), base.runs, rows_, test}, how);
@@ -298,6 +301,11 @@ class DiagnosisLoop {
 };
 
 }  // namespace
+
+int DiagnoseOptions::replicates(std::size_t families) const {
+  const double rarest = std::min(first_level / 5.0, later_level) / static_cast<double>(families);
+  return std::max(2000, static_cast<int>(std::ceil(1.0 / rarest)));
+}
 
 TrialsPerBlock raised_for_few_blocks(TrialsPerBlock trials, std::size_t blocks, const DiagnosisRules& rules) {
   const double more = std::clamp(rules.many_blocks / static_cast<double>(blocks), 1.0, rules.most_of_one);

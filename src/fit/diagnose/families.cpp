@@ -36,6 +36,13 @@ std::string units_word(const PropertyTest& test) {
          (test.by_rock ? ", not of their releases" : "");
 }
 
+/// A permutation test must be able to give as small a p as one by data sets.
+DiagnosisRules rules_of(const FamilyOptions& options) {
+  DiagnosisRules rules = options.rules;
+  rules.arrangements = std::max(rules.arrangements, static_cast<std::size_t>(options.replicates));
+  return rules;
+}
+
 /// A family with a test of its own.
 FamilyTest family_with_members(const char* name, std::vector<std::string> members) {
   FamilyTest family;
@@ -47,12 +54,13 @@ FamilyTest family_with_members(const char* name, std::vector<std::string> member
 
 FamilyTest block_property(std::span<const BlockNumbers> sites, const FamilyOptions& options) {
   FamilyTest family = family_with_members(kProperty, {"block-shape", "block-mass"});
-  const PropertyTest test = property_test(sites, options.rules, options.seed);
+  const PropertyTest test = property_test(sites, rules_of(options), options.seed);
   family.may_name = test.rocks >= options.rules.fewest_rocks;
   if (!family.may_name) family.note = rocks_word(test.rocks) + ": a property of the block cannot be named from them";
   if (!test.tested) {
     if (family.may_name)
-      family.note = test.blocks < options.rules.fewest_blocks ? "fewer than ten blocks" : "no two rocks to compare";
+      family.note = test.blocks < options.rules.fewest_blocks ? "ten blocks and more are needed"
+                                                              : "two rocks that can be compared are needed";
     return family;
   }
   family.p_value = test.regression.permuted.p_value;
@@ -66,7 +74,7 @@ FamilyTest block_property(std::span<const BlockNumbers> sites, const FamilyOptio
 
 FamilyTest day(const FamilyInput& in, const std::vector<double>& energy, const FamilyOptions& options) {
   FamilyTest family = family_with_members(kDay, {"wet-ground"});
-  const DayTest test = day_test(in.campaign, energy, options.rules, options.seed);
+  const DayTest test = day_test(in.campaign, energy, rules_of(options), options.seed);
   if (!test.tested) {
     family.note = "releases of several days within one group are needed";
     return family;
@@ -81,7 +89,8 @@ FamilyTest day(const FamilyInput& in, const std::vector<double>& energy, const F
 }
 
 /// The most significant member, corrected within the family.
-FamilyTest by_score_test(const char* name, const FamilyInput& in) {
+/// @param needed  note where there is no member
+FamilyTest by_score_test(const char* name, const char* needed, const FamilyInput& in) {
   FamilyTest family;
   family.name = name;
   std::vector<std::vector<double>> drawn;
@@ -94,7 +103,7 @@ FamilyTest by_score_test(const char* name, const FamilyInput& in) {
     measured.push_back(effect.best.p_value);
   }
   if (measured.empty()) {
-    family.note = "no candidate: nothing was measured that one could change";
+    family.note = needed;
     return family;
   }
   family.p_value = corrected(drawn, measured).all;
@@ -107,7 +116,7 @@ FamilyTest dispersion(const FamilyInput& in, const FamilyOptions& options) {
   const DispersionTest test =
       dispersion_test(in.campaign, in.space, in.runs, in.rows, options.replicates, options.seed);
   if (!test.tested) {
-    family.note = "fewer than ten blocks beyond the number of groups";
+    family.note = "at least ten blocks more than there are groups are needed";
     return family;
   }
   family.p_value = test.p_value;
@@ -131,9 +140,11 @@ std::string family_of(const std::string& effect) {
 std::vector<FamilyTest> test_families(const FamilyInput& input, const FamilyOptions& options) {
   const std::vector<double> energy = energy_by_block(input.space, input.runs, input.rows);
   const std::vector<BlockNumbers> site{{input.campaign, energy}};
-  std::vector<FamilyTest> families{block_property(site, options), by_score_test(kPlace, input),
-                                   day(input, energy, options), by_score_test(kInstrument, input),
-                                   dispersion(input, options)};
+  std::vector<FamilyTest> families{
+      block_property(site, options), by_score_test(kPlace, "measured values are needed", input),
+      day(input, energy, options),
+      by_score_test(kInstrument, "a screen that five blocks crossed, or samples, are needed", input),
+      dispersion(input, options)};
   std::vector<FamilyTest*> all;
   for (FamilyTest& family : families) all.push_back(&family);
   correct(all);
@@ -159,6 +170,13 @@ void correct(std::span<FamilyTest* const> families) {
     p_values.push_back(family->may_name ? family->p_value : kNotGiven);
   const std::vector<double> after = holm(p_values);
   for (std::size_t i = 0; i < families.size(); ++i) families[i]->p_corrected = after[i];
+}
+
+bool can_be_named(std::span<const FamilyTest> families, const std::string& effect) {
+  return std::ranges::any_of(families, [&](const FamilyTest& family) {
+    return family.may_name && !std::isnan(family.p_value) &&
+           std::ranges::find(family.members, effect) != family.members.end();
+  });
 }
 
 double smallest_corrected(std::span<const FamilyTest> families) {

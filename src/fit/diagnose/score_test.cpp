@@ -132,6 +132,7 @@ std::vector<std::vector<double>> smallest_drawn(std::size_t effects, const std::
   const auto n = static_cast<std::uint32_t>(options.replicates);
   std::vector<std::vector<double>> smallest(effects, std::vector<double>(n, 1.0));
   for (std::uint32_t replicate = 0; replicate < n; ++replicate) {
+    if (replicate % 1000 == 999 && options.proceed && !options.proceed()) throw FitInterrupted{};
     const MatrixXd scores = drawn(trials, streams, options.seed, replicate);
     for (std::size_t i = 0; i < projections.size(); ++i) {
       double& best = smallest[effect_of[i]][replicate];

@@ -81,6 +81,9 @@ class SitesLoop {
     return !asked_.proceed || asked_.proceed(std::max(progress_, ground_));
   }
 
+  /// For the correction over the pooled family and the others of each site.
+  int replicates() const { return asked_.replicates(1 + (kFamilies - 1) * sites_.size()); }
+
   /// The ground of a site, with the tests of all its families.
   SiteDiagnosis of_site(std::size_t site, const Model& start) {
     const Campaign& campaign = *sites_[site].campaign;
@@ -97,6 +100,7 @@ class SitesLoop {
     how.trials = own.trials.test;
     how.seed = own.seed;
     how.threads = own.threads;
+    how.replicates = replicates();
     how.rules = rules_;
     how.proceed = [this] { return proceeds(1.0); };
     tests.score_test =
@@ -105,7 +109,9 @@ class SitesLoop {
     out.residual = residual_table(campaign, space, rows, rules_);
     out.limits =
         detection_limits(campaign, axis_of(campaign, out.base.runs), tests.score_test, tests.candidates, rules_);
-    out.families = test_families({campaign, space, out.base.runs, rows, tests.score_test}, {2000, own.seed, rules_});
+    out.families =
+        test_families({campaign, space, out.base.runs, rows, tests.score_test}, {how.replicates, own.seed, rules_});
+    complete_limits(out.limits, out.families, {});
     tests_.push_back(std::move(tests));
     return out;
   }
@@ -125,7 +131,7 @@ class SitesLoop {
           energy_by_block(ResidualSpace(*sites_[i].campaign, *runs[i], rules_), *runs[i], fits_.rows()[i]));
     std::vector<BlockNumbers> numbers;
     for (std::size_t i = 0; i < sites_.size(); ++i) numbers.push_back({*sites_[i].campaign, energies[i]});
-    FamilyTest family = test_block_property(numbers, {2000, options_.seed, rules_});
+    FamilyTest family = test_block_property(numbers, {replicates(), options_.seed, rules_});
     std::erase_if(family.members, [&](const std::string& m) { return std::ranges::find(found, m) != found.end(); });
     return family;
   }

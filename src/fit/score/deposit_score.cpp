@@ -13,7 +13,9 @@
 namespace talus {
 namespace {
 
-constexpr std::uint32_t kPatterns = 99;  // of exchanged places, for a p-value
+// Patterns that are ranked for a p-value, the mapped one included: at least, and of each class. The smallest p-value,
+// corrected for the number of classes, is then 0.04 at most, and a wrong pattern can be told at 5 %.
+constexpr std::size_t kFewestPatterns = 100, kPatternsOfClass = 25;
 constexpr std::uint64_t kPatternSeed = 1;
 constexpr std::size_t kStopsCompared = 100;  // of each block: more cost time and tell little
 
@@ -139,11 +141,13 @@ struct ClassOfBlocks {
 /// place of a block on the map and its simulated stops are alike, in any order. So each pattern begins these places at
 /// a random one, block by block: that is its place, the others are its stops. Rotations are a group, which makes the
 /// rank exact for any number of stops. Source: Hemerik & Goeman (2018), "Exact testing with random permutations".
-double p_value_of(double distance, const ClassOfBlocks& blocks) {
+///
+/// @param patterns  that are ranked, the mapped one included
+double p_value_of(double distance, const ClassOfBlocks& blocks, std::size_t patterns) {
   std::size_t as_far = 1;
   Places mapped = blocks.mapped;
   std::vector<Places> simulated = blocks.simulated;
-  for (std::uint32_t pattern = 0; pattern < kPatterns; ++pattern) {
+  for (std::uint32_t pattern = 0; pattern + 1 < patterns; ++pattern) {
     for (std::size_t b = 0; b < mapped.size(); ++b) {
       Places all = blocks.simulated[b];
       all.insert(all.begin(), blocks.mapped[b]);
@@ -155,7 +159,7 @@ double p_value_of(double distance, const ClassOfBlocks& blocks) {
     }
     if (pattern_distance(mapped, simulated).distance >= distance) ++as_far;
   }
-  return static_cast<double>(as_far) / (kPatterns + 1);
+  return static_cast<double>(as_far) / static_cast<double>(patterns);
 }
 
 /// The blocks of a class among those asked for.
@@ -218,14 +222,17 @@ DepositCheck check_deposits(const Campaign& campaign, std::span<const BlockRuns>
   for (std::size_t b = 0; b < runs.size(); ++b)
     for (std::uint32_t t = 0; ask[b] && t < runs[b].trials; ++t) inside.add(std::isnan(runs[b].x[t]) ? 0.0 : 1.0);
   check.inside = inside.value();
+  std::vector<ClassOfBlocks> classes;  // those of `patterns`
   for (std::size_t number = 0; number <= campaign.deposits->limits.size(); ++number) {
-    const ClassOfBlocks blocks = blocks_of(campaign, runs, ask, number);
+    ClassOfBlocks blocks = blocks_of(campaign, runs, ask, number);
     if (blocks.mapped.size() < kFewestRows) continue;
-    PatternDistance pattern = pattern_distance(blocks.mapped, blocks.simulated);
-    pattern.group = class_name(*campaign.deposits, number);
-    pattern.p_value = p_value_of(pattern.distance, blocks);
-    check.patterns.push_back(std::move(pattern));
+    check.patterns.push_back(pattern_distance(blocks.mapped, blocks.simulated));
+    check.patterns.back().group = class_name(*campaign.deposits, number);
+    classes.push_back(std::move(blocks));
   }
+  const std::size_t patterns = std::max(kFewestPatterns, kPatternsOfClass * classes.size());
+  for (std::size_t i = 0; i < classes.size(); ++i)
+    check.patterns[i].p_value = p_value_of(check.patterns[i].distance, classes[i], patterns);
   correct(check.patterns);
   return check;
 }

@@ -232,6 +232,11 @@ Markup families_sentence(const DiagnosisRound& round, double level) {
   return text;
 }
 
+Markup residual_sentence(const DiagnosisRound& round, double level) {
+  const std::string text = residual_text(round, level);
+  return text.empty() ? Markup() : " In the residual table "_html + text + ".";
+}
+
 /// @param level  of significance in this round
 Markup sentence(const DiagnosisRound& round, double level) {
   const bool rare = round.p_value <= level || (!round.residual.empty() && round.residual.front().corrected <= level);
@@ -260,8 +265,8 @@ std::string diagnosis_page(const Campaign& campaign, const DiagnosisRecord& reco
   for (std::size_t i = 0; i < d.rounds.size(); ++i) {
     const double level = record.options.level_of_round(i);
     html += "<p>Round "_html + std::to_string(i + 1) + ": " + sentence(d.rounds[i], level) +
-            " (p that the residual is noise: " + with_decimals(d.rounds[i].p_value, 4) + ")." +
-            families_sentence(d.rounds[i], level) + "</p>\n";
+            " (Smallest corrected p of a family: " + with_decimals(d.rounds[i].p_value, 4) + ".)" +
+            residual_sentence(d.rounds[i], level) + families_sentence(d.rounds[i], level) + "</p>\n";
   }
   if (const std::string undecided = undecided_text(d.stability); !undecided.empty())
     html += "<p><b>The first round is "_html + undecided + "</b>: independent base fits differ.</p>\n";

@@ -7,6 +7,7 @@
 #include "evidence.hpp"
 #include "limits_report.hpp"
 #include "repeated_report.hpp"
+#include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
 #include "talus/fit/diagnose/families.hpp"
 
@@ -176,6 +177,15 @@ std::vector<std::string> small_groups(const DiagnosisRecord& record) {
   for (const GroupScore& group : record.errors[record.unseen].after.score.groups)
     if (group.rows < kHeadlineRows) names.push_back(group.name + " (" + std::to_string(group.rows) + " rows)");
   return names;
+}
+
+std::string residual_text(const DiagnosisRound& round, double level) {
+  if (round.residual.empty() || !(round.residual.front().corrected < level)) return "";
+  const ResidualRow& row = round.residual.front();
+  const bool of_all = row.covariate == "mean" || row.covariate == "spread";
+  return (of_all ? "the " + row.covariate + " of " + row.observable + " is not that of the model"
+                 : row.observable + " depends on " + row.covariate) +
+         " (p " + with_digits(row.corrected, 1) + ", corrected for the number of rows)";
 }
 
 std::string diagnosis_json(const DiagnosisRecord& record) {

@@ -73,9 +73,11 @@ std::string gain_in_doubt(const FittedCandidate& chosen) {
          with_decimals(gain.high, 3) + ").";
 }
 
-/// @param level  p-value from which down a family of the first round is significant
-Markup sure(const Diagnosis& d, double level) {
+/// What of the first round is significant: families by its level, a row of the residual table by the stricter one.
+Markup sure(const DiagnosisRecord& record) {
+  const Diagnosis& d = record.diagnosis;
   const DiagnosisRound& first = d.rounds.front();
+  const double level = record.options.level_of_round(0);
   std::vector<std::string> rare;
   for (const FamilyTest& family : first.families)
     if (family.p_corrected <= level) rare.push_back(family.name + " (p " + with_digits(family.p_corrected, 1) + ")");
@@ -83,6 +85,8 @@ Markup sure(const Diagnosis& d, double level) {
                                         ", corrected for their number)."
                                   : "What the ground alone leaves depends on: " + listed(rare) +
                                         ", corrected for the number of families.";
+  if (const std::string row = residual_text(first, record.options.later_level); !row.empty())
+    text += (rare.empty() ? " But " : " And ") + row + ".";
   if (found(first) && first.alike.empty()) text += " No other effect that was allowed comes close to it.";
   if (found(first)) text += gain_in_doubt(first.candidates.front());
   return Markup() + text + repeated(d.stability);
@@ -120,7 +124,10 @@ std::string undecided(const Diagnosis& d) {
                 with_decimals(c.confirmation.fitted, 3) + "; in cross-validation " +
                 with_decimals(c.confirmation.unseen, 3) + "). ";
   for (const FamilyTest& family : d.rounds.front().families)
-    if (!family.may_name) text += family.note + ". ";
+    if (!family.may_name)
+      text += family.note + ". ";
+    else if (std::isnan(family.p_value))
+      text += "The family " + family.name + " could not be tested: " + family.note + ". ";
   std::vector<std::string> hidden;
   for (const DetectionLimit& limit : d.rounds.back().limits)
     if (std::isnan(limit.amount)) hidden.push_back(limit.effect);
@@ -128,21 +135,40 @@ std::string undecided(const Diagnosis& d) {
   return text.empty() ? "Every effect of the library would have been seen, from the amounts below on." : text;
 }
 
+/// What speeds at more screens would show; empty: little.
+std::string further_speeds(std::span<const DetectionLimit> limits) {
+  std::vector<std::string> sharper, only_then, words;
+  for (const DetectionLimit& limit : limits)
+    if (std::isnan(limit.amount) && !std::isnan(limit.with_further_speeds))
+      only_then.push_back(limit.effect);
+    else if (limit.with_further_speeds - limit.off < kSharper * (limit.amount - limit.off))
+      sharper.push_back(limit.effect);
+  if (!sharper.empty()) words.push_back("would show " + listed(sharper) + " at less than half the amount");
+  if (!only_then.empty())
+    words.push_back("would show a large amount of " + listed(only_then) + ", of which these data show none");
+  return words.empty() ? "" : "Speeds at more screens (12 were assumed): they " + listed(words) + ". ";
+}
+
+/// Advice where few blocks were held out: with a finding, its gain rests on these; without, all that were fitted count.
+std::string more_blocks(const DiagnosisRecord& record) {
+  if (record.errors.empty()) return "";
+  const std::size_t unseen = record.errors[record.unseen].after.blocks;
+  if (unseen >= kFewRows) return "";
+  if (found(record.diagnosis.rounds.front()))
+    return "More blocks: the gain rests on " + std::to_string(unseen) + " of them. ";
+  const std::size_t fitted = record.errors.front().after.blocks;
+  return fitted >= kFewRows ? "" : "More blocks: " + std::to_string(fitted) + " were fitted. ";
+}
+
 std::string next(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
-  std::string text;
-  std::vector<std::string> sharper;
-  for (const DetectionLimit& limit : d.rounds.back().limits)
-    if (std::isnan(limit.amount) ? !std::isnan(limit.with_further_speeds)
-                                 : limit.with_further_speeds - limit.off < kSharper * (limit.amount - limit.off))
-      sharper.push_back(limit.effect);
-  if (!sharper.empty())
-    text += "Speeds at more screens (12 were assumed): they would show " + listed(sharper) +
-            " at less than half the amount. ";
+  std::string text = further_speeds(d.rounds.back().limits);
   for (const FamilyTest& family : d.rounds.front().families)
-    if (!family.may_name) text += "Blocks of at least six different rocks. ";
-  const std::size_t rows = record.errors.empty() ? 0 : record.errors[record.unseen].after.blocks;
-  if (rows < kFewRows) text += "More blocks: the gain rests on " + std::to_string(rows) + " of them. ";
+    if (!family.may_name)
+      text += "Blocks of at least six different rocks. ";
+    else if (std::isnan(family.p_value))
+      text += "For the family " + family.name + " " + family.note + ". ";
+  text += more_blocks(record);
   return text.empty() ? "Nothing that would change this verdict." : text;
 }
 
@@ -151,7 +177,7 @@ std::string next(const DiagnosisRecord& record) {
 Markup summary_html(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
   const std::pair<const char*, Markup> rows[] = {{"What is missing", missing(d)},
-                                                 {"How sure that is", sure(d, record.options.level_of_round(0))},
+                                                 {"How sure that is", sure(record)},
                                                  {"What was gained", gained(record)},
                                                  {"What could not be decided", Markup() + undecided(d)},
                                                  {"What to measure next", Markup() + next(record)}};

@@ -8,8 +8,9 @@
 namespace talus::io {
 namespace {
 
-std::string amount_text(const DetectionLimit& limit, double amount) {
-  if (std::isnan(amount)) return "not to be seen";
+/// @param none  what stands for an amount that there is not
+std::string amount_text(const DetectionLimit& limit, double amount, const char* none = "not to be seen") {
+  if (std::isnan(amount)) return none;
   return with_digits(amount, 2) + (limit.unit.empty() || limit.unit == "1" ? "" : " " + limit.unit);
 }
 
@@ -35,7 +36,7 @@ Markup limits_html(std::span<const DetectionLimit> limits) {
       "seen from</th><th>with speeds at 12 further screens</th></tr>\n"_html;
   for (const DetectionLimit& limit : limits)
     html += "<tr><td>"_html + limit.effect + "</td><td>" + limit.where + "</td><td>" + limit.key + "</td><td>" +
-            amount_text(limit, limit.off) + "</td><td>" + amount_text(limit, limit.amount) + "</td><td>" +
+            amount_text(limit, limit.off, "-") + "</td><td>" + amount_text(limit, limit.amount) + "</td><td>" +
             amount_text(limit, limit.with_further_speeds) + "</td></tr>\n";
   return html + "</table>\n";
 }

@@ -178,6 +178,11 @@ std::string verdict_sentence(const SitesDiagnosis& d) {
   if (!d.rounds.front().candidates.empty())
     return "All sites together depend on a property of the block (p " + p_text(pooled.p_corrected) +
            " corrected), but no effect with the same numbers at every site explains it.";
+  if (std::isnan(pooled.p_value))
+    return "Whether all sites together depend on a property of the block could not be tested: " + pooled.note + ".";
+  if (!pooled.may_name)
+    return "No property of the block can be named for all sites together (p " + p_text(pooled.p_value) +
+           "): " + pooled.note + ".";
   return "All sites together show no dependence on a property of the block (p " + p_text(pooled.p_value) + ", " +
          p_text(pooled.p_corrected) + " corrected): no effect is named for them.";
 }

@@ -1,3 +1,5 @@
+#include "talus/fit/diagnose/diagnosis.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -237,6 +239,22 @@ TEST(ScoreTest, WhatWasMeasuredIsOneDataSetAmongTheOthers) {
       corrected(std::vector<std::vector<double>>{{0.5, 0.3, 0.01}, {0.1, 0.0001, 0.2}}, std::vector<double>{0.001, 0.9})
           .all,
       0.5);
+}
+
+/// The rarest of N + 1 data sets has p = 1/(N + 1), which Holm multiplies by the number of families: at any level that
+/// is accepted that must be significant, of one campaign (five families) and of several (one and four each); by default
+/// 2000 data sets do it.
+TEST(DiagnoseOptions, TheRarestOfTheDataSetsIsSignificant) {
+  EXPECT_EQ(DiagnoseOptions{}.replicates(5), 2000);
+  for (const std::size_t families : {5U, 9U, 41U, 161U})
+    for (const double level : {0.001, 0.003, 0.01, 0.05, 0.5}) {
+      DiagnoseOptions options;
+      options.first_level = level;
+      options.later_level = std::min(options.later_level, level);
+      const double least = static_cast<double>(families) / (options.replicates(families) + 1.0);
+      EXPECT_LT(least, options.later_level) << families << " families, level " << level;
+      EXPECT_LT(least, 0.2 * level) << families << " families, level " << level;
+    }
 }
 
 TEST(ScoreTest, FindsAnEffectThatMadeTheData) {

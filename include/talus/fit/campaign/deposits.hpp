@@ -54,10 +54,12 @@ struct RunOut {
 /// angle of a place within one cell of the source's centre is NaN: there it is that of the cells.
 RunOut run_out(const Campaign& campaign, const Eigen::Vector2d& place);
 
-/// Limits between at most three classes of size with at least 20 diameters each, as alike in number as ties allow.
+/// Limits between at most three classes of size with at least 20 diameters each [m], as alike in number as ties allow.
+/// Diameters are compared as by `class_of`.
 std::vector<double> class_limits(std::vector<double> diameters);
 
-/// Class of a diameter: the number of limits at or below it.
+/// Class of a diameter [m]: the number of limits at or below it. Both are compared in whole nanometres, because a
+/// diameter that was written in a table is a mass meanwhile, and comes back with another last bit.
 std::size_t class_of(const MappedDeposits& deposits, double diameter);
 /// "deposits", or with several classes "deposits below 0.5 m", "deposits 0.5 to 1 m", "deposits from 1 m".
 std::string class_name(const MappedDeposits& deposits, std::size_t number);

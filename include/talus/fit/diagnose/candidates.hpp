@@ -16,6 +16,10 @@ namespace talus {
 std::vector<Candidate> candidates_of(const Campaign& campaign, const Model& base, std::span<const BlockRuns> runs,
                                      std::span<const std::string> without, const DiagnosisRules& rules = {});
 
+/// Names of all effects that are sought, in the order of their candidates: also of those that have no candidate,
+/// because nothing was measured that could show them.
+std::vector<std::string> sought_names();
+
 /// Merges candidates of one effect into one: neighbouring bands, or days. Of any other effect the first is returned.
 Candidate merged_candidate(const Campaign& campaign, const Axis& axis, std::span<const Candidate> list,
                            std::span<const std::size_t> members, const DiagnosisRules& rules = {});

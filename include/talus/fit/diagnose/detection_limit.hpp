@@ -10,10 +10,10 @@ namespace talus {
 /// docs/detection-limits.md.
 struct DetectionLimit {
   std::string effect = {};
-  std::string where = {};                  ///< the place where it would be seen best
-  std::string key = {}, unit = {};         ///< of the parameter
-  double off = 0.0;                        ///< value of the parameter without the effect
-  double amount = kNotGiven;               ///< value that would be seen; NaN: none within the bounds of the parameter
+  std::string where = {};           ///< the place where it would be seen best; empty: nothing measured could show it
+  std::string key = {}, unit = {};  ///< of the parameter; empty, too, where nothing measured could show the effect
+  double off = 0.0;                 ///< value of the parameter without the effect; NaN: no parameter
+  double amount = kNotGiven;        ///< value that would be seen; NaN: none within the bounds, or it could not be named
   double with_further_speeds = kNotGiven;  ///< the same, if speeds were measured at further screens
 };
 

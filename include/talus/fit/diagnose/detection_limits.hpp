@@ -1,6 +1,7 @@
 #pragma once
 #include "talus/fit/diagnose/axis.hpp"
 #include "talus/fit/diagnose/detection_limit.hpp"
+#include "talus/fit/diagnose/family_test.hpp"
 #include "talus/fit/diagnose/score_test.hpp"
 
 namespace talus {
@@ -22,5 +23,13 @@ Campaign with_further_screens(const Campaign& campaign, const Axis& axis, const 
 ///
 /// @param further  by parameter: which one is measured best may be another one with further measurements
 void compare_limits(std::vector<DetectionLimit>& limits, std::span<const DetectionLimit> further);
+
+/// Completes a list of limits: no amount is seen of an effect that no family can name, and effects that nothing
+/// measured could show, which have no candidate, follow at the end, without a parameter.
+///
+/// @param families  tests of the model of the limits
+/// @param found     effects that this model has
+void complete_limits(std::vector<DetectionLimit>& limits, std::span<const FamilyTest> families,
+                     std::span<const std::string> found);
 
 }  // namespace talus

@@ -101,6 +101,9 @@ struct DiagnoseOptions {
   double later_level = 0.01;  ///< after the first effect: its form is a guess, which leaves a residual
   /// @param round  from 0
   double level_of_round(std::size_t round) const { return round == 0 ? first_level : later_level; }
+  /// Data sets that are drawn from the model to test some families: 2000, and so many that the rarest of all is
+  /// significant after the correction for the families, by a fifth of the first level and by the later one.
+  int replicates(std::size_t families) const;
   int base_fits = 5;    ///< whose verdicts are compared; 1: this diagnosis alone
   bool nested = false;  ///< also repeats the loop without each outer fold
   std::size_t outer_folds = 5;

@@ -6,6 +6,9 @@
 
 namespace talus {
 
+/// Number of families of a campaign.
+inline constexpr std::size_t kFamilies = 5;
+
 /// What the tests of families need of a fitted model.
 struct FamilyInput {
   const Campaign& campaign;
@@ -16,12 +19,12 @@ struct FamilyInput {
 };
 
 struct FamilyOptions {
-  int replicates = 2000;  ///< simulated data sets
+  int replicates = 2000;  ///< simulated data sets; so many arrangements of a permutation test, at least
   std::uint64_t seed = 1;
   DiagnosisRules rules;
 };
 
-/// Tests of all families, in a fixed order, with Holm's correction.
+/// Tests of all `kFamilies` families, in a fixed order, with Holm's correction.
 std::vector<FamilyTest> test_families(const FamilyInput& input, const FamilyOptions& options);
 
 /// The energy component of each asked block (`EnergyComponent`), the number in which a property of the block shows; NaN
@@ -37,6 +40,9 @@ void correct(std::span<FamilyTest* const> families);
 
 /// Name of the family to which an effect belongs.
 std::string family_of(const std::string& effect);
+
+/// Whether one of the families could name an effect, were it strong enough: the data can test it, and it may name.
+bool can_be_named(std::span<const FamilyTest> families, const std::string& effect);
 
 /// The smallest corrected p-value; 1 where no family was tested.
 double smallest_corrected(std::span<const FamilyTest> families);

@@ -23,7 +23,7 @@ struct FamilyTest {
   double p_corrected = kNotGiven;    ///< for the number of families that can name something (Holm); NaN of the others
   bool may_name = true;              ///< false: no p-value would be small enough for its members to be named
   bool own_test = false;             ///< not the score tests of its members, so that all of them may be chosen
-  std::string note;                  ///< why it was not tested or cannot name; how its p-value was found
+  std::string note;                  ///< what it needs to be tested, or why it cannot name; how its p-value was found
   std::vector<FamilyPart> parts;
 };
 

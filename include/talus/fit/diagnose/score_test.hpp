@@ -50,7 +50,7 @@ struct ScoreTestOptions {
   int threads = 0;
   int replicates = 2000;          ///< simulated data sets without an effect
   DiagnosisRules rules;           ///< its candidates, residual and steps
-  std::function<bool()> proceed;  ///< called between simulations, by one thread; false ends the test. May be empty
+  std::function<bool()> proceed;  ///< called now and then, by one thread; false ends the test. May be empty
 };
 
 /// The model that is tested. The parts must outlive it.

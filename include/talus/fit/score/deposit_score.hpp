@@ -40,8 +40,9 @@ struct DepositCheck {
 ///
 /// each a mean over the pairs i, k of the mean over t. Own trials are left out, and both patterns have the same sizes,
 /// so that it is 0 on average for the right model at any number of blocks and trials. The p-value is an exact rank
-/// among 99 patterns, for which a random one of the places of each block, mapped or simulated, stands for its place on
-/// the map. Source: Szekely & Rizzo (2013), "Energy statistics: a class of statistics based on distances".
+/// among 99 patterns (from five tested classes on among 25 per class, less one), for which a random one of the places
+/// of each block, mapped or simulated, stands for its place on the map. Source: Szekely & Rizzo (2013), "Energy
+/// statistics: a class of statistics based on distances".
 DepositCheck check_deposits(const Campaign& campaign, std::span<const BlockRuns> runs, const std::vector<bool>& ask);
 
 /// The distance of two patterns of n blocks, as above.

@@ -49,6 +49,11 @@ std::vector<std::string> small_groups(const DiagnosisRecord& record);
 /// more screens would show. Empty where there are none.
 std::string limits_lines(std::span<const DetectionLimit> limits);
 
+/// The row of the residual table that is most significant, in words: "lateral depends on release height (p 8e-05,
+/// corrected for the number of rows)". Empty where it is not below the level: a round is `unexplained` by this row or
+/// by a family.
+std::string residual_text(const DiagnosisRound& round, double level);
+
 /// Where the processor time went, in one line: phases and effects of at least 5 %, largest first.
 std::string time_line(const DiagnosisRecord& record);
 

@@ -144,6 +144,27 @@ TEST(Deposits, ClassesOfSizeHoldEnoughBlocks) {
   EXPECT_TRUE(class_limits(rounded).empty());
 }
 
+/// A diameter that was written becomes a mass, and the mass a diameter again: blocks at a limit are in the class from
+/// it on, and blocks of one written diameter are one class, whatever their densities.
+TEST(Deposits, ClassesAreThoseOfTheDiametersThatWereWritten) {
+  const auto read = [](double diameter, double density) {
+    return equivalent_diameter(density * kPi / 6.0 * diameter * diameter * diameter, density);
+  };
+  for (int centimetres = 5; centimetres <= 1000; ++centimetres) {
+    const double written = centimetres / 100.0;
+    MappedDeposits deposits;
+    deposits.limits = {written};
+    std::vector<double> alike;
+    for (double density = 2000.0; density < 3000.0; density += 50.0) {
+      const double diameter = read(written, density);
+      ASSERT_EQ(class_of(deposits, diameter), 1U) << written << " m, " << density << " kg/m3";
+      ASSERT_EQ(class_of(deposits, read(written - 0.001, density)), 0U) << written << " m, " << density << " kg/m3";
+      alike.insert(alike.end(), 3, diameter);
+    }
+    ASSERT_TRUE(class_limits(alike).empty()) << written;
+  }
+}
+
 /// Strips run down the slope: places at one height lie in different ones, places in one fall line in the same.
 TEST(Deposits, StripsCutAcrossTheSlope) {
   const Campaign c = plane_with_sources(0.7);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "support/campaigns.hpp"
 
@@ -58,6 +59,45 @@ TEST(DetectionLimits, CompareTheSameParameter) {
   EXPECT_EQ(limits[0].key, "softening");
   EXPECT_DOUBLE_EQ(limits[0].amount, 0.9);
   EXPECT_DOUBLE_EQ(limits[0].with_further_speeds, 0.45);  // not 0.225, of the drag
+}
+
+/// A family that cannot be tested, or that can name nothing, shows no amount of its effects; one that can is enough.
+TEST(DetectionLimits, OfAnEffectThatNoFamilyCanNameIsNone) {
+  FamilyTest property, place, day, dispersion;
+  property.members = {"block-shape", "block-mass"};
+  property.p_value = 0.2;
+  property.may_name = false;  // three rocks
+  place.members = {"rest-in-roughness"};
+  place.p_value = 0.5;
+  day.members = {"wet-ground"};  // one day in each group: p is not given
+  dispersion.members = {"rest-in-roughness"};
+  std::vector<DetectionLimit> limits;
+  for (const char* effect : {"block-mass", "wet-ground", "rest-in-roughness"})
+    limits.push_back({.effect = effect, .key = "a", .amount = 1.0, .with_further_speeds = 0.5});
+  complete_limits(limits, std::vector<FamilyTest>{property, place, day, dispersion}, {});
+  for (const std::size_t hidden : {0U, 1U}) {
+    EXPECT_TRUE(std::isnan(limits[hidden].amount)) << limits[hidden].effect;
+    EXPECT_TRUE(std::isnan(limits[hidden].with_further_speeds)) << limits[hidden].effect;
+  }
+  EXPECT_EQ(limits[2].amount, 1.0);
+  EXPECT_EQ(limits[2].with_further_speeds, 0.5);
+}
+
+/// "For each effect that is not in the last model" (docs/detection-limits.md): the ten effects of docs/effects.md and
+/// the three that are no effects of a block, with one limit each, also where nothing measured could show them.
+TEST(DetectionLimits, OfAllEffectsThatWereNotFound) {
+  const std::vector<std::string> found{"soft-ground"};
+  std::vector<DetectionLimit> limits{{.effect = "air-drag", .key = "drag", .amount = 0.9}};
+  complete_limits(limits, {}, found);
+  std::multiset<std::string> names(found.begin(), found.end());
+  for (const DetectionLimit& limit : limits) {
+    names.insert(limit.effect);
+    EXPECT_TRUE(std::isnan(limit.amount)) << limit.effect;
+  }
+  EXPECT_EQ(names,
+            (std::multiset<std::string>{"air-drag", "block-mass", "block-shape", "forest-stems", "fragmentation",
+                                        "instrument-bias", "rest-in-roughness", "rolling-resistance", "soft-ground",
+                                        "undeclared-barrier", "undeclared-zone", "vegetation-drag", "wet-ground"}));
 }
 
 TEST(FurtherScreens, StandAcrossThePathAtEqualDistances) {

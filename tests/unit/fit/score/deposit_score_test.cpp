@@ -295,6 +295,39 @@ TEST(DepositCheck, PValuesAreExactForAnyNumberOfStops) {
   }
 }
 
+/// A map far beside the stops is none of the model, into how many classes it may be cut: the docs call it "not the
+/// simulated pattern" where p corrected for the classes is below 0.05. With 99 patterns five times 0.01 was not.
+TEST(DepositCheck, AnotherPatternIsSeenInAnyNumberOfClasses) {
+  constexpr std::size_t kBlocks = 60;
+  Campaign campaign = mapped_on_slope(kBlocks, model_of_slope(), 5);
+  std::vector<BlockRuns> runs(kBlocks);
+  Numbers numbers(25);
+  for (std::size_t b = 0; b < kBlocks; ++b) {
+    campaign.blocks[b].stop = normal_place(numbers, {5.0, 0.0});
+    runs[b].trials = 20;
+    for (std::uint32_t t = 0; t < runs[b].trials; ++t) {
+      const Eigen::Vector2d place = normal_place(numbers, {0.0, 0.0});
+      runs[b].x.push_back(place.x());
+      runs[b].y.push_back(place.y());
+    }
+  }
+  for (std::size_t classes = 1; classes <= 10; ++classes) {
+    auto deposits = std::make_shared<MappedDeposits>(*campaign.deposits);
+    deposits->limits.clear();
+    for (std::size_t c = 0; c < classes; ++c) {
+      const double diameter = 0.5 + 0.1 * static_cast<double>(c);
+      if (c > 0) deposits->limits.push_back(diameter - 0.05);
+      for (std::size_t b = c; b < kBlocks; b += classes)
+        campaign.blocks[b].mass = campaign.blocks[b].density * kPi / 6.0 * diameter * diameter * diameter;
+    }
+    campaign.deposits = deposits;
+    const auto patterns = check_deposits(campaign, runs, std::vector<bool>(kBlocks, true)).patterns;
+    ASSERT_EQ(patterns.size(), classes);
+    for (const PatternDistance& pattern : patterns) EXPECT_LT(pattern.corrected, 0.05) << pattern.group;
+    if (classes <= 4) EXPECT_NEAR(patterns[0].p_value, 0.01, 1e-12);  // of 99 other patterns, as documented
+  }
+}
+
 /// A map three standard deviations beside the stops is none of the model, also with ten stops.
 TEST(DepositCheck, AnotherPatternIsSeenWithFewStops) {
   NormalPlaces places;
