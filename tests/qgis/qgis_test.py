@@ -23,7 +23,7 @@ from qgis.core import (QgsApplication, QgsCoordinateReferenceSystem, QgsFeature,
                        QgsProcessingModelChildAlgorithm, QgsProcessingModelChildParameterSource,
                        QgsProcessingOutputLayerDefinition, QgsProcessingParameterBand, QgsProcessingParameterBoolean,
                        QgsProcessingParameterDefinition, QgsProject,
-                       QgsRasterLayer, QgsVectorLayer, QgsVectorLayerJoinInfo)
+                       QgsRasterLayer, QgsRasterRange, QgsVectorLayer, QgsVectorLayerJoinInfo)
 from qgis.PyQt.QtCore import QEventLoop, QLocale, QSize, QTimer, QVariant
 from qgis.PyQt.QtGui import QColor
 
@@ -543,6 +543,42 @@ class FromPython(Case):
         _, good = self.run_algorithm("run", self.inputs(DEM=two, DEM_BAND=2, OUT=self.path("second")))
         self.assertTrue(good)
         self.assertEqual(self.record("one")["ends"], self.record("second")["ends"])
+
+    def test_cells_without_data_are_those_of_qgis(self):
+        """Further values and ranges, and the file's own value switched off: what QGIS shows as nodata has no height."""
+        values = gdal.Open(DEM).ReadAsArray()[:90, :90].copy()
+        dem = gdal.Open(DEM)
+        values[:, 25:40], values[3, :], values[5, :] = 1234.0, 2000.5, -9999.0
+        out = gdal.GetDriverByName("GTiff").Create(self.path("void.tif"), 90, 90, 1, gdal.GDT_Float32)
+        out.SetGeoTransform(dem.GetGeoTransform())
+        out.SetProjection(dem.GetProjection())
+        out.GetRasterBand(1).SetNoDataValue(-9999.0)
+        out.GetRasterBand(1).WriteArray(values)
+        out = None
+        from talus_qgis import layers
+        low = QgsRasterRange(float("nan"), 1234.0, QgsRasterRange.IncludeMax)
+        for ranges, of_file in (([QgsRasterRange(1234.0, 1234.0)], True), ([low], False), ([], False),
+                                ([QgsRasterRange(1234.0, 2000.5, QgsRasterRange.IncludeMin), low], True), ([], True)):
+            layer = QgsRasterLayer(self.path("void.tif"), "void", "gdal")
+            layer.dataProvider().setUserNoDataValue(1, ranges)
+            layer.dataProvider().setUseSourceNoDataValue(1, of_file)
+            shown = layer.dataProvider().block(1, layer.extent(), 90, 90)
+            file = layers.raster_file(layers.raster_copy(layer), 1, self.path("in"), "dem", Log())
+            self.assertEqual(file == self.path("void.tif"), not ranges and of_file)
+            written = gdal.Open(file)
+            read, nodata = written.ReadAsArray(), written.GetRasterBand(1).GetNoDataValue()
+            for row in range(90):
+                for column in range(90):
+                    value = read[row, column]
+                    self.assertEqual(bool(value == nodata or value != value), shown.isNoData(row, column), (ranges, row, column))
+                    if not shown.isNoData(row, column):
+                        self.assertEqual(value, values[row, column])
+        QgsProject.instance().addMapLayer(layer)
+        self.addCleanup(QgsProject.instance().removeMapLayer, layer.id())
+        layer.dataProvider().setUserNoDataValue(1, [QgsRasterRange(1234.0, 1234.0)])
+        log = Log()
+        self.run_algorithm("check", self.inputs(DEM=layer), log)  # its cliffs lie off this corner
+        self.assertIn("dem.tif", log.textLog())
 
     def two_rasters_of_two_bands(self):
         """The terrain and a raster of zones, each in the second band of a file, with one name of layer."""

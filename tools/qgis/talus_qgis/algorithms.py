@@ -321,7 +321,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
                 layer = self.parameterAsRasterLayer(parameters, name, context)
                 if layer is None and parameters.get(name):
                     raise QgsProcessingException(self.invalidRasterError(parameters, name))
-                self.layers[name] = layer.clone() if layer is not None else None
+                self.layers[name] = layers.raster_copy(layer) if layer is not None else None
             if "vector" in p["holds"] and parameters.get(key) not in (None, "", []):
                 several = p["name"] in self.table.get("several", ())
                 self.layers[key] = [self._vector(one, key, context) for one in (
