@@ -790,6 +790,23 @@ class FromPython(Case):
         self.assertFalse(good)
         self.assertIn("nowhere.gpkg", log.textLog())
 
+    def test_the_encoding_is_that_of_qgis(self):
+        """A Shapefile whose text is UTF-8 and that does not say so."""
+        gdal.VectorTranslate(self.path("cliffs.shp"), os.path.join(VALLEY, "cliffs.shp"), layerCreationOptions=["ENCODING=UTF-8"],
+                             SQLStatement="SELECT 'Süd' AS name FROM cliffs")
+        os.remove(self.path("cliffs.cpg"))
+        layer = QgsVectorLayer(self.path("cliffs.shp"), "cliffs", "ogr")
+        self.assertEqual(self.handed_over(layer), self.path("cliffs.shp"))
+        layer.setProviderEncoding("UTF-8")
+        written = ogr.Open(self.handed_over(layer))
+        self.assertEqual({feature.GetField("name") for feature in written.GetLayer(0)}, {"Süd"})
+
+    def handed_over(self, layer):
+        """The file of a layer, or the copy of it."""
+        from talus_qgis import layers
+        return layers.plain_vector(layer, layer) or layers.write_vector(self.as_source(layer), self.path("in"), "sources.gpkg",
+                                                                       QgsProcessingContext(), Log())
+
     def test_joined_fields_keep_their_values(self):
         from talus_qgis import layers
         layer = QgsVectorLayer("LineString?crs=EPSG:2056&field=id:string&field=WIDTH:integer&field=note:integer", "a", "memory")

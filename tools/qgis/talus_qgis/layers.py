@@ -47,6 +47,8 @@ def plain_vector(value, layer):
     file_layer = QgsVectorLayer(path + (f"|layername={name}" if name else ""), "", "ogr")
     if not file_layer.isValid() or file_layer.crs() != layer.crs() or _names(file_layer) != _names(layer):
         return None
+    if file_layer.dataProvider().encoding() != layer.dataProvider().encoding():
+        return None  # chosen in QGIS for a Shapefile: the file itself says another one, or none
     return path + (f"|layername={name}" if name else "") if _count(path, name) == layer.featureCount() else None
 
 
