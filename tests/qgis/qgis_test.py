@@ -801,6 +801,28 @@ class FromPython(Case):
         written = ogr.Open(self.handed_over(layer))
         self.assertEqual({feature.GetField("name") for feature in written.GetLayer(0)}, {"Süd"})
 
+    def test_fields_that_a_geopackage_cannot_hold_as_they_are(self):
+        """A field `geom`, and names that differ only in case: all values are handed over, and a picked field is followed."""
+        layer = QgsVectorLayer("LineString?crs=EPSG:2056&field=NAME:string&field=name:string&field=geom:string&field=Name:string"
+                               "&field=name_2:string&field=D:double&field=d:double", "cliffs", "memory")
+        feature = QgsFeature(layer.fields())
+        feature.setGeometry(QgsGeometry.fromWkt("LineString(2650300 1170600, 2650340 1170640)"))
+        feature.setAttributes(["a", "b", "c", "e", "f", 1.5, 9.0])
+        layer.dataProvider().addFeatures([feature])
+        file = ogr.Open(self.handed_over(layer))
+        values = file.GetLayer(0).GetNextFeature().items()
+        self.assertEqual(values.pop("name"), "b")  # the one that the program reads
+        self.assertEqual(values.pop("geom"), "c")
+        self.assertEqual(sorted(map(str, values.values())), ["1.5", "9.0", "a", "e", "f"])
+        log = Log()
+        _, good = self.run_algorithm("run", {**self.inputs(SOURCES=layer, DIAMETER_FIELD="D", NAME_FIELD="NAME"), "DIAMETER": None},
+                                     log)
+        self.assertTrue(good, log.textLog())
+        self.assertTrue(any("the field D is handed over as D_2" in text for text in log.warnings), log.warnings)
+        self.assertLessEqual({"--field=diameter=D_2", "--field=name=NAME_3"}, set(self.record()["command"]))
+        stops = ogr.Open(self.path("out/stops.gpkg"))
+        self.assertEqual({stop.GetField("diameter_m") for stop in stops.GetLayer(0)}, {1.5})
+
     def handed_over(self, layer):
         """The file of a layer, or the copy of it."""
         from talus_qgis import layers

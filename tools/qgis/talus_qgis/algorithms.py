@@ -449,12 +449,20 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
 
     def _field_words(self, parameters, context):
         words = []
-        for fields in self.table.get("fields", {}).values():
+        for name, fields in self.table.get("fields", {}).items():
             for field, _ in fields:
-                column = self.parameterAsString(parameters, key_of(field) + "_FIELD", context)
+                column = self._column(parameters, key_of(field) + "_FIELD", name, context)
                 if column:
                     words.append(f"--field={field}={column}")
         return words
+
+    def _column(self, parameters, key, layer, context):
+        """A picked field of a layer, as it is called in what the program reads."""
+        column = self.parameterAsString(parameters, key, context)
+        for plain, source in self.layers.get(key_of(layer)) or ():
+            if plain is None and column:
+                column = layers.name_in_copy(source, column)
+        return column
 
     def _values(self, p, parameters, context, feedback, inputs):
         """What the user gave for a parameter, as words of the command line; nothing where nothing was given."""
@@ -472,6 +480,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             return [repr(self.parameterAsDouble(parameters, key, context))]
         if kind == "choice":
             return [self.parameterAsEnumString(parameters, key, context)]
+        if p["name"] in self.table.get("field of", ()):
+            return [self._column(parameters, key, self.table["field of"][p["name"]], context)]
         if p["repeatable"] and kind == "file":
             return self.parameterAsFileList(parameters, key, context)
         if kind in ("file", "folder"):

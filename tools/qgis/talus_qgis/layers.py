@@ -182,7 +182,7 @@ class Joined:
     def fields(self):
         found = {}
         for source in self.sources:
-            for field in source.fields():
+            for field in distinct(source.fields()):
                 first = found.get(field.name().lower())
                 found[field.name().lower()] = (first[0], _common_type(first[1], field)) if first else (field.name(),
                                                                                                      field.type())
@@ -194,7 +194,7 @@ class Joined:
     def getFeatures(self):
         fields = self.fields()
         for source, transform in zip(self.sources, self.transforms):
-            columns = _columns(fields, source.fields())
+            columns = _columns(fields, distinct(source.fields()))
             for feature in source.getFeatures():
                 copy, values, geometry = QgsFeature(fields), feature.attributes(), feature.geometry()
                 try:
@@ -236,19 +236,56 @@ def _as_type(value, kind):
     return value.toString(Qt.ISODate) if hasattr(value, "toString") else str(value)
 
 
+def distinct(fields):
+    """The fields under the names that they have in a copy. In a GeoPackage names must differ in more than their case: of such
+    names the first, or the one in small letters, which the program prefers, stays; others get _2, _3."""
+    order = sorted(range(fields.count()), key=lambda i: fields[i].name() != fields[i].name().lower())
+    taken, names = {name.lower() for name in fields.names()}, {}
+    for i in order:
+        name, number = fields[i].name(), 2
+        if name.lower() in (other.lower() for other in names.values()):
+            while f"{name}_{number}".lower() in taken:
+                number += 1
+            name = f"{name}_{number}"
+        taken.add(name.lower())
+        names[i] = name
+    found = QgsFields()
+    for i, field in enumerate(fields):
+        copy = QgsField(field)
+        copy.setName(names[i])
+        found.append(copy)
+    return found
+
+
+def name_in_copy(source, name):
+    """The name of a field of a source in its copy."""
+    column = source.fields().indexFromName(name)  # spelt so
+    return distinct(source.fields())[column].name() if column >= 0 else name
+
+
+def _tell_renamed(source, feedback):
+    for before, after in zip(source.fields(), distinct(source.fields())):
+        if before.name() != after.name():
+            feedback.pushWarning(tr("{name}: the field {before} is handed over as {after}, as another differs from it in case "
+                                    "only").format(name=source.sourceName(), before=before.name(), after=after.name()))
+
+
 def _write_features(source, path, context, feedback):
     """Writes the features under the numbers (FID) that QGIS shows: where a layer has no ids and no names, the program calls
     features by them."""
     numbered = _are_numbered(source, feedback)
-    fields = QgsFields(source.fields())
-    column = _free_name("talus_fid", fields)  # a field fid of the layer stays a field
+    for one in source.sources if isinstance(source, Joined) else [source]:
+        _tell_renamed(one, feedback)
+    fields = distinct(source.fields())
+    column = _free_name("talus_fid", fields)  # a field fid of the layer stays a field, and so does a field geom
+    geometry = _free_name("geom", fields)
     if numbered:
         fields.append(QgsField(column, QVariant.LongLong))
     options = QgsVectorFileWriter.SaveVectorOptions()
     options.driverName = "GPKG"
     options.fileEncoding = "UTF-8"
     options.layerName = os.path.splitext(os.path.basename(path))[0]
-    options.layerOptions = ["FID=" + column]
+    options.layerOptions = ["FID=" + column, "GEOMETRY_NAME=" + geometry]
     writer = QgsVectorFileWriter.create(path, fields, source.wkbType(), source.sourceCrs(), context.transformContext(), options)
     if writer.hasError() != QgsVectorFileWriter.NoError:
         raise QgsProcessingException(f"{path}: {writer.errorMessage()}")

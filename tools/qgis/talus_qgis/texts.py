@@ -230,6 +230,9 @@ GERMAN = {
     "numbers of QGIS.":
         "{name}: einige Objekte haben noch keine Nummer, darum werden alle neu ab 1 nummeriert. Mit gespeicherten Änderungen "
         "behalten die Ergebnisse die Nummern von QGIS.",
+    "{name}: the field {before} is handed over as {after}, as another differs from it in case only":
+        "{name}: das Feld {before} wird als {after} übergeben, weil sich ein anderes nur in der Gross- und Kleinschreibung "
+        "unterscheidet",
     "{name}: QGIS brings it from {from} to {to}, with an unknown accuracy":
         "{name}: QGIS bringt es von {from} nach {to}, mit unbekannter Genauigkeit",
     "{name}: QGIS brings it from {from} to {to}, accurate to {metres} m":
