@@ -881,6 +881,28 @@ class FromPython(Case):
         good, message = run.checkParameterValues({**temporary, "OUT": self.path("out"), "RESUME": True}, QgsProcessingContext())
         self.assertTrue(good, message)
 
+    def test_a_decimal_comma_is_refused(self):
+        """QGIS takes a text that is no number for 0 where a parameter may be left out."""
+        run = QgsApplication.processingRegistry().createAlgorithmById("talus:run")
+        for key, text, number in (("DIAMETER", "1,2", "1.2"), ("TRAJECTORIES", "many", "1.2"), ("UNTIL_ERROR", "0,1", "0.1")):
+            good, message = run.checkParameterValues(self.inputs(**{key: text}), QgsProcessingContext())
+            self.assertFalse(good)
+            self.assertEqual(message, f"{key}: '{text}' is no number: write {number}")
+        good, message = run.checkParameterValues(self.inputs(DIAMETER="1.2", TRAJECTORIES="5"), QgsProcessingContext())
+        self.assertTrue(good, message)
+
+    def test_a_run_that_is_done_is_loaded_when_it_is_resumed(self):
+        self.run_algorithm("run", self.inputs())
+        long_ago = time.time() - 3600.0
+        for file in self.written("out/*"):
+            os.utime(file, (long_ago, long_ago))
+        first, again = QgsProcessingContext(), QgsProcessingContext()
+        self.run_algorithm("run", self.inputs(LOAD=True, OUT=self.path("fresh")), context=first)
+        _, good = self.run_algorithm("run", self.inputs(LOAD=True, RESUME=True), context=again)
+        self.assertTrue(good)
+        self.assertGreater(len(first.layersToLoadOnCompletion()), 5)
+        self.assertEqual(len(again.layersToLoadOnCompletion()), len(first.layersToLoadOnCompletion()))
+
     def test_warnings_and_progress_reach_the_log(self):
         log = Log()
         _, good = self.run_algorithm("run", self.inputs(DIAMETER=5.0), log)

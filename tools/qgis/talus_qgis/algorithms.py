@@ -86,6 +86,15 @@ def key_of(name):
     return name.upper().replace("-", "_")
 
 
+def _is_number(text):
+    """Whether QGIS reads a text as the number that it is: with a decimal point, whatever the language."""
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return "_" not in text
+
+
 def _is_temporary(value):
     """Whether a folder is left to QGIS to name."""
     if isinstance(value, QgsProcessingOutputLayerDefinition):
@@ -303,11 +312,23 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
                 parameters.get("OUT")):
             return False, tr("\"Resume\" needs the folder of the run that was cancelled: name it under \"Results\". A "
                              "temporary folder is a new one at every run.")
+        if fault := self._fault_of_numbers(parameters):
+            return False, fault
         given = dict(parameters)
         for key in map(key_of, self.table.get("several", ())):  # a script may still give the selected features of one layer
             if isinstance(given.get(key), QgsProcessingFeatureSourceDefinition):
                 given[key] = given[key].source.staticValue()
         return super().checkParameterValues(given, context)
+
+    def _fault_of_numbers(self, parameters):
+        """What is wrong with a number that is given as text, as by qgis_process: QGIS would take "1,2" for 0."""
+        for p in self.described():
+            value = parameters.get(key_of(p["name"]))
+            if p["type"] in ("number", "integer") and isinstance(value, str) and value and not _is_number(value):
+                with_point = value.replace(",", ".")
+                return tr("{name}: '{value}' is no number: write {number}").format(
+                    name=key_of(p["name"]), value=value, number=with_point if _is_number(with_point) else "1.2")
+        return ""
 
     def prepareAlgorithm(self, parameters, context, feedback):
         """Takes the layers in the main thread, to which they belong."""
@@ -533,6 +554,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         if table["folder"] == "folder":
             found["RESULTS"] = folder
         if self.parameterAsBool(parameters, "LOAD", context) and not table.get("nothing to load"):
+            if parameters.get("RESUME") and self.parameterAsBool(parameters, "RESUME", context):
+                begin = 0.0  # of a run that was done already, nothing is written anew
             results.load(folder, results.files_of(folder, begin), "Talus: " + os.path.basename(folder), context)
         return {key: value for key, value in found.items() if value}
 

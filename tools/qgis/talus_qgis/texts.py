@@ -214,6 +214,7 @@ GERMAN = {
     "{name}: band {band} is written to {path}": "{name}: Band {band} ist nach {path} geschrieben",
     "{name}: give the polygons or the raster, not both": "{name}: die Flächen oder das Raster angeben, nicht beides",
     "Give the terrain and the sources, or a scenario file.": "Gelände und Anbruchgebiete angeben, oder eine Szenario-Datei.",
+    "{name}: '{value}' is no number: write {number}": "{name}: «{value}» ist keine Zahl: {number} schreiben",
     "Loads the results as a group of layers.": "Lädt die Ergebnisse als Gruppe von Ebenen.",
     "Band of the raster that holds the heights.": "Band des Rasters mit den Höhen.",
     "Field of the sources that is read as {field}. Where none is picked, their field named {field} is read, if they have one.":
