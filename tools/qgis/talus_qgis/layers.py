@@ -2,9 +2,9 @@
 
 A layer that is a plain file goes to the program as it is, so that the record of the run names the user's own file. What
 QGIS alone knows (selected features, filters, joined and virtual fields, layers in memory or in a database, another CRS,
-one band of several, cells without data) is written into the folder OUT_inputs beside the results: a run can be resumed, and `hazard` reads the
-inputs once more. There each input lies in a folder named after its parameter and its content, so that what an earlier run
-has read stays as it was.
+one band of several, cells without data) is written into the folder OUT_inputs beside the results: a run can be resumed,
+and `hazard` reads the inputs once more. There each input lies in a folder named after its parameter and its content, so
+that what an earlier run has read stays as it was.
 """
 import filecmp
 import hashlib
