@@ -23,7 +23,7 @@ from qgis.core import (QgsApplication, QgsCoordinateReferenceSystem, QgsFeature,
                        QgsProcessingModelChildAlgorithm, QgsProcessingModelChildParameterSource,
                        QgsProcessingOutputLayerDefinition, QgsProcessingParameterBand, QgsProcessingParameterBoolean,
                        QgsProcessingParameterDefinition, QgsProject,
-                       QgsRasterLayer, QgsVectorLayer, QgsVectorLayerJoinInfo)
+                       QgsRasterLayer, QgsRasterRange, QgsVectorLayer, QgsVectorLayerJoinInfo)
 from qgis.PyQt.QtCore import QEventLoop, QLocale, QSize, QTimer, QVariant
 from qgis.PyQt.QtGui import QColor
 
@@ -544,6 +544,42 @@ class FromPython(Case):
         self.assertTrue(good)
         self.assertEqual(self.record("one")["ends"], self.record("second")["ends"])
 
+    def test_cells_without_data_are_those_of_qgis(self):
+        """Further values and ranges, and the file's own value switched off: what QGIS shows as nodata has no height."""
+        values = gdal.Open(DEM).ReadAsArray()[:90, :90].copy()
+        dem = gdal.Open(DEM)
+        values[:, 25:40], values[3, :], values[5, :] = 1234.0, 2000.5, -9999.0
+        out = gdal.GetDriverByName("GTiff").Create(self.path("void.tif"), 90, 90, 1, gdal.GDT_Float32)
+        out.SetGeoTransform(dem.GetGeoTransform())
+        out.SetProjection(dem.GetProjection())
+        out.GetRasterBand(1).SetNoDataValue(-9999.0)
+        out.GetRasterBand(1).WriteArray(values)
+        out = None
+        from talus_qgis import layers
+        low = QgsRasterRange(float("nan"), 1234.0, QgsRasterRange.IncludeMax)
+        for ranges, of_file in (([QgsRasterRange(1234.0, 1234.0)], True), ([low], False), ([], False),
+                                ([QgsRasterRange(1234.0, 2000.5, QgsRasterRange.IncludeMin), low], True), ([], True)):
+            layer = QgsRasterLayer(self.path("void.tif"), "void", "gdal")
+            layer.dataProvider().setUserNoDataValue(1, ranges)
+            layer.dataProvider().setUseSourceNoDataValue(1, of_file)
+            shown = layer.dataProvider().block(1, layer.extent(), 90, 90)
+            file = layers.raster_file(layers.raster_copy(layer), 1, self.path("in"), "dem", Log())
+            self.assertEqual(file == self.path("void.tif"), not ranges and of_file)
+            written = gdal.Open(file)
+            read, nodata = written.ReadAsArray(), written.GetRasterBand(1).GetNoDataValue()
+            for row in range(90):
+                for column in range(90):
+                    value = read[row, column]
+                    self.assertEqual(bool(value == nodata or value != value), shown.isNoData(row, column), (ranges, row, column))
+                    if not shown.isNoData(row, column):
+                        self.assertEqual(value, values[row, column])
+        QgsProject.instance().addMapLayer(layer)
+        self.addCleanup(QgsProject.instance().removeMapLayer, layer.id())
+        layer.dataProvider().setUserNoDataValue(1, [QgsRasterRange(1234.0, 1234.0)])
+        log = Log()
+        self.run_algorithm("check", self.inputs(DEM=layer), log)  # its cliffs lie off this corner
+        self.assertIn("dem.tif", log.textLog())
+
     def two_rasters_of_two_bands(self):
         """The terrain and a raster of zones, each in the second band of a file, with one name of layer."""
         dem = gdal.Open(DEM)
@@ -754,6 +790,45 @@ class FromPython(Case):
         self.assertFalse(good)
         self.assertIn("nowhere.gpkg", log.textLog())
 
+    def test_the_encoding_is_that_of_qgis(self):
+        """A Shapefile whose text is UTF-8 and that does not say so."""
+        gdal.VectorTranslate(self.path("cliffs.shp"), os.path.join(VALLEY, "cliffs.shp"), layerCreationOptions=["ENCODING=UTF-8"],
+                             SQLStatement="SELECT 'Süd' AS name FROM cliffs")
+        os.remove(self.path("cliffs.cpg"))
+        layer = QgsVectorLayer(self.path("cliffs.shp"), "cliffs", "ogr")
+        self.assertEqual(self.handed_over(layer), self.path("cliffs.shp"))
+        layer.setProviderEncoding("UTF-8")
+        written = ogr.Open(self.handed_over(layer))
+        self.assertEqual({feature.GetField("name") for feature in written.GetLayer(0)}, {"Süd"})
+
+    def test_fields_that_a_geopackage_cannot_hold_as_they_are(self):
+        """A field `geom`, and names that differ only in case: all values are handed over, and a picked field is followed."""
+        layer = QgsVectorLayer("LineString?crs=EPSG:2056&field=NAME:string&field=name:string&field=geom:string&field=Name:string"
+                               "&field=name_2:string&field=D:double&field=d:double", "cliffs", "memory")
+        feature = QgsFeature(layer.fields())
+        feature.setGeometry(QgsGeometry.fromWkt("LineString(2650300 1170600, 2650340 1170640)"))
+        feature.setAttributes(["a", "b", "c", "e", "f", 1.5, 9.0])
+        layer.dataProvider().addFeatures([feature])
+        file = ogr.Open(self.handed_over(layer))
+        values = file.GetLayer(0).GetNextFeature().items()
+        self.assertEqual(values.pop("name"), "b")  # the one that the program reads
+        self.assertEqual(values.pop("geom"), "c")
+        self.assertEqual(sorted(map(str, values.values())), ["1.5", "9.0", "a", "e", "f"])
+        log = Log()
+        _, good = self.run_algorithm("run", {**self.inputs(SOURCES=layer, DIAMETER_FIELD="D", NAME_FIELD="NAME"), "DIAMETER": None},
+                                     log)
+        self.assertTrue(good, log.textLog())
+        self.assertTrue(any("the field D is handed over as D_2" in text for text in log.warnings), log.warnings)
+        self.assertLessEqual({"--field=diameter=D_2", "--field=name=NAME_3"}, set(self.record()["command"]))
+        stops = ogr.Open(self.path("out/stops.gpkg"))
+        self.assertEqual({stop.GetField("diameter_m") for stop in stops.GetLayer(0)}, {1.5})
+
+    def handed_over(self, layer):
+        """The file of a layer, or the copy of it."""
+        from talus_qgis import layers
+        return layers.plain_vector(layer, layer) or layers.write_vector(self.as_source(layer), self.path("in"), "sources.gpkg",
+                                                                       QgsProcessingContext(), Log())
+
     def test_joined_fields_keep_their_values(self):
         from talus_qgis import layers
         layer = QgsVectorLayer("LineString?crs=EPSG:2056&field=id:string&field=WIDTH:integer&field=note:integer", "a", "memory")
@@ -805,6 +880,28 @@ class FromPython(Case):
             self.assertIn("needs the folder of the run", message)
         good, message = run.checkParameterValues({**temporary, "OUT": self.path("out"), "RESUME": True}, QgsProcessingContext())
         self.assertTrue(good, message)
+
+    def test_a_decimal_comma_is_refused(self):
+        """QGIS takes a text that is no number for 0 where a parameter may be left out."""
+        run = QgsApplication.processingRegistry().createAlgorithmById("talus:run")
+        for key, text, number in (("DIAMETER", "1,2", "1.2"), ("TRAJECTORIES", "many", "1.2"), ("UNTIL_ERROR", "0,1", "0.1")):
+            good, message = run.checkParameterValues(self.inputs(**{key: text}), QgsProcessingContext())
+            self.assertFalse(good)
+            self.assertEqual(message, f"{key}: '{text}' is no number: write {number}")
+        good, message = run.checkParameterValues(self.inputs(DIAMETER="1.2", TRAJECTORIES="5"), QgsProcessingContext())
+        self.assertTrue(good, message)
+
+    def test_a_run_that_is_done_is_loaded_when_it_is_resumed(self):
+        self.run_algorithm("run", self.inputs())
+        long_ago = time.time() - 3600.0
+        for file in self.written("out/*"):
+            os.utime(file, (long_ago, long_ago))
+        first, again = QgsProcessingContext(), QgsProcessingContext()
+        self.run_algorithm("run", self.inputs(LOAD=True, OUT=self.path("fresh")), context=first)
+        _, good = self.run_algorithm("run", self.inputs(LOAD=True, RESUME=True), context=again)
+        self.assertTrue(good)
+        self.assertGreater(len(first.layersToLoadOnCompletion()), 5)
+        self.assertEqual(len(again.layersToLoadOnCompletion()), len(first.layersToLoadOnCompletion()))
 
     def test_warnings_and_progress_reach_the_log(self):
         log = Log()

@@ -85,6 +85,15 @@ def key_of(name):
     return name.upper().replace("-", "_")
 
 
+def _is_number(text):
+    """Whether QGIS reads a text as the number that it is: with a decimal point, whatever the language."""
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return "_" not in text
+
+
 def _is_temporary(value):
     """Whether a folder is left to QGIS to name."""
     if isinstance(value, QgsProcessingOutputLayerDefinition):
@@ -298,11 +307,23 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
                 parameters.get("OUT")):
             return False, tr("\"Resume\" needs the folder of the run that was cancelled: name it under \"Results\". A "
                              "temporary folder is a new one at every run.")
+        if fault := self._fault_of_numbers(parameters):
+            return False, fault
         given = dict(parameters)
         for key in map(key_of, self.table.get("several", ())):  # a script may still give the selected features of one layer
             if isinstance(given.get(key), QgsProcessingFeatureSourceDefinition):
                 given[key] = given[key].source.staticValue()
         return super().checkParameterValues(given, context)
+
+    def _fault_of_numbers(self, parameters):
+        """What is wrong with a number that is given as text, as by qgis_process: QGIS would take "1,2" for 0."""
+        for p in self.described():
+            value = parameters.get(key_of(p["name"]))
+            if p["type"] in ("number", "integer") and isinstance(value, str) and value and not _is_number(value):
+                with_point = value.replace(",", ".")
+                return tr("{name}: '{value}' is no number: write {number}").format(
+                    name=key_of(p["name"]), value=value, number=with_point if _is_number(with_point) else "1.2")
+        return ""
 
     def prepareAlgorithm(self, parameters, context, feedback):
         """Takes the layers in the main thread, to which they belong."""
@@ -316,7 +337,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
                 layer = self.parameterAsRasterLayer(parameters, name, context)
                 if layer is None and parameters.get(name):
                     raise QgsProcessingException(self.invalidRasterError(parameters, name))
-                self.layers[name] = layer.clone() if layer is not None else None
+                self.layers[name] = layers.raster_copy(layer) if layer is not None else None
             if "vector" in p["holds"] and parameters.get(key) not in (None, "", []):
                 several = p["name"] in self.table.get("several", ())
                 self.layers[key] = [self._vector(one, key, context) for one in (
@@ -444,12 +465,20 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
 
     def _field_words(self, parameters, context):
         words = []
-        for fields in self.table.get("fields", {}).values():
+        for name, fields in self.table.get("fields", {}).items():
             for field, _ in fields:
-                column = self.parameterAsString(parameters, key_of(field) + "_FIELD", context)
+                column = self._column(parameters, key_of(field) + "_FIELD", name, context)
                 if column:
                     words.append(f"--field={field}={column}")
         return words
+
+    def _column(self, parameters, key, layer, context):
+        """A picked field of a layer, as it is called in what the program reads."""
+        column = self.parameterAsString(parameters, key, context)
+        for plain, source in self.layers.get(key_of(layer)) or ():
+            if plain is None and column:
+                column = layers.name_in_copy(source, column)
+        return column
 
     def _values(self, p, parameters, context, feedback, inputs):
         """What the user gave for a parameter, as words of the command line; nothing where nothing was given."""
@@ -467,6 +496,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             return [repr(self.parameterAsDouble(parameters, key, context))]
         if kind == "choice":
             return [self.parameterAsEnumString(parameters, key, context)]
+        if p["name"] in self.table.get("field of", ()):
+            return [self._column(parameters, key, self.table["field of"][p["name"]], context)]
         if p["repeatable"] and kind == "file":
             return self.parameterAsFileList(parameters, key, context)
         if kind in ("file", "folder"):
@@ -518,6 +549,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         if table["folder"] == "folder":
             found["RESULTS"] = folder
         if self.parameterAsBool(parameters, "LOAD", context) and not table.get("nothing to load"):
+            if parameters.get("RESUME") and self.parameterAsBool(parameters, "RESUME", context):
+                begin = 0.0  # of a run that was done already, nothing is written anew
             results.load(folder, results.files_of(folder, begin), "Talus: " + os.path.basename(folder), context)
         return {key: value for key, value in found.items() if value}
 

@@ -2,12 +2,13 @@
 
 A layer that is a plain file goes to the program as it is, so that the record of the run names the user's own file. What
 QGIS alone knows (selected features, filters, joined and virtual fields, layers in memory or in a database, another CRS,
-one band of several) is written into the folder OUT_inputs beside the results: a run can be resumed, and `hazard` reads the
-inputs once more. There each input lies in a folder named after its parameter and its content, so that what an earlier run
-has read stays as it was.
+one band of several, cells without data) is written into the folder OUT_inputs beside the results: a run can be resumed,
+and `hazard` reads the inputs once more. There each input lies in a folder named after its parameter and its content, so
+that what an earlier run has read stays as it was.
 """
 import filecmp
 import hashlib
+import math
 import os
 import tempfile
 from contextlib import contextmanager
@@ -15,12 +16,13 @@ from contextlib import contextmanager
 from osgeo import gdal
 from qgis.core import (QgsCoordinateTransform, QgsCsException, QgsFeature, QgsFeatureRequest, QgsFeatureSink, QgsField,
                        QgsFields, QgsProcessingException, QgsProcessingFeatureSourceDefinition, QgsProviderRegistry,
-                       QgsRasterLayer, QgsVectorFileWriter, QgsVectorLayer, QgsWkbTypes)
+                       QgsRasterLayer, QgsRasterRange, QgsVectorFileWriter, QgsVectorLayer, QgsWkbTypes)
 from qgis.PyQt.QtCore import Qt, QVariant
 
 from .texts import tr
 
 NO_SYSTEM = "{name} has no coordinate system: set it in QGIS (layer > Set CRS)"
+ROWS_AT_A_TIME = 256
 READ_AS_THEY_ARE = (".gpkg", ".shp", ".geojson", ".json", ".fgb")
 
 
@@ -45,6 +47,8 @@ def plain_vector(value, layer):
     file_layer = QgsVectorLayer(path + (f"|layername={name}" if name else ""), "", "ogr")
     if not file_layer.isValid() or file_layer.crs() != layer.crs() or _names(file_layer) != _names(layer):
         return None
+    if file_layer.dataProvider().encoding() != layer.dataProvider().encoding():
+        return None  # chosen in QGIS for a Shapefile: the file itself says another one, or none
     return path + (f"|layername={name}" if name else "") if _count(path, name) == layer.featureCount() else None
 
 
@@ -178,7 +182,7 @@ class Joined:
     def fields(self):
         found = {}
         for source in self.sources:
-            for field in source.fields():
+            for field in distinct(source.fields()):
                 first = found.get(field.name().lower())
                 found[field.name().lower()] = (first[0], _common_type(first[1], field)) if first else (field.name(),
                                                                                                      field.type())
@@ -190,7 +194,7 @@ class Joined:
     def getFeatures(self):
         fields = self.fields()
         for source, transform in zip(self.sources, self.transforms):
-            columns = _columns(fields, source.fields())
+            columns = _columns(fields, distinct(source.fields()))
             for feature in source.getFeatures():
                 copy, values, geometry = QgsFeature(fields), feature.attributes(), feature.geometry()
                 try:
@@ -232,19 +236,56 @@ def _as_type(value, kind):
     return value.toString(Qt.ISODate) if hasattr(value, "toString") else str(value)
 
 
+def distinct(fields):
+    """The fields under the names that they have in a copy. In a GeoPackage names must differ in more than their case: of such
+    names the first, or the one in small letters, which the program prefers, stays; others get _2, _3."""
+    order = sorted(range(fields.count()), key=lambda i: fields[i].name() != fields[i].name().lower())
+    taken, names = {name.lower() for name in fields.names()}, {}
+    for i in order:
+        name, number = fields[i].name(), 2
+        if name.lower() in (other.lower() for other in names.values()):
+            while f"{name}_{number}".lower() in taken:
+                number += 1
+            name = f"{name}_{number}"
+        taken.add(name.lower())
+        names[i] = name
+    found = QgsFields()
+    for i, field in enumerate(fields):
+        copy = QgsField(field)
+        copy.setName(names[i])
+        found.append(copy)
+    return found
+
+
+def name_in_copy(source, name):
+    """The name of a field of a source in its copy."""
+    column = source.fields().indexFromName(name)  # spelt so
+    return distinct(source.fields())[column].name() if column >= 0 else name
+
+
+def _tell_renamed(source, feedback):
+    for before, after in zip(source.fields(), distinct(source.fields())):
+        if before.name() != after.name():
+            feedback.pushWarning(tr("{name}: the field {before} is handed over as {after}, as another differs from it in case "
+                                    "only").format(name=source.sourceName(), before=before.name(), after=after.name()))
+
+
 def _write_features(source, path, context, feedback):
     """Writes the features under the numbers (FID) that QGIS shows: where a layer has no ids and no names, the program calls
     features by them."""
     numbered = _are_numbered(source, feedback)
-    fields = QgsFields(source.fields())
-    column = _free_name("talus_fid", fields)  # a field fid of the layer stays a field
+    for one in source.sources if isinstance(source, Joined) else [source]:
+        _tell_renamed(one, feedback)
+    fields = distinct(source.fields())
+    column = _free_name("talus_fid", fields)  # a field fid of the layer stays a field, and so does a field geom
+    geometry = _free_name("geom", fields)
     if numbered:
         fields.append(QgsField(column, QVariant.LongLong))
     options = QgsVectorFileWriter.SaveVectorOptions()
     options.driverName = "GPKG"
     options.fileEncoding = "UTF-8"
     options.layerName = os.path.splitext(os.path.basename(path))[0]
-    options.layerOptions = ["FID=" + column]
+    options.layerOptions = ["FID=" + column, "GEOMETRY_NAME=" + geometry]
     writer = QgsVectorFileWriter.create(path, fields, source.wkbType(), source.sourceCrs(), context.transformContext(), options)
     if writer.hasError() != QgsVectorFileWriter.NoError:
         raise QgsProcessingException(f"{path}: {writer.errorMessage()}")
@@ -285,38 +326,94 @@ def _free_name(wanted, fields):
     return name
 
 
+def raster_copy(layer):
+    """A raster layer for another thread; clone() forgets what is nodata in QGIS."""
+    copy = layer.clone()
+    if layer.providerType() == "gdal":
+        own, other = layer.dataProvider(), copy.dataProvider()
+        for band in range(1, layer.bandCount() + 1):
+            other.setUserNoDataValue(band, own.userNoDataValues(band))
+            if own.sourceHasNoDataValue(band):
+                other.setUseSourceNoDataValue(band, own.useSourceNoDataValue(band))
+    return copy
+
+
+def _nodata_of_qgis(layer, band):
+    """(whether the file's own value is nodata, further ranges of values that are) where QGIS is set to take other cells for
+    nodata than the file; else None."""
+    provider = layer.dataProvider()
+    ranges = provider.userNoDataValues(band)
+    of_file = provider.useSourceNoDataValue(band) or not provider.sourceHasNoDataValue(band)
+    return None if of_file and not ranges else (of_file, ranges)
+
+
 def raster_file(layer, band, inputs, name, feedback):
-    """The file of a raster layer; a GeoTIFF in `inputs` where a band other than the first or another CRS is meant."""
+    """The file of a raster layer; a GeoTIFF in `inputs` where a band other than the first, another CRS or other cells
+    without data are meant."""
     if not isinstance(layer, QgsRasterLayer) or layer.providerType() != "gdal":
         raise QgsProcessingException(tr("{name} is no raster in a file: save it as GeoTIFF first").format(
             name=layer.name() if layer is not None else "?"))
     path = layer.source()
     own = QgsRasterLayer(path, "", "gdal")
     same_crs = own.crs() == layer.crs()
-    if os.path.isfile(path) and band in (None, 1) and same_crs:
+    nodata = _nodata_of_qgis(layer, band or 1)
+    if os.path.isfile(path) and band in (None, 1) and same_crs and nodata is None:
         return path
     options = {"bandList": [band or 1], "rat": False}
     if not same_crs:
         options["outputSRS"] = layer.crs().toWkt()
     with _kept(inputs, name) as (fresh, place):
-        _translate(os.path.join(fresh, name + ".tif"), path, options, feedback)
+        _translate(os.path.join(fresh, name + ".tif"), path, options, nodata, feedback)
     target = os.path.join(place[0], name + ".tif")
     feedback.pushInfo(tr("{name}: band {band} is written to {path}").format(name=layer.name(), band=band or 1, path=target))
     return target
 
 
-def _translate(target, path, options, feedback):
+def _translate(target, path, options, nodata, feedback):
     """Writes a part of a raster as GeoTIFF, without the statistics that QGIS keeps beside a raster that it has shown: equal
     cells give equal bytes."""
+    going_on = {"callback": lambda *_: 0 if feedback.isCanceled() else 1}
     try:
         part = gdal.Translate("", path, format="VRT", **options)
         if part is not None:
             part.GetRasterBand(1).SetMetadata({})
-            part = gdal.Translate(target, part, format="GTiff", creationOptions=["COMPRESS=DEFLATE"],
-                                  callback=lambda *_: 0 if feedback.isCanceled() else 1)
+            if nodata is not None:
+                part = _with_nodata(target + ".part", part, *nodata, going_on)
+            part = gdal.Translate(target, part, format="GTiff", creationOptions=["COMPRESS=DEFLATE"], **going_on)
         fault = "" if part is not None else gdal.GetLastErrorMsg()
     except RuntimeError as raised:  # where another plug-in has switched exceptions of GDAL on
         part, fault = None, str(raised)
+    finally:
+        if os.path.exists(target + ".part"):
+            os.remove(target + ".part")
     _stop_if_cancelled(feedback)
     if part is None:
         raise QgsProcessingException(f"{path}: {fault}")
+
+
+def _with_nodata(target, raster, of_file, ranges, going_on):
+    """A copy whose cells without data are NaN: those of the file's own value, where it counts, and those in ranges of what
+    QGIS shows (after scale and offset). In double precision, as not every whole number is one in single precision."""
+    own = raster.GetRasterBand(1).GetNoDataValue() if of_file else None
+    part = gdal.Translate(target, raster, format="GTiff", outputType=gdal.GDT_Float64, noData="none", **going_on)
+    if part is None:
+        raise RuntimeError(gdal.GetLastErrorMsg())
+    band = part.GetRasterBand(1)
+    scale, offset = band.GetScale() or 1.0, band.GetOffset() or 0.0
+    for row in range(0, band.YSize, ROWS_AT_A_TIME):
+        values = band.ReadAsArray(0, row, band.XSize, min(ROWS_AT_A_TIME, band.YSize - row))
+        shown = values * scale + offset
+        for cells in [values == own] + [_within(shown, one) for one in ranges]:
+            values[cells] = float("nan")
+        band.WriteArray(values, 0, row)
+    band.SetNoDataValue(float("nan"))
+    part.FlushCache()
+    return part
+
+
+def _within(values, one):
+    """Which values lie in a range of QGIS; an end that is NaN is none."""
+    kinds = QgsRasterRange
+    above = values >= one.min() if one.bounds() in (kinds.IncludeMinAndMax, kinds.IncludeMin) else values > one.min()
+    below = values <= one.max() if one.bounds() in (kinds.IncludeMinAndMax, kinds.IncludeMax) else values < one.max()
+    return (above | math.isnan(one.min())) & (below | math.isnan(one.max()))

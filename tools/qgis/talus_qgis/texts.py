@@ -214,6 +214,7 @@ GERMAN = {
     "{name}: band {band} is written to {path}": "{name}: Band {band} ist nach {path} geschrieben",
     "{name}: give the polygons or the raster, not both": "{name}: die Flächen oder das Raster angeben, nicht beides",
     "Give the terrain and the sources, or a scenario file.": "Gelände und Anbruchgebiete angeben, oder eine Szenario-Datei.",
+    "{name}: '{value}' is no number: write {number}": "{name}: «{value}» ist keine Zahl: {number} schreiben",
     "Loads the results as a group of layers.": "Lädt die Ergebnisse als Gruppe von Ebenen.",
     "Band of the raster that holds the heights.": "Band des Rasters mit den Höhen.",
     "Field of the sources that is read as {field}. Where none is picked, their field named {field} is read, if they have one.":
@@ -230,6 +231,9 @@ GERMAN = {
     "numbers of QGIS.":
         "{name}: einige Objekte haben noch keine Nummer, darum werden alle neu ab 1 nummeriert. Mit gespeicherten Änderungen "
         "behalten die Ergebnisse die Nummern von QGIS.",
+    "{name}: the field {before} is handed over as {after}, as another differs from it in case only":
+        "{name}: das Feld {before} wird als {after} übergeben, weil sich ein anderes nur in der Gross- und Kleinschreibung "
+        "unterscheidet",
     "{name}: QGIS brings it from {from} to {to}, with an unknown accuracy":
         "{name}: QGIS bringt es von {from} nach {to}, mit unbekannter Genauigkeit",
     "{name}: QGIS brings it from {from} to {to}, accurate to {metres} m":
