@@ -60,15 +60,6 @@ TEST_F(Staged, AFolderThatCannotBeWrittenIsNamed) {  // of another user: tests/c
                            {path("none") + ": nothing can be written there (No such file or directory)"});
 }
 
-TEST_F(Staged, MessagesHaveTheFinalName) {
-  for (const auto& [name, extension] : {std::pair{"map.tif", ".tif"}, {"a.talus-1.gpkg", ".gpkg"}, {"run.2", ""}}) {
-    const StagedPath staged(StagedPath::Kind::File, path(name), extension);
-    EXPECT_EQ(StagedPath::final_name(staged.hidden()), name);
-  }
-  EXPECT_EQ(StagedPath::final_name(".out.talus-123-4"), "out");  // the second name: `make_folder`
-  for (const char* name : {"stops.gpkg", ".hidden", ".talus-1", ""}) EXPECT_EQ(StagedPath::final_name(name), name);
-}
-
 TEST_F(Staged, AFileThatCannotBeWrittenIsCalledByItsName) {
   try {
     replace_text(path("none/run.json"), "{}");

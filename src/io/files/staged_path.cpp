@@ -3,21 +3,15 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <stdexcept>
 
 #include "talus/base/error.hpp"
+#include "talus/base/hidden_name.hpp"
 
 namespace talus::io {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-constexpr const char* kMark = ".talus-";  // in each hidden name
-
-}  // namespace
 
 void refuse_dangling_link(const fs::path& path) {
   std::error_code error;
@@ -66,15 +60,7 @@ std::error_code StagedPath::give_name(const fs::path& hidden, const fs::path& pa
 
 std::string StagedPath::hidden_prefix(const fs::path& path, const std::string& extension) {
   const std::string name = path.filename().string();
-  return "." + name.substr(0, name.size() - extension.size()) + kMark;
-}
-
-std::string StagedPath::final_name(const fs::path& path) {
-  const std::string name = path.filename().string(), mark = kMark;
-  const std::size_t at = name.rfind(mark);
-  if (!name.starts_with('.') || at == std::string::npos || at == 0) return name;
-  const std::size_t end = std::min(name.size(), name.find_first_not_of("0123456789-", at + mark.size()));
-  return name.substr(1, at - 1) + name.substr(end);
+  return talus::hidden_prefix(name.substr(0, name.size() - extension.size()));
 }
 
 void synchronise(const fs::path& path) {
@@ -84,7 +70,7 @@ void synchronise(const fs::path& path) {
   const int cause = errno;
   close(file);
   if (result != 0 && cause != EINVAL && cause != ENOTSUP)
-    throw std::runtime_error(StagedPath::final_name(path) +
+    throw std::runtime_error(final_name(path.filename().string()) +
                              ": cannot be written: " + std::system_category().message(cause));
 }
 

@@ -5,12 +5,12 @@
 #include "cause_of_failure.hpp"
 #include "flat_geobuf.hpp"
 #include "geopackage.hpp"
-#include "talus/io/files/staged_path.hpp"
+#include "talus/base/hidden_name.hpp"
 
 namespace talus::io {
 
 void LayerFile::fail(const std::string& cause) const {
-  const std::string written = file_.filename().string(), name = StagedPath::final_name(file_);
+  const std::string written = file_.filename().string(), name = final_name(written);
   std::string text = name + ": cannot be written: " + cause_of_failure(file_.parent_path(), cause);
   for (std::size_t at = 0; (at = text.find(written, at)) != std::string::npos; at += name.size())
     text.replace(at, written.size(), name);  // GDAL names the hidden file

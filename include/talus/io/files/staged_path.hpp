@@ -45,9 +45,6 @@ class StagedPath {
   /// Beginning of the hidden names for `path`, the same in every process.
   static std::string hidden_prefix(const std::filesystem::path& path, const std::string& extension = {});
 
-  /// Name of a file or folder as a message gives it: "c.gpkg" for the hidden `.c.talus-123.gpkg`, any other as it is.
-  static std::string final_name(const std::filesystem::path& path);
-
  private:
   std::filesystem::path path_, hidden_;
   bool owned_;  // the destructor removes what has the hidden name
