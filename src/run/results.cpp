@@ -178,7 +178,8 @@ void summarise(const io::RunRecord& record, const LoadedScenario& loaded, std::s
   observer.message(count_text(record.totals.released) + " trajectories from " +
                    count_text(loaded.scenario.sources.size()) + " source cells: " + ends_text(record.totals));
   for (std::size_t i = 0; i < record.totals.barriers.size(); ++i)
-    observer.message(barrier_text(loaded.scenario.barriers.list()[i].id, record.totals.barriers.sum(i)));
+    observer.message(
+        barrier_text(loaded.scenario.barriers.list()[i].id, record.totals.barriers.sum(i), record.totals.pieces > 0));
   if (record.energy_lines.count() > 0) observer.message(energy_line_text(record.energy_lines));
   const std::string seconds = "read " + with_decimals(record.wall.read, 1) + " s, simulated " +
                               with_decimals(record.wall.simulate, 1) + " s, wrote " +

@@ -26,9 +26,9 @@ std::string ends_text(const Totals& totals) {
          " at a limit";
 }
 
-std::string barrier_text(const std::string& id, const BarrierCounts& counts) {
-  return "barrier " + id + ": " + count_text(counts.caught) + " caught, " + count_text(counts.over) + " over it, " +
-         count_text(counts.broken) + " through it (it broke)";
+std::string barrier_text(const std::string& id, const BarrierCounts& counts, bool pieces) {
+  return "barrier " + id + ": " + count_text(counts.caught) + (pieces ? " blocks and pieces" : "") + " caught, " +
+         count_text(counts.over) + " over it, " + count_text(counts.broken) + " through it (it broke)";
 }
 
 std::string limits_text(const Totals& totals) {

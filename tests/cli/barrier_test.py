@@ -3,6 +3,7 @@ import csv
 import json
 import math
 import os
+import re
 import unittest
 from collections import Counter
 
@@ -517,6 +518,72 @@ class Walk(Case):
         self.assertEqual(sum(int(row["hits"]) for row in rows), wall["hits"])
         self.assertEqual((rows[-1]["barrier"], rows[-1]["from_m"], rows[-1]["to_m"]), ("wall", "295", "300"))
         self.assertIn("nets.gpkg", [os.path.basename(f["path"]) for f in record["inputs"] if f["role"] == "barriers"])
+
+    def table(self, page, heading):
+        """The rows of the first table after a heading of the report."""
+        section = page[page.index(f"<h2>{heading}</h2>"):]
+        rows = re.findall(r"<tr>(.*?)</tr>", section[:section.index("</table>")])
+        return [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in rows][1:]
+
+    def test_what_rests_on_the_barriers_says_so(self):
+        """The report, talus barrier and talus hazard of a run with nets; the figures are those of barriers.csv."""
+        os.remove(self.path("sources.gpkg"))
+        write_features(self.path("sources.gpkg"), "sources", [(box(140, 230, 20, 10), ["cliff", 0.5])],
+                       [("name", ogr.OFTString), ("frequency", ogr.OFTReal)])
+        self.nets((170.0, "low", 1.0, 20.0), (125.0, "high", 2.0, 60.0), (120.0, "off", 0.0, 60.0))
+        self.run_well("run", self.scenario(), "-o", self.path("out"))
+        counts = {}
+        with open(self.path("out/barriers.csv"), encoding="utf-8") as file:
+            for row in csv.DictReader(file):
+                sums = counts.setdefault(row["barrier"], [0, 0, 0])
+                for i, key in enumerate(("caught", "over", "broken")):
+                    sums[i] += int(row[key])
+        self.assertGreater(counts["low"][2], 0)  # it breaks
+        caught = f"{counts['low'][0] + counts['high'][0]:,}".replace(",", " ")
+        note = f"2 barriers stood in the run and caught {caught} blocks"
+        hazard = self.run_well("hazard", self.path("out"))
+        self.assertIn(f"{note}: the figures here hold only while they stand", hazard.stderr)
+        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
+            self.assertIn(f"{note}: the figures here hold only while they stand", json.load(file)["warnings"])
+        design = self.run_well("barrier", self.path("out"), "--screen", "above")
+        self.assertIn(f"note: {note}: the figures here hold only while they stand", design.stdout)
+        self.run_well("report", self.path("out"))
+        with open(self.path("out/report.html"), encoding="utf-8") as file:
+            page = file.read()
+        shown = {row[0]: [int(cell.replace(" ", "")) for cell in row[3:]] for row in self.table(page, "Barriers of the run")}
+        self.assertEqual(shown, {name: counts[name] for name in ("low", "high")})
+        self.assertIn(f"<li>{note}; the maps hold only while they stand.</li>", page)
+        self.assertRegex(page, rf"act</td><td>Barriers of the run</td><td class='b'>{note}; .*broken through: low \(")
+        self.assertIn(">barriers of the run</text>", page)  # the key of the maps
+        for name in ("low", "high"):
+            self.assertIn(f">{name}</text>", page)
+        self.assertEqual([barrier["lines"] for barrier in self.record()["barriers"]],
+                         [[[[WEST, SOUTH + y], [WEST + 300.0, SOUTH + y]]] for y in (170.0, 125.0, 120.0)])
+
+        self.run_well("run", self.scenario(False), "-o", self.path("bare"))
+        said = self.run_well("hazard", self.path("bare")).stderr
+        said += self.run_well("barrier", self.path("bare"), "--screen", "above").stdout
+        self.run_well("report", self.path("bare"))
+        with open(self.path("bare/report.html"), encoding="utf-8") as file:
+            said += file.read()
+        self.assertNotIn("Barriers of the run", said)
+        self.assertNotIn("stood in the run", said)
+        self.assertNotIn(">barriers of the run</text>", said)
+
+    def test_a_barrier_counts_blocks_and_pieces(self):
+        """Each piece of a broken block is caught alone: more are caught than blocks end as `caught`."""
+        self.nets((125.0, "wall", 100.0, math.inf))
+        with open(self.scenario(), "a", encoding="utf-8") as file:
+            file.write("[effects.fragmentation]\nthreshold = 20\nlargest = 0.7\n")
+        done = self.run_well("run", self.path("s.toml"), "-o", self.path("out"))
+        record = self.record()
+        (wall,) = record["barriers"]
+        self.assertGreater(record["pieces"], 0)
+        self.assertGreater(wall["caught"], record["ends"]["caught"])
+        caught = f"{wall['caught']:,}".replace(",", " ")
+        self.assertIn(f"barrier wall: {caught} blocks and pieces caught, 0 over it", done.stderr)
+        self.assertIn(f"1 barrier stood in the run and caught {caught} blocks and pieces: the figures here hold only while it stands",
+                      self.run_well("barrier", self.path("out"), "--screen", "above").stdout)
 
     def test_without_height_nothing_changes(self):
         self.nets((125.0, "none", 0.0, 1000.0))

@@ -222,6 +222,7 @@ int hazard(const Options& options) {
   for (std::string& warning : talus::io::size_warnings_of(folder)) record.warnings.push_back(std::move(warning));
   if (auto note = talus::io::unusable_note(folder)) record.warnings.push_back(std::move(*note));
   if (auto note = talus::io::coefficient_note(folder)) record.warnings.push_back(std::move(*note));
+  if (auto note = talus::io::barriers_note(folder)) record.warnings.push_back(std::move(*note));
 
   progress.stage("writing the maps");
   const talus::Grid& grid = survey->grid();

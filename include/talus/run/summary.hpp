@@ -25,8 +25,10 @@ std::string ends_text(const Totals& totals);
 
 /// "12 of 3 400 trajectories (0.353 %, allowed are 0.1 %) ended at the limit of impacts or time".
 std::string limits_text(const Totals& totals);
-/// "barrier net: 3 937 caught, 8 over it, 0 through it (it broke)".
-std::string barrier_text(const std::string& id, const BarrierCounts& counts);
+
+/// "barrier net: 3 937 caught, 8 over it, 0 through it (it broke)"; "3 937 blocks and pieces caught" if blocks broke:
+/// each piece is caught or goes over alone, so that the sum may exceed the number of blocks that ended as `caught`.
+std::string barrier_text(const std::string& id, const BarrierCounts& counts, bool pieces);
 
 /// Warnings about trajectories that left the DEM or were trapped; empty if they are few.
 ///

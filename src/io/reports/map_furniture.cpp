@@ -16,6 +16,7 @@ constexpr double kWidest = 700.0, kHighest = 700.0;  // of a map in a drawing [p
 constexpr const char* kSourceColour = "#111111";
 constexpr const char* kScreenColour = "#c2185b";
 constexpr const char* kObjectColour = "#00695c";
+constexpr const char* kBarrierColour = "#e65100";
 
 /// The rim of the marked pixels as a path, in pixels. Empty if it is too ragged to be one.
 std::string rim_of(const std::vector<std::uint8_t>& marks, int width) {
@@ -144,14 +145,13 @@ class Names {
   std::vector<Eigen::Vector2d> on_lines_;  // points of lines [px]
 };
 
-void draw_screens(Svg& svg, const std::vector<Screen>& screens, const MapScale& scale) {
-  for (const Screen& screen : screens)
-    for (const auto& line : screen.lines)
-      svg.element("polyline", {{"points", points_of(line, scale)},
-                               {"fill", "none"},
-                               {"stroke", kScreenColour},
-                               {"stroke-width", 2},
-                               {"stroke-dasharray", "7 3"}});
+void draw_lines(Svg& svg, const Screen& screen, const char* colour, const char* dashes, const MapScale& scale) {
+  for (const auto& line : screen.lines)
+    svg.element("polyline", {{"points", points_of(line, scale)},
+                             {"fill", "none"},
+                             {"stroke", colour},
+                             {"stroke-width", 2},
+                             {"stroke-dasharray", dashes}});
 }
 
 void draw_objects(Svg& svg, const Outlines& objects, const MapScale& scale) {
@@ -172,13 +172,15 @@ void draw_objects(Svg& svg, const Outlines& objects, const MapScale& scale) {
   }
 }
 
-void write_names(Svg& svg, const std::vector<Screen>& screens, const Outlines& objects, const MapScale& scale) {
+void write_names(Svg& svg, const RunFacts& run, const Outlines& objects, const MapScale& scale) {
   constexpr std::size_t kMostNames = 40;
   const bool few = objects.list.size() <= kMostNames;
   const auto is_line = [](const Outline& object) { return !object.closed && object.places.size() > 1; };
   Names names(svg, scale);
-  for (const Screen& screen : screens)
+  for (const Screen& screen : run.screens)
     for (const auto& line : screen.lines) names.keep_free(line);
+  for (const StandingBarrier& barrier : run.barriers)
+    for (const auto& line : barrier.line.lines) names.keep_free(line);
   for (const Outline& object : objects.list)
     if (is_line(object))
       names.keep_free(object.places);
@@ -189,8 +191,10 @@ void write_names(Svg& svg, const std::vector<Screen>& screens, const Outlines& o
       names.put(object.name,
                 is_line(object) ? boxes_at(object.places, scale) : std::vector{box_around(object.places, scale)},
                 kObjectColour);
-  for (const Screen& screen : screens)
+  for (const Screen& screen : run.screens)
     for (const auto& line : screen.lines) names.put(screen.id, boxes_at(line, scale), kScreenColour);
+  for (const StandingBarrier& barrier : run.barriers)
+    for (const auto& line : barrier.line.lines) names.put(barrier.line.id, boxes_at(line, scale), kBarrierColour);
 }
 
 /// Ticks with coordinates at the lower and the left rim.
@@ -285,6 +289,7 @@ Markup furniture(const MapSheet& sheet, const RunFacts& run, const MapImprint& i
   };
   if (!sheet.objects.list.empty()) key(kObjectColour, "none", "objects");
   if (!run.screens.empty()) key(kScreenColour, "7 3", "screens");
+  if (!run.barriers.empty()) key(kBarrierColour, "none", "barriers of the run");
   if (!sheet.sources.empty()) key(kSourceColour, "none", "source cells");
   y = scale.drawing_height() - 116.0;
   draw_scale_bar(svg, y, scale);
@@ -320,8 +325,9 @@ Markup outlines(const MapSheet& sheet, const RunFacts& run, const MapScale& scal
   }
   Svg svg;
   draw_objects(svg, sheet.objects, scale);
-  draw_screens(svg, run.screens, scale);
-  write_names(svg, run.screens, sheet.objects, scale);
+  for (const Screen& screen : run.screens) draw_lines(svg, screen, kScreenColour, "7 3", scale);
+  for (const StandingBarrier& barrier : run.barriers) draw_lines(svg, barrier.line, kBarrierColour, "none", scale);
+  write_names(svg, run, sheet.objects, scale);
   draw_coordinates(svg, scale);
   return group + svg.elements() + "</g>\n";
 }

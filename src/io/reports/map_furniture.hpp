@@ -8,7 +8,7 @@
 namespace talus::io {
 
 inline constexpr double kLegendWidth = 230.0, kLegendGap = 14.0;  ///< of the column beside a map [px]
-inline constexpr double kLowestDrawing = 380.0;                   ///< room for the longest legend [px]
+inline constexpr double kLowestDrawing = 396.0;                   ///< room for the longest legend [px]
 
 /// Words under every map.
 struct MapImprint {

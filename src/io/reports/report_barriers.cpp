@@ -182,6 +182,27 @@ std::vector<BarrierPart> read_barrier_parts(const fs::path& folder, const std::o
   return parts;
 }
 
+Markup standing_html(const RunFacts& run) {
+  constexpr std::size_t kMostRows = 100;
+  if (run.barriers.empty()) return {};
+  Markup html =
+      "<h2>Barriers of the run</h2>\n<p>They stood in the way of the blocks, and each meeting counts"_html +
+      (run.pieces > 0.0 ? ", of blocks and of pieces" : "") +
+      ". Caught: below the top and within the capacity. Over: centre at the top or above. Broken: below the top, "
+      "above the capacity.</p>\n<table><tr><th>barrier</th><th>height</th><th>capacity</th><th>caught</th>"
+      "<th>over</th><th>broken</th></tr>\n";
+  for (std::size_t i = 0; i < std::min(run.barriers.size(), kMostRows); ++i) {
+    const StandingBarrier& b = run.barriers[i];
+    html += "<tr><td>"_html + b.line.id + "</td><td class='n'>" + with_digits(b.height, 4) + " m</td><td class='n'>" +
+            b.capacity + " kJ</td><td class='n'>" + grouped(b.caught) + "</td><td class='n'>" + grouped(b.over) +
+            "</td><td class='n'>" + grouped(b.broken) + "</td></tr>\n";
+  }
+  html += "</table>\n";
+  if (run.barriers.size() > kMostRows)
+    html += "<p class='note'>Only the first "_html + std::to_string(kMostRows) + " are shown.</p>\n";
+  return html;
+}
+
 Markup barriers_html(const std::vector<BarrierPart>& parts) {
   if (parts.empty()) return {};
   Markup html = "<h2>Barriers</h2>\n"_html;

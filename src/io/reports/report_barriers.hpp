@@ -38,6 +38,8 @@ struct BarrierPart {
 /// Throws InputError if one cannot be understood.
 std::vector<BarrierPart> read_barrier_parts(const std::filesystem::path& folder,
                                             const std::optional<HazardFacts>& hazard);
+/// The barriers that stood in the run, as a table; nothing if there were none.
+Markup standing_html(const RunFacts& run);
 Markup barriers_html(const std::vector<BarrierPart>& parts);
 
 }  // namespace talus::io

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "talus/base/text.hpp"
+#include "talus/io/results/run_folder.hpp"
 #include "talus/io/results/run_record.hpp"
 #include "talus/physics/effects/registry.hpp"
 #include "talus/products/interval.hpp"
@@ -20,6 +21,13 @@ std::string percent_of(double count, double all) {
 
 bool warned_of(const RunFacts& run, std::string_view words) {
   return std::ranges::any_of(run.warnings, [&](const std::string& w) { return w.find(words) != std::string::npos; });
+}
+
+/// "2 barriers stood in the run and caught 3 335 blocks".
+std::string standing_text(const RunFacts& run) {
+  double caught = 0.0;
+  for (const StandingBarrier& barrier : run.barriers) caught += barrier.caught;
+  return barriers_text(run.barriers.size(), caught, run.pieces > 0.0);
 }
 
 /// The effects of the record, and all others.
@@ -208,6 +216,22 @@ void check_hazard(const CheckedRun& checked, Checks& checks) {
                       "Run talus hazard again with --overwrite."});
 }
 
+void check_barriers(const RunFacts& run, Checks& checks) {
+  if (run.barriers.empty()) return;
+  double over = 0.0;
+  std::vector<std::string> broken;
+  for (const StandingBarrier& barrier : run.barriers) {
+    over += barrier.over;
+    if (barrier.broken > 0.0) broken.push_back(barrier.line.id + " (" + grouped(barrier.broken) + ")");
+  }
+  checks.push_back(
+      {broken.empty() ? Mark::Look : Mark::Act, "Barriers of the run",
+       standing_text(run) + "; " + grouped(over) + " went over; " +
+           (broken.empty() ? "none was broken through" : "broken through: " + joined(broken)),
+       "The maps hold only while they stand as entered: where, how high, how strong. One that breaks is too "
+       "weak for this slope."});
+}
+
 void check_screens(const CheckedRun& checked, Checks& checks) {
   constexpr double kFew = 100.0;
   std::vector<std::string> few;
@@ -274,6 +298,7 @@ std::vector<Check> checks_of(const CheckedRun& checked) {
   check_numbers(checked, checks);
   check_hazard(checked, checks);
   check_screens(checked, checks);
+  check_barriers(checked.run, checks);
   const auto [acting, off] = effects_of(checked.run);
   checks.push_back(
       {Mark::Look, "Effects", "acting: " + (acting.empty() ? "none" : joined(acting)) + "; off: " + joined(off),
@@ -306,6 +331,8 @@ Markup assumptions_html(const CheckedRun& checked) {
       "rough ground. "_html;
   html += acting.empty() ? std::string("No further effect acts.") : "Further effects: " + joined(acting) + ".";
   html += "</li>\n<li>";
+  if (!checked.run.barriers.empty())
+    html += standing_text(checked.run) + "; the maps hold only while they stand.</li>\n<li>";
   html += checked.hazard
               ? "Frequencies, return periods and classes follow from " + frequency_text(checked.hazard->frequency) +
                     ": " + with_digits(checked.hazard->events_per_year, 4) +

@@ -44,6 +44,16 @@ RecordedGrid grid_of(const Json& json) {
   return grid;
 }
 
+/// Barriers with a height: one of 0 m is off.
+std::vector<StandingBarrier> barriers_of(const Json& json) {
+  std::vector<StandingBarrier> barriers;
+  for (const Json& one : json.value("barriers", Json::array()))
+    if (const double height = number_of(one, "height_m"); height > 0.0)
+      barriers.push_back({recorded_line(one), height, shortened(text_of_value(one.at("capacity_kj")), 40),
+                          number_of(one, "caught"), number_of(one, "over"), number_of(one, "broken")});
+  return barriers;
+}
+
 std::vector<RecordedSetting> settings_of_record(const Json& json) {
   std::vector<RecordedSetting> settings;
   for (const Json& one : json.at("settings")) {
@@ -91,6 +101,8 @@ RunFacts facts_of(const Json& json) {
   run.gullies = gullies_of(json);
   run.grid = grid_of(json.at("grid"));
   run.screens = recorded_screens(json);
+  run.barriers = barriers_of(json);
+  run.pieces = number_of(json, "pieces");
   run.settings = settings_of_record(json);
   for (const Json& one : json.value("inputs", Json::array()))
     run.inputs.push_back(

@@ -35,6 +35,14 @@ struct GullyFacts {
   double worst_blocks = 0.0, passages = 0.0;  ///< that stay in it, that cross it
 };
 
+/// A barrier that stood in the run, and what became of the blocks at it.
+struct StandingBarrier {
+  Screen line;           ///< its id and lines, in map coordinates [m]; without lines in an earlier record
+  double height = 0.0;   ///< [m]
+  std::string capacity;  ///< [kJ]
+  double caught = 0.0, over = 0.0, broken = 0.0;
+};
+
 /// run.json.
 struct RunFacts {
   std::string version, command, status, plan;
@@ -46,6 +54,8 @@ struct RunFacts {
   std::optional<GullyFacts> gullies;                 ///< nothing in an earlier record
   RecordedGrid grid;
   std::vector<Screen> screens;  ///< in map coordinates [m]
+  std::vector<StandingBarrier> barriers;
+  double pieces = 0.0;  ///< of broken blocks
   std::vector<RecordedSetting> settings;
   std::vector<InputFile> inputs;
   std::vector<Reprojection> reprojections;

@@ -54,7 +54,7 @@ Markup legend(const ReportMap& map, std::size_t number, const MapScale& scale) {
   svg.words({{"x", 0}, {"y", 12}, {"font-weight", "bold"}}, shortened(map.title + unit_words(map), 40));
   double y = 22.0;
   for (const MapClass& one : map.style.classes) {
-    if (one.colour.opacity == 0 || y > kLowestDrawing - 190.0) continue;
+    if (one.colour.opacity == 0 || y > kLowestDrawing - 206.0) continue;
     svg.element("rect", {{"x", 0},
                          {"y", y},
                          {"width", 24},

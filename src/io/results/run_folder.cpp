@@ -11,6 +11,8 @@
 namespace talus::io {
 namespace {
 
+constexpr const char* kRunAgain = "must be as talus run has written it; run the scenario again";
+
 double setting_of(const Json& json, const std::string& key) {
   for (const Json& setting : json.at("settings"))
     if (setting.at("key") == key) return setting.at("value").get<double>();
@@ -66,6 +68,28 @@ std::optional<std::string> unusable_note(const std::filesystem::path& folder) {
   return "the run says of itself: " + status + "; its result is not to be used";
 }
 
+std::string barriers_text(std::size_t barriers, double caught, bool pieces) {
+  return std::to_string(barriers) + (barriers == 1 ? " barrier" : " barriers") + " stood in the run and caught " +
+         grouped(caught) + (pieces ? " blocks and pieces" : " blocks");
+}
+
+std::optional<std::string> barriers_note(const std::filesystem::path& folder) {
+  const Json json = read_record_or_nothing(folder / "run.json");
+  if (!json.is_object()) return std::nullopt;
+  return understood(folder / "run.json", kRunAgain, [&]() -> std::optional<std::string> {
+    std::size_t barriers = 0;
+    double caught = 0.0;
+    for (const Json& barrier : json.value("barriers", Json::array())) {
+      if (!(barrier.at("height_m").get<double>() > 0.0)) continue;  // it is off
+      ++barriers;
+      caught += barrier.at("caught").get<double>();
+    }
+    if (barriers == 0) return std::nullopt;
+    return barriers_text(barriers, caught, json.value("pieces", 0.0) > 0.0) + ": the figures here hold only while " +
+           (barriers == 1 ? "it stands" : "they stand");
+  });
+}
+
 RunSummary read_run(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "run.json";
   std::error_code none;
@@ -73,7 +97,7 @@ RunSummary read_run(const std::filesystem::path& folder) {
     throw InputError(folder.string() +
                      ": has no run.json that can be read, must be a folder that talus run has written");
   const std::string text = read_file(file.string(), file.string(), "a record of talus run", kMostRecord);
-  return understood(file, "must be as talus run has written it; run the scenario again", [&] {
+  return understood(file, kRunAgain, [&] {
     const Json json = parsed_record(text);
     RunSummary run;
     run.released = json.at("released").get<double>();

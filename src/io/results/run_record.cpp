@@ -45,21 +45,24 @@ Json grid_of(const LoadedScenario& loaded) {
           {"west", geo.west},        {"north", geo.north}, {"crs_wkt", geo.crs_wkt}};
 }
 
-/// The screens in map coordinates, to the millimetre: products of the folder need places along them. And, from 1 % of
-/// its length, how much of a screen has no height, where no block can cross it.
-Json screens_of(const LoadedScenario& loaded) {
+/// Lines in map coordinates, to the millimetre: products of the folder need places along them, pages draw them.
+Json lines_of(const std::vector<std::vector<Eigen::Vector2d>>& lines, const LoadedScenario& loaded) {
   const double south = loaded.geo.north - loaded.scenario.surface.grid().rows * loaded.geo.cell_y;
   const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3; };
   Json list = Json::array();
+  for (const auto& line : lines) {
+    Json places = Json::array();
+    for (const Eigen::Vector2d& p : line) places.push_back({rounded(loaded.geo.west + p.x()), rounded(south + p.y())});
+    list.push_back(std::move(places));
+  }
+  return list;
+}
+
+/// The screens. And, from 1 % of its length, how much of a screen has no height, where no block can cross it.
+Json screens_of(const LoadedScenario& loaded) {
+  Json list = Json::array();
   for (const Screen& screen : loaded.scenario.screens) {
-    Json lines = Json::array();
-    for (const auto& line : screen.lines) {
-      Json places = Json::array();
-      for (const Eigen::Vector2d& p : line)
-        places.push_back({rounded(loaded.geo.west + p.x()), rounded(south + p.y())});
-      lines.push_back(std::move(places));
-    }
-    list.push_back({{"id", screen.id}, {"lines", std::move(lines)}});
+    list.push_back({{"id", screen.id}, {"lines", lines_of(screen.lines, loaded)}});
     if (const double share = share_without_height(screen, loaded.scenario.surface.heights());
         share >= kNoticedWithoutHeight)
       list.back()["share_without_height"] = share;
@@ -67,16 +70,18 @@ Json screens_of(const LoadedScenario& loaded) {
   return list;
 }
 
-Json barriers_of(const Scenario& scenario, const Totals& totals) {
+Json barriers_of(const LoadedScenario& loaded, const Totals& totals) {
+  const Barriers& barriers = loaded.scenario.barriers;
   Json list = Json::array();
   for (std::size_t i = 0; i < totals.barriers.size(); ++i) {
-    const Barrier& barrier = scenario.barriers.list()[i];
+    const Barrier& barrier = barriers.list()[i];
     const BarrierCounts sum = totals.barriers.sum(i);
     const double capacity = 1e-3 * barrier.capacity;
     list.push_back({{"id", barrier.id},
+                    {"lines", lines_of(barrier.lines, loaded)},
                     {"height_m", barrier.height},
                     {"capacity_kj", std::isfinite(capacity) ? Json(capacity) : Json("inf")},
-                    {"length_m", std::round(scenario.barriers.length(i) * 1e3) / 1e3},
+                    {"length_m", std::round(barriers.length(i) * 1e3) / 1e3},
                     {"hits", sum.hits()},
                     {"caught", sum.caught},
                     {"over", sum.over},
@@ -183,7 +188,7 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   json["percentile_relative_error"] = LogHistogram::kBinWidth;
   json["grid"] = grid_of(loaded);
   if (!scenario.screens.empty()) json["screens"] = screens_of(loaded);
-  if (!scenario.barriers.empty()) json["barriers"] = barriers_of(scenario, totals);
+  if (!scenario.barriers.empty()) json["barriers"] = barriers_of(loaded, totals);
   json["settings"] = settings_of(loaded);
   json["inputs"] = json_of(loaded.inputs);
   if (network_is_allowed()) json["network"] = "allowed";

@@ -16,6 +16,12 @@ std::optional<std::string> unusable_note(const std::filesystem::path& folder);
 std::optional<std::string> coefficient_note(double c);
 std::optional<std::string> coefficient_note(const std::filesystem::path& folder);
 
+/// "2 barriers stood in the run and caught 3 335 blocks"; "blocks and pieces" if blocks broke.
+std::string barriers_text(std::size_t barriers, double caught, bool pieces);
+
+/// One line that the figures hold only while the barriers of the run stand; nothing if none stood there.
+std::optional<std::string> barriers_note(const std::filesystem::path& folder);
+
 /// The part of OUT/run.json that products of a finished run need.
 struct RunSummary {
   double released = 0.0;                   ///< trajectories
