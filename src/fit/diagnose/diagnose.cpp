@@ -141,7 +141,7 @@ class DiagnosisLoop {
     advance(kTestShare);
     const std::vector<Candidate> candidates = candidates_of(campaign_, base.model, base.runs, found, rules_);
     const ScoreTest test = tested(base, candidates);
-    round.families = tested_families(base, test);
+    round.families = tested_families(base, test, found);
     round.p_value = smallest_corrected(round.families);
     const Axis axis = axis_of(campaign_, base.runs);
     round.limits = detection_limits(campaign_, axis, test, candidates, rules_);
@@ -167,13 +167,14 @@ class DiagnosisLoop {
     return round;
   }
 
-  std::vector<FamilyTest> tested_families(const FittedModel& base, const ScoreTest& test) const {
+  std::vector<FamilyTest> tested_families(const FittedModel& base, const ScoreTest& test,
+                                          const std::vector<std::string>& found) const {
     const Timesheet::Phase phase(fits_.times(), "tests");
     FamilyOptions how;
     how.replicates = options_.replicates(kFamilies);
     how.seed = options_.seed;
     how.rules = rules_;
-    return test_families({campaign_, ResidualSpace(campaign_, base.runs, rules_), base.runs, rows_, test}, how);
+    return test_families({campaign_, ResidualSpace(campaign_, base.runs, rules_), base.runs, rows_, test, found}, how);
   }
 
   /// The family by which an effect may be chosen; empty: it may not. Where the test of the family does not rest on the

@@ -89,7 +89,7 @@ FamilyTest day(const FamilyInput& in, const std::vector<double>& energy, const F
 }
 
 /// The most significant member, corrected within the family.
-/// @param needed  note where there is no member
+/// @param needed  note where nothing was measured that a member could change
 FamilyTest by_score_test(const char* name, const char* needed, const FamilyInput& in) {
   FamilyTest family;
   family.name = name;
@@ -103,7 +103,8 @@ FamilyTest by_score_test(const char* name, const char* needed, const FamilyInput
     measured.push_back(effect.best.p_value);
   }
   if (measured.empty()) {
-    family.note = needed;
+    const bool had = std::ranges::any_of(in.found, [&](const std::string& e) { return family_of(e) == name; });
+    family.note = had ? "its effects are in the model" : needed;
     return family;
   }
   family.p_value = corrected(drawn, measured).all;

@@ -13,9 +13,10 @@ inline constexpr std::size_t kFamilies = 5;
 struct FamilyInput {
   const Campaign& campaign;
   const ResidualSpace& space;
-  const std::vector<BlockRuns>& runs;  ///< of which `space` was made
-  const std::vector<bool>& rows;       ///< the blocks that are used
-  const ScoreTest& score_test;         ///< of the same model
+  const std::vector<BlockRuns>& runs;    ///< of which `space` was made
+  const std::vector<bool>& rows;         ///< the blocks that are used
+  const ScoreTest& score_test;           ///< of the same model
+  std::span<const std::string> found{};  ///< effects that the model has, which are no candidates any more
 };
 
 struct FamilyOptions {

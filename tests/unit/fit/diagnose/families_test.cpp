@@ -154,7 +154,8 @@ TEST(Families, EveryEffectIsInOne) {
 }
 
 /// The tests of families on a campaign, with a score test of two effects by hand: one is the rarest of 20 sets.
-std::vector<FamilyTest> families_of(const Campaign& c, const std::vector<BlockRuns>& runs) {
+std::vector<FamilyTest> families_of(const Campaign& c, const std::vector<BlockRuns>& runs,
+                                    const std::vector<std::string>& found = {}) {
   const std::vector<bool> rows = fitting_rows(c);
   ScoreTest score;
   std::vector<double> drawn;
@@ -165,7 +166,7 @@ std::vector<FamilyTest> families_of(const Campaign& c, const std::vector<BlockRu
   FamilyOptions how;
   how.replicates = 200;
   how.rules.arrangements = 1000;
-  return test_families({c, space, runs, rows, score}, how);
+  return test_families({c, space, runs, rows, score, found}, how);
 }
 
 TEST(Families, AreCorrectedForThoseThatAreTested) {
@@ -186,6 +187,13 @@ TEST(Families, AreCorrectedForThoseThatAreTested) {
   // By hand: the measured 0.001 is the rarest of 20 by the first effect; of the drawn sets none is as rare by either,
   // but the set with 0.05 is second in both.
   EXPECT_DOUBLE_EQ(families[1].p_value, 0.05);
+}
+
+/// An instrument whose bias was found needs no further measurement.
+TEST(Families, SayThatTheirEffectsWereFound) {
+  const Measured& m = measured();
+  EXPECT_EQ(families_of(m.campaign, m.runs)[3].note, "a screen that five blocks crossed, or samples, are needed");
+  EXPECT_EQ(families_of(m.campaign, m.runs, {"instrument-bias"})[3].note, "its effects are in the model");
 }
 
 TEST(Families, HangNotOnTheOrderOfTheRows) {
