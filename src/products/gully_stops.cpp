@@ -7,7 +7,7 @@ namespace talus {
 void GullyStops::add(std::span<const StopRow> rows) {
   const Raster<float>& heights = scenario_.surface.heights();
   for (const StopRow& stop : rows) {
-    if (stop.end != End::Stopped && stop.end != End::Trapped) continue;
+    if (!rests_on_ground(stop.end)) continue;
     const int column = heights.grid.column_of(stop.x), row = heights.grid.row_of(stop.y);
     if (!heights.grid.contains(column, row)) continue;
     const Ground& ground = scenario_.cover.grounds[scenario_.cover.zone_at(stop.x, stop.y)];

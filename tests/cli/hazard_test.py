@@ -114,6 +114,27 @@ class Hazard(Case):
         self.refused("is damaged", "hazard", self.path("out"), "--overwrite")
         self.assertTrue(os.path.exists(self.path("out/intensity_T50.tif")), "what was there stays")
 
+    def test_all_events_of_a_source_that_the_dem_cuts_fall_on_the_rest(self):
+        """A rectangle of 40 m of which the western 20 m lie off the DEM: check, run, hazard and report say so, with the numbers."""
+        cut = [(box(-20, 230, 40, 10), ["cut", 0.8]), (box(200, 230, 20, 10), ["whole", 0.3])]
+        fields = [("name", ogr.OFTString), ("frequency", ogr.OFTReal)]
+        for out, features, said in (("out", cut, True), ("whole", cut[1:], False)):
+            os.remove(self.path("sources.gpkg"))
+            write_features(self.path("sources.gpkg"), "sources", features, fields)
+            words = "50 % of polygon 1 (cut) lies outside the DEM, and its 0.8 events per year all fall on the 50 % that are left"
+            told = [self.run_well(*self.arguments(out)).stderr,
+                    self.run_well("check", *self.arguments(out)[1:-2]).stdout, self.run_well("hazard", self.path(out)).stderr]
+            self.assertEqual([words in text for text in told], [said] * 3, out)
+            with open(self.path(out + "/hazard.json"), encoding="utf-8") as file:
+                record = json.load(file)
+            self.assertEqual(any(words in warning for warning in record["warnings"]), said)
+            self.assertAlmostEqual(record["events_per_year"], sum(values[1] for _, values in features), 9)
+            self.run_well("report", self.path(out))
+            with open(self.path(out + "/report.html"), encoding="utf-8") as file:
+                point = re.search(r"<td class='k'>(.*)</td><td>Frequency</td><td class='b'>(.*?)</td>", file.read())
+            self.assertEqual(point[1].split()[-1], "act" if said else "look")
+            self.assertEqual("all of its events fall on the rest" in point[2], said)
+
     def test_another_weighting(self):
         """The maps are those of a run whose sources had these frequencies from the start."""
         self.simulate()

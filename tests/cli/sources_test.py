@@ -1,4 +1,5 @@
 """talus sources: candidate source cells, against gdaldem and by hand."""
+import json
 import math
 import os
 import unittest
@@ -42,6 +43,20 @@ class Sources(Case):
         self.assertEqual(points[0][1].GetPoint_2D(), (WEST + 57.5, NORTH - 7.5))
         self.assertAlmostEqual(points[0][0]["area_m2"], 50.0, 2)
         self.assertIn("224 of 1 200 cells", done.stderr)
+
+    def test_frequencies_by_true_area_are_those_of_the_areas_in_the_layer(self):
+        """Rough ground, where another rule for the slope gives other areas."""
+        rough = np.random.default_rng(5).normal(0.0, 1.5, (60, 60))
+        write_dem(self.path("dem.tif"), (heights() + rough).astype(np.float32), CELL)
+        self.find("--slope", "45")
+        area = sum(fields["area_m2"] for fields, _ in self.layers()[0])
+        self.assertGreater(area, 1000.0)
+        self.write("s.toml", 'dem = "dem.tif"\ntrajectories = 1\n[sources]\nfile = "cells.gpkg|layername=source_polygons"\n'
+                   "[blocks]\ndiameter = 1\n[frequency]\nby_true_area = true\nper_area = 1e-3\n")
+        self.run_well("run", self.path("s.toml"), "-o", self.path("out"), "-q")
+        self.run_well("hazard", self.path("out"), "-q")
+        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
+            self.assertAlmostEqual(json.load(file)["events_per_year"] / (1e-3 * area), 1.0, 9)
 
     def test_the_cells_are_those_of_gdaldem(self):
         z = heights(60, 60) + 30.0 * np.abs(np.sin(np.arange(60) / 3.0))[None, :]

@@ -11,6 +11,15 @@ namespace talus {
 /// Source: Horn (1981), "Hill shading and the reflectance map", Proc. IEEE 69(1).
 double horn_slope(const Raster<float>& heights, int column, int row);
 
+/// Area of the ground in a cell on a slope: its area in plan over the cosine of the slope [m^2].
+///
+/// @param tangent  of the slope angle [m/m]
+double true_area(const Grid& grid, double tangent);
+
+/// The same by the slope of the heights (`horn_slope`). Where a neighbour has no height, the ground goes on as a plane:
+/// to a side as from the opposite one (level where both have none), to a corner as to the sides beside it.
+double true_area(const Raster<float>& heights, int column, int row);
+
 /// Default threshold of source cells: a cell at least this steep is a candidate source [rad].
 ///
 ///   55 deg * (cell / 1 m)^-0.075

@@ -25,7 +25,6 @@ class Cells {
   double tangent(int column, int row) const { return horn_slope(terrain_.heights, column, row); }
   bool is_source(double tangent) const { return tangent >= threshold_; }
   double plan_area() const { return grid().cell_x * grid().cell_y; }
-  double true_area(double tangent) const { return plan_area() * std::sqrt(1.0 + tangent * tangent); }
 
  private:
   const Terrain& terrain_;
@@ -48,7 +47,7 @@ Dataset mark(const Cells& cells, SourceCells& found) {
       if (tangent > steepest) steepest = tangent;
       if (!source) continue;
       found.cells += 1;
-      found.true_area += cells.true_area(tangent);
+      found.true_area += true_area(cells.grid(), tangent);
     }
     if (marks->GetRasterBand(1)->RasterIO(GF_Write, 0, j, grid.columns, 1, row.data(), grid.columns, 1, GDT_Byte, 0, 0,
                                           nullptr) != CE_None)
@@ -90,7 +89,7 @@ void describe(OGRFeature& row, const Cells& cells, const OGRPolygon& local) {
     const double tangent = cells.tangent(column, cell_row);
     sum += std::atan(tangent);
     steepest = std::max(steepest, tangent);
-    area += cells.true_area(tangent);
+    area += true_area(cells.grid(), tangent);
     ++count;
   });
   row.SetField(0, degrees(sum / static_cast<double>(count)));
@@ -130,7 +129,7 @@ void write_points(GeoPackage& file, const Cells& cells, const std::function<bool
       const double tangent = cells.tangent(i, j);
       if (!cells.is_source(tangent)) continue;
       row->SetField(0, degrees(std::atan(tangent)));
-      row->SetField(1, cells.true_area(tangent));
+      row->SetField(1, true_area(cells.grid(), tangent));
       const OGRPoint point(grid.west + grid.centre_x(i), grid.south + grid.centre_y(j));
       row->SetGeometry(&point);
       file.append(layer, *row);

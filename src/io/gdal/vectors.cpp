@@ -213,15 +213,20 @@ std::vector<Cell> cells_of(const Parts& parts, const Grid& grid) {
 struct Lack {
   std::string name;      // "polygon 4 (cliff A)"
   double outside, hole;  // shares off the DEM, and where it has no heights
+  double frequency;      // of the whole feature [1/year]; NaN: not given
 };
 
-/// "83 % of polygon 4 (cliff A) lies outside the DEM".
+/// "83 % of polygon 4 (cliff A) lies outside the DEM"; with a frequency "..., and its 0.5 events per year all fall on
+/// the 17 % that are left".
 std::string lack_text(const Lack& lack) {
   const double share = lack.outside + lack.hole;
   const char* where = lack.hole == 0.0      ? "outside the DEM"
                       : lack.outside == 0.0 ? "where the DEM has no heights"
                                             : "outside the DEM or where it has no heights";
-  return with_digits(100.0 * share, share < 0.995 ? 2 : 3) + " % of " + lack.name + " lies " + where;
+  const std::string events = lack.frequency > 0.0 ? ", and its " + with_digits(lack.frequency, 3) + kAllOnTheRest +
+                                                        with_digits(100.0 * (1.0 - share), 2) + " % that are left"
+                                                  : "";
+  return with_digits(100.0 * share, share < 0.995 ? 2 : 3) + " % of " + lack.name + " lies " + where + events;
 }
 
 /// The largest shares first: "83 % of polygon 4 (cliff A) lies outside the DEM; ... and 3 more features".
@@ -306,7 +311,8 @@ class Placer {
     if (missing == on_map) return without_height_.push_back(name);
     const double outside = share_outside(parts, heights_.grid);
     const double hole = (1.0 - outside) * static_cast<double>(missing) / static_cast<double>(on_map);
-    if (outside + hole >= kNoticed) lacks_.push_back({kind_of(parts) + (" " + name), outside, hole});
+    if (outside + hole >= kNoticed)
+      lacks_.push_back({kind_of(parts) + (" " + name), outside, hole, source().frequency});
   }
 
   std::uint32_t feature() const { return static_cast<std::uint32_t>(out_.features.size() - 1); }

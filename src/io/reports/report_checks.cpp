@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "talus/base/text.hpp"
+#include "talus/io/gdal/vectors.hpp"
 #include "talus/io/results/run_folder.hpp"
 #include "talus/io/results/run_record.hpp"
 #include "talus/physics/effects/registry.hpp"
@@ -27,7 +28,7 @@ bool warned_of(const RunFacts& run, std::string_view words) {
 std::string standing_text(const RunFacts& run) {
   double caught = 0.0;
   for (const StandingBarrier& barrier : run.barriers) caught += barrier.caught;
-  return barriers_text(run.barriers.size(), caught, run.pieces > 0.0);
+  return barriers_text(run.barriers.size(), grouped(caught), run.pieces > 0.0);
 }
 
 /// The effects of the record, and all others.
@@ -189,15 +190,19 @@ void check_hazard(const CheckedRun& checked, Checks& checks) {
                       "Nothing on this page is per year: probabilities are of one block that falls somewhere."});
     return;
   }
+  const bool cut = warned_of(checked.run, kAllOnTheRest);
+  const std::string cut_text =
+      cut ? "; a part of a source lies off the DEM (see the warnings), and all of its events fall on the rest" : "";
   if (!checked.hazard) {
-    checks.push_back(
-        {Mark::Look, "Frequency", "declared, but talus hazard was not run", "Run it for return periods and classes."});
+    checks.push_back({cut ? Mark::Act : Mark::Look, "Frequency", "declared, but talus hazard was not run" + cut_text,
+                      "Run it for return periods and classes."});
     return;
   }
   const HazardFacts& hazard = *checked.hazard;
-  checks.push_back({Mark::Look, "Frequency",
-                    with_digits(hazard.events_per_year, 4) + " events per year, by " + frequency_text(hazard.frequency),
-                    "Every return period and class is as good as they are."});
+  checks.push_back(
+      {cut ? Mark::Act : Mark::Look, "Frequency",
+       with_digits(hazard.events_per_year, 4) + " events per year, by " + frequency_text(hazard.frequency) + cut_text,
+       "Every return period and class is as good as they are."});
   const bool left = hazard.left_per_year > 0.01 * hazard.events_per_year;
   checks.push_back(
       {left ? Mark::Act : Mark::Fine, "Events that leave the DEM",
@@ -331,8 +336,10 @@ Markup assumptions_html(const CheckedRun& checked) {
       "rough ground. "_html;
   html += acting.empty() ? std::string("No further effect acts.") : "Further effects: " + joined(acting) + ".";
   html += "</li>\n<li>";
-  if (!checked.run.barriers.empty())
-    html += standing_text(checked.run) + "; the maps hold only while they stand.</li>\n<li>";
+  if (!checked.run.barriers.empty()) {
+    html += standing_text(checked.run) + "; the maps hold only while they stand.";
+    html += "</li>\n<li>";
+  }
   html += checked.hazard
               ? "Frequencies, return periods and classes follow from " + frequency_text(checked.hazard->frequency) +
                     ": " + with_digits(checked.hazard->events_per_year, 4) +

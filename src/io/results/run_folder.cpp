@@ -5,6 +5,7 @@
 #include "recorded_screens.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/gdal/vectors.hpp"
 #include "talus/io/results/run_record.hpp"
 #include "talus/simulate/scenario/block_sizes.hpp"
 
@@ -19,13 +20,18 @@ double setting_of(const Json& json, const std::string& key) {
   throw InputError("no setting '" + key + "'");
 }
 
-std::vector<std::string> size_warnings_of(const Json& run) {
+/// The warnings of a run.json that `wanted` accepts.
+template <class Wanted>
+std::vector<std::string> warnings_of(const Json& run, Wanted wanted) {
   std::vector<std::string> found;
+  if (!run.is_object()) return found;
   for (const Json& warning : run.value("warnings", Json::array()))
-    if (warning.is_string())
-      for (const std::string_view start : {kSizeWarning, kGuessWarning})
-        if (warning.get<std::string>().starts_with(start)) found.push_back(warning.get<std::string>());
+    if (warning.is_string() && wanted(warning.get<std::string>())) found.push_back(warning.get<std::string>());
   return found;
+}
+
+bool is_of_sizes(const std::string& warning) {
+  return warning.starts_with(kSizeWarning) || warning.starts_with(kGuessWarning);
 }
 
 /// The record; nothing if there is none that can be read.
@@ -68,9 +74,9 @@ std::optional<std::string> unusable_note(const std::filesystem::path& folder) {
   return "the run says of itself: " + status + "; its result is not to be used";
 }
 
-std::string barriers_text(std::size_t barriers, double caught, bool pieces) {
+std::string barriers_text(std::size_t barriers, const std::string& caught, bool pieces) {
   return std::to_string(barriers) + (barriers == 1 ? " barrier" : " barriers") + " stood in the run and caught " +
-         grouped(caught) + (pieces ? " blocks and pieces" : " blocks");
+         caught + (pieces ? " blocks and pieces" : " blocks");
 }
 
 std::optional<std::string> barriers_note(const std::filesystem::path& folder) {
@@ -85,8 +91,8 @@ std::optional<std::string> barriers_note(const std::filesystem::path& folder) {
       caught += barrier.at("caught").get<double>();
     }
     if (barriers == 0) return std::nullopt;
-    return barriers_text(barriers, caught, json.value("pieces", 0.0) > 0.0) + ": the figures here hold only while " +
-           (barriers == 1 ? "it stands" : "they stand");
+    return barriers_text(barriers, with_decimals(caught, 0), json.value("pieces", 0.0) > 0.0) +
+           ": the figures here hold only while " + (barriers == 1 ? "it stands" : "they stand");
   });
 }
 
@@ -106,14 +112,18 @@ RunSummary read_run(const std::filesystem::path& folder) {
     run.screens = recorded_screens(json);
     for (const Json& screen : json.value("screens", Json::array()))
       run.without_height.push_back(screen.value("share_without_height", 0.0));
-    run.size_warnings = size_warnings_of(json);
+    run.size_warnings = warnings_of(json, is_of_sizes);
     return run;
   });
 }
 
 std::vector<std::string> size_warnings_of(const std::filesystem::path& folder) {
-  const Json json = read_record_or_nothing(folder / "run.json");
-  return json.is_object() ? size_warnings_of(json) : std::vector<std::string>{};
+  return warnings_of(read_record_or_nothing(folder / "run.json"), is_of_sizes);
+}
+
+std::vector<std::string> cut_source_warnings_of(const std::filesystem::path& folder) {
+  return warnings_of(read_record_or_nothing(folder / "run.json"),
+                     [](const std::string& warning) { return warning.find(kAllOnTheRest) != std::string::npos; });
 }
 
 }  // namespace talus::io

@@ -8,6 +8,7 @@
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/block_class.hpp"
 #include "talus/simulate/scenario/block_sizes.hpp"
+#include "talus/terrain/source_slope.hpp"
 
 namespace talus {
 namespace {
@@ -153,22 +154,6 @@ double power_of_two_above(double value) {
 }
 
 }  // namespace
-
-double true_area(const Raster<float>& heights, int column, int row) {
-  const Grid& grid = heights.grid;
-  const auto slope = [&](int dx, int dy, double step) {
-    const auto height = [&](int sign) {
-      const int c = column + sign * dx, r = row + sign * dy;
-      return grid.contains(c, r) ? double{heights.at(c, r)} : kNotGiven;
-    };
-    const double low = height(-1), here = height(0), high = height(1);
-    if (!std::isnan(low) && !std::isnan(high)) return 0.5 * (high - low) / step;
-    if (!std::isnan(high)) return (high - here) / step;
-    return std::isnan(low) ? 0.0 : (here - low) / step;
-  };
-  const double east = slope(1, 0, grid.cell_x), north = slope(0, 1, grid.cell_y);
-  return grid.cell_x * grid.cell_y * std::sqrt(1.0 + east * east + north * north);  // 1 / cos(slope)
-}
 
 std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, std::uint32_t rounds) {
   TALUS_EXPECT(rounds >= 1, "there is one round at least");

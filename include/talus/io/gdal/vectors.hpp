@@ -8,6 +8,9 @@
 
 namespace talus::io {
 
+/// In a warning about a source with a frequency of which a part lies off the DEM, or where it has no heights.
+inline constexpr const char* kAllOnTheRest = " events per year all fall on the ";
+
 /// Places of release from a vector file.
 struct SourceLayer {
   std::vector<SourceFeature> features;  ///< in the order of the file, with those wholly off the map

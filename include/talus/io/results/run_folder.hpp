@@ -16,8 +16,9 @@ std::optional<std::string> unusable_note(const std::filesystem::path& folder);
 std::optional<std::string> coefficient_note(double c);
 std::optional<std::string> coefficient_note(const std::filesystem::path& folder);
 
-/// "2 barriers stood in the run and caught 3 335 blocks"; "blocks and pieces" if blocks broke.
-std::string barriers_text(std::size_t barriers, double caught, bool pieces);
+/// "2 barriers stood in the run and caught 3335 blocks"; "blocks and pieces" if blocks broke.
+/// @param caught  their number as text
+std::string barriers_text(std::size_t barriers, const std::string& caught, bool pieces);
 
 /// One line that the figures hold only while the barriers of the run stand; nothing if none stood there.
 std::optional<std::string> barriers_note(const std::filesystem::path& folder);
@@ -34,6 +35,10 @@ struct RunSummary {
 
 /// Reads OUT/run.json. Throws InputError if it cannot be read or `talus run` has not written it.
 RunSummary read_run(const std::filesystem::path& folder);
+
+/// The warnings of the run about sources of which a part lies off the DEM, with all of their events on the rest; none
+/// if there is no run.json that can be read.
+std::vector<std::string> cut_source_warnings_of(const std::filesystem::path& folder);
 
 /// RunSummary::size_warnings alone; none if there is no run.json that can be read.
 std::vector<std::string> size_warnings_of(const std::filesystem::path& folder);

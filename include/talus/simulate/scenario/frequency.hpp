@@ -53,8 +53,4 @@ class AnnualWeights {
   WeightScale scale_;
 };
 
-/// Area of the surface in a cell [m^2]: the area in plan over the cosine of the slope. The slope follows from the
-/// heights of the four neighbours; if one has no height, from the cell and the neighbour on the other side.
-double true_area(const Raster<float>& heights, int column, int row);
-
 }  // namespace talus
