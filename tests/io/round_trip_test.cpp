@@ -73,7 +73,7 @@ TEST_F(RoundTrip, OfDefaults) {
 
 TEST_F(RoundTrip, OfOddNumbers) {
   check(
-      "density = 2700.0000000000005\naxes = [1, 0.1, 1e-5]\n",
+      "density = 2700.0000000000005\naxes = [1, 0.1, 0.0010000000000000002]\n",
       "seed = 9007199254740991\ntrajectories = 1000000000\n[model]\nstop_speed = 1e-5\ntrap_time = "
       "0.3333333333333333\nroughness = \"resample\"\nimpact_limit = 100000\n"
       "[output]\nenergy_thresholds = [0.0123456789012345, 0.1, 1e9]\nheight_thresholds = [0.1]\ntrajectories = 1e6\n");
