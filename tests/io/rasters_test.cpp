@@ -87,7 +87,7 @@ TEST_F(Terrains, OnlyMissingValuesAreRefused) {
 TEST_F(Terrains, MustBeNorthUp) {
   const double c = 10.0 * std::cos(0.1), s = 10.0 * std::sin(0.1);
   const std::string rotated = RasterFile{.place = {6e5, c, s, 5.2e6, s, -c}}.write(path("rotated.tif"));
-  expect_input_error([&] { read_terrain(rotated); }, {"rotated.tif", "rotated", "5.73 deg", "gdalwarp"});
+  expect_input_error([&] { read_terrain(rotated); }, {"rotated.tif", "rotated", "5.73 deg", "gdalwarp -r cubicspline"});
   const std::string upside = RasterFile{.place = {6e5, 10, 0, 5.2e6, 0, 10}}.write(path("upside.tif"));
   expect_input_error([&] { read_terrain(upside); }, {"upside.tif", "south to north", "gdalwarp"});
   const std::string nowhere = RasterFile{.placed = false}.write(path("nowhere.tif"));
@@ -97,8 +97,9 @@ TEST_F(Terrains, MustBeNorthUp) {
 TEST_F(Terrains, MustBeInMetres) {
   const std::string degrees =
       RasterFile{.place = {11.0, 1e-4, 0, 47.0, 0, -1e-4}, .system = "EPSG:4326"}.write(path("degrees.tif"));
-  expect_input_error([&] { read_terrain(degrees); }, {"degrees.tif", "in degrees", "EPSG:4326",
-                                                      "gdalwarp -t_srs EPSG:32632"});  // 11 E is in UTM zone 32
+  expect_input_error([&] { read_terrain(degrees); },
+                     {"degrees.tif", "in degrees", "EPSG:4326",
+                      "gdalwarp -t_srs EPSG:32632 -r cubicspline"});                   // 11 E is in UTM zone 32
   const std::string feet = RasterFile{.system = "EPSG:2230"}.write(path("feet.tif"));  // California VI, US survey foot
   expect_input_error([&] { read_terrain(feet); },
                      {"feet.tif", "US survey foot", "must be metres", "gdalwarp -t_srs EPSG:"});

@@ -145,7 +145,7 @@ void check_crs(const std::string& path, const std::string& given, const Terrain&
   const char* const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", "CRITERION=EQUIVALENT", nullptr};
   if (system.IsSame(&of_dem, options) == 0)
     throw InputError(path + ": crs = '" + given + "': must be the system of the DEM, " + crs_name(terrain.geo.crs_wkt) +
-                     ": reproject the DEM with gdalwarp -t_srs " + given);
+                     ": reproject the DEM with gdalwarp -r cubicspline -t_srs " + given);
 }
 
 template <class Part>

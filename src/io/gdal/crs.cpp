@@ -176,8 +176,8 @@ std::optional<std::string> check_metric(const std::string& path, const std::stri
                      edit_command(path, "-a_srs EPSG:..."));
   const PJ_TYPE type = proj_get_type(system.get());
   const std::string way_out = "; reproject it, for example with gdalwarp -t_srs " +
-                              example_system(context.get(), system.get(), extent) + " -r bilinear " + shell_word(path) +
-                              " projected.tif";
+                              example_system(context.get(), system.get(), extent) + " -r cubicspline " +
+                              shell_word(path) + " projected.tif";
   if (type == PJ_TYPE_GEOGRAPHIC_2D_CRS || type == PJ_TYPE_GEOGRAPHIC_3D_CRS)
     throw InputError(path + ": coordinates are in degrees (" + crs_name(wkt) +
                      "), must be metres of a projected coordinate system" + way_out);

@@ -48,8 +48,8 @@ GeoReference read_place(GDALDataset& dataset, const std::string& path) {
   if (std::abs(g[2]) > 1e-9 * std::abs(g[1]) || std::abs(g[4]) > 1e-9 * std::abs(g[5]) || g[1] == 0.0) {
     const double turn = degrees(std::atan2(g[4], g[1]));
     throw InputError(path + ": raster is rotated or sheared (by " + text_of(std::round(turn * 100.0) / 100.0) +
-                     " deg), must be north-up: resample it, for example with gdalwarp -r bilinear " + shell_word(path) +
-                     " north_up.tif");
+                     " deg), must be north-up: resample it, for example with gdalwarp -r cubicspline " +
+                     shell_word(path) + " north_up.tif");
   }
   if (g[1] < 0.0 || g[5] > 0.0)
     throw InputError(
@@ -67,7 +67,8 @@ GeoReference read_place(GDALDataset& dataset, const std::string& path) {
 
 void check_cell(const std::string& path, double size) {
   if (const auto fault = fault_of(bounds_of("dem.cell"), size))
-    throw InputError(path + ": cells of " + text_of(size) + " m, " + *fault + ": resample it with gdalwarp -tr");
+    throw InputError(path + ": cells of " + text_of(size) + " m, " + *fault +
+                     ": resample it with gdalwarp -r cubicspline -tr");
 }
 
 /// Units of length that are no metres.
