@@ -91,8 +91,8 @@ std::string sites_calibration_summary(const SitesCalibration& c) {
     for (const auto& [name, change] : {std::pair{"fitting", e.fit}, {"held-out", e.holdout}})
       if (change.rows > 0)
         text += "error, " + e.site + ", " + name + " rows (" + std::to_string(change.blocks) +
-                " blocks): " + score_text(change.before) + " before, " + score_text(change.after) + " after (lower by " +
-                change_text(change) + "), climatology " + score_text(change.climatology) + "\n";
+                " blocks): " + score_text(change.before) + " before, " + score_text(change.after) +
+                " after (lower by " + change_text(change) + "), climatology " + score_text(change.climatology) + "\n";
   if (c.cut_short > 0.0) text += cut_short_line(c.cut_short, c.options.rules.most_vertices) + "\n";
   return text;
 }

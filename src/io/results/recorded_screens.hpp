@@ -6,8 +6,8 @@
 
 namespace talus::io {
 
-/// The id and the lines of a screen or a barrier of a run.json, in map coordinates [m]; no lines in an earlier record of
-/// a barrier. Throws InputError or Json::exception.
+/// The id and the lines of a screen or a barrier of a run.json, in map coordinates [m]; no lines in an earlier record
+/// of a barrier. Throws InputError or Json::exception.
 Screen recorded_line(const Json& json);
 
 /// The screens of a run.json, in map coordinates [m]; none if it has none. Throws InputError or Json::exception.

@@ -15,7 +15,8 @@ std::string field(double value) {
 
 }  // namespace
 
-void write_block_runs(const std::filesystem::path& folder, const LoadedCampaign& loaded, std::span<const BlockRuns> runs) {
+void write_block_runs(const std::filesystem::path& folder, const LoadedCampaign& loaded,
+                      std::span<const BlockRuns> runs) {
   const Campaign& campaign = loaded.campaign;
   const Grid& grid = campaign.surface.grid();
   std::string stops = "block,trial,end,x,y,mass_share\n";
