@@ -219,8 +219,9 @@ Eigen::Vector2d sliding_acceleration(const Eigen::Vector2d& slope, double twist,
   return -(kGravity / w2) * (1.0 - tan_phi / steepness) * slope;
 }
 
-SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, PatchIndex& at, double diameter,
-               double stop_speed, Path& path, const RollingResistance* resistance, double slid) {
+SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, PatchIndex& at, WayToAsperity asperity,
+               double stop_speed, Path& path, const RollingResistance* resistance) {
+  auto [diameter, slid] = asperity;
   const double tolerance = kErrorShare * diameter, full = diameter * (1.0 - 1e-6);
   if (slid >= full) return SlideEnd::NextAsperity;
   SlidingFriction friction(cover, resistance);

@@ -27,19 +27,24 @@ enum class SlideEnd {
 Eigen::Vector2d sliding_acceleration(const Eigen::Vector2d& slope, double twist, const Eigen::Vector2d& v,
                                      double tan_phi);
 
+/// How far the next asperity is: one diameter after the last.
+struct WayToAsperity {
+  double diameter;    ///< D [m]
+  double slid = 0.0;  ///< since the last asperity [m]: 0 at an impact, more if the slide goes on behind a barrier
+};
+
 /// Slides a block over the surface to one of the ends above.
 ///
 /// @param motion      on the surface of patch `at`, with a velocity along it; on return the state at the end
-/// @param diameter    D: distance to the next asperity [m]
+/// @param asperity    where the slide ends at the latest
 /// @param stop_speed  a block no faster than this stops on ground no steeper than phi [m/s]
 /// @param path        gets one vertex and one span per piece
 /// @param resistance  rolling resistance, added to tan(phi) where it acts; null: none
-/// @param slid        way since the last asperity [m]: 0 at an impact, more if the slide goes on behind a barrier
 ///
 /// Solved in pieces of constant acceleration, evaluated at their middle. A piece ends at the edge of its patch at the
 /// latest, and at the border of its cell if friction changes there. Its length is chosen so that the error of the
 /// position is less than D/1000 in it. At most 1 000 pieces.
-SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, PatchIndex& at, double diameter,
-               double stop_speed, Path& path, const RollingResistance* resistance = nullptr, double slid = 0.0);
+SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, PatchIndex& at, WayToAsperity asperity,
+               double stop_speed, Path& path, const RollingResistance* resistance = nullptr);
 
 }  // namespace talus

@@ -63,8 +63,8 @@ Outcome ActiveEffects::fly(Motion& motion, PatchIndex& at, bool grounded, const 
 
 SlideEnd ActiveEffects::slide(Motion& motion, PatchIndex& at, const Block& body, Path& path, double slid) {
   const RollingResistance& rolling = effects_.rolling_resistance;
-  return talus::slide(world_.surface, world_.cover, motion, at, body.diameter, world_.rules.stop_speed, path,
-                      rolling.coefficient > 0.0 ? &rolling : nullptr, slid);
+  return talus::slide(world_.surface, world_.cover, motion, at, {body.diameter, slid}, world_.rules.stop_speed, path,
+                      rolling.coefficient > 0.0 ? &rolling : nullptr);
 }
 
 void ActiveEffects::after_slide(const Motion& before, const Block& body, Motion& motion, Path& path) {

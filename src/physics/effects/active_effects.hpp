@@ -26,8 +26,7 @@ class Effectless {
     return talus::fly(world_.surface, motion, at, grounded, path);
   }
   SlideEnd slide(Motion& motion, PatchIndex& at, const Block& body, Path& path, double slid = 0.0) const {
-    return talus::slide(world_.surface, world_.cover, motion, at, body.diameter, world_.rules.stop_speed, path, nullptr,
-                        slid);
+    return talus::slide(world_.surface, world_.cover, motion, at, {body.diameter, slid}, world_.rules.stop_speed, path);
   }
   static void after_slide(const Motion&, const Block&, Motion&, Path&) {}
 

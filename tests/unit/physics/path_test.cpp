@@ -126,7 +126,7 @@ TEST(MotionBetween, EveryPlaceOfASlideHasTheEnergyOfItsHeight) {
       const double energy = 0.5 * motion.velocity.squaredNorm() + kGravity * motion.position.z();
       PatchIndex at = surface.patch_at(50.3, 61.0 + beside);
       Path path;
-      slide(surface, cover, motion, at, 6.0, 0.5, path);
+      slide(surface, cover, motion, at, {6.0}, 0.5, path);
       path.vertices.push_back({motion, Event::End});
       for (std::size_t i = 0; i + 1 < path.vertices.size(); ++i) {
         const Vertex &from = path.vertices[i], &to = path.vertices[i + 1];

@@ -28,7 +28,7 @@ Result slide_from(const Surface& surface, double tan_phi, const Vec2& place, con
   o.motion.position = {place.x(), place.y(), *surface.height(place.x(), place.y())};
   o.motion.velocity = {v.x(), v.y(), v.dot(slope)};
   const Cover cover{{Ground{.tan_phi = tan_phi}}, {}};
-  o.end = slide(surface, cover, o.motion, o.at, diameter, 0.5, o.path);
+  o.end = slide(surface, cover, o.motion, o.at, {diameter}, 0.5, o.path);
   return o;
 }
 
@@ -253,7 +253,7 @@ TEST(SlideNaN, Ends) {
   PatchIndex at = surface.patch_at(38.6, 9.3);
   Path path;
   const Cover cover{{Ground{}}, {}};
-  slide(surface, cover, motion, at, 1.0, 0.5, path);
+  slide(surface, cover, motion, at, {1.0}, 0.5, path);
   EXPECT_LE(path.spans.size(), 1000U);
 }
 

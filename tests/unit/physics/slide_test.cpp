@@ -32,7 +32,7 @@ struct Slide {
     motion.velocity = {v.x(), v.y(), v.dot(slope)};
     motion.spin = {1, 2, 3};
     const Cover cover = cover_of(tan_phi);
-    end = slide(surface, cover, motion, at, diameter, 0.5, path);
+    end = slide(surface, cover, motion, at, {diameter}, 0.5, path);
   }
   double speed() const { return motion.velocity.norm(); }
 };

@@ -44,7 +44,7 @@ struct Slide {
     motion.position = {place.x(), place.y(), *surface.height(place.x(), place.y())};
     const double cos_b = 1.0 / std::hypot(1.0, 0.375);
     motion.velocity = {speed * cos_b * heading.x(), speed * cos_b * heading.y(), -0.375 * speed * cos_b};
-    end = slide(surface, cover, motion, at, diameter, kStopSpeed, path, resistance);
+    end = slide(surface, cover, motion, at, {diameter}, kStopSpeed, path, resistance);
   }
   double beyond(const Vec2& heading) const { return heading.dot(motion.position.head<2>() - Vec2(100.0, 100.0)); }
 };
@@ -111,7 +111,7 @@ TEST(SlideAcrossABorder, UpAndDownAgain) {
   Slide s(surface, cover, up, 0.2, 3.0, 0.0, 0.0);  // puts the block there
   s.motion.velocity = {-v0 * cos_b, 0.0, 0.375 * v0 * cos_b};
   s.path.clear();
-  s.end = slide(surface, cover, s.motion, s.at, diameter, kStopSpeed, s.path);
+  s.end = slide(surface, cover, s.motion, s.at, {diameter}, kStopSpeed, s.path);
   EXPECT_EQ(s.end, SlideEnd::NextAsperity);
   EXPECT_NEAR(s.motion.velocity.squaredNorm(), back_squared + 2.0 * pull(0.1) * below, 1e-3);
   EXPECT_NEAR(-s.beyond(up) / cos_b, below, 1e-3);
@@ -164,7 +164,7 @@ TEST(SlideAcrossABorder, OnTheBottomOfAGully) {
   motion.velocity = {3.0, 0.0, -3.0};
   PatchIndex at = surface.patch_at(99.0, 105.0);
   Path path;
-  EXPECT_EQ(slide(surface, cover, motion, at, 4.0, kStopSpeed, path), SlideEnd::NextAsperity);
+  EXPECT_EQ(slide(surface, cover, motion, at, {4.0}, kStopSpeed, path), SlideEnd::NextAsperity);
   const double first = std::sqrt(2.0), v_squared = 18.0 + 2.0 * a(0.2) * first + 2.0 * a(1.5) * (4.0 - first);
   EXPECT_NEAR(motion.velocity.squaredNorm(), v_squared, 0.05);
 }
@@ -193,7 +193,7 @@ TEST(SlideAcrossABorder, IsBoundedOnAnyPatchworkOfGrounds) {
                          i % 7 == 0 ? 0.0 : slow * numbers.uniform(-4, 4), 0.0};
       PatchIndex at = surface.patch_at(x, y);
       Path path;
-      slide(surface, cover, motion, at, diameter, kStopSpeed, path);
+      slide(surface, cover, motion, at, {diameter}, kStopSpeed, path);
       EXPECT_LT(path.spans.size(), 500U) << scene << ' ' << i;
       EXPECT_TRUE(motion.position.allFinite() && motion.velocity.allFinite());
       for (const Span& s : path.spans) {

@@ -168,7 +168,7 @@ TEST(RollingResistance, AddsToTheFrictionOfASlide) {  // v^2 = 2 g cos(beta) (ta
   motion.velocity = 1.5 * Vec3(cos_beta, 0.0, -0.25 * cos_beta);
   PatchIndex at = hill.surface.patch_at(101.0, 401.0);
   Path path;
-  EXPECT_EQ(slide(hill.surface, hill.cover, motion, at, 5.0, 1e-4, path, &hill.effects.rolling_resistance),
+  EXPECT_EQ(slide(hill.surface, hill.cover, motion, at, {5.0}, 1e-4, path, &hill.effects.rolling_resistance),
             SlideEnd::Stopped);
   EXPECT_NEAR(path.length, 1.5 * 1.5 / (2.0 * kGravity * cos_beta * 0.25), 1e-6);
 }
