@@ -228,7 +228,7 @@ void Pool::slide(Slot& slot, const double* normal, int column, int row) {
   slide_.clear();
   slide_.length = slot.state[field::Length];
   slide_.plan_length = slot.state[field::PlanLength];
-  const SlideEnd how = talus::slide(world_.surface, world_.cover, motion, at, slot.release.body.diameter,
+  const SlideEnd how = talus::slide(world_.surface, world_.cover, motion, at, {slot.release.body.diameter},
                                     world_.rules.stop_speed, slide_);
   slot.state[field::Length] = slide_.length;
   slot.state[field::PlanLength] = slide_.plan_length;
