@@ -44,7 +44,9 @@ class BarrierWatch {
     }
     return std::nullopt;
   }
-  /// What it does to a block whose leg and path end there.
+  /// Stops the block at a barrier that catches it, or slows it down by what a broken one takes, and adds a vertex.
+  ///
+  /// @param motion  of the block at the barrier, where its leg and its path end
   void act(const BarrierMet& met, const Block& body, Motion& motion, Path& path);
 
  private:

@@ -16,8 +16,9 @@ double horn_slope(const Raster<float>& heights, int column, int row);
 /// @param tangent  of the slope angle [m/m]
 double true_area(const Grid& grid, double tangent);
 
-/// The same by the slope of the heights (`horn_slope`). Where a neighbour has no height, the ground goes on as a plane:
-/// to a side as from the opposite one (level where both have none), to a corner as to the sides beside it.
+/// Area of the ground in a cell of a DEM [m^2], with the slope by `horn_slope`. A missing height of a neighbour is
+/// replaced: at a side by going on as from the opposite side (level where both are missing), at a corner by the plane
+/// through the cell and the two sides beside the corner.
 double true_area(const Raster<float>& heights, int column, int row);
 
 /// Default threshold of source cells: a cell at least this steep is a candidate source [rad].

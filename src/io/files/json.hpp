@@ -39,7 +39,8 @@ Json read_record(const std::filesystem::path& file);
 [[noreturn]] void throw_not_understood(const std::filesystem::path& file, const std::string& cause,
                                        const std::string& way_out);
 
-/// What `read` makes of a record. Any exception of it becomes InputError "FILE: cannot be understood (CAUSE), WAY_OUT".
+/// Calls `read`, which takes values from the record in `file`, and returns its result. Any exception of `read` becomes
+/// InputError "FILE: cannot be understood (CAUSE), WAY_OUT".
 template <class Read>
 auto understood(const std::filesystem::path& file, const std::string& way_out, Read read) {
   try {

@@ -73,7 +73,8 @@ std::string gain_in_doubt(const FittedCandidate& chosen) {
          with_decimals(gain.high, 3) + ").";
 }
 
-/// What of the first round is significant: families by its level, a row of the residual table by the stricter one.
+/// Names the families that are significant in the first round, at its level, and the row of the residual table that is
+/// significant at the stricter level of later rounds.
 Markup sure(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
   const DiagnosisRound& first = d.rounds.front();
@@ -135,7 +136,7 @@ std::string undecided(const Diagnosis& d) {
   return text.empty() ? "Every effect of the library would have been seen, from the amounts below on." : text;
 }
 
-/// What speeds at more screens would show; empty: little.
+/// Names the effects that speeds at more screens would show at a smaller amount, or at all; empty if there are none.
 std::string further_speeds(std::span<const DetectionLimit> limits) {
   std::vector<std::string> sharper, only_then, words;
   for (const DetectionLimit& limit : limits)

@@ -34,8 +34,10 @@ struct TomlMember {
 /// Throws InputError "name:12: ..." where it cannot be read or is no TOML.
 TomlValue read_toml(const std::string& path, const std::string& name);
 
-/// The same of a file that is given for its settings: throws InputError "name: holds no `content`" if it says nothing,
-/// as the defaults would be taken unnoticed.
+/// Reads a TOML file that is given for its settings. Throws also if it has no key: the defaults would be taken
+/// unnoticed.
+///
+/// @param content  settings that it should have, for the message: "name: holds no [model] or [effects]"
 TomlValue read_settings(const std::string& path, const std::string& name, const std::string& content);
 
 }  // namespace talus::io

@@ -6,6 +6,8 @@
 Tables (all where none is named; `terrain` needs --terrain):
   v          a V gully (floor 35 degrees, walls 45) at 0, 20 and 45 degrees to the grid, thalweg through cell centres
              and half a cell beside, cells of 5, 2 and 1 m: share of 200 blocks that stop within 300 m
+  steep      the same gully, cells of 5 m: share that stops within 300 m, and share that stays, also farther down, in
+             cells counted as steep gullies
   round      a gully with a round bottom (radius of two cells and of four) at 0 to 45 degrees, 1000 blocks
   staircase  slope from cell to cell down the thalweg of the sampled V at 20 degrees
   terrain    gar, alr, mal: stops in dammed cells (lower than the four neighbours, higher than a diagonal one), in
@@ -16,6 +18,7 @@ A block counts as stopped unless it passes; the gully is long enough that none l
 Needs numpy and GDAL's python binding (Debian: python3-numpy python3-gdal).
 """
 import argparse
+import json
 import subprocess
 import tempfile
 from pathlib import Path
@@ -130,6 +133,15 @@ def v_table(o, work):
     table(["cell", "degrees", "thalweg", *SURFACES], rows())
 
 
+def steep_table(o, work):
+    def rows():
+        for degrees in (0, 10, 20, 30, 45):
+            stopped = Gully(5, degrees, 0.0, v_profile(5)).stopped(o, work, "creased", 200)
+            record = json.loads((work / "out" / "run.json").read_text(encoding="utf-8"))
+            yield [f"{degrees}", percent(stopped), percent(record["steep_gullies"]["blocks"] / 200)]
+    table(["degrees", "stop within 300 m", "stay in steep gullies"], rows())
+
+
 def round_table(o, work):
     def rows():
         for cell in (5, 2):
@@ -227,7 +239,7 @@ def terrain_values(out, transform, dammed, pits):
             "lengths": (length.mean(), runout.mean(), np.median(runout), np.quantile(runout, 0.95))}
 
 
-TABLES = {"v": v_table, "round": round_table, "staircase": staircase_table, "terrain": terrain_table}
+TABLES = {"v": v_table, "steep": steep_table, "round": round_table, "staircase": staircase_table, "terrain": terrain_table}
 
 
 def main():
