@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chosen_shares.hpp"
+#include "choice.hpp"
 #include "diagnosis_loop.hpp"
 #include "effect_fits.hpp"
 #include "outer_folds.hpp"
@@ -16,10 +16,6 @@ namespace talus {
 namespace {
 
 constexpr double kGroundShare = 0.3, kTestShare = 0.05;  // of the time of a diagnosis, roughly: for the progress
-
-double net_gain(const FittedCandidate& candidate) {
-  return candidate.gain - candidate.price;
-}
 
 /// The work of one diagnosis.
 class DiagnosisLoop {
@@ -222,18 +218,14 @@ class DiagnosisLoop {
   void cross_validate(const FittedModel& base, std::span<FittedCandidate* const> contenders) const {
     if (contenders.empty()) return;
     const std::vector<Score> before = fits_.cross_validated(base);
-    for (FittedCandidate* c : contenders) {
-      const Difference change = mean_difference(before, fits_.cross_validated(c->fitted), streams_);
-      c->cross_validated = -change.mean;
-      c->cross_validated_interval = {-change.interval.high, -change.interval.low};
-    }
+    for (FittedCandidate* c : contenders) set_unseen_gain(*c, before, fits_.cross_validated(c->fitted), streams_);
   }
 
   /// Keeps at most `most` contenders, those with the largest net gains. Each gains at least `least` and may still win.
   void drop_losers(std::vector<FittedCandidate*>& contenders, std::size_t most, double least) const {
     if (contenders.empty()) return;
     std::stable_sort(contenders.begin(), contenders.end(),
-                     [](const FittedCandidate* a, const FittedCandidate* b) { return net_gain(*a) > net_gain(*b); });
+                     [](const FittedCandidate* a, const FittedCandidate* b) { return a->net_gain() > b->net_gain(); });
     contenders.resize(std::min(contenders.size(), most));
     const Score& best = contenders.front()->fitted.objective;
     const auto behind = [&](const Score& own) { return difference(best, own, streams_).interval.low; };
@@ -249,46 +241,11 @@ class DiagnosisLoop {
     return in_table || round.p_value <= options_.later_level ? "unexplained" : "none";
   }
 
-  void count_choices(const FittedModel& base, std::vector<FittedCandidate>& candidates) const {
-    std::vector<PricedObjective> priced;
-    for (const FittedCandidate& c : candidates) priced.push_back({c.fitted.objective, c.price});
-    const std::vector<double> shares = chosen_shares(base.objective, priced, streams_);
-    for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].chosen_share = shares[i];
-  }
-
-  bool may_be_chosen(const FittedCandidate& candidate, const LeastGain& least) const {
-    return candidate.amount > rules_.least_amount && candidate.gain > least.fitted &&
-           candidate.unseen_gain() > least.unseen;
-  }
-
   void choose(const FittedModel& base, DiagnosisRound& round, bool noise) const {
-    count_choices(base, round.candidates);
-    const LeastGain least{rules_.worth_naming * base.objective.total, rules_.worth_unseen * base.objective.total};
-    const auto may = [&](const FittedCandidate& c) { return may_be_chosen(c, least); };
-    std::stable_sort(round.candidates.begin(), round.candidates.end(),
-                     [&](const FittedCandidate& a, const FittedCandidate& b) {
-                       if (may(a) != may(b)) return may(a);
-                       return may(a) ? a.unseen_gain() > b.unseen_gain() : net_gain(a) > net_gain(b);
-                     });
-    const auto chosen = std::find_if(round.candidates.begin(), round.candidates.end(), [&](FittedCandidate& c) {
-      if (noise || !may(c)) return false;
-      c.confirmation = fits_.confirmation(base, c);
-      return least.are_in(c.confirmation);
-    });
-    if (chosen == round.candidates.end()) {
-      round.effect = verdict_without_effect(round);
-      return;
-    }
-    std::rotate(round.candidates.begin(), chosen, chosen + 1);
-    const FittedCandidate& best = round.candidates.front();
-    round.effect = best.effect;
-    round.where = best.where;
-    for (std::size_t i = 1; i < round.candidates.size(); ++i) {
-      const FittedCandidate& other = round.candidates[i];
-      if (!may(other)) continue;
-      const Difference c = difference(other.fitted.objective, best.fitted.objective, streams_);
-      if (c.interval.high > 0.0) round.alike.push_back(other.effect);
-    }
+    const Choice choice(base.objective, rules_, streams_);
+    choice.rank(round.candidates);
+    if (!noise) choice.name_in(round, [&](const FittedCandidate& c) { return fits_.confirmation(base, c); });
+    if (!names_effect(round.effect)) round.effect = verdict_without_effect(round);
   }
 
   const Campaign& campaign_;

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "fit/calibrate/local_model.hpp"
-#include "talus/fit/calibrate/calibrate.hpp"
 #include "talus/fit/campaign/block_draws.hpp"
 
 namespace talus {
@@ -58,32 +57,18 @@ std::vector<Parameter> joined(std::vector<Parameter> ground, const std::vector<P
 
 }  // namespace
 
-/// Trials that one round uses, as a multiple of those that compare fits: for the choice and its cross-validation, then
-/// the same to confirm it.
-std::uint32_t EffectFits::trials_of_round() const {
-  return 1 + options_.rules.fold_orders + options_.rules.fold_orders + options_.rules.confirming;
-}
-
 ObserveOptions EffectFits::observe_options(std::uint32_t trials) const {
-  const std::uint32_t first = kUnseen + round_ * trials_of_round() * options_.trials.compare;
-  return {trials, options_.seed, first, options_.threads, rows_, {}, effort_of(options_.rules.search)};
+  return {trials,
+          options_.seed,
+          first_trial_of(options_, round_),
+          options_.threads,
+          rows_,
+          {},
+          effort_of(options_.rules.search)};
 }
 
 FitOptions EffectFits::fit_options() const {
-  FitOptions how;
-  how.trials = options_.trials.search;
-  how.comparison_trials = 4 * options_.trials.search;
-  how.seed = options_.seed;
-  how.threads = options_.threads;
-  how.rules = options_.rules.search;
-  how.proceed = proceed_;
-  return how;
-}
-
-FittedModel EffectFits::better_of(FittedModel fitted, FittedModel longer) {
-  if (longer.objective.total < fitted.objective.total) return longer;
-  fitted.evaluations = std::move(longer.evaluations);
-  return fitted;
+  return search_options(options_, proceed_);
 }
 
 std::vector<BlockRuns> EffectFits::observed_in(const Campaign& campaign, const Model& model) const {
@@ -174,14 +159,11 @@ void EffectFits::take_fit(FittedModel&& fitted, FittedCandidate& candidate) cons
   candidate.fitted = std::move(fitted);
   candidate.values.clear();
   for (const Parameter& p : candidate.parameters) candidate.values.push_back(p.get(candidate.fitted.model));
-  const VectorXd own = candidate.fitted.z.tail(std::ssize(candidate.parameters));
-  candidate.amount = own.head(static_cast<Index>(candidate.tested)).cwiseAbs().maxCoeff() / options_.rules.noticed;
+  set_amount(candidate, candidate.fitted.z, options_.rules);
 }
 
 void EffectFits::measure_gain(const FittedModel& base, FittedCandidate& candidate) const {
-  const Difference c = difference(base.objective, candidate.fitted.objective, streams_of(campaign_));
-  candidate.gain = 0.0 - c.mean;  // not -0
-  candidate.gain_interval = {-c.interval.high, -c.interval.low};
+  set_gain(candidate, base.objective, candidate.fitted.objective, streams_of(campaign_));
 }
 
 /// The base as the model of a candidate at its off values.
@@ -283,42 +265,39 @@ void EffectFits::continue_with(const FittedModel& base, FittedCandidate& candida
   measure_gain(base, candidate);
 }
 
-std::vector<Score> EffectFits::cross_validated(const FittedModel& fitted, ObserveOptions how) const {
+std::vector<Score> EffectFits::cross_validated(const FittedModel& fitted, std::uint32_t part) const {
   const FitProblem problem{campaign_, fitted.model, fitted.free, rows_};
   const FitOptions options = fit_options();
   const LocalModel local(problem, options, EndOfFit{fitted.z, fitted.objective, fitted.evaluations}, fitted.spread);
   const std::uint32_t orders = options_.rules.fold_orders;
+  const std::size_t folds = options_.rules.folds;
   const std::vector<std::uint32_t> streams = streams_of(campaign_);
+  ObserveOptions how = observe_options(options_.trials.compare);
   std::vector<Score> scores;
-  for (std::uint32_t number = 0; number < orders; ++number, how.first_trial += how.trials)  // new trials for each
-    scores.push_back(score_in_folds(local, fitted, how, random_order(streams, rows_, options_.seed, number)));
+  for (std::uint32_t number = 0; number < orders; ++number) {
+    how.first_trial =
+        first_trial_of(options_, round_) + (1 + part * orders + number) * how.trials;  // new ones for each
+    const std::vector<std::size_t> order = random_order(streams, rows_, options_.seed, number);
+    const std::vector<std::uint32_t> fold_of = folds_of(order, rows_.size(), folds);
+    const std::vector<BlockRuns> runs = runs_in_folds(local, fitted, how, fold_of, folds);
+    scores.push_back(weigh_groups(score(campaign_, runs, rows_, {ScoreRule::Fair, kFewestSimulated, fold_of})));
+  }
   return scores;
 }
 
-Score EffectFits::score_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
-                                 const std::vector<std::size_t>& order) const {
-  const std::size_t count = options_.rules.folds;
-  std::vector<std::vector<std::size_t>> folds(count);
-  ScoreOptions rule;
-  rule.folds.assign(campaign_.blocks.size(), static_cast<std::uint32_t>(count));
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    folds[i % count].push_back(order[i]);
-    rule.folds[order[i]] = static_cast<std::uint32_t>(i % count);
-  }
-  return weigh_groups(score(campaign_, runs_in_folds(local, fitted, std::move(how), folds), rows_, rule));
-}
-
 std::vector<BlockRuns> EffectFits::runs_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
-                                                 std::span<const std::vector<std::size_t>> folds) const {
+                                                 std::span<const std::uint32_t> fold_of, std::size_t folds) const {
   std::vector<BlockRuns> runs(campaign_.blocks.size());
-  for (const std::vector<std::size_t>& fold : folds) {
+  for (std::size_t fold = 0; fold < folds; ++fold) {
     if (!proceed_(1.0)) throw FitInterrupted{};
     std::vector<double> others(runs.size(), 1.0);
     how.blocks.assign(runs.size(), false);
-    for (const std::size_t block : fold) others[block] = 0.0, how.blocks[block] = true;
+    for (std::size_t b = 0; b < runs.size(); ++b)
+      if (fold_of[b] == fold) others[b] = 0.0, how.blocks[b] = true;
     const Model model = model_at(fitted.model, fitted.free, local.optimum(others, fitted.spread));
     std::vector<BlockRuns> seen = observe(campaign_, model, how);
-    for (const std::size_t block : fold) runs[block] = std::move(seen[block]);
+    for (std::size_t b = 0; b < runs.size(); ++b)
+      if (how.blocks[b]) runs[b] = std::move(seen[b]);
   }
   return runs;
 }
@@ -328,21 +307,16 @@ std::vector<BlockRuns> EffectFits::out_of_fold(const FittedModel& fitted, std::s
   const FitProblem problem{campaign_, fitted.model, fitted.free, rows_};
   const FitOptions options = fit_options();
   const LocalModel local(problem, options, EndOfFit{fitted.z, fitted.objective, fitted.evaluations}, fitted.spread);
-  std::vector<std::vector<std::size_t>> blocks(folds);
-  for (std::size_t b = 0; b < fold_of.size(); ++b)
-    if (fold_of[b] < folds) blocks[fold_of[b]].push_back(b);
-  return runs_in_folds(local, fitted, std::move(how), blocks);
+  return runs_in_folds(local, fitted, std::move(how), fold_of, folds);
 }
 
 Confirmation EffectFits::confirmation(const FittedModel& base, const FittedCandidate& candidate) const {
   const Timesheet::Phase phase(times_, "confirmation");
   const DiagnosisRules& rules = options_.rules;
-  ObserveOptions unseen = observe_options(options_.trials.compare);
-  unseen.first_trial += (1 + rules.fold_orders) * options_.trials.compare;  // after those of the choice
   const Difference change =
-      mean_difference(cross_validated(base, unseen), cross_validated(candidate.fitted, unseen), streams_of(campaign_));
-  unseen.first_trial += rules.fold_orders * options_.trials.compare;
-  unseen.trials *= rules.confirming;
+      mean_difference(cross_validated(base, 1), cross_validated(candidate.fitted, 1), streams_of(campaign_));
+  ObserveOptions unseen = observe_options(rules.confirming * options_.trials.compare);
+  unseen.first_trial += (1 + 2 * rules.fold_orders) * options_.trials.compare;
   const auto error = [&](const FittedModel& fitted) {
     const auto runs = observe(campaign_, fitted.model, unseen);
     return weigh_groups(score(campaign_, runs, rows_, fit_scoring(rules.confirming * kFewestSimulated))).total;

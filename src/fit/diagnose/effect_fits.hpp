@@ -1,28 +1,10 @@
 #pragma once
-#include "talus/fit/diagnose/diagnosis.hpp"
+#include "diagnosis_fits.hpp"
 #include "talus/fit/diagnose/score_test.hpp"
 
 namespace talus {
 
 class LocalModel;
-
-/// Least gains with which an effect is named [objective].
-struct LeastGain {
-  double fitted;  ///< on the fitting rows
-  double unseen;  ///< in cross-validation
-
-  bool are_in(const Confirmation& gains) const { return gains.fitted >= fitted && gains.unseen >= unseen; }
-};
-
-/// The fit of a chosen model from where it is: a search, then rounds until one gains nothing.
-inline FitOptions last_fit_options(FitOptions how, const DiagnosisRules& rules) {
-  how.trials *= 2;
-  how.comparison_trials *= 2;
-  how.starts = 1;
-  how.rounds = rules.last_rounds;
-  how.enough = rules.worth_a_round;
-  return how;
-}
 
 /// The fits of one diagnosis: of the ground, and of each effect on top of the model so far.
 ///
@@ -66,9 +48,7 @@ class EffectFits {
   /// order is cut into folds; each fold is simulated with the minimum of the quadratic model of the other folds' rows.
   std::vector<Score> cross_validated(const FittedModel& fitted) const {
     const Timesheet::Phase phase(times_, "cross-validation");
-    ObserveOptions unseen = observe_options(options_.trials.compare);
-    unseen.first_trial += options_.trials.compare;  // the trials before were used to choose between fits
-    return cross_validated(fitted, unseen);
+    return cross_validated(fitted, 0);
   }
   /// Runs of every block with a fold, simulated with the minimum of the quadratic model of the other folds' rows.
   ///
@@ -81,11 +61,8 @@ class EffectFits {
   Confirmation confirmation(const FittedModel& base, const FittedCandidate& candidate) const;
   /// The time sheet of these fits; whoever does other work of the diagnosis enters it here.
   Timesheet& times() const { return times_; }
-  /// The fit with the lower objective, with the evaluations of both.
-  static FittedModel better_of(FittedModel fitted, FittedModel longer);
 
  private:
-  std::uint32_t trials_of_round() const;
   ObserveOptions observe_options(std::uint32_t trials) const;
   FitOptions fit_options() const;
   FitOptions continued_fit_options(const FittedModel& fitted) const;
@@ -103,11 +80,10 @@ class EffectFits {
   };
   Start best_start(const FitProblem& problem, const FitOptions& how, const FittedModel& base,
                    const Candidate& candidate, const Verdict& verdict) const;
-  std::vector<Score> cross_validated(const FittedModel& fitted, ObserveOptions how) const;
-  Score score_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
-                       const std::vector<std::size_t>& order) const;
+  /// @param part  0: for the choice; 1: with new trials, to confirm it
+  std::vector<Score> cross_validated(const FittedModel& fitted, std::uint32_t part) const;
   std::vector<BlockRuns> runs_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
-                                       std::span<const std::vector<std::size_t>> folds) const;
+                                       std::span<const std::uint32_t> fold_of, std::size_t folds) const;
 
   const Campaign& campaign_;
   const DiagnoseOptions& options_;

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "fit/calibrate/local_model.hpp"
-#include "talus/fit/calibrate/calibrate.hpp"
 #include "talus/fit/campaign/block_draws.hpp"
 #include "talus/fit/score/joined_scores.hpp"
 
@@ -83,21 +82,14 @@ FitProblem JointFits::problem_of(const JointParameters& parameters, const std::v
 }
 
 FitOptions JointFits::fit_options() const {
-  FitOptions how;
-  how.trials = options_.trials.search;
-  how.comparison_trials = 4 * options_.trials.search;
+  FitOptions how = search_options(options_, proceed_);
   how.starts = 0;
   how.enough = options_.rules.worth_a_round;
-  how.seed = options_.seed;
-  how.threads = options_.threads;
-  how.rules = options_.rules.search;
-  how.proceed = proceed_;
   return how;
 }
 
 std::uint32_t JointFits::first_trial() const {
-  const std::uint32_t of_round = 1 + 2 * options_.rules.fold_orders + options_.rules.confirming;
-  return kUnseen + (kFirstRound + round_) * of_round * options_.trials.compare;
+  return first_trial_of(options_, kFirstRound + round_);
 }
 
 std::vector<std::vector<BlockRuns>> JointFits::observe_all(const std::vector<Model>& models, std::uint32_t trials,
@@ -148,13 +140,6 @@ JointModel JointFits::fitted(const FitProblem& problem, const JointParameters& p
   out.spread = std::move(fit.spread);
   out.evaluations = std::move(fit.evaluations);
   return simulated_anew(std::move(out));
-}
-
-/// The better one, with the evaluations of the longer fit.
-JointModel JointFits::better_of(JointModel before, JointModel longer) {
-  if (longer.objective.total < before.objective.total) return longer;
-  before.evaluations = std::move(longer.evaluations);
-  return before;
 }
 
 /// A fit continued from where it ended; the better one, with the evaluations of both.
@@ -250,10 +235,8 @@ void JointFits::take_fit(const JointModel& base, JointModel&& fitted, JointCandi
   const VectorXd z = candidate.fitted.z.tail(std::ssize(own));
   candidate.values.clear();
   for (std::size_t i = 0; i < own.size(); ++i) candidate.values.push_back(own[i].value(z[static_cast<Index>(i)]));
-  candidate.amount = z.head(static_cast<Index>(candidate.tested)).cwiseAbs().maxCoeff() / options_.rules.noticed;
-  const Difference change = difference(base.objective, candidate.fitted.objective, streams_);
-  candidate.gain = -change.mean;
-  candidate.gain_interval = {-change.interval.high, -change.interval.low};
+  set_amount(candidate, candidate.fitted.z, options_.rules);
+  set_gain(candidate, base.objective, candidate.fitted.objective, streams_);
 }
 
 std::vector<Score> JointFits::cross_validated(const JointModel& fitted, std::uint32_t part) const {
@@ -261,27 +244,27 @@ std::vector<Score> JointFits::cross_validated(const JointModel& fitted, std::uin
   const FitOptions options = fit_options();
   const LocalModel local(problem, options, EndOfFit{fitted.z, fitted.objective, fitted.evaluations}, fitted.spread);
   const std::uint32_t orders = options_.rules.fold_orders;
+  std::vector<bool> used;  // by block, numbered on from site to site
+  for (const std::vector<bool>& rows : rows_) used.insert(used.end(), rows.begin(), rows.end());
   std::vector<Score> scores;
-  for (std::uint32_t number = 0; number < orders; ++number)
-    scores.push_back(
-        score_in_folds(local, fitted, first_trial() + (1 + part * orders + number) * options_.trials.compare, number));
+  for (std::uint32_t number = 0; number < orders; ++number) {
+    const std::vector<std::size_t> order = random_order(streams_, used, options_.seed, number);
+    const std::vector<std::uint32_t> fold_of = folds_of(order, streams_.size(), options_.rules.folds);
+    const std::uint32_t first = first_trial() + (1 + part * orders + number) * options_.trials.compare;
+    const auto runs = runs_in_folds(local, problem, fitted, first, fold_of);
+    scores.push_back(weigh_groups(joined_score(runs, {ScoreRule::Fair, kFewestSimulated, fold_of})));
+  }
   return scores;
 }
 
-Score JointFits::score_in_folds(const LocalModel& local, const JointModel& fitted, std::uint32_t first,
-                                std::uint32_t number) const {
-  const FitProblem problem = problem_of(fitted.parameters, fitted.models);
-  std::vector<bool> used;  // by block, numbered on from site to site
-  for (const std::vector<bool>& rows : rows_) used.insert(used.end(), rows.begin(), rows.end());
-  const std::vector<std::size_t> order = random_order(streams_, used, options_.seed, number);
-  const std::size_t folds = options_.rules.folds;
-  std::vector<std::uint32_t> fold_of(streams_.size(), static_cast<std::uint32_t>(folds));
-  for (std::size_t i = 0; i < order.size(); ++i) fold_of[order[i]] = static_cast<std::uint32_t>(i % folds);
+std::vector<std::vector<BlockRuns>> JointFits::runs_in_folds(const LocalModel& local, const FitProblem& problem,
+                                                             const JointModel& fitted, std::uint32_t first,
+                                                             std::span<const std::uint32_t> fold_of) const {
   std::vector<std::vector<BlockRuns>> runs;
   for (const std::vector<bool>& rows : rows_) runs.emplace_back(rows.size());
-  for (std::size_t fold = 0; fold < folds; ++fold) {
+  for (std::size_t fold = 0; fold < options_.rules.folds; ++fold) {
     if (!proceed_(1.0)) throw FitInterrupted{};
-    std::vector<double> others(streams_.size(), 1.0);
+    std::vector<double> others(fold_of.size(), 1.0);
     for (std::size_t b = 0; b < others.size(); ++b)
       if (fold_of[b] == fold) others[b] = 0.0;
     const std::vector<Model> models = problem.models(local.optimum(others, fitted.spread));
@@ -296,7 +279,7 @@ Score JointFits::score_in_folds(const LocalModel& local, const JointModel& fitte
       before += rows_[i].size();
     }
   }
-  return weigh_groups(joined_score(runs, {ScoreRule::Fair, kFewestSimulated, fold_of}));
+  return runs;
 }
 
 Confirmation JointFits::confirmation(const JointModel& base, const JointCandidate& candidate) const {

@@ -48,7 +48,7 @@ void shuffle(std::vector<double>& values, std::uint32_t stream, std::uint32_t ar
 
 /// Two-sided p of Spearman's rank correlation: the share of the arrangements of `a` whose correlation is as large. They
 /// are drawn until enough of them are (Besag and Clifford 1991), which is a p-value, too. In the tail that decides
-/// Student's t is too small: by 1.6 at 24 blocks.
+/// that of Student's t is too small, 1.6 times at 24 blocks.
 double p_by_permutation(std::span<const double> a, std::span<const double> b, std::uint32_t stream) {
   std::vector<double> moved = ranks(a), fixed = ranks(b);
   for (double& rank : fixed) rank -= 0.5 * (static_cast<double>(b.size()) - 1.0);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "chosen_shares.hpp"
+#include "choice.hpp"
 #include "joint_fits.hpp"
 #include "talus/fit/diagnose/detection_limits.hpp"
 #include "talus/fit/diagnose/diagnose.hpp"
@@ -12,10 +12,6 @@ namespace talus {
 namespace {
 
 using Eigen::VectorXd;
-
-double net_gain(const JointCandidate& candidate) {
-  return candidate.gain - candidate.price;
-}
 
 std::size_t fitting_blocks(const Campaign& campaign) {
   const std::vector<bool> rows = fitting_rows(campaign);
@@ -225,47 +221,11 @@ class SitesLoop {
       advance(0.1);
     }
     const std::vector<Score> before = fits_.cross_validated(base, 0);
-    for (JointCandidate& c : round.candidates) {
-      const Difference change = mean_difference(before, fits_.cross_validated(c.fitted, 0), fits_.streams());
-      c.cross_validated = -change.mean;
-      c.cross_validated_interval = {-change.interval.high, -change.interval.low};
-    }
-    count_choices(base, round.candidates);
-    choose(base, round);
-  }
-
-  void count_choices(const JointModel& base, std::vector<JointCandidate>& candidates) const {
-    std::vector<PricedObjective> priced;
-    for (const JointCandidate& c : candidates) priced.push_back({c.fitted.objective, c.price});
-    const std::vector<double> shares = chosen_shares(base.objective, priced, fits_.streams());
-    for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].chosen_share = shares[i];
-  }
-
-  /// The rules of `diagnose`: enough gain, also on blocks that a fit has not seen, and again with new random numbers.
-  void choose(const JointModel& base, JointRound& round) const {
-    const LeastGain least{rules_.worth_naming * base.objective.total, rules_.worth_unseen * base.objective.total};
-    const auto may = [&](const JointCandidate& c) {
-      return c.amount > rules_.least_amount && c.gain > least.fitted && c.cross_validated > least.unseen;
-    };
-    std::ranges::stable_sort(round.candidates, [&](const JointCandidate& a, const JointCandidate& b) {
-      if (may(a) != may(b)) return may(a);
-      return may(a) ? a.cross_validated > b.cross_validated : net_gain(a) > net_gain(b);
-    });
-    const auto chosen = std::ranges::find_if(round.candidates, [&](JointCandidate& c) {
-      if (!may(c)) return false;
-      c.confirmation = fits_.confirmation(base, c);
-      return least.are_in(c.confirmation);
-    });
-    if (chosen == round.candidates.end()) return;
-    std::rotate(round.candidates.begin(), chosen, chosen + 1);
-    const JointCandidate& best = round.candidates.front();
-    round.effect = best.effect;
-    round.where = best.where;
-    for (std::size_t i = 1; i < round.candidates.size(); ++i) {
-      const JointCandidate& other = round.candidates[i];
-      if (may(other) && difference(other.fitted.objective, best.fitted.objective, fits_.streams()).interval.high > 0.0)
-        round.alike.push_back(other.effect);
-    }
+    for (JointCandidate& c : round.candidates)
+      set_unseen_gain(c, before, fits_.cross_validated(c.fitted, 0), fits_.streams());
+    const Choice choice(base.objective, rules_, fits_.streams());
+    choice.rank(round.candidates);
+    choice.name_in(round, [&](const JointCandidate& c) { return fits_.confirmation(base, c); });
   }
 
   std::span<const Site> sites_;

@@ -33,17 +33,12 @@ struct Confirmation {
   double unseen = kNotGiven;  ///< in cross-validation, less the price of its place
 };
 
-/// A candidate at its best place, fitted together with the parameters of the base.
-struct FittedCandidate {
+/// An effect at its best place, as its fit has left it: what the choice among the effects of a round rests on.
+struct FittedEffect {
   std::string effect, where;
-  std::vector<Parameter> parameters;   ///< of the candidate itself
+  std::vector<Parameter> parameters;   ///< of the effect itself
   std::size_t tested = 0;              ///< number of them that the score test moves; all at zero: no effect
   std::vector<double> values;          ///< fitted values of the parameters
-  bool with_ground = true;             ///< false: the ground was held, because it may not be chosen
-  bool refined = true;                 ///< false: no amount helped, so that it was not fitted: its numbers are off
-  double p_value = 1.0;                ///< of the score test, corrected for the places of the effect
-  std::string family;                  ///< by which it may be chosen; empty: it may not
-  double statistic = 0.0;              ///< of the score test
   double gain = 0.0;                   ///< decrease of the objective of the fitting rows, without the prior
   Interval gain_interval;              ///< 95 %, paired bootstrap over blocks
   double price = 0.0;                  ///< gain that its fitted numbers and those of its place must bring
@@ -53,10 +48,20 @@ struct FittedCandidate {
   Confirmation confirmation;
   double amount = 0.0;        ///< largest of its tested parameters, in units of what one would notice
   double chosen_share = 0.0;  ///< share of the bootstraps in which it has the lowest objective of all
-  FittedModel fitted;
 
+  double net_gain() const { return gain - price; }
   /// Gain on blocks that its fit has not seen, less the price of its place. NaN: not cross-validated.
   double unseen_gain() const { return cross_validated - place_price; }
+};
+
+/// An effect fitted together with the parameters of the base, to one campaign.
+struct FittedCandidate : FittedEffect {
+  bool with_ground = true;  ///< false: the ground was held, because it may not be chosen
+  bool refined = true;      ///< false: no amount helped, so that it was not fitted: its numbers are off
+  double p_value = 1.0;     ///< of the score test, corrected for the places of the effect
+  std::string family;       ///< by which it may be chosen; empty: it may not
+  double statistic = 0.0;   ///< of the score test
+  FittedModel fitted;
 };
 
 /// Whether the verdict of a round is an effect, and neither "none" nor "unexplained".

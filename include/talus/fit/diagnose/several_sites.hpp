@@ -18,19 +18,9 @@ struct JointModel {
   std::vector<Evaluation> evaluations;
 };
 
-/// An effect with the same numbers at all sites, fitted together with the ground of each.
-struct JointCandidate {
-  std::string effect, where;
-  std::vector<Parameter> parameters;  ///< shared
-  std::size_t tested = 0;             ///< as FittedCandidate
-  std::vector<double> values;
-  double gain = 0.0;       ///< of the objective of all sites
-  Interval gain_interval;  ///< 95 %, over the blocks of all
-  double price = 0.0, amount = 0.0;
-  double cross_validated = kNotGiven;  ///< gain on blocks that its fit has not seen
-  Interval cross_validated_interval;   ///< 95 %, over the blocks of all
-  Confirmation confirmation;           ///< as FittedCandidate
-  double chosen_share = 0.0;           ///< as FittedCandidate
+/// An effect with the same numbers at all sites, fitted together with the ground of each. Its gains are of the
+/// objective of all sites, their intervals over the blocks of all.
+struct JointCandidate : FittedEffect {
   JointModel fitted;
 };
 

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "fit/diagnose/choice.hpp"
 #include "fit/diagnose/joint_fits.hpp"
 #include "support/campaigns.hpp"
 #include "talus/fit/diagnose/candidates.hpp"
@@ -34,9 +35,9 @@ TEST(EffectFits, ALongerFitIsTakenWhereItIsBetterAndTeachesWhereItIsNot) {
   longer.z[0] = 2.0;
   longer.evaluations.resize(3);
   longer.objective.total = 0.4;
-  EXPECT_EQ(EffectFits::better_of(fitted, longer).z[0], 2.0);
+  EXPECT_EQ(better_of(fitted, longer).z[0], 2.0);
   longer.objective.total = 0.6;
-  const FittedModel kept = EffectFits::better_of(fitted, longer);
+  const FittedModel kept = better_of(fitted, longer);
   EXPECT_EQ(kept.z[0], 1.0);
   EXPECT_EQ(kept.objective.total, 0.5);
   EXPECT_EQ(kept.evaluations.size(), 3U);
