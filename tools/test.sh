@@ -33,10 +33,7 @@ stage "asan: build by clang, warnings are errors, invariants checked, sanitizers
 cmake --preset asan ${TALUS_DATA:+-DTALUS_DATA="$TALUS_DATA"}
 cmake --build --preset asan
 stage "asan: tests of core and files"
-# Long where nothing is optimised, and run above: tests of laws by many blocks.
-statistics="ScoreTest|Calibrate|FreePaths|EffectFits|JointFits|Nested|ResidualTable|SceneSymmetry|PlaneTable|PlaneSigns|PlaneScaling"
-statistics+="|LogScore|DepositScore|DepositCheck|WithZerosToo|Dispersion|Evaluate|EnergyComponent|CoverageOf|PropertyTest|TheFreePathAmong|DayTest|FurtherScreens"
-ctest --preset asan -j 2 -LE "slow|cli|example|package|qgis" -E "$statistics"
+tools/scripts/checks/sanitized_tests.sh build/asan
 stage "the same bytes from gcc with optimisation and from clang without"
 tools/scripts/checks/same_bytes.sh build/release/talus build/asan/talus
 stage "clang-tidy on the engine"  # on all sources before a release: tools/scripts/checks/tidy.sh build/dev

@@ -109,6 +109,13 @@ std::string joined(std::span<const std::string> words) {
   return result;
 }
 
+std::string list_text(const std::vector<double>& values) {
+  std::vector<std::string> words;
+  words.reserve(values.size());
+  for (const double value : values) words.push_back(text_of(value));
+  return "[" + joined(words) + "]";
+}
+
 std::string lowercase(std::string_view text) {
   std::string result(text);
   std::ranges::transform(result, result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

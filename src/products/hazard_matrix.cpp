@@ -17,8 +17,10 @@ bool ascend(const std::vector<double>& values) {
 }  // namespace
 
 std::string fault_of(const HazardMatrix& m) {
-  if (!ascend(m.energies) || m.energies.size() > 8) return "energies: must be 1 to 8 numbers above 0 kJ that ascend";
-  if (!ascend(m.years) || m.years.size() > 8) return "years: must be 1 to 8 numbers above 0 that ascend";
+  if (!ascend(m.energies) || m.energies.size() > 8)
+    return "energies = " + list_text(m.energies) + ": must be 1 to 8 numbers above 0 kJ that ascend";
+  if (!ascend(m.years) || m.years.size() > 8)
+    return "years = " + list_text(m.years) + ": must be 1 to 8 numbers above 0 that ascend";
   if (m.names.empty() || m.names.size() > 16) return "names: must be 1 to 16 words, of class 0 first";
   const std::string shape = "classes: must be " + std::to_string(m.energies.size() + 1) + " rows (weak first) of " +
                             std::to_string(m.years.size() + 1) + " whole numbers (often first; last what is rarer)";

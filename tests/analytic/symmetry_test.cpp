@@ -170,7 +170,8 @@ TEST_P(PathSymmetry, AQuarterTurnTurnsEveryPath) {  // the same draws: the same 
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Surfaces, PathSymmetry, testing::Values(SurfaceKind::Bilinear, SurfaceKind::Creased));
+INSTANTIATE_TEST_SUITE_P(Surfaces, PathSymmetry, testing::Values(SurfaceKind::Bilinear, SurfaceKind::Creased),
+                         [](const auto& test) { return std::string(name_of(test.param)); });
 
 TEST(SceneSymmetry, AnyTurnOfAPlaneTurnsEveryPath) {
   const auto run = [](double azimuth, std::uint32_t block) {  // dips towards the azimuth

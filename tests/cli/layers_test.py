@@ -100,7 +100,7 @@ class Layers(Case):
         self.run_well("run", self.path("out/scenario.toml"), "-o", self.path("again"))
         for name in "impact_probability.tif", "energy.tif":
             self.assertTrue((gdal.Open(self.path(f"out/{name}")).ReadAsArray() == gdal.Open(self.path(f"again/{name}")).ReadAsArray()).all())
-        self.fails(2, "must ascend", arguments=["run", *flags[:-1], "100,10", "-o", self.path("no")])
+        self.fails(2, "--thresholds = [100, 10]: must ascend", arguments=["run", *flags[:-1], "100,10", "-o", self.path("no")])
         self.fails(2, "flag --frequency", arguments=["run", *self.flags, "--sources", self.path("site.gpkg"), "--sources-layer", "cliffs",
                                                      "--frequency", "-1", "-o", self.path("no")])
 

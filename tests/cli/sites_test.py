@@ -15,15 +15,15 @@ SHORT = ("--surface", "bilinear", "-q")
 class Sites(Case):
     """Two measurements of the slope of support.py, by the same model: north (36 blocks) and south (36 others)."""
 
-    def measure(self, name, first, seed, kind, called=None):
+    def measure(self, name, first, seed, kind, called=None, count=36, holdout=True):
         """Blocks of many shapes, released side by side; every third is held out. `kind`: the model that measures them."""
         folder = self.path(name)
         os.makedirs(folder, exist_ok=True)
         chance = random.Random(first)
         blocks = []
-        for i in range(36):
+        for i in range(count):
             long, flat = chance.uniform(1.0, 2.0), chance.uniform(0.7, 1.0)
-            blocks.append([f"b{first + i}", WEST + 60 + 5 * i, NORTH - 40, 1, 400 + 20 * i, long, 1.0, flat, int(i % 3 == 2)])
+            blocks.append([f"b{first + i}", WEST + 60 + 5 * i, NORTH - 40, 1, 400 + 20 * i, long, 1.0, flat, int(holdout and i % 3 == 2)])
         self.table(name, "blocks", "id,x,y,release_height_m,mass_kg,L1_m,L2_m,L3_m,holdout", blocks)
         self.table(name, "stops", "id,x,y", [])
         self.write(f"{name}/campaign.toml", f'name = "{called or name}"\ndem = "{self.path("dem.tif")}"\nblocks = "blocks.csv"\n'
@@ -121,7 +121,7 @@ class Calibrate(Sites):
             rows = list(csv.reader(file))
         self.table("b", "blocks", ",".join(rows[0]), [[*r[:-1], "1"] for r in rows[1:]])
         self.fails(2, b, "nothing to fit to", arguments=("diagnose", a, b, *out))
-        for flag in (("--all-rows",), ("--nested",), ("--no-nested",), ("--quick-folds",), ("--base-fits", "5"), ("--folds", "5")):
+        for flag in (("--all-rows",), ("--nested",), ("--quick-folds",), ("--base-fits", "5")):
             self.fails(2, "flag " + flag[0], "not with several campaigns", arguments=("diagnose", a, b, *flag, *out))
         self.assertFalse(os.path.exists(self.path("out")))
 
@@ -150,6 +150,25 @@ class Diagnose(Sites):
         self.assertIn("pooled", page)
         self.assertNotRegex(page, "https?:")
 
+
+    def test_where_nothing_is_held_out_every_block_is_out_of_its_fold(self):
+        """The types of the fields are those of one campaign: INTERFACE.md, `error.holdout`."""
+        paths = [self.measure(name, first, 5 + first, GROUND, count=12, holdout=False) for name, first in (("north", 0), ("south", 40))]
+        few = ("--fit", "En50", "--trials", "10", "--test-trials", "10", "--level", "0.001", "--folds", "2")
+        record = self.result("diagnose", paths, "nested", *few)
+        for error in (record["error"], *(site["error"] for site in record["sites"])):
+            self.assertEqual((error["metric"], error["holdout"]["rows"], error["headline"]["rows"]),
+                             ("mean normalised score", "out-of-fold", "out-of-fold"))
+            for value in (error["holdout"]["before"], error["holdout"]["after"], error["holdout"]["climatology"]):
+                self.assertTrue(0.1 < value < 3.0)
+        self.assertEqual(record["error"]["holdout"]["blocks"], 24)
+        self.assertEqual(sum(fold["blocks"]["north"] for fold in record["nested"]["folds"]), 12)
+        self.assertEqual([fold["effects"] for fold in record["nested"]["folds"]], [["none"], ["none"]])
+        self.assertIn("out-of-fold rows", self.text("nested/report.html"))
+        alone = self.result("diagnose", [*paths, "--no-nested"], "never", *few)
+        self.assertNotIn("nested", alone)
+        self.assertEqual(alone["error"]["holdout"]["rows"], "holdout")
+        self.assertEqual(alone["error"]["fit"], record["error"]["fit"])
 
     def fields_of_one_campaign(self, record):
         """Beside its own, the record has the fields of one campaign; what is known by site names the site."""

@@ -166,7 +166,9 @@ TEST_F(HazardFile, Matrix) {
   };
   wrong("energys = [30]\n", {"m.toml:1", "did you mean 'energies'"});
   wrong("years = [30]\n", {"m.toml", "classes: must be 3 rows"});
-  wrong("energies = [300, 30]\n", {"m.toml", "ascend"});
+  wrong("energies = [300, 30]\n", {"m.toml: energies = [300, 30]:", "ascend"});
+  wrong("energies = [10, 30, 300]\n",
+        {"classes: must be 4 rows", "the file has none, and the default has 3 rows of 4"});
   wrong("classes = [[1.5]]\n", {"must be a whole number"});
 }
 

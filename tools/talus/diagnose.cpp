@@ -110,7 +110,9 @@ int diagnose(const Options& options) {
       throw talus::InputError("flag " + options.of_one.front() +
                               ": not with several campaigns, whose held-out rows are respected and which are not "
                               "fitted again; diagnose each campaign alone with it");
-    return diagnose_several(options, options.how);
+    talus::DiagnoseOptions how = options.how;
+    how.nested = !options.no_nested;
+    return diagnose_several(options, how);
   }
   require_seed(options.how.seed);
   const auto start = std::chrono::steady_clock::now();
@@ -177,7 +179,7 @@ void add_diagnose(CLI::App& app, Action& action) {
       "Examples:\n  talus diagnose campaign.toml -o diagnosis\n"
       "  talus diagnose a/campaign.toml b/campaign.toml -o diagnosis\n\nThen open diagnosis/report.html.");
   command->callback([&action, options, command] {
-    for (const char* flag : {"--base-fits", "--all-rows", "--nested", "--no-nested", "--folds", "--quick-folds"})
+    for (const char* flag : {"--base-fits", "--all-rows", "--nested", "--quick-folds"})
       if (command->count(flag) > 0) options->of_one.emplace_back(flag);
     options->how.later_level = std::min(options->how.later_level, options->how.first_level);
     action = [options] { return diagnose(*options); };

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 
 #include "progress.hpp"
@@ -22,8 +23,13 @@ void write_results(const OpenedSites& opened, const talus::io::SitesRecord& reco
                           : "The ground alone: talus diagnose found nothing to add at all sites.");
 }
 
+bool holds_out(const talus::Site& site) {
+  return std::ranges::count(talus::holdout_rows(*site.campaign), true) > 0;
+}
+
 }  // namespace
 
+/// @param how  `nested`: where no site holds anything out
 int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOptions& how) {
   require_seed(how.seed);
   const auto start = std::chrono::steady_clock::now();
@@ -33,6 +39,8 @@ int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOption
   talus::give_own_streams(opened.sites);
   record.files = opened.paths;
   record.options = how;
+  record.options.base_fits = 1;
+  record.options.nested = how.nested && std::ranges::none_of(opened.sites, holds_out);
   Progress progress(Progress::mode_of(command.quiet, command.progress), 0, "diagnose");
   record.options.proceed = [&progress](double share) { return progress.update(share) && !interrupted(); };
   std::vector<talus::Model> presets;

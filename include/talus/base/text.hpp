@@ -36,6 +36,9 @@ std::string csv_field(double value);
 /// The words in one text: "a, b, c".
 std::string joined(std::span<const std::string> words);
 
+/// Numbers as in a scenario file: "[30, 300]".
+std::string list_text(const std::vector<double>& values);
+
 /// The text with its capital letters (ASCII) as small ones.
 std::string lowercase(std::string_view text);
 

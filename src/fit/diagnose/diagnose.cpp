@@ -278,13 +278,13 @@ Diagnosis run_loop(const Campaign& campaign, const Model& start, const DiagnoseO
 }
 
 Diagnosis diagnose(const Campaign& campaign, const Model& start, const DiagnoseOptions& options) {
-  const OuterFolds folds = outer_folds(campaign, fitting_rows(campaign), options.outer_folds, options.seed);
-  if (options.nested) require_fitting_rows(campaign, folds);
+  if (options.nested)
+    require_fitting_rows(campaign, outer_folds(campaign, fitting_rows(campaign), options.outer_folds, options.seed));
   DiagnosisWork work(options);
   Diagnosis d = repeated_diagnosis(campaign, start, work);
   if (options.nested) {
     const Timesheet::Phase phase(d.times, "folds");
-    d.nested = nested_validation(campaign, start, work, folds, d);
+    d.nested = nested_validation(campaign, start, work, d);
   }
   return d;
 }

@@ -59,13 +59,7 @@ void forget(MeasuredBlock& block) {
 
 OuterFold loop_of(const Campaign& campaign, const OuterFolds& folds, std::uint32_t fold, const Diagnosis& found,
                   bool naming) {
-  OuterFold loop;
-  for (std::size_t b = 0; b < folds.fold_of.size(); ++b) {
-    if (folds.fold_of[b] != fold) continue;
-    ++loop.blocks;
-    const std::string& group = campaign.blocks[b].group;
-    if (folds.by_group && std::ranges::find(loop.groups, group) == loop.groups.end()) loop.groups.push_back(group);
-  }
+  OuterFold loop = left_out(campaign, folds, fold);
   for (const DiagnosisRound& round : found.rounds) {
     if (!names_effect(round.effect)) continue;
     loop.effects.push_back(round.effect);
@@ -86,14 +80,6 @@ ObserveOptions unseen_runs(const Campaign& campaign, const DiagnoseOptions& opti
   how.threads = options.threads;
   how.blocks.assign(campaign.blocks.size(), false);
   return how;
-}
-
-void simulate_fold(const Campaign& campaign, const OuterFolds& folds, std::uint32_t fold, const Model& model,
-                   ObserveOptions how, std::vector<BlockRuns>& runs) {
-  for (std::size_t b = 0; b < folds.fold_of.size(); ++b) how.blocks[b] = folds.fold_of[b] == fold;
-  std::vector<BlockRuns> seen = observe(campaign, model, how);
-  for (std::size_t b = 0; b < seen.size(); ++b)
-    if (how.blocks[b]) runs[b] = std::move(seen[b]);
 }
 
 void simulate_candidates(const Campaign& campaign, const DiagnoseOptions& options, const Diagnosis& whole,
@@ -136,35 +122,60 @@ Campaign without_fold(const Campaign& campaign, const OuterFolds& folds, std::ui
   return rest;
 }
 
-void require_fitting_rows(const Campaign& campaign, const OuterFolds& folds) {
+void require_fitting_rows(const Campaign& campaign, const OuterFolds& folds, const std::string& name) {
   for (std::uint32_t fold = 0; fold < folds.count; ++fold) {
     const Campaign rest = without_fold(campaign, folds, fold);
     if (score_of_climatology(rest, fitting_rows(rest)).groups.empty())
-      throw InputError("cross-validation in " + std::to_string(folds.count) + " folds: without fold " +
-                       std::to_string(fold + 1) +
+      throw InputError((name.empty() ? "" : name + ": ") + "cross-validation in " + std::to_string(folds.count) +
+                       " folds: without fold " + std::to_string(fold + 1) +
                        " no quantity has five values that differ: measure more, or leave it out with --no-nested");
   }
 }
 
-NestedValidation nested_validation(const Campaign& campaign, const Model& start, DiagnosisWork& work,
-                                   const OuterFolds& folds, const Diagnosis& whole) {
+OuterFold left_out(const Campaign& campaign, const OuterFolds& folds, std::uint32_t fold) {
+  OuterFold out;
+  for (std::size_t b = 0; b < folds.fold_of.size(); ++b) {
+    if (folds.fold_of[b] != fold) continue;
+    ++out.blocks;
+    const std::string& group = campaign.blocks[b].group;
+    if (folds.by_group && std::ranges::find(out.groups, group) == out.groups.end()) out.groups.push_back(group);
+  }
+  return out;
+}
+
+NestedValidation folds_to_validate(const Campaign& campaign, const DiagnoseOptions& options, std::uint32_t trials) {
   NestedValidation nested;
-  nested.folds = folds;
-  nested.naming = work.options().naming_in_folds;
-  nested.trials = whole.trials.compare;
+  nested.folds = outer_folds(campaign, fitting_rows(campaign), options.outer_folds, options.seed);
+  nested.naming = options.naming_in_folds;
+  nested.trials = trials;
   nested.base.resize(campaign.blocks.size());
   nested.found.resize(campaign.blocks.size());
+  return nested;
+}
+
+void simulate_fold(const Campaign& campaign, const DiagnoseOptions& options, std::uint32_t fold, const Model& base,
+                   const Model& found, NestedValidation& nested) {
+  ObserveOptions how = unseen_runs(campaign, options, nested.trials);
+  for (std::size_t b = 0; b < how.blocks.size(); ++b) how.blocks[b] = nested.folds.fold_of[b] == fold;
+  for (const auto& [model, runs] : {std::pair{&base, &nested.base}, {&found, &nested.found}}) {
+    std::vector<BlockRuns> seen = observe(campaign, *model, how);
+    for (std::size_t b = 0; b < seen.size(); ++b)
+      if (how.blocks[b]) (*runs)[b] = std::move(seen[b]);
+  }
+}
+
+NestedValidation nested_validation(const Campaign& campaign, const Model& start, DiagnosisWork& work,
+                                   const Diagnosis& whole) {
+  NestedValidation nested = folds_to_validate(campaign, work.options(), whole.trials.compare);
   LoopScope scope;
   scope.brief = true;
   scope.given = !nested.naming;
   for (const DiagnosisRound& round : whole.rounds)
     if (names_effect(round.effect)) scope.effects.push_back(round.effect);
-  const ObserveOptions how = unseen_runs(campaign, work.options(), nested.trials);
-  for (std::uint32_t fold = 0; fold < folds.count; ++fold) {
-    const Diagnosis part = run_loop(without_fold(campaign, folds, fold), start, work.next(true), scope);
-    simulate_fold(campaign, folds, fold, part.base.model, how, nested.base);
-    simulate_fold(campaign, folds, fold, part.with_effects.model, how, nested.found);
-    nested.loops.push_back(loop_of(campaign, folds, fold, part, nested.naming));
+  for (std::uint32_t fold = 0; fold < nested.folds.count; ++fold) {
+    const Diagnosis part = run_loop(without_fold(campaign, nested.folds, fold), start, work.next(true), scope);
+    simulate_fold(campaign, work.options(), fold, part.base.model, part.with_effects.model, nested);
+    nested.loops.push_back(loop_of(campaign, nested.folds, fold, part, nested.naming));
   }
   DiagnoseOptions options = work.options();
   options.trials = whole.trials;

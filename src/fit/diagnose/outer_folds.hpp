@@ -3,13 +3,24 @@
 
 namespace talus {
 
-/// Throws InputError if what a fold leaves is too little to be fitted.
-void require_fitting_rows(const Campaign& campaign, const OuterFolds& folds);
+/// Throws InputError if what a fold leaves is too little to be fitted. @param name  of the campaign, for the message
+void require_fitting_rows(const Campaign& campaign, const OuterFolds& folds, const std::string& name = "");
+
+/// The folds of the fitting blocks, before any is simulated.
+NestedValidation folds_to_validate(const Campaign& campaign, const DiagnoseOptions& options, std::uint32_t trials);
+
+/// Simulates the blocks of a fold with what was found without them: the ground alone, and the last model. All folds and
+/// models have the same random numbers.
+void simulate_fold(const Campaign& campaign, const DiagnoseOptions& options, std::uint32_t fold, const Model& base,
+                   const Model& found, NestedValidation& nested);
+
+/// The blocks and groups of a fold.
+OuterFold left_out(const Campaign& campaign, const OuterFolds& folds, std::uint32_t fold);
 
 /// Repeats the loop without each fold and simulates the fold's blocks with what it found.
 ///
 /// @param whole  the diagnosis of all fitting rows: its candidates, and the effects that folds take which do not choose
 NestedValidation nested_validation(const Campaign& campaign, const Model& start, DiagnosisWork& work,
-                                   const OuterFolds& folds, const Diagnosis& whole);
+                                   const Diagnosis& whole);
 
 }  // namespace talus

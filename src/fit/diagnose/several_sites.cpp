@@ -4,6 +4,7 @@
 
 #include "choice.hpp"
 #include "joint_fits.hpp"
+#include "outer_folds.hpp"
 #include "talus/fit/diagnose/detection_limits.hpp"
 #include "talus/fit/diagnose/diagnose.hpp"
 #include "talus/fit/diagnose/families.hpp"
@@ -39,8 +40,10 @@ struct SiteTests {
 /// The work of one diagnosis of several campaigns.
 class SitesLoop {
  public:
-  SitesLoop(std::span<const Site> sites, const DiagnoseOptions& options)
+  /// @param brief  for a repetition without a fold: as LoopScope::brief
+  SitesLoop(std::span<const Site> sites, const DiagnoseOptions& options, bool brief = false)
       : sites_(sites),
+        brief_(brief),
         asked_(options),
         options_(for_blocks(options, all_blocks(sites))),
         rules_(options_.rules),
@@ -89,7 +92,7 @@ class SitesLoop {
     SiteDiagnosis out;
     out.name = sites_[site].name;
     out.trials = own.trials;
-    out.base = fits.begin_round(fits.fit_ground(start));
+    out.base = fits.begin_round(fits.fit_ground(start, brief_));
     SiteTests tests;
     tests.candidates = candidates_of(campaign, out.base.model, out.base.runs, {}, rules_);
     ScoreTestOptions how;
@@ -166,7 +169,7 @@ class SitesLoop {
       if (round.effect == "none" && smallest <= options_.later_level) round.effect = "unexplained";
       const bool more = names_effect(round.effect);
       if (more) {
-        fits_.complete(model, round.candidates.front());
+        if (!brief_) fits_.complete(model, round.candidates.front());
         found.push_back(round.effect);
         model = round.candidates.front().fitted;
       }
@@ -229,6 +232,7 @@ class SitesLoop {
   }
 
   std::span<const Site> sites_;
+  bool brief_;
   DiagnoseOptions asked_, options_;  // trials as asked for, and raised for the blocks of all sites
   const DiagnosisRules& rules_;
   JointFits fits_;
@@ -236,11 +240,48 @@ class SitesLoop {
   double progress_ = 0.0, ground_ = 0.0;
 };
 
+/// The diagnosis without a fold of every site, which then simulates the blocks of these folds.
+void validate_fold(std::span<const Site> sites, std::span<const Model> start, DiagnosisWork& work, std::uint32_t fold,
+                   std::vector<NestedValidation>& nested) {
+  std::vector<Campaign> rest;
+  std::vector<Site> left;
+  rest.reserve(sites.size());
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    rest.push_back(without_fold(*sites[i].campaign, nested[i].folds, fold));
+    left.push_back({sites[i].name, &rest.back()});
+  }
+  const SitesDiagnosis found = SitesLoop(left, work.next(true), true).run(start);
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    const Campaign& campaign = *sites[i].campaign;
+    simulate_fold(campaign, work.options(), fold, found.base[i], found.with_effects[i], nested[i]);
+    OuterFold loop = left_out(campaign, nested[i].folds, fold);
+    loop.p_value = found.p_value;
+    for (const JointRound& round : found.rounds) {
+      if (!names_effect(round.effect) && !loop.effects.empty()) continue;
+      loop.effects.push_back(round.effect);
+      loop.where.push_back(round.where);
+    }
+    nested[i].loops.push_back(std::move(loop));
+  }
+}
+
 }  // namespace
 
 SitesDiagnosis diagnose_sites(std::span<const Site> sites, std::span<const Model> start,
                               const DiagnoseOptions& options) {
-  return SitesLoop(sites, options).run(start);
+  std::vector<NestedValidation> nested;
+  for (const Site& site : sites) {
+    if (!options.nested) break;
+    nested.push_back(folds_to_validate(*site.campaign, options, 0));
+    require_fitting_rows(*site.campaign, nested.back().folds, site.name);
+  }
+  DiagnosisWork work(options);
+  SitesDiagnosis d = SitesLoop(sites, work.next(false)).run(start);
+  for (NestedValidation& of_site : nested) of_site.trials = d.trials.compare;
+  for (std::uint32_t fold = 0; options.nested && fold < options.outer_folds; ++fold)
+    validate_fold(sites, start, work, fold, nested);
+  d.nested = std::move(nested);
+  return d;
 }
 
 }  // namespace talus

@@ -9,8 +9,6 @@
 namespace talus::io {
 namespace {
 
-constexpr const char* kOutOfFold = "out-of-fold";
-
 std::string interval_text(const Interval& interval, double unit, int decimals) {
   return with_decimals(unit * interval.low, decimals) + " to " + with_decimals(unit * interval.high, decimals);
 }
@@ -42,7 +40,19 @@ std::string verdicts_text(const Stability& stability) {
   return text;
 }
 
-/// The folds that found the same, with their number: "4 of 5 block-shape; 1 of 5 none".
+/// What an interval rests on.
+std::string clusters_text(const BeforeAfter& e, const DiagnosisRecord& record) {
+  const bool groups = e.clusters.given && e.clusters.count < e.after.blocks;
+  const bool few = !e.clusters.given && !record.clusters.empty();
+  return std::to_string(e.clusters.count) + (groups ? " groups" : " blocks") +
+         (few ? " (fewer than three groups: blocks are taken to be independent)" : "") +
+         (e.clusters.by_block.empty()
+              ? ""
+              : " (seen in fewer than three of them, by block: " + joined(e.clusters.by_block) + ")");
+}
+
+}  // namespace
+
 std::string folds_text(const NestedValidation& nested) {
   std::vector<std::pair<std::string, int>> counts;
   for (const OuterFold& loop : nested.loops) {
@@ -59,19 +69,6 @@ std::string folds_text(const NestedValidation& nested) {
         (text.empty() ? "" : "; ") + std::to_string(count) + " of " + std::to_string(nested.loops.size()) + " " + found;
   return text;
 }
-
-/// What an interval rests on.
-std::string clusters_text(const BeforeAfter& e, const DiagnosisRecord& record) {
-  const bool groups = e.clusters.given && e.clusters.count < e.after.blocks;
-  const bool few = !e.clusters.given && !record.clusters.empty();
-  return std::to_string(e.clusters.count) + (groups ? " groups" : " blocks") +
-         (few ? " (fewer than three groups: blocks are taken to be independent)" : "") +
-         (e.clusters.by_block.empty()
-              ? ""
-              : " (seen in fewer than three of them, by block: " + joined(e.clusters.by_block) + ")");
-}
-
-}  // namespace
 
 void judge_nested(const Campaign& campaign, DiagnosisRecord& record) {
   const NestedValidation& nested = *record.diagnosis.nested;

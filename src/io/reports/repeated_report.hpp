@@ -9,6 +9,12 @@
 /// docs/diagnosis-evidence.md.
 namespace talus::io {
 
+/// ScoredRows::rows of blocks that were simulated out of their folds.
+inline constexpr const char* kOutOfFold = "out-of-fold";
+
+/// The folds that found the same, with their number: "4 of 5 block-shape; 1 of 5 none".
+std::string folds_text(const NestedValidation& nested);
+
 /// Scores the nested cross-validation of a diagnosis and adds it to the errors and the evidence.
 void judge_nested(const Campaign& campaign, DiagnosisRecord& record);
 

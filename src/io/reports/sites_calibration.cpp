@@ -39,7 +39,7 @@ std::string sites_calibration_json(const SitesCalibration& c) {
     const SiteEvidence& e = c.evidence[i];
     sites.push_back({{"name", e.site},
                      {"campaign", c.files[i]},
-                     {"error", errors_json(e)},
+                     {"error", errors_json(e, unseen_kind(c.evidence))},
                      {"evidence", evidence_json(e.errors, e.clusters, "start", "fitted")},
                      {"coverage", coverage_json(e.errors)},
                      {"tail", tail_json(e.errors)}});
@@ -57,7 +57,7 @@ std::string sites_calibration_json(const SitesCalibration& c) {
             {"prior_weight", c.options.prior_weight},
             {"cut_short", json_of(c.cut_short)},
             {"parameters", parameters_json(c)},
-            {"error", errors_json(c.evidence.back())},
+            {"error", errors_json(c.evidence.back(), unseen_kind(c.evidence))},
             {"sites", sites}};
   json["inputs"] = json_of(c.inputs);
   json["warnings"] = c.warnings;
@@ -88,7 +88,7 @@ std::string sites_calibration_summary(const SitesCalibration& c) {
             ", 95 %: " + with_digits(p.interval.low, 3) + " to " + with_digits(p.interval.high, 3) +
             (p.identifiable ? "" : ", not identifiable") + "\n";
   for (const SiteEvidence& e : c.evidence)
-    for (const auto& [name, change] : {std::pair{"fitting", e.fit}, {"held-out", e.holdout}})
+    for (const auto& [name, change] : {std::pair{"fitting", e.fit}, {"held-out", e.unseen}})
       if (change.rows > 0)
         text += "error, " + e.site + ", " + name + " rows (" + std::to_string(change.blocks) +
                 " blocks): " + score_text(change.before) + " before, " + score_text(change.after) +

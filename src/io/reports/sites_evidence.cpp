@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "evidence.hpp"
+#include "repeated_report.hpp"
 #include "talus/base/text.hpp"
 #include "talus/fit/score/joined_scores.hpp"
 
@@ -28,7 +29,7 @@ Scores large_groups(const Scores& s) {
   return {of_large_groups(s.before), of_large_groups(s.after), of_large_groups(s.climatology)};
 }
 
-/// The scores of all sites on rows of one kind (0: fitting, 1: held out).
+/// The scores of all sites on rows of one kind (0: fitting, 1: unseen).
 Scores joined_of(std::span<const SiteEvidence> sites, std::span<const std::size_t> blocks, std::size_t kind) {
   std::vector<SiteScore> before, after, climatology;
   for (std::size_t i = 0; i < sites.size(); ++i) {
@@ -40,24 +41,39 @@ Scores joined_of(std::span<const SiteEvidence> sites, std::span<const std::size_
   return {joined_scores(before), joined_scores(after), joined_scores(climatology)};
 }
 
-SiteEvidence evidence_of(const Site& site, const Model& before, const Model& after, const ObserveOptions& how) {
+BeforeAfter unseen_rows(const Campaign& campaign, const std::vector<BlockRuns>& first,
+                        const std::vector<BlockRuns>& last, const NestedValidation* nested) {
+  if (nested == nullptr) {
+    const std::vector<bool> rows = holdout_rows(campaign);
+    return compared(campaign, scored("holdout", campaign, first, rows), scored("holdout", campaign, last, rows));
+  }
+  const std::vector<bool> rows = fitting_rows(campaign);
+  const std::vector<std::uint32_t>& folds = nested->folds.fold_of;
+  return compared(campaign, scored(kOutOfFold, campaign, nested->base, rows, folds),
+                  scored(kOutOfFold, campaign, nested->found, rows, folds));
+}
+
+SiteEvidence evidence_of(const Site& site, const Model& before, const Model& after, const ObserveOptions& how,
+                         const NestedValidation* nested) {
   const Campaign& campaign = *site.campaign;
   const auto first = observe(campaign, before, how), last = observe(campaign, after, how);
-  const std::vector<std::uint32_t> clusters = clusters_of(campaign);
+  const std::vector<bool> rows = fitting_rows(campaign);
   SiteEvidence out;
   out.site = site.name;
-  for (const auto& [name, rows] : {std::pair{"fit", fitting_rows(campaign)}, {"holdout", holdout_rows(campaign)}})
-    out.errors.push_back(compared(campaign, scored(name, campaign, first, rows), scored(name, campaign, last, rows)));
-  out.clusters = clusters;
-  out.fit = change_of(scores_of(out.errors[0]), out.errors[0].after.blocks, clusters);
-  out.holdout = change_of(scores_of(out.errors[1]), out.errors[1].after.blocks, clusters);
-  out.headline = change_of(large_groups(scores_of(out.errors[1])), out.errors[1].after.blocks, clusters);
+  out.errors.push_back(compared(campaign, scored("fit", campaign, first, rows), scored("fit", campaign, last, rows)));
+  out.errors.push_back(unseen_rows(campaign, first, last, nested));
+  out.clusters = clusters_of(campaign);
+  out.fit = change_of(scores_of(out.errors[0]), out.errors[0].after.blocks, out.clusters);
+  out.unseen = change_of(scores_of(out.errors[1]), out.errors[1].after.blocks, out.clusters);
+  out.headline = change_of(large_groups(scores_of(out.errors[1])), out.errors[1].after.blocks, out.clusters);
   return out;
 }
 
-Json change_json(const ErrorChange& c) {
-  return {{"blocks", c.blocks},
-          {"rows", c.rows},
+/// @param rows  which: "fit", "holdout" or "out-of-fold"
+Json change_json(const ErrorChange& c, const std::string& rows) {
+  return {{"rows", rows},
+          {"blocks", c.blocks},
+          {"scored_rows", c.rows},
           {"before", json_of(c.before)},
           {"after", json_of(c.after)},
           {"climatology", json_of(c.climatology)},
@@ -89,11 +105,12 @@ double pooled_holdout_error(std::span<const Site> sites, std::span<const Model> 
 }  // namespace
 
 std::vector<SiteEvidence> evidence_of_sites(std::span<const Site> sites, std::span<const Model> before,
-                                            std::span<const Model> after, const ObserveOptions& how) {
+                                            std::span<const Model> after, const ObserveOptions& how,
+                                            std::span<const NestedValidation> nested) {
   std::vector<SiteEvidence> list;
   std::vector<std::size_t> blocks;
   for (std::size_t i = 0; i < sites.size(); ++i) {
-    list.push_back(evidence_of(sites[i], before[i], after[i], how));
+    list.push_back(evidence_of(sites[i], before[i], after[i], how, nested.empty() ? nullptr : &nested[i]));
     blocks.push_back(sites[i].campaign->blocks.size());
   }
   std::vector<std::uint32_t> clusters;
@@ -102,19 +119,19 @@ std::vector<SiteEvidence> evidence_of_sites(std::span<const Site> sites, std::sp
       clusters.push_back(cluster ^ stream_of_name(site.name));  // groups of one name at two sites are two
   SiteEvidence pooled;
   pooled.site = "pooled";
-  std::size_t fit = 0, holdout = 0;
-  for (const SiteEvidence& site : list) fit += site.fit.blocks, holdout += site.holdout.blocks;
+  std::size_t fit = 0, unseen = 0;
+  for (const SiteEvidence& site : list) fit += site.fit.blocks, unseen += site.unseen.blocks;
   const Scores held = joined_of(list, blocks, 1);
   pooled.fit = change_of(joined_of(list, blocks, 0), fit, clusters);
-  pooled.holdout = change_of(held, holdout, clusters);
-  pooled.headline = change_of(large_groups(held), holdout, clusters);
+  pooled.unseen = change_of(held, unseen, clusters);
+  pooled.headline = change_of(large_groups(held), unseen, clusters);
   list.push_back(std::move(pooled));
   return list;
 }
 
 void open_holdout(std::span<const Site> sites, SitesRecord& record, const ObserveOptions& how) {
   const SitesDiagnosis& d = record.diagnosis;
-  record.evidence = evidence_of_sites(sites, d.base, d.with_effects, how);
+  record.evidence = evidence_of_sites(sites, d.base, d.with_effects, how, d.nested);
   for (const JointRound& round : d.rounds) {
     record.candidates.emplace_back();
     for (const JointCandidate& c : round.candidates)
@@ -128,10 +145,17 @@ std::string names_in_words(std::span<const SiteEvidence> evidence) {
   return joined(names);
 }
 
-Json errors_json(const SiteEvidence& evidence) {
-  return {{"fit", change_json(evidence.fit)},
-          {"holdout", change_json(evidence.holdout)},
-          {"headline", change_json(evidence.headline)}};
+const std::string& unseen_kind(std::span<const SiteEvidence> evidence) {
+  return evidence.front().errors[1].after.rows;
+}
+
+Json errors_json(const SiteEvidence& evidence, const std::string& unseen) {
+  Json headline = change_json(evidence.headline, unseen);
+  headline["fewest_rows_of_a_group"] = kHeadlineRows;
+  return {{"metric", "mean normalised score"},
+          {"fit", change_json(evidence.fit, "fit")},
+          {"holdout", change_json(evidence.unseen, unseen)},
+          {"headline", headline}};
 }
 
 std::string change_text(const ErrorChange& change) {
@@ -146,8 +170,8 @@ std::string evidence_markdown(std::span<const SiteEvidence> evidence) {
       "| site | rows | | before | after | climatology | lower by |\n| --- | --- | --- | --- | --- | --- | --- |\n";
   for (const SiteEvidence& e : evidence) {
     text += markdown_row(e.site, "fitting", e.fit);
-    text += markdown_row(e.site, "held out", e.holdout);
-    if (e.headline.rows != e.holdout.rows)
+    text += markdown_row(e.site, "held out", e.unseen);
+    if (e.headline.rows != e.unseen.rows)
       text += markdown_row(e.site, "held out, groups of ten rows and more", e.headline);
   }
   return text;

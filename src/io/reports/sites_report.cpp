@@ -64,7 +64,7 @@ Json candidates_json(const JointRound& round, const std::vector<double>& holdout
 
 Json rounds_json(const SitesRecord& record) {
   Json rounds = Json::array();
-  double before = record.evidence.back().holdout.before;
+  double before = record.diagnosis.nested.empty() ? record.evidence.back().unseen.before : kNotGiven;
   for (std::size_t i = 0; i < record.diagnosis.rounds.size(); ++i) {
     const JointRound& round = record.diagnosis.rounds[i];
     Json turn{{"effect", round.effect}, {"p_value", json_of(round.family.p_corrected)}};
@@ -105,7 +105,7 @@ Json sites_of(const SitesRecord& record) {
     list.push_back({{"name", site.name},
                     {"campaign", record.files[i]},
                     {"p_value", json_of(site.families.front().p_value)},
-                    {"error", errors_json(evidence)},
+                    {"error", errors_json(evidence, unseen_kind(record.evidence))},
                     {"families", families},
                     {"evidence", evidence_json(evidence.errors, evidence.clusters, "ground", "found")},
                     {"coverage", coverage_json(evidence.errors)},
@@ -142,7 +142,7 @@ Json evidence_by_site(const SitesRecord& record) {
 Json coverage_by_site(const SitesRecord& record) {
   Json coverage;
   for (const char* when : {"before", "after"})
-    for (const char* rows : {"fit", "holdout"})
+    for (const std::string& rows : {std::string("fit"), unseen_kind(record.evidence)})
       coverage[when][rows] = by_site(record.diagnosis, [&](std::size_t i) {
         return coverage_json(record.evidence[i].errors)[when].value(rows, Json::array());
       });
@@ -163,6 +163,21 @@ Json stability_of(const SitesRecord& record) {
   Stability once;
   once.fits.push_back({record.options.seed, first.effect, first.where, record.diagnosis.p_value, {first.family}});
   return stability_json(once);
+}
+
+/// As of one campaign, with the blocks that each site leaves out.
+Json nested_of(const SitesDiagnosis& d) {
+  Json loops = Json::array();
+  for (std::size_t fold = 0; fold < d.nested.front().loops.size(); ++fold) {
+    const OuterFold& found = d.nested.front().loops[fold];
+    Json left_out = Json::object();
+    for (std::size_t i = 0; i < d.sites.size(); ++i) left_out[d.sites[i].name] = d.nested[i].loops[fold].blocks;
+    loops.push_back({{"blocks", left_out},
+                     {"effects", found.effects},
+                     {"where", found.where},
+                     {"p_value", json_of(found.p_value)}});
+  }
+  return {{"trials_per_block", d.nested.front().trials}, {"folds", loops}};
 }
 
 /// What was found, in words.
@@ -214,17 +229,19 @@ double property_p(const SitesDiagnosis& d, std::size_t site) {
 }
 
 Markup evidence_html(const SitesRecord& record) {
+  const std::string unseen = rows_in_words(unseen_kind(record.evidence)) + " rows";
   Markup html =
       "<table><tr><th rowspan='2'>site</th><th rowspan='2'>p, block property</th><th colspan='5'>fitting "
-      "rows</th><th colspan='5'>held-out rows</th></tr><tr>"_html;
+      "rows</th><th colspan='5'>"_html +
+      unseen + "</th></tr><tr>";
   for (int i = 0; i < 2; ++i) html += "<th>rows</th><th>before</th><th>after</th><th>climatology</th><th>lower by</th>";
   html += "</tr>\n";
   for (std::size_t i = 0; i < record.evidence.size(); ++i) {
     const SiteEvidence& e = record.evidence[i];
     html += "<tr><td>"_html + e.site + "</td><td>" + p_text(property_p(record.diagnosis, i)) + "</td>" +
-            error_cells(e.fit) + error_cells(e.holdout) + "</tr>\n";
-    if (e.headline.rows != e.holdout.rows)
-      html += "<tr><td>"_html + e.site + ", groups of ten held-out rows and more</td><td colspan='6'></td>" +
+            error_cells(e.fit) + error_cells(e.unseen) + "</tr>\n";
+    if (e.headline.rows != e.unseen.rows)
+      html += "<tr><td>"_html + e.site + ", groups of ten " + unseen + " and more</td><td colspan='6'></td>" +
               error_cells(e.headline) + "</tr>\n";
   }
   return html + "</table>\n";
@@ -277,15 +294,13 @@ std::string sites_json(const SitesRecord& record) {
   for (const JointRound& round : d.rounds)
     if (names_effect(round.effect)) effects.push_back(round.effect);
   if (effects.empty()) effects.push_back(first.effect);
-  Json error = errors_json(record.evidence.back());
-  error["metric"] = "mean normalised score";
   Json json{{"effect", first.effect},
             {"effects", effects},
             {"where", first.where},
             {"probability", json_of(probability_of(d))},
             {"indistinguishable_from", first.alike},
             {"p_value", json_of(d.p_value)},
-            {"error", error},
+            {"error", errors_json(record.evidence.back(), unseen_kind(record.evidence))},
             {"sites", sites_of(record)},
             {"rounds", rounds_json(record)},
             {"families", families_json(d)},
@@ -302,6 +317,7 @@ std::string sites_json(const SitesRecord& record) {
             {"talus", version()},
             {"command", record.command},
             {"warnings", record.warnings}};
+  if (!d.nested.empty()) json["nested"] = nested_of(d);
   json["inputs"] = json_of(record.inputs);
   return json_text(json);
 }
@@ -310,6 +326,7 @@ std::string sites_page(const SitesRecord& record) {
   const SitesDiagnosis& d = record.diagnosis;
   Markup html = "<p><b>"_html + verdict_sentence(d) + "</b></p>\n";
   for (const std::string& finding : own_findings(record)) html += "<p>"_html + finding + "</p>\n";
+  if (!d.nested.empty()) html += "<p>Without each fold of every site: "_html + folds_text(d.nested.front()) + ".</p>\n";
   html +=
       "<h2>Evidence, by site and pooled</h2>\n<p>Mean normalised score; before: the ground of each site alone; after: "
       "with what was found. Intervals: over the blocks. The climatology is a forecast by the other fitting rows: a "
@@ -337,13 +354,15 @@ std::string sites_summary(const SitesRecord& record) {
   const SitesDiagnosis& d = record.diagnosis;
   std::string text = verdict_sentence(d) + "\n";
   for (const std::string& finding : own_findings(record)) text += finding + "\n";
+  if (!d.nested.empty()) text += "without each fold of every site: " + folds_text(d.nested.front()) + "\n";
+  const std::string unseen = rows_in_words(unseen_kind(record.evidence));
   for (std::size_t i = 0; i < record.evidence.size(); ++i) {
     const SiteEvidence& e = record.evidence[i];
     text += e.site + ": p of a block property " + p_text(property_p(d, i));
-    for (const auto& [name, change] : {std::pair{"fitting", e.fit}, {"held-out", e.holdout}})
-      text += "; " + std::string(name) + " rows (" + std::to_string(change.rows) + "): error " +
-              score_text(change.before) + " before, " + score_text(change.after) + " after, climatology " +
-              score_text(change.climatology) + (change.rows > 0 ? ", lower by " + change_text(change) : "");
+    for (const auto& [name, change] : {std::pair<std::string, ErrorChange>{"fitting", e.fit}, {unseen, e.unseen}})
+      text += "; " + name + " rows (" + std::to_string(change.rows) + "): error " + score_text(change.before) +
+              " before, " + score_text(change.after) + " after, climatology " + score_text(change.climatology) +
+              (change.rows > 0 ? ", lower by " + change_text(change) : "");
     text += "\n";
   }
   return text;

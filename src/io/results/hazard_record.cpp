@@ -15,9 +15,10 @@ using Kind = TomlValue::Kind;
 constexpr Bounds kEnergy{"energies", "kJ", "between classes of intensity", 0.0, 1e9, Bounds::AboveMin};
 constexpr Bounds kYears{"years", "years", "between classes of return period", 0.0, 1e6, Bounds::AboveMin};
 
-void read_classes(TableReader& table, HazardMatrix& matrix) {
+/// @return whether the file has classes; else those of the default stay
+bool read_classes(TableReader& table, HazardMatrix& matrix) {
   const TomlValue* value = table.find("classes");
-  if (value == nullptr) return;
+  if (value == nullptr) return false;
   std::vector<std::vector<int>> classes;
   for (const TomlValue& row : value->items) {
     classes.emplace_back();
@@ -25,12 +26,13 @@ void read_classes(TableReader& table, HazardMatrix& matrix) {
       if (item.kind != Kind::Number || !(item.number >= 0.0 && item.number <= 15.0) ||
           item.number != static_cast<int>(item.number)) {
         table.fault("classes", item, "must be a whole number from 0 to 15");
-        return;
+        return true;
       }
       classes.back().push_back(static_cast<int>(item.number));
     }
   }
   matrix.classes = std::move(classes);
+  return true;
 }
 
 void read_names(TableReader& table, HazardMatrix& matrix) {
@@ -57,11 +59,14 @@ HazardMatrix read_matrix(const std::string& path) {
   TableReader table(&root, "", path, faults);
   if (const auto energies = table.numbers("energies", kEnergy)) matrix.energies = *energies;
   if (const auto years = table.numbers("years", kYears)) matrix.years = *years;
-  read_classes(table, matrix);
+  const bool own_classes = read_classes(table, matrix);
   read_names(table, matrix);
   table.finish();
   if (faults.empty())
-    if (const std::string fault = fault_of(matrix); !fault.empty()) faults.push_back(path + ": " + fault);
+    if (const std::string fault = fault_of(matrix); !fault.empty())
+      faults.push_back(
+          path + ": " + fault +
+          (fault.starts_with("classes") && !own_classes ? "; the file has none, and the default has 3 rows of 4" : ""));
   if (!faults.empty()) throw InputError(faults.front());
   return matrix;
 }

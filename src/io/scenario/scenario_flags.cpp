@@ -155,7 +155,7 @@ void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::strin
     spec.values.output.energy_thresholds = flags.thresholds;
     spec.origins["output.energy_thresholds"] = "flag --thresholds";
     if (std::ranges::adjacent_find(flags.thresholds, std::greater_equal<>()) != flags.thresholds.end())
-      faults.push_back("flag --thresholds: must ascend, as 30,300");
+      faults.push_back("flag --thresholds = " + list_text(flags.thresholds) + ": must ascend, as 30,300");
   }
   if (flags.diameter) {
     if (const auto rule = fault_of(bounds_of("blocks.diameter"), *flags.diameter))

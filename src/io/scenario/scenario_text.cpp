@@ -32,13 +32,6 @@ std::string toml_key(const std::string& name) {
 
 namespace {
 
-std::string list_text(const std::vector<double>& values) {
-  std::vector<std::string> words;
-  words.reserve(values.size());
-  for (const double value : values) words.push_back(text_of(value));
-  return std::string("[") + joined(words) + "]";
-}
-
 std::string range_text(const Range& range) {
   return range.low == range.high ? text_of(range.low) : list_text({range.low, range.high});
 }

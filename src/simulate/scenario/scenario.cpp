@@ -19,13 +19,6 @@ void check(const Bounds& bounds, double value, const std::string& key) {
   if (const auto fault = fault_of(bounds, value)) refuse(key, text_of(value), *fault);
 }
 
-std::string list_text(std::initializer_list<double> values) {
-  std::vector<std::string> words;
-  words.reserve(values.size());
-  for (const double value : values) words.push_back(talus::text_of(value));
-  return std::string("[") + joined(words) + "]";
-}
-
 std::string text_of(const Range& range) {
   return list_text({range.low, range.high});
 }

@@ -37,6 +37,12 @@ struct Cells {
   SurfaceKind kind;
 };
 
+/// "creased_200_by_300_cm".
+std::string name_of_test(const testing::TestParamInfo<Cells>& info) {
+  const auto cm = [](double metres) { return std::to_string(static_cast<int>(100.0 * metres)); };
+  return std::string(name_of(info.param.kind)) + "_" + cm(info.param.x) + "_by_" + cm(info.param.y) + "_cm";
+}
+
 Scene rough(Numbers& numbers, const Cells& cells) {
   return {
       Surface(test::terrain(test::grid_of(80, 60, cells.x, cells.y),
@@ -126,7 +132,8 @@ TEST_P(RoughFlight, SpansFollowEachOtherAndTheGroundAndAreNeverBelowIt) {
 INSTANTIATE_TEST_SUITE_P(Cells, RoughFlight,
                          testing::Values(Cells{0.5, 0.5, SurfaceKind::Bilinear}, Cells{2.0, 3.0, SurfaceKind::Bilinear},
                                          Cells{25.0, 10.0, SurfaceKind::Bilinear},
-                                         Cells{2.0, 2.0, SurfaceKind::Creased}, Cells{2.0, 3.0, SurfaceKind::Creased}));
+                                         Cells{2.0, 2.0, SurfaceKind::Creased}, Cells{2.0, 3.0, SurfaceKind::Creased}),
+                         name_of_test);
 
 TEST(FlightLength, IsTheArcLengthOfTheParabola) {
   const Surface surface(test::terrain(test::grid_of(100, 9, 2.0, 2.0), [](double, double) { return 0.0; }));

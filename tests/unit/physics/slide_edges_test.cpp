@@ -111,7 +111,8 @@ TEST_P(SlideWithoutFriction, KeepsItsEnergyOnAnySurface) {  // v^2/2 + g z, in p
   EXPECT_NEAR(drift.mean(), 0.0, 1e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Surfaces, SlideWithoutFriction, testing::Values(SurfaceKind::Bilinear, SurfaceKind::Creased));
+INSTANTIATE_TEST_SUITE_P(Surfaces, SlideWithoutFriction, testing::Values(SurfaceKind::Bilinear, SurfaceKind::Creased),
+                         [](const auto& test) { return std::string(name_of(test.param)); });
 
 /// A V gully at 45 degrees to the grid, its thalweg through the cell centres: floor 35.3 degrees, walls 46.7. The
 /// heights are short binary fractions.

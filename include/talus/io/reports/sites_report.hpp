@@ -11,21 +11,24 @@ struct ErrorChange {
   Reduction reduction;  ///< 95 % over the blocks
 };
 
-/// The errors of one site, or of all together.
+/// The errors of one site, or of all together. Unseen rows: the held-out ones; where no site holds any out, the fitting
+/// ones, each out of its fold.
 struct SiteEvidence {
   std::string site;  ///< "pooled": all
-  ErrorChange fit, holdout;
-  ErrorChange headline;                      ///< of the held-out groups with ten rows and more
-  std::vector<BeforeAfter> errors;           ///< of a site alone: fitting and held-out rows
+  ErrorChange fit, unseen;
+  ErrorChange headline;                      ///< of the groups with ten unseen rows and more
+  std::vector<BeforeAfter> errors;           ///< of a site alone: fitting and unseen rows
   std::vector<std::uint32_t> clusters = {};  ///< of a site alone: of its blocks (`clusters_of`)
 };
 
 /// Scores two models of each site on all its rows and on those of all sites together.
 ///
-/// @param how  trials, seed, first trial, threads
+/// @param how     trials, seed, first trial, threads
+/// @param nested  by site: its blocks out of their folds, which are the unseen rows then; else empty
 /// @return the sites in their order, "pooled" last
 std::vector<SiteEvidence> evidence_of_sites(std::span<const Site> sites, std::span<const Model> before,
-                                            std::span<const Model> after, const ObserveOptions& how);
+                                            std::span<const Model> after, const ObserveOptions& how,
+                                            std::span<const NestedValidation> nested = {});
 
 /// Results of `talus diagnose` with several campaigns.
 struct SitesRecord : FitRecord {
@@ -37,7 +40,8 @@ struct SitesRecord : FitRecord {
   double seconds = 0.0;
 };
 
-/// Scores the models before and after what was found, and every candidate, on the rows of all sites.
+/// Scores the models before and after what was found, and every candidate, on the rows of all sites; the first and the
+/// last out of their folds, too, where these were simulated.
 ///
 /// @param how  trials, seed, first trial, threads
 void open_holdout(std::span<const Site> sites, SitesRecord& record, const ObserveOptions& how);

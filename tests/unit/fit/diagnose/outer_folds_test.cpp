@@ -7,6 +7,7 @@
 
 #include "support/campaigns.hpp"
 #include "talus/base/error.hpp"
+#include "talus/fit/diagnose/several_sites.hpp"
 
 namespace talus::test {
 namespace {
@@ -79,6 +80,12 @@ DiagnoseOptions two_quick_folds() {
   return options;
 }
 
+/// Whether two simulations end at the same places.
+bool same(const BlockRuns& a, const BlockRuns& b) {
+  const auto equal = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
+  return a.trials == b.trials && std::ranges::equal(a.x, b.x, equal) && std::ranges::equal(a.y, b.y, equal);
+}
+
 /// What a fold predicts of its blocks does not hang on what was measured of them, bit by bit.
 TEST(Nested, AFoldNeverSeesItsOwnRows) {
   Campaign c = campaign_on_slope(45);
@@ -90,7 +97,7 @@ TEST(Nested, AFoldNeverSeesItsOwnRows) {
   whole.trials = options.trials;
   const auto nested = [&](const Campaign& campaign) {
     DiagnosisWork work(options);
-    return nested_validation(campaign, model_of_slope(), work, folds, whole);
+    return nested_validation(campaign, model_of_slope(), work, whole);
   };
   const NestedValidation first = nested(c);
   for (std::size_t b = 0; b < c.blocks.size(); ++b) {
@@ -120,8 +127,7 @@ TEST(Nested, AnEffectThatHelpsNoFoldIsLeftOut) {
   whole.rounds[0].effect = "vegetation-drag";
   whole.trials = options.trials;
   DiagnosisWork work(options);
-  const OuterFolds folds = outer_folds(c, fitting_rows(c), 2, options.seed);
-  const NestedValidation nested = nested_validation(c, model_of_slope(), work, folds, whole);
+  const NestedValidation nested = nested_validation(c, model_of_slope(), work, whole);
   ASSERT_EQ(nested.loops.size(), 2U);
   EXPECT_EQ(nested.loops[0].effects, std::vector<std::string>{"vegetation-drag"}) << "it was tried";
   std::size_t stops = 0;
@@ -132,6 +138,38 @@ TEST(Nested, AnEffectThatHelpsNoFoldIsLeftOut) {
       ++stops;
     }
   EXPECT_GT(stops, 100U);
+}
+
+/// The folds of one number are left out at all sites at once: what one site measured of its fold does not reach the
+/// other site either. Bit by bit.
+TEST(Nested, NoSiteSeesAFoldOfAnother) {
+  std::array<Campaign, 2> c{campaign_on_slope(24), campaign_on_slope(24)};
+  for (std::size_t i = 0; i < 2; ++i) measure(c[i], model_of_slope(), 77 + i);
+  const std::vector<Site> sites{{"one", &c[0]}, {"two", &c[1]}};
+  give_own_streams(sites);
+  DiagnoseOptions options = two_quick_folds();
+  options.nested = true;
+  options.base_fits = 1;
+  options.first_level = 0.001;  // the ground alone: soon done
+  const std::vector<Model> start(2, model_of_slope());
+  const auto nested = [&] { return diagnose_sites(sites, start, options).nested; };
+  const std::vector<NestedValidation> first = nested();
+  ASSERT_EQ(first.size(), 2U);
+  for (std::size_t b = 0; b < c[0].blocks.size(); ++b)
+    if (first[0].folds.fold_of[b] == 0 && c[0].blocks[b].stop) *c[0].blocks[b].stop += Eigen::Vector2d(50.0, 20.0);
+  const std::vector<NestedValidation> second = nested();
+  bool others_differ = false;
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(first[i].loops.size(), 2U);
+    EXPECT_EQ(first[i].loops[0].blocks + first[i].loops[1].blocks, 16U) << "every fitting block once";
+    for (std::size_t b = 0; b < c[i].blocks.size(); ++b) {
+      const std::uint32_t fold = first[i].folds.fold_of[b];
+      if (fold == 0)
+        EXPECT_TRUE(same(first[i].base[b], second[i].base[b]) && same(first[i].found[b], second[i].found[b]));
+      if (fold == 1) others_differ |= !same(first[i].base[b], second[i].base[b]);
+    }
+  }
+  EXPECT_TRUE(others_differ) << "the other fold is fitted to what was changed";
 }
 
 /// The climatology out of its fold is that of the other folds' measurements.
