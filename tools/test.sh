@@ -13,14 +13,17 @@ fi
 export OMP_WAIT_POLICY=passive  # two tests at a time share the processors: a thread that waits does not spin
 stage() { printf '\n== %s (%d min %02d s so far)\n' "$1" $((SECONDS / 60)) $((SECONDS % 60)); }
 
-tools/install_packages.sh qgis python3-qgis qgis-providers fonts-dejavu-core  # 1.4 GB: the plug-in is tested in QGIS
 tools/install_packages.sh openmpi-bin python3-scipy python3-yaml dpkg-dev file man-db mkdocs chromium zsh fish \
   clang clang-format clang-tidy libomp-dev libclang-rt-14-dev
+qgis_log="$(mktemp)"  # 1.4 GB for the tests of the plug-in come while the sources are compiled
+tools/install_packages.sh qgis python3-qgis qgis-providers fonts-dejavu-core > "$qgis_log" 2>&1 &
+qgis_packages=$!
 stage "formatting"
 git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror
 stage "release: build"
 cmake --preset release ${TALUS_DATA:+-DTALUS_DATA="$TALUS_DATA"}
 cmake --build --preset release
+wait "$qgis_packages" || { cat "$qgis_log"; exit 1; }
 stage "release: tests"
 ctest --preset release -j 2
 stage "packages in a bare Debian"

@@ -39,7 +39,7 @@ std::string sites_calibration_json(const SitesCalibration& c) {
     const SiteEvidence& e = c.evidence[i];
     sites.push_back({{"name", e.site},
                      {"campaign", c.files[i]},
-                     {"error", errors_json(e, unseen_kind(c.evidence))},
+                     {"error", errors_json(e)},
                      {"evidence", evidence_json(e.errors, e.clusters, "start", "fitted")},
                      {"coverage", coverage_json(e.errors)},
                      {"tail", tail_json(e.errors)}});
@@ -57,7 +57,7 @@ std::string sites_calibration_json(const SitesCalibration& c) {
             {"prior_weight", c.options.prior_weight},
             {"cut_short", json_of(c.cut_short)},
             {"parameters", parameters_json(c)},
-            {"error", errors_json(c.evidence.back(), unseen_kind(c.evidence))},
+            {"error", errors_json(c.evidence.back())},
             {"sites", sites}};
   json["inputs"] = json_of(c.inputs);
   json["warnings"] = c.warnings;

@@ -62,6 +62,7 @@ SiteEvidence evidence_of(const Site& site, const Model& before, const Model& aft
   out.site = site.name;
   out.errors.push_back(compared(campaign, scored("fit", campaign, first, rows), scored("fit", campaign, last, rows)));
   out.errors.push_back(unseen_rows(campaign, first, last, nested));
+  out.unseen_rows = out.errors[1].after.rows;
   out.clusters = clusters_of(campaign);
   out.fit = change_of(scores_of(out.errors[0]), out.errors[0].after.blocks, out.clusters);
   out.unseen = change_of(scores_of(out.errors[1]), out.errors[1].after.blocks, out.clusters);
@@ -119,6 +120,7 @@ std::vector<SiteEvidence> evidence_of_sites(std::span<const Site> sites, std::sp
       clusters.push_back(cluster ^ stream_of_name(site.name));  // groups of one name at two sites are two
   SiteEvidence pooled;
   pooled.site = "pooled";
+  pooled.unseen_rows = list.front().unseen_rows;
   std::size_t fit = 0, unseen = 0;
   for (const SiteEvidence& site : list) fit += site.fit.blocks, unseen += site.unseen.blocks;
   const Scores held = joined_of(list, blocks, 1);
@@ -145,16 +147,12 @@ std::string names_in_words(std::span<const SiteEvidence> evidence) {
   return joined(names);
 }
 
-const std::string& unseen_kind(std::span<const SiteEvidence> evidence) {
-  return evidence.front().errors[1].after.rows;
-}
-
-Json errors_json(const SiteEvidence& evidence, const std::string& unseen) {
-  Json headline = change_json(evidence.headline, unseen);
+Json errors_json(const SiteEvidence& evidence) {
+  Json headline = change_json(evidence.headline, evidence.unseen_rows);
   headline["fewest_rows_of_a_group"] = kHeadlineRows;
   return {{"metric", "mean normalised score"},
           {"fit", change_json(evidence.fit, "fit")},
-          {"holdout", change_json(evidence.unseen, unseen)},
+          {"holdout", change_json(evidence.unseen, evidence.unseen_rows)},
           {"headline", headline}};
 }
 

@@ -7,10 +7,8 @@ namespace talus::io {
 
 /// "authume, rocksite (2 campaigns)".
 std::string names_in_words(std::span<const SiteEvidence> evidence);
-/// Which rows are the unseen ones of all sites: "holdout" or "out-of-fold".
-const std::string& unseen_kind(std::span<const SiteEvidence> evidence);
-/// {"metric": ..., "fit": {...}, "holdout": {...}, "headline": {...}}. @param unseen  `unseen_kind`
-Json errors_json(const SiteEvidence& evidence, const std::string& unseen);
+/// {"metric": ..., "fit": {...}, "holdout": {...}, "headline": {...}}.
+Json errors_json(const SiteEvidence& evidence);
 /// "4.3 % (95 %: 1.2 to 7.5 %)"; "-" where nothing was scored.
 std::string change_text(const ErrorChange& change);
 /// One line per site and one for all: rows, error before, after, climatology, reduction. Markdown.

@@ -105,7 +105,7 @@ Json sites_of(const SitesRecord& record) {
     list.push_back({{"name", site.name},
                     {"campaign", record.files[i]},
                     {"p_value", json_of(site.families.front().p_value)},
-                    {"error", errors_json(evidence, unseen_kind(record.evidence))},
+                    {"error", errors_json(evidence)},
                     {"families", families},
                     {"evidence", evidence_json(evidence.errors, evidence.clusters, "ground", "found")},
                     {"coverage", coverage_json(evidence.errors)},
@@ -142,7 +142,7 @@ Json evidence_by_site(const SitesRecord& record) {
 Json coverage_by_site(const SitesRecord& record) {
   Json coverage;
   for (const char* when : {"before", "after"})
-    for (const std::string& rows : {std::string("fit"), unseen_kind(record.evidence)})
+    for (const std::string& rows : {std::string("fit"), record.evidence.back().unseen_rows})
       coverage[when][rows] = by_site(record.diagnosis, [&](std::size_t i) {
         return coverage_json(record.evidence[i].errors)[when].value(rows, Json::array());
       });
@@ -229,7 +229,7 @@ double property_p(const SitesDiagnosis& d, std::size_t site) {
 }
 
 Markup evidence_html(const SitesRecord& record) {
-  const std::string unseen = rows_in_words(unseen_kind(record.evidence)) + " rows";
+  const std::string unseen = rows_in_words(record.evidence.back().unseen_rows) + " rows";
   Markup html =
       "<table><tr><th rowspan='2'>site</th><th rowspan='2'>p, block property</th><th colspan='5'>fitting "
       "rows</th><th colspan='5'>"_html +
@@ -300,7 +300,7 @@ std::string sites_json(const SitesRecord& record) {
             {"probability", json_of(probability_of(d))},
             {"indistinguishable_from", first.alike},
             {"p_value", json_of(d.p_value)},
-            {"error", errors_json(record.evidence.back(), unseen_kind(record.evidence))},
+            {"error", errors_json(record.evidence.back())},
             {"sites", sites_of(record)},
             {"rounds", rounds_json(record)},
             {"families", families_json(d)},
@@ -355,11 +355,11 @@ std::string sites_summary(const SitesRecord& record) {
   std::string text = verdict_sentence(d) + "\n";
   for (const std::string& finding : own_findings(record)) text += finding + "\n";
   if (!d.nested.empty()) text += "without each fold of every site: " + folds_text(d.nested.front()) + "\n";
-  const std::string unseen = rows_in_words(unseen_kind(record.evidence));
   for (std::size_t i = 0; i < record.evidence.size(); ++i) {
     const SiteEvidence& e = record.evidence[i];
     text += e.site + ": p of a block property " + p_text(property_p(d, i));
-    for (const auto& [name, change] : {std::pair<std::string, ErrorChange>{"fitting", e.fit}, {unseen, e.unseen}})
+    for (const auto& [name, change] :
+         {std::pair<std::string, ErrorChange>{"fitting", e.fit}, {rows_in_words(e.unseen_rows), e.unseen}})
       text += "; " + name + " rows (" + std::to_string(change.rows) + "): error " + score_text(change.before) +
               " before, " + score_text(change.after) + " after, climatology " + score_text(change.climatology) +
               (change.rows > 0 ? ", lower by " + change_text(change) : "");

@@ -16,6 +16,7 @@ struct ErrorChange {
 struct SiteEvidence {
   std::string site;  ///< "pooled": all
   ErrorChange fit, unseen;
+  std::string unseen_rows = "holdout";       ///< or "out-of-fold"
   ErrorChange headline;                      ///< of the groups with ten unseen rows and more
   std::vector<BeforeAfter> errors;           ///< of a site alone: fitting and unseen rows
   std::vector<std::uint32_t> clusters = {};  ///< of a site alone: of its blocks (`clusters_of`)
