@@ -165,10 +165,6 @@ class Diagnose(Sites):
         self.assertEqual(sum(fold["blocks"]["north"] for fold in record["nested"]["folds"]), 12)
         self.assertEqual([len(fold["effects"]) for fold in record["nested"]["folds"]], [1, 1])
         self.assertIn("out-of-fold rows", self.text("nested/report.html"))
-        alone = self.result("diagnose", [*paths, "--no-nested"], "never", *few)
-        self.assertNotIn("nested", alone)
-        self.assertEqual(alone["error"]["holdout"]["rows"], "holdout")
-        self.assertEqual(alone["error"]["fit"], record["error"]["fit"])
 
     def fields_of_one_campaign(self, record):
         """Beside its own, the record has the fields of one campaign; what is known by site names the site."""

@@ -270,11 +270,11 @@ void validate_fold(std::span<const Site> sites, std::span<const Model> start, Di
 SitesDiagnosis diagnose_sites(std::span<const Site> sites, std::span<const Model> start,
                               const DiagnoseOptions& options) {
   std::vector<NestedValidation> nested;
-  for (const Site& site : sites) {
-    if (!options.nested) break;
-    nested.push_back(folds_to_validate(*site.campaign, options, 0));
-    require_fitting_rows(*site.campaign, nested.back().folds, site.name);
-  }
+  if (options.nested)
+    for (const Site& site : sites) {
+      nested.push_back(folds_to_validate(*site.campaign, options, 0));
+      require_fitting_rows(*site.campaign, nested.back().folds, site.name);
+    }
   DiagnosisWork work(options);
   SitesDiagnosis d = SitesLoop(sites, work.next(false)).run(start);
   for (NestedValidation& of_site : nested) of_site.trials = d.trials.compare;

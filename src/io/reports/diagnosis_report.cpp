@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis_parts.hpp"
 #include "diagnosis_times.hpp"
 #include "evidence.hpp"
 #include "limits_report.hpp"
@@ -17,30 +18,9 @@ namespace {
 constexpr std::uint32_t kHoldoutTrials = 200;
 constexpr double kOpening = 0.97;  // progress when the held-out rows are scored
 
-Json parameters_of(const FittedCandidate& candidate) {
-  Json json = Json::object();
-  for (std::size_t i = 0; i < candidate.parameters.size(); ++i)
-    json[candidate.parameters[i].key] = json_of(candidate.values[i]);
-  return json;
-}
-
 Json families_of(const DiagnosisRound& round) {
   Json list = Json::array();
-  for (const FamilyTest& family : round.families) {
-    Json parts = Json::array();
-    for (const FamilyPart& part : family.parts)
-      parts.push_back({{"name", part.name},
-                       {"statistic", part.statistic},
-                       {"value", json_of(part.value)},
-                       {"p_value", json_of(part.p_value)}});
-    list.push_back({{"name", family.name},
-                    {"p_value", json_of(family.p_value)},
-                    {"p_corrected", json_of(family.p_corrected)},
-                    {"members", family.members},
-                    {"may_name", family.may_name},
-                    {"note", family.note},
-                    {"parts", parts}});
-  }
+  for (const FamilyTest& family : round.families) list.push_back(family_json(family));
   return list;
 }
 
@@ -48,26 +28,17 @@ Json candidates_of(const DiagnosisRound& round, const std::vector<HoldoutError>&
   Json list = Json::array();
   for (std::size_t i = 0; i < round.candidates.size(); ++i) {
     const FittedCandidate& c = round.candidates[i];
-    list.push_back({{"effect", c.effect},
-                    {"where", c.where},
-                    {"parameters", parameters_of(c)},
-                    {"family", family_of(c.effect)},
-                    {"may_be_chosen", !c.family.empty()},
-                    {"fitted_with_ground", c.with_ground},
-                    {"refined", c.refined},
-                    {"fit", json_of(c.fitted.score.total)},
-                    {"price", json_of(c.price)},
-                    {"objective_gain", json_of(c.gain)},
-                    {"objective_gain_ci95", json_of(c.gain_interval)},
-                    {"cross_validated_objective_gain", json_of(c.cross_validated)},
-                    {"cross_validated_objective_gain_ci95", json_of(c.cross_validated_interval)},
-                    {"confirmed_objective_gain", json_of(c.confirmation.fitted)},
-                    {"confirmed_unseen_gain", json_of(c.confirmation.unseen)},
-                    {"holdout", json_of(holdout[i].after)},
-                    {"holdout_reduction_ci95", json_of(holdout[i].reduction.interval)},
-                    {"chosen_share", json_of(c.chosen_share)},
-                    {"statistic", json_of(c.statistic)},
-                    {"p_value", json_of(c.p_value)}});
+    Json item = effect_json(c);
+    item["family"] = family_of(c.effect);
+    item["may_be_chosen"] = !c.family.empty();
+    item["fitted_with_ground"] = c.with_ground;
+    item["refined"] = c.refined;
+    item["fit"] = json_of(c.fitted.score.total);
+    item["holdout"] = json_of(holdout[i].after);
+    item["holdout_reduction_ci95"] = json_of(holdout[i].reduction.interval);
+    item["statistic"] = json_of(c.statistic);
+    item["p_value"] = json_of(c.p_value);
+    list.push_back(std::move(item));
   }
   return list;
 }
@@ -215,7 +186,7 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
             {"campaign", record.campaign},
             {"surface", {{"value", record.surface}, {"source", record.surface_from}}},
             {"seed", record.options.seed},
-            {"trials_per_block", {{"search", d.trials.search}, {"test", d.trials.test}, {"compare", d.trials.compare}}},
+            {"trials_per_block", trials_json(d.trials)},
             {"seconds", json_of(record.seconds)},
             {"times", times_json(record)},
             {"cut_short",

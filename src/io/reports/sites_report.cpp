@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "coverage_report.hpp"
+#include "diagnosis_parts.hpp"
 #include "evidence.hpp"
 #include "limits_report.hpp"
 #include "page_frame.hpp"
@@ -19,45 +20,23 @@ std::string p_text(double p) {
   return std::isnan(p) ? "-" : with_decimals(p, 4);
 }
 
-Json family_json(const FamilyTest& family, const std::string& site) {
-  Json parts = Json::array();
-  for (const FamilyPart& part : family.parts)
-    parts.push_back({{"name", part.name},
-                     {"statistic", part.statistic},
-                     {"value", json_of(part.value)},
-                     {"p_value", json_of(part.p_value)}});
-  return {{"site", site},
-          {"name", family.name},
-          {"p_value", json_of(family.p_value)},
-          {"p_corrected", json_of(family.p_corrected)},
-          {"members", family.members},
-          {"may_name", family.may_name},
-          {"note", family.note},
-          {"parts", parts}};
+/// @param site  of its test; "pooled": all
+Json family_of_site(const FamilyTest& family, const std::string& site) {
+  Json item{{"site", site}};
+  item.update(family_json(family));
+  return item;
 }
 
 /// @param holdout  error of each candidate on the held-out rows of all sites
 Json candidates_json(const JointRound& round, const std::vector<double>& holdout) {
   Json list = Json::array();
-  for (std::size_t number = 0; number < round.candidates.size(); ++number) {
-    const JointCandidate& c = round.candidates[number];
-    Json parameters = Json::object();
-    for (std::size_t i = 0; i < c.values.size(); ++i) parameters[c.parameters[i].key] = json_of(c.values[i]);
-    list.push_back({{"effect", c.effect},
-                    {"where", c.where},
-                    {"parameters", parameters},
-                    {"family", round.family.name},
-                    {"fit", json_of(c.fitted.score.total)},
-                    {"price", json_of(c.price)},
-                    {"objective_gain", json_of(c.gain)},
-                    {"objective_gain_ci95", json_of(c.gain_interval)},
-                    {"cross_validated_objective_gain", json_of(c.cross_validated)},
-                    {"cross_validated_objective_gain_ci95", json_of(c.cross_validated_interval)},
-                    {"confirmed_objective_gain", json_of(c.confirmation.fitted)},
-                    {"confirmed_unseen_gain", json_of(c.confirmation.unseen)},
-                    {"holdout", json_of(holdout[number])},
-                    {"chosen_share", json_of(c.chosen_share)},
-                    {"p_value", json_of(round.family.p_value)}});
+  for (std::size_t i = 0; i < round.candidates.size(); ++i) {
+    Json item = effect_json(round.candidates[i]);
+    item["family"] = round.family.name;
+    item["fit"] = json_of(round.candidates[i].fitted.score.total);
+    item["holdout"] = json_of(holdout[i]);
+    item["p_value"] = json_of(round.family.p_value);
+    list.push_back(std::move(item));
   }
   return list;
 }
@@ -75,7 +54,7 @@ Json rounds_json(const SitesRecord& record) {
       turn["holdout"] = {{"before", json_of(before)}, {"after", json_of(after)}};
       before = after;
     }
-    turn["family"] = family_json(round.family, "pooled");
+    turn["family"] = family_of_site(round.family, "pooled");
     turn["candidates"] = candidates_json(round, record.candidates[i]);
     rounds.push_back(turn);
   }
@@ -84,9 +63,9 @@ Json rounds_json(const SitesRecord& record) {
 
 /// All families of the first round: the pooled one, then those of each site.
 Json families_json(const SitesDiagnosis& d) {
-  Json list = Json::array({family_json(d.rounds.front().family, "pooled")});
+  Json list = Json::array({family_of_site(d.rounds.front().family, "pooled")});
   for (const SiteDiagnosis& site : d.sites)
-    for (const FamilyTest& family : site.families) list.push_back(family_json(family, site.name));
+    for (const FamilyTest& family : site.families) list.push_back(family_of_site(family, site.name));
   return list;
 }
 
@@ -101,7 +80,7 @@ Json sites_of(const SitesRecord& record) {
       ground[p.key] = json_of(p.get(d.base[i]));
       after[p.key] = json_of(p.get(d.with_effects[i]));
     }
-    for (const FamilyTest& family : site.families) families.push_back(family_json(family, site.name));
+    for (const FamilyTest& family : site.families) families.push_back(family_of_site(family, site.name));
     list.push_back({{"name", site.name},
                     {"campaign", record.files[i]},
                     {"p_value", json_of(site.families.front().p_value)},
@@ -112,8 +91,7 @@ Json sites_of(const SitesRecord& record) {
                     {"tail", tail_json(evidence.errors)},
                     {"base_parameters", ground},
                     {"ground_with_effect", after},
-                    {"trials_per_block",
-                     {{"search", site.trials.search}, {"test", site.trials.test}, {"compare", site.trials.compare}}},
+                    {"trials_per_block", trials_json(site.trials)},
                     {"files", {site.name + "/fitted.toml", site.name + "/with_effect.toml"}}});
   }
   return list;
@@ -312,7 +290,7 @@ std::string sites_json(const SitesRecord& record) {
             {"residual", by_site(d, [&](std::size_t i) { return residual_json(d.sites[i].residual); })},
             {"findings_of_single_sites", own_findings(record)},
             {"seed", record.options.seed},
-            {"trials_per_block", {{"search", d.trials.search}, {"test", d.trials.test}, {"compare", d.trials.compare}}},
+            {"trials_per_block", trials_json(d.trials)},
             {"seconds", json_of(record.seconds)},
             {"talus", version()},
             {"command", record.command},
