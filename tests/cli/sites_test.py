@@ -154,7 +154,7 @@ class Diagnose(Sites):
     def test_where_nothing_is_held_out_every_block_is_out_of_its_fold(self):
         """The types of the fields are those of one campaign: INTERFACE.md, `error.holdout`."""
         paths = [self.measure(name, first, 5 + first, GROUND, count=12, holdout=False) for name, first in (("north", 0), ("south", 40))]
-        few = ("--fit", "En50", "--trials", "10", "--test-trials", "10", "--level", "0.001", "--folds", "2")
+        few = ("--fit", "En50", "--trials", "10", "--test-trials", "10", "--folds", "2")
         record = self.result("diagnose", paths, "nested", *few)
         for error in (record["error"], *(site["error"] for site in record["sites"])):
             self.assertEqual((error["metric"], error["holdout"]["rows"], error["headline"]["rows"]),
