@@ -26,7 +26,9 @@ run() {
 for program in core_tests io_tests run_tests; do
   run $program 0 & first=$!
   run $program 1 & second=$!
-  wait $first
-  wait $second
+  failed=0
+  wait $first || failed=1
+  wait $second || failed=1
+  [ $failed = 0 ]
 done
 ctest --test-dir "$build" --output-on-failure -j 2 -R "^(fuzz\\.|layers|lanes_)"
