@@ -123,6 +123,7 @@ class Calibrate(Sites):
         self.fails(2, b, "nothing to fit to", arguments=("diagnose", a, b, *out))
         for flag in (("--all-rows",), ("--nested",), ("--quick-folds",), ("--base-fits", "5")):
             self.fails(2, "flag " + flag[0], "not with several campaigns", arguments=("diagnose", a, b, *flag, *out))
+        self.fails(2, "where no site holds rows out", arguments=("diagnose", a, b, "--nested", *out))
         self.assertFalse(os.path.exists(self.path("out")))
 
 
@@ -165,6 +166,11 @@ class Diagnose(Sites):
         self.assertEqual(sum(fold["blocks"]["north"] for fold in record["nested"]["folds"]), 12)
         self.assertEqual([len(fold["effects"]) for fold in record["nested"]["folds"]], [1, 1])
         self.assertIn("out-of-fold rows", self.text("nested/report.html"))
+        lack = "there is no error of unseen rows: north: cross-validation in 7 folds needs at least 14 fitting rows, not 12"
+        many = self.result("diagnose", paths, "many", *few[:-1], "7")
+        self.assertEqual([w for w in many["warnings"] if lack in w], many["warnings"][-1:])
+        self.assertNotIn("nested", many)
+        self.assertEqual((many["error"]["holdout"]["rows"], many["error"]["holdout"]["before"]), ("holdout", None))
 
     def fields_of_one_campaign(self, record):
         """Beside its own, the record has the fields of one campaign; what is known by site names the site."""

@@ -107,9 +107,10 @@ void choose_folds(const Options& options, const talus::Campaign& campaign, talus
 int diagnose(const Options& options) {
   if (options.campaigns.size() > 1) {
     if (!options.of_one.empty())
-      throw talus::InputError("flag " + options.of_one.front() +
-                              ": not with several campaigns, whose held-out rows are respected and which are not "
-                              "fitted again; diagnose each campaign alone with it");
+      throw talus::InputError("flag " + options.of_one.front() + ": not with several campaigns" +
+                              (options.of_one.front() == "--nested"
+                                   ? ", of which every block is left out in its turn where no site holds rows out"
+                                   : "; diagnose each campaign alone with it"));
     talus::DiagnoseOptions how = options.how;
     how.nested = !options.no_nested;
     return diagnose_several(options, how);

@@ -122,14 +122,22 @@ Campaign without_fold(const Campaign& campaign, const OuterFolds& folds, std::ui
   return rest;
 }
 
-void require_fitting_rows(const Campaign& campaign, const OuterFolds& folds, const std::string& name) {
+std::string lack_of_fitting_rows(const Campaign& campaign, const OuterFolds& folds) {
+  const std::string way = "cross-validation in " + std::to_string(folds.count) + " folds";
+  const auto blocks = folds.fold_of.size() - static_cast<std::size_t>(std::ranges::count(folds.fold_of, kNoFold));
+  if (blocks < 2 * folds.count)
+    return way + " needs at least " + std::to_string(2 * folds.count) + " fitting rows, not " + std::to_string(blocks);
   for (std::uint32_t fold = 0; fold < folds.count; ++fold) {
     const Campaign rest = without_fold(campaign, folds, fold);
     if (score_of_climatology(rest, fitting_rows(rest)).groups.empty())
-      throw InputError((name.empty() ? "" : name + ": ") + "cross-validation in " + std::to_string(folds.count) +
-                       " folds: without fold " + std::to_string(fold + 1) +
-                       " no quantity has five values that differ: measure more, or leave it out with --no-nested");
+      return way + ": without fold " + std::to_string(fold + 1) + " no quantity has five values that differ";
   }
+  return {};
+}
+
+void require_fitting_rows(const Campaign& campaign, const OuterFolds& folds) {
+  if (const std::string lack = lack_of_fitting_rows(campaign, folds); !lack.empty())
+    throw InputError(lack + ": measure more, or leave it out with --no-nested");
 }
 
 OuterFold left_out(const Campaign& campaign, const OuterFolds& folds, std::uint32_t fold) {

@@ -3,8 +3,11 @@
 
 namespace talus {
 
-/// Throws InputError if what a fold leaves is too little to be fitted. @param name  of the campaign, for the message
-void require_fitting_rows(const Campaign& campaign, const OuterFolds& folds, const std::string& name = "");
+/// Why a campaign cannot be cross-validated in these folds: what a fold leaves is too little to be fitted. Empty if it
+/// can.
+std::string lack_of_fitting_rows(const Campaign& campaign, const OuterFolds& folds);
+/// Throws InputError with it.
+void require_fitting_rows(const Campaign& campaign, const OuterFolds& folds);
 
 /// The folds of the fitting blocks, before any is simulated.
 NestedValidation folds_to_validate(const Campaign& campaign, const DiagnoseOptions& options, std::uint32_t trials);

@@ -105,12 +105,14 @@ class SitesLoop {
     tests.score_test =
         score_test(campaign, {out.base.model, out.base.free, out.base.z, out.base.runs}, tests.candidates, rows, how);
     const ResidualSpace space(campaign, out.base.runs, rules_);
-    out.residual = residual_table(campaign, space, rows, rules_);
-    out.limits =
-        detection_limits(campaign, axis_of(campaign, out.base.runs), tests.score_test, tests.candidates, rules_);
     out.families =
         test_families({campaign, space, out.base.runs, rows, tests.score_test}, {how.replicates, own.seed, rules_});
-    complete_limits(out.limits, out.families, {});
+    if (!brief_) {
+      out.residual = residual_table(campaign, space, rows, rules_);
+      out.limits =
+          detection_limits(campaign, axis_of(campaign, out.base.runs), tests.score_test, tests.candidates, rules_);
+      complete_limits(out.limits, out.families, {});
+    }
     tests_.push_back(std::move(tests));
     return out;
   }
@@ -265,22 +267,29 @@ void validate_fold(std::span<const Site> sites, std::span<const Model> start, Di
   }
 }
 
+/// Why a site cannot be cross-validated; empty if all can.
+std::string lack_at_a_site(std::span<const Site> sites, const DiagnoseOptions& options) {
+  for (const Site& site : sites) {
+    const Campaign& campaign = *site.campaign;
+    const OuterFolds folds = outer_folds(campaign, fitting_rows(campaign), options.outer_folds, options.seed);
+    if (const std::string lack = lack_of_fitting_rows(campaign, folds); !lack.empty()) return site.name + ": " + lack;
+  }
+  return {};
+}
+
 }  // namespace
 
 SitesDiagnosis diagnose_sites(std::span<const Site> sites, std::span<const Model> start,
                               const DiagnoseOptions& options) {
-  std::vector<NestedValidation> nested;
-  if (options.nested)
-    for (const Site& site : sites) {
-      nested.push_back(folds_to_validate(*site.campaign, options, 0));
-      require_fitting_rows(*site.campaign, nested.back().folds, site.name);
-    }
-  DiagnosisWork work(options);
+  const std::string lack = options.nested ? lack_at_a_site(sites, options) : "";
+  DiagnoseOptions how = options;
+  how.nested = options.nested && lack.empty();
+  DiagnosisWork work(how);
   SitesDiagnosis d = SitesLoop(sites, work.next(false)).run(start);
-  for (NestedValidation& of_site : nested) of_site.trials = d.trials.compare;
-  for (std::uint32_t fold = 0; options.nested && fold < options.outer_folds; ++fold)
-    validate_fold(sites, start, work, fold, nested);
-  d.nested = std::move(nested);
+  d.not_nested = lack;
+  if (!how.nested) return d;
+  for (const Site& site : sites) d.nested.push_back(folds_to_validate(*site.campaign, how, d.trials.compare));
+  for (std::uint32_t fold = 0; fold < how.outer_folds; ++fold) validate_fold(sites, start, work, fold, d.nested);
   return d;
 }
 

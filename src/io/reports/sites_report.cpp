@@ -158,6 +158,12 @@ Json nested_of(const SitesDiagnosis& d) {
   return {{"trials_per_block", d.nested.front().trials}, {"folds", loops}};
 }
 
+/// "Repeated 5 times, each without a part of the blocks of every site, it found: 4 of 5 block-shape; 1 of 5 none".
+std::string repetitions_text(const SitesDiagnosis& d) {
+  return "Repeated " + std::to_string(d.nested.front().loops.size()) +
+         " times, each without a part of the blocks of every site, it found: " + folds_text(d.nested.front());
+}
+
 /// What was found, in words.
 std::string verdict_sentence(const SitesDiagnosis& d) {
   std::string text;
@@ -304,7 +310,7 @@ std::string sites_page(const SitesRecord& record) {
   const SitesDiagnosis& d = record.diagnosis;
   Markup html = "<p><b>"_html + verdict_sentence(d) + "</b></p>\n";
   for (const std::string& finding : own_findings(record)) html += "<p>"_html + finding + "</p>\n";
-  if (!d.nested.empty()) html += "<p>Without each fold of every site: "_html + folds_text(d.nested.front()) + ".</p>\n";
+  if (!d.nested.empty()) html += "<p>"_html + repetitions_text(d) + ".</p>\n";
   html +=
       "<h2>Evidence, by site and pooled</h2>\n<p>Mean normalised score; before: the ground of each site alone; after: "
       "with what was found. Intervals: over the blocks. The climatology is a forecast by the other fitting rows: a "
@@ -332,7 +338,7 @@ std::string sites_summary(const SitesRecord& record) {
   const SitesDiagnosis& d = record.diagnosis;
   std::string text = verdict_sentence(d) + "\n";
   for (const std::string& finding : own_findings(record)) text += finding + "\n";
-  if (!d.nested.empty()) text += "without each fold of every site: " + folds_text(d.nested.front()) + "\n";
+  if (!d.nested.empty()) text += repetitions_text(d) + "\n";
   for (std::size_t i = 0; i < record.evidence.size(); ++i) {
     const SiteEvidence& e = record.evidence[i];
     text += e.site + ": p of a block property " + p_text(property_p(d, i));

@@ -2,6 +2,7 @@
 """Makes deliberate faults in the engine, the tallies, the products and the fit, and shows that a test catches each.
 
   tools/scripts/checks/mutants.py [--only WORD] [--build build/mutants] [--jobs 2]
+  tools/scripts/checks/mutants.py --check      whether every line of the table is still in its file
 
 The sources are copied to build/mutants/tree and built there once (minutes). Then, for each fault of `MUTANTS`, one line is
 changed, core_tests are built and run: first the tests named in the table, then, if none fails, all. Printed: the fault, and the
@@ -20,15 +21,15 @@ ROOT = Path(__file__).resolve().parents[3]
 # file, text, what it becomes, tests that should see it
 MUTANTS = [
     # the engine
-    ("src/physics/impact.cpp", "0.5 + 0.5 * longitudinal", "0.5 - 0.5 * longitudinal", "*Impact*:*Rough*:*Asper*"),
-    ("src/physics/impact.cpp", "(0.5 * draw.transverse)", "draw.transverse", "*Impact*:*Rough*:*Asper*"),
-    ("src/physics/impact.cpp", "longitudinal < -1.0 && part", "longitudinal < 0.0 && part", "*Impact*:*Rough*:*Asper*"),
-    ("src/physics/impact.cpp", "cos_theta * level - sin_theta * normal.z()", "cos_theta * level + sin_theta * normal.z()", "*Impact*:*Rough*"),
-    ("src/physics/impact.cpp", "if (velocity.dot(n2) < 0.0) return {n2, false};", "return {n2, false};", "*Impact*:*Rough*"),
-    ("src/physics/impact.cpp", "ground.Et50 / (deformation_energy + ground.Et50)", "ground.En50 / (deformation_energy + ground.En50)", "*Impact*:*Restit*"),
-    ("src/physics/impact.cpp", "2.0 / 7.0 * slip", "2.0 / 5.0 * slip", "*Impact*:*Friction*"),
-    ("src/physics/impact.cpp", "(1.0 + k.normal) * v_n", "k.normal * v_n", "*Impact*:*Friction*"),
-    ("src/physics/impact.cpp", "2.5 / arm * n.cross(friction)", "2.5 / arm * friction.cross(n)", "*Impact*:*Energy*"),
+    ("include/talus/physics/impact.hpp", "0.5 + 0.5 * draw.longitudinal", "0.5 - 0.5 * draw.longitudinal", "*Impact*:*Rough*:*Asper*"),
+    ("include/talus/physics/impact.hpp", "(0.5 * draw.transverse)", "draw.transverse", "*Impact*:*Rough*:*Asper*"),
+    ("src/physics/impact.cpp", "draw.longitudinal < kLowestBracket && part", "draw.longitudinal < 0.0 && part", "*Impact*:*Rough*:*Asper*"),
+    ("include/talus/physics/impact.hpp", "cos_theta * level - sin_theta * normal.z()", "cos_theta * level + sin_theta * normal.z()", "*Impact*:*Rough*"),
+    ("include/talus/physics/impact.hpp", "tilts & (velocity.dot(n2) < 0.0)", "tilts", "*Impact*:*Rough*"),
+    ("include/talus/physics/impact.hpp", "ground.Et50 / (deformation_energy + ground.Et50)", "ground.En50 / (deformation_energy + ground.En50)", "*Impact*:*Restit*"),
+    ("include/talus/physics/impact.hpp", "2.0 / 7.0 * slip", "2.0 / 5.0 * slip", "*Impact*:*Friction*"),
+    ("include/talus/physics/impact.hpp", "(1.0 + k.normal) * v_n", "k.normal * v_n", "*Impact*:*Friction*"),
+    ("include/talus/physics/impact.hpp", "2.5 / arm * n.cross(friction)", "2.5 / arm * friction.cross(n)", "*Impact*:*Energy*"),
     ("src/physics/impact.cpp", "draws_[event - first_]", "draws_[(event - first_) / 2]", "*Impact*:*Asper*:*Vector*"),
     ("src/physics/trace.cpp", "motion_.velocity.dot(normal_) < kSlideSpeed", "motion_.velocity.dot(normal_) < 10.0 * kSlideSpeed", "*Trace*:*Slide*:*Vector*"),
     ("src/physics/trace.cpp", "if (!fast && normal_.head<2>().norm() <= ground.tan_phi * normal_.z()) return End::Stopped;", "if (!fast) return End::Stopped;", "*Trace*:*End*:*Stop*"),
@@ -36,8 +37,8 @@ MUTANTS = [
     ("src/physics/slide.cpp", "const double friction = tan_phi * kGravity / std::sqrt(w2);", "const double friction = tan_phi * kGravity;", "*Slid*:*Slope*"),
     ("src/physics/slide.cpp", "if (squared > most) velocity *= std::sqrt(most / squared);", "", "*Slid*:*Energy*"),
     ("src/physics/slide.cpp", "kGravity + 2.0 * twist * v.x() * v.y()", "kGravity - 2.0 * twist * v.x() * v.y()", "*Slid*"),
-    ("src/physics/flight.cpp", "next = std::max(0.0, rate > 0.0 ? 1.0 - share : share) * every;", "next = std::max(0.0, rate > 0.0 ? share : 1.0 - share) * every;", "*Fl*"),
-    ("src/terrain/surface.cpp", "return {0.5 * (south.corner + north.corner)", "return {south.corner", "*Surface*:*Crease*"),
+    ("src/physics/crossing.hpp", "choose(rate > 0.0, 1.0 - share, share)", "choose(rate > 0.0, share, 1.0 - share)", "*Fl*"),
+    ("include/talus/terrain/surface.hpp", "choose(along, 0.5 * (south.corner + north.corner)", "choose(along, south.corner", "*Surface*:*Crease*"),
     ("src/simulate/plan/plan.cpp", "const auto place = random.words(0), size = random.words(1);", "const auto place = random.words(0), size = random.words(0);", "*Release*:*Plan*:*Size*"),
     ("src/simulate/plan/plan.cpp", "(uniform(place[1]) - 0.5) * grid.cell_y", "uniform(place[1]) * grid.cell_y", "*Release*:*Plan*"),
     ("src/simulate/plan/plan.cpp", "const Random random(scenario.seed, source, block, Purpose::Release);", "const Random random(scenario.seed, source, block / 2, Purpose::Release);", "*Release*:*Plan*:*Stream*"),
@@ -122,7 +123,11 @@ def main():
     parser.add_argument("--only", default="", help="part of a file's name or of the text")
     parser.add_argument("--build", type=Path, default=ROOT / "build/mutants")
     parser.add_argument("--jobs", default="2")
+    parser.add_argument("--check", action="store_true")
     o = parser.parse_args()
+    if o.check:
+        gone = [f"{name}: {text}" for name, text, _, _ in MUTANTS if text not in (ROOT / name).read_text()]
+        sys.exit("not in its file: " + "; ".join(gone) if gone else 0)
     tree, binary = o.build / "tree", o.build / "build"
     copy_sources(tree)
     subprocess.run(["cmake", "-S", tree, "-B", binary, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DTALUS_BENCH=OFF"], check=True,

@@ -16,7 +16,7 @@ trap 'rm -rf "$work"' EXIT
 # A half of the tests of a program; prints what it says if one fails.
 run() {
   local program="$1" half="$2" log="$work/$1-$2"
-  if ! GTEST_TOTAL_SHARDS=2 GTEST_SHARD_INDEX="$half" "$build/tests/$program" --gtest_brief=1 --gtest_filter="-$long" > "$log" 2>&1; then
+  if ! GTEST_TOTAL_SHARDS=2 GTEST_SHARD_INDEX="$half" timeout 1800 "$build/tests/$program" --gtest_brief=1 --gtest_filter="-$long" > "$log" 2>&1; then
     cat "$log"
     return 1
   fi

@@ -50,7 +50,8 @@ struct SitesDiagnosis {
   std::vector<Model> with_effects;       ///< by site; the base where nothing was found
   TrialsPerBlock trials;                 ///< of the fits together
   double p_value = 1.0;                  ///< the smallest corrected one of all families
-  std::vector<NestedValidation> nested;  ///< by site, without candidates; empty: not asked for
+  std::vector<NestedValidation> nested;  ///< by site, without candidates; empty: not asked for, or not possible
+  std::string not_nested;                ///< why it was not possible, though asked for
 };
 
 /// Finds an effect that several campaigns share.
@@ -61,8 +62,8 @@ struct SitesDiagnosis {
 /// (1) Fits the ground of each site and tests its families, as `diagnose` does. (2) Tests the family "block property"
 /// with the blocks of all sites together, an intercept for each site and group. (3) Where that is significant, fits its
 /// effects with the same numbers at all sites and a ground of each, and chooses by the rules of `diagnose`. (4) Adds
-/// the effect and tests again. (5) With `nested`, repeats all that without each fold of every site, the folds of one
-/// number at once. docs/several-campaigns.md.
+/// the effect and tests again. (5) With `nested`, where every site has enough blocks, repeats all that once for each
+/// number of a fold, without the folds of this number of all sites. docs/several-campaigns.md.
 ///
 /// Throws FitInterrupted when `proceed` returns false.
 SitesDiagnosis diagnose_sites(std::span<const Site> sites, std::span<const Model> start,
