@@ -63,7 +63,7 @@ class Repeated(luck_test.Luck):
         self.fails(2, "--nested and --no-nested", arguments=("diagnose", campaign, "-o", out, "--nested", "--no-nested"))
         self.tables(self.path("out-held"), [[*b[:6], "1"] for b in self.blocks], *self.own()[1:])
         held, few = self.path("out-held/campaign.toml"), ("--folds", "13")  # a refusal of all 24 rows comes soon
-        self.fails(2, "24 fitting rows", "needs at least 26", arguments=("diagnose", held, "-o", out, "--all-rows", *few))
+        self.fails(2, "cross-validation in 13 folds needs at least 26 fitting rows, not 24", "--no-nested", arguments=("diagnose", held, "-o", out, "--all-rows", *few))
         self.fails(2, "nothing to fit to", arguments=("diagnose", held, "-o", out, *few))
         self.fails(2, "needs at least 26", arguments=("diagnose", campaign, "-o", out, "--nested", "--folds", "13"))
 

@@ -97,11 +97,6 @@ void choose_folds(const Options& options, const talus::Campaign& campaign, talus
   const bool all = std::count(fitting.begin(), fitting.end(), false) == 0;
   how.nested = options.nested || (all && !options.no_nested);
   how.naming_in_folds = !options.quick_folds;
-  const std::size_t rows = static_cast<std::size_t>(std::count(fitting.begin(), fitting.end(), true));
-  if (how.nested && rows < 2 * how.outer_folds)
-    throw talus::InputError("flag --folds = " + std::to_string(how.outer_folds) + ": " + std::to_string(rows) +
-                            " fitting rows (needs at least " + std::to_string(2 * how.outer_folds) +
-                            "; --no-nested does without)");
 }
 
 int diagnose(const Options& options) {

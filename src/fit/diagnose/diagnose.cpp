@@ -218,7 +218,7 @@ class DiagnosisLoop {
   void cross_validate(const FittedModel& base, std::span<FittedCandidate* const> contenders) const {
     if (contenders.empty()) return;
     const std::vector<Score> before = fits_.cross_validated(base);
-    for (FittedCandidate* c : contenders) set_unseen_gain(*c, before, fits_.cross_validated(c->fitted), streams_);
+    for (FittedCandidate* c : contenders) set_cross_validated(*c, before, fits_.cross_validated(c->fitted), streams_);
   }
 
   /// Keeps at most `most` contenders, those with the largest net gains. Each gains at least `least` and may still win.

@@ -44,8 +44,8 @@ void set_gain(FittedEffect& effect, const Score& base, const Score& own, std::sp
   effect.gain_interval = {-change.interval.high, -change.interval.low};
 }
 
-void set_unseen_gain(FittedEffect& effect, std::span<const Score> base, std::span<const Score> own,
-                     std::span<const std::uint32_t> streams) {
+void set_cross_validated(FittedEffect& effect, std::span<const Score> base, std::span<const Score> own,
+                         std::span<const std::uint32_t> streams) {
   const Difference change = mean_difference(base, own, streams);
   effect.cross_validated = -change.mean;
   effect.cross_validated_interval = {-change.interval.high, -change.interval.low};

@@ -4,7 +4,7 @@
 
 namespace talus {
 
-/// What the fits to one campaign (EffectFits) and to several (JointFits) have in common.
+/// Rules and steps that the fits to one campaign (EffectFits) and to several (JointFits) share.
 
 /// The search of a fit with the trials of the diagnosis.
 FitOptions search_options(const DiagnoseOptions& options, const std::function<bool(double)>& proceed);
@@ -12,8 +12,9 @@ FitOptions search_options(const DiagnoseOptions& options, const std::function<bo
 /// The fit of a chosen model from where it is: a search, then rounds until one gains nothing.
 FitOptions last_fit_options(FitOptions how, const DiagnosisRules& rules);
 
-/// The first trial of a round, in multiples of the trials that compare fits: one for the choice, one for each order of
-/// its cross-validation, the same to confirm it, and those that confirm the objective. No two rounds share a trial.
+/// Number of the first trial of a round. No two rounds share a trial: each has those that compare fits once for the
+/// choice, once for each order of its cross-validation, as often to confirm that, and `confirming` times to confirm the
+/// objective.
 std::uint32_t first_trial_of(const DiagnoseOptions& options, std::uint32_t round);
 
 /// Cuts an order of blocks into folds. @return the fold of each block; `folds` for a block that is not in the order
@@ -25,9 +26,9 @@ void set_amount(FittedEffect& effect, const Eigen::VectorXd& z, const DiagnosisR
 /// Sets the gain of an effect on the fitting rows. @param streams  of all blocks
 void set_gain(FittedEffect& effect, const Score& base, const Score& own, std::span<const std::uint32_t> streams);
 
-/// Sets the gain on unseen blocks. @param base, own  scores of the same folds and trials
-void set_unseen_gain(FittedEffect& effect, std::span<const Score> base, std::span<const Score> own,
-                     std::span<const std::uint32_t> streams);
+/// Sets the gain in cross-validation. @param base, own  scores of the same folds and trials
+void set_cross_validated(FittedEffect& effect, std::span<const Score> base, std::span<const Score> own,
+                         std::span<const std::uint32_t> streams);
 
 /// The fit with the lower objective, with the evaluations of the longer one.
 template <class Fitted>

@@ -60,15 +60,8 @@ void forget(MeasuredBlock& block) {
 OuterFold loop_of(const Campaign& campaign, const OuterFolds& folds, std::uint32_t fold, const Diagnosis& found,
                   bool naming) {
   OuterFold loop = left_out(campaign, folds, fold);
-  for (const DiagnosisRound& round : found.rounds) {
-    if (!names_effect(round.effect)) continue;
-    loop.effects.push_back(round.effect);
-    loop.where.push_back(round.where);
-  }
-  if (naming) {
-    loop.p_value = found.rounds.front().p_value;
-    if (loop.effects.empty()) loop.effects.push_back(found.rounds.front().effect), loop.where.emplace_back();
-  }
+  note_found(loop, found.rounds);
+  if (naming) loop.p_value = found.rounds.front().p_value;
   return loop;
 }
 
@@ -137,7 +130,7 @@ std::string lack_of_fitting_rows(const Campaign& campaign, const OuterFolds& fol
 
 void require_fitting_rows(const Campaign& campaign, const OuterFolds& folds) {
   if (const std::string lack = lack_of_fitting_rows(campaign, folds); !lack.empty())
-    throw InputError(lack + ": measure more, or leave it out with --no-nested");
+    throw InputError(lack + ": measure more, give other --folds, or leave it out with --no-nested");
 }
 
 OuterFold left_out(const Campaign& campaign, const OuterFolds& folds, std::uint32_t fold) {

@@ -20,6 +20,16 @@ void simulate_fold(const Campaign& campaign, const DiagnoseOptions& options, std
 /// The blocks and groups of a fold.
 OuterFold left_out(const Campaign& campaign, const OuterFolds& folds, std::uint32_t fold);
 
+/// Notes the effects that were found without a fold; "none" or "unexplained" where there is none.
+template <class Round>
+void note_found(OuterFold& loop, const std::vector<Round>& rounds) {
+  for (const Round& round : rounds) {
+    if (!names_effect(round.effect) && !loop.effects.empty()) continue;
+    loop.effects.push_back(round.effect);
+    loop.where.push_back(round.where);
+  }
+}
+
 /// Repeats the loop without each fold and simulates the fold's blocks with what it found.
 ///
 /// @param whole  the diagnosis of all fitting rows: its candidates, and the effects that folds take which do not choose

@@ -227,7 +227,7 @@ class SitesLoop {
     }
     const std::vector<Score> before = fits_.cross_validated(base, 0);
     for (JointCandidate& c : round.candidates)
-      set_unseen_gain(c, before, fits_.cross_validated(c.fitted, 0), fits_.streams());
+      set_cross_validated(c, before, fits_.cross_validated(c.fitted, 0), fits_.streams());
     const Choice choice(base.objective, rules_, fits_.streams());
     choice.rank(round.candidates);
     choice.name_in(round, [&](const JointCandidate& c) { return fits_.confirmation(base, c); });
@@ -258,11 +258,7 @@ void validate_fold(std::span<const Site> sites, std::span<const Model> start, Di
     simulate_fold(campaign, work.options(), fold, found.base[i], found.with_effects[i], nested[i]);
     OuterFold loop = left_out(campaign, nested[i].folds, fold);
     loop.p_value = found.p_value;
-    for (const JointRound& round : found.rounds) {
-      if (!names_effect(round.effect) && !loop.effects.empty()) continue;
-      loop.effects.push_back(round.effect);
-      loop.where.push_back(round.where);
-    }
+    note_found(loop, found.rounds);
     nested[i].loops.push_back(std::move(loop));
   }
 }

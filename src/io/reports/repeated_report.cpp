@@ -9,6 +9,8 @@
 namespace talus::io {
 namespace {
 
+constexpr const char* kOutOfFold = "out-of-fold";
+
 std::string interval_text(const Interval& interval, double unit, int decimals) {
   return with_decimals(unit * interval.low, decimals) + " to " + with_decimals(unit * interval.high, decimals);
 }
@@ -40,7 +42,7 @@ std::string verdicts_text(const Stability& stability) {
   return text;
 }
 
-/// What an interval rests on.
+/// Number of the groups or blocks that an interval is over: "8 groups".
 std::string clusters_text(const BeforeAfter& e, const DiagnosisRecord& record) {
   const bool groups = e.clusters.given && e.clusters.count < e.after.blocks;
   const bool few = !e.clusters.given && !record.clusters.empty();
@@ -70,12 +72,18 @@ std::string folds_text(const NestedValidation& nested) {
   return text;
 }
 
+BeforeAfter out_of_fold_rows(const Campaign& campaign, const NestedValidation& nested) {
+  const std::vector<bool> rows = fitting_rows(campaign);
+  const std::vector<std::uint32_t>& folds = nested.folds.fold_of;
+  return compared(campaign, scored(kOutOfFold, campaign, nested.base, rows, folds),
+                  scored(kOutOfFold, campaign, nested.found, rows, folds));
+}
+
 void judge_nested(const Campaign& campaign, DiagnosisRecord& record) {
   const NestedValidation& nested = *record.diagnosis.nested;
   const std::vector<bool> rows = fitting_rows(campaign);
   const std::vector<std::uint32_t>& folds = nested.folds.fold_of;
-  record.errors.push_back(compared(campaign, scored(kOutOfFold, campaign, nested.base, rows, folds),
-                                   scored(kOutOfFold, campaign, nested.found, rows, folds)));
+  record.errors.push_back(out_of_fold_rows(campaign, nested));
   if (nested.ground.empty()) return;
   const auto judged = [&](const std::vector<BlockRuns>& runs, ScoreRule rule) {
     return score(campaign, runs, rows, {rule, kFewestSimulated, folds});

@@ -9,8 +9,8 @@
 /// docs/diagnosis-evidence.md.
 namespace talus::io {
 
-/// ScoredRows::rows of blocks that were simulated out of their folds.
-inline constexpr const char* kOutOfFold = "out-of-fold";
+/// Scores the blocks that were simulated out of their folds: rows "out-of-fold".
+BeforeAfter out_of_fold_rows(const Campaign& campaign, const NestedValidation& nested);
 
 /// The folds that found the same, with their number: "4 of 5 block-shape; 1 of 5 none".
 std::string folds_text(const NestedValidation& nested);

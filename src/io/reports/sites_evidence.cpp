@@ -41,18 +41,6 @@ Scores joined_of(std::span<const SiteEvidence> sites, std::span<const std::size_
   return {joined_scores(before), joined_scores(after), joined_scores(climatology)};
 }
 
-BeforeAfter unseen_rows(const Campaign& campaign, const std::vector<BlockRuns>& first,
-                        const std::vector<BlockRuns>& last, const NestedValidation* nested) {
-  if (nested == nullptr) {
-    const std::vector<bool> rows = holdout_rows(campaign);
-    return compared(campaign, scored("holdout", campaign, first, rows), scored("holdout", campaign, last, rows));
-  }
-  const std::vector<bool> rows = fitting_rows(campaign);
-  const std::vector<std::uint32_t>& folds = nested->folds.fold_of;
-  return compared(campaign, scored(kOutOfFold, campaign, nested->base, rows, folds),
-                  scored(kOutOfFold, campaign, nested->found, rows, folds));
-}
-
 SiteEvidence evidence_of(const Site& site, const Model& before, const Model& after, const ObserveOptions& how,
                          const NestedValidation* nested) {
   const Campaign& campaign = *site.campaign;
@@ -61,7 +49,13 @@ SiteEvidence evidence_of(const Site& site, const Model& before, const Model& aft
   SiteEvidence out;
   out.site = site.name;
   out.errors.push_back(compared(campaign, scored("fit", campaign, first, rows), scored("fit", campaign, last, rows)));
-  out.errors.push_back(unseen_rows(campaign, first, last, nested));
+  if (nested != nullptr) {
+    out.errors.push_back(out_of_fold_rows(campaign, *nested));
+  } else {
+    const std::vector<bool> held = holdout_rows(campaign);
+    out.errors.push_back(
+        compared(campaign, scored("holdout", campaign, first, held), scored("holdout", campaign, last, held)));
+  }
   out.unseen_rows = out.errors[1].after.rows;
   out.clusters = clusters_of(campaign);
   out.fit = change_of(scores_of(out.errors[0]), out.errors[0].after.blocks, out.clusters);
