@@ -51,6 +51,10 @@ std::string with_digits(double value, int digits) {
   return printed(value, std::chars_format::general, digits);
 }
 
+std::string percent(double share, int digits) {
+  return with_digits(100.0 * share, digits) + " %";
+}
+
 std::string with_decimals(double value, int decimals) {
   return printed(value, std::chars_format::fixed, decimals);
 }

@@ -5,8 +5,6 @@ namespace talus {
 
 /// Formulas of a flight over one patch, for one block or several in lanes.
 
-inline constexpr double kNever = std::numeric_limits<double>::infinity();  // time of what does not happen [s]
-
 /// Times at which a straight line in plan crosses the successive grid lines of one direction.
 template <class Number>
 struct Lines {

@@ -46,16 +46,16 @@ Piece make_piece(const Slope& slope, const Vec2& place, const Vec2& v, const Vec
 }
 
 /// The edge at which a piece leaves its facet: the time, and the step to the next patch; no step at a crease.
-struct Edge {
+struct EdgeAhead {
   double time;
   int columns = 0, rows = 0;
 };
 
-Edge edge_of(const Slope& slope, const Vec2& place, const Vec2& v, const Piece& piece) {
+EdgeAhead edge_of(const Slope& slope, const Vec2& place, const Vec2& v, const Piece& piece) {
   const Eigen::Array2d per_cell(slope.surface.per_cell_x(), slope.surface.per_cell_y());
   const Vec2 rate = v.array() * per_cell, bend = 0.5 * piece.acceleration.array() * per_cell;
   const double p = slope.p_of(place), q = slope.q_of(place);
-  Edge edge{std::numeric_limits<double>::infinity()};
+  EdgeAhead edge{std::numeric_limits<double>::infinity()};
   const auto meet = [&](double clearance, double f1, double f2, int columns, int rows) {
     if (f1 >= 0.0 && f2 >= 0.0) return;  // the block moves away from this edge
     const double time = first_contact(std::max(0.0, clearance), f1, f2, piece.duration);
@@ -86,7 +86,7 @@ double time_to_border(const Slope& slope, const Vec2& place, const Vec2& v, cons
 }
 
 /// Reads the facet beyond an edge. Returns false if there is none.
-bool read_beyond(const Slope& slope, const Edge& edge, const Motion& motion, Slope& beyond) {
+bool read_beyond(const Slope& slope, const EdgeAhead& edge, const Motion& motion, Slope& beyond) {
   if (edge.columns == 0 && edge.rows == 0) return beyond.read(Facet{slope.at, !slope.north});
   beyond.at = {slope.at.column + edge.columns, slope.at.row + edge.rows};
   return beyond.read(motion.position.head<2>(), motion.velocity.head<2>());
@@ -127,7 +127,7 @@ Facet first_facet(const Surface& surface, PatchIndex at, Motion& motion) {
 /// Result of one piece of sliding, to the end of the piece, of the facet or of the cell.
 struct Step {
   Motion motion;
-  Edge edge;
+  EdgeAhead edge;
   bool crossed;
 };
 
@@ -162,7 +162,7 @@ Step next_step(const Slope& slope, const Motion& motion, double farthest, double
     longest = std::min(longest, left / -pull + 1e-9);
   }
   const Piece piece = make_piece(slope, place, v, first, longest, tolerance);
-  const Edge edge = edge_of(slope, place, v, piece);
+  const EdgeAhead edge = edge_of(slope, place, v, piece);
   const auto place_after = [&](double t) -> Vec2 { return place + t * v + 0.5 * t * t * piece.acceleration; };
   const double border = slope.bounded_to ? std::max(time_to_border(slope, place, v, piece),
                                                     time_to_cover(tolerance, speed, pull, piece.duration))

@@ -75,7 +75,7 @@ std::size_t blocks_of(std::span<const LineCrossing> crossings) {
 }
 
 /// What the blocks of a stratum sum up to.
-struct Stratum {
+struct SumsOfStratum {
   double sum = 0.0, squares = 0.0;
   std::uint32_t blocks = 0;  // of all that were released
 
@@ -108,7 +108,7 @@ double weighted_quantile(std::span<const double> values, std::span<const double>
 CrossingSums sums_of(std::span<const LineCrossing> crossings) {
   CrossingSums sums;
   std::unordered_map<std::size_t, double> blocks;
-  std::map<std::uint64_t, Stratum> strata;  // in order: their sum must not depend on the library
+  std::map<std::uint64_t, SumsOfStratum> strata;  // in order: their sum must not depend on the library
   for (const LineCrossing& crossing : crossings) {
     const auto [block, first] = blocks.try_emplace(crossing.block, 0.0);
     const double before = block->second, w = crossing.weight;
@@ -118,7 +118,7 @@ CrossingSums sums_of(std::span<const LineCrossing> crossings) {
     sums.squares += squares;
     sums.largest = std::max(sums.largest, block->second);
     sums.pieces = sums.pieces || !first;
-    Stratum& stratum = strata[crossing.stratum];
+    SumsOfStratum& stratum = strata[crossing.stratum];
     stratum.sum += w;
     stratum.squares += squares;
     stratum.blocks = crossing.stratum_blocks;

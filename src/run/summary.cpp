@@ -6,7 +6,7 @@
 namespace talus::run {
 
 std::string share_text(std::uint64_t part, std::uint64_t whole) {
-  return with_digits(100.0 * static_cast<double>(part) / static_cast<double>(whole), 3) + " %";
+  return percent(static_cast<double>(part) / static_cast<double>(whole));
 }
 
 std::string count_text(std::uint64_t count) {

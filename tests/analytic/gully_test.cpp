@@ -6,8 +6,8 @@
 namespace talus {
 namespace {
 
-constexpr Ground kUpperTalus{.theta_scale = 1.0, .psi_scale = 0.9, .shape_max = 1.5};
-constexpr std::uint32_t kBlocks = 200;
+using test::kUpperTalus;
+constexpr std::uint32_t kBlocksPerGully = 200;
 constexpr double kWay = 200.0;  // [m]
 
 /// A straight V gully, floor 35 degrees, walls 45, that leads from its first place at an angle to the grid.
@@ -33,7 +33,7 @@ struct Gully {
     const Cover cover{{kUpperTalus}, {}};
     const double height = *terrain.height(start().x(), start().y()) + 1.0;
     int stopped = 0;
-    for (std::uint32_t block = 0; block < kBlocks; ++block) {
+    for (std::uint32_t block = 0; block < kBlocksPerGully; ++block) {
       Path path;
       trace({terrain, cover, {}, {}}, test::block_at({start().x(), start().y(), height}, Vec3::Zero(), 1.0, block),
             path);
@@ -41,7 +41,7 @@ struct Gully {
       const bool stays = path.end == End::Stopped || path.end == End::Trapped;
       stopped += stays && (end - start()).dot(way()) < kWay ? 1 : 0;
     }
-    return 1.0 * stopped / kBlocks;
+    return 1.0 * stopped / kBlocksPerGully;
   }
 };
 

@@ -11,7 +11,7 @@ namespace {
 using test::Moments;
 using test::Numbers;
 
-constexpr Ground kUpperTalus{.theta_scale = 1.0, .psi_scale = 0.9, .shape_max = 1.5};
+using test::kUpperTalus;
 
 /// One of the eight orientations of a square map: k quarter turns, with or without a mirroring of x before them.
 struct Placement {

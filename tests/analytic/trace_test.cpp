@@ -13,9 +13,9 @@ namespace {
 
 using test::Numbers;
 
-constexpr Ground kUpperTalus{.theta_scale = 1.0, .psi_scale = 0.9, .shape_max = 1.5};
+using test::kUpperTalus;
 
-struct Scene {
+struct Launch {
   Surface surface;
   Cover cover;
   ImpactModel impact = {};
@@ -36,7 +36,7 @@ TEST(BounceSeries,
      VerticalDropOnFlatGround) {  // v -> v E/(E + c D v^2), 2 v/g in the air, until it leaves below 0.5 m/s
   for (const double height : {2.0, 50.0})
     for (const double En50 : {5.0, 15.0}) {
-      Scene scene{flat(), {{Ground{.En50 = En50}}, {}}};
+      Launch scene{flat(), {{Ground{.En50 = En50}}, {}}};
       scene.rules.trap_time = 1e3;
       const Path path = scene.run({100.3, 99.1, 8.0 + height}, Vec3::Zero(), 1.2);
       double v = std::sqrt(2 * kGravity * height), t = v / kGravity, length = height;
@@ -65,7 +65,7 @@ TEST(BounceSeries,
 
 TEST(BounceSeries, ThrownAlongFlatGroundWithSpin) {  // independent recursion of Eqs. 3-6 in the plane of the motion
   const double tan_phi = 1.0 / std::sqrt(3.0), diameter = 1.2;
-  const Scene scene{flat(2.0, 401), {{Ground{}}, {}}};
+  const Launch scene{flat(2.0, 401), {{Ground{}}, {}}};
   for (const double turn : {0.0, 0.11, 0.77}) {
     const double c = std::cos(2 * kPi * turn), s = std::sin(2 * kPi * turn);
     const Path path = scene.run({400.3, 399.1, 11.0}, {12 * c, 12 * s, 0}, diameter);
@@ -94,7 +94,7 @@ TEST(Trap, APitWithWallsSteeperThanPhiHoldsItsBlockAndTellsSo) {
   const Surface pit(test::terrain(test::grid_of(61, 61, 2.0, 2.0), [](double x, double y) {
     return 0.75 * std::max(std::abs(x - 61), std::abs(y - 61));
   }));
-  const Scene scene{pit, {{kUpperTalus}, {}}, {}, {.impact_limit = 2000}};
+  const Launch scene{pit, {{kUpperTalus}, {}}, {}, {.impact_limit = 2000}};
   int stopped = 0, trapped = 0;
   for (std::uint32_t block = 0; block < 200; ++block) {
     const Path path = scene.run({70.0, 75.0, 20.0}, Vec3::Zero(), 0.8, block);
@@ -114,7 +114,7 @@ TEST(Trap, ABlockThatCrawlsOnOpenGroundHasStopped) {
   const double slope = std::tan(radians(30.5));
   const Surface plane(
       test::terrain(test::grid_of(200, 60, 4.0, 4.0), [&](double x, double) { return 2000.0 - slope * x; }));
-  const Scene scene{plane, {{kUpperTalus}, {}}};
+  const Launch scene{plane, {{kUpperTalus}, {}}};
   int stopped = 0;
   for (std::uint32_t block = 0; block < 200; ++block) {
     const Path path = scene.run({20.0, 120.0, *plane.height(20.0, 120.0) + 2.0}, Vec3::Zero(), 4.0, block);
@@ -136,7 +136,7 @@ TEST(Trap, IsAnEndOfItsOwnOnlyBetweenWallsSteeperThanPhi) {
         const double across = side * std::abs(y - 61.0), along = side * std::abs(x - 61.0);
         return 100.0 + (shape == Shape::Pit ? across + along : shape == Shape::V ? across : -across - along);
       };
-      const Scene scene{Surface(test::terrain(test::grid_of(61, 61, 2.0, 2.0), height)), {{kUpperTalus}, {}}};
+      const Launch scene{Surface(test::terrain(test::grid_of(61, 61, 2.0, 2.0), height)), {{kUpperTalus}, {}}};
       std::array<int, kEnds> ends{};
       for (std::uint32_t block = 0; block < 100; ++block) {
         const Path path = scene.run({65.0, 68.0, height(65.0, 68.0) + 2.0}, Vec3::Zero(), 0.8, block);
@@ -156,7 +156,7 @@ TEST(Trap, IsAnEndOfItsOwnOnlyBetweenWallsSteeperThanPhi) {
 
 TEST(Trap,
      ABlockThatHopsOnOnePlaceIsTrappedAtTheFirstContactAfterThePatience) {  // k_n = 1: every hop takes 2 sqrt(2 h/g)
-  Scene scene{flat(), {{Ground{.En50 = 1e300}}, {}}};
+  Launch scene{flat(), {{Ground{.En50 = 1e300}}, {}}};
   for (const double patience : {2.0, 5.0, 11.0}) {
     scene.rules.trap_time = patience;
     const Path path = scene.run({100.3, 99.1, 9.0}, Vec3::Zero());
@@ -173,7 +173,7 @@ TEST(Trap, AFallDownAWallIsNoStay) {
   const double wall = 100.0, diameter = 4.0, speed = std::sqrt(2.0 * kGravity * wall);
   const Surface surface(test::terrain(test::grid_of(200, 60, 1.0, 1.0),
                                       [&](double x, double) { return 1000.0 - 0.65 * x - (x > 60.0 ? wall : 0.0); }));
-  const Scene scene{surface, {{kUpperTalus}, {}}};
+  const Launch scene{surface, {{kUpperTalus}, {}}};
   int fell = 0, stays = 0;
   for (std::uint32_t block = 0; block < 2000; ++block) {
     const double x = 59.5 - 0.02 * (block % 100);
@@ -201,7 +201,7 @@ TEST(Trap, AFoldSteeperThanPhiEndsSoon) {  // crossings of the bottom of a gully
       const Surface pit(test::terrain(test::grid_of(61, 61, 2.0, 2.0),
                                       [](double x, double y) { return 2.0 * (std::abs(x - 61) + std::abs(y - 61)); }));
       for (const Surface& surface : {gully, pit}) {
-        const Scene scene{surface, {{ground}, {}}, {}, {.impact_limit = 3000}};
+        const Launch scene{surface, {{ground}, {}}, {}, {.impact_limit = 3000}};
         for (std::uint32_t block = 0; block < 20; ++block) {
           const double x = 60.3 + 0.1 * block, y = 61.4 - 0.05 * block;
           const Path path = scene.run({x, y, *surface.height(x, y) + 3.0}, Vec3::Zero(), 1.0, block);
@@ -215,7 +215,7 @@ TEST(Trap, AFoldSteeperThanPhiEndsSoon) {  // crossings of the bottom of a gully
 TEST(Trap, AFoldThatFallsSteeperThanPhiHoldsNoBlock) {  // walls 2:1, the bottom itself at 45 degrees
   const Surface gully(test::terrain(test::grid_of(61, 61, 2.0, 2.0),
                                     [&](double x, double y) { return 200.0 + 2.0 * std::abs(y - 61) - x; }));
-  const Scene scene{gully, {{Ground{}}, {}}, {}, {.impact_limit = 3000}};
+  const Launch scene{gully, {{Ground{}}, {}}, {}, {.impact_limit = 3000}};
   for (std::uint32_t block = 0; block < 20; ++block) {
     const double y = 61.4 - 0.05 * block;
     EXPECT_EQ(scene.run({30.3, y, *gully.height(30.3, y) + 3.0}, Vec3::Zero(), 1.0, block).end, End::Left) << block;
@@ -224,7 +224,7 @@ TEST(Trap, AFoldThatFallsSteeperThanPhiHoldsNoBlock) {  // walls 2:1, the bottom
 
 TEST(Limits, AreReachedAndSaid) {
   const Surface slope(test::terrain(test::grid_of(400, 41, 5.0, 5.0), [](double x, double) { return 3000.0 - x; }));
-  Scene scene{slope, {{Ground{}}, {}}};
+  Launch scene{slope, {{Ground{}}, {}}};
   scene.rules.impact_limit = 7;
   const Path path = scene.run({100.0, 100.0, 2950.0}, Vec3::Zero());
   EXPECT_EQ(path.end, End::Limit);
@@ -237,15 +237,15 @@ TEST(Limits, AreReachedAndSaid) {
 }
 
 TEST(Start, AtRestOnTheGround) {
-  EXPECT_EQ((Scene{flat(), {{kUpperTalus}, {}}}.run({100.3, 99.1, 8.0}, Vec3::Zero()).end), End::Stopped);
-  EXPECT_EQ((Scene{flat(), {{kUpperTalus}, {}}}.run({101.0, 101.0, 7.0}, Vec3::Zero()).end),
+  EXPECT_EQ((Launch{flat(), {{kUpperTalus}, {}}}.run({100.3, 99.1, 8.0}, Vec3::Zero()).end), End::Stopped);
+  EXPECT_EQ((Launch{flat(), {{kUpperTalus}, {}}}.run({101.0, 101.0, 7.0}, Vec3::Zero()).end),
             End::Stopped);  // a little below it
-  EXPECT_EQ((Scene{flat(), {{kUpperTalus}, {}}}.run({-5.0, 99.1, 8.0}, Vec3::Zero()).end), End::Left);
+  EXPECT_EQ((Launch{flat(), {{kUpperTalus}, {}}}.run({-5.0, 99.1, 8.0}, Vec3::Zero()).end), End::Left);
 }
 
 TEST(Start, NaNEndsAtOnce) {
   const double nan = std::nan("");
-  const Scene scene{flat(), {{kUpperTalus}, {}}};
+  const Launch scene{flat(), {{kUpperTalus}, {}}};
   for (int axis = 0; axis < 3; ++axis) {
     Vec3 velocity = Vec3::Zero();
     velocity[axis] = nan;
@@ -255,7 +255,7 @@ TEST(Start, NaNEndsAtOnce) {
 }
 
 /// Checks that a path in an odd scene is finite, ends and has no gaps.
-void expect_sound(const Scene& scene, const Path& path) {
+void expect_sound(const Launch& scene, const Path& path) {
   ASSERT_GE(path.vertices.size(), 2U);
   ASSERT_EQ(path.vertices.front().event, Event::Release);
   ASSERT_EQ(path.vertices.back().event, Event::End);
@@ -308,7 +308,7 @@ TEST(OddScenes, EveryPathEndsAndTheEndsAddUp) {
             }
           });
       if (kind == 4) heights.at(40, 20) = std::numeric_limits<float>::quiet_NaN();
-      const Scene scene{Surface(heights), {{kUpperTalus}, {}}, {}, {.impact_limit = 1000}};
+      const Launch scene{Surface(heights), {{kUpperTalus}, {}}, {}, {.impact_limit = 1000}};
       for (std::uint32_t block = 0; block < 60; ++block) {
         const bool centre = block % 3 == 0;  // exactly at a cell centre, as sources are
         const int column = static_cast<int>(numbers.uniform(5, 55)), row = static_cast<int>(numbers.uniform(5, 45));
@@ -336,7 +336,7 @@ TEST(OddScenes, EveryPathEndsAndTheEndsAddUp) {
 TEST(Trace, ClearsTheBufferAndGivesTheSameBits) {
   const Surface slope(
       test::terrain(test::grid_of(200, 60, 2.0, 2.0), [](double x, double) { return 300.0 - 0.75 * x; }));
-  const Scene scene{slope, {{kUpperTalus}, {}}};
+  const Launch scene{slope, {{kUpperTalus}, {}}};
   const Path one = scene.run({20.3, 60.1, 290.0}, Vec3::Zero(), 1.0, 3);
   Path two = scene.run({20.3, 60.1, 290.0}, Vec3::Zero(), 1.0, 4);
   Release release;

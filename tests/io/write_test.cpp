@@ -53,7 +53,7 @@ class Write : public testing::Test {
   fs::path folder_;
 };
 
-constexpr int kColumns = 1101, kRows = 703;  // two overviews, and edges that are not whole blocks
+constexpr int kMapColumns = 1101, kMapRows = 703;  // two overviews, and edges that are not whole blocks
 
 /// A value that depends on its column, row (from the south) and band; NaN in the south-western corner.
 double value_at(int column, int row, std::size_t band) {
@@ -94,7 +94,7 @@ std::vector<float> read(GDALRasterBand* band) {
 
 TEST_F(Write, RasterIsACogOfTheRightPlaceAndValues) {
   const Map map = map_of(Map::Kind::Quantity, {{"mean", "kJ"}, {"P95", "kJ"}});
-  ASSERT_TRUE(write_map(map, target(kColumns, kRows)));
+  ASSERT_TRUE(write_map(map, target(kMapColumns, kMapRows)));
   const Dataset file = open_dataset((folder_ / "energy.tif").string(), GDAL_OF_RASTER);
   EXPECT_STREQ(file->GetMetadataItem("LAYOUT", "IMAGE_STRUCTURE"), "COG");
   EXPECT_STREQ(file->GetMetadataItem("COMPRESSION", "IMAGE_STRUCTURE"), "DEFLATE");
@@ -114,10 +114,11 @@ TEST_F(Write, RasterIsACogOfTheRightPlaceAndValues) {
     EXPECT_STREQ(band->GetDescription(), b == 0 ? "mean" : "P95");
     EXPECT_STREQ(band->GetUnitType(), "kJ");
     const std::vector<float> values = read(band);
-    for (int row = 0; row < kRows; ++row)
-      for (int c = 0; c < kColumns; ++c) {
-        const double given = value_at(c, kRows - 1 - row, static_cast<std::size_t>(b));  // the file begins in the north
-        ASSERT_EQ(values[static_cast<std::size_t>(row * kColumns + c)], std::isnan(given) ? -9999.0 : given)
+    for (int row = 0; row < kMapRows; ++row)
+      for (int c = 0; c < kMapColumns; ++c) {
+        const double given =
+            value_at(c, kMapRows - 1 - row, static_cast<std::size_t>(b));  // the file begins in the north
+        ASSERT_EQ(values[static_cast<std::size_t>(row * kMapColumns + c)], std::isnan(given) ? -9999.0 : given)
             << c << ' ' << row;
       }
   }
@@ -125,21 +126,22 @@ TEST_F(Write, RasterIsACogOfTheRightPlaceAndValues) {
 
 TEST_F(Write, OverviewsKeepTheLargestValue) {
   for (const Map::Kind kind : {Map::Kind::Quantity, Map::Kind::Count}) {
-    ASSERT_TRUE(write_map(map_of(kind, {{"a", "1"}, {"b", "1"}}), target(kColumns, kRows)));
+    ASSERT_TRUE(write_map(map_of(kind, {{"a", "1"}, {"b", "1"}}), target(kMapColumns, kMapRows)));
     const Dataset file = open_dataset((folder_ / "energy.tif").string(), GDAL_OF_RASTER);
     GDALRasterBand* band = file->GetRasterBand(2);
     const auto nodata = static_cast<float>(band->GetNoDataValue());
     ASSERT_EQ(band->GetOverviewCount(), 2);
     for (int level = 0; level < 2; ++level) {
       GDALRasterBand* overview = band->GetOverview(level);
-      const int factor = 2 << level, width = (kColumns + factor - 1) / factor, height = (kRows + factor - 1) / factor;
+      const int factor = 2 << level, width = (kMapColumns + factor - 1) / factor,
+                height = (kMapRows + factor - 1) / factor;
       ASSERT_EQ(overview->GetXSize(), width);
       ASSERT_EQ(overview->GetYSize(), height);
       std::vector<float> expected(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), -1.0F);
-      for (int row = 0; row < kRows; ++row)
-        for (int c = 0; c < kColumns; ++c) {
+      for (int row = 0; row < kMapRows; ++row)
+        for (int c = 0; c < kMapColumns; ++c) {
           float& largest = expected[static_cast<std::size_t>(row / factor * width + c / factor)];
-          const double value = value_at(c, kRows - 1 - row, 1);
+          const double value = value_at(c, kMapRows - 1 - row, 1);
           if (value > largest) largest = static_cast<float>(value);
         }
       std::replace(expected.begin(), expected.end(), -1.0F, nodata);
@@ -168,9 +170,9 @@ TEST_F(Write, CountsAreUInt32) {
 
 TEST_F(Write, EqualMapsGiveEqualBytesAndNothingElse) {
   const Map map = map_of(Map::Kind::Probability, {{"probability", "1"}});
-  ASSERT_TRUE(write_map(map, target(kColumns, kRows)));
+  ASSERT_TRUE(write_map(map, target(kMapColumns, kMapRows)));
   const std::string first = text_of_file(folder_ / "energy.tif");
-  ASSERT_TRUE(write_map(map, target(kColumns, kRows)));
+  ASSERT_TRUE(write_map(map, target(kMapColumns, kMapRows)));
   EXPECT_EQ(text_of_file(folder_ / "energy.tif"), first);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
@@ -196,15 +198,15 @@ Map quiet_map(bool known) {
 }
 
 TEST_F(Write, QuietPartsHaveTheBytesOfAnyOther) {
-  ASSERT_TRUE(write_map(quiet_map(false), target(kColumns, kRows)));
+  ASSERT_TRUE(write_map(quiet_map(false), target(kMapColumns, kMapRows)));
   const std::string looked_at = text_of_file(folder_ / "energy.tif");
-  ASSERT_TRUE(write_map(quiet_map(true), target(kColumns, kRows)));
+  ASSERT_TRUE(write_map(quiet_map(true), target(kMapColumns, kMapRows)));
   EXPECT_EQ(text_of_file(folder_ / "energy.tif"), looked_at);
 }
 
 TEST_F(Write, PartsInAnyOrderGiveTheSameBytes) {
   const Map map = quiet_map(true);
-  const MapTarget to = target(kColumns, kRows);
+  const MapTarget to = target(kMapColumns, kMapRows);
   ASSERT_TRUE(write_map(map, to));
   const std::string first = text_of_file(folder_ / "energy.tif");
   fs::remove(folder_ / "energy.tif");
@@ -219,7 +221,7 @@ TEST_F(Write, PartsInAnyOrderGiveTheSameBytes) {
 
 TEST_F(Write, AMapThatIsNotFinishedLeavesNothing) {
   const Map map = quiet_map(true);
-  const MapTarget to = target(kColumns, kRows);
+  const MapTarget to = target(kMapColumns, kMapRows);
   {
     MapFile file(map, to);
     file.write_part(0);
@@ -246,7 +248,7 @@ TEST_F(Write, ALargeFileIsABigTiffOfTheSamePixels) {
 
 TEST_F(Write, AnEndedMapLeavesNothing) {
   for (const int allowed : {0, 3, 12}) {
-    MapTarget ended = target(kColumns, kRows);
+    MapTarget ended = target(kMapColumns, kMapRows);
     int asked = 0;
     ended.proceed = [&asked, allowed] { return asked++ < allowed; };
     EXPECT_FALSE(write_map(map_of(Map::Kind::Quantity, {{"mean", "kJ"}}), ended)) << allowed;
@@ -255,7 +257,7 @@ TEST_F(Write, AnEndedMapLeavesNothing) {
 }
 
 TEST_F(Write, AFolderThatIsGoneIsAnError) {
-  MapTarget gone = target(kColumns, kRows);
+  MapTarget gone = target(kMapColumns, kMapRows);
   gone.folder /= "none";
   try {
     write_map(map_of(Map::Kind::Quantity, {{"mean", "kJ"}}), gone);

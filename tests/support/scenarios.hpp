@@ -22,6 +22,12 @@ inline Scenario scenario_on(Raster<float> heights) {
   return s;
 }
 
+inline constexpr std::uint32_t kSources = 5, kTrajectories = 300;  // three units of work to a source
+
+inline Tally tally_of(const Scenario& s, MemoryPolicy memory = {}) {
+  return {s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds, memory};
+}
+
 /// A slope of 42 degrees with bumps that runs out on a rough plain; `sources` cells near its top. The paths bounce,
 /// slide, come back to cells, stop, and some leave the terrain.
 inline Scenario rough_slope(std::uint32_t sources, std::uint32_t trajectories) {

@@ -11,6 +11,8 @@
 /// Helpers of several tests: random numbers that are not the engine's, terrain from a formula, moments.
 namespace talus::test {
 
+inline const double kTan30 = 1.0 / std::sqrt(3.0);
+
 constexpr double kEps = 2.220446049250313e-16;
 
 /// Random numbers that are the same on every platform and do not use talus/base/random.hpp.

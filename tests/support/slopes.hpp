@@ -9,6 +9,8 @@ namespace talus::test {
 /// Ground that takes nothing at all: no roughness, and no loss at an impact but by friction.
 inline constexpr Ground kPerfect{.En50 = 1e300, .Et50 = 1e300, .tan_phi = 5.0};
 
+inline constexpr Ground kUpperTalus{.theta_scale = 1.0, .psi_scale = 0.9, .shape_max = 1.5};
+
 struct Hillside {
   Surface surface;
   Cover cover{{Ground{}}, {}};

@@ -12,6 +12,9 @@ std::string text_of(double value);
 /// A number with at most `digits` significant digits, like "%.4g" of printf for 4: "0.1235", "12", "1.235e+06".
 std::string with_digits(double value, int digits);
 
+/// A share in percent with at most `digits` significant digits: "21.6 %" for 0.2158 and 3.
+std::string percent(double share, int digits = 3);
+
 /// A number with `decimals` digits after the point, like "%.1f" of printf for 1: "12.0".
 std::string with_decimals(double value, int decimals);
 

@@ -7,6 +7,9 @@
 
 namespace talus {
 
+inline constexpr double kNever =
+    std::numeric_limits<double>::infinity();  // when, or where, what does not happen is met
+
 /// How a flight ended.
 enum class Outcome {
   Landed,  ///< on the surface, in patch `at`
@@ -26,7 +29,6 @@ enum class Outcome {
 /// Closed form: the smallest root at which the clearance falls. Error: 4 eps relative. NaN gives infinity.
 template <class Number>
 [[gnu::always_inline]] inline Number first_contact(Number f0, Number f1, Number f2, Number until) {
-  constexpr double kNever = std::numeric_limits<double>::infinity();
   const Number last = f0 + until * (f1 + until * f2);
   const MaskOf<Number> concave = f2 <= 0.0;
   const MaskOf<Number> above = concave & (last > 0.0);  // concave: lowest at the ends

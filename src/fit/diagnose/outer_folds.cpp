@@ -14,26 +14,27 @@ namespace {
 constexpr double kCandidates = 0.96;  // progress when the candidates are simulated out of fold
 
 /// A group or a block, which is left out as a whole.
-struct Unit {
+struct FoldUnit {
   double key = 0.0;  // decides its place in the order
   std::string name;
   std::vector<std::size_t> blocks;
 };
 
 /// @param by_group  else each block is a unit
-std::vector<Unit> units_of(const Campaign& campaign, const std::vector<bool>& rows, bool by_group, std::uint64_t seed) {
-  std::map<std::string, Unit> named;
+std::vector<FoldUnit> units_of(const Campaign& campaign, const std::vector<bool>& rows, bool by_group,
+                               std::uint64_t seed) {
+  std::map<std::string, FoldUnit> named;
   for (std::size_t b = 0; b < rows.size(); ++b) {
     if (!rows[b]) continue;
     const MeasuredBlock& block = campaign.blocks[b];
-    Unit& unit = named[by_group ? block.group : block.id];
+    FoldUnit& unit = named[by_group ? block.group : block.id];
     unit.name = by_group ? block.group : block.id;
     unit.key = draw_of_block(seed, by_group ? stream_of_name(block.group) : block.stream, kNoFold, BlockDraw::Order);
     unit.blocks.push_back(b);
   }
-  std::vector<Unit> units;
+  std::vector<FoldUnit> units;
   for (auto& [name, unit] : named) units.push_back(std::move(unit));
-  std::ranges::stable_sort(units, {}, &Unit::key);
+  std::ranges::stable_sort(units, {}, &FoldUnit::key);
   return units;
 }
 
@@ -97,10 +98,10 @@ OuterFolds outer_folds(const Campaign& campaign, const std::vector<bool>& rows, 
   out.count = folds;
   out.by_group = groups_can_be_left_out(campaign, rows, folds);
   out.fold_of.assign(rows.size(), kNoFold);
-  std::vector<Unit> units = units_of(campaign, rows, out.by_group, seed);
-  std::ranges::stable_sort(units, std::greater<>{}, [](const Unit& unit) { return unit.blocks.size(); });
+  std::vector<FoldUnit> units = units_of(campaign, rows, out.by_group, seed);
+  std::ranges::stable_sort(units, std::greater<>{}, [](const FoldUnit& unit) { return unit.blocks.size(); });
   std::vector<std::size_t> blocks(folds, 0);
-  for (const Unit& unit : units) {  // the largest first, each to the smallest fold
+  for (const FoldUnit& unit : units) {  // the largest first, each to the smallest fold
     const auto fold = static_cast<std::size_t>(std::ranges::min_element(blocks) - blocks.begin());
     for (const std::size_t b : unit.blocks) out.fold_of[b] = static_cast<std::uint32_t>(fold);
     blocks[fold] += unit.blocks.size();

@@ -97,33 +97,33 @@ struct Parts {
 };
 
 /// A unit: its releases and its stratum.
-struct Unit {
+struct TestUnit {
   std::vector<Index> releases;
   Stratum stratum;
 };
 
 /// Sorts the units of the same sites into those that were released less than twice as often as the rarest of them, less
 /// than four times, ...
-void class_by_number(std::vector<Unit>& list) {
+void class_by_number(std::vector<TestUnit>& list) {
   std::map<std::set<std::size_t>, std::size_t> rarest;
-  for (const Unit& unit : list) {
+  for (const TestUnit& unit : list) {
     std::size_t& least = rarest.emplace(unit.stratum.sites, unit.releases.size()).first->second;
     least = std::min(least, unit.releases.size());
   }
-  for (Unit& unit : list)
+  for (TestUnit& unit : list)
     unit.stratum.often = static_cast<int>(std::bit_width(unit.releases.size() / rarest.at(unit.stratum.sites)));
 }
 
 /// In the order of their first releases.
-std::vector<Unit> joined_releases(const Parts& parts) {
-  std::vector<Unit> units;
+std::vector<TestUnit> joined_releases(const Parts& parts) {
+  std::vector<TestUnit> units;
   std::map<std::size_t, std::size_t> unit_of_rock;
   for (std::size_t i = 0; i < parts.rocks.size(); ++i) {
     const std::size_t rock = parts.rocks[i];
     std::size_t unit = units.size();
     if (!parts.alone[i]) unit = unit_of_rock.emplace(rock, unit).first->second;
     if (unit == units.size()) units.emplace_back();
-    Unit& own = units[unit];
+    TestUnit& own = units[unit];
     own.releases.push_back(static_cast<Index>(i));
     own.stratum.sites.insert(parts.sites[i]);
     if (parts.alone[i]) own.stratum.rock = rock + 1;
@@ -132,11 +132,11 @@ std::vector<Unit> joined_releases(const Parts& parts) {
   return units;
 }
 
-void set_strata(const std::vector<Unit>& list, SiteUnits& out) {
+void set_strata(const std::vector<TestUnit>& list, SiteUnits& out) {
   std::map<Stratum, std::size_t> numbers;
-  for (const Unit& unit : list) numbers.emplace(unit.stratum, 0);
+  for (const TestUnit& unit : list) numbers.emplace(unit.stratum, 0);
   for (auto& [stratum, number] : numbers) number = out.strata++;
-  for (const Unit& unit : list) out.units.strata.push_back(numbers.at(unit.stratum));
+  for (const TestUnit& unit : list) out.units.strata.push_back(numbers.at(unit.stratum));
 }
 
 /// Takes the means of the sites away from the numbers and properties, and averages what is left over each unit.
@@ -145,7 +145,7 @@ SiteUnits means_of_units(const Releases& releases, const Parts& parts, const Mat
   out.blocks = releases.blocks.size();
   out.rocks = count_of(parts.rocks);
   out.sites = count_of(parts.sites);
-  const std::vector<Unit> list = joined_releases(parts);
+  const std::vector<TestUnit> list = joined_releases(parts);
   set_strata(list, out);
   const VectorXd energy = within_strata(releases.energy, parts.sites);
   const MatrixXd x = within_strata(properties, parts.sites);

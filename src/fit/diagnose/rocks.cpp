@@ -7,7 +7,7 @@ namespace talus {
 namespace {
 
 // Differences of logarithms. A rock that is weighed and measured again differs by some 0.3 % to 1 %.
-constexpr double kEqual = 0.02, kWidest = 0.06;
+constexpr double kEqualSize = 0.02, kWidest = 0.06;
 
 using Size = Eigen::Array4d;
 using Members = std::vector<std::size_t>;
@@ -63,7 +63,7 @@ std::vector<std::size_t> rocks_of(const Campaign& campaign, std::span<const std:
   std::vector<Members> rocks;
   for (auto& [name, members] : named)
     if (name.empty())
-      add_rocks(sizes, std::move(members), kEqual, rocks);
+      add_rocks(sizes, std::move(members), kEqualSize, rocks);
     else
       rocks.push_back(std::move(members));
   for (Members& members : rocks) std::ranges::sort(members);

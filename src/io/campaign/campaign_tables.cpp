@@ -13,16 +13,12 @@ namespace talus::io {
 namespace {
 
 constexpr auto kAbove = Bounds::AboveMin;
-constexpr Bounds kPlace{"x", "m", "map coordinate", -1e8, 1e8};
 constexpr Bounds kHeight{"z", "m", "height above the sea", -500.0, 9000.0};
 constexpr Bounds kReleaseHeight{"release_height_m", "m", "of the centre above the terrain", 0.0, 500.0};
 constexpr Bounds kRadius{"release_radius_m", "m", "of the disc of release", 0.0, 1000.0};
 constexpr Bounds kVelocity{"vx", "m/s", "component of the velocity at the release", -200.0, 200.0};
-constexpr Bounds kMass{"mass_kg", "kg", "mass of the block", 0.0, 1e9, kAbove};
-constexpr Bounds kDensity{"density_kgm3", "kg/m3", "mass per volume of the rock", 500.0, 8000.0};
 constexpr Bounds kAxis{"L1_m", "m", "length of an axis of the block", 1e-3, 100.0};
 constexpr Bounds kDay{"day", "1", "number of the day of release, 0: not known", 0.0, 1e6, Bounds::Closed, true};
-constexpr Bounds kHoldout{"holdout", "1", "1: never used to fit", 0.0, 1.0, Bounds::Closed, true};
 constexpr Bounds kSpeed{"speed_ms", "m/s", "measured speed", 0.0, 300.0};
 constexpr Bounds kJump{"jump_height_m", "m", "measured height above the terrain", 0.0, 1000.0};
 constexpr Bounds kSpin{"angular_velocity_rads", "rad/s", "measured angular velocity", 0.0, 10000.0};

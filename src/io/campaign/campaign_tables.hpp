@@ -17,6 +17,12 @@ struct CampaignFiles {
 /// Map coordinates become local ones by the campaign's grid. Throws InputError.
 void read_tables(const CampaignFiles& files, Campaign& campaign, std::vector<std::string>& warnings);
 
+// Columns of every table of blocks.
+inline constexpr Bounds kPlace{"x", "m", "map coordinate", -1e8, 1e8};
+inline constexpr Bounds kMass{"mass_kg", "kg", "mass of the block", 0.0, 1e9, Bounds::AboveMin};
+inline constexpr Bounds kDensity{"density_kgm3", "kg/m3", "mass per volume of the rock", 500.0, 8000.0};
+inline constexpr Bounds kHoldout{"holdout", "1", "1: never used to fit", 0.0, 1.0, Bounds::Closed, true};
+
 /// The axes of a block in a row of a table: L1_m >= L2_m >= L3_m, or none of them and those of a sphere.
 Vec3 axes_of(const CsvTable& table, const CsvTable::Row& row, double diameter);
 

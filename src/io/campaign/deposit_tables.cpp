@@ -16,12 +16,8 @@
 namespace talus::io {
 namespace {
 
-constexpr Bounds kPlace{"x", "m", "map coordinate", -1e8, 1e8};
-constexpr Bounds kMass{"mass_kg", "kg", "mass of the block", 0.0, 1e9, Bounds::AboveMin};
 constexpr Bounds kDiameter{"diameter_m", "m", "of the sphere of the block's volume", 0.0, 100.0, Bounds::AboveMin};
-constexpr Bounds kDensity{"density_kgm3", "kg/m3", "mass per volume of the rock", 500.0, 8000.0};
-constexpr Bounds kHoldout{"holdout", "1", "1: never used to fit", 0.0, 1.0, Bounds::Closed, true};
-constexpr Bounds kHeight{"release_height", "m", "of the release above the terrain", 0.0, 500.0};
+constexpr Bounds kDropHeight{"release_height", "m", "of the release above the terrain", 0.0, 500.0};
 constexpr Bounds kStrips{"strips", "1", "number of strips across the slope", 2.0, 50.0, Bounds::Closed, true};
 constexpr Bounds kStrip{"holdout", "1", "number of a strip", 1.0, 50.0, Bounds::Closed, true};
 constexpr Bounds kClass{"classes", "m", "diameter between two classes", 0.0, 100.0, Bounds::AboveMin};
@@ -217,7 +213,7 @@ DepositSpec read_deposit_spec(TableReader table, const std::filesystem::path& ba
   spec.table = named(table, "file", base);
   spec.sources = named(table, "sources", base);
   spec.mapped = named(table, "mapped", base);
-  spec.release_height = table.range("release_height", kHeight).value_or(Range{1.0, 1.0});
+  spec.release_height = table.range("release_height", kDropHeight).value_or(Range{1.0, 1.0});
   spec.strips = static_cast<std::size_t>(table.number("strips", kStrips).value_or(0.0));
   spec.held_out = table.numbers("holdout", kStrip).value_or(std::vector<double>());
   spec.classes = table.numbers("classes", kClass).value_or(std::vector<double>());

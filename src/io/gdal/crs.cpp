@@ -124,10 +124,6 @@ double stretch(PJ_CONTEXT* context, const PJ* system, const MapExtent& e) {
   return worst;
 }
 
-std::string percent(double share) {
-  return text_of(std::round(share * 1000.0) / 10.0) + " %";
-}
-
 // The axis of heights of a compound system, or of one with three axes.
 Axis height_axis(PJ_CONTEXT* context, const std::string& wkt) {
   Object system(proj_create(context, wkt.c_str()));

@@ -16,10 +16,6 @@ constexpr double kStepSlope = 0.05;    // step over cell; the DEMs in centimetre
 constexpr double kWholeMetres = 1.0;   // [m]: always too coarse
 constexpr double kFewestBends = 0.1;   // heights in steps on planes, as a drawn test has them, are no rounding
 
-std::string percent(double share) {
-  return with_digits(100.0 * share, 2) + " %";
-}
-
 bool is_steep(const DemFigures& f) {
   return degrees(f.median_slope) > kSteepMedian || f.steep_share > kSteepShare;
 }
@@ -35,7 +31,7 @@ std::vector<std::string> dem_warnings(const std::string& path, const DemFigures&
   if (f.cells < kFewestCells) return warnings;
   if (is_steep(f))
     warnings.push_back(path + ": half of its cells are steeper than " + with_digits(degrees(f.median_slope), 2) +
-                       " deg, and " + percent(f.steep_share) +
+                       " deg, and " + percent(f.steep_share, 2) +
                        " of them steeper than 80 deg (mountain sides: 20 to 40 deg, and 0 to 1.5 %): is it a picture "
                        "(a hillshade) in the place of heights, or are they in feet? Feet: gdal_calc.py -A " +
                        shell_word(path) + " --calc='A*0.3048' --outfile=metres.tif");
@@ -43,7 +39,7 @@ std::vector<std::string> dem_warnings(const std::string& path, const DemFigures&
     warnings.push_back(path + ": all heights are multiples of " + text_of(f.step) + " m" +
                        (f.step == 0.3048 ? " (a foot)" : "") + ", a slope of " +
                        with_digits(degrees(std::atan(f.step / cell)), 2) + " deg from cell to cell, and " +
-                       percent(f.flat_share) +
+                       percent(f.flat_share, 2) +
                        " of the cells are flat: blocks meet steps that the terrain has not; take a DEM with decimals "
                        "(or is it a picture, a hillshade?)");
   return warnings;

@@ -47,15 +47,15 @@ const StretchDesign* highest_of(const BarrierReport& r, Value value) {
 
 /// Where a value of the whole line is too low: stretches side by side as one, "from-to m", and the value that is enough
 /// everywhere.
-struct Lack {
+struct Missing {
   std::vector<std::string> where;
   double highest;
 };
 
 template <class Value>
-Lack lack_of(const BarrierReport& r, Value value) {
+Missing lack_of(const BarrierReport& r, Value value) {
   const double line = std::invoke(value, r.design);
-  Lack lack{{}, line};
+  Missing lack{{}, line};
   std::optional<Stretch> open;
   const auto close = [&] {
     if (open) lack.where.push_back(with_decimals(open->from, 1) + "-" + with_decimals(open->to, 1) + " m");
@@ -170,7 +170,7 @@ std::optional<std::string> gap_note(double without_height) {
 }
 
 std::optional<std::string> stretch_note(const BarrierReport& r) {
-  const Lack sel = lack_of(r, &BarrierDesign::sel), height = lack_of(r, &BarrierDesign::height);
+  const Missing sel = lack_of(r, &BarrierDesign::sel), height = lack_of(r, &BarrierDesign::height);
   const std::string energies = kilojoules(sel.highest) + " kJ", heights = with_digits(height.highest, 3) + " m";
   std::vector<std::string> texts;
   if (!sel.where.empty())

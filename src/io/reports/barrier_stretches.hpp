@@ -7,11 +7,6 @@
 
 namespace talus::io {
 
-/// "21.6 %"
-inline std::string percent(double share) {
-  return with_digits(100.0 * share, 3) + " %";
-}
-
 /// {"value", "low", "high"}
 inline Json bounded_of(const Bounded& b) {
   return {{"value", b.value}, {"low", b.low}, {"high", b.high}};

@@ -8,14 +8,14 @@
 namespace talus::io {
 namespace {
 
-constexpr int kWidth = 210, kHeight = 130, kMargin = 26;  // of a histogram [px]
+constexpr int kHistogramWidth = 210, kHistogramHeight = 130, kHistogramMargin = 26;  // of a histogram [px]
 
-std::string percent(double share) {
+std::string whole_percent(double share) {
   return with_decimals(100.0 * share, 0);
 }
 
 std::string name_of_share(std::size_t i) {
-  return "P" + percent(kCoverageShares[i]);
+  return "P" + whole_percent(kCoverageShares[i]);
 }
 
 bool wrong(const ShareBelow& below) {
@@ -25,8 +25,8 @@ bool wrong(const ShareBelow& below) {
 /// "12 % (2 to 10)", with a star where a right model hardly gives it.
 std::string share_text(const Coverage& c, std::size_t i) {
   const ShareBelow& below = c.below[i];
-  return percent(c.share(i)) + " % (" + percent(below.expected.low / c.rows) + " to " +
-         percent(below.expected.high / c.rows) + ")" + (wrong(below) ? " *" : "");
+  return whole_percent(c.share(i)) + " % (" + whole_percent(below.expected.low / c.rows) + " to " +
+         whole_percent(below.expected.high / c.rows) + ")" + (wrong(below) ? " *" : "");
 }
 
 /// Calls `row` with the cells of each observable: its name, its rows, its shares.
@@ -42,12 +42,12 @@ void for_rows(const std::vector<Coverage>& list, Row row) {
 Markup histogram(const Coverage& c) {
   const Interval& expected = c.expected_in_class;
   const double highest = std::max<double>(*std::ranges::max_element(c.ranks), expected.high);
-  const Axis x{0.0, kRankClasses, kMargin, kWidth - 2 * kMargin};
-  const Axis y{highest, 0.0, kMargin, kHeight - 2 * kMargin};
+  const Axis x{0.0, kRankClasses, kHistogramMargin, kHistogramWidth - 2 * kHistogramMargin};
+  const Axis y{highest, 0.0, kHistogramMargin, kHistogramHeight - 2 * kHistogramMargin};
   Svg svg('\'', "");
-  svg.element("rect", {{"x", kMargin},
+  svg.element("rect", {{"x", kHistogramMargin},
                        {"y", y(expected.high)},
-                       {"width", kWidth - 2 * kMargin},
+                       {"width", kHistogramWidth - 2 * kHistogramMargin},
                        {"height", y(expected.low) - y(expected.high)},
                        {"fill", "#ddd"}});
   for (std::size_t i = 0; i < kRankClasses; ++i)
@@ -57,11 +57,12 @@ Markup histogram(const Coverage& c) {
                          {"height", y(0.0) - y(c.ranks[i])},
                          {"fill", "#1f5fa8"},
                          {"fill-opacity", 0.7}});
-  svg.words({{"x", kWidth / 2}, {"y", 14}, {"text-anchor", "middle"}, {"font-weight", "bold"}}, c.observable);
-  svg.words({{"x", kMargin - 4}, {"y", y(highest) + 8.0}, {"text-anchor", "end"}}, with_decimals(highest, 0));
-  svg.words({{"x", kMargin}, {"y", kHeight - 10}}, "nearer, less");
-  svg.words({{"x", kWidth - kMargin}, {"y", kHeight - 10}, {"text-anchor", "end"}}, "farther, more");
-  const std::string width = std::to_string(kWidth), height = std::to_string(kHeight);
+  svg.words({{"x", kHistogramWidth / 2}, {"y", 14}, {"text-anchor", "middle"}, {"font-weight", "bold"}}, c.observable);
+  svg.words({{"x", kHistogramMargin - 4}, {"y", y(highest) + 8.0}, {"text-anchor", "end"}}, with_decimals(highest, 0));
+  svg.words({{"x", kHistogramMargin}, {"y", kHistogramHeight - 10}}, "nearer, less");
+  svg.words({{"x", kHistogramWidth - kHistogramMargin}, {"y", kHistogramHeight - 10}, {"text-anchor", "end"}},
+            "farther, more");
+  const std::string width = std::to_string(kHistogramWidth), height = std::to_string(kHistogramHeight);
   return svg.drawing({{"width", width}, {"height", height}, {"viewBox", "0 0 " + width + " " + height}});
 }
 
@@ -148,9 +149,9 @@ std::vector<std::string> coverage_warnings(const ScoredRows& scored) {
     for (std::size_t i = 0; i < kCoverageShares.size(); ++i) {
       if (!wrong(c.below[i])) continue;
       const bool too_many = c.share(i) > kCoverageShares[i];
-      warnings.push_back(c.observable + ": " + percent(c.share(i)) + " % of " + std::to_string(c.rows) + " " +
+      warnings.push_back(c.observable + ": " + whole_percent(c.share(i)) + " % of " + std::to_string(c.rows) + " " +
                          rows_in_words(scored.rows) + " rows lie below the simulated " + name_of_share(i) + ", " +
-                         percent(kCoverageShares[i]) + " % should: " + meaning(i, too_many) + " (p " +
+                         whole_percent(kCoverageShares[i]) + " % should: " + meaning(i, too_many) + " (p " +
                          with_digits(c.below[i].corrected, 2) + " after correction)");
     }
   return warnings;

@@ -15,8 +15,8 @@
 namespace talus::io {
 namespace {
 
-constexpr int kWidth = 330, kHeight = 190, kMargin = 34;  // of a plot [px]
-constexpr double kHighest = 3.5;                          // z at the rim of a plot
+constexpr int kPlotWidth = 330, kPlotHeight = 190, kMargin = 34;  // of a plot [px]
+constexpr double kHighestZ = 3.5;                                 // z at the rim of a plot
 constexpr std::size_t kPlots = 6;
 
 std::string reduction_text(const Reduction& r) {
@@ -66,27 +66,29 @@ Markup plot(const Points& points, const std::string& title, const std::string& b
   const double low = points.x.empty() ? 0.0 : *std::min_element(points.x.begin(), points.x.end());
   const double high = points.x.empty() ? 1.0 : *std::max_element(points.x.begin(), points.x.end());
   const auto share = [=](double value) { return high > low ? (value - low) / (high - low) : 0.5; };
-  const Axis x{0.0, 1.0, kMargin, kWidth - 2 * kMargin}, y{kHighest, -kHighest, kMargin, kHeight - 2 * kMargin};
+  const Axis x{0.0, 1.0, kMargin, kPlotWidth - 2 * kMargin},
+      y{kHighestZ, -kHighestZ, kMargin, kPlotHeight - 2 * kMargin};
   Svg svg('\'', "");
   svg.element("rect", {{"x", kMargin},
                        {"y", y(1.96)},
-                       {"width", kWidth - 2 * kMargin},
+                       {"width", kPlotWidth - 2 * kMargin},
                        {"height", y(-1.96) - y(1.96)},
                        {"fill", "#eee"}});
-  svg.element("line", {{"x1", kMargin}, {"x2", kWidth - kMargin}, {"y1", y(0.0)}, {"y2", y(0.0)}, {"stroke", "#999"}});
+  svg.element("line",
+              {{"x1", kMargin}, {"x2", kPlotWidth - kMargin}, {"y1", y(0.0)}, {"y2", y(0.0)}, {"stroke", "#999"}});
   for (std::size_t i = 0; i < points.x.size(); ++i)
     svg.element("circle", {{"cx", x(share(points.x[i]))},
-                           {"cy", y(std::clamp(points.z[i], -kHighest, kHighest))},
+                           {"cy", y(std::clamp(points.z[i], -kHighestZ, kHighestZ))},
                            {"r", 2.6},
                            {"fill", "#1f5fa8"},
                            {"fill-opacity", 0.7}});
   for (const double z : {-2.0, 0.0, 2.0})
     svg.words({{"x", kMargin - 4}, {"y", y(z) + 4.0}, {"text-anchor", "end"}}, with_digits(z, 6));
-  svg.words({{"x", kMargin}, {"y", kHeight - 18}}, with_digits(low, 4));
-  svg.words({{"x", kWidth - kMargin}, {"y", kHeight - 18}, {"text-anchor", "end"}}, with_digits(high, 4));
-  svg.words({{"x", kWidth / 2}, {"y", 14}, {"text-anchor", "middle"}, {"font-weight", "bold"}}, title);
-  svg.words({{"x", kWidth / 2}, {"y", kHeight - 4}, {"text-anchor", "middle"}}, below);
-  const std::string width = std::to_string(kWidth), height = std::to_string(kHeight);
+  svg.words({{"x", kMargin}, {"y", kPlotHeight - 18}}, with_digits(low, 4));
+  svg.words({{"x", kPlotWidth - kMargin}, {"y", kPlotHeight - 18}, {"text-anchor", "end"}}, with_digits(high, 4));
+  svg.words({{"x", kPlotWidth / 2}, {"y", 14}, {"text-anchor", "middle"}, {"font-weight", "bold"}}, title);
+  svg.words({{"x", kPlotWidth / 2}, {"y", kPlotHeight - 4}, {"text-anchor", "middle"}}, below);
+  const std::string width = std::to_string(kPlotWidth), height = std::to_string(kPlotHeight);
   return svg.drawing({{"width", width}, {"height", height}, {"viewBox", "0 0 " + width + " " + height}});
 }
 

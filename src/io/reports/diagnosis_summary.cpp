@@ -10,7 +10,7 @@ namespace {
 constexpr double kSharper = 0.5;      // share of a limit at which further measurements are worth a word
 constexpr std::size_t kFewRows = 50;  // held-out rows below which more blocks are advised
 
-std::string percent(double share) {
+std::string percent_in_tenths(double share) {
   return with_decimals(100.0 * share, 1) + " %";
 }
 
@@ -103,8 +103,8 @@ Markup gained(const DiagnosisRecord& record) {
       "On blocks that no fit has seen the error is "_html + with_decimals(e.before, 3) + " with the ground alone";
   if (record.diagnosis.rounds.size() > 1 && !std::isnan(e.reduction.share))
     text += " and "_html + bold(with_decimals(e.after, 3)) + " with what was found: lower by " +
-            bold(percent(e.reduction.share)) + " (95 %: " + percent(e.reduction.interval.low) + " to " +
-            percent(e.reduction.interval.high) + ")" +
+            bold(percent_in_tenths(e.reduction.share)) + " (95 %: " + percent_in_tenths(e.reduction.interval.low) +
+            " to " + percent_in_tenths(e.reduction.interval.high) + ")" +
             (e.reduction.interval.low <= 0.0 ? ": there may be no gain" : "");
   text += ".";
   if (!std::isnan(rows.climatology.total))

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kResidualRows = 20;
 
-std::string percent(double share) {
+std::string tenths_of_percent(double share) {
   return with_decimals(100.0 * share, 1);
 }
 
@@ -100,8 +100,9 @@ std::string tail_before_after(const BeforeAfter& e) {
   if (e.after.tail.groups.empty()) return {};
   return "Run-out beyond " + with_digits(e.after.tail_begin, 3) + " m, " + rows_in_words(e.after.rows) +
          " rows: error " + score_text(e.before.tail.total) + " before, " + score_text(e.after.tail.total) +
-         " after (lower by " + percent(e.tail_reduction.share) + " %, 95 %: " + percent(e.tail_reduction.interval.low) +
-         " to " + percent(e.tail_reduction.interval.high) + " %), climatology " +
+         " after (lower by " + tenths_of_percent(e.tail_reduction.share) +
+         " %, 95 %: " + tenths_of_percent(e.tail_reduction.interval.low) + " to " +
+         tenths_of_percent(e.tail_reduction.interval.high) + " %), climatology " +
          score_text(e.after.tail_climatology.total) + ".";
 }
 

@@ -12,7 +12,7 @@
 namespace talus::io {
 namespace {
 
-constexpr double kWidest = 700.0, kHighest = 700.0;  // of a map in a drawing [px]
+constexpr double kWidest = 700.0, kTallest = 700.0;  // of a map in a drawing [px]
 constexpr const char* kSourceColour = "#111111";
 constexpr const char* kScreenColour = "#c2185b";
 constexpr const char* kObjectColour = "#00695c";
@@ -20,7 +20,7 @@ constexpr const char* kBarrierColour = "#e65100";
 
 /// The rim of the marked pixels as a path, in pixels. Empty if it is too ragged to be one.
 std::string rim_of(const std::vector<std::uint8_t>& marks, int width) {
-  constexpr std::size_t kMostText = 400'000;
+  constexpr std::size_t kMostPath = 400'000;
   const int height = width > 0 ? static_cast<int>(marks.size()) / width : 0;
   const auto marked = [&](int x, int y) {
     return x >= 0 && y >= 0 && x < width && y < height && marks[std::size_t(y) * width + x] != 0;
@@ -28,7 +28,7 @@ std::string rim_of(const std::vector<std::uint8_t>& marks, int width) {
   std::string path;
   for (const bool across : {true, false}) {
     const int lines = across ? height : width, length = across ? width : height;
-    for (int line = 0; line <= lines && path.size() < kMostText; ++line) {
+    for (int line = 0; line <= lines && path.size() < kMostPath; ++line) {
       int start = -1;
       for (int at = 0; at <= length; ++at) {
         const bool edge = at < length && (across ? marked(at, line) != marked(at, line - 1)
@@ -41,7 +41,7 @@ std::string rim_of(const std::vector<std::uint8_t>& marks, int width) {
       }
     }
   }
-  return path.size() < kMostText ? path : "";
+  return path.size() < kMostPath ? path : "";
 }
 
 std::string points_of(const std::vector<Eigen::Vector2d>& places, const MapScale& scale) {
@@ -255,7 +255,7 @@ void draw_north(Svg& svg, double x, double y) {
 
 MapScale::MapScale(const MapSheet& sheet)
     : per_metre(std::min(kWidest / (sheet.window.width() * sheet.pixel_x),
-                         kHighest / (sheet.window.height() * sheet.pixel_y))),
+                         kTallest / (sheet.window.height() * sheet.pixel_y))),
       width(per_metre * sheet.window.width() * sheet.pixel_x),
       height(per_metre * sheet.window.height() * sheet.pixel_y),
       west(sheet.west),

@@ -21,7 +21,7 @@ constexpr std::size_t kMostClasses = 64, kMostLabel = 80;
 
 using Xml = std::unique_ptr<CPLXMLNode, decltype(&CPLDestroyXMLNode)>;
 
-std::optional<double> number_of(const std::string& text) {
+std::optional<double> parsed_number(const std::string& text) {
   if (text == "inf") return std::numeric_limits<double>::infinity();
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -47,8 +47,8 @@ std::optional<Colour> colour_of(const std::string& text, int opacity) {
 }
 
 void add_class(const CPLXMLNode* item, MapStyle& style) {
-  const auto limit = number_of(CPLGetXMLValue(item, "value", ""));
-  const double opacity = std::clamp(number_of(CPLGetXMLValue(item, "alpha", "255")).value_or(255.0), 0.0, 255.0);
+  const auto limit = parsed_number(CPLGetXMLValue(item, "value", ""));
+  const double opacity = std::clamp(parsed_number(CPLGetXMLValue(item, "alpha", "255")).value_or(255.0), 0.0, 255.0);
   const auto colour = colour_of(CPLGetXMLValue(item, "color", ""), static_cast<int>(opacity));
   if (limit && colour && style.classes.size() < kMostClasses)
     style.classes.push_back({*limit, shortened(CPLGetXMLValue(item, "label", ""), kMostLabel), *colour});
@@ -76,7 +76,8 @@ std::optional<MapStyle> read_map_style(const std::filesystem::path& file) {
   const CPLXMLNode* const renderer = CPLGetXMLNode(xml.get(), "=qgis.pipe.rasterrenderer");
   if (renderer == nullptr) return std::nullopt;
   MapStyle style;
-  style.band = static_cast<int>(std::clamp(number_of(CPLGetXMLValue(renderer, "band", "1")).value_or(1.0), 1.0, 1e4));
+  style.band =
+      static_cast<int>(std::clamp(parsed_number(CPLGetXMLValue(renderer, "band", "1")).value_or(1.0), 1.0, 1e4));
   const CPLXMLNode* items = CPLGetXMLNode(renderer, "rastershader.colorrampshader");
   if (items == nullptr) {
     items = CPLGetXMLNode(renderer, "colorPalette");

@@ -8,7 +8,7 @@
 namespace talus::io {
 namespace {
 
-Markup style() {
+Markup page_style() {
   return "<style>body{font:15px/1.5 sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#222}"
          ".broad{max-width:1200px}"
          "header{border-bottom:2px solid #444;margin-bottom:1em}header p,footer{color:#555;font-size:13px}"
@@ -51,7 +51,7 @@ std::string page_of(const PageFrame& frame, const Markup& body) {
   Markup page = "<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'>"_html;
   (page += "<meta name=\"generator\" content=\"").add_value(kPageMark + frame.kind) += "\">";
   page += policy(frame.script) + "<meta name='viewport' content='width=device-width'><title>Talus: " + frame.title +
-          "</title>" + style() + "</head>" + (frame.wide ? "<body class='broad'>"_html : "<body>"_html) +
+          "</title>" + page_style() + "</head>" + (frame.wide ? "<body class='broad'>"_html : "<body>"_html) +
           "\n<header><p>" + program + ", " + frame.kind + "</p><h1>" + frame.title + "</h1></header>\n" + body +
           "<footer>" + program + ", " + frame.footer + "</footer>\n";
   if (!frame.script.empty()) page += "<script>"_html + frame.script + "</script>\n";

@@ -8,9 +8,9 @@
 namespace talus::io {
 namespace {
 
-using Points = std::vector<Eigen::Vector2d>;
+using Places = std::vector<Eigen::Vector2d>;
 
-constexpr double kWidth = 960.0, kLeft = 70.0, kPlot = 860.0, kPanel = 130.0, kGap = 46.0;
+constexpr double kDrawing = 960.0, kLeft = 70.0, kPlot = 860.0, kPanel = 130.0, kGap = 46.0;
 constexpr double kFinest = 1.5;        // least distance between the points of a drawn line [px]
 constexpr double kMostHeight = 420.0;  // of the drawing of the profile [px]; its scales are equal if it fits
 
@@ -34,7 +34,7 @@ class Panel {
     text(kLeft + kPlot, top_ + height_ + 28.0, "end", x_label);
   }
 
-  void line(const Points& points, const char* style) const {
+  void line(const Places& points, const char* style) const {
     std::string places;
     Eigen::Vector2d drawn(-1e9, 0.0);
     for (const Eigen::Vector2d& p : points) {
@@ -66,8 +66,8 @@ class Panel {
 
 /// One number of each bin that blocks cross, at the middle of the bin.
 template <class Get>
-Points along(const LoadedProfile& p, const std::vector<ProfileBin>& bins, Get get) {
-  Points points;
+Places along(const LoadedProfile& p, const std::vector<ProfileBin>& bins, Get get) {
+  Places points;
   for (const ProfileBin& bin : bins)
     if (bin.speed.count > 0)
       points.emplace_back(std::min(p.profile.from() + 0.5 * (bin.from + bin.to), p.profile.to()), get(bin));
@@ -84,8 +84,8 @@ void envelope(const Panel& panel, const LoadedProfile& p, const std::vector<Prof
 }
 
 /// Share of the blocks that go farther than a distance, at the end of each bin; straight lines in between.
-Points beyond(const Runout& runout, double width) {
-  Points points{{0.0, 1.0}};
+Places beyond(const Runout& runout, double width) {
+  Places points{{0.0, 1.0}};
   std::uint64_t stopped = 0;
   for (std::size_t i = 0; i < runout.stops.size(); ++i) {
     stopped += runout.stops[i];
@@ -95,7 +95,7 @@ Points beyond(const Runout& runout, double width) {
   return points;
 }
 
-Markup style() {
+Markup profile_style() {
   return "<style>text{font:12px sans-serif;fill:#333}polyline,.frame{fill:none}.frame{stroke:#555}.grid{stroke:#e3e3e3}"
          ".ground{stroke:#222;stroke-width:2}.zone{stroke:#c8791b;stroke-width:5}.path{stroke:#0b62c4;stroke-width:.6;"
          "opacity:.45}"
@@ -110,12 +110,12 @@ void draw_ground(const Panel& panel, const LoadedProfile& p, std::span<const Rec
   const Scenario& s = p.loaded.scenario;
   const Grid& grid = s.surface.grid();
   for (const RecordedPath& path : paths) {
-    Points points;
+    Places points;
     for (const PathPoint& at : path.points) points.emplace_back(grid.west + at.x, p.datum + at.z);
     panel.line(points, "path");
   }
   panel.line(p.profile.nodes, "ground");
-  Points zone;
+  Places zone;
   for (int c = 0; !s.cover.zones.values.empty() && c < grid.columns; ++c) {
     const double x = grid.west + grid.centre_x(c);
     if (s.cover.zones.at(c, 0) != 0) zone.emplace_back(x, p.profile.height(x));
@@ -160,12 +160,12 @@ std::string profile_svg(const LoadedProfile& p, const ProfileResults& results, s
   const Panel reach(body, top, kPanel, {0.0, farthest}, {0.0, 1.0});
   reach.frame("share of the blocks that goes farther", "distance from the release (m)");
   reach.line(beyond(results.runout, p.bin), "beyond");
-  const std::string width = with_decimals(kWidth, 0), size = with_decimals(top + kPanel + kGap, 0);
+  const std::string width = with_decimals(kDrawing, 0), size = with_decimals(top + kPanel + kGap, 0);
   const Markup drawing = body.drawing({{"xmlns", "http://www.w3.org/2000/svg"},
                                        {"width", width},
                                        {"height", size},
                                        {"viewBox", "0 0 " + width + " " + size}},
-                                      style());
+                                      profile_style());
   return drawing.text();
 }
 

@@ -17,7 +17,7 @@ using Mark = Check::Mark;
 using Checks = std::vector<Check>;
 
 std::string percent_of(double count, double all) {
-  return with_digits(all > 0.0 ? 100.0 * count / all : 0.0, 3) + " %";
+  return percent(all > 0.0 ? count / all : 0.0);
 }
 
 bool warned_of(const RunFacts& run, std::string_view words) {

@@ -6,7 +6,7 @@
 namespace talus::io {
 namespace {
 
-constexpr std::size_t kMostShown = 20, kMostText = 200;  // a page stays readable
+constexpr std::size_t kMostShown = 20, kMostWords = 200;  // a page stays readable
 
 /// "total = 3, by_true_area = true" of a table of the record.
 std::string words_of(const Json& table) {
@@ -15,7 +15,7 @@ std::string words_of(const Json& table) {
   for (const auto& [key, value] : table.items()) {
     if (shown++ == kMostShown) return text + " and " + std::to_string(table.size() - kMostShown) + " more";
     const std::string number = value.is_number() ? text_of(value.get<double>()) : value.dump();
-    text += (text.empty() ? "" : ", ") + shortened(key, kMostText) + " = " + shortened(number, kMostText);
+    text += (text.empty() ? "" : ", ") + shortened(key, kMostWords) + " = " + shortened(number, kMostWords);
   }
   return text;
 }
@@ -31,14 +31,14 @@ FrequencyFacts frequency_of(const Json& record) {
   FrequencyFacts facts;
   const Json frequency = record.value("frequency", Json());
   if (!frequency.is_object()) return facts;
-  facts.file = shortened(frequency.value("file", "a file"), kMostText);
-  facts.sha256 = shortened(frequency.value("sha256", ""), kMostText);
+  facts.file = shortened(frequency.value("file", "a file"), kMostWords);
+  facts.sha256 = shortened(frequency.value("sha256", ""), kMostWords);
   const Json given = frequency.value("given", Json());
   if (!given.is_object()) return facts;
   facts.given = given.dump();
   for (const auto& [table, values] : given.items())
     if (const std::string words = words_of(values); !words.empty())
-      facts.words += (facts.words.empty() ? "[" : "; [") + shortened(table, kMostText) + "] " + words;
+      facts.words += (facts.words.empty() ? "[" : "; [") + shortened(table, kMostWords) + "] " + words;
   return facts;
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Bounds kAny{"value", "1", "of a quantity", -1e15, 1e15};
+constexpr Bounds kAnyValue{"value", "1", "of a quantity", -1e15, 1e15};
 constexpr std::size_t kBins = 30, kMostScreens = 30;
 
 /// A quantity of the summary, and its column in screens.csv.
@@ -35,7 +35,7 @@ void count_crossings(const fs::path& file, ScreensPart& part) {
     for (ScreensPart::Row& row : part.rows) {
       if (table.text(line, "screen") != row.screen || !(row.maximum > 0.0)) continue;
       const auto quantity = std::ranges::find(kQuantities, row.quantity, &Quantity::name);
-      const auto value = table.number(line, quantity->column, kAny);
+      const auto value = table.number(line, quantity->column, kAnyValue);
       if (!value) continue;
       row.counts.resize(kBins);
       const double place = std::clamp(*value / row.maximum * kBins, 0.0, kBins - 1.0);
@@ -91,7 +91,7 @@ ScreensPart read_screens_part(const fs::path& folder) {
       file.string(), {},
       {"screen", "quantity", "unit", "crossings", "blocks", "share_of_released", "p50", "p95", "p99", "maximum"});
   for (const CsvTable::Row& line : table.rows()) {
-    const auto number = [&](const char* column) { return table.number(line, column, kAny).value_or(0.0); };
+    const auto number = [&](const char* column) { return table.number(line, column, kAnyValue).value_or(0.0); };
     const std::string& quantity = table.text(line, "quantity");
     if (std::ranges::find(kQuantities, quantity, &Quantity::name) == kQuantities.end()) continue;
     if (part.rows.size() == kMostScreens * kQuantities.size()) {

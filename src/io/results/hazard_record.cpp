@@ -12,7 +12,7 @@ namespace {
 
 using Kind = TomlValue::Kind;
 
-constexpr Bounds kEnergy{"energies", "kJ", "between classes of intensity", 0.0, 1e9, Bounds::AboveMin};
+constexpr Bounds kClassEnergy{"energies", "kJ", "between classes of intensity", 0.0, 1e9, Bounds::AboveMin};
 constexpr Bounds kYears{"years", "years", "between classes of return period", 0.0, 1e6, Bounds::AboveMin};
 
 /// @return whether the file has classes; else those of the default stay
@@ -57,7 +57,7 @@ HazardMatrix read_matrix(const std::string& path) {
   const TomlValue root = read_settings(path, path, "energies, years, classes or names");
   std::vector<std::string> faults;
   TableReader table(&root, "", path, faults);
-  if (const auto energies = table.numbers("energies", kEnergy)) matrix.energies = *energies;
+  if (const auto energies = table.numbers("energies", kClassEnergy)) matrix.energies = *energies;
   if (const auto years = table.numbers("years", kYears)) matrix.years = *years;
   const bool own_classes = read_classes(table, matrix);
   read_names(table, matrix);

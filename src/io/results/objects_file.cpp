@@ -40,7 +40,7 @@ HazardObject object_of(const Parts& parts, double line_width) {
 
 /// Share of an object where the terrain has no height, so that blocks do not get there: of the area of its polygons and
 /// of the length of its lines, the larger one; of what has neither, of its places.
-double share_without_height(const HazardObject& object, const Raster<float>& heights) {
+double object_without_height(const HazardObject& object, const Raster<float>& heights) {
   WithoutHeight area, length, places;
   for (const auto& rings : object.polygons) add_polygon(area, heights, rings);
   for (const HazardObject::Ring& line : object.lines) {
@@ -110,7 +110,7 @@ void refuse_same_fields(const Layer& layer, const std::string& path) {
 
 /// The first of some fields (-1: not there) that holds a text, else the number of the feature. All texts must be UTF-8:
 /// they are copied.
-std::string name_of(const Layer& layer, const OGRFeature& feature, std::initializer_list<int> of_name) {
+std::string object_name(const Layer& layer, const OGRFeature& feature, std::initializer_list<int> of_name) {
   for (int field = 0; field < feature.GetFieldCount(); ++field) layer.text(feature, field);
   for (const int field : of_name)
     if (std::string name = layer.text(feature, field); !name.empty()) return name;
@@ -132,9 +132,7 @@ struct ObjectLayer::State {
   bool known(std::size_t i) const { return without_height[i] < 1.0; }
   bool is_partial(std::size_t i) const { return known(i) && without_height[i] >= kNoticedWithoutHeight; }
   /// "95 %": how much of an object has no height.
-  std::string lack(std::size_t i) const {
-    return with_digits(100.0 * without_height[i], without_height[i] < 0.995 ? 2 : 4) + " %";
-  }
+  std::string lack(std::size_t i) const { return percent(without_height[i], without_height[i] < 0.995 ? 2 : 4); }
   void warn_of_places(const std::string& path, const std::vector<bool>& off_map);
   void warn_of_names(const std::string& path);
 
@@ -209,7 +207,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
       throw InputError(layer.label(*feature) + ": " + (parts.empty() ? "has no geometry" : "is a point") +
                        ", must be a polygon or a line that blocks may hit");
     const OGREnvelope box = parts.envelope();
-    state_->names.push_back(name_of(layer, *feature, {layer.field("name"), layer.field("id")}));
+    state_->names.push_back(object_name(layer, *feature, {layer.field("name"), layer.field("id")}));
     off_map.push_back(wholly_off(box, grid));
     all.Merge(box);
     std::optional<double> width;
@@ -220,7 +218,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
       ++state_->polygons_with_width;
     }
     state_->objects.push_back(object_of(parts, width.value_or(line_width)));
-    state_->without_height.push_back(share_without_height(state_->objects.back(), loaded.scenario.surface.heights()));
+    state_->without_height.push_back(object_without_height(state_->objects.back(), loaded.scenario.surface.heights()));
     state_->parts.push_back(std::move(parts));
     state_->features.push_back(std::move(feature));
   });
@@ -393,7 +391,7 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
     for (const auto& [feature, share] : State::sources_of(state_->known(i) ? hits[i] : ObjectHits{})) {
       const std::string& given = loaded.scenario.features[feature].name;
       const std::string name = given.empty() ? std::to_string(feature) : given;
-      sources += (sources.empty() ? "" : "; ") + name + ' ' + with_digits(100.0 * share, 3) + " %";
+      sources += (sources.empty() ? "" : "; ") + name + ' ' + percent(share);
       from += object + ',' + csv_field(name) + ',' +
               csv_field(static_cast<double>(hits[i].by_feature.at(static_cast<std::uint32_t>(feature))) *
                         rules.scale.unit) +

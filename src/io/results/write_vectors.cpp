@@ -126,13 +126,13 @@ constexpr PointColumn kEnergyLine{"energy_line_deg", OFTReal, [](const PointRow&
                                   }};
 constexpr PointColumn kSpeed{"speed_ms", OFTReal,
                              [](const PointRow& r) { r.fields.add(decimals(r.stop.end_speed, 1e3)); }};
-constexpr PointColumn kEnergy{"energy_kj", OFTReal, [](const PointRow& r) {
-                                r.fields.add(decimals(kinetic_energy(r.stop.mass, r.stop.end_speed), 1e3));
-                              }};
+constexpr PointColumn kEndEnergy{"energy_kj", OFTReal, [](const PointRow& r) {
+                                   r.fields.add(decimals(kinetic_energy(r.stop.mass, r.stop.end_speed), 1e3));
+                                 }};
 
-constexpr std::array kStops{kSource,   kBlock, kEnd,     kFeature,  kDiameter, kMass,    kXRelease,
-                            kYRelease, kZ,     kSeconds, kMaxSpeed, kLength,   kImpacts, kEnergyLine};
-constexpr std::array kExits{kSource, kBlock, kFeature, kDiameter, kMass, kZ, kSeconds, kSpeed, kEnergy};
+constexpr std::array kStopColumns{kSource,   kBlock, kEnd,     kFeature,  kDiameter, kMass,    kXRelease,
+                                  kYRelease, kZ,     kSeconds, kMaxSpeed, kLength,   kImpacts, kEnergyLine};
+constexpr std::array kExitColumns{kSource, kBlock, kFeature, kDiameter, kMass, kZ, kSeconds, kSpeed, kEndEnergy};
 
 }  // namespace
 
@@ -173,8 +173,8 @@ struct PointsWriter::State {
 
 PointsWriter::PointsWriter(const std::filesystem::path& file, const LoadedScenario& loaded, Layer layer)
     : layer_(layer),
-      state_(layer == Layer::Stops ? std::make_unique<State>(file, loaded, kStops, "stops")
-                                   : std::make_unique<State>(file, loaded, kExits, "exits")) {}
+      state_(layer == Layer::Stops ? std::make_unique<State>(file, loaded, kStopColumns, "stops")
+                                   : std::make_unique<State>(file, loaded, kExitColumns, "exits")) {}
 PointsWriter::~PointsWriter() = default;
 
 void PointsWriter::write(std::span<const StopRow> rows) {

@@ -12,11 +12,11 @@ namespace {
 using Kind = TomlValue::Kind;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Bounds kPlace{"from", "m", "coordinate in the system of the DEM", -1e8, 1e8};
+constexpr Bounds kPlaceOnMap{"from", "m", "coordinate in the system of the DEM", -1e8, 1e8};
 constexpr Bounds kBias{"speed", "1", "share of the value that an instrument reads too high", -0.9, 10.0};
 
 std::optional<Eigen::Vector2d> place(TableReader& table, const std::string& key) {
-  const auto values = table.numbers(key, kPlace);
+  const auto values = table.numbers(key, kPlaceOnMap);
   if (values && values->size() == 2) return Eigen::Vector2d((*values)[0], (*values)[1]);
   const TomlValue* value = table.value()->find(key);
   if (values) table.fault(key, *value, "must be [x, y]");

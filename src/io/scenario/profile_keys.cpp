@@ -21,7 +21,7 @@ namespace {
 constexpr std::string_view kDefaultProfilePreset = "firm-talus-2d";
 constexpr Bounds kStep{"step", "m", "spacing of the columns", 0.05, 10.0},
     kBin{"bin", "m", "width of the bins of the results", 0.05, 1000.0},
-    kPlace{"x", "m", "place along the profile", -1e7, 1e7};
+    kPlaceAlong{"x", "m", "place along the profile", -1e7, 1e7};
 
 /// Reads the keys that only a profile has.
 class ProfileReader {
@@ -45,7 +45,7 @@ class ProfileReader {
     ground.finish();
     read_output(top.table("output"));
     TableReader screens = top.table("screens");
-    if (const auto x = screens.numbers("x", kPlace)) {
+    if (const auto x = screens.numbers("x", kPlaceAlong)) {
       profile_.screens = *x;
       given("screens.x");
     }
@@ -85,7 +85,7 @@ class ProfileReader {
   }
 
   void read_sources(TableReader table) {
-    if (const auto x = table.range("x", kPlace)) {
+    if (const auto x = table.range("x", kPlaceAlong)) {
       profile_.source = *x;
       given("sources.x");
     }

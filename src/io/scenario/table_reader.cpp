@@ -6,7 +6,9 @@
 
 namespace talus::io {
 
+namespace {
 using Kind = TomlValue::Kind;
+}
 
 const TomlValue* TableReader::find(const std::string& key) {
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);

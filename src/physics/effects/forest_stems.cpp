@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/physics/flight.hpp"
+
 namespace talus {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kReached = 1e-7;  // distance from a tree of a list that counts as reached [m]
 
 const Grid& grid_of(const ForestMap& map) {

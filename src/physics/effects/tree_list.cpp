@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "talus/physics/flight.hpp"
+
 namespace talus {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kTouch = 1e-6;  // distance from the edge of a disc that counts as on it [m]
 
 /// Cells of the index along one direction.

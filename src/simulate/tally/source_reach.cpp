@@ -8,10 +8,10 @@ namespace talus {
 namespace {
 
 constexpr std::size_t kWords = kRegionCells / 64;
-using Words = std::array<std::uint64_t, kWords>;
+using CellWords = std::array<std::uint64_t, kWords>;
 
-Words words_of(const SourceReach::Cells& cells) {
-  Words words{};
+CellWords words_of(const SourceReach::Cells& cells) {
+  CellWords words{};
   for (std::size_t i = 0; i < kRegionCells; ++i) words[i / 64] |= std::uint64_t{cells[i]} << (i % 64);
   return words;
 }
@@ -33,7 +33,7 @@ void SourceReach::restore(ByteReader& in) {
   const auto count = in.get<std::uint64_t>();
   for (std::uint64_t k = 0; k < count; ++k) {
     Cells& cells = this->cells(in.get<std::uint64_t>());
-    const Words words = in.get<Words>();
+    const CellWords words = in.get<CellWords>();
     for (std::size_t i = 0; i < kRegionCells; ++i) cells[i] = (words[i / 64] >> (i % 64) & 1U) != 0;
   }
 }

@@ -9,7 +9,7 @@ namespace {
 using test::Numbers;
 
 /// A rough surface with cells that are not square, and a parabola over it: independent of the engine's walk.
-struct Scene {
+struct RoughScene {
   Surface surface;
   Vec3 start = Vec3::Zero(), velocity = Vec3::Zero();
 
@@ -43,14 +43,14 @@ std::string name_of_test(const testing::TestParamInfo<Cells>& info) {
   return std::string(name_of(info.param.kind)) + "_" + cm(info.param.x) + "_by_" + cm(info.param.y) + "_cm";
 }
 
-Scene rough(Numbers& numbers, const Cells& cells) {
+RoughScene rough(Numbers& numbers, const Cells& cells) {
   return {
       Surface(test::terrain(test::grid_of(80, 60, cells.x, cells.y),
                             [&](double x, double) { return 500.0 - 0.5 * x + numbers.uniform(0.0, 2.0 * cells.x); }),
               cells.kind)};
 }
 
-void throw_block(Scene& scene, Numbers& numbers) {
+void throw_block(RoughScene& scene, Numbers& numbers) {
   const Grid& grid = scene.surface.grid();
   const double x = numbers.uniform(0.3, 0.7) * grid.width(), y = numbers.uniform(0.3, 0.7) * grid.height();
   scene.start = {x, y, scene.height(x, y) + numbers.uniform(0.0, 4.0)};
@@ -62,7 +62,7 @@ class RoughFlight : public testing::TestWithParam<Cells> {};
 
 TEST_P(RoughFlight, LandsWhereSteppingAndBisectionLand) {
   Numbers numbers(11);
-  Scene scene = rough(numbers, GetParam());
+  RoughScene scene = rough(numbers, GetParam());
   int grazed = 0, flights = 0;
   for (; flights < 1500; ++flights) {
     throw_block(scene, numbers);
@@ -85,7 +85,7 @@ TEST_P(RoughFlight, LandsWhereSteppingAndBisectionLand) {
 
 TEST_P(RoughFlight, SpansFollowEachOtherAndTheGroundAndAreNeverBelowIt) {
   Numbers numbers(12);
-  Scene scene = rough(numbers, GetParam());
+  RoughScene scene = rough(numbers, GetParam());
   const Surface& surface = scene.surface;
   int halves = 0;  // passages from one half of a patch to the other
   for (int i = 0; i < 500; ++i) {

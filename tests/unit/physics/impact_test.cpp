@@ -17,9 +17,8 @@ namespace talus {
 namespace {
 
 using test::kEps;
+using test::kTan30;
 using test::Numbers;
-
-const double kTan30 = 1.0 / std::sqrt(3.0);
 
 /// Motion along the direction t of a plane of normal n: the quantities of the two-dimensional equations.
 struct Flat {

@@ -50,13 +50,13 @@ void expect_same(const Path& a, const Path& b) {
 }
 
 /// Rough ground that falls towards the south, with cells of 2 x 3 m: one of many variants.
-struct Scene {
+struct VariedScene {
   Surface surface;
   Cover cover;
   World world;
   std::vector<Release> releases;
 
-  explicit Scene(unsigned variant)
+  explicit VariedScene(unsigned variant)
       : surface(heights(variant), variant % 2 == 1 ? SurfaceKind::Creased : SurfaceKind::Bilinear),
         cover(grounds(variant)),
         world{surface, cover, {}, {}} {
@@ -140,7 +140,7 @@ TEST_P(InLanes, PathsHaveTheBitsOfOneLane) {  // holes, creases, edges, pits, gr
   std::array<int, kEnds> ends{};
   for (unsigned variant = 0; variant < 42; ++variant) {
     SCOPED_TRACE(variant);
-    const Scene scene(variant);
+    const VariedScene scene(variant);
     const auto more = compare(scene.world, scene.releases, GetParam());
     for (std::size_t end = 0; end < ends.size(); ++end) ends[end] += more[end];
     if (HasFailure()) break;
@@ -210,13 +210,13 @@ TEST_P(InLanes, BlocksThatFallDownAWall) {  // within their diameter in plan: th
 }
 
 TEST_P(InLanes, NothingToTrace) {
-  const Scene scene(1);
+  const VariedScene scene(1);
   compare(scene.world, {}, GetParam());
   compare(scene.world, {scene.releases.front()}, GetParam());
 }
 
 TEST_P(InLanes, AnExceptionReachesTheCallerAndTheNextRunIsWhole) {
-  const Scene scene(3);
+  const VariedScene scene(3);
   Tracer tracer(scene.world, GetParam());
   std::size_t released = 0;
   const NextRelease next = [&](Release& release, std::uint64_t&) {
@@ -240,7 +240,7 @@ TEST_P(InLanes, AnExceptionReachesTheCallerAndTheNextRunIsWhole) {
 }
 
 TEST(Lanes, OneInAWorldWithBarriers) {
-  const Scene scene(0);
+  const VariedScene scene(0);
   const Barriers barriers({{"net", {{{0.0, 50.0}, {120.0, 50.0}}}, 100.0, std::numeric_limits<double>::infinity()}});
   World world = scene.world;
   EXPECT_EQ(lanes_in(world, 0), most_lanes());

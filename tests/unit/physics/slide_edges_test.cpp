@@ -6,10 +6,9 @@
 namespace talus {
 namespace {
 
+using test::kTan30;
 using test::Numbers;
 using Vec2 = Eigen::Vector2d;
-
-const double kTan30 = 1.0 / std::sqrt(3.0);
 
 struct Result {
   Motion motion;

@@ -7,10 +7,9 @@
 namespace talus {
 namespace {
 
+using test::kTan30;
 using test::Numbers;
 using Vec2 = Eigen::Vector2d;
-
-const double kTan30 = 1.0 / std::sqrt(3.0);
 
 Cover cover_of(double tan_phi) {
   return {{Ground{.tan_phi = tan_phi}}, {}};

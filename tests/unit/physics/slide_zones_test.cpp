@@ -30,15 +30,15 @@ Cover two_grounds(const Grid& grid, const Vec2& heading, double tan_before, doub
   return cover;
 }
 
-struct Slide {
+struct SlideAcross {
   Motion motion;
   PatchIndex at;
   Path path;
   SlideEnd end;
 
   /// @param before  distance in plan from the middle of the terrain, against `heading` [m]; `beside`: across it
-  Slide(const Surface& surface, const Cover& cover, const Vec2& heading, double before, double beside, double speed,
-        double diameter, const RollingResistance* resistance = nullptr) {
+  SlideAcross(const Surface& surface, const Cover& cover, const Vec2& heading, double before, double beside,
+              double speed, double diameter, const RollingResistance* resistance = nullptr) {
     const Vec2 place = Vec2(100.0, 100.0) - before * heading + beside * Vec2(-heading.y(), heading.x());
     at = surface.patch_at(place.x(), place.y());
     motion.position = {place.x(), place.y(), *surface.height(place.x(), place.y())};
@@ -64,7 +64,7 @@ TEST(SlideAcrossABorder, StopsWhereTheFrictionBeyondHoldsIt) {
     const Cover cover = two_grounds(surface.grid(), heading, tan_5, tan_60);
     for (const double diameter : {1.0, 3.0, 5.0})
       for (const double before : {0.1, 0.5}) {
-        const Slide s(surface, cover, heading, before, 2.0, 3.0, diameter);
+        const SlideAcross s(surface, cover, heading, before, 2.0, 3.0, diameter);
         const double v1_squared = 9.0 + 2.0 * pull(tan_5) * before / cos_b;
         const double way = (v1_squared - kStopSpeed * kStopSpeed) / (-2.0 * pull(tan_60));
         EXPECT_EQ(s.end, SlideEnd::Stopped);
@@ -85,7 +85,7 @@ TEST(SlideAcrossABorder, FromTheBorderItHasTheFrictionAhead) {
     for (const double tan_beyond : {0.1, 0.8})
       for (const double before : {0.0, 2e-14, -2e-14}) {
         const Cover cover = two_grounds(surface.grid(), heading, 0.4, tan_beyond);
-        const Slide s(surface, cover, heading, before, 3.0, 3.0, 1.0);
+        const SlideAcross s(surface, cover, heading, before, 3.0, 3.0, 1.0);
         EXPECT_EQ(s.end, SlideEnd::NextAsperity);
         EXPECT_NEAR(s.motion.velocity.squaredNorm(), 9.0 + 2.0 * pull(tan_beyond), 1e-6);
         EXPECT_NEAR(s.beyond(heading), cos_b, 1e-6);
@@ -108,7 +108,7 @@ TEST(SlideAcrossABorder, UpAndDownAgain) {
   const double below = diameter - before - 2.0 * above;
   ASSERT_GT(above, 0.1);
   ASSERT_GT(below, 0.5);
-  Slide s(surface, cover, up, 0.2, 3.0, 0.0, 0.0);  // puts the block there
+  SlideAcross s(surface, cover, up, 0.2, 3.0, 0.0, 0.0);  // puts the block there
   s.motion.velocity = {-v0 * cos_b, 0.0, 0.375 * v0 * cos_b};
   s.path.clear();
   s.end = slide(surface, cover, s.motion, s.at, {diameter}, kStopSpeed, s.path);
@@ -123,7 +123,7 @@ TEST(SlideAcrossABorder, AlongTheBorder) {
   const Surface surface = plane_towards(heading);
   const Cover cover = two_grounds(surface.grid(), side, 0.1, 0.2);
   for (const double beside : {0.0, 1e-14, -1e-14}) {
-    const Slide s(surface, cover, heading, 8.0, beside, 3.0, 4.0);
+    const SlideAcross s(surface, cover, heading, 8.0, beside, 3.0, 4.0);
     EXPECT_EQ(s.end, SlideEnd::NextAsperity);
     const double v_squared = s.motion.velocity.squaredNorm();
     EXPECT_GE(v_squared, 9.0 + 8.0 * pull(0.2) - 1e-6);
@@ -143,7 +143,7 @@ TEST(SlideAcrossABorder, RollingResistanceOfAnArea) {
   in_zone.where.zones = {0, 1};
   const double cos_b = 1.0 / std::hypot(1.0, 0.375), first = 0.5 / cos_b;
   const double v_squared = 25.0 + 2.0 * pull(0.1) * first + 2.0 * pull(0.7) * (2.0 - first);
-  const Slide cells(surface, one, heading, 0.5, 2.0, 5.0, 2.0, &in_cells),
+  const SlideAcross cells(surface, one, heading, 0.5, 2.0, 5.0, 2.0, &in_cells),
       zone(surface, two, heading, 0.5, 2.0, 5.0, 2.0, &in_zone),
       all(surface, two, heading, 0.5, 2.0, 5.0, 2.0, &everywhere);
   EXPECT_NEAR(cells.motion.velocity.squaredNorm(), v_squared, 1e-5);

@@ -19,7 +19,7 @@ namespace {
 
 using test::for_each_path;
 
-constexpr std::uint32_t kSources = 5, kTrajectories = 300;  // three units of work to a source
+using test::kSources, test::kTrajectories, test::tally_of;
 
 /// The slope with a block limit on some paths, two screens and recorded paths.
 Scenario scenario() {
@@ -28,10 +28,6 @@ Scenario scenario() {
   s.output.paths = 40;
   s.rules.impact_limit = 120;
   return s;
-}
-
-Tally tally_of(const Scenario& s) {
-  return {s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds};
 }
 
 struct Collected {

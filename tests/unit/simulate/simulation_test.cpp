@@ -11,14 +11,10 @@
 namespace talus {
 namespace {
 
-constexpr std::uint32_t kSources = 5, kTrajectories = 300;  // three units of work to a source
+using test::kSources, test::kTrajectories, test::tally_of;
 
-Scenario scenario() {
+Scenario bare_slope() {
   return test::rough_slope(kSources, kTrajectories);
-}
-
-Tally tally_of(const Scenario& s, MemoryPolicy memory = {}) {
-  return {s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds, memory};
 }
 
 std::vector<std::string> bytes_of(const Tally& tally) {
@@ -78,7 +74,7 @@ void restore(const Kept& kept, Simulation& simulation, Tally& tally) {
 }
 
 TEST(Simulation, StoppedAndRestoredAfterEveryUnitItEndsAsOneRun) {
-  const Scenario s = scenario();
+  const Scenario s = bare_slope();
   ASSERT_EQ(s.output.energy_thresholds.size() + s.output.height_thresholds.size(), 5U);
   Tally whole = tally_of(s);
   const Totals expected = simulate(s, whole, {}, 2);
@@ -110,7 +106,7 @@ TEST(Simulation, StoppedAndRestoredAfterEveryUnitItEndsAsOneRun) {
 }
 
 TEST(Simulation, RoundsOfFewAreOneOfMany) {
-  const Scenario all = scenario();
+  const Scenario all = bare_slope();
   Scenario third = all;
   third.trajectories = kTrajectories / 3;
   Tally whole = tally_of(all), tally = tally_of(all);
@@ -127,7 +123,7 @@ TEST(Simulation, RoundsOfFewAreOneOfMany) {
 }
 
 TEST(Simulation, SeveralAtATimeDoNotDisturbEachOther) {
-  const Scenario s = scenario();
+  const Scenario s = bare_slope();
   Tally expected = tally_of(s);
   simulate(s, expected, {}, 1);
   std::vector<Tally> tallies;
@@ -151,7 +147,7 @@ TEST(Simulation, PartsHoldEverySourceOnce) {
 }
 
 TEST(Simulation, DamagedBytesAreNoTally) {
-  const Scenario s = scenario();
+  const Scenario s = bare_slope();
   Tally tally = tally_of(s);
   simulate(s, tally, {}, 1);
   const std::vector<std::string> regions = bytes_of(tally);
@@ -167,7 +163,7 @@ TEST(Simulation, DamagedBytesAreNoTally) {
 }
 
 TEST(Simulation, InAScratchFileItCountsTheSame) {
-  const Scenario s = scenario();
+  const Scenario s = bare_slope();
   Tally expected = tally_of(s);
   simulate(s, expected, {}, 2);
   ScratchFile file(std::filesystem::temp_directory_path().string(), 1);  // every process is above this limit
