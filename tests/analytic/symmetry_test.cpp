@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "support/scenes.hpp"
+#include "support/slopes.hpp"
 #include "talus/physics/trace.hpp"
 
 namespace talus {
