@@ -23,14 +23,14 @@ std::runtime_error failure(const std::string& what) {
 }  // namespace
 
 SharedPiece::SharedPiece(const std::string& name, std::size_t bytes) : length_(kHead + bytes) {
-  file_ = shm_open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-  if (file_ < 0) throw failure("cannot be opened");
-  while (flock(file_, LOCK_EX) != 0)  // until the process that fills it is done, or has ended
+  file_.number = shm_open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (file_.number < 0) throw failure("cannot be opened");
+  while (flock(file_.number, LOCK_EX) != 0)  // until the process that fills it is done, or has ended
     if (errno != EINTR) throw failure("cannot be locked");
-  do errno = posix_fallocate(file_, 0, static_cast<off_t>(length_));
+  do errno = posix_fallocate(file_.number, 0, static_cast<off_t>(length_));
   while (errno == EINTR);
   if (errno != 0) throw failure("cannot be had");
-  begin_ = mmap(nullptr, length_, PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
+  begin_ = mmap(nullptr, length_, PROT_READ | PROT_WRITE, MAP_SHARED, file_.number, 0);
   if (begin_ == MAP_FAILED) throw failure("cannot be mapped");
   data_ = static_cast<char*>(begin_) + kHead;
   filled_ = *static_cast<const std::uint64_t*>(begin_) != 0;
@@ -40,13 +40,16 @@ SharedPiece::SharedPiece(const std::string& name, std::size_t bytes) : length_(k
 void SharedPiece::set_filled() {
   *static_cast<std::uint64_t*>(begin_) = 1;
   filled_ = true;
-  flock(file_, LOCK_UN);
+  flock(file_.number, LOCK_UN);
   mprotect(begin_, length_, PROT_READ);
 }
 
 SharedPiece::~SharedPiece() {
   if (begin_ != nullptr && begin_ != MAP_FAILED) munmap(begin_, length_);
-  if (file_ >= 0) ::close(file_);
+}
+
+SharedPiece::File::~File() {
+  if (number >= 0) ::close(number);
 }
 
 SharedMemory::~SharedMemory() {

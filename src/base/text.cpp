@@ -5,6 +5,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "talus/base/expect.hpp"
@@ -51,6 +52,12 @@ std::string with_digits(double value, int digits) {
   return printed(value, std::chars_format::general, digits);
 }
 
+double number_in(std::string_view text) {
+  double number = std::numeric_limits<double>::quiet_NaN();
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
 std::string percent(double share, int digits) {
   return with_digits(100.0 * share, digits) + " %";
 }
@@ -60,7 +67,7 @@ std::string with_decimals(double value, int decimals) {
 }
 
 std::string readable(double number) {
-  if (!(std::abs(number) >= 1e3 && std::abs(number) < 1e12)) return with_digits(number, 3);
+  if (!(std::abs(number) >= 999.5 && std::abs(number) < 1e12)) return with_digits(number, 3);
   const double unit = std::pow(10.0, std::floor(std::log10(std::abs(number))) - 2.0);
   return grouped(std::round(number / unit) * unit);
 }

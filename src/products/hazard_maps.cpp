@@ -1,31 +1,22 @@
 #include "talus/products/hazard_maps.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <exception>
 #include <memory>
+
+#include "base/in_threads.hpp"
 
 namespace talus {
 namespace {
 
-/// Calls `work` with 0 to `count` - 1 in parallel. An exception must not leave the parallel region: the first one is
-/// stored, and thrown again after the region.
+/// Calls `work` with 0 to `count` - 1 in parallel.
 template <class Work>
 void in_parallel(std::size_t count, int threads, const Work& work) {
-  std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic, 8) num_threads(threads > 0 ? threads : omp_get_num_procs()) default(none) \
-    shared(count, work, failure)
-  for (std::size_t i = 0; i < count; ++i) {
-    try {
-      work(i);
-    } catch (...) {
-#pragma omp critical
-      if (!failure) failure = std::current_exception();
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
+  std::atomic<std::size_t> next = 0;
+  in_threads(threads, [&] {
+    for (std::size_t i = next++; i < count; i = next++) work(i);
+  });
 }
 
 }  // namespace

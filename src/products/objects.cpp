@@ -1,12 +1,10 @@
 #include "talus/products/objects.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <atomic>
-#include <exception>
 #include <mutex>
 
+#include "base/in_threads.hpp"
 #include "object_finder.hpp"
 #include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/plan/work_units.hpp"
@@ -30,7 +28,7 @@ class Replay {
         units_(std::uint64_t{per_source_} * scenario.sources.size()),
         hits_(objects.size()) {}
 
-  void work() noexcept {
+  void work() {
     try {
       std::vector<ObjectHits> mine(hits_.size());
       for (std::uint64_t unit = next_++; unit < units_ && !stop_; unit = next_++) {
@@ -40,14 +38,12 @@ class Replay {
       const std::lock_guard guard(mutex_);
       for (std::size_t i = 0; i < hits_.size(); ++i) hits_[i].merge(mine[i]);
     } catch (...) {
-      const std::lock_guard guard(mutex_);
-      if (!failure_) failure_ = std::current_exception();
       stop_ = true;
+      throw;
     }
   }
 
   std::vector<ObjectHits> result() {
-    if (failure_) std::rethrow_exception(failure_);
     if (ended_) return {};
     return std::move(hits_);
   }
@@ -112,7 +108,6 @@ class Replay {
   std::mutex mutex_;  // guards the members below
   std::vector<ObjectHits> hits_;
   std::uint64_t done_ = 0;
-  std::exception_ptr failure_;
   bool ended_ = false;
 };
 
@@ -129,8 +124,7 @@ std::vector<ObjectHits> replay_objects(const Scenario& scenario, const AnnualWei
                                        std::span<const HazardObject> objects,
                                        const std::function<bool(double)>& proceed, int threads) {
   Replay replay(scenario, weights, objects, proceed);
-#pragma omp parallel num_threads(threads > 0 ? threads : omp_get_num_procs()) default(none) shared(replay)
-  replay.work();
+  in_threads(threads, [&] { replay.work(); });
   return replay.result();
 }
 

@@ -1,9 +1,9 @@
 #include "talus/run/write_maps.hpp"
 
 #include <atomic>
-#include <exception>
 #include <memory>
 
+#include "base/in_threads.hpp"
 #include "talus/io/results/style.hpp"
 #include "talus/run/observer.hpp"
 
@@ -31,8 +31,7 @@ struct Part {
 
 }  // namespace
 
-// The parts of all maps are one list, so that no thread waits at the end of a map. An exception must not leave the
-// parallel region: the first one is kept and thrown after it; the other parts are left out.
+// The parts of all maps are one list, so that no thread waits at the end of a map.
 void write_maps(const std::vector<Map>& maps, const io::MapTarget& target, int threads) {
   std::vector<std::unique_ptr<io::MapFile>> files;
   std::vector<Part> parts;
@@ -40,20 +39,16 @@ void write_maps(const std::vector<Map>& maps, const io::MapTarget& target, int t
     files.push_back(std::make_unique<io::MapFile>(*map, target));
     for (std::size_t i = 0; i < files.back()->parts(); ++i) parts.push_back({map, files.back().get(), i});
   }
-  std::exception_ptr failure;
-  std::atomic<bool> failed = false;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads) default(none) shared(parts, target, failure, failed)
-  for (const Part& part : parts) {
-    if (failed) continue;
+  std::atomic<std::size_t> next = 0;
+  in_threads(threads, [&] {
     try {
-      if (part.file->write_part(part.i)) io::write_style(target.folder, *part.map);
+      for (std::size_t i = next++; i < parts.size(); i = next++)
+        if (parts[i].file->write_part(parts[i].i)) io::write_style(target.folder, *parts[i].map);
     } catch (...) {
-#pragma omp critical
-      if (!failure) failure = std::current_exception();
-      failed = true;
+      next = parts.size();  // the other parts are left out
+      throw;
     }
-  }
-  if (failure) std::rethrow_exception(failure);
+  });
   if (target.proceed && !target.proceed()) stop_interrupted();
 }
 

@@ -1,15 +1,14 @@
 #include "talus/simulate/simulation.hpp"
 
-#include <omp.h>
 #include <time.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <deque>
-#include <exception>
 #include <numeric>
 
+#include "base/in_threads.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/physics/lanes.hpp"
 #include "talus/simulate/plan/plan.hpp"
@@ -43,8 +42,8 @@ class InOrder {
 
   void finish(std::uint64_t number, Rows&& rows) {
     const std::lock_guard guard(mutex_);
-    if (failed_) return;
-    failed_ = true;  // until all rows are handed out: after an exception no sink is called again
+    if (handing_out_) return;  // a sink threw: none is called again
+    handing_out_ = true;
     waiting_.emplace(number, std::move(rows));
     for (auto it = waiting_.begin(); it != waiting_.end() && it->first == next_; it = waiting_.erase(it), ++next_) {
       if (sinks_.unit) sinks_.unit(it->second.unit);
@@ -53,7 +52,7 @@ class InOrder {
       if (sinks_.paths)
         for (const RecordedPath& path : it->second.paths) sinks_.paths(path);
     }
-    failed_ = false;
+    handing_out_ = false;
   }
 
  private:
@@ -61,7 +60,7 @@ class InOrder {
   std::mutex mutex_;
   std::map<std::uint64_t, Rows> waiting_;
   std::uint64_t next_ = 0;
-  bool failed_ = false;
+  bool handing_out_ = false;  // stays true after an exception
 };
 
 void add_way(Totals& totals, const Path& path) {
@@ -91,19 +90,17 @@ class Simulation::Advance {
       : run_(simulation),
         lanes_(lanes),
         scenario_(simulation.scenario_),
-        order_(simulation.sinks_),
+        rows_in_order_(simulation.sinks_),
         units_(simulation.processes_, {simulation.position_.unit, simulation.units_}, simulation.chunk_,
                simulation.further_rounds_) {
     totals_.barriers = BarrierTally(scenario_.barriers);
   }
 
-  /// Takes units until none is left. No exception may leave an OpenMP region: the first one is stored.
-  void work() noexcept;
+  /// Takes units until none is left.
+  void work();
 
   /// Called when all workers are done. True: all units of the process group are done. False: there are more to take.
-  /// Throws the exception of a worker.
   bool finish() {
-    if (failure_) std::rethrow_exception(failure_);
     if (!units_.finish()) return false;
     run_.position_.unit = units_.end();
     add(run_.totals_, totals_);
@@ -156,13 +153,12 @@ class Simulation::Advance {
   Simulation& run_;
   int lanes_;
   const Scenario& scenario_;
-  InOrder order_;
+  InOrder rows_in_order_;
   WorkUnits units_;
   std::atomic<bool> failed_{false};
   std::mutex mutex_;  // guards the members below
   std::uint64_t done_ = 0;
   Totals totals_;
-  std::exception_ptr failure_;
   bool stopped_ = false, interrupted_ = false;
 };
 
@@ -243,7 +239,7 @@ class Simulation::Advance::Worker {
 
   void finish(Unit& unit) {
     const double before = thread_cpu_seconds();
-    work_.order_.finish(unit.number, std::move(unit.rows));
+    work_.rows_in_order_.finish(unit.number, std::move(unit.rows));
     totals_.sink_cpu_seconds += thread_cpu_seconds() - before;
     units_.pop_front();
     work_.report();
@@ -260,20 +256,19 @@ class Simulation::Advance::Worker {
   bool all_taken_ = false;
 };
 
-void Simulation::Advance::work() noexcept {
-  Totals mine;
-  mine.barriers = BarrierTally(scenario_.barriers);
-  const double start = thread_cpu_seconds();
+void Simulation::Advance::work() {
   try {
+    Totals mine;
+    mine.barriers = BarrierTally(scenario_.barriers);
+    const double start = thread_cpu_seconds();
     Worker(*this, mine).work();
-  } catch (...) {
+    mine.cpu_seconds = thread_cpu_seconds() - start;
     const std::lock_guard guard(mutex_);
-    if (!failure_) failure_ = std::current_exception();
+    add(totals_, mine);
+  } catch (...) {
     failed_ = true;
+    throw;
   }
-  mine.cpu_seconds = thread_cpu_seconds() - start;
-  const std::lock_guard guard(mutex_);
-  add(totals_, mine);
 }
 
 Simulation::Simulation(const Scenario& scenario, const Part& part, bool further_rounds, Tally& tally,
@@ -299,10 +294,8 @@ Simulation::Simulation(const Scenario& scenario, const Part& part, bool further_
 
 void Simulation::advance(int threads, int lanes) {
   Advance work(*this, lanes);
-  do {
-#pragma omp parallel num_threads(threads > 0 ? threads : omp_get_num_procs()) default(none) shared(work)
-    work.work();
-  } while (!work.finish());
+  do in_threads(threads, [&] { work.work(); });
+  while (!work.finish());
 }
 
 void Simulation::save_reaches(const std::function<void(std::string_view)>& put) const {

@@ -84,7 +84,7 @@ Json default_of(const CLI::Option& option, const std::string& type) {
   if (type == "flag") return false;
   if (text.empty() || text == "[]") return nullptr;
   if (!takes_many(option) && (type == "number" || type == "integer"))
-    return json_of_number(std::strtod(text.c_str(), nullptr));
+    return json_of_number(talus::number_in(text));
   return text;
 }
 

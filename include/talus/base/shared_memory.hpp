@@ -25,7 +25,12 @@ class SharedPiece {
   void set_filled();
 
  private:
-  int file_ = -1;
+  struct File {  // a member of its own: closed, and so unlocked, when the constructor throws, too
+    int number = -1;
+    ~File();
+  };
+
+  File file_;
   std::size_t length_;
   void *begin_ = nullptr, *data_ = nullptr;
   bool filled_ = false;

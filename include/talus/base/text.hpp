@@ -9,6 +9,9 @@ namespace talus {
 /// The shortest decimal text that reads back as exactly this number: "0.25", "30", "1e-05".
 std::string text_of(double value);
 
+/// The number at the beginning of a text, whatever the locale of the program; NaN if there is none.
+double number_in(std::string_view text);
+
 /// A number with at most `digits` significant digits, like "%.4g" of printf for 4: "0.1235", "12", "1.235e+06".
 std::string with_digits(double value, int digits);
 

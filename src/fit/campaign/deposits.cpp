@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "nearest_source.hpp"
+#include "talus/base/elementary.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/base/random.hpp"
 #include "talus/base/text.hpp"
@@ -110,7 +111,7 @@ RunOut run_out(const Campaign& campaign, const Eigen::Vector2d& place) {
   const Vec3& source = deposits.sources[deposits.nearest.at(column, row)].place;
   const double distance = std::hypot(source.x() - place.x(), source.y() - place.y());
   const bool beside = distance < std::max(grid.cell_x, grid.cell_y);
-  return {distance, beside ? kNotGiven : std::atan2(source.z() - *height, distance)};
+  return {distance, beside ? kNotGiven : angle_of_rise(source.z() - *height, distance)};
 }
 
 std::vector<double> class_limits(std::vector<double> diameters) {

@@ -1,12 +1,10 @@
 #include "talus/fit/campaign/observe.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <exception>
 
+#include "base/in_threads.hpp"
 #include "talus/fit/campaign/deposits.hpp"
 #include "talus/physics/lanes.hpp"
 #include "talus/simulate/scenario/presets.hpp"
@@ -200,15 +198,13 @@ class Observation {
         units_(units_of(campaign, model.grounds.size(), options, runs_)) {}
 
   std::vector<BlockRuns> run() {
-#pragma omp parallel num_threads(options_.threads > 0 ? options_.threads : omp_get_num_procs()) default(none)
-    work();
-    if (failure_) std::rethrow_exception(failure_);
+    in_threads(options_.threads, [this] { work(); });
     return std::move(runs_);
   }
 
  private:
-  /// Traces trials until none is left. Nothing may leave a parallel region: the first exception is stored.
-  void work() noexcept {
+  /// Traces trials until none is left.
+  void work() {
     try {
       Instrument instrument(campaign_, model_, world_.cover, screens_, options_.effort);
       Tracer tracer(world_, options_.lanes);
@@ -217,9 +213,8 @@ class Observation {
           [&](Release& release, std::uint64_t& tag) { return next(unit, release, tag); },
           [&](const Release& release, const Path& path, std::uint64_t tag) { done(instrument, release, path, tag); });
     } catch (...) {
-#pragma omp critical
-      if (!failure_) failure_ = std::current_exception();
       stop_ = true;
+      throw;
     }
   }
 
@@ -252,7 +247,6 @@ class Observation {
   std::vector<Unit> units_;
   std::atomic<std::size_t> taken_{0};
   std::atomic<bool> stop_{false};
-  std::exception_ptr failure_;
 };
 
 /// Moves the release of a mapped block to a source: each is as likely as its area.

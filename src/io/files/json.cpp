@@ -1,7 +1,6 @@
 #include "json.hpp"
 
 #include <cmath>
-#include <cstdlib>
 
 #include "io/gdal/regular_file.hpp"
 #include "talus/base/error.hpp"
@@ -10,7 +9,7 @@
 namespace talus::io {
 
 double six_digits(double value) {
-  return std::strtod(with_digits(value, 6).c_str(), nullptr);
+  return number_in(with_digits(value, 6));
 }
 
 double six_decimals(double value) {

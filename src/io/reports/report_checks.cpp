@@ -253,7 +253,7 @@ std::vector<double> numbers_of(std::string_view text) {
   std::vector<double> numbers;
   for (std::size_t at = 0; (at = text.find_first_of("0123456789", at)) != std::string_view::npos;) {
     const std::size_t end = std::min(text.find_first_not_of("0123456789.e-+", at), text.size());
-    numbers.push_back(std::strtod(std::string(text.substr(at, end - at)).c_str(), nullptr));
+    numbers.push_back(number_in(text.substr(at, end - at)));
     at = end;
   }
   return numbers;

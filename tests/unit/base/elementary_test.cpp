@@ -31,6 +31,7 @@ class AgainstLongDouble : public testing::Test {
 };
 using NaturalLog = AgainstLongDouble;
 using SineCosineOfTurn = AgainstLongDouble;
+using AngleOfRise = AgainstLongDouble;
 
 TEST_F(NaturalLog, BelowTwoUlpOverAllNormalNumbers) {
   Numbers numbers(11);
@@ -113,6 +114,22 @@ TEST(SineCosineOfTurnValues, QuarterTurnsAreExact) {
     EXPECT_EQ(sine_cosine_of_turn(0.25 * quarter).sine, sine[quarter]);
     EXPECT_EQ(sine_cosine_of_turn(0.25 * quarter).cosine, cosine[quarter]);
   }
+}
+
+TEST_F(AngleOfRise, IsTheArcTangentOfTheRatio) {
+  Numbers numbers(15);
+  double worst = 0.0;
+  for (int i = 0; i < 1'000'000; ++i) {
+    const double way = std::exp(numbers.uniform(-3.0, 8.0)), rise = way * std::tan(numbers.uniform(-1.57, 1.57));
+    worst = std::max(worst, ulps(angle_of_rise(rise, way), std::atan2(static_cast<long double>(rise), way)));
+  }
+  EXPECT_LT(worst, 4.0);
+}
+
+TEST(AngleOfRiseValues, OfTheHorizontalAndOfEqualSides) {
+  EXPECT_EQ(angle_of_rise(0.0, 3.0), 0.0);
+  EXPECT_NEAR(angle_of_rise(2.0, 2.0), 0.25 * kPi, 2e-16);
+  EXPECT_NEAR(angle_of_rise(-2.0, 2.0), -0.25 * kPi, 2e-16);
 }
 
 }  // namespace

@@ -50,6 +50,29 @@ TEST(Escaped, IsSafeBetweenTags) {
   EXPECT_EQ(escaped("a < b && c > d"), "a &lt; b &amp;&amp; c &gt; d");
 }
 
+TEST(Readable, HasNoExponentAndThreeDigits) {  // also where rounding makes a thousand of it
+  for (const double number : {999.4, 999.5, 999.99, 1000.0, 1234.0, 99'950.0, -999.7}) {
+    std::string text = readable(number);
+    EXPECT_EQ(text.find('e'), std::string::npos) << text;
+    for (std::size_t at; (at = text.find("\u00a0")) != std::string::npos;) text.erase(at, 2);
+    EXPECT_NEAR(std::atof(text.c_str()), number, 0.005 * std::abs(number)) << text;
+  }
+}
+
+TEST(NumberIn, IsTheOneAtTheBeginning) {
+  EXPECT_EQ(number_in("0.25"), 0.25);
+  EXPECT_EQ(number_in("1.5e-07, 3"), 1.5e-7);
+  EXPECT_EQ(number_in("-1e+03"), -1000.0);
+  EXPECT_TRUE(std::isnan(number_in("none")));
+  EXPECT_TRUE(std::isnan(number_in("")));
+}
+
+TEST(Percent, HasSignificantDigits) {
+  EXPECT_EQ(percent(0.2158), "21.6 %");
+  EXPECT_EQ(percent(0.2158, 2), "22 %");
+  EXPECT_EQ(percent(0.000123), "0.0123 %");
+}
+
 TEST(Padded, IsNeverCut) {
   EXPECT_EQ(padded("ab", 4), "ab  ");
   EXPECT_EQ(padded("abcde", 4), "abcde");
