@@ -79,8 +79,13 @@ Meeting BarrierWatch::meet(const Barriers::Cut& cut, const Motion& there, const 
   return how;
 }
 
-double BarrierWatch::share_of_leg(const Barriers::Cut& cut, Meeting how, double way) {
-  return how == Meeting::Broken ? cut.share : std::max(0.0, cut.share - kGap / way);
+double BarrierWatch::share_of_leg(double share, Meeting how, double way) {
+  return how == Meeting::Broken ? share : std::max(0.0, share - kGap / way);
+}
+
+bool BarrierWatch::was_met_here(std::uint32_t barrier, const Path& path) const {
+  return std::any_of(path.barriers.begin() + static_cast<std::ptrdiff_t>(met_here_), path.barriers.end(),
+                     [barrier](const BarrierPassage& met) { return met.barrier == barrier; });
 }
 
 void BarrierWatch::act(const BarrierMet& met, const Block& body, Motion& motion, Path& path) {
@@ -91,8 +96,9 @@ void BarrierWatch::act(const BarrierMet& met, const Block& body, Motion& motion,
   }
   const double energy = 0.5 * body.mass * motion.velocity.squaredNorm();
   motion.velocity *= kept_speed(energy, world_.barriers->list()[met.cut.barrier].capacity);
-  broken_ = met.cut.segment;
-  broken_at_ = motion.position.head<2>();
+  const Eigen::Vector2d place = motion.position.head<2>();
+  if (!((place - broken_at_).norm() <= kOneLine)) met_here_ = met.first_of_leg;
+  broken_at_ = place;
   path.vertices.push_back({motion, Event::Barrier});
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-#include <limits>
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "talus/physics/barriers.hpp"
@@ -13,7 +14,8 @@ namespace talus {
 struct BarrierMet {
   Barriers::Cut cut;
   Meeting how;
-  double share;  ///< of the way, at which the leg ends
+  double share;              ///< of the way, at which the leg ends
+  std::size_t first_of_leg;  ///< index among the meetings of the path of the first one on this way
 };
 
 /// Checks each leg of a path (a flight or a slide) for barriers, after it was added to the path. If a barrier catches
@@ -36,11 +38,16 @@ class BarrierWatch {
   template <class MotionAt>
   std::optional<BarrierMet> first(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Block& body, Path& path,
                                   const MotionAt& motion_at) const {
+    // On the line of one that broke, rounding decides on which side of others on the same line `a` lies.
+    const double way = (b - a).norm(), back = a == broken_at_ && way > 0.0 ? kOneLine : 0.0;
+    const Eigen::Vector2d from = back > 0.0 ? Eigen::Vector2d(a - back / way * (b - a)) : a;
+    const std::size_t before = path.barriers.size();
     std::optional<Barriers::Cut> cut;
-    while ((cut = world_.barriers->next(a, b, cut))) {
-      if (cut->segment == broken_ && a == broken_at_) continue;
-      const Meeting how = meet(*cut, motion_at(cut->share), body, path);
-      if (how != Meeting::Over) return BarrierMet{*cut, how, share_of_leg(*cut, how, (b - a).norm())};
+    while ((cut = world_.barriers->next(from, b, cut))) {
+      const double share = back > 0.0 ? std::max(0.0, cut->share * (way + back) - back) / way : cut->share;
+      if (back > 0.0 && share * way <= kOneLine && was_met_here(cut->barrier, path)) continue;
+      const Meeting how = meet(*cut, motion_at(share), body, path);
+      if (how != Meeting::Over) return BarrierMet{*cut, how, share_of_leg(share, how, way), before};
     }
     return std::nullopt;
   }
@@ -52,15 +59,17 @@ class BarrierWatch {
  private:
   Meeting look(std::size_t vertex, const Vertex& to, Motion& motion, const Block& body, Path& path);
   Meeting meet(const Barriers::Cut& cut, const Motion& there, const Block& body, Path& path) const;
-  static double share_of_leg(const Barriers::Cut& cut, Meeting how, double way);
+  static double share_of_leg(double share, Meeting how, double way);
+  /// Whether a barrier was met where the last one broke.
+  bool was_met_here(std::uint32_t barrier, const Path& path) const;
   double ground_at(const Vec3& place) const;
   void cut_off(std::size_t vertex, const Vertex& to, double share, Path& path) const;
 
   const World& world_;
   std::size_t first_vertex_ = 0, first_span_ = 0;
   double length_ = 0.0, plan_length_ = 0.0;                              // of the path before the leg [m]
-  std::uint32_t broken_ = std::numeric_limits<std::uint32_t>::max();     // segment that broke last, and its place:
-  Eigen::Vector2d broken_at_ = Eigen::Vector2d::Constant(std::nan(""));  // the way from there does not cross it again
+  Eigen::Vector2d broken_at_ = Eigen::Vector2d::Constant(std::nan(""));  // where a barrier broke last
+  std::size_t met_here_ = 0;  // the meetings of the path from this one on: the way from there does not meet them again
 };
 
 /// The engine with barriers: `Acting`, with a BarrierWatch on its flights and slides. Flights with drag or stems end at

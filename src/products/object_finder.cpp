@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 #include "talus/physics/span_speed.hpp"
 
@@ -80,38 +81,96 @@ void ObjectFinder::enter(std::uint32_t number, double radius) {
     }
 }
 
-void ObjectFinder::add(std::span<const Span> spans, const Block& body, std::span<ObjectContact> contacts) const {
-  for (const Span& span : spans) {
-    if (!near_.grid.contains(span.patch.column, span.patch.row)) continue;
-    const std::int32_t list = near_.at(span.patch.column, span.patch.row);
-    if (list == 0) continue;
-    const auto place = [&](float p, float q) {
-      return Eigen::Vector2d(surface_.x_of(span.patch.column + double{p}), surface_.y_of(span.patch.row + double{q}));
-    };
-    const Way way{place(span.p_from, span.q_from), place(span.p_to, span.q_to)};
-    const auto energy = [&](double share) {
-      return static_cast<float>(0.5e-3 * body.mass * speed_squared_at(span, share));
-    };
-    for (const std::uint32_t object : lists_[static_cast<std::size_t>(list) - 1]) {
-      const std::optional<Touch> touch = touch_of(way, objects_[object], body.radius());
-      if (!touch) continue;
-      ObjectContact& contact = contacts[object];
-      if (contact.entry < 0.0F) contact.entry = energy(touch->first);
-      contact.largest = std::max({contact.largest, energy(touch->first), energy(touch->last)});
+Way ObjectFinder::way_of(const Span& span) const {
+  const auto place = [&](float p, float q) {
+    return Eigen::Vector2d(surface_.x_of(span.patch.column + double{p}), surface_.y_of(span.patch.row + double{q}));
+  };
+  return {place(span.p_from, span.q_from), place(span.p_to, span.q_to)};
+}
+
+std::span<const std::uint32_t> ObjectFinder::objects_near(const Span& span) const {
+  if (!near_.grid.contains(span.patch.column, span.patch.row)) return {};
+  const std::int32_t list = near_.at(span.patch.column, span.patch.row);
+  if (list == 0) return {};
+  return lists_[static_cast<std::size_t>(list) - 1];
+}
+
+bool ObjectFinder::only_rim_touches(std::uint32_t object, const Eigen::Vector2d& place, double radius) const {
+  const Way there{place, place};
+  return touch_of(there, objects_[object], radius) && !touch_of(there, objects_[object], 0.0);
+}
+
+ObjectFinder::RimLimits ObjectFinder::limits_of(const Path& path, const Block& first, const Block& last) const {
+  RimLimits limits;
+  const auto& spans = path.spans;
+  if (spans.empty()) return limits;
+  for (const std::uint32_t object : objects_near(spans.front())) {
+    if (!only_rim_touches(object, way_of(spans.front()).from, first.radius())) continue;
+    PlaceOnPath left{spans.size(), 0.0};  // where the rim leaves the object
+    for (std::size_t i = 0; i < spans.size() && left.span == spans.size(); ++i) {
+      const auto touch = touch_of(way_of(spans[i]), objects_[object], first.radius());
+      if (!touch || touch->first > 0.0)
+        left = {i, 0.0};
+      else if (touch->last < 1.0)
+        left = {i, touch->last};
+    }
+    limits.begin.emplace_back(object, left);
+  }
+  if (path.end != End::Caught) return limits;
+  for (const std::uint32_t object : objects_near(spans.back())) {
+    if (!only_rim_touches(object, way_of(spans.back()).to, last.radius())) continue;
+    PlaceOnPath reached{0, 0.0};  // where the rim touches the object for good
+    for (std::size_t i = spans.size(); i-- > 0;) {
+      const auto touch = touch_of(way_of(spans[i]), objects_[object], last.radius());
+      if (touch && touch->last >= 1.0 && touch->first <= 0.0) continue;
+      reached = {i, touch && touch->last >= 1.0 ? touch->first : 1.0};
+      break;
+    }
+    limits.end.emplace_back(object, reached);
+  }
+  return limits;
+}
+
+void ObjectFinder::add(const Way& way, const Stretch& part, double radius, std::uint32_t object, const Span& span,
+                       const Block& body, ObjectContact& contact) const {
+  if (!(part.from < part.to)) return;
+  const Eigen::Vector2d whole = way.to - way.from;
+  const auto touch = touch_of({way.from + part.from * whole, way.from + part.to * whole}, objects_[object], radius);
+  if (!touch) return;
+  const auto energy = [&](double share) {
+    const double place = part.from + share * (part.to - part.from);
+    return static_cast<float>(0.5e-3 * body.mass * speed_squared_at(span, place));
+  };
+  if (contact.entry < 0.0F) contact.entry = energy(touch->first);
+  contact.largest = std::max({contact.largest, energy(touch->first), energy(touch->last)});
+}
+
+void ObjectFinder::add(const Path& path, const Block& body, std::span<ObjectContact> contacts) const {
+  const RimLimits limits = limits_of(path, body, path.breaks.empty() ? body : path.breaks.back().body);
+  Block block = body;
+  auto next_break = path.breaks.begin();
+  for (std::size_t i = 0; i < path.spans.size(); ++i) {
+    for (; next_break != path.breaks.end() && next_break->span <= i; ++next_break) block = next_break->body;
+    const Span& span = path.spans[i];
+    const std::span<const std::uint32_t> near = objects_near(span);
+    if (near.empty()) continue;
+    const Way way = way_of(span);
+    for (const std::uint32_t object : near) {
+      const Stretch rim = limits.of_rim(object, i);
+      add(way, {0.0, rim.from}, 0.0, object, span, block, contacts[object]);
+      add(way, rim, block.radius(), object, span, block, contacts[object]);
+      add(way, {std::max(rim.from, rim.to), 1.0}, 0.0, object, span, block, contacts[object]);
     }
   }
 }
 
-void ObjectFinder::add(const Path& path, const Block& body, std::span<ObjectContact> contacts) const {
-  const std::span<const Span> spans(path.spans);
-  std::size_t from = 0;
-  Block block = body;
-  for (const Broken& broken : path.breaks) {
-    add(spans.subspan(from, broken.span - from), block, contacts);
-    from = broken.span;
-    block = broken.body;
-  }
-  add(spans.subspan(from), block, contacts);
+Stretch ObjectFinder::RimLimits::of_rim(std::uint32_t object, std::size_t span) const {
+  Stretch rim;
+  for (const auto& [number, place] : begin)
+    if (number == object && span <= place.span) rim.from = span < place.span ? 1.0 : place.share;
+  for (const auto& [number, place] : end)
+    if (number == object && span >= place.span) rim.to = span > place.span ? 0.0 : place.share;
+  return rim;
 }
 
 }  // namespace talus

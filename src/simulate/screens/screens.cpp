@@ -69,7 +69,9 @@ void ScreenFinder::cross(const Release& release, const Block& body, const Vertex
     const double low = cross_product(way, s.from - a), high = cross_product(way, s.to - a);
     if ((low < 0.0) == (high < 0.0)) continue;
     const double share = side_from / (side_from - side_to);
-    const Motion m = motion_between(from, to, share);
+    // On the line of a barrier that broke: with what the barrier left, whichever way rounding puts the crossing on.
+    const bool behind = to.event == Event::Barrier && (1.0 - share) * way.norm() <= kOneLine;
+    const Motion m = behind ? to.motion : motion_between(from, to, share);
     const double ground = surface_.height(m.position.x(), m.position.y()).value_or(m.position.z());
     crossings.push_back({release.source, release.block, s.screen, release.piece, m.position.x(), m.position.y(),
                          m.velocity.norm(), from.event == Event::Slide ? 0.0 : std::max(0.0, m.position.z() - ground),

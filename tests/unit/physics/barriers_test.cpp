@@ -118,6 +118,39 @@ TEST_F(Thrown, NetsOneAfterTheOther) {
       Meeting::Broken);
 }
 
+/// Panels that overlap, or an old fence and its replacement: in any order, direction and division of the line.
+TEST_F(Thrown, NetsOnOneLineTakeTheirCapacityEach) {
+  test::Numbers numbers(3);
+  for (int i = 0; i < 200; ++i) {
+    const double angle = numbers.uniform(0.3, 2.8);
+    const Eigen::Vector2d middle(30.0, 20.0), along(std::cos(angle), std::sin(angle));
+    std::vector<Barrier> nets;
+    for (int n = 0; n < 3; ++n) {
+      const Eigen::Vector2d from = middle - numbers.uniform(1.0, 9.0) * along,
+                            to = middle + numbers.uniform(1.0, 9.0) * along;
+      nets.push_back({"net", {n == 1 ? std::vector{to, from} : std::vector{from, to}}, 20.0, 0.1 * energy_});
+    }
+    Path path = walked(nets);
+    ASSERT_GE(path.vertices.size(), 4U);
+    EXPECT_EQ(path.vertices[3].event, Event::Barrier) << i;
+    EXPECT_NEAR(500.0 * path.vertices[3].motion.velocity.squaredNorm(), 0.7 * energy_, 1e-6 * energy_) << i;
+    EXPECT_EQ(path.barriers.size(), 3U) << i;
+
+    nets[static_cast<std::size_t>(i % 3)].capacity = kInfinity;
+    path = walked(nets);
+    EXPECT_EQ(path.end, End::Caught) << i;
+    EXPECT_NEAR(path.vertices.back().motion.position.x(), 30.0, 2e-3) << i;
+  }
+}
+
+TEST_F(Thrown, ALowNetOnTheLineOfOneThatBreaksIsPassedOnce) {
+  for (const bool low_first : {true, false}) {
+    std::vector<Barrier> nets{net(30.0, 1.0, 0.0), net(30.0, 20.0, 0.1 * energy_)};
+    if (!low_first) std::swap(nets[0], nets[1]);
+    EXPECT_EQ(walked(nets).barriers.size(), 2U);
+  }
+}
+
 TEST_F(Thrown, ANetWithoutCapacityTakesNothing) {
   const Path path = walked({net(30.0, 6.0, 0.0)});
   ASSERT_EQ(path.vertices[1].event, Event::Barrier);

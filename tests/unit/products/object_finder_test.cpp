@@ -97,5 +97,29 @@ TEST(ObjectFinder, EntryIsTheFirstTouchOfThePath) {  // inside a large object fr
   EXPECT_NEAR(contact.largest, 0.425, 1e-7);
 }
 
+/// From x = 5 to x = 15: a rim of 0.5 m touches what begins at 5.3 m before the block moves, and reaches it by its
+/// centre at a share of 0.03 of the way, where v^2 is 100 + 4.7^2.
+TEST(ObjectFinder, WhatABlockLiesBesideAtItsReleaseIsMetByItsCentreOnly) {
+  EXPECT_LT(contact_with(wall(3.0, 4.7), flight()).largest, 0.0F);
+  EXPECT_NEAR(contact_with(wall(3.0, 5.2), flight()).entry, 0.125, 1e-6);
+  EXPECT_NEAR(contact_with(wall(5.3, 6.0), flight()).entry, 0.12209, 1e-6);
+}
+
+TEST(ObjectFinder, WhatStandsBehindTheBarrierThatCatchesIsNotMet) {
+  const Path caught = test::path_of({flight()}, End::Caught), stopped = test::path_of({flight()}, End::Stopped);
+  EXPECT_NEAR(contact_with(wall(15.2, 16.0), stopped).entry, 0.1 + 0.001 * 4.7 * 4.7, 1e-6);  // touched from 14.7 m on
+  EXPECT_LT(contact_with(wall(15.2, 16.0), caught).largest, 0.0F);
+  EXPECT_NEAR(contact_with(wall(14.7, 16.0), caught).entry, 0.1 + 0.001 * 4.7 * 4.7, 1e-6);  // its centre gets there
+}
+
+TEST(ObjectFinder, WhatIsPassedBeforeTheBarrierIsMet) {  // a wall of 0.2 m beside the way, 3 m before its end
+  const HazardObject post{{{{{11.0, 10.3}, {12.0, 10.3}, {12.0, 10.5}, {11.0, 10.5}, {11.0, 10.3}}}}, {}};
+  const ObjectContact free = contact_with(post, test::path_of({flight()}, End::Stopped)),
+                      caught = contact_with(post, test::path_of({flight()}, End::Caught));
+  EXPECT_GT(free.entry, 0.0F);
+  EXPECT_EQ(free.entry, caught.entry);
+  EXPECT_EQ(free.largest, caught.largest);
+}
+
 }  // namespace
 }  // namespace talus
