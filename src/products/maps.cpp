@@ -14,9 +14,9 @@ namespace {
 
 /// The rule of a raster, for several threads: a rule keeps what it has computed, so that each thread takes one for
 /// itself and puts it back.
-class Rules {
+class SpareRules {
  public:
-  explicit Rules(std::function<CellRule()> make) : make_(std::move(make)) {}
+  explicit SpareRules(std::function<CellRule()> make) : make_(std::move(make)) {}
 
   CellRule take() {
     const std::scoped_lock lock(mutex_);
@@ -88,8 +88,8 @@ struct TallyValues {
 };
 
 auto filling(TallyValues values, std::function<CellRule()> make_rule) {
-  return [values = std::move(values), rules = std::make_shared<Rules>(std::move(make_rule))](const CellWindow& window,
-                                                                                             std::span<double> to) {
+  return [values = std::move(values), rules = std::make_shared<SpareRules>(std::move(make_rule))](
+             const CellWindow& window, std::span<double> to) {
     CellRule rule = rules->take();
     values.of_window(window, rule, to);
     rules->put_back(std::move(rule));

@@ -9,6 +9,8 @@
 namespace talus {
 namespace {
 
+constexpr double kBeyondEdge = 1e-6;  // share of a way by which the rim has surely left what it just touched
+
 /// Whether a point lies within the outer ring and in no hole: rays to the east cross the rings an odd number of times.
 bool contains(const std::vector<HazardObject::Ring>& rings, const Eigen::Vector2d& p) {
   bool inside = false;
@@ -112,7 +114,7 @@ ObjectFinder::RimLimits ObjectFinder::limits_of(const Path& path, const Block& f
       if (!touch || touch->first > 0.0)
         left = {i, 0.0};
       else if (touch->last < 1.0)
-        left = {i, touch->last};
+        left = {i, std::min(1.0, touch->last + kBeyondEdge)};
     }
     limits.begin.emplace_back(object, left);
   }
@@ -123,7 +125,7 @@ ObjectFinder::RimLimits ObjectFinder::limits_of(const Path& path, const Block& f
     for (std::size_t i = spans.size(); i-- > 0;) {
       const auto touch = touch_of(way_of(spans[i]), objects_[object], last.radius());
       if (touch && touch->last >= 1.0 && touch->first <= 0.0) continue;
-      reached = {i, touch && touch->last >= 1.0 ? touch->first : 1.0};
+      reached = {i, touch && touch->last >= 1.0 ? std::max(0.0, touch->first - kBeyondEdge) : 1.0};
       break;
     }
     limits.end.emplace_back(object, reached);

@@ -67,7 +67,7 @@ std::vector<double> no_passage(const RunCounts& run) {
 
 /// Values of a function that is expensive and often called again with the same argument.
 template <class Value>
-class Known {
+class Remembered {
  public:
   template <class Function>
   const Value& of(std::uint64_t argument, Function&& function) {
@@ -84,10 +84,10 @@ class Known {
 
 CellRule impact_probability(const RunCounts& run) {
   const std::uint64_t released = run.released;
-  auto known = std::make_shared<Known<Interval>>();
-  return [released, known](const TouchedCell& cell, std::span<double> values) {
+  auto remembered = std::make_shared<Remembered<Interval>>();
+  return [released, remembered](const TouchedCell& cell, std::span<double> values) {
     const std::uint32_t passages = cell.record.passages;
-    const Interval& bounds = known->of(passages, [&] { return probability_bounds(passages, released, 0.95); });
+    const Interval& bounds = remembered->of(passages, [&] { return probability_bounds(passages, released, 0.95); });
     values[0] = static_cast<double>(passages) / static_cast<double>(released);
     values[1] = bounds.low;
     values[2] = bounds.high;
@@ -105,10 +105,10 @@ std::vector<double> not_reached(const RunCounts& run) {
 }
 
 CellRule reach_probability(const RunCounts& run) {
-  auto known = std::make_shared<Known<Interval>>();
-  return [per_source = run.per_source, known](const TouchedCell& cell, std::span<double> values) {
+  auto remembered = std::make_shared<Remembered<Interval>>();
+  return [per_source = run.per_source, remembered](const TouchedCell& cell, std::span<double> values) {
     const std::uint64_t passages = cell.record.passages, sources = cell.record.sources;
-    const Interval& bounds = known->of(sources << 32U | passages, [&] {
+    const Interval& bounds = remembered->of(sources << 32U | passages, [&] {
       return bounds_of_reached(passages, sources, static_cast<std::uint64_t>(per_source));
     });
     values[0] = cell.record.passages / (cell.record.sources * per_source);
@@ -122,12 +122,12 @@ RunRaster exceedance(Quantity quantity, const std::string& name, const std::stri
   const auto rule = [quantity](const RunCounts& run) -> CellRule {
     std::size_t first = 0;
     for (std::size_t q = 0; q < index_of(quantity); ++q) first += run.thresholds[q].size();
-    auto known = std::make_shared<Known<Interval>>();
-    return [first, known, released = run.released](const TouchedCell& cell, std::span<double> values) {
+    auto remembered = std::make_shared<Remembered<Interval>>();
+    return [first, remembered, released = run.released](const TouchedCell& cell, std::span<double> values) {
       const std::size_t thresholds = values.size() / 3;
       for (std::size_t i = 0; i < thresholds; ++i) {
         const std::uint32_t hits = cell.exceedances[first + i];
-        const Interval& bounds = known->of(hits, [&] { return probability_bounds(hits, released, 0.95); });
+        const Interval& bounds = remembered->of(hits, [&] { return probability_bounds(hits, released, 0.95); });
         values[i] = hits / static_cast<double>(released);
         values[thresholds + 2 * i] = bounds.low;
         values[thresholds + 2 * i + 1] = bounds.high;
@@ -141,19 +141,18 @@ RunRaster exceedance(Quantity quantity, const std::string& name, const std::stri
       values[thresholds + 2 * i + 1] = probability_bounds(0, run.released, 0.95).high;
     return values;
   };
-  return {{name,
-           "Fraction of all released trajectories whose " + what +
-               " in the cell exceeds the threshold (in plan, at any height)",
-           Kind::Probability,
-           {},
-           percent_legend()},
-          "share of N whose " + what + " exceeds the threshold",
-          rule,
-          untouched,
-          quantity,
-          "P(" + symbol + " > <limit>)",
-          false,
-          true};
+  return {.map = {name,
+                  "Fraction of all released trajectories whose " + what +
+                      " in the cell exceeds the threshold (in plan, at any height)",
+                  Kind::Probability,
+                  {},
+                  percent_legend()},
+          .meaning = "share of N whose " + what + " exceeds the threshold",
+          .rule = rule,
+          .untouched = untouched,
+          .thresholds_of = quantity,
+          .threshold_band = "P(" + symbol + " > <limit>)",
+          .threshold_bounds = true};
 }
 
 /// Mean, percentiles and maximum of the values of a cell.
@@ -185,12 +184,6 @@ RunRaster distribution(Quantity quantity, const std::string& meaning, Legend leg
       rule};
 }
 
-/// A raster that is written only if the run asks for it.
-RunRaster on_request(bool RunCounts::*request, RunRaster raster) {
-  raster.request = request;
-  return raster;
-}
-
 /// The raster of the energy with rotation.
 RunRaster energy_total() {
   const auto rule = [](const RunCounts&) -> CellRule {
@@ -199,10 +192,11 @@ RunRaster energy_total() {
       put_distribution(total.mean(), total.histogram, total.maximum, values);
     };
   };
-  return on_request(&RunCounts::energy_total, {{"energy_total", "Kinetic energy, translation and rotation",
-                                                Kind::Quantity, distribution_bands("kJ"), energy_legend("P95")},
-                                               "translational and rotational",
-                                               rule});
+  return {.map = {"energy_total", "Kinetic energy, translation and rotation", Kind::Quantity, distribution_bands("kJ"),
+                  energy_legend("P95")},
+          .meaning = "translational and rotational",
+          .rule = rule,
+          .request = &RunCounts::energy_total};
 }
 
 /// A raster of the bounds of the percentiles of a quantity.
@@ -215,10 +209,10 @@ RunRaster percentile_bounds_of(Quantity quantity, Legend legend) {
     for (const char* const side : {" lower 95 % bound", " upper 95 % bound"})
       bands.push_back({std::string(name) + side, unit});
   const auto rule = [quantity, kShares](const RunCounts&) -> CellRule {
-    auto known = std::make_shared<Known<std::array<Ranks, 3>>>();
+    auto remembered = std::make_shared<Remembered<std::array<Ranks, 3>>>();
     return [=](const TouchedCell& cell, std::span<double> values) {
       const std::uint64_t n = cell.record.passages;
-      const auto& ranks = known->of(n, [&] {
+      const auto& ranks = remembered->of(n, [&] {
         return std::array{percentile_ranks(n, kShares[0]), percentile_ranks(n, kShares[1]),
                           percentile_ranks(n, kShares[2])};
       });
@@ -231,11 +225,11 @@ RunRaster percentile_bounds_of(Quantity quantity, Legend legend) {
     };
   };
   const std::string name(entry.name);
-  return on_request(&RunCounts::bounds,
-                    {{name + "_bounds", std::string(entry.title) + ": 95 % bounds of the percentiles", Kind::Quantity,
-                      std::move(bands), std::move(legend)},
-                     "95 % bounds of the percentiles of `" + name + ".tif`",
-                     rule});
+  return {.map = {name + "_bounds", std::string(entry.title) + ": 95 % bounds of the percentiles", Kind::Quantity,
+                  std::move(bands), std::move(legend)},
+          .meaning = "95 % bounds of the percentiles of `" + name + ".tif`",
+          .rule = rule,
+          .request = &RunCounts::bounds};
 }
 
 /// A raster of one of the counts of the cell record.
@@ -285,18 +279,18 @@ std::vector<RunRaster> make_run_rasters() {
        not_reached},
       exceedance(Quantity::Energy, "energy_exceedance", "translational kinetic energy", "E"),
       exceedance(Quantity::Height, "height_exceedance", "height above the terrain", "h"),
-      {{"passage_density",
-        "Mean number of passages of a line 1 m wide per released block: plan length of the paths / (area of the cell x "
-        "released blocks)",
-        Kind::Quantity,
-        bounded_bands("passage density (in plan, at any height)", "1/m"),
-        {{1e-6, 1e-5, 1e-4, 1e-3, 1e-2}, 1.0, "1/m", Palette::Plasma}},
-       "plan length of the paths in the cell / (area of the cell x released blocks)",
-       passage_density,
-       no_passage,
-       Quantity::Energy,
-       "passage density of E > <limit> (in plan, at any height)",
-       true},
+      {.map = {"passage_density",
+               "Mean number of passages of a line 1 m wide per released block: plan length of the paths / (area of the "
+               "cell x released blocks)",
+               Kind::Quantity,
+               bounded_bands("passage density (in plan, at any height)", "1/m"),
+               {{1e-6, 1e-5, 1e-4, 1e-3, 1e-2}, 1.0, "1/m", Palette::Plasma}},
+       .meaning = "plan length of the paths in the cell / (area of the cell x released blocks)",
+       .rule = passage_density,
+       .untouched = no_passage,
+       .thresholds_of = Quantity::Energy,
+       .threshold_band = "passage density of E > <limit> (in plan, at any height)",
+       .counts_lengths = true},
       distribution(Quantity::Energy, "translational", energy_legend("P95")),
       energy_total(),
       distribution(Quantity::Speed, "in space", speed_legend("P95")),

@@ -11,7 +11,7 @@
 #include "talus/base/error.hpp"
 #include "talus/io/results/run_folder.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"
-#include "talus/physics/lanes.hpp"
+#include "talus/physics/tracer.hpp"
 #include "talus/run/in_every_process.hpp"
 #include "talus/run/memory_limit.hpp"
 #include "talus/run/summary.hpp"

@@ -10,7 +10,7 @@
 
 #include "base/in_threads.hpp"
 #include "talus/base/expect.hpp"
-#include "talus/physics/lanes.hpp"
+#include "talus/physics/tracer.hpp"
 #include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/plan/work_order.hpp"
 #include "talus/simulate/plan/work_units.hpp"

@@ -12,7 +12,7 @@
 #include "talus/io/results/write_vectors.hpp"
 #include "talus/io/scenario/loaded_scenario.hpp"
 #include "talus/physics/flight.hpp"
-#include "talus/physics/lanes.hpp"
+#include "talus/physics/tracer.hpp"
 #include "talus/simulate/plan/plan.hpp"
 #include "talus/simulate/simulate.hpp"
 

@@ -256,7 +256,8 @@ int design(const Options& o) {
   if (const auto note = talus::io::unusable_note(o.folder)) report.notes.push_back(*note);
   if (const auto note = talus::io::coefficient_note(o.folder)) report.notes.push_back(*note);
   if (const auto note = talus::io::barriers_note(o.folder))
-    report.notes.push_back(*note + "; a block that one caught uphill of this screen, or on its line, does not cross it");
+    report.notes.push_back(*note +
+                           "; a block that one caught uphill of this screen, or on its line, does not cross it");
   report.without_height = without_height(run, o);
   if (const auto note = talus::io::gap_note(report.without_height)) report.notes.push_back(*note);
   std::vector<talus::LineCrossing> blocks = crossings_of(crossings, run, o, report, weighting);

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "talus/base/text.hpp"
-#include "talus/physics/lanes.hpp"
+#include "talus/physics/tracer.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 

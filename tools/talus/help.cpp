@@ -83,8 +83,7 @@ Json default_of(const CLI::Option& option, const std::string& type) {
   const std::string text = facts.standard.empty() ? option.get_default_str() : facts.standard;
   if (type == "flag") return false;
   if (text.empty() || text == "[]") return nullptr;
-  if (!takes_many(option) && (type == "number" || type == "integer"))
-    return json_of_number(talus::number_in(text));
+  if (!takes_many(option) && (type == "number" || type == "integer")) return json_of_number(talus::number_in(text));
   return text;
 }
 

@@ -23,7 +23,7 @@
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/gdal/input_access.hpp"
-#include "talus/physics/lanes.hpp"
+#include "talus/physics/tracer.hpp"
 #include "talus/run/startable_threads.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 

@@ -124,7 +124,8 @@ inline constexpr std::array<double, 12> kArcSine = [] {
   return series;
 }();
 
-/// asin(x) for 0 <= x <= sqrt(1/2). Error: below 4 ulp. Source: its series after halving the angle twice.
+/// asin(x) for 0 <= x <= sqrt(1/2). Source: its series after halving the angle twice. Error: below 6 ulp, 1.5 of each
+/// halving.
 inline double arc_sine(double x) {
   for (int halving = 0; halving < 2; ++halving) x /= std::sqrt(2.0 + 2.0 * std::sqrt(1.0 - x * x));
   const double q = x * x;  // below 0.0381
@@ -134,7 +135,7 @@ inline double arc_sine(double x) {
 }
 
 /// The angle above the horizontal of a line that rises by `rise` over `way` > 0: the arc tangent of their ratio.
-/// Error: below 4 ulp.
+/// Error: below 8 ulp: up to 1.9 of the ratio besides.
 inline double angle_of_rise(double rise, double way) {
   const double slant = std::sqrt(rise * rise + way * way), up = std::abs(rise);
   return std::copysign(up <= way ? arc_sine(up / slant) : 0.5 * kPi - arc_sine(way / slant), rise);

@@ -8,7 +8,8 @@
 
 namespace talus {
 
-/// What is closer to a barrier than this stands on its line [m]: above what rounding does to places in millions of metres.
+/// What is closer to a barrier than this stands on its line [m]: above what rounding does to places in millions of
+/// metres.
 inline constexpr double kOneLine = 1e-6;
 
 /// A net or a wall: catches a block that crosses its line below the top and within its capacity. docs/barrier.md,

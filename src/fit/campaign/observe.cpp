@@ -6,7 +6,7 @@
 
 #include "base/in_threads.hpp"
 #include "talus/fit/campaign/deposits.hpp"
-#include "talus/physics/lanes.hpp"
+#include "talus/physics/tracer.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 #include "talus/simulate/screens/screens.hpp"
 

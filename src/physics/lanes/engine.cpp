@@ -1,5 +1,5 @@
 // Compiled once for each number of lanes, TALUS_LANES, with the instructions of the processors that have them. It calls
-// no inline function that other files use, too: see lanes.hpp.
+// no inline function that other files use, too: see src/physics/lanes/lanes.hpp.
 #include "engine.hpp"
 
 #include <utility>

@@ -4,11 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "talus/physics/lanes.hpp"
 #include "talus/physics/path.hpp"
+#include "talus/physics/tracer.hpp"
 
 /// Data shared by the code in lanes and the code for one lane: plain, so that the former calls no inline function that
-/// others use (see lanes.hpp).
+/// others use (see src/physics/lanes/lanes.hpp).
 namespace talus {
 
 /// Numbers of a block, in the order in which they lie in `Slot::state`: first those of Motion.

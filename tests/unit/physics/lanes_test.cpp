@@ -1,5 +1,3 @@
-#include "talus/physics/lanes.hpp"
-
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -11,6 +9,7 @@
 #include "talus/base/random.hpp"
 #include "talus/physics/flight.hpp"
 #include "talus/physics/trace.hpp"
+#include "talus/physics/tracer.hpp"
 #ifdef TALUS_HAS_LANES
 #include "lanes/formulas.hpp"
 #endif

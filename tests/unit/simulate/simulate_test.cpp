@@ -11,7 +11,7 @@
 
 #include "support/paths.hpp"
 #include "support/scenarios.hpp"
-#include "talus/physics/lanes.hpp"
+#include "talus/physics/tracer.hpp"
 #include "talus/simulate/plan/plan.hpp"
 
 namespace talus {

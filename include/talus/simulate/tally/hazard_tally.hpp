@@ -21,9 +21,9 @@ struct HazardRules {
 /// Sums over the passages of a cell, each weighted by its annual frequency w: of its length L in plan, of L D with the
 /// diameter D of the block, and of w L. Sums of parts of paths: they add up over cells, whatever the size of the cells.
 ///
-/// The more rounds the weights leave room for, the coarser are their units, and the finer those of the lengths: a
-/// passage is rounded as in a run of one round. It has less than 2^63 units: a weight has up to 2^62 / room, and no
-/// passage of a cell is longer than 2 km. So 128 bits hold the sum of any number of passages.
+/// A weight has less than 2^62 / room units (WeightScale), so that the weights of `room` rounds can be added. The units
+/// of the sums below are divided by `room`: weight times length keeps as many bits in a run of many rounds as in one.
+/// No passage of a cell is longer than 2 km, so it has less than 2^63 units, and 128 bits hold 2^64 passages.
 struct WeightedLengths {
   static constexpr double kLengthUnit = 0x1p10;    ///< [m]
   static constexpr double kDiameterUnit = 0x1p16;  ///< [m^2]: 2 km of a block of 50 m

@@ -1,7 +1,7 @@
 #include "talus/fit/campaign/observe.hpp"
 
 #include "support/campaigns.hpp"
-#include "talus/physics/lanes.hpp"
+#include "talus/physics/tracer.hpp"
 #include "talus/simulate/screens/screens.hpp"
 
 namespace talus::test {

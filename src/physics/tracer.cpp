@@ -1,4 +1,4 @@
-#include "talus/physics/lanes.hpp"
+#include "talus/physics/tracer.hpp"
 
 #include "lanes/engine.hpp"
 #include "lanes/pool.hpp"
