@@ -230,6 +230,27 @@ class Faults(Files):
         self.scenario("x = 20", head='profile = "p.csv"\ndem = "dem.tif"\n')
         self.fails_with("more than one", "columns x, z")
 
+    def test_frequencies(self):
+        """A profile has none: results would be as if they were not given (docs/profile.md)."""
+        rule = ["p.toml:5", "blocks.diameter", "a profile knows no annual frequencies: leave frequency out"]
+        for diameter, words in {
+                "[{ diameter = 0.5, frequency = 10 }, { diameter = 1.5, weight = 9, frequency = 0.01 }]": rule,
+                "[{ diameter = 0.5 }, { diameter = 1.5, frequency = 0 }]": rule,
+                "[{ diameter = [1, 2], frequency = 1 }]": rule,
+                "{ volume_min = 0.1, volume_max = 1, exponent = 1, frequency = 1 }": ["unknown key 'frequency'"],
+                "1\n[frequency]\ntotal = 1": ["unknown key 'frequency' at the top"],
+                "1\n[frequency]\npower_law = { A = 0.01, b = 0.6 }": ["unknown key 'frequency' at the top"],
+        }.items():
+            with self.subTest(diameter):
+                self.scenario("x = 20", diameter=diameter)
+                self.fails_with(*words)
+        self.scenario("x = 20", head='include = "model.toml"\nprofile = "p.csv"\n')
+        self.fails_with("unknown key 'include' at the top")
+        self.scenario("x = 20", diameter="[{ diameter = 0.5, weight = 1 }, { diameter = 1.5, weight = 9 }]")
+        self.profile("--trajectories", "1000")
+        large = sum(row["diameter_m"] == 1.5 for row in self.rows("stops.csv"))
+        self.assertLess(abs(large - 900), 5 * math.sqrt(1000 * 0.9 * 0.1))  # the weights give the shares
+
     def test_files(self):
         for text, words in {"x,z\n0,5\n": ["1 nodes"], "x,z\n0,5\n0.01,4\n": ["p.csv:3", "x = '0.01'", "step = 0.1"],
                             "x,z\n9,5\n3,4\n": ["p.csv:3", "order the rows"], "x,y\n0,5\n": ["unknown column 'y'"],
