@@ -22,13 +22,13 @@ double dam_height(const Raster<float>& heights, int column, int row) {
   return sides - heights.at(column, row);
 }
 
-DamCount count_dammed(const Raster<float>& heights) {
+DamCount count_dammed(const Raster<float>& heights, const std::function<bool(int column, int row)>& counts) {
   DamCount count;
   for_each_row(heights, [&](int row) {
     for (int column = 0; column < heights.grid.columns; ++column) {
       if (std::isnan(heights.values[heights.grid.index(column, row)])) continue;
       ++count.cells;
-      if (dammed(heights, column, row)) ++count.dammed;
+      if (dammed(heights, column, row) && (!counts || counts(column, row))) ++count.dammed;
     }
   });
   return count;

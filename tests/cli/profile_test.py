@@ -1,7 +1,9 @@
 """talus profile: the 2D model, by hand, against the plane of docs/validation.md, and its files and faults."""
 import csv
+import json
 import math
 import os
+import re
 import unittest
 import xml.dom.minidom
 
@@ -195,6 +197,75 @@ class Files(Profile):
         self.assertAlmostEqual(ground.GetPoint(ground.GetPointCount() - 1)[0], WEST + 120, 3)
 
 
+class Products(Profile):
+    """`talus barrier` and `talus report` on the folder of a profile say what holds there."""
+
+    def setUp(self):
+        super().setUp()
+        self.nodes((0, 200), (150, 87.5), (155, 87.5), (300, 15), (400, 15))
+        self.scenario("x = [18, 22]", "[screens]\nx = [100]\n")
+        y = (59.5 - np.arange(60))[:, None] * 5.0 + np.zeros((1, 60))
+        write_dem(self.path("slope.tif"), (1000.0 + 0.75 * y).astype(np.float32))
+        line = f"LINESTRING ({WEST + 50} {NORTH - 20}, {WEST + 50} {NORTH - 280})"
+        write_features(self.path("fall.gpkg"), "line", [(line, [])])
+        self.scenario("x = 10", "[screens]\nx = [100]\n", 'dem = "slope.tif"\nline = "fall.gpkg"\n', name="cut.toml")
+
+    def design(self, out, screen):
+        done = self.run_well("barrier", self.path(out), "--screen", screen, "-q")
+        self.assertEqual(done.stdout, "")
+        with open(self.path(f"{out}/barrier_{screen}.json"), encoding="utf-8") as file:
+            report = json.load(file)
+        return report, self.run_well("barrier", self.path(out), "--screen", screen).stdout
+
+    def page(self, out):
+        """The rows of the checklist, as (mark, point, this run, why), and the text of the page."""
+        self.run_well("report", self.path(out), "--overwrite")
+        with open(self.path(f"{out}/report.html"), encoding="utf-8") as file:
+            page = file.read()
+        rows = re.findall(r"<tr[^>]*><td class='k'>\S+ (\w+)</td><td>(.*?)</td><td class='b'>(.*?)</td><td>(.*?)</td></tr>", page)
+        self.assertGreater(len(rows), 8)
+        return rows, page
+
+    def test_flags_that_notes_name_are_of_the_command_that_made_the_folder(self):
+        line = f"LINESTRING ({WEST + 20} {NORTH - 180}, {WEST + 280} {NORTH - 180})"
+        write_features(self.path("screens.gpkg"), "screens", [(line, ["100"])], [("id", ogr.OFTString)])
+        self.run_well(*self.arguments("run"), "--screens", self.path("screens.gpkg"), "-q")
+        self.profile("--trajectories", "100", out="profile")
+        self.profile("--trajectories", "100", name="cut.toml", out="cut")
+        flags = {command["name"]: {flag for p in command["parameters"] for flag in p["flags"]}
+                 for command in json.loads(self.run_well("help", "--json").stdout)["commands"]}
+        for out, command in (("run", "run"), ("profile", "profile"), ("cut", "profile")):
+            report, _ = self.design(out, "100")
+            self.assertIn("c = 0.25", " ".join(report["notes"]))
+            rows, _ = self.page(out)
+            texts = report["notes"] + [text for row in rows for text in row]
+            named = {flag for text in texts for flag in re.findall(r"--[a-z][a-z-]*", text)}
+            self.assertLessEqual(named, flags[command], out)
+            self.assertIn("--trajectories", named)
+
+    def test_a_profile_has_no_width(self):
+        self.profile("--trajectories", "100")
+        report, text = self.design("out", "100")
+        self.assertIsNone(report["containment"])
+        self.assertEqual(report["stretches"], [])
+        self.assertNotIn("width", text)
+        self.assertNotIn("stretch", text)
+        self.assertNotIn("along the line", text)
+        self.assertEqual(len(self.contents("out")["barrier_100_stretches.csv"].splitlines()), 1)  # its header
+        self.assertNotIn("Each stretch", self.page("out")[1])
+
+    def test_the_checklist_names_the_terrain_of_the_profile(self):
+        for name, out, terrain, x in (("p.toml", "csv", "profile p.csv", "[18, 22]"),
+                                      ("cut.toml", "dem", "fall.gpkg over the DEM slope.tif", "10")):
+            self.profile("--trajectories", "100", name=name, out=out)
+            rows, page = self.page(out)
+            points = {point: (mark, found) for mark, point, found, _ in rows}
+            self.assertEqual(points["Profile"], ("look", terrain))
+            self.assertEqual(points["Sources"], ("look", f"x = {x} m"))
+            self.assertNotIn("DEM", points)
+            self.assertNotIn("No relief", page)
+
+
 class Faults(Files):
     def fails_with(self, *words):
         before = os.listdir(self.folder)
@@ -229,6 +300,27 @@ class Faults(Files):
         self.fails_with("no block diameter")
         self.scenario("x = 20", head='profile = "p.csv"\ndem = "dem.tif"\n')
         self.fails_with("more than one", "columns x, z")
+
+    def test_frequencies(self):
+        """A profile has none: results would be as if they were not given (docs/profile.md)."""
+        rule = ["p.toml:5", "blocks.diameter", "a profile knows no annual frequencies: leave frequency out"]
+        for diameter, words in {
+                "[{ diameter = 0.5, frequency = 10 }, { diameter = 1.5, weight = 9, frequency = 0.01 }]": rule,
+                "[{ diameter = 0.5 }, { diameter = 1.5, frequency = 0 }]": rule,
+                "[{ diameter = [1, 2], frequency = 1 }]": rule,
+                "{ volume_min = 0.1, volume_max = 1, exponent = 1, frequency = 1 }": ["unknown key 'frequency'"],
+                "1\n[frequency]\ntotal = 1": ["unknown key 'frequency' at the top"],
+                "1\n[frequency]\npower_law = { A = 0.01, b = 0.6 }": ["unknown key 'frequency' at the top"],
+        }.items():
+            with self.subTest(diameter):
+                self.scenario("x = 20", diameter=diameter)
+                self.fails_with(*words)
+        self.scenario("x = 20", head='include = "model.toml"\nprofile = "p.csv"\n')
+        self.fails_with("unknown key 'include' at the top")
+        self.scenario("x = 20", diameter="[{ diameter = 0.5, weight = 1 }, { diameter = 1.5, weight = 9 }]")
+        self.profile("--trajectories", "1000")
+        large = sum(row["diameter_m"] == 1.5 for row in self.rows("stops.csv"))
+        self.assertLess(abs(large - 900), 5 * math.sqrt(1000 * 0.9 * 0.1))  # the weights give the shares
 
     def test_files(self):
         for text, words in {"x,z\n0,5\n": ["1 nodes"], "x,z\n0,5\n0.01,4\n": ["p.csv:3", "x = '0.01'", "step = 0.1"],

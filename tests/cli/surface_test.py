@@ -1,13 +1,24 @@
 """The key and the flag `surface`, from the input to the record, and the warning of dammed cells."""
 import json
+import re
 import unittest
 
 import numpy as np
+from osgeo import ogr
 
-from support import NORTH, WEST, Case, RunCase, heights, write_dem
+from support import NORTH, WEST, Case, RunCase, box, heights, write_dem, write_features
+
+
+def gully():
+    """A V gully at 45 degrees to the grid, from the north-western corner to the south-eastern one; walls of 45 degrees."""
+    row, column = np.mgrid[0:60, 0:60]
+    along, across = (row + column) * 5 / np.sqrt(2), np.abs(row - column) * 5 / np.sqrt(2)
+    return (1000 - 0.7 * along + across).astype(np.float32)
 
 
 class Surface(RunCase):
+    WARNING = "a way down only diagonally, on ground steeper than half of its friction angle"
+
     def setting(self, out):
         return next((s["value"], s["source"]) for s in self.record(out)["settings"] if s["key"] == "surface")
 
@@ -37,17 +48,37 @@ class Surface(RunCase):
 
     def test_dammed_cells_are_counted(self):
         """A V gully at 45 degrees to the grid: each cell of its thalweg is dammed."""
-        row, column = np.mgrid[0:60, 0:60]
-        along, across = (row + column) * 5 / np.sqrt(2), np.abs(row - column) * 5 / np.sqrt(2)
-        write_dem(self.path("dem.tif"), (1000 - 0.7 * along + across).astype(np.float32))
+        write_dem(self.path("dem.tif"), gully())
         for surface, word in (("bilinear", "dams them"), ("creased", "staircases")):
             done = self.run_well("check", self.path("s.toml"), "--surface", surface)
             self.assertRegex(done.stdout, r"(?m)^dammed +58 cells ")
-            line = next(line for line in done.stdout.splitlines() if line.startswith("warning") and "only diagonally" in line)
+            line = next(line for line in done.stdout.splitlines() if line.startswith("warning") and self.WARNING in line)
             self.assertIn("58 cells of the DEM (1.6 %)", line)
             self.assertIn(word, line)
         write_dem(self.path("dem.tif"), heights())
-        self.assertNotIn("only diagonally", self.run_well("check", self.path("s.toml")).stdout)
+        self.assertNotIn(self.WARNING, self.run_well("check", self.path("s.toml")).stdout)
+
+    def test_noise_on_a_plain_gives_no_warning(self):
+        """Of nine equal draws the centre is the least of itself and its four sides, but not of all nine: 1/5 - 1/9."""
+        z = (1000 + np.random.default_rng(1).normal(0, 0.05, (60, 60))).astype(np.float32)
+        write_dem(self.path("dem.tif"), z)
+        done = self.run_well("check", self.path("s.toml"))
+        dammed = int(re.search(r"(?m)^dammed +(\d+) cells ", done.stdout)[1])
+        self.assertAlmostEqual(dammed / 58**2, 1 / 5 - 1 / 9, delta=0.02)
+        self.assertEqual([line for line in done.stdout.splitlines() if line.startswith("warning") and "diagonally" in line], [])
+
+    def test_dams_count_above_half_of_the_friction_angle(self):
+        """The thalweg of the gully falls by atan(0.7) = 34.99 degrees: half of 69.98. A zone has its own angle."""
+        write_dem(self.path("dem.tif"), gully())
+        write_features(self.path("zones.gpkg"), "zones", [(box(0, 150, 150, 150), ["upper"])], [("zone", ogr.OFTString)])
+        with open(self.path("s.toml"), encoding="utf-8") as file:
+            scenario = file.read()
+        for phi, upper, cells in ((69, 69, 58), (71, 71, 0), (69, 71, 29), (71, 69, 29)):
+            self.write("s.toml", scenario + f'[ground]\nfile = "zones.gpkg"\nfield = "zone"\n[ground.zones.default]\nphi = {phi}\n'
+                       f'[ground.zones.upper]\npreset = "upper-talus-3d"\nphi = {upper}\n')
+            said = self.run_well("check", self.path("s.toml")).stdout
+            self.assertEqual(f"{cells} cells of the DEM" in said, cells > 0, said)
+            self.assertEqual(self.WARNING in said, cells > 0, said)
 
 
 class OfACampaign(Case):

@@ -204,15 +204,8 @@ void add_reliability(BarrierReport& report, const std::string& quantity, const s
   report.reliability.push_back(std::move(r));
 }
 
-void add_design(BarrierReport& report, std::span<const talus::LineCrossing> crossings, const RunSummary& run,
-                const Options& o) {
-  report.factors = o.factors;
-  report.factors.percentile = 0.01 * o.percentile;
-  const talus::DesignBlockRule rule{o.volume, o.density.value_or(run.density), run.density};
-  report.block_from = o.volume ? "--volume" : "the largest that crosses";
-  report.block = rule.of(crossings);
-  report.design = talus::design_barrier(crossings, report.block, report.factors);
-  report.longest = o.stretch;
+void add_stretches(BarrierReport& report, std::span<const talus::LineCrossing> crossings,
+                   const talus::DesignBlockRule& rule, const RunSummary& run, const Options& o) {
   std::vector<double> parts;
   for (const auto& line : screen_of(run, o).lines) {
     double length = 0.0;
@@ -225,10 +218,23 @@ void add_design(BarrierReport& report, std::span<const talus::LineCrossing> cros
   if (const auto note = talus::io::stretch_note(report)) report.notes.push_back(*note);
 }
 
-/// Adds the paper's width. @param crossings  also of blocks that never fall: the rule is of all released blocks
-void add_width_by_map(BarrierReport& report, std::span<const talus::LineCrossing> crossings, const RunSummary& run) {
-  report.bin = run.cell;
-  report.above = talus::stretch_above(crossings, run.cell, run.released, 1.0 - report.containment);
+void add_design(BarrierReport& report, std::span<const talus::LineCrossing> crossings, const RunSummary& run,
+                const Options& o) {
+  report.factors = o.factors;
+  report.factors.percentile = 0.01 * o.percentile;
+  const talus::DesignBlockRule rule{o.volume, o.density.value_or(run.density), run.density};
+  report.block_from = o.volume ? "--volume" : "the largest that crosses";
+  report.block = rule.of(crossings);
+  report.design = talus::design_barrier(crossings, report.block, report.factors);
+  report.longest = o.stretch;
+  if (!run.of_profile) add_stretches(report, crossings, rule, run, o);
+}
+
+/// The width, with that of the paper's rule. @param crossings  also of blocks that never fall: the rule is of all
+/// released blocks
+talus::io::BarrierWidth width_by_map(const BarrierReport& report, std::span<const talus::LineCrossing> crossings,
+                                     const RunSummary& run) {
+  return {.bin = run.cell, .above = talus::stretch_above(crossings, run.cell, run.released, 1.0 - report.containment)};
 }
 
 /// Adds how often blocks cross the line and each of its stretches. The line has the sum of the stretches, to the bit.
@@ -266,9 +272,9 @@ int design(const Options& o) {
   report.crossings = crossings.count;
   report.blocks = crossings.blocks;
   report.containment = 0.01 * o.containment;
-  add_width_by_map(report, blocks, run);
+  if (!run.of_profile) report.width = width_by_map(report, blocks, run);
   keep_falling(blocks, o, report, weighting);
-  report.shortest = talus::shortest_stretch(blocks, report.containment);
+  if (report.width) report.width->shortest = talus::shortest_stretch(blocks, report.containment);
   report.values = o.observed.empty() ? "the simulated crossings" : "the observed crossings of " + o.observed;
   add_design(report, blocks, run, o);
   add_crossings_per_year(report, weighting);

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 
 #include "talus/terrain/raster.hpp"
 
@@ -9,12 +10,13 @@ namespace talus {
 /// A bilinear surface dams it, a creased one does not. A cell at the edge of the grid or beside missing heights is not.
 bool dammed(const Raster<float>& heights, int column, int row);
 
-/// Cells with a height, and the dammed ones among them.
+/// Cells with a height, and the dammed ones that count among them.
 struct DamCount {
   std::uint64_t dammed = 0, cells = 0;
   double share() const { return cells > 0 ? static_cast<double>(dammed) / static_cast<double>(cells) : 0.0; }
 };
-DamCount count_dammed(const Raster<float>& heights);
+/// @param counts  whether a dammed cell counts; all do where it is not given
+DamCount count_dammed(const Raster<float>& heights, const std::function<bool(int column, int row)>& counts = {});
 
 /// Height by which a dammed cell lies below the lowest of its four neighbours [m]; 0 if it is not dammed.
 double dam_height(const Raster<float>& heights, int column, int row);

@@ -91,6 +91,20 @@ Json stretch_of(const Stretch& s) {
   return {{"width_m", s.width()}, {"from_m", s.from}, {"to_m", s.to}, {"share", s.share}};
 }
 
+std::string width_text(const BarrierWidth& width, double containment) {
+  return "\nwidth\n  for a containment of " + percent(containment) + "  " + stretch_text(width.shortest) +
+         "\n  by the map                   " + (width.above ? stretch_text(*width.above) : std::string("none")) +
+         ": bins of " + with_digits(width.bin, 4) + " m that more than " + percent(1.0 - containment) +
+         " of the released blocks cross\n";
+}
+
+Json width_of(const BarrierWidth& width, double containment) {
+  return {{"target", containment},
+          {"shortest", stretch_of(width.shortest)},
+          {"bin_m", width.bin},
+          {"by_impact_probability", width.above ? stretch_of(*width.above) : Json()}};
+}
+
 Json reliability_of(const Reliability& r) {
   Json limits = Json::array();
   for (const Reliability::Limit& l : r.limits)
@@ -170,10 +184,7 @@ std::string barrier_text(const BarrierReport& r) {
           r.values + " [95 %]\n";
   for (const Reliability& quantity : r.reliability) text += reliability_text(quantity);
   text += stretches_text(r);
-  text += "\nwidth\n  for a containment of " + percent(r.containment) + "  " + stretch_text(r.shortest) + "\n";
-  text += "  by the map                   " + (r.above ? stretch_text(*r.above) : std::string("none")) + ": bins of " +
-          with_digits(r.bin, 4) + " m that more than " + percent(1.0 - r.containment) +
-          " of the released blocks cross\n";
+  if (r.width) text += width_text(*r.width, r.containment);
   for (const std::string& note : r.notes) text += "\nnote: " + note + "\n";
   return text;
 }
@@ -207,10 +218,7 @@ std::string barrier_json(const BarrierReport& r) {
   for (const Reliability& quantity : r.reliability) json["reliability"].push_back(reliability_of(quantity));
   json["longest_stretch_m"] = r.longest;
   json["stretches"] = stretches_of(r);
-  json["containment"] = {{"target", r.containment},
-                         {"shortest", stretch_of(r.shortest)},
-                         {"bin_m", r.bin},
-                         {"by_impact_probability", r.above ? stretch_of(*r.above) : Json()}};
+  json["containment"] = r.width ? width_of(*r.width, r.containment) : Json();
   json["notes"] = r.notes;
   return json_text(json);
 }

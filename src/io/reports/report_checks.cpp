@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
+#include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/gdal/vectors.hpp"
 #include "talus/io/results/run_folder.hpp"
@@ -85,8 +87,9 @@ void check_ends(const RunFacts& run, Checks& checks) {
   checks.push_back({share("left") > kWarnedLeftShare ? Mark::Act
                     : run.end("left") > 0.0          ? Mark::Look
                                                      : Mark::Fine,
-                    "Blocks that leave the DEM", found("left"),
-                    "The maps do not show how far they would go. Above 1 %: take a larger DEM."});
+                    run.of_profile ? "Blocks that leave the profile" : "Blocks that leave the DEM", found("left"),
+                    run.of_profile ? "The results do not show how far they would go. Above 1 %: take a longer profile."
+                                   : "The maps do not show how far they would go. Above 1 %: take a larger DEM."});
   checks.push_back({share("trapped") > kWarnedTrappedShare ? Mark::Act
                     : run.end("trapped") > 0.0             ? Mark::Look
                                                            : Mark::Fine,
@@ -136,9 +139,9 @@ void check_numbers(const CheckedRun& checked, Checks& checks) {
   for (const ReportMap& map : checked.sheet.maps)
     if (map.name == "impact_probability" && map.largest <= 1.0) bounds(map.largest, "most often hit cell");
   bounds(1e-3, "a cell that one block in 1000 crosses");
-  checks.push_back(
-      {few ? Mark::Look : Mark::Fine, "Number of blocks", found,
-       "95 % bounds of the number of blocks alone. Where they are wide: --trajectories, or --until-error."});
+  checks.push_back({few ? Mark::Look : Mark::Fine, "Number of blocks", found,
+                    std::string("95 % bounds of the number of blocks alone. Where they are wide: --trajectories") +
+                        (run.of_profile ? "." : ", or --until-error.")});
 }
 
 void check_ground(const CheckedRun& checked, Checks& checks) {
@@ -164,13 +167,41 @@ void check_ground(const CheckedRun& checked, Checks& checks) {
   }
 }
 
+/// "profile p.csv", or "line.gpkg over the DEM dem.tif".
+std::string profile_text(const RunFacts& run) {
+  const auto name = [&](const char* role) {
+    const InputFile* const file = run.input(role);
+    return file == nullptr ? std::string() : shortened(std::filesystem::path(file->path).filename().string(), 300);
+  };
+  return run.input("dem") == nullptr ? "profile " + name("profile") : name("line") + " over the DEM " + name("dem");
+}
+
+/// Terrain and sources of a run on a profile.
+void check_profile(const RunFacts& run, Checks& checks) {
+  checks.push_back(
+      {Mark::Look, "Profile", profile_text(run),
+       "Trees, bridges, roofs and interpolated holes of a DEM become terrain. Look at profile.svg: does it "
+       "go down the fall line?"});
+  const auto places = run.settings_of("sources.x");
+  checks.push_back({Mark::Look, "Sources", places.empty() ? "" : "x = " + places.front()->value + " m",
+                    "Is this where blocks break off? Their place and height decide how fast they are."});
+}
+
+/// Terrain and sources of a run on a DEM.
+void check_terrain(const CheckedRun& checked, Checks& checks) {
+  const bool relief = !checked.sheet.relief.empty();
+  checks.push_back({relief ? Mark::Look : Mark::Act, "DEM", relief ? "drawn under the maps" : checked.sheet.relief_note,
+                    "Trees, bridges, roofs and interpolated holes become terrain. Look at the relief."});
+  checks.push_back({Mark::Look, "Sources", grouped(checked.run.source_cells) + " source cells, drawn on every map",
+                    "Are they what you drew? A source that is missing makes every map too low."});
+}
+
 void check_inputs(const CheckedRun& checked, Checks& checks) {
   const RunFacts& run = checked.run;
-  checks.push_back({checked.sheet.relief.empty() ? Mark::Act : Mark::Look, "DEM",
-                    checked.sheet.relief.empty() ? checked.sheet.relief_note : "drawn under the maps",
-                    "Trees, bridges, roofs and interpolated holes become terrain. Look at the relief."});
-  checks.push_back({Mark::Look, "Sources", grouped(run.source_cells) + " source cells, drawn on every map",
-                    "Are they what you drew? A source that is missing makes every map too low."});
+  if (run.of_profile)
+    check_profile(run, checks);
+  else
+    check_terrain(checked, checks);
   for (const Reprojection& one : run.reprojections) {
     const bool good = one.accuracy_m && *one.accuracy_m <= 0.5 * run.grid.cell_x;
     checks.push_back({good ? Mark::Fine : Mark::Look, "Coordinates of " + one.role,

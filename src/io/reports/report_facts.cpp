@@ -6,6 +6,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "io/results/recorded_profile.hpp"
 #include "io/results/recorded_screens.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
@@ -97,6 +98,7 @@ RunFacts facts_of(const Json& json) {
   run.command = command_of(json);
   run.status = json.value("status", "");
   run.plan = json.value("plan", "");
+  run.of_profile = is_of_profile(json);
   read_counts(json, run);
   run.gullies = gullies_of(json);
   run.grid = grid_of(json.at("grid"));

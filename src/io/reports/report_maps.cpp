@@ -105,6 +105,7 @@ MapWindow window_of(const fs::path& folder, const RecordedGrid& grid, const Outl
 
 /// The relief, if the DEM is there and is the one of the run.
 void add_relief(const RunFacts& run, MapSheet& sheet) {
+  if (run.of_profile) return;  // it has no maps
   const InputFile* const dem = run.input("dem");
   const auto leave_out = [&](const std::string& why) {
     sheet.relief_note = "No relief under the maps: the DEM " + why + ".";

@@ -2,6 +2,7 @@
 
 #include "io/files/json.hpp"
 #include "io/gdal/regular_file.hpp"
+#include "recorded_profile.hpp"
 #include "recorded_screens.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
@@ -43,28 +44,23 @@ Json read_record_or_nothing(const std::filesystem::path& file) {
   }
 }
 
-/// The value of model.deformation_coefficient (c) in a run.json; nothing if it is not there.
-std::optional<double> deformation_coefficient_of(const std::filesystem::path& folder) {
-  const Json json = read_record_or_nothing(folder / "run.json");
-  if (!json.is_object() || !json.contains("deformation_coefficient") || !json["deformation_coefficient"].is_number())
-    return std::nullopt;
-  return json.at("deformation_coefficient").get<double>();
-}
-
 }  // namespace
 
 std::optional<std::string> coefficient_note(const std::filesystem::path& folder) {
-  const auto c = deformation_coefficient_of(folder);
-  return c ? coefficient_note(*c) : std::nullopt;
+  const Json json = read_record_or_nothing(folder / "run.json");
+  if (!json.is_object() || !json.contains("deformation_coefficient") || !json["deformation_coefficient"].is_number())
+    return std::nullopt;
+  return coefficient_note(json["deformation_coefficient"].get<double>(), is_of_profile(json));
 }
 
-std::optional<std::string> coefficient_note(double c) {
+std::optional<std::string> coefficient_note(double c, bool of_profile) {
   constexpr double kLowC = 0.15;  // the SEL of the paper's Table 4 asks for 0.09 to 0.16
   if (!(c > kLowC)) return std::nullopt;
   return "energies and jumps may be too low (unsafe): c = " + text_of(c) +
          " (model.deformation_coefficient) is not given by the paper, and a lower c raises both. Unless the ground was "
-         "fitted to observed speeds, run with --deformation-coefficient 0.15 as well and take the higher values: "
-         "docs/barrier.md, \"The value of c\"";
+         "fitted to observed speeds, run with " +
+         (of_profile ? "deformation_coefficient = 0.15 in [model]" : "--deformation-coefficient 0.15") +
+         " as well and take the higher values: docs/barrier.md, \"The value of c\"";
 }
 
 std::optional<std::string> unusable_note(const std::filesystem::path& folder) {
@@ -106,6 +102,7 @@ RunSummary read_run(const std::filesystem::path& folder) {
   return understood(file, kRunAgain, [&] {
     const Json json = parsed_record(text);
     RunSummary run;
+    run.of_profile = is_of_profile(json);
     run.released = json.at("released").get<double>();
     run.density = setting_of(json, "blocks.density");
     run.cell = json.at("grid").at("cell_x_m").get<double>();

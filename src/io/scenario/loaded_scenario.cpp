@@ -1,6 +1,7 @@
 #include "talus/io/scenario/loaded_scenario.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 
@@ -21,6 +22,7 @@
 #include "talus/simulate/scenario/idle_effects.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 #include "talus/terrain/pits.hpp"
+#include "talus/terrain/source_slope.hpp"
 
 namespace talus::io {
 
@@ -132,14 +134,25 @@ void warn_unused_preset(const ScenarioSpec& spec, std::vector<std::string>& warn
                      "[ground.zones.default], or leave the flag out");
 }
 
+/// Whether the ground around a cell is steeper than half of its friction angle. On flatter ground blocks come to rest
+/// also without a dam, and the noise of a survey alone makes dams: docs/physics.md, "Creases".
+bool steep_enough_for_dams(const Raster<float>& heights, const Cover& cover, int column, int row) {
+  const Grid& grid = heights.grid;
+  const Ground& ground = cover.grounds[cover.zone_at(grid.centre_x(column), grid.centre_y(row))];
+  return horn_slope(heights, column, row) > std::tan(0.5 * std::atan(ground.tan_phi));
+}
+
 /// Steep gullies narrower than two cells are sampled as staircases, whose treads hold blocks.
-void warn_of_dams(const Surface& surface, std::vector<std::string>& warnings) {
-  constexpr double kManyDams = 2e-3;  // of the cells; steep terrain with gullies in cells of 5 m has 0.2 to 0.3 %
-  const DamCount count = count_dammed(surface.heights());
+void warn_of_dams(const Surface& surface, const Cover& cover, std::vector<std::string>& warnings) {
+  constexpr double kManyDams = 2e-4;  // of the cells; steep terrain with gullies in cells of 5 m has 0.03 to 0.06 %
+  const Raster<float>& heights = surface.heights();
+  const DamCount count =
+      count_dammed(heights, [&](int column, int row) { return steep_enough_for_dams(heights, cover, column, row); });
   if (count.share() < kManyDams) return;
-  const std::string cells = std::to_string(count.dammed) + " cells of the DEM (" +
-                            with_digits(100.0 * count.share(), 2) +
-                            " %) are lower than their four neighbours and have a way down only diagonally: ";
+  const bool one = count.dammed == 1;
+  const std::string cells = std::to_string(count.dammed) + (one ? " cell" : " cells") + " of the DEM (" +
+                            with_digits(100.0 * count.share(), 2) + " %) " + (one ? "has" : "have") +
+                            " a way down only diagonally, on ground steeper than half of its friction angle: ";
   warnings.push_back(cells +
                      (surface.creased()
                           ? "gullies narrower than two cells. The surface is creased there, so that it dams none; "
@@ -206,7 +219,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
   parts.features = std::move(sources.features);
   parts.sources = std::move(sources.cells);
   parts.surface = Surface(std::move(terrain.heights), spec.surface);
-  warn_of_dams(parts.surface, out.warnings);
+  warn_of_dams(parts.surface, parts.cover, out.warnings);
   out.scenario = make_scenario(std::move(parts));
   warn_unused_preset(spec, out.warnings);
   warn_of_sizes(spec, out.scenario, out.warnings);

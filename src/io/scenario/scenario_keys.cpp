@@ -183,16 +183,23 @@ class SpecReader {
     } else if (value->kind == Kind::List && !value->items.empty() &&
                std::any_of(value->items.begin(), value->items.end(), is_table)) {
       for (const TomlValue& item : value->items) read_class(table, item);
-      const auto& classes = spec_.values.blocks.classes;
-      const auto known =
-          std::count_if(classes.begin(), classes.end(), [](const auto& c) { return !std::isnan(c.frequency); });
-      if (known != 0 && known != std::ssize(classes))
-        table.fault("diameter", *value,
-                    "has a frequency for " + std::to_string(known) + " of " + std::to_string(classes.size()) +
-                        " classes, must have it for all or none");
+      check_frequencies(table, *value);
     } else if (const auto range = table.range("diameter", bounds_of("blocks.diameter"))) {
       spec_.values.blocks.classes = {BlockClass{*range}};
     }
+  }
+
+  /// All classes have a frequency or none. On a profile none: its results are of the blocks that fall, not per year.
+  void check_frequencies(TableReader& table, const TomlValue& value) {
+    const auto given =
+        std::ranges::count_if(value.items, [](const TomlValue& item) { return item.find("frequency") != nullptr; });
+    if (given != 0 && spec_.profile)
+      table.fault("diameter", value,
+                  "a profile knows no annual frequencies: leave frequency out, the weights give the shares");
+    else if (given != 0 && given != std::ssize(value.items))
+      table.fault("diameter", value,
+                  "has a frequency for " + std::to_string(given) + " of " + std::to_string(value.items.size()) +
+                      " classes, must have it for all or none");
   }
 
   void read_class(TableReader& table, const TomlValue& item) {

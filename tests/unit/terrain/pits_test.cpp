@@ -41,6 +41,13 @@ TEST(Dammed, AreCountedAmongCellsWithAHeight) {
   EXPECT_EQ(count.share(), 0.125);
 }
 
+TEST(Dammed, AreCountedWhereTheyAreAskedFor) {
+  const Raster<float> heights = square({9, 6, 4, 6, 5, 6, 9, 6, 9});
+  EXPECT_EQ(count_dammed(heights, [](int column, int row) { return column == 1 && row == 1; }).dammed, 1U);
+  EXPECT_EQ(count_dammed(heights, [](int column, int) { return column != 1; }).dammed, 0U);
+  EXPECT_EQ(count_dammed(heights, [](int, int) { return false; }).cells, 9U);
+}
+
 Raster<float> flat() {
   return Raster<float>(test::grid_of(7, 6, 2.0, 2.0), 10.0F);
 }

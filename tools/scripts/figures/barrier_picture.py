@@ -70,6 +70,8 @@ def main():
     with open(f"{o.out}/run.json", encoding="utf-8") as file:
         run = json.load(file)
     report = report_of(o.out, o.screen)
+    if report["containment"] is None:
+        sys.exit(f"{o.out}: is of talus profile, which has no width to draw")
     design = {row["name"]: row["value"] for row in report["design"]}
     lines = next(s["lines"] for s in run["screens"] if s["id"] == o.screen)
     x, y, energy, height = first_crossings(f"{o.out}/screens.csv", o.screen)

@@ -10,8 +10,9 @@ Tables (all where none is named; `terrain` needs --terrain):
              cells counted as steep gullies
   round      a gully with a round bottom (radius of two cells and of four) at 0 to 45 degrees, 1000 blocks
   staircase  slope from cell to cell down the thalweg of the sampled V at 20 degrees
-  terrain    gar, alr, mal: stops in dammed cells (lower than the four neighbours, higher than a diagonal one), in
-             true pits, path lengths and run-outs; from every n-th source cell of `talus sources`
+  terrain    gar, alr, mal: stops in dammed cells (lower than the four neighbours, higher than a diagonal one), how
+             many of them where the ground is steeper than 15 degrees (half of phi), in true pits, path lengths and
+             run-outs; from every n-th source cell of `talus sources`
 
 A block counts as stopped unless it passes; the gully is long enough that none leaves the terrain before. Blocks of
 1 m start 1 m above the thalweg, on the default ground (upper-talus-3d, phi 30 degrees).
@@ -180,14 +181,25 @@ def descent(gully):
     return np.array(steps)
 
 
+def neighbours(z):
+    """Heights to the north, south, west and east of each inner cell; to the north-west, north-east, south-west, south-east."""
+    return ([z[:-2, 1:-1], z[2:, 1:-1], z[1:-1, :-2], z[1:-1, 2:]], [z[:-2, :-2], z[:-2, 2:], z[2:, :-2], z[2:, 2:]])
+
+
 def cells_of(z):
     """Masks of the dammed cells and of the true pits."""
     c = z[1:-1, 1:-1]
-    sides = [z[:-2, 1:-1], z[2:, 1:-1], z[1:-1, :-2], z[1:-1, 2:]]
-    corners = [z[:-2, :-2], z[:-2, 2:], z[2:, :-2], z[2:, 2:]]
+    sides, corners = neighbours(z)
     low = np.logical_and.reduce([c < s for s in sides])
     dammed, pits = low & np.logical_or.reduce([s < c for s in corners]), low & np.logical_and.reduce([c < s for s in corners])
     return np.pad(dammed, 1), np.pad(pits, 1)
+
+
+def steep_cells(z, cell):
+    """Mask of the cells whose slope by Horn is above half of phi, 15 degrees."""
+    (north, south, west, east), (nw, ne, sw, se) = neighbours(z)
+    rise_x, rise_y = (ne + 2 * east + se) - (nw + 2 * west + sw), (nw + 2 * north + ne) - (sw + 2 * south + se)
+    return np.pad(np.hypot(rise_x, rise_y) / (8 * cell) > np.tan(np.radians(15.0)), 1)
 
 
 def terrain_table(o, work):
@@ -199,19 +211,21 @@ def terrain_table(o, work):
             z = data.ReadAsArray().astype("f4")
             z[z == data.GetRasterBand(1).GetNoDataValue()] = np.nan
             dammed, pits = cells_of(z)
+            steep = steep_cells(z, data.GetGeoTransform()[1])
             before = None
             for surface in SURFACES:
                 out = work / f"out_{name}_{surface}"
                 run(o, ["--dem", dem, "--sources", points, "--diameter", 1, "--trajectories", o.trajectories,
                         "--surface", surface], out)
-                values = terrain_values(out, data.GetGeoTransform(), dammed, pits)
+                values = terrain_values(out, data.GetGeoTransform(), dammed, pits, steep)
                 change = "" if before is None else [f" ({100 * (v / b - 1):+.1f} %)" for v, b in
                                                     zip(values["lengths"], before["lengths"])]
                 yield [name, surface, f"{values['released']}", percent(values["stopped"]), percent(values["dammed"]),
-                       percent(values["pits"])] + [f"{v:.0f}{c}" for v, c in zip(values["lengths"], change or [""] * 4)]
+                       percent(values["steep"]), percent(values["pits"])] + [
+                           f"{v:.0f}{c}" for v, c in zip(values["lengths"], change or [""] * 4)]
                 before = values
-    table(["terrain", "surface", "blocks", "stopped", "of them in dammed cells", "in true pits", "mean path [m]",
-           "run-out: mean [m]", "median [m]", "95 % [m]"], rows())
+    table(["terrain", "surface", "blocks", "stopped", "of them in dammed cells", "of these above 15 degrees",
+           "in true pits", "mean path [m]", "run-out: mean [m]", "median [m]", "95 % [m]"], rows())
 
 
 def every_nth_source(o, work, dem):
@@ -226,7 +240,7 @@ def every_nth_source(o, work, dem):
     return points
 
 
-def terrain_values(out, transform, dammed, pits):
+def terrain_values(out, transform, dammed, pits, steep):
     west, width, _, north, _, height = transform
     rows = [(f.GetField("end"), f.geometry().GetX(), f.geometry().GetY(), f.GetField("x_release"), f.GetField("y_release"),
              f.GetField("length_m")) for f in layer_of(out / "stops.gpkg")]
@@ -235,7 +249,7 @@ def terrain_values(out, transform, dammed, pits):
     column, row = ((x - west) // width).astype(int)[stopped], ((y - north) // height).astype(int)[stopped]
     runout = np.hypot(x - x0, y - y0)
     return {"released": len(rows), "stopped": stopped.mean(), "dammed": dammed[row, column].mean(),
-            "pits": pits[row, column].mean(),
+            "steep": steep[row, column][dammed[row, column]].mean(), "pits": pits[row, column].mean(),
             "lengths": (length.mean(), runout.mean(), np.median(runout), np.quantile(runout, 0.95))}
 
 

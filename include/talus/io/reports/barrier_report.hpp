@@ -32,6 +32,13 @@ struct StretchRow {
   std::optional<Bounded> per_year;  ///< crossings [1/year]
 };
 
+/// How wide a barrier must be.
+struct BarrierWidth {
+  Stretch shortest{};            ///< shortest stretch of the line that holds `containment` of the crossings
+  double bin = 0.0;              ///< width of a bin in the paper's rule [m]
+  std::optional<Stretch> above;  ///< bins that more than 1 - containment of the released blocks cross
+};
+
 /// Results of `talus barrier`.
 struct BarrierReport {
   std::string screen;
@@ -51,11 +58,9 @@ struct BarrierReport {
   BarrierDesign design{};
   std::vector<Reliability> reliability;
   double containment = 0.99;
-  Stretch shortest{};            ///< shortest stretch of the line that holds `containment` of the crossings
-  double bin = 0.0;              ///< width of a bin in the paper's rule [m]
-  std::optional<Stretch> above;  ///< bins that more than 1 - containment of the released blocks cross
-  double longest = 30.0;         ///< of a stretch [m]
-  std::vector<StretchRow> stretches;
+  std::optional<BarrierWidth> width;  ///< nothing on a profile, which has no width
+  double longest = 30.0;              ///< of a stretch [m]
+  std::vector<StretchRow> stretches;  ///< none on a profile
   std::vector<std::string> notes;
 
   bool pieces() const { return crossings > blocks; }  ///< pieces of broken blocks cross, too

@@ -13,7 +13,9 @@ std::optional<std::string> unusable_note(const std::filesystem::path& folder);
 
 /// One line that energies rest on c (model.deformation_coefficient), and which way is safe; nothing if c is low. With a
 /// folder: of its run.json, nothing if it has none. docs/barrier.md, "The value of c".
-std::optional<std::string> coefficient_note(double c);
+///
+/// @param of_profile  the run is of `talus profile`, which takes c from its file alone
+std::optional<std::string> coefficient_note(double c, bool of_profile = false);
 std::optional<std::string> coefficient_note(const std::filesystem::path& folder);
 
 /// "2 barriers stood in the run and caught 3335 blocks"; "blocks and pieces" if blocks broke.
@@ -25,6 +27,7 @@ std::optional<std::string> barriers_note(const std::filesystem::path& folder);
 
 /// The part of OUT/run.json that products of a finished run need.
 struct RunSummary {
+  bool of_profile = false;                 ///< of `talus profile`
   double released = 0.0;                   ///< trajectories
   double density = 0.0;                    ///< of the rock [kg/m^3]
   double cell = 0.0;                       ///< side of a cell, from west to east [m]
