@@ -978,6 +978,26 @@ class FromPython(Case):
             QgsApplication.setLocale(before)
             QgsProject.instance().clear()
 
+    def test_names_of_a_matrix_of_the_user_are_not_translated(self):
+        """Also where they are words of which the plug-in has German ones."""
+        names = ["none", "low", "above 30 kJ", "high to extreme"]
+        with open(self.path("own.toml"), "w", encoding="utf-8") as file:
+            file.write(f"years = [30, 100]\nenergies = [30]\nclasses = [[2, 1, 1], [3, 3, 1]]\nnames = {json.dumps(names)}\n")
+        before = QLocale()
+        QgsApplication.setLocale(QLocale("de_CH"))
+        try:
+            context = QgsProcessingContext()
+            self.run_algorithm("run", self.inputs())
+            _, good = self.run_algorithm("hazard", {"FOLDER": self.path("out"), "MATRIX": self.path("own.toml"), "LOAD": True},
+                                         context=context)
+            self.assertTrue(good)
+            self.load(context)
+            layer = next(node.layer() for node in QgsProject.instance().layerTreeRoot().findLayers() if node.name() == "Gefahrenstufe")
+            self.assertEqual([label for label, _ in layer.renderer().legendSymbologyItems()], names)
+        finally:
+            QgsApplication.setLocale(before)
+            QgsProject.instance().clear()
+
     def assert_as_in_project(self):
         """The one group of the results has the titles, the order and the visibility of the project that the program has
         written (to the hillshade and to what lies second in a GeoPackage)."""

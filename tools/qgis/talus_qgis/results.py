@@ -1,4 +1,5 @@
 """What a command has written, as a group of layers: titles, styles, the hazard class on top."""
+import json
 import os
 import re
 from contextlib import contextmanager
@@ -139,6 +140,15 @@ def legend_text(text):
     return tr(text)
 
 
+def _classes_of_user(folder):
+    """Whether the classes of hazard are those of a matrix that the user has given (`talus hazard --matrix`)."""
+    try:
+        with open(os.path.join(folder, "hazard.json"), encoding="utf-8") as file:
+            return json.load(file)["matrix_file"] != "default"
+    except (OSError, ValueError, KeyError):
+        return False
+
+
 def _translate_legend(layer):
     if isinstance(layer, QgsVectorLayer):
         if isinstance(layer.renderer(), QgsGraduatedSymbolRenderer):
@@ -245,7 +255,8 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
             layer.loadNamedStyle(self.style)
         layer.setCustomProperty(RANK_MARK, self.rank)
         layer.setCustomProperty(TITLE_MARK, self.name)
-        _translate_legend(layer)
+        if self.rank != HAZARD_CLASS or not _classes_of_user(self.folder):
+            _translate_legend(layer)
         project = layer.project() or context.project() or QgsProject.instance()
         node = project.layerTreeRoot().findLayer(layer.id())
         if node is not None:
