@@ -155,7 +155,7 @@ TEST(Colours, AsSeenByMachado) {  // greys stay grey, and pure red is dark witho
   EXPECT_LT(lab_of(eyes().at("protanopia") * linear("#ff0000"))[0], 45.0);
 }
 
-constexpr Palette kPalettes[]{Palette::Plasma, Palette::PlasmaFromDark, Palette::Viridis, Palette::YlGnBu,
+constexpr Palette kPalettes[]{Palette::Plasma, Palette::PuBuGnFromDark, Palette::Viridis, Palette::YlGnBu,
                               Palette::HazardClasses};
 
 /// All six colours of a palette, in the order of the classes.
@@ -181,11 +181,23 @@ TEST(Colours, LightnessIsMonotone) {  // in every eye: the order of the classes 
   for (const Palette palette : kPalettes)
     for (const auto& [eye, matrix] : eyes()) {
       const std::vector<std::string> colours = colours_of(palette);
-      const double sign = palette == Palette::PlasmaFromDark ? 1.0 : -1.0;
+      const double sign = palette == Palette::PuBuGnFromDark ? 1.0 : -1.0;
       for (std::size_t i = 1; i < colours.size(); ++i)
         EXPECT_GT(sign * (lab_of(matrix * linear(colours[i]))[0] - lab_of(matrix * linear(colours[i - 1]))[0]), 1.0)
             << static_cast<int>(palette) << ": " << colours[i - 1] << " " << colours[i] << " " << eye;
     }
+}
+
+TEST(Colours, ReturnPeriodsHaveNoneOfWhatTheyAreDrawnOver) {
+  // Objects at a road are drawn by return period, over the classes of hazard and beside screens by energy.
+  constexpr double kLeast = 15.0;  // as of neighbours
+  for (const char* other : {"energy", "hazard_class"})
+    for (const auto& [eye, matrix] : eyes())
+      for (const LegendClass& one : classes_of(map_of("return_period_30")))
+        for (const LegendClass& two : classes_of(map_of(other)))
+          EXPECT_GE((lab_of(matrix * linear(one.colour)) - lab_of(matrix * linear(two.colour))).norm(), kLeast)
+              << one.colour << " " << two.colour << " " << eye;
+  EXPECT_EQ(classes_of(map_of("hazard_class")).size(), 4U);
 }
 
 TEST(ClassNames, OfClassesAndOfIntensities) {
