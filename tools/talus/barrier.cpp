@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "crossing_weights.hpp"
+#include "project.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/file_name.hpp"
@@ -214,11 +215,7 @@ void add_design(BarrierReport& report, std::span<const talus::LineCrossing> cros
   report.design = talus::design_barrier(crossings, report.block, report.factors);
   report.longest = o.stretch;
   std::vector<double> parts;
-  for (const auto& line : screen_of(run, o).lines) {
-    double length = 0.0;
-    for (std::size_t i = 1; i < line.size(); ++i) length += (line[i] - line[i - 1]).norm();
-    parts.push_back(length);
-  }
+  for (const auto& line : screen_of(run, o).lines) parts.push_back(talus::length_of(line));
   for (const talus::StretchDesign& s :
        talus::design_stretches(crossings, talus::stretch_edges(parts, o.stretch), rule, report.factors))
     report.stretches.push_back({s, {}});
@@ -281,8 +278,9 @@ int design(const Options& o) {
   std::vector<std::string> ids;
   for (const talus::Screen& screen : run.screens) ids.push_back(screen.id);
   const std::string name = "barrier_" + talus::io::file_name_of(o.screen, ids);
-  catch_signals();  // from here on: all three files or none
-  const auto replaced = talus::io::write_barrier(o.folder, name, report);
+  catch_signals();  // from here on: all files or none
+  const auto replaced = talus::io::write_barrier(o.folder, name, report, screen_of(run, o), run.crs_wkt);
+  refresh_project(o.folder);
   if (replaced && !o.quiet) say("", *replaced);
   if (!o.quiet) print_text(talus::io::barrier_text(report));
   return 0;
@@ -332,7 +330,7 @@ void add_barrier(CLI::App& app, Action& action) {
        scalar_of("seed"));
   command->footer(
       "Example:\n  talus barrier result --screen road --gTr 1.02 --gDp 1.02 --gVol 1.02\n\n"
-      "Writes barrier_ID.json, barrier_ID.csv and barrier_ID_stretches.csv into the folder. docs/barrier.md explains "
-      "every value.");
+      "Writes barrier_ID.json, barrier_ID.csv, barrier_ID_stretches.csv and barrier_ID.gpkg (the stretches on the map) "
+      "into the folder. docs/barrier.md explains every value.");
   command->callback([&action, o] { action = [o] { return design(*o); }; });
 }
