@@ -107,15 +107,27 @@ class Window(unittest.TestCase):
     maxDiff = None
 
     def test_order_and_titles_are_those_of_the_project(self):
-        wanted = [node.name() for node in self.project.layerTreeRoot().findLayers()][:-1]  # to the hillshade
-        found = [node.name() for node in self.group.findLayers() if node.name() != "Vertices of the paths"
-                 and not node.name().startswith("Barrier at ")]
+        wanted = [node.name() for node in self.results_in(self.project)]
+        found = [node.name() for node in self.group.findLayers() if node.name() != "Vertices of the paths"]
         self.assertGreater(len(wanted), 25)
         self.assertEqual(found, wanted)
 
-    def test_tables_of_the_barrier_lie_on_top(self):
-        values, stretches = [node.layer() for node in self.group.findLayers()][:2]
-        self.assertEqual([values.name(), stretches.name()], ["Barrier at road: design values", "Barrier at road: stretches"])
+    @staticmethod
+    def results_in(project):
+        """The results in a project that the program has written: all but the inputs of the run."""
+        return [node for node in project.layerTreeRoot().findLayers()
+                if node.name() not in ("Sources of the run", "Hillshade of the DEM")]
+
+    def test_the_barrier_lies_on_top(self):
+        """Its line, in stretches with a design of their own, is as long as the screen."""
+        top = self.group.findLayers()[:2]
+        self.assertEqual([node.name() for node in top], ["Barrier at road: MEL by stretch", "Barrier at road: design values"])
+        self.assertEqual([node.itemVisibilityChecked() for node in top], [True, False])
+        stretches, values = [node.layer() for node in top]
+        screens = QgsVectorLayer(os.path.join(VALLEY, "screens.gpkg"), "screens", "ogr")
+        length = next(f.geometry().length() for f in screens.getFeatures() if f["id"] == "road")
+        self.assertAlmostEqual(sum(f.geometry().length() for f in stretches.getFeatures()), length, places=3)
+        self.assertEqual(stretches.crs().authid(), "EPSG:2056")
         with open(os.path.join(self.out, "barrier_road.csv"), encoding="utf-8") as file:
             written = {row["name"]: float(row["value"]) for row in csv.DictReader(file)}
         self.assertEqual({f["name"]: f["value"] for f in values.getFeatures()}, written)
@@ -123,8 +135,9 @@ class Window(unittest.TestCase):
 
     def test_vector_layers_have_the_classes_of_the_project(self):
         wanted = {node.name(): node.layer() for node in self.project.layerTreeRoot().findLayers()
-                  if isinstance(node.layer(), QgsVectorLayer)}
-        self.assertGreaterEqual(len(wanted), 6)
+                  if isinstance(node.layer(), QgsVectorLayer) and node.layer().renderer() is not None
+                  and node.layer().renderer().type() == "graduatedSymbol"}
+        self.assertGreaterEqual(len(wanted), 7)
         found = {node.name(): node.layer() for node in self.group.findLayers()}
         for name, layer in wanted.items():
             loaded = found[name]
@@ -143,9 +156,9 @@ class Window(unittest.TestCase):
         layers = [node.layer() for node in group.findLayers()]
         # the group Talus: out has layers of these titles, too
         self.assertEqual([layer.name() for layer in layers],
-                         [node.name() + " (fgb)" for node in project.layerTreeRoot().findLayers()][:-1])
+                         [node.name() + " (fgb)" for node in self.results_in(project)])
         wanted = {layer.name() + " (fgb)": layer for layer in project.mapLayers().values()}
-        vectors = [layer for layer in layers if isinstance(layer, QgsVectorLayer)]
+        vectors = [layer for layer in layers if isinstance(layer, QgsVectorLayer) and layer.isSpatial()]
         self.assertEqual(len(vectors), 4)
         for layer in vectors:
             self.assertEqual(self.classes(layer), self.classes(wanted[layer.name()]), layer.name())
