@@ -49,6 +49,16 @@ class Design(Case):
             report = json.load(file)
         return {row["name"]: row["value"] for row in report["design"]}, report, done.stdout
 
+    def test_the_only_screen_need_not_be_named(self):
+        self.fails(2, "--screen: must say at which of the screens of the run the barrier stands: road, fe/nce, low",
+                   arguments=["barrier", self.path("out")])
+        with open(self.path("out/run.json"), encoding="utf-8") as file:
+            record = json.load(file)
+        self.write("out/run.json", json.dumps(record | {"screens": record["screens"][:1]}))
+        self.assertIn("screen road: 101 blocks cross it", self.run_well("barrier", self.path("out")).stdout)
+        self.write("out/run.json", json.dumps(record | {"screens": []}))
+        self.fails(2, "the run kept no crossings", arguments=["barrier", self.path("out")])
+
     def test_by_hand(self):
         values, report, text = self.design("--gTr", "1.02", "--gVol", "1.02")
         # v95 = 14.5, times 1.02 * 1.10; the largest block has 5000 kg: 2 m3; h95 = 0.96

@@ -14,8 +14,9 @@ import unittest
 
 import numpy as np
 from osgeo import gdal
-from qgis.core import (QgsApplication, QgsLayerTreeModel, QgsLayerTreeRegistryBridge, QgsProject, QgsRasterLayer, QgsVectorLayer)
-from qgis.gui import QgsGui, QgsLayerTreeView
+from qgis.core import (QgsApplication, QgsLayerTreeModel, QgsLayerTreeRegistryBridge, QgsProcessingModelAlgorithm, QgsProject,
+                       QgsRasterLayer, QgsVectorLayer)
+from qgis.gui import QgsGui, QgsLayerTreeView, QgsProcessingModelerParameterWidget
 from qgis.PyQt.QtWidgets import QTextEdit
 
 sys.path.append("/usr/share/qgis/python/plugins")  # of Processing
@@ -207,6 +208,29 @@ class Window(unittest.TestCase):
         self.assertEqual(folder, others[0].customProperty("talus/folder"))
         self.assertTrue(os.path.exists(os.path.join(folder, "run.json")))
         tree.removeChildNode(on_top)
+
+    def test_the_screens_of_the_chosen_folder_are_listed(self):
+        from processing.gui.AlgorithmDialog import AlgorithmDialog
+        one = os.path.join(self.folder, "one")
+        os.mkdir(one)
+        with open(os.path.join(one, "run.json"), "w", encoding="utf-8") as file:
+            file.write('{"screens": [{"id": "alone"}]}')
+        dialog = AlgorithmDialog(QgsApplication.processingRegistry().createAlgorithmById("talus:barrier"))
+        wrappers = dialog.mainWidget().wrappers
+        box = wrappers["SCREEN"].widget
+        for folder, listed, chosen in ((self.out, ["road", "foot"], ""), (one, ["alone"], "alone"), (self.folder, [], "alone"),
+                                       (self.out, ["road", "foot"], "")):
+            wrappers["FOLDER"].setParameterValue(folder, dialog.mainWidget().processing_context)
+            self.assertEqual(([box.itemText(i) for i in range(box.count())], box.currentText()), (listed, chosen))
+        box.setCurrentIndex(1)
+        self.assertEqual(dialog.mainWidget().createProcessingParameters()["SCREEN"], "foot")
+        dialog.close()
+
+    def test_in_the_designer_of_models_a_screen_may_be_an_input(self):
+        from processing.modeler.ModelerParametersDialog import ModelerParametersDialog
+        barrier = QgsApplication.processingRegistry().createAlgorithmById("talus:barrier")
+        dialog = ModelerParametersDialog(barrier, QgsProcessingModelAlgorithm())
+        self.assertIsInstance(dialog.widget.widget.wrappers["SCREEN"], QgsProcessingModelerParameterWidget)
 
     def test_the_only_raster_is_the_terrain_where_there_must_be_one(self):
         for only in (True, False):  # the second raster leaves the choice to the user

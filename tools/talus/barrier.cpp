@@ -65,6 +65,16 @@ void check_numbers(const Options& o) {
         throw talus::InputError(std::string(bounds.key) + " = " + talus::text_of(*value) + ": " + *fault);
 }
 
+/// The id of the only screen of a run; empty if it has none. Throws InputError if it has several.
+std::string only_screen(const RunSummary& run) {
+  std::vector<std::string> ids;
+  for (const talus::Screen& screen : run.screens) ids.push_back(screen.id);
+  if (ids.size() > 1)
+    throw talus::InputError("--screen: must say at which of the screens of the run the barrier stands: " +
+                            talus::joined(ids));
+  return ids.empty() ? "" : ids.front();
+}
+
 const talus::Screen& screen_of(const RunSummary& run, const Options& o) {
   std::vector<std::string> ids;
   for (const talus::Screen& screen : run.screens) {
@@ -239,10 +249,11 @@ void add_crossings_per_year(BarrierReport& report, const Weighting& weighting) {
   report.per_year = weighting.per_year(line);
 }
 
-int design(const Options& o) {
+int design(Options o) {
   require_seed(o.seed);
   check_numbers(o);
   const RunSummary run = talus::io::read_run(o.folder);
+  if (o.screen.empty()) o.screen = only_screen(run);
   talus::io::refuse_unwritable(o.folder);
   const CrossingTable crossings = simulated_crossings(run, o);
   if (!o.quiet)
@@ -294,7 +305,8 @@ void add_barrier(CLI::App& app, Action& action) {
   with(command->add_option("folder", o->folder, "folder of results that talus run has written, with screens")
            ->required(),
        folder_of_results());
-  command->add_option("--screen", o->screen, "id of the line at which the barrier stands")->required();
+  command->add_option("--screen", o->screen,
+                      "id of the line at which the barrier stands; the only one of the run where it is not given");
   with(command->add_option(
            "--observed", o->observed,
            "CSV of observed crossings (as screens.csv or a campaign's passages.csv); the probabilities are of "

@@ -65,7 +65,7 @@ ALGORITHMS = [
      "files": {"table": "objects.csv", "curves": "objects_curves.csv"}, "record": "hazard.json"},
     {"id": "barrier", "command": "barrier", "help": "barrier", "order": ["folder", "screen"],
      "advanced": {"observed", "frequency", "percentile", "containment", "stretch", "unweighted"}, "phases": [],
-     "folder": "folder"},
+     "folder": "folder", "screen": "screen"},
     {"id": "profile", "command": "profile", "help": "profile", "phases": ["simulate", "write"],
      "labels": {"trajectories": "number-of-blocks"},
      "files": {"record": "run.json", "picture": "profile.svg"}, "folder": "out", "nothing to load": True},
@@ -221,7 +221,10 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
                                               self._preselected(p), optional)
         if kind == "file":
             return self._file(p, key, title, optional)
-        return QgsProcessingParameterString(key, title, None, False, optional)
+        text = QgsProcessingParameterString(key, title, None, False, optional)
+        if p["name"] == self.table.get("screen"):
+            text.setMetadata({"widget_wrapper": {"class": "talus_qgis.screens.ScreenChoice"}})
+        return text
 
     @staticmethod
     def _preselected(p):

@@ -318,7 +318,8 @@ GERMAN = {
     "--width the thresholds)": "hazard_curves.tif: wie oft jede Energie überschritten wird, ein Band pro Energie",
     "replace the hazard maps that are there": "die vorhandenen Gefahrenkarten ersetzen",
     "folder of results that talus run has written, with screens": "Ordner eines Laufs mit Nachweislinien",
-    "id of the line at which the barrier stands": "id der Linie, an der das Netz steht",
+    "id of the line at which the barrier stands; the only one of the run where it is not given":
+        "id der Linie, an der das Netz steht; die einzige des Laufs, wenn nicht angegeben",
     "trajectories: 1.02 for a calibrated model, 1.10 else (default)":
         "Sturzbahnen: 1.02 für ein kalibriertes Modell, sonst 1.10 (Vorgabe)",
     "topography: 1.02 for a good survey, 1.10 else (default)": "Gelände: 1.02 bei guter Vermessung, sonst 1.10 (Vorgabe)",
