@@ -79,7 +79,7 @@ HazardRaster return_periods() {
                   "Years between blocks of more than <kJ> kJ that pass the cell, in plan, at any height",
                   Kind::Quantity,
                   bounded_bands("return period of E > <kJ> kJ", "years"),
-                  {{10, 30, 100, 300, 1000}, 1.0, "years", Palette::PlasmaFromDark, "", false},
+                  {{10, 30, 100, 300, 1000}, 1.0, "years", Palette::PuBuGnFromDark, "", false},
                   true},
           .meaning = "1 / frequency of exceeding the energy; one file per energy threshold",
           .figures = [](const HazardPlace& place, std::size_t i,

@@ -28,7 +28,8 @@ class Design(Case):
         os.mkdir(self.path("out"))
         screens = [{"id": name, "lines": [[[WEST, SOUTH], [WEST + 100.0, SOUTH]]]} for name in ("road", "fe/nce", "low")]
         self.write("out/run.json", json.dumps({
-            "released": 1000, "grid": {"cell_x_m": 5.0}, "screens": screens,
+            "released": 1000, "screens": screens, "inputs": [],
+            "grid": {"columns": 60, "rows": 60, "cell_x_m": 5.0, "cell_y_m": 5.0, "west": WEST, "north": NORTH, "crs_wkt": ""},
             "settings": [{"key": "blocks.density", "value": 2500, "unit": "kg/m3", "source": "scenario"}]}))
         self.rows = [(0, i, "road", 5.0 + 0.1 * i, 0.01 * (i + 1), 3000.0 if i < 100 else 5000.0, 10.0 + 0.2 * i)
                      for i in range(101)]
@@ -47,6 +48,16 @@ class Design(Case):
         with open(self.path("out/barrier_road.json"), encoding="utf-8") as file:
             report = json.load(file)
         return {row["name"]: row["value"] for row in report["design"]}, report, done.stdout
+
+    def test_the_only_screen_need_not_be_named(self):
+        self.fails(2, "--screen: must say at which of the screens of the run the barrier stands: road, fe/nce, low",
+                   arguments=["barrier", self.path("out")])
+        with open(self.path("out/run.json"), encoding="utf-8") as file:
+            record = json.load(file)
+        self.write("out/run.json", json.dumps(record | {"screens": record["screens"][:1]}))
+        self.assertIn("screen road: 101 blocks cross it", self.run_well("barrier", self.path("out")).stdout)
+        self.write("out/run.json", json.dumps(record | {"screens": []}))
+        self.fails(2, "the run kept no crossings", arguments=["barrier", self.path("out")])
 
     def test_by_hand(self):
         values, report, text = self.design("--gTr", "1.02", "--gVol", "1.02")
@@ -177,12 +188,12 @@ class Design(Case):
         first = self.content()
         self.design()
         self.assertEqual(self.content(), first)
-        self.assertEqual(sorted(first), ["barrier_road.csv", "barrier_road.json", "barrier_road_stretches.csv", "run.json",
-                                         "screens.csv"])
+        self.assertEqual(sorted(first), ["barrier_road.csv", "barrier_road.gpkg", "barrier_road.json", "barrier_road_stretches.csv",
+                                         "run.json", "screens.csv", "talus.qgs"])
 
     def test_what_is_not_its_own_stays(self):
         """A file of the same name without a design of Talus beside it is someone's own."""
-        for name in ("barrier_road.csv", "barrier_road_stretches.csv", "barrier_road.json"):
+        for name in ("barrier_road.csv", "barrier_road_stretches.csv", "barrier_road.gpkg", "barrier_road.json"):
             self.write("out/" + name, '{"program": "mine"}')
             self.refused(name + ": is there and of no earlier design by talus barrier", "move it or give it another name")
             self.assertEqual(self.content()[name], b'{"program": "mine"}')
@@ -590,7 +601,7 @@ class Walk(Case):
         self.run_well("run", self.scenario(False), "-o", self.path("without"))
         self.run_well("run", self.scenario(), "-o", self.path("with"))
         for name in os.listdir(self.path("without")):
-            if name in ("run.json", "scenario.toml"):
+            if name in ("run.json", "scenario.toml", "talus.qgs"):  # which name the barriers
                 continue
             with open(self.path("without/" + name), "rb") as a, open(self.path("with/" + name), "rb") as b:
                 self.assertEqual(a.read(), b.read(), name)

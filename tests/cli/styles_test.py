@@ -48,13 +48,15 @@ class Styles(RunCase):
         self.assertEqual(group.get("name"), "Talus")
         self.assertEqual(self.titles()[-1], "Hillshade of the DEM")
         sources = [layer.findtext("datasource") for layer in root.iter("maplayer")]
-        self.assertIn("../dem.tif", sources)
+        inputs = {"dem.tif", "sources.gpkg", "nets.gpkg"}
+        for name in inputs:
+            self.assertIn("../" + name, sources)
         for source in sources:
             self.assertTrue(os.path.exists(os.path.join(self.path("out"), source.split("|")[0])), source)
-        shown = {os.path.basename(source.split("|")[0]) for source in sources} - {"dem.tif"}
-        self.assertEqual(shown, {name for name in record["files"] if name.endswith((".tif", ".gpkg"))})
+        shown = {os.path.basename(source.split("|")[0]) for source in sources} - inputs
+        self.assertEqual(shown, {name for name in record["files"] if name.endswith((".tif", ".gpkg", ".csv"))} - {"screens.csv"})
         checked = [layer.get("name") for layer in root.iter("layer-tree-layer") if layer.get("checked") == "Qt::Checked"]
-        self.assertEqual(checked, ["Screens: energy, P95", "Impact probability", "Hillshade of the DEM"])
+        self.assertEqual(checked, ["Screens: energy, P95", "Barriers of the run", "Sources of the run", "Impact probability", "Hillshade of the DEM"])
         with open(self.path("out/talus.qgs"), encoding="utf-8") as file:
             self.assertNotIn(self.folder, file.read())  # no absolute path
 
@@ -66,9 +68,30 @@ class Styles(RunCase):
         self.assertLess(titles.index("Hazard class"), titles.index("Impact probability"))
         self.assertIn("Return period of more than 300 kJ", titles)
         checked = [layer.get("name") for layer in self.project().iter("layer-tree-layer") if layer.get("checked") == "Qt::Checked"]
-        self.assertEqual(checked, ["Objects: return period of a hit", "Screens: energy, P95", "Hazard class", "Hillshade of the DEM"])
+        self.assertEqual(checked, ["Objects: return period of a hit", "Screens: energy, P95", "Barriers of the run",
+                                   "Sources of the run", "Hazard class", "Hillshade of the DEM"])
         self.run_well("hazard", self.path("out"), "--overwrite", "-q")  # without the objects: they are gone from the project
         self.assertNotIn("Objects: return period of a hit", self.titles())
+
+    def test_a_barrier_is_on_top_and_goes_with_its_record(self):
+        self.run_well("barrier", self.path("out"), "--screen", "road", "--percentile", "50", "-q")
+        self.assertEqual(self.titles()[:2], ["Barrier at road: MEL by stretch", "Barrier at road: design values"])
+        stretches = rows_of(self.path("out/barrier_road.gpkg"), "barrier_road")
+        with open(self.path("out/barrier_road_stretches.csv"), encoding="utf-8", newline="") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual(len(stretches), 10)  # 300 m in stretches of 30 m at most
+        west = 2600000.0
+        for i, ((feature, geometry), row) in enumerate(zip(stretches, table)):
+            self.assertEqual({name: "" if value is None else f"{value:.6g}" if isinstance(value, float) else str(value)
+                              for name, value in feature.items()}, row)
+            points = [geometry.GetPoint(k)[0] for k in range(geometry.GetPointCount())]
+            for end, wanted in zip((points[0], points[-1]), (west + 30.0 * i, west + 30.0 * (i + 1))):
+                self.assertAlmostEqual(end, wanted, places=6)
+        self.run_well("hazard", self.path("out"), "-q")  # writes the project anew
+        self.assertEqual(self.titles()[0], "Barrier at road: MEL by stretch")
+        os.remove(self.path("out/barrier_road.json"))  # now they are files of the user
+        self.run_well("hazard", self.path("out"), "--overwrite", "-q")
+        self.assertEqual([title for title in self.titles() if title.startswith("Barrier at")], [])
 
     def test_classes_have_their_names_for_gdal(self):
         self.run_well("hazard", self.path("out"), "-q")

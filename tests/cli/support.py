@@ -208,10 +208,11 @@ class RunCase(Case):
         hashes = {}
         for name in sorted(os.listdir(self.path(out))):
             if name != "run.json":
-                with open(self.path(f"{out}/{name}"), "rb") as file:
-                    content = file.read()
-                if name == "talus.qgs":  # it has the way from the folder to the DEM
-                    content = content.replace(os.path.relpath(self.path("dem.tif"), self.path(out)).encode(), b"dem.tif")
+                with open(self.path(f"{out}/{name}"), "rb") as result:
+                    content = result.read()
+                if name == "talus.qgs":  # it has the ways from the folder to these inputs
+                    for file in ("dem.tif", "sources.gpkg", "nets.gpkg"):
+                        content = content.replace(os.path.relpath(self.path(file), self.path(out)).encode(), file.encode())
                 hashes[name] = hashlib.sha256(content).hexdigest()
         return hashes
 

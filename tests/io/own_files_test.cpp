@@ -22,7 +22,8 @@ TEST_F(OwnFiles, OfARunAreThoseThatItsRecordsList) {
   file("out/run.json", R"({"files": ["energy.tif", "energy.qml", "../mine.txt", 7]})");
   file("out/hazard.json", R"({"files": ["hazard_class.tif"]})");
   for (const char* name : {"energy.tif", "energy.qml", "hazard_class.tif", "energy.tif.aux.xml", "barrier_road.csv",
-                           "barrier_road_stretches.csv", ".DS_Store", ".hazard.talus-17/a.tif", "unfinished/part.json"})
+                           "barrier_road_stretches.csv", "barrier_road.gpkg", ".DS_Store", ".hazard.talus-17/a.tif",
+                           "unfinished/part.json"})
     file(std::string("out/") + name);
   file("out/barrier_road.json", R"({"program": "talus", "screen": "road"})");
   EXPECT_EQ(foreign(), Names{});

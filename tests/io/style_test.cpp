@@ -155,7 +155,7 @@ TEST(Colours, AsSeenByMachado) {  // greys stay grey, and pure red is dark witho
   EXPECT_LT(lab_of(eyes().at("protanopia") * linear("#ff0000"))[0], 45.0);
 }
 
-constexpr Palette kPalettes[]{Palette::Plasma, Palette::PlasmaFromDark, Palette::Viridis, Palette::YlGnBu,
+constexpr Palette kPalettes[]{Palette::Plasma, Palette::PuBuGnFromDark, Palette::Viridis, Palette::YlGnBu,
                               Palette::HazardClasses};
 
 /// All six colours of a palette, in the order of the classes.
@@ -181,11 +181,23 @@ TEST(Colours, LightnessIsMonotone) {  // in every eye: the order of the classes 
   for (const Palette palette : kPalettes)
     for (const auto& [eye, matrix] : eyes()) {
       const std::vector<std::string> colours = colours_of(palette);
-      const double sign = palette == Palette::PlasmaFromDark ? 1.0 : -1.0;
+      const double sign = palette == Palette::PuBuGnFromDark ? 1.0 : -1.0;
       for (std::size_t i = 1; i < colours.size(); ++i)
         EXPECT_GT(sign * (lab_of(matrix * linear(colours[i]))[0] - lab_of(matrix * linear(colours[i - 1]))[0]), 1.0)
             << static_cast<int>(palette) << ": " << colours[i - 1] << " " << colours[i] << " " << eye;
     }
+}
+
+TEST(Colours, ReturnPeriodsHaveNoneOfWhatTheyAreDrawnOver) {
+  // Objects at a road are drawn by return period, over the classes of hazard and beside screens by energy.
+  constexpr double kLeast = 15.0;  // as of neighbours
+  for (const char* other : {"energy", "hazard_class"})
+    for (const auto& [eye, matrix] : eyes())
+      for (const LegendClass& one : classes_of(map_of("return_period_30")))
+        for (const LegendClass& two : classes_of(map_of(other)))
+          EXPECT_GE((lab_of(matrix * linear(one.colour)) - lab_of(matrix * linear(two.colour))).norm(), kLeast)
+              << one.colour << " " << two.colour << " " << eye;
+  EXPECT_EQ(classes_of(map_of("hazard_class")).size(), 4U);
 }
 
 TEST(ClassNames, OfClassesAndOfIntensities) {
@@ -211,6 +223,7 @@ TEST(VectorStyle, ClassesOfTheRaster) {
                                       {StyledLayer::Exits, "energy"},
                                       {StyledLayer::Trajectories, "velocity"},
                                       {StyledLayer::Screens, "energy"},
+                                      {StyledLayer::Stretches, "energy"},
                                       {StyledLayer::AreaObjects, "return_period_30"},
                                       {StyledLayer::LineObjects, "return_period_30"}}) {
     const Tree tree(CPLParseXMLString(style_of(layer).c_str()), CPLDestroyXMLNode);
@@ -220,6 +233,7 @@ TEST(VectorStyle, ClassesOfTheRaster) {
     std::vector<LegendClass> classes = classes_of(map_of(raster));
     const bool objects = layer == StyledLayer::AreaObjects || layer == StyledLayer::LineObjects;
     if (objects) classes.push_back({1e100, "hit by no block", "#bdbdbd"});  // which has no return period
+    if (layer == StyledLayer::Stretches) classes.push_back({1e100, "too few crossings for a design", "#bdbdbd"});
     std::size_t i = 0;
     double upper = 0.0;
     for (const CPLXMLNode* range = ranges->psChild; range != nullptr; range = range->psNext, ++i) {
@@ -235,13 +249,12 @@ TEST(VectorStyle, ClassesOfTheRaster) {
 
 TEST(ProjectLayers, HaveATitleForEveryRaster) {
   std::set<std::string> known;
-  for (const ProjectLayer& layer : project_layers())
-    if (!layer.vector) known.insert(layer.name);
-  for (const RunRaster& raster : run_rasters()) EXPECT_EQ(known.count(raster.map.name), 1U) << raster.map.name;
-  EXPECT_EQ(project_layers().back().name, "sources") << "every raster of today has a title of its own";
+  for (const ProjectLayer& layer : project_layers()) known.insert(layer.file.substr(0, layer.file.find('<')));
+  for (const RunRaster& raster : run_rasters()) EXPECT_EQ(known.count(raster.map.name + ".tif"), 1U) << raster.map.name;
+  EXPECT_EQ(project_layers().back().file, "sources.tif") << "every raster of today has a title of its own";
   for (const HazardRaster& raster : hazard_rasters()) {
-    const std::string name = raster.map.name.substr(0, raster.map.name.find('<'));
-    EXPECT_EQ(known.count(name), 1U) << name;
+    const std::string file = raster.map.name + ".tif";
+    EXPECT_EQ(known.count(file.substr(0, file.find('<'))), 1U) << file;
   }
 }
 
@@ -264,11 +277,27 @@ TEST_F(Project, NamesOfFilesAreEscaped) {
   EXPECT_NE(text.find("<datasource>./stops.gpkg|layername=stops<"), std::string::npos) << text;
 }
 
+TEST_F(Project, AnIdIsWhatIsBetweenTheEndsOfAName) {
+  const std::string text = project_of({"barrier_a_b.csv", "barrier_a_b.json", "barrier_a_b_stretches.csv",
+                                       "barrier_x.csv", "barrier_.csv", "return_period_.tif", "intensity_T1e+06.tif"},
+                                      path(""), path("out"), {{"", 0.0, 100.0, 1.0, 1.0}, 10, 10, ""});
+  EXPECT_NE(text.find("<layername>Barrier at a_b: design values<"), std::string::npos) << text;
+  EXPECT_NE(text.find("<layername>Energy once in 1e+06 years<"), std::string::npos) << text;
+  std::size_t layers = 0;
+  for (std::size_t at = 0; (at = text.find("<maplayer", at)) != std::string::npos; ++at) ++layers;
+  EXPECT_EQ(layers, 2U) << "a table without a record of a design is the user's own";
+}
+
 TEST_F(Project, NoIdOfALayerBeginsAnother) {
   std::vector<std::string> files;
   for (const ProjectLayer& layer : project_layers())
-    for (const char* number : {"", "30", "300"})
-      files.push_back(layer.name + number + (layer.vector ? ".gpkg" : ".tif"));
+    for (const char* word : {"30", "300"}) {
+      const std::size_t at = layer.file.find('<'), end = layer.file.find('>');
+      files.push_back(at == std::string::npos ? layer.file
+                                              : layer.file.substr(0, at) + word + layer.file.substr(end + 1));
+      if (at == std::string::npos) break;
+    }
+  files.insert(files.end(), {"barrier_30.json", "barrier_300.json"});  // which say that the others are designs
   std::string text = project_of(files, path(""), path("out"), {{"", 0.0, 100.0, 1.0, 1.0}, 10, 10, ""});
   std::vector<std::string> ids;
   for (std::size_t at = 0; (at = text.find("<id>", at)) != std::string::npos; ++at)

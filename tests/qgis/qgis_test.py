@@ -266,8 +266,9 @@ class ByQgisProcess(Case):
         text = self.call("hazard", f"FOLDER={self.path('out')}", f"OBJECTS={VALLEY}/houses.gpkg", "WIDTH=10")
         self.assertTrue(os.path.exists(self.path("out/hazard_class.tif")))
         self.assertTrue(os.path.exists(self.path("out/objects.gpkg")))
-        self.call("barrier", f"FOLDER={self.path('out')}", "SCREEN=road")
+        text = self.call("barrier", f"FOLDER={self.path('out')}", "SCREEN=road")
         self.assertTrue(os.path.exists(self.path("out/barrier_road.csv")))
+        self.assertIn(f"LINE:\t{self.path('out/barrier_road.gpkg')}|layername=barrier_road", text)
         if "report" in commands_of_the_program():
             self.call("report", f"FOLDER={self.path('out')}", f"OUT={self.path('page.html')}")
             self.assertGreater(os.path.getsize(self.path("page.html")), 10000)
@@ -978,30 +979,51 @@ class FromPython(Case):
             QgsApplication.setLocale(before)
             QgsProject.instance().clear()
 
+    def test_names_of_a_matrix_of_the_user_are_not_translated(self):
+        """Also where they are words of which the plug-in has German ones."""
+        names = ["none", "low", "above 30 kJ", "high to extreme"]
+        with open(self.path("own.toml"), "w", encoding="utf-8") as file:
+            file.write(f"years = [30, 100]\nenergies = [30]\nclasses = [[2, 1, 1], [3, 3, 1]]\nnames = {json.dumps(names)}\n")
+        before = QLocale()
+        QgsApplication.setLocale(QLocale("de_CH"))
+        try:
+            context = QgsProcessingContext()
+            self.run_algorithm("run", self.inputs())
+            _, good = self.run_algorithm("hazard", {"FOLDER": self.path("out"), "MATRIX": self.path("own.toml"), "LOAD": True},
+                                         context=context)
+            self.assertTrue(good)
+            self.load(context)
+            layer = next(node.layer() for node in QgsProject.instance().layerTreeRoot().findLayers() if node.name() == "Gefahrenstufe")
+            self.assertEqual([label for label, _ in layer.renderer().legendSymbologyItems()], names)
+        finally:
+            QgsApplication.setLocale(before)
+            QgsProject.instance().clear()
+
     def assert_as_in_project(self):
         """The one group of the results has the titles, the order and the visibility of the project that the program has
-        written (to the hillshade and to what lies second in a GeoPackage)."""
+        written (without the inputs of the run and what lies second in a GeoPackage)."""
         groups = [g for g in QgsProject.instance().layerTreeRoot().findGroups() if g.name() == "Talus: out"]
         self.assertEqual(len(groups), 1)  # one group for the run and what is added to it
         project = xml.parse(self.path("out/talus.qgs")).getroot()
         wanted = [(layer.get("name"), layer.get("checked") == "Qt::Checked") for layer in project.iter("layer-tree-layer")
-                  if layer.get("id") != "talus_hillshade"]
+                  if layer.get("name") not in ("Sources of the run", "Hillshade of the DEM")]
         found = [(node.name(), node.itemVisibilityChecked()) for node in groups[0].findLayers()
                  if node.name() != "Vertices of the paths"]
         self.assertGreater(len(wanted), 15)
         self.assertEqual(found, wanted)
         return [node.layer() for node in groups[0].findLayers()]
 
-    def test_order_and_titles_are_those_of_the_program(self):
-        from talus_qgis import results
-        with open(os.path.join(HERE, "../../src/io/results/qgis_project.cpp"), encoding="utf-8") as file:
-            rows = re.findall(r'^      \{"(\w+)", "([^"]+)"(, true)?\},$', file.read(), re.M)
-        self.assertGreater(len(rows), 25)
-        self.assertEqual(results.ORDER, [name + (".gpkg" if vector else ".tif") for name, _, vector in rows])
-        for file, (name, title, vector) in zip(results.ORDER, rows):
-            stem, kind = os.path.splitext(file)
-            number = "300" if "<n>" in title else ""
-            self.assertEqual(results.title_of(stem + number + kind), title.replace("<n>", number))
+    def test_every_title_of_a_result_has_a_german_one(self):
+        from talus_qgis import results, texts
+        told = json.loads(subprocess.run([os.environ["TALUS"], "help", "--json"], capture_output=True, check=True).stdout)["results"]
+        self.assertGreater(len(told), 25)
+        for entry in told:
+            self.assertIn(entry["title"], texts.GERMAN)
+            for blank in ("<n>", "<id>"):
+                self.assertEqual(blank in entry["title"], blank in texts.GERMAN[entry["title"]])
+        for name, title in (("return_period_300.tif", "Return period of more than 300 kJ"), ("stops.fgb", "Stops: largest energy of the path"),
+                            ("barrier_a_b.csv", "Barrier at a_b: design values"), ("exits.tif", "Exits"), ("mine_too.tif", "mine too.tif")):
+            self.assertEqual(results.title_of(name), title)
         self.assertLess(results._place(7, results.title_of("return_period_30.tif")),
                         results._place(7, results.title_of("return_period_100.tif")))
 

@@ -2,6 +2,7 @@
 
 Needs QGIS 3.22 or later (python3-qgis). TALUS is the path of the program.
 """
+import csv
 import os
 import shutil
 import subprocess
@@ -44,7 +45,8 @@ class Project(unittest.TestCase):
         shutil.copytree(VALLEY, os.path.join(cls.folder, "valley"))
         out = os.path.join(cls.folder, "out")
         for arguments in (["run", os.path.join(cls.folder, "valley/scenario.toml"), "--trajectories", "10", "-o", out],
-                          ["hazard", out, "--objects", os.path.join(cls.folder, "valley/houses.gpkg")]):
+                          ["hazard", out, "--objects", os.path.join(cls.folder, "valley/houses.gpkg")],
+                          ["barrier", out, "--screen", "road"]):
             subprocess.run([TALUS, *arguments, "-q"], check=True)
         # Another place: all paths of the project are relative.
         cls.moved = cls.folder + "-moved"
@@ -81,13 +83,27 @@ class Project(unittest.TestCase):
         self.assertGreater(len(self.layers), 25)
         for name, layer in self.layers.items():
             self.assertTrue(layer is not None and layer.isValid(), name)
-            self.assertEqual(layer.crs().authid(), "EPSG:2056", name)
+            if layer.isSpatial():
+                self.assertEqual(layer.crs().authid(), "EPSG:4326" if name == "Sources of the run" else "EPSG:2056", name)
         names = list(self.layers)
         maps = [name for name in names if self.layers[name].type() == 1]
         self.assertEqual((maps[0], names[-1]), ("Hazard class", "Hillshade of the DEM"))
         visible = [layer.name() for layer in self.group.findLayers() if layer.isVisible()]
-        self.assertEqual(visible, ["Objects: return period of a hit", "Screens: energy, P95", "Hazard class", "Hillshade of the DEM"])
+        self.assertEqual(visible, ["Barrier at road: MEL by stretch", "Objects: return period of a hit", "Screens: energy, P95",
+                                   "Sources of the run", "Hazard class", "Hillshade of the DEM"])
         self.assertEqual(self.layers["Hillshade of the DEM"].renderer().type(), "hillshade")
+
+    def test_tables_and_inputs_are_those_of_the_files(self):
+        """The six cliffs where they are, and each table with its numbers."""
+        cliffs = self.layers["Sources of the run"]
+        self.assertEqual((cliffs.featureCount(), cliffs.renderer().type()), (6, "singleSymbol"))
+        self.assertEqual(cliffs.renderer().symbol().symbolLayer(0).color().alpha(), 0)  # what lies below is seen
+        for name, file in (("Barrier at road: design values", "barrier_road.csv"), ("Objects: sources of the hits", "objects_sources.csv"),
+                           ("Objects: hazard curves", "objects_curves.csv"), ("Screens: all quantities", "screens_summary.csv")):
+            with open(os.path.join(self.out, file), encoding="utf-8", newline="") as text:
+                self.assertEqual(self.layers[name].featureCount(), len(list(csv.DictReader(text))), name)
+        values = {f["name"]: f["value"] for f in self.layers["Barrier at road: design values"].getFeatures()}
+        self.assertAlmostEqual(values["MEL"], 1.3 * values["SEL"], delta=1e-3 * values["MEL"])  # docs/barrier.md
 
     def test_legends(self):
         def raster(name):
@@ -102,12 +118,13 @@ class Project(unittest.TestCase):
         self.assertEqual(vector("Objects: return period of a hit"), years + ["hit by no block"])
         self.assertEqual(raster("Reach probability"), ["0 %", "up to 2 %", "2 to 5 %", "5 to 10 %", "10 to 20 %", "20 to 50 %", "50 to 100 %"])
         kj = ["up to 30 kJ", "30 to 100 kJ", "100 to 300 kJ", "300 to 1000 kJ", "1000 to 3000 kJ", "above 3000 kJ"]
+        self.assertEqual(vector("Barrier at road: MEL by stretch"), kj + ["too few crossings for a design"])
         for name in "Stops: largest energy of the path", "Ends off the map: energy", "Screens: energy, P95":
             self.assertEqual(vector(name), kj)
         self.assertEqual(vector("Paths: largest speed")[0], "up to 5 m/s")
 
     def test_a_layer_alone_has_its_style(self):
-        for name in "stops", "exits", "trajectories", "screens", "objects":
+        for name in "stops", "exits", "trajectories", "screens", "objects", "barrier_road":
             layer = QgsVectorLayer(os.path.join(self.out, name + ".gpkg"), name, "ogr")
             self.assertEqual(layer.renderer().type(), "graduatedSymbol", name)
 
@@ -133,7 +150,8 @@ class Project(unittest.TestCase):
             self.assertGreater(len(drawn), 1, name)
 
     def test_every_feature_has_a_class(self):
-        for name in "Stops: largest energy of the path", "Paths: largest speed", "Screens: energy, P95", "Objects: return period of a hit":
+        for name in ("Stops: largest energy of the path", "Paths: largest speed", "Screens: energy, P95",
+                     "Objects: return period of a hit", "Barrier at road: MEL by stretch"):
             layer = self.layers[name]
             used = set()
             expression = QgsExpression(layer.renderer().classAttribute())

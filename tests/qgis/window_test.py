@@ -14,8 +14,9 @@ import unittest
 
 import numpy as np
 from osgeo import gdal
-from qgis.core import (QgsApplication, QgsLayerTreeModel, QgsLayerTreeRegistryBridge, QgsProject, QgsRasterLayer, QgsVectorLayer)
-from qgis.gui import QgsGui, QgsLayerTreeView
+from qgis.core import (QgsApplication, QgsLayerTreeModel, QgsLayerTreeRegistryBridge, QgsProcessingModelAlgorithm, QgsProject,
+                       QgsRasterLayer, QgsVectorLayer)
+from qgis.gui import QgsGui, QgsLayerTreeView, QgsProcessingModelerParameterWidget
 from qgis.PyQt.QtWidgets import QTextEdit
 
 sys.path.append("/usr/share/qgis/python/plugins")  # of Processing
@@ -107,15 +108,27 @@ class Window(unittest.TestCase):
     maxDiff = None
 
     def test_order_and_titles_are_those_of_the_project(self):
-        wanted = [node.name() for node in self.project.layerTreeRoot().findLayers()][:-1]  # to the hillshade
-        found = [node.name() for node in self.group.findLayers() if node.name() != "Vertices of the paths"
-                 and not node.name().startswith("Barrier at ")]
+        wanted = [node.name() for node in self.results_in(self.project)]
+        found = [node.name() for node in self.group.findLayers() if node.name() != "Vertices of the paths"]
         self.assertGreater(len(wanted), 25)
         self.assertEqual(found, wanted)
 
-    def test_tables_of_the_barrier_lie_on_top(self):
-        values, stretches = [node.layer() for node in self.group.findLayers()][:2]
-        self.assertEqual([values.name(), stretches.name()], ["Barrier at road: design values", "Barrier at road: stretches"])
+    @staticmethod
+    def results_in(project):
+        """The results in a project that the program has written: all but the inputs of the run."""
+        return [node for node in project.layerTreeRoot().findLayers()
+                if node.name() not in ("Sources of the run", "Hillshade of the DEM")]
+
+    def test_the_barrier_lies_on_top(self):
+        """Its line, in stretches with a design of their own, is as long as the screen."""
+        top = self.group.findLayers()[:2]
+        self.assertEqual([node.name() for node in top], ["Barrier at road: MEL by stretch", "Barrier at road: design values"])
+        self.assertEqual([node.itemVisibilityChecked() for node in top], [True, False])
+        stretches, values = [node.layer() for node in top]
+        screens = QgsVectorLayer(os.path.join(VALLEY, "screens.gpkg"), "screens", "ogr")
+        length = next(f.geometry().length() for f in screens.getFeatures() if f["id"] == "road")
+        self.assertAlmostEqual(sum(f.geometry().length() for f in stretches.getFeatures()), length, places=3)
+        self.assertEqual(stretches.crs().authid(), "EPSG:2056")
         with open(os.path.join(self.out, "barrier_road.csv"), encoding="utf-8") as file:
             written = {row["name"]: float(row["value"]) for row in csv.DictReader(file)}
         self.assertEqual({f["name"]: f["value"] for f in values.getFeatures()}, written)
@@ -123,8 +136,9 @@ class Window(unittest.TestCase):
 
     def test_vector_layers_have_the_classes_of_the_project(self):
         wanted = {node.name(): node.layer() for node in self.project.layerTreeRoot().findLayers()
-                  if isinstance(node.layer(), QgsVectorLayer)}
-        self.assertGreaterEqual(len(wanted), 6)
+                  if isinstance(node.layer(), QgsVectorLayer) and node.layer().renderer() is not None
+                  and node.layer().renderer().type() == "graduatedSymbol"}
+        self.assertGreaterEqual(len(wanted), 7)
         found = {node.name(): node.layer() for node in self.group.findLayers()}
         for name, layer in wanted.items():
             loaded = found[name]
@@ -143,9 +157,9 @@ class Window(unittest.TestCase):
         layers = [node.layer() for node in group.findLayers()]
         # the group Talus: out has layers of these titles, too
         self.assertEqual([layer.name() for layer in layers],
-                         [node.name() + " (fgb)" for node in project.layerTreeRoot().findLayers()][:-1])
+                         [node.name() + " (fgb)" for node in self.results_in(project)])
         wanted = {layer.name() + " (fgb)": layer for layer in project.mapLayers().values()}
-        vectors = [layer for layer in layers if isinstance(layer, QgsVectorLayer)]
+        vectors = [layer for layer in layers if isinstance(layer, QgsVectorLayer) and layer.isSpatial()]
         self.assertEqual(len(vectors), 4)
         for layer in vectors:
             self.assertEqual(self.classes(layer), self.classes(wanted[layer.name()]), layer.name())
@@ -194,6 +208,29 @@ class Window(unittest.TestCase):
         self.assertEqual(folder, others[0].customProperty("talus/folder"))
         self.assertTrue(os.path.exists(os.path.join(folder, "run.json")))
         tree.removeChildNode(on_top)
+
+    def test_the_screens_of_the_chosen_folder_are_listed(self):
+        from processing.gui.AlgorithmDialog import AlgorithmDialog
+        one = os.path.join(self.folder, "one")
+        os.mkdir(one)
+        with open(os.path.join(one, "run.json"), "w", encoding="utf-8") as file:
+            file.write('{"screens": [{"id": "alone"}]}')
+        dialog = AlgorithmDialog(QgsApplication.processingRegistry().createAlgorithmById("talus:barrier"))
+        wrappers = dialog.mainWidget().wrappers
+        box = wrappers["SCREEN"].widget
+        for folder, listed, chosen in ((self.out, ["road", "foot"], ""), (one, ["alone"], "alone"), (self.folder, [], "alone"),
+                                       (self.out, ["road", "foot"], "")):
+            wrappers["FOLDER"].setParameterValue(folder, dialog.mainWidget().processing_context)
+            self.assertEqual(([box.itemText(i) for i in range(box.count())], box.currentText()), (listed, chosen))
+        box.setCurrentIndex(1)
+        self.assertEqual(dialog.mainWidget().createProcessingParameters()["SCREEN"], "foot")
+        dialog.close()
+
+    def test_in_the_designer_of_models_a_screen_may_be_an_input(self):
+        from processing.modeler.ModelerParametersDialog import ModelerParametersDialog
+        barrier = QgsApplication.processingRegistry().createAlgorithmById("talus:barrier")
+        dialog = ModelerParametersDialog(barrier, QgsProcessingModelAlgorithm())
+        self.assertIsInstance(dialog.widget.widget.wrappers["SCREEN"], QgsProcessingModelerParameterWidget)
 
     def test_the_only_raster_is_the_terrain_where_there_must_be_one(self):
         for only in (True, False):  # the second raster leaves the choice to the user

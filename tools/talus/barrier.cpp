@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "crossing_weights.hpp"
+#include "project.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/file_name.hpp"
@@ -62,6 +63,16 @@ void check_numbers(const Options& o) {
     if (value)
       if (const auto fault = talus::fault_of(bounds, *value))
         throw talus::InputError(std::string(bounds.key) + " = " + talus::text_of(*value) + ": " + *fault);
+}
+
+/// The id of the only screen of a run; empty if it has none. Throws InputError if it has several.
+std::string only_screen(const RunSummary& run) {
+  std::vector<std::string> ids;
+  for (const talus::Screen& screen : run.screens) ids.push_back(screen.id);
+  if (ids.size() > 1)
+    throw talus::InputError("--screen: must say at which of the screens of the run the barrier stands: " +
+                            talus::joined(ids));
+  return ids.empty() ? "" : ids.front();
 }
 
 const talus::Screen& screen_of(const RunSummary& run, const Options& o) {
@@ -207,11 +218,7 @@ void add_reliability(BarrierReport& report, const std::string& quantity, const s
 void add_stretches(BarrierReport& report, std::span<const talus::LineCrossing> crossings,
                    const talus::DesignBlockRule& rule, const RunSummary& run, const Options& o) {
   std::vector<double> parts;
-  for (const auto& line : screen_of(run, o).lines) {
-    double length = 0.0;
-    for (std::size_t i = 1; i < line.size(); ++i) length += (line[i] - line[i - 1]).norm();
-    parts.push_back(length);
-  }
+  for (const auto& line : screen_of(run, o).lines) parts.push_back(talus::length_of(line));
   for (const talus::StretchDesign& s :
        talus::design_stretches(crossings, talus::stretch_edges(parts, o.stretch), rule, report.factors))
     report.stretches.push_back({s, {}});
@@ -248,10 +255,11 @@ void add_crossings_per_year(BarrierReport& report, const Weighting& weighting) {
   report.per_year = weighting.per_year(line);
 }
 
-int design(const Options& o) {
+int design(Options o) {
   require_seed(o.seed);
   check_numbers(o);
   const RunSummary run = talus::io::read_run(o.folder);
+  if (o.screen.empty()) o.screen = only_screen(run);
   talus::io::refuse_unwritable(o.folder);
   const CrossingTable crossings = simulated_crossings(run, o);
   if (!o.quiet)
@@ -289,8 +297,9 @@ int design(const Options& o) {
   std::vector<std::string> ids;
   for (const talus::Screen& screen : run.screens) ids.push_back(screen.id);
   const std::string name = "barrier_" + talus::io::file_name_of(o.screen, ids);
-  catch_signals();  // from here on: all three files or none
-  const auto replaced = talus::io::write_barrier(o.folder, name, report);
+  catch_signals();  // from here on: all files or none
+  const auto replaced = talus::io::write_barrier(o.folder, name, report, screen_of(run, o), run.crs_wkt);
+  refresh_project(o.folder);
   if (replaced && !o.quiet) say("", *replaced);
   if (!o.quiet) print_text(talus::io::barrier_text(report));
   return 0;
@@ -304,7 +313,8 @@ void add_barrier(CLI::App& app, Action& action) {
   with(command->add_option("folder", o->folder, "folder of results that talus run has written, with screens")
            ->required(),
        folder_of_results());
-  command->add_option("--screen", o->screen, "id of the line at which the barrier stands")->required();
+  command->add_option("--screen", o->screen,
+                      "id of the line at which the barrier stands; the only one of the run where it is not given");
   with(command->add_option(
            "--observed", o->observed,
            "CSV of observed crossings (as screens.csv or a campaign's passages.csv); the probabilities are of "
@@ -340,7 +350,7 @@ void add_barrier(CLI::App& app, Action& action) {
        scalar_of("seed"));
   command->footer(
       "Example:\n  talus barrier result --screen road --gTr 1.02 --gDp 1.02 --gVol 1.02\n\n"
-      "Writes barrier_ID.json, barrier_ID.csv and barrier_ID_stretches.csv into the folder. docs/barrier.md explains "
-      "every value.");
+      "Writes barrier_ID.json, barrier_ID.csv, barrier_ID_stretches.csv and barrier_ID.gpkg (the stretches on the map) "
+      "into the folder. docs/barrier.md explains every value.");
   command->callback([&action, o] { action = [o] { return design(*o); }; });
 }

@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "progress.hpp"
+#include "project.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
@@ -15,7 +16,6 @@
 #include "talus/io/results/hazard_file.hpp"
 #include "talus/io/results/hazard_record.hpp"
 #include "talus/io/results/objects_file.hpp"
-#include "talus/io/results/qgis_project.hpp"
 #include "talus/io/results/recorded_plan.hpp"
 #include "talus/io/results/run_folder.hpp"
 #include "talus/io/results/run_record.hpp"
@@ -185,17 +185,6 @@ std::string object_text(const talus::io::HazardRecord& record) {
   const talus::Grid& grid = record.header.grid;
   return "hazard of a cell, " + talus::with_digits(grid.cell_x, 4) + " x " + talus::with_digits(grid.cell_y, 4) +
          " m (larger cells are hit more often; --width 10 for an object 10 m wide, whatever the cell)";
-}
-
-/// The results are complete without the project: a fault is a warning.
-void refresh_project(const fs::path& folder) {
-  try {
-    if (!talus::io::refresh_project(folder))
-      say("warning", std::string(talus::io::kProjectFile) +
-                         " was saved in QGIS and stays as it is: add the new maps there, or remove it before");
-  } catch (const std::exception& error) {
-    say("warning", std::string(talus::io::kProjectFile) + " is as it was before: " + error.what());
-  }
 }
 
 int hazard(const Options& options) {

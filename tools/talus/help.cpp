@@ -10,6 +10,7 @@
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
+#include "talus/io/results/qgis_project.hpp"
 #include "talus/physics/effects/registry.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 
@@ -147,6 +148,14 @@ Json scenario_json() {
   return json;
 }
 
+/// The layers of results, from the top downwards, as talus.qgs has them.
+Json results_json() {
+  Json json = Json::array();
+  for (const talus::io::ProjectLayer& layer : talus::io::project_layers())
+    json.push_back({{"file", layer.file}, {"title", layer.title}, {"shown", layer.shown}});
+  return json;
+}
+
 struct Options {
   std::string command;
   std::string program;  // the help of the program
@@ -169,11 +178,8 @@ std::string help_text(const CLI::App& app, const Options& options) {
 }  // namespace
 
 std::string help_json(const CLI::App& app) {
-  Json json{{"program", app.get_name()},
-            {"version", talus::version()},
-            {"text", app.get_description()},
-            {"commands", Json::array()},
-            {"scenario", scenario_json()}};
+  Json json{{"program", app.get_name()}, {"version", talus::version()}, {"text", app.get_description()},
+            {"commands", Json::array()}, {"scenario", scenario_json()}, {"results", results_json()}};
   for (const CLI::App* command : app.get_subcommands(nullptr)) json["commands"].push_back(json_of(*command));
   return json.dump(1) + "\n";
 }
@@ -182,7 +188,8 @@ void add_help(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("help", "Print this help, or that of a command");
   command->add_option("command", options->command, "name of a command");
-  command->add_flag("--json", options->json, "everything that can be given to every command, for other programs");
+  command->add_flag("--json", options->json,
+                    "everything that can be given to every command, and the layers of results, for other programs");
   command->footer("Examples:\n  talus help\n  talus help run\n  talus help --json");
   options->program = app.help();  // here: once a command is read, this is the help of the command
   command->callback([&app, &action, options] {

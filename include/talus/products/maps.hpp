@@ -12,8 +12,8 @@
 
 namespace talus {
 
-/// Colours of a legend, from light to dark. `PlasmaFromDark` is from dark to light: small values are the grave ones.
-enum class Palette { Plasma, PlasmaFromDark, Viridis, YlGnBu, HazardClasses };
+/// Colours of a legend, from light to dark. `PuBuGnFromDark` is from dark to light: small values are the grave ones.
+enum class Palette { Plasma, PuBuGnFromDark, Viridis, YlGnBu, HazardClasses };
 
 /// How a map is drawn: one colour up to each limit, and one above the last limit. A probability has no colour above
 /// its last limit, which is 1.

@@ -61,15 +61,11 @@ std::set<std::string> own_names(const fs::path& folder) {
   if (fs::exists(folder / "part.json")) own.insert("scenario.toml");
   if (fs::exists(folder / "calibration.json") || fs::exists(folder / "diagnosis.json"))
     own.insert(kFitFiles.begin(), kFitFiles.end());
-  const bool has_run = fs::exists(folder / "run.json");
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().stem().string();
-    if (has_run && entry.path().extension() == ".html" && is_run_page(entry.path()))  // whatever `report -o` called it
-      own.insert(entry.path().filename().string());
-    // Files of `talus barrier`: NAME.json lists them.
-    if (!name.starts_with("barrier_") || entry.path().extension() != ".json" || !is_design(entry.path())) continue;
-    for (const char* end : {".json", ".csv", "_stretches.csv"}) own.insert(name + end);
-  }
+  if (fs::exists(folder / "run.json"))
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (entry.path().extension() == ".html" && is_run_page(entry.path()))  // whatever `report -o` called it
+        own.insert(entry.path().filename().string());
+  for (std::string& name : files_of_designs(folder)) own.insert(std::move(name));
   return own;
 }
 
@@ -109,6 +105,19 @@ bool is_design(const fs::path& file) {
   } catch (const std::exception&) {
     return false;
   }
+}
+
+std::vector<std::string> files_of_designs(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().stem().string();
+    if (!name.starts_with("barrier_") || entry.path().extension() != kOfDesign.front() || !is_design(entry.path()))
+      continue;
+    for (const std::string_view end : kOfDesign)
+      if (std::string file = name + std::string(end); fs::is_regular_file(folder / file))
+        names.push_back(std::move(file));
+  }
+  return names;
 }
 
 bool is_run_page(const fs::path& file) {

@@ -1,6 +1,8 @@
 #pragma once
+#include <array>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace talus::io {
@@ -10,6 +12,12 @@ inline const std::string kPageMark = "talus ";
 
 /// Whether a file is the design (barrier_ID.json) that `talus barrier` has written.
 bool is_design(const std::filesystem::path& file);
+
+/// The ends of the names of the files of a design, after "barrier_ID"; the first one says that the others are ours.
+inline constexpr std::array<std::string_view, 4> kOfDesign{".json", ".csv", "_stretches.csv", ".gpkg"};
+
+/// The files of all designs in a folder that are there.
+std::vector<std::string> files_of_designs(const std::filesystem::path& folder);
 
 /// Whether a file is a page that `talus report` has written.
 bool is_run_page(const std::filesystem::path& file);

@@ -154,11 +154,11 @@ std::string written_values(const Json& design) {
 }  // namespace
 
 std::optional<std::string> write_barrier(const std::filesystem::path& folder, const std::string& name,
-                                         const BarrierReport& report) {
+                                         const BarrierReport& report, const Screen& line, const std::string& crs_wkt) {
   const std::filesystem::path file = folder / (name + ".json");
   const bool earlier = is_design(file);
-  for (const char* end : {".json", ".csv", "_stretches.csv"})
-    if (const auto own = folder / (name + end); !earlier && std::filesystem::exists(own))
+  for (const std::string_view end : kOfDesign)
+    if (const auto own = folder / (name + std::string(end)); !earlier && std::filesystem::exists(own))
       throw InputError(own.string() + ": is there and of no earlier design by talus barrier (no " +
                        file.filename().string() + " of it), must not be replaced: move it or give it another name");
   const std::string json = barrier_json(report);
@@ -169,6 +169,7 @@ std::optional<std::string> write_barrier(const std::filesystem::path& folder, co
   replace_text(file, json);  // first: it says that the tables are ours
   replace_text(folder / (name + ".csv"), barrier_csv(report));
   replace_text(folder / (name + "_stretches.csv"), stretches_csv(report));
+  replace_stretches(folder / (name + ".gpkg"), report, line, crs_wkt);
   return replaced;
 }
 

@@ -2,7 +2,15 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <stdexcept>
+
+#include "io/files/own_files.hpp"
+#include "io/gdal/layer_file.hpp"
+#include "talus/io/files/staged_path.hpp"
+#include "talus/io/results/vector_style.hpp"
+#include "talus/simulate/screens/screens.hpp"
 
 namespace talus::io {
 namespace {
@@ -102,6 +110,79 @@ Json stretch_row_of(const StretchRow& row) {
   return json;
 }
 
+/// A number of the stretches in the tables; nothing where a stretch has none.
+struct Column {
+  const char* name;
+  std::function<std::optional<double>(const StretchRow&)> of;
+  bool whole = false;
+};
+
+std::function<std::optional<double>(const StretchRow&)> of_all(double (*value)(const StretchDesign&)) {
+  return [value](const StretchRow& row) -> std::optional<double> { return value(row.values); };
+}
+
+std::function<std::optional<double>(const StretchRow&)> per_year(double Bounded::*part) {
+  return [part](const StretchRow& row) { return row.per_year ? std::optional((*row.per_year).*part) : std::nullopt; };
+}
+
+/// Of the stretches that have a design.
+std::function<std::optional<double>(const StretchRow&)> designed(double (*value)(const StretchDesign&)) {
+  return [value](const StretchRow& row) {
+    return row.values.design && row.values.beyond ? std::optional(value(row.values)) : std::nullopt;
+  };
+}
+
+const std::vector<Column>& columns() {
+  using Design = const StretchDesign&;
+  static const std::vector<Column> all{
+      {"from_m", of_all([](Design s) { return s.stretch.from; })},
+      {"to_m", of_all([](Design s) { return s.stretch.to; })},
+      {"crossings", of_all([](Design s) { return static_cast<double>(s.crossings); }), true},
+      {"effective_crossings", of_all([](Design s) { return s.effective; })},
+      {"share", of_all([](Design s) { return s.stretch.share; })},
+      {"per_year", per_year(&Bounded::value)},
+      {"per_year_low", per_year(&Bounded::low)},
+      {"per_year_high", per_year(&Bounded::high)},
+      {"largest_energy_kj", of_all([](Design s) { return s.largest_energy * 1e-3; })},
+      {"largest_jump_height_m", of_all([](Design s) { return s.largest_height; })},
+      {"speed_percentile_ms", designed([](Design s) { return s.design->speed_percentile; })},
+      {"height_percentile_m", designed([](Design s) { return s.design->height_percentile; })},
+      {"volume_m3", designed([](Design s) { return s.block.volume; })},
+      {"sel_kj", designed([](Design s) { return s.design->sel * 1e-3; })},
+      {"mel_kj", designed([](Design s) { return s.design->mel * 1e-3; })},
+      {"h_i_m", designed([](Design s) { return s.design->height; })},
+      {"above_sel", designed([](Design s) { return s.beyond->sel; })},
+      {"above_mel", designed([](Design s) { return s.beyond->mel; })},
+      {"above_h_i", designed([](Design s) { return s.beyond->height; })}};
+  return all;
+}
+
+/// Writes the stretches as lines into a new GeoPackage.
+void write_stretches(const std::filesystem::path& file, const std::string& name, const BarrierReport& report,
+                     const Screen& line, const std::string& crs_wkt) {
+  std::vector<LayerFile::Column> fields{{"screen", OFTString}};
+  for (const Column& column : columns()) fields.push_back({column.name, column.whole ? OFTInteger64 : OFTReal});
+  const std::unique_ptr<LayerFile> layers = new_layer_file(file, {crs_wkt});
+  OGRLayer* layer = layers->add_bulk_layer(name.c_str(), wkbLineString, fields);
+  for (const StretchRow& stretch : report.stretches) {
+    const GdalMessages messages;
+    const Feature row(OGRFeature::CreateFeature(layer->GetLayerDefn()));
+    row->SetField(0, report.screen.c_str());
+    int next = 1;
+    for (const Column& column : columns()) {
+      if (const auto value = column.of(stretch)) row->SetField(next, column.whole ? *value : six_digits(*value));
+      ++next;
+    }
+    auto places = std::make_unique<OGRLineString>();
+    for (const Eigen::Vector2d& place : part_along(line, stretch.values.stretch.from, stretch.values.stretch.to))
+      places->addPoint(place.x(), place.y());
+    row->SetGeometryDirectly(places.release());
+    layers->append(layer, *row);
+  }
+  layers->set_style(name, style_of(StyledLayer::Stretches));
+  layers->finish();
+}
+
 }  // namespace
 
 std::string stretches_text(const BarrierReport& r) {
@@ -135,31 +216,28 @@ Json stretches_of(const BarrierReport& r) {
 }
 
 std::string stretches_csv(const BarrierReport& r) {
-  std::string text =
-      "screen,from_m,to_m,crossings,effective_crossings,share,per_year,per_year_low,per_year_high,largest_energy_kj,"
-      "largest_jump_height_m,speed_percentile_ms,height_percentile_m,volume_m3,sel_kj,mel_kj,h_i_m,above_sel,above_mel,"
-      "above_h_i\n";
+  std::string text = "screen";
+  for (const Column& column : columns()) text += std::string(",") + column.name;
+  text += '\n';
   for (const StretchRow& row : r.stretches) {
-    const StretchDesign& s = row.values;
-    text += csv_field(r.screen) + ',' + with_digits(s.stretch.from, 6) + ',' + with_digits(s.stretch.to, 6) + ',' +
-            std::to_string(s.crossings);
-    const auto add = [&](double value) { text += ',' + with_digits(value, 6); };
-    add(s.effective), add(s.stretch.share);
-    if (row.per_year)
-      add(row.per_year->value), add(row.per_year->low), add(row.per_year->high);
-    else
-      text += ",,,";
-    add(s.largest_energy * 1e-3), add(s.largest_height);
-    if (s.design && s.beyond)
-      for (const double value :
-           {s.design->speed_percentile, s.design->height_percentile, s.block.volume, s.design->sel * 1e-3,
-            s.design->mel * 1e-3, s.design->height, s.beyond->sel, s.beyond->mel, s.beyond->height})
-        add(value);
-    else
-      text += ",,,,,,,,,";
+    text += csv_field(r.screen);
+    for (const Column& column : columns()) {
+      text += ',';
+      if (const auto value = column.of(row))
+        text += column.whole ? std::to_string(static_cast<std::int64_t>(*value)) : with_digits(*value, 6);
+    }
     text += '\n';
   }
   return text;
+}
+
+void replace_stretches(const std::filesystem::path& file, const BarrierReport& report, const Screen& line,
+                       const std::string& crs_wkt) {
+  StagedPath staged(StagedPath::Kind::File, file, file.extension().string());
+  write_stretches(staged.hidden(), file.stem().string(), report, line, crs_wkt);
+  remove_beside(file);
+  if (const std::error_code error = staged.commit())
+    throw std::runtime_error(file.filename().string() + ": cannot be written: " + error.message());
 }
 
 std::optional<std::string> gap_note(double without_height) {

@@ -18,4 +18,9 @@ std::string stretches_text(const BarrierReport& report);
 /// The stretches as a list.
 Json stretches_of(const BarrierReport& report);
 
+/// Writes the stretches as lines with the columns of `stretches_csv` into a GeoPackage, in a layer of the name of the
+/// file, over an earlier one.
+void replace_stretches(const std::filesystem::path& file, const BarrierReport& report, const Screen& line,
+                       const std::string& crs_wkt);
+
 }  // namespace talus::io

@@ -12,6 +12,7 @@
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
+#include "talus/io/gdal/layer_name.hpp"
 #include "talus/io/results/vector_style.hpp"
 #include "talus/products/raster_table.hpp"
 #include "xml.hpp"
@@ -24,21 +25,39 @@ namespace {
 
 constexpr std::size_t kMostStyle = std::size_t{1} << 20U;  // bytes
 
+enum class Kind { Map, Layer, Table };
+
 /// A layer of the project.
 struct Shown {
   std::string id, title, source;
-  bool vector = false, checked = false;
+  Kind kind = Kind::Map;
+  bool checked = false;
+  std::string wkt{};  // of a layer in a system of its own
   XmlTree style{nullptr, CPLDestroyXMLNode};
 };
 
-/// The file that belongs to an entry of `project_layers`; its number is what follows the name.
-std::optional<std::string> number_in(const std::string& stem, const ProjectLayer& layer) {
-  const bool numbered = layer.title.find("<n>") != std::string::npos;
-  if (!numbered) return stem == layer.name ? std::optional<std::string>("") : std::nullopt;
-  if (!stem.starts_with(layer.name) || stem.size() == layer.name.size()) return std::nullopt;
-  const std::string number = stem.substr(layer.name.size());
-  const bool is_number = number.find_first_not_of("0123456789.e+-") == std::string::npos;
-  return is_number ? std::optional(number) : std::nullopt;
+Kind kind_of(const std::string& file) {
+  return file.ends_with(".tif") ? Kind::Map : file.ends_with(".csv") ? Kind::Table : Kind::Layer;
+}
+
+/// A text with what stands for "<n>" or "<id>".
+std::string filled(std::string text, const std::string& blank, const std::string& word) {
+  if (const std::size_t at = text.find(blank); !blank.empty() && at != std::string::npos)
+    text.replace(at, blank.size(), word);
+  return text;
+}
+
+/// The title of a file, if it is that of an entry of `project_layers`.
+std::optional<std::string> title_of(std::string name, const ProjectLayer& layer) {
+  if (name.ends_with(".fgb")) name = name.substr(0, name.size() - 4) + ".gpkg";
+  const std::size_t at = layer.file.find('<');
+  if (at == std::string::npos) return name == layer.file ? std::optional(layer.title) : std::nullopt;
+  const std::size_t close = layer.file.find('>') + 1, fixed = layer.file.size() - (close - at);
+  if (name.size() <= fixed || !name.starts_with(layer.file.substr(0, at)) || !name.ends_with(layer.file.substr(close)))
+    return std::nullopt;
+  const std::string blank = layer.file.substr(at, close - at), word = name.substr(at, name.size() - fixed);
+  if (blank == "<n>" && word.find_first_not_of("0123456789.e+-") != std::string::npos) return std::nullopt;
+  return filled(layer.title, blank, word);
 }
 
 /// The style that a GeoPackage holds for a layer; empty if there is none.
@@ -76,17 +95,18 @@ bool has_lines_beside_areas(const fs::path& file, const std::string& layer) {
 
 /// The id of a layer. None is the beginning of another one: QGIS 3.22 looks layers up by the beginning of their id when
 /// it takes them out of its lists, and falls over the one that stays there.
-std::string id_of(const std::string& name, bool vector) {
-  return name + (vector ? "_talus_layer" : "_talus_map");
+std::string id_of(const std::string& name, Kind kind) {
+  return name + (kind == Kind::Map ? "_talus_map" : kind == Kind::Table ? "_talus_table" : "_talus_layer");
 }
 
 /// Takes the lines out of a layer of objects of both kinds: QGIS draws one kind of geometry per layer.
 Shown lines_of(Shown& objects) {
   Shown lines;
-  lines.id = id_of("objects_lines", true);
+  lines.id = id_of("objects_lines", Kind::Layer);
   lines.title = objects.title + " (lines)";
   lines.source = objects.source + "|geometrytype=LineString";
-  lines.vector = true;
+  lines.kind = Kind::Layer;
+  lines.checked = objects.checked;
   lines.style = parsed_xml(style_of(StyledLayer::LineObjects));
   objects.source += "|geometrytype=Polygon";
   return lines;
@@ -101,6 +121,11 @@ std::string style_beside(const fs::path& layer) {
   }
 }
 
+/// Whether a result is one of `talus barrier`, whose record beside it tells it from a file of the user.
+bool is_of_design(const ProjectLayer& layer) {
+  return layer.file.starts_with("barrier_");
+}
+
 /// The layers that are there, from the top to the bottom.
 std::vector<Shown> shown_layers(const std::vector<std::string>& files, const fs::path& folder) {
   std::vector<std::string> names = files;
@@ -110,34 +135,95 @@ std::vector<Shown> shown_layers(const std::vector<std::string>& files, const fs:
   std::vector<Shown> shown;
   for (const ProjectLayer& layer : project_layers())
     for (const std::string& name : names) {
-      const fs::path file(name);
-      const bool beside = file.extension() == (layer.vector ? ".fgb" : ".tif");  // its style, not in the file
-      if (!beside && !(layer.vector && file.extension() == ".gpkg")) continue;
-      const std::string stem = file.stem().string();
-      const auto number = number_in(stem, layer);
-      if (!number) continue;
-      Shown one;
-      one.id = id_of(stem, layer.vector);
-      one.title = layer.title;
-      if (const std::size_t at = one.title.find("<n>"); at != std::string::npos) one.title.replace(at, 3, *number);
-      one.source = "./" + name + (beside ? "" : "|layername=" + stem);
-      one.vector = layer.vector;
-      one.style = parsed_xml(beside ? style_beside(folder / name) : style_in(folder / name, stem));
+      const auto title = title_of(name, layer);
+      const std::string stem = fs::path(name).stem().string();
+      if (!title || (is_of_design(layer) && std::ranges::find(names, stem + ".json") == names.end())) continue;
+      Shown one{id_of(stem, kind_of(layer.file)), *title, "./" + name, kind_of(layer.file), layer.shown};
+      if (name.ends_with(".gpkg")) {
+        one.source += "|layername=" + stem;
+        one.style = parsed_xml(style_in(folder / name, stem));
+      } else if (one.kind == Kind::Table) {
+        one.source += "|option:AUTODETECT_TYPE=YES";
+      } else {
+        one.style = parsed_xml(style_beside(folder / name));
+      }
       if (stem == "objects" && has_lines_beside_areas(folder / name, stem)) shown.push_back(lines_of(one));
       shown.push_back(std::move(one));
     }
   return shown;
 }
 
-/// What is switched on: objects and screens, the hazard class, and without one the impact probability.
-void check_layers(std::vector<Shown>& shown) {
-  const auto check = [&](const std::string& id) {
-    const auto found = std::ranges::find(shown, id, &Shown::id);
-    if (found != shown.end()) found->checked = true;
-    return found != shown.end();
-  };
-  for (const char* name : {"objects", "objects_lines", "screens"}) check(id_of(name, true));
-  if (!check(id_of("hazard_class", false))) check(id_of("impact_probability", false));
+/// Leaves one map on: the hazard class, which is the first.
+void check_one_map(std::vector<Shown>& shown) {
+  bool found = false;
+  for (Shown& one : shown) {
+    if (one.kind != Kind::Map) continue;
+    one.checked = one.checked && !found;
+    found = found || one.checked;
+  }
+}
+
+/// The kind of geometry that all features have: 0 points, 1 lines, 2 areas; -1 if there are several, or none.
+int dimension_of(OGRLayer& layer) {
+  int found = -1;
+  for (const auto& feature : layer) {
+    const OGRGeometry* geometry = feature->GetGeometryRef();
+    if (geometry == nullptr) continue;
+    if (found >= 0 && geometry->getDimension() != found) return -1;
+    found = geometry->getDimension();
+  }
+  return found;
+}
+
+/// The way from a project to a file, as a source of a layer. Without links on the way, as `project`: then it is the
+/// same from every path that leads to the project.
+std::string way_from(const fs::path& project, const fs::path& file) {
+  std::error_code none;
+  const fs::path folder = fs::weakly_canonical(file.parent_path(), none);
+  const std::string way = (folder / file.filename()).lexically_relative(project).string();
+  return way.starts_with("..") ? way : "./" + way;
+}
+
+/// The only layer of a file with geometry, or that of a name; null if there is none.
+OGRLayer* layer_in(GDALDataset& file, const std::string& name) {
+  if (!name.empty()) return file.GetLayerByName(name.c_str());
+  OGRLayer* found = nullptr;
+  for (OGRLayer* layer : file.GetLayers()) {
+    if (layer->GetGeomType() == wkbNone) continue;
+    if (found != nullptr) return nullptr;
+    found = layer;
+  }
+  return found;
+}
+
+/// An input of the run as an outline; nothing of what is no layer of a plain file with one kind of geometry.
+std::optional<Shown> outline_of(const InputFile& input, const std::string& title, const fs::path& project) {
+  const NamedLayer named = named_layer(input.path);
+  std::error_code none;
+  if (named.number >= 0 || !named.unread.empty() || !fs::is_regular_file(named.file, none)) return std::nullopt;
+  try {
+    const Dataset file = open_dataset(named.file, GDAL_OF_VECTOR);
+    OGRLayer* layer = layer_in(*file, named.layer);
+    if (layer == nullptr) return std::nullopt;
+    const int dimension = dimension_of(*layer);
+    if (dimension < 0) return std::nullopt;
+    Shown shown{id_of("run_" + input.role, Kind::Layer), title, way_from(project, named.file), Kind::Layer, true};
+    if (!named.layer.empty()) shown.source += "|layername=" + named.layer;
+    shown.wkt = wkt_of(layer->GetSpatialRef());
+    shown.style = parsed_xml(outline_style(dimension));
+    return shown;
+  } catch (const InputError&) {  // as in style_in
+    return std::nullopt;
+  }
+}
+
+/// Puts the barriers and the sources of the run above the maps.
+void add_inputs(std::vector<Shown>& shown, const ProjectGround& ground, const fs::path& project) {
+  auto place = std::ranges::find(shown, Kind::Map, &Shown::kind);
+  for (const auto& [role, title] : {std::pair{"barriers", "Barriers of the run"}, {"sources", "Sources of the run"}})
+    for (const InputFile& input : ground.inputs)
+      if (auto outline = input.role == role ? outline_of(input, title, project) : std::nullopt)
+        place = shown.insert(place, std::move(*outline)) + 1;
 }
 
 /// A layer that QGIS shades: the DEM itself, with light from the north-west and from the sides.
@@ -148,10 +234,7 @@ std::optional<Shown> hillshade_of(const fs::path& dem, const fs::path& project) 
   shown.id = "talus_hillshade";
   shown.title = "Hillshade of the DEM";
   shown.checked = true;
-  // Without links on the way, as `project`: then it is the same from every path that leads to the project.
-  const fs::path folder = fs::weakly_canonical(dem.parent_path(), none);
-  const std::string way = (folder / dem.filename()).lexically_relative(project).string();
-  shown.source = way.starts_with("..") ? way : "./" + way;
+  shown.source = way_from(project, dem);
   shown.style = parsed_xml(
       "<qgis><pipe><rasterrenderer type=\"hillshade\" band=\"1\" azimuth=\"315\" angle=\"45\" zfactor=\"1\" "
       "multidirection=\"1\" opacity=\"1\" alphaBand=\"-1\" nodataColor=\"\"/><rasterresampler maxOversampling=\"2\" "
@@ -171,12 +254,12 @@ const CPLXMLNode* style_root(const Shown& shown) {
 
 void add_map_layer(const Element& parent, const Shown& shown, const std::string& wkt) {
   const Element layer = parent.add("maplayer");
-  layer.set("type", shown.vector ? "vector" : "raster").set("autoRefreshEnabled", "0");
+  layer.set("type", shown.kind == Kind::Map ? "raster" : "vector").set("autoRefreshEnabled", "0");
   layer.add("id", shown.id);
   layer.add("datasource", shown.source);
   layer.add("layername", shown.title);
-  add_system(layer, "srs", wkt);
-  layer.add("provider", shown.vector ? "ogr" : "gdal");
+  if (shown.kind != Kind::Table) add_system(layer, "srs", shown.wkt.empty() ? wkt : shown.wkt);
+  layer.add("provider", shown.kind == Kind::Map ? "gdal" : "ogr");
   if (const CPLXMLNode* root = style_root(shown)) layer.add_children_of(*root);
 }
 
@@ -186,7 +269,7 @@ void add_tree(const Element& root, const std::vector<Shown>& shown, const std::s
   for (const Shown& one : shown) {
     const Element layer = group.add("layer-tree-layer");
     layer.set("id", one.id).set("name", one.title).set("source", one.source);
-    layer.set("providerKey", one.vector ? "ogr" : "gdal");
+    layer.set("providerKey", one.kind == Kind::Map ? "gdal" : "ogr");
     layer.set("checked", one.checked ? "Qt::Checked" : "Qt::Unchecked");
     layer.set("expanded", one.checked && one.id != "talus_hillshade" ? "1" : "0");
   }
@@ -216,11 +299,15 @@ void add_view(const Element& root, const ProjectGround& ground) {
 /// Adds the rasters of a run that have no title here: their names are their titles.
 std::vector<ProjectLayer> with_further_rasters(std::vector<ProjectLayer> layers) {
   for (const RunRaster& raster : run_rasters()) {
-    const std::string& name = raster.map.name;
-    const auto known = [&](const ProjectLayer& layer) { return !layer.vector && layer.name == name; };
-    if (std::ranges::none_of(layers, known)) layers.push_back({name, name});
+    const std::string file = raster.map.name + ".tif";
+    if (std::ranges::find(layers, file, &ProjectLayer::file) == layers.end()) layers.push_back({file, raster.map.name});
   }
   return layers;
+}
+
+fs::path dem_of(const std::vector<InputFile>& inputs) {
+  const auto dem = std::ranges::find(inputs, "dem", &InputFile::role);
+  return dem == inputs.end() ? "" : dem->path;
 }
 
 /// The ground of a finished run, from its record.
@@ -230,8 +317,8 @@ ProjectGround ground_of(const Json& run) {
   ground.geo = {grid.at("crs_wkt"), grid.at("west"), grid.at("north"), grid.at("cell_x_m"), grid.at("cell_y_m")};
   ground.columns = static_cast<int>(whole_number(grid.at("columns"), 1, 1 << 30));
   ground.rows = static_cast<int>(whole_number(grid.at("rows"), 1, 1 << 30));
-  for (const Json& input : run.at("inputs"))
-    if (input.at("role") == "dem") ground.dem = input.at("path").get<std::string>();
+  for (const Json& input : run.at("inputs")) ground.inputs.push_back({input.at("role"), input.at("path"), ""});
+  ground.dem = dem_of(ground.inputs);
   return ground;
 }
 
@@ -239,51 +326,55 @@ ProjectGround ground_of(const Json& run) {
 
 const std::vector<ProjectLayer>& project_layers() {
   static const std::vector<ProjectLayer> layers = with_further_rasters({
-      {"objects", "Objects: return period of a hit", true},
-      {"screens", "Screens: energy, P95", true},
-      {"exits", "Ends off the map: energy", true},
-      {"stops", "Stops: largest energy of the path", true},
-      {"trajectories", "Paths: largest speed", true},
-      {"hazard_class", "Hazard class"},
-      {"annual_frequency", "Blocks per year"},
-      {"return_period_", "Return period of more than <n> kJ"},
-      {"intensity_T", "Energy once in <n> years"},
-      {"hazard_curves", "Hazard curves: annual frequency"},
-      {"impact_probability", "Impact probability"},
-      {"reach_probability", "Reach probability"},
-      {"passage_density", "Passage density"},
-      {"energy", "Energy, P95"},
-      {"energy_total", "Energy with rotation, P95"},
-      {"jump_height", "Jump height, P95"},
-      {"velocity", "Speed, P95"},
-      {"energy_exceedance", "Share above the first energy threshold"},
-      {"height_exceedance", "Share above the first height threshold"},
-      {"energy_bounds", "Energy, upper bound of P95"},
-      {"jump_height_bounds", "Jump height, upper bound of P95"},
-      {"velocity_bounds", "Speed, upper bound of P95"},
-      {"passages", "Passages"},
-      {"impacts", "Impacts"},
-      {"deposits", "Deposits"},
-      {"trapped", "Trapped blocks"},
-      {"exits", "Exits"},
-      {"release", "Release cells"},
-      {"sources", "Source cells that reach the cell"},
+      {"barrier_<id>.gpkg", "Barrier at <id>: MEL by stretch", true},
+      {"barrier_<id>.csv", "Barrier at <id>: design values"},
+      {"objects.gpkg", "Objects: return period of a hit", true},
+      {"objects_sources.csv", "Objects: sources of the hits"},
+      {"objects_curves.csv", "Objects: hazard curves"},
+      {"screens.gpkg", "Screens: energy, P95", true},
+      {"screens_summary.csv", "Screens: all quantities"},
+      {"exits.gpkg", "Ends off the map: energy"},
+      {"stops.gpkg", "Stops: largest energy of the path"},
+      {"trajectories.gpkg", "Paths: largest speed"},
+      {"barriers.csv", "Barriers of the run: counts by stretch"},
+      {"hazard_class.tif", "Hazard class", true},
+      {"annual_frequency.tif", "Blocks per year"},
+      {"return_period_<n>.tif", "Return period of more than <n> kJ"},
+      {"intensity_T<n>.tif", "Energy once in <n> years"},
+      {"hazard_curves.tif", "Hazard curves: annual frequency"},
+      {"impact_probability.tif", "Impact probability", true},
+      {"reach_probability.tif", "Reach probability"},
+      {"passage_density.tif", "Passage density"},
+      {"energy.tif", "Energy, P95"},
+      {"energy_total.tif", "Energy with rotation, P95"},
+      {"jump_height.tif", "Jump height, P95"},
+      {"velocity.tif", "Speed, P95"},
+      {"energy_exceedance.tif", "Share above the first energy threshold"},
+      {"height_exceedance.tif", "Share above the first height threshold"},
+      {"energy_bounds.tif", "Energy, upper bound of P95"},
+      {"jump_height_bounds.tif", "Jump height, upper bound of P95"},
+      {"velocity_bounds.tif", "Speed, upper bound of P95"},
+      {"passages.tif", "Passages"},
+      {"impacts.tif", "Impacts"},
+      {"deposits.tif", "Deposits"},
+      {"trapped.tif", "Trapped blocks"},
+      {"exits.tif", "Exits"},
+      {"release.tif", "Release cells"},
+      {"sources.tif", "Source cells that reach the cell"},
   });
   return layers;
 }
 
 ProjectGround ground_of(const LoadedScenario& loaded) {
   const Grid& grid = loaded.scenario.surface.grid();
-  ProjectGround ground{loaded.geo, grid.columns, grid.rows, {}};
-  for (const InputFile& input : loaded.inputs)
-    if (input.role == "dem") ground.dem = input.path;
-  return ground;
+  return {loaded.geo, grid.columns, grid.rows, dem_of(loaded.inputs), loaded.inputs};
 }
 
 std::string project_of(const std::vector<std::string>& files, const fs::path& folder, const fs::path& shown_as,
                        const ProjectGround& ground) {
   std::vector<Shown> shown = shown_layers(files, folder);
-  check_layers(shown);
+  check_one_map(shown);
+  add_inputs(shown, ground, shown_as);
   if (auto hillshade = hillshade_of(ground.dem, shown_as)) shown.push_back(std::move(*hillshade));
   const std::string title = "Talus";  // without the name of the folder: the same results are the same bytes
   const QgisDocument document;
@@ -318,6 +409,7 @@ bool refresh_project(const fs::path& folder) {
   for (const char* record : {"run.json", "hazard.json"})
     for (std::string& name : files_of_record(folder / record))
       if (fs::is_regular_file(folder / name)) names.insert(std::move(name));
+  for (std::string& name : files_of_designs(folder)) names.insert(std::move(name));
   const fs::path full = full_name(folder);
   replace_text(folder / kProjectFile, project_of({names.begin(), names.end()}, folder, full, ground_of(run)));
   return true;

@@ -106,6 +106,7 @@ RunSummary read_run(const std::filesystem::path& folder) {
     run.released = json.at("released").get<double>();
     run.density = setting_of(json, "blocks.density");
     run.cell = json.at("grid").at("cell_x_m").get<double>();
+    run.crs_wkt = json.at("grid").value("crs_wkt", "");
     run.screens = recorded_screens(json);
     for (const Json& screen : json.value("screens", Json::array()))
       run.without_height.push_back(screen.value("share_without_height", 0.0));

@@ -18,12 +18,13 @@ namespace {
 constexpr std::size_t kColours = 6;
 using Colours = std::array<const char*, kColours>;
 
-// Six colours each of plasma and viridis of matplotlib (CC0) and of YlGnBu of ColorBrewer (Apache), from light to dark;
-// none is grey, as the hillshade below is. The darkest of plasma is darker here: without the red cones (protanopia) it
-// would be too near to the one before it. How far apart the colours are for the colour-blind is tested
-// (tests/io/style_test.cpp).
+// Six colours each of plasma and viridis of matplotlib (CC0) and of YlGnBu and PuBuGn of ColorBrewer (Apache); none is
+// grey, as the hillshade below is. The darkest of plasma and of PuBuGn are darker here: without the red cones
+// (protanopia) they would be too near to those before them. Return periods (PuBuGn) are drawn over the classes of
+// hazard and beside energies (plasma), and have no colour of these. How far apart the colours are for the colour-blind
+// is tested (tests/io/style_test.cpp).
 constexpr Colours kPlasma{"#f0f921", "#fca636", "#e16462", "#b12a90", "#6a00a8", "#08054f"};
-constexpr Colours kPlasmaFromDark{"#08054f", "#6a00a8", "#b12a90", "#e16462", "#fca636", "#f0f921"};
+constexpr Colours kPuBuGnFromDark{"#00231b", "#014c3b", "#017268", "#3e94c3", "#93b7d7", "#e0daec"};
 constexpr Colours kViridis{"#fde725", "#7ad151", "#22a884", "#2a788e", "#414487", "#440154"};
 constexpr Colours kYlGnBu{"#c7e9b4", "#7fcdbb", "#41b6c4", "#1d91c0", "#225ea8", "#0c2c84"};
 // The classes of the Swiss matrix: yellow and white, yellow, blue, red; further ones, should there be any, darker.
@@ -33,8 +34,8 @@ const Colours& colours(Palette palette) {
   switch (palette) {
     case Palette::Plasma:
       return kPlasma;
-    case Palette::PlasmaFromDark:
-      return kPlasmaFromDark;
+    case Palette::PuBuGnFromDark:
+      return kPuBuGnFromDark;
     case Palette::Viridis:
       return kViridis;
     case Palette::YlGnBu:

@@ -41,6 +41,10 @@ constexpr const char* kReturnPeriod =
 /// [kJ], of the largest speed of the path
 constexpr const char* kLargestEnergy = R"(0.0005 * "mass_kg" * "max_speed_ms" ^ 2)";
 
+constexpr const char* kNoDesign = "too few crossings for a design";
+
+// Lines at one place, as a road that is an object, a screen and the line of a net, are drawn above each other, the
+// upper ones thinner: all are seen.
 Look look_of(StyledLayer layer) {
   switch (layer) {
     case StyledLayer::Stops:
@@ -50,11 +54,13 @@ Look look_of(StyledLayer layer) {
     case StyledLayer::Trajectories:
       return {Symbol::Line, "\"max_speed_ms\"", legend_of("velocity"), 0.25, 0.25};
     case StyledLayer::Screens:
-      return {Symbol::Line, "\"energy_kj_p95\"", legend_of("energy"), 1.0, 1.6};
+      return {Symbol::Line, "\"energy_kj_p95\"", legend_of("energy"), 3.0, 3.0};
     case StyledLayer::AreaObjects:
       return {Symbol::Area, kReturnPeriod, legend_of("return_period_<kJ>"), 0.4, 0.4, "hit by no block"};
+    case StyledLayer::Stretches:
+      return {Symbol::Line, "coalesce(\"mel_kj\", 1e99)", legend_of("energy"), 0.8, 0.8, kNoDesign};
     case StyledLayer::LineObjects:
-      return {Symbol::Line, kReturnPeriod, legend_of("return_period_<kJ>"), 1.4, 1.4, "hit by no block"};
+      return {Symbol::Line, kReturnPeriod, legend_of("return_period_<kJ>"), 1.8, 1.8, "hit by no block"};
   }
   throw std::logic_error("a layer without a style");
 }
@@ -75,31 +81,32 @@ void add_options(const Element& layer, const std::vector<std::pair<const char*, 
 
 constexpr const char* kDark = "35,35,35,255";  // of outlines: seen on light colours and on a hillshade
 
-void add_symbol(const Element& symbols, const Look& look, std::size_t number, const std::string& rgb, double size) {
+/// @param rgb  of the inside; empty: an outline alone
+void add_symbol(const Element& symbols, Symbol shape, std::size_t number, const std::string& rgb, double size) {
   static constexpr std::array<const char*, 3> kTypes{"marker", "line", "fill"};
   static constexpr std::array<const char*, 3> kLayers{"SimpleMarker", "SimpleLine", "SimpleFill"};
-  const auto kind = static_cast<std::size_t>(look.symbol);
+  const auto kind = static_cast<std::size_t>(shape);
   const Element symbol = symbols.add("symbol");
   symbol.set("type", kTypes[kind]).set("name", std::to_string(number)).set("alpha", "1");
   symbol.set("clip_to_extent", "1").set("force_rhr", "0");
   const Element layer = symbol.add("layer");
   layer.set("class", kLayers[kind]).set("enabled", "1").set("locked", "0").set("pass", "0");
-  const std::string colour = colour_text(rgb), width = text_of(size);
-  if (look.symbol == Symbol::Line)
-    add_options(layer, {{"line_color", colour},
+  const std::string colour = rgb.empty() ? "0,0,0,0" : colour_text(rgb), width = text_of(size);
+  if (shape == Symbol::Line)
+    add_options(layer, {{"line_color", rgb.empty() ? kDark : colour},
                         {"line_width", width},
                         {"line_width_unit", "MM"},
                         {"capstyle", "round"},
                         {"joinstyle", "round"},
                         {"line_style", "solid"}});
-  else if (look.symbol == Symbol::Point)
+  else if (shape == Symbol::Point)
     add_options(layer, {{"name", "circle"},
                         {"color", colour},
                         {"size", width},
                         {"size_unit", "MM"},
                         {"outline_color", kDark},
                         {"outline_style", "solid"},
-                        {"outline_width", "0.1"},
+                        {"outline_width", rgb.empty() ? "0.4" : "0.1"},
                         {"outline_width_unit", "MM"}});
   else
     add_options(layer, {{"color", colour},
@@ -133,9 +140,21 @@ void add_renderer(const Element& root, const Look& look) {
         .set("symbol", std::to_string(i))
         .set("label", classes[i].label)
         .set("render", "true");
-    add_symbol(symbols, look, i, classes[i].colour, look.smallest + share * (look.largest - look.smallest));
+    add_symbol(symbols, look.symbol, i, classes[i].colour, look.smallest + share * (look.largest - look.smallest));
     low = high;
   }
+}
+
+/// The elements of a style around its renderer, which `add` makes.
+template <class Add>
+std::string style_with(Symbol symbol, Add add) {
+  const QgisDocument document;
+  document.root().set("styleCategories", "Symbology");
+  add(document.root());
+  document.root().add("blendMode", "0");
+  document.root().add("featureBlendMode", "0");
+  document.root().add("layerGeometryType", std::to_string(static_cast<int>(symbol)));
+  return document.text();
 }
 
 std::string style_in(const std::string& file) {
@@ -159,13 +178,16 @@ std::string joined_styles(const std::string& first, const std::string& second) {
 
 std::string style_of(StyledLayer layer) {
   const Look look = look_of(layer);
-  const QgisDocument document;
-  document.root().set("styleCategories", "Symbology");
-  add_renderer(document.root(), look);
-  document.root().add("blendMode", "0");
-  document.root().add("featureBlendMode", "0");
-  document.root().add("layerGeometryType", std::to_string(static_cast<int>(look.symbol)));
-  return document.text();
+  return style_with(look.symbol, [&look](const Element& root) { add_renderer(root, look); });
+}
+
+std::string outline_style(int dimension) {
+  const auto symbol = static_cast<Symbol>(dimension);
+  return style_with(symbol, [symbol](const Element& root) {
+    const Element renderer = root.add("renderer-v2");
+    renderer.set("type", "singleSymbol").set("symbollevels", "0").set("enableorderby", "0").set("forceraster", "0");
+    add_symbol(renderer.add("symbols"), symbol, 0, "", symbol == Symbol::Point ? 2.0 : 0.6);
+  });
 }
 
 void write_styles_beside(const std::filesystem::path& folder) {

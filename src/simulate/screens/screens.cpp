@@ -10,6 +10,22 @@ double cross_product(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
+/// The part of a line between two distances from its start [m].
+std::vector<Eigen::Vector2d> part_of(const std::vector<Eigen::Vector2d>& line, double from, double to) {
+  std::vector<Eigen::Vector2d> part;
+  double along = 0.0;
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const Eigen::Vector2d way = line[i] - line[i - 1];
+    const double length = way.norm(), first = std::max(from, along), last = std::min(to, along + length);
+    if (first < last) {
+      if (part.empty()) part.emplace_back(line[i - 1] + (first - along) / length * way);
+      part.emplace_back(line[i - 1] + (last - along) / length * way);
+    }
+    along += length;
+  }
+  return part;
+}
+
 }  // namespace
 
 double place_along(const Screen& screen, const Eigen::Vector2d& place) {
@@ -24,6 +40,22 @@ double place_along(const Screen& screen, const Eigen::Vector2d& place) {
       along += length;
     }
   return found;
+}
+
+double length_of(const std::vector<Eigen::Vector2d>& line) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < line.size(); ++i) length += (line[i] - line[i - 1]).norm();
+  return length;
+}
+
+std::vector<Eigen::Vector2d> part_along(const Screen& screen, double from, double to) {
+  double start = 0.0;
+  for (const auto& line : screen.lines) {
+    const double end = start + length_of(line);
+    if (0.5 * (from + to) < end) return part_of(line, from - start, to - start);
+    start = end;
+  }
+  return {};
 }
 
 ScreenFinder::ScreenFinder(const Surface& surface, std::span<const Screen> screens) : surface_(surface) {

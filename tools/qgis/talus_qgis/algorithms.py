@@ -1,5 +1,6 @@
 """The algorithms: one class for all commands. Their parameters are what `talus help --json` says; ALGORITHMS holds only what
 QGIS needs in addition: which inputs are layers, whose fields are picked, which files come out."""
+import glob
 import os
 import re
 import time
@@ -63,7 +64,8 @@ ALGORITHMS = [
      "rasters": ["hazard_class", "annual_frequency"], "vectors": ["objects"],
      "files": {"table": "objects.csv", "curves": "objects_curves.csv"}, "record": "hazard.json"},
     {"id": "barrier", "command": "barrier", "help": "barrier", "order": ["folder", "screen"],
-     "advanced": {"observed", "frequency", "percentile", "containment", "stretch", "unweighted"}, "phases": []},
+     "advanced": {"observed", "frequency", "percentile", "containment", "stretch", "unweighted"}, "phases": [],
+     "folder": "folder", "screen": "screen"},
     {"id": "profile", "command": "profile", "help": "profile", "phases": ["simulate", "write"],
      "labels": {"trajectories": "number-of-blocks"},
      "files": {"record": "run.json", "picture": "profile.svg"}, "folder": "out", "nothing to load": True},
@@ -219,7 +221,10 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
                                               self._preselected(p), optional)
         if kind == "file":
             return self._file(p, key, title, optional)
-        return QgsProcessingParameterString(key, title, None, False, optional)
+        text = QgsProcessingParameterString(key, title, None, False, optional)
+        if p["name"] == self.table.get("screen"):
+            text.setMetadata({"widget_wrapper": {"class": "talus_qgis.screens.ScreenChoice"}})
+        return text
 
     @staticmethod
     def _preselected(p):
@@ -280,14 +285,14 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
 
     def _declare_outputs(self):
         table = self.table
-        loads = (table.get("folder") and not table.get("nothing to load")) or table.get("geopackage") or table["id"] == "barrier"
+        loads = (table.get("folder") and not table.get("nothing to load")) or table.get("geopackage")
         if loads:
             self._add(QgsProcessingParameterBoolean("LOAD", label("load"), True), tr("Loads the results as a group of layers."),
                       False)
         for name in table.get("rasters", ()):
-            self.addOutput(QgsProcessingOutputRasterLayer(key_of(name), results.title_of(name)))
+            self.addOutput(QgsProcessingOutputRasterLayer(key_of(name), results.title_of(name + ".tif")))
         for name in table.get("vectors", ()):
-            self.addOutput(QgsProcessingOutputVectorLayer(key_of(name), results.title_of(name)))
+            self.addOutput(QgsProcessingOutputVectorLayer(key_of(name), results.title_of(name + ".gpkg")))
         for name in table.get("geopackage", (None, ()))[1]:
             self.addOutput(QgsProcessingOutputVectorLayer(key_of(name), results.title_of(name)))
         for name, file in table.get("files", {}).items():
@@ -296,6 +301,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             self.addOutput(QgsProcessingOutputFolder("RESULTS", tr("Folder of the results")))
         if table["id"] == "barrier":
             self.addOutput(QgsProcessingOutputFile("TABLE", "barrier_*.csv"))
+            self.addOutput(QgsProcessingOutputVectorLayer("LINE", tr("Line of the barrier, by stretch")))
 
     # Work
 
@@ -530,8 +536,6 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         table = self.table
         if "geopackage" in table:
             return self._geopackage_results(parameters, context)
-        if table["id"] == "barrier":
-            return self._barrier_results(parameters, context)
         for p in self.described():
             if p.get("written") and p["type"] in ("file", "folder"):
                 found[key_of(p["name"])] = self._destination(parameters, key_of(p["name"]), context)
@@ -548,6 +552,8 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             found[key_of(name)] = self._file_in(folder, file)
         if table["folder"] == "folder":
             found["RESULTS"] = folder
+        if table["id"] == "barrier":
+            found.update(self._latest_design(folder))
         if self.parameterAsBool(parameters, "LOAD", context) and not table.get("nothing to load"):
             if parameters.get("RESUME") and self.parameterAsBool(parameters, "RESUME", context):
                 begin = 0.0  # of a run that was done already, nothing is written anew
@@ -569,15 +575,11 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             results.load(os.path.dirname(path), rows, "Talus: " + os.path.basename(path), context, path)
         return found
 
-    def _barrier_results(self, parameters, context):
-        folder = self.parameterAsFile(parameters, "FOLDER", context)
-        written = [os.path.join(folder, name) for name in os.listdir(folder)
-                   if name.startswith("barrier_") and name.endswith(".csv") and not name.endswith("_stretches.csv")]
-        if not written:
+    @staticmethod
+    def _latest_design(folder):
+        """The table of the values of a barrier, and its line."""
+        lines = glob.glob(os.path.join(glob.escape(folder), "barrier_*.gpkg"))
+        if not lines:
             return {}
-        table = max(written, key=os.path.getmtime)
-        if self.parameterAsBool(parameters, "LOAD", context):
-            results.load(folder, results.tables_of_barrier(table), "Talus: " + os.path.basename(folder), context)
-        return {"TABLE": table}
-
-
+        stem = os.path.splitext(max(lines, key=os.path.getmtime))[0]
+        return {"TABLE": stem + ".csv", "LINE": f"{stem}.gpkg|layername={os.path.basename(stem)}"}

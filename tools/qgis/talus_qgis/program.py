@@ -55,8 +55,9 @@ def _ask(program):
     try:
         done = subprocess.run([program, "help", "--json"], stdin=subprocess.DEVNULL, capture_output=True, timeout=30,
                               check=False, creationflags=HIDDEN_WINDOW)
-        return json.loads(done.stdout.decode("utf-8"))
-    except (OSError, ValueError, subprocess.TimeoutExpired) as fault:
+        told = json.loads(done.stdout.decode("utf-8"))
+        return {part: told[part] for part in ("commands", "results")}
+    except (OSError, ValueError, KeyError, TypeError, subprocess.TimeoutExpired) as fault:
         raise ProgramMissing(tr("{path} does not describe itself (talus help --json): is it another program, or an older "
                                 "version? {way_out}").format(path=program, way_out=way_out())) from fault
 

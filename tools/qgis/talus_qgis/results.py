@@ -1,4 +1,5 @@
 """What a command has written, as a group of layers: titles, styles, the hazard class on top."""
+import json
 import os
 import re
 from contextlib import contextmanager
@@ -8,28 +9,15 @@ from qgis.core import (Qgis, QgsGraduatedSymbolRenderer, QgsLayerTree, QgsLayerT
                        QgsRendererRange, QgsSingleBandPseudoColorRenderer, QgsVectorLayer, QgsWkbTypes)
 from qgis.PyQt.QtCore import QCoreApplication, QThread
 
+from . import program
 from .texts import tr
-
-# From the top of the group downwards: order and titles (texts.py) are those of the project talus.qgs, which the program
-# writes into the same folder: project_layers() in src/io/results/qgis_project.cpp. A name that ends in _ or T goes on with
-# a number.
-ORDER = ["objects.gpkg", "screens.gpkg", "exits.gpkg", "stops.gpkg", "trajectories.gpkg", "hazard_class.tif",
-         "annual_frequency.tif", "return_period_.tif", "intensity_T.tif", "hazard_curves.tif", "impact_probability.tif",
-         "reach_probability.tif", "passage_density.tif", "energy.tif", "energy_total.tif", "jump_height.tif", "velocity.tif",
-         "energy_exceedance.tif", "height_exceedance.tif", "energy_bounds.tif", "jump_height_bounds.tif",
-         "velocity_bounds.tif", "passages.tif", "impacts.tif", "deposits.tif", "trapped.tif", "exits.tif", "release.tif",
-         "sources.tif"]
-
-# Shown at first, as check_layers() there does it; the others wait for a click. Where there is a hazard class, it is the one
-# raster that is shown.
-SHOWN = ("objects.gpkg", "screens.gpkg", "hazard_class.tif", "impact_probability.tif")
-HAZARD_CLASS = ORDER.index("hazard_class.tif")
 
 GROUP_MARK = "talus/folder"  # property of the group: the folder of its results
 RANK_MARK = "talus/rank"     # property of a layer: its place in the group
 TITLE_MARK = "talus/title"   # property of a layer: its title; its name may say the folder, too
 
-LINES_OF_OBJECTS = "1.4"  # mm, as in src/io/results/vector_style.cpp
+LINES_OF_OBJECTS = "1.8"  # mm, as in src/io/results/vector_style.cpp
+TYPED = "|option:AUTODETECT_TYPE=YES"  # after the path of a table: its numbers are numbers
 ONE_KIND = "|geometrytype="  # in the source of a layer: one kind of geometry of a file that holds several
 
 CLOCKS = 2.0  # s by which the clock of a disk may be behind
@@ -37,26 +25,33 @@ CLOCKS = 2.0  # s by which the clock of a disk may be behind
 _kept_alive = []  # QGIS does not hold the post-processors
 
 
-def rank_of(name):
-    """(place, whether it is shown) of a file."""
-    stem, kind = os.path.splitext(name)
-    listed = _numbered(stem)[0] + (".tif" if kind == ".tif" else ".gpkg")
-    return (ORDER.index(listed), listed in SHOWN) if listed in ORDER else (len(ORDER), False)
+def _entries():
+    """The layers of results, from the top of the group downwards, as the program tells them; none where there is none."""
+    try:
+        return program.description()["results"]
+    except program.ProgramMissing:
+        return []
 
 
-def _numbered(stem):
-    """("return_period_", "300") of `return_period_300`; the whole name and nothing of others."""
-    found = re.fullmatch(r"(return_period_|intensity_T)([0-9.e+-]+)", stem)
-    return found.groups() if found else (stem, "")
+def _entry(name):
+    """(place in the group, entry, what stands for <n> or <id>) of a file; None of one that is no result."""
+    name = re.sub(r"\.fgb$", ".gpkg", name)
+    for rank, entry in enumerate(_entries()):
+        before, blank, after = re.fullmatch(r"([^<]*)(<\w+>)?(.*)", entry["file"]).groups()
+        word = {None: "()", "<n>": "([0-9.e+-]+)", "<id>": "(.+)"}[blank]
+        found = re.fullmatch(re.escape(before) + word + re.escape(after), name)
+        if found:
+            return rank, entry, found[1]
+    return None
 
 
 def title_of(name):
-    """"Return period of more than 300 kJ" of `return_period_300`; of a file with its ending, or of a name."""
-    stem, number = _numbered(os.path.splitext(name)[0] if name.endswith((".tif", ".gpkg", ".fgb")) else name)
-    if name.endswith((".gpkg", ".fgb")) and stem == "exits":
-        return tr("title exits.gpkg")  # there is a raster of this name, too
-    title = tr("title " + stem)
-    return stem.replace("_", " ") if title.startswith("title ") else title.format(number)
+    """"Return period of more than 300 kJ" of the file `return_period_300.tif`; of another layer by its name."""
+    found = _entry(name)
+    if found is None:
+        title = tr("title " + name)
+        return name.replace("_", " ") if title.startswith("title ") else title
+    return re.sub("<n>|<id>", lambda _: found[2], tr(found[1]["title"]))
 
 
 def files_of(folder, begin):
@@ -65,27 +60,21 @@ def files_of(folder, begin):
     for name in sorted(os.listdir(folder)):
         path = os.path.join(folder, name)
         stem, kind = os.path.splitext(name)
-        if kind not in (".tif", ".gpkg", ".fgb") or not os.path.isfile(path) or os.path.getmtime(path) < begin - CLOCKS:
+        entry = _entry(name)
+        if entry is None or not os.path.isfile(path) or os.path.getmtime(path) < begin - CLOCKS:
             continue
-        rank, shown = rank_of(name)
-        if kind == ".tif":
-            found.append((path, title_of(name), name, rank, shown))
+        if name.startswith("barrier_") and not os.path.exists(os.path.join(folder, stem + ".json")):
+            continue  # no design, but its stretches, which the layer has, or a file of the user
+        rank, shown, title = entry[0], entry[1]["shown"], title_of(name)
+        if kind in (".tif", ".csv"):
+            found.append((path + (TYPED if kind == ".csv" else ""), title, name, rank, shown))
             continue
         for layer, one_kind in _layers_in(path):
-            title = title_of(name if layer in ("", stem) else layer)
             uri = path if not layer else f"{path}|layername={layer}{one_kind}"
             lines = one_kind.startswith(ONE_KIND + "LineString")  # as there: the lines lie above the areas
-            found.append((uri, tr("{title} (lines)").format(title=title) if lines else title, name,
-                          rank - 0.5 if lines else rank, shown))
+            one = tr("{title} (lines)").format(title=title) if lines else title if layer in ("", stem) else title_of(layer)
+            found.append((uri, one, name, rank - 0.5 if lines else rank, shown and layer in ("", stem)))
     return sorted(found, key=lambda row: _place(row[3], row[1]))
-
-
-def tables_of_barrier(path):
-    """The tables of a barrier's design, on top of the group: values and stretches; rows as files_of() has them."""
-    screen = os.path.basename(path)[len("barrier_"):-len(".csv")]
-    tables = [(path, "title barrier"), (path[:-len(".csv")] + "_stretches.csv", "title stretches")]
-    return [(file + "|option:AUTODETECT_TYPE=YES", tr(title).format(screen), os.path.basename(file), -2 + i, False)
-            for i, (file, title) in enumerate(tables) if os.path.exists(file)]
 
 
 def _place(rank, title):
@@ -124,6 +113,10 @@ def _in_lines(of_areas):
     return QgsGraduatedSymbolRenderer(of_areas.classAttribute(), classes)
 
 
+def _is_hazard_class(layer):
+    return os.path.basename(layer.source()) == "hazard_class.tif"
+
+
 def _rank(layer):
     return float(layer.customProperty(RANK_MARK, 0))
 
@@ -137,6 +130,15 @@ def legend_text(text):
             *limits, rest = found.groups()
             return tr(words).format(*limits, tr(rest))
     return tr(text)
+
+
+def _classes_of_user(folder):
+    """Whether the classes of hazard are those of a matrix that the user has given (`talus hazard --matrix`)."""
+    try:
+        with open(os.path.join(folder, "hazard.json"), encoding="utf-8") as file:
+            return json.load(file)["matrix_file"] != "default"
+    except (OSError, ValueError, KeyError):
+        return False
 
 
 def _translate_legend(layer):
@@ -245,7 +247,8 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
             layer.loadNamedStyle(self.style)
         layer.setCustomProperty(RANK_MARK, self.rank)
         layer.setCustomProperty(TITLE_MARK, self.name)
-        _translate_legend(layer)
+        if not _is_hazard_class(layer) or not _classes_of_user(self.folder):
+            _translate_legend(layer)
         project = layer.project() or context.project() or QgsProject.instance()
         node = project.layerTreeRoot().findLayer(layer.id())
         if node is not None:
@@ -270,9 +273,9 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
                 node.layer().project().removeMapLayer(layer.id())
                 continue
             if isinstance(layer, QgsRasterLayer) and isinstance(node.layer(), QgsRasterLayer):
-                if self.rank == HAZARD_CLASS:  # nothing shines through the hazard class, whichever of the two comes first
+                if _is_hazard_class(node.layer()):  # nothing shines through the hazard class, whichever of the two comes first
                     other.setItemVisibilityChecked(False)
-                elif _rank(layer) == HAZARD_CLASS:
+                elif _is_hazard_class(layer):
                     shown = False
         # QGIS may have put the node itself into the group, before the layer that was current
         place = next((i for i, child in enumerate(group.children()) if self._is_below(child, node)), len(group.children()))

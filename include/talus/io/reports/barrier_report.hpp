@@ -8,6 +8,7 @@
 #include "talus/products/barrier_design.hpp"
 #include "talus/products/hazard.hpp"
 #include "talus/products/weibull.hpp"
+#include "talus/simulate/scenario/scenario.hpp"
 
 namespace talus::io {
 
@@ -71,12 +72,15 @@ std::string barrier_text(const BarrierReport& report);
 std::string barrier_json(const BarrierReport& report);
 std::string barrier_csv(const BarrierReport& report);
 
-/// Writes NAME.json, NAME.csv and NAME_stretches.csv into a folder. Throws InputError, before anything is written, if a
-/// file of such a name is there that no design of Talus has left: it is someone's own.
+/// Writes NAME.json, NAME.csv, NAME_stretches.csv and NAME.gpkg, the stretches on the map, into a folder. Throws
+/// InputError, before anything is written, if a file of such a name is there that no design of Talus has left: it is
+/// someone's own.
 ///
+/// @param line     the screen, in map coordinates [m]
+/// @param crs_wkt  coordinate system of the map; empty if it has none
 /// @return a line that says which design is replaced, if it was another one
 std::optional<std::string> write_barrier(const std::filesystem::path& folder, const std::string& name,
-                                         const BarrierReport& report);
+                                         const BarrierReport& report, const Screen& line, const std::string& crs_wkt);
 
 /// The stretches as a table, one row each.
 std::string stretches_csv(const BarrierReport& report);

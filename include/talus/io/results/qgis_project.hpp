@@ -14,29 +14,32 @@ inline constexpr const char* kProjectFile = "talus.qgs";
 struct ProjectGround {
   GeoReference geo;
   int columns, rows;
-  std::filesystem::path dem;  ///< absolute; of a DEM that is no plain file, or not there, no hillshade is drawn
+  std::filesystem::path dem;        ///< absolute; of a DEM that is no plain file, or not there, no hillshade is drawn
+  std::vector<InputFile> inputs{};  ///< of the run; the sources and barriers among them are drawn, where they can be
 };
 ProjectGround ground_of(const LoadedScenario& loaded);
 
-/// A project of QGIS (3.22 and later) that opens the results of a folder as one group: with titles, in their styles,
-/// the hazard class above all other maps, over a hillshade that QGIS makes of the DEM. Paths are relative.
+/// A project of QGIS (3.22 and later) that opens the results of a folder as one group: layers with their tables, the
+/// sources and barriers of the run, maps with the hazard class on top, with titles and in their styles, over a
+/// hillshade that QGIS makes of the DEM. Paths are relative.
 ///
-/// @param files  names in the folder; maps and layers of this program are shown, in the styles beside them
+/// @param files  names in the folder; maps, layers and tables of this program are shown
 /// @param folder  where they are now
 /// @param shown_as  where the folder will be
 std::string project_of(const std::vector<std::string>& files, const std::filesystem::path& folder,
                        const std::filesystem::path& shown_as, const ProjectGround& ground);
 
-/// Writes the project of a finished run anew, with all the results that are in its folder now.
+/// Writes the project of a finished run anew, with all the results that are in its folder now, designs among them.
 /// @return false if QGIS has saved it since: then it stays as the user has left it
 bool refresh_project(const std::filesystem::path& folder);
 
-/// Order and title of a layer. A name that ends in "_" or "_T" is followed by a number, "<n>" in the title.
+/// A result in the group. "<n>" is a number and "<id>" an id, the same in both texts.
 struct ProjectLayer {
-  std::string name;   ///< "return_period_"
-  std::string title;  ///< "Return period of more than <n> kJ"
-  bool vector = false;
+  std::string file;    ///< "return_period_<n>.tif"; ".gpkg" is also ".fgb"; ".csv" is a table
+  std::string title;   ///< "Return period of more than <n> kJ"
+  bool shown = false;  ///< at first; of the maps only one: the hazard class, if there is one
 };
+/// From the top of the group downwards.
 const std::vector<ProjectLayer>& project_layers();
 
 }  // namespace talus::io

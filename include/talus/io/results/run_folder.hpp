@@ -31,6 +31,7 @@ struct RunSummary {
   double released = 0.0;                   ///< trajectories
   double density = 0.0;                    ///< of the rock [kg/m^3]
   double cell = 0.0;                       ///< side of a cell, from west to east [m]
+  std::string crs_wkt;                     ///< of the map; empty if it has none
   std::vector<Screen> screens;             ///< in map coordinates [m]
   std::vector<double> without_height;      ///< of each screen: share of its length that blocks cannot cross, from 1 %
   std::vector<std::string> size_warnings;  ///< about block sizes, and ground that was fitted to no data

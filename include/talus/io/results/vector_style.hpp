@@ -5,13 +5,17 @@
 namespace talus::io {
 
 /// The layers of results that have a style.
-enum class StyledLayer { Stops, Exits, Trajectories, Screens, AreaObjects, LineObjects };
+enum class StyledLayer { Stops, Exits, Trajectories, Screens, AreaObjects, LineObjects, Stretches };
 
 /// The look of a layer in QGIS (3.22 and later): the text that its GeoPackage holds as the default style of the layer.
 ///
 /// Features in the classes of a legend that a raster has too: `stops` and `exits` by energy, `trajectories` by speed,
-/// `screens` by the P95 of the energy, objects by return period. docs/products.md, "Styles".
+/// `screens` by the P95 of the energy, objects by return period, stretches of a barrier by MEL. docs/products.md,
+/// "Styles".
 std::string style_of(StyledLayer layer);
+
+/// The look of an input in QGIS: an outline over the results. @param dimension  0 points, 1 lines, 2 areas
+std::string outline_style(int dimension);
 
 /// Writes X.qml beside each layer X.fgb of a run, in which there is no room for a style. Where a raster has a style of
 /// this name (exits.qml), the file gets both: QGIS takes from it what fits the kind of a layer. Call it when all layers

@@ -21,6 +21,13 @@ struct Crossing {
 /// Distance from the start of a screen, along all its lines, to its point nearest to `place` [m].
 double place_along(const Screen& screen, const Eigen::Vector2d& place);
 
+/// Length of a line of a screen [m].
+double length_of(const std::vector<Eigen::Vector2d>& line);
+
+/// The part of a screen between two distances from its start, along all its lines [m], from < to: as long as both are
+/// on the same of its lines, else what is on that one on which the middle lies.
+std::vector<Eigen::Vector2d> part_along(const Screen& screen, double from, double to);
+
 /// Finds where paths cross the screens.
 class ScreenFinder {
  public:

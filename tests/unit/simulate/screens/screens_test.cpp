@@ -243,5 +243,15 @@ TEST(ScreenFinder, NeverBelowTheGround) {  // a landing that rounding puts a lit
   EXPECT_LE(crossings[0].height, 1e-3);
 }
 
+TEST(PartAlong, OfALineWithACornerAndOfTwoLines) {
+  const Screen screen{"a", {{{0, 0}, {30, 0}, {30, 40}}, {{100, 0}, {100, 10}}}};  // 70 m and 10 m long
+  EXPECT_EQ(length_of(screen.lines[0]), 70.0);
+  EXPECT_EQ(part_along(screen, 10, 50), (Line{{10, 0}, {30, 0}, {30, 20}}));
+  EXPECT_EQ(part_along(screen, 0, 70), screen.lines[0]);
+  EXPECT_EQ(part_along(screen, 70, 80), screen.lines[1]);
+  EXPECT_EQ(part_along(screen, 69.9999999, 80), screen.lines[1]) << "the edge of a stretch is rounded";
+  EXPECT_EQ(part_along(screen, 72, 75), (Line{{100, 2}, {100, 5}}));
+}
+
 }  // namespace
 }  // namespace talus
