@@ -15,8 +15,9 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from program import ROOT
+
 HERE = Path(__file__).resolve().parent
-ROOT = HERE.parents[2]
 
 
 def libraries(build):
@@ -27,7 +28,7 @@ def libraries(build):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("campaign")
     parser.add_argument("model")
     parser.add_argument("--rows", choices=("fit", "all"), default="fit")

@@ -144,7 +144,7 @@ def extras(s, shared, laws):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--shared", type=Path, default=Path("../shared"))
     parser.add_argument("-o", "--output", type=Path)
     parser.add_argument("--draws", type=int, default=60, help="of every impact, in the fit")

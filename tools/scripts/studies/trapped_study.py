@@ -10,16 +10,15 @@ Beside: in one of the eight cells around it. What lies beside both counts as bes
 import sys
 
 import numpy as np
-from osgeo import gdal, ogr
+from osgeo import gdal
 
-gdal.UseExceptions()
-ogr.UseExceptions()
+from files import features
 
 
 def cells_of(path, transform, field, value):
     """Column and row of each feature whose field has the value."""
-    file, cells = ogr.Open(path), []
-    for feature in file.GetLayer(0):
+    cells = []
+    for feature in features(path):
         if feature[field] == value:
             place = feature.GetGeometryRef()
             cells.append([(place.GetX() - transform[0]) / transform[1], (place.GetY() - transform[3]) / transform[5]])
@@ -33,7 +32,9 @@ def near(stops, cells, reach):
 
 
 def main():
-    dem, run, pits_file = sys.argv[1:4]
+    if len(sys.argv) != 4:
+        sys.exit(__doc__)
+    dem, run, pits_file = sys.argv[1:]
     transform = gdal.Open(dem).GetGeoTransform()
     stops = cells_of(run + "/stops.gpkg", transform, "end", "trapped")
     pits, dammed = (cells_of(pits_file, transform, "kind", kind) for kind in ("pit", "dammed"))
