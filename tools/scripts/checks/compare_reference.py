@@ -257,7 +257,6 @@ def parse_arguments():
     parser.add_argument("--trials-factor", type=float, default=1.0, help="times the reference's trajectories")
     parser.add_argument("--surface", default="bilinear", help="of the terrain: bilinear, as that of the reference, or creased")
     parser.add_argument("--json", type=Path, help="write the table here, too")
-    parser.add_argument("--no-run", action="store_true", help=argparse.SUPPRESS)  # compare WORK/SCENE/out as it is
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help="of " + ", ".join(SCENES) + " (default: all)")
     options = parser.parse_args()
     if not set(options.scenes) <= set(SCENES):
@@ -273,8 +272,7 @@ def main():
         for name in options.scenes or SCENES:
             scene, work = Scene(options.data, name), (options.work or Path(temporary)) / name
             try:
-                if not options.no_run:
-                    run_talus(scene, work, options)
+                run_talus(scene, work, options)
                 found = compare_scene(scene, work / "out")
             except (RuntimeError, OSError, KeyError, ValueError) as problem:
                 print(f"# {name}: {type(problem).__name__}: {problem}")

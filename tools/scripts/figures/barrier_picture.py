@@ -11,7 +11,6 @@ import argparse
 import csv
 import glob
 import json
-
 import sys
 
 import matplotlib
