@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""Compares Talus with the reference scenes of an independent, time-stepping implementation of the same model.
+"""Does Talus agree with an independent implementation of the same model, which steps in time? Compares their results.
 
-  tools/scripts/checks/compare_reference.py --talus build/release/talus --data ../shared/data [--threads 1] [--trials-factor 1] [--surface bilinear] [SCENE ...]
+  tools/scripts/checks/compare_reference.py --talus build/release/talus --data ../shared/data [--threads 1] [--trials-factor 1]
+      [--surface bilinear] [SCENE ...]
 
 Each scene's sources, ground and screens are written as a scenario, `talus run` is started, its results are compared:
 
@@ -23,6 +24,7 @@ crossings, path length, impacts per trajectory; the rasters of `plane` (its path
 Exit code 0: all passed; 1: some judged item failed (a failed run or a missing file is one); 2: usage.
 The reference has bilinear patches, so that the runs have them, too; --surface creased shows what creases change.
 With --trials-factor below 1 the shares and cells may fail by chance.
+Some minutes. Results: docs/validation.md, "An independent implementation".
 """
 import argparse
 import json

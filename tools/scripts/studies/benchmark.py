@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Measures the speed of the engine on the common test slope, next to the sketch and the floor, in one run.
+"""How fast is the engine, next to a sketch of the same loop and to the least that a trajectory can cost?
 
   tools/scripts/studies/benchmark.py [--bench build/release/tests/bench/talus-bench] [--shared ../shared] [--work DIR] [--repeats 3]
 
@@ -7,7 +7,7 @@ Makes the slope (2 000 x 2 000 cells of 2 m, 1 000 sources) with shared/bench/ma
 (an unoptimised sketch of the loop with counts and one maximum), and runs it and talus-bench in turn. Prints medians over the
 rounds; a ratio is formed within each round, and its median and range are printed. Two sketches at once show what the machine
 itself loses when two cores share caches, memory or a host. Compare the ratios of one run; the figures are those of one machine.
-Needs g++, python3-numpy, python3-gdal.
+A round takes about a minute of two cores. Results: docs/performance.md, "Speed". Needs g++, python3-numpy, python3-gdal.
 """
 import os
 import re

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How often the 95 % intervals of `talus calibrate` hold the ground that made the data.
+"""How often do the 95 % intervals of `talus calibrate` hold the ground that made the data?
 
   tools/scripts/studies/calibration_coverage_study.py [--talus build/release/talus] [--repetitions 400] [--first 0] [--jobs 2]
       [--blocks 36] [--fit theta_scale,En50] [--trials 24] [--work DIR]
@@ -8,7 +8,8 @@ Each repetition draws a ground around the start of the fit (upper-talus-3d; the 
 deviation 0.5, within 1), releases blocks down one slope and measures one trial of each: the stop, and speed and jump at two
 screens, with errors. `talus calibrate` (one start) is given these measurements alone. Printed, per parameter: how often the
 interval holds the truth, with the binomial interval of that share, and how often the parameter is identifiable. The same engine
-makes and judges the data: this measures the intervals, not the physics. Needs python3-numpy, python3-scipy, python3-gdal.
+makes and judges the data: this measures the intervals, not the physics. 400 repetitions of 24 blocks take 20 minutes of two
+cores. Results: docs/validation.md, "Intervals". Needs python3-numpy, python3-scipy, python3-gdal.
 """
 import os
 import sys

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Results against the size of the cells and the number of trajectories. docs/validation.md, "Cells and trajectories".
+"""How much do results change with the size of the cells and the number of trajectories?
 
   tools/scripts/studies/convergence_study.py [--talus build/release/talus] [--dem DEM --blocks blocks.csv] [--cells 0.5,1,2,5,10]
                                              [--trajectories 300] [--work DIR] [--threads 2]
@@ -12,6 +12,8 @@ standard error over the releases, and the P95 run-out relative to the finest cel
 
 Number: the slope at 2 m, 10 to 3000 trajectories per point, against an independent run of 10000: mean of the relative difference of
 the impact probability and of the P95 of the energy over the cells that at least 1 % of the blocks cross.
+
+A few minutes. Results: docs/validation.md, "Cells and trajectories".
 """
 import math
 import os

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Measures what the surface between cell centres does to blocks in gullies: bilinear against creased patches.
+"""Do blocks stop in gullies because of the surface between cell centres? Bilinear against creased patches.
 
-  tools/scripts/studies/gully_study.py --talus build/release/talus [--terrain ../shared/data/terrain] [TABLE ...]
+  tools/scripts/studies/gully_study.py [--talus build/release/talus] [--terrain ../shared/data/terrain] [TABLE ...]
 
 Tables (all where none is named; `terrain` needs --terrain):
   v          a V gully (floor 35 degrees, walls 45) at 0, 20 and 45 degrees to the grid, thalweg through cell centres
@@ -14,7 +14,8 @@ Tables (all where none is named; `terrain` needs --terrain):
              true pits, path lengths and run-outs; from every n-th source cell of `talus sources`
 
 A block counts as stopped unless it passes; the gully is long enough that none leaves the terrain before. Blocks of
-1 m start 1 m above the thalweg, on the default ground (upper-talus-3d, phi 30 degrees).
+1 m start 1 m above the thalweg, on the default ground (upper-talus-3d, phi 30 degrees). A minute of one core, with
+`terrain` some minutes. Results: docs/physics.md, "Creases" and "Steep gullies".
 Needs numpy and GDAL's python binding (Debian: python3-numpy python3-gdal).
 """
 import tempfile

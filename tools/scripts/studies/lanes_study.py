@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Gain of several trajectories in the lanes of one instruction, against an earlier program without them, in paired rounds.
+"""How much faster is the engine with several trajectories in the lanes of one instruction than an earlier program without?
 
   tools/scripts/studies/lanes_study.py --before OLD/talus-bench [--bench build/release/tests/bench/talus-bench] [--shared ../shared]
                                        [--work DIR] [--repeats 5]
@@ -7,7 +7,8 @@
 On the common test slope (shared/bench/make_slope.py), one thread. In each round the earlier program and this one, with every
 number of lanes that the processor has, run in turn. Prints the median and the range of the ratios of the rounds: how many times
 faster than the earlier program, by CPU time. `trace`: flight, impacts and slides alone, one block of each source. `run`: 100
-blocks of each source with every raster on. Needs python3-numpy, python3-gdal.
+blocks of each source with every raster on. A round takes a minute or two of one core. Results: docs/performance.md, "Lanes".
+Needs python3-numpy, python3-gdal.
 """
 import tempfile
 

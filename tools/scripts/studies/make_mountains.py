@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""Makes a large fractal mountain range and sources on its steep faces, to try Talus on a region.
+"""How long does Talus take for a region, and in how much memory? Makes a large fractal mountain range to try it on.
 
   tools/scripts/studies/make_mountains.py FOLDER [--side 20000] [--cell 5] [--sources 50000] [--seed 1]
 
 Writes FOLDER/dem.tif (float32, tiled, compressed; EPSG:2056, invented) strip by strip, and FOLDER/sources.csv: points in clusters of
 100 on faces steeper than 45 degrees, one source cell each. Heights are a sum of octaves of cubic splines over random lattices, ridged.
+Some minutes for 20 000 x 20 000 cells. Results: docs/performance.md, "A region"; docs/regions.md, "Memory".
 Needs numpy, scipy and GDAL's python binding.
 """
 import argparse

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Recovery of the ground from mapped deposits alone, on synthetic slopes of known ground. docs/mapped-deposits.md.
+"""Does a fit find the ground from mapped deposits alone? On synthetic slopes of known ground.
 
   tools/scripts/studies/mapped_deposits_study.py make FOLDER [--number 0] [--blocks 60]
   tools/scripts/studies/mapped_deposits_study.py cover [--repetitions 12] [--first 0] [--blocks 60] [--fit theta_scale,En50,...]
@@ -11,7 +11,8 @@
 campaign.toml. truth.json has the ground; nothing else reads it. Slopes: straight, concave, a cone; by the number modulo 3.
 
 `cover`: makes repetitions, calibrates each on its deposits alone and prints, per parameter, how often the 95 % interval holds the
-truth and how often the parameter is identifiable. --strips holds out strips 2 and 4 of five across the slope.
+truth and how often the parameter is identifiable. --strips holds out strips 2 and 4 of five across the slope. A slope takes up to
+half a minute of one core. Results: docs/mapped-deposits.md, "Results".
 """
 import json
 import os

@@ -1,7 +1,9 @@
 #!/usr/bin/python3
-"""Mean plan path of runs, and their mean speed: the mean of the cells, weighted by the passages (docs/migration.md).
+"""How far and how fast do the blocks of a run go? Mean plan path, and mean of the cells' speed, weighted by the passages.
 
   tools/scripts/studies/run_means.py OUT...
+
+Seconds. Results: docs/migration.md, "RAMMS".
 """
 import sys
 

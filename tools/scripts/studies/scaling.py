@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""Measures how the time of `talus run` grows with threads, ranks, trajectories, DEM size and cell size, and how well `talus check` foretells it.
+"""How does the time of `talus run` grow with threads, ranks, trajectories, DEM and cell size, and does `talus check` foretell it?
 
   tools/scripts/studies/scaling.py [--talus build/release/talus] [--talus-mpi build/release/talus-mpi] [--shared ../shared] [--work DIR]
                    [--repeats 3] [-o scaling.png]
 
 On the slope of shared/bench/make_slope.py (4 km x 4 km, 1 000 sources, upper-talus-3d, D = 1.2 m, 20 trajectories a source where
 nothing else is said). The cases of one table are run in turn, `--repeats` times. A figure is the median over the turns; a ratio
-is formed within each turn, then the median is taken. Cost is processor seconds of tracing and tallying per trajectory metre (3D). Needs python3-numpy,
+is formed within each turn, then the median is taken. Cost is processor seconds of tracing and tallying per trajectory metre (3D).
+About ten minutes of two cores. Results: docs/performance.md, "How it grows" and "What check foretells". Needs python3-numpy,
 python3-gdal; with -o python3-matplotlib.
 """
 import os

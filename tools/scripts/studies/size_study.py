@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Fits the exponents of block-mass to measured campaigns, with intervals. docs/effects.md, "block-mass".
+"""Which exponents of block-mass do measured campaigns ask for, and how sure are they?
 
   tools/scripts/studies/size_study.py CAMPAIGN_FOLDER... [--numbers roughness,stiffness] [--seeds 1,2,3] [--trials 32] [--starts 1]
                                       [--reference 1.2] [--grid -0.5,0,0.5,1,1.5] [--talus build/release/talus] [--work DIR] [--threads 1]
@@ -9,7 +9,8 @@ its 95 % interval and the error on the held-out rows, with the size law and with
 campaigns are joined afterwards: mean by inverse variance (sd: a quarter of 3.92 of the interval, over the seeds their mean), with
 the chi-square of their difference. With --grid the roughness exponent is held at each value, the ground is fitted anew, and the
 errors on the fitting and held-out rows are printed and summed: a profile that needs no normal distribution.
-All on bilinear patches (`--surface bilinear`), as the table of docs/effects.md. Fits that are there (in --work) are not made again.
+All on bilinear patches (`--surface bilinear`). Fits that are there (in --work) are not made again; a fit takes minutes of one core.
+Results: docs/effects.md, "block-mass".
 """
 import os
 from types import SimpleNamespace

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Far runout of the reference scene `slope` by steps of time, as the step falls, beside Talus and the reference.
+"""Are the far runouts of Talus right, or those of the reference? Those of a third program, as its step of time falls.
 
   tools/scripts/studies/stepping_study.py [--talus build/release/talus] [--data ../shared/data] [--trajectories 20000]
 
@@ -7,7 +7,7 @@ stepping_study.cc, which shares no code with Talus, computes the model of docs/p
 bilinear patches as Talus here: flights exact at the ends of the steps (`parabola`), and flights by the semi-implicit
 method of Euler (`euler`). Printed per source: the 95th percentile of the runout of stops with its standard error
 (bootstrap), impacts, seconds and metres of a trajectory, the share that reaches the lowest screen. Five minutes of one
-processor. Needs g++, numpy and GDAL's python binding.
+core. Results: docs/validation.md, "Which of the two is right". Needs g++, numpy and GDAL's python binding.
 """
 import argparse
 import math

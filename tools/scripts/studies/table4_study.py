@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Design values of the paper's Table 4 on a stand-in for its slope, for values of c from 0.1 to 1.
+"""Which c gives the design values of the paper's Table 4? On a stand-in for its slope, for values of c from 0.1 to 1.
 
   tools/scripts/studies/table4_study.py [--talus build/release/talus] [--blocks 20000] [--angle 38]
 
@@ -11,8 +11,9 @@ screens 70 m and 140 m below the release (the paper does not give their places).
 
     SEL = 1/2 V rho gVol (v95 gTr gDp)^2        h_i = h95 gTr gDp + 0.7 m
 
-with V of a block of 1.4 m, gVol = gDp = 1.02 (high confidence) and gTr = 1.02 or 1.10 (the paper leaves it open). Printed: each value
-with both gTr, and its difference from Table 4. --angle: another angle of the upper slope. Needs numpy and GDAL's python binding. Two minutes of one processor.
+with V of a block of 1.4 m, gVol = gDp = 1.02 (high confidence) and gTr = 1.02 or 1.10 (the paper leaves it open). Printed: each
+value with both gTr, and its difference from Table 4. --angle: another angle of the upper slope. Two minutes of one core. Results:
+docs/barrier.md, "Energies and jumps for c from 0.1 to 1". Needs numpy and GDAL's python binding.
 """
 import math
 import tempfile

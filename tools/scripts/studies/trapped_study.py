@@ -1,11 +1,12 @@
 #!/usr/bin/python3
-"""Where the trapped blocks of a run lie: shares in and beside the pits and dammed cells of the DEM (docs/physics.md, "End of a trajectory").
+"""Do the trapped blocks of a run lie in the pits and dammed cells of the DEM? Shares in and beside them.
 
   talus run --dem DEM --sources LAYER -o out
   talus check --dem DEM --sources LAYER --pits pits.gpkg
   tools/scripts/studies/trapped_study.py DEM out pits.gpkg
 
-Beside: in one of the eight cells around it. What lies beside both counts as beside a pit.
+Beside: in one of the eight cells around it. What lies beside both counts as beside a pit. Seconds. Results:
+docs/physics.md, "End of a trajectory".
 """
 import sys
 

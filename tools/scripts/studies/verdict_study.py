@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Whether the verdict of `talus diagnose` hangs on luck: one campaign in ten ways. docs/diagnosis-results.md.
+"""Does the verdict of `talus diagnose` hang on luck? One campaign in ten ways.
 
   tools/scripts/studies/verdict_study.py CAMPAIGN.toml [--talus build/release/talus] [--work verdicts] [-- OPTIONS of diagnose]
 
@@ -7,6 +7,7 @@ Five seeds; the rows of every table in two other orders; without half of the hel
 (copies under other names, before the rest); one thread. A diagnosis that is there already is not run again.
 Prints the verdict and figures of each, and in how many the verdict, the names and the figures are those of the first: a
 figure agrees if it lies in the first one's 95 % interval. Where the same seed and fitting rows are used, it must be equal.
+Ten times as long as one diagnosis (minutes). Results: docs/diagnosis-results.md, "Ten ways".
 """
 import csv
 import os

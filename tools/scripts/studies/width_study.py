@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Shows that the hazard of an object of some width does not depend on the cell: the valley at cells of 1, 2 and 5 m.
+"""Does the hazard of an object of some width depend on the size of the cells? The valley at cells of 1, 2 and 5 m.
 
-  tools/scripts/studies/width_study.py [--talus build/release/talus] [--work DIR] [--width 10] [--trajectories 50]
+  tools/scripts/studies/width_study.py [--talus build/release/talus] [--work DIR] [--width 10] [--trajectories 25]
                    [--points 4] [--objects 400] [--own-terrain] [-o width_study.png]
 
 The terrain is that of data/valley: its surface, bilinear between the centres of its 4 m cells, read at the centres of
@@ -19,7 +19,7 @@ further such places); the frequency of passages and of passages above 300 kJ, as
 spread of the differences in units of the standard errors (1 is noise alone). Table 2: against `--objects`, discs of that width at
 `--objects` random places: the map against all hits, and above 300 kJ against the energy where the block enters the disc and the
 largest while it touches it.
-Needs python3-numpy, python3-gdal; with -o python3-matplotlib.
+Some minutes. Results: docs/hazard.md, "Tests of the width". Needs python3-numpy, python3-gdal; with -o python3-matplotlib.
 """
 import math
 import tempfile

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""What the costliest trajectories take, over random terrains and random parameters within their bounds.
+"""How much time and memory can a trajectory take? Over random terrains and random parameters within their bounds.
 
   tools/scripts/studies/worst_trajectories.py --sets 60 --seed 12                    the limits of the model at their defaults
   tools/scripts/studies/worst_trajectories.py --sets 40 --seed 2 --highest-limits    up to their highest values
 
 Each set is a terrain of its own (plane, pit, gully, noise, flat, stairs; cells of 0.05 to 100 m) and four blocks at one place.
 Prints the five sets with the most processor time per trajectory: seconds, peak memory of the run [MB], ends, terrain. A set that
-takes more than two minutes is named. Needs talus in PATH or TALUS, numpy and GDAL. docs/physics.md, "End of a trajectory".
+takes more than two minutes is named. Some minutes. Results: docs/physics.md, "End of a trajectory". Needs numpy and GDAL.
 """
 import math
 import random
