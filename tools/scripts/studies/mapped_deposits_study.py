@@ -42,7 +42,7 @@ def heights(kind, numbers):
     else:
         z = 0.70 * np.maximum(0.0, below - 0.0009 * x**2 * np.clip((400.0 - y) / 280.0, 0.0, 1.0))
     z = z + 0.05 * np.minimum(y, 120.0) + 1.2 * np.clip(y - CLIFF[0], 0.0, CLIFF[1] - CLIFF[0])
-    return 1000.0 + z + numbers.normal(0.0, 0.15, z.shape)
+    return 1000.0 + z + numbers.normal(0.0, 0.15, (ROWS, COLUMNS))
 
 
 def write_box(path, west, south, east, north):
