@@ -1,5 +1,4 @@
 """talus profile: the 2D model, by hand, against the plane of docs/validation.md, and its files and faults."""
-import csv
 import math
 import os
 import unittest
@@ -24,9 +23,8 @@ class Profile(Case):
         return self.run_well("profile", self.path(name), "-o", self.path(out), "-q", *extra)
 
     def rows(self, file, out="out"):
-        with open(self.path(os.path.join(out, file)), encoding="utf-8") as lines:
-            return [{k: v if k in ("end", "screen") else float(v or "nan") for k, v in row.items()}
-                    for row in csv.DictReader(lines)]
+        return [{k: v if k in ("end", "screen") else float(v or "nan") for k, v in row.items()}
+                for row in self.read_table(os.path.join(out, file))]
 
     def contents(self, out):
         found = {}
