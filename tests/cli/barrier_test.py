@@ -1,5 +1,4 @@
 """Barriers: their design from the crossings of a run, and their effect on the blocks of a run."""
-import csv
 import json
 import math
 import os
@@ -45,8 +44,7 @@ class Design(Case):
 
     def design(self, *arguments):
         done = self.run_well("barrier", self.path("out"), "--screen", "road", *arguments)
-        with open(self.path("out/barrier_road.json"), encoding="utf-8") as file:
-            report = json.load(file)
+        report = self.read_json("out/barrier_road.json")
         return {row["name"]: row["value"] for row in report["design"]}, report, done.stdout
 
     def test_the_only_screen_need_not_be_named(self):
@@ -77,8 +75,7 @@ class Design(Case):
         self.assertEqual((width["by_impact_probability"]["from_m"], width["by_impact_probability"]["to_m"]), (10, 30))
         self.assertEqual([r["quantity"] for r in report["reliability"]], ["jump height", "speed", "energy"])
         self.assertIn("h_i", text)
-        with open(self.path("out/barrier_road.csv"), encoding="utf-8") as file:
-            rows = {row["name"]: row for row in csv.DictReader(file)}
+        rows = {row["name"]: row for row in self.read_table("out/barrier_road.csv")}
         self.assertAlmostEqual(float(rows["h_i"]["value"]), values["h_i"], 4)
         self.assertEqual(float(rows["h_i"]["share"]), 0.0)
 
@@ -104,8 +101,7 @@ class Design(Case):
         self.assertEqual(note.count(" on 25.0-50.0 m, which"), 2, note)  # SEL and h_i
         self.assertIn("alike: the run knows no annual frequencies", report["weighting"])
         self.assertIsNone(report["crossings_per_year"])
-        with open(self.path("out/barrier_road_stretches.csv"), encoding="utf-8") as file:
-            table = list(csv.DictReader(file))
+        table = self.read_table("out/barrier_road_stretches.csv")
         self.assertEqual([row["crossings"] for row in table], ["75", "26", "0", "0"])
         self.assertEqual(table[2]["sel_kj"], "")
         self.assertAlmostEqual(float(table[1]["h_i_m"]), rows[1]["design"]["h_i_m"], 4)
@@ -130,16 +126,14 @@ class Design(Case):
     def test_the_coefficient_is_pointed_out(self):
         """A lower c raises energies (docs/barrier.md): notes of runs above c = 0.15."""
         for c, said in ((0.5, True), (0.25, True), (0.2, True), (0.15, False), (0.125, False)):
-            with open(self.path("out/run.json"), encoding="utf-8") as file:
-                record = json.load(file) | {"deformation_coefficient": c}
+            record = self.record() | {"deformation_coefficient": c}
             self.write("out/run.json", json.dumps(record))
             notes = " ".join(self.design()[1]["notes"])
             self.assertEqual("energies and jumps may be too low (unsafe): c = " + str(c) in notes, said, notes)
             self.assertEqual("run with --deformation-coefficient 0.15 as well" in notes, said, notes)
 
     def test_sizes_of_the_run_are_said_again(self):
-        with open(self.path("out/run.json"), encoding="utf-8") as file:
-            run = json.load(file)
+        run = self.record()
         self.assertNotIn("block sizes", self.run_well("barrier", self.path("out"), "--screen", "road").stderr)
         self.write("out/run.json", json.dumps(run | {"warnings": ["another", "block sizes: diameters are 0.3 m"]}))
         done = self.run_well("barrier", self.path("out"), "--screen", "road")
@@ -148,8 +142,7 @@ class Design(Case):
 
     def test_a_line_where_blocks_do_not_get(self):
         """A part where the DEM has no height is not known to be safe."""
-        with open(self.path("out/run.json"), encoding="utf-8") as file:
-            run = json.load(file)
+        run = self.record()
         for screen in run["screens"]:
             screen["share_without_height"] = 0.53
         self.write("out/run.json", json.dumps(run))
@@ -245,8 +238,7 @@ class Design(Case):
         self.refused("none.csv", arguments=["--screen", "road", "--observed", self.path("none.csv")])
         few = self.write("few.csv", "id,screen,jump_height_m\n" + "".join(f"b{i},road,{i}\n" for i in range(10)))
         self.run_well("barrier", self.path("out"), "--screen", "road", "--observed", few)
-        with open(self.path("out/barrier_road.json"), encoding="utf-8") as file:
-            self.assertIn("9 values of the jump height above 0: too few for a Weibull fit", " ".join(json.load(file)["notes"]))
+        self.assertIn("9 values of the jump height above 0: too few for a Weibull fit", " ".join(self.read_json("out/barrier_road.json")["notes"]))
         other = self.write("other.csv", "id,screen,jump_height_m\na,S1,1\n")
         self.refused("no row of screen 'road'", arguments=["--screen", "road", "--observed", other])
 
@@ -265,8 +257,7 @@ class Design(Case):
         self.fails(2, "no run.json", arguments=["barrier", self.folder, "--screen", "road"])
         os.remove(self.path("out/screens.csv"))
         self.refused("no screens.csv")
-        with open(self.path("out/run.json"), encoding="utf-8") as file:
-            record = json.load(file)
+        record = self.record()
         record["screens"][0]["lines"] = [[[0.0, 0.0]]]
         self.write("out/run.json", json.dumps(record))
         self.refused("run.json", "cannot be understood", "has a line of less than two places")
@@ -294,13 +285,11 @@ class Weights(Case):
 
     def report(self, *arguments):
         self.run_well("barrier", self.path("out"), "--screen", "road", *arguments)
-        with open(self.path("out/barrier_road.json"), encoding="utf-8") as file:
-            return json.load(file)
+        return self.read_json("out/barrier_road.json")
 
     def crossings(self, west, east):
         """Speed and events per year of the first crossing of each block; 8 cells of the western cliff, 4 of the eastern."""
-        with open(self.path("out/screens.csv"), encoding="utf-8") as file:
-            first = {(row["source"], row["block"]): row for row in reversed(list(csv.DictReader(file)))}
+        first = {(row["source"], row["block"]): row for row in reversed(self.read_table("out/screens.csv"))}
         self.assertLess({int(source) for source, _ in first}, set(range(13)))
         rows = [(float(row["speed_ms"]), (west / 800 if float(row["mass_kg"]) < 1000 else east / 400), row)
                 for row in first.values()]
@@ -385,13 +374,11 @@ class Plane(Case):
         return self.crossings()
 
     def crossings(self):
-        with open(self.path("out/screens.csv"), encoding="utf-8") as file:
-            return list(csv.DictReader(file))
+        return self.read_table("out/screens.csv")
 
     def design(self, *arguments):
         done = self.run_well("barrier", self.path("out"), "--screen", "low", *arguments)
-        with open(self.path("out/barrier_low.json"), encoding="utf-8") as file:
-            return json.load(file), done.stdout
+        return self.read_json("out/barrier_low.json"), done.stdout
 
 
 class AllReleased(Plane):
@@ -408,8 +395,7 @@ class AllReleased(Plane):
         self.assertAlmostEqual(per_year["high"], 1.3, 9)
         self.assertAlmostEqual(per_year["low"], 1.3 + math.log(0.025) / 150, 4)
         self.run_well("hazard", self.path("out"), "--objects", self.path("lines.gpkg"))
-        with open(self.path("out/objects.csv"), encoding="utf-8") as file:
-            (hit,) = csv.DictReader(file)
+        (hit,) = self.read_table("out/objects.csv")
         for key, name in (("value", "frequency"), ("low", "frequency_lower"), ("high", "frequency_upper")):
             self.assertAlmostEqual(per_year[key] / float(hit[name]), 1.0, 4)
 
@@ -507,8 +493,7 @@ class Walk(Case):
                           + ('[barriers]\nfile = "nets.gpkg"\n' if barriers else ""))
 
     def screens(self, out):
-        with open(self.path(out + "/screens.csv"), encoding="utf-8") as file:
-            return [row["screen"] for row in csv.DictReader(file)]
+        return [row["screen"] for row in self.read_table(out + "/screens.csv")]
 
     def test_one_that_holds_all(self):
         self.nets((125.0, "wall", 100.0, math.inf))
@@ -523,8 +508,7 @@ class Walk(Case):
         caught = f"{wall['caught']:,}".replace(",", " ")
         self.assertIn(f"barrier wall: {caught} caught, 0 over it, 0 through it (it broke)", done.stdout + done.stderr)
         self.assertEqual(sum(record["ends"].values()), record["released"])
-        with open(self.path("out/barriers.csv"), encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+        rows = self.read_table("out/barriers.csv")
         self.assertEqual(len(rows), 60)
         self.assertEqual(sum(int(row["hits"]) for row in rows), wall["hits"])
         self.assertEqual((rows[-1]["barrier"], rows[-1]["from_m"], rows[-1]["to_m"]), ("wall", "295", "300"))
@@ -544,23 +528,20 @@ class Walk(Case):
         self.nets((170.0, "low", 1.0, 20.0), (125.0, "high", 2.0, 60.0), (120.0, "off", 0.0, 60.0))
         self.run_well("run", self.scenario(), "-o", self.path("out"))
         counts = {}
-        with open(self.path("out/barriers.csv"), encoding="utf-8") as file:
-            for row in csv.DictReader(file):
-                sums = counts.setdefault(row["barrier"], [0, 0, 0])
-                for i, key in enumerate(("caught", "over", "broken")):
-                    sums[i] += int(row[key])
+        for row in self.read_table("out/barriers.csv"):
+            sums = counts.setdefault(row["barrier"], [0, 0, 0])
+            for i, key in enumerate(("caught", "over", "broken")):
+                sums[i] += int(row[key])
         self.assertGreater(counts["low"][2], 0)  # it breaks
         caught = counts["low"][0] + counts["high"][0]
         note = f"2 barriers stood in the run and caught {caught} blocks"
         hazard = self.run_well("hazard", self.path("out"))
         self.assertIn(f"{note}: the figures here hold only while they stand", hazard.stderr)
-        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
-            self.assertIn(f"{note}: the figures here hold only while they stand", json.load(file)["warnings"])
+        self.assertIn(f"{note}: the figures here hold only while they stand", self.read_json("out/hazard.json")["warnings"])
         design = self.run_well("barrier", self.path("out"), "--screen", "above")
         self.assertIn(f"note: {note}: the figures here hold only while they stand", design.stdout)
         self.run_well("report", self.path("out"))
-        with open(self.path("out/report.html"), encoding="utf-8") as file:
-            page = file.read()
+        page = self.read_text("out/report.html")
         shown = {row[0]: [int("".join(cell.split())) for cell in row[3:]] for row in self.table(page, "Barriers of the run")}
         self.assertEqual(shown, {name: counts[name] for name in ("low", "high")})
         self.assertIn(f"<li>{note}; the maps hold only while they stand.</li>", page)
@@ -575,8 +556,7 @@ class Walk(Case):
         said = self.run_well("hazard", self.path("bare")).stderr
         said += self.run_well("barrier", self.path("bare"), "--screen", "above").stdout
         self.run_well("report", self.path("bare"))
-        with open(self.path("bare/report.html"), encoding="utf-8") as file:
-            said += file.read()
+        said += self.read_text("bare/report.html")
         self.assertNotIn("Barriers of the run", said)
         self.assertNotIn("stood in the run", said)
         self.assertNotIn(">barriers of the run</text>", said)
@@ -627,10 +607,8 @@ class Walk(Case):
 
     def test_summary_of_the_screens(self):
         self.run_well("run", self.scenario(False), "-o", self.path("out"))
-        with open(self.path("out/screens_summary.csv"), encoding="utf-8") as file:
-            rows = {(row["screen"], row["quantity"]): row for row in csv.DictReader(file)}
-        with open(self.path("out/screens.csv"), encoding="utf-8") as file:
-            speeds = [float(row["speed_ms"]) for row in csv.DictReader(file) if row["screen"] == "above"]
+        rows = {(row["screen"], row["quantity"]): row for row in self.read_table("out/screens_summary.csv")}
+        speeds = [float(row["speed_ms"]) for row in self.read_table("out/screens.csv") if row["screen"] == "above"]
         row = rows["above", "speed"]
         self.assertEqual(int(row["crossings"]), len(speeds))
         self.assertAlmostEqual(float(row["mean"]), sum(speeds) / len(speeds), 3)

@@ -154,8 +154,7 @@ class ChangedInputs(Case):
             self.run_well("run", self.path("s.toml"), "-q", "--part", part + "/2", "-o", self.path("far/part" + part))
         self.run_well("merge", self.path("far/merged"), self.path("far/part1"), self.path("far/part2"))
         self.run_on(out="far/plain")
-        with open(self.path("far/plain/scenario.toml"), encoding="utf-8") as file:
-            self.assertNotIn("vrt_folders", file.read())  # only where a VRT is named
+        self.assertNotIn("vrt_folders", self.read_text("far/plain/scenario.toml"))  # only where a VRT is named
 
     def test_a_folder_whose_name_is_not_utf8(self):
         """OUT/scenario.toml could not hold it: refused at the start, by a flag and in a scenario."""
@@ -174,8 +173,7 @@ class ChangedInputs(Case):
     def test_a_part_of_a_file_is_looked_up_in_the_folder_of_the_scenario(self):
         self.two_rasters()
         self.run_on("GTIFF_DIR:2:two.tif")
-        with open(self.path("out/scenario.toml"), encoding="utf-8") as file:
-            self.assertIn(f'dem = "GTIFF_DIR:2:{self.path("two.tif")}"', file.read())
+        self.assertIn(f'dem = "GTIFF_DIR:2:{self.path("two.tif")}"', self.read_text("out/scenario.toml"))
         self.run_well("check", self.path("s.toml"), cwd=self.path("out"))
         os.mkdir(self.path("other"))
         self.write("other/s.toml", SCENARIO.format(dem="GTIFF_DIR:2:two.tif").replace("sources.gpkg", "../sources.gpkg"))

@@ -1,5 +1,4 @@
 """Campaigns of blocks that were mapped where they lie: what is read and refused, and what score and calibrate make of it."""
-import csv
 import json
 import os
 import unittest
@@ -83,11 +82,10 @@ class Score(Deposits):
     def test_the_score_is_that_of_its_definition(self):
         """From the dumped stops, by the formula of docs/mapped-deposits.md."""
         result = self.score("-q", "--dump", self.path("dump"))["fit"]
-        with open(self.path("dump/stops.csv"), encoding="utf-8") as file:
-            stops = {}
-            for row in csv.DictReader(file):
-                if row["x"]:
-                    stops.setdefault(row["block"], []).append((float(row["x"]), float(row["y"])))
+        stops = {}
+        for row in self.read_table("dump/stops.csv"):
+            if row["x"]:
+                stops.setdefault(row["block"], []).append((float(row["x"]), float(row["y"])))
         mapped = {row[0]: np.array([float(row[1]), float(row[2])]) for row in self.rows}
         sizes = sorted(float(row[3]) for row in self.rows)
         limit = 0.5 * (sizes[24] + sizes[25])
@@ -108,8 +106,7 @@ class Score(Deposits):
         result = self.score("-q", "--dump", self.path("dump"))
         self.assertEqual(result["fit"]["blocks"] + result["holdout"]["blocks"], 50)
         self.assertTrue(14 <= result["holdout"]["blocks"] <= 26, result["holdout"]["blocks"])  # 20, but for blocks in cells at a limit
-        with open(self.path("dump/stops.csv"), encoding="utf-8") as file:
-            stops = [r for r in csv.DictReader(file) if r["x"]]
+        stops = [r for r in self.read_table("dump/stops.csv") if r["x"]]
         # The strip of the centre of the cell of a place, from the middle of the source (all its cells have like areas) and of the blocks.
         places = {r[0]: np.array([float(r[1]), float(r[2])]) for r in self.rows}
         down = np.mean(list(places.values()), axis=0) - [WEST + 150, NORTH - 65]
@@ -219,8 +216,7 @@ class Calibrate(Deposits):
         self.run_well("calibrate", self.path("campaign.toml"), other, "-o", self.path("both"), "--fit", "theta_scale", "--starts", "1",
                       "--trials", "20", "--parameters",
                       self.write("s.toml", '[ground.zones.default]\npreset = "forest-road-3d"\ntheta_scale = 1.0\n'), timeout=600)
-        with open(self.path("both/calibration.json"), encoding="utf-8") as file:
-            result = json.load(file)
+        result = self.read_json("both/calibration.json")
         self.assertEqual([s["name"] for s in result["sites"]], ["map", "other"])
         for site in result["sites"]:
             self.assertLess(site["error"]["fit"]["after"], site["error"]["fit"]["before"])
@@ -232,15 +228,13 @@ class Calibrate(Deposits):
                              "--trials", "20", "--parameters",
                              self.write("s.toml", '[ground.zones.default]\npreset = "forest-road-3d"\ntheta_scale = 1.0\n'), timeout=600)
         self.assertIn("energy distance of the patterns", done.stdout)
-        with open(self.path("fit/calibration.json"), encoding="utf-8") as file:
-            result = json.load(file)
+        result = self.read_json("fit/calibration.json")
         self.assertEqual([i["role"] for i in result["inputs"]], ["campaign", "dem", "deposits", "sources", "mapped"])
         low, high = result["parameters"][0]["ci95"]
         self.assertTrue(low <= 0.4 <= high, (low, high))  # of forest-road-3d
         self.assertIn("deposits", result["error"]["holdout"])
         self.assertIn("distance from the nearest source", [d["observable"] for d in result["distributions"]])
-        with open(self.path("fit/report.md"), encoding="utf-8") as file:
-            self.assertIn("come to rest where these were mapped", file.read())
+        self.assertIn("come to rest where these were mapped", self.read_text("fit/report.md"))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,5 @@
 """`talus diagnose` from a campaign to its report, on a synthetic campaign and a measured one: few trials, the whole loop.
 All campaigns with the default numbers of trials: docs/diagnosis-results.md."""
-import json
 import os
 import re
 import unittest
@@ -29,8 +28,7 @@ class Loop(Case):
         """Runs the whole loop. `untested`: effects that these data cannot test; `rounds`: the most that are asked for."""
         out = self.path("out")
         self.run_well("diagnose", campaign, "-o", out, "-q", *options, timeout=1200)
-        with open(f"{out}/diagnosis.json", encoding="utf-8") as file:
-            found = json.load(file)
+        found = self.read_json(f"{out}/diagnosis.json")
         self.assertEqual({"diagnosis.json", "report.html", "fitted.toml", "with_effect.toml"}, set(os.listdir(out)))
         self.assertIn(found["effect"], NAMES)
         self.assertEqual(NAMES - {"none", "unexplained"} - {c["effect"] for c in found["candidates"]}, untested)
@@ -50,8 +48,7 @@ class Loop(Case):
         self.assertTrue(found["rounds"][-1]["effect"] in ("none", "unexplained") or len(found["rounds"]) == rounds)
         for round in found["rounds"][1:]:  # the values of the first round are at the top
             self.assertNotIn(found["effect"], {c["effect"] for c in round["candidates"]})
-        with open(f"{out}/report.html", encoding="utf-8") as file:
-            page = file.read()
+        page = self.read_text(f"{out}/report.html")
         for when in found["coverage"].values():
             for rows in ("fit", "holdout"):
                 self.assertEqual(when[rows][0]["observable"], "runout")

@@ -1,5 +1,4 @@
 """How trajectories end: trapped between walls, out of the map; the maps, layers and warnings of it."""
-import json
 import os
 import unittest
 
@@ -64,8 +63,7 @@ class Ends(Case):
 
         done = self.run_well("hazard", self.path("out"))
         self.assertIn("0.4 of the 0.4 events per year (100 %) leave the DEM", done.stderr)
-        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
-            self.assertAlmostEqual(json.load(file)["left_per_year"], 0.4, 9)
+        self.assertAlmostEqual(self.read_json("out/hazard.json")["left_per_year"], 0.4, 9)
         hazard = gdal.Open(self.path("out/hazard_class.tif"))
         self.assertEqual(hazard.GetRasterBand(5).GetDescription(), "cut short")
         np.testing.assert_array_equal(hazard.GetRasterBand(5).ReadAsArray() == 1, exits > 0)
@@ -147,8 +145,7 @@ class Ends(Case):
         self.assertIn(place, done.stderr)
         self.assertRegex(self.run_well("check", *arguments[1:-2]).stdout, r"(?m)^warning .* stay in gullies steeper than phi")
         self.run_well("report", self.path("out"))
-        with open(self.path("out/report.html"), encoding="utf-8") as file:
-            page = file.read()
+        page = self.read_text("out/report.html")
         self.assertRegex(page, rf"act</td><td>Blocks that stay in steep gullies</td><td class='b'>{kept.sum()} of 200 blocks")
         self.assertIn(f"{worst['blocks']} of the {worst['passages']} that cross this cell", page)
 

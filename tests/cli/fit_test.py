@@ -1,5 +1,4 @@
 """`talus score` and `talus calibrate` as a user calls them; the score against an independent implementation."""
-import csv
 import importlib.util
 import json
 import math
@@ -25,11 +24,6 @@ def reference():
     return module
 
 
-def table(path):
-    with open(path, encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
 @unittest.skipUnless(reference(), "no campaigns with score.py at TALUS_DATA")
 class AgainstTheReference(Case):
     """score.py on the values that the program simulated must give the program's own scores."""
@@ -45,10 +39,10 @@ class AgainstTheReference(Case):
         mass = {b: float(row["mass_kg"]) for b, row in measured["blocks"].items()}
         stops = [dict(block=r["block"], trial=r["trial"], x=r["x"], y=r["y"], stopped=str(int(r["end"] in ("stopped", "trapped"))),
                       caught=str(int(r["end"] == "caught")), mass_stop=float(r["mass_share"]) * mass[r["block"]])
-                 for r in table(self.path(name) + "/stops.csv")]
+                 for r in self.read_table(name + "/stops.csv")]
         passages = [dict(block=r["block"], trial=r["trial"], screen=r["screen"], speed=r["speed_ms"],
                          jump=r["jump_height_m"], omega=r["angular_velocity_rads"])
-                    for r in table(self.path(name) + "/passages.csv")]
+                    for r in self.read_table(name + "/passages.csv")]
         simulated = module.simulated(measured, stops, passages, 1)
         fit = measured["fit"]
         for rows, ask in (("fit", fit), ("holdout", set(measured["blocks"]) - fit)):
@@ -99,8 +93,8 @@ class OwnCampaign(Case):
         self.write("first.toml", head + errors)
         self.run_well("score", self.path("first.toml"), "--parameters", self.path("truth.toml"), "--trials", "10",
                       "--seed", "99", "--dump", self.path("dump"))
-        stops = [r for r in table(self.path("dump/stops.csv")) if r["trial"] == "0" and r["x"]]
-        passages = [r for r in table(self.path("dump/passages.csv")) if r["trial"] == "0"]
+        stops = [r for r in self.read_table("dump/stops.csv") if r["trial"] == "0" and r["x"]]
+        passages = [r for r in self.read_table("dump/passages.csv") if r["trial"] == "0"]
         self.write("stops.csv", "id,x,y\n" + "".join(f"{r['block']},{r['x']},{r['y']}\n" for r in stops))
         self.write("passages.csv", "id,screen,speed_ms,jump_height_m\n" + "".join(
             f"{r['block']},{r['screen']},{r['speed_ms']},{r['jump_height_m']}\n" for r in passages))
@@ -110,11 +104,9 @@ class OwnCampaign(Case):
         start = self.write("start.toml", "[effects.rest-in-roughness]\nkappa = 0.5\n")
         fast = ["--starts", "1", "--trials", "20", "-q", "--parameters", start]
         self.run_well("calibrate", self.campaign, "-o", self.path("kept"), "--fit", "En50", *fast)
-        with open(self.path("kept/fitted.toml"), encoding="utf-8") as file:
-            self.assertIn("[effects.rest-in-roughness]\nkappa = 0.5\n", file.read())
+        self.assertIn("[effects.rest-in-roughness]\nkappa = 0.5\n", self.read_text("kept/fitted.toml"))
         self.run_well("calibrate", self.campaign, "-o", self.path("free"), "--fit", "effects.rest-in-roughness.kappa", *fast)
-        with open(self.path("free/calibration.json"), encoding="utf-8") as file:
-            record = json.load(file)
+        record = self.read_json("free/calibration.json")
         (kappa,) = record["parameters"]
         self.assertEqual((kappa["key"], kappa["start"]), ("effects.rest-in-roughness.kappa", 0.5))
         self.assertTrue(0 <= kappa["ci95"][0] <= kappa["ci95"][1] <= 3, kappa)
@@ -127,8 +119,7 @@ class OwnCampaign(Case):
         self.assertIn("held-out rows (15 blocks)", done.stdout)
         self.assertEqual(sorted(os.listdir(self.path("fit"))), ["calibration.json", "fitted.toml", "report.md"])
         self.assertEqual(sorted(os.listdir(self.folder)), sorted(before + ["fit"]))
-        with open(self.path("fit/calibration.json"), encoding="utf-8") as file:
-            result = json.load(file)
+        result = self.read_json("fit/calibration.json")
         error = result["error"]
         self.assertLess(error["fit"]["after"], error["fit"]["before"])
         self.assertLess(error["holdout"]["after"], error["holdout"]["before"])
@@ -140,8 +131,7 @@ class OwnCampaign(Case):
         theta = keys["ground.zones.default.theta_scale"]
         self.assertLess(abs(math.log(theta["value"] / 0.3)), 0.5)
         self.assertEqual(len(result["correlation"]), 2)
-        with open(self.path("fit/report.md"), encoding="utf-8") as file:
-            report = file.read()
+        report = self.read_text("fit/report.md")
         for word in ("95 % interval", "Held-out rows", "runout", "speed S1", "Crossed S1", "climatology", "below P95", "Run-out beyond"):
             self.assertIn(word, report)
 
@@ -161,8 +151,7 @@ class OwnCampaign(Case):
             out = self.path("t" + threads)
             self.run_well("calibrate", self.campaign, "-o", out, "--fit", "En50", "--starts", "1", "--trials", "20",
                           "--threads", threads, "-q")
-            with open(out + "/fitted.toml", encoding="utf-8") as file:
-                texts.append(file.read())
+            texts.append(self.read_text(out + "/fitted.toml"))
         self.assertEqual(texts[0], texts[1])
 
     def test_a_model_that_says_nothing_is_refused(self):
@@ -195,8 +184,7 @@ class OwnCampaign(Case):
 
     def test_too_little_that_was_measured(self):
         """No fitting block, fewer than five, and thirty without measurements: one error each, and no folder."""
-        with open(self.path("blocks.csv"), encoding="utf-8") as file:
-            head, *blocks = file.read().splitlines()
+        head, *blocks = self.read_text("blocks.csv").splitlines()
         for fitting in 0, 4:
             self.write("blocks.csv", "\n".join([head] + [b[:-1] + str(int(i >= fitting)) for i, b in enumerate(blocks)]) + "\n")
             for command in "calibrate", "diagnose":
@@ -220,8 +208,7 @@ class OwnCampaign(Case):
         self.assertRegex(done.stderr, r"warning: speed S1: \d+ of \d+ held-out rows")
 
     def test_a_place_off_the_map_would_widen_every_spread(self):
-        with open(self.path("stops.csv"), encoding="utf-8") as file:
-            head, first, *stops = file.read().splitlines()
+        head, first, *stops = self.read_text("stops.csv").splitlines()
         block, x, rest = first.split(",", 2)
         self.write("stops.csv", "\n".join([head, f"{block},{float(x) + 5e4},{rest}"] + stops) + "\n")
         self.fails(2, "stops.csv:2: x = ", "off the DEM", arguments=["score", self.campaign, "--parameters", self.path("truth.toml")])
@@ -232,8 +219,7 @@ class OwnCampaign(Case):
         self.fails(2, "nothing to score", arguments=["score", self.campaign, "--parameters", self.path("truth.toml")])
 
     def test_a_day_is_a_number_that_a_model_can_name(self):
-        with open(self.path("blocks.csv"), encoding="utf-8") as file:
-            head, *blocks = file.read().splitlines()
+        head, *blocks = self.read_text("blocks.csv").splitlines()
         self.write("blocks.csv", "\n".join([head + ",day"] + [b + ",-3" for b in blocks]) + "\n")
         self.fails(2, "blocks.csv:2: day = '-3'", "0 to 1000000", arguments=["score", self.campaign, "--parameters", self.path("truth.toml")])
 

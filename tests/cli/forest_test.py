@@ -6,7 +6,7 @@ import numpy as np
 from osgeo import gdal, ogr
 
 from results_test import digests
-from support import NORTH, WEST, Case, bands_of, box, heights, system, write_dem, write_features
+from support import NORTH, WEST, Case, bands_of, box, system, write_dem, write_features
 
 HEAD = """dem = "dem.tif"
 trajectories = 60
@@ -106,8 +106,7 @@ class Forests(Case):
         inside = slice(26, 36)
         self.assertLess(np.mean(b[inside][b[inside] > 0]), 0.8 * np.mean(a[inside][a[inside] > 0]))
         complete = self.path("trees/scenario.toml")
-        with open(complete, encoding="utf-8") as file:
-            text = file.read()
+        text = self.read_text(complete)
         self.assertIn("trees = ", text)
         self.assertNotIn("density = 0", text)
         self.assert_replays("trees")

@@ -1,5 +1,4 @@
 """talus hazard as a user calls it."""
-import csv
 import hashlib
 import json
 import os
@@ -53,8 +52,7 @@ class Hazard(Case):
         done = self.run_well("hazard", self.path("out"))
         self.assertIn("0.52 events per year", done.stderr)
         self.assertEqual(done.stderr.count("talus: warning: block sizes: "), 1)  # 0.8 m, the ground of 1 to 1.4 m
-        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
-            record = json.load(file)
+        record = self.read_json("out/hazard.json")
         for name in ("annual_frequency", "return_period_30", "return_period_300", "intensity_T30", "intensity_T100",
                      "intensity_T300", "hazard_class"):
             for end in (".tif", ".qml"):
@@ -125,13 +123,11 @@ class Hazard(Case):
             told = [self.run_well(*self.arguments(out)).stderr,
                     self.run_well("check", *self.arguments(out)[1:-2]).stdout, self.run_well("hazard", self.path(out)).stderr]
             self.assertEqual([words in text for text in told], [said] * 3, out)
-            with open(self.path(out + "/hazard.json"), encoding="utf-8") as file:
-                record = json.load(file)
+            record = self.read_json(out + "/hazard.json")
             self.assertEqual(any(words in warning for warning in record["warnings"]), said)
             self.assertAlmostEqual(record["events_per_year"], sum(values[1] for _, values in features), 9)
             self.run_well("report", self.path(out))
-            with open(self.path(out + "/report.html"), encoding="utf-8") as file:
-                point = re.search(r"<td class='k'>(.*)</td><td>Frequency</td><td class='b'>(.*?)</td>", file.read())
+            point = re.search(r"<td class='k'>(.*)</td><td>Frequency</td><td class='b'>(.*?)</td>", self.read_text(out + "/report.html"))
             self.assertEqual(point[1].split()[-1], "act" if said else "look")
             self.assertEqual("all of its events fall on the rest" in point[2], said)
 
@@ -179,8 +175,7 @@ class Hazard(Case):
         self.assertEqual(total["given"], {"frequency": {"total": 7.0}, "features": {}})
         self.assertAlmostEqual(total["events_per_year"], 7.0, 6)
         self.run_well("hazard", self.path("out"), "--overwrite", "-q")
-        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
-            self.assertNotIn("frequency", json.load(file))
+        self.assertNotIn("frequency", self.read_json("out/hazard.json"))
 
     def test_features_of_one_name_are_named_by_number(self):  # each got the value
         write_features(self.path("sources.gpkg"), "sources",
@@ -190,8 +185,7 @@ class Hazard(Case):
         self.refused("2 features are called a (numbers 1, 2), must be one: name them by number", "hazard",
                      self.path("out"), "--frequency", self.write("w.toml", "[features]\na = 1\n"))
         self.run_well("hazard", self.path("out"), "-q", "--frequency", self.write("w.toml", "[features]\n1 = 0.5\n2 = 0.3\n"))
-        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
-            self.assertAlmostEqual(json.load(file)["events_per_year"], 0.8, 9)
+        self.assertAlmostEqual(self.read_json("out/hazard.json")["events_per_year"], 0.8, 9)
 
     def test_what_is_not_its_own_stays(self):
         self.simulate()
@@ -212,8 +206,7 @@ class Hazard(Case):
         self.simulate()
         self.run_well("hazard", self.path("out"))
         ours = self.path("out/intensity_T100.tif.aux.xml")
-        with open(ours, encoding="utf-8") as file:
-            names = file.read()
+        names = self.read_text(ours)
         self.run_well("hazard", self.path("out"), "--width", "10", "--overwrite")
         self.assertFalse(os.path.exists(ours))
         for name in ("intensity_T100.tif", "return_period_30.tif"):
@@ -221,8 +214,7 @@ class Hazard(Case):
         self.write("out/hazard_class.tif.ovr", "overviews of the earlier raster")
         self.run_well("hazard", self.path("out"), "--overwrite")
         self.assertFalse(os.path.exists(self.path("out/hazard_class.tif.ovr")))
-        with open(ours, encoding="utf-8") as file:
-            self.assertEqual(file.read(), names)
+        self.assertEqual(self.read_text(ours), names)
         self.assertFalse(os.path.exists(self.path("out/return_period_30.tif.aux.xml")))  # those of the earlier map
 
     def test_the_log_of_earlier_objects_goes_with_them(self):  # the earlier objects were read, or a damaged file
@@ -245,8 +237,7 @@ class Hazard(Case):
         """What is left then (tests/io/hazard_file_test.cpp has how): a record of all files, some of them not there yet."""
         self.simulate()
         self.run_well("hazard", self.path("out"), "--width", "10")
-        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
-            names = json.load(file)["files"]
+        names = self.read_json("out/hazard.json")["files"]
         self.write("out/hazard.json", json.dumps({"program": "talus", "status": "incomplete", "files": [*names, "return_period_30.tif"]}))
         os.remove(self.path("out/hazard_class.tif"))
         self.fails(2, "the hazard maps are incomplete", "--overwrite", arguments=["report", self.path("out")])
@@ -276,10 +267,8 @@ class Hazard(Case):
         first.send_signal(signal.SIGCONT)
         self.assertEqual(first.wait(60), 0)
         self.run_well("hazard", self.path("out"), "-q", "--overwrite", "--width", "30", "--curves")
-        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
-            named = json.load(file)["files"]
-        with open(self.path("out/run.json"), encoding="utf-8") as file:
-            of_run = json.load(file)["files"]
+        named = self.read_json("out/hazard.json")["files"]
+        of_run = self.record()["files"]
         self.assertEqual(sorted(os.listdir(self.path("out"))), sorted({*named, *of_run, "hazard.json", "run.json"}))
 
     def test_what_was_killed_is_removed_by_the_next(self):
@@ -294,13 +283,11 @@ class Hazard(Case):
 
     def test_a_run_that_is_not_to_be_used_is_said(self):
         self.simulate()
-        with open(self.path("out/run.json"), encoding="utf-8") as file:
-            record = json.load(file)
+        record = self.record()
         self.write("out/run.json", json.dumps({**record, "status": "too many trajectories ended at a limit"}))
         done = self.run_well("hazard", self.path("out"))
         self.assertIn("too many trajectories ended at a limit; its result is not to be used", done.stderr)
-        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
-            self.assertTrue(any("not to be used" in warning for warning in json.load(file)["warnings"]))
+        self.assertTrue(any("not to be used" in warning for warning in self.read_json("out/hazard.json")["warnings"]))
 
     def test_contradicting_frequencies(self):
         self.write("s.toml", RUN + "[frequency]\nper_area = 0.01\n")
@@ -328,8 +315,7 @@ class Hazard(Case):
                              f"{rows[name]['frequency_upper']:.3g} per year)")
         self.assertEqual(said["C"], f"hit by no block of this run; at most {rows['C']['frequency_upper']:.3g} times per year (95 %)")
         self.assertEqual(list(said)[-1], "C")
-        with open(self.path("out/objects.csv"), encoding="utf-8", newline="") as file:
-            table = list(csv.DictReader(file))
+        table = self.read_table("out/objects.csv")
         self.assertEqual([(row["object"], row["name"], row["people"]) for row in table],
                          [("A", "A", "3"), ("B", "B", "4"), ("C", "C", "1")])
         self.assertEqual(list(table[0])[1:], list(rows["A"]))  # the columns of the layer, after object
@@ -346,12 +332,10 @@ class Hazard(Case):
         frequency = bands_of(self.path("out/annual_frequency.tif"))[0]
         self.assertGreaterEqual(rows["A"]["frequency"], frequency[29, 21] - 1e-9)
         self.assertLessEqual(rows["A"]["frequency"], 0.5 + 1e-9)
-        with open(self.path("out/objects_curves.csv"), encoding="utf-8", newline="") as file:
-            curve = [float(row["frequency"]) for row in csv.DictReader(file) if row["object"] == "A"]
+        curve = [float(row["frequency"]) for row in self.read_table("out/objects_curves.csv") if row["object"] == "A"]
         self.assertEqual(curve, sorted(curve, reverse=True))
         self.assertAlmostEqual(curve[0], rows["A"]["frequency"], 6)
-        with open(self.path("out/objects_sources.csv"), encoding="utf-8", newline="") as file:
-            shares = [float(row["share"]) for row in csv.DictReader(file) if row["object"] == "B"]
+        shares = [float(row["share"]) for row in self.read_table("out/objects_sources.csv") if row["object"] == "B"]
         self.assertAlmostEqual(sum(shares), 1.0, 4)
         self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"), "--overwrite", "-q",
                       "--threads", "1")
@@ -405,8 +389,7 @@ class Hazard(Case):
         shapes = [(box(105, 150, 10, 8), [None, "2"]), (box(205, 150, 10, 8), ["house", "1"]), (box(5, 5, 8, 8), [" ", None])]
         write_features(self.path("o.gpkg"), "o", shapes, [("name", ogr.OFTString), ("id", ogr.OFTString)])
         done = self.run_well("hazard", self.path("out"), "--objects", self.path("o.gpkg"))
-        with open(self.path("out/objects.csv"), encoding="utf-8", newline="") as file:
-            self.assertEqual([row["object"] for row in csv.DictReader(file)], ["2", "house", "3"])
+        self.assertEqual([row["object"] for row in self.read_table("out/objects.csv")], ["2", "house", "3"])
         self.assertNotIn("the same name", done.stderr)
         shapes[2][1][:] = ["2", None]
         write_features(self.path("p.gpkg"), "o", shapes, [("name", ogr.OFTString), ("id", ogr.OFTString)])
@@ -422,8 +405,7 @@ class Hazard(Case):
         done = self.run_well("hazard", self.path("out"), "--objects", self.path("o.csv"))
         self.assertNotIn("the field width of", done.stderr)  # it is empty
         names = ["0123", "12345678901234567891", "7"]
-        with open(self.path("out/objects.csv"), encoding="utf-8", newline="") as file:
-            table = list(csv.DictReader(file))
+        table = self.read_table("out/objects.csv")
         self.assertEqual([row["object"] for row in table], names)
         self.assertEqual([row["name"] for row in table], names)
         self.assertEqual([row["people"] for row in table], ["5", "", "-3"])
@@ -453,8 +435,7 @@ class Hazard(Case):
             value, lower, upper = bands_of(self.path("out/annual_frequency.tif"))
             self.assertTrue(((lower <= value) & (value <= upper)).all())
             sums[width] = value.sum()
-            with open(self.path("out/hazard.json"), encoding="utf-8") as file:
-                self.assertEqual(json.load(file)["object"], {"width_m": width, "passages_below_m": 0})
+            self.assertEqual(self.read_json("out/hazard.json")["object"], {"width_m": width, "passages_below_m": 0})
         # Over all places an object of W is hit (W + D) times the length of all paths: D is 0.8 m. Rows at the edge lose a little.
         self.assertAlmostEqual(sums[20] / sums[4], 20.8 / 4.8, delta=0.05)
         self.run_well("hazard", self.path("out"), "--overwrite", "--width", "20", "-q", "--threads", "1")
@@ -490,8 +471,7 @@ class Hazard(Case):
         self.simulate()
         for width in ([], ["--width", "10"]):
             self.run_well("hazard", self.path("out"), "--curves", "--overwrite", "-q", *width)
-            with open(self.path("out/hazard.json"), encoding="utf-8") as file:
-                energies = json.load(file)["curve_energies_kj"]
+            energies = self.read_json("out/hazard.json")["curve_energies_kj"]
             curves = bands_of(self.path("out/hazard_curves.tif"))
             self.assertEqual(len(energies), curves.shape[0])
             terrain = curves[0] != -9999

@@ -86,8 +86,7 @@ class Help(Case):
     def test_defaults_are_those_that_a_run_uses(self):
         self.run_well("run", "--dem", self.path("dem.tif"), "--sources", self.path("sources.gpkg"), "--diameter", "0.8",
                       "--trajectories", "3", "-o", self.path("out"))
-        with open(self.path("out/scenario.toml"), encoding="utf-8") as file:
-            text = file.read()
+        text = self.read_text("out/scenario.toml")
         self.assertIn(f"seed = {self.of('run', 'seed')['default']}", text)
         self.assertIn(self.of("run", "preset")["default"], self.of("run", "preset")["choices"])
         thresholds = [float(word) for word in self.of("run", "thresholds")["default"].split(",")]

@@ -19,7 +19,7 @@ import zipfile
 
 from osgeo import gdal, ogr
 
-from support import NORTH, TALUS, WEST, Case, box, heights, rows_of, system, write_dem, write_features
+from support import NORTH, TALUS, WEST, Case, box, write_features
 
 SOUTH = NORTH - 300.0
 ELM = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../data/elm")
@@ -261,8 +261,7 @@ class Network(Scenario):
         self.silent("--allow-network", arguments=["sources", "--dem", name, "-o", self.path("cliffs.gpkg")])
         self.write("p.toml", f'dem = "{name}"\nline = "{name}"\n[sources]\nx = 1\n[blocks]\ndiameter = 1\n')
         self.silent("--allow-network", arguments=["profile", self.path("p.toml"), "-o", self.path("out")])
-        with open(os.path.join(ELM, "campaign.toml"), encoding="utf-8") as file:
-            campaign = file.read().replace('dem = "dem.tif"', f'dem = "{name}"')
+        campaign = self.read_text(os.path.join(ELM, "campaign.toml")).replace('dem = "dem.tif"', f'dem = "{name}"')
         self.write("campaign.toml", re.sub(r'"(\w+\.(csv|tif))"', rf'"{ELM}/\1"', campaign))
         self.silent("--allow-network", arguments=["diagnose", self.path("campaign.toml"), "-o", self.path("out")])
 
@@ -573,8 +572,7 @@ class Names(Scenario):
                           "[measurement_error]\nposition_m = 0.3\nspeed_fraction = 0.03\njump_height_m = 0.1\n")
 
     def assert_page(self, path, whole=True):
-        with open(path, encoding="utf-8") as file:
-            page = file.read()
+        page = self.read_text(path)
         tags = Tags(page)
         self.assertNotIn("script", tags.elements)
         self.assertLessEqual(tags.elements, {"html", "head", "meta", "title", "style", "body", "h1", "h2", "h3", "p", "b", "br",
@@ -595,21 +593,18 @@ class Names(Scenario):
         text = self.assert_page(self.path("d/report.html"))
         for word in ("slope<script>", "S1<script>"):
             self.assertIn(word, text)
-        with open(self.path("d/diagnosis.json"), encoding="utf-8") as file:
-            json.load(file)
+        self.read_json("d/diagnosis.json")
         other = self.campaign("other")
         done = self.run_well("diagnose", campaign, other, "-o", self.path("dd"), *common, timeout=600)
         self.assert_tame(done.stdout + done.stderr)
         self.assert_page(self.path("dd/report.html"), whole=False)  # sites are called by names of folders
         done = self.run_well("calibrate", campaign, "-o", self.path("c"), "--trials", "20", "--fit", "En50", "--starts", "1")
         self.assert_tame(done.stdout + done.stderr)
-        with open(self.path("c/report.md"), encoding="utf-8") as file:
-            report = file.read()
+        report = self.read_text("c/report.md")
         self.assertIn("# Calibration on slope&lt;script>", report)
         self.assertNotRegex(report, "<[a-z/!?]")
         self.assert_tame(report)
-        with open(self.path("d/fitted.toml"), encoding="utf-8") as file:
-            self.assertIn("talus<script>", file.read())
+        self.assertIn("talus<script>", self.read_text("d/fitted.toml"))
         done = self.run_well("score", campaign, "--parameters", self.path("d/fitted.toml"))
         self.assert_tame(done.stdout + done.stderr)
 

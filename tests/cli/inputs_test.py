@@ -81,8 +81,7 @@ class Fields(InputCase):
 
     def test_the_scenario_of_a_run_keeps_the_names(self):
         self.run_flags("--field", "release_height=HEIGHT", "--field", "diameter=Durchmesser")
-        with open(self.path("out/scenario.toml"), encoding="utf-8") as file:
-            self.assertIn('[sources.fields]\ndiameter = "Durchmesser"\nrelease_height = "HEIGHT"\n', file.read())
+        self.assertIn('[sources.fields]\ndiameter = "Durchmesser"\nrelease_height = "HEIGHT"\n', self.read_text("out/scenario.toml"))
         self.run_well("run", self.path("out/scenario.toml"), "-o", self.path("again"), "-q")
         stops = [sorted((f["source"], f["block"], f["z"], p.GetX(), p.GetY()) for f, p in rows_of(self.path(out + "/stops.gpkg"), "stops"))
                  for out in ("out", "again")]

@@ -12,8 +12,7 @@ class Lanes(Case):
         self.most = self.lanes_of_machine()
 
     def lanes_of_machine(self):
-        with open("/proc/cpuinfo", encoding="utf-8") as file:
-            found = re.search(r"^flags\s*:(.*)$", file.read(), re.M)
+        found = re.search(r"^flags\s*:(.*)$", self.read_text("/proc/cpuinfo"), re.M)
         flags = set(found.group(1).split()) if found else set()
         if {"avx512f", "avx512dq", "avx512vl"} <= flags:
             return 8

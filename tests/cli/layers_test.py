@@ -67,14 +67,12 @@ class Layers(Case):
         self.run_well("run", *self.flags, "--sources", self.path("site.gpkg|layername=cliffs"), "--frequency", "1", "-o", self.path("out"))
         self.run_well("hazard", self.path("out"), "--objects", self.path("site.gpkg|layername=houses"))
         project = self.path("out/talus.qgs")
-        with open(project, encoding="utf-8") as file:
-            text = file.read()
+        text = self.read_text(project)
         with open(project, "w", encoding="utf-8") as file:
             file.write(text.replace("<qgis ", '<qgis saveDateTime="2026-11-23T10:00:00" ', 1))
         done = self.run_well("hazard", self.path("out"), "--overwrite")
         self.assertIn("talus.qgs was saved in QGIS and stays as it is", done.stderr)
-        with open(project, encoding="utf-8") as file:
-            self.assertIn("saveDateTime", file.read())
+        self.assertIn("saveDateTime", self.read_text(project))
 
     def test_the_job_without_toml(self):
         zones = ogr.GetDriverByName("GPKG").CreateDataSource(self.path("zones.gpkg"))
@@ -93,8 +91,7 @@ class Layers(Case):
         self.assertIn("zone forest-road-3d is the preset of this name", done.stderr)
         self.run_well("hazard", self.path("out"))
         self.assertTrue(gdal.Open(self.path("out/return_period_100.tif")))
-        with open(self.path("out/scenario.toml"), encoding="utf-8") as file:
-            complete = file.read()
+        complete = self.read_text("out/scenario.toml")
         for words in ("total = 0.5", "energy_thresholds = [10, 100]", "[ground.zones.forest-road-3d]", 'field = "ground"'):
             self.assertIn(words, complete)
         self.run_well("run", self.path("out/scenario.toml"), "-o", self.path("again"))
@@ -121,8 +118,7 @@ class Layers(Case):
         self.fails(2, "has no height", arguments=["run", *flags[:-1], self.barrier_without("height"), "-o", self.path("no")])
 
     def barrier_without(self, field):
-        with open(self.path("wall.csv"), encoding="utf-8") as file:
-            text = file.read().replace(field, "other")
+        text = self.read_text("wall.csv").replace(field, "other")
         return self.write("bad.csv", text)
 
     def write_sources(self, name, kind, values, field="diameter"):

@@ -1,5 +1,4 @@
 """Random numbers go by the ids of the blocks: the order of rows, held-out rows and threads change no figure of a fit."""
-import csv
 import json
 import os
 import random
@@ -23,25 +22,20 @@ class Luck(Case):
         self.write("truth.toml", "[ground.zones.default]\ntheta_scale = 0.3\nEn50 = 4\n")
         self.run_well("score", self.path("campaign.toml"), "--parameters", self.path("truth.toml"), "--trials", "10",
                       "--seed", "99", "--dump", self.path("dump"))
-        first = [r for r in self.rows("dump/stops.csv") if r["trial"] == "0" and r["x"]]
+        first = [r for r in self.read_table("dump/stops.csv") if r["trial"] == "0" and r["x"]]
         self.stops = [[r["block"], r["x"], r["y"]] for r in first]
-        self.passages = [[r["block"], r["screen"], r["speed_ms"], r["jump_height_m"]] for r in self.rows("dump/passages.csv")
+        self.passages = [[r["block"], r["screen"], r["speed_ms"], r["jump_height_m"]] for r in self.read_table("dump/passages.csv")
                          if r["trial"] == "0"]
         place = {b[0]: (float(b[1]), float(b[2])) for b in self.blocks}
         self.samples = [[b, repr(place[b][0]), repr(place[b][1] - r), repr(0.2 * r + int(b[1:]) % 5)] for b in place for r in (20, 40)]
         self.tables(self.path("."), *self.own())
-
-    def rows(self, name):
-        with open(self.path(name), encoding="utf-8") as file:
-            return list(csv.DictReader(file))
 
     def tables(self, folder, blocks, stops, passages, samples):
         os.makedirs(folder, exist_ok=True)
         for name, head, table in (("blocks", "id,x,y,release_height_m,mass_kg,day,holdout", blocks), ("stops", "id,x,y", stops),
                                   ("passages", "id,screen,speed_ms,jump_height_m", passages), ("samples", "id,x,y,speed_ms", samples),
                                   ("screens", "id,wkt", self.screens)):
-            with open(f"{folder}/{name}.csv", "w", encoding="utf-8", newline="") as file:
-                csv.writer(file).writerows([head.split(","), *table])
+            self.write_table(f"{folder}/{name}.csv", head, table)
         names = "".join(f'{name} = "{name}.csv"\n' for name in ("blocks", "stops", "passages", "samples", "screens"))
         with open(f"{folder}/campaign.toml", "w", encoding="utf-8") as file:
             file.write(f'name = "own"\ndem = "{self.path("dem.tif")}"\n{names}[measurement_error]\nposition_m = 0.3\n'
@@ -88,8 +82,7 @@ class Luck(Case):
     def record(self, command, campaign, name, *options):
         out = self.path(name)
         self.run_well(command, campaign, "-o", out, *FAST, *options, timeout=1200)
-        with open(f"{out}/{'calibration' if command == 'calibrate' else 'diagnosis'}.json", encoding="utf-8") as file:
-            record = json.load(file)
+        record = self.read_json(f"{out}/{'calibration' if command == 'calibrate' else 'diagnosis'}.json")
         for key in ("command", "inputs", "seconds", "times"):  # paths and time
             record.pop(key, None)
         return record

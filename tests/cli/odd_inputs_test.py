@@ -43,8 +43,7 @@ class NamesOfFiles(Case):
         digits = hashlib.sha256(b"a/b").hexdigest()[:8]
         self.assertIn(f"barrier_a_b-{digits}.json", files["a/b"])
         for name, found in files.items():
-            with open(self.path("out/" + next(f for f in found if f.endswith(".json"))), encoding="utf-8") as file:
-                self.assertEqual(json.load(file)["screen"], name)
+            self.assertEqual(self.read_json("out/" + next(f for f in found if f.endswith(".json")))["screen"], name)
 
     def test_long_ids(self):
         ids = ["x" * 300 + "1", "x" * 300 + "2", "ü" * 100]
@@ -321,8 +320,7 @@ class Forged(RunCase):
 
     def manifest(self, change):
         """Rewrites part1/part.json, with the checksum that it must have."""
-        with open(self.path("part1/part.json"), encoding="utf-8") as file:
-            manifest = json.load(file)
+        manifest = self.read_json("part1/part.json")
         change(manifest)
         manifest.pop("sha256", None)
         text = json.dumps(manifest, indent=2, ensure_ascii=False) + "\n"

@@ -1,6 +1,5 @@
 """Parts and merge, rounds, interruption and resume: however the work is divided, the bits are those of one run."""
 import contextlib
-import csv
 import hashlib
 import json
 import os
@@ -28,8 +27,7 @@ class Parts(RunCase):
         self.assertEqual(self.record("merged")["parts"], 3)
         self.assertEqual(self.record("merged")["rounds"], self.record("whole")["rounds"])
         self.assertEqual(self.record("whole")["rounds"]["done"], 3)
-        with open(self.path("whole/scenario.toml"), encoding="utf-8") as file:
-            self.assertIn("trajectories = 120\n", file.read())
+        self.assertIn("trajectories = 120\n", self.read_text("whole/scenario.toml"))
         # The same blocks in one round: the same counts, a source cell counted once, in another order of the rows.
         self.run_scenario("one", "--trajectories", "120")
         for name in ("impact_probability", "reach_probability", "energy", "jump_height", "sources", "deposits"):
@@ -120,15 +118,13 @@ class Parts(RunCase):
             self.run_scenario(f"part{i}", "--rounds", "2", "--part", f"{i}/2")
         self.run_well("merge", self.path("merged"), self.path("part2"), self.path("part1"), "-q")
         self.assert_same("whole", "merged")
-        with open(self.path("merged/screens.csv"), encoding="utf-8") as file:
-            pieces = {int(row["piece"]) for row in csv.DictReader(file)}
+        pieces = {int(row["piece"]) for row in self.read_table("merged/screens.csv")}
         self.assertLess({0, 1, 2}, pieces)
         self.assertLessEqual(pieces, set(range(17)))  # a block gives 16 at most
 
     def test_rows_of_an_earlier_format_are_not_read(self):
         self.run_scenario("part1", "--part", "1/1")
-        with open(self.path("part1/part.json"), encoding="utf-8") as file:
-            manifest = file.read()
+        manifest = self.read_text("part1/part.json")
         number = int(re.search(r'"format": (\d+)', manifest)[1])
         earlier = re.sub(r',\n  "sha256": "[0-9a-f]{64}"\n}\n$', "\n}\n", manifest.replace(f'"format": {number}', f'"format": {number - 1}'))
         checksum = hashlib.sha256(earlier.encode()).hexdigest()  # of the text without its line

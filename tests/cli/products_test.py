@@ -1,5 +1,4 @@
 """Rasters of a run beside its probabilities: where blocks start, the energy with rotation, bounds; the energy line of stops."""
-import csv
 import math
 import os
 import unittest
@@ -106,16 +105,15 @@ class EnergyTotal(Case):
         self.run_well("run", self.path("s.toml"), "-o", self.path("out"))
         total, energy = (bands_of(self.path(f"out/{name}.tif"))[4] for name in ("energy_total", "energy"))
         passages, compared, spinning = bands_of(self.path("out/passages.tif")), 0, 0
-        with open(self.path("out/screens.csv"), newline="", encoding="utf-8") as file:
-            for row in csv.DictReader(file):
-                column = int((float(row["x"]) - WEST) // 5)
-                if passages[25, column] != 1 or float(row["jump_height_m"]) < 50.0:  # others have met the floor before
-                    continue
-                self.assertAlmostEqual(total[25, column] / float(row["total_energy_kj"]), 1.0, delta=1e-5)
-                self.assertAlmostEqual(energy[25, column] / float(row["energy_kj"]), 1.0, delta=1e-5)
-                self.assertGreater(total[26, column], float(row["total_energy_kj"]))
-                compared += 1
-                spinning += float(row["total_energy_kj"]) > float(row["energy_kj"]) + 1.0
+        for row in self.read_table("out/screens.csv"):
+            column = int((float(row["x"]) - WEST) // 5)
+            if passages[25, column] != 1 or float(row["jump_height_m"]) < 50.0:  # others have met the floor before
+                continue
+            self.assertAlmostEqual(total[25, column] / float(row["total_energy_kj"]), 1.0, delta=1e-5)
+            self.assertAlmostEqual(energy[25, column] / float(row["energy_kj"]), 1.0, delta=1e-5)
+            self.assertGreater(total[26, column], float(row["total_energy_kj"]))
+            compared += 1
+            spinning += float(row["total_energy_kj"]) > float(row["energy_kj"]) + 1.0
         self.assertGreater(compared, 15)
         self.assertGreater(spinning, compared / 2)  # otherwise this says nothing of the rotation
 

@@ -1,5 +1,4 @@
 """talus profile: the 2D model, by hand, against the plane of docs/validation.md, and its files and faults."""
-import csv
 import json
 import math
 import os
@@ -26,9 +25,8 @@ class Profile(Case):
         return self.run_well("profile", self.path(name), "-o", self.path(out), "-q", *extra)
 
     def rows(self, file, out="out"):
-        with open(self.path(os.path.join(out, file)), encoding="utf-8") as lines:
-            return [{k: v if k in ("end", "screen") else float(v or "nan") for k, v in row.items()}
-                    for row in csv.DictReader(lines)]
+        return [{k: v if k in ("end", "screen") else float(v or "nan") for k, v in row.items()}
+                for row in self.read_table(os.path.join(out, file))]
 
     def contents(self, out):
         found = {}
@@ -213,15 +211,12 @@ class Products(Profile):
     def design(self, out, screen):
         done = self.run_well("barrier", self.path(out), "--screen", screen, "-q")
         self.assertEqual(done.stdout, "")
-        with open(self.path(f"{out}/barrier_{screen}.json"), encoding="utf-8") as file:
-            report = json.load(file)
-        return report, self.run_well("barrier", self.path(out), "--screen", screen).stdout
+        return self.read_json(f"{out}/barrier_{screen}.json"), self.run_well("barrier", self.path(out), "--screen", screen).stdout
 
     def page(self, out):
         """The rows of the checklist, as (mark, point, this run, why), and the text of the page."""
         self.run_well("report", self.path(out), "--overwrite")
-        with open(self.path(f"{out}/report.html"), encoding="utf-8") as file:
-            page = file.read()
+        page = self.read_text(f"{out}/report.html")
         rows = re.findall(r"<tr[^>]*><td class='k'>\S+ (\w+)</td><td>(.*?)</td><td class='b'>(.*?)</td><td>(.*?)</td></tr>", page)
         self.assertGreater(len(rows), 8)
         return rows, page

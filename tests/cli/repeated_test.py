@@ -1,6 +1,5 @@
 """`talus diagnose` with several base fits and with every block out of its fold: a small campaign, few trials.
 Folds that do not choose: Nested.AFoldNeverSeesItsOwnRows."""
-import json
 import unittest
 
 import luck_test
@@ -15,8 +14,7 @@ class Repeated(luck_test.Luck):
 
     def diagnosis(self, campaign, out, *options):
         self.run_well("diagnose", campaign, "-o", self.path(out), *FAST, *options, timeout=1800)
-        with open(self.path(out + "/diagnosis.json"), encoding="utf-8") as file:
-            record = json.load(file)
+        record = self.read_json(out + "/diagnosis.json")
         for key in ("command", "inputs", "seconds", "cpu_seconds", "times"):
             record.pop(key, None)
         return record

@@ -1,6 +1,5 @@
 """talus report as a user calls it, and its page in a browser."""
 import base64
-import csv
 import html.parser
 import json
 import math
@@ -136,8 +135,7 @@ class Content(Report):
         for entry in record["inputs"]:
             self.assertIn(entry["sha256"], page.text)
             self.assertIn(entry["path"], page.text)
-        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
-            warnings = set(record["warnings"] + json.load(file)["warnings"])
+        warnings = set(record["warnings"] + self.read_json("out/hazard.json")["warnings"])
         self.assertGreater(len(warnings), len(record["warnings"]))
         self.assertIn(f"{len(warnings)}, listed above", page.text)
         for warning in warnings:
@@ -146,8 +144,7 @@ class Content(Report):
         self.assertLessEqual({"Impact probability", "Energy, P95", "Jump height, P95", "Deposits", "Released blocks",
                               "Hazard class", "Annual frequency", "Return period, E > 30 kJ"}, set(page.maps()))
         self.assertIn("relief", [image["id"] for image in page.all("image")])
-        with open(self.path("out/report.html"), encoding="utf-8") as file:
-            text = file.read()
+        text = self.read_text("out/report.html")
         self.assertIn("<th>up to 30 years</th><th>30 to 100 years</th>", text)
         self.assertIn("<tr><th>30 to 300 kJ</th><td>high</td><td>medium</td><td>medium</td><td>residual</td></tr>", text)
 
@@ -221,8 +218,7 @@ class Content(Report):
     def test_screens_in_numbers(self):
         self.results(hazard=False)
         page = self.page()
-        with open(self.path("out/screens_summary.csv"), encoding="utf-8") as file:
-            rows = [row for row in csv.DictReader(file) if row["quantity"] in ("speed", "energy", "jump height")]
+        rows = [row for row in self.read_table("out/screens_summary.csv") if row["quantity"] in ("speed", "energy", "jump height")]
         self.assertEqual(len(rows), 3)
         for row in rows:
             for key in ("p50", "p95", "p99", "maximum"):
@@ -245,8 +241,7 @@ class Content(Report):
             "campaign": "quarry" + HOSTILE, "parameters": [{"key": "ground.En50", "unit": "m3/s2", "value": 13.0,
                                                             "ci95": [9.5, 17.5], "identifiable": False}],
             "error": {"holdout": {"before": 0.811, "after": 0.634}}, "warnings": []}))
-        with open(self.path("s.toml"), encoding="utf-8") as file:
-            self.write("s.toml", 'include = "fit/fitted.toml"\n' + file.read())
+        self.write("s.toml", 'include = "fit/fitted.toml"\n' + self.read_text("s.toml"))
         self.results(hazard=False)
         page = self.page()
         self.assert_alone(page)
@@ -271,8 +266,7 @@ class Content(Report):
         self.assertNotIn(note, page)
         new = self.write("w.toml", "[features]\nwest = 5\n")
         page = text("--frequency", new)
-        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
-            digest = json.load(file)["frequency"]["sha256"]
+        digest = self.read_json("out/hazard.json")["frequency"]["sha256"]
         of_file = (f"those in {new} ([features] west = 5; SHA-256 {digest}), "
                    "which take the place of those of the run (settings, under Record)")
         self.assertIn(f"follow from {of_file}: 5.02 events per year together", page)
@@ -287,8 +281,7 @@ class Content(Report):
         """As `talus barrier` prints it: the upper bound of the frequency, where no crossing exceeds a value."""
         self.run_scenario("out")
         said = self.run_well("barrier", self.path("out"), "--screen", "road").stdout
-        with open(self.path("out/barrier_road.json"), encoding="utf-8") as file:
-            limits = [one["per_year"] for quantity in json.load(file)["reliability"] for one in quantity["exceeded"]]
+        limits = [one["per_year"] for quantity in self.read_json("out/barrier_road.json")["reliability"] for one in quantity["exceeded"]]
         bounds = [1.0 / one["high"] for one in limits if one["value"] == 0.0]
         self.assertEqual(said.count("rarer than once in "), len(bounds))
         self.assertGreater(len(bounds), 0)
@@ -330,8 +323,7 @@ class Content(Report):
 
     def test_names_of_classes_go_by_their_value(self):
         self.results()
-        with open(self.path("out/hazard_class.qml"), encoding="utf-8") as file:
-            style = file.read()
+        style = self.read_text("out/hazard_class.qml")
         items = re.findall(r"<item [^>]*/>\s*", style)
         expected = [[float(re.search('value="([^"]*)"', item).group(1)), re.search('label="([^"]*)"', item).group(1)]
                     for item in items]
@@ -434,8 +426,7 @@ class Files(Report):
         screens = [{"id": "road", "lines": [[[0.0, 0.0]]]}]  # talus barrier refuses it, too
         refused("run.json", json.dumps({**record, "screens": screens}), "'road' has a line of less than two places")
         refused("hazard.json", '{"warnings": 3, "events_per_year": "many"}', "cannot be understood")
-        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
-            hazard = json.load(file)
+        hazard = self.read_json("out/hazard.json")
         for classes, words in ((hazard["matrix"]["classes"][:-1], "one row of classes more than energies"),
                                ([row[:-1] for row in hazard["matrix"]["classes"]], "one class more than years"),
                                ([[99 for _ in row] for row in hazard["matrix"]["classes"]], "the number of one of its"),
@@ -520,8 +511,7 @@ class Browser(Report):
 
     def test_click_and_slider(self):
         self.results()
-        with open(self.path("out/hazard_class.qml"), encoding="utf-8") as file:
-            style = file.read()
+        style = self.read_text("out/hazard_class.qml")
         self.write("out/hazard_class.qml", re.sub('<item value="0"[^>]*/>', "", style))  # names go by value, not by place
         page = self.page()
         left, top, columns, rows = self.window(page)
@@ -563,8 +553,7 @@ class Browser(Report):
     def test_two_low_maps_share_a_printed_page(self):
         self.run_well("run", os.path.join(VALLEY, "scenario.toml"), "--trajectories", "2", "-q", "-o", self.path("valley"))
         self.run_well("report", self.path("valley"))
-        with open(self.path("valley/report.html"), encoding="utf-8") as file:
-            html = file.read()
+        html = self.read_text("valley/report.html")
         maps = html.count("<figure class='map low'>")
         self.assertGreater(maps, 5)
         self.write("alone.html", html.replace("class='map low'", "class='map'"))  # one on a page

@@ -11,7 +11,7 @@ import numpy as np
 from osgeo import ogr
 from osgeo_utils.samples.validate_cloud_optimized_geotiff import validate
 
-from support import NORTH, TALUS, WEST, Case, bands_of, box, rows_of, write_features
+from support import NORTH, TALUS, WEST, Case, bands_of, rows_of, write_features
 
 CHANGING = ["command", "threads", "cpu_seconds", "wall_seconds", "peak_memory_mb"]  # of run.json
 

@@ -1,6 +1,5 @@
 """Several campaigns in one call: `calibrate A B --share NAME` and `diagnose A B`, on a slope that the program itself has measured."""
 import csv
-import json
 import math
 import os
 import random
@@ -30,27 +29,20 @@ class Sites(Case):
                    'stops = "stops.csv"\n[measurement_error]\nposition_m = 0.3\n')
         self.run_well("score", f"{folder}/campaign.toml", "--parameters", self.write("truth.toml", kind), "--trials", "10",
                       "--seed", str(seed), "--surface", "bilinear", "--dump", f"{folder}/dump")
-        with open(f"{folder}/dump/stops.csv", encoding="utf-8") as file:
-            self.table(name, "stops", "id,x,y", [[r["block"], r["x"], r["y"]] for r in csv.DictReader(file)
-                                                 if r["trial"] == "0" and r["x"]])
+        self.table(name, "stops", "id,x,y", [[r["block"], r["x"], r["y"]] for r in self.read_table(f"{folder}/dump/stops.csv")
+                                             if r["trial"] == "0" and r["x"]])
         return f"{folder}/campaign.toml"
 
     def table(self, folder, name, head, rows):
-        with open(self.path(f"{folder}/{name}.csv"), "w", encoding="utf-8", newline="") as file:
-            csv.writer(file).writerows([head.split(","), *rows])
+        self.write_table(f"{folder}/{name}.csv", head, rows)
 
     def result(self, command, campaigns, name, *options):
         out = self.path(name)
         self.run_well(command, *campaigns, "-o", out, *SHORT, *options, timeout=1200)
-        with open(f"{out}/{'calibration' if command == 'calibrate' else 'diagnosis'}.json", encoding="utf-8") as file:
-            record = json.load(file)
+        record = self.read_json(f"{out}/{'calibration' if command == 'calibrate' else 'diagnosis'}.json")
         for key in ("command", "seconds"):
             record.pop(key, None)
         return record
-
-    def text(self, name):
-        with open(self.path(name), encoding="utf-8") as file:
-            return file.read()
 
 
 GROUND = "[ground.zones.default]\ntheta_scale = 0.3\nEn50 = 4\n"
@@ -66,15 +58,14 @@ class Calibrate(Sites):
         done = self.run_well("calibrate", b, a, "-o", self.path("both"), *SHORT[:-1], *self.FIT, "--share", "theta_scale",
                              timeout=1200)
         self.assertIn("two campaigns have the same name (slope, slope): all are called by their folders", done.stderr)
-        with open(self.path("both/calibration.json"), encoding="utf-8") as file:
-            both = json.load(file)
+        both = self.read_json("both/calibration.json")
         self.assertEqual([p["sites"] for p in both["parameters"]], [["a", "b"]])
         shared = both["parameters"][0]
         self.assertTrue(alone["ci95"][0] < shared["value"] < alone["ci95"][1])
         width = [math.log(p["ci95"][1] / p["ci95"][0]) for p in (alone, shared)]
         self.assertLess(width[1], width[0])
         value = f"theta_scale = {shared['value']}"[:20]
-        self.assertEqual([value in self.text(f"both/{s}/fitted.toml") for s in "ab"], [True, True])
+        self.assertEqual([value in self.read_text(f"both/{s}/fitted.toml") for s in "ab"], [True, True])
         self.assertEqual(sorted(os.listdir(self.path("both"))), ["a", "b", "calibration.json", "report.md"])
 
     def test_the_order_of_the_campaigns_changes_nothing(self):
@@ -97,7 +88,7 @@ class Calibrate(Sites):
                     self.assertEqual(both["sites"][place]["error"][rows][key], alone["error"][rows][key])
 
             def model(out):
-                return [line for line in self.text(f"{out}/fitted.toml").splitlines() if not line.startswith("#")]
+                return [line for line in self.read_text(f"{out}/fitted.toml").splitlines() if not line.startswith("#")]
             self.assertEqual(model(f"both/{name}"), model(f"{name}-alone"))
 
     def test_wrong_input(self):
@@ -110,7 +101,7 @@ class Calibrate(Sites):
                             ("long " * 52, "has 260 bytes, must have at most 255")):
             os.makedirs(self.path("named"), exist_ok=True)
             shutil.copytree(self.path("a"), self.path("named"), dirs_exist_ok=True)
-            named = self.write("named/campaign.toml", self.text("a/campaign.toml").replace('name = "a"', f'name = "{name}"'))
+            named = self.write("named/campaign.toml", self.read_text("a/campaign.toml").replace('name = "a"', f'name = "{name}"'))
             for command in ("calibrate", "diagnose"):
                 self.fails(2, "named/campaign.toml: name = '", words, 'another name = "..."',
                            arguments=(command, a, named, "-o", self.path("none"), "-q"))
@@ -142,12 +133,12 @@ class Diagnose(Sites):
         for site in first["sites"]:
             self.assertEqual(site["error"]["holdout"]["blocks"], 12)
             for name in site["files"]:
-                self.assertIn("En50", self.text(f"first/{name}"))
-        losses = {line for s in ("north", "south") for line in self.text(f"first/{s}/with_effect.toml").splitlines()
+                self.assertIn("En50", self.read_text(f"first/{name}"))
+        losses = {line for s in ("north", "south") for line in self.read_text(f"first/{s}/with_effect.toml").splitlines()
                   if line.startswith("loss")}
         self.assertEqual(len(losses), 1)  # shared
         self.fields_of_one_campaign(first)
-        page = self.text("first/report.html")
+        page = self.read_text("first/report.html")
         self.assertIn("pooled", page)
         self.assertNotRegex(page, "https?:")
 
@@ -165,7 +156,7 @@ class Diagnose(Sites):
         self.assertEqual(record["error"]["holdout"]["blocks"], 24)
         self.assertEqual(sum(fold["blocks"]["north"] for fold in record["nested"]["folds"]), 12)
         self.assertEqual([len(fold["effects"]) for fold in record["nested"]["folds"]], [1, 1])
-        self.assertIn("out-of-fold rows", self.text("nested/report.html"))
+        self.assertIn("out-of-fold rows", self.read_text("nested/report.html"))
         lack = "there is no error of unseen rows: north: cross-validation in 7 folds needs at least 14 fitting rows, not 12"
         many = self.result("diagnose", paths, "many", *few[:-1], "7")
         self.assertEqual([w for w in many["warnings"] if lack in w], many["warnings"][-1:])

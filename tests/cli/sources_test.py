@@ -1,11 +1,10 @@
 """talus sources: candidate source cells, against gdaldem and by hand."""
-import json
 import math
 import os
 import unittest
 
 import numpy as np
-from osgeo import gdal, ogr
+from osgeo import gdal
 
 from support import NORTH, WEST, Case, edited_by_a_viewer, heights, rows_of, sqlite_rows, write_dem
 
@@ -55,8 +54,7 @@ class Sources(Case):
                    "[blocks]\ndiameter = 1\n[frequency]\nby_true_area = true\nper_area = 1e-3\n")
         self.run_well("run", self.path("s.toml"), "-o", self.path("out"), "-q")
         self.run_well("hazard", self.path("out"), "-q")
-        with open(self.path("out/hazard.json"), encoding="utf-8") as file:
-            self.assertAlmostEqual(json.load(file)["events_per_year"] / (1e-3 * area), 1.0, 9)
+        self.assertAlmostEqual(self.read_json("out/hazard.json")["events_per_year"] / (1e-3 * area), 1.0, 9)
 
     def test_the_cells_are_those_of_gdaldem(self):
         z = heights(60, 60) + 30.0 * np.abs(np.sin(np.arange(60) / 3.0))[None, :]

@@ -1,5 +1,4 @@
 """Styles, names of classes and the project of QGIS, as files; tests/qgis/styles_test.py opens them in QGIS."""
-import csv
 import os
 import unittest
 import xml.etree.ElementTree as xml
@@ -34,8 +33,7 @@ class Styles(RunCase):
             self.assertIn(attribute, [f.GetName() for f in file.GetLayer(0).schema])
 
     def test_screens_have_the_figures_of_the_summary(self):
-        with open(self.path("out/screens_summary.csv"), encoding="utf-8", newline="") as file:
-            rows = {row["quantity"]: row for row in csv.DictReader(file)}
+        rows = {row["quantity"]: row for row in self.read_table("out/screens_summary.csv")}
         feature = rows_of(self.path("out/screens.gpkg"), "screens")[0][0]
         self.assertEqual((feature["id"], feature["crossings"]), ("road", int(rows["energy"]["crossings"])))
         self.assertEqual(feature["energy_kj_p95"], float(rows["energy"]["p95"]))
@@ -57,8 +55,7 @@ class Styles(RunCase):
         self.assertEqual(shown, {name for name in record["files"] if name.endswith((".tif", ".gpkg", ".csv"))} - {"screens.csv"})
         checked = [layer.get("name") for layer in root.iter("layer-tree-layer") if layer.get("checked") == "Qt::Checked"]
         self.assertEqual(checked, ["Screens: energy, P95", "Barriers of the run", "Sources of the run", "Impact probability", "Hillshade of the DEM"])
-        with open(self.path("out/talus.qgs"), encoding="utf-8") as file:
-            self.assertNotIn(self.folder, file.read())  # no absolute path
+        self.assertNotIn(self.folder, self.read_text("out/talus.qgs"))  # no absolute path
 
     def test_hazard_comes_on_top_of_the_maps(self):
         write_features(self.path("houses.gpkg"), "houses", [(box(100, 100, 150, 60), ["house"])], [("name", ogr.OFTString)])
@@ -77,8 +74,7 @@ class Styles(RunCase):
         self.run_well("barrier", self.path("out"), "--screen", "road", "--percentile", "50", "-q")
         self.assertEqual(self.titles()[:2], ["Barrier at road: MEL by stretch", "Barrier at road: design values"])
         stretches = rows_of(self.path("out/barrier_road.gpkg"), "barrier_road")
-        with open(self.path("out/barrier_road_stretches.csv"), encoding="utf-8", newline="") as file:
-            table = list(csv.DictReader(file))
+        table = self.read_table("out/barrier_road_stretches.csv")
         self.assertEqual(len(stretches), 10)  # 300 m in stretches of 30 m at most
         west = 2600000.0
         for i, ((feature, geometry), row) in enumerate(zip(stretches, table)):

@@ -1,4 +1,5 @@
 """A small mountain side to try the program on, and ways to call it. TALUS is the path of the program."""
+import csv
 import hashlib
 import json
 import os
@@ -118,9 +119,25 @@ class Case(unittest.TestCase):
     def path(self, name):
         return os.path.join(self.folder, name)
 
+    def read_text(self, name):
+        with open(self.path(name), encoding="utf-8") as file:
+            return file.read()
+
+    def write_table(self, name, head, rows):
+        """A CSV file; head: the names of the columns, with commas between."""
+        with open(self.path(name), "w", encoding="utf-8", newline="") as file:
+            csv.writer(file).writerows([head.split(","), *rows])
+
+    def read_json(self, name):
+        return json.loads(self.read_text(name))
+
+    def read_table(self, name):
+        """Rows of a CSV file, by the names of the columns."""
+        with open(self.path(name), encoding="utf-8", newline="") as file:
+            return list(csv.DictReader(file))
+
     def record(self, out="out"):
-        with open(self.path(out + "/run.json"), encoding="utf-8") as file:
-            return json.load(file)
+        return self.read_json(out + "/run.json")
 
     def write(self, name, text):
         with open(self.path(name), "w", encoding="utf-8") as file:

@@ -25,8 +25,7 @@ class Surface(RunCase):
     def test_default_key_and_flag(self):
         self.run_scenario("default")
         self.assertEqual(self.setting("default"), ("creased", "default"))
-        with open(self.path("s.toml"), encoding="utf-8") as file:
-            self.write("s.toml", 'surface = "bilinear"\n' + file.read())
+        self.write("s.toml", 'surface = "bilinear"\n' + self.read_text("s.toml"))
         self.run_scenario("key")
         self.assertEqual(self.setting("key"), ("bilinear", "scenario"))
         self.run_scenario("flag", "--surface", "creased")

@@ -59,8 +59,7 @@ class Vectors(RunCase):
         self.assert_same("one", "merged")
 
     def test_the_key_of_the_scenario(self):
-        with open(self.path("s.toml"), encoding="utf-8") as file:
-            text = file.read()
+        text = self.read_text("s.toml")
         self.write("s.toml", text.replace("[output]\n", '[output]\nvectors = "fgb"\n'))
         self.run_scenario("out")
         self.assertEqual(self.names("out"), {name + ".fgb" for name in LAYERS})

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""Compares Talus with the reference scenes of an independent, time-stepping implementation of the same model.
+"""Does Talus agree with an independent implementation of the same model, which steps in time? Compares their results.
 
-  tools/scripts/checks/compare_reference.py --talus build/release/talus --data ../shared/data [--threads 1] [--trials-factor 1] [--surface bilinear] [SCENE ...]
+  tools/scripts/checks/compare_reference.py --talus build/release/talus --data ../shared/data [--threads 1] [--trials-factor 1]
+      [--surface bilinear] [SCENE ...]
 
 Each scene's sources, ground and screens are written as a scenario, `talus run` is started, its results are compared:
 
@@ -23,6 +24,7 @@ crossings, path length, impacts per trajectory; the rasters of `plane` (its path
 Exit code 0: all passed; 1: some judged item failed (a failed run or a missing file is one); 2: usage.
 The reference has bilinear patches, so that the runs have them, too; --surface creased shows what creases change.
 With --trials-factor below 1 the shares and cells may fail by chance.
+Some minutes. Results: docs/validation.md, "An independent implementation".
 """
 import argparse
 import json
@@ -257,7 +259,6 @@ def parse_arguments():
     parser.add_argument("--trials-factor", type=float, default=1.0, help="times the reference's trajectories")
     parser.add_argument("--surface", default="bilinear", help="of the terrain: bilinear, as that of the reference, or creased")
     parser.add_argument("--json", type=Path, help="write the table here, too")
-    parser.add_argument("--no-run", action="store_true", help=argparse.SUPPRESS)  # compare WORK/SCENE/out as it is
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help="of " + ", ".join(SCENES) + " (default: all)")
     options = parser.parse_args()
     if not set(options.scenes) <= set(SCENES):
@@ -273,8 +274,7 @@ def main():
         for name in options.scenes or SCENES:
             scene, work = Scene(options.data, name), (options.work or Path(temporary)) / name
             try:
-                if not options.no_run:
-                    run_talus(scene, work, options)
+                run_talus(scene, work, options)
                 found = compare_scene(scene, work / "out")
             except (RuntimeError, OSError, KeyError, ValueError) as problem:
                 print(f"# {name}: {type(problem).__name__}: {problem}")

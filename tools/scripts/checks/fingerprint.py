@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Checksums of every output of the program, so that a redesign can show that it changed no byte.
+"""Did a change of the program change a byte of its results? Checksums of every output, to compare with those of before.
 
   tools/scripts/checks/fingerprint.py --talus build/release/talus --mpi build/release/talus-mpi -o after.txt [--against before.txt]
 
-It runs the example valley (run, hazard with objects, barrier, sources, trace, effects, barriers), the profile, `gar` with 5 trajectories a
-source cell, calibrate, diagnose on tschamut with the fewest trials, two parts with merge, and two ranks. Time, memory, and
-the path and version of the program are left out of JSON records. --quick leaves out gar and tschamut. --brief, for slow
-programs, runs only the valley with few trajectories and the profile.
-Exit code 1 where a checksum differs from --against."""
+It runs the example valley (run, hazard with objects, barrier, sources, trace, effects, barriers), the profile, `gar` with 5
+trajectories a source cell, calibrate, diagnose on elm and tschamut with few trials, two parts with merge, and two ranks. Time,
+memory, and the path and version of the program are left out of JSON records. Minutes; --quick leaves out gar and tschamut, and
+--brief, for slow programs, runs only the valley with few trajectories and the profile (same_bytes.sh uses it).
+Exit code 1 where a checksum differs from --against.
+"""
 import argparse
 import hashlib
 import json

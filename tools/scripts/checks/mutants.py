@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""Makes deliberate faults in the engine, the tallies, the products and the fit, and shows that a test catches each.
+"""Does a test catch each of many deliberate faults in the engine, the tallies, the products and the fit?
 
   tools/scripts/checks/mutants.py [--only WORD] [--build build/mutants] [--jobs 2]
   tools/scripts/checks/mutants.py --check      whether every line of the table is still in its file
 
 The sources are copied to build/mutants/tree and built there once (minutes). Then, for each fault of `MUTANTS`, one line is
 changed, core_tests are built and run: first the tests named in the table, then, if none fails, all. Printed: the fault, and the
-first test that fails, or SURVIVED; at the end how many survived, which is the exit code's 0 or 1. docs/validation.md.
+first test that fails, or SURVIVED; at the end how many survived. Exit code 1 if any did. Half an hour of two cores.
+Results: docs/validation.md, "Faults on purpose".
 """
 import argparse
 import re

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
-"""Looks for seams in the rasters of a run: do cells differ more from their neighbours across the edge of a region than within one?
+"""Are there seams in the rasters of a run: do cells differ more from their neighbours across the edge of a region than within one?
 
   tools/scripts/checks/seams.py RESULTS [passages.tif energy.tif ...]
 
 Talus tallies in square regions of 64 x 64 cells, counted from the south-west. The relative difference of neighbours is the sum of
 |a - b| over the sum of a + b. Prints it across the edges of the regions, and beside it the mean, scatter (standard deviation) and
-extremes for the other 63 pairs of rows (or columns) of a region. First bands only. Needs numpy and GDAL's python binding.
+extremes for the other 63 pairs of rows (or columns) of a region. First bands only. Seconds to minutes, by the
+size. Results: docs/performance.md, "No seams". Needs numpy and GDAL's python binding.
 """
 import argparse
 import os

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws crossings, energy and jump height along a screen, with the design values of a barrier there.
+"""Draws crossings, energy and jump height along a screen, with the design values of a barrier there. Seconds; docs/barrier.md.
 
   tools/scripts/figures/barrier_picture.py OUT --screen ID -o picture.png [--bin 10]
 
@@ -11,7 +11,6 @@ import argparse
 import csv
 import glob
 import json
-
 import sys
 
 import matplotlib

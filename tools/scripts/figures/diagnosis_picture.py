@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The first residual plots of a diagnosis as one SVG: before on the left, after on the right.
+"""Draws the first residual plots of a diagnosis as one SVG, before on the left, after on the right. Seconds; docs/diagnosis-results.md.
 
   tools/scripts/figures/diagnosis_picture.py OUT -o picture.svg [--rows 2]
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Prints what `talus diagnose CAMPAIGNS/NAME/campaign.toml -o OUT/NAME` has found: the tables of docs/diagnosis-results.md.
+"""Prints what `talus diagnose CAMPAIGNS/NAME/campaign.toml -o OUT/NAME` has found: the tables of docs/diagnosis-results.md. Seconds.
 
   tools/scripts/figures/diagnosis_table.py CAMPAIGNS OUT NAME...
 

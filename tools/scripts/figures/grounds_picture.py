@@ -3,7 +3,7 @@
 
   tools/scripts/figures/grounds_picture.py DEM picture.png --sources cliffs.shp --lines screens.gpkg [--talus talus]
 
-Runs 20 blocks per source cell with each of three presets. Needs numpy, matplotlib and GDAL's python binding.
+Runs 20 blocks per source cell with each of three presets. Seconds. Needs numpy, matplotlib and GDAL's python binding.
 """
 import argparse
 import os

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draw a raster of results over the hillshade of its DEM, for reports and the README.
+"""Draws a raster of results over the hillshade of its DEM, for reports and the manual. Seconds; manual.sh draws those of docs.
 
   tools/scripts/figures/picture.py DEM [RASTER] -o out.png [--band 1] [--log] [--classes 0.001,0.01,0.1]
              [--title TEXT] [--unit TEXT] [--vectors paths.gpkg sources.shp ...]

@@ -3,7 +3,7 @@
 
   QT_QPA_PLATFORM=offscreen tools/scripts/figures/qgis_picture.py DEM RASTER picture.png
 
-Needs QGIS 3.22 or later with its python binding (Debian: qgis python3-qgis).
+Seconds; docs/first-map.md. Needs QGIS 3.22 or later with its python binding (Debian: qgis python3-qgis).
 """
 import io
 import os

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Pictures of docs/qgis.md: a dialog of the plug-in, and the example valley as it is loaded, without a window.
+"""Draws the pictures of docs/qgis.md, without a window: a dialog of the plug-in, and the example valley as it is loaded. Seconds.
 
   TALUS=build/release/talus tools/scripts/figures/qgis_pictures.py docs/pictures [--language de]
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Measures the speed of the engine on the common test slope, next to the sketch and the floor, in one run.
+"""How fast is the engine, next to a sketch of the same loop and to the least that a trajectory can cost?
 
   tools/scripts/studies/benchmark.py [--bench build/release/tests/bench/talus-bench] [--shared ../shared] [--work DIR] [--repeats 3]
 
@@ -7,10 +7,8 @@ Makes the slope (2 000 x 2 000 cells of 2 m, 1 000 sources) with shared/bench/ma
 (an unoptimised sketch of the loop with counts and one maximum), and runs it and talus-bench in turn. Prints medians over the
 rounds; a ratio is formed within each round, and its median and range are printed. Two sketches at once show what the machine
 itself loses when two cores share caches, memory or a host. Compare the ratios of one run; the figures are those of one machine.
-Needs g++, python3-numpy, python3-gdal.
+A round takes about a minute of two cores. Results: docs/performance.md, "Speed". Needs g++, python3-numpy, python3-gdal.
 """
-import argparse
-import json
 import os
 import re
 import resource
@@ -18,6 +16,8 @@ import statistics
 import subprocess
 import tempfile
 import time
+
+from bench_slope import add_bench, figures, make_slope, parser_of, spread
 
 
 def sketch_speed(folder):
@@ -41,17 +41,6 @@ def two_sketches(folder):
         return time.monotonic() - start
 
     return 2 * seconds(1) / seconds(2)
-
-
-def bench(program, folder):
-    out = subprocess.run([program, f"{folder}/dem.tif", f"{folder}/sources.shp", "--benchmark_format=json"], check=True,
-                         capture_output=True, text=True).stdout
-    return {b["name"].split("/iterations")[0]: b for b in json.loads(out)["benchmarks"]}
-
-
-def spread(ratios):
-    """Median of the rounds' ratios, with their range."""
-    return f"{statistics.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
 
 
 def table(runs, sketches, doubles):
@@ -86,23 +75,18 @@ def table(runs, sketches, doubles):
 
 
 def main():
-    here = os.path.dirname(os.path.abspath(__file__))
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--bench", default=f"{here}/../../../build/release/tests/bench/talus-bench")
-    parser.add_argument("--shared", default=f"{here}/../../../../shared")
-    parser.add_argument("--work")
-    parser.add_argument("--repeats", type=int, default=3)
+    parser = parser_of(__doc__, repeats=3)
+    add_bench(parser)
     o = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
         folder = o.work or temporary
         os.makedirs(folder, exist_ok=True)
-        if not os.path.exists(f"{folder}/sources.shp"):
-            subprocess.run(["/usr/bin/python3", f"{o.shared}/bench/make_slope.py", folder], check=True, stdout=subprocess.DEVNULL)
+        make_slope(o.shared, folder)
         subprocess.run(["g++", "-O2", "-std=c++17", f"{o.shared}/bench/sketch.cpp", "-o", f"{folder}/sketch"], check=True)
         runs, sketches, doubles = [], [], []
         for _ in range(o.repeats):
             sketches.append(sketch_speed(folder))
-            runs.append(bench(o.bench, folder))
+            runs.append(figures(o.bench, folder))
             doubles.append(two_sketches(folder))
         table(runs, sketches, doubles)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How often the 95 % intervals of `talus calibrate` hold the ground that made the data.
+"""How often do the 95 % intervals of `talus calibrate` hold the ground that made the data?
 
   tools/scripts/studies/calibration_coverage_study.py [--talus build/release/talus] [--repetitions 400] [--first 0] [--jobs 2]
       [--blocks 36] [--fit theta_scale,En50] [--trials 24] [--work DIR]
@@ -8,21 +8,19 @@ Each repetition draws a ground around the start of the fit (upper-talus-3d; the 
 deviation 0.5, within 1), releases blocks down one slope and measures one trial of each: the stop, and speed and jump at two
 screens, with errors. `talus calibrate` (one start) is given these measurements alone. Printed, per parameter: how often the
 interval holds the truth, with the binomial interval of that share, and how often the parameter is identifiable. The same engine
-makes and judges the data: this measures the intervals, not the physics. Needs python3-numpy, python3-scipy, python3-gdal.
+makes and judges the data: this measures the intervals, not the physics. 400 repetitions of 24 blocks take 20 minutes of two
+cores. Results: docs/validation.md, "Intervals". Needs python3-numpy, python3-scipy, python3-gdal.
 """
-import argparse
-import csv
-import json
 import os
-import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
-from osgeo import gdal, osr
 from scipy.stats import beta
 
-gdal.UseExceptions()
+from files import read_json, read_table, write_raster, write_table, write_text
+from program import parser_of, talus
+
 WEST, SOUTH, CELL, COLUMNS, ROWS = 2_600_000.0, 1_200_000.0, 2.0, 100, 160
 NORTH = SOUTH + ROWS * CELL
 START = {"theta_scale": 1.0, "psi_scale": 0.9, "En50": 15.0, "Et50": 50.0}  # upper-talus-3d
@@ -30,40 +28,27 @@ TABLES = {"blocks": "id,x,y,release_height_m,vy,mass_kg", "stops": "id,x,y", "pa
           "screens": "id,wkt"}
 
 
-def talus(o, *arguments):
-    done = subprocess.run([o.talus, *map(str, arguments)], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        sys.exit(f"talus {' '.join(map(str, arguments))}: {done.stderr}")
-
-
 def write_dem(path):
     """A face of 38 degrees that eases into a run-out, with bumps; row 0 is in the north, where the blocks start."""
     y, x = (np.arange(ROWS) + 0.5)[:, None] * CELL, (np.arange(COLUMNS) + 0.5)[None, :] * CELL
     steep, knee = np.tan(np.radians(38.0)), 30 * np.log1p(np.exp((y - 170) / 30))
     z = 300 - (y * steep - knee * (steep - 0.08)) + 0.3 * np.sin(x / 11 + y / 17) + 0.2 * np.sin(x / 23 - y / 13)
-    dem = gdal.GetDriverByName("GTiff").Create(path, COLUMNS, ROWS, 1, gdal.GDT_Float32)
-    dem.SetGeoTransform((WEST, CELL, 0.0, NORTH, 0.0, -CELL))
-    system = osr.SpatialReference()
-    system.ImportFromEPSG(2056)
-    dem.SetProjection(system.ExportToWkt())
-    dem.GetRasterBand(1).WriteArray(z.astype(np.float32))
+    write_raster(path, z, (WEST, NORTH), CELL)
 
 
-def write_table(folder, name, rows):
-    with open(f"{folder}/{name}.csv", "w", encoding="utf-8", newline="") as out:
-        csv.writer(out).writerows([TABLES[name].split(","), *rows])
+def first_trials(path):
+    return [row for row in read_table(path) if row["trial"] == "0"]
 
 
-def rows_of(path):
-    with open(path, encoding="utf-8") as file:
-        return [row for row in csv.DictReader(file) if row["trial"] == "0"]
+def write_tables(folder, **tables):
+    for name, rows in tables.items():
+        write_table(f"{folder}/{name}.csv", TABLES[name], rows)
 
 
 def write_campaign(folder, name, tables):
     named = "".join(f'{table} = "{table}.csv"\n' for table in tables)
-    with open(f"{folder}/{name}.toml", "w", encoding="utf-8") as out:
-        out.write(f'name = "{name}"\ndem = "../dem.tif"\n{named}[measurement_error]\nposition_m = 0.3\nspeed_fraction = 0.03\n'
-                  "jump_height_m = 0.1\n")
+    write_text(f"{folder}/{name}.toml", f'name = "{name}"\ndem = "../dem.tif"\n{named}[measurement_error]\nposition_m = 0.3\n'
+               "speed_fraction = 0.03\njump_height_m = 0.1\n")
 
 
 def make(o, folder, number):
@@ -71,18 +56,18 @@ def make(o, folder, number):
     os.makedirs(folder, exist_ok=True)
     g = np.random.default_rng(1000 + number)
     truth = {key: START[key] * float(np.exp(np.clip(g.normal(0.0, 0.5), -1.0, 1.0))) for key in o.fit.split(",")}
-    with open(f"{folder}/truth.toml", "w", encoding="utf-8") as out:
-        out.write('[ground.zones.default]\npreset = "upper-talus-3d"\n' + "".join(f"{k} = {v!r}\n" for k, v in truth.items()))
-    write_table(folder, "blocks", [[f"b{i}", f"{WEST + g.uniform(60, 140):.2f}", f"{NORTH - g.uniform(8, 20):.2f}", 1, -1,
-                                    f"{np.exp(g.uniform(np.log(100), np.log(2000))):.1f}"] for i in range(o.blocks)])
-    write_table(folder, "screens", [[f"S{k}", f"LINESTRING ({WEST + 2} {NORTH - y}, {WEST + 198} {NORTH - y})"]
-                                    for k, y in ((1, 90), (2, 150))])
+    write_text(f"{folder}/truth.toml",
+               '[ground.zones.default]\npreset = "upper-talus-3d"\n' + "".join(f"{k} = {v!r}\n" for k, v in truth.items()))
+    blocks = [[f"b{i}", f"{WEST + g.uniform(60, 140):.2f}", f"{NORTH - g.uniform(8, 20):.2f}", 1, -1,
+               f"{np.exp(g.uniform(np.log(100), np.log(2000))):.1f}"] for i in range(o.blocks)]
+    screens = [[f"S{k}", f"LINESTRING ({WEST + 2} {NORTH - y}, {WEST + 198} {NORTH - y})"] for k, y in ((1, 90), (2, 150))]
+    write_tables(folder, blocks=blocks, screens=screens)
     write_campaign(folder, "plan", ("blocks", "screens"))
     talus(o, "score", f"{folder}/plan.toml", "--parameters", f"{folder}/truth.toml", "--trials", 10, "--seed", 7000 + number, "--threads",
           1, "--dump", f"{folder}/dump", "-q")
-    write_table(folder, "stops", [[r["block"], r["x"], r["y"]] for r in rows_of(f"{folder}/dump/stops.csv") if r["x"]])
-    write_table(folder, "passages", [[r["block"], r["screen"], r["speed_ms"], r["jump_height_m"]]
-                                     for r in rows_of(f"{folder}/dump/passages.csv")])
+    stops = [[r["block"], r["x"], r["y"]] for r in first_trials(f"{folder}/dump/stops.csv") if r["x"]]
+    passages = [[r["block"], r["screen"], r["speed_ms"], r["jump_height_m"]] for r in first_trials(f"{folder}/dump/passages.csv")]
+    write_tables(folder, stops=stops, passages=passages)
     write_campaign(folder, "campaign", TABLES)
     return truth
 
@@ -93,8 +78,7 @@ def one(o, number):
     truth = make(o, folder, number)
     talus(o, "calibrate", f"{folder}/campaign.toml", "-o", f"{folder}/fit", "-q", "--fit", o.fit, "--starts", 1, "--trials", o.trials,
           "--threads", 1)
-    with open(f"{folder}/fit/calibration.json", encoding="utf-8") as file:
-        fitted = {p["key"].split(".")[-1]: p for p in json.load(file)["parameters"]}
+    fitted = {p["key"].split(".")[-1]: p for p in read_json(f"{folder}/fit/calibration.json")["parameters"]}
     return [(p["ci95"][0] <= truth[key] <= p["ci95"][1], p["identifiable"], p["ci95"][1] / p["ci95"][0])
             for key, p in ((key, fitted[key]) for key in o.fit.split(","))]
 
@@ -106,15 +90,12 @@ def share(count, of):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--talus", default="build/release/talus")
+    parser = parser_of(__doc__, work="/tmp/calibration_coverage", jobs=2)
     parser.add_argument("--repetitions", type=int, default=400)
     parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--blocks", type=int, default=36)
     parser.add_argument("--fit", default="theta_scale,En50")
     parser.add_argument("--trials", type=int, default=24)
-    parser.add_argument("--work", default="/tmp/calibration_coverage")
     o = parser.parse_args()
     if os.path.isdir(o.work):
         sys.exit(f"{o.work}: is there already; remove it, or give another --work")

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Results against the size of the cells and the number of trajectories. docs/validation.md, "Cells and trajectories".
+"""How much do results change with the size of the cells and the number of trajectories?
 
   tools/scripts/studies/convergence_study.py [--talus build/release/talus] [--dem DEM --blocks blocks.csv] [--cells 0.5,1,2,5,10]
                                              [--trajectories 300] [--work DIR] [--threads 2]
@@ -12,20 +12,19 @@ standard error over the releases, and the P95 run-out relative to the finest cel
 
 Number: the slope at 2 m, 10 to 3000 trajectories per point, against an independent run of 10000: mean of the relative difference of
 the impact probability and of the P95 of the energy over the cells that at least 1 % of the blocks cross.
+
+A few minutes. Results: docs/validation.md, "Cells and trajectories".
 """
-import argparse
-import csv
-import json
 import math
 import os
-import subprocess
 from collections import defaultdict
 
 import numpy as np
-from osgeo import gdal, ogr, osr
+from osgeo import gdal
 
-gdal.UseExceptions()
-ogr.UseExceptions()
+from files import features, read_bands, read_json, read_table, write_raster, write_text
+from program import list_of, parser_of, talus
+
 WEST, SOUTH, WIDE, LONG = 2600000.0, 1200000.0, 300.0, 560.0  # EPSG:2056 [m]
 LINE = 200.0  # from the south: the line at which speeds are taken [m]
 
@@ -40,20 +39,11 @@ def height(x, y):
     return 1000.0 + z - gully
 
 
-def system():
-    srs = osr.SpatialReference()
-    srs.ImportFromEPSG(2056)
-    return srs.ExportToWkt()
-
-
 def slope(path, cell):
     columns, rows = round(WIDE / cell), round(LONG / cell)
     y = LONG - (np.arange(rows)[:, None] + 0.5) * cell
     x = (np.arange(columns)[None, :] + 0.5) * cell - WIDE / 2
-    dem = gdal.GetDriverByName("GTiff").Create(path, columns, rows, 1, gdal.GDT_Float32)
-    dem.SetGeoTransform([WEST, cell, 0, SOUTH + LONG, 0, -cell])
-    dem.SetProjection(system())
-    dem.GetRasterBand(1).WriteArray(height(x, y).astype(np.float32))
+    write_raster(path, height(x, y), (WEST, SOUTH + LONG), cell)
 
 
 def averaged(path, source, cell):
@@ -67,31 +57,23 @@ def averaged(path, source, cell):
               yRes=cell, outputType=gdal.GDT_Float32)
 
 
-def write(path, text):
-    with open(path, "w", encoding="utf-8") as out:
-        out.write(text)
-    return path
-
-
 def run(o, name, sources, screen, trajectories, seed=1):
     """Runs one DEM; the folder of the results."""
     out = f"{o.work}/{name}-{trajectories}-{seed}"
     text = (f'dem = "{name}.tif"\nseed = {seed}\ntrajectories = {trajectories}\n[sources]\nfile = "{sources}"\nrelease_height = 1\n[blocks]\n'
             f'diameter = 1.0\n[ground]\ndefault = "upper-talus-3d"\n[screens]\nfile = "{screen}"\n[output]\ntrajectories = 0\n')
     if not os.path.exists(f"{out}/run.json"):
-        subprocess.run([o.talus, "run", write(f"{o.work}/{name}-{trajectories}-{seed}.toml", text), "-o", out, "-q", "--threads", str(o.threads)], check=True)
+        talus(o, "run", write_text(f"{out}.toml", text), "-o", out, "-q", "--threads", o.threads)
     return out
 
 
 def by_source(out):
     """Run-outs and crossings of each source: lists by its number."""
     runout, crossings = defaultdict(list), defaultdict(list)
-    layer = ogr.Open(f"{out}/stops.gpkg")
-    for row in layer.GetLayer(0):
+    for row in features(f"{out}/stops.gpkg"):
         runout[row["source"]].append(math.hypot(row["x_release"] - row.GetGeometryRef().GetX(), row["y_release"] - row.GetGeometryRef().GetY()))
-    with open(f"{out}/screens.csv", encoding="utf-8") as file:
-        for row in csv.DictReader(file):
-            crossings[int(row["source"])].append([float(row[k]) for k in ("speed_ms", "energy_kj", "jump_height_m")])
+    for row in read_table(f"{out}/screens.csv"):
+        crossings[int(row["source"])].append([float(row[k]) for k in ("speed_ms", "energy_kj", "jump_height_m")])
     return runout, crossings
 
 
@@ -120,65 +102,62 @@ def cells(o, title, dems, sources, screen):
         median, far = with_error(runout, percentile(50)), with_error(runout, percentile(95))
         finest = finest or far
         columns = [with_error(crossings, percentile(95, i)) for i in range(3)]
-        with open(f"{out}/run.json", encoding="utf-8") as file:
-            ends = json.load(file)["ends"]
+        ends = read_json(f"{out}/run.json")["ends"]
         lost = [100.0 * ends[k] / sum(ends.values()) for k in ("left", "trapped")]
         cell_of = "{:.1f} +- {:.1f}".format
         print(f"| {cell:g} | {cell_of(*median)} | {cell_of(*far)} | {100 * (far[0] / finest[0] - 1):+.1f} % | "
               + " | ".join(cell_of(*c) for c in columns) + f" | {lost[0]:.1f}, {lost[1]:.1f} |", flush=True)
 
 
-def band(path, number):
-    raster = gdal.Open(path)
-    values = raster.GetRasterBand(number).ReadAsArray().astype(float)
-    nodata = raster.GetRasterBand(number).GetNoDataValue()
-    return np.where(values == nodata, np.nan, values) if nodata is not None else values
+def probability_and_energy(out):
+    """Impact probability and the P95 of the energy of each cell."""
+    return read_bands(f"{out}/impact_probability.tif")[0], read_bands(f"{out}/energy.tif")[2]
 
 
 def numbers(o, name, sources, screen):
     print("\nNumber of trajectories\n\n| per point | impact probability | P95 of the energy | cells |\n| --- | --- | --- | --- |")
-    best = run(o, name, sources, screen, 10000, seed=2)
-    p, e = band(f"{best}/impact_probability.tif", 1), band(f"{best}/energy.tif", 3)
-    often = p >= 0.01
+    best = probability_and_energy(run(o, name, sources, screen, 10000, seed=2))
+    often = best[0] >= 0.01
     for n in (10, 30, 100, 300, 1000, 3000):
-        out = run(o, name, sources, screen, n)
-        dp = np.abs(band(f"{out}/impact_probability.tif", 1)[often] / p[often] - 1)
-        de = np.abs(band(f"{out}/energy.tif", 3)[often] / e[often] - 1)
+        found = probability_and_energy(run(o, name, sources, screen, n))
+        dp, de = (np.abs(a[often] / b[often] - 1) for a, b in zip(found, best))
         print(f"| {n} | {100 * np.mean(dp):.1f} % | {100 * np.nanmean(de):.1f} % | {np.sum(often)} |", flush=True)
 
 
+def by_formula(o):
+    top = SOUTH + 498.0
+    write_text(f"{o.work}/points.csv", "x,y\n" + "".join(f"{WEST + 90 + 3.0 * i:.2f},{top}\n" for i in range(40)))
+    write_text(f"{o.work}/line.csv", f'id,wkt\nS,"LINESTRING ({WEST + 12} {SOUTH + LINE}, {WEST + WIDE - 12} {SOUTH + LINE})"\n')
+    for cell in o.cells:
+        slope(f"{o.work}/slope-{cell:g}.tif", cell)
+    cells(o, "Slope by formula", [(c, f"slope-{c:g}") for c in o.cells], "points.csv", "line.csv")
+
+
+def real(o):
+    write_text(f"{o.work}/real.csv", "x,y\n" + "".join(f"{r['x']},{r['y']}\n" for r in read_table(o.blocks)))
+    fine = gdal.Open(o.dem)
+    g = fine.GetGeoTransform()
+    middle = g[3] + 0.5 * fine.RasterYSize * g[5]
+    line = o.line.split() if o.line else [g[0] + 12, middle, g[0] + fine.RasterXSize * g[1] - 12, middle]
+    write_text(f"{o.work}/real-line.csv", f'id,wkt\nS,"LINESTRING ({line[0]} {line[1]}, {line[2]} {line[3]})"\n')
+    for cell in o.cells:
+        averaged(f"{o.work}/real-{cell:g}.tif", o.dem, cell)
+    title = os.path.basename(os.path.dirname(os.path.abspath(o.dem)))
+    cells(o, title, [(c, f"real-{c:g}") for c in o.cells], "real.csv", "real-line.csv")
+
+
 def main():
-    here = os.path.dirname(os.path.abspath(__file__))
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--talus", default=f"{here}/../../../build/release/talus")
+    parser = parser_of(__doc__, work="build/convergence", threads=2)
     parser.add_argument("--dem")
     parser.add_argument("--blocks")
     parser.add_argument("--line", help="x y x y: the line of the real DEM at which speeds are taken")
-    parser.add_argument("--cells", default="0.5,1,2,5,10")
-    parser.add_argument("--trajectories", type=int, default=300)
-    parser.add_argument("--work", default="build/convergence")
-    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--cells", type=list_of(float), default="0.5,1,2,5,10", help="[m]; 2 m must be among them")
+    parser.add_argument("--trajectories", type=int, default=300, help="of each point")
     o = parser.parse_args()
-    o.work, o.talus = os.path.abspath(o.work), os.path.abspath(o.talus)
     os.makedirs(o.work, exist_ok=True)
-    sizes = [float(c) for c in o.cells.split(",")]
-    top = SOUTH + 498.0
-    write(f"{o.work}/points.csv", "x,y\n" + "".join(f"{WEST + 90 + 3.0 * i:.2f},{top}\n" for i in range(40)))
-    write(f"{o.work}/line.csv", f'id,wkt\nS,"LINESTRING ({WEST + 12} {SOUTH + LINE}, {WEST + WIDE - 12} {SOUTH + LINE})"\n')
-    for cell in sizes:
-        slope(f"{o.work}/slope-{cell:g}.tif", cell)
-    cells(o, "Slope by formula", [(c, f"slope-{c:g}") for c in sizes], "points.csv", "line.csv")
+    by_formula(o)
     if o.dem:
-        with open(o.blocks, encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
-        write(f"{o.work}/real.csv", "x,y\n" + "".join(f"{r['x']},{r['y']}\n" for r in rows))
-        fine = gdal.Open(o.dem)
-        g = fine.GetGeoTransform()
-        line = o.line.split() if o.line else [g[0] + 12, g[3] + 0.5 * fine.RasterYSize * g[5], g[0] + fine.RasterXSize * g[1] - 12, g[3] + 0.5 * fine.RasterYSize * g[5]]
-        write(f"{o.work}/real-line.csv", f'id,wkt\nS,"LINESTRING ({line[0]} {line[1]}, {line[2]} {line[3]})"\n')
-        for cell in sizes:
-            averaged(f"{o.work}/real-{cell:g}.tif", o.dem, cell)
-        cells(o, os.path.basename(os.path.dirname(os.path.abspath(o.dem))), [(c, f"real-{c:g}") for c in sizes], "real.csv", "real-line.csv")
+        real(o)
     numbers(o, "slope-2", "points.csv", "line.csv")
 
 

@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""How often the bounds of passage_density.tif miss the true mean, for blocks with random lengths in a cell of 5 m.
+"""How often do the bounds of passage_density.tif miss the true mean, for blocks with random lengths in a cell of 5 m?
 
   tools/scripts/studies/coverage_study.py [--times 2000] [--seed 5]
 
 Each of N blocks passes with probability p and then leaves a length of the given distribution. Printed: per cent of the
 intervals that miss the mean, of the gamma interval of Fay and Feuer alone, of that from the variance alone, and of the
 narrower of both, which is written (`mean_length` in src/products/passage_bounds.cpp; here without its table). 5 % are
-allowed; the standard error of 5 % is 0.5 % for 2 000 times. Needs python3-numpy, python3-scipy.
+allowed; the standard error of 5 % is 0.5 % for 2 000 times. Seconds. Results: docs/products.md, "Passage density". Needs
+python3-numpy, python3-scipy.
 """
 import argparse
 

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Measures how often `talus diagnose` is right: makes campaigns with the engine itself and diagnoses them.
+"""How often is `talus diagnose` right? Makes campaigns with the engine itself and diagnoses them.
 
   tools/scripts/studies/diagnosis_study.py [--talus build/release/talus] [--effects all] [--magnitudes 1,2,0.5] [--blocks 60,120]
-                           [--none 20] [--null plain,scatter,grouped,outside] [--base-fits 1] [--trials 24] [--test-trials 100] [--most-effects 3] [--threads N]
-                           [--jobs 1] [--work DIR] [--seed 1] [-o study.csv]
+      [--none 20] [--null plain,scatter,grouped,outside] [--base-fits 1] [--trials 24] [--test-trials 100] [--most-effects 3]
+      [--threads N] [--jobs 1] [--work DIR] [--seed 1] [-o study.csv]
 
 Each campaign has a slope of its own (length, steepness, a gully, bumps), three zones, blocks of many sizes and shapes, three
 screens and four days. One effect of a known size acts (or none). One simulated trial per block, with errors of measurement,
@@ -16,24 +16,25 @@ which share an error of the release of 6 m and a ground of their own (each param
 from the start of the fit (theta_scale of talus and rock beyond 2.5 standard deviations of the prior). Printed for these: how
 often each family is below 1, 5 and 10 %, and how far the fitted ground lies from the true one (towards the prior). The same
 engine makes and judges the data: this measures the statistics, not the physics. Campaigns that are finished, with the same
-seed, options and program, are not run again.
+seed, options and program, are not run again. A campaign takes one to eight minutes of one core. Results:
+docs/diagnosis-results.md, "The study".
 """
-import argparse
 import csv
 import hashlib
 import itertools
 import json
 import os
-import subprocess
-import sys
+import shutil
 import tomllib
 from collections import defaultdict
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
-from osgeo import gdal, osr
+from osgeo import gdal
 
-gdal.UseExceptions()
+from files import read_json, read_table, write_raster, write_text
+from program import list_of, parser_of, talus
+
 WEST, SOUTH, CELL, COLUMNS, ROWS = 2_600_000.0, 1_200_000.0, 2.0, 160, 260
 GROUND = """
 [ground.zones.{name}]
@@ -57,17 +58,6 @@ EFFECTS = {
 }
 
 
-def write_raster(path, values, kind, nodata=None):
-    raster = gdal.GetDriverByName("GTiff").Create(path, COLUMNS, ROWS, 1, kind, ["COMPRESS=DEFLATE"])
-    raster.SetGeoTransform([WEST, CELL, 0, SOUTH + ROWS * CELL, 0, -CELL])
-    system = osr.SpatialReference()
-    system.ImportFromEPSG(2056)
-    raster.SetProjection(system.ExportToWkt())
-    if nodata is not None:
-        raster.GetRasterBand(1).SetNoDataValue(nodata)
-    raster.GetRasterBand(1).WriteArray(values)
-
-
 GROUND_KEYS = ("theta_scale", "psi_scale", "En50", "Et50")
 FAMILIES = ("block property", "place", "day", "instrument", "dispersion")
 NULLS = ("plain", "scatter", "grouped", "outside")
@@ -83,9 +73,10 @@ def terrain(g, folder):
     fall = y * steep - knee * (steep - 0.10)
     gully = g.uniform(2, 6) * np.exp(-((x - g.uniform(-20, 20)) / 25) ** 2)
     bumps = sum(g.uniform(0.2, 0.5) * np.sin(x / g.uniform(9, 25) + y / g.uniform(9, 25) + g.uniform(0, 6)) for _ in range(6))
-    write_raster(f"{folder}/dem.tif", (400 - fall - gully + bumps).astype(np.float32), gdal.GDT_Float32)
+    corner = (WEST, SOUTH + ROWS * CELL)
+    write_raster(f"{folder}/dem.tif", 400 - fall - gully + bumps, corner, CELL, options=["COMPRESS=DEFLATE"])
     zones = np.where(y < 60, 3, np.where(y < 240, 1, 2)) * np.ones((1, COLUMNS))
-    write_raster(f"{folder}/zones.tif", zones.astype(np.uint8), gdal.GDT_Byte)
+    write_raster(f"{folder}/zones.tif", zones, corner, CELL, kind=gdal.GDT_Byte, options=["COMPRESS=DEFLATE"])
 
 
 def blocks(g, folder, count, grouped):
@@ -123,22 +114,12 @@ def model_text(g, effect, magnitude, outside=False, factors=np.ones((3, 4))):
     return text
 
 
-def write(path, text):
-    with open(path, "w", encoding="utf-8") as out:
-        out.write(text)
-
-
-def rows(path):
-    with open(path, encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
-def simulated(talus, folder, name, seed):
+def simulated(o, folder, name, seed):
     """Stops and passages of ten trials of each block by the model NAME.toml."""
-    run([talus, "score", f"{folder}/plan.toml", "--parameters", f"{folder}/{name}.toml", "--trials", "10", "--seed", str(1000 + seed),
-         "--dump", f"{folder}/{name}", "-q"])
-    stops = [s for s in rows(f"{folder}/{name}/stops.csv") if s["end"] in ("stopped", "trapped")]
-    return stops, rows(f"{folder}/{name}/passages.csv")
+    talus(o, "score", f"{folder}/plan.toml", "--parameters", f"{folder}/{name}.toml", "--trials", 10, "--seed", 1000 + seed,
+          "--dump", f"{folder}/{name}", "-q")
+    stops = [s for s in read_table(f"{folder}/{name}/stops.csv") if s["end"] in ("stopped", "trapped")]
+    return stops, read_table(f"{folder}/{name}/passages.csv")
 
 
 def scatter_more(g, table, keys):
@@ -154,29 +135,28 @@ def scatter_more(g, table, keys):
             row[key] = f"{value if key in 'xy' else max(0.0, value):.4f}"
 
 
-def in_groups(g, talus, folder, seed, effect, magnitude):
+def in_groups(g, o, folder, seed, effect, magnitude):
     """Each group falls on a ground of its own and its releases are written down with an error of their own."""
-    with open(f"{folder}/blocks.csv", encoding="utf-8") as file:
-        table = list(csv.DictReader(file))
+    table = read_table(f"{folder}/blocks.csv")
     ground = g.bit_generator.state
     stops, passages = [], []
     for group in sorted({row["group"] for row in table}):
         g.bit_generator.state = ground  # the same ground but for the group's own factors
         own = np.random.default_rng([seed, int(group[1:])])
-        write(f"{folder}/{group}.toml", model_text(g, effect, magnitude, factors=own.choice([0.85, 1 / 0.85], (3, 4))))
+        write_text(f"{folder}/{group}.toml", model_text(g, effect, magnitude, factors=own.choice([0.85, 1 / 0.85], (3, 4))))
         of_group = {row["id"] for row in table if row["group"] == group}
-        some_stops, some_passages = simulated(talus, folder, group, seed)
+        some_stops, some_passages = simulated(o, folder, group, seed)
         stops += [s for s in some_stops if s["block"] in of_group]
         passages += [p for p in some_passages if p["block"] in of_group]
         shift = own.normal(0.0, 6.0, 2)
         for row in table:
             if row["id"] in of_group:
                 row["x"], row["y"] = f"{float(row['x']) + shift[0]:.2f}", f"{min(float(row['y']) + shift[1], SOUTH + ROWS * CELL - 2):.2f}"
-    write(f"{folder}/blocks.csv", BLOCKS + "\n" + "".join(",".join(row.values()) + "\n" for row in table))
+    write_text(f"{folder}/blocks.csv", BLOCKS + "\n" + "".join(",".join(row.values()) + "\n" for row in table))
     return stops, passages
 
 
-def make(talus, folder, effect, magnitude, count, seed, null="plain"):
+def make(o, folder, effect, magnitude, count, seed, null="plain"):
     """A campaign in `folder`: the measurements of one trial of the model in truth_model.toml."""
     os.makedirs(folder, exist_ok=True)
     g = np.random.default_rng(seed)
@@ -184,36 +164,29 @@ def make(talus, folder, effect, magnitude, count, seed, null="plain"):
     blocks(g, folder, count, null == "grouped")
     top = SOUTH + ROWS * CELL
     lines = [f'S{i + 1},"LINESTRING ({WEST + 4} {top - d}, {WEST + COLUMNS * CELL - 4} {top - d})"' for i, d in enumerate((140, 250, 320))]
-    write(f"{folder}/screens.csv", "id,wkt\n" + "\n".join(lines) + "\n")
-    write(f"{folder}/plan.toml", campaign_text("plan", False))
+    write_text(f"{folder}/screens.csv", "id,wkt\n" + "\n".join(lines) + "\n")
+    write_text(f"{folder}/plan.toml", campaign_text("plan", False))
     ground = g.bit_generator.state
-    write(f"{folder}/truth_model.toml", model_text(g, effect, magnitude, null == "outside"))
-    stops, passages = simulated(talus, folder, "truth_model", seed)
+    write_text(f"{folder}/truth_model.toml", model_text(g, effect, magnitude, null == "outside"))
+    stops, passages = simulated(o, folder, "truth_model", seed)
     if null == "scatter":
         scatter_more(g, stops, "xy")
         scatter_more(g, passages, ("speed_ms", "jump_height_m", "angular_velocity_rads"))
     if null == "grouped":
         g.bit_generator.state = ground
-        stops, passages = in_groups(g, talus, folder, seed, effect, magnitude)
-    mass = {b["id"]: float(b["mass_kg"]) for b in rows(f"{folder}/blocks.csv")}
-    write(f"{folder}/stops.csv", "id,x,y,mass_kg\n" + "".join(
+        stops, passages = in_groups(g, o, folder, seed, effect, magnitude)
+    mass = {b["id"]: float(b["mass_kg"]) for b in read_table(f"{folder}/blocks.csv")}
+    write_text(f"{folder}/stops.csv", "id,x,y,mass_kg\n" + "".join(
         f"{s['block']},{s['x']},{s['y']},{float(s['mass_share']) * mass[s['block']]:.1f}\n" for s in stops if s["trial"] == "0"))
-    write(f"{folder}/passages.csv", "id,screen,speed_ms,jump_height_m,angular_velocity_rads\n" + "".join(
+    write_text(f"{folder}/passages.csv", "id,screen,speed_ms,jump_height_m,angular_velocity_rads\n" + "".join(
         f"{p['block']},{p['screen']},{p['speed_ms']},{p['jump_height_m']},{p['angular_velocity_rads']}\n"
         for p in passages if p["trial"] == "0"))
-    write(f"{folder}/campaign.toml", campaign_text(os.path.basename(folder), True))
-
-
-def run(command):
-    done = subprocess.run(command, capture_output=True, text=True)
-    if done.returncode != 0:
-        raise RuntimeError(f"{' '.join(command)}\n{done.stderr}")
-    return done.stdout
+    write_text(f"{folder}/campaign.toml", campaign_text(os.path.basename(folder), True))
 
 
 def program(o):
     """The first digits of the checksum of the program."""
-    with open(o.talus, "rb") as file:
+    with open(shutil.which(o.talus), "rb") as file:
         return hashlib.sha256(file.read()).hexdigest()[:12]
 
 
@@ -235,14 +208,12 @@ def diagnosis_folder(o, folder):
 def diagnose(o, folder):
     out = diagnosis_folder(o, folder)
     if not os.path.exists(f"{out}/diagnosis.json"):
-        run([o.talus, "diagnose", f"{folder}/campaign.toml", "-o", out, "--trials", str(o.trials),
-             "--test-trials", str(o.test_trials), "--most-effects", str(o.most_effects), "--base-fits", str(o.base_fits), "-q", "--overwrite"]
-            + (["--threads", str(o.threads)] if o.threads else []))
-    with open(f"{out}/diagnosis.json", encoding="utf-8") as file:
-        found = json.load(file)
-    truth = json.loads(run([o.talus, "score", f"{folder}/campaign.toml", "--parameters", f"{folder}/truth_model.toml", "--rows",
-                            "holdout", "--trials", "200", "--json", "-q"]))
-    return found, truth["holdout"]
+        talus(o, "diagnose", f"{folder}/campaign.toml", "-o", out, "--trials", o.trials, "--test-trials", o.test_trials,
+              "--most-effects", o.most_effects, "--base-fits", o.base_fits, "-q", "--overwrite",
+              *(["--threads", o.threads] if o.threads else []))
+    truth = json.loads(talus(o, "score", f"{folder}/campaign.toml", "--parameters", f"{folder}/truth_model.toml", "--rows",
+                             "holdout", "--trials", 200, "--json", "-q"))
+    return read_json(f"{out}/diagnosis.json"), truth["holdout"]
 
 
 def above_limit(found, effect, magnitude):
@@ -262,7 +233,7 @@ def one(o, effect, magnitude, count, k):
     made = effect if null == "plain" else f"none ({null})"
     folder = f"{o.work}/{o.program}-{o.seed}/{effect}-{null}-{magnitude:g}-{count}-{k}"
     if not os.path.exists(f"{folder}/campaign.toml"):
-        make(o.talus, folder, effect, magnitude, count, o.seed + 7919 * k + sum(map(ord, effect)) + int(100 * magnitude) + count, null)
+        make(o, folder, effect, magnitude, count, o.seed + 7919 * k + sum(map(ord, effect)) + int(100 * magnitude) + count, null)
     found, truth = diagnose(o, folder)
     e, headline = found["error"]["holdout"], found["error"]["headline"]
     large = [g["score"] for g in truth["groups"] if g["rows"] >= headline["fewest_rows_of_a_group"]]
@@ -328,28 +299,21 @@ def report(table):
 
 
 def main():
-    here = os.path.dirname(os.path.abspath(__file__))
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--talus", default=f"{here}/../../../build/release/talus")
-    parser.add_argument("--effects", default="all")
-    parser.add_argument("--magnitudes", default="1,2,0.5")
-    parser.add_argument("--blocks", default="60,120")
+    parser = parser_of(__doc__, work="build/study", jobs=1)
+    parser.add_argument("--effects", type=list_of(str), default="all", help="that act, one at a time")
+    parser.add_argument("--magnitudes", type=list_of(float), default="1,2,0.5", help="of the effects, times those of EFFECTS")
+    parser.add_argument("--blocks", type=list_of(int), default="60,120", help="of a campaign")
     parser.add_argument("--none", type=int, default=20)
-    parser.add_argument("--null", default=",".join(NULLS), help="kinds of campaigns without an effect")
+    parser.add_argument("--null", type=list_of(str), default=",".join(NULLS), help="kinds of campaigns without an effect")
     parser.add_argument("--base-fits", type=int, default=1)
     parser.add_argument("--trials", type=int, default=24)
     parser.add_argument("--test-trials", type=int, default=100)
     parser.add_argument("--most-effects", type=int, default=3)
     parser.add_argument("--threads", type=int, help="of each diagnosis; all processors where it is not given")
-    parser.add_argument("--jobs", type=int, default=1, help="campaigns at a time; with --threads 1 the quickest way")
-    parser.add_argument("--work", default="build/study")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("-o", "--out")
     o = parser.parse_args()
-    o.effects = list(EFFECTS) if o.effects == "all" else [e for e in o.effects.split(",") if e]
-    o.null = o.null.split(",")
-    o.magnitudes = [float(m) for m in o.magnitudes.split(",")]
-    o.blocks = [int(n) for n in o.blocks.split(",")]
+    o.effects = list(EFFECTS) if o.effects == ["all"] else o.effects
     o.program = program(o)
     table = study(o)
     report(table)

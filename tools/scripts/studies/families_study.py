@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Size and power of the tests of families (docs/diagnosis-method.md, "Families") on a campaign.
+"""How often do the tests of families raise a false alarm on a campaign, and how often do they see an effect?
 
   tools/scripts/studies/families_study.py CAMPAIGN.toml MODEL.toml [--rows fit|all] [--truth MODEL.toml] [--refit 60]
                                           [--surface bilinear|creased] [--build build/release]
@@ -7,16 +7,17 @@
 MODEL.toml is the fitted ground (`talus calibrate`). Printed: the tests on what was measured; the size of the property test on
 2000 data sets drawn from the model, also with a scatter 1.6 times the model's and with two sites that differ; with --truth the
 power at 24, 48 and 89 blocks (those of the campaign, again and again) against data of that model; with --refit the size with
-and without a fit of the ground (theta_scale, Et50 of each zone) to each data set. families_study.cc does the work with the library of the build.
-Seconds, with --refit minutes.
+and without a fit of the ground (theta_scale, Et50 of each zone) to each data set. families_study.cc does the work with the
+library of the build. Seconds, with --refit minutes. Results: docs/diagnosis-method.md, "Families".
 """
 import argparse
 import subprocess
 import tempfile
 from pathlib import Path
 
+from program import ROOT
+
 HERE = Path(__file__).resolve().parent
-ROOT = HERE.parents[2]
 
 
 def libraries(build):
@@ -27,7 +28,7 @@ def libraries(build):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("campaign")
     parser.add_argument("model")
     parser.add_argument("--rows", choices=("fit", "all"), default="fit")

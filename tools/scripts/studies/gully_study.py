@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Measures what the surface between cell centres does to blocks in gullies: bilinear against creased patches.
+"""Do blocks stop in gullies because of the surface between cell centres? Bilinear against creased patches.
 
-  tools/scripts/studies/gully_study.py --talus build/release/talus [--terrain ../shared/data/terrain] [TABLE ...]
+  tools/scripts/studies/gully_study.py [--talus build/release/talus] [--terrain ../shared/data/terrain] [TABLE ...]
 
 Tables (all where none is named; `terrain` needs --terrain):
   v          a V gully (floor 35 degrees, walls 45) at 0, 20 and 45 degrees to the grid, thalweg through cell centres
@@ -15,48 +15,25 @@ Tables (all where none is named; `terrain` needs --terrain):
              run-outs; from every n-th source cell of `talus sources`
 
 A block counts as stopped unless it passes; the gully is long enough that none leaves the terrain before. Blocks of
-1 m start 1 m above the thalweg, on the default ground (upper-talus-3d, phi 30 degrees).
+1 m start 1 m above the thalweg, on the default ground (upper-talus-3d, phi 30 degrees). A minute of one core, with
+`terrain` some minutes. Results: docs/physics.md, "Creases" and "Steep gullies".
 Needs numpy and GDAL's python binding (Debian: python3-numpy python3-gdal).
 """
-import argparse
-import json
-import subprocess
 import tempfile
 from pathlib import Path
 
 import numpy as np
-from osgeo import gdal, ogr, osr
+from osgeo import gdal, ogr
 
-gdal.UseExceptions()
-ogr.UseExceptions()
+from files import features, read_bands, read_json, system, write_layer, write_raster
+from program import parser_of, talus
+
 SURFACES = ("bilinear", "creased")
 LENGTH, BEFORE, SIDE = 300.0, 20.0, 60.0  # m: of the way, above the release, and on both sides of the thalweg
-CREATION = ("COMPRESS=DEFLATE",)
 
 
-def system():
-    crs = osr.SpatialReference()
-    crs.ImportFromEPSG(31287)
-    return crs
-
-
-def write_dem(path, heights, cell):
-    """Heights by row from the north; the lower-left corner is (0, 0) + 400 km."""
-    rows, columns = heights.shape
-    data = gdal.GetDriverByName("GTiff").Create(str(path), columns, rows, 1, gdal.GDT_Float32, CREATION)
-    data.SetGeoTransform((4e5, cell, 0, 4e5 + rows * cell, 0, -cell))
-    data.SetProjection(system().ExportToWkt())
-    data.GetRasterBand(1).SetNoDataValue(-9999)
-    data.GetRasterBand(1).WriteArray(heights.astype("f4"))
-
-
-def write_points(path, points, crs):
-    file = ogr.GetDriverByName("GPKG").CreateDataSource(str(path))
-    layer = file.CreateLayer("sources", crs, ogr.wkbPoint)
-    for x, y in points:
-        feature = ogr.Feature(layer.GetLayerDefn())
-        feature.SetGeometry(ogr.CreateGeometryFromWkt(f"POINT ({x!r} {y!r})"))
-        layer.CreateFeature(feature)
+def point(x, y):
+    return (f"POINT ({x!r} {y!r})",)
 
 
 def v_profile(_cell):
@@ -90,27 +67,17 @@ class Gully:
     def stopped(self, o, work, surface, blocks):
         """Share of blocks that do not pass LENGTH."""
         dem, points, out = work / "dem.tif", work / "points.gpkg", work / "out"
-        points.unlink(missing_ok=True)
-        write_dem(dem, self.heights, self.cell)
-        place = 4e5 + self.start
-        write_points(points, [place], system())
+        crs, place = system(31287), 4e5 + self.start  # the lower-left corner is (0, 0) + 400 km
+        write_raster(dem, self.heights, (4e5, 4e5 + self.rows * self.cell), self.cell, srs=crs)
+        write_layer(points, [point(*place)], srs=crs)
         run(o, ["--dem", dem, "--sources", points, "--diameter", 1, "--trajectories", blocks, "--surface", surface], out)
-        ends = [(f.GetField("end"), f.geometry().GetX(), f.geometry().GetY()) for f in layer_of(out / "stops.gpkg")]
+        ends = [(f.GetField("end"), f.geometry().GetX(), f.geometry().GetY()) for f in features(out / "stops.gpkg")]
         along = [(np.array([x, y]) - place) @ self.way for end, x, y in ends if end != "left"]
         return sum(a < LENGTH for a in along) / len(ends)
 
 
 def run(o, options, out):
-    command = [o.talus, "run", *map(str, options), "-o", str(out), "--overwrite", "-q"]
-    command += ["--threads", str(o.threads)] if o.threads else []
-    subprocess.run(command, check=True)
-
-
-def layer_of(path):
-    file = ogr.Open(str(path))
-    layer = file.GetLayer(0)
-    while (feature := layer.GetNextFeature()) is not None:
-        yield feature
+    talus(o, "run", *options, "-o", out, "--overwrite", "-q", *(["--threads", o.threads] if o.threads else []))
 
 
 def table(head, rows):
@@ -138,7 +105,7 @@ def steep_table(o, work):
     def rows():
         for degrees in (0, 10, 20, 30, 45):
             stopped = Gully(5, degrees, 0.0, v_profile(5)).stopped(o, work, "creased", 200)
-            record = json.loads((work / "out" / "run.json").read_text(encoding="utf-8"))
+            record = read_json(work / "out" / "run.json")
             yield [f"{degrees}", percent(stopped), percent(record["steep_gullies"]["blocks"] / 200)]
     table(["degrees", "stop within 300 m", "stay in steep gullies"], rows())
 
@@ -207,17 +174,16 @@ def terrain_table(o, work):
         for name in ("gar", "alr", "mal"):
             dem = Path(o.terrain) / f"{name}.tif"
             points = every_nth_source(o, work, dem)
-            data = gdal.Open(str(dem))
-            z = data.ReadAsArray().astype("f4")
-            z[z == data.GetRasterBand(1).GetNoDataValue()] = np.nan
+            transform = gdal.Open(str(dem)).GetGeoTransform()
+            z = read_bands(dem)[0]
             dammed, pits = cells_of(z)
-            steep = steep_cells(z, data.GetGeoTransform()[1])
+            steep = steep_cells(z, transform[1])
             before = None
             for surface in SURFACES:
                 out = work / f"out_{name}_{surface}"
                 run(o, ["--dem", dem, "--sources", points, "--diameter", 1, "--trajectories", o.trajectories,
                         "--surface", surface], out)
-                values = terrain_values(out, data.GetGeoTransform(), dammed, pits, steep)
+                values = terrain_values(out, transform, dammed, pits, steep)
                 change = "" if before is None else [f" ({100 * (v / b - 1):+.1f} %)" for v, b in
                                                     zip(values["lengths"], before["lengths"])]
                 yield [name, surface, f"{values['released']}", percent(values["stopped"]), percent(values["dammed"]),
@@ -230,20 +196,19 @@ def terrain_table(o, work):
 
 def every_nth_source(o, work, dem):
     cells, points = work / "cells.gpkg", work / "points.gpkg"
-    for path in (cells, points):
-        path.unlink(missing_ok=True)
-    subprocess.run([o.talus, "sources", "--dem", str(dem), "-o", str(cells), "-q"], check=True)
+    cells.unlink(missing_ok=True)
+    talus(o, "sources", "--dem", dem, "-o", cells, "-q")
     file = ogr.Open(str(cells))
     (layer,) = [la for la in (file.GetLayer(i) for i in range(file.GetLayerCount())) if la.GetGeomType() == ogr.wkbPoint]
-    places = [(f.geometry().GetX(), f.geometry().GetY()) for f in layer]
-    write_points(points, places[::max(1, len(places) // o.sources)], layer.GetSpatialRef())
+    places = [point(f.geometry().GetX(), f.geometry().GetY()) for f in layer]
+    write_layer(points, places[::max(1, len(places) // o.sources)], srs=layer.GetSpatialRef())
     return points
 
 
 def terrain_values(out, transform, dammed, pits, steep):
     west, width, _, north, _, height = transform
     rows = [(f.GetField("end"), f.geometry().GetX(), f.geometry().GetY(), f.GetField("x_release"), f.GetField("y_release"),
-             f.GetField("length_m")) for f in layer_of(out / "stops.gpkg")]
+             f.GetField("length_m")) for f in features(out / "stops.gpkg")]
     x, y, x0, y0, length = np.array([r[1:] for r in rows]).T
     stopped = np.array([r[0] in ("stopped", "trapped") for r in rows])
     column, row = ((x - west) // width).astype(int)[stopped], ((y - north) // height).astype(int)[stopped]
@@ -257,13 +222,11 @@ TABLES = {"v": v_table, "steep": steep_table, "round": round_table, "staircase":
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__, threads=0)
     parser.add_argument("tables", nargs="*", metavar="TABLE", help=", ".join(TABLES))
-    parser.add_argument("--talus", default="build/release/talus")
     parser.add_argument("--terrain", help="folder of gar.tif, alr.tif, mal.tif")
     parser.add_argument("--sources", type=int, default=2000, help="source cells of a terrain")
     parser.add_argument("--trajectories", type=int, default=8, help="per source cell of a terrain")
-    parser.add_argument("--threads", type=int, default=0)
     o = parser.parse_args()
     for name in o.tables or [t for t in TABLES if t != "terrain" or o.terrain]:
         if name not in TABLES or (name == "terrain" and not o.terrain):

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""How often 95 % intervals of a reduction of the error hold the true one: docs/diagnosis-evidence.md, "Intervals".
+"""How often do 95 % intervals of a reduction of the error hold the true one?
 
-    interval_study.py [--sets 1500]
+  tools/scripts/studies/interval_study.py [--sets 1500]
 
 Scores of n blocks before and after are drawn from known distributions: before, a gamma distribution of mean 0.75; the
 difference normal, skewed (exponential), heavy-tailed (t of 3) or a share of the score with a scatter. Compared are the
 jackknife with Student's t (what Talus prints) and with the normal quantile, the bootstrap-t, and percentiles of the
-Bayesian bootstrap (what it printed before).
+Bayesian bootstrap (what it printed before). Half a minute. Results: docs/diagnosis-evidence.md, "Intervals".
 """
 import argparse
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Gain of several trajectories in the lanes of one instruction, against an earlier program without them, in paired rounds.
+"""How much faster is the engine with several trajectories in the lanes of one instruction than an earlier program without?
 
   tools/scripts/studies/lanes_study.py --before OLD/talus-bench [--bench build/release/tests/bench/talus-bench] [--shared ../shared]
                                        [--work DIR] [--repeats 5]
@@ -7,43 +7,26 @@
 On the common test slope (shared/bench/make_slope.py), one thread. In each round the earlier program and this one, with every
 number of lanes that the processor has, run in turn. Prints the median and the range of the ratios of the rounds: how many times
 faster than the earlier program, by CPU time. `trace`: flight, impacts and slides alone, one block of each source. `run`: 100
-blocks of each source with every raster on. Needs python3-numpy, python3-gdal.
+blocks of each source with every raster on. A round takes a minute or two of one core. Results: docs/performance.md, "Lanes".
+Needs python3-numpy, python3-gdal.
 """
-import argparse
-import json
-import os
-import statistics
-import subprocess
 import tempfile
 
-
-def figures(program, folder, which):
-    out = subprocess.run([program, f"{folder}/dem.tif", f"{folder}/sources.shp", "--benchmark_format=json",
-                          f"--benchmark_filter=^({which})"], check=True, capture_output=True, text=True).stdout
-    return {b["name"].split("/iterations")[0].split("/manual")[0]: b for b in json.loads(out)["benchmarks"] if "error_message" not in b}
-
-
-def spread(values, digits=2):
-    return f"{statistics.median(values):.{digits}f} ({min(values):.{digits}f} to {max(values):.{digits}f})"
+from bench_slope import add_bench, figures, make_slope, parser_of, spread
 
 
 def main():
-    here = os.path.dirname(os.path.abspath(__file__))
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--before", required=True)
-    parser.add_argument("--bench", default=f"{here}/../../../build/release/tests/bench/talus-bench")
-    parser.add_argument("--shared", default=f"{here}/../../../../shared")
-    parser.add_argument("--work")
-    parser.add_argument("--repeats", type=int, default=5)
+    parser = parser_of(__doc__, repeats=5)
+    add_bench(parser)
+    parser.add_argument("--before", required=True, help="talus-bench of the earlier program")
     o = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
         folder = o.work or temporary
-        if not os.path.exists(f"{folder}/sources.shp"):
-            subprocess.run(["/usr/bin/python3", f"{o.shared}/bench/make_slope.py", folder], check=True, stdout=subprocess.DEVNULL)
+        make_slope(o.shared, folder)
         rounds = []
         for _ in range(o.repeats):
-            before = figures(o.before, folder, "trace_only|run/100/1")
-            rounds.append((before, figures(o.bench, folder, "trace_in_lanes|run_in_lanes/100")))
+            before = figures(o.before, folder, "--benchmark_filter=^(trace_only|run/100/1)")
+            rounds.append((before, figures(o.bench, folder, "--benchmark_filter=^(trace_in_lanes|run_in_lanes/100)")))
     lanes = [n for n in (1, 4, 8) if f"trace_in_lanes/{n}" in rounds[0][1]]
     print(f"{o.repeats} rounds; times faster than before: median (range)")
     print("| lanes | trace | ns per patch (before: "

@@ -1,21 +1,22 @@
 #!/usr/bin/python3
-"""Makes a large fractal mountain range and sources on its steep faces, to try Talus on a region.
+"""How long does Talus take for a region, and in how much memory? Makes a large fractal mountain range to try it on.
 
   tools/scripts/studies/make_mountains.py FOLDER [--side 20000] [--cell 5] [--sources 50000] [--seed 1]
 
 Writes FOLDER/dem.tif (float32, tiled, compressed; EPSG:2056, invented) strip by strip, and FOLDER/sources.csv: points in clusters of
 100 on faces steeper than 45 degrees, one source cell each. Heights are a sum of octaves of cubic splines over random lattices, ridged.
+Some minutes for 20 000 x 20 000 cells. Results: docs/performance.md, "A region"; docs/regions.md, "Memory".
 Needs numpy, scipy and GDAL's python binding.
 """
 import argparse
-import csv
 import os
 
 import numpy as np
-from osgeo import gdal, osr
+from osgeo import gdal
 from scipy import sparse
 
-gdal.UseExceptions()
+from files import system, write_table
+
 STRIP, CLUSTER = 500, 100
 
 
@@ -61,14 +62,12 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     o = parser.parse_args()
     os.makedirs(o.folder, exist_ok=True)
-    system = osr.SpatialReference()
-    system.ImportFromEPSG(2056)
     file = gdal.GetDriverByName("GTiff").Create(f"{o.folder}/dem.tif", o.side, o.side, 1, gdal.GDT_Float32,
                                                 ["TILED=YES", "COMPRESS=DEFLATE", "PREDICTOR=3", "ZLEVEL=1", "BIGTIFF=YES",
                                                  "NUM_THREADS=2"])
     west, north = 2500000.0, 1300000.0
     file.SetGeoTransform((west, o.cell, 0, north, 0, -o.cell))
-    file.SetProjection(system.ExportToWkt())
+    file.SetProjection(system().ExportToWkt())
     mountains, luck, clusters = Mountains(o.side, o.seed), np.random.default_rng(o.seed + 1), []
     per_strip = o.sources / CLUSTER / (o.side / STRIP)
     for top in range(0, o.side, STRIP):
@@ -81,13 +80,12 @@ def main():
         for k in luck.choice(len(steep), max(0, wanted), replace=False) if len(steep) >= wanted else range(0):
             clusters.append((top + 20 + steep[k][0], 100 + steep[k][1]))
     file = None
-    with open(f"{o.folder}/sources.csv", "w", encoding="utf-8", newline="") as out:
-        writer = csv.writer(out)
-        writer.writerow(["id", "wkt"])
-        for n, (row, column) in enumerate(clusters):
-            for k in range(CLUSTER):
-                x, y = west + (column + k % 10 + 0.5) * o.cell, north - (row + k // 10 + 0.5) * o.cell
-                writer.writerow([n * CLUSTER + k, f"POINT ({x} {y})"])
+    rows = []
+    for row, column in clusters:
+        for k in range(CLUSTER):
+            x, y = west + (column + k % 10 + 0.5) * o.cell, north - (row + k // 10 + 0.5) * o.cell
+            rows.append([len(rows), f"POINT ({x} {y})"])
+    write_table(f"{o.folder}/sources.csv", "id,wkt", rows)
     print(f"{o.side} x {o.side} cells, {len(clusters) * CLUSTER} sources")
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes the example valley, data/valley: one side of an alpine valley that does not exist.
+"""Writes the example valley, data/valley: one side of an alpine valley that does not exist. Seconds; data/valley/README.md.
 
   tools/scripts/studies/make_valley.py [OUTDIR] [--seed 11]
 

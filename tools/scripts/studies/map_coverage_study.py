@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How often the 95 % intervals of the maps and of a barrier hold the truth: whole runs, repeated. docs/validation.md.
+"""How often do the 95 % intervals of the maps and of a barrier hold the truth? Whole runs, repeated.
 
   tools/scripts/studies/map_coverage_study.py [--talus build/release/talus] [--repetitions 400] [--trajectories 10] [--work DIR] [--jobs 2]
 
@@ -8,23 +8,22 @@ source cells. The truth is one run of 40 000 blocks per source cell. Each repeti
 cell with another seed, `talus hazard` and `talus barrier` on it. Looked at are 60 cells, ten each near impact probabilities of
 0.5, 0.2, 0.1, 0.05, 0.02 and 0.01. Printed: in how many of the repetitions, on average over the cells, the interval holds the
 truth, and the least of the cells; 95 % is what is promised, and the standard error of one cell over 400 repetitions is 1.1 %.
-Intervals of counts are exact, so that they may hold more. (reach_probability is not among them: its source cells are those that reach
-the cell in this run, so that another run has another truth; interval_test.cpp.) Classes: of the cells that a map calls decided, how many have the
-class of the truth. The independence of seeds: the variance of the counts of passages over the repetitions, over that of a
-binomial (blocks of one cell are alike, those of several are strata: at most 1).
+Intervals of counts are exact, so that they may hold more. (reach_probability is not among them: its source cells are those that
+reach the cell in this run, so that another run has another truth; interval_test.cpp.) Classes: of the cells that a map calls
+decided, how many have the class of the truth. The independence of seeds: the variance of the counts of passages over the
+repetitions, over that of a binomial (blocks of one cell are alike, those of several are strata: at most 1).
+
+Eight minutes of one core. Results: docs/validation.md, "Intervals".
 """
-import argparse
-import json
 import os
 import shutil
-import subprocess
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
-from osgeo import gdal, ogr, osr
 
-gdal.UseExceptions()
-ogr.UseExceptions()
+from files import box, read_bands, read_json, write_layer, write_raster, write_text
+from program import parser_of, talus
+
 WEST, SOUTH, CELL, COLUMNS, ROWS = 2600000.0, 1200000.0, 4.0, 60, 80
 TARGETS = (0.5, 0.2, 0.1, 0.05, 0.02, 0.01)
 SCENARIO = """dem = "dem.tif"
@@ -55,77 +54,43 @@ PERCENTILES = {"energy": (("P50", 2, 1, 2), ("P95", 3, 3, 4)), "velocity": (("P5
                "jump_height": (("P50", 2, 1, 2), ("P95", 3, 3, 4))}
 
 
-def system():
-    srs = osr.SpatialReference()
-    srs.ImportFromEPSG(2056)
-    return srs
-
-
 def make_site(work):
     y = (np.arange(ROWS)[::-1, None] + 0.5) * CELL
     x = (np.arange(COLUMNS)[None, :] + 0.5) * CELL - COLUMNS * CELL / 2
     z = 0.8 * np.maximum(0, y - 80) + 0.15 * np.minimum(y, 80) - 4 * np.exp(-((x - 10 * np.sin(y / 40)) / 12) ** 2)
-    dem = gdal.GetDriverByName("GTiff").Create(f"{work}/dem.tif", COLUMNS, ROWS, 1, gdal.GDT_Float32)
-    dem.SetGeoTransform([WEST, CELL, 0, SOUTH + ROWS * CELL, 0, -CELL])
-    dem.SetProjection(system().ExportToWkt())
-    dem.GetRasterBand(1).WriteArray((1000 + z).astype(np.float32))
-    dem = None
-    file = ogr.GetDriverByName("GPKG").CreateDataSource(f"{work}/cliffs.gpkg")
-    layer = file.CreateLayer("cliffs", system(), ogr.wkbPolygon)
-    for name in ("frequency", "diameter_min", "diameter_max"):
-        layer.CreateField(ogr.FieldDefn(name, ogr.OFTReal))
-    for left, frequency, low, high in ((60, 0.5, 0.5, 1.0), (110, 0.1, 0.8, 1.6), (150, 0.02, 1.5, 2.0)):
-        cliff = ogr.Feature(layer.GetLayerDefn())
-        for name, value in (("frequency", frequency), ("diameter_min", low), ("diameter_max", high)):
-            cliff.SetField(name, value)
-        a, b, c, d = WEST + left, WEST + left + 16, SOUTH + 290, SOUTH + 298
-        cliff.SetGeometry(ogr.CreateGeometryFromWkt(f"POLYGON (({a} {c}, {b} {c}, {b} {d}, {a} {d}, {a} {c}))"))
-        layer.CreateFeature(cliff)
-    write(f"{work}/screens.csv", f'id,wkt\nS,"LINESTRING ({WEST + 8} {SOUTH + 90}, {WEST + 232} {SOUTH + 90})"\n')
-
-
-def write(path, text):
-    with open(path, "w", encoding="utf-8") as out:
-        out.write(text)
-    return path
+    write_raster(f"{work}/dem.tif", 1000 + z, (WEST, SOUTH + ROWS * CELL), CELL)
+    cliffs = [(box(WEST + left, SOUTH + 290, WEST + left + 16, SOUTH + 298), frequency, low, high)
+              for left, frequency, low, high in ((60, 0.5, 0.5, 1.0), (110, 0.1, 0.8, 1.6), (150, 0.02, 1.5, 2.0))]
+    write_layer(f"{work}/cliffs.gpkg", cliffs, [(name, float) for name in ("frequency", "diameter_min", "diameter_max")])
+    write_text(f"{work}/screens.csv", f'id,wkt\nS,"LINESTRING ({WEST + 8} {SOUTH + 90}, {WEST + 232} {SOUTH + 90})"\n')
 
 
 def run(o, name, seed, trajectories, threads):
     out = f"{o.work}/{name}"
     if not os.path.exists(f"{out}/barrier_S.json"):
-        scenario = write(f"{o.work}/{name}.toml", SCENARIO.format(seed=seed, trajectories=trajectories))
-        for command in (["run", scenario, "-o", out, "--threads", str(threads), "--overwrite"], ["hazard", out], ["barrier", out, "--screen", "S"]):
-            subprocess.run([o.talus, *command, "-q"], check=True, stderr=subprocess.DEVNULL)
+        scenario = write_text(f"{o.work}/{name}.toml", SCENARIO.format(seed=seed, trajectories=trajectories))
+        talus(o, "run", scenario, "-o", out, "--threads", threads, "--overwrite", "-q")
+        talus(o, "hazard", out, "-q")
+        talus(o, "barrier", out, "--screen", "S", "-q")
     return out
-
-
-def bands(path):
-    raster = gdal.Open(path)
-    values = []
-    for i in range(1, raster.RasterCount + 1):
-        band = raster.GetRasterBand(i)
-        array = band.ReadAsArray().astype(float)
-        values.append(np.where(array == band.GetNoDataValue(), np.nan, array))
-    return values
 
 
 def intervals(out, cells):
     """Value, low and high of each quantity at the cells; and the values of a barrier."""
     found = {}
     for file, parts in BOUNDED.items():
-        b = bands(f"{out}/{file}")
+        b = read_bands(f"{out}/{file}")
         for name, value, low, high in parts:
             found[f"{file} {name}"] = [b[i - 1][cells] for i in (value, low, high)]
     for quantity, parts in PERCENTILES.items():
-        b, bounds = bands(f"{out}/{quantity}.tif"), bands(f"{out}/{quantity}_bounds.tif")
+        b, bounds = read_bands(f"{out}/{quantity}.tif"), read_bands(f"{out}/{quantity}_bounds.tif")
         for name, value, low, high in parts:
             found[f"{quantity}.tif {name}"] = [b[value - 1][cells], bounds[low - 1][cells], bounds[high - 1][cells]]
     return found
 
 
 def barrier(out):
-    with open(f"{out}/barrier_S.json", encoding="utf-8") as file:
-        d = json.load(file)
+    d = read_json(f"{out}/barrier_S.json")
     found = {"crossings per year": [d["crossings_per_year"][k] for k in ("value", "low", "high")]}
     for r in d["reliability"]:
         for key in ("shape", "scale"):
@@ -144,48 +109,51 @@ def report(name, held):
     print(f"{name:45} {np.mean(each):6.1f} %   least {np.min(each):6.1f} %   of {held.shape[0]} x {np.size(each)}", flush=True)
 
 
-def main():
-    here = os.path.dirname(os.path.abspath(__file__))
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--talus", default=f"{here}/../../../build/release/talus")
-    parser.add_argument("--repetitions", type=int, default=400)
-    parser.add_argument("--trajectories", type=int, default=10)
-    parser.add_argument("--truth", type=int, default=40000)
-    parser.add_argument("--work", default="build/map_coverage")
-    parser.add_argument("--jobs", type=int, default=2)
-    o = parser.parse_args()
-    o.work, o.talus = os.path.abspath(o.work), os.path.abspath(o.talus)
-    os.makedirs(o.work, exist_ok=True)
-    if not os.path.exists(f"{o.work}/cliffs.gpkg"):
-        make_site(o.work)
-    best = run(o, "truth", 999999, o.truth, o.jobs)
-    probability = bands(f"{best}/impact_probability.tif")[0]
+def cells_near_targets(probability):
+    """Ten cells near each of the probabilities."""
     chosen = []
     for target in TARGETS:
         flat = np.argsort(np.abs(np.log(np.where(probability > 0, probability, 1e-9) / target)), axis=None)
         chosen += [c for c in flat if c not in chosen][:10]
-    cells = np.unravel_index(np.array(chosen), probability.shape)
-    truth, true_class = intervals(best, cells), bands(f"{best}/hazard_class.tif")[0][cells]
-    true_barrier = barrier(best)
+    return np.unravel_index(np.array(chosen), probability.shape)
+
+
+def one(o, number, cells):
+    """Intervals, barrier, class, whether it is undecided, and passages of one repetition; files that are not needed go."""
+    out = run(o, f"run-{number}", number + 1, o.trajectories, 1)
+    classes = read_bands(f"{out}/hazard_class.tif")
+    found = intervals(out, cells), barrier(out), classes[0][cells], classes[3][cells], read_bands(f"{out}/passages.tif")[0][cells]
+    for name in os.listdir(out):
+        if name not in ("barrier_S.json", "hazard_class.tif", "passages.tif", *BOUNDED) and not any(name.startswith(q) for q in PERCENTILES):
+            path = f"{out}/{name}"
+            os.remove(path) if os.path.isfile(path) else shutil.rmtree(path)
+    return found
+
+
+def holds(low, high, value):
+    """Whether intervals hold a value; what has no bound, on a side, claims nothing on that side."""
+    inside = ~(np.where(np.isnan(low), -np.inf, low) > value * (1 + 1e-6)) & ~(np.where(np.isnan(high), np.inf, high) < value * (1 - 1e-6))
+    return np.where(np.isnan(value), np.nan, inside)
+
+
+def main():
+    parser = parser_of(__doc__, work="build/map_coverage", jobs=2)
+    parser.add_argument("--repetitions", type=int, default=400)
+    parser.add_argument("--trajectories", type=int, default=10, help="blocks of each source cell in a repetition")
+    parser.add_argument("--truth", type=int, default=40000, help="the same in the run that is the truth")
+    o = parser.parse_args()
+    os.makedirs(o.work, exist_ok=True)
+    if not os.path.exists(f"{o.work}/cliffs.gpkg"):
+        make_site(o.work)
+    best = run(o, "truth", 999999, o.truth, o.jobs)
+    probability = read_bands(f"{best}/impact_probability.tif")[0]
+    cells = cells_near_targets(probability)
+    truth, true_class, true_barrier = intervals(best, cells), read_bands(f"{best}/hazard_class.tif")[0][cells], barrier(best)
     held, held_barrier, right, decided, counts = {k: [] for k in truth}, {k: [] for k in true_barrier}, 0, 0, []
-
-    def one(k):
-        out = run(o, f"run-{k}", k + 1, o.trajectories, 1)
-        classes = bands(f"{out}/hazard_class.tif")
-        found = intervals(out, cells), barrier(out), classes[0][cells], classes[3][cells], bands(f"{out}/passages.tif")[0][cells]
-        for name in os.listdir(out):
-            if name not in ("barrier_S.json", "hazard_class.tif", "passages.tif", *BOUNDED) and not any(name.startswith(q) for q in PERCENTILES):
-                path = f"{out}/{name}"
-                os.remove(path) if os.path.isfile(path) else shutil.rmtree(path)
-        return found
-
     with ThreadPoolExecutor(o.jobs) as jobs:
-        for maps, design, classes, undecided, passages in jobs.map(one, range(o.repetitions)):
+        for maps, design, classes, undecided, passages in jobs.map(lambda k: one(o, k, cells), range(o.repetitions)):
             for name, (_, low, high) in maps.items():
-                value, low, high = truth[name][0], np.asarray(low), np.asarray(high)
-                # what has no bound, on a side, claims nothing on that side
-                inside = ~(np.where(np.isnan(low), -np.inf, low) > value * (1 + 1e-6)) & ~(np.where(np.isnan(high), np.inf, high) < value * (1 - 1e-6))
-                held[name].append(np.where(np.isnan(value), np.nan, inside))
+                held[name].append(holds(low, high, truth[name][0]))
             for name, (_, low, high) in design.items():
                 held_barrier[name].append([low <= true_barrier[name][0] <= high])
             right += np.sum((undecided == 0) & (classes == true_class))
@@ -197,8 +165,7 @@ def main():
         if rows:
             report(f"barrier: {name}", rows)
     print(f"hazard class where decided: {right} of {decided} are the truth's ({100 * right / max(1, decided):.1f} %)")
-    with open(f"{best}/run.json", encoding="utf-8") as file:
-        n = json.load(file)["released"] / o.truth * o.trajectories
+    n = read_json(f"{best}/run.json")["released"] / o.truth * o.trajectories
     expected = n * probability[cells] * (1 - probability[cells])
     print(f"variance of the passages over that of a binomial, mean of the cells: {np.mean(np.var(counts, axis=0, ddof=1) / expected):.3f}")
 

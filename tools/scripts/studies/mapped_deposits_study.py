@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Recovery of the ground from mapped deposits alone, on synthetic slopes of known ground. docs/mapped-deposits.md.
+"""Does a fit find the ground from mapped deposits alone? On synthetic slopes of known ground.
 
   tools/scripts/studies/mapped_deposits_study.py make FOLDER [--number 0] [--blocks 60]
   tools/scripts/studies/mapped_deposits_study.py cover [--repetitions 12] [--first 0] [--blocks 60] [--fit theta_scale,En50,...]
@@ -11,21 +11,18 @@
 campaign.toml. truth.json has the ground; nothing else reads it. Slopes: straight, concave, a cone; by the number modulo 3.
 
 `cover`: makes repetitions, calibrates each on its deposits alone and prints, per parameter, how often the 95 % interval holds the
-truth and how often the parameter is identifiable. --strips holds out strips 2 and 4 of five across the slope.
+truth and how often the parameter is identifiable. --strips holds out strips 2 and 4 of five across the slope. A slope takes up to
+half a minute of one core. Results: docs/mapped-deposits.md, "Results".
 """
-import argparse
-import csv
 import json
 import os
-import subprocess
 import sys
 import time
 
 import numpy as np
-from osgeo import gdal, ogr, osr
 
-gdal.UseExceptions()
-ogr.UseExceptions()
+from files import box, features, read_json, write_layer, write_raster, write_table, write_text
+from program import parser_of, talus
 
 CELL, COLUMNS, ROWS = 4.0, 90, 120  # 360 m wide, 480 m long; the cliff is in the north
 WEST, SOUTH = 2600000.0, 1200000.0  # EPSG:2056
@@ -45,40 +42,11 @@ def heights(kind, numbers):
     else:
         z = 0.70 * np.maximum(0.0, below - 0.0009 * x**2 * np.clip((400.0 - y) / 280.0, 0.0, 1.0))
     z = z + 0.05 * np.minimum(y, 120.0) + 1.2 * np.clip(y - CLIFF[0], 0.0, CLIFF[1] - CLIFF[0])
-    return (1000.0 + z + numbers.normal(0.0, 0.15, z.shape)).astype(np.float32)
-
-
-def system():
-    srs = osr.SpatialReference()
-    srs.ImportFromEPSG(2056)
-    return srs
-
-
-def write_dem(path, z):
-    dem = gdal.GetDriverByName("GTiff").Create(path, COLUMNS, ROWS, 1, gdal.GDT_Float32)
-    dem.SetGeoTransform((WEST, CELL, 0.0, SOUTH + ROWS * CELL, 0.0, -CELL))
-    dem.SetProjection(system().ExportToWkt())
-    dem.GetRasterBand(1).WriteArray(z)
-    dem.FlushCache()
+    return 1000.0 + z + numbers.normal(0.0, 0.15, (ROWS, COLUMNS))
 
 
 def write_box(path, west, south, east, north):
-    if os.path.exists(path):
-        os.remove(path)
-    file = ogr.GetDriverByName("GPKG").CreateDataSource(path)
-    layer = file.CreateLayer("polygons", system(), ogr.wkbPolygon)
-    feature = ogr.Feature(layer.GetLayerDefn())
-    corners = [(west, south), (east, south), (east, north), (west, north), (west, south)]
-    feature.SetGeometry(ogr.CreateGeometryFromWkt(
-        "POLYGON ((" + ",".join(f"{WEST + x} {SOUTH + y}" for x, y in corners) + "))"))
-    layer.CreateFeature(feature)
-
-
-def talus(o, *arguments):
-    done = subprocess.run([o.talus, *map(str, arguments)], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        sys.exit(f"talus {' '.join(map(str, arguments))}: {done.stderr}")
-    return done.stdout
+    write_layer(path, [(box(WEST + west, SOUTH + south, WEST + east, SOUTH + north),)])
 
 
 def make(o, folder, number):
@@ -86,18 +54,16 @@ def make(o, folder, number):
     numbers = np.random.default_rng(100 + number)
     kind = KINDS[number % len(KINDS)]
     os.makedirs(folder, exist_ok=True)
-    write_dem(f"{folder}/dem.tif", heights(kind, numbers))
+    write_raster(f"{folder}/dem.tif", heights(kind, numbers), (WEST, SOUTH + ROWS * CELL), CELL)
     write_box(f"{folder}/cliff.gpkg", 140.0, *CLIFF[:1], 220.0, CLIFF[1])
     mapped = (20.0, 10.0, 340.0, CLIFF[0] - 20.0)
     write_box(f"{folder}/mapped.gpkg", *mapped)
     truth = {key: PRESET[key] * float(np.exp(np.clip(numbers.normal(0.0, 0.5), -1.0, 1.0))) for key in PRESET}
-    with open(f"{folder}/truth.json", "w", encoding="utf-8") as out:
-        json.dump({"kind": kind, "ground": truth, "start": PRESET}, out, indent=1)
+    write_text(f"{folder}/truth.json", json.dumps({"kind": kind, "ground": truth, "start": PRESET}, indent=1))
     ground = "".join(f"{key} = {value!r}\n" for key, value in truth.items())
-    with open(f"{folder}/run.toml", "w", encoding="utf-8") as out:
-        out.write(f'dem = "dem.tif"\ntrajectories = 20\nseed = {1000 + number}\n[sources]\nfile = "cliff.gpkg"\n'
-                  '[blocks]\ndiameter = { volume_min = 0.03, volume_max = 2, exponent = 0.6 }\n'
-                  f'[ground.zones.default]\n{ground}[output]\ntrajectories = 0\n')
+    write_text(f"{folder}/run.toml", f'dem = "dem.tif"\ntrajectories = 20\nseed = {1000 + number}\n[sources]\nfile = "cliff.gpkg"\n'
+               '[blocks]\ndiameter = { volume_min = 0.03, volume_max = 2, exponent = 0.6 }\n'
+               f'[ground.zones.default]\n{ground}[output]\ntrajectories = 0\n')
     talus(o, "run", f"{folder}/run.toml", "-o", f"{folder}/run", "--overwrite", "-q")
     return write_deposits(o, folder, numbers, mapped)
 
@@ -106,74 +72,69 @@ def write_deposits(o, folder, numbers, mapped):
     """A sample of the stops in the mapped polygon."""
     west, south, east, north = (WEST + mapped[0], SOUTH + mapped[1], WEST + mapped[2], SOUTH + mapped[3])
     inside = []
-    stops = ogr.Open(f"{folder}/run/stops.gpkg")  # must outlive its layer
-    for feature in stops.GetLayer(0):
+    for feature in features(f"{folder}/run/stops.gpkg"):
         place = feature.GetGeometryRef()
         if feature["end"] not in ("stopped", "trapped"):
             continue
         if west < place.GetX() < east and south < place.GetY() < north:
             inside.append((place.GetX(), place.GetY(), feature["diameter_m"]))
     chosen = numbers.choice(len(inside), min(o.blocks, len(inside)), replace=False)
-    with open(f"{folder}/deposits.csv", "w", encoding="utf-8", newline="") as out:
-        table = csv.writer(out)
-        table.writerow(["id", "x", "y", "diameter_m"])
-        for i, k in enumerate(chosen):
-            error = numbers.normal(0.0, 1.0, 2)
-            table.writerow([f"d{i}", f"{inside[k][0] + error[0]:.2f}", f"{inside[k][1] + error[1]:.2f}", inside[k][2]])
+    rows = []
+    for i, k in enumerate(chosen):
+        error = numbers.normal(0.0, 1.0, 2)
+        rows.append([f"d{i}", f"{inside[k][0] + error[0]:.2f}", f"{inside[k][1] + error[1]:.2f}", inside[k][2]])
+    write_table(f"{folder}/deposits.csv", "id,x,y,diameter_m", rows)
     strips = "strips = 5\nholdout = [2, 4]\n" if o.strips else ""
-    with open(f"{folder}/campaign.toml", "w", encoding="utf-8") as out:
-        out.write(f'name = "{os.path.basename(folder)}"\ndem = "dem.tif"\n[measurement_error]\nposition_m = 1.0\n[deposits]\n'
-                  f'file = "deposits.csv"\nsources = "cliff.gpkg"\nmapped = "mapped.gpkg"\n{strips}')
+    write_text(f"{folder}/campaign.toml", f'name = "{os.path.basename(folder)}"\ndem = "dem.tif"\n[measurement_error]\nposition_m = 1.0\n'
+               f'[deposits]\nfile = "deposits.csv"\nsources = "cliff.gpkg"\nmapped = "mapped.gpkg"\n{strips}')
     return len(chosen)
 
 
+def recovered(o, folder, number):
+    """Calibrates and prints one campaign. Of each parameter: whether its interval holds the truth, whether it is identifiable,
+    its width as a factor."""
+    truth = read_json(f"{folder}/truth.json")
+    start = write_text(f"{folder}/start.toml", '[ground]\ndefault = "forest-road-3d"\n')
+    begin = time.time()
+    talus(o, "calibrate", f"{folder}/campaign.toml", "-o", f"{folder}/fit", "--overwrite", "-q", "--fit", o.fit, "--parameters", start,
+          "--starts", o.starts, "--trials", o.trials, "--threads", o.threads)
+    result = read_json(f"{folder}/fit/calibration.json")
+    found, line = {}, []
+    for p in result["parameters"]:
+        key, (low, high) = p["key"].split(".")[-1], p["ci95"]
+        value = truth["ground"][key]
+        found[key] = low <= value <= high, p["identifiable"], high / low
+        line.append(f"{key} {value:.3g} in {low:.3g}..{high:.3g} {'yes' if found[key][0] else 'NO'}"
+                    f"{'' if p['identifiable'] else ' (not identifiable)'}")
+    error = result["error"]["fit"]
+    patterns = ", ".join(f"{d['energy_distance_m']:.2f} m p {d['p_value']:.2f}" for d in error["deposits"]["patterns"])
+    print(f"{number} {truth['kind']}: {'; '.join(line)}; inside {error['deposits']['inside']:.2f}; patterns {patterns}; "
+          f"error {error['before']:.3f} to {error['after']:.3f}; {time.time() - begin:.0f} s", flush=True)
+    return found
+
+
+def print_row(name, found, width):
+    held, known, both = (sum(map(test, found)) for test in (lambda f: f[0], lambda f: f[1], lambda f: f[0] and f[1]))
+    print(f"| {name} | {held} of {len(found)} | {known} of {len(found)} | {both} of {known} |{width} |")
+
+
 def cover(o):
-    keys = o.fit.split(",")
-    held = {key: 0 for key in keys}
-    known, known_held, done, widths = dict(held), dict(held), 0, {key: [] for key in keys}
-    lower = []
+    found = []
     for number in range(o.first, o.first + o.repetitions):
         folder = f"{o.work}/{number}"
         if make(o, folder, number) < o.blocks:
             print(f"{number}: on this ground fewer than {o.blocks} stops are on the map; left out", flush=True)
-            continue
-        with open(f"{folder}/truth.json", encoding="utf-8") as file:
-            truth = json.load(file)
-        with open(f"{folder}/start.toml", "w", encoding="utf-8") as out:
-            out.write('[ground]\ndefault = "forest-road-3d"\n')
-        begin = time.time()
-        talus(o, "calibrate", f"{folder}/campaign.toml", "-o", f"{folder}/fit", "--overwrite", "-q", "--fit", o.fit, "--parameters",
-              f"{folder}/start.toml", "--starts",
-              o.starts, "--trials", o.trials, "--threads", o.threads)
-        with open(f"{folder}/fit/calibration.json", encoding="utf-8") as file:
-            result = json.load(file)
-        done += 1
-        line = []
-        for p in result["parameters"]:
-            key = p["key"].split(".")[-1]
-            value = truth["ground"][key]
-            inside = p["ci95"][0] <= value <= p["ci95"][1]
-            held[key] += inside
-            known[key] += p["identifiable"]
-            known_held[key] += inside and p["identifiable"]
-            widths[key].append(p["ci95"][1] / p["ci95"][0])
-            line.append(f"{key} {value:.3g} in {p['ci95'][0]:.3g}..{p['ci95'][1]:.3g} {'yes' if inside else 'NO'}"
-                        f"{'' if p['identifiable'] else ' (not identifiable)'}")
-        error = result["error"]["fit"]
-        lower.append(error["reduction"])
-        patterns = ", ".join(f"{d['energy_distance_m']:.2f} m p {d['p_value']:.2f}" for d in error["deposits"]["patterns"])
-        print(f"{number} {truth['kind']}: {'; '.join(line)}; inside {error['deposits']['inside']:.2f}; patterns {patterns}; "
-              f"error {error['before']:.3f} to {error['after']:.3f}; {time.time() - begin:.0f} s", flush=True)
-    print(f"\n| parameter | 95 % interval holds the truth | identifiable | of those holds | median width, a factor of |\n| --- | --- | --- | --- | --- |")
-    for key in keys:
-        print(f"| {key} | {held[key]} of {done} | {known[key]} of {done} | {known_held[key]} of {known[key]} | "
-              f"{np.median(widths[key]):.1f} |")
-    print(f"| all | {sum(held.values())} of {done * len(keys)} | {sum(known.values())} of {done * len(keys)} | "
-          f"{sum(known_held.values())} of {sum(known.values())} | |")
+        else:
+            found.append(recovered(o, folder, number))
+    print("\n| parameter | 95 % interval holds the truth | identifiable | of those holds | median width, a factor of |\n| --- | --- | --- | --- | --- |")
+    for key in o.fit.split(","):
+        of_key = [f[key] for f in found]
+        print_row(key, of_key, f" {np.median([width for _, _, width in of_key]):.1f}")
+    print_row("all", [one for f in found for one in f.values()], "")
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = parser_of(__doc__, work="/tmp/mapped_deposits", threads=2)
     parser.add_argument("what", choices=["make", "cover"])
     parser.add_argument("folder", nargs="?")
     parser.add_argument("--number", type=int, default=0)
@@ -184,9 +145,6 @@ def main():
     parser.add_argument("--starts", type=int, default=1)
     parser.add_argument("--trials", type=int, default=24)
     parser.add_argument("--strips", action="store_true", help="hold out strips 2 and 4 of 5")
-    parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--talus", default="build/release/talus")
-    parser.add_argument("--work", default="/tmp/mapped_deposits")
     o = parser.parse_args()
     if o.what == "cover":
         cover(o)

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
-"""Ground of Rockyfor3D as ground of Talus: the tables of docs/migration.md.
+"""Which ground of Talus is nearest to a soil type of Rockyfor3D? A second. Results: docs/migration.md, "Rockyfor3D".
 
   tools/scripts/studies/migration_study.py [--diameter 1.0] [--from 1] [--to 15] [--talus build/release/talus]
 
 Normal restitution of Rockyfor3D: k = Rn / (1 + (v/9)^2), v in m/s. Of PIERRE 2: k = En50 / (c D v^2 + En50), c = 0.25.
-En50 has the least squares in the speed after the rebound, v k, over v in steps of 0.01 m/s: hard blows count, slow ones hardly. Residuals of v k
-[m/s] and of k: root of the mean square, and the largest. At v = 0 the one law is Rn and the other 1, so no En50 makes them equal. With --talus the En50 is compared with the preset of that program.
+En50 has the least squares in the speed after the rebound, v k, over v in steps of 0.01 m/s: hard blows count, slow ones hardly.
+Residuals of v k [m/s] and of k: root of the mean square, and the largest. At v = 0 the one law is Rn and the other 1, so no En50
+makes them equal. With --talus the En50 is compared with the preset of that program.
 The second table: theta_scale of a roughness MOH, from the angle at which a sphere meets a step of this height.
 """
 import argparse

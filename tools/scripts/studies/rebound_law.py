@@ -3,10 +3,11 @@
 k_n and k_t are measured against the mean surface. So the whole law is simulated (roughness, shape, slip, step 6 of
 docs/physics.md, section 4), and its k_n and k_t are determined as the observer does, errors of the normal included.
 """
-import csv
 from types import SimpleNamespace
 
 import numpy as np
+
+from files import read_table
 
 C = 0.25  # deformation_coefficient
 PRESETS = {"firm-talus": (0.7, 0.9, 15, 50, 30, 1.5), "forest-road": (0.4, 0.3, 15, 50, 30, 1.5),
@@ -15,8 +16,7 @@ NAMES = ("theta_scale", "psi_scale", "En50", "Et50", "phi_deg", "shape_max")  # 
 
 
 def columns(path, *names):
-    with open(path, encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+    rows = read_table(path)
     return [np.array([float(row[name] or "nan") for row in rows]) for name in names], rows
 
 

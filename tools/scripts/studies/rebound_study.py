@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Compares measured single rebounds with the impact law (docs/rebounds.md): prints every figure, draws one picture.
+"""Do measured single rebounds follow the impact law? Prints every figure and draws the picture of docs/rebounds.md.
 
   tools/scripts/studies/rebound_study.py [--shared ../shared] [-o PICTURE.png] [--draws 60] [--repeats 2000] [--seed 3] [--in-plane]
 
 Reads SHARED/data/literature/wang2018_limestone_on_concrete.csv (75 drops on a concrete slab) and
 SHARED/data/chant_sura/contact_events.csv (17 usable contacts of 10 runs). Neither is in the repository.
-Exit code 77 if they are missing. One core, a few minutes.
+Exit code 77 if they are missing. A few minutes of one core.
 """
 import argparse
 import sys
@@ -144,7 +144,7 @@ def extras(s, shared, laws):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--shared", type=Path, default=Path("../shared"))
     parser.add_argument("-o", "--output", type=Path)
     parser.add_argument("--draws", type=int, default=60, help="of every impact, in the fit")

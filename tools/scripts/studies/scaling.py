@@ -1,21 +1,24 @@
 #!/usr/bin/python3
-"""Measures how the time of `talus run` grows with threads, ranks, trajectories, DEM size and cell size, and how well `talus check` foretells it.
+"""How does the time of `talus run` grow with threads, ranks, trajectories, DEM and cell size, and does `talus check` foretell it?
 
   tools/scripts/studies/scaling.py [--talus build/release/talus] [--talus-mpi build/release/talus-mpi] [--shared ../shared] [--work DIR]
                    [--repeats 3] [-o scaling.png]
 
 On the slope of shared/bench/make_slope.py (4 km x 4 km, 1 000 sources, upper-talus-3d, D = 1.2 m, 20 trajectories a source where
 nothing else is said). The cases of one table are run in turn, `--repeats` times. A figure is the median over the turns; a ratio
-is formed within each turn, then the median is taken. Cost is processor seconds of tracing and tallying per trajectory metre (3D). Needs python3-numpy,
+is formed within each turn, then the median is taken. Cost is processor seconds of tracing and tallying per trajectory metre (3D).
+About ten minutes of two cores. Results: docs/performance.md, "How it grows" and "What check foretells". Needs python3-numpy,
 python3-gdal; with -o python3-matplotlib.
 """
-import argparse
-import json
 import os
 import re
 import statistics
 import subprocess
 import tempfile
+
+from bench_slope import make_slope, parser_of, spread
+from files import read_json
+from program import ROOT, add_options, talus
 
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
@@ -25,9 +28,7 @@ class Slope:
 
     def __init__(self, o, name, *options):
         self.folder = f"{o.work}/{name}"
-        if not os.path.exists(f"{self.folder}/sources.shp"):
-            subprocess.run(["/usr/bin/python3", f"{o.shared}/bench/make_slope.py", self.folder, *options], check=True,
-                           stdout=subprocess.DEVNULL)
+        make_slope(o.shared, self.folder, *options)
 
     def arguments(self, trajectories=20):
         return ["--dem", f"{self.folder}/dem.tif", "--sources", f"{self.folder}/sources.shp", "--preset", "upper-talus-3d",
@@ -40,8 +41,7 @@ def run(o, slope, threads=1, ranks=0, trajectories=20):
         program = ["mpirun", "--oversubscribe", "-n", str(ranks), o.talus_mpi] if ranks else [o.talus]
         subprocess.run([*program, "run", *slope.arguments(trajectories), "-o", f"{out}/r", "-q", "--threads", str(threads)],
                        check=True, env=ENVIRONMENT)
-        with open(f"{out}/r/run.json", encoding="utf-8") as file:
-            record = json.load(file)
+        record = read_json(f"{out}/r/run.json")
         record["megabytes"] = sum(os.path.getsize(f"{out}/r/{name}") for name in os.listdir(f"{out}/r")) / 1e6
     return record
 
@@ -70,8 +70,7 @@ def median(records, of):
 
 def ratio(one, other, of):
     """Ratio of two cases, formed in each turn: median (smallest to largest)."""
-    ratios = sorted(of(a) / of(b) for a, b in zip(one, other))
-    return f"{statistics.median(ratios):.2f} ({ratios[0]:.2f} to {ratios[-1]:.2f})"
+    return spread([of(a) / of(b) for a, b in zip(one, other)])
 
 
 def table(title, records, first, of, unit, versus):
@@ -93,8 +92,7 @@ def foretold(o, cases):
     """Compares what `talus check` foretells with the run itself, on one thread."""
     print("\n| run | memory MB: foretold, was | results MB | cells reached | time s |\n| --- | --- | --- | --- | --- |")
     for name, (slope, trajectories) in cases.items():
-        text = subprocess.run([o.talus, "check", *slope.arguments(trajectories), "--threads", "1"], check=True, capture_output=True,
-                              text=True).stdout
+        text = talus(o, "check", *slope.arguments(trajectories), "--threads", 1)
         said = [float(re.search(rf"^{what}\s+about ([0-9 ]+)", text, re.M).group(1).replace(" ", ""))
                 for what in ("memory", "disk", "cells")]
         said.append(seconds_of(re.search(r"^time\s+about ([^,]+) on", text, re.M).group(1)))
@@ -118,14 +116,10 @@ def draw(path, panels):
 
 
 def main():
-    here = os.path.dirname(os.path.abspath(__file__))
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--talus", default=f"{here}/../../../build/release/talus")
-    parser.add_argument("--talus-mpi", default=f"{here}/../../../build/release/talus-mpi")
-    parser.add_argument("--shared", default=f"{here}/../../../../shared")
-    parser.add_argument("--work")
-    parser.add_argument("--repeats", type=int, default=3)
-    parser.add_argument("-o", "--out")
+    parser = parser_of(__doc__, repeats=3)
+    add_options(parser)
+    parser.add_argument("--talus-mpi", default=str(ROOT / "build/release/talus-mpi"), help="ranks are left out where it is not there")
+    parser.add_argument("-o", "--out", help="picture")
     o = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
         o.work = o.work or temporary

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Fits the exponents of block-mass to measured campaigns, with intervals. docs/effects.md, "block-mass".
+"""Which exponents of block-mass do measured campaigns ask for, and how sure are they?
 
   tools/scripts/studies/size_study.py CAMPAIGN_FOLDER... [--numbers roughness,stiffness] [--seeds 1,2,3] [--trials 32] [--starts 1]
                                       [--reference 1.2] [--grid -0.5,0,0.5,1,1.5] [--talus build/release/talus] [--work DIR] [--threads 1]
@@ -9,47 +9,37 @@ its 95 % interval and the error on the held-out rows, with the size law and with
 campaigns are joined afterwards: mean by inverse variance (sd: a quarter of 3.92 of the interval, over the seeds their mean), with
 the chi-square of their difference. With --grid the roughness exponent is held at each value, the ground is fitted anew, and the
 errors on the fitting and held-out rows are printed and summed: a profile that needs no normal distribution.
-All on bilinear patches (`--surface bilinear`), as the table of docs/effects.md. Fits that are there (in --work) are not made again.
+All on bilinear patches (`--surface bilinear`). Fits that are there (in --work) are not made again; a fit takes minutes of one core.
+Results: docs/effects.md, "block-mass".
 """
-import argparse
-import json
 import os
-import sys
 from types import SimpleNamespace
 
 import numpy as np
 
-from rest_study import SURFACE, talus, write
+from campaign_fits import add_fit_options, errors_of, fitted, name_of
+from files import read_json
+from program import list_of, parser_of
 
 GROUND = "theta_scale,psi_scale,En50,Et50"
 
 
 def calibrated(o, campaign, name, numbers, free, seed):
     """The folder of a fit that starts with these numbers of block-mass; `free` are fitted, the others held."""
-    out = os.path.join(o.work, f"{os.path.basename(os.path.normpath(campaign))}-{name}-{seed}-{o.trials}-{o.starts}")
-    text = "[effects.block-mass]\n" + "".join(f"{k} = {v:g}\n" for k, v in numbers.items()) if numbers else ""
-    if not os.path.exists(os.path.join(out, "fitted.toml")):
-        keys = ",".join([GROUND] + [f"effects.block-mass.{key}" for key in free])
-        talus(o, "calibrate", os.path.join(campaign, "campaign.toml"), "-o", out, "--parameters", write(out + ".toml", text), "--surface", SURFACE,
-              "--fit", keys, "--seed", seed, "--trials", o.trials, "--starts", o.starts, "--threads", o.threads, "-q")
-    return out
-
-
-def errors_of(o, campaign, out):
-    scored = json.loads(talus(o, "score", os.path.join(campaign, "campaign.toml"), "--parameters", os.path.join(out, "fitted.toml"),
-                              "--surface", SURFACE, "--trials", 400, "--seed", 1000, "--threads", o.threads, "--json", "-q"))
-    return scored["fit"]["score"], scored["holdout"]["score"]
+    start = "[effects.block-mass]\n" + "".join(f"{k} = {v:g}\n" for k, v in numbers.items()) if numbers else ""
+    keys = ",".join([GROUND] + [f"effects.block-mass.{key}" for key in free])
+    return fitted(o, campaign, name, start, seed, "--fit", keys)
 
 
 def exponents(o, campaign):
     """Prints the fits of one campaign; returns value and sd of each exponent, means over the seeds."""
-    name, found = os.path.basename(os.path.normpath(campaign)), {key: [] for key in o.numbers}
+    name, found = name_of(campaign), {key: [] for key in o.numbers}
     start = {key: 0.0 for key in o.numbers} | {"reference_diameter": o.reference}
     for seed in o.seeds:
         without = errors_of(o, campaign, calibrated(o, campaign, "off", {}, [], seed))
         out = calibrated(o, campaign, "-".join(o.numbers), start, o.numbers, seed)
         fit, holdout = errors_of(o, campaign, out)
-        for p in json.load(open(os.path.join(out, "calibration.json")))["parameters"]:
+        for p in read_json(f"{out}/calibration.json")["parameters"]:
             key = p["key"].removeprefix("effects.block-mass.")
             if key not in found:
                 continue
@@ -80,30 +70,24 @@ def profile(o):
             runs = [errors_of(o, campaign, calibrated(o, campaign, f"at{exponent:g}", numbers, [], seed)) for seed in o.seeds]
             fit, holdout = np.mean(runs, axis=0)
             total.fit, total.holdout = total.fit + fit, total.holdout + holdout
-            cells.append(f"{os.path.basename(os.path.normpath(campaign))} {fit:.3f} {holdout:.3f}")
+            cells.append(f"{name_of(campaign)} {fit:.3f} {holdout:.3f}")
         print(f"{exponent:6.2f}  {'  '.join(cells)}  sum {total.fit:.3f} {total.holdout:.3f}", flush=True)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    numbers = lambda kind: lambda text: [kind(x) for x in text.split(",")]
+    parser = parser_of(__doc__, work="size-study", threads=1)
     parser.add_argument("campaigns", nargs="+")
-    parser.add_argument("--numbers", type=numbers(str), default=["roughness", "stiffness"])
-    parser.add_argument("--seeds", type=numbers(int), default=[1, 2, 3])
-    parser.add_argument("--trials", type=int, default=32)
-    parser.add_argument("--starts", type=int, default=1)
-    parser.add_argument("--reference", type=float, default=1.2)
-    parser.add_argument("--grid", type=numbers(float), default=[])
-    parser.add_argument("--talus", default="build/release/talus")
-    parser.add_argument("--work", default="size-study")
-    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--numbers", type=list_of(str), default=["roughness", "stiffness"])
+    parser.add_argument("--seeds", type=list_of(int), default=[1, 2, 3])
+    add_fit_options(parser)
+    parser.add_argument("--reference", type=float, default=1.2, help="diameter [m]")
+    parser.add_argument("--grid", type=list_of(float), default=[], help="roughness exponents to hold")
     o = parser.parse_args()
     os.makedirs(o.work, exist_ok=True)
     join(o, [exponents(o, campaign) for campaign in o.campaigns])
     if o.grid:
         profile(o)
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

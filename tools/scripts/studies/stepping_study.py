@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Far runout of the reference scene `slope` by steps of time, as the step falls, beside Talus and the reference.
+"""Are the far runouts of Talus right, or those of the reference? Those of a third program, as its step of time falls.
 
   tools/scripts/studies/stepping_study.py [--talus build/release/talus] [--data ../shared/data] [--trajectories 20000]
 
@@ -7,7 +7,7 @@ stepping_study.cc, which shares no code with Talus, computes the model of docs/p
 bilinear patches as Talus here: flights exact at the ends of the steps (`parabola`), and flights by the semi-implicit
 method of Euler (`euler`). Printed per source: the 95th percentile of the runout of stops with its standard error
 (bootstrap), impacts, seconds and metres of a trajectory, the share that reaches the lowest screen. Five minutes of one
-processor. Needs g++, numpy and GDAL's python binding.
+core. Results: docs/validation.md, "Which of the two is right". Needs g++, numpy and GDAL's python binding.
 """
 import argparse
 import math
@@ -17,14 +17,14 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from osgeo import gdal, ogr
+from osgeo import gdal
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "checks"))
 import compare_reference as reference  # noqa: E402
+from files import features  # noqa: E402
+from program import parser_of  # noqa: E402
 
-gdal.UseExceptions()
-ogr.UseExceptions()
 METHODS = [("parabola", 5), ("parabola", 2.5), ("parabola", 1), ("euler", 2.5)]  # step [ms]
 
 
@@ -77,11 +77,10 @@ def of_reference(scene):
 
 def of_talus(scene, work, talus, trajectories):
     (trials,) = np.unique(scene.sources["trajectories"])
-    options = argparse.Namespace(talus=talus, trials_factor=trajectories / trials, threads=2, surface="bilinear")
+    options = argparse.Namespace(talus=Path(talus), trials_factor=trajectories / trials, threads=2, surface="bilinear")
     reference.run_talus(scene, work, options)
-    stops = ogr.Open(str(work / "out/stops.gpkg"))
     rows = [(f["source"], f["block"], f.geometry().GetX(), f.geometry().GetY(), f["seconds"], f["length_m"], f["impacts"])
-            for f in stops.GetLayer(0)]
+            for f in features(work / "out/stops.gpkg")]
     table = np.rec.fromrecords(rows, names="source,block,x,y,seconds,length,impacts")
     passages = reference.read_columns(work / "out/screens.csv")
     passed = passed_screen(passages, ("source", "block"), zip(table["source"].tolist(), table["block"].tolist()))
@@ -101,8 +100,7 @@ def print_rows(scene, name, sources, table, passed):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--talus", type=Path, default=Path("build/release/talus"))
+    parser = parser_of(__doc__)
     parser.add_argument("--data", type=Path, default=Path("../shared/data"))
     parser.add_argument("--trajectories", type=int, default=20000, help="per source")
     o = parser.parse_args()

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Design values of the paper's Table 4 on a stand-in for its slope, for values of c from 0.1 to 1.
+"""Which c gives the design values of the paper's Table 4? On a stand-in for its slope, for values of c from 0.1 to 1.
 
   tools/scripts/studies/table4_study.py [--talus build/release/talus] [--blocks 20000] [--angle 38]
 
@@ -11,20 +11,20 @@ screens 70 m and 140 m below the release (the paper does not give their places).
 
     SEL = 1/2 V rho gVol (v95 gTr gDp)^2        h_i = h95 gTr gDp + 0.7 m
 
-with V of a block of 1.4 m, gVol = gDp = 1.02 (high confidence) and gTr = 1.02 or 1.10 (the paper leaves it open). Printed: each value
-with both gTr, and its difference from Table 4. --angle: another angle of the upper slope. Needs numpy and GDAL's python binding. Two minutes of one processor.
+with V of a block of 1.4 m, gVol = gDp = 1.02 (high confidence) and gTr = 1.02 or 1.10 (the paper leaves it open). Printed: each
+value with both gTr, and its difference from Table 4. --angle: another angle of the upper slope. Two minutes of one core. Results:
+docs/barrier.md, "Energies and jumps for c from 0.1 to 1". Needs numpy and GDAL's python binding.
 """
-import argparse
-import csv
 import math
-import subprocess
 import tempfile
 from pathlib import Path
 
 import numpy as np
-from osgeo import gdal, ogr, osr
+from osgeo import gdal
 
-ROOT = Path(__file__).resolve().parents[3]
+from files import box, read_table, write_layer, write_raster, write_text
+from program import ROOT, parser_of, talus
+
 COEFFICIENTS = (0.1, 0.15, 0.2, 0.25, 0.35, 0.5, 0.7, 1.0)
 TABLE4 = {("1", "2D"): (4.02, 1070), ("1", "3D"): (4.66, 1020), ("2", "2D"): (4.16, 1150), ("2", "3D"): (4.91, 1320)}  # m, kJ
 START, SCREENS, ROAD, CELL, WIDTH = 20.0, (110.0, 199.0), (212.0, 217.0), 2.0, 400.0  # m along the profile
@@ -32,23 +32,16 @@ ANGLE = 38.0  # of the upper slope of data/profile [degrees]
 MASS = 2700 * math.pi / 6 * 1.4**3  # of the design block [kg]
 REACH, FREEBOARD, VOLUME = (1.02 * 1.02, 1.10 * 1.02), 0.7, 1.02  # gTr gDp; half the block [m]; gVol
 WEST, SOUTH = 2600000.0, 1200000.0
-gdal.UseExceptions()
-ogr.UseExceptions()
-
-
-def call(*arguments):
-    subprocess.run([str(a) for a in arguments], check=True)
 
 
 def first_crossings(path, screens):
     """Speeds and jump heights of the first crossing of each block, by screen."""
     seen, rows = set(), {name: [] for name in screens}
-    with open(path, encoding="utf-8", newline="") as file:
-        for row in csv.DictReader(file):
-            key = row["screen"], row["source"], row["block"]
-            if key not in seen:
-                seen.add(key)
-                rows[row["screen"]].append((float(row["speed_ms"]), float(row["jump_height_m"])))
+    for row in read_table(path):
+        key = row["screen"], row["source"], row["block"]
+        if key not in seen:
+            seen.add(key)
+            rows[row["screen"]].append((float(row["speed_ms"]), float(row["jump_height_m"])))
     return [np.array(rows[name]).T for name in screens]
 
 
@@ -61,32 +54,14 @@ def nodes_of(angle):
 
 def in_2d(o, work, c):
     rows = [f"{x:.10g},{z:.10g}" for x, z in zip(*nodes_of(o.angle))]
-    (work / "slope.csv").write_text("x,z\n" + "\n".join(rows) + "\n", encoding="utf-8")
-    (work / "profile.toml").write_text(
-        f'profile = "slope.csv"\ntrajectories = {o.blocks}\n[sources]\nx = {START}\nrelease_height = 2\n'
+    write_text(work / "slope.csv", "x,z\n" + "\n".join(rows) + "\n")
+    write_text(
+        work / "profile.toml", f'profile = "slope.csv"\ntrajectories = {o.blocks}\n[sources]\nx = {START}\nrelease_height = 2\n'
         f"[blocks]\ndiameter = [1.0, 1.4]\ndensity = 2700\n[model]\ndeformation_coefficient = {c}\n"
         f'[ground]\ndefault = "firm-talus-2d"\n[ground.zones.road]\nx = {list(ROAD)}\npreset = "forest-road-2d"\n'
-        f"[screens]\nx = {list(SCREENS)}\n[output]\ntrajectories = 0\n", encoding="utf-8")
-    call(o.talus, "profile", work / "profile.toml", "-o", work / "out2", "--overwrite", "-q")
+        f"[screens]\nx = {list(SCREENS)}\n[output]\ntrajectories = 0\n")
+    talus(o, "profile", work / "profile.toml", "-o", work / "out2", "--overwrite", "-q")
     return first_crossings(work / "out2/screens.csv", [f"{x:g}" for x in SCREENS])
-
-
-def write_layer(path, shapes, field):
-    srs = osr.SpatialReference()
-    srs.ImportFromEPSG(2056)
-    file = ogr.GetDriverByName("GPKG").CreateDataSource(str(path))
-    layer = file.CreateLayer(path.stem, srs, ogr.wkbUnknown)
-    layer.CreateField(ogr.FieldDefn(field, ogr.OFTString))
-    for name, wkt in shapes:
-        feature = ogr.Feature(layer.GetLayerDefn())
-        feature.SetField(field, name)
-        feature.SetGeometry(ogr.CreateGeometryFromWkt(wkt))
-        layer.CreateFeature(feature)
-
-
-def strip(x_from, x_to):
-    a, b, low, high = WEST + x_from, WEST + x_to, SOUTH, SOUTH + WIDTH
-    return f"POLYGON (({a} {low},{b} {low},{b} {high},{a} {high},{a} {low}))"
 
 
 def make_slope(work, angle):
@@ -94,26 +69,21 @@ def make_slope(work, angle):
     node_x, node_z = nodes_of(angle)
     columns, rows = int(node_x[-1] / CELL), int(WIDTH / CELL)
     z = np.interp((np.arange(columns) + 0.5) * CELL, node_x, node_z)
-    dem = gdal.GetDriverByName("GTiff").Create(str(work / "dem.tif"), columns, rows, 1, gdal.GDT_Float64)
-    dem.SetGeoTransform((WEST, CELL, 0, SOUTH + WIDTH, 0, -CELL))
-    srs = osr.SpatialReference()
-    srs.ImportFromEPSG(2056)
-    dem.SetProjection(srs.ExportToWkt())
-    dem.GetRasterBand(1).WriteArray(np.tile(z, (rows, 1)))
-    dem = None
-    write_layer(work / "start.gpkg", [("start", f"POINT ({WEST + START} {SOUTH + WIDTH / 2})")], "name")
-    write_layer(work / "screens.gpkg", [(f"{x:g}", f"LINESTRING ({WEST + x} {SOUTH + 2},{WEST + x} {SOUTH + WIDTH - 2})")
-                                        for x in SCREENS], "id")
-    write_layer(work / "zones.gpkg", [("road", strip(*ROAD)), ("lower", strip(ROAD[1], node_x[-1]))], "zone")
+    write_raster(work / "dem.tif", np.tile(z, (rows, 1)), (WEST, SOUTH + WIDTH), CELL, kind=gdal.GDT_Float64)
+    write_layer(work / "start.gpkg", [(f"POINT ({WEST + START} {SOUTH + WIDTH / 2})", "start")], [("name", str)])
+    write_layer(work / "screens.gpkg", [(f"LINESTRING ({WEST + x} {SOUTH + 2},{WEST + x} {SOUTH + WIDTH - 2})", f"{x:g}")
+                                        for x in SCREENS], [("id", str)])
+    strips = ((ROAD[0], ROAD[1], "road"), (ROAD[1], node_x[-1], "lower"))
+    write_layer(work / "zones.gpkg", [(box(WEST + a, SOUTH, WEST + b, SOUTH + WIDTH), name) for a, b, name in strips], [("zone", str)])
 
 
 def in_3d(o, work, c):
-    (work / "run.toml").write_text(
-        f'dem = "dem.tif"\ntrajectories = {o.blocks}\n[sources]\nfile = "start.gpkg"\nrelease_height = 2\n[blocks]\n'
+    write_text(
+        work / "run.toml", f'dem = "dem.tif"\ntrajectories = {o.blocks}\n[sources]\nfile = "start.gpkg"\nrelease_height = 2\n[blocks]\n'
         f"diameter = [1.0, 1.4]\ndensity = 2700\n[model]\ndeformation_coefficient = {c}\n[ground]\nfile = \"zones.gpkg\"\n"
         'field = "zone"\ndefault = "upper-talus-3d"\n[ground.zones.road]\npreset = "forest-road-3d"\n[ground.zones.lower]\n'
-        'preset = "lower-talus-3d"\n[screens]\nfile = "screens.gpkg"\n[output]\ntrajectories = 0\n', encoding="utf-8")
-    call(o.talus, "run", work / "run.toml", "-o", work / "out3", "--overwrite", "-q")
+        'preset = "lower-talus-3d"\n[screens]\nfile = "screens.gpkg"\n[output]\ntrajectories = 0\n')
+    talus(o, "run", work / "run.toml", "-o", work / "out3", "--overwrite", "-q")
     return first_crossings(work / "out3/screens.csv", [f"{x:g}" for x in SCREENS])
 
 
@@ -124,12 +94,10 @@ def design(speeds, heights):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--talus", type=Path, default=Path("build/release/talus"))
+    parser = parser_of(__doc__)
     parser.add_argument("--blocks", type=int, default=20000)
     parser.add_argument("--angle", type=float, default=ANGLE, help="of the upper slope [degrees]: 30 to 45")
     o = parser.parse_args()
-    o.talus = o.talus.resolve()
     print("screen model    c   blocks  mean v   v95    mean h   h95     SEL [kJ]: gTr 1.02, 1.10, Table 4         "
           "h_i [m]: gTr 1.02, 1.10, Table 4")
     with tempfile.TemporaryDirectory(prefix="talus-table4-") as folder:

@@ -1,25 +1,25 @@
 #!/usr/bin/python3
-"""Where the trapped blocks of a run lie: shares in and beside the pits and dammed cells of the DEM (docs/physics.md, "End of a trajectory").
+"""Do the trapped blocks of a run lie in the pits and dammed cells of the DEM? Shares in and beside them.
 
   talus run --dem DEM --sources LAYER -o out
   talus check --dem DEM --sources LAYER --pits pits.gpkg
   tools/scripts/studies/trapped_study.py DEM out pits.gpkg
 
-Beside: in one of the eight cells around it. What lies beside both counts as beside a pit.
+Beside: in one of the eight cells around it. What lies beside both counts as beside a pit. Seconds. Results:
+docs/physics.md, "End of a trajectory".
 """
 import sys
 
 import numpy as np
-from osgeo import gdal, ogr
+from osgeo import gdal
 
-gdal.UseExceptions()
-ogr.UseExceptions()
+from files import features
 
 
 def cells_of(path, transform, field, value):
     """Column and row of each feature whose field has the value."""
-    file, cells = ogr.Open(path), []
-    for feature in file.GetLayer(0):
+    cells = []
+    for feature in features(path):
         if feature[field] == value:
             place = feature.GetGeometryRef()
             cells.append([(place.GetX() - transform[0]) / transform[1], (place.GetY() - transform[3]) / transform[5]])
@@ -33,7 +33,9 @@ def near(stops, cells, reach):
 
 
 def main():
-    dem, run, pits_file = sys.argv[1:4]
+    if len(sys.argv) != 4:
+        sys.exit(__doc__)
+    dem, run, pits_file = sys.argv[1:]
     transform = gdal.Open(dem).GetGeoTransform()
     stops = cells_of(run + "/stops.gpkg", transform, "end", "trapped")
     pits, dammed = (cells_of(pits_file, transform, "kind", kind) for kind in ("pit", "dammed"))

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Whether the verdict of `talus diagnose` hangs on luck: one campaign in ten ways. docs/diagnosis-results.md.
+"""Does the verdict of `talus diagnose` hang on luck? One campaign in ten ways.
 
   tools/scripts/studies/verdict_study.py CAMPAIGN.toml [--talus build/release/talus] [--work verdicts] [-- OPTIONS of diagnose]
 
@@ -7,16 +7,17 @@ Five seeds; the rows of every table in two other orders; without half of the hel
 (copies under other names, before the rest); one thread. A diagnosis that is there already is not run again.
 Prints the verdict and figures of each, and in how many the verdict, the names and the figures are those of the first: a
 figure agrees if it lies in the first one's 95 % interval. Where the same seed and fitting rows are used, it must be equal.
+Ten times as long as one diagnosis (minutes). Results: docs/diagnosis-results.md, "Ten ways".
 """
-import argparse
 import csv
-import json
 import os
 import random
 import shutil
-import subprocess
 import sys
 import tomllib
+
+from files import read_json, read_table
+from program import parser_of, talus
 
 TABLES = ("blocks", "stops", "passages", "samples")
 
@@ -29,10 +30,7 @@ class Tables:
         with open(campaign, "rb") as file:
             self.names = {t: n for t, n in tomllib.load(file).items() if t in TABLES}
         self.toml = os.path.basename(campaign)
-        self.rows = {}
-        for table, name in self.names.items():
-            with open(f"{self.folder}/{name}", encoding="utf-8") as file:
-                self.rows[table] = list(csv.DictReader(file))
+        self.rows = {table: read_table(f"{self.folder}/{name}") for table, name in self.names.items()}
         self.held_out = [b["id"] for b in self.rows["blocks"] if b.get("holdout") == "1"]
 
     def write(self, folder, rows):
@@ -71,11 +69,10 @@ def variants(tables):
     yield "one thread", tables.rows, ["--threads", "1"]
 
 
-def diagnosed(talus, campaign, out, options):
+def diagnosed(o, campaign, out, options):
     if not os.path.exists(f"{out}/diagnosis.json"):
-        subprocess.run([talus, "diagnose", campaign, "-o", out, "-q", *options], check=True)
-    with open(f"{out}/diagnosis.json", encoding="utf-8") as file:
-        return json.load(file)
+        talus(o, "diagnose", campaign, "-o", out, "-q", *options)
+    return read_json(f"{out}/diagnosis.json")
 
 
 def report(name, found):
@@ -87,10 +84,8 @@ def report(name, found):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = parser_of(__doc__, work="verdicts")
     parser.add_argument("campaign")
-    parser.add_argument("--talus", default="build/release/talus")
-    parser.add_argument("--work", default="verdicts")
     end = sys.argv.index("--") if "--" in sys.argv else len(sys.argv)
     given, more = parser.parse_args(sys.argv[1:end]), sys.argv[end + 1:]
     tables = Tables(given.campaign)
@@ -99,7 +94,7 @@ def main():
     for name, rows, options in variants(tables):
         folder = f"{given.work}/{name.replace(' ', '_')}"
         campaign = tables.write(f"{folder}/campaign", rows)
-        found = diagnosed(given.talus, campaign, f"{folder}/out", [*more, *options])
+        found = diagnosed(given, campaign, f"{folder}/out", [*more, *options])
         report(name, found)
         all_found.append(found)
     first = all_found[0]

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Shows that the hazard of an object of some width does not depend on the cell: the valley at cells of 1, 2 and 5 m.
+"""Does the hazard of an object of some width depend on the size of the cells? The valley at cells of 1, 2 and 5 m.
 
-  tools/scripts/studies/width_study.py [--talus build/release/talus] [--work DIR] [--width 10] [--trajectories 50]
+  tools/scripts/studies/width_study.py [--talus build/release/talus] [--work DIR] [--width 10] [--trajectories 25]
                    [--points 4] [--objects 400] [--own-terrain] [-o width_study.png]
 
 The terrain is that of data/valley: its surface, bilinear between the centres of its 4 m cells, read at the centres of
@@ -19,22 +19,19 @@ further such places); the frequency of passages and of passages above 300 kJ, as
 spread of the differences in units of the standard errors (1 is noise alone). Table 2: against `--objects`, discs of that width at
 `--objects` random places: the map against all hits, and above 300 kJ against the energy where the block enters the disc and the
 largest while it touches it.
-Needs python3-numpy, python3-gdal; with -o python3-matplotlib.
+Some minutes. Results: docs/hazard.md, "Tests of the width". Needs python3-numpy, python3-gdal; with -o python3-matplotlib.
 """
-import argparse
-import csv
-import json
 import math
-import os
-import subprocess
 import tempfile
 from pathlib import Path
 
 import numpy as np
-from osgeo import gdal, ogr, osr
+from osgeo import gdal
 
-gdal.UseExceptions()
-VALLEY = Path(__file__).resolve().parents[3] / "data" / "valley"
+from files import features, read_bands, read_json, read_table, write_layer, write_raster
+from program import ROOT, parser_of, talus
+
+VALLEY = ROOT / "data/valley"
 CELLS = (1, 2, 5)
 SEEDS = (1, 2)
 SCENARIO = """dem = "dem.tif"
@@ -67,13 +64,6 @@ trajectories = 0
 """
 
 
-def system():
-    srs = osr.SpatialReference()
-    srs.ImportFromEPSG(2056)
-    srs.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
-    return srs
-
-
 def read_between(z, size, cell):
     """The bilinear surface between the centres of cells of one size, at the centres of cells of another."""
     rows, columns = (int(n * size / cell) for n in z.shape)
@@ -87,59 +77,27 @@ def read_between(z, size, cell):
 def write_dem(folder, cell, own_terrain):
     ds = gdal.Open(str(VALLEY / "dem.tif"))
     west, size, _, north, _, _ = ds.GetGeoTransform()
-    z = ds.ReadAsArray().astype(float)
-    z[z == ds.GetRasterBand(1).GetNoDataValue()] = np.nan
+    (z,) = read_bands(VALLEY / "dem.tif")
     out = read_between(z, size, cell) if own_terrain else read_between(read_between(z, size, 5), 5, cell)
-    rows, columns = out.shape
-    file = gdal.GetDriverByName("GTiff").Create(str(folder / "dem.tif"), columns, rows, 1, gdal.GDT_Float32)
-    file.SetGeoTransform((west, cell, 0, north, 0, -cell))
-    file.SetProjection(ds.GetProjection())
-    file.GetRasterBand(1).SetNoDataValue(-9999)
-    file.GetRasterBand(1).WriteArray(np.where(np.isnan(out), -9999, out).astype(np.float32))
-
-
-def write_layer(path, kind, rows, fields):
-    """Rows of (geometry, values)."""
-    path.unlink(missing_ok=True)
-    file = ogr.GetDriverByName("GPKG").CreateDataSource(str(path))
-    layer = file.CreateLayer(path.stem, system(), kind)
-    for name, of in fields:
-        layer.CreateField(ogr.FieldDefn(name, of))
-    layer.StartTransaction()
-    for geometry, values in rows:
-        feature = ogr.Feature(layer.GetLayerDefn())
-        feature.SetGeometry(geometry)
-        for (name, _), value in zip(fields, values):
-            feature[name] = value
-        layer.CreateFeature(feature)
-    layer.CommitTransaction()
-
-
-def rows_of(path, read_row):
-    """What `read_row` returns for each feature of the first layer."""
-    file = ogr.Open(str(path))  # must outlive its layer
-    return [read_row(feature) for feature in file.GetLayer()]
+    write_raster(folder / "dem.tif", np.where(np.isnan(out), -9999, out), (west, north), cell, srs=ds.GetSpatialRef(), nodata=-9999)
 
 
 def write_points(o):
     """Release points of the valley's own run, `--points` of each source cell, with frequency and diameters."""
-    cliffs = dict(rows_of(VALLEY / "cliffs.shp", lambda f: (f["name"], (f["frequency"], f["diameter_m"], f["diameter_1"]))))
-    run(o, VALLEY / "scenario.toml", o.work / "base", "--trajectories", str(o.points))
-    released = rows_of(o.work / "base" / "stops.gpkg", lambda f: (f["feature"], f["x_release"], f["y_release"]))
+    cliffs = {f["name"]: (f["frequency"], f["diameter_m"], f["diameter_1"]) for f in features(VALLEY / "cliffs.shp")}
+    run(o, VALLEY / "scenario.toml", o.work / "base", "--trajectories", o.points)
+    released = [(f["feature"], f["x_release"], f["y_release"]) for f in features(o.work / "base" / "stops.gpkg")]
     count = {name: sum(name == n for n, _, _ in released) for name in cliffs}
-    rows = []
+    shapes = []
     for name, x, y in released:
-        point = ogr.Geometry(ogr.wkbPoint)
-        point.AddPoint_2D(x, y)
         frequency, low, high = cliffs[name]
-        rows.append((point, (frequency / count[name], low, high)))
-    write_layer(o.work / "points.gpkg", ogr.wkbPoint, rows,
-                [(name, ogr.OFTReal) for name in ("frequency", "diameter_min", "diameter_max")])
+        shapes.append((f"POINT ({x!r} {y!r})", frequency / count[name], low, high))
+    write_layer(o.work / "points.gpkg", shapes, [(name, float) for name in ("frequency", "diameter_min", "diameter_max")])
 
 
 def run(o, scenario, out, *more):
     if not (out / "run.json").exists():
-        subprocess.run([o.talus, "run", str(scenario), "-o", str(out), "-q", *more], check=True)
+        talus(o, "run", scenario, "-o", out, "-q", *more)
 
 
 def make_runs(o):
@@ -153,13 +111,6 @@ def make_runs(o):
             run(o, scenario, folder / f"seed{seed}")
 
 
-def read(path, band=1):
-    ds = gdal.Open(str(path))
-    a = ds.GetRasterBand(band).ReadAsArray().astype(float)
-    a[a == ds.GetRasterBand(band).GetNoDataValue()] = np.nan
-    return a
-
-
 def at_places(a, cell):
     """Values at the centres of the 5 m cells."""
     centres = lambda n: ((np.arange(n) + 0.5) * 5 / cell).astype(int)
@@ -171,14 +122,14 @@ class Maps:
 
     def __init__(self, o, cell, seed, width, *more):
         out = o.work / f"cell{cell}" / f"seed{seed}"
-        options = ["--width", str(width)] if width else []
-        subprocess.run([o.talus, "hazard", str(out), "-q", "--overwrite", *options, *more], check=True)
+        options = ["--width", width] if width else []
+        talus(o, "hazard", out, "-q", "--overwrite", *options, *more)
         self.out = out
-        self.classes = at_places(read(out / "hazard_class.tif"), cell)
-        self.decided = at_places(read(out / "hazard_class.tif", 4), cell) == 0
+        classes = read_bands(out / "hazard_class.tif")
+        self.classes, self.decided = at_places(classes[0], cell), at_places(classes[3], cell) == 0
         self.value, self.error = [], []
         for name, invert in (("annual_frequency", False), ("return_period_300", True)):
-            value, low, high = (at_places(read(out / f"{name}.tif", band), cell) for band in (1, 2, 3))
+            value, low, high = (at_places(band, cell) for band in read_bands(out / f"{name}.tif")[:3])
             if invert:
                 value, low, high = (np.nan_to_num(1 / a) for a in (value, high, low))
             self.value.append(value)
@@ -212,12 +163,14 @@ def print_comparisons(o):
         maps = {(cell, seed): Maps(o, cell, seed, width) for cell in CELLS for seed in SEEDS}
         kept[width] = maps
         print(f"\n| {'object of %g m' % width if width else 'the cell as object'} | same class | places | same where decided | places "
-              "| low or higher | places | whole map, residual as none | frequency: ratio | spread | above 300 kJ: ratio | spread |\n" + "| --- " * 12 + "|")
+              "| low or higher | places | whole map, residual as none | frequency: ratio | spread | above 300 kJ: ratio | spread |\n"
+              + "| --- " * 12 + "|")
         pairs = [((a, 1), (b, 1)) for a, b in ((1, 2), (2, 5), (1, 5))] + [((c, 1), (c, 2)) for c in CELLS]
         for (a, s), (b, t) in pairs:
             same, places, sure, told, low, lows, whole, ratio, spread, ratio300, spread300 = compare(maps[a, s], maps[b, t])
             what = f"{a} m and {b} m" if a != b else f"{a} m, two seeds"
-            print(f"| {what} | {100 * same:.1f} % | {places} | {100 * sure:.1f} % | {told} | {100 * low:.1f} % | {lows} | {100 * whole:.1f} % | {ratio:.3f} | {spread:.2f} | {ratio300:.3f} | {spread300:.2f} |")
+            print(f"| {what} | {100 * same:.1f} % | {places} | {100 * sure:.1f} % | {told} | {100 * low:.1f} % | {lows} | "
+                  f"{100 * whole:.1f} % | {ratio:.3f} | {spread:.2f} | {ratio300:.3f} | {spread300:.2f} |")
     return kept
 
 
@@ -229,28 +182,30 @@ def write_discs(o, maps):
     for i in rng.permutation(rows.size)[:o.objects]:
         x, y = 2650000 + 5 * (columns[i] + 0.5), 1171040 - 5 * (rows[i] + 0.5)
         ring = ",".join(f"{x + o.width / 2 * math.cos(a):.4f} {y + o.width / 2 * math.sin(a):.4f}" for a in np.linspace(0, 2 * math.pi, 65))
-        found.append((ogr.CreateGeometryFromWkt(f"POLYGON(({ring}))"), (f"disc {i}",), (rows[i], columns[i])))
-    write_layer(o.work / "discs.gpkg", ogr.wkbPolygon, [f[:2] for f in found], [("name", ogr.OFTString)])
+        found.append((f"POLYGON(({ring}))", f"disc {i}", (rows[i], columns[i])))
+    write_layer(o.work / "discs.gpkg", [f[:2] for f in found], [("name", str)])
     return [f[2] for f in found]
 
 
 def objects_of(out):
-    rows = list(csv.DictReader(open(out / "objects.csv", encoding="utf-8")))
     number = lambda row, key: float(row[key] or "nan")
-    return [[(number(r, k), (number(r, k + "_upper") - number(r, k + "_lower")) / 3.92) for k in ("frequency", "entry_300", "frequency_300")] for r in rows]
+    return [[(number(r, k), (number(r, k + "_upper") - number(r, k + "_lower")) / 3.92) for k in ("frequency", "entry_300", "frequency_300")]
+            for r in read_table(out / "objects.csv")]
 
 
 def print_objects(o, maps):
     places = write_discs(o, maps)
-    print("\n| objects against the map | objects | hits: ratio of the sums | spread | above 300 kJ at entry: ratio | spread | above 300 kJ at most: ratio | spread |\n| --- | --- | --- | --- | --- | --- | --- | --- |")
+    print("\n| objects against the map | objects | hits: ratio of the sums | spread | above 300 kJ at entry: ratio | spread "
+          "| above 300 kJ at most: ratio | spread |\n| --- | --- | --- | --- | --- | --- | --- | --- |")
     for cell in CELLS:
-        here = Maps(o, cell, 1, o.width, "--objects", str(o.work / "discs.gpkg"))
+        here = Maps(o, cell, 1, o.width, "--objects", o.work / "discs.gpkg")
         hit, line = objects_of(here.out), []
         for quantity, column in ((0, 0), (1, 1), (1, 2)):
             pairs = [(here.value[quantity][p], h[column][0], h[column][1]) for p, h in zip(places, hit)]
             m, f, e = np.transpose([p for p in pairs if np.isfinite(p).all()])
             line += [m.sum() / f.sum(), float(np.sqrt(np.mean(((m - f) / e)[f > 0] ** 2)))]
-        print(f"| discs of {o.width:g} m, cells of {cell} m | {len(places)} | {line[0]:.3f} | {line[1]:.2f} | {line[2]:.3f} | {line[3]:.2f} | {line[4]:.3f} | {line[5]:.2f} |")
+        print(f"| discs of {o.width:g} m, cells of {cell} m | {len(places)} | "
+              + " | ".join(f"{ratio:.3f} | {spread:.2f}" for ratio, spread in zip(line[::2], line[1::2])) + " |")
 
 
 def draw(o, kept):
@@ -270,9 +225,7 @@ def draw(o, kept):
 
 
 def main():
-    ap = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    ap.add_argument("--talus", default="build/release/talus")
-    ap.add_argument("--work", type=Path, default=Path(tempfile.gettempdir()) / "width_study")
+    ap = parser_of(__doc__, work=Path(tempfile.gettempdir()) / "width_study")
     ap.add_argument("--width", type=float, default=10)
     ap.add_argument("--trajectories", type=int, default=25)
     ap.add_argument("--points", type=int, default=4)
@@ -284,8 +237,9 @@ def main():
     write_points(o)
     make_runs(o)
     for cell in CELLS:
-        record = json.loads((o.work / f"cell{cell}" / "seed1" / "run.json").read_text())
-        print(f"{cell} m: {record['released']} blocks, {record['trajectory_metres_plan'] / record['released']:.1f} m in plan each, ends {record['ends']}")
+        record = read_json(o.work / f"cell{cell}" / "seed1" / "run.json")
+        print(f"{cell} m: {record['released']} blocks, {record['trajectory_metres_plan'] / record['released']:.1f} m in plan each, "
+              f"ends {record['ends']}")
     kept = print_comparisons(o)
     print_objects(o, kept[o.width])
     if o.out:

@@ -1,26 +1,24 @@
 #!/usr/bin/python3
-"""What the costliest trajectories take, over random terrains and random parameters within their bounds.
+"""How much time and memory can a trajectory take? Over random terrains and random parameters within their bounds.
 
   tools/scripts/studies/worst_trajectories.py --sets 60 --seed 12                    the limits of the model at their defaults
   tools/scripts/studies/worst_trajectories.py --sets 40 --seed 2 --highest-limits    up to their highest values
 
 Each set is a terrain of its own (plane, pit, gully, noise, flat, stairs; cells of 0.05 to 100 m) and four blocks at one place.
 Prints the five sets with the most processor time per trajectory: seconds, peak memory of the run [MB], ends, terrain. A set that
-takes more than two minutes is named. Needs talus in PATH or TALUS, numpy and GDAL. docs/physics.md, "End of a trajectory".
+takes more than two minutes is named. Some minutes. Results: docs/physics.md, "End of a trajectory". Needs numpy and GDAL.
 """
-import argparse
-import json
 import math
-import os
 import random
 import subprocess
 import sys
 import tempfile
 
 import numpy as np
-from osgeo import gdal, osr
 
-TALUS = os.environ.get("TALUS", "talus")
+from files import read_json, write_raster, write_text
+from program import parser_of
+
 WEST, NORTH = 2600000.0, 1200300.0
 BLOCKS = 4
 
@@ -43,15 +41,6 @@ def terrain(luck, noise):
     elif kind == "stairs":
         z = np.floor(y / cell / 3) * cell * 3 * slope + 0.0 * x
     return f"{kind}, slope {slope:.3g}, {side} x {side} cells of {cell} m", z - z.min() + 100.0, cell
-
-
-def write_dem(path, z, cell):
-    dem = gdal.GetDriverByName("GTiff").Create(path, z.shape[1], z.shape[0], 1, gdal.GDT_Float32)
-    dem.SetGeoTransform((WEST, cell, 0.0, NORTH, 0.0, -cell))
-    system = osr.SpatialReference()
-    system.ImportFromEPSG(2056)
-    dem.SetProjection(system.ExportToWkt())
-    dem.GetRasterBand(1).WriteArray(z.astype(np.float32))
 
 
 def scenario(luck, number, highest):
@@ -91,7 +80,7 @@ deformation_coefficient = {pick([0.25, 1e-6, 100])}
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = parser_of(__doc__)
     parser.add_argument("--sets", type=int, default=60)
     parser.add_argument("--seed", type=int, default=12)
     parser.add_argument("--highest-limits", action="store_true")
@@ -100,15 +89,13 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for number in range(o.sets):
             name, z, cell = terrain(luck, noise)
-            write_dem(f"{folder}/d.tif", z, cell)
+            write_raster(f"{folder}/d.tif", z, (WEST, NORTH), cell)
             share = luck.choice([0.3, 0.5])
-            with open(f"{folder}/p.csv", "w", encoding="utf-8") as file:
-                file.write(f"x,y\n{WEST + share * z.shape[1] * cell},{NORTH - 0.5 * z.shape[0] * cell}\n")
-            with open(f"{folder}/s.toml", "w", encoding="utf-8") as file:
-                file.write(scenario(luck, number, o.highest_limits))
+            write_text(f"{folder}/p.csv", f"x,y\n{WEST + share * z.shape[1] * cell},{NORTH - 0.5 * z.shape[0] * cell}\n")
+            write_text(f"{folder}/s.toml", scenario(luck, number, o.highest_limits))
             if z.max() > 8900:
                 continue
-            command = [TALUS, "run", f"{folder}/s.toml", "-o", f"{folder}/out", "--overwrite", "--threads", "1", "-q"]
+            command = [o.talus, "run", f"{folder}/s.toml", "-o", f"{folder}/out", "--overwrite", "--threads", "1", "-q"]
             try:
                 done = subprocess.run(command, capture_output=True, text=True, timeout=120)
             except subprocess.TimeoutExpired:
@@ -116,8 +103,7 @@ def main():
                 continue
             if done.returncode not in (0, 1):
                 sys.exit(f"set {number}: {done.stderr}")
-            with open(f"{folder}/out/run.json", encoding="utf-8") as file:
-                run = json.load(file)
+            run = read_json(f"{folder}/out/run.json")
             found.append((run["cpu_seconds"]["simulate"] / BLOCKS, run["peak_memory_mb"], run["ends"], name))
     found.sort(key=lambda row: -row[0])
     print(f"{len(found)} sets of {BLOCKS} trajectories; the costliest:")
