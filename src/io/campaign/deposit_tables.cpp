@@ -6,7 +6,7 @@
 
 #include "campaign_tables.hpp"
 #include "io/gdal/csv_table.hpp"
-#include "io/gdal/layer.hpp"
+#include "io/gdal/idle_features.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/fit/campaign/deposits.hpp"
@@ -143,16 +143,9 @@ Raster<std::uint8_t> mapped_cells(const NamedFile& mapped, const Terrain& terrai
   Layer layer("mapped", mapped.path, terrain);
   std::size_t polygons = 0, marked = 0;
   for_each_feature(layer, [&](const Feature& feature) {
-    const Parts parts = layer.parts(*feature);
-    if (!parts.lines.empty() || !parts.points.empty())
-      throw InputError(layer.label(*feature) + ": is no polygon, must be one: blocks were mapped inside");
-    for (const OGRPolygon& polygon : parts.polygons) {
-      ++polygons;
-      for_each_cell(polygon, grid, false, [&](int column, int row) {
-        cells.at(column, row) = 1;
-        ++marked;
-      });
-    }
+    const Parts parts = layer.polygons(*feature, ": blocks were mapped inside");
+    polygons += parts.polygons.size();
+    marked += mark_cells(parts, 1, terrain, cells).all;
   });
   for (std::string& line : layer.warnings()) warnings.push_back(std::move(line));
   if (marked == 0)
