@@ -22,14 +22,6 @@ constexpr Bounds kStrips{"strips", "1", "number of strips across the slope", 2.0
 constexpr Bounds kStrip{"holdout", "1", "number of a strip", 1.0, 50.0, Bounds::Closed, true};
 constexpr Bounds kClass{"classes", "m", "diameter between two classes", 0.0, 100.0, Bounds::AboveMin};
 
-NamedFile named(TableReader& table, const std::string& key, const std::filesystem::path& base) {
-  const auto text = table.text(key);
-  if (!text) return {};
-  NamedFile file{absolute_path(*text, base), table.where(key, *table.value()->find(key))};
-  check_files({&file}, table.faults());
-  return file;
-}
-
 void check_strips(TableReader& table, const DepositSpec& spec) {
   const auto fault = [&](const char* key, const std::string& rule) {
     table.fault(key, *table.value()->find(key), rule);
@@ -199,13 +191,19 @@ void hold_out_strips(const DepositSpec& spec, MappedDeposits& deposits, std::vec
 
 }  // namespace
 
+NamedFile file_there(TableReader& table, const std::string& key, const std::filesystem::path& base) {
+  const NamedFile file = table.named_file(key, base).value_or(NamedFile());
+  check_files({&file}, table.faults());
+  return file;
+}
+
 DepositSpec read_deposit_spec(TableReader table, const std::filesystem::path& base) {
   DepositSpec spec;
   if (table.value() == nullptr) return spec;
   spec.given = true;
-  spec.table = named(table, "file", base);
-  spec.sources = named(table, "sources", base);
-  spec.mapped = named(table, "mapped", base);
+  spec.table = file_there(table, "file", base);
+  spec.sources = file_there(table, "sources", base);
+  spec.mapped = file_there(table, "mapped", base);
   spec.release_height = table.range("release_height", kDropHeight).value_or(Range{1.0, 1.0});
   spec.strips = static_cast<std::size_t>(table.number("strips", kStrips).value_or(0.0));
   spec.held_out = table.numbers("holdout", kStrip).value_or(std::vector<double>());
