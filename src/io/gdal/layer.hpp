@@ -86,6 +86,13 @@ class Layer {
   const std::vector<Reprojection>& reprojections() const { return transformer_->used(); }
   /// Warnings of the opening, the geometries and the transformation.
   std::vector<std::string> warnings() const;
+  /// Adds these and the transformations to what is read from the layer.
+  template <class Out>
+  void tell(Out& out) const {
+    const std::vector<Reprojection>& used = reprojections();
+    out.reprojections.insert(out.reprojections.end(), used.begin(), used.end());
+    for (std::string& line : warnings()) out.warnings.push_back(std::move(line));
+  }
 
  private:
   std::vector<OGRLayer*> layers_with_geometry() const;

@@ -114,8 +114,7 @@ void read_polygons(const ZoneRequest& request, const Terrain& terrain, ZoneLayer
   out.notes.push_back(fields_note(request.path, {use}, features));
   index.warn_unseen(out.warnings);
   out.presets = index.named_presets();
-  out.reprojections = layer.reprojections();
-  for (std::string& line : layer.warnings()) out.warnings.push_back(std::move(line));
+  layer.tell(out);
 }
 
 /// Throws InputError if a raster gives no cell of the DEM a zone. Warns if it leaves out more than a few.

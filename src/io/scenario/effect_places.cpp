@@ -31,9 +31,7 @@ Raster<std::uint8_t> read_mask(const std::string& name, const std::string& path,
   out.notes.push_back(path + ": " + effect + " acts in " + std::to_string(covered) + " of " +
                       std::to_string(grid.cells()) + " cells");
   idle.warn(out.warnings);
-  const auto& used = layer.reprojections();
-  out.reprojections.insert(out.reprojections.end(), used.begin(), used.end());
-  for (std::string& line : layer.warnings()) out.warnings.push_back(std::move(line));
+  layer.tell(out);
   return mask;
 }
 
