@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <tuple>
 
 #include "campaign_command.hpp"
 #include "progress.hpp"
@@ -23,8 +24,6 @@ struct Options : CampaignCommand {
   std::vector<std::string> share;  // parameters that several campaigns share
   talus::FitOptions how;
 };
-
-constexpr double kSearchShare = 0.7;  // of the progress
 
 std::vector<talus::BlockRuns> runs_of(const talus::Campaign& campaign, const talus::Model& model,
                                       const talus::io::Calibration& c, const std::vector<bool>& blocks) {
@@ -81,23 +80,17 @@ int calibrate(const Options& options) {
   talus::io::OutputFolder& folder = opened.folder;
   c.options = options.how;
   c.start_name = options.parameters.empty() ? std::string(talus::kDefaultPreset) : options.parameters;
-  c.start = options.parameters.empty() ? talus::model_of_preset(campaign, talus::kDefaultPreset)
-                                       : talus::io::read_model(options.parameters, campaign, &c.warnings);
+  c.start = start_model(options.parameters, campaign, c.warnings);
   if (!options.quiet)
     for (const std::string& warning : c.warnings) say("warning", warning);
   choose_parameters(campaign, options.fit, c);
   const std::vector<bool> rows = talus::fitting_rows(campaign);
   Progress progress(Progress::mode_of(options.quiet, options.progress), 0, "fit");
-  c.options.proceed = [&](double share) { return progress.update(kSearchShare * share) && !interrupted(); };
-  c.fit = talus::fit_parameters(campaign, c.start, c.free, rows, c.options);
-  if (c.fit.interrupted) stop_interrupted();
-  c.options.proceed = [&](double share) {
-    return progress.update(kSearchShare + (1.0 - kSearchShare) * share) && !interrupted();
-  };
-  c.uncertainty = talus::uncertainty_of({campaign, c.start, c.free, rows}, c.options, {}, c.fit);
-  if (c.uncertainty.interrupted) stop_interrupted();
+  std::tie(c.fit, c.uncertainty) =
+      fit_with_uncertainty({campaign, c.start, c.free, rows}, c.options, 1.0,
+                           [&](double share) { return progress.update(share) && !interrupted(); });
   score_both(campaign, c);
-  for (const talus::io::BeforeAfter& e : c.errors) OpenedCampaign::warn(options, c, e.after);
+  for (const talus::io::BeforeAfter& e : c.errors) warn_of_scores(options, c, e.after);
 
   talus::io::write_text(folder.temporary() / "calibration.json", talus::io::calibration_json(c));
   talus::io::write_text(folder.temporary() / "report.md", talus::io::calibration_report(c));
@@ -112,6 +105,24 @@ int calibrate(const Options& options) {
 }
 
 }  // namespace
+
+talus::Model start_model(const std::string& file, const talus::Campaign& campaign, std::vector<std::string>& warnings) {
+  return file.empty() ? talus::model_of_preset(campaign, talus::kDefaultPreset)
+                      : talus::io::read_model(file, campaign, &warnings);
+}
+
+std::pair<talus::Fit, talus::Uncertainty> fit_with_uncertainty(const talus::FitProblem& problem, talus::FitOptions how,
+                                                               double share,
+                                                               const std::function<bool(double)>& proceed) {
+  constexpr double kSearch = 0.7;  // its share of the two
+  how.proceed = [&](double done) { return proceed(share * kSearch * done); };
+  talus::Fit fit = talus::fit_parameters(problem, how);
+  if (fit.interrupted) stop_interrupted();
+  how.proceed = [&](double done) { return proceed(share * (kSearch + (1.0 - kSearch) * done)); };
+  talus::Uncertainty uncertainty = talus::uncertainty_of(problem, how, {}, fit);
+  if (uncertainty.interrupted) stop_interrupted();
+  return {std::move(fit), std::move(uncertainty)};
+}
 
 void choose_parameters(const talus::Campaign& campaign, const std::vector<std::string>& keys,
                        talus::io::Calibration& c) {

@@ -4,14 +4,10 @@
 #include "talus/base/text.hpp"
 #include "talus/fit/calibrate/calibrate.hpp"
 #include "talus/fit/calibrate/joint_parameters.hpp"
-#include "talus/fit/calibrate/uncertainty.hpp"
-#include "talus/io/campaign/model_file.hpp"
 #include "talus/io/reports/sites_calibration.hpp"
-#include "talus/simulate/scenario/presets.hpp"
 
 namespace {
 
-constexpr double kSearchShare = 0.7;  // of the progress of a fit
 constexpr std::uint32_t kScoreTrials = 100;
 
 /// The work of one calibration of several campaigns.
@@ -21,20 +17,16 @@ class SitesFit {
       : opened_(opened), progress_(progress), c_(c) {}
 
   /// Reads the model from which each site starts, and chooses what is fitted.
-  void choose(const std::string& start, const std::vector<std::string>& keys, bool quiet) {
+  void choose(const CampaignCommand& command, const std::string& start, const std::vector<std::string>& keys) {
     for (std::size_t i = 0; i < opened_.sites.size(); ++i) {
       const talus::Campaign& campaign = *opened_.sites[i].campaign;
       talus::io::Calibration own;
       own.options = c_.options;
-      own.start = start.empty() ? talus::model_of_preset(campaign, talus::kDefaultPreset)
-                                : talus::io::read_model(start, campaign, &own.warnings);
+      own.start = start_model(start, campaign, own.warnings);
       choose_parameters(campaign, keys, own);
       for (const std::string& zone : own.untouched)
         own.warnings.push_back("zone " + zone + ": too few simulated paths touch it; not fitted");
-      for (const std::string& warning : own.warnings) {
-        c_.warnings.push_back(opened_.sites[i].name + ": " + warning);
-        if (!quiet) say("warning", c_.warnings.back());
-      }
+      for (const std::string& warning : own.warnings) warn(command, c_, opened_.sites[i].name + ": " + warning);
       start_.push_back(std::move(own.start));
       free_.push_back(std::move(own.free));
       rows_.push_back(talus::fitting_rows(campaign));
@@ -42,47 +34,18 @@ class SitesFit {
     }
   }
 
-  /// Each site alone.
-  void fit_apart() {
-    for (std::size_t i = 0; i < names_.size(); ++i) {
-      const std::vector<std::size_t> one{i};
-      talus::JointParameters alone;
-      alone.free = free_[i];
-      alone.sites.emplace_back();
-      for (std::size_t k = 0; k < free_[i].size(); ++k)
-        alone.sites.front().push_back({k, free_[i][k].get, free_[i][k].set});
-      for (talus::Parameter& p : alone.free) p.key = names_[i] + ": " + p.key;
-      fit(talus::FitProblem(*opened_.sites[i].campaign, start_[i], free_[i], rows_[i]), alone, one);
-    }
-  }
-
-  /// All sites by one objective.
-  void fit_together() {
-    const talus::JointParameters joint = talus::joint_parameters(names_, free_, c_.share);
+  /// Fits some sites by one objective.
+  void fit(std::size_t first, std::size_t count) {
+    const talus::JointParameters joint = talus::joint_parameters(std::span(names_).subspan(first, count),
+                                                                 std::span(free_).subspan(first, count), c_.share);
     std::vector<talus::FitSite> sites;
-    std::vector<std::size_t> all;
-    for (std::size_t i = 0; i < names_.size(); ++i) {
-      sites.push_back({names_[i], *opened_.sites[i].campaign, start_[i], rows_[i], joint.sites[i]});
-      all.push_back(i);
-    }
-    fit(talus::FitProblem(std::move(sites), joint.free), joint, all);
-  }
-
-  const std::vector<talus::Model>& start() const { return start_; }
-  const std::vector<talus::Model>& models() const { return models_; }
-
- private:
-  /// @param which  sites of the problem
-  void fit(const talus::FitProblem& problem, const talus::JointParameters& joint,
-           const std::vector<std::size_t>& which) {
-    const double share = static_cast<double>(which.size()) / static_cast<double>(names_.size());
-    talus::FitOptions how = c_.options;
-    how.proceed = [&](double done) { return proceeds(share * kSearchShare * done); };
-    const talus::Fit fitted = talus::fit_parameters(problem, how);
-    if (fitted.interrupted) stop_interrupted();
-    how.proceed = [&](double done) { return proceeds(share * (kSearchShare + (1.0 - kSearchShare) * done)); };
-    const talus::Uncertainty uncertainty = talus::uncertainty_of(problem, how, {}, fitted);
-    if (uncertainty.interrupted) stop_interrupted();
+    for (std::size_t i = first; i < first + count; ++i)
+      sites.push_back(
+          {count > 1 ? names_[i] : "", *opened_.sites[i].campaign, start_[i], rows_[i], joint.sites[i - first]});
+    const talus::FitProblem problem(std::move(sites), joint.free);
+    const double share = static_cast<double>(count) / static_cast<double>(names_.size());
+    const auto [fitted, uncertainty] = fit_with_uncertainty(
+        problem, c_.options, share, [&](double done) { return progress_.update(done_ + done) && !interrupted(); });
     done_ += share;
     c_.cut_short = std::max(c_.cut_short, fitted.score.cut_short);
     for (const talus::Model& model : problem.models(fitted.z)) models_.push_back(model);
@@ -95,15 +58,17 @@ class SitesFit {
                                     p.value(fitted.z[static_cast<Eigen::Index>(k)]),
                                     uncertainty.intervals[k],
                                     uncertainty.identifiable[k]};
-      for (std::size_t i = 0; i < which.size(); ++i)
+      for (std::size_t i = 0; i < count; ++i)
         for (const talus::SiteParameter& own : joint.sites[i])
-          if (own.number == k) out.sites.push_back(names_[which[i]]), out.start = own.get(start_[which[i]]);
+          if (own.number == k) out.sites.push_back(names_[first + i]), out.start = own.get(start_[first + i]);
       c_.parameters.push_back(std::move(out));
     }
   }
 
-  bool proceeds(double share) { return progress_.update(done_ + share) && !interrupted(); }
+  const std::vector<talus::Model>& start() const { return start_; }
+  const std::vector<talus::Model>& models() const { return models_; }
 
+ private:
   const OpenedSites& opened_;
   Progress& progress_;
   talus::io::SitesCalibration& c_;
@@ -128,12 +93,13 @@ int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how
   if (!share.empty()) talus::give_own_streams(opened.sites);
   Progress progress(Progress::mode_of(command.quiet, command.progress), 0, "fit");
   SitesFit work(opened, progress, c);
-  work.choose(start, fit, command.quiet);
-  share.empty() ? work.fit_apart() : work.fit_together();
+  work.choose(command, start, fit);
+  const std::size_t together = share.empty() ? 1 : opened.sites.size();
+  for (std::size_t i = 0; i < opened.sites.size(); i += together) work.fit(i, together);
   talus::ObserveOptions unseen{kScoreTrials, how.seed, talus::kUnseen, how.threads, {}, [] { return !interrupted(); }};
   c.evidence = talus::io::evidence_of_sites(opened.sites, work.start(), work.models(), unseen);
   if (interrupted()) stop_interrupted();
-  warn_of_sites(command, c.evidence, c.warnings);
+  warn_of_sites(command, c, c.evidence);
   talus::io::write_text(opened.folder.temporary() / "calibration.json", talus::io::sites_calibration_json(c));
   talus::io::write_text(opened.folder.temporary() / "report.md", talus::io::sites_calibration_report(c));
   opened.write_models(work.models(), "fitted.toml",

@@ -56,26 +56,26 @@ std::vector<talus::io::LoadedCampaign> read_campaigns(const CampaignCommand& com
   return loaded;
 }
 
+void warn(const CampaignCommand& command, talus::io::FitRecord& record, const std::string& warning) {
+  if (!command.quiet) say("warning", warning);
+  record.warnings.push_back(warning);
+}
+
+void warn_of_scores(const CampaignCommand& command, talus::io::FitRecord& record, const talus::io::ScoredRows& scored,
+                    const std::string& of) {
+  for (const std::string& warning : talus::io::score_warnings(scored)) warn(command, record, of + warning);
+}
+
 OpenedCampaign::OpenedCampaign(const CampaignCommand& command, talus::io::FitRecord& record)
     : loaded(std::move(read_campaigns(command).front())), folder(command.out, command.overwrite) {
   for (const talus::io::InputFile& input : loaded.inputs) folder.protect(input.path);
-  if (!command.quiet)
-    for (const std::string& warning : loaded.warnings) say("warning", warning);
+  for (const std::string& warning : loaded.warnings) warn(command, record, warning);
   if (command.all_rows)
     for (talus::MeasuredBlock& block : loaded.campaign.blocks) block.holdout = false;
   require_measurements(command.campaigns.front(), loaded.campaign);
   record.command = command_line();
   record.inputs = loaded.inputs;
-  record.warnings = loaded.warnings;
   record.campaign = loaded.campaign.name;
   record.surface = talus::name_of(loaded.campaign.surface.kind());
   record.surface_from = loaded.surface_from;
-}
-
-void OpenedCampaign::warn(const CampaignCommand& command, talus::io::FitRecord& record,
-                          const talus::io::ScoredRows& scored) {
-  for (const std::string& warning : talus::io::score_warnings(scored)) {
-    if (!command.quiet) say("warning", warning);
-    record.warnings.push_back(warning);
-  }
 }

@@ -27,6 +27,15 @@ void require_measurements(const std::string& path, const talus::Campaign& campai
 /// Throws InputError if the releases of the blocks are not known.
 void require_releases(const std::string& path, const talus::Campaign& campaign);
 
+/// Prints a warning, unless the command is quiet, and adds it to those of the record.
+void warn(const CampaignCommand& command, talus::io::FitRecord& record, const std::string& warning);
+
+/// Warns of the groups in which a fitted model scores as the climatology, where a search can hide, and of the
+/// quantities that it scatters too much or too little.
+/// @param of  of several campaigns, the one that it was fitted to: "south: "
+void warn_of_scores(const CampaignCommand& command, talus::io::FitRecord& record, const talus::io::ScoredRows& scored,
+                    const std::string& of = "");
+
 /// A campaign that was read, and the new folder for its results.
 struct OpenedCampaign {
   talus::io::LoadedCampaign loaded;
@@ -35,8 +44,4 @@ struct OpenedCampaign {
   /// Reads the campaign, guards its files from being overwritten, prints its warnings and fills the head of the report.
   /// Throws InputError if nothing can be fitted to it.
   OpenedCampaign(const CampaignCommand& command, talus::io::FitRecord& record);
-
-  /// Prints and records the groups in which a fitted model scores as the climatology, where a search can hide, and the
-  /// quantities that it scatters too much or too little.
-  static void warn(const CampaignCommand& command, talus::io::FitRecord& record, const talus::io::ScoredRows& scored);
 };

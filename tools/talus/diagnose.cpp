@@ -127,7 +127,7 @@ int diagnose(const Options& options) {
   } catch (const talus::FitInterrupted&) {
     stop_interrupted();
   }
-  for (const talus::io::BeforeAfter& e : record.errors) OpenedCampaign::warn(options, record, e.after);
+  for (const talus::io::BeforeAfter& e : record.errors) warn_of_scores(options, record, e.after);
   record.cpu_seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write_results(opened.folder, opened.loaded, record);

@@ -54,12 +54,9 @@ int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOption
   talus::ObserveOptions unseen{kScoreTrials, how.seed + 1, 0, how.threads, {}, [] { return !interrupted(); }};
   talus::io::open_holdout(opened.sites, record, unseen);
   if (interrupted()) stop_interrupted();
-  warn_of_sites(command, record.evidence, record.warnings);
-  if (!record.diagnosis.not_nested.empty()) {
-    record.warnings.push_back("there is no error of unseen rows: " + record.diagnosis.not_nested +
-                              " (measure more, or hold rows out)");
-    if (!command.quiet) say("warning", record.warnings.back());
-  }
+  warn_of_sites(command, record, record.evidence);
+  if (const std::string& lack = record.diagnosis.not_nested; !lack.empty())
+    warn(command, record, "there is no error of unseen rows: " + lack + " (measure more, or hold rows out)");
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write_results(opened, record);
   opened.folder.commit();

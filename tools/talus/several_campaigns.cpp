@@ -97,12 +97,8 @@ void OpenedSites::write_models(std::span<const talus::Model> models, const char*
   }
 }
 
-void warn_of_sites(const CampaignCommand& command, std::span<const talus::io::SiteEvidence> evidence,
-                   std::vector<std::string>& warnings) {
+void warn_of_sites(const CampaignCommand& command, talus::io::FitRecord& record,
+                   std::span<const talus::io::SiteEvidence> evidence) {
   for (const talus::io::SiteEvidence& site : evidence)
-    for (const talus::io::BeforeAfter& e : site.errors)
-      for (const std::string& warning : talus::io::score_warnings(e.after)) {
-        warnings.push_back(site.site + ": " + warning);
-        if (!command.quiet) say("warning", warnings.back());
-      }
+    for (const talus::io::BeforeAfter& e : site.errors) warn_of_scores(command, record, e.after, site.site + ": ");
 }

@@ -1,6 +1,9 @@
 #pragma once
+#include <functional>
+#include <utility>
+
 #include "campaign_command.hpp"
-#include "talus/fit/calibrate/fit_problem.hpp"
+#include "talus/fit/calibrate/uncertainty.hpp"
 #include "talus/fit/campaign/sites.hpp"
 #include "talus/fit/diagnose/diagnosis.hpp"
 #include "talus/io/reports/fit_report.hpp"
@@ -22,9 +25,9 @@ struct OpenedSites {
   void write_models(std::span<const talus::Model> models, const char* name, const std::string& heading) const;
 };
 
-/// Prints the warnings that follow from the scores of each site, and adds them to those of a record.
-void warn_of_sites(const CampaignCommand& command, std::span<const talus::io::SiteEvidence> evidence,
-                   std::vector<std::string>& warnings);
+/// `warn_of_scores` of each site.
+void warn_of_sites(const CampaignCommand& command, talus::io::FitRecord& record,
+                   std::span<const talus::io::SiteEvidence> evidence);
 
 /// The work of `calibrate` and `diagnose` where there are several campaigns.
 ///
@@ -35,7 +38,20 @@ int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how
                     const std::vector<std::string>& fit, const std::vector<std::string>& share);
 int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOptions& how);
 
+// Steps of `calibrate` for one campaign, or each of several.
+
+/// The model of a file, from which a fit starts; without a file the default preset.
+talus::Model start_model(const std::string& file, const talus::Campaign& campaign, std::vector<std::string>& warnings);
+
 /// Chooses what is fitted: the asked parameters of the zones that simulated paths touch, then the asked numbers of
 /// effects.
 void choose_parameters(const talus::Campaign& campaign, const std::vector<std::string>& keys,
                        talus::io::Calibration& c);
+
+/// Fits, then finds the uncertainty. Ends the program where `proceed` returns false.
+///
+/// @param share    of the whole work that these two are
+/// @param proceed  receives the share of the whole work that they have done
+std::pair<talus::Fit, talus::Uncertainty> fit_with_uncertainty(const talus::FitProblem& problem, talus::FitOptions how,
+                                                               double share,
+                                                               const std::function<bool(double)>& proceed);

@@ -52,7 +52,7 @@ class CampaignReader {
                                     {"passages", &spec_.passages},
                                     {"screens", &spec_.screens},
                                     {"samples", &spec_.samples}})
-      named_file(top, key, *file);
+      *file = file_there(top, key, base_);
     read_zone_names(top.table("zone_names"));
     read_error(top.table("measurement_error"));
     if (const TomlValue* value = top.find("deposits"); value != nullptr && value->kind != Kind::Table)
@@ -73,13 +73,6 @@ class CampaignReader {
   }
 
  private:
-  void named_file(TableReader& table, const std::string& key, NamedFile& file) {
-    const auto text = table.text(key);
-    if (!text) return;
-    file = {absolute_path(*text, base_), table.where(key, *table.value()->find(key))};
-    check_files({&file}, faults_);
-  }
-
   /// Refuses what belongs to released blocks in a campaign of mapped ones.
   void check_deposits() {
     if (!spec_.deposits.given) return;

@@ -6,7 +6,7 @@
 
 #include "campaign_tables.hpp"
 #include "io/gdal/csv_table.hpp"
-#include "io/gdal/layer.hpp"
+#include "io/gdal/idle_features.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/fit/campaign/deposits.hpp"
@@ -21,14 +21,6 @@ constexpr Bounds kDropHeight{"release_height", "m", "of the release above the te
 constexpr Bounds kStrips{"strips", "1", "number of strips across the slope", 2.0, 50.0, Bounds::Closed, true};
 constexpr Bounds kStrip{"holdout", "1", "number of a strip", 1.0, 50.0, Bounds::Closed, true};
 constexpr Bounds kClass{"classes", "m", "diameter between two classes", 0.0, 100.0, Bounds::AboveMin};
-
-NamedFile named(TableReader& table, const std::string& key, const std::filesystem::path& base) {
-  const auto text = table.text(key);
-  if (!text) return {};
-  NamedFile file{absolute_path(*text, base), table.where(key, *table.value()->find(key))};
-  check_files({&file}, table.faults());
-  return file;
-}
 
 void check_strips(TableReader& table, const DepositSpec& spec) {
   const auto fault = [&](const char* key, const std::string& rule) {
@@ -143,16 +135,9 @@ Raster<std::uint8_t> mapped_cells(const NamedFile& mapped, const Terrain& terrai
   Layer layer("mapped", mapped.path, terrain);
   std::size_t polygons = 0, marked = 0;
   for_each_feature(layer, [&](const Feature& feature) {
-    const Parts parts = layer.parts(*feature);
-    if (!parts.lines.empty() || !parts.points.empty())
-      throw InputError(layer.label(*feature) + ": is no polygon, must be one: blocks were mapped inside");
-    for (const OGRPolygon& polygon : parts.polygons) {
-      ++polygons;
-      for_each_cell(polygon, grid, false, [&](int column, int row) {
-        cells.at(column, row) = 1;
-        ++marked;
-      });
-    }
+    const Parts parts = layer.polygons(*feature, ": blocks were mapped inside");
+    polygons += parts.polygons.size();
+    marked += mark_cells(parts, 1, terrain, cells).all;
   });
   for (std::string& line : layer.warnings()) warnings.push_back(std::move(line));
   if (marked == 0)
@@ -206,13 +191,19 @@ void hold_out_strips(const DepositSpec& spec, MappedDeposits& deposits, std::vec
 
 }  // namespace
 
+NamedFile file_there(TableReader& table, const std::string& key, const std::filesystem::path& base) {
+  const NamedFile file = table.named_file(key, base).value_or(NamedFile());
+  check_files({&file}, table.faults());
+  return file;
+}
+
 DepositSpec read_deposit_spec(TableReader table, const std::filesystem::path& base) {
   DepositSpec spec;
   if (table.value() == nullptr) return spec;
   spec.given = true;
-  spec.table = named(table, "file", base);
-  spec.sources = named(table, "sources", base);
-  spec.mapped = named(table, "mapped", base);
+  spec.table = file_there(table, "file", base);
+  spec.sources = file_there(table, "sources", base);
+  spec.mapped = file_there(table, "mapped", base);
   spec.release_height = table.range("release_height", kDropHeight).value_or(Range{1.0, 1.0});
   spec.strips = static_cast<std::size_t>(table.number("strips", kStrips).value_or(0.0));
   spec.held_out = table.numbers("holdout", kStrip).value_or(std::vector<double>());

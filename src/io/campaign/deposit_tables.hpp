@@ -19,6 +19,9 @@ struct DepositSpec {
   std::vector<double> classes;     ///< limits between the classes of size [m]; empty: by the number of blocks
 };
 
+/// The file that a table of campaign.toml names; empty: none. One that is not there is a fault of the table.
+NamedFile file_there(TableReader& table, const std::string& key, const std::filesystem::path& base);
+
 /// Reads the table, without opening the files it names.
 ///
 /// @param base  folder of campaign.toml

@@ -332,9 +332,7 @@ class TreeReader {
     for (int i = 0; const std::string& name : layer_.field_names())
       if (const int field = i++; field != diameter_ && field != species_) unused.push_back(name);
     if (!unused.empty()) out.warnings.push_back(path_ + ": fields that are not read: " + joined(unused));
-    const auto& used = layer_.reprojections();
-    out.reprojections.insert(out.reprojections.end(), used.begin(), used.end());
-    for (std::string& line : layer_.warnings()) out.warnings.push_back(std::move(line));
+    layer_.tell(out);
   }
 
   std::string path_;

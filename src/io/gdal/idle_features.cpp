@@ -1,23 +1,35 @@
 #include "idle_features.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "talus/base/text.hpp"
 
 namespace talus::io {
 
-bool IdleFeatures::off(const std::string& name, const OGREnvelope& box) {
-  const Grid& grid = terrain_.heights.grid;
-  box_.Merge(box);
-  const bool is_off = box.MaxX <= 0.0 || box.MinX >= grid.width() || box.MaxY <= 0.0 || box.MinY >= grid.height();
-  if (is_off) off_.push_back(name);
-  return is_off;
+CoveredCells mark_cells(const Parts& feature, std::uint8_t value, const Terrain& terrain, Raster<std::uint8_t>& cells) {
+  CoveredCells covered;
+  for (const OGRPolygon& polygon : feature.polygons)
+    for_each_cell(polygon, terrain.heights.grid, false, [&](int column, int row) {
+      cells.at(column, row) = value;
+      ++covered.all;
+      covered.with_height += std::isnan(terrain.heights.at(column, row)) ? 0U : 1U;
+    });
+  return covered;
 }
 
-void IdleFeatures::placed(const std::string& name, std::uint64_t cells, std::uint64_t heights) {
-  if (cells == 0)
+void IdleFeatures::mark(const std::string& name, const Parts& feature, const std::function<std::uint8_t()>& value,
+                        Raster<std::uint8_t>& cells) {
+  if (feature.empty()) return without_geometry_.push_back(name);
+  const Grid& grid = terrain_.heights.grid;
+  const OGREnvelope box = feature.envelope();
+  box_.Merge(box);
+  if (box.MaxX <= 0.0 || box.MinX >= grid.width() || box.MaxY <= 0.0 || box.MinY >= grid.height())
+    return off_.push_back(name);
+  const CoveredCells covered = mark_cells(feature, value(), terrain_, cells);
+  if (covered.all == 0)
     narrow_.push_back(name);
-  else if (heights == 0)
+  else if (covered.with_height == 0)
     without_height_.push_back(name);
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -6,19 +7,27 @@
 
 namespace talus::io {
 
-/// Polygons of a layer that act in no cell of the DEM.
+/// Cells that a feature covers, and how many of them have a height.
+struct CoveredCells {
+  std::uint64_t all = 0, with_height = 0;
+};
+
+/// Gives the cells of the DEM whose centres the polygons of a feature cover a value.
+CoveredCells mark_cells(const Parts& feature, std::uint8_t value, const Terrain& terrain, Raster<std::uint8_t>& cells);
+
+/// Marks cells of the DEM by the polygons of a layer, and remembers those that act in no cell.
 class IdleFeatures {
  public:
   /// @param kind  what the polygons are, for messages: "zones"
   IdleFeatures(std::string path, std::string kind, const Terrain& terrain)
       : path_(std::move(path)), kind_(std::move(kind)), terrain_(terrain) {}
 
-  /// @param name  of a feature: its number, with what else it is called: "4 (road)"
-  void without_geometry(const std::string& name) { without_geometry_.push_back(name); }
-  /// Whether a feature lies wholly off the DEM. @param box  in local metres
-  bool off(const std::string& name, const OGREnvelope& box);
-  /// @param cells  that a feature covers @param heights  the number of them that have a height
-  void placed(const std::string& name, std::uint64_t cells, std::uint64_t heights);
+  /// As `mark_cells`.
+  ///
+  /// @param name   of the feature: its number, with what else it is called: "4 (road)"
+  /// @param value  is not called for a feature off the DEM
+  void mark(const std::string& name, const Parts& feature, const std::function<std::uint8_t()>& value,
+            Raster<std::uint8_t>& cells);
 
   /// Whether all features with a geometry are off the DEM, and there is one.
   bool all_off(std::size_t features) const {

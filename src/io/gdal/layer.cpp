@@ -252,6 +252,13 @@ Parts Layer::parts(const OGRFeature& feature) {
   return parts;
 }
 
+Parts Layer::polygons(const OGRFeature& feature, const std::string& purpose) {
+  Parts found = parts(feature);
+  if (!found.lines.empty() || !found.points.empty())
+    throw InputError(label(feature) + ": is no polygon, must be one" + purpose);
+  return found;
+}
+
 void Layer::collect(OGRGeometry& geometry, Parts& parts, const std::string& where) {
   if (geometry.IsEmpty()) return;
   const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());

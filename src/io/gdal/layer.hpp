@@ -50,6 +50,9 @@ class Layer {
   Feature next();
   /// The geometries of a feature. Empty if it has none.
   Parts parts(const OGRFeature& feature);
+  /// The same of a feature that must be polygons: throws InputError if it has lines or points.
+  /// @param purpose  for the message: ": blocks were mapped inside"
+  Parts polygons(const OGRFeature& feature, const std::string& purpose = "");
 
   /// Index of a field that is spelt so, else of the only one that is in another case of letters, also if a Shapefile
   /// has cut its name, this or an earlier one; -1 if there is none. Throws InputError if several differ from it only in
@@ -83,6 +86,13 @@ class Layer {
   const std::vector<Reprojection>& reprojections() const { return transformer_->used(); }
   /// Warnings of the opening, the geometries and the transformation.
   std::vector<std::string> warnings() const;
+  /// Adds these and the transformations to what is read from the layer.
+  template <class Out>
+  void tell(Out& out) const {
+    const std::vector<Reprojection>& used = reprojections();
+    out.reprojections.insert(out.reprojections.end(), used.begin(), used.end());
+    for (std::string& line : warnings()) out.warnings.push_back(std::move(line));
+  }
 
  private:
   std::vector<OGRLayer*> layers_with_geometry() const;

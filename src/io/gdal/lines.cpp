@@ -115,8 +115,7 @@ class LineReader {
     off_.warn(path_, "features", brought_from(layer_), out.warnings);
     if (id_ < 0) out.notes.push_back(path_ + ": no field id: the lines are called by the numbers of their features");
     if (!uses_.empty()) out.notes.push_back(fields_note(path_, uses_, features_));
-    out.reprojections = layer_.reprojections();
-    for (std::string& line : layer_.warnings()) out.warnings.push_back(std::move(line));
+    layer_.tell(out);
   }
 
  private:

@@ -365,8 +365,7 @@ SourceLayer read_sources(const std::string& path, const Terrain& terrain, const 
   out.attributes = attributes.record();
   out.read_note = attributes.read_note();
   out.unread_notes = attributes.unread_notes();
-  out.reprojections = layer.reprojections();
-  for (std::string& line : layer.warnings()) out.warnings.push_back(std::move(line));
+  layer.tell(out);
   return out;
 }
 

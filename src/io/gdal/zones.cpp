@@ -95,7 +95,6 @@ void read_polygons(const ZoneRequest& request, const Terrain& terrain, ZoneLayer
     throw InputError(request.path + ": has no field '" + name + "'" + known_names(name, layer.field_names()) +
                      ": say which holds the zone by field in [ground]");
   }
-  const Grid& grid = terrain.heights.grid;
   FieldUse use{name, layer.field_names()[static_cast<std::size_t>(field)], {}, field, true};
   std::size_t features = 0;
   IdleFeatures idle(request.path, "zones", terrain);
@@ -104,21 +103,10 @@ void read_polygons(const ZoneRequest& request, const Terrain& terrain, ZoneLayer
     const std::string zone = layer.code(*feature, field);
     const std::string called = std::to_string(feature->GetFID()) + (zone.empty() ? "" : " (" + zone + ")");
     if (!zone.empty()) ++use.count;
-    const Parts parts = layer.parts(*feature);
-    if (!parts.lines.empty() || !parts.points.empty())
-      throw InputError(layer.label(*feature) + ": is no polygon, must be one");
-    if (parts.empty()) return idle.without_geometry(called);
-    if (idle.off(called, parts.envelope())) return;
-    const std::uint8_t value =
-        zone.empty() ? std::uint8_t{0} : index.at(zone, layer.label(*feature) + ": field " + name);
-    std::uint64_t cells = 0, heights = 0;
-    for (const OGRPolygon& polygon : parts.polygons)
-      for_each_cell(polygon, grid, false, [&](int column, int row) {
-        out.zones.at(column, row) = value;
-        ++cells;
-        heights += std::isnan(terrain.heights.at(column, row)) ? 0U : 1U;
-      });
-    idle.placed(called, cells, heights);
+    const auto value = [&] {
+      return zone.empty() ? std::uint8_t{0} : index.at(zone, layer.label(*feature) + ": field " + name);
+    };
+    idle.mark(called, layer.polygons(*feature), value, out.zones);
   });
   if (idle.all_off(features)) throw InputError(off_dem_text(request.path, idle.box(), layer, terrain));
   if (features == 0) out.warnings.push_back(request.path + ": has no features: the default ground is everywhere");
@@ -126,8 +114,7 @@ void read_polygons(const ZoneRequest& request, const Terrain& terrain, ZoneLayer
   out.notes.push_back(fields_note(request.path, {use}, features));
   index.warn_unseen(out.warnings);
   out.presets = index.named_presets();
-  out.reprojections = layer.reprojections();
-  for (std::string& line : layer.warnings()) out.warnings.push_back(std::move(line));
+  layer.tell(out);
 }
 
 /// Throws InputError if a raster gives no cell of the DEM a zone. Warns if it leaves out more than a few.

@@ -75,8 +75,8 @@ class EffectReader {
 
   /// Reads a list of trees. Returns whether one is given, here or in an included file.
   bool trees(EffectSpec& effect) {
-    if (const auto file = table_.text("trees")) {
-      effect.maps = {{"trees", {absolute_path(*file, base_), table_.where("trees", *table_.value()->find("trees"))}}};
+    if (const auto file = table_.named_file("trees", base_)) {
+      effect.maps = {{"trees", *file}};
       effect.zones.clear(), effect.file = {};  // replaces those of an included file
       given("trees");
       not_with_trees({"density", "diameter", "zones", "file"},
@@ -97,7 +97,7 @@ class EffectReader {
     if (value == nullptr) return false;
     effect.maps.erase(key);
     if (value->kind != Kind::Text) return false;
-    if (const auto file = table_.text(key)) effect.maps[key] = {absolute_path(*file, base_), table_.where(key, *value)};
+    if (const auto file = table_.named_file(key, base_)) effect.maps[key] = *file;
     given(key);
     return true;
   }
@@ -152,8 +152,8 @@ class EffectReader {
       effect.zones_where = table_.where("zones", *zones);
       given("zones");
     }
-    if (const auto file = table_.text("file")) {
-      effect.file = {absolute_path(*file, base_), table_.where("file", *table_.value()->find("file"))};
+    if (const auto file = table_.named_file("file", base_)) {
+      effect.file = *file;
       given("file");
       if (table_.value()->find("zones") == nullptr)
         effect.zones.clear();

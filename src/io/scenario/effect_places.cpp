@@ -1,11 +1,9 @@
 #include "effect_places.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "io/gdal/idle_features.hpp"
 #include "io/gdal/layer.hpp"
-#include "talus/base/error.hpp"
 #include "talus/io/gdal/forest.hpp"
 #include "talus/io/gdal/rasters.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
@@ -23,20 +21,9 @@ Raster<std::uint8_t> read_mask(const std::string& name, const std::string& path,
   const std::string effect = "[effects." + name + "]";
   IdleFeatures idle(path, "polygons of " + effect, terrain);
   for_each_feature(layer, [&](const Feature& feature) {
-    const std::string number = std::to_string(feature->GetFID());
-    const Parts parts = layer.parts(*feature);
-    if (!parts.lines.empty() || !parts.points.empty())
-      throw InputError(layer.label(*feature) + ": is no polygon, must be one: " + effect + " acts inside");
-    if (parts.empty()) return idle.without_geometry(number);
-    if (idle.off(number, parts.envelope())) return;
-    std::uint64_t cells = 0, heights = 0;
-    for (const OGRPolygon& polygon : parts.polygons)
-      for_each_cell(polygon, grid, false, [&](int column, int row) {
-        mask.at(column, row) = 1;
-        ++cells;
-        heights += std::isnan(terrain.heights.at(column, row)) ? 0U : 1U;
-      });
-    idle.placed(number, cells, heights);
+    const Parts polygons = layer.polygons(*feature, ": " + effect + " acts inside");
+    idle.mark(
+        std::to_string(feature->GetFID()), polygons, [] { return std::uint8_t{1}; }, mask);
   });
   std::int64_t covered = 0;
   for_each_row(mask, [&](int row) { covered += std::count(&mask.at(0, row), &mask.at(0, row) + grid.columns, 1); });
@@ -44,9 +31,7 @@ Raster<std::uint8_t> read_mask(const std::string& name, const std::string& path,
   out.notes.push_back(path + ": " + effect + " acts in " + std::to_string(covered) + " of " +
                       std::to_string(grid.cells()) + " cells");
   idle.warn(out.warnings);
-  const auto& used = layer.reprojections();
-  out.reprojections.insert(out.reprojections.end(), used.begin(), used.end());
-  for (std::string& line : layer.warnings()) out.warnings.push_back(std::move(line));
+  layer.tell(out);
   return mask;
 }
 

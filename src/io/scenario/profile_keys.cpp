@@ -71,8 +71,8 @@ class ProfileReader {
   void given(const std::string& key) { spec_.origins[key] = "scenario"; }
 
   void named_file(TableReader& table, const std::string& key, NamedFile& file) {
-    if (const auto text = table.text(key)) {
-      file = {absolute_path(*text, base_), table.where(key, *table.value()->find(key))};
+    if (auto named = table.named_file(key, base_)) {
+      file = std::move(*named);
       given(key);
     }
   }

@@ -67,9 +67,7 @@ ProfileLine read_profile_line(const std::string& path, const Terrain& terrain, c
     for (int i = 0; i < line.getNumPoints(); ++i) plan.emplace_back(line.getX(i), line.getY(i));
   }
   if (plan.size() < 2) throw InputError(path + ": has no line, must have one");
-  const auto& used = layer.reprojections();
-  out.reprojections.insert(out.reprojections.end(), used.begin(), used.end());
-  for (std::string& warning : layer.warnings()) out.warnings.push_back(std::move(warning));
+  layer.tell(out);
   return profile_along(plan, Surface(terrain.heights, spec.surface), spec.profile->step, path);
 }
 

@@ -111,10 +111,9 @@ class SpecReader {
   }
 
   void named_file(TableReader& table, const std::string& key, NamedFile& file) {
-    const auto text = table.text(key);
+    auto named = table.named_file(key, base_);
     if (table.value() != nullptr && table.value()->find(key) != nullptr) given(table.full(key));
-    if (!text) return;
-    file = {absolute_path(*text, base_), table.where(key, *table.value()->find(key))};
+    if (named) file = std::move(*named);
   }
 
   std::optional<SurfaceKind> surface(TableReader& top) {

@@ -51,6 +51,12 @@ std::optional<std::string> TableReader::text(const std::string& key) {
   return std::nullopt;
 }
 
+std::optional<NamedFile> TableReader::named_file(const std::string& key, const std::filesystem::path& base) {
+  const auto name = text(key);
+  if (!name) return std::nullopt;
+  return NamedFile{absolute_path(*name, base), where(key, *table_->find(key))};
+}
+
 std::optional<Range> TableReader::range(const std::string& key, const Bounds& bounds) {
   const TomlValue* value = find(key);
   if (value == nullptr) return std::nullopt;

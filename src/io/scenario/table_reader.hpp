@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "named_file.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 #include "toml_tree.hpp"
 
@@ -24,6 +25,8 @@ class TableReader {
 
   std::optional<double> number(const std::string& key, const Bounds& bounds);
   std::optional<std::string> text(const std::string& key);
+  /// @param base  folder to which the name is relative
+  std::optional<NamedFile> named_file(const std::string& key, const std::filesystem::path& base);
   /// A number, or [smallest, largest].
   std::optional<Range> range(const std::string& key, const Bounds& bounds);
   std::optional<std::vector<double>> numbers(const std::string& key, const Bounds& bounds);
