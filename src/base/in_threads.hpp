@@ -6,20 +6,26 @@
 namespace talus {
 
 /// Calls `work` in each thread of a parallel region. An exception must not leave the region: the first one is kept, and
-/// thrown again after it. The other threads go on: `work` tells them by itself if they are to stop.
+/// thrown again after it. `on_failure` tells the other threads to stop; without it they go on.
 ///
 /// @param threads  0: all processors
-template <class Work>
-void in_threads(int threads, const Work& work) {
+template <class Work, class OnFailure>
+void in_threads(int threads, const Work& work, const OnFailure& on_failure) {
   std::exception_ptr failure;
-#pragma omp parallel num_threads(threads > 0 ? threads : omp_get_num_procs()) default(none) shared(work, failure)
+#pragma omp parallel num_threads(threads > 0 ? threads : omp_get_num_procs()) default(none) \
+    shared(work, on_failure, failure)
   try {
     work();
   } catch (...) {
+    on_failure();
 #pragma omp critical(talus_in_threads)
     if (!failure) failure = std::current_exception();
   }
   if (failure) std::rethrow_exception(failure);
+}
+template <class Work>
+void in_threads(int threads, const Work& work) {
+  in_threads(threads, work, [] {});
 }
 
 }  // namespace talus

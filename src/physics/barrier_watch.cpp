@@ -8,8 +8,6 @@
 namespace talus {
 namespace {
 
-constexpr double kGap = 1e-3;  // between a block that is caught and the line, along its way [m]
-
 double plan_length(const Vertex& from, const Vertex& to) {
   return (to.motion.position - from.motion.position).head<2>().norm();
 }
@@ -71,16 +69,13 @@ double BarrierWatch::ground_at(const Vec3& place) const {
   return world_.surface.height(place.x(), place.y()).value_or(place.z());
 }
 
-Meeting BarrierWatch::meet(const Barriers::Cut& cut, const Motion& there, const Block& body, Path& path) const {
+Meeting BarrierWatch::meet(const Barriers::Cut& cut, const Motion& there, const Block& body, double taken,
+                           Path& path) const {
   const double clearance = std::max(0.0, there.position.z() - ground_at(there.position));
-  const double energy = 0.5 * body.mass * there.velocity.squaredNorm();
+  const double energy = 0.5 * body.mass * there.velocity.squaredNorm() - taken;
   const Meeting how = meeting(world_.barriers->list()[cut.barrier], clearance, energy);
   path.barriers.push_back({cut.barrier, how, cut.along});
   return how;
-}
-
-double BarrierWatch::share_of_leg(double share, Meeting how, double way) {
-  return how == Meeting::Broken ? share : std::max(0.0, share - kGap / way);
 }
 
 bool BarrierWatch::was_met_here(std::uint32_t barrier, const Path& path) const {
@@ -95,7 +90,7 @@ void BarrierWatch::act(const BarrierMet& met, const Block& body, Motion& motion,
     return;
   }
   const double energy = 0.5 * body.mass * motion.velocity.squaredNorm();
-  motion.velocity *= kept_speed(energy, world_.barriers->list()[met.cut.barrier].capacity);
+  motion.velocity *= kept_speed(energy, met.taken);
   const Eigen::Vector2d place = motion.position.head<2>();
   if (!((place - broken_at_).norm() <= kOneLine)) met_here_ = met.first_of_leg;
   broken_at_ = place;

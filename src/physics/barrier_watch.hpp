@@ -10,11 +10,11 @@
 
 namespace talus {
 
-/// A barrier that catches the block or breaks.
+/// What barriers do to a block at one place: one catches it, or those that stand there break.
 struct BarrierMet {
-  Barriers::Cut cut;
   Meeting how;
   double share;              ///< of the way, at which the leg ends
+  double taken;              ///< energy that the broken ones took [J]
   std::size_t first_of_leg;  ///< index among the meetings of the path of the first one on this way
 };
 
@@ -42,28 +42,36 @@ class BarrierWatch {
     const double way = (b - a).norm(), back = a == broken_at_ && way > 0.0 ? kOneLine : 0.0;
     const Eigen::Vector2d from = back > 0.0 ? Eigen::Vector2d(a - back / way * (b - a)) : a;
     const std::size_t before = path.barriers.size();
+    std::optional<BarrierMet> broken;
     std::optional<Barriers::Cut> cut;
     while ((cut = world_.barriers->next(from, b, cut))) {
       const double share = back > 0.0 ? std::max(0.0, cut->share * (way + back) - back) / way : cut->share;
+      if (broken && (share - broken->share) * way > kOneLine) break;
       if (back > 0.0 && share * way <= kOneLine && was_met_here(cut->barrier, path)) continue;
-      const Meeting how = meet(*cut, motion_at(share), body, path);
-      if (how != Meeting::Over) return BarrierMet{*cut, how, share_of_leg(share, how, way), before};
+      const double taken = broken ? broken->taken : 0.0;
+      const Meeting how = meet(*cut, motion_at(share), body, taken, path);
+      if (how == Meeting::Caught) return BarrierMet{how, std::max(0.0, share - kGap / way), taken, before};
+      if (how == Meeting::Broken)
+        broken = BarrierMet{how, broken ? broken->share : share, taken + capacity_of(*cut), before};
     }
-    return std::nullopt;
+    return broken;
   }
-  /// Stops the block at a barrier that catches it, or slows it down by what a broken one takes, and adds a vertex.
+  /// Stops the block at a barrier that catches it, or slows it down by what broken ones take, and adds a vertex.
   ///
   /// @param motion  of the block at the barrier, where its leg and its path end
   void act(const BarrierMet& met, const Block& body, Motion& motion, Path& path);
 
  private:
   Meeting look(std::size_t vertex, const Vertex& to, Motion& motion, const Block& body, Path& path);
-  Meeting meet(const Barriers::Cut& cut, const Motion& there, const Block& body, Path& path) const;
-  static double share_of_leg(double share, Meeting how, double way);
+  /// @param taken  energy that barriers on the same line took before [J]
+  Meeting meet(const Barriers::Cut& cut, const Motion& there, const Block& body, double taken, Path& path) const;
+  double capacity_of(const Barriers::Cut& cut) const { return world_.barriers->list()[cut.barrier].capacity; }
   /// Whether a barrier was met where the last one broke.
   bool was_met_here(std::uint32_t barrier, const Path& path) const;
   double ground_at(const Vec3& place) const;
   void cut_off(std::size_t vertex, const Vertex& to, double share, Path& path) const;
+
+  static constexpr double kGap = 1e-3;  // between a block that is caught and the line, along its way [m]
 
   const World& world_;
   std::size_t first_vertex_ = 0, first_span_ = 0;

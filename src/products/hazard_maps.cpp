@@ -14,9 +14,12 @@ namespace {
 template <class Work>
 void in_parallel(std::size_t count, int threads, const Work& work) {
   std::atomic<std::size_t> next = 0;
-  in_threads(threads, [&] {
-    for (std::size_t i = next++; i < count; i = next++) work(i);
-  });
+  in_threads(
+      threads,
+      [&] {
+        for (std::size_t i = next++; i < count; i = next++) work(i);
+      },
+      [&] { next = count; });
 }
 
 }  // namespace

@@ -2,14 +2,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include "talus/physics/span_speed.hpp"
 
 namespace talus {
 namespace {
 
-constexpr double kBeyondEdge = 1e-6;  // share of a way by which the rim has surely left what it just touched
+constexpr double kBeyondEdge = 1e-6;  // way on which a rim has surely left what it just touched [m]
 
 /// Whether a point lies within the outer ring and in no hole: rays to the east cross the rings an odd number of times.
 bool contains(const std::vector<HazardObject::Ring>& rings, const Eigen::Vector2d& p) {
@@ -23,13 +23,6 @@ bool contains(const std::vector<HazardObject::Ring>& rings, const Eigen::Vector2
   return inside;
 }
 
-std::optional<Touch> touch_of_line(const Way& way, const HazardObject::Ring& points, double distance) {
-  std::optional<Touch> touch;
-  for (std::size_t i = 0; i + 1 < points.size(); ++i)
-    touch = hull(touch, touch_of(way, points[i], points[i + 1], distance));
-  return touch;
-}
-
 Eigen::AlignedBox2d box_of(const HazardObject& object) {
   Eigen::AlignedBox2d box;
   for (const auto& rings : object.polygons)
@@ -39,22 +32,70 @@ Eigen::AlignedBox2d box_of(const HazardObject& object) {
   return box;
 }
 
+std::size_t parts_of(const HazardObject& object) {
+  return object.polygons.size() + object.lines.size();
+}
+
+/// Calls `visit(a, b, distance)` for each edge of a part of an object, with the distance at which a block touches it.
+template <class Visit>
+void for_each_edge(const HazardObject& object, std::size_t part, double radius, Visit visit) {
+  const auto visit_line = [&](const HazardObject::Ring& points, double distance) {
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) visit(points[i], points[i + 1], distance);
+  };
+  if (part < object.polygons.size())
+    for (const HazardObject::Ring& ring : object.polygons[part]) visit_line(ring, radius);
+  else
+    visit_line(object.lines[part - object.polygons.size()], radius + 0.5 * object.line_width);
+}
+
+std::optional<Touch> touch_of_part(const Way& way, const HazardObject& object, std::size_t part, double radius) {
+  std::optional<Touch> touch;
+  for_each_edge(object, part, radius, [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b, double distance) {
+    touch = hull(touch, touch_of(way, a, b, distance));
+  });
+  if (part >= object.polygons.size()) return touch;
+  if (contains(object.polygons[part], way.from)) touch = hull(touch, Touch{0.0, 0.0});
+  if (contains(object.polygons[part], way.to)) touch = hull(touch, Touch{1.0, 1.0});
+  return touch;
+}
+
+/// The share of a way at which a rim that touches the edges of a part at its beginning leaves them; 0 if it does not.
+double leaves_at(const Way& way, const HazardObject& object, std::size_t part, double radius) {
+  std::vector<Touch> edges;
+  for_each_edge(object, part, radius, [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b, double distance) {
+    if (const auto touch = touch_of(way, a, b, distance)) edges.push_back(*touch);
+  });
+  std::ranges::sort(edges, {}, &Touch::first);
+  double until = 0.0;
+  for (const Touch& edge : edges)
+    if (edge.first <= until) until = std::max(until, edge.last);
+  return until;
+}
+
+Eigen::Vector2d nearest_place(const HazardObject& object, std::size_t part, const Eigen::Vector2d& to) {
+  Eigen::Vector2d nearest = to;
+  double least = std::numeric_limits<double>::infinity();
+  for_each_edge(object, part, 0.0, [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b, double) {
+    const Eigen::Vector2d edge = b - a;
+    const double length = edge.squaredNorm();
+    const Eigen::Vector2d place = a + (length > 0.0 ? std::clamp(edge.dot(to - a) / length, 0.0, 1.0) : 0.0) * edge;
+    if ((place - to).norm() < least) least = (place - to).norm(), nearest = place;
+  });
+  return nearest;
+}
+
 }  // namespace
 
 std::optional<Touch> touch_of(const Way& way, const HazardObject& object, double radius) {
   std::optional<Touch> touch;
-  for (const auto& rings : object.polygons) {
-    for (const HazardObject::Ring& ring : rings) touch = hull(touch, touch_of_line(way, ring, radius));
-    if (contains(rings, way.from)) touch = hull(touch, Touch{0.0, 0.0});
-    if (contains(rings, way.to)) touch = hull(touch, Touch{1.0, 1.0});
-  }
-  for (const HazardObject::Ring& line : object.lines)
-    touch = hull(touch, touch_of_line(way, line, radius + 0.5 * object.line_width));
+  for (std::size_t part = 0; part < parts_of(object); ++part)
+    touch = hull(touch, touch_of_part(way, object, part, radius));
   return touch;
 }
 
-ObjectFinder::ObjectFinder(const Surface& surface, std::span<const HazardObject> objects, double radius)
-    : surface_(surface), objects_(objects), near_(surface.grid(), 0) {
+ObjectFinder::ObjectFinder(const Surface& surface, const Barriers& barriers, std::span<const HazardObject> objects,
+                           double radius)
+    : surface_(surface), barriers_(barriers), objects_(objects), near_(surface.grid(), 0) {
   for (std::uint32_t object = 0; object < objects.size(); ++object) enter(object, radius);
 }
 
@@ -97,54 +138,72 @@ std::span<const std::uint32_t> ObjectFinder::objects_near(const Span& span) cons
   return lists_[static_cast<std::size_t>(list) - 1];
 }
 
-bool ObjectFinder::only_rim_touches(std::uint32_t object, const Eigen::Vector2d& place, double radius) const {
+bool ObjectFinder::only_rim_touches(const PartOfObject& part, const Eigen::Vector2d& place, double radius) const {
   const Way there{place, place};
-  return touch_of(there, objects_[object], radius) && !touch_of(there, objects_[object], 0.0);
+  return touch_of_part(there, objects_[part.object], part.part, radius) &&
+         !touch_of_part(there, objects_[part.object], part.part, 0.0);
+}
+
+bool ObjectFinder::stands_behind(const PartOfObject& part, const Eigen::Vector2d& caught) const {
+  const Eigen::Vector2d way = nearest_place(objects_[part.object], part.part, caught) - caught;
+  const double length = way.norm();  // a little farther: an edge may lie on the line of the barrier
+  return length > 0.0 && barriers_.next(caught, caught + (1.0 + kOneLine / length) * way, {}).has_value();
+}
+
+/// Calls `visit` for each part of the objects near a span.
+template <class Visit>
+void ObjectFinder::for_each_part(const Span& span, Visit visit) const {
+  for (const std::uint32_t object : objects_near(span))
+    for (std::size_t part = 0; part < parts_of(objects_[object]); ++part) visit(PartOfObject{object, part});
 }
 
 ObjectFinder::RimLimits ObjectFinder::limits_of(const Path& path, const Block& first, const Block& last) const {
   RimLimits limits;
-  const auto& spans = path.spans;
-  if (spans.empty()) return limits;
-  for (const std::uint32_t object : objects_near(spans.front())) {
-    if (!only_rim_touches(object, way_of(spans.front()).from, first.radius())) continue;
-    PlaceOnPath left{spans.size(), 0.0};  // where the rim leaves the object
-    for (std::size_t i = 0; i < spans.size() && left.span == spans.size(); ++i) {
-      const auto touch = touch_of(way_of(spans[i]), objects_[object], first.radius());
-      if (!touch || touch->first > 0.0)
-        left = {i, 0.0};
-      else if (touch->last < 1.0)
-        left = {i, std::min(1.0, touch->last + kBeyondEdge)};
-    }
-    limits.begin.emplace_back(object, left);
-  }
+  if (path.spans.empty()) return limits;
+  const auto leaves = [this](const Way& way, const PartOfObject& part, double radius) {
+    const double share = leaves_at(way, objects_[part.object], part.part, radius), length = (way.to - way.from).norm();
+    return share < 1.0 && length > 0.0 ? std::min(1.0, share + kBeyondEdge / length) : 1.0;
+  };
+  for_each_part(path.spans.front(), [&](const PartOfObject& part) {
+    if (!only_rim_touches(part, way_of(path.spans.front()).from, first.radius())) return;
+    PlaceOnPath place;
+    for (; place.span < path.spans.size(); ++place.span)
+      if ((place.share = leaves(way_of(path.spans[place.span]), part, first.radius())) < 1.0) break;
+    limits.begin.emplace_back(part, place);
+  });
   if (path.end != End::Caught) return limits;
-  for (const std::uint32_t object : objects_near(spans.back())) {
-    if (!only_rim_touches(object, way_of(spans.back()).to, last.radius())) continue;
-    PlaceOnPath reached{0, 0.0};  // where the rim touches the object for good
-    for (std::size_t i = spans.size(); i-- > 0;) {
-      const auto touch = touch_of(way_of(spans[i]), objects_[object], last.radius());
-      if (touch && touch->last >= 1.0 && touch->first <= 0.0) continue;
-      reached = {i, touch && touch->last >= 1.0 ? std::max(0.0, touch->first - kBeyondEdge) : 1.0};
-      break;
+  const Eigen::Vector2d caught = way_of(path.spans.back()).to;
+  for_each_part(path.spans.back(), [&](const PartOfObject& part) {
+    if (!only_rim_touches(part, caught, last.radius()) || !stands_behind(part, caught)) return;
+    PlaceOnPath place;
+    for (std::size_t i = path.spans.size(); i-- > 0;) {
+      const Way way = way_of(path.spans[i]);
+      place = {i, 1.0 - leaves({way.to, way.from}, part, last.radius())};
+      if (place.share > 0.0) break;
     }
-    limits.end.emplace_back(object, reached);
-  }
+    limits.end.emplace_back(part, place);
+  });
   return limits;
 }
 
-void ObjectFinder::add(const Way& way, const Stretch& part, double radius, std::uint32_t object, const Span& span,
-                       const Block& body, ObjectContact& contact) const {
-  if (!(part.from < part.to)) return;
+std::optional<Touch> ObjectFinder::touch_in(std::size_t span, const Way& way, std::uint32_t object, double radius,
+                                            const RimLimits& limits) const {
+  if (limits.begin.empty() && limits.end.empty()) return touch_of(way, objects_[object], radius);
   const Eigen::Vector2d whole = way.to - way.from;
-  const auto touch = touch_of({way.from + part.from * whole, way.from + part.to * whole}, objects_[object], radius);
-  if (!touch) return;
-  const auto energy = [&](double share) {
-    const double place = part.from + share * (part.to - part.from);
-    return static_cast<float>(0.5e-3 * body.mass * speed_squared_at(span, place));
-  };
-  if (contact.entry < 0.0F) contact.entry = energy(touch->first);
-  contact.largest = std::max({contact.largest, energy(touch->first), energy(touch->last)});
+  std::optional<Touch> all;
+  for (std::size_t part = 0; part < parts_of(objects_[object]); ++part) {
+    const auto add = [&](double from, double to, double of_rim) {
+      if (!(from < to)) return;
+      const Way stretch{way.from + from * whole, way.from + to * whole};
+      if (const auto touch = touch_of_part(stretch, objects_[object], part, of_rim))
+        all = hull(all, Touch{from + touch->first * (to - from), from + touch->last * (to - from)});
+    };
+    const auto [from, to] = limits.of_rim({object, part}, span);
+    add(0.0, from, 0.0);
+    add(from, to, radius);
+    add(std::max(from, to), 1.0, 0.0);
+  }
+  return all;
 }
 
 void ObjectFinder::add(const Path& path, const Block& body, std::span<ObjectContact> contacts) const {
@@ -154,25 +213,26 @@ void ObjectFinder::add(const Path& path, const Block& body, std::span<ObjectCont
   for (std::size_t i = 0; i < path.spans.size(); ++i) {
     for (; next_break != path.breaks.end() && next_break->span <= i; ++next_break) block = next_break->body;
     const Span& span = path.spans[i];
-    const std::span<const std::uint32_t> near = objects_near(span);
-    if (near.empty()) continue;
-    const Way way = way_of(span);
-    for (const std::uint32_t object : near) {
-      const Stretch rim = limits.of_rim(object, i);
-      add(way, {0.0, rim.from}, 0.0, object, span, block, contacts[object]);
-      add(way, rim, block.radius(), object, span, block, contacts[object]);
-      add(way, {std::max(rim.from, rim.to), 1.0}, 0.0, object, span, block, contacts[object]);
+    const auto energy = [&](double share) {
+      return static_cast<float>(0.5e-3 * block.mass * speed_squared_at(span, share));
+    };
+    for (const std::uint32_t object : objects_near(span)) {
+      const std::optional<Touch> touch = touch_in(i, way_of(span), object, block.radius(), limits);
+      if (!touch) continue;
+      ObjectContact& contact = contacts[object];
+      if (contact.entry < 0.0F) contact.entry = energy(touch->first);
+      contact.largest = std::max({contact.largest, energy(touch->first), energy(touch->last)});
     }
   }
 }
 
-Stretch ObjectFinder::RimLimits::of_rim(std::uint32_t object, std::size_t span) const {
-  Stretch rim;
-  for (const auto& [number, place] : begin)
-    if (number == object && span <= place.span) rim.from = span < place.span ? 1.0 : place.share;
-  for (const auto& [number, place] : end)
-    if (number == object && span >= place.span) rim.to = span > place.span ? 0.0 : place.share;
-  return rim;
+std::pair<double, double> ObjectFinder::RimLimits::of_rim(const PartOfObject& part, std::size_t span) const {
+  double from = 0.0, to = 1.0;
+  for (const auto& [of, place] : begin)
+    if (of == part && span <= place.span) from = span < place.span ? 1.0 : place.share;
+  for (const auto& [of, place] : end)
+    if (of == part && span >= place.span) to = span > place.span ? 0.0 : place.share;
+  return {from, to};
 }
 
 }  // namespace talus

@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -22,46 +23,54 @@ struct ObjectContact {
   }
 };
 
-/// A part of a span, from one share to another.
-struct Stretch {
-  double from = 0.0, to = 1.0;
-};
-
 /// Finds which objects a path meets, and with which energy. Each patch has a list of the objects near it, so most
 /// patches need no further test.
 ///
-/// A block meets what its rim touches. But what only its rim touches at its release, it lay beside; and what only its
-/// rim touches where a barrier catches it, stands behind the barrier. Such an object is met from where the rim has left
-/// it, or up to where the rim reaches it; else only by the centre.
+/// A block meets what its rim touches. Two touches of the rim alone do not count: of a part of an object that the block
+/// lay beside when it was released, until the rim has left it; and of a part behind the barrier that catches the block,
+/// from where the rim reaches it.
 class ObjectFinder {
  public:
-  /// @param radius  of the largest block [m]
-  ObjectFinder(const Surface& surface, std::span<const HazardObject> objects, double radius);
+  /// @param barriers  of the run: its paths end `caught` at them
+  /// @param radius    of the largest block [m]
+  ObjectFinder(const Surface& surface, const Barriers& barriers, std::span<const HazardObject> objects, double radius);
 
   /// Adds what a path meets.
   void add(const Path& path, const Block& body, std::span<ObjectContact> contacts) const;
 
  private:
   void enter(std::uint32_t object, double radius);
+  /// A polygon or a line of an object.
+  struct PartOfObject {
+    std::uint32_t object;
+    std::size_t part;
+    bool operator==(const PartOfObject&) const = default;
+  };
   /// A place on a path: a share of one of its spans.
   struct PlaceOnPath {
     std::size_t span = 0;
     double share = 0.0;
   };
-  /// From where to where the rim of a block counts, for the objects where it does not all along the path.
+  /// From where, and up to where, the rim of the block counts, for the parts where it does not all along the path.
   struct RimLimits {
-    std::vector<std::pair<std::uint32_t, PlaceOnPath>> begin, end;
-    Stretch of_rim(std::uint32_t object, std::size_t span) const;
+    std::vector<std::pair<PartOfObject, PlaceOnPath>> begin, end;
+    /// The shares of a span between which it counts.
+    std::pair<double, double> of_rim(const PartOfObject& part, std::size_t span) const;
   };
 
   Way way_of(const Span& span) const;
   std::span<const std::uint32_t> objects_near(const Span& span) const;
-  bool only_rim_touches(std::uint32_t object, const Eigen::Vector2d& place, double radius) const;
+  template <class Visit>
+  void for_each_part(const Span& span, Visit visit) const;
+  bool only_rim_touches(const PartOfObject& part, const Eigen::Vector2d& place, double radius) const;
+  /// Whether a barrier stands between the place where it caught a block and the nearest place of the part.
+  bool stands_behind(const PartOfObject& part, const Eigen::Vector2d& caught) const;
   RimLimits limits_of(const Path& path, const Block& first, const Block& last) const;
-  void add(const Way& way, const Stretch& part, double radius, std::uint32_t object, const Span& span,
-           const Block& body, ObjectContact& contact) const;
+  std::optional<Touch> touch_in(std::size_t span, const Way& way, std::uint32_t object, double radius,
+                                const RimLimits& limits) const;
 
   const Surface& surface_;
+  const Barriers& barriers_;
   std::span<const HazardObject> objects_;
   Raster<std::int32_t> near_;  // by patch: 0, or 1 + the index of its list
   std::vector<std::vector<std::uint32_t>> lists_;

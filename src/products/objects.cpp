@@ -22,26 +22,23 @@ class Replay {
       : scenario_(scenario),
         weights_(weights),
         rules_{EnergyBins(scenario.output.energy_thresholds), weights.scale()},
-        finder_(scenario.surface, objects, 0.5 * diameters_of(scenario).high),
+        finder_(scenario.surface, scenario.barriers, objects, 0.5 * diameters_of(scenario).high),
         proceed_(proceed),
         per_source_(units_per_source(scenario)),
         units_(std::uint64_t{per_source_} * scenario.sources.size()),
         hits_(objects.size()) {}
 
   void work() {
-    try {
-      std::vector<ObjectHits> mine(hits_.size());
-      for (std::uint64_t unit = next_++; unit < units_ && !stop_; unit = next_++) {
-        trace_unit(unit, mine);
-        report();
-      }
-      const std::lock_guard guard(mutex_);
-      for (std::size_t i = 0; i < hits_.size(); ++i) hits_[i].merge(mine[i]);
-    } catch (...) {
-      stop_ = true;
-      throw;
+    std::vector<ObjectHits> mine(hits_.size());
+    for (std::uint64_t unit = next_++; unit < units_ && !stop_; unit = next_++) {
+      trace_unit(unit, mine);
+      report();
     }
+    const std::lock_guard guard(mutex_);
+    for (std::size_t i = 0; i < hits_.size(); ++i) hits_[i].merge(mine[i]);
   }
+
+  void stop() { stop_ = true; }
 
   std::vector<ObjectHits> result() {
     if (ended_) return {};
@@ -124,7 +121,8 @@ std::vector<ObjectHits> replay_objects(const Scenario& scenario, const AnnualWei
                                        std::span<const HazardObject> objects,
                                        const std::function<bool(double)>& proceed, int threads) {
   Replay replay(scenario, weights, objects, proceed);
-  in_threads(threads, [&] { replay.work(); });
+  in_threads(
+      threads, [&] { replay.work(); }, [&] { replay.stop(); });
   return replay.result();
 }
 

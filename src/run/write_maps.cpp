@@ -40,15 +40,13 @@ void write_maps(const std::vector<Map>& maps, const io::MapTarget& target, int t
     for (std::size_t i = 0; i < files.back()->parts(); ++i) parts.push_back({map, files.back().get(), i});
   }
   std::atomic<std::size_t> next = 0;
-  in_threads(threads, [&] {
-    try {
-      for (std::size_t i = next++; i < parts.size(); i = next++)
-        if (parts[i].file->write_part(parts[i].i)) io::write_style(target.folder, *parts[i].map);
-    } catch (...) {
-      next = parts.size();  // the other parts are left out
-      throw;
-    }
-  });
+  in_threads(
+      threads,
+      [&] {
+        for (std::size_t i = next++; i < parts.size(); i = next++)
+          if (parts[i].file->write_part(parts[i].i)) io::write_style(target.folder, *parts[i].map);
+      },
+      [&] { next = parts.size(); });
   if (target.proceed && !target.proceed()) stop_interrupted();
 }
 

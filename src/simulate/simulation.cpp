@@ -98,6 +98,8 @@ class Simulation::Advance {
 
   /// Takes units until none is left.
   void work();
+  /// Makes the workers leave what is left.
+  void stop() { failed_ = true; }
 
   /// Called when all workers are done. True: all units of the process group are done. False: there are more to take.
   bool finish() {
@@ -257,18 +259,13 @@ class Simulation::Advance::Worker {
 };
 
 void Simulation::Advance::work() {
-  try {
-    Totals mine;
-    mine.barriers = BarrierTally(scenario_.barriers);
-    const double start = thread_cpu_seconds();
-    Worker(*this, mine).work();
-    mine.cpu_seconds = thread_cpu_seconds() - start;
-    const std::lock_guard guard(mutex_);
-    add(totals_, mine);
-  } catch (...) {
-    failed_ = true;
-    throw;
-  }
+  Totals mine;
+  mine.barriers = BarrierTally(scenario_.barriers);
+  const double start = thread_cpu_seconds();
+  Worker(*this, mine).work();
+  mine.cpu_seconds = thread_cpu_seconds() - start;
+  const std::lock_guard guard(mutex_);
+  add(totals_, mine);
 }
 
 Simulation::Simulation(const Scenario& scenario, const Part& part, bool further_rounds, Tally& tally,
@@ -294,7 +291,9 @@ Simulation::Simulation(const Scenario& scenario, const Part& part, bool further_
 
 void Simulation::advance(int threads, int lanes) {
   Advance work(*this, lanes);
-  do in_threads(threads, [&] { work.work(); });
+  do
+    in_threads(
+        threads, [&] { work.work(); }, [&] { work.stop(); });
   while (!work.finish());
 }
 

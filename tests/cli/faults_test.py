@@ -184,7 +184,7 @@ class Inputs(Faults):
             os.remove(self.path(name))
         error = process.communicate(timeout=120)[1]
         self.assertEqual(process.returncode, 0, error)
-        self.assert_same("whole", "out")
+        self.assert_same("whole", "out", without=["talus.qgs"])  # the project shows the inputs that are there
         self.assertEqual(self.record("out")["inputs"], self.record("whole")["inputs"])
 
     def test_a_resumed_run_with_another_dem(self):

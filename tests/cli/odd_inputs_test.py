@@ -12,7 +12,7 @@ import unittest
 import numpy as np
 from osgeo import gdal, ogr
 
-from support import TALUS, Case, RunCase, box, system, write_dem, write_features
+from support import TALUS, Case, RunCase, box, rows_of, system, write_dem, write_features
 
 BARRIER_PICTURE = os.path.join(os.path.dirname(__file__), "../../tools/scripts/figures/barrier_picture.py")
 
@@ -36,10 +36,10 @@ class NamesOfFiles(Case):
         ids = ["a/b", "a_b", "A_b", "..", "__", "road", "L123 km 4,2", "Straße"]
         self.screens(*ids)
         files = {name: self.files_of(name) for name in ids}
-        self.assertEqual({len(found) for found in files.values()}, {3}, files)  # none replaced those of another
-        self.assertEqual(len({f.lower() for found in files.values() for f in found}), 3 * len(ids))
+        self.assertEqual({len(found) for found in files.values()}, {4}, files)  # none replaced those of another
+        self.assertEqual(len({f.lower() for found in files.values() for f in found}), 4 * len(ids))
         for name, plain in (("road", "road"), ("L123 km 4,2", "L123_km_4_2"), ("Straße", "Straße")):  # names as ever
-            self.assertEqual(files[name], sorted(f"barrier_{plain}{end}" for end in (".csv", ".json", "_stretches.csv")))
+            self.assertEqual(files[name], sorted(f"barrier_{plain}{end}" for end in (".csv", ".gpkg", ".json", "_stretches.csv")))
         digits = hashlib.sha256(b"a/b").hexdigest()[:8]
         self.assertIn(f"barrier_a_b-{digits}.json", files["a/b"])
         for name, found in files.items():
@@ -49,7 +49,7 @@ class NamesOfFiles(Case):
         ids = ["x" * 300 + "1", "x" * 300 + "2", "ü" * 100]
         self.screens(*ids)
         for name in ids:
-            self.assertEqual(len(self.files_of(name)), 3)
+            self.assertEqual(len(self.files_of(name)), 4)
         self.assertTrue(all(len(os.fsencode(name)) < 160 for name in os.listdir(self.path("out"))))
 
     def test_ids_that_cannot_be_told_apart(self):
@@ -57,15 +57,22 @@ class NamesOfFiles(Case):
         self.screens("a/b", "a_b", f"a_b-{digits}")
         self.fails(2, "'a/b'", "one name", "another id", arguments=["barrier", self.path("out"), "--screen", "a/b"])
 
+    def test_a_layer_of_the_user_is_not_replaced(self):  # earlier builds wrote no .gpkg beside a design
+        self.screens("road")
+        self.files_of("road")
+        write_features(self.path("out/barrier_road.gpkg"), "mine", [("POINT (2600000 1200000)", [])])
+        self.fails(2, "barrier_road.gpkg", "was not written by talus barrier", "move it", arguments=["barrier", self.path("out"), "--screen", "road"])
+        self.assertEqual(len(rows_of(self.path("out/barrier_road.gpkg"), "mine")), 1)
+
     def test_no_id(self):
         self.screens("", "road")
-        self.fails(2, "the run has no screen ''", arguments=["barrier", self.path("out"), "--screen", ""])
+        self.fails(2, "must say at which of the screens", "1, road", arguments=["barrier", self.path("out"), "--screen", ""])
 
     def test_blanks_around_an_id_do_not_count(self):  # talus barrier said that no block crosses the line
         self.screens("road ", "\tpath")
         self.assertEqual([screen["id"] for screen in self.record()["screens"]], ["road", "path"])
         for name in ("road", "path"):
-            self.assertEqual(len(self.files_of(name)), 3)
+            self.assertEqual(len(self.files_of(name)), 4)
         self.fails(2, "the run has no screen 'road '; did you mean 'road'?",
                    arguments=["barrier", self.path("out"), "--screen", "road "])
 

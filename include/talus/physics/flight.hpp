@@ -8,7 +8,7 @@
 namespace talus {
 
 inline constexpr double kNever =
-    std::numeric_limits<double>::infinity();  // when, or where, what does not happen is met
+    std::numeric_limits<double>::infinity();  // time or distance of what never happens
 
 /// How a flight ended.
 enum class Outcome {

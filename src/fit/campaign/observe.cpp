@@ -198,24 +198,20 @@ class Observation {
         units_(units_of(campaign, model.grounds.size(), options, runs_)) {}
 
   std::vector<BlockRuns> run() {
-    in_threads(options_.threads, [this] { work(); });
+    in_threads(
+        options_.threads, [this] { work(); }, [this] { stop_ = true; });
     return std::move(runs_);
   }
 
  private:
   /// Traces trials until none is left.
   void work() {
-    try {
-      Instrument instrument(campaign_, model_, world_.cover, screens_, options_.effort);
-      Tracer tracer(world_, options_.lanes);
-      Unit unit{};
-      tracer.run(
-          [&](Release& release, std::uint64_t& tag) { return next(unit, release, tag); },
-          [&](const Release& release, const Path& path, std::uint64_t tag) { done(instrument, release, path, tag); });
-    } catch (...) {
-      stop_ = true;
-      throw;
-    }
+    Instrument instrument(campaign_, model_, world_.cover, screens_, options_.effort);
+    Tracer tracer(world_, options_.lanes);
+    Unit unit{};
+    tracer.run(
+        [&](Release& release, std::uint64_t& tag) { return next(unit, release, tag); },
+        [&](const Release& release, const Path& path, std::uint64_t tag) { done(instrument, release, path, tag); });
   }
 
   /// The next trial of the unit of a thread, or of another that it takes.

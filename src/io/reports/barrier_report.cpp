@@ -59,10 +59,10 @@ std::string between(const Bounded& b) {
 std::string frequency_text(const Reliability::Limit& l) {
   if (!l.by_frequency || !l.per_year) return "";
   std::string text = "          by frequency: " + percent(*l.by_frequency) + " of the crossings, ";
-  if (!(l.per_year->value > 0.0))
-    return text + "rarer than once in " + with_digits(1.0 / l.per_year->high, 3) + " years\n";
-  return text + "once in " + with_digits(1.0 / l.per_year->value, 3) + " years " + between(return_period(*l.per_year)) +
-         "\n";
+  if (!(l.per_year->value > 0.0)) return text + "rarer than once in " + readable(1.0 / l.per_year->high) + " years\n";
+  const Bounded years = return_period(*l.per_year);
+  return text + "once in " + readable(years.value) + " years [" + readable(years.low) + ", " + readable(years.high) +
+         "]\n";
 }
 
 std::string reliability_text(const Reliability& r) {
@@ -161,6 +161,9 @@ std::optional<std::string> write_barrier(const std::filesystem::path& folder, co
     if (const auto own = folder / (name + std::string(end)); !earlier && std::filesystem::exists(own))
       throw InputError(own.string() + ": is there and of no earlier design by talus barrier (no " +
                        file.filename().string() + " of it), must not be replaced: move it or give it another name");
+  if (const auto own = folder / (name + ".gpkg"); std::filesystem::exists(own) && !is_of_design(own, name))
+    throw InputError(own.string() + ": is there and was not written by talus barrier (no layer " + name +
+                     " with a field mel_kj), must not be replaced: move it or give it another name");
   const std::string json = barrier_json(report);
   std::optional<std::string> replaced;
   if (earlier)
@@ -168,6 +171,7 @@ std::optional<std::string> write_barrier(const std::filesystem::path& folder, co
       replaced = "replaces the earlier design of screen " + report.screen + written_values(design);
   replace_text(file, json);  // first: it says that the tables are ours
   replace_text(folder / (name + ".csv"), barrier_csv(report));
+  if (!report.width) return replaced;  // a profile has no line
   replace_text(folder / (name + "_stretches.csv"), stretches_csv(report));
   replace_stretches(folder / (name + ".gpkg"), report, line, crs_wkt);
   return replaced;

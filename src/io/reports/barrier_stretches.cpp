@@ -231,6 +231,13 @@ std::string stretches_csv(const BarrierReport& r) {
   return text;
 }
 
+bool is_of_design(const std::filesystem::path& file, const std::string& name) {
+  const GdalMessages quiet;
+  const Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY));
+  OGRLayer* const layer = dataset ? dataset->GetLayerByName(name.c_str()) : nullptr;
+  return layer != nullptr && layer->GetLayerDefn()->GetFieldIndex("mel_kj") >= 0;
+}
+
 void replace_stretches(const std::filesystem::path& file, const BarrierReport& report, const Screen& line,
                        const std::string& crs_wkt) {
   StagedPath staged(StagedPath::Kind::File, file, file.extension().string());

@@ -23,4 +23,7 @@ Json stretches_of(const BarrierReport& report);
 void replace_stretches(const std::filesystem::path& file, const BarrierReport& report, const Screen& line,
                        const std::string& crs_wkt);
 
+/// Whether a file is the layer that `replace_stretches` writes, of this name.
+bool is_of_design(const std::filesystem::path& file, const std::string& name);
+
 }  // namespace talus::io

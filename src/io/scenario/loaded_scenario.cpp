@@ -142,17 +142,34 @@ bool steep_enough_for_dams(const Raster<float>& heights, const Cover& cover, int
   return horn_slope(heights, column, row) > std::tan(0.5 * std::atan(ground.tan_phi));
 }
 
+/// How many cells are steep; of a large DEM by about a million of its cells, which is enough for a share.
+template <class IsSteep>
+double number_of_steep(const Raster<float>& heights, const IsSteep& is_steep) {
+  constexpr double kEnough = 1e6;
+  const Grid& grid = heights.grid;
+  const int every = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(heights.values.size()) / kEnough)));
+  double number = 0.0;
+  for_each_row(heights, [&](int row) {
+    if (row % every != 0) return;
+    for (int column = 0; column < grid.columns; column += every)
+      if (is_steep(column, row)) number += every * every;
+  });
+  return number;
+}
+
 /// Steep gullies narrower than two cells are sampled as staircases, whose treads hold blocks.
 void warn_of_dams(const Surface& surface, const Cover& cover, std::vector<std::string>& warnings) {
-  constexpr double kManyDams = 2e-4;  // of the cells; steep terrain with gullies in cells of 5 m has 0.03 to 0.06 %
+  constexpr double kManyDams = 2e-4;  // of the steep cells; mountain sides with gullies in cells of 5 m: 0.03 to 0.07 %
   const Raster<float>& heights = surface.heights();
-  const DamCount count =
-      count_dammed(heights, [&](int column, int row) { return steep_enough_for_dams(heights, cover, column, row); });
-  if (count.share() < kManyDams) return;
+  const auto is_steep = [&](int column, int row) { return steep_enough_for_dams(heights, cover, column, row); };
+  const DamCount count = count_dammed(heights, is_steep);
+  if (count.dammed == 0) return;
+  const double share = static_cast<double>(count.dammed) / std::max(1.0, number_of_steep(heights, is_steep));
+  if (share < kManyDams) return;
   const bool one = count.dammed == 1;
   const std::string cells = std::to_string(count.dammed) + (one ? " cell" : " cells") + " of the DEM (" +
-                            with_digits(100.0 * count.share(), 2) + " %) " + (one ? "has" : "have") +
-                            " a way down only diagonally, on ground steeper than half of its friction angle: ";
+                            percent(share, 2) + " of the ground steeper than half of its friction angle) " +
+                            (one ? "has" : "have") + " a way down only diagonally: ";
   warnings.push_back(cells +
                      (surface.creased()
                           ? "gullies narrower than two cells. The surface is creased there, so that it dams none; "

@@ -30,11 +30,17 @@ HazardObject wall(double west, double east) {
   return {{{{{west, 0.0}, {east, 0.0}, {east, 20.0}, {west, 20.0}, {west, 0.0}}}}, {}};
 }
 
+/// A wall 1 mm behind the end of `flight`, in which a path may end `caught`.
+const Barriers& wall_at_15() {
+  static const Barriers barriers({{"wall", {{{15.001, 0.0}, {15.001, 20.0}}}, 100.0, 1e9}});
+  return barriers;
+}
+
 ObjectContact contact_with(const HazardObject& object, const Path& path) {
   const Surface surface = plain();
   const std::vector<HazardObject> objects{object};
   std::vector<ObjectContact> contacts(1);
-  ObjectFinder(surface, objects, 0.5).add(path, block(), contacts);
+  ObjectFinder(surface, wall_at_15(), objects, 0.5).add(path, block(), contacts);
   return contacts[0];
 }
 
@@ -79,7 +85,7 @@ TEST(ObjectFinder,
     const auto met = [&](const HazardObject& object) {
       const std::vector<HazardObject> objects{object};
       std::vector<ObjectContact> contacts(1);
-      ObjectFinder(surface, objects, 0.5).add(path, block(), contacts);
+      ObjectFinder(surface, wall_at_15(), objects, 0.5).add(path, block(), contacts);
       return contacts[0];
     };
     const ObjectContact of_line = met(road), of_wall = met(wall(12.0, 36.0));
@@ -119,6 +125,30 @@ TEST(ObjectFinder, WhatIsPassedBeforeTheBarrierIsMet) {  // a wall of 0.2 m besi
   EXPECT_GT(free.entry, 0.0F);
   EXPECT_EQ(free.entry, caught.entry);
   EXPECT_EQ(free.largest, caught.largest);
+}
+
+HazardObject::Ring square(double west, double south, double side) {
+  return {{west, south}, {west + side, south}, {west + side, south + side}, {west, south + side}, {west, south}};
+}
+
+TEST(ObjectFinder, WhatStandsBesideABlockInFrontOfTheBarrierIsMet) {  // 0.36 m from where the block is caught
+  const HazardObject post{{{square(14.6, 10.3, 0.2)}}, {}};
+  const ObjectContact free = contact_with(post, test::path_of({flight()}, End::Stopped)),
+                      caught = contact_with(post, test::path_of({flight()}, End::Caught));
+  EXPECT_GT(free.entry, 0.0F);
+  EXPECT_EQ(free.entry, caught.entry);
+  EXPECT_EQ(free.largest, caught.largest);
+}
+
+TEST(ObjectFinder, APartBesideTheReleaseOrBehindTheBarrierHidesNoOther) {
+  const HazardObject::Ring beside = square(4.4, 9.9, 0.2), passed = square(10.0, 10.3, 0.2),
+                           behind = square(15.2, 9.9, 0.2);
+  const Path path = test::path_of({flight()}, End::Caught);
+  const float alone = contact_with({{{passed}}, {}}, path).entry;
+  EXPECT_GT(alone, 0.0F);
+  EXPECT_EQ(contact_with({{{beside}, {passed}}, {}}, path).entry, alone);
+  EXPECT_EQ(contact_with({{{passed}, {behind}}, {}}, path).entry, alone);
+  EXPECT_LT(contact_with({{{beside}, {behind}}, {}}, path).entry, 0.0F);
 }
 
 }  // namespace
