@@ -25,19 +25,19 @@ namespace {
 
 constexpr std::size_t kMostStyle = std::size_t{1} << 20U;  // bytes
 
-enum class Kind { Map, Layer, Table };
+enum class Source { Map, Layer, Table };
 
 /// A layer of the project.
 struct Shown {
   std::string id, title, source;
-  Kind kind = Kind::Map;
+  Source kind = Source::Map;
   bool checked = false;
   std::string wkt{};  // of a layer in a system of its own
   XmlTree style{nullptr, CPLDestroyXMLNode};
 };
 
-Kind kind_of(const std::string& file) {
-  return file.ends_with(".tif") ? Kind::Map : file.ends_with(".csv") ? Kind::Table : Kind::Layer;
+Source kind_of(const std::string& file) {
+  return file.ends_with(".tif") ? Source::Map : file.ends_with(".csv") ? Source::Table : Source::Layer;
 }
 
 /// A text with what stands for "<n>" or "<id>".
@@ -95,17 +95,17 @@ bool has_lines_beside_areas(const fs::path& file, const std::string& layer) {
 
 /// The id of a layer. None is the beginning of another one: QGIS 3.22 looks layers up by the beginning of their id when
 /// it takes them out of its lists, and falls over the one that stays there.
-std::string id_of(const std::string& name, Kind kind) {
-  return name + (kind == Kind::Map ? "_talus_map" : kind == Kind::Table ? "_talus_table" : "_talus_layer");
+std::string id_of(const std::string& name, Source kind) {
+  return name + (kind == Source::Map ? "_talus_map" : kind == Source::Table ? "_talus_table" : "_talus_layer");
 }
 
 /// Takes the lines out of a layer of objects of both kinds: QGIS draws one kind of geometry per layer.
 Shown lines_of(Shown& objects) {
   Shown lines;
-  lines.id = id_of("objects_lines", Kind::Layer);
+  lines.id = id_of("objects_lines", Source::Layer);
   lines.title = objects.title + " (lines)";
   lines.source = objects.source + "|geometrytype=LineString";
-  lines.kind = Kind::Layer;
+  lines.kind = Source::Layer;
   lines.checked = objects.checked;
   lines.style = parsed_xml(style_of(StyledLayer::LineObjects));
   objects.source += "|geometrytype=Polygon";
@@ -142,7 +142,7 @@ std::vector<Shown> shown_layers(const std::vector<std::string>& files, const fs:
       if (name.ends_with(".gpkg")) {
         one.source += "|layername=" + stem;
         one.style = parsed_xml(style_in(folder / name, stem));
-      } else if (one.kind == Kind::Table) {
+      } else if (one.kind == Source::Table) {
         one.source += "|option:AUTODETECT_TYPE=YES";
       } else {
         one.style = parsed_xml(style_beside(folder / name));
@@ -157,7 +157,7 @@ std::vector<Shown> shown_layers(const std::vector<std::string>& files, const fs:
 void check_one_map(std::vector<Shown>& shown) {
   bool found = false;
   for (Shown& one : shown) {
-    if (one.kind != Kind::Map) continue;
+    if (one.kind != Source::Map) continue;
     one.checked = one.checked && !found;
     found = found || one.checked;
   }
@@ -207,7 +207,7 @@ std::optional<Shown> outline_of(const InputFile& input, const std::string& title
     if (layer == nullptr) return std::nullopt;
     const int dimension = dimension_of(*layer);
     if (dimension < 0) return std::nullopt;
-    Shown shown{id_of("run_" + input.role, Kind::Layer), title, way_from(project, named.file), Kind::Layer, true};
+    Shown shown{id_of("run_" + input.role, Source::Layer), title, way_from(project, named.file), Source::Layer, true};
     if (!named.layer.empty()) shown.source += "|layername=" + named.layer;
     shown.wkt = wkt_of(layer->GetSpatialRef());
     shown.style = parsed_xml(outline_style(dimension));
@@ -219,7 +219,7 @@ std::optional<Shown> outline_of(const InputFile& input, const std::string& title
 
 /// Puts the barriers and the sources of the run above the maps.
 void add_inputs(std::vector<Shown>& shown, const ProjectGround& ground, const fs::path& project) {
-  auto place = std::ranges::find(shown, Kind::Map, &Shown::kind);
+  auto place = std::ranges::find(shown, Source::Map, &Shown::kind);
   for (const auto& [role, title] : {std::pair{"barriers", "Barriers of the run"}, {"sources", "Sources of the run"}})
     for (const InputFile& input : ground.inputs)
       if (auto outline = input.role == role ? outline_of(input, title, project) : std::nullopt)
@@ -254,12 +254,12 @@ const CPLXMLNode* style_root(const Shown& shown) {
 
 void add_map_layer(const Element& parent, const Shown& shown, const std::string& wkt) {
   const Element layer = parent.add("maplayer");
-  layer.set("type", shown.kind == Kind::Map ? "raster" : "vector").set("autoRefreshEnabled", "0");
+  layer.set("type", shown.kind == Source::Map ? "raster" : "vector").set("autoRefreshEnabled", "0");
   layer.add("id", shown.id);
   layer.add("datasource", shown.source);
   layer.add("layername", shown.title);
-  if (shown.kind != Kind::Table) add_system(layer, "srs", shown.wkt.empty() ? wkt : shown.wkt);
-  layer.add("provider", shown.kind == Kind::Map ? "gdal" : "ogr");
+  if (shown.kind != Source::Table) add_system(layer, "srs", shown.wkt.empty() ? wkt : shown.wkt);
+  layer.add("provider", shown.kind == Source::Map ? "gdal" : "ogr");
   if (const CPLXMLNode* root = style_root(shown)) layer.add_children_of(*root);
 }
 
@@ -269,7 +269,7 @@ void add_tree(const Element& root, const std::vector<Shown>& shown, const std::s
   for (const Shown& one : shown) {
     const Element layer = group.add("layer-tree-layer");
     layer.set("id", one.id).set("name", one.title).set("source", one.source);
-    layer.set("providerKey", one.kind == Kind::Map ? "gdal" : "ogr");
+    layer.set("providerKey", one.kind == Source::Map ? "gdal" : "ogr");
     layer.set("checked", one.checked ? "Qt::Checked" : "Qt::Unchecked");
     layer.set("expanded", one.checked && one.id != "talus_hillshade" ? "1" : "0");
   }

@@ -115,7 +115,7 @@ TEST(ObjectFinder, WhatStandsBehindTheBarrierThatCatchesIsNotMet) {
   const Path caught = test::path_of({flight()}, End::Caught), stopped = test::path_of({flight()}, End::Stopped);
   EXPECT_NEAR(contact_with(wall(15.2, 16.0), stopped).entry, 0.1 + 0.001 * 4.7 * 4.7, 1e-6);  // touched from 14.7 m on
   EXPECT_LT(contact_with(wall(15.2, 16.0), caught).largest, 0.0F);
-  EXPECT_NEAR(contact_with(wall(14.7, 16.0), caught).entry, 0.1 + 0.001 * 4.7 * 4.7, 1e-6);  // its centre gets there
+  EXPECT_NEAR(contact_with(wall(14.7, 16.0), caught).entry, 0.1 + 0.001 * 4.2 * 4.2, 1e-6);  // its centre gets there
 }
 
 TEST(ObjectFinder, WhatIsPassedBeforeTheBarrierIsMet) {  // a wall of 0.2 m beside the way, 3 m before its end
