@@ -1,5 +1,8 @@
 #include "diagnosis_fits.hpp"
 
+#include "talus/fit/campaign/block_draws.hpp"
+#include "talus/fit/score/joined_scores.hpp"
+
 namespace talus {
 
 FitOptions search_options(const DiagnoseOptions& options, const std::function<bool(double)>& proceed) {
@@ -31,6 +34,63 @@ std::vector<std::uint32_t> folds_of(std::span<const std::size_t> order, std::siz
   std::vector<std::uint32_t> fold_of(blocks, static_cast<std::uint32_t>(folds));
   for (std::size_t i = 0; i < order.size(); ++i) fold_of[order[i]] = static_cast<std::uint32_t>(i % folds);
   return fold_of;
+}
+
+Score joined_score(const FitProblem& problem, const std::vector<std::vector<BlockRuns>>& runs, ScoreOptions how) {
+  const std::vector<std::uint32_t> folds = std::move(how.folds);
+  std::vector<SiteScore> scores;
+  std::size_t before = 0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const FitSite& site = problem.sites[i];
+    const std::size_t blocks = site.rows.size();
+    if (!folds.empty()) {
+      const auto own = std::span(folds).subspan(before, blocks);
+      how.folds.assign(own.begin(), own.end());
+    }
+    scores.push_back({site.name, score(site.campaign, runs[i], site.rows, how), blocks});
+    before += blocks;
+  }
+  return joined_scores(scores);
+}
+
+std::vector<std::vector<BlockRuns>> OutOfFold::runs(ObserveOptions how, std::span<const std::uint32_t> fold_of,
+                                                    std::size_t folds) const {
+  std::vector<std::vector<BlockRuns>> out;
+  for (const FitSite& site : problem_.sites) out.emplace_back(site.rows.size());
+  for (std::size_t fold = 0; fold < folds; ++fold) {
+    if (!options_.proceed(1.0)) throw FitInterrupted{};
+    std::vector<double> others(fold_of.size(), 1.0);
+    for (std::size_t b = 0; b < others.size(); ++b)
+      if (fold_of[b] == fold) others[b] = 0.0;
+    const std::vector<Model> models = problem_.models(local_.optimum(others, spread_));
+    std::size_t before = 0;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      how.blocks.assign(out[i].size(), false);
+      for (std::size_t b = 0; b < out[i].size(); ++b) how.blocks[b] = fold_of[before + b] == fold;
+      std::vector<BlockRuns> seen = observe(problem_.sites[i].campaign, models[i], how);
+      for (std::size_t b = 0; b < seen.size(); ++b)
+        if (how.blocks[b]) out[i][b] = std::move(seen[b]);
+      before += out[i].size();
+    }
+  }
+  return out;
+}
+
+std::vector<Score> OutOfFold::objectives(const DiagnoseOptions& options, std::uint32_t round,
+                                         std::uint32_t part) const {
+  const DiagnosisRules& rules = options.rules;
+  const std::vector<std::uint32_t> streams = problem_.streams();
+  const std::vector<bool> rows = problem_.rows();
+  ObserveOptions how{options.trials.compare, options.seed, 0, options.threads, {}, {}, effort_of(rules.search)};
+  std::vector<Score> scores;
+  for (std::uint32_t number = 0; number < rules.fold_orders; ++number) {
+    how.first_trial = round + (1 + part * rules.fold_orders + number) * how.trials;  // new ones for each
+    const std::vector<std::uint32_t> fold_of =
+        folds_of(random_order(streams, rows, options.seed, number), rows.size(), rules.folds);
+    scores.push_back(weigh_groups(
+        joined_score(problem_, runs(how, fold_of, rules.folds), {ScoreRule::Fair, kFewestSimulated, fold_of})));
+  }
+  return scores;
 }
 
 void set_amount(FittedEffect& effect, const Eigen::VectorXd& z, const DiagnosisRules& rules) {

@@ -1,4 +1,5 @@
 #pragma once
+#include "fit/calibrate/local_model.hpp"
 #include "talus/fit/calibrate/calibrate.hpp"
 #include "talus/fit/diagnose/diagnosis.hpp"
 
@@ -19,6 +20,39 @@ std::uint32_t first_trial_of(const DiagnoseOptions& options, std::uint32_t round
 
 /// Cuts an order of blocks into folds. @return the fold of each block; `folds` for a block that is not in the order
 std::vector<std::uint32_t> folds_of(std::span<const std::size_t> order, std::size_t blocks, std::size_t folds);
+
+/// A score of all sites of a problem. @param how  folds: of the blocks of all sites, one site after the other
+Score joined_score(const FitProblem& problem, const std::vector<std::vector<BlockRuns>>& runs, ScoreOptions how);
+
+/// Simulates blocks out of their folds: each by the minimum of the quadratic model of the other folds' rows. The parts
+/// must outlive it.
+class OutOfFold {
+ public:
+  /// @param fitted  a fit of the problem
+  template <class Fitted>
+  OutOfFold(const FitProblem& problem, const FitOptions& options, const Fitted& fitted)
+      : problem_(problem),
+        options_(options),
+        spread_(fitted.spread),
+        local_(problem, options, EndOfFit{fitted.z, fitted.objective, fitted.evaluations}, fitted.spread) {}
+
+  /// Runs by site, of every block with a fold. Throws FitInterrupted.
+  ///
+  /// @param fold_of  by block, numbered on from site to site: below `folds`, else the block is left out
+  std::vector<std::vector<BlockRuns>> runs(ObserveOptions how, std::span<const std::uint32_t> fold_of,
+                                           std::size_t folds) const;
+  /// The objective for each of some random orders of the blocks, cut into folds.
+  ///
+  /// @param round  first trial of the round of the fits
+  /// @param part   0: for the choice; 1: with new trials, to confirm it
+  std::vector<Score> objectives(const DiagnoseOptions& options, std::uint32_t round, std::uint32_t part) const;
+
+ private:
+  const FitProblem& problem_;
+  const FitOptions& options_;
+  const Eigen::MatrixXd& spread_;
+  LocalModel local_;
+};
 
 /// Sets the amount of an effect. @param z  of all parameters of its fit, its own last
 void set_amount(FittedEffect& effect, const Eigen::VectorXd& z, const DiagnosisRules& rules);

@@ -4,9 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "fit/calibrate/local_model.hpp"
-#include "talus/fit/campaign/block_draws.hpp"
-
 namespace talus {
 namespace {
 
@@ -267,47 +264,15 @@ void EffectFits::continue_with(const FittedModel& base, FittedCandidate& candida
 
 std::vector<Score> EffectFits::cross_validated(const FittedModel& fitted, std::uint32_t part) const {
   const FitProblem problem{campaign_, fitted.model, fitted.free, rows_};
-  const FitOptions options = fit_options();
-  const LocalModel local(problem, options, EndOfFit{fitted.z, fitted.objective, fitted.evaluations}, fitted.spread);
-  const std::uint32_t orders = options_.rules.fold_orders;
-  const std::size_t folds = options_.rules.folds;
-  const std::vector<std::uint32_t> streams = streams_of(campaign_);
-  ObserveOptions how = observe_options(options_.trials.compare);
-  std::vector<Score> scores;
-  for (std::uint32_t number = 0; number < orders; ++number) {
-    how.first_trial =
-        first_trial_of(options_, round_) + (1 + part * orders + number) * how.trials;  // new ones for each
-    const std::vector<std::size_t> order = random_order(streams, rows_, options_.seed, number);
-    const std::vector<std::uint32_t> fold_of = folds_of(order, rows_.size(), folds);
-    const std::vector<BlockRuns> runs = runs_in_folds(local, fitted, how, fold_of, folds);
-    scores.push_back(weigh_groups(score(campaign_, runs, rows_, {ScoreRule::Fair, kFewestSimulated, fold_of})));
-  }
-  return scores;
-}
-
-std::vector<BlockRuns> EffectFits::runs_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
-                                                 std::span<const std::uint32_t> fold_of, std::size_t folds) const {
-  std::vector<BlockRuns> runs(campaign_.blocks.size());
-  for (std::size_t fold = 0; fold < folds; ++fold) {
-    if (!proceed_(1.0)) throw FitInterrupted{};
-    std::vector<double> others(runs.size(), 1.0);
-    how.blocks.assign(runs.size(), false);
-    for (std::size_t b = 0; b < runs.size(); ++b)
-      if (fold_of[b] == fold) others[b] = 0.0, how.blocks[b] = true;
-    const Model model = model_at(fitted.model, fitted.free, local.optimum(others, fitted.spread));
-    std::vector<BlockRuns> seen = observe(campaign_, model, how);
-    for (std::size_t b = 0; b < runs.size(); ++b)
-      if (how.blocks[b]) runs[b] = std::move(seen[b]);
-  }
-  return runs;
+  const FitOptions how = fit_options();
+  return OutOfFold(problem, how, fitted).objectives(options_, first_trial_of(options_, round_), part);
 }
 
 std::vector<BlockRuns> EffectFits::out_of_fold(const FittedModel& fitted, std::span<const std::uint32_t> fold_of,
                                                std::size_t folds, ObserveOptions how) const {
   const FitProblem problem{campaign_, fitted.model, fitted.free, rows_};
   const FitOptions options = fit_options();
-  const LocalModel local(problem, options, EndOfFit{fitted.z, fitted.objective, fitted.evaluations}, fitted.spread);
-  return runs_in_folds(local, fitted, std::move(how), fold_of, folds);
+  return OutOfFold(problem, options, fitted).runs(std::move(how), fold_of, folds).front();
 }
 
 Confirmation EffectFits::confirmation(const FittedModel& base, const FittedCandidate& candidate) const {

@@ -4,8 +4,6 @@
 
 namespace talus {
 
-class LocalModel;
-
 /// The fits of one diagnosis: of the ground, and of each effect on top of the model so far.
 ///
 /// Each fit passes its evaluations on to the next one, so that an effect is added to a ground whose neighbourhood is
@@ -82,8 +80,6 @@ class EffectFits {
                    const Candidate& candidate, const Verdict& verdict) const;
   /// @param part  0: for the choice; 1: with new trials, to confirm it
   std::vector<Score> cross_validated(const FittedModel& fitted, std::uint32_t part) const;
-  std::vector<BlockRuns> runs_in_folds(const LocalModel& local, const FittedModel& fitted, ObserveOptions how,
-                                       std::span<const std::uint32_t> fold_of, std::size_t folds) const;
 
   const Campaign& campaign_;
   const DiagnoseOptions& options_;

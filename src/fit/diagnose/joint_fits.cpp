@@ -3,10 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "fit/calibrate/local_model.hpp"
-#include "talus/fit/campaign/block_draws.hpp"
-#include "talus/fit/score/joined_scores.hpp"
-
 namespace talus {
 namespace {
 
@@ -102,25 +98,11 @@ std::vector<std::vector<BlockRuns>> JointFits::observe_all(const std::vector<Mod
   return runs;
 }
 
-Score JointFits::joined_score(const std::vector<std::vector<BlockRuns>>& runs, const ScoreOptions& how) const {
-  std::vector<SiteScore> scores;
-  std::size_t before = 0;
-  for (std::size_t i = 0; i < sites_.size(); ++i) {
-    ScoreOptions rule = how;
-    if (!how.folds.empty()) {
-      const auto of_site = std::span(how.folds).subspan(before, rows_[i].size());
-      rule.folds.assign(of_site.begin(), of_site.end());
-    }
-    scores.push_back({sites_[i].name, score(*sites_[i].campaign, runs[i], rows_[i], rule), rows_[i].size()});
-    before += rows_[i].size();
-  }
-  return joined_scores(scores);
-}
-
 JointModel JointFits::simulated_anew(JointModel fitted) const {
   fitted.runs = observe_all(fitted.models, options_.trials.compare, first_trial());
-  fitted.score = joined_score(fitted.runs, {});
-  fitted.objective = weigh_groups(joined_score(fitted.runs, fit_scoring()));
+  const FitProblem problem = problem_of(fitted.parameters, fitted.models);
+  fitted.score = joined_score(problem, fitted.runs, {});
+  fitted.objective = weigh_groups(joined_score(problem, fitted.runs, fit_scoring()));
   return fitted;
 }
 
@@ -241,45 +223,8 @@ void JointFits::take_fit(const JointModel& base, JointModel&& fitted, JointCandi
 
 std::vector<Score> JointFits::cross_validated(const JointModel& fitted, std::uint32_t part) const {
   const FitProblem problem = problem_of(fitted.parameters, fitted.models);
-  const FitOptions options = fit_options();
-  const LocalModel local(problem, options, EndOfFit{fitted.z, fitted.objective, fitted.evaluations}, fitted.spread);
-  const std::uint32_t orders = options_.rules.fold_orders;
-  std::vector<bool> used;  // by block, numbered on from site to site
-  for (const std::vector<bool>& rows : rows_) used.insert(used.end(), rows.begin(), rows.end());
-  std::vector<Score> scores;
-  for (std::uint32_t number = 0; number < orders; ++number) {
-    const std::vector<std::size_t> order = random_order(streams_, used, options_.seed, number);
-    const std::vector<std::uint32_t> fold_of = folds_of(order, streams_.size(), options_.rules.folds);
-    const std::uint32_t first = first_trial() + (1 + part * orders + number) * options_.trials.compare;
-    const auto runs = runs_in_folds(local, problem, fitted, first, fold_of);
-    scores.push_back(weigh_groups(joined_score(runs, {ScoreRule::Fair, kFewestSimulated, fold_of})));
-  }
-  return scores;
-}
-
-std::vector<std::vector<BlockRuns>> JointFits::runs_in_folds(const LocalModel& local, const FitProblem& problem,
-                                                             const JointModel& fitted, std::uint32_t first,
-                                                             std::span<const std::uint32_t> fold_of) const {
-  std::vector<std::vector<BlockRuns>> runs;
-  for (const std::vector<bool>& rows : rows_) runs.emplace_back(rows.size());
-  for (std::size_t fold = 0; fold < options_.rules.folds; ++fold) {
-    if (!proceed_(1.0)) throw FitInterrupted{};
-    std::vector<double> others(fold_of.size(), 1.0);
-    for (std::size_t b = 0; b < others.size(); ++b)
-      if (fold_of[b] == fold) others[b] = 0.0;
-    const std::vector<Model> models = problem.models(local.optimum(others, fitted.spread));
-    std::size_t before = 0;
-    for (std::size_t i = 0; i < sites_.size(); ++i) {
-      ObserveOptions how{options_.trials.compare,         options_.seed, first, options_.threads, {}, {},
-                         effort_of(options_.rules.search)};
-      for (std::size_t b = 0; b < rows_[i].size(); ++b) how.blocks.push_back(fold_of[before + b] == fold);
-      std::vector<BlockRuns> seen = observe(*sites_[i].campaign, models[i], how);
-      for (std::size_t b = 0; b < seen.size(); ++b)
-        if (how.blocks[b]) runs[i][b] = std::move(seen[b]);
-      before += rows_[i].size();
-    }
-  }
-  return runs;
+  const FitOptions how = fit_options();
+  return OutOfFold(problem, how, fitted).objectives(options_, first_trial(), part);
 }
 
 Confirmation JointFits::confirmation(const JointModel& base, const JointCandidate& candidate) const {
@@ -288,7 +233,9 @@ Confirmation JointFits::confirmation(const JointModel& base, const JointCandidat
   const std::uint32_t first = first_trial() + (1 + 2 * rules.fold_orders) * options_.trials.compare;
   const auto error = [&](const JointModel& fitted) {
     const auto runs = observe_all(fitted.models, rules.confirming * options_.trials.compare, first);
-    return weigh_groups(joined_score(runs, fit_scoring(rules.confirming * kFewestSimulated))).total;
+    return weigh_groups(joined_score(problem_of(fitted.parameters, fitted.models), runs,
+                                     fit_scoring(rules.confirming * kFewestSimulated)))
+        .total;
   };
   return {error(base) - error(candidate.fitted), -change.mean};
 }

@@ -46,11 +46,6 @@ class JointFits {
   JointModel continued(JointModel fitted, int rounds, std::uint32_t times_trials) const;
   void take_fit(const JointModel& base, JointModel&& fitted, JointCandidate& candidate) const;
   JointModel simulated_anew(JointModel fitted) const;
-  std::vector<std::vector<BlockRuns>> runs_in_folds(const LocalModel& local, const FitProblem& problem,
-                                                    const JointModel& fitted, std::uint32_t first,
-                                                    std::span<const std::uint32_t> fold_of) const;
-  /// @param how  folds: of the blocks of all sites one after another
-  Score joined_score(const std::vector<std::vector<BlockRuns>>& runs, const ScoreOptions& how) const;
   std::vector<std::vector<BlockRuns>> observe_all(const std::vector<Model>& models, std::uint32_t trials,
                                                   std::uint32_t first) const;
 
