@@ -1,8 +1,6 @@
 #include "progress.hpp"
 #include "several_campaigns.hpp"
-#include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
-#include "talus/fit/calibrate/calibrate.hpp"
 #include "talus/fit/calibrate/joint_parameters.hpp"
 #include "talus/io/reports/sites_calibration.hpp"
 
