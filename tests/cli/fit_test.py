@@ -145,6 +145,15 @@ class OwnCampaign(Case):
         self.assertEqual(settings["ground.default.theta_scale"]["source"], "include fit/fitted.toml")
         self.assertIn("include", [i["role"] for i in self.record()["inputs"]])
 
+    def test_each_warning_is_said_once(self):
+        head, *rows = self.read_text("blocks.csv").splitlines()
+        self.write("blocks.csv", "".join(line + "\n" for line in [head + ",L1_m,L2_m,L3_m"] + [row + ",60,50,40" for row in rows]))  # in cm
+        done = self.run_well("calibrate", self.campaign, "-o", self.path("fit"), "--fit", "En50", "--starts", "1", "--trials", "20")
+        said = self.read_json("fit/calibration.json")["warnings"]
+        self.assertTrue(any("blocks.csv" in warning for warning in said), said)
+        for warning in said:
+            self.assertEqual(done.stderr.count(warning), 1, warning)
+
     def test_same_result_for_any_number_of_threads(self):
         texts = []
         for threads in "1", "3":

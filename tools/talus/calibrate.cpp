@@ -80,9 +80,9 @@ int calibrate(const Options& options) {
   talus::io::OutputFolder& folder = opened.folder;
   c.options = options.how;
   c.start_name = options.parameters.empty() ? std::string(talus::kDefaultPreset) : options.parameters;
-  c.start = start_model(options.parameters, campaign, c.warnings);
-  if (!options.quiet)
-    for (const std::string& warning : c.warnings) say("warning", warning);
+  std::vector<std::string> of_start;
+  c.start = start_model(options.parameters, campaign, of_start);
+  for (const std::string& warning : of_start) warn(options, c, warning);
   choose_parameters(campaign, options.fit, c);
   const std::vector<bool> rows = talus::fitting_rows(campaign);
   Progress progress(Progress::mode_of(options.quiet, options.progress), 0, "fit");
