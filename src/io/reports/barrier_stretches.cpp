@@ -7,7 +7,9 @@
 #include <stdexcept>
 
 #include "io/files/own_files.hpp"
+#include "io/gdal/dataset.hpp"
 #include "io/gdal/layer_file.hpp"
+#include "talus/base/error.hpp"
 #include "talus/io/files/staged_path.hpp"
 #include "talus/io/results/vector_style.hpp"
 #include "talus/simulate/screens/screens.hpp"
@@ -232,10 +234,13 @@ std::string stretches_csv(const BarrierReport& r) {
 }
 
 bool is_of_design(const std::filesystem::path& file, const std::string& name) {
-  const GdalMessages quiet;
-  const Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY));
-  OGRLayer* const layer = dataset ? dataset->GetLayerByName(name.c_str()) : nullptr;
-  return layer != nullptr && layer->GetLayerDefn()->GetFieldIndex("mel_kj") >= 0;
+  try {
+    const Dataset dataset = open_dataset(file, GDAL_OF_VECTOR);
+    OGRLayer* const layer = dataset->GetLayerByName(name.c_str());
+    return layer != nullptr && layer->GetLayerDefn()->GetFieldIndex("mel_kj") >= 0;
+  } catch (const InputError&) {
+    return false;  // no layer at all
+  }
 }
 
 void replace_stretches(const std::filesystem::path& file, const BarrierReport& report, const Screen& line,
