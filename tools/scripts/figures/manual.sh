@@ -45,7 +45,7 @@ draw valley_exceedance "$out/energy_exceedance.tif" --band 2 --classes 1e-5,1e-4
 draw passage_density "$out/passage_density.tif" --classes 1e-6,1e-5,1e-4,1e-3,1e-2 --unit 1/m --title "Passage density" --vectors $cliffs $lines
 draw deposits "$out/deposits.tif" --classes 1,3,10,30,100 --unit blocks --colours viridis --title "Blocks that came to rest" --vectors $cliffs $lines $houses
 draw trajectories "" --title "200 of the paths" --vectors "$out/trajectories.gpkg" $cliffs $lines
-draw hazard_return_period "$out/return_period_30.tif" --classes 1,30,100,300,1000,10000 --unit years --colours YlOrRd_r --title "Return period of E > 30 kJ, object 10 m wide" --vectors $cliffs $lines $houses
+draw hazard_return_period "$out/return_period_30.tif" --classes 1,30,100,300,1000,10000 --unit years --colours PuBuGn_r --title "Return period of E > 30 kJ, object 10 m wide" --vectors $cliffs $lines $houses
 draw hazard_class "$out/hazard_class.tif" --names none,residual,low,medium,high --title "Class of hazard, object 10 m wide" --vectors $cliffs $lines $houses
 draw hazard_undecided "$out/hazard_class.tif" --band 4 --names decided,undecided --title "Class not decided by this number of blocks" --vectors $cliffs
 /usr/bin/python3 $figures/barrier_picture.py "$out" --screen road -o "$pictures/valley_barrier.png" --bin 20
