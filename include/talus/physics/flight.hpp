@@ -7,8 +7,7 @@
 
 namespace talus {
 
-inline constexpr double kNever =
-    std::numeric_limits<double>::infinity();  // time or distance of what never happens
+inline constexpr double kNever = std::numeric_limits<double>::infinity();  // time or distance of what never happens
 
 /// How a flight ended.
 enum class Outcome {
