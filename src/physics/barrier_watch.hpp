@@ -87,18 +87,18 @@ class BehindBarriers : public Acting {
  public:
   BehindBarriers(const World& world, const Release& release) : Acting(world, release), watch_(world) {}
 
-  Outcome fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path) {
+  FlightEnd fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path) {
     if constexpr (requires { this->drag_flight(); })
       if (auto* drag = this->drag_flight()) return drag->fly(motion, at, grounded, body, path, &watch_);
     for (int legs = 0; legs < kMostLegs; ++legs) {
       watch_.begin(path, path.vertices.size() - 1);
-      const Outcome outcome = Acting::fly(motion, at, grounded, body, path);
+      const FlightEnd end = Acting::fly(motion, at, grounded, body, path);
       const Meeting met = watch_.look(motion, at, body, path);
-      if (met == Meeting::Over) return outcome;
-      if (met == Meeting::Caught) return Outcome::Caught;
+      if (met == Meeting::Over) return end;
+      if (met == Meeting::Caught) return FlightEnd::Caught;
       grounded = false;
     }
-    return Outcome::Aloft;
+    return FlightEnd::Aloft;
   }
 
   SlideEnd slide(Motion& motion, PatchIndex& at, const Block& body, Path& path) {

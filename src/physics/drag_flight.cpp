@@ -115,7 +115,7 @@ struct DragFlight::Piece {
   Vec3 parabola(double time) const { return DampedFall(rates(time).way, time).parabola(start.velocity); }
 
   /// Flies it with the rates of this time [s], for at most `longest`.
-  Outcome fly(const Surface& surface, double time, double longest, Motion& motion, PatchIndex& at, Path& path) {
+  FlightEnd fly(const Surface& surface, double time, double longest, Motion& motion, PatchIndex& at, Path& path) {
     motion = start, at = start_at;
     path.spans.resize(first_span), path.length = length, path.plan_length = plan_length;
     rate = rates(time);
@@ -143,7 +143,7 @@ struct DragFlight::Piece {
 };
 
 /// Ends a piece at the first barrier that acts on the block, with the speed of the block there.
-std::optional<BarrierMet> DragFlight::end_at_barrier(const BarrierWatch& watch, Piece& piece, Outcome& outcome,
+std::optional<BarrierMet> DragFlight::end_at_barrier(const BarrierWatch& watch, Piece& piece, FlightEnd& end,
                                                      Motion& motion, PatchIndex& at, const Block& body,
                                                      Path& path) const {
   const double way = (motion.position - piece.start.position).head<2>().norm(),
@@ -152,12 +152,12 @@ std::optional<BarrierMet> DragFlight::end_at_barrier(const BarrierWatch& watch, 
                                [&](double share) { return piece.after(piece.time_to(share * way, longest)); });
   if (!met) return met;
   const double time = piece.time_to(met->share * way, longest);
-  outcome = piece.fly(world_.surface, time, time, motion, at, path);
+  end = piece.fly(world_.surface, time, time, motion, at, path);
   return met;
 }
 
-Outcome DragFlight::fly_piece(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path,
-                              BarrierWatch* watch) {
+FlightEnd DragFlight::fly_piece(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path,
+                                BarrierWatch* watch) {
   const Motion start = motion;
   const Site site = site_of(motion, body);
   double time = longest_piece(site, motion);
@@ -166,11 +166,11 @@ Outcome DragFlight::fly_piece(Motion& motion, PatchIndex& at, bool grounded, con
     time = std::min(time, stems_->way_left(plan_way(motion, speed * time), body.diameter) / speed);
   }
   Piece piece{start, at, grounded, site.drag, path.spans.size(), path.length, path.plan_length};
-  Outcome outcome = piece.fly(world_.surface, time, time, motion, at, path);
-  if (piece.rate.way > 0.0 && outcome == Outcome::Landed)
-    outcome = piece.fly(world_.surface, motion.time - start.time, time, motion, at, path);
+  FlightEnd end = piece.fly(world_.surface, time, time, motion, at, path);
+  if (piece.rate.way > 0.0 && end == FlightEnd::Landed)
+    end = piece.fly(world_.surface, motion.time - start.time, time, motion, at, path);
   std::optional<BarrierMet> met;
-  if (watch != nullptr) met = end_at_barrier(*watch, piece, outcome, motion, at, body, path);
+  if (watch != nullptr) met = end_at_barrier(*watch, piece, end, motion, at, body, path);
 
   if (piece.began != start.velocity || path.vertices.back().motion.time != start.time) {
     path.vertices.push_back({start, Event::Air});
@@ -188,11 +188,11 @@ Outcome DragFlight::fly_piece(Motion& motion, PatchIndex& at, bool grounded, con
   const bool at_stem = site.stems && stems_->go(gone, body.diameter);
   if (met) {  // a stem at the same place is met by the next piece
     watch->act(*met, body, motion, path);
-    return met->how == Meeting::Caught ? Outcome::Caught : outcome;
+    return met->how == Meeting::Caught ? FlightEnd::Caught : end;
   }
-  if (at_stem && outcome == Outcome::Aloft && meet_stem(gone, body, motion))
+  if (at_stem && end == FlightEnd::Aloft && meet_stem(gone, body, motion))
     path.vertices.push_back({motion, Event::Stem});
-  return outcome;
+  return end;
 }
 
 bool DragFlight::in_a_stand(const PatchIndex& patch) const {
@@ -210,15 +210,15 @@ bool DragFlight::in_a_stand(const PatchIndex& patch) const {
 
 /// The plain flight to the ground or to a barrier, `Aloft` behind one that broke, if it touches no cell of a stand and
 /// no listed tree. Otherwise empty, and nothing is changed.
-std::optional<Outcome> DragFlight::fly_clear(Motion& motion, PatchIndex& at, bool grounded, const Block& body,
-                                             Path& path, BarrierWatch* watch) {
+std::optional<FlightEnd> DragFlight::fly_clear(Motion& motion, PatchIndex& at, bool grounded, const Block& body,
+                                               Path& path, BarrierWatch* watch) {
   if (in_a_stand(at)) return std::nullopt;
   if (watch != nullptr) watch->begin(path, path.vertices.size() - 1);
   Motion landed = motion;
   PatchIndex landed_at = at;
   const std::size_t first_span = path.spans.size();
   const double length = path.length, plan_length = path.plan_length;
-  const Outcome outcome = talus::fly(world_.surface, landed, landed_at, grounded, path);
+  const FlightEnd end = talus::fly(world_.surface, landed, landed_at, grounded, path);
   const double way = (landed.position - motion.position).head<2>().norm();
   bool met = stems_ && stems_->of_list() && stems_->way_left(plan_way(motion, way), body.diameter) <= way;
   for (std::size_t i = first_span; !met && i < path.spans.size(); ++i) met = in_a_stand(path.spans[i].patch);
@@ -228,26 +228,26 @@ std::optional<Outcome> DragFlight::fly_clear(Motion& motion, PatchIndex& at, boo
   }
   motion = landed, at = landed_at;
   const Meeting how = watch == nullptr ? Meeting::Over : watch->look(motion, at, body, path);
-  if (how == Meeting::Over) return outcome;
-  return how == Meeting::Caught ? Outcome::Caught : Outcome::Aloft;
+  if (how == Meeting::Over) return end;
+  return how == Meeting::Caught ? FlightEnd::Caught : FlightEnd::Aloft;
 }
 
-Outcome DragFlight::fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path,
-                        BarrierWatch* watch) {
+FlightEnd DragFlight::fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path,
+                          BarrierWatch* watch) {
   bool may_be_clear = effects_.air_drag.coefficient == 0.0;
   for (int pieces = 0; pieces < kMostSteps && motion.time < world_.rules.time_limit &&
                        path.vertices.size() < world_.effort.most_vertices;
        ++pieces) {
-    std::optional<Outcome> outcome;
-    if (may_be_clear) outcome = fly_clear(motion, at, grounded, body, path, watch);
-    if (!outcome) {
-      outcome = fly_piece(motion, at, grounded, body, path, watch);
+    std::optional<FlightEnd> end;
+    if (may_be_clear) end = fly_clear(motion, at, grounded, body, path, watch);
+    if (!end) {
+      end = fly_piece(motion, at, grounded, body, path, watch);
       may_be_clear = may_be_clear && stems_ && stems_->of_list() && path.vertices.back().event == Event::Stem;
     }
-    if (*outcome != Outcome::Aloft) return *outcome;
+    if (*end != FlightEnd::Aloft) return *end;
     grounded = false;
   }
-  return Outcome::Aloft;
+  return FlightEnd::Aloft;
 }
 
 void DragFlight::after_slide(const Motion& before, const Block& body, Motion& motion, Path& path) {

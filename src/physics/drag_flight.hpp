@@ -27,8 +27,8 @@ class DragFlight {
   /// a vertex.
   ///
   /// @param watch  for barriers, null: none. A piece ends at a barrier that catches the block or breaks
-  Outcome fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path,
-              BarrierWatch* watch = nullptr);
+  FlightEnd fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path,
+                BarrierWatch* watch = nullptr);
 
   /// Applies drag and stems of a slide, at its end.
   void after_slide(const Motion& before, const Block& body, Motion& motion, Path& path);
@@ -44,11 +44,12 @@ class DragFlight {
   bool in_a_stand(const PatchIndex& patch) const;  ///< whether one of its four cells is
   bool below_the_tops(const Vec3& position) const;
   bool meet_stem(const PlanWay& gone, const Block& body, Motion& motion);
-  std::optional<Outcome> fly_clear(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path,
-                                   BarrierWatch* watch);
-  std::optional<BarrierMet> end_at_barrier(const BarrierWatch& watch, Piece& piece, Outcome& outcome, Motion& motion,
+  std::optional<FlightEnd> fly_clear(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path,
+                                     BarrierWatch* watch);
+  std::optional<BarrierMet> end_at_barrier(const BarrierWatch& watch, Piece& piece, FlightEnd& end, Motion& motion,
                                            PatchIndex& at, const Block& body, Path& path) const;
-  Outcome fly_piece(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path, BarrierWatch* watch);
+  FlightEnd fly_piece(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path,
+                      BarrierWatch* watch);
 
   const World& world_;
   const Effects& effects_;

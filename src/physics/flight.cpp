@@ -56,15 +56,15 @@ void set_speed(Span& span, float plan_squared, double rise_from, double rise_to)
 ///
 /// Where it keeps its numbers decides the speed of the program: start and velocity as copies, and no struct of them.
 template <bool kBounded, bool kCreased>
-Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path,
-             [[maybe_unused]] double longest) {
+FlightEnd walk(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path,
+               [[maybe_unused]] double longest) {
   const Vec3 start = motion.position, v = motion.velocity;
   const double rate_u = v.x() * surface.per_cell_x(), rate_v = v.y() * surface.per_cell_y();
   const double u0 = surface.u_of(start.x()), v0 = surface.v_of(start.y());
   const auto plan2 = static_cast<float>(v.x() * v.x() + v.y() * v.y());
   Steps columns(u0 - at.column, rate_u), rows(v0 - at.row, rate_v);
   double t = 0.0, p = u0 - at.column, q = v0 - at.row, z = start.z();
-  Outcome outcome = Outcome::Left;
+  FlightEnd end = FlightEnd::Left;
   const int most = (kCreased ? 2 : 1) * (surface.grid().columns + surface.grid().rows + 2);
   for (int crossed = 0; crossed <= most; ++crossed) {
     Patch patch;
@@ -95,11 +95,11 @@ Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool ground
     set_speed(span, plan2, rise, v.z() - kGravity * t);
     if (landed) {
       z = patch.height(p, q);
-      outcome = Outcome::Landed;
+      end = FlightEnd::Landed;
       break;
     }
     if (kBounded && until < ahead) {
-      outcome = Outcome::Aloft;
+      end = FlightEnd::Aloft;
       break;
     }
     z = start.z() + t * (v.z() - 0.5 * kGravity * t);
@@ -110,14 +110,14 @@ Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool ground
   path.plan_length += std::sqrt(v.x() * v.x() + v.y() * v.y()) * t;
   motion.time += t;
   motion.position = {start.x() + v.x() * t, start.y() + v.y() * t,
-                     outcome == Outcome::Landed ? z : start.z() + t * (v.z() - 0.5 * kGravity * t)};
+                     end == FlightEnd::Landed ? z : start.z() + t * (v.z() - 0.5 * kGravity * t)};
   motion.velocity.z() = v.z() - kGravity * t;
-  return outcome;
+  return end;
 }
 
 /// The walk for this kind of surface.
 template <bool kBounded>
-Outcome walk(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path, double longest) {
+FlightEnd walk(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path, double longest) {
   return surface.creased() ? walk<kBounded, true>(surface, motion, at, grounded, path, longest)
                            : walk<kBounded, false>(surface, motion, at, grounded, path, longest);
 }
@@ -128,11 +128,11 @@ double arc_length(const Vec3& v, double duration) {
   return arc_length<double>(v, duration);
 }
 
-[[gnu::flatten]] Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path) {
+[[gnu::flatten]] FlightEnd fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path) {
   return walk<false>(surface, motion, at, grounded, path, kNever);
 }
 
-Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path, double longest) {
+FlightEnd fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path, double longest) {
   return walk<true>(surface, motion, at, grounded, path, longest);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "talus/physics/slide.hpp"
+#include "talus/physics/path.hpp"
 #include "talus/physics/world.hpp"
 
 namespace talus {
@@ -7,7 +7,7 @@ namespace talus {
 /// How a block that does not get away ends. Walls hold it if the ground under it is steeper than phi, but does not
 /// fall as steeply over the next two diameters downhill: then it is trapped. On other ground friction holds it, or
 /// nearly so: it has stopped. docs/physics.md, "End of a trajectory".
-SlideEnd end_of_staying(const World& world, const Ground& ground, const Motion& motion, PatchIndex at, double diameter);
+End end_of_staying(const World& world, const Ground& ground, const Motion& motion, PatchIndex at, double diameter);
 
 /// Patches crossed after which a trajectory ends at its limit, as with `Effort::most_vertices`: they bound its memory
 /// and time where it flies over many patches between few vertices. docs/physics.md, "End of a trajectory".

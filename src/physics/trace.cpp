@@ -48,10 +48,7 @@ class Walk {
       if (const auto end = meet_the_ground()) return *end;
       if (motion_.velocity.dot(normal_) < kSlideSpeed) {
         const SlideEnd how = slide_on();
-        if (how == SlideEnd::Left) return End::Left;
-        if (how == SlideEnd::Stopped) return End::Stopped;
-        if (how == SlideEnd::Trapped) return End::Trapped;
-        if (how == SlideEnd::Caught) return End::Caught;
+        if (const auto end = end_of(how)) return *end;
         if (how == SlideEnd::NextAsperity) continue;
         path_.vertices.push_back({motion_, Event::Takeoff});
       }
@@ -64,10 +61,17 @@ class Walk {
   const Block& body() const { return body_; }
 
  private:
-  static std::optional<End> end_of(Outcome outcome) {
-    if (outcome == Outcome::Left) return End::Left;
-    if (outcome == Outcome::Aloft) return End::Limit;
-    if (outcome == Outcome::Caught) return End::Caught;
+  static std::optional<End> end_of(FlightEnd how) {
+    if (how == FlightEnd::Left) return End::Left;
+    if (how == FlightEnd::Aloft) return End::Limit;
+    if (how == FlightEnd::Caught) return End::Caught;
+    return std::nullopt;
+  }
+  std::optional<End> end_of(SlideEnd how) {
+    if (how == SlideEnd::Left) return End::Left;
+    if (how == SlideEnd::Stopped) return End::Stopped;
+    if (how == SlideEnd::Caught) return End::Caught;
+    if (how == SlideEnd::Trapped || anchor_.holds(motion_, body_.diameter)) return end_of_staying();
     return std::nullopt;
   }
 
@@ -107,20 +111,19 @@ class Walk {
   SlideEnd slide_on() {
     motion_.velocity -= motion_.velocity.dot(normal_) * normal_;
     const Motion before = motion_;
-    const SlideEnd end = effects_.slide(motion_, at_, body_, path_);
-    const bool goes_on = end == SlideEnd::Takeoff || end == SlideEnd::NextAsperity;
-    if (goes_on) effects_.after_slide(before, body_, motion_, path_);
-    return end == SlideEnd::Trapped || (goes_on && anchor_.holds(motion_, body_.diameter)) ? end_of_staying() : end;
+    const SlideEnd how = effects_.slide(motion_, at_, body_, path_);
+    if (how == SlideEnd::Takeoff || how == SlideEnd::NextAsperity) effects_.after_slide(before, body_, motion_, path_);
+    return how;
   }
 
   /// Flies from the surface to the next contact.
   std::optional<End> fly_on() {
     if (const auto end = end_of(effects_.fly(motion_, at_, true, body_, path_))) return *end;
-    if (!anchor_.holds(motion_, body_.diameter)) return std::nullopt;
-    return end_of_staying() == SlideEnd::Stopped ? End::Stopped : End::Trapped;
+    if (anchor_.holds(motion_, body_.diameter)) return end_of_staying();
+    return std::nullopt;
   }
 
-  SlideEnd end_of_staying() {
+  End end_of_staying() {
     return talus::end_of_staying(world_, effects_.ground(motion_.position, body_), motion_, at_, body_.diameter);
   }
 

@@ -8,6 +8,7 @@
 namespace talus {
 
 using Words = std::array<std::uint32_t, 4>;
+using PhiloxKey = std::array<std::uint32_t, 2>;
 
 /// The upper and the lower word of a product of two words.
 template <class Word>
@@ -41,7 +42,7 @@ struct Philox {
 /// Four 32-bit words of Philox4x32-10 for a counter and a key.
 /// Source: Salmon et al. (2011), "Parallel random numbers: as easy as 1, 2, 3"; the test has the known answers of
 /// Random123.
-inline Words philox4x32(Words counter, std::array<std::uint32_t, 2> key) {
+inline Words philox4x32(Words counter, PhiloxKey key) {
   Philox<std::uint32_t> words{counter[0], counter[1], counter[2], counter[3], key[0], key[1]};
   words.mix();
   return {words.c0, words.c1, words.c2, words.c3};
@@ -83,20 +84,25 @@ inline std::array<double, 2> normal_pair(std::uint32_t first, std::uint32_t seco
 class Random {
  public:
   Random(std::uint64_t seed, std::uint32_t source, std::uint32_t block, Purpose purpose, std::uint32_t piece = 0)
-      : key_{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U)},
-        source_(source),
-        block_(block),
-        purpose_(piece << 8U | static_cast<std::uint32_t>(purpose)) {}
+      : key_(key_of(seed)), source_(source), block_(block), purpose_(purpose_word(purpose, piece)) {}
 
   /// Four random words of an event, for instance of the block's 17th impact. `event` is below 2^24, `part` below 256.
   /// A rejection loop takes further parts of its own event and cannot shift the next event.
   Words words(std::uint32_t event, std::uint32_t part = 0) const {
     return philox4x32({first_word(event, part), purpose_, source_, block_}, key_);
   }
+
+  // The words of a counter and its key, for the draws in lanes as well.
+  static PhiloxKey key_of(std::uint64_t seed) {
+    return {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U)};
+  }
+  static std::uint32_t purpose_word(Purpose purpose, std::uint32_t piece) {
+    return piece << 8U | static_cast<std::uint32_t>(purpose);
+  }
   static std::uint32_t first_word(std::uint32_t event, std::uint32_t part) { return event << 8U | part; }
 
  private:
-  std::array<std::uint32_t, 2> key_;
+  PhiloxKey key_;
   std::uint32_t source_, block_, purpose_;
 };
 

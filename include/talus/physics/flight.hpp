@@ -10,7 +10,7 @@ namespace talus {
 inline constexpr double kNever = std::numeric_limits<double>::infinity();  // time or distance of what never happens
 
 /// How a flight ended.
-enum class Outcome {
+enum class FlightEnd {
   Landed,  ///< on the surface, in patch `at`
   Left,    ///< beyond the edge of the terrain or above missing data
   Caught,  ///< in a barrier
@@ -72,9 +72,9 @@ double arc_length(const Vec3& v, double duration);
 /// @param path       gets one `Span` per patch crossed, two where it crosses a crease
 ///
 /// Exact except for rounding; no time step. At most 2 (columns + rows) pieces. docs/physics.md, "Flight".
-Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path);
+FlightEnd fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path);
 
 /// A piece of a flight, as above: ends `Aloft` after `longest` [s], >= 0, unless it landed or left before.
-Outcome fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path, double longest);
+FlightEnd fly(const Surface& surface, Motion& motion, PatchIndex& at, bool grounded, Path& path, double longest);
 
 }  // namespace talus

@@ -57,7 +57,7 @@ bool ActiveEffects::holds(const ImpactEnd& end) const {
   return held;
 }
 
-Outcome ActiveEffects::fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path) {
+FlightEnd ActiveEffects::fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path) {
   return drag_ ? drag_->fly(motion, at, grounded, body, path) : talus::fly(world_.surface, motion, at, grounded, path);
 }
 

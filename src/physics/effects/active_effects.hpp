@@ -22,7 +22,7 @@ class Effectless {
   }
   static void after_impact(const Vec3&, Block&, Motion&, Path&) {}
   static bool holds(const ImpactEnd&) { return false; }
-  Outcome fly(Motion& motion, PatchIndex& at, bool grounded, const Block&, Path& path) const {
+  FlightEnd fly(Motion& motion, PatchIndex& at, bool grounded, const Block&, Path& path) const {
     return talus::fly(world_.surface, motion, at, grounded, path);
   }
   SlideEnd slide(Motion& motion, PatchIndex& at, const Block& body, Path& path, double slid = 0.0) const {
@@ -50,7 +50,7 @@ class ActiveEffects {
   /// Whether `holds` of an effect keeps the block at the place of the last call of `ground`.
   bool holds(const ImpactEnd& end) const;
   /// A flight with vegetation-drag, air-drag and forest-stems.
-  Outcome fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path);
+  FlightEnd fly(Motion& motion, PatchIndex& at, bool grounded, const Block& body, Path& path);
   /// A slide with rolling-resistance.
   SlideEnd slide(Motion& motion, PatchIndex& at, const Block& body, Path& path, double slid = 0.0);
   /// The three of a flight, at the end of a slide that began with the motion `before`.

@@ -92,11 +92,12 @@ void Pool::start(Slot& slot) {
     slot.state[number] = std::bit_cast<double>(std::uint64_t{value});
   };
   word(field::Event, 0);
-  word(field::PurposeWord, release.piece << 8U | static_cast<std::uint32_t>(Purpose::Impact));
+  word(field::PurposeWord, Random::purpose_word(Purpose::Impact, release.piece));
   word(field::Source, release.source);
   word(field::BlockNumber, release.block);
-  word(field::KeyLow, static_cast<std::uint32_t>(release.seed));
-  word(field::KeyHigh, static_cast<std::uint32_t>(release.seed >> 32U));
+  const auto [low, high] = Random::key_of(release.seed);
+  word(field::KeyLow, low);
+  word(field::KeyHigh, high);
   push_vertex(slot, Event::Release);
   *slot.spin++ = {0, release.motion.spin.norm()};
   push_flight(slot, world_.surface.patch_at(release.motion.position.x(), release.motion.position.y()), false);
@@ -202,8 +203,7 @@ void Pool::leave(Slot& slot, double t) {
 void Pool::stay(Slot& slot, int column, int row) {
   const Motion motion = motion_of(slot);
   const Ground& ground = world_.cover.grounds[world_.cover.zone_at(motion.position.x(), motion.position.y())];
-  const SlideEnd how = end_of_staying(world_, ground, motion, {column, row}, slot.release.body.diameter);
-  end(slot, how == SlideEnd::Stopped ? End::Stopped : End::Trapped);
+  end(slot, end_of_staying(world_, ground, motion, {column, row}, slot.release.body.diameter));
 }
 
 /// Asks the anchor of a block that has slid: see Anchor::holds.

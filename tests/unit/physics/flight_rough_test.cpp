@@ -69,7 +69,7 @@ TEST_P(RoughFlight, LandsWhereSteppingAndBisectionLand) {
     Motion motion{0.0, scene.start, scene.velocity, Vec3::Zero()};
     PatchIndex at = scene.surface.patch_at(scene.start.x(), scene.start.y());
     Path path;
-    ASSERT_EQ(fly(scene.surface, motion, at, false, path), Outcome::Landed);
+    ASSERT_EQ(fly(scene.surface, motion, at, false, path), FlightEnd::Landed);
     ASSERT_LT((motion.position - scene.place(motion.time)).norm(), 1e-10);
     ASSERT_NEAR(scene.clearance(motion.time), 0.0, 1e-10);
     const PatchIndex there = scene.surface.patch_at(motion.position.x() - 1e-12, motion.position.y() - 1e-12);
@@ -141,7 +141,7 @@ TEST(FlightLength, IsTheArcLengthOfTheParabola) {
     Motion motion{0.0, {20.0, 8.5, 0.0}, {plan, 0.0, up}, Vec3::Zero()};
     PatchIndex at = surface.patch_at(20.0, 8.5);
     Path path;
-    ASSERT_EQ(fly(surface, motion, at, true, path), Outcome::Landed);
+    ASSERT_EQ(fly(surface, motion, at, true, path), FlightEnd::Landed);
     const auto primitive = [plan = plan](double w) {
       return 0.5 * (w * std::hypot(plan, w) + plan * plan * std::asinh(w / plan));
     };

@@ -100,13 +100,13 @@ struct Flight {
   Motion motion;
   PatchIndex at;
   Path path;
-  Outcome outcome;
+  FlightEnd end;
 
   Flight(const Surface& surface, const Vec3& position, const Vec3& velocity, bool grounded = false) : path() {
     motion.position = position;
     motion.velocity = velocity;
     at = surface.patch_at(position.x(), position.y());
-    outcome = fly(surface, motion, at, grounded, path);
+    end = fly(surface, motion, at, grounded, path);
   }
 };
 
@@ -123,7 +123,7 @@ TEST(Fly, LandsOnAPlaneWhereTheClosedFormSaysInEveryDirection) {
         // h + (up - slope . v) t - g/2 t^2 = 0
         const double rate = up - east * vx - north * vy,
                      t = (rate + std::sqrt(rate * rate + 2 * kGravity * h)) / kGravity;
-        ASSERT_EQ(f.outcome, Outcome::Landed);
+        ASSERT_EQ(f.end, FlightEnd::Landed);
         EXPECT_NEAR(f.motion.time, t, 1e-12);
         EXPECT_LT((f.motion.position - Vec3(start + vx * t, y + vy * t, plane(start + vx * t, y + vy * t))).norm(),
                   1e-10);
@@ -139,7 +139,7 @@ TEST(Fly, AlongGridLinesAndThroughCornersInAllEightDirections) {
       for (const bool grounded : {false, true}) {
         const Vec3 start(41.0, 41.0, 0.0), v(4.0 * dx, 4.0 * dy, 0.5 * kGravity * 3.0);  // 3 s, 12 m: lands on a corner
         const Flight f(surface, start, v, grounded);
-        ASSERT_EQ(f.outcome, Outcome::Landed) << dx << ' ' << dy;
+        ASSERT_EQ(f.end, FlightEnd::Landed) << dx << ' ' << dy;
         EXPECT_NEAR(f.motion.time, 3.0, 1e-14) << dx << ' ' << dy;
         EXPECT_LT((f.motion.position - start - Vec3(12.0 * dx, 12.0 * dy, 0)).norm(), 1e-13);
       }
@@ -167,7 +167,7 @@ TEST(Fly, VerticalDropOnARoughSurface) {
     const double x = numbers.uniform(1.0, 59.0), y = numbers.uniform(2.5, 147.5),
                  z = test::height_between_centres(surface.heights(), x, y);
     const Flight f(surface, {x, y, z + 7.0}, {0, 0, 0});
-    ASSERT_EQ(f.outcome, Outcome::Landed);
+    ASSERT_EQ(f.end, FlightEnd::Landed);
     ASSERT_NEAR(f.motion.time, std::sqrt(14.0 / kGravity), 1e-13);
     ASSERT_NEAR(f.motion.position.z(), z, 1e-12);
     ASSERT_EQ(f.path.spans.size(), 1U);
@@ -184,14 +184,14 @@ TEST(Fly, IntoAndOverAWallOf500MetresOfOneCell) {
     const double y = 2.3 * cell, start = foot - 10.0 * cell, v = 10.0;
     // Against the wall: while over it, z = h - g t^2/2 = 500 (x - foot)/cell.
     const Flight into(surface, {start, y, 300.0}, {v, 0, 0});
-    ASSERT_EQ(into.outcome, Outcome::Landed);
+    ASSERT_EQ(into.end, FlightEnd::Landed);
     const double b = 500.0 * v / cell, c = 300.0 + 500.0 * 10.0,
                  t = (-b + std::sqrt(b * b + 2 * kGravity * c)) / kGravity;
     EXPECT_NEAR(into.motion.time, t, 1e-12);
     EXPECT_NEAR(into.motion.position.x(), start + v * t, 1e-11);
     // Off its top: over the edge after 0.05 cells, then free fall to the floor.
     const Flight off(surface, {foot + 1.05 * cell, y, 500.0}, {-3.0 * cell, 0, 3.0}, true);
-    ASSERT_EQ(off.outcome, Outcome::Landed);
+    ASSERT_EQ(off.end, FlightEnd::Landed);
     EXPECT_NEAR(off.motion.time, (3.0 + std::sqrt(9.0 + 1000.0 * kGravity)) / kGravity, 1e-12);
     EXPECT_EQ(off.motion.position.z(), 0.0);
   }
@@ -202,17 +202,17 @@ TEST(Fly, LeavesAtTheBorderOfTheCentresAndAtMissingData) {
   heights.at(15, 10) = std::numeric_limits<float>::quiet_NaN();  // takes patches 14 and 15: from x = 29
   const Surface surface(heights);
   const Flight missing(surface, {20.0, 20.5, 50.0}, {10, 0, 0});
-  EXPECT_EQ(missing.outcome, Outcome::Left);
+  EXPECT_EQ(missing.end, FlightEnd::Left);
   EXPECT_NEAR(missing.motion.position.x(), 29.0, 1e-12);
   EXPECT_NEAR(missing.motion.position.z(), 50.0 - 0.5 * kGravity * 0.81, 1e-12);
   for (const auto& [v, edge] : {std::pair{Vec3(10, 0, 0), 39.0}, {Vec3(-10, 0, 0), 1.0}}) {
     const Flight f(surface, {20.0, 5.5, 50.0}, v);
-    EXPECT_EQ(f.outcome, Outcome::Left);
+    EXPECT_EQ(f.end, FlightEnd::Left);
     EXPECT_NEAR(f.motion.position.x(), edge, 1e-12);
   }
-  EXPECT_EQ(Flight(surface, {0.5, 20.0, 5.0}, {10, 0, 0}).outcome, Outcome::Left);  // starts outside
-  EXPECT_EQ(Flight(surface, {20.0, 20.0, 5.0}, {std::nan(""), 0, 0}).outcome, Outcome::Left);
-  EXPECT_EQ(Flight(surface, {20.0, 20.0, std::nan("")}, {1, 0, 0}).outcome, Outcome::Left);
+  EXPECT_EQ(Flight(surface, {0.5, 20.0, 5.0}, {10, 0, 0}).end, FlightEnd::Left);  // starts outside
+  EXPECT_EQ(Flight(surface, {20.0, 20.0, 5.0}, {std::nan(""), 0, 0}).end, FlightEnd::Left);
+  EXPECT_EQ(Flight(surface, {20.0, 20.0, std::nan("")}, {1, 0, 0}).end, FlightEnd::Left);
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ TEST(EnergyTotal, ABlockInFreeFlightWithSpin) {  // 1/2 m v^2 + 1/2 (2/5 m R^2) 
   motion.velocity = {kSpeed, 0.0, 0.0};
   PatchIndex at = surface.patch_at(motion.position.x(), motion.position.y());
   Path path;
-  path.end = fly(surface, motion, at, false, path) == Outcome::Landed ? End::Stopped : End::Left;
+  path.end = fly(surface, motion, at, false, path) == FlightEnd::Landed ? End::Stopped : End::Left;
   ASSERT_EQ(path.end, End::Left);
   path.spins = {{0, kSpin}};
   Tally tally = kept(surface.grid());

@@ -44,7 +44,7 @@ Path path_of(const Surface& surface, const Flight& flight) {
   motion.velocity = flight.velocity;
   PatchIndex at = surface.patch_at(motion.position.x(), motion.position.y());
   Path path;
-  path.end = fly(surface, motion, at, false, path) == Outcome::Landed ? End::Stopped : End::Left;
+  path.end = fly(surface, motion, at, false, path) == FlightEnd::Landed ? End::Stopped : End::Left;
   return path;
 }
 

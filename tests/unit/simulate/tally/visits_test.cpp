@@ -61,7 +61,7 @@ Path flight(const Surface& surface, const Vec3& position, const Vec3& velocity, 
   motion.velocity = velocity;
   PatchIndex at = surface.patch_at(position.x(), position.y());
   Path path;
-  path.end = fly(surface, motion, at, false, path) == Outcome::Landed ? End::Stopped : End::Left;
+  path.end = fly(surface, motion, at, false, path) == FlightEnd::Landed ? End::Stopped : End::Left;
   if (duration != nullptr) *duration = motion.time;
   return path;
 }
