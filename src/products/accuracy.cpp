@@ -20,7 +20,7 @@ Accuracy accuracy_of(const Tally& tally, std::uint64_t released, double above) {
       if (!(probability > above)) continue;
       const auto [it, fresh] = known.try_emplace(cell->passages);
       if (fresh) {
-        const Interval bounds = probability_bounds(cell->passages, released, 0.95);
+        const Interval bounds = probability_bounds(cell->passages, released, kConfidence);
         it->second = 0.5 * (bounds.high - bounds.low) / probability;
       }
       worst.half_width = std::max(worst.half_width, it->second);

@@ -11,7 +11,6 @@
 namespace talus {
 namespace {
 
-constexpr double kConfidence = 0.95, kTail = 0.5 * (1.0 - kConfidence);
 constexpr float kLargestOfCurves = 0x1p17F;  // [kJ]: 100 t at 50 m/s
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 

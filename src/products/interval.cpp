@@ -16,8 +16,9 @@ Interval probability_bounds(std::uint64_t hits, std::uint64_t trials, double con
 
 Interval bounds_of_reached(std::uint64_t hits, std::uint64_t sources, std::uint64_t trials) {
   TALUS_EXPECT(sources >= 1 && sources <= hits, "each source cell that reaches a place hits it");
-  const double low = hits == sources ? 0.0 : probability_bounds(hits - sources, sources * (trials - 1), 0.95).low;
-  return {low, probability_bounds(hits, sources * trials, 0.95).high};
+  const double low =
+      hits == sources ? 0.0 : probability_bounds(hits - sources, sources * (trials - 1), kConfidence).low;
+  return {low, probability_bounds(hits, sources * trials, kConfidence).high};
 }
 
 }  // namespace talus

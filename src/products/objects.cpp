@@ -65,7 +65,7 @@ class Replay {
     const auto first = static_cast<std::uint32_t>(unit % per_source_) * kBlocksPerUnit;
     const std::uint32_t end = std::min(scenario_.trajectories, first + kBlocksPerUnit);
     std::vector<std::vector<float>> largest(hits.size()), entry(hits.size());
-    std::vector<std::vector<Stake>> stakes(hits.size());
+    std::vector<std::vector<AnnualShare>> annual_shares(hits.size());
     std::vector<ObjectContact> here(hits.size());
     Path path;
     for (std::uint32_t block = first; block < end; ++block) {
@@ -74,15 +74,15 @@ class Replay {
         if (here[i].largest < 0.0F) continue;
         largest[i].push_back(here[i].largest);
         entry[i].push_back(here[i].entry);
-        stakes[i].push_back({weights_.weight(scenario_, source, block), unit, end - first});
+        annual_shares[i].push_back({weights_.weight(scenario_, source, block), unit, end - first});
       }
     }
     for (std::size_t i = 0; i < hits.size(); ++i) {
-      hits[i].largest.add(rules_, largest[i], stakes[i]);
-      hits[i].entry.add(rules_, entry[i], stakes[i]);
+      hits[i].largest.add(rules_, largest[i], annual_shares[i]);
+      hits[i].entry.add(rules_, entry[i], annual_shares[i]);
       hits[i].trajectories += largest[i].size();
-      for (const Stake& stake : stakes[i])
-        if (stake.weight > 0) hits[i].by_feature[scenario_.sources[source].feature] += stake.weight;
+      for (const AnnualShare& annual_share : annual_shares[i])
+        if (annual_share.weight > 0) hits[i].by_feature[scenario_.sources[source].feature] += annual_share.weight;
     }
   }
 

@@ -8,7 +8,6 @@
 namespace talus {
 namespace {
 
-constexpr double kTailOfTable = 0.025;
 constexpr double kStep = 0.01;     // of the logarithm of the shape
 constexpr double kLargest = 25.0;  // logarithm of the largest shape of the table: above it the quantile is the mean
 
@@ -19,8 +18,8 @@ struct Table {
     for (int i = 0; kStep * i <= kLargest + kStep; ++i) {
       const double shape = std::exp(kStep * i), width = 1.9599639845 / std::sqrt(shape);
       const bool wide = shape < 1e6;  // above it the distribution is normal to 1e-6
-      low.push_back(wide ? boost::math::gamma_p_inv(shape, kTailOfTable) / shape : 1.0 - width);
-      high.push_back(wide ? boost::math::gamma_p_inv(shape, 1.0 - kTailOfTable) / shape : 1.0 + width);
+      low.push_back(wide ? boost::math::gamma_p_inv(shape, kTail) / shape : 1.0 - width);
+      high.push_back(wide ? boost::math::gamma_p_inv(shape, 1.0 - kTail) / shape : 1.0 + width);
     }
   }
 };

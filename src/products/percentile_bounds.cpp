@@ -9,8 +9,6 @@
 namespace talus {
 namespace {
 
-constexpr double kTailOfRanks = 0.025;
-
 /// P(B <= k) for B binomial of n trials of probability p.
 double at_most(double k, double n, double p) {
   if (k < 0.0) return 0.0;
@@ -30,11 +28,11 @@ Ranks percentile_ranks(std::uint64_t n, double share) {
   const auto count = static_cast<double>(n);
   const double mean = count * share, width = 1.96 * std::sqrt(mean * (1.0 - share));
   double low = std::clamp(std::floor(mean - width), 0.0, count);  // near the ranks; the next steps find them exactly
-  while (low > 0.0 && at_most(low - 1.0, count, share) > kTailOfRanks) --low;
-  while (low < count && at_most(low, count, share) <= kTailOfRanks) ++low;
+  while (low > 0.0 && at_most(low - 1.0, count, share) > kTail) --low;
+  while (low < count && at_most(low, count, share) <= kTail) ++low;
   double high = std::clamp(std::ceil(mean + width), 1.0, count + 1.0);
-  while (high <= count && at_least(high, count, share) > kTailOfRanks) ++high;
-  while (high > 1.0 && at_least(high - 1.0, count, share) <= kTailOfRanks) --high;
+  while (high <= count && at_least(high, count, share) > kTail) ++high;
+  while (high > 1.0 && at_least(high - 1.0, count, share) <= kTail) --high;
   return {static_cast<std::uint64_t>(low), high > count ? 0 : static_cast<std::uint64_t>(high)};
 }
 

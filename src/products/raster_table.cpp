@@ -87,7 +87,8 @@ CellRule impact_probability(const RunCounts& run) {
   auto remembered = std::make_shared<Remembered<Interval>>();
   return [released, remembered](const TouchedCell& cell, std::span<double> values) {
     const std::uint32_t passages = cell.record.passages;
-    const Interval& bounds = remembered->of(passages, [&] { return probability_bounds(passages, released, 0.95); });
+    const Interval& bounds =
+        remembered->of(passages, [&] { return probability_bounds(passages, released, kConfidence); });
     values[0] = static_cast<double>(passages) / static_cast<double>(released);
     values[1] = bounds.low;
     values[2] = bounds.high;
@@ -96,12 +97,12 @@ CellRule impact_probability(const RunCounts& run) {
 
 /// If nothing crosses, the upper bound is that of no hit in all trials.
 std::vector<double> no_impact(const RunCounts& run) {
-  return {0.0, 0.0, probability_bounds(0, run.released, 0.95).high};
+  return {0.0, 0.0, probability_bounds(0, run.released, kConfidence).high};
 }
 
 /// If nothing crosses, the upper bound is that of one source cell without a hit.
 std::vector<double> not_reached(const RunCounts& run) {
-  return {0.0, 0.0, probability_bounds(0, static_cast<std::uint64_t>(run.per_source), 0.95).high};
+  return {0.0, 0.0, probability_bounds(0, static_cast<std::uint64_t>(run.per_source), kConfidence).high};
 }
 
 CellRule reach_probability(const RunCounts& run) {
@@ -127,7 +128,7 @@ RunRaster exceedance(Quantity quantity, const std::string& name, const std::stri
       const std::size_t thresholds = values.size() / 3;
       for (std::size_t i = 0; i < thresholds; ++i) {
         const std::uint32_t hits = cell.exceedances[first + i];
-        const Interval& bounds = remembered->of(hits, [&] { return probability_bounds(hits, released, 0.95); });
+        const Interval& bounds = remembered->of(hits, [&] { return probability_bounds(hits, released, kConfidence); });
         values[i] = hits / static_cast<double>(released);
         values[thresholds + 2 * i] = bounds.low;
         values[thresholds + 2 * i + 1] = bounds.high;
@@ -138,7 +139,7 @@ RunRaster exceedance(Quantity quantity, const std::string& name, const std::stri
     const std::size_t thresholds = run.thresholds[quantity].size();
     std::vector<double> values(3 * thresholds);
     for (std::size_t i = 0; i < thresholds; ++i)
-      values[thresholds + 2 * i + 1] = probability_bounds(0, run.released, 0.95).high;
+      values[thresholds + 2 * i + 1] = probability_bounds(0, run.released, kConfidence).high;
     return values;
   };
   return {.map = {name,

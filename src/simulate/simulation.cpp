@@ -218,7 +218,7 @@ class Simulation::Advance::Worker {
     const std::uint32_t round = run_.position_.round;
     if (const AnnualWeights* weights = run_.tally_.weights()) {
       const std::int64_t weight = weights->weight(scenario_, unit.source, release.block);
-      batch_.set_stake({weight, round * run_.units_ + unit.rows.unit, unit.count});
+      batch_.set_annual_share({weight, round * run_.units_ + unit.rows.unit, unit.count});
       totals_.left_weight += path.end == End::Left ? weight : 0;
     }
     batch_.add(path, release.body, unit.source, unit.reach);

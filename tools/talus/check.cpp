@@ -79,7 +79,7 @@ Sample trace_sample(const LoadedScenario& loaded) {
     return true;
   };
   talus::Tracer(world).run(next, [&](const talus::Release& release, const talus::Path& path, std::uint64_t) {
-    if (weights) batch.set_stake({weights->weight(scenario, release.source, release.block), sample.traced, 1});
+    if (weights) batch.set_annual_share({weights->weight(scenario, release.source, release.block), sample.traced, 1});
     batch.add(path, release.body, release.source, nullptr);
     talus::trace_pieces(world, path, [&](const talus::Release& piece, const talus::Path& way) {
       batch.add(way, piece.body, release.source, nullptr, true);

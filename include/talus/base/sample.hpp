@@ -8,6 +8,8 @@
 
 namespace talus {
 
+inline constexpr double kConfidence = 0.95, kTail = 0.025;  // of every interval that is printed; of one side of it
+
 /// A confidence interval; NaN if it cannot be computed.
 struct Interval {
   double low = std::numeric_limits<double>::quiet_NaN(), high = std::numeric_limits<double>::quiet_NaN();

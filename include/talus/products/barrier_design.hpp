@@ -34,7 +34,7 @@ struct LineCrossing {
   double along = 0.0;                ///< distance from the start of the line [m]
   double weight = 1.0;               ///< events per year that it stands for, or 1 for every block; 0: it never falls
   std::size_t block = 0;             ///< number of the block: the pieces of a block have one
-  std::uint64_t stratum = 0;         ///< of the block, as `Stake::stratum`
+  std::uint64_t stratum = 0;         ///< of the block, as `AnnualShare::stratum`
   std::uint32_t stratum_blocks = 0;  ///< number of blocks in the stratum; 0: strata do not matter
 
   double energy() const { return 0.5 * mass * speed * speed; }  ///< translational [J]

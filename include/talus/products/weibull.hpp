@@ -41,7 +41,7 @@ inline constexpr std::size_t kFewestForWeibull = 10;
 struct BootstrapOptions {
   std::uint32_t draws = 2000;
   std::uint64_t seed = 1;
-  double confidence = 0.95;
+  double confidence = kConfidence;
 };
 
 /// One of a bootstrap sample.
@@ -58,7 +58,7 @@ struct WeibullFit {
   Interval shape{}, scale{};
   double distance = 0.0;           ///< anderson_darling
   std::vector<WeibullDraw> draws;  ///< bootstrap sample
-  double confidence = 0.95;
+  double confidence = kConfidence;
 
   bool accepted() const { return distance <= kAndersonDarling5; }
 };

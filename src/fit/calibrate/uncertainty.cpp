@@ -15,7 +15,7 @@ void summarise(std::span<const Parameter> free, Uncertainty& out) {
   for (Eigen::Index i = 0; i < n; ++i) {
     std::vector<double> z(out.draws.col(i).begin(), out.draws.col(i).end());
     std::sort(z.begin(), z.end());
-    const double low = quantile(z, 0.025), high = quantile(z, 0.975);
+    const double low = quantile(z, kTail), high = quantile(z, 1.0 - kTail);
     const Parameter& p = free[static_cast<std::size_t>(i)];
     out.intervals.push_back({p.value(low), p.value(high)});
     const double possible = std::min(2.0 * 1.96, p.z(p.upper) - p.z(p.lower));

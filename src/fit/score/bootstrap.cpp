@@ -32,7 +32,7 @@ Interval middle(std::vector<double> values) {
   std::erase_if(values, [](double value) { return std::isnan(value); });
   if (values.empty()) return {};
   std::sort(values.begin(), values.end());
-  return {quantile(values, 0.025), quantile(values, 0.975)};
+  return {quantile(values, kTail), quantile(values, 1.0 - kTail)};
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ class Ranks {
   }
 
   static Interval middle_of(const boost::math::binomial& counts) {
-    return {boost::math::quantile(counts, 0.025), boost::math::quantile(counts, 0.975)};
+    return {boost::math::quantile(counts, kTail), boost::math::quantile(counts, 1.0 - kTail)};
   }
 
   Coverage coverage_;

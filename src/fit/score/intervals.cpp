@@ -14,7 +14,6 @@
 namespace talus {
 namespace {
 
-constexpr double kConfidence = 0.95;
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
 /// The clusters of the rows of a score, and the strata that they form: clusters that share a group of scores, if only

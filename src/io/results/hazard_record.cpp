@@ -83,7 +83,7 @@ std::string hazard_json(const HazardRecord& record) {
   json["trajectories"] = scale.trajectories;
   json["equal_weights"] = scale.equal;
   json["largest_weight_per_year"] = scale.largest_weight();
-  json["confidence"] = 0.95;
+  json["confidence"] = kConfidence;
   json["energy_relative_error"] = EnergyBins::kRelativeWidth;
   json["energy_thresholds_kj"] = record.header.rules.bins.thresholds();
   json["matrix"] = json_of(record.matrix);

@@ -34,7 +34,7 @@ constexpr double kTotalUnit = kQuantityTable[index_of(Quantity::Energy)].fixed_p
 }  // namespace
 
 void CellValues::make_room(std::size_t n) {
-  if (keep_stakes && stakes.size() < n) stakes.resize(n);
+  if (keep_annual_shares && annual_shares.size() < n) annual_shares.resize(n);
   if (keep_totals && totals.size() < n) totals.resize(n);
   if (lists.front().size() < n)
     for (std::vector<float>& list : lists) list.resize(n);

@@ -20,17 +20,17 @@ std::uint64_t rounded(double value) {
 
 }  // namespace
 
-void StratumSums::add(const Stake& stake, float energy, ScratchVector<std::int64_t>& overlaps) {
-  if (blocks_ == 0 || stake.stratum != stratum_) {
+void StratumSums::add(const AnnualShare& annual_share, float energy, ScratchVector<std::int64_t>& overlaps) {
+  if (blocks_ == 0 || annual_share.stratum != stratum_) {
     finish(overlaps);
-    stratum_ = stake.stratum;
-    blocks_ = stake.blocks;
+    stratum_ = annual_share.stratum;
+    blocks_ = annual_share.blocks;
   }
-  const auto weight = static_cast<double>(stake.weight);
+  const auto weight = static_cast<double>(annual_share.weight);
   const auto& thresholds = rules_.bins.thresholds();
   for (std::size_t level = 0; level < levels_.size(); ++level) {
     if (level > 0 && !(energy > thresholds[level - 1])) break;  // ascending: the rest is not exceeded
-    levels_[level].sum += stake.weight;
+    levels_[level].sum += annual_share.weight;
     levels_[level].squares += weight * weight;
     levels_[level].hits += 1;
   }
@@ -67,31 +67,32 @@ void HazardCell::cover(int low, int high) {
   }
 }
 
-void HazardCell::add(const HazardRules& rules, std::span<const float> energies, std::span<const Stake> stakes) {
+void HazardCell::add(const HazardRules& rules, std::span<const float> energies,
+                     std::span<const AnnualShare> annual_shares) {
   if (energies.empty()) return;
-  TALUS_EXPECT(stakes.size() >= energies.size(), "each value has its stake");
+  TALUS_EXPECT(annual_shares.size() >= energies.size(), "each value has its annual share");
   const auto [low, high] = std::ranges::minmax_element(energies);
   cover(rules.bins.of(*low), rules.bins.of(*high));
   const double scale = squares_per_unit(rules.scale);
   StratumSums stratum(rules);
   for (std::size_t i = 0; i < energies.size(); ++i) {
-    const Stake& stake = stakes[i];
-    if (stake.weight == 0) continue;
-    TALUS_EXPECT(stake.weight > 0, "no event is taken back");
+    const AnnualShare& annual_share = annual_shares[i];
+    if (annual_share.weight == 0) continue;
+    TALUS_EXPECT(annual_share.weight > 0, "no event is taken back");
     Bin& bin = bins_[static_cast<std::size_t>(rules.bins.of(energies[i]) - first_)];
-    const auto weight = static_cast<double>(stake.weight);
-    bin.weight += stake.weight;
+    const auto weight = static_cast<double>(annual_share.weight);
+    bin.weight += annual_share.weight;
     bin.square += static_cast<std::int64_t>(std::ceil(weight * weight * scale));
-    stratum.add(stake, energies[i], overlaps_);
+    stratum.add(annual_share, energies[i], overlaps_);
   }
   stratum.finish(overlaps_);
 }
 
-void HazardCell::add_lengths(const HazardRules& rules, std::span<const float> lengths, const Stake& stake,
+void HazardCell::add_lengths(const HazardRules& rules, std::span<const float> lengths, const AnnualShare& annual_share,
                              double diameter) {
-  if (stake.weight == 0) return;
+  if (annual_share.weight == 0) return;
   if (lengths_.empty()) lengths_.resize(rules.levels());
-  const auto weight = static_cast<double>(stake.weight);
+  const auto weight = static_cast<double>(annual_share.weight);
   const double square = weight * weight * squares_per_unit(rules.scale), room = rules.scale.room;
   for (std::size_t level = 0; level < lengths.size() && lengths[level] > 0.0F; ++level) {
     const double length = lengths[level];

@@ -166,7 +166,7 @@ void gather(std::span<const Visit> visits, const VisitBatch& batch, CellValues& 
       source = of.source;
       record.sources += reach.first(trajectory, visits.front().cell) ? 1U : 0U;
     }
-    if (values.keep_stakes) values.stakes[n] = of.stake;
+    if (values.keep_annual_shares) values.annual_shares[n] = of.annual_share;
     for_each_quantity([&](auto q) { values.lists[q][n] = kQuantityTable[q].value(passage.largest, of.size.mass); });
     ++n;
   }
@@ -274,7 +274,7 @@ std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const 
   std::uint64_t scored = 0;
   ReachOf reach(batch, index);
   CellValues values;
-  values.keep_stakes = hazard_ != nullptr;
+  values.keep_annual_shares = hazard_ != nullptr;
   values.keep_totals = keep_total_;
   if (hazard_) region.make_hazards();
   if (keep_total_) region.make_totals();
@@ -297,7 +297,8 @@ std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const 
     }
     const PerQuantity<float> largest = record.add(values);
     count_exceedances(region.exceedances.data() + groups[i].record * threshold_count_, values, largest);
-    if (hazard_) region.hazards[groups[i].record].add(hazard_->rules, values.of(Quantity::Energy), values.stakes);
+    if (hazard_)
+      region.hazards[groups[i].record].add(hazard_->rules, values.of(Quantity::Energy), values.annual_shares);
     add_lengths(groups[i], visits.lengths, batch, region);
     scored += values.count;
   }
@@ -327,7 +328,7 @@ void Tally::add_lengths(const Group& group, std::span<const float> mixed, const 
     for (std::size_t i = 0; i + 1 < lengths.size(); ++i) above[i] += fixed_point(lengths[1 + i]);
     if (hazard == nullptr) continue;
     const VisitBatch::Trajectory& of = batch.trajectories()[visit.trajectory];
-    hazard->add_lengths(hazard_->rules, lengths, of.stake, of.size.diameter);
+    hazard->add_lengths(hazard_->rules, lengths, of.annual_share, of.size.diameter);
   }
   record.length += length;
   record.length_squares += squares + fixed_point(of_block * of_block);

@@ -46,7 +46,7 @@ void VisitBatch::clear() {
 void VisitBatch::begin(Trajectory trajectory) {
   close_visit();
   trajectories_.push_back(std::move(trajectory));
-  trajectories_.back().stake = stake_;
+  trajectories_.back().annual_share = annual_share_;
   pieces_ = pieces_ || trajectories_.back().piece;
   for (std::size_t i = 0; i < limits_.size(); ++i)
     limits_[i] = static_cast<float>(2e3 * lengths_.energies[i] / trajectories_.back().size.mass);

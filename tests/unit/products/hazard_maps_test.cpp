@@ -89,10 +89,10 @@ TEST(HazardMaps, ACurveForEveryFieldOfTheMatrix) {
   std::vector<HazardAt> cells;
   for (int field = 0; field < 12; ++field) {
     const std::vector<float> energy{field < 4 ? 10.0F : field < 8 ? 100.0F : 1000.0F};
-    const std::vector<Stake> stake{
+    const std::vector<AnnualShare> annual_share{
         {static_cast<std::int64_t>(often[static_cast<std::size_t>(field % 4)] / unit), 0, 10}};
     HazardCell cell;
-    cell.add(rules, energy, stake);
+    cell.add(rules, energy, annual_share);
     cells.push_back({field, cell, field == 5});
   }
   survey.set_row(0, std::vector<bool>(12, true), cells, 1);
@@ -115,9 +115,9 @@ TEST(HazardMaps, HazardCurveOfSixEnergies) {
   const std::vector<float> passed{10.0F, 29.9F, 30.1F, 63.9F, 64.1F, 1000.0F};
   const std::vector<double> often{0.05, 0.02, 0.01, 0.005, 0.002, 0.001};
   HazardCell cell;
-  std::vector<Stake> stakes;
-  for (const double f : often) stakes.push_back({static_cast<std::int64_t>(f / unit), 0, 10});
-  cell.add(rules, passed, stakes);
+  std::vector<AnnualShare> annual_shares;
+  for (const double f : often) annual_shares.push_back({static_cast<std::int64_t>(f / unit), 0, 10});
+  cell.add(rules, passed, annual_shares);
   HazardSurvey survey(test::grid_of(2, 1, 2.0, 2.0), rules, {}, {}, true);
   survey.set_row(0, {true, true}, std::vector<HazardAt>{{0, cell, false}}, 1);
   const std::vector<Map> maps = make_hazard_maps(survey);

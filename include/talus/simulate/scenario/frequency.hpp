@@ -6,7 +6,7 @@
 namespace talus {
 
 /// The annual frequency that one trajectory stands for, and its stratum.
-struct Stake {
+struct AnnualShare {
   std::int64_t weight = 0;    ///< events per year, in units of WeightScale::unit
   std::uint64_t stratum = 0;  ///< number of the stratum: some blocks of one source cell
   std::uint32_t blocks = 0;   ///< number of blocks in the stratum

@@ -12,9 +12,9 @@ namespace talus {
 /// The values of the trajectories that cross a cell: one per trajectory and quantity. A buffer that keeps its memory.
 struct CellValues {
   PerQuantity<std::vector<float>> lists;
-  std::vector<Stake> stakes;  ///< of each trajectory, if `keep_stakes`
-  std::vector<float> totals;  ///< energy with rotation of each trajectory [kJ], if `keep_totals`
-  bool keep_stakes = false, keep_totals = false;
+  std::vector<AnnualShare> annual_shares;  ///< of each trajectory, if `keep_annual_shares`
+  std::vector<float> totals;               ///< energy with rotation of each trajectory [kJ], if `keep_totals`
+  bool keep_annual_shares = false, keep_totals = false;
   std::size_t count = 0;
 
   void make_room(std::size_t n);

@@ -53,10 +53,11 @@ class HazardCell {
   /// Adds trajectories in the order of their blocks; all trajectories of a stratum must come in one call.
   ///
   /// @param energies  largest energy of each trajectory here [kJ]
-  /// @param stakes    one per trajectory; may be longer than `energies`
-  void add(const HazardRules& rules, std::span<const float> energies, std::span<const Stake> stakes);
-  /// Adds a passage of a block: its lengths by level [m], the stake of the block and its diameter [m].
-  void add_lengths(const HazardRules& rules, std::span<const float> lengths, const Stake& stake, double diameter);
+  /// @param annual_shares  one per trajectory; may be longer than `energies`
+  void add(const HazardRules& rules, std::span<const float> energies, std::span<const AnnualShare> annual_shares);
+  /// Adds a passage of a block: its lengths by level [m], the annual share of the block and its diameter [m].
+  void add_lengths(const HazardRules& rules, std::span<const float> lengths, const AnnualShare& annual_share,
+                   double diameter);
   void merge(const HazardCell& other);
 
   int first() const { return first_; }  ///< bin of bins()[0]
@@ -102,7 +103,7 @@ class StratumSums {
   explicit StratumSums(const HazardRules& rules) : rules_(rules), levels_(rules.levels()) {}
 
   /// Adds a trajectory. If it begins a new stratum, first adds the finished stratum to `overlaps`.
-  void add(const Stake& stake, float energy, ScratchVector<std::int64_t>& overlaps);
+  void add(const AnnualShare& annual_share, float energy, ScratchVector<std::int64_t>& overlaps);
   void finish(ScratchVector<std::int64_t>& overlaps);
 
  private:

@@ -22,7 +22,8 @@ class Tally {
   ~Tally();
   Tally(Tally&&) noexcept;
 
-  /// Counts annual frequencies by energy too; call it before the first batch. Trajectories must then have stakes.
+  /// Counts annual frequencies by energy too; call it before the first batch. Trajectories must then have annual
+  /// shares.
   void keep_hazard(AnnualWeights weights);
   /// Keeps the energy with rotation per cell, too; call it before the first batch. Batches must then keep it.
   void keep_energy_total() { keep_total_ = true; }

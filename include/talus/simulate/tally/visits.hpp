@@ -64,7 +64,7 @@ class VisitBatch {
     std::uint32_t source;
     std::shared_ptr<SourceReach> reach;  // of a source cell that several batches share; else empty
     bool piece = false;                  // counts as one with the trajectory before it
-    Stake stake{};                       // if the run has frequencies
+    AnnualShare annual_share{};          // if the run has frequencies
   };
 
   explicit VisitBatch(const Grid& grid, LengthRules lengths = {});
@@ -79,8 +79,8 @@ class VisitBatch {
   /// Keeps the largest energy with rotation of each visit, too; call it before the first path.
   void keep_energy_total() { keep_total_ = true; }
 
-  /// Sets the stake of the trajectories that are added from here on.
-  void set_stake(const Stake& stake) { stake_ = stake; }
+  /// Sets the annual share of the trajectories that are added from here on.
+  void set_annual_share(const AnnualShare& annual_share) { annual_share_ = annual_share; }
 
   bool full() const { return size_ * sizeof(Visit) >= kBytes || trajectories_.size() >= kTrajectories; }
   void clear();
@@ -117,7 +117,7 @@ class VisitBatch {
   int regions_across_;
   std::unordered_map<std::size_t, RegionVisits> regions_;
   std::vector<Trajectory> trajectories_;
-  Stake stake_;
+  AnnualShare annual_share_;
   std::size_t size_ = 0;
   bool pieces_ = false;
   bool keep_total_ = false;

@@ -102,7 +102,7 @@ TEST(HazardTally, OneTrajectoryCountsOnceWithItsLargestEnergy) {  // 1000 kg: 2,
   VisitBatch batch(tally.grid());
   for (std::uint32_t block = 0; block < 3; ++block) {
     const float speed_squared = block == 0 ? 4.0F : block == 1 ? 36.0F : 100.0F;
-    batch.set_stake({weights.weight(s, 0, block), 0, 4});
+    batch.set_annual_share({weights.weight(s, 0, block), 0, 4});
     batch.add(path_of({stay(1, 1, 1, 1), stay(2, 1, 1, 1), stay(1, 1, speed_squared, 1)}, End::Left), 1000.0, 0,
               nullptr);
   }

@@ -185,7 +185,7 @@ TEST(Lengths, WeightedByFrequencyAndDiameter) {
   tally.keep_hazard(weights);
   VisitBatch batch(tally.grid(), length_rules(s.output));
   for (std::uint32_t block = 0; block < 2; ++block) {
-    batch.set_stake({weights.weight(s, 0, block), 0, 4});
+    batch.set_annual_share({weights.weight(s, 0, block), 0, 4});
     batch.add(test::path_of({test::stay(2, 2, block == 0 ? 1.0F : 4.0F, 1.0F)}, End::Left),
               Block{1.0 + block, kMass, Vec3::Ones()}, 0, nullptr);
   }
