@@ -8,11 +8,7 @@
 namespace talus {
 namespace {
 
-constexpr std::size_t kSegmentsInBox = 8;
-
-double cross_product(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
+constexpr std::size_t kPiecesInBox = 8;
 
 }  // namespace
 
@@ -26,22 +22,15 @@ double kept_speed(double energy, double capacity) {
 }
 
 Barriers::Barriers(std::vector<Barrier> barriers) : barriers_(std::move(barriers)) {
-  for (std::uint32_t b = 0; b < barriers_.size(); ++b) {
-    double along = 0.0;
-    for (const auto& line : barriers_[b].lines)
-      for (std::size_t i = 1; i < line.size(); ++i) {
-        segments_.push_back({b, line[i - 1], line[i], along});
-        along += (line[i] - line[i - 1]).norm();
-      }
-    lengths_.push_back(along);
-  }
-  for (std::size_t first = 0; first < segments_.size(); first += kSegmentsInBox) {
-    const std::size_t end = std::min(first + kSegmentsInBox, segments_.size());
-    Box box{segments_[first].from, segments_[first].from, static_cast<std::uint32_t>(first),
+  for (std::uint32_t b = 0; b < barriers_.size(); ++b)
+    lengths_.push_back(append_pieces(b, barriers_[b].lines, pieces_));
+  for (std::size_t first = 0; first < pieces_.size(); first += kPiecesInBox) {
+    const std::size_t end = std::min(first + kPiecesInBox, pieces_.size());
+    Box box{pieces_[first].from, pieces_[first].from, static_cast<std::uint32_t>(first),
             static_cast<std::uint32_t>(end)};
     for (std::size_t i = first; i < end; ++i) {
-      box.low = box.low.cwiseMin(segments_[i].from).cwiseMin(segments_[i].to);
-      box.high = box.high.cwiseMax(segments_[i].from).cwiseMax(segments_[i].to);
+      box.low = box.low.cwiseMin(pieces_[i].from).cwiseMin(pieces_[i].to);
+      box.high = box.high.cwiseMax(pieces_[i].from).cwiseMax(pieces_[i].to);
     }
     boxes_.push_back(box);
   }
@@ -49,20 +38,15 @@ Barriers::Barriers(std::vector<Barrier> barriers) : barriers_(std::move(barriers
 
 std::optional<Barriers::Cut> Barriers::next(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                                             const std::optional<Cut>& last) const {
-  const Eigen::Vector2d low = a.cwiseMin(b), high = a.cwiseMax(b), way = b - a;
-  const auto place = [](const Cut& cut) { return std::tuple(cut.share, cut.segment); };
+  const Eigen::Vector2d low = a.cwiseMin(b), high = a.cwiseMax(b);
+  const auto place = [](const Cut& cut) { return std::tuple(cut.share, cut.piece); };
   std::optional<Cut> found;
   for (const Box& box : boxes_) {
     if ((high.array() < box.low.array()).any() || (low.array() > box.high.array()).any()) continue;
     for (std::uint32_t i = box.first; i < box.end; ++i) {
-      const Segment& s = segments_[i];
-      const Eigen::Vector2d line = s.to - s.from;
-      const double side_a = cross_product(line, a - s.from), side_b = cross_product(line, b - s.from);
-      if ((side_a < 0.0) == (side_b < 0.0)) continue;
-      const double side_from = cross_product(way, s.from - a), side_to = cross_product(way, s.to - a);
-      if ((side_from < 0.0) == (side_to < 0.0)) continue;
-      const Cut cut{side_a / (side_a - side_b), i, s.barrier,
-                    s.along + line.norm() * (side_from / (side_from - side_to))};
+      const std::optional<WayCrossing> crossing = crossing_of(a, b, pieces_[i]);
+      if (!crossing) continue;
+      const Cut cut{crossing->share, i, pieces_[i].owner, crossing->along};
       if (last && place(cut) <= place(*last)) continue;
       if (!found || place(cut) < place(*found)) found = cut;
     }

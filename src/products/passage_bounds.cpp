@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "talus/base/sample.hpp"
+
 namespace talus {
 namespace {
 

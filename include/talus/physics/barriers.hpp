@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "talus/base/vector.hpp"
+#include "talus/physics/line_piece.hpp"
 
 namespace talus {
 
@@ -47,21 +47,20 @@ Meeting meeting(const Barrier& barrier, double clearance, double energy);
 /// @param capacity  C [J], >= 0
 double kept_speed(double energy, double capacity);
 
-/// All barriers, with a bounding box around every few segments, so that a way far from them is sorted out quickly.
+/// All barriers, with a bounding box around every few pieces of line, so that a way far from them is sorted out quickly.
 class Barriers {
  public:
   explicit Barriers(std::vector<Barrier> barriers = {});
 
-  /// Crossing of a straight way in plan with a segment of a barrier.
+  /// Crossing of a straight way in plan with a barrier.
   struct Cut {
-    double share;           ///< of the way before the crossing, 0..1
-    std::uint32_t segment;  ///< its index, over all barriers
+    double share;         ///< of the way before the crossing, 0..1
+    std::uint32_t piece;  ///< index of the piece of a line, over all barriers
     std::uint32_t barrier;
     double along;  ///< distance along the barrier [m], as in BarrierPassage
   };
-  /// The first crossing of the straight way from `a` to `b` after `last` (in the order of share, then segment); empty
-  /// if there is none. A way crosses a segment if its ends lie on different sides of it. A point on the line belongs to
-  /// one side only, so that a way through a corner of a path or of a barrier crosses once.
+  /// The first crossing of the straight way from `a` to `b` after `last` (in the order of share, then piece); empty if
+  /// there is none. See `crossing_of`.
   std::optional<Cut> next(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const std::optional<Cut>& last) const;
 
   const std::vector<Barrier>& list() const { return barriers_; }
@@ -70,18 +69,13 @@ class Barriers {
   double length(std::size_t barrier) const { return lengths_[barrier]; }
 
  private:
-  struct Segment {
-    std::uint32_t barrier;
-    Eigen::Vector2d from, to;
-    double along;  // of `from` [m]
-  };
   struct Box {
     Eigen::Vector2d low, high;
-    std::uint32_t first, end;  // its segments: from `first`, before `end`
+    std::uint32_t first, end;  // its pieces: from `first`, before `end`
   };
   std::vector<Barrier> barriers_;
   std::vector<double> lengths_;
-  std::vector<Segment> segments_;
+  std::vector<LinePiece> pieces_;
   std::vector<Box> boxes_;
 };
 

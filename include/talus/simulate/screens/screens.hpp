@@ -39,17 +39,12 @@ class ScreenFinder {
   void find(const Release& release, const Path& path, std::vector<Crossing>& crossings) const;
 
  private:
-  struct Segment {
-    std::uint32_t screen;
-    Eigen::Vector2d from, to;
-    double along;  // of `from` [m]
-  };
   void cross(const Release& release, const Block& body, const Vertex& from, const Vertex& to,
              std::vector<Crossing>& crossings) const;
 
   const Surface& surface_;
-  std::vector<Segment> segments_;
-  Eigen::Vector2d low_, high_;  // box around all segments
+  std::vector<LinePiece> pieces_;
+  Eigen::Vector2d low_, high_;  // box around all pieces
 };
 
 }  // namespace talus
