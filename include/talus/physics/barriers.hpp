@@ -47,7 +47,8 @@ Meeting meeting(const Barrier& barrier, double clearance, double energy);
 /// @param capacity  C [J], >= 0
 double kept_speed(double energy, double capacity);
 
-/// All barriers, with a bounding box around every few pieces of line, so that a way far from them is sorted out quickly.
+/// All barriers, with a bounding box around every few pieces of line, so that a way far from them is sorted out
+/// quickly.
 class Barriers {
  public:
   explicit Barriers(std::vector<Barrier> barriers = {});

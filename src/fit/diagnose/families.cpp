@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "talus/base/holm.hpp"
 #include "talus/fit/diagnose/dispersion.hpp"
 #include "talus/fit/diagnose/energy_component.hpp"
+#include "talus/fit/score/holm.hpp"
 #include "talus/physics/effects/registry.hpp"
 
 namespace talus {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "talus/base/holm.hpp"
 #include "talus/base/random.hpp"
+#include "talus/fit/score/holm.hpp"
 
 namespace talus {
 namespace {

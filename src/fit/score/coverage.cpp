@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "fitting_values.hpp"
-#include "talus/base/holm.hpp"
 #include "talus/fit/campaign/block_draws.hpp"
+#include "talus/fit/score/holm.hpp"
 #include "talus/fit/score/score.hpp"
 #include "talus/fit/score/tail.hpp"
 

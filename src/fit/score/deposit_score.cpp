@@ -6,9 +6,9 @@
 #include "fitting_values.hpp"
 #include "score_rows.hpp"
 #include "talus/base/expect.hpp"
-#include "talus/base/holm.hpp"
 #include "talus/fit/campaign/block_draws.hpp"
 #include "talus/fit/campaign/deposits.hpp"
+#include "talus/fit/score/holm.hpp"
 
 namespace talus {
 namespace {

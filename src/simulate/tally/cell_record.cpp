@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "talus/base/checked_sum.hpp"
 #include "talus/base/expect.hpp"
+#include "talus/simulate/tally/checked_sum.hpp"
 
 namespace talus {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "talus/base/checked_sum.hpp"
 #include "talus/base/expect.hpp"
+#include "talus/simulate/tally/checked_sum.hpp"
 
 namespace talus {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <limits>
 
-#include "talus/base/checked_sum.hpp"
 #include "talus/base/expect.hpp"
+#include "talus/simulate/tally/checked_sum.hpp"
 
 namespace talus {
 namespace {

@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "tally_region.hpp"
-#include "talus/base/checked_sum.hpp"
 #include "talus/base/expect.hpp"
+#include "talus/simulate/tally/checked_sum.hpp"
 
 namespace talus {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "talus/base/name_stream.hpp"
+#include "talus/fit/campaign/name_stream.hpp"
 #include "talus/physics/block.hpp"
 #include "talus/simulate/scenario/scenario.hpp"
 

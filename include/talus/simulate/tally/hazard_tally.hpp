@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "talus/base/scratch.hpp"
-#include "talus/base/wide_sum.hpp"
 #include "talus/simulate/scenario/frequency.hpp"
 #include "talus/simulate/tally/bytes.hpp"
 #include "talus/simulate/tally/energy_bins.hpp"
+#include "talus/simulate/tally/wide_sum.hpp"
 
 namespace talus {
 

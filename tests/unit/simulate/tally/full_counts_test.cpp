@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "talus/base/checked_sum.hpp"
 #include "talus/simulate/tally/cell_record.hpp"
+#include "talus/simulate/tally/checked_sum.hpp"
 #include "talus/simulate/tally/hazard_tally.hpp"
 
 namespace talus {

@@ -1,4 +1,4 @@
-#include "talus/base/name_stream.hpp"
+#include "talus/fit/campaign/name_stream.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "talus/base/wide_sum.hpp"
+#include "talus/simulate/tally/wide_sum.hpp"
 
 #include <gtest/gtest.h>
 

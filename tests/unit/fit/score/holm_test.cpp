@@ -1,4 +1,4 @@
-#include "talus/base/holm.hpp"
+#include "talus/fit/score/holm.hpp"
 
 #include <gtest/gtest.h>
 
