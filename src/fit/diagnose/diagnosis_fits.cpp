@@ -76,15 +76,15 @@ std::vector<std::vector<BlockRuns>> OutOfFold::runs(ObserveOptions how, std::spa
   return out;
 }
 
-std::vector<Score> OutOfFold::objectives(const DiagnoseOptions& options, std::uint32_t round,
-                                         std::uint32_t part) const {
+std::vector<Score> OutOfFold::objectives(const DiagnoseOptions& options, std::uint32_t round, Judges judges) const {
   const DiagnosisRules& rules = options.rules;
+  const std::uint32_t before = judges == Judges::Confirmation ? rules.fold_orders : 0;  // orders of the choice
   const std::vector<std::uint32_t> streams = problem_.streams();
   const std::vector<bool> rows = problem_.rows();
   ObserveOptions how{options.trials.compare, options.seed, 0, options.threads, {}, {}, effort_of(rules.search)};
   std::vector<Score> scores;
   for (std::uint32_t number = 0; number < rules.fold_orders; ++number) {
-    how.first_trial = round + (1 + part * rules.fold_orders + number) * how.trials;  // new ones for each
+    how.first_trial = round + (1 + before + number) * how.trials;  // new ones for each
     const std::vector<std::uint32_t> fold_of =
         folds_of(random_order(streams, rows, options.seed, number), rows.size(), rules.folds);
     scores.push_back(weigh_groups(

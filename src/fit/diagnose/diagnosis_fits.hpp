@@ -24,6 +24,9 @@ std::vector<std::uint32_t> folds_of(std::span<const std::size_t> order, std::siz
 /// A score of all sites of a problem. @param how  folds: of the blocks of all sites, one site after the other
 Score joined_score(const FitProblem& problem, const std::vector<std::vector<BlockRuns>>& runs, ScoreOptions how);
 
+/// What a cross-validation is for. Each has trials of its own, so that a choice is confirmed by others than made it.
+enum class Judges : std::uint8_t { Choice, Confirmation };
+
 /// Simulates blocks out of their folds: each by the minimum of the quadratic model of the other folds' rows. The parts
 /// must outlive it.
 class OutOfFold {
@@ -44,8 +47,7 @@ class OutOfFold {
   /// The objective for each of some random orders of the blocks, cut into folds.
   ///
   /// @param round  first trial of the round of the fits
-  /// @param part   0: for the choice; 1: with new trials, to confirm it
-  std::vector<Score> objectives(const DiagnoseOptions& options, std::uint32_t round, std::uint32_t part) const;
+  std::vector<Score> objectives(const DiagnoseOptions& options, std::uint32_t round, Judges judges) const;
 
  private:
   const FitProblem& problem_;

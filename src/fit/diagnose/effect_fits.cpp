@@ -262,10 +262,10 @@ void EffectFits::continue_with(const FittedModel& base, FittedCandidate& candida
   measure_gain(base, candidate);
 }
 
-std::vector<Score> EffectFits::cross_validated(const FittedModel& fitted, std::uint32_t part) const {
+std::vector<Score> EffectFits::cross_validated(const FittedModel& fitted, Judges judges) const {
   const FitProblem problem{campaign_, fitted.model, fitted.free, rows_};
   const FitOptions how = fit_options();
-  return OutOfFold(problem, how, fitted).objectives(options_, first_trial_of(options_, round_), part);
+  return OutOfFold(problem, how, fitted).objectives(options_, first_trial_of(options_, round_), judges);
 }
 
 std::vector<BlockRuns> EffectFits::out_of_fold(const FittedModel& fitted, std::span<const std::uint32_t> fold_of,
@@ -279,7 +279,8 @@ Confirmation EffectFits::confirmation(const FittedModel& base, const FittedCandi
   const Timesheet::Phase phase(times_, "confirmation");
   const DiagnosisRules& rules = options_.rules;
   const Difference change =
-      mean_difference(cross_validated(base, 1), cross_validated(candidate.fitted, 1), streams_of(campaign_));
+      mean_difference(cross_validated(base, Judges::Confirmation),
+                      cross_validated(candidate.fitted, Judges::Confirmation), streams_of(campaign_));
   ObserveOptions unseen = observe_options(rules.confirming * options_.trials.compare);
   unseen.first_trial += (1 + 2 * rules.fold_orders) * options_.trials.compare;
   const auto error = [&](const FittedModel& fitted) {

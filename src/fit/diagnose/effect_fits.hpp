@@ -46,7 +46,7 @@ class EffectFits {
   /// order is cut into folds; each fold is simulated with the minimum of the quadratic model of the other folds' rows.
   std::vector<Score> cross_validated(const FittedModel& fitted) const {
     const Timesheet::Phase phase(times_, "cross-validation");
-    return cross_validated(fitted, 0);
+    return cross_validated(fitted, Judges::Choice);
   }
   /// Runs of every block with a fold, simulated with the minimum of the quadratic model of the other folds' rows.
   ///
@@ -78,8 +78,7 @@ class EffectFits {
   };
   Start best_start(const FitProblem& problem, const FitOptions& how, const FittedModel& base,
                    const Candidate& candidate, const Verdict& verdict) const;
-  /// @param part  0: for the choice; 1: with new trials, to confirm it
-  std::vector<Score> cross_validated(const FittedModel& fitted, std::uint32_t part) const;
+  std::vector<Score> cross_validated(const FittedModel& fitted, Judges judges) const;
 
   const Campaign& campaign_;
   const DiagnoseOptions& options_;

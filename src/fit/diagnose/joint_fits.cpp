@@ -221,15 +221,16 @@ void JointFits::take_fit(const JointModel& base, JointModel&& fitted, JointCandi
   set_gain(candidate, base.objective, candidate.fitted.objective, streams_);
 }
 
-std::vector<Score> JointFits::cross_validated(const JointModel& fitted, std::uint32_t part) const {
+std::vector<Score> JointFits::cross_validated(const JointModel& fitted, Judges judges) const {
   const FitProblem problem = problem_of(fitted.parameters, fitted.models);
   const FitOptions how = fit_options();
-  return OutOfFold(problem, how, fitted).objectives(options_, first_trial(), part);
+  return OutOfFold(problem, how, fitted).objectives(options_, first_trial(), judges);
 }
 
 Confirmation JointFits::confirmation(const JointModel& base, const JointCandidate& candidate) const {
   const DiagnosisRules& rules = options_.rules;
-  const Difference change = mean_difference(cross_validated(base, 1), cross_validated(candidate.fitted, 1), streams_);
+  const Difference change = mean_difference(cross_validated(base, Judges::Confirmation),
+                                            cross_validated(candidate.fitted, Judges::Confirmation), streams_);
   const std::uint32_t first = first_trial() + (1 + 2 * rules.fold_orders) * options_.trials.compare;
   const auto error = [&](const JointModel& fitted) {
     const auto runs = observe_all(fitted.models, rules.confirming * options_.trials.compare, first);

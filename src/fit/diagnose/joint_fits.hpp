@@ -33,8 +33,8 @@ class JointFits {
   /// Fits the chosen model on, from a search around where it is, until a round gains nothing.
   void complete(const JointModel& base, JointCandidate& chosen) const;
   /// Objectives over the blocks of all sites, each simulated by a fit to the other folds; one for each order of the
-  /// blocks. Random numbers are those of number `part` of the round.
-  std::vector<Score> cross_validated(const JointModel& fitted, std::uint32_t part) const;
+  /// blocks.
+  std::vector<Score> cross_validated(const JointModel& fitted, Judges judges) const;
   /// As EffectFits::confirmation.
   Confirmation confirmation(const JointModel& base, const JointCandidate& candidate) const;
 

@@ -225,7 +225,7 @@ class SitesLoop {
       round.candidates.push_back(fits_.fit_effect(base, *chosen, best.z));
       advance(0.1);
     }
-    const std::vector<Score> before = fits_.cross_validated(base, 0);
+    const std::vector<Score> before = fits_.cross_validated(base, Judges::Choice);
     for (JointCandidate& c : round.candidates)
       set_cross_validated(c, before, fits_.cross_validated(c.fitted, 0), fits_.streams());
     const Choice choice(base.objective, rules_, fits_.streams());

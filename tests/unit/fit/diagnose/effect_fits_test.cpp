@@ -191,7 +191,7 @@ TEST(JointFits, ABlockOutOfItsFoldDoesNotKnowItsOwnMeasurement) {
   options.rules.folds *= 2;
   const JointFits joint(sites, options, [](double) { return true; });
   const std::vector<SiteDiagnosis> both{alone, alone};
-  const Score out_of_fold = joint.cross_validated(joint.fit_ground(both), 0).front();
+  const Score out_of_fold = joint.cross_validated(joint.fit_ground(both), Judges::Choice).front();
   const auto first = rows_of(out_of_fold, "one: speed S2"), second = rows_of(out_of_fold, "two: speed S2");
   ASSERT_EQ(first.size(), 20U);
   EXPECT_EQ(first, expected);
