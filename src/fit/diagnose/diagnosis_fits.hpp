@@ -1,4 +1,6 @@
 #pragma once
+#include <cstdint>
+
 #include "fit/calibrate/local_model.hpp"
 #include "talus/fit/calibrate/calibrate.hpp"
 #include "talus/fit/diagnose/diagnosis.hpp"

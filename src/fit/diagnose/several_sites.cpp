@@ -227,7 +227,7 @@ class SitesLoop {
     }
     const std::vector<Score> before = fits_.cross_validated(base, Judges::Choice);
     for (JointCandidate& c : round.candidates)
-      set_cross_validated(c, before, fits_.cross_validated(c.fitted, 0), fits_.streams());
+      set_cross_validated(c, before, fits_.cross_validated(c.fitted, Judges::Choice), fits_.streams());
     const Choice choice(base.objective, rules_, fits_.streams());
     choice.rank(round.candidates);
     choice.name_in(round, [&](const JointCandidate& c) { return fits_.confirmation(base, c); });
