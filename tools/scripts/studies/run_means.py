@@ -3,7 +3,7 @@
 
   tools/scripts/studies/run_means.py OUT...
 
-Seconds. Results: docs/migration.md, "RAMMS".
+Seconds. Results: docs/migration.md, "Rockyfor3D".
 """
 import sys
 
