@@ -3,7 +3,7 @@
 set(public_headers talus.hpp
   base/elementary.hpp base/expect.hpp base/lane.hpp base/random.hpp base/scratch.hpp base/shared_memory.hpp base/vector.hpp base/version.hpp
   terrain/grid.hpp terrain/raster.hpp terrain/surface.hpp
-  physics/barriers.hpp physics/block.hpp physics/ground.hpp physics/impact.hpp physics/path.hpp physics/trace.hpp
+  physics/barriers.hpp physics/block.hpp physics/ground.hpp physics/impact.hpp physics/line_piece.hpp physics/path.hpp physics/trace.hpp
   physics/world.hpp)
 list(TRANSFORM public_headers PREPEND ${PROJECT_SOURCE_DIR}/include/talus/)
 

@@ -27,8 +27,7 @@ void shorten(Span& span, float share) {
   span.rise_to = rise_at(span, share);
   span.p_to = mixed(span.p_from, span.p_to, share);
   span.q_to = mixed(span.q_from, span.q_to, share);
-  const float rise = span.height_to - span.height_from - span.bend * (1.0F - share);
-  span.height_to = std::max(0.0F, span.height_from + share * rise);
+  span.height_to = std::max(0.0F, height_at(span, share));
   span.bend *= share * share;
 }
 

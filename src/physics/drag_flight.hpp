@@ -15,10 +15,10 @@ struct BarrierMet;
 /// that ends where the damped fall ends; then it gets the velocity of the damped fall. docs/effects.md, "Flight with
 /// drag".
 ///
-/// In a piece the block moves at most one cell, and drag takes at most 4 % of its speed (`Effort::drag_loss`). Linear
-/// drag is exact. Quadratic drag has mean rates of the piece; the speed at a landing is right to 1e-3, at a landing
-/// from rest to 2e-4. A piece lasts at least 0.01 s, so that the number of pieces is limited for a block stuck in
-/// vegetation.
+/// In a piece the block moves at most one cell, and drag takes at most 4 % of its speed (`Effort::drag_loss`); but a
+/// piece lasts at least 0.01 s, unless it ends at a stem or a barrier, so that the number of pieces is limited for a
+/// block stuck in vegetation. Linear drag is exact. Quadratic drag has mean rates of the piece; the speed at a landing
+/// is right to 1e-3, at a landing from rest to 2e-4.
 class DragFlight {
  public:
   DragFlight(const World& world, const Release& release);

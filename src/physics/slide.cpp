@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "crease.hpp"
+#include "edge.hpp"
 #include "sliding_friction.hpp"
 #include "talus/base/expect.hpp"
 #include "talus/physics/flight.hpp"
@@ -16,10 +16,9 @@ using Vec2 = Eigen::Vector2d;
 
 constexpr int kMaxPieces = 1000;
 constexpr int kMaxHalvings = 20;
-constexpr int kMaxShort = 12;          // successive crossings of edges with almost no way between: a pit
-constexpr double kLongestPiece = 1.0;  // [s]
-constexpr double kErrorShare = 1e-3;   // of the diameter, per piece
-constexpr double kRounding = 1e-9;     // of the speed: below it the ground does not fall away at an edge
+constexpr int kMaxShort = 12;         // successive crossings of edges with almost no way between: a pit
+constexpr double kErrorShare = 1e-3;  // of the diameter, per piece
+constexpr double kRounding = 1e-9;    // of the speed: below it the ground does not fall away at an edge
 
 /// A piece that ends so much higher, or faster by as much, has not gained energy [m].
 constexpr double kHeightRounding = 1e-10;
@@ -121,7 +120,7 @@ Facet first_facet(const Surface& surface, PatchIndex at, Motion& motion) {
   if (!surface.creased() || !slope.read(place, motion.velocity.head<2>()) || slope.crease == Crease::None) return {at};
   if (std::abs(across(slope.crease, slope.p_of(place), slope.q_of(place))) <= kOnCrease)
     turn(motion.velocity, normal_of(slope.gradient(place)));
-  return slope.facet();
+  return slope.index();
 }
 
 /// Result of one piece of sliding, to the end of the piece, of the facet or of the cell.
@@ -245,15 +244,15 @@ SlideEnd slide(const Surface& surface, const Cover& cover, Motion& motion, Patch
     if (step.crossed) {
       Slope beyond{surface, at, tan_phi};
       if (!read_beyond(slope, step.edge, motion, beyond)) return SlideEnd::Left;
-      if (way < tolerance && beyond.facet() == came_from) {  // pressed back at once: slides along the crease
+      if (way < tolerance && beyond.index() == came_from) {  // pressed back at once: slides along the edge
         const Motion before = motion;
-        if (slide_along_crease(slope, beyond, motion, diameter - slid, path) == CreaseEnd::Held)
+        if (slide_along_edge(slope, beyond, motion, diameter - slid, path) == EdgeEnd::Held)
           return rest_between(slope, beyond, motion);
         way += (motion.position - before.position).norm();
         on = slope.facet_at(motion.position.head<2>());  // from a corner it may have slid along the other half
       } else {
         came_from = on;
-        on = beyond.facet();
+        on = beyond.index();
         at = on.at;
         if (takes_off(motion.velocity, beyond, motion.position.head<2>(), tolerance)) return SlideEnd::Takeoff;
       }

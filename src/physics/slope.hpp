@@ -57,7 +57,8 @@ struct Slope {
         at, crease != Crease::None && on_northern_half(crease, p_of(place), q_of(place), v.x() * surface.per_cell_x(),
                                                        v.y() * surface.per_cell_y())});
   }
-  Facet facet() const { return {at, north}; }
+  /// Which facet it is.
+  Facet index() const { return {at, north}; }
   /// The facet of this patch that holds a place; this one if the place is on the crease.
   Facet facet_at(const Eigen::Vector2d& place) const {
     const double side = crease == Crease::None ? 0.0 : across(crease, p_of(place), q_of(place));
@@ -85,6 +86,8 @@ struct Slope {
 inline Vec3 along(const Eigen::Vector2d& v, const Eigen::Vector2d& gradient) {
   return {v.x(), v.y(), v.dot(gradient)};
 }
+
+inline constexpr double kLongestPiece = 1.0;  // of sliding [s]
 
 /// Adds a piece of sliding to the path: a vertex and a span. A piece that takes no time adds nothing.
 void record_piece(Path& path, const Slope& slope, const Motion& before, const Motion& after);

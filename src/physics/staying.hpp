@@ -9,8 +9,4 @@ namespace talus {
 /// nearly so: it has stopped. docs/physics.md, "End of a trajectory".
 End end_of_staying(const World& world, const Ground& ground, const Motion& motion, PatchIndex at, double diameter);
 
-/// Patches crossed after which a trajectory ends at its limit, as with `Effort::most_vertices`: they bound its memory
-/// and time where it flies over many patches between few vertices. docs/physics.md, "End of a trajectory".
-inline constexpr std::size_t kMostSpans = 4'000'000;
-
 }  // namespace talus

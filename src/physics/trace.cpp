@@ -16,7 +16,7 @@ namespace {
 [[maybe_unused]] constexpr double kPatchError = 1e-6;  // of the place of a block in its patch, by rounding [patches]
 
 /// The half of a creased patch that a block meets. (Apart, and by value, so that the usual patch stays in registers.)
-[[gnu::noinline]] Patch facet_of(const Surface& surface, Patch patch, double p, double q, const Vec3& velocity) {
+[[gnu::noinline]] Patch creased_facet(const Surface& surface, Patch patch, double p, double q, const Vec3& velocity) {
   return surface.facet(patch, p, q, velocity);
 }
 
@@ -86,7 +86,7 @@ class Walk {
     const double p = world_.surface.u_of(motion_.position.x()) - at_.column;
     const double q = world_.surface.v_of(motion_.position.y()) - at_.row;
     if (world_.surface.crease(patch) != Crease::None) [[unlikely]]
-      patch = facet_of(world_.surface, patch, p, q, motion_.velocity);
+      patch = creased_facet(world_.surface, patch, p, q, motion_.velocity);
     normal_ = normal_of(world_.surface.gradient(patch, p, q));
     TALUS_EXPECT(std::abs(p - 0.5) < 0.5 + kPatchError && std::abs(q - 0.5) < 0.5 + kPatchError,
                  "a block is above its patch");

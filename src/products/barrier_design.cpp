@@ -152,7 +152,7 @@ BarrierDesign design_barrier(std::span<const LineCrossing> crossings, const Desi
   d.energy = 0.5 * d.mass * d.speed * d.speed;
   d.sel = factors.sel * d.energy;
   d.mel = factors.mel * d.energy;
-  d.freeboard = std::max(factors.freeboard, 0.5 * std::cbrt(6.0 * block.volume / kPi));
+  d.freeboard = std::max(factors.freeboard, 0.5 * diameter_of(block.volume));
   d.height = d.height_percentile * reach + d.freeboard;
   return d;
 }

@@ -62,8 +62,7 @@ class Replay {
 
   void trace_unit(std::uint64_t unit, std::vector<ObjectHits>& hits) const {
     const auto source = static_cast<std::uint32_t>(unit / per_source_);
-    const auto first = static_cast<std::uint32_t>(unit % per_source_) * kBlocksPerUnit;
-    const std::uint32_t end = std::min(scenario_.trajectories, first + kBlocksPerUnit);
+    const auto [first, end] = blocks_of_unit(scenario_, static_cast<std::uint32_t>(unit % per_source_));
     std::vector<std::vector<float>> largest(hits.size()), entry(hits.size());
     std::vector<std::vector<AnnualShare>> annual_shares(hits.size());
     std::vector<ObjectContact> here(hits.size());

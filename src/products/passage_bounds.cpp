@@ -18,7 +18,7 @@ struct Table {
   std::vector<double> low, high;
   Table() {
     for (int i = 0; kStep * i <= kLargest + kStep; ++i) {
-      const double shape = std::exp(kStep * i), width = 1.9599639845 / std::sqrt(shape);
+      const double shape = std::exp(kStep * i), width = kTwoSided / std::sqrt(shape);
       const bool wide = shape < 1e6;  // above it the distribution is normal to 1e-6
       low.push_back(wide ? boost::math::gamma_p_inv(shape, kTail) / shape : 1.0 - width);
       high.push_back(wide ? boost::math::gamma_p_inv(shape, 1.0 - kTail) / shape : 1.0 + width);

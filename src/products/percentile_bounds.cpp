@@ -26,7 +26,7 @@ double at_least(double k, double n, double p) {
 Ranks percentile_ranks(std::uint64_t n, double share) {
   TALUS_EXPECT(share > 0.0 && share < 1.0, "a percentile lies inside of the distribution");
   const auto count = static_cast<double>(n);
-  const double mean = count * share, width = 1.96 * std::sqrt(mean * (1.0 - share));
+  const double mean = count * share, width = kTwoSided * std::sqrt(mean * (1.0 - share));
   double low = std::clamp(std::floor(mean - width), 0.0, count);  // near the ranks; the next steps find them exactly
   while (low > 0.0 && at_most(low - 1.0, count, share) > kTail) --low;
   while (low < count && at_most(low, count, share) <= kTail) ++low;

@@ -40,7 +40,7 @@ class InOrder {
  public:
   explicit InOrder(const Sinks& sinks) : sinks_(sinks) {}
 
-  void finish(std::uint64_t number, Rows&& rows) {
+  void hand_in(std::uint64_t number, Rows&& rows) {
     const std::lock_guard guard(mutex_);
     if (handing_out_) return;  // a sink threw: none is called again
     handing_out_ = true;
@@ -91,8 +91,8 @@ class Simulation::Advance {
         lanes_(lanes),
         scenario_(simulation.scenario_),
         rows_in_order_(simulation.sinks_),
-        units_(simulation.processes_, {simulation.position_.unit, simulation.units_}, simulation.chunk_,
-               simulation.further_rounds_) {
+        work_units_(simulation.processes_, {simulation.position_.unit, simulation.unit_count_}, simulation.chunk_,
+                    simulation.further_rounds_) {
     totals_.barriers = BarrierTally(scenario_.barriers);
   }
 
@@ -102,9 +102,9 @@ class Simulation::Advance {
   void stop() { failed_ = true; }
 
   /// Called when all workers are done. True: all units of the process group are done. False: there are more to take.
-  bool finish() {
-    if (!units_.finish()) return false;
-    run_.position_.unit = units_.end();
+  bool all_done() {
+    if (!work_units_.agree_on_end()) return false;
+    run_.position_.unit = work_units_.end();
     add(run_.totals_, totals_);
     run_.totals_.interrupted = interrupted_;
     TALUS_EXPECT(std::accumulate(totals_.ends.begin(), totals_.ends.end(), std::uint64_t{0}) == totals_.released,
@@ -143,20 +143,20 @@ class Simulation::Advance {
       stopped_ = true;  // before the lock is released: no sink is called again
       throw;
     }
-    if (stopped_) units_.stop();
+    if (stopped_) work_units_.stop();
   }
 
   /// Share of the work done. Assumes that all processes of a group are equally fast.
   double share_done() const {
     const double done = static_cast<double>(done_) * run_.processes_.size() + static_cast<double>(run_.position_.unit);
-    return std::min(1.0, done / static_cast<double>(run_.units_));
+    return std::min(1.0, done / static_cast<double>(run_.unit_count_));
   }
 
   Simulation& run_;
   int lanes_;
   const Scenario& scenario_;
   InOrder rows_in_order_;
-  WorkUnits units_;
+  WorkUnits work_units_;
   std::atomic<bool> failed_{false};
   std::mutex mutex_;  // guards the members below
   std::uint64_t done_ = 0;
@@ -165,7 +165,7 @@ class Simulation::Advance {
 };
 
 /// The work of one thread: takes units, traces their blocks and scores the paths. The units that it traces at the same
-/// time lie in `units_`; paths come in the order in which the blocks were released.
+/// time lie in `open_units_`; paths come in the order in which the blocks were released.
 class Simulation::Advance::Worker {
  public:
   Worker(Advance& work, Totals& totals)
@@ -192,33 +192,35 @@ class Simulation::Advance::Worker {
   /// The next block: of the unit taken last, or of another. No unit is taken while the batch is full: the batch holds
   /// all paths of its units.
   bool next(Release& release) {
-    if (units_.empty() || units_.back().next == units_.back().end)
+    if (open_units_.empty() || open_units_.back().next == open_units_.back().end)
       if (work_.failed_ || batch_.full() || !take()) return false;
-    Unit& unit = units_.back();
+    Unit& unit = open_units_.back();
     release = make_release(scenario_, unit.source, unit.next++);
     return true;
   }
 
   bool take() {
-    const std::optional<WorkUnits::Taken> taken = work_.units_.next();  // always completed: a pause leaves none out
+    const std::optional<WorkUnits::Taken> taken =
+        work_.work_units_.next();  // always completed: a pause leaves none out
     all_taken_ = !taken;
     if (!taken) return false;
     const std::uint32_t place = run_.first_place_ + static_cast<std::uint32_t>(taken->unit / run_.units_per_source_);
-    const auto first = static_cast<std::uint32_t>(taken->unit % run_.units_per_source_) * kBlocksPerUnit;
-    const std::uint32_t count = std::min(scenario_.trajectories - first, kBlocksPerUnit);
-    const std::uint32_t begin = run_.position_.round * scenario_.trajectories + first;
-    units_.push_back(
+    const UnitBlocks blocks =
+        blocks_of_unit(scenario_, static_cast<std::uint32_t>(taken->unit % run_.units_per_source_));
+    const std::uint32_t count = blocks.end - blocks.first;
+    const std::uint32_t begin = run_.position_.round * scenario_.trajectories + blocks.first;
+    open_units_.push_back(
         {taken->number, run_.order_[place], begin, begin + count, count, count, run_.reaches_.of(place), {}});
-    units_.back().rows.unit = taken->unit;
+    open_units_.back().rows.unit = taken->unit;
     return true;
   }
 
   void done(const Release& release, const Path& path) {
-    Unit& unit = units_.front();
+    Unit& unit = open_units_.front();
     const std::uint32_t round = run_.position_.round;
     if (const AnnualWeights* weights = run_.tally_.weights()) {
       const std::int64_t weight = weights->weight(scenario_, unit.source, release.block);
-      batch_.set_annual_share({weight, round * run_.units_ + unit.rows.unit, unit.count});
+      batch_.set_annual_share({weight, round * run_.unit_count_ + unit.rows.unit, unit.count});
       totals_.left_weight += path.end == End::Left ? weight : 0;
     }
     batch_.add(path, release.body, unit.source, unit.reach);
@@ -229,7 +231,7 @@ class Simulation::Advance::Worker {
     if (run_.sinks_.paths && round == 0 && is_recorded(scenario_, unit.source, release.block))
       unit.rows.paths.push_back({stop_row(release, path), points_of(path, work_.spacing())});
     if (!path.pieces.empty()) trace_pieces(world_, path, [&](const auto&... piece) { add_piece(unit, piece...); });
-    if (--unit.left == 0) finish(unit);
+    if (--unit.left == 0) close(unit);
   }
 
   void add_piece(Unit& unit, const Release& piece, const Path& path) {
@@ -239,11 +241,11 @@ class Simulation::Advance::Worker {
     if (run_.sinks_.crossings) run_.screens_.find(piece, path, unit.rows.crossings);
   }
 
-  void finish(Unit& unit) {
+  void close(Unit& unit) {
     const double before = thread_cpu_seconds();
-    work_.rows_in_order_.finish(unit.number, std::move(unit.rows));
+    work_.rows_in_order_.hand_in(unit.number, std::move(unit.rows));
     totals_.sink_cpu_seconds += thread_cpu_seconds() - before;
-    units_.pop_front();
+    open_units_.pop_front();
     work_.report();
   }
 
@@ -254,7 +256,7 @@ class Simulation::Advance::Worker {
   const World world_;
   Tracer tracer_;
   VisitBatch batch_;
-  std::deque<Unit> units_;
+  std::deque<Unit> open_units_;
   bool all_taken_ = false;
 };
 
@@ -278,13 +280,13 @@ Simulation::Simulation(const Scenario& scenario, const Part& part, bool further_
       order_(work_order(scenario.surface.grid(), scenario.sources)),
       first_place_(part.first(scenario.sources.size())),
       units_per_source_(units_per_source(scenario)),
-      units_(std::uint64_t{units_per_source_} * (part.end(scenario.sources.size()) - first_place_)),
+      unit_count_(std::uint64_t{units_per_source_} * (part.end(scenario.sources.size()) - first_place_)),
       chunk_(1),
       further_rounds_(further_rounds),
       reaches_(units_per_source_, further_rounds, tally.memory()) {
   totals_.barriers = BarrierTally(scenario.barriers);
   if (processes.size() == 1) return;
-  const std::uint64_t fair = units_ / (64U * static_cast<std::uint64_t>(processes.size()));
+  const std::uint64_t fair = unit_count_ / (64U * static_cast<std::uint64_t>(processes.size()));
   const std::uint64_t sources = std::min(fair, kUnitsPerChunk) / units_per_source_;  // whole ones, per chunk
   chunk_ = std::max<std::uint64_t>(1, sources) * units_per_source_;
 }
@@ -294,7 +296,7 @@ void Simulation::advance(int threads, int lanes) {
   do
     in_threads(
         threads, [&] { work.work(); }, [&] { work.stop(); });
-  while (!work.finish());
+  while (!work.all_done());
 }
 
 void Simulation::save_reaches(const std::function<void(std::string_view)>& put) const {

@@ -308,7 +308,7 @@ TEST(OddScenes, EveryPathEndsAndTheEndsAddUp) {
             }
           });
       if (kind == 4) heights.at(40, 20) = std::numeric_limits<float>::quiet_NaN();
-      const Launch scene{Surface(heights), {{kUpperTalus}, {}}, {}, {.impact_limit = 1000}};
+      const Launch scene{Surface(heights, SurfaceKind::Bilinear), {{kUpperTalus}, {}}, {}, {.impact_limit = 1000}};
       for (std::uint32_t block = 0; block < 60; ++block) {
         const bool centre = block % 3 == 0;  // exactly at a cell centre, as sources are
         const int column = static_cast<int>(numbers.uniform(5, 55)), row = static_cast<int>(numbers.uniform(5, 45));

@@ -1,4 +1,4 @@
-# Installs the build BUILD into an empty folder WORK, compiles the program beside this file against it, and runs it.
+# Installs the build BUILD into an empty folder WORK, compiles the programs beside this file against it, and runs them.
 # ctest -L package
 file(REMOVE_RECURSE ${WORK})
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/installed OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
@@ -11,3 +11,4 @@ if(NOT found MATCHES "${WORK}/installed")
 endif()
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/bounce COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${WORK}/bounce/bounce COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${WORK}/bounce/gully COMMAND_ERROR_IS_FATAL ANY)

@@ -9,6 +9,7 @@
 namespace talus {
 
 inline constexpr double kConfidence = 0.95, kTail = 0.025;  // of every interval that is printed; of one side of it
+inline constexpr double kTwoSided = 1.959963984540054;      // the same in standard deviations of a normal law
 
 /// A confidence interval; NaN if it cannot be computed.
 struct Interval {

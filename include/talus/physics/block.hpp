@@ -1,4 +1,6 @@
 #pragma once
+#include <cmath>
+
 #include "talus/base/vector.hpp"
 
 namespace talus {
@@ -23,6 +25,11 @@ inline double kinetic_energy(double mass, double speed) {
 /// A block from its equivalent diameter [m] and its density [kg/m^3].
 inline Block block_of(double diameter, double density) {
   return {diameter, density * (kPi / 6.0) * diameter * diameter * diameter, Vec3::Ones()};
+}
+
+/// Diameter of the sphere of a volume [m]. @param volume  [m^3]
+inline double diameter_of(double volume) {
+  return std::cbrt(6.0 / kPi * volume);
 }
 
 /// Position and motion of a block.

@@ -25,7 +25,8 @@ enum class FlightEnd {
 /// @param until  end of the time in the patch [s], may be infinite
 /// @return       time in [0, until] [s]; infinity if there is no contact
 ///
-/// Closed form: the smallest root at which the clearance falls. Error: 4 eps relative. NaN gives infinity.
+/// Closed form: the smallest root at which the clearance falls. Error: 4 eps relative where f2 <= 0; more where a path
+/// grazes ground that rises to meet it. NaN gives infinity.
 template <class Number>
 [[gnu::always_inline]] inline Number first_contact(Number f0, Number f1, Number f2, Number until) {
   const Number last = f0 + until * (f1 + until * f2);

@@ -10,7 +10,7 @@ struct Quadratic {
   double a, b, c;
 };
 
-/// Whether a span is a piece of a slide. Its rise is then the whole speed.
+/// Whether a span is a piece of a slide, or a vertical fall. Its rise is then the whole speed.
 inline bool is_slide(const Span& span) {
   return span.plan_speed_squared == 0.0F;
 }
@@ -33,6 +33,11 @@ inline double speed_squared_at(const Span& span, double share) {
 inline float rise_at(const Span& span, float share) {
   if (is_slide(span)) return static_cast<float>(std::sqrt(speed_squared_at(span, share)));
   return span.rise_from + (span.rise_to - span.rise_from) * share;
+}
+
+/// The clearance at a share of the way along a span [m].
+inline float height_at(const Span& span, float share) {
+  return span.height_from + share * (span.height_to - span.height_from - span.bend * (1.0F - share));
 }
 
 }  // namespace talus

@@ -24,6 +24,10 @@ struct Effort {
   double drag_loss = 0.04;                  ///< share of the speed that drag may take in one piece of a flight [-]
 };
 
+/// Patches crossed after which a trajectory ends at its limit, as with `Effort::most_vertices`: they bound its memory
+/// and time where it flies over many patches between few vertices. docs/physics.md, "End of a trajectory".
+inline constexpr std::size_t kMostSpans = 4'000'000;
+
 /// Everything a block can meet. The surface and the cover are on the same grid.
 struct World {
   const Surface& surface;

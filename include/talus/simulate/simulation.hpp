@@ -33,7 +33,7 @@ class Simulation {
   /// After an exception of a sink the simulation must not be used any more.
   void advance(int threads, int lanes = 0);
 
-  bool round_done() const { return position_.unit == units_; }
+  bool round_done() const { return position_.unit == unit_count_; }
   void next_round() { position_ = {position_.round + 1, 0}; }
 
   const Position& position() const { return position_; }
@@ -54,7 +54,7 @@ class Simulation {
   ScreenFinder screens_;
   std::vector<std::uint32_t> order_;  // numbers of all source cells
   std::uint32_t first_place_, units_per_source_;
-  std::uint64_t units_, chunk_;  // units of this part; units of one chunk
+  std::uint64_t unit_count_, chunk_;  // units of this part; units of one chunk
   bool further_rounds_;
   Position position_;
   Totals totals_;

@@ -7,7 +7,7 @@
 
 namespace talus {
 
-/// Totals of a run: integers, so that they are equal for any number of threads.
+/// Totals of a run. All but the times are integers, so that they are equal for any number of threads.
 struct Totals {
   std::array<std::uint64_t, kEnds> ends{};  ///< by End
   std::uint64_t released = 0, pieces = 0, impacts = 0, psi_dropped = 0, cells_scored = 0;

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -73,7 +74,10 @@ struct Raster {
 
   Raster() = default;
   Raster(const Grid& g, T fill, MemoryPolicy memory = {}) : grid(g), values(g.cells(), fill, memory) {}
-  Raster(const Grid& g, const std::vector<T>& v) : grid(g), values(v.begin(), v.end()) {}
+  /// @param v  one value per cell; another number throws std::invalid_argument
+  Raster(const Grid& g, const std::vector<T>& v) : grid(g), values(v.begin(), v.end()) {
+    if (v.size() != g.cells()) throw std::invalid_argument("a raster has one value per cell of its grid");
+  }
 
   T& at(int column, int row) { return values[grid.index(column, row)]; }
   const T& at(int column, int row) const { return values[grid.index(column, row)]; }

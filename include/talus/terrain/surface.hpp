@@ -162,8 +162,13 @@ template <class Number>
 class Surface {
  public:
   /// @param heights  [m]; NaN: missing. A patch with a missing corner is outside the domain.
-  explicit Surface(Raster<float> heights, SurfaceKind kind = SurfaceKind::Bilinear)
-      : heights_(std::move(heights)), per_cell_x_(1.0 / grid().cell_x), per_cell_y_(1.0 / grid().cell_y), kind_(kind) {}
+  explicit Surface(Raster<float> heights, SurfaceKind kind = kDefaultSurface)
+      : heights_(std::move(heights)),
+        per_cell_x_(1.0 / grid().cell_x),
+        per_cell_y_(1.0 / grid().cell_y),
+        patch_columns_(static_cast<unsigned>(std::max(1, grid().columns) - 1)),
+        patch_rows_(static_cast<unsigned>(std::max(1, grid().rows) - 1)),
+        kind_(kind) {}
 
   SurfaceKind kind() const { return kind_; }
   bool creased() const { return kind_ == SurfaceKind::Creased; }
@@ -182,9 +187,7 @@ class Surface {
 
   /// Reads patch `i` as a bilinear one. Returns false if it is outside the grid or has a missing corner.
   bool read(PatchIndex i, Patch& patch) const {
-    if (static_cast<unsigned>(i.column) >= static_cast<unsigned>(grid().columns - 1) ||
-        static_cast<unsigned>(i.row) >= static_cast<unsigned>(grid().rows - 1))
-      return false;
+    if (static_cast<unsigned>(i.column) >= patch_columns_ || static_cast<unsigned>(i.row) >= patch_rows_) return false;
     const float* south = heights_.values.data() + grid().index(i.column, i.row);
     const float* north = south + grid().columns;
     const double sw = south[0], se = south[1], nw = north[0], ne = north[1];
@@ -223,6 +226,7 @@ class Surface {
 
   Raster<float> heights_;
   double per_cell_x_, per_cell_y_;
+  unsigned patch_columns_, patch_rows_;  // number of patches
   SurfaceKind kind_;
 };
 

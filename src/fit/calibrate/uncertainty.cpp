@@ -18,7 +18,7 @@ void summarise(std::span<const Parameter> free, Uncertainty& out) {
     const double low = quantile(z, kTail), high = quantile(z, 1.0 - kTail);
     const Parameter& p = free[static_cast<std::size_t>(i)];
     out.intervals.push_back({p.value(low), p.value(high)});
-    const double possible = std::min(2.0 * 1.96, p.z(p.upper) - p.z(p.lower));
+    const double possible = std::min(2.0 * kTwoSided, p.z(p.upper) - p.z(p.lower));
     out.identifiable.push_back(high - low <= kMostOfThePrior * possible);
   }
   const Eigen::MatrixXd centred = out.draws.rowwise() - out.draws.colwise().mean();

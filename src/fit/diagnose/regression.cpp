@@ -91,11 +91,11 @@ RegressionTest regression_test(const VectorXd& y, const MatrixXd& x, const Units
   return test;
 }
 
-std::vector<Slope> slopes(const VectorXd& y, const MatrixXd& x, std::span<const std::size_t> strata) {
+std::vector<PartialCorrelation> slopes(const VectorXd& y, const MatrixXd& x, std::span<const std::size_t> strata) {
   const MatrixXd columns = normed_within(x, strata);
   const VectorXd rest = within_strata(y, strata);
   const Index freedom = freedom_of(strata, basis_of(columns).cols());
-  std::vector<Slope> list;
+  std::vector<PartialCorrelation> list;
   for (Index j = 0; j < columns.cols(); ++j) {
     MatrixXd others = columns;
     others.col(j).setZero();
@@ -107,7 +107,7 @@ std::vector<Slope> slopes(const VectorXd& y, const MatrixXd& x, std::span<const 
       continue;
     }
     const double r = std::clamp(own.dot(left) / (own.norm() * left.norm()), -1.0, 1.0);
-    Slope slope{r, kNone};
+    PartialCorrelation slope{r, kNone};
     if (freedom >= 1) {
       const auto f = static_cast<double>(freedom);
       const double t = std::abs(r) * std::sqrt(f / std::max(1e-300, 1.0 - r * r));

@@ -31,7 +31,7 @@ std::vector<DesignRow> design_rows(const BarrierReport& r) {
   const DesignFactors& f = r.factors;
   const std::string rank = with_digits(100.0 * f.percentile, 4),
                     reach = " x gTr " + with_digits(f.trajectory, 4) + " x gDp " + with_digits(f.topography, 4);
-  const double diameter = std::cbrt(6.0 * r.block.volume / kPi);
+  const double diameter = diameter_of(r.block.volume);
   return {{"v" + rank, d.speed_percentile, "m/s", "of the crossings"},
           {"v_d", d.speed, "m/s", "v" + rank + reach},
           {"V", r.block.volume, "m3", r.block_from + ", diameter " + with_digits(diameter, 4) + " m"},

@@ -62,7 +62,7 @@ BarrierPart part_of(const Json& json) {
 
 /// The net at its height, and the design block with its speed, to scale.
 Markup section_drawing(const BarrierPart& part) {
-  const double height = part.value("h_i"), diameter = std::cbrt(6.0 * part.value("V") / kPi);
+  const double height = part.value("h_i"), diameter = diameter_of(part.value("V"));
   if (!(height > 0.0 && height < 1e3 && diameter > 0.0 && diameter < 1e3)) return {};
   constexpr double kGround = 170.0, kNet = 250.0;
   const double scale = 130.0 / std::max(height, diameter), radius = 0.5 * scale * diameter;

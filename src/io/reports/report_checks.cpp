@@ -314,7 +314,7 @@ std::optional<std::pair<double, double>> diameters_of(const RunFacts& run) {
       continue;
     const std::string text = setting.value.substr(0, setting.value.find('('));
     for (const char* volume : {"volume_min = ", "volume_max = "})
-      for (const double v : numbers_after(text, volume)) all.push_back(std::cbrt(6.0 / kPi * v));
+      for (const double v : numbers_after(text, volume)) all.push_back(diameter_of(v));
     for (const double d : text.starts_with("[{") ? numbers_after(text, "diameter = ") : numbers_of(text))
       if (setting.unit == "m") all.push_back(d);
   }

@@ -182,7 +182,7 @@ LoadedProfile load_profile(const RunFlags& flags) {
   place_screens(spec, out.profile, grid.west, parts);
   place_zones(spec, out.profile, grid, parts);
   load_effect_places(spec, Terrain{}, parts, loaded);  // zones only: a profile has no files of polygons
-  parts.surface = Surface(std::move(extruded.heights));
+  parts.surface = Surface(std::move(extruded.heights), SurfaceKind::Bilinear);
   loaded.scenario = make_scenario(std::move(parts));
   warn_of_presets(spec, loaded.warnings);
   warn_of_sizes(spec, loaded.scenario, loaded.warnings);

@@ -18,7 +18,7 @@ double volume_at(const VolumePowerLaw& law, double share) {
 }
 
 double diameter_at(const Blocks& blocks, double share_of_class, double share) {
-  if (blocks.power_law.volume.high > 0.0) return std::cbrt(6.0 / kPi * volume_at(blocks.power_law, share));
+  if (blocks.power_law.volume.high > 0.0) return diameter_of(volume_at(blocks.power_law, share));
   return blocks.classes[class_at(blocks.classes, share_of_class)].diameter.at(share);
 }
 

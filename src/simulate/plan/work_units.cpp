@@ -47,7 +47,7 @@ void WorkUnits::stop() {
   if (!fixed_) closed_at_ = std::min(closed_at_, at);
 }
 
-bool WorkUnits::finish() {
+bool WorkUnits::agree_on_end() {
   if (!fixed_) {
     end_ = std::min(range_.end, chunk_ * processes_.smallest(closed_at_));
     return true;

@@ -69,7 +69,7 @@ Range diameters_of(const Scenario& scenario) {
       widen(all, feature.diameter);
   if (!general) return all;
   const Range& volume = scenario.blocks.power_law.volume;
-  if (volume.high > 0.0) widen(all, {std::cbrt(6.0 / kPi * volume.low), std::cbrt(6.0 / kPi * volume.high)});
+  if (volume.high > 0.0) widen(all, {diameter_of(volume.low), diameter_of(volume.high)});
   for (const BlockClass& block : scenario.blocks.classes) widen(all, block.diameter);
   return all;
 }

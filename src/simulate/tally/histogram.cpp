@@ -181,7 +181,9 @@ void LogHistogram::merge(const LogHistogram& other) {
 
 void LogHistogram::save(ByteWriter& out) const {
   out.put(few_count_);
-  for (int i = 0; i < few_count_; ++i) out.put(few_[static_cast<std::size_t>(i)]);
+  auto few = few_;
+  std::sort(few.begin(), few.begin() + few_count_);  // as the order in which they came depends on the threads
+  for (int i = 0; i < few_count_; ++i) out.put(few[static_cast<std::size_t>(i)]);
   out.put(size_);
   if (size_ == 0) return;
   out.put(first_);

@@ -12,8 +12,7 @@ struct Moment {
 };
 
 inline Moment moment_of(const Span& span, float share) {
-  const float height = span.height_from + share * (span.height_to - span.height_from - span.bend * (1.0F - share));
-  return {share, height, rise_at(span, share)};
+  return {share, height_at(span, share), rise_at(span, share)};
 }
 
 /// The largest clearance on a part of a span [m]: at an end, or at the apex if the block rises from the first end and

@@ -162,7 +162,8 @@ TEST(Fly,
 TEST(Fly, VerticalDropOnARoughSurface) {
   Numbers numbers(3);
   const Surface surface(
-      test::terrain(test::grid_of(30, 30, 2.0, 5.0), [&](double, double) { return numbers.uniform(0, 20); }));
+      test::terrain(test::grid_of(30, 30, 2.0, 5.0), [&](double, double) { return numbers.uniform(0, 20); }),
+      SurfaceKind::Bilinear);
   for (int i = 0; i < 1000; ++i) {
     const double x = numbers.uniform(1.0, 59.0), y = numbers.uniform(2.5, 147.5),
                  z = test::height_between_centres(surface.heights(), x, y);

@@ -81,7 +81,8 @@ TEST(SlideOnATwist, TakesOffWhereTheSurfaceCurvesAwayFasterThanTheParabola) {
   // flies.
   const double k = 0.125;
   const Surface surface(test::terrain(test::grid_of(3, 3, 16.0, 16.0),
-                                      [&](double x, double y) { return 300.0 + k * (x - 16.0) * (y - 16.0); }));
+                                      [&](double x, double y) { return 300.0 + k * (x - 16.0) * (y - 16.0); }),
+                        SurfaceKind::Bilinear);
   const double limit = std::sqrt(kGravity / (2 * k));  // of |vx| = |vy|
   EXPECT_EQ(slide_from(surface, 0.0, {16.0, 16.0}, {1.01 * limit, -1.01 * limit}, 0.2).end, SlideEnd::Takeoff);
   EXPECT_EQ(slide_from(surface, 0.0, {16.0, 16.0}, {0.9 * limit, -0.9 * limit}, 0.2).end, SlideEnd::NextAsperity);

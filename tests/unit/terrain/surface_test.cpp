@@ -41,7 +41,7 @@ TEST(Surface, EveryCornerOfAPatchIsItsCell) {
 }
 
 TEST(Surface, EqualsBilinearWeightsEverywhere) {
-  const Surface surface(rough(20, 30, 2.0, 0.5, 3));
+  const Surface surface(rough(20, 30, 2.0, 0.5, 3), SurfaceKind::Bilinear);
   Numbers numbers(4);
   for (int i = 0; i < 100'000; ++i) {
     const double x = numbers.uniform(1.0, 39.0), y = numbers.uniform(0.25, 14.75);
@@ -64,7 +64,7 @@ TEST(Surface, IsAPlaneWhereTheDemIsOne) {
 }
 
 TEST(Surface, GradientIsTheFiniteDifferenceOfTheHeight) {
-  const Surface surface(rough(10, 10, 2.0, 5.0, 6));
+  const Surface surface(rough(10, 10, 2.0, 5.0, 6), SurfaceKind::Bilinear);
   Numbers numbers(7);
   const double h = 1e-3;  // the patch is linear along x and along y: central differences are exact but for rounding
   for (int i = 0; i < 10'000; ++i) {
@@ -226,7 +226,8 @@ TEST(CreasedSurface, HasNoCreaseOnAPlaneAndOnACone) {
 }
 
 TEST(CreasedSurface, FallsFromEveryCellThatHasALowerDiagonalNeighbour) {
-  const Surface bilinear(rough(60, 60, 1.0, 1.0, 37)), creased(bilinear.heights(), SurfaceKind::Creased);
+  const Surface bilinear(rough(60, 60, 1.0, 1.0, 37), SurfaceKind::Bilinear),
+      creased(bilinear.heights(), SurfaceKind::Creased);
   int dams = 0;
   for (int row = 1; row < 59; ++row)
     for (int column = 1; column < 59; ++column) {

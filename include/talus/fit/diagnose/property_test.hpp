@@ -11,8 +11,8 @@ namespace talus {
 struct PropertyTest {
   bool tested = false;  ///< false: too few blocks, or all are alike
   RegressionTest regression;
-  std::vector<std::string> names;  ///< of the properties: "log L1/L2", "log L1/L3", "log mass"
-  std::vector<Slope> slopes;       ///< by property
+  std::vector<std::string> names;          ///< of the properties: "log L1/L2", "log L1/L3", "log mass"
+  std::vector<PartialCorrelation> slopes;  ///< by property
   std::size_t blocks = 0, rocks = 0, sites = 0;
   bool by_rock = false;  ///< a rock was released twice: rocks change places, not their releases
 };

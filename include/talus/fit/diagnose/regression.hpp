@@ -30,11 +30,12 @@ RegressionTest regression_test(const Eigen::VectorXd& y, const Eigen::MatrixXd& 
                                std::size_t arrangements, std::uint64_t seed);
 
 /// A property in the regression on all of them.
-struct Slope {
+struct PartialCorrelation {
   double correlation = 0.0;  ///< with y, both without strata and without the other properties, -1..1
   double p_value = 1.0;      ///< of t, two-sided; NaN where no freedom is left
 };
 /// By column of `x`; correlation NaN for columns that do not count.
-std::vector<Slope> slopes(const Eigen::VectorXd& y, const Eigen::MatrixXd& x, std::span<const std::size_t> strata);
+std::vector<PartialCorrelation> slopes(const Eigen::VectorXd& y, const Eigen::MatrixXd& x,
+                                       std::span<const std::size_t> strata);
 
 }  // namespace talus

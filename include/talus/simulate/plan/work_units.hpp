@@ -17,6 +17,17 @@ inline std::uint32_t units_per_source(const Scenario& scenario) {
   return (scenario.trajectories + kBlocksPerUnit - 1) / kBlocksPerUnit;
 }
 
+/// The blocks of a unit within a round: from `first`, before `end`.
+struct UnitBlocks {
+  std::uint32_t first, end;
+};
+
+/// @param unit  its number among the units of its source cell
+inline UnitBlocks blocks_of_unit(const Scenario& scenario, std::uint32_t unit) {
+  const std::uint32_t first = unit * kBlocksPerUnit;
+  return {first, std::min(scenario.trajectories, first + kBlocksPerUnit)};
+}
+
 /// A unit as a stratum: its number among the units of the scenario, source cell by source cell, and its blocks.
 struct Stratum {
   std::uint64_t number;
@@ -26,8 +37,8 @@ struct Stratum {
 /// The stratum of a block of a source cell.
 inline Stratum stratum_of(const Scenario& scenario, std::uint32_t source, std::uint32_t block) {
   const std::uint32_t unit = block / kBlocksPerUnit;
-  return {std::uint64_t{source} * units_per_source(scenario) + unit,
-          std::min(scenario.trajectories - unit * kBlocksPerUnit, kBlocksPerUnit)};
+  const UnitBlocks blocks = blocks_of_unit(scenario, unit);
+  return {std::uint64_t{source} * units_per_source(scenario) + unit, blocks.end - blocks.first};
 }
 
 /// Hands out the units of work of a round, each once, to all threads of all processes that trace it.
@@ -58,8 +69,8 @@ class WorkUnits {
   void stop();
 
   /// All processes must call it, each when it has done all units that it took. True: all units before `end` are done,
-  /// by whichever process. False: call `next` again until it returns nothing, then `finish`.
-  bool finish();
+  /// by whichever process. False: call `next` again until it returns nothing, then this again.
+  bool agree_on_end();
   std::uint64_t end() const { return end_; }
 
   /// Whether a chunk, by the unit it begins with, belongs to this process.

@@ -9,12 +9,12 @@
 
 namespace talus {
 
-/// Counts of positive values in bins of equal relative width: 16 to each doubling, so that a bin is 3.2 to 6.25 % wide.
+/// Counts of positive values in bins: 16 of equal width to each doubling, so that a bin is 3.2 to 6.25 % wide.
 ///
 /// The bins of the first few values are stored in the object, without further memory: most cells at the edge of a map
 /// have no more values. After them, counts are stored for the bins from the smallest to the largest value: 8-bit counts
 /// that widen to 16 and 32 bits when one is full. At most kSpan bins are stored, and smaller values count in the lowest
-/// one. The state depends on the values only, not on their order: merging is exact.
+/// one. What is read and saved depends on the values only, not on their order: merging is exact.
 class LogHistogram {
  public:
   static constexpr int kSpan = 128;            ///< most bins: from the largest value down to 1/128 of it or less

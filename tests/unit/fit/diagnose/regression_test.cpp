@@ -37,7 +37,7 @@ TEST(Regression, FOfFivePointsByHand) {
   // Of the 120 arrangements 1 has sum 55, 4 have 54, 3 have 53, and as many are as far below: 16.
   EXPECT_TRUE(test.permuted.exact);
   EXPECT_DOUBLE_EQ(test.permuted.p_value, 16.0 / 120.0);
-  const std::vector<Slope> all = slopes(y, x, units_in({0, 0, 0, 0, 0}).strata);
+  const std::vector<PartialCorrelation> all = slopes(y, x, units_in({0, 0, 0, 0, 0}).strata);
   EXPECT_NEAR(all[0].correlation, 0.8, 1e-12);
   EXPECT_NEAR(all[0].p_value, p, 1e-12);
 }

@@ -82,7 +82,7 @@ Traced traced(int size, const WorkUnits::Range& range, std::uint64_t chunk, bool
           mine.push_back(taken->unit);
           if (rank == size - 1 && mine.size() == stop_after) units.stop();
         }
-      } while (!units.finish());
+      } while (!units.agree_on_end());
       ends[static_cast<std::size_t>(rank)] = units.end();
       EXPECT_TRUE(std::ranges::is_sorted(mine));
       for (const std::uint64_t unit : mine) EXPECT_TRUE(!fixed || WorkUnits::owns(member, unit, chunk));

@@ -186,6 +186,17 @@ TEST(LogHistogram, StateDependsOnTheMultisetOnly) {
     }
 }
 
+TEST(LogHistogram, SavedBytesDoNotDependOnTheOrder) {
+  const auto saved = [](const Values& values) {
+    LogHistogram histogram;
+    for (const float value : values) histogram.add(std::array{value});
+    ByteWriter out;
+    histogram.save(out);
+    return out.bytes();
+  };
+  EXPECT_EQ(saved({1.0F, 8.0F, 3.0F}), saved({8.0F, 3.0F, 1.0F}));
+}
+
 TEST(LogHistogram, RisingAndFallingValuesGiveTheSame) {  // the low end collapses step by step, or at once
   Numbers numbers(5);
   Values values = draw(distributions()[3], 20'000, numbers);

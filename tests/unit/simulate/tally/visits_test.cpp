@@ -112,7 +112,8 @@ TEST(VisitBatch, FlightsOverRoughTerrainAgainstDenseSampling) {
   Numbers numbers(1);
   const Grid grid = test::grid_of(150, 90, 2.0, 3.0);  // 3 x 2 regions
   const Surface surface(
-      test::terrain(grid, [&](double x, double y) { return 300.0 - 0.5 * x - 0.25 * y + numbers.uniform(-1, 1); }));
+      test::terrain(grid, [&](double x, double y) { return 300.0 - 0.5 * x - 0.25 * y + numbers.uniform(-1, 1); }),
+      SurfaceKind::Bilinear);
   for (int trial = 0; trial < 60; ++trial) {
     const Vec3 start(numbers.uniform(20, 280), numbers.uniform(20, 250), 400.0 - 0.5 * 20 + numbers.uniform(0, 5));
     const Vec3 v(numbers.uniform(-30, 30), numbers.uniform(-30, 30), numbers.uniform(-20, 20));

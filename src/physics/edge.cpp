@@ -1,4 +1,4 @@
-#include "crease.hpp"
+#include "edge.hpp"
 
 #include <algorithm>
 
@@ -50,23 +50,23 @@ double cosine_of_slope(const Slope& slope, const Eigen::Vector2d& place) {
 
 }  // namespace
 
-CreaseEnd slide_along_crease(const Slope& slope, const Slope& beyond, Motion& motion, double farthest, Path& path) {
+EdgeEnd slide_along_edge(const Slope& slope, const Slope& beyond, Motion& motion, double farthest, Path& path) {
   const Eigen::Vector2d place = motion.position.head<2>();
   const Edge edge = edge_between(slope, beyond, place);
   const double speed = motion.velocity.norm(), ahead = motion.velocity.dot(edge.direction);
   double sign = ahead < 0.0 ? -1.0 : 1.0;
-  if (!(std::abs(ahead) > 1e-9 * speed)) {                  // no velocity along the edge: downwards
-    if (edge.direction.z() == 0.0) return CreaseEnd::Held;  // level: nothing pulls it to either side
+  if (!(std::abs(ahead) > 1e-9 * speed)) {                // no velocity along the edge: downwards
+    if (edge.direction.z() == 0.0) return EdgeEnd::Held;  // level: nothing pulls it to either side
     sign = edge.direction.z() > 0.0 ? -1.0 : 1.0;
   }
   const double friction =
       slope.tan_phi * kGravity * 0.5 * (cosine_of_slope(slope, place) + cosine_of_slope(beyond, place));
   const double pull = -sign * kGravity * edge.direction.z() - friction;
-  if (!(speed > 0.0) && !(pull > 0.0)) return CreaseEnd::Held;
+  if (!(speed > 0.0) && !(pull > 0.0)) return EdgeEnd::Held;
 
   const double to_end = edge.length * share_ahead(slope, edge.share, sign);
   const double way = std::min({to_end, farthest, kLargestShare * edge.length});
-  double duration = time_to_cover(way, speed, pull, 1.0);
+  double duration = time_to_cover(way, speed, pull, kLongestPiece);
   if (pull < 0.0) duration = std::min(duration, speed / -pull);  // comes to rest earlier
   Motion turned = motion, next = motion;
   turned.velocity = sign * speed * edge.direction;
@@ -76,7 +76,7 @@ CreaseEnd slide_along_crease(const Slope& slope, const Slope& beyond, Motion& mo
   next.velocity = sign * std::max(0.0, speed + pull * duration) * edge.direction;
   record_piece(path, slope, turned, next);
   motion = next;
-  return CreaseEnd::Moved;
+  return EdgeEnd::Moved;
 }
 
 }  // namespace talus

@@ -3,8 +3,8 @@
 
 namespace talus {
 
-/// Result of a piece along a crease.
-enum class CreaseEnd { Moved, Held };
+/// Result of a piece along an edge.
+enum class EdgeEnd { Moved, Held };
 
 /// Slides a block along the concave edge between two patches that both press it back onto the edge. This is the limit
 /// of crossing the edge to and fro. The block turns along the edge and keeps its speed. Gravity acts along the edge;
@@ -17,6 +17,6 @@ enum class CreaseEnd { Moved, Held };
 /// @param farthest  longest way [m]
 /// @return          Held if the block is at rest and friction exceeds gravity along the edge, or if it has no velocity
 ///                  along a level edge
-CreaseEnd slide_along_crease(const Slope& slope, const Slope& beyond, Motion& motion, double farthest, Path& path);
+EdgeEnd slide_along_edge(const Slope& slope, const Slope& beyond, Motion& motion, double farthest, Path& path);
 
 }  // namespace talus
