@@ -54,6 +54,7 @@ Bounded table_interval(double sum, double squares, double largest) {
 }
 
 Bounded mean_length(double length, double squares, double straight, double released) {
+  squares = std::min(squares, length * length);  // as lengths are not negative; more is their rounding
   const double longest = length > 0.0 ? std::max(straight, squares / length) : straight;
   Bounded bounds = table_interval(length, squares, longest);
   const double counts = std::max(0.0, squares - length * length / released) / (longest * longest);

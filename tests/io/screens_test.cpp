@@ -51,6 +51,18 @@ TEST_F(Screens, FeaturesOfTheSameIdAreOneScreen) {
   EXPECT_EQ(layer.screens[0].lines.size(), 2U);
 }
 
+TEST_F(Screens,
+       LinesOfOneScreenOnEachOtherAreWarnedOf) {  // 5 m from (4, 1) to (9, 1); a line that only crosses is fine
+  const ScreenLayer layer =
+      read({{"id", OFTString}},
+           {{"LINESTRING(1 1,9 1)", {"road"}}, {"LINESTRING(12 1,4 1)", {"road"}}, {"LINESTRING(5 0,5 3)", {"road"}}});
+  EXPECT_TRUE(
+      said(layer.warnings, "lines of screen road lie on each other for 5 m: every crossing there counts twice"));
+  EXPECT_FALSE(
+      said(read({{"id", OFTString}}, {{"LINESTRING(1 1,9 1)", {"a"}}, {"LINESTRING(1 1,9 1)", {"b"}}}).warnings,
+           "lie on each other"));
+}
+
 TEST_F(Screens, ACsvIsInTheSystemOfTheDem) {
   const std::string file =
       write_text("s.csv", "id,wkt\nS1,\"LINESTRING (600006.00 5200010.00, 600094.00 5200012.50)\"\n");

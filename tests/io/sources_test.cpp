@@ -82,6 +82,17 @@ TEST_F(Sources, ALineGivesTheCellsItCrosses) {
             (Cells{{0, 1}, {1, 1}, {0, 0}}));  // from off the map; y = 10 at x = 7.85
 }
 
+TEST_F(Sources, ALineDoesNotReleaseWhereItOnlyTouches) {  // its ends lie on corners and edges of cells
+  const Cells three{{1, 2}, {2, 2}, {3, 2}}, diagonal{{3, 4}, {2, 3}, {1, 2}};
+  EXPECT_EQ(cells(read({{"LINESTRING(10 25,40 25)"}})), three);
+  EXPECT_EQ(cells(read({{"LINESTRING(40 25,10 25)"}})), three);
+  EXPECT_EQ(cells(read({{"MULTILINESTRING((10 25,30 25),(30 25,40 25))"}})), three);
+  EXPECT_EQ(cells(read({{"LINESTRING(10 20,40 50)"}})), diagonal);
+  EXPECT_EQ(cells(read({{"LINESTRING(40 50,10 20)"}})), diagonal);
+  EXPECT_EQ(cells(read({{"LINESTRING(10 20,40 20)"}})), cells(read({{"LINESTRING(40 20,10 20)"}})));  // along an edge
+  EXPECT_EQ(cells(read({{"LINESTRING(10 20,40 20)"}})).size(), 3U);
+}
+
 // Length of the segment a-b inside a cell, by clipping it at the four sides.
 double length_inside(const Eigen::Vector2d& a, const Eigen::Vector2d& b, int column, int row) {
   double from = 0.0, to = 1.0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <set>
 
 #include "layer.hpp"
@@ -153,6 +154,32 @@ void warn_of_gaps(ScreenLayer& layer, const std::string& path, const Terrain& te
                              ": blocks do not get there, so that the crossings are lower bounds (unsafe)");
 }
 
+/// Length over which lines of a screen lie on each other [m].
+double doubled_length(const Screen& screen) {
+  std::vector<OGRLineString> lines(screen.lines.size());
+  std::vector<OGREnvelope> boxes(lines.size());
+  double length = 0.0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    for (const Eigen::Vector2d& place : screen.lines[i]) lines[i].addPoint(place.x(), place.y());
+    lines[i].getEnvelope(&boxes[i]);
+    for (std::size_t k = 0; k < i; ++k) {
+      if (!boxes[i].Intersects(boxes[k])) continue;
+      const std::unique_ptr<OGRGeometry> both(lines[i].Intersection(&lines[k]));
+      if (both) length += OGR_G_Length(OGRGeometry::ToHandle(both.get()));
+    }
+  }
+  return length;
+}
+
+/// A warning of screens of which lines lie on each other, as when a feature was pasted twice.
+void warn_of_doubled_lines(ScreenLayer& layer, const std::string& path) {
+  for (const Screen& screen : layer.screens)
+    if (const double length = doubled_length(screen); length > 0.0)
+      layer.warnings.push_back(path + ": lines of screen " + screen.id + " lie on each other for " +
+                               with_digits(length, 3) +
+                               " m: every crossing there counts twice. Delete one, or give it another id");
+}
+
 }  // namespace
 
 double share_without_height(const Screen& screen, const Raster<float>& heights) {
@@ -173,6 +200,7 @@ ScreenLayer read_screens(const std::string& path, const Terrain& terrain) {
   });
   reader.finish(out);
   warn_of_gaps(out, path, terrain, on_map);
+  warn_of_doubled_lines(out, path);
   return out;
 }
 

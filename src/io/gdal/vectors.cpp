@@ -1,6 +1,7 @@
 #include "talus/io/gdal/vectors.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -188,6 +189,44 @@ struct Cell {
   bool operator==(const Cell&) const = default;
 };
 
+/// Whether a line has a length in a cell with its edges, not a touch alone.
+bool runs_through(const OGRLineString& line, const Grid& grid, const Cell& cell) {
+  constexpr double kTouch = 1e-9;  // cells
+  const double west = cell.column, south = cell.row;
+  for (int i = 1; i < line.getNumPoints(); ++i) {
+    const double u[] = {line.getX(i - 1) / grid.cell_x - west, line.getX(i) / grid.cell_x - west};
+    const double v[] = {line.getY(i - 1) / grid.cell_y - south, line.getY(i) / grid.cell_y - south};
+    double from = 0.0, to = 1.0;  // share of the segment that lies in the cell
+    for (const double* w : {u, v}) {
+      const double way = w[1] - w[0];
+      if (way == 0.0 && (w[0] < 0.0 || w[0] > 1.0)) to = -1.0;
+      if (way == 0.0) continue;
+      from = std::max(from, std::min(-w[0] / way, (1.0 - w[0]) / way));
+      to = std::min(to, std::max(-w[0] / way, (1.0 - w[0]) / way));
+    }
+    if ((to - from) * std::hypot(u[1] - u[0], v[1] - v[0]) > kTouch) return true;
+  }
+  return false;
+}
+
+/// Appends the cells that a line crosses. GDAL also gives a cell that it touches with an end alone.
+void append_cells(const OGRLineString& line, const Grid& grid, std::vector<Cell>& cells) {
+  const int last = line.getNumPoints() - 1;
+  const auto at_an_end = [&](const Cell& cell) {
+    return std::ranges::any_of(std::array{0, last}, [&](int i) {
+      return std::abs(line.getX(i) / grid.cell_x - cell.column - 0.5) < 0.75 &&
+             std::abs(line.getY(i) / grid.cell_y - cell.row - 0.5) < 0.75;
+    });
+  };
+  const std::size_t before = cells.size();
+  for_each_cell(line, grid, true, [&](int column, int row) {
+    const Cell cell{column, row};
+    if (!at_an_end(cell) || runs_through(line, grid, cell)) cells.push_back(cell);
+  });
+  const Cell start{grid.column_of(line.getX(0)), grid.row_of(line.getY(0))};
+  if (cells.size() == before && grid.contains(start.column, start.row)) cells.push_back(start);  // without length
+}
+
 // The cells of the polygons and lines of a feature, each once, row by row from the north-west.
 std::vector<Cell> cells_of(const Parts& parts, const Grid& grid) {
   std::vector<Cell> cells;
@@ -197,11 +236,7 @@ std::vector<Cell> cells_of(const Parts& parts, const Grid& grid) {
     for_each_cell(polygon, grid, false, add);
     if (cells.size() == before) for_each_cell(polygon, grid, true, add);
   }
-  for (const OGRLineString& line : parts.lines) {
-    for_each_cell(line, grid, true, add);
-    const int column = grid.column_of(line.getX(0)), row = grid.row_of(line.getY(0));
-    if (grid.contains(column, row)) add(column, row);  // also of a line without length
-  }
+  for (const OGRLineString& line : parts.lines) append_cells(line, grid, cells);
   if (parts.polygons.size() + parts.lines.size() == 1 && parts.lines.empty()) return cells;
   std::sort(cells.begin(), cells.end(),
             [](const Cell& a, const Cell& b) { return a.row != b.row ? a.row > b.row : a.column < b.column; });

@@ -38,6 +38,16 @@ TEST(MeanLength, BlocksThatAllPassAlikeAreSure) {  // 1000 blocks with 3 m each:
   EXPECT_LT(length.high, 3.02);
 }
 
+/// One passage is one count: the lower bound of Garwood is -ln(0.975), although length and square are rounded each by
+/// itself, as the tallies do.
+TEST(MeanLength, OnePassageHasTheBoundOfOneCount) {
+  const auto rounded = [](double value) { return std::round(value * 0x1p20) * 0x1p-20; };
+  for (const double length : {0.1, 0.7, 3.3269, 4.0072}) {
+    const Bounded bounds = mean_length(rounded(length), rounded(length * length), std::hypot(5.0, 5.0), 1000.0);
+    EXPECT_NEAR(bounds.low / bounds.value, -std::log(0.975), 1e-4) << length;
+  }
+}
+
 /// How many per cent of the intervals miss the true mean, of blocks that each pass with a probability and then leave a
 /// random length in the cell.
 double missed(double released, double probability, double mean, const std::function<double(test::Numbers&)>& draw) {
