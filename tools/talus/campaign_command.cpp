@@ -37,7 +37,10 @@ void CampaignCommand::add_to(CLI::App& command, std::uint32_t& trials, int fewes
   command.add_flag("--overwrite", overwrite, "replace the folder if it holds an earlier result");
   with(command.add_option("--surface", surface, "bilinear or creased (creased): heights between the cells' centres"),
        surface_choice());
-  command.add_option("--fit", keys, "parameters, in every zone: theta_scale,psi_scale,En50,Et50,phi")->delimiter(',');
+  command
+      .add_option("--fit", keys,
+                  "parameters, in every zone: theta_scale,psi_scale,En50,Et50 (these if it is not given),phi")
+      ->delimiter(',');
   with(
       command.add_option("--trials", trials, "trajectories per block in the searches (" + std::to_string(trials) + ")")
           ->check(CLI::Range(fewest_trials, 10000)),
