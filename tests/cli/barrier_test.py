@@ -342,6 +342,18 @@ class Weights(Case):
                    arguments=["barrier", self.path("out"), "--screen", "road"])
         self.report("--unweighted")
 
+    def test_classes_keep_their_shares_of_the_events_under_another_weighting(self):
+        write_features(self.path("sources.gpkg"), "sources", [(box(60, 230, 20, 10), [])])
+        self.write("s.toml", self.read_text("s.toml").replace(
+            "diameter = 1.0", "diameter = [{ diameter = 0.6, frequency = 0.75 }, { diameter = 1.4, frequency = 0.25 }]"))
+        self.run_well("run", self.scenario, "-o", self.path("out"))
+        of_run = self.report()
+        total = self.report("--frequency", self.write("w.toml", "[frequency]\ntotal = 1.0\n"))
+        for key in ("design", "crossings_per_year", "stretches"):
+            self.assertEqual(total[key], of_run[key])
+        kept = "the classes of blocks keep their shares of the events: 75, 25 %"
+        self.assertEqual([kept in report["notes"] for report in (of_run, total)], [False, True])
+
     def test_without_frequencies(self):
         self.sources()
         self.run_well("run", self.scenario, "-o", self.path("out"))

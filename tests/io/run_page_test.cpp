@@ -166,13 +166,16 @@ TEST(Facts, DiametersOfBlocksAreNotTheirWeights) {
 TEST(Frequency, OfARecord) {
   const FrequencyFacts run = frequency_of(Json::object());
   const FrequencyFacts earlier = frequency_of({{"frequency", {{"file", "w.toml"}, {"replayed", true}}}});
-  GivenFrequencies given{"w.toml", "12ab", {}, true, {{"north cliff", 0.25}}};
+  GivenFrequencies given{"w.toml", "12ab", {}, true, {{"north cliff", 0.25}}, {}};
   given.rules.scale = 0.01, given.rules.exponent = 0.6;
   const FrequencyFacts file = frequency_of({{"frequency", json_of(given, 5.2)}});
   EXPECT_EQ(frequency_text(run), "those of the run (settings, under Record)");
   EXPECT_THAT(frequency_text(earlier), HasSubstr("those in w.toml (what it said is not recorded), which take"));
   EXPECT_THAT(frequency_text(file), HasSubstr("those in w.toml ([frequency] by_true_area = true, power_law = "
                                               "{\"A\":0.01,\"b\":0.6}; [features] north cliff = 0.25; SHA-256 12ab)"));
+  given.class_shares = {0.9, 0.1};
+  EXPECT_THAT(frequency_text(frequency_of({{"frequency", json_of(given, 5.2)}})),
+              HasSubstr("north cliff = 0.25; the classes of blocks keep their shares of the events; SHA-256 12ab)"));
   const std::string by = "by the annual frequency of its source";
   EXPECT_EQ(other_frequency_note(by, run, run), "");
   EXPECT_EQ(other_frequency_note(by, file, file), "");

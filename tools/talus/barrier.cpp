@@ -136,6 +136,8 @@ std::vector<talus::LineCrossing> crossings_of(const CrossingTable& table, const 
   report.weighting = weighting.text;
   report.frequency = weighting.given;
   if (weighting.scale) report.events_per_year = weighting.scale->total;
+  if (const std::string shares = talus::io::class_shares_text(weighting.given); !shares.empty())
+    report.notes.push_back(shares);
   return crossings;
 }
 

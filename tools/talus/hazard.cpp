@@ -125,6 +125,8 @@ std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, c
   if (!options.quiet)
     say("", "repeats the run with another weighting: " + count_text(scenario.released()) +
                 " trajectories of the recorded plan, with the same bits");
+  if (const std::string shares = talus::io::class_shares_text(record.frequency); !shares.empty() && !options.quiet)
+    say("", shares);
   talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
   tally.keep_hazard(std::move(*weights));
   talus::Sinks sinks;
