@@ -225,6 +225,36 @@ class Hazard(Case):
                              "w.toml: [features] cannot be given with total, per_area or power_law of [frequency]: leave out one")):
             self.refused(words, "hazard", self.path("out"), "--overwrite", "--frequency", self.write("w.toml", text))
 
+    def test_a_run_of_a_wet_day_says_that_its_figures_are_of_wet_days(self):
+        said = "wet-ground acts on the day of this run, 3: the figures here are those of a wet day"
+        write_features(self.path("lines.gpkg"), "lines", [("LINESTRING (2600020 1200150, 2600280 1200150)", ["road"])], [("id", ogr.OFTString)])
+        for day, strength, wet in ((3, 0.5, True), (4, 0.5, False), (3, 0, False)):
+            self.write("s.toml", f"day = {day}\n{RUN}[screens]\nfile = 'lines.gpkg'\n"
+                       f"[effects.wet-ground]\nsoftening = {strength}\ndays = [1, 3]\n")
+            self.simulate(f"out{day}{strength}")
+            out = self.path(f"out{day}{strength}")
+            self.assertEqual(said in self.run_well("hazard", out).stderr, wet)
+            self.assertEqual(said in self.run_well("barrier", out).stdout, wet)
+            self.run_well("report", out)
+            for name in ("hazard.json", "barrier_road.json", "report.html"):
+                self.assertEqual(said in self.read_text(f"{out}/{name}"), wet, name)
+
+    def test_objects_count_falls_and_maps_of_a_width_pieces(self):
+        said = "hits of objects are falls: a block with its pieces counts once; maps of --width count every piece"
+        write_features(self.path("houses.gpkg"), "houses", [(box(90, 150, 130, 8), ["A"])], [("name", ogr.OFTString)])
+        for out, more, broken in (("whole", "", False), ("pieces", "[effects.fragmentation]\nthreshold = 20\n", True),
+                                  ("strong", "[effects.fragmentation]\nthreshold = 1e6\n", False)):
+            self.write("s.toml", RUN + more)
+            self.simulate(out)
+            self.assertEqual(self.record(out).get("pieces", 0) > 0, broken)
+            done = self.run_well("hazard", self.path(out), "--objects", self.path("houses.gpkg"), "--width", "60")
+            self.assertEqual(said in done.stderr, broken)
+            (house,) = self.read_table(out + "/objects.csv")
+            self.assertLessEqual(float(house["frequency"]), 0.52 * (1 + 1e-6))  # the falls per year of both cliffs
+            self.assertEqual(bands_of(self.path(out + "/annual_frequency.tif"))[0].max() > 2 * 0.52, broken)
+            self.run_well("report", self.path(out))
+            self.assertEqual(said in self.read_text(out + "/report.html"), broken)
+
     def test_features_of_one_name_are_named_by_number(self):  # each got the value
         write_features(self.path("sources.gpkg"), "sources",
                        [(box(100, 230, 20, 10), ["a", 0.5]), (box(200, 230, 20, 10), ["a", 0.2])],

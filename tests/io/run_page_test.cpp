@@ -112,7 +112,7 @@ TEST_F(Tables, LargerThanAPageReadsAreLeftOutAndSaid) {
   std::filesystem::resize_file(path("objects_curves.csv"), kMostPageTable + 1);  // a hole: takes no room
   EXPECT_EQ(read_objects_part(path("")).note, "objects_curves.csv has more than 128 MB: the curves are not drawn.");
   std::filesystem::resize_file(path("objects.csv"), kMostPageTable + 1);
-  EXPECT_THAT(objects_html(read_objects_part(path(""))).text(), HasSubstr("objects are not shown"));
+  EXPECT_THAT(objects_html(read_objects_part(path("")), false).text(), HasSubstr("objects are not shown"));
 }
 
 TEST_F(MapStyleFile, NoneOfRampsAndOfTextsThatAreNoStyle) {
@@ -192,8 +192,8 @@ TEST(Escaping, EveryFieldOfEverySection) {
                       {{h, h, h}}, {{0, 9, 1}}, {h}};
   ObjectsPart objects{{h}, {{h, h, 0.1, 0.1, 0.2, {h}, {{1.0, 0.1}, {2.0, 0.05}}}}, 0, h};
   const std::optional<FitPart> fit = FitPart{h, h, "", {{h, h, 1.0, 0.5, 2.0, false}}, {{h, 1.0, 0.5}}, h, {h}};
-  for (const Markup& html : {screens_html(screens), barriers_html({barrier}), objects_html(objects), fit_html(fit),
-                             checks_html({{Check::Mark::Act, h, h, h}})})
+  for (const Markup& html : {screens_html(screens), barriers_html({barrier}), objects_html(objects, false),
+                             fit_html(fit), checks_html({{Check::Mark::Act, h, h, h}})})
     expect_tame(html.text());
   EXPECT_THAT(barriers_html({barrier}).text(),
               HasSubstr("5 crossings (blocks and pieces) of 3 blocks; every block and"));
