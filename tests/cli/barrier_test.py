@@ -342,6 +342,18 @@ class Weights(Case):
                    arguments=["barrier", self.path("out"), "--screen", "road"])
         self.report("--unweighted")
 
+    def test_classes_keep_their_shares_of_the_events_under_another_weighting(self):
+        write_features(self.path("sources.gpkg"), "sources", [(box(60, 230, 20, 10), [])])
+        self.write("s.toml", self.read_text("s.toml").replace(
+            "diameter = 1.0", "diameter = [{ diameter = 0.6, frequency = 0.75 }, { diameter = 1.4, frequency = 0.25 }]"))
+        self.run_well("run", self.scenario, "-o", self.path("out"))
+        of_run = self.report()
+        total = self.report("--frequency", self.write("w.toml", "[frequency]\ntotal = 1.0\n"))
+        for key in ("design", "crossings_per_year", "stretches"):
+            self.assertEqual(total[key], of_run[key])
+        kept = "the classes of blocks keep their shares of the events: 75, 25 %"
+        self.assertEqual([kept in report["notes"] for report in (of_run, total)], [False, True])
+
     def test_without_frequencies(self):
         self.sources()
         self.run_well("run", self.scenario, "-o", self.path("out"))
@@ -494,6 +506,20 @@ class Walk(Case):
 
     def screens(self, out):
         return [row["screen"] for row in self.read_table(out + "/screens.csv")]
+
+    def test_one_that_is_more_than_any_net_is_said(self):
+        """150 kJ in J, 3 m that were typed as 30; also where the scenario names it. Large nets and dams are silent."""
+        words = "more than any net: is the capacity in J, or is it a dam?"
+        nets = [(125.0, "joule", 4.0, 150000.0), (120.0, "high", 30.0, 150.0), (115.0, "large", 6.0, 8500.0),
+                (110.0, "dam", 30.0, math.inf), (105.0, "off", 0.0, 150000.0)]
+        self.nets(*nets)
+        named = f"line = [{{ id = 'named', height = 3, capacity = 20000, from = [{WEST + 50}, {SOUTH + 60}], to = [{WEST + 90}, {SOUTH + 60}] }}]\n"
+        self.write("s.toml", self.read_text(os.path.basename(self.scenario())) + named)
+        for text in (self.run_well("check", self.path("s.toml")).stdout, self.run_well("run", self.path("s.toml"), "-o", self.path("out")).stderr):
+            (told,) = [one for one in text.splitlines() if words in one]
+            self.assertIn("barriers: joule (150000 kJ, 4 m), high (150 kJ, 30 m), named (20000 kJ, 3 m): above 15000 kJ or 12 m", told)
+        self.nets(*nets[2:])
+        self.assertNotIn(words, self.run_well("check", self.scenario()).stdout)
 
     def test_one_that_holds_all(self):
         self.nets((125.0, "wall", 100.0, math.inf))

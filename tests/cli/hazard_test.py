@@ -177,6 +177,84 @@ class Hazard(Case):
         self.run_well("hazard", self.path("out"), "--overwrite", "-q")
         self.assertNotIn("frequency", self.read_json("out/hazard.json"))
 
+    def classes_run(self, out, *more):
+        """A run of which half of the blocks drawn are small, but 9 of 10 events, 1 event per year in all."""
+        write_features(self.path(out + ".gpkg"), "sources", [(box(100, 230, 20, 10), ["west"]), (box(200, 230, 20, 10), ["east"])],
+                       [("name", ogr.OFTString)])
+        write_features(self.path(out + "_houses.gpkg"), "houses", [(box(105, 150, 10, 8), ["A"])], [("name", ogr.OFTString)])
+        self.write("s.toml", RUN.replace("sources.gpkg", out + ".gpkg").replace(
+            "0.8", "[{ diameter = 0.6, frequency = 0.9 }, { diameter = 1.4, frequency = 0.1 }]") + "".join(more))
+        self.simulate(out)
+
+    def hazard_by(self, out, weighting=None):
+        """What is printed, the map of frequencies, and those of the house."""
+        more = ["--frequency", self.write("w.toml", weighting)] if weighting else []
+        done = self.run_well("hazard", self.path(out), "--objects", self.path(out + "_houses.gpkg"), "--overwrite", *more)
+        (house,) = self.read_table(out + "/objects.csv")
+        return (done.stderr, bands_of(self.path(out + "/annual_frequency.tif"))[0],
+                {name: float(house[name]) for name in ("frequency", "frequency_lower", "frequency_upper", "frequency_30", "entry_30")})
+
+    def test_classes_keep_their_shares_of_the_events_under_another_weighting(self):  # the shares drawn counted instead
+        kept = "the classes of blocks keep their shares of the events: 90, 10 %"
+        for out, more in (("plan", ""), ("true", "[frequency]\nby_true_area = true\n")):
+            self.classes_run(out, more)
+            said, once, house = self.hazard_by(out)
+            self.assertNotIn("keep their shares", said)
+            of_run = self.hashes(out)
+            # 16 cells of 25 m2, two features of 8 cells each: all of these are 1 event per year, divided as in the run
+            same = ["[frequency]\ntotal = 1\n"]
+            if out == "plan":
+                same += ["[frequency]\nper_area = 0.0025\n", "[features]\nwest = 0.5\neast = 0.5\n"]
+            for weighting in same:
+                said, _, _ = self.hazard_by(out, weighting)
+                self.assertEqual(self.hashes(out), of_run, weighting)
+                self.assertIn(kept, said)
+                self.assertEqual(self.read_json(out + "/hazard.json")["frequency"]["class_shares"], [0.9, 0.1])
+            _, twice, of_house = self.hazard_by(out, "[frequency]\ntotal = 2\n")
+            np.testing.assert_array_equal(twice, np.where(once > 0, 2 * once, once))
+            for name, value in house.items():
+                self.assertAlmostEqual(of_house[name], 2 * value, delta=2e-5 * value)
+        self.run_well("report", self.path("true"))
+        self.assertIn("the classes of blocks keep their shares of the events", self.read_text("true/report.html"))
+
+    def test_another_weighting_that_says_too_little_or_too_much(self):
+        """In words of its own: there were those of a scenario, with the flag --field that talus hazard does not have."""
+        self.classes_run("out")
+        for text, words in (("[features]\nwest = 1\n", "w.toml: [features] does not list east, must list every feature of the sources"),
+                            ("[frequency]\ntotal = 1\n[features]\nwest = 1\neast = 1\n",
+                             "w.toml: [features] cannot be given with total, per_area or power_law of [frequency]: leave out one")):
+            self.refused(words, "hazard", self.path("out"), "--overwrite", "--frequency", self.write("w.toml", text))
+
+    def test_a_run_of_a_wet_day_says_that_its_figures_are_of_wet_days(self):
+        said = "wet-ground acts on the day of this run, 3: the figures here are those of a wet day"
+        write_features(self.path("lines.gpkg"), "lines", [("LINESTRING (2600020 1200150, 2600280 1200150)", ["road"])], [("id", ogr.OFTString)])
+        for day, strength, wet in ((3, 0.5, True), (4, 0.5, False), (3, 0, False)):
+            self.write("s.toml", f"day = {day}\n{RUN}[screens]\nfile = 'lines.gpkg'\n"
+                       f"[effects.wet-ground]\nsoftening = {strength}\ndays = [1, 3]\n")
+            self.simulate(f"out{day}{strength}")
+            out = self.path(f"out{day}{strength}")
+            self.assertEqual(said in self.run_well("hazard", out).stderr, wet)
+            self.assertEqual(said in self.run_well("barrier", out).stdout, wet)
+            self.run_well("report", out)
+            for name in ("hazard.json", "barrier_road.json", "report.html"):
+                self.assertEqual(said in self.read_text(f"{out}/{name}"), wet, name)
+
+    def test_objects_count_falls_and_maps_of_a_width_pieces(self):
+        said = "hits of objects are falls: a block with its pieces counts once; maps of --width count every piece"
+        write_features(self.path("houses.gpkg"), "houses", [(box(90, 150, 130, 8), ["A"])], [("name", ogr.OFTString)])
+        for out, more, broken in (("whole", "", False), ("pieces", "[effects.fragmentation]\nthreshold = 20\n", True),
+                                  ("strong", "[effects.fragmentation]\nthreshold = 1e6\n", False)):
+            self.write("s.toml", RUN + more)
+            self.simulate(out)
+            self.assertEqual(self.record(out).get("pieces", 0) > 0, broken)
+            done = self.run_well("hazard", self.path(out), "--objects", self.path("houses.gpkg"), "--width", "60")
+            self.assertEqual(said in done.stderr, broken)
+            (house,) = self.read_table(out + "/objects.csv")
+            self.assertLessEqual(float(house["frequency"]), 0.52 * (1 + 1e-6))  # the falls per year of both cliffs
+            self.assertEqual(bands_of(self.path(out + "/annual_frequency.tif"))[0].max() > 2 * 0.52, broken)
+            self.run_well("report", self.path(out))
+            self.assertEqual(said in self.read_text(out + "/report.html"), broken)
+
     def test_features_of_one_name_are_named_by_number(self):  # each got the value
         write_features(self.path("sources.gpkg"), "sources",
                        [(box(100, 230, 20, 10), ["a", 0.5]), (box(200, 230, 20, 10), ["a", 0.2])],

@@ -9,6 +9,7 @@
 #include "scenario_files.hpp"
 #include "talus/io/files/staged_files.hpp"
 #include "talus/io/results/hazard_record.hpp"
+#include "talus/io/results/weighting_file.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"
 #include "talus/products/object_width.hpp"
 #include "talus/simulate/simulate.hpp"
@@ -153,6 +154,23 @@ TEST_F(HazardFile, FrequencyKeys) {
   ScenarioFile::refused(blocks + "by_true_area = 1\n", {"must be true or false"});
   ScenarioFile::refused(blocks + "by_true_aera = true\n", {"did you mean 'by_true_area'"});
   ScenarioFile::refused(blocks + "per_area = 0.5\n", {"a source is a point, which has no area"});
+}
+
+/// N(>= V) = A V^-b with b = 1/3 over 1 to 2 m and 2 to 4 m is 1/D: 1 - 1/2 to 1/2 - 1/4, thus 2 : 1.
+TEST_F(HazardFile, AnotherWeightingKeepsTheClassesOfAPowerLaw) {
+  LoadedScenario run = load(std::string(kFiles) +
+                            "[blocks]\ndiameter = [{ diameter = [1, 2] }, { diameter = [2, 4], weight = 9 }]\n"
+                            "[frequency]\npower_law = { A = 0.1, b = 0.3333333333333333 }\n");
+  Scenario again = run.scenario;
+  const GivenFrequencies given = apply_weighting(write_text("w.toml", "[frequency]\ntotal = 6\n"), run.scenario);
+  ASSERT_EQ(given.class_shares.size(), 2U);
+  EXPECT_NEAR(given.class_shares[0], 2.0 / 3.0, 1e-12);
+  EXPECT_EQ(class_shares_text(given), "the classes of blocks keep their shares of the events: 67, 33 %");
+  EXPECT_NEAR(AnnualWeights::of(run.scenario)->scale().total, 6.0, 1e-9);
+  const GivenFrequencies law =
+      apply_weighting(write_text("w.toml", "[frequency]\npower_law = { A = 0.2, b = 0.5 }\n"), again);
+  EXPECT_TRUE(law.class_shares.empty());  // it says how often each class comes
+  EXPECT_EQ(class_shares_text(law), "");
 }
 
 TEST_F(HazardFile, Matrix) {

@@ -112,7 +112,7 @@ TEST_F(Tables, LargerThanAPageReadsAreLeftOutAndSaid) {
   std::filesystem::resize_file(path("objects_curves.csv"), kMostPageTable + 1);  // a hole: takes no room
   EXPECT_EQ(read_objects_part(path("")).note, "objects_curves.csv has more than 128 MB: the curves are not drawn.");
   std::filesystem::resize_file(path("objects.csv"), kMostPageTable + 1);
-  EXPECT_THAT(objects_html(read_objects_part(path(""))).text(), HasSubstr("objects are not shown"));
+  EXPECT_THAT(objects_html(read_objects_part(path("")), false).text(), HasSubstr("objects are not shown"));
 }
 
 TEST_F(MapStyleFile, NoneOfRampsAndOfTextsThatAreNoStyle) {
@@ -166,13 +166,16 @@ TEST(Facts, DiametersOfBlocksAreNotTheirWeights) {
 TEST(Frequency, OfARecord) {
   const FrequencyFacts run = frequency_of(Json::object());
   const FrequencyFacts earlier = frequency_of({{"frequency", {{"file", "w.toml"}, {"replayed", true}}}});
-  GivenFrequencies given{"w.toml", "12ab", {}, true, {{"north cliff", 0.25}}};
+  GivenFrequencies given{"w.toml", "12ab", {}, true, {{"north cliff", 0.25}}, {}};
   given.rules.scale = 0.01, given.rules.exponent = 0.6;
   const FrequencyFacts file = frequency_of({{"frequency", json_of(given, 5.2)}});
   EXPECT_EQ(frequency_text(run), "those of the run (settings, under Record)");
   EXPECT_THAT(frequency_text(earlier), HasSubstr("those in w.toml (what it said is not recorded), which take"));
   EXPECT_THAT(frequency_text(file), HasSubstr("those in w.toml ([frequency] by_true_area = true, power_law = "
                                               "{\"A\":0.01,\"b\":0.6}; [features] north cliff = 0.25; SHA-256 12ab)"));
+  given.class_shares = {0.9, 0.1};
+  EXPECT_THAT(frequency_text(frequency_of({{"frequency", json_of(given, 5.2)}})),
+              HasSubstr("north cliff = 0.25; the classes of blocks keep their shares of the events; SHA-256 12ab)"));
   const std::string by = "by the annual frequency of its source";
   EXPECT_EQ(other_frequency_note(by, run, run), "");
   EXPECT_EQ(other_frequency_note(by, file, file), "");
@@ -189,8 +192,8 @@ TEST(Escaping, EveryFieldOfEverySection) {
                       {{h, h, h}}, {{0, 9, 1}}, {h}};
   ObjectsPart objects{{h}, {{h, h, 0.1, 0.1, 0.2, {h}, {{1.0, 0.1}, {2.0, 0.05}}}}, 0, h};
   const std::optional<FitPart> fit = FitPart{h, h, "", {{h, h, 1.0, 0.5, 2.0, false}}, {{h, 1.0, 0.5}}, h, {h}};
-  for (const Markup& html : {screens_html(screens), barriers_html({barrier}), objects_html(objects), fit_html(fit),
-                             checks_html({{Check::Mark::Act, h, h, h}})})
+  for (const Markup& html : {screens_html(screens), barriers_html({barrier}), objects_html(objects, false),
+                             fit_html(fit), checks_html({{Check::Mark::Act, h, h, h}})})
     expect_tame(html.text());
   EXPECT_THAT(barriers_html({barrier}).text(),
               HasSubstr("5 crossings (blocks and pieces) of 3 blocks; every block and"));

@@ -136,6 +136,8 @@ std::vector<talus::LineCrossing> crossings_of(const CrossingTable& table, const 
   report.weighting = weighting.text;
   report.frequency = weighting.given;
   if (weighting.scale) report.events_per_year = weighting.scale->total;
+  if (const std::string shares = talus::io::class_shares_text(weighting.given); !shares.empty())
+    report.notes.push_back(shares);
   return crossings;
 }
 
@@ -272,6 +274,7 @@ int design(Options o) {
   if (const auto note = talus::io::barriers_note(o.folder))
     report.notes.push_back(*note +
                            "; a block that one caught uphill of this screen, or on its line, does not cross it");
+  if (const auto note = talus::io::wet_day_note(o.folder)) report.notes.push_back(*note);
   report.without_height = without_height(run, o);
   if (const auto note = talus::io::gap_note(report.without_height)) report.notes.push_back(*note);
   std::vector<talus::LineCrossing> blocks = crossings_of(crossings, run, o, report, weighting);

@@ -125,6 +125,8 @@ std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, c
   if (!options.quiet)
     say("", "repeats the run with another weighting: " + count_text(scenario.released()) +
                 " trajectories of the recorded plan, with the same bits");
+  if (const std::string shares = talus::io::class_shares_text(record.frequency); !shares.empty() && !options.quiet)
+    say("", shares);
   talus::Tally tally(scenario.surface.grid(), scenario.output.energy_thresholds, scenario.output.height_thresholds);
   tally.keep_hazard(std::move(*weights));
   talus::Sinks sinks;
@@ -175,7 +177,9 @@ std::vector<std::string> write_objects(const Options& options, const fs::path& f
   progress.finish();
   record.objects_file = options.objects;
   record.replayed = true;
-  return layer.hits_text(rules, hits);
+  std::vector<std::string> lines = layer.hits_text(rules, hits);
+  if (const auto note = talus::io::pieces_note(options.folder)) lines.insert(lines.begin(), *note);
+  return lines;
 }
 
 /// Says whose hazard the maps show.
@@ -214,6 +218,7 @@ int hazard(const Options& options) {
   if (auto note = talus::io::unusable_note(folder)) record.warnings.push_back(std::move(*note));
   if (auto note = talus::io::coefficient_note(folder)) record.warnings.push_back(std::move(*note));
   if (auto note = talus::io::barriers_note(folder)) record.warnings.push_back(std::move(*note));
+  if (auto note = talus::io::wet_day_note(folder)) record.warnings.push_back(std::move(*note));
 
   progress.stage("writing the maps");
   const talus::Grid& grid = survey->grid();

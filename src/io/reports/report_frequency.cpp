@@ -39,6 +39,7 @@ FrequencyFacts frequency_of(const Json& record) {
   for (const auto& [table, values] : given.items())
     if (const std::string words = words_of(values); !words.empty())
       facts.words += (facts.words.empty() ? "[" : "; [") + shortened(table, kMostWords) + "] " + words;
+  if (frequency.contains("class_shares")) facts.words += "; the classes of blocks keep their shares of the events";
   return facts;
 }
 

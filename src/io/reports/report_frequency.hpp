@@ -9,7 +9,7 @@ namespace talus::io {
 struct FrequencyFacts {
   std::string file;           ///< of `--frequency`; empty: those of the run
   std::string sha256, given;  ///< of the file, and what it says, as recorded; empty in an earlier record
-  std::string words;          ///< `given` for readers: "[features] A = 5"
+  std::string words;          ///< `given` for readers: "[features] A = 5", and what classes of blocks keep
 
   /// Whether both are those of the run, or of files that say the same.
   bool operator==(const FrequencyFacts& other) const;

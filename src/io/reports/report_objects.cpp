@@ -9,6 +9,7 @@
 #include "svg.hpp"
 #include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
+#include "talus/io/results/run_folder.hpp"
 
 namespace talus::io {
 namespace {
@@ -166,14 +167,15 @@ ObjectsPart read_objects_part(const fs::path& folder) {
   return part;
 }
 
-Markup objects_html(const ObjectsPart& part) {
+Markup objects_html(const ObjectsPart& part, bool pieces) {
   const Markup note = part.note.empty() ? Markup() : "<p class='note'>"_html + part.note + "</p>\n";
   if (part.objects.empty()) return part.note.empty() ? Markup() : "<h2>Objects</h2>\n"_html + note;
   Markup html =
       "<h2>Objects</h2>\n<p>How often each object is hit, with 95 % bounds of the number of blocks. \"Never seen\": no "
       "block of "
-      "this run did it; the upper bound says how often it may happen all the same.</p>\n<div class='wide'><table><tr>"
-      "<th>object</th><th>hits per year [95 %]</th><th>once in [years]</th>"_html;
+      "this run did it; the upper bound says how often it may happen all the same.</p>\n"_html;
+  if (pieces) html += "<p>Blocks broke, and "_html + kHitsOfPieces + ".</p>\n";
+  html += "<div class='wide'><table><tr><th>object</th><th>hits per year [95 %]</th><th>once in [years]</th>"_html;
   for (const std::string& energy : part.thresholds) html += "<th>above "_html + energy + " kJ once in [years]</th>";
   html += "<th>from</th></tr>\n";
   for (const ObjectsPart::Object& object : part.objects) html += object_row(object);

@@ -26,6 +26,7 @@ struct ObjectsPart {
 
 /// Throws InputError if a table is there and cannot be understood. No objects without tables.
 ObjectsPart read_objects_part(const std::filesystem::path& folder);
-Markup objects_html(const ObjectsPart& part);
+/// @param pieces  blocks of the run broke
+Markup objects_html(const ObjectsPart& part, bool pieces);
 
 }  // namespace talus::io

@@ -12,10 +12,12 @@ Json json_of(const GivenFrequencies& frequencies, double events_per_year) {
   if (!std::isnan(rules.per_area)) general["per_area"] = rules.per_area;
   if (!std::isnan(rules.scale)) general["power_law"] = {{"A", rules.scale}, {"b", rules.exponent}};
   for (const auto& [feature, frequency] : frequencies.features) features[feature] = frequency;
-  return {{"file", frequencies.file},
-          {"sha256", frequencies.sha256},
-          {"given", {{"frequency", general}, {"features", features}}},
-          {"events_per_year", events_per_year}};
+  Json record{{"file", frequencies.file},
+              {"sha256", frequencies.sha256},
+              {"given", {{"frequency", general}, {"features", features}}},
+              {"events_per_year", events_per_year}};
+  if (!frequencies.class_shares.empty()) record["class_shares"] = frequencies.class_shares;
+  return record;
 }
 
 }  // namespace talus::io

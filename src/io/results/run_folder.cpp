@@ -1,5 +1,7 @@
 #include "talus/io/results/run_folder.hpp"
 
+#include <algorithm>
+
 #include "io/files/json.hpp"
 #include "io/gdal/regular_file.hpp"
 #include "recorded_profile.hpp"
@@ -15,10 +17,17 @@ namespace {
 
 constexpr const char* kRunAgain = "must be as talus run has written it; run the scenario again";
 
+/// The value of a setting; null if the record has none of that name.
+Json value_of(const Json& json, const std::string& key) {
+  for (const Json& setting : json.value("settings", Json::array()))
+    if (setting.at("key") == key) return setting.at("value");
+  return {};
+}
+
 double setting_of(const Json& json, const std::string& key) {
-  for (const Json& setting : json.at("settings"))
-    if (setting.at("key") == key) return setting.at("value").get<double>();
-  throw InputError("no setting '" + key + "'");
+  const Json value = value_of(json, key);
+  if (value.is_null()) throw InputError("no setting '" + key + "'");
+  return value.get<double>();
 }
 
 /// The warnings of a run.json that `wanted` accepts.
@@ -90,6 +99,28 @@ std::optional<std::string> barriers_note(const std::filesystem::path& folder) {
     return barriers_text(barriers, with_decimals(caught, 0), json.value("pieces", 0.0) > 0.0) +
            ": the figures here hold only while " + (barriers == 1 ? "it stands" : "they stand");
   });
+}
+
+std::optional<std::string> wet_day_note(const std::filesystem::path& folder) {
+  const Json json = read_record_or_nothing(folder / "run.json");
+  if (!json.is_object()) return std::nullopt;
+  return understood(folder / "run.json", kRunAgain, [&]() -> std::optional<std::string> {
+    const Json days = value_of(json, "effects.wet-ground.days");
+    if (days.is_null()) return std::nullopt;
+    const double day = setting_of(json, "day");
+    const std::vector<double> wet = Json::parse(days.get<std::string>()).get<std::vector<double>>();
+    const bool off =
+        setting_of(json, "effects.wet-ground.softening") == 0.0 && setting_of(json, "effects.wet-ground.drag") == 0.0;
+    if (off || std::ranges::count(wet, day) == 0) return std::nullopt;
+    return "wet-ground acts on the day of this run, " + text_of(day) +
+           ": the figures here are those of a wet day, and every event per year counts as on such a day; give the "
+           "frequency of wet days only, and add the hazard of the dry ones";
+  });
+}
+
+std::optional<std::string> pieces_note(const std::filesystem::path& folder) {
+  const Json json = read_record_or_nothing(folder / "run.json");
+  return json.is_object() && json.value("pieces", 0.0) > 0.0 ? std::optional<std::string>(kHitsOfPieces) : std::nullopt;
 }
 
 RunSummary read_run(const std::filesystem::path& folder) {

@@ -1,11 +1,15 @@
 #include "talus/io/results/weighting_file.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "io/files/checksum.hpp"
+#include "io/gdal/layer.hpp"
 #include "io/scenario/frequency_keys.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
+#include "talus/simulate/scenario/frequency.hpp"
 
 namespace talus::io {
 namespace {
@@ -18,6 +22,55 @@ std::vector<std::size_t> meant_by(const std::string& word, const std::vector<Sou
   for (std::size_t i = 0; found.empty() && i < features.size(); ++i)
     if (std::to_string(features[i].id) == word) found.push_back(i);
   return found;
+}
+
+bool says_how_often(const FrequencyRules& rules) {
+  return !std::isnan(rules.total) || !std::isnan(rules.per_area) || !std::isnan(rules.scale);
+}
+
+/// Whether the frequencies are those of the features. A field of zeros counts as not given.
+bool is_by_features(const Scenario& scenario) {
+  return std::ranges::any_of(scenario.features, [](const SourceFeature& f) { return f.frequency > 0.0; });
+}
+
+/// Takes other rules in place of all frequencies. The division over cells stays, and without another power law the
+/// classes of blocks keep their shares of the events: the shares drawn may be quite different.
+void replace_frequencies(Scenario& scenario, const FrequencyRules& given) {
+  const std::vector<double> by_class = class_frequencies(scenario);
+  const bool by_true_area = scenario.frequency.by_true_area;
+  std::vector<BlockClass>& classes = scenario.blocks.classes;
+  scenario.frequency = given;
+  scenario.frequency.by_true_area = by_true_area;
+  scenario.frequency.class_shares = std::isnan(given.scale) && by_class.size() > 1;
+  for (SourceFeature& feature : scenario.features) feature.frequency = kNotGiven;
+  for (std::size_t c = 0; c < classes.size(); ++c)
+    classes[c].frequency = scenario.frequency.class_shares ? by_class[c] : kNotGiven;
+}
+
+/// Shares of the events that the classes of blocks keep; empty if they keep none.
+std::vector<double> kept_shares(const Scenario& scenario) {
+  std::vector<double> shares;
+  if (!scenario.frequency.class_shares) return shares;
+  double sum = 0.0;
+  for (const BlockClass& block : scenario.blocks.classes) sum += block.frequency;
+  for (const BlockClass& block : scenario.blocks.classes) shares.push_back(block.frequency / sum);
+  return shares;
+}
+
+/// Throws InputError if a feature that releases blocks has no frequency.
+void require_all_features(const Scenario& scenario, const std::string& file) {
+  std::set<std::size_t> missing;
+  for (const SourceCell& cell : scenario.sources)
+    if (std::isnan(scenario.features[cell.feature].frequency)) missing.insert(cell.feature);
+  std::vector<std::string> names;
+  for (const std::size_t i : missing) {
+    const SourceFeature& feature = scenario.features[i];
+    names.push_back(feature.name.empty() ? std::to_string(feature.id) : feature.name);
+  }
+  if (!names.empty())
+    throw InputError(file + ": [features] does not list " + list_of(names) +
+                     ", must list every feature of the sources: the frequencies of the run are not by feature, so that "
+                     "none can stay");
 }
 
 /// Reads the frequencies of features. Adds what is given to `read`.
@@ -55,23 +108,32 @@ GivenFrequencies apply_weighting(const std::string& file, Scenario& scenario) {
   TableReader top(&root, "", file, faults);
   ScenarioSpec spec;
   read_frequency(spec, top.table("frequency"), file);
+  TableReader features = top.table("features");
   const FrequencyRules& given = spec.values.frequency;
-  GivenFrequencies read{file, sha256_of_file(file), given, {}, {}};
-  if (!std::isnan(given.total) || !std::isnan(given.per_area) || !std::isnan(given.scale)) {
-    scenario.frequency = {};
-    for (SourceFeature& feature : scenario.features) feature.frequency = kNotGiven;
-    for (BlockClass& block : scenario.blocks.classes) block.frequency = kNotGiven;
-    scenario.frequency = given;
-  }
+  const bool of_features = features.value() != nullptr && !features.value()->members.empty();
+  const bool not_by_features = !is_by_features(scenario);
+  GivenFrequencies read{file, sha256_of_file(file), given, {}, {}, {}};
+  if (of_features && says_how_often(given))
+    throw InputError(file +
+                     ": [features] cannot be given with total, per_area or power_law of [frequency]: leave out one");
+  if (says_how_often(given) || (of_features && not_by_features)) replace_frequencies(scenario, given);
   if (spec.origins.contains("frequency.by_true_area")) {
     read.by_true_area = given.by_true_area;
     scenario.frequency.by_true_area = given.by_true_area;
   }
-  TableReader features = top.table("features");
   read_features(features, scenario, read);
   top.finish();
   if (!faults.empty()) throw InputError(faults.front());
+  if (of_features && not_by_features) require_all_features(scenario, file);
+  read.class_shares = kept_shares(scenario);
   return read;
+}
+
+std::string class_shares_text(const GivenFrequencies& given) {
+  if (given.class_shares.empty()) return {};
+  std::vector<std::string> percents;
+  for (const double share : given.class_shares) percents.push_back(with_digits(100.0 * share, 2));
+  return "the classes of blocks keep their shares of the events: " + joined(percents) + " %";
 }
 
 }  // namespace talus::io

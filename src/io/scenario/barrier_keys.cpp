@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "io/gdal/layer.hpp"
 #include "scenario_text.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
@@ -12,6 +13,7 @@ namespace {
 using Kind = TomlValue::Kind;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kMostCapacity = 15e6, kMostHeight = 12.0;  // of a net [J], [m], by far: docs/barrier.md
 constexpr Bounds kPlaceOnMap{"from", "m", "coordinate in the system of the DEM", -1e8, 1e8};
 constexpr Bounds kBias{"speed", "1", "share of the value that an instrument reads too high", -0.9, 10.0};
 
@@ -86,6 +88,18 @@ void read_instrument_bias(ScenarioSpec& spec, TableReader& top) {
     table.finish();
     spec.instrument_bias.push_back(std::move(bias));
   }
+}
+
+void warn_of_unlikely_barriers(std::span<const Barrier> barriers, std::vector<std::string>& warnings) {
+  std::vector<std::string> names;
+  for (const Barrier& b : barriers)
+    if (b.height > 0.0 && std::isfinite(b.capacity) && (b.capacity > kMostCapacity || b.height > kMostHeight))
+      names.push_back(b.id + " (" + text_of(1e-3 * b.capacity) + " kJ, " + text_of(b.height) + " m)");
+  if (!names.empty())
+    warnings.push_back("barriers: " + list_of(names) + ": above " + text_of(1e-3 * kMostCapacity) + " kJ or " +
+                       text_of(kMostHeight) +
+                       " m, more than any net: is the capacity in J, or is it a dam? Give kJ and m, and a dam the "
+                       "capacity inf");
 }
 
 std::string barrier_lines_text(const std::vector<BarrierLine>& lines) {

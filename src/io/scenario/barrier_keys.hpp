@@ -1,4 +1,6 @@
 #pragma once
+#include <span>
+
 #include "scenario_spec.hpp"
 #include "table_reader.hpp"
 
@@ -10,6 +12,9 @@ void read_barrier_lines(ScenarioSpec& spec, TableReader& barriers, const std::st
 
 /// Reads [[instrument_bias]] of a model into spec.instrument_bias.
 void read_instrument_bias(ScenarioSpec& spec, TableReader& top);
+
+/// Warns of barriers that stop more than any net, or are higher: in J, or a dam. Silent where the capacity is infinite.
+void warn_of_unlikely_barriers(std::span<const Barrier> barriers, std::vector<std::string>& warnings);
 
 /// The text of `line` that reads back as these lines.
 std::string barrier_lines_text(const std::vector<BarrierLine>& lines);

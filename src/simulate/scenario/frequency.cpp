@@ -34,7 +34,8 @@ Sources sources_of(const Scenario& s) {
   const FrequencyRules& rules = s.frequency;
   Sources found;
   for (const SourceFeature& f : s.features) found.features = found.features || f.frequency > 0.0;  // zeros: not given
-  for (const BlockClass& c : s.blocks.classes) found.classes = found.classes || !std::isnan(c.frequency);
+  for (const BlockClass& c : s.blocks.classes)
+    found.classes = found.classes || (!rules.class_shares && !std::isnan(c.frequency));
   found.total = !std::isnan(rules.total);
   found.area = !std::isnan(rules.per_area);
   found.law = !std::isnan(rules.scale);
@@ -58,7 +59,7 @@ void check_contradictions(const Scenario& s, const Sources& found) {
     refuse(
         "by_true_area = true, but nothing says how often blocks fall; give the sources a field frequency, or "
         "frequency.total, frequency.per_area or frequency.power_law");
-  if ((found.classes || found.law))
+  if (found.classes || found.law || s.frequency.class_shares)
     for (const SourceCell& cell : s.sources)
       if (!std::isnan(s.features[cell.feature].diameter.low))
         refuse(feature_name(s, cell.feature) +
@@ -80,7 +81,7 @@ double volume_of(double diameter) {
   return kPi / 6.0 * diameter * diameter * diameter;
 }
 
-/// Events per year of each class of blocks, by the power law N(>= V) = A V^-b.
+/// Events per year of each class of blocks, by the power law N(>= V) = A V^-b; one number for blocks drawn by a law.
 std::vector<double> law_frequencies(const Scenario& s) {
   const FrequencyRules& rules = s.frequency;
   const VolumePowerLaw& law = s.blocks.power_law;
@@ -155,16 +156,22 @@ double power_of_two_above(double value) {
 
 }  // namespace
 
+std::vector<double> class_frequencies(const Scenario& s) {
+  const Sources found = sources_of(s);
+  if (found.law) return law_frequencies(s);
+  std::vector<double> frequencies;
+  if (found.classes || s.frequency.class_shares)
+    for (const BlockClass& c : s.blocks.classes) frequencies.push_back(c.frequency);
+  return frequencies;
+}
+
 std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, std::uint32_t rounds) {
   TALUS_EXPECT(rounds >= 1, "there is one round at least");
   const int room_bits = std::bit_width(rounds - 1), bits = kBits - room_bits;  // of the rounds, of the sum over one
   const Sources found = sources_of(s);
   check_contradictions(s, found);
   if (found.count() == 0) return std::nullopt;
-  std::vector<double> by_class;
-  if (found.law) by_class = law_frequencies(s);
-  if (found.classes)
-    for (const BlockClass& c : s.blocks.classes) by_class.push_back(c.frequency);
+  const std::vector<double> by_class = class_frequencies(s);
   double events = 0.0;
   for (const double f : by_class) events += f;
   if (found.total) events = s.frequency.total;

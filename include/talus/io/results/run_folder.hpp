@@ -25,6 +25,17 @@ std::string barriers_text(std::size_t barriers, const std::string& caught, bool 
 /// One line that the figures hold only while the barriers of the run stand; nothing if none stood there.
 std::optional<std::string> barriers_note(const std::filesystem::path& folder);
 
+/// One line that the figures are those of a wet day; nothing if wet-ground does not act on the day of the run.
+/// docs/effects.md, "wet-ground".
+std::optional<std::string> wet_day_note(const std::filesystem::path& folder);
+
+/// What a hit of an object is where blocks break.
+inline constexpr const char* kHitsOfPieces =
+    "hits of objects are falls: a block with its pieces counts once; maps of --width count every piece";
+
+/// The same, if blocks of the run broke.
+std::optional<std::string> pieces_note(const std::filesystem::path& folder);
+
 /// The part of OUT/run.json that products of a finished run need.
 struct RunSummary {
   bool of_profile = false;                 ///< of `talus profile`

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <vector>
 
 #include "talus/simulate/scenario/scenario.hpp"
 
@@ -26,6 +27,10 @@ struct WeightScale {
   double largest_weight() const { return static_cast<double>(largest) * unit; }  ///< [1/year]
   bool operator==(const WeightScale&) const = default;
 };
+
+/// Frequencies of the classes of blocks [1/year], or their shares where the scenario says so; empty if they have none.
+/// Blocks drawn by a power law of volume are one class. Throws InputError if a power law does not hold for the blocks.
+std::vector<double> class_frequencies(const Scenario& scenario);
 
 /// Events per year of every source cell and class of blocks, as whole multiples of a unit: sums over trajectories are
 /// equal in any order. The unit is a power of two, chosen so that the sum over all trajectories of all rounds stays

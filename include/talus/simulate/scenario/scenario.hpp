@@ -65,6 +65,7 @@ struct Screen {
 /// Frequencies given for the whole scenario; features and classes of blocks may have their own. docs/hazard.md.
 struct FrequencyRules {
   bool by_true_area = false;    ///< shares of source cells follow the area of their surface; else equal
+  bool class_shares = false;    ///< frequencies of classes of blocks are only their shares of the events
   double total = kNotGiven;     ///< events per year of all sources together
   double per_area = kNotGiven;  ///< events per area and year [1/(m^2 year)]
   double scale = kNotGiven, exponent = kNotGiven;  ///< A [1/year] and b of N(>= V) = A V^-b, V in m^3

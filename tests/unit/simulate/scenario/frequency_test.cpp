@@ -182,6 +182,31 @@ TEST(AnnualWeights, ClassesOfBlocks) {
   EXPECT_NEAR(weights.scale().total, 1.0, 1e-12);
 }
 
+/// 9 : 1 of 4 events per year in all: of both cells together, of two features with 3 and 1, of 8 m2 with 0.5 each.
+TEST(AnnualWeights, SharesOfClasses) {
+  const auto expect = [](const Scenario& s, double first, double second) {  // events per year of the two cells
+    const AnnualWeights weights = AnnualWeights::of(s).value();
+    EXPECT_NEAR(weights.scale().total, 4.0, 1e-12);
+    for (std::uint32_t source : {0U, 1U})
+      for (std::uint32_t block = 0; block < 10; ++block) {
+        const double share = make_release(s, source, block).body.diameter < 1.0 ? 0.9 : 0.1;
+        EXPECT_NEAR(static_cast<double>(weights.weight(s, source, block)) * weights.scale().unit,
+                    (source == 0 ? first : second) * share / (10.0 * 0.5), 1e-12);
+      }
+  };
+  Scenario s = plane(30.0, {0, 1});
+  s.blocks.classes = {{{0.5, 0.5}, 1.0, 1.8}, {{2.0, 2.0}, 1.0, 0.2}};
+  s.frequency.class_shares = true;
+  EXPECT_FALSE(AnnualWeights::of(s).has_value());  // how often is not said
+  Scenario total = s, by_feature = s, by_area = s;
+  total.frequency.total = 4.0;
+  expect(total, 2.0, 2.0);
+  by_feature.features[0].frequency = 3.0, by_feature.features[1].frequency = 1.0;
+  expect(by_feature, 3.0, 1.0);
+  by_area.frequency.per_area = 0.5;  // of two cells of 4 m2
+  expect(by_area, 2.0, 2.0);
+}
+
 TEST(AnnualWeights, Contradictions) {
   Scenario s = plane(30.0, {0, 1});
   s.features[0].frequency = 0.3;
