@@ -242,6 +242,19 @@ class Forests(Case):
         self.write("s.toml", head + keys)
         return self.run_well("check", self.path("s.toml")).stdout
 
+    def test_a_forest_that_no_stand_can_be_is_said(self):
+        """N pi/4 DBH^2 is 43 m2/ha for 450 stems of 0.35 m, ten times that for 4500, and 428 for 450 of 1.1 m, their girth."""
+        for density, diameter, words in ((450, 0.35, ""), (4500, 0.35, "more wood than any stand has"),
+                                         (450, 1.1, "more wood than any stand has"),
+                                         (0.045, 0.35, "the median density of the forest is 0.045 stems/ha")):
+            self.raster("density.tif", np.full((CELLS, CELLS), density))
+            self.raster("dbh.tif", np.full((CELLS, CELLS), diameter))
+            for keys in (f"density = {density}\ndiameter = {diameter}\n", 'density = "density.tif"\ndiameter = "dbh.tif"\n'):
+                with self.subTest(keys):
+                    told = self.check(keys)
+                    self.assertEqual("of the forest is" in told, words != "", told)
+                    self.assertIn(words, told)
+
     def test_a_forest_is_counted_where_it_acts(self):
         """It stands in the eastern half only; of the polygons one lies there, one does not."""
         density = np.zeros((CELLS, CELLS))

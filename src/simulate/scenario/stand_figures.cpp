@@ -35,6 +35,10 @@ double Median::value() const {
   return std::pow(10.0, kFirst + (static_cast<double>(bin) + 0.5) / kPerDecade);
 }
 
+double stem_section(double diameter) {
+  return 0.25 * kPi * diameter * diameter;
+}
+
 StandFigures stand_figures(const Scenario& scenario) {
   const ForestStems& forest = scenario.effects.forest_stems;
   StandFigures figures;
@@ -44,6 +48,7 @@ StandFigures stand_figures(const Scenario& scenario) {
     const Stand stand = stand_in(forest, column, row);
     figures.density.add(stand.density), figures.diameter.add(stand.diameter);
     figures.densities.add(stand.density);
+    figures.basal_areas.add(stand.density * stem_section(stand.diameter));
   });
   return figures;
 }

@@ -35,10 +35,14 @@ class Median {
   std::uint64_t all_ = 0;
 };
 
+/// Cross-section of a stem at breast height [m2]. @param diameter  DBH [m]
+double stem_section(double diameter);
+
 /// The stand of forest-stems over the cells in which it acts; not of a list of trees.
 struct StandFigures {
   Spread density, diameter;  ///< [1/ha], [m]
   Median densities;          ///< [1/ha]
+  Median basal_areas;        ///< cross-sections of the stems at breast height [m2/ha]
 };
 StandFigures stand_figures(const Scenario& scenario);
 
