@@ -1,4 +1,5 @@
 """Effects in `talus run`: they act in their places, change what they should, and a run can be replayed."""
+import math
 import unittest
 
 import numpy as np
@@ -132,6 +133,14 @@ class Effects(Case):
         page = self.read_text("idle/report.html")
         self.assertIn("acting: soft-ground; given, but does nothing here: forest-stems, block-shape, wet-ground; off: ", page)
         self.assertIn("Further effects: soft-ground. Given, but does nothing here: forest-stems, block-shape, wet-ground.", page)
+
+    def test_drag_that_holds_small_blocks_in_the_air_is_said(self):
+        """c/m above 4 1/s; a block of 0.8 m and 2700 kg/m3 has m = 2700 pi/6 0.8^3 kg."""
+        limit = 4 * 2700 * math.pi / 6 * 0.8 ** 3
+        for coefficient, said in ((0.99 * limit, False), (1.01 * limit, True)):
+            self.write("s.toml", HEAD + f"[effects.vegetation-drag]\ncoefficient = {coefficient}\n")
+            plan = self.run_well("check", self.path("s.toml")).stdout
+            self.assertEqual("[effects.vegetation-drag] holds small blocks in the air: the smallest, of 0.8 m" in plan, said, plan)
 
     def test_a_preset_of_the_2d_model_in_a_map_is_said(self):
         """Its psi_scale is 0: nothing turns the blocks sideways."""

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "talus/base/text.hpp"
+#include "talus/simulate/scenario/block_sizes.hpp"
 #include "talus/simulate/scenario/stand_figures.hpp"
 
 namespace talus {
@@ -52,11 +53,25 @@ void warn_of_forest(const Scenario& scenario, std::vector<std::string>& warnings
   if (basal_area > kMostBasalArea) warnings.push_back(thick_text(basal_area));
 }
 
+void warn_of_drag(const Scenario& scenario, std::vector<std::string>& warnings) {
+  const double c = scenario.effects.vegetation_drag.coefficient, density = scenario.blocks.density;
+  const Block smallest = block_of(diameters_of(scenario).low, density);
+  if (!(c > kStuckRate * smallest.mass)) return;
+  const double largest = std::cbrt(6.0 * c / (kPi * density * kStuckRate));
+  warnings.push_back("[effects.vegetation-drag] holds small blocks in the air: the smallest, of " +
+                     with_digits(smallest.diameter, 3) + " m, lose c/m = " + with_digits(c / smallest.mass, 3) +
+                     " 1/s of their speed; above " + text_of(kStuckRate) + " 1/s, here below " +
+                     with_digits(largest, 2) +
+                     " m, a block is stuck and its fall approximate (unsafe if the stand does not hold it): "
+                     "coefficient does not grow with the block, see docs/effects.md");
+}
+
 }  // namespace
 
 std::vector<std::string> stand_warnings(const EffectEntry& entry, const Scenario& scenario) {
   std::vector<std::string> warnings;
   if (entry.name == "forest-stems") warn_of_forest(scenario, warnings);
+  if (entry.name == "vegetation-drag") warn_of_drag(scenario, warnings);
   return warnings;
 }
 

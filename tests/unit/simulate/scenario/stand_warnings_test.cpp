@@ -95,5 +95,25 @@ TEST(StandWarnings, ASmallOddPartOfAForestIsNone) {
   EXPECT_THAT(of_forest(s), IsEmpty());
 }
 
+/// c/m = 4 1/s for m = rho pi/6 D^3.
+TEST(StandWarnings, DragThatHoldsTheSmallestBlocksInTheAir) {
+  const auto of_drag = [](double coefficient, const Scenario& s) {
+    Scenario with = s;
+    with.effects.vegetation_drag.coefficient = coefficient;
+    return stand_warnings(*find_effect("vegetation-drag"), with);
+  };
+  Scenario s = on_four_hectares();
+  s.blocks.density = 2700.0;
+  s.blocks.classes = {{{0.9, 1.1}, 1.0, kNotGiven}, {{0.4, 0.6}, 3.0, kNotGiven}};
+  const double limit = 4.0 * 2700.0 * kPi / 6.0 * 0.4 * 0.4 * 0.4;  // 362 kg/s
+  EXPECT_THAT(of_drag(0.999 * limit, s), IsEmpty());
+  EXPECT_THAT(of_drag(1.001 * limit, s), testing::SizeIs(1));
+  // 750/90.48 = 8.29; D at c/m = 4: (6 750/(4 pi 2700))^(1/3) = 0.51 m.
+  EXPECT_THAT(of_drag(750.0, s),
+              ElementsAre(testing::AllOf(HasSubstr("of 0.4 m, lose c/m = 8.29 1/s"), HasSubstr("here below 0.51 m"))));
+  s.blocks.classes = {{{1.0, 1.0}, 1.0, kNotGiven}};
+  EXPECT_THAT(of_drag(750.0, s), IsEmpty());
+}
+
 }  // namespace
 }  // namespace talus
