@@ -6,7 +6,7 @@ import numpy as np
 from osgeo import ogr
 
 from results_test import digests
-from support import Case, bands_of, box, rows_of, write_features
+from support import NORTH, WEST, Case, bands_of, box, rows_of, write_features
 
 HEAD = """dem = "dem.tif"
 trajectories = 60
@@ -133,6 +133,30 @@ class Effects(Case):
         page = self.read_text("idle/report.html")
         self.assertIn("acting: soft-ground; given, but does nothing here: forest-stems, block-shape, wet-ground; off: ", page)
         self.assertIn("Further effects: soft-ground. Given, but does nothing here: forest-stems, block-shape, wet-ground.", page)
+
+    def test_what_rests_on_a_forest_says_so(self):
+        write_features(self.path("sources.gpkg"), "sources", [(box(140, 230, 20, 10), ["cliff", 0.5])],
+                       [("name", ogr.OFTString), ("frequency", ogr.OFTReal)])
+        write_features(self.path("lines.gpkg"), "lines", [(f"LINESTRING ({WEST} {NORTH - 150},{WEST + 300} {NORTH - 150})", ["road"])],
+                       [("id", ogr.OFTString)])
+        screens = '[screens]\nfile = "lines.gpkg"\n'
+        for name, text in {"forest-stems": "[effects.forest-stems]\ndensity = 100\n",
+                           "vegetation-drag": "[effects.vegetation-drag]\ncoefficient = 50\n",
+                           "none": "[effects.soft-ground]\ndrag = 1\n"}.items():
+            with self.subTest(name):
+                self.run_effects(name, HEAD + screens + text)
+                note = f"forest or other vegetation stood in the run ({name}): the figures here hold only while it stands"
+                hazard = self.run_well("hazard", self.path(name)).stderr
+                design = self.run_well("barrier", self.path(name), "--screen", "road").stdout
+                self.run_well("report", self.path(name))
+                page = self.read_text(name + "/report.html")
+                if name == "none":
+                    self.assertNotIn("vegetation stood", hazard + design + page)
+                    self.assertNotIn("<td>Forest</td>", page)
+                    continue
+                self.assertIn("warning: " + note, hazard)
+                self.assertIn("note: " + note, design)
+                self.assertIn(f"<td>Forest</td><td class='b'>forest or other vegetation stood in the run ({name})</td>", page)
 
     def test_drag_that_holds_small_blocks_in_the_air_is_said(self):
         """c/m above 4 1/s; a block of 0.8 m and 2700 kg/m3 has m = 2700 pi/6 0.8^3 kg."""

@@ -276,6 +276,10 @@ void check_barriers(const RunFacts& run, Checks& checks) {
 
 void check_effects(const RunFacts& run, Checks& checks) {
   const auto [acting, idle, off] = effects_of(run);
+  if (const std::string forest = forest_text(acting); !forest.empty())
+    checks.push_back({Mark::Look, "Forest", forest,
+                      "The maps hold only while it stands, as dense and as thick as entered. Storm, fire, insects and "
+                      "felling take it away: compare with a run without it."});
   checks.push_back(
       {Mark::Look, "Effects",
        "acting: " + (acting.empty() ? "none" : joined(acting)) +
@@ -382,6 +386,10 @@ Markup assumptions_html(const CheckedRun& checked) {
   html += "</li>\n<li>";
   if (!checked.run.barriers.empty()) {
     html += standing_text(checked.run) + "; the maps hold only while they stand.";
+    html += "</li>\n<li>";
+  }
+  if (const std::string forest = forest_text(acting); !forest.empty()) {
+    html += forest + "; the maps hold only while it stands.";
     html += "</li>\n<li>";
   }
   html += checked.hazard

@@ -1,5 +1,7 @@
 #include "talus/io/results/run_folder.hpp"
 
+#include <algorithm>
+
 #include "io/files/json.hpp"
 #include "io/gdal/regular_file.hpp"
 #include "recorded_profile.hpp"
@@ -89,6 +91,26 @@ std::optional<std::string> barriers_note(const std::filesystem::path& folder) {
     if (barriers == 0) return std::nullopt;
     return barriers_text(barriers, with_decimals(caught, 0), json.value("pieces", 0.0) > 0.0) +
            ": the figures here hold only while " + (barriers == 1 ? "it stands" : "they stand");
+  });
+}
+
+std::string forest_text(const std::vector<std::string>& effects) {
+  std::vector<std::string> stands;
+  for (const char* name : {"vegetation-drag", "forest-stems"})
+    if (std::ranges::count(effects, name) > 0) stands.emplace_back(name);
+  return stands.empty() ? "" : "forest or other vegetation stood in the run (" + joined(stands) + ")";
+}
+
+std::optional<std::string> forest_note(const std::filesystem::path& folder) {
+  const Json json = read_record_or_nothing(folder / "run.json");
+  if (!json.is_object()) return std::nullopt;
+  return understood(folder / "run.json", kRunAgain, [&]() -> std::optional<std::string> {
+    std::vector<std::string> acting;
+    for (const Json& effect : json.value("effects", Json::array()))
+      acting.push_back(effect.at("name").get<std::string>());
+    const std::string text = forest_text(acting);
+    if (text.empty()) return std::nullopt;
+    return text + ": the figures here hold only while it stands";
   });
 }
 

@@ -25,6 +25,13 @@ std::string barriers_text(std::size_t barriers, const std::string& caught, bool 
 /// One line that the figures hold only while the barriers of the run stand; nothing if none stood there.
 std::optional<std::string> barriers_note(const std::filesystem::path& folder);
 
+/// "forest or other vegetation stood in the run (forest-stems)"; empty if none of these effects is of a stand.
+/// @param effects  names of those that acted
+std::string forest_text(const std::vector<std::string>& effects);
+
+/// One line that the figures hold only while the forest of the run stands; nothing if none acted there.
+std::optional<std::string> forest_note(const std::filesystem::path& folder);
+
 /// The part of OUT/run.json that products of a finished run need.
 struct RunSummary {
   bool of_profile = false;                 ///< of `talus profile`
