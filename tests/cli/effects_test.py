@@ -1,11 +1,12 @@
 """Effects in `talus run`: they act in their places, change what they should, and a run can be replayed."""
+import math
 import unittest
 
 import numpy as np
 from osgeo import ogr
 
 from results_test import digests
-from support import Case, bands_of, box, rows_of, write_features
+from support import NORTH, WEST, Case, bands_of, box, rows_of, write_features
 
 HEAD = """dem = "dem.tif"
 trajectories = 60
@@ -19,7 +20,10 @@ axes = [1.5, 1.2, 1.0]
 
 class Effects(Case):
     def run_scenario(self, name, text):
-        self.write(name + ".toml", HEAD + text)
+        return self.run_effects(name, HEAD + text)
+
+    def run_effects(self, name, text):
+        self.write(name + ".toml", text)
         self.run_well("run", self.path(name + ".toml"), "-o", self.path(name))
         return self.record(name)
 
@@ -100,6 +104,67 @@ class Effects(Case):
                 self.assertEqual(plan.count("does nothing here"), 1 if here else 0, plan)
                 for words in told:
                     self.assertIn(words, plan)
+
+    def test_each_effect_that_acts_is_named(self):
+        numbers = {"vegetation-drag": "coefficient = 250", "forest-stems": "density = 450", "air-drag": "coefficient = 1",
+                   "block-shape": "lateral = 0.5", "block-mass": "roughness = 0.5", "wet-ground": "softening = 0.8\ndays = [0]",
+                   "soft-ground": "drag = 2", "rolling-resistance": "coefficient = 0.4", "fragmentation": "threshold = 200",
+                   "rest-in-roughness": "kappa = 0.1"}
+        tables = "".join(f"[effects.{name}]\n{text}\n" for name, text in numbers.items())
+        self.write("all.toml", HEAD + tables + "[effects]\nallow_both = true\n")
+        plan = self.run_well("check", self.path("all.toml")).stdout
+        for name, text in numbers.items():
+            self.assertIn(f"{name} acts in 3600 of 3600 cells (9 ha): ", plan)
+            self.assertIn(text.split("\n", maxsplit=1)[0], plan)
+        self.assertNotIn(" acts in ", self.run_well("check", self.write("none.toml", HEAD)).stdout)
+
+    def test_an_effect_that_does_nothing_is_not_said_to_act(self):
+        """In the plan, the record and the report: other days, spheres, strength 0 over a file."""
+        write_features(self.path("stand.gpkg"), "stand", [(box(0, 150, 300, 50), [])])
+        self.write("stand.toml", '[effects.forest-stems]\ndensity = 450\nfile = "stand.gpkg"\n')
+        spheres = HEAD.replace("axes = [1.5, 1.2, 1.0]\n", "")
+        record = self.run_effects("idle", 'include = "stand.toml"\n' + spheres + "[effects.forest-stems]\ndensity = 0\n"
+                                  "[effects.block-shape]\nlateral = 0.5\n[effects.wet-ground]\nsoftening = 1\ndays = [5]\n"
+                                  "[effects.soft-ground]\ndrag = 2\nfile = \"stand.gpkg\"\n")
+        self.assertEqual(record["effects"], [{"name": "soft-ground", "cells": 600}])  # 60 x 10 cells
+        self.assertEqual([note for note in record["notes"] if " acts in " in note],
+                         ["soft-ground acts in 600 of 3600 cells (1.5 ha): drag = 2, stiffness = 15 MN/m2, scar_length = 1.5 m"])
+        self.run_well("report", self.path("idle"))
+        page = self.read_text("idle/report.html")
+        self.assertIn("acting: soft-ground; given, but does nothing here: forest-stems, block-shape, wet-ground; off: ", page)
+        self.assertIn("Further effects: soft-ground. Given, but does nothing here: forest-stems, block-shape, wet-ground.", page)
+
+    def test_what_rests_on_a_forest_says_so(self):
+        write_features(self.path("sources.gpkg"), "sources", [(box(140, 230, 20, 10), ["cliff", 0.5])],
+                       [("name", ogr.OFTString), ("frequency", ogr.OFTReal)])
+        write_features(self.path("lines.gpkg"), "lines", [(f"LINESTRING ({WEST} {NORTH - 150},{WEST + 300} {NORTH - 150})", ["road"])],
+                       [("id", ogr.OFTString)])
+        screens = '[screens]\nfile = "lines.gpkg"\n'
+        for name, text in {"forest-stems": "[effects.forest-stems]\ndensity = 100\n",
+                           "vegetation-drag": "[effects.vegetation-drag]\ncoefficient = 50\n",
+                           "none": "[effects.soft-ground]\ndrag = 1\n"}.items():
+            with self.subTest(name):
+                self.run_effects(name, HEAD + screens + text)
+                note = f"forest or other vegetation stood in the run ({name}): the figures here hold only while it stands"
+                hazard = self.run_well("hazard", self.path(name)).stderr
+                design = self.run_well("barrier", self.path(name), "--screen", "road").stdout
+                self.run_well("report", self.path(name))
+                page = self.read_text(name + "/report.html")
+                if name == "none":
+                    self.assertNotIn("vegetation stood", hazard + design + page)
+                    self.assertNotIn("<td>Forest</td>", page)
+                    continue
+                self.assertIn("warning: " + note, hazard)
+                self.assertIn("note: " + note, design)
+                self.assertIn(f"<td>Forest</td><td class='b'>forest or other vegetation stood in the run ({name})</td>", page)
+
+    def test_drag_that_holds_small_blocks_in_the_air_is_said(self):
+        """c/m above 4 1/s; a block of 0.8 m and 2700 kg/m3 has m = 2700 pi/6 0.8^3 kg."""
+        limit = 4 * 2700 * math.pi / 6 * 0.8 ** 3
+        for coefficient, said in ((0.99 * limit, False), (1.01 * limit, True)):
+            self.write("s.toml", HEAD + f"[effects.vegetation-drag]\ncoefficient = {coefficient}\n")
+            plan = self.run_well("check", self.path("s.toml")).stdout
+            self.assertEqual("[effects.vegetation-drag] holds small blocks in the air: the smallest, of 0.8 m" in plan, said, plan)
 
     def test_a_preset_of_the_2d_model_in_a_map_is_said(self):
         """Its psi_scale is 0: nothing turns the blocks sideways."""

@@ -59,7 +59,7 @@ class Forests(Case):
         self.run_forest("mixed", 'density = "density.tif"\ndiameter = 0.25\n')
         for name in ("cells", "mixed"):
             self.assertEqual(results(self.path(name)), results(self.path("uniform")))
-        self.assertIn("forest-stems: forest in 3600 of 3600 cells (9 ha): density 600 stems/ha, diameter 0.25 m", told)
+        self.assertIn("forest-stems acts in 3600 of 3600 cells (9 ha): density = 600 1/ha, diameter = 0.25 m", told)
         record = self.record("cells")
         roles = {i["role"]: i for i in record["inputs"]}
         for key in ("density", "diameter"):
@@ -73,7 +73,7 @@ class Forests(Case):
         plain = self.write("plain.toml", HEAD.replace("[effects.forest-stems]\n", ""))
         self.run_well("run", plain, "-o", self.path("plain"))
         told = self.run_forest("forest", 'density = "density.tif"\ndiameter = 0.5\n')
-        self.assertIn("forest in 600 of 3600 cells (1.5 ha)", told)
+        self.assertIn("forest-stems acts in 600 of 3600 cells (1.5 ha): density = 900 1/ha", told)
         self.assertIn("3000 of 3600 cells of the DEM have no value", told)
         a, b = (bands_of(self.path(n + "/velocity.tif"))[0] for n in ("plain", "forest"))
         above, inside = slice(13, 19), slice(26, 30)
@@ -90,7 +90,7 @@ class Forests(Case):
         gdal.Warp(self.path("other.tif"), self.path("fine.tif"), dstSRS="EPSG:21781", xRes=1.0, yRes=1.0)
         for name in ("fine", "other"):
             told = self.run_forest(name, f'density = "{name}.tif"\ndiameter = 0.25\n')
-            self.assertIn("forest in 1800 of 3600 cells", told.replace("1799", "1800").replace("1801", "1800"))
+            self.assertIn("acts in 1800 of 3600 cells", told.replace("1799", "1800").replace("1801", "1800"))
         self.assertEqual([r["role"] for r in self.record("other")["reprojections"]], ["effects.forest-stems.density"])
 
     def test_a_list_of_trees(self):
@@ -236,8 +236,44 @@ class Forests(Case):
         for name, factor, warns in (("per_m2", 1.0, True), ("per_ha", 1000.0, False)):
             self.raster(name + ".tif", factor * values)
             told = self.run_forest(name, f'density = "{name}.tif"\n')
-            self.assertEqual(f"{name}.tif: the median density of the forest is 0.45 stems/ha, stands have 100 to 2000" in told,
-                             warns, told)
+            self.assertEqual("the median density of the forest is 0.45 stems/ha, stands have 100 to 2000" in told, warns, told)
+
+    def check(self, keys, head=HEAD):
+        self.write("s.toml", head + keys)
+        return self.run_well("check", self.path("s.toml")).stdout
+
+    def test_a_forest_that_no_stand_can_be_is_said(self):
+        """N pi/4 DBH^2 is 43 m2/ha for 450 stems of 0.35 m, ten times that for 4500, and 428 for 450 of 1.1 m, their girth."""
+        for density, diameter, words in ((450, 0.35, ""), (4500, 0.35, "more wood than any stand has"),
+                                         (450, 1.1, "more wood than any stand has"),
+                                         (0.045, 0.35, "the median density of the forest is 0.045 stems/ha")):
+            self.raster("density.tif", np.full((CELLS, CELLS), density))
+            self.raster("dbh.tif", np.full((CELLS, CELLS), diameter))
+            for keys in (f"density = {density}\ndiameter = {diameter}\n", 'density = "density.tif"\ndiameter = "dbh.tif"\n'):
+                with self.subTest(keys):
+                    told = self.check(keys)
+                    self.assertEqual("of the forest is" in told, words != "", told)
+                    self.assertIn(words, told)
+
+    def test_a_forest_is_counted_where_it_acts(self):
+        """It stands in the eastern half only; of the polygons one lies there, one does not."""
+        density = np.zeros((CELLS, CELLS))
+        density[:, 30:] = 2500.0
+        density[:, 50:] = 4500.0
+        self.raster("density.tif", density)
+        for name, x in (("east", 200), ("west", 50)):
+            write_features(self.path(name + ".gpkg"), name, [(box(x, 100, 20, 50), [])])
+        told = self.check('density = "density.tif"\ndiameter = 0.15\nfile = "east.gpkg"\n')
+        self.assertEqual(told.count("acts in"), 1, told)
+        self.assertIn("forest-stems acts in 40 of 3600 cells (0.1 ha): density = 2500 1/ha", told)
+        self.assertIn("density = 2500 to 4500 (mean 3167) 1/ha",  # 20 of its 30 columns have 2500
+                      self.check('density = "density.tif"\ndiameter = 0.15\n'))
+        told = self.run_forest("west", 'density = "density.tif"\ndiameter = 0.15\nfile = "west.gpkg"\n')
+        self.assertNotIn("acts in", told)
+        self.assertIn("[effects.forest-stems] acts nowhere", told)
+        self.assertEqual(self.record("west")["effects"], [])
+        self.run_well("run", self.write("plain.toml", HEAD.replace("[effects.forest-stems]\n", "")), "-o", self.path("plain"))
+        self.assertEqual(results(self.path("west")), results(self.path("plain")))
 
     def test_a_stand_is_counted_once(self):
         drag = "[effects.vegetation-drag]\ncoefficient = 100\n"

@@ -255,7 +255,7 @@ TEST_F(ScenarioFile, PolygonsThatActNowhereAreNamed) {
                                    name + ": draw them wider than a cell, 10 m"));
     EXPECT_TRUE(said(warnings, "p.gpkg: " + kind + " without geometry, which have no effect: FID 4" + name));
   }
-  EXPECT_TRUE(said(effect.notes, "p.gpkg: [effects.vegetation-drag] acts in 3 of 80 cells"));
+  EXPECT_TRUE(said(effect.notes, "vegetation-drag acts in 3 of 80 cells (0.03 ha): coefficient = 400 kg/s"));
   EXPECT_FALSE(said(effect.warnings, "acts nowhere"));
   write_vector(path("q.gpkg"), "EPSG:32632", {}, {{"POLYGON((0 41,90 41,90 44,0 44,0 41))"}});
   EXPECT_TRUE(said(with("[effects.vegetation-drag]\nfile = \"q.gpkg\"\ncoefficient = 400\n").warnings, "acts nowhere"));

@@ -1,9 +1,7 @@
 #include "talus/io/gdal/forest.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "layer.hpp"
@@ -12,6 +10,7 @@
 #include "talus/base/text.hpp"
 #include "talus/physics/effects/registry.hpp"
 #include "talus/physics/effects/tree_species.hpp"
+#include "talus/simulate/scenario/stand_figures.hpp"
 
 namespace talus::io {
 
@@ -19,55 +18,11 @@ namespace {
 
 constexpr const char* kRole = "effects.forest-stems";
 
-// Densities of stems that a stand has; a thin one at the timber line or on a pasture has less.
-constexpr const char* kUsualDensities = "100 to 2000 stems/ha";
-constexpr double kThinnestStand = 50.0;  // [1/ha]
-
 /// Bounds of a number of the effect: "density" or "diameter".
 const Bounds& bounds_of_number(std::string_view key) {
   const EffectEntry& entry = *find_effect("forest-stems");
   return *std::ranges::find_if(entry.fields(), [&](const EffectField& f) { return entry.key_of(f) == key; });
 }
-
-std::string range_text(double low, double high) {
-  return low == high ? with_digits(low, 3) : with_digits(low, 3) + " to " + with_digits(high, 3);
-}
-
-/// Smallest, largest and mean of some numbers.
-struct Spread {
-  double low = std::numeric_limits<double>::infinity(), high = 0.0, sum = 0.0;
-  std::uint64_t count = 0;
-
-  void add(double value) {
-    low = std::min(low, value), high = std::max(high, value), sum += value;
-    ++count;
-  }
-  double mean() const { return sum / static_cast<double>(count); }
-  std::string text() const {
-    return range_text(low, high) + (low == high ? "" : " (mean " + with_digits(mean(), 3) + ")");
-  }
-};
-
-/// The median of many positive numbers, to about 1 %: their counts in bins of 1/200 of a decade, from 1e-4 to 1e6.
-class Median {
- public:
-  void add(double value) {
-    const double bin = std::floor(kPerDecade * (std::log10(value) - kFirst));
-    ++counts_[static_cast<std::size_t>(std::clamp(bin, 0.0, kBins - 1.0))];
-    ++all_;
-  }
-  double value() const {
-    std::size_t bin = 0;
-    for (std::uint64_t below = counts_[0]; 2 * below < all_;) below += counts_[++bin];
-    return std::pow(10.0, kFirst + (static_cast<double>(bin) + 0.5) / kPerDecade);
-  }
-
- private:
-  static constexpr double kFirst = -4.0, kPerDecade = 200.0;
-  static constexpr int kBins = 2000;
-  std::array<std::uint64_t, kBins> counts_{};
-  std::uint64_t all_ = 0;
-};
 
 /// A raster of a number of the stand, at the centres of the cells of the DEM.
 class StandRaster {
@@ -141,10 +96,6 @@ class StandRaster {
   std::uint64_t without_ = 0;
 };
 
-std::string hectares(double cells, const Grid& grid) {
-  return with_digits(cells * grid.cell_x * grid.cell_y * 1e-4, 3) + " ha";
-}
-
 /// The rasters of a forest as the map of the effect.
 class RasterForest {
  public:
@@ -165,7 +116,7 @@ class RasterForest {
     });
     check();
     out.forest.map = std::move(map);
-    out.forest.density = densities_.high;
+    out.forest.density = highest_;
     tell(out);
   }
 
@@ -181,14 +132,13 @@ class RasterForest {
     }
     map.density.at(column, row) = static_cast<float>(density);
     if (diameter_) map.diameter.at(column, row) = static_cast<float>(diameter);
-    densities_.add(density), diameters_.add(diameter);
-    median_.add(density);
+    highest_ = std::max(highest_, density);
   }
 
   const std::string& first_path() const { return density_ ? request_.density : request_.diameter; }
 
   void check() const {
-    if (densities_.count > 0) return;
+    if (highest_ > 0.0) return;
     throw InputError(first_path() + ": no cell of the DEM has a forest (" +
                      (density_ ? std::to_string(density_->without()) + " of " + std::to_string(cells_) +
                                      " cells without a density, the others 0 or without a diameter"
@@ -197,11 +147,6 @@ class RasterForest {
   }
 
   void tell(ForestLayer& out) const {
-    const Grid& grid = terrain_.heights.grid;
-    const auto forest = static_cast<double>(densities_.count);
-    out.note = "forest in " + std::to_string(densities_.count) + " of " + std::to_string(cells_) + " cells (" +
-               hectares(forest, grid) + "): density " + densities_.text() + " stems/ha, diameter " + diameters_.text() +
-               " m";
     for (const auto& [raster, path] :
          {std::pair{&density_, &request_.density}, std::pair{&diameter_, &request_.diameter}}) {
       if (!*raster) continue;
@@ -210,10 +155,6 @@ class RasterForest {
         out.warnings.push_back(*path + ": " + std::to_string((*raster)->without()) + " of " + std::to_string(cells_) +
                                " cells of the DEM have no value (nodata, or off the raster): no forest there");
     }
-    if (median_.value() < kThinnestStand)
-      out.warnings.push_back(first_path() + ": the median density of the forest is " + with_digits(median_.value(), 2) +
-                             " stems/ha, stands have " + kUsualDensities +
-                             ": is it per m2 or per 100 m2, or a share that the crowns cover?");
     if (thin_ > 0)
       out.warnings.push_back(request_.diameter + ": " + std::to_string(thin_) +
                              " cells with a density have no diameter, or 0: no forest there");
@@ -223,8 +164,7 @@ class RasterForest {
   const ForestStems& numbers_;
   const Terrain& terrain_;
   std::optional<StandRaster> density_, diameter_;
-  Spread densities_, diameters_;
-  Median median_;                       // of the densities
+  double highest_ = 0.0;                // density [1/ha]
   std::uint64_t cells_ = 0, thin_ = 0;  // of the DEM; of a density without a diameter
 };
 
@@ -318,7 +258,7 @@ class TreeReader {
 
   void tell(ForestLayer& out) const {
     out.note = std::to_string(trees_.size()) + " trees, diameter " + diameters_.text() + " m, " +
-               with_digits(out.forest.density, 3) + " per ha of the DEM" +
+               whole_or_short(out.forest.density) + " per ha of the DEM" +
                (species_ < 0 ? "; no field species: all as silver fir" : "");
     const auto warn = [&](std::uint64_t count, const std::string& what) {
       if (count > 0) out.warnings.push_back(path_ + ": " + std::to_string(count) + " " + what);

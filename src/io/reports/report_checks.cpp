@@ -33,14 +33,20 @@ std::string standing_text(const RunFacts& run) {
   return barriers_text(run.barriers.size(), grouped(caught), run.pieces > 0.0);
 }
 
-/// The effects of the record, and all others.
-std::pair<std::vector<std::string>, std::vector<std::string>> effects_of(const RunFacts& run) {
-  std::vector<std::string> acting, off;
+/// All effects: those that acted in the run, those that it gives and that did nothing in it, and the others.
+struct EffectNames {
+  std::vector<std::string> acting, idle, off;
+};
+
+EffectNames effects_of(const RunFacts& run) {
+  EffectNames names;
   for (const EffectEntry& entry : effect_entries()) {
     const std::string name(entry.name);
-    (run.settings_of("effects." + name).empty() ? off : acting).push_back(name);
+    const bool given = !run.settings_of("effects." + name + ".").empty();
+    const bool acts = run.effects ? std::ranges::count(*run.effects, name) > 0 : given;
+    (acts ? names.acting : given ? names.idle : names.off).push_back(name);
   }
-  return {acting, off};
+  return names;
 }
 
 /// The presets of the ground, each once.
@@ -268,6 +274,19 @@ void check_barriers(const RunFacts& run, Checks& checks) {
        "weak for this slope."});
 }
 
+void check_effects(const RunFacts& run, Checks& checks) {
+  const auto [acting, idle, off] = effects_of(run);
+  if (const std::string forest = forest_text(acting); !forest.empty())
+    checks.push_back({Mark::Look, "Forest", forest,
+                      "The maps hold only while it stands, as dense and as thick as entered. Storm, fire, insects and "
+                      "felling take it away: compare with a run without it."});
+  checks.push_back(
+      {Mark::Look, "Effects",
+       "acting: " + (acting.empty() ? "none" : joined(acting)) +
+           (idle.empty() ? "" : "; given, but does nothing here: " + joined(idle)) + "; off: " + joined(off),
+       "Is there forest, deep or wet ground, a block that breaks? An effect that is off is not in the maps."});
+}
+
 void check_screens(const CheckedRun& checked, Checks& checks) {
   constexpr double kFew = 100.0;
   std::vector<std::string> few;
@@ -335,10 +354,7 @@ std::vector<Check> checks_of(const CheckedRun& checked) {
   check_hazard(checked, checks);
   check_screens(checked, checks);
   check_barriers(checked.run, checks);
-  const auto [acting, off] = effects_of(checked.run);
-  checks.push_back(
-      {Mark::Look, "Effects", "acting: " + (acting.empty() ? "none" : joined(acting)) + "; off: " + joined(off),
-       "Is there forest, deep or wet ground, a block that breaks? An effect that is off is not in the maps."});
+  check_effects(checked.run, checks);
   return checks;
 }
 
@@ -360,15 +376,20 @@ Markup checks_html(const std::vector<Check>& checks) {
 }
 
 Markup assumptions_html(const CheckedRun& checked) {
-  const auto [acting, off] = effects_of(checked.run);
+  const auto [acting, idle, off] = effects_of(checked.run);
   Markup html =
       "<h2>Assumptions</h2>\n<ul>\n<li>Impact model of PIERRE 2 (Mitchell and Hungr): stochastic rebounds of a sphere "
       "on "
       "rough ground. "_html;
   html += acting.empty() ? std::string("No further effect acts.") : "Further effects: " + joined(acting) + ".";
+  if (!idle.empty()) html += " Given, but does nothing here: " + joined(idle) + ".";
   html += "</li>\n<li>";
   if (!checked.run.barriers.empty()) {
     html += standing_text(checked.run) + "; the maps hold only while they stand.";
+    html += "</li>\n<li>";
+  }
+  if (const std::string forest = forest_text(acting); !forest.empty()) {
+    html += forest + "; the maps hold only while it stands.";
     html += "</li>\n<li>";
   }
   html += checked.hazard

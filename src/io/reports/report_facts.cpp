@@ -65,6 +65,13 @@ std::vector<RecordedSetting> settings_of_record(const Json& json) {
   return settings;
 }
 
+std::optional<std::vector<std::string>> effects_of(const Json& json) {
+  if (!json.contains("effects")) return std::nullopt;
+  std::vector<std::string> names;
+  for (const Json& one : json.at("effects")) names.push_back(one.at("name").get<std::string>());
+  return names;
+}
+
 std::optional<GullyFacts> gullies_of(const Json& json) {
   if (!json.contains("steep_gullies")) return std::nullopt;
   const Json& gullies = json.at("steep_gullies");
@@ -105,6 +112,7 @@ RunFacts facts_of(const Json& json) {
   run.screens = recorded_screens(json);
   run.barriers = barriers_of(json);
   run.pieces = number_of(json, "pieces");
+  run.effects = effects_of(json);
   run.settings = settings_of_record(json);
   for (const Json& one : json.value("inputs", Json::array()))
     run.inputs.push_back(

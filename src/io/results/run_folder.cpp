@@ -17,17 +17,17 @@ namespace {
 
 constexpr const char* kRunAgain = "must be as talus run has written it; run the scenario again";
 
-/// The value of a setting; null if the record has none of that name.
-Json value_of(const Json& json, const std::string& key) {
-  for (const Json& setting : json.value("settings", Json::array()))
-    if (setting.at("key") == key) return setting.at("value");
-  return {};
+double setting_of(const Json& json, const std::string& key) {
+  for (const Json& setting : json.at("settings"))
+    if (setting.at("key") == key) return setting.at("value").get<double>();
+  throw InputError("no setting '" + key + "'");
 }
 
-double setting_of(const Json& json, const std::string& key) {
-  const Json value = value_of(json, key);
-  if (value.is_null()) throw InputError("no setting '" + key + "'");
-  return value.get<double>();
+/// Names of the effects that acted in a run.
+std::vector<std::string> acting_in(const Json& run) {
+  std::vector<std::string> names;
+  for (const Json& effect : run.value("effects", Json::array())) names.push_back(effect.at("name").get<std::string>());
+  return names;
 }
 
 /// The warnings of a run.json that `wanted` accepts.
@@ -105,14 +105,8 @@ std::optional<std::string> wet_day_note(const std::filesystem::path& folder) {
   const Json json = read_record_or_nothing(folder / "run.json");
   if (!json.is_object()) return std::nullopt;
   return understood(folder / "run.json", kRunAgain, [&]() -> std::optional<std::string> {
-    const Json days = value_of(json, "effects.wet-ground.days");
-    if (days.is_null()) return std::nullopt;
-    const double day = setting_of(json, "day");
-    const std::vector<double> wet = Json::parse(days.get<std::string>()).get<std::vector<double>>();
-    const bool off =
-        setting_of(json, "effects.wet-ground.softening") == 0.0 && setting_of(json, "effects.wet-ground.drag") == 0.0;
-    if (off || std::ranges::count(wet, day) == 0) return std::nullopt;
-    return "wet-ground acts on the day of this run, " + text_of(day) +
+    if (std::ranges::count(acting_in(json), "wet-ground") == 0) return std::nullopt;
+    return "wet-ground acts on the day of this run, " + text_of(setting_of(json, "day")) +
            ": the figures here are those of a wet day, and every event per year counts as on such a day; give the "
            "frequency of wet days only, and add the hazard of the dry ones";
   });
@@ -121,6 +115,22 @@ std::optional<std::string> wet_day_note(const std::filesystem::path& folder) {
 std::optional<std::string> pieces_note(const std::filesystem::path& folder) {
   const Json json = read_record_or_nothing(folder / "run.json");
   return json.is_object() && json.value("pieces", 0.0) > 0.0 ? std::optional<std::string>(kHitsOfPieces) : std::nullopt;
+}
+
+std::string forest_text(const std::vector<std::string>& effects) {
+  std::vector<std::string> stands;
+  for (const char* name : {"vegetation-drag", "forest-stems"})
+    if (std::ranges::count(effects, name) > 0) stands.emplace_back(name);
+  return stands.empty() ? "" : "forest or other vegetation stood in the run (" + joined(stands) + ")";
+}
+
+std::optional<std::string> forest_note(const std::filesystem::path& folder) {
+  const Json json = read_record_or_nothing(folder / "run.json");
+  if (!json.is_object()) return std::nullopt;
+  return understood(folder / "run.json", kRunAgain, [&]() -> std::optional<std::string> {
+    const std::string text = forest_text(acting_in(json));
+    return text.empty() ? std::optional<std::string>() : text + ": the figures here hold only while it stands";
+  });
 }
 
 RunSummary read_run(const std::filesystem::path& folder) {

@@ -9,6 +9,7 @@
 #include "talus/base/version.hpp"
 #include "talus/io/gdal/input_access.hpp"
 #include "talus/io/gdal/lines.hpp"
+#include "talus/simulate/scenario/acting_effects.hpp"
 #include "talus/simulate/tally/histogram.hpp"
 #include "talus/terrain/no_height.hpp"
 
@@ -87,6 +88,14 @@ Json barriers_of(const LoadedScenario& loaded, const Totals& totals) {
                     {"over", sum.over},
                     {"broken", sum.broken}});
   }
+  return list;
+}
+
+/// The effects that act; one that is given and does nothing is in the settings only.
+Json effects_of(const LoadedScenario& loaded) {
+  Json list = Json::array();
+  for (const EffectUse& use : effects_in_use(loaded.scenario))
+    if (use.acts()) list.push_back({{"name", use.entry->name}, {"cells", use.cells}});
   return list;
 }
 
@@ -189,6 +198,7 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   json["grid"] = grid_of(loaded);
   if (!scenario.screens.empty()) json["screens"] = screens_of(loaded);
   if (!scenario.barriers.empty()) json["barriers"] = barriers_of(loaded, totals);
+  json["effects"] = effects_of(loaded);
   json["settings"] = settings_of(loaded);
   json["inputs"] = json_of(loaded.inputs);
   if (network_is_allowed()) json["network"] = "allowed";

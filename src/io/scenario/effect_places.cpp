@@ -6,7 +6,9 @@
 #include "io/gdal/layer.hpp"
 #include "talus/io/gdal/forest.hpp"
 #include "talus/io/gdal/rasters.hpp"
+#include "talus/simulate/scenario/acting_effects.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
+#include "talus/simulate/scenario/stand_warnings.hpp"
 
 namespace talus::io {
 
@@ -25,11 +27,6 @@ Raster<std::uint8_t> read_mask(const std::string& name, const std::string& path,
     idle.mark(
         std::to_string(feature->GetFID()), polygons, [] { return std::uint8_t{1}; }, mask);
   });
-  std::int64_t covered = 0;
-  for_each_row(mask, [&](int row) { covered += std::count(&mask.at(0, row), &mask.at(0, row) + grid.columns, 1); });
-  if (covered == 0) out.warnings.push_back(path + ": covers no cell of the DEM: " + effect + " acts nowhere");
-  out.notes.push_back(path + ": " + effect + " acts in " + std::to_string(covered) + " of " +
-                      std::to_string(grid.cells()) + " cells");
   idle.warn(out.warnings);
   layer.tell(out);
   return mask;
@@ -45,7 +42,7 @@ void load_forest(const std::map<std::string, NamedFile>& maps, const Terrain& te
   ForestLayer layer =
       read_forest({path("density"), path("diameter"), path("trees")}, parts.effects.forest_stems, terrain);
   parts.effects.forest_stems = std::move(layer.forest);
-  out.notes.push_back("forest-stems: " + layer.note);
+  if (!layer.note.empty()) out.notes.push_back("forest-stems: " + layer.note);
   out.reprojections.insert(out.reprojections.end(), layer.reprojections.begin(), layer.reprojections.end());
   out.warnings.insert(out.warnings.end(), layer.warnings.begin(), layer.warnings.end());
 }
@@ -66,6 +63,17 @@ void load_effect_places(const ScenarioSpec& spec, const Terrain& terrain, Scenar
     }
     if (!effect.file.path.empty()) area->mask = read_mask(name, effect.file.path, terrain, out);
     if (!effect.maps.empty()) load_forest(effect.maps, terrain, parts, out);
+  }
+}
+
+void tell_of_effects(LoadedScenario& out) {
+  for (const EffectUse& use : effects_in_use(out.scenario)) {
+    if (!use.acts()) {
+      out.warnings.push_back(use.idle);
+      continue;
+    }
+    out.notes.push_back(use.text);
+    for (std::string& warning : stand_warnings(*use.entry, out.scenario)) out.warnings.push_back(std::move(warning));
   }
 }
 

@@ -19,7 +19,6 @@
 #include "talus/io/gdal/lines.hpp"
 #include "talus/io/gdal/vectors.hpp"
 #include "talus/io/gdal/zones.hpp"
-#include "talus/simulate/scenario/idle_effects.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 #include "talus/terrain/pits.hpp"
 #include "talus/terrain/source_slope.hpp"
@@ -241,7 +240,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
   out.scenario = make_scenario(std::move(parts));
   warn_unused_preset(spec, out.warnings);
   warn_of_sizes(spec, out.scenario, out.warnings);
-  for (std::string& warning : idle_effects(out.scenario)) out.warnings.push_back(std::move(warning));
+  tell_of_effects(out);
 
   out.complete_toml = toml_of(spec);
   out.settings = settings_of(spec);

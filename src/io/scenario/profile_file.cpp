@@ -12,7 +12,6 @@
 #include "size_warning.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
-#include "talus/simulate/scenario/idle_effects.hpp"
 #include "talus/simulate/scenario/presets.hpp"
 
 namespace talus::io {
@@ -186,7 +185,7 @@ LoadedProfile load_profile(const RunFlags& flags) {
   loaded.scenario = make_scenario(std::move(parts));
   warn_of_presets(spec, loaded.warnings);
   warn_of_sizes(spec, loaded.scenario, loaded.warnings);
-  for (std::string& warning : idle_effects(loaded.scenario)) loaded.warnings.push_back(std::move(warning));
+  tell_of_effects(loaded);
   loaded.complete_toml = toml_of(spec);
   loaded.settings = settings_of(spec);
   record_inputs(spec, loaded);

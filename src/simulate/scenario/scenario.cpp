@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "effect_cells.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/frequency.hpp"
@@ -158,33 +159,20 @@ void check_area(const Scenario& s, const EffectArea& where, const std::string& e
     throw InputError(effect + ": its mask is not on the grid of the DEM");
 }
 
-/// The cells in which a tree of a list stands; empty without a list.
-std::vector<bool> cells_with_trees(const ForestStems& forest, const Grid& grid) {
-  if (!forest.lists_trees()) return {};
-  std::vector<bool> cells(grid.cells());
-  for (const Tree& tree : forest.map->trees.trees())
-    cells[grid.index(grid.column_of(tree.place.x()), grid.row_of(tree.place.y()))] = true;
-  return cells;
-}
-
 /// Refuses two effects that would take the energy of the same stand twice.
 void check_stands(const Scenario& s) {
-  const Effects& e = s.effects;
-  if (s.drag_and_stems || !(e.vegetation_drag.coefficient > 0.0) || !(e.forest_stems.density > 0.0)) return;
+  const EffectEntry &drag = *find_effect("vegetation-drag"), &stems = *find_effect("forest-stems");
+  if (s.drag_and_stems || !drag.acts(s.effects) || !stems.acts(s.effects)) return;
   const Grid& grid = s.surface.grid();
-  const std::vector<bool> trees = cells_with_trees(e.forest_stems, grid);
+  const EffectCells with_drag(drag, s), with_stems(stems, s);
   for_each_row(s.surface.heights(), [&](int row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      const double x = grid.centre_x(column), y = grid.centre_y(row);
-      const std::uint8_t zone = s.cover.zone_at(x, y);
-      const bool stems = trees.empty() ? has_stand(e.forest_stems, zone, x, y) : trees[grid.index(column, row)];
-      if (stems && e.vegetation_drag.where.covers(zone, x, y))
+    for (int column = 0; column < grid.columns; ++column)
+      if (with_drag.has(column, row) && with_stems.has(column, row))
         throw InputError(
-            "effects: vegetation-drag and forest-stems act at the same place (the cell at " + with_decimals(x, 1) +
-            " m, " + with_decimals(y, 1) +
+            "effects: vegetation-drag and forest-stems act at the same place (the cell at " +
+            with_decimals(grid.centre_x(column), 1) + " m, " + with_decimals(grid.centre_y(row), 1) +
             " m from the south-western corner), where the stand would take its energy twice: give them zones or files "
             "apart from each other, or set allow_both = true in [effects]");
-    }
   });
 }
 

@@ -12,7 +12,7 @@ namespace talus::io {
 /// A forest from files.
 struct ForestLayer {
   ForestStems forest;  ///< with its map; density: the largest of the cells, or trees per area of the DEM [1/ha]
-  std::string note;    ///< what was read, in one line
+  std::string note;    ///< of a list of trees: what was read, in one line
   std::vector<Reprojection> reprojections;
   std::vector<std::string> warnings;
 };

@@ -36,6 +36,13 @@ inline constexpr const char* kHitsOfPieces =
 /// The same, if blocks of the run broke.
 std::optional<std::string> pieces_note(const std::filesystem::path& folder);
 
+/// "forest or other vegetation stood in the run (forest-stems)"; empty if none of these effects is of a stand.
+/// @param effects  names of those that acted
+std::string forest_text(const std::vector<std::string>& effects);
+
+/// One line that the figures hold only while the forest of the run stands; nothing if none acted there.
+std::optional<std::string> forest_note(const std::filesystem::path& folder);
+
 /// The part of OUT/run.json that products of a finished run need.
 struct RunSummary {
   bool of_profile = false;                 ///< of `talus profile`

@@ -10,6 +10,10 @@ struct VegetationDrag {
   EffectArea where;
 };
 
+/// Share of the speed lost per second, above which a block is stuck in the vegetation [1/s]: drag takes more than 4 %
+/// of its speed in the shortest piece of a flight, 0.01 s. docs/effects.md, "Flight with drag".
+inline constexpr double kStuckRate = 4.0;
+
 /// vegetation-drag: share of the speed lost per second, c/m [1/s]; 0 at the top of the stand and above.
 ///
 /// @param clearance  height of the block above the ground [m]
