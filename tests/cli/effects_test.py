@@ -1,4 +1,5 @@
 """Effects in `talus run`: they act in their places, change what they should, and a run can be replayed."""
+import json
 import math
 import unittest
 
@@ -157,6 +158,10 @@ class Effects(Case):
                 self.assertIn("warning: " + note, hazard)
                 self.assertIn("note: " + note, design)
                 self.assertIn(f"<td>Forest</td><td class='b'>forest or other vegetation stood in the run ({name})</td>", page)
+                record = self.read_json(name + "/run.json")
+                del record["effects"]  # as earlier versions wrote it: the settings say which effects there were
+                self.write(name + "/run.json", json.dumps(record))
+                self.assertIn("note: " + note, self.run_well("barrier", self.path(name), "--screen", "road").stdout)
 
     def test_drag_that_holds_small_blocks_in_the_air_is_said(self):
         """c/m above 4 1/s; a block of 0.8 m and 2700 kg/m3 has m = 2700 pi/6 0.8^3 kg."""
@@ -165,6 +170,9 @@ class Effects(Case):
             self.write("s.toml", HEAD + f"[effects.vegetation-drag]\ncoefficient = {coefficient}\n")
             plan = self.run_well("check", self.path("s.toml")).stdout
             self.assertEqual("[effects.vegetation-drag] holds small blocks in the air: the smallest, of 0.8 m" in plan, said, plan)
+        self.write("s.toml", HEAD + "[effects.vegetation-drag]\ncoefficient = 400\n[effects.fragmentation]\nthreshold = 2\n")
+        self.assertIn("holds pieces of broken blocks in the air: above c/m = 4 1/s, here below 0.41 m",  # cbrt(6 400 / (4 2700 pi))
+                      self.run_well("check", self.path("s.toml")).stdout)
 
     def test_a_preset_of_the_2d_model_in_a_map_is_said(self):
         """Its psi_scale is 0: nothing turns the blocks sideways."""

@@ -174,7 +174,8 @@ TEST(Frequency, OfARecord) {
   EXPECT_THAT(frequency_text(file), HasSubstr("those in w.toml ([frequency] by_true_area = true, power_law = "
                                               "{\"A\":0.01,\"b\":0.6}; [features] north cliff = 0.25; SHA-256 12ab)"));
   given.class_shares = {0.9, 0.1};
-  EXPECT_THAT(frequency_text(frequency_of({{"frequency", json_of(given, 5.2)}})),
+  const FrequencyFacts kept = frequency_of({{"frequency", json_of(given, 5.2)}});
+  EXPECT_THAT(frequency_text(kept),
               HasSubstr("north cliff = 0.25; the classes of blocks keep their shares of the events; SHA-256 12ab)"));
   const std::string by = "by the annual frequency of its source";
   EXPECT_EQ(other_frequency_note(by, run, run), "");
@@ -182,6 +183,7 @@ TEST(Frequency, OfARecord) {
   EXPECT_EQ(other_frequency_note(by, earlier, file), "");  // the name is all that is known
   EXPECT_THAT(other_frequency_note(by, run, file),
               HasSubstr("other frequencies than the hazard maps: those of the run"));
+  EXPECT_THAT(other_frequency_note(by, kept, file), HasSubstr("other frequencies"));  // the same file, other classes
   EXPECT_EQ(other_frequency_note("alike, as --unweighted asks", run, file), "");
 }
 

@@ -57,7 +57,9 @@ TEST_F(Screens,
       read({{"id", OFTString}},
            {{"LINESTRING(1 1,9 1)", {"road"}}, {"LINESTRING(12 1,4 1)", {"road"}}, {"LINESTRING(5 0,5 3)", {"road"}}});
   EXPECT_TRUE(
-      said(layer.warnings, "lines of screen road lie on each other for 5 m: every crossing there counts twice"));
+      said(layer.warnings, "lines of screen road lie on each other for 5 m: crossings there count more than once"));
+  EXPECT_TRUE(
+      said(read({{"id", OFTString}}, {{"LINESTRING(1 1,1 7,5 7,1 7,1 3)", {"a"}}}).warnings, "for 8 m"));  // back
   EXPECT_FALSE(
       said(read({{"id", OFTString}}, {{"LINESTRING(1 1,9 1)", {"a"}}, {"LINESTRING(1 1,9 1)", {"b"}}}).warnings,
            "lie on each other"));

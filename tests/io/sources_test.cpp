@@ -91,6 +91,13 @@ TEST_F(Sources, ALineDoesNotReleaseWhereItOnlyTouches) {  // its ends lie on cor
   EXPECT_EQ(cells(read({{"LINESTRING(40 50,10 20)"}})), diagonal);
   EXPECT_EQ(cells(read({{"LINESTRING(10 20,40 20)"}})), cells(read({{"LINESTRING(40 20,10 20)"}})));  // along an edge
   EXPECT_EQ(cells(read({{"LINESTRING(10 20,40 20)"}})).size(), 3U);
+  EXPECT_EQ(cells(read({{"LINESTRING(15 15,40 40,40 65)"}})),  // through corners, then along an edge
+            cells(read({{"LINESTRING(40 65,40 40,15 15)"}})));
+  EXPECT_EQ(cells(read({{"LINESTRING(15 15,40 40)"}})), (Cells{{3, 3}, {2, 2}, {1, 1}}));
+  EXPECT_EQ(cells(read({{"LINESTRING(15 45,20 30,15 15)"}})),
+            (Cells{{1, 4}, {1, 3}, {1, 2}, {1, 1}}));   // a vertex on an edge
+  EXPECT_EQ(cells(read({{"LINESTRING(5 25,55 50)"}})),  // y = 30 at x = 15, 40 at x = 35, 50 at its end
+            (Cells{{3, 4}, {4, 4}, {5, 4}, {1, 3}, {2, 3}, {3, 3}, {0, 2}, {1, 2}}));
 }
 
 // Length of the segment a-b inside a cell, by clipping it at the four sides.

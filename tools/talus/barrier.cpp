@@ -274,11 +274,12 @@ int design(Options o) {
   if (const auto note = talus::io::barriers_note(o.folder))
     report.notes.push_back(*note +
                            "; a block that one caught uphill of this screen, or on its line, does not cross it");
-  if (const auto note = talus::io::wet_day_note(o.folder)) report.notes.push_back(*note);
   if (const auto note = talus::io::forest_note(o.folder)) report.notes.push_back(*note);
   report.without_height = without_height(run, o);
   if (const auto note = talus::io::gap_note(report.without_height)) report.notes.push_back(*note);
   std::vector<talus::LineCrossing> blocks = crossings_of(crossings, run, o, report, weighting);
+  if (const auto note = talus::io::wet_day_note(o.folder, static_cast<bool>(weighting.scale)))
+    report.notes.push_back(*note);
   report.screen = o.screen;
   report.released = run.released;
   report.crossings = crossings.count;

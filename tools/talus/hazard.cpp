@@ -218,7 +218,7 @@ int hazard(const Options& options) {
   if (auto note = talus::io::unusable_note(folder)) record.warnings.push_back(std::move(*note));
   if (auto note = talus::io::coefficient_note(folder)) record.warnings.push_back(std::move(*note));
   if (auto note = talus::io::barriers_note(folder)) record.warnings.push_back(std::move(*note));
-  if (auto note = talus::io::wet_day_note(folder)) record.warnings.push_back(std::move(*note));
+  if (auto note = talus::io::wet_day_note(folder, true)) record.warnings.push_back(std::move(*note));
   if (auto note = talus::io::forest_note(folder)) record.warnings.push_back(std::move(*note));
 
   progress.stage("writing the maps");

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <memory>
 #include <set>
 
 #include "layer.hpp"
@@ -154,30 +153,62 @@ void warn_of_gaps(ScreenLayer& layer, const std::string& path, const Terrain& te
                              ": blocks do not get there, so that the crossings are lower bounds (unsafe)");
 }
 
-/// Length over which lines of a screen lie on each other [m].
+/// The part of a straight piece that lies on another one, as distances from its start [m]; empty if less than 0.1 m
+/// does.
+Range overlap(const LinePiece& piece, const LinePiece& other) {
+  constexpr double kApart = 0.01, kLeast = 0.1;  // [m]: places are rounded to millimetres; lines that only cross
+  const Eigen::Vector2d way = piece.to - piece.from;
+  const double length = way.norm();
+  const Eigen::Vector2d ahead = way / length;
+  const auto along = [&](const Eigen::Vector2d& place) {
+    return std::clamp(ahead.dot(place - piece.from), 0.0, length);
+  };
+  const double a = along(other.from), b = along(other.to);
+  const Range part{std::min(a, b), std::max(a, b)};
+  const Eigen::Vector2d line = other.to - other.from;
+  const auto beside = [&](double at) {
+    const Eigen::Vector2d place = piece.from + at * ahead - other.from;
+    const double share = std::clamp(line.dot(place) / line.squaredNorm(), 0.0, 1.0);
+    return (place - share * line).norm();
+  };
+  const bool on_it = part.high - part.low > kLeast && beside(part.low) < kApart && beside(part.high) < kApart;
+  return on_it ? part : Range{0.0, 0.0};
+}
+
+/// Length of a screen that lies on an earlier part of it [m].
 double doubled_length(const Screen& screen) {
-  std::vector<OGRLineString> lines(screen.lines.size());
-  std::vector<OGREnvelope> boxes(lines.size());
+  std::vector<LinePiece> pieces;
+  append_pieces(0, screen.lines, pieces);
+  std::erase_if(pieces, [](const LinePiece& piece) { return piece.from == piece.to; });
   double length = 0.0;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    for (const Eigen::Vector2d& place : screen.lines[i]) lines[i].addPoint(place.x(), place.y());
-    lines[i].getEnvelope(&boxes[i]);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Eigen::Vector2d low = pieces[i].from.cwiseMin(pieces[i].to), high = pieces[i].from.cwiseMax(pieces[i].to);
+    std::vector<std::pair<double, double>> parts;
     for (std::size_t k = 0; k < i; ++k) {
-      if (!boxes[i].Intersects(boxes[k])) continue;
-      const std::unique_ptr<OGRGeometry> both(lines[i].Intersection(&lines[k]));
-      if (both) length += OGR_G_Length(OGRGeometry::ToHandle(both.get()));
+      const Eigen::Vector2d &a = pieces[k].from, &b = pieces[k].to;
+      if ((a.cwiseMax(b).array() + 0.01 < low.array()).any() || (a.cwiseMin(b).array() - 0.01 > high.array()).any())
+        continue;
+      const Range part = overlap(pieces[i], pieces[k]);
+      if (part.high > part.low) parts.emplace_back(part.low, part.high);
+    }
+    std::ranges::sort(parts);
+    double end = 0.0;
+    for (const auto& [from, to] : parts) {
+      length += std::max(0.0, to - std::max(from, end));
+      end = std::max(end, to);
     }
   }
   return length;
 }
 
-/// A warning of screens of which lines lie on each other, as when a feature was pasted twice.
+/// A warning of screens that lie on themselves, as when a feature was pasted twice or a line drawn there and back.
 void warn_of_doubled_lines(ScreenLayer& layer, const std::string& path) {
   for (const Screen& screen : layer.screens)
     if (const double length = doubled_length(screen); length > 0.0)
       layer.warnings.push_back(path + ": lines of screen " + screen.id + " lie on each other for " +
                                with_digits(length, 3) +
-                               " m: every crossing there counts twice. Delete one, or give it another id");
+                               " m: crossings there count more than once in screens.csv (talus barrier takes the first "
+                               "of a block). Delete one, or give it another id");
 }
 
 }  // namespace

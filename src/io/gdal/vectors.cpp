@@ -1,7 +1,6 @@
 #include "talus/io/gdal/vectors.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -189,40 +188,34 @@ struct Cell {
   bool operator==(const Cell&) const = default;
 };
 
-/// Whether a line has a length in a cell with its edges, not a touch alone.
-bool runs_through(const OGRLineString& line, const Grid& grid, const Cell& cell) {
+/// Whether a straight line has a length in a cell with its edges, not a touch alone.
+bool runs_through(const OGRLineString& segment, const Grid& grid, const Cell& cell) {
   constexpr double kTouch = 1e-9;  // cells
-  const double west = cell.column, south = cell.row;
-  for (int i = 1; i < line.getNumPoints(); ++i) {
-    const double u[] = {line.getX(i - 1) / grid.cell_x - west, line.getX(i) / grid.cell_x - west};
-    const double v[] = {line.getY(i - 1) / grid.cell_y - south, line.getY(i) / grid.cell_y - south};
-    double from = 0.0, to = 1.0;  // share of the segment that lies in the cell
-    for (const double* w : {u, v}) {
-      const double way = w[1] - w[0];
-      if (way == 0.0 && (w[0] < 0.0 || w[0] > 1.0)) to = -1.0;
-      if (way == 0.0) continue;
-      from = std::max(from, std::min(-w[0] / way, (1.0 - w[0]) / way));
-      to = std::min(to, std::max(-w[0] / way, (1.0 - w[0]) / way));
-    }
-    if ((to - from) * std::hypot(u[1] - u[0], v[1] - v[0]) > kTouch) return true;
+  const double u[] = {segment.getX(0) / grid.cell_x - cell.column, segment.getX(1) / grid.cell_x - cell.column};
+  const double v[] = {segment.getY(0) / grid.cell_y - cell.row, segment.getY(1) / grid.cell_y - cell.row};
+  double from = 0.0, to = 1.0;  // share of the segment that lies in the cell
+  for (const double* w : {u, v}) {
+    const double way = w[1] - w[0];
+    if (way == 0.0 && (w[0] < 0.0 || w[0] > 1.0)) return false;
+    if (way == 0.0) continue;
+    from = std::max(from, std::min(-w[0] / way, (1.0 - w[0]) / way));
+    to = std::min(to, std::max(-w[0] / way, (1.0 - w[0]) / way));
   }
-  return false;
+  return (to - from) * std::hypot(u[1] - u[0], v[1] - v[0]) > kTouch;
 }
 
-/// Appends the cells that a line crosses. GDAL also gives a cell that it touches with an end alone.
+/// Appends the cells that a line crosses, some of them twice. GDAL also gives cells that it touches in a corner, or
+/// with a vertex on their edge.
 void append_cells(const OGRLineString& line, const Grid& grid, std::vector<Cell>& cells) {
-  const int last = line.getNumPoints() - 1;
-  const auto at_an_end = [&](const Cell& cell) {
-    return std::ranges::any_of(std::array{0, last}, [&](int i) {
-      return std::abs(line.getX(i) / grid.cell_x - cell.column - 0.5) < 0.75 &&
-             std::abs(line.getY(i) / grid.cell_y - cell.row - 0.5) < 0.75;
-    });
-  };
   const std::size_t before = cells.size();
-  for_each_cell(line, grid, true, [&](int column, int row) {
-    const Cell cell{column, row};
-    if (!at_an_end(cell) || runs_through(line, grid, cell)) cells.push_back(cell);
-  });
+  for (int i = 1; i < line.getNumPoints(); ++i) {
+    OGRLineString segment;
+    for (const int end : {i - 1, i}) segment.addPoint(line.getX(end), line.getY(end));
+    for_each_cell(segment, grid, true, [&](int column, int row) {
+      const Cell cell{column, row};
+      if (runs_through(segment, grid, cell)) cells.push_back(cell);
+    });
+  }
   const Cell start{grid.column_of(line.getX(0)), grid.row_of(line.getY(0))};
   if (cells.size() == before && grid.contains(start.column, start.row)) cells.push_back(start);  // without length
 }

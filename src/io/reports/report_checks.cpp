@@ -43,7 +43,7 @@ EffectNames effects_of(const RunFacts& run) {
   for (const EffectEntry& entry : effect_entries()) {
     const std::string name(entry.name);
     const bool given = !run.settings_of("effects." + name + ".").empty();
-    const bool acts = run.effects ? std::ranges::count(*run.effects, name) > 0 : given;
+    const bool acts = std::ranges::count(run.effects, name) > 0;
     (acts ? names.acting : given ? names.idle : names.off).push_back(name);
   }
   return names;

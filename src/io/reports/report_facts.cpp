@@ -6,6 +6,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "io/results/acting_record.hpp"
 #include "io/results/recorded_profile.hpp"
 #include "io/results/recorded_screens.hpp"
 #include "talus/base/error.hpp"
@@ -65,13 +66,6 @@ std::vector<RecordedSetting> settings_of_record(const Json& json) {
   return settings;
 }
 
-std::optional<std::vector<std::string>> effects_of(const Json& json) {
-  if (!json.contains("effects")) return std::nullopt;
-  std::vector<std::string> names;
-  for (const Json& one : json.at("effects")) names.push_back(one.at("name").get<std::string>());
-  return names;
-}
-
 std::optional<GullyFacts> gullies_of(const Json& json) {
   if (!json.contains("steep_gullies")) return std::nullopt;
   const Json& gullies = json.at("steep_gullies");
@@ -112,7 +106,7 @@ RunFacts facts_of(const Json& json) {
   run.screens = recorded_screens(json);
   run.barriers = barriers_of(json);
   run.pieces = number_of(json, "pieces");
-  run.effects = effects_of(json);
+  run.effects = acting_in(json);
   run.settings = settings_of_record(json);
   for (const Json& one : json.value("inputs", Json::array()))
     run.inputs.push_back(

@@ -56,8 +56,8 @@ struct RunFacts {
   RecordedGrid grid;
   std::vector<Screen> screens;  ///< in map coordinates [m]
   std::vector<StandingBarrier> barriers;
-  double pieces = 0.0;                              ///< of broken blocks
-  std::optional<std::vector<std::string>> effects;  ///< that acted; nothing in an earlier record
+  double pieces = 0.0;               ///< of broken blocks
+  std::vector<std::string> effects;  ///< that acted
   std::vector<RecordedSetting> settings;
   std::vector<InputFile> inputs;
   std::vector<Reprojection> reprojections;

@@ -35,11 +35,12 @@ FrequencyFacts frequency_of(const Json& record) {
   facts.sha256 = shortened(frequency.value("sha256", ""), kMostWords);
   const Json given = frequency.value("given", Json());
   if (!given.is_object()) return facts;
-  facts.given = given.dump();
+  const Json shares = frequency.value("class_shares", Json());  // null: drawn, or by an earlier version
+  facts.given = given.dump() + shares.dump();
   for (const auto& [table, values] : given.items())
     if (const std::string words = words_of(values); !words.empty())
       facts.words += (facts.words.empty() ? "[" : "; [") + shortened(table, kMostWords) + "] " + words;
-  if (frequency.contains("class_shares")) facts.words += "; the classes of blocks keep their shares of the events";
+  if (!shares.is_null()) facts.words += "; the classes of blocks keep their shares of the events";
   return facts;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "acting_record.hpp"
 #include "io/files/json.hpp"
 #include "io/gdal/regular_file.hpp"
 #include "recorded_profile.hpp"
@@ -21,13 +22,6 @@ double setting_of(const Json& json, const std::string& key) {
   for (const Json& setting : json.at("settings"))
     if (setting.at("key") == key) return setting.at("value").get<double>();
   throw InputError("no setting '" + key + "'");
-}
-
-/// Names of the effects that acted in a run.
-std::vector<std::string> acting_in(const Json& run) {
-  std::vector<std::string> names;
-  for (const Json& effect : run.value("effects", Json::array())) names.push_back(effect.at("name").get<std::string>());
-  return names;
 }
 
 /// The warnings of a run.json that `wanted` accepts.
@@ -101,20 +95,26 @@ std::optional<std::string> barriers_note(const std::filesystem::path& folder) {
   });
 }
 
-std::optional<std::string> wet_day_note(const std::filesystem::path& folder) {
+std::optional<std::string> wet_day_note(const std::filesystem::path& folder, bool per_year) {
   const Json json = read_record_or_nothing(folder / "run.json");
   if (!json.is_object()) return std::nullopt;
   return understood(folder / "run.json", kRunAgain, [&]() -> std::optional<std::string> {
     if (std::ranges::count(acting_in(json), "wet-ground") == 0) return std::nullopt;
     return "wet-ground acts on the day of this run, " + text_of(setting_of(json, "day")) +
-           ": the figures here are those of a wet day, and every event per year counts as on such a day; give the "
-           "frequency of wet days only, and add the hazard of the dry ones";
+           ": the figures here are those of a wet day" +
+           (per_year
+                ? ", and every event per year counts as on such a day; give the frequency of wet days only, and add "
+                  "the hazard of the dry ones"
+                : "");
   });
 }
 
 std::optional<std::string> pieces_note(const std::filesystem::path& folder) {
   const Json json = read_record_or_nothing(folder / "run.json");
-  return json.is_object() && json.value("pieces", 0.0) > 0.0 ? std::optional<std::string>(kHitsOfPieces) : std::nullopt;
+  if (!json.is_object()) return std::nullopt;
+  return understood(folder / "run.json", kRunAgain, [&] {
+    return json.value("pieces", 0.0) > 0.0 ? std::optional<std::string>(kHitsOfPieces) : std::nullopt;
+  });
 }
 
 std::string forest_text(const std::vector<std::string>& effects) {

@@ -121,6 +121,7 @@ GivenFrequencies apply_weighting(const std::string& file, Scenario& scenario) {
     read.by_true_area = given.by_true_area;
     scenario.frequency.by_true_area = given.by_true_area;
   }
+  if (scenario.frequency.by_true_area) read.by_true_area = true;  // of the run: it stays
   read_features(features, scenario, read);
   top.finish();
   if (!faults.empty()) throw InputError(faults.front());
@@ -132,7 +133,7 @@ GivenFrequencies apply_weighting(const std::string& file, Scenario& scenario) {
 std::string class_shares_text(const GivenFrequencies& given) {
   if (given.class_shares.empty()) return {};
   std::vector<std::string> percents;
-  for (const double share : given.class_shares) percents.push_back(with_digits(100.0 * share, 2));
+  for (const double share : given.class_shares) percents.push_back(with_digits(100.0 * share, share < 0.995 ? 2 : 4));
   return "the classes of blocks keep their shares of the events: " + joined(percents) + " %";
 }
 

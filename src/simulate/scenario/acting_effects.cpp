@@ -34,11 +34,13 @@ std::string nowhere(const EffectEntry& entry) {
 std::string idle_text(const EffectEntry& entry, const Scenario& scenario, std::uint64_t cells) {
   const std::string name = "[effects." + std::string(entry.name) + "] ";
   const std::vector<int>* days = entry.days(scenario.effects);
-  if (days != nullptr && std::ranges::count(*days, scenario.day) == 0) return name + on_other_days(*days, scenario.day);
   const Vec3& axes = scenario.blocks.axes;
+  std::string why;
+  if (days != nullptr && std::ranges::count(*days, scenario.day) == 0) why += name + on_other_days(*days, scenario.day);
   if (entry.name == "block-shape" && shape_index(scenario.effects.block_shape, {1.0, 1.0, axes}) == 0.0)
-    return name + on_spheres(axes);
-  return cells == 0 ? name + nowhere(entry) : std::string();
+    why += name + on_spheres(axes);
+  if (cells == 0) why += (why.empty() ? "" : ". ") + name + nowhere(entry);
+  return why;
 }
 
 /// "density = 250 to 450 (mean 386) 1/ha, height = 20 m".
@@ -62,9 +64,9 @@ std::string place_text(const Scenario& scenario, std::uint64_t cells, std::uint6
   const Grid& grid = scenario.surface.grid();
   const auto number = static_cast<double>(cells);
   if (scenario.impact.in_plane) {
-    const double metres = grid.cell_x / grid.rows;
-    return "acts along " + with_decimals(number * metres, 0) + " of " +
-           with_decimals(static_cast<double>(all) * metres, 0) + " m";
+    const double length = (grid.columns - 1) * grid.cell_x;  // a column at each end
+    return "acts along " + with_decimals(std::min(length, number * grid.cell_x), 0) + " of " +
+           with_decimals(length, 0) + " m";
   }
   return "acts in " + std::to_string(cells) + " of " + std::to_string(all) + " cells (" +
          whole_or_short(number * grid.cell_x * grid.cell_y * 1e-4) + " ha)";
@@ -88,7 +90,9 @@ std::vector<EffectUse> effects_in_use(const Scenario& scenario) {
   for (const EffectEntry& entry : effect_entries()) {
     if (!entry.acts(scenario.effects)) continue;
     EffectUse use{&entry, 0, {}, {}};
-    EffectCells(entry, scenario).for_each([&](int, int) { ++use.cells; });
+    EffectCells(entry, scenario).for_each([&](int, int row) {
+      use.cells += scenario.impact.in_plane && row > 0 ? 0U : 1U;  // the rows of a profile are alike
+    });
     use.idle = idle_text(entry, scenario, use.cells);
     if (use.acts())
       use.text =

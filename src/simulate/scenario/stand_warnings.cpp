@@ -56,14 +56,18 @@ void warn_of_forest(const Scenario& scenario, std::vector<std::string>& warnings
 void warn_of_drag(const Scenario& scenario, std::vector<std::string>& warnings) {
   const double c = scenario.effects.vegetation_drag.coefficient, density = scenario.blocks.density;
   const Block smallest = block_of(diameters_of(scenario).low, density);
-  if (!(c > kStuckRate * smallest.mass)) return;
-  const double largest = std::cbrt(6.0 * c / (kPi * density * kStuckRate));
-  warnings.push_back("[effects.vegetation-drag] holds small blocks in the air: the smallest, of " +
-                     with_digits(smallest.diameter, 3) + " m, lose c/m = " + with_digits(c / smallest.mass, 3) +
-                     " 1/s of their speed; above " + text_of(kStuckRate) + " 1/s, here below " +
-                     with_digits(largest, 2) +
-                     " m, a block is stuck and its fall approximate (unsafe if the stand does not hold it): "
-                     "coefficient does not grow with the block, see docs/effects.md");
+  const bool pieces = scenario.effects.fragmentation.threshold > 0.0, blocks = c > kStuckRate * smallest.mass;
+  const double stuck = diameter_of(c / (density * kStuckRate));
+  if (!blocks && !(pieces && c > kStuckRate * kSmallestPiece)) return;
+  warnings.push_back(std::string("[effects.vegetation-drag] holds ") +
+                     (blocks ? "small blocks" : "pieces of broken blocks") + " in the air: " +
+                     (blocks ? "the smallest, of " + with_digits(smallest.diameter, 3) +
+                                   " m, lose c/m = " + with_digits(c / smallest.mass, 3) + " 1/s of their speed; "
+                             : "") +
+                     "above c/m = " + text_of(kStuckRate) + " 1/s, here below " + with_digits(stuck, 2) +
+                     " m, one is stuck and its fall approximate (unsafe if the stand does not hold it): coefficient "
+                     "does not grow with "
+                     "the block, see docs/effects.md");
 }
 
 }  // namespace

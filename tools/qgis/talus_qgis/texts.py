@@ -367,8 +367,8 @@ GERMAN = {
     "of the bootstrap: 1 (default)": "des Bootstraps: 1 (Vorgabe)",
     "measured data: campaign.toml; several: docs/several-campaigns.md":
         "Messdaten: campaign.toml; mehrere: docs/several-campaigns.md",
-    "parameters, in every zone: theta_scale,psi_scale,En50,Et50,phi":
-        "Parameter, in jeder Zone: theta_scale,psi_scale,En50,Et50,phi",
+    "parameters, in every zone: theta_scale,psi_scale,En50,Et50 (these if it is not given),phi":
+        "Parameter, in jeder Zone: theta_scale,psi_scale,En50,Et50 (diese, wenn nicht angegeben),phi",
     "trajectories per block in the searches (48)": "Sturzbahnen pro Block beim Suchen (48)",
     "of the random numbers (1)": "der Zufallszahlen (1)",
     "model from which the fit starts, whose effects it keeps; else upper-talus-3d without effects":

@@ -27,7 +27,9 @@ std::optional<std::string> barriers_note(const std::filesystem::path& folder);
 
 /// One line that the figures are those of a wet day; nothing if wet-ground does not act on the day of the run.
 /// docs/effects.md, "wet-ground".
-std::optional<std::string> wet_day_note(const std::filesystem::path& folder);
+///
+/// @param per_year  there are figures per year
+std::optional<std::string> wet_day_note(const std::filesystem::path& folder, bool per_year);
 
 /// What a hit of an object is where blocks break.
 inline constexpr const char* kHitsOfPieces =

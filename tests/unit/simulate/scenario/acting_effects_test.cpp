@@ -120,7 +120,7 @@ TEST(EffectsInUse, AProfileIsMeasuredAlongItsWay) {
   s.surface = Surface(Raster<float>(s.surface.grid(), 100.0F));
   s.effects.soft_ground.drag = 2.0;
   s.effects.soft_ground.where.zones = {0, 1};
-  EXPECT_THAT(effects_in_use(s)[0].text, StartsWith("soft-ground acts along 10 of 30 m: drag = 2, "));
+  EXPECT_THAT(effects_in_use(s)[0].text, StartsWith("soft-ground acts along 10 of 25 m: drag = 2, "));
 }
 
 }  // namespace
