@@ -248,6 +248,7 @@ class Products(Profile):
         self.assertNotIn("along the line", text)
         self.assertEqual(sorted(name for name in self.contents("out") if name.startswith("barrier_")), ["barrier_100.csv", "barrier_100.json"])
         self.assertNotIn("Each stretch", self.page("out")[1])
+        self.profile("--trajectories", "100", "--overwrite")  # what barrier and report have added is Talus's own
 
     def test_the_checklist_names_the_terrain_of_the_profile(self):
         for name, out, terrain, x in (("p.toml", "csv", "profile p.csv", "[18, 22]"),

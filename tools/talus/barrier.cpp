@@ -304,7 +304,7 @@ int design(Options o) {
   const std::string name = "barrier_" + talus::io::file_name_of(o.screen, ids);
   catch_signals();  // from here on: all files or none
   const auto replaced = talus::io::write_barrier(o.folder, name, report, screen_of(run, o), run.crs_wkt);
-  refresh_project(o.folder);
+  if (!run.of_profile) refresh_project(o.folder);  // a profile has no maps
   if (replaced && !o.quiet) say("", *replaced);
   if (!o.quiet) print_text(talus::io::barrier_text(report));
   return 0;

@@ -20,14 +20,14 @@ void check(const Bounds& bounds, double value, const std::string& key) {
   if (const auto fault = fault_of(bounds, value)) refuse(key, text_of(value), *fault);
 }
 
-std::string text_of(const Range& range) {
+std::string range_text(const Range& range) {
   return list_text({range.low, range.high});
 }
 
 void check(const Bounds& bounds, const Range& range, const std::string& key) {
   check(bounds, range.low, key);
   check(bounds, range.high, key);
-  if (range.low > range.high) refuse(key, text_of(range), "must be [smallest, largest]");
+  if (range.low > range.high) refuse(key, range_text(range), "must be [smallest, largest]");
 }
 
 void check_grounds(const Scenario& s) {
@@ -41,7 +41,7 @@ void check_grounds(const Scenario& s) {
     const std::string zone = i == 0 ? "ground.default." : "ground.zones." + s.zone_names[i] + ".";
     for (const auto& field : ground_fields()) check(field, field.get(grounds[i]), zone + std::string(field.key));
     const Range shape{grounds[i].shape_min, grounds[i].shape_max};
-    if (shape.low > shape.high) refuse(zone + "shape", text_of(shape), "must be [smallest, largest]");
+    if (shape.low > shape.high) refuse(zone + "shape", range_text(shape), "must be [smallest, largest]");
   }
   const Raster<std::uint8_t>& zones = s.cover.zones;
   if (zones.values.empty()) return;
@@ -64,8 +64,8 @@ void check_blocks(const Blocks& blocks) {
     check(bounds_of("blocks.volume_min"), law.volume.low, "blocks.diameter.volume_min");
     check(bounds_of("blocks.volume_max"), law.volume.high, "blocks.diameter.volume_max");
     if (law.volume.low > law.volume.high)
-      refuse("blocks.diameter.volume_min", talus::text_of(law.volume.low),
-             "must not be above volume_max = " + talus::text_of(law.volume.high));
+      refuse("blocks.diameter.volume_min", text_of(law.volume.low),
+             "must not be above volume_max = " + text_of(law.volume.high));
     check(bounds_of("blocks.exponent"), law.exponent, "blocks.diameter.exponent");
   }
   std::size_t with_frequency = 0;
@@ -120,7 +120,7 @@ void check_thresholds(const std::vector<double>& values, const std::string& key)
   for (std::size_t i = 0; i < values.size(); ++i) {
     check(bounds_of(key), values[i], key);
     if (i > 0 && !(values[i] > values[i - 1]))
-      throw InputError(key + ": " + talus::text_of(values[i]) + " follows " + talus::text_of(values[i - 1]) +
+      throw InputError(key + ": " + text_of(values[i]) + " follows " + text_of(values[i - 1]) +
                        ", must ascend, each value once");
   }
 }

@@ -9,7 +9,7 @@
 namespace talus {
 namespace {
 
-constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();  // 2^64 - 1
+constexpr std::uint64_t kLargest = std::numeric_limits<std::uint64_t>::max();  // 2^64 - 1
 
 WideSum sum_of(const std::vector<std::uint64_t>& numbers) {
   WideSum sum;
@@ -19,15 +19,15 @@ WideSum sum_of(const std::vector<std::uint64_t>& numbers) {
 
 TEST(WideSum, CarriesWhatIsAbove64Bits) {
   EXPECT_EQ(sum_of({}), WideSum{});
-  EXPECT_EQ(sum_of({kMost}), (WideSum{kMost, 0}));
-  EXPECT_EQ(sum_of({kMost, 1}), (WideSum{0, 1}));
-  EXPECT_EQ(sum_of({kMost, kMost, kMost}), (WideSum{kMost - 2, 2}));  // 3 (2^64 - 1) = 2 2^64 + 2^64 - 3
+  EXPECT_EQ(sum_of({kLargest}), (WideSum{kLargest, 0}));
+  EXPECT_EQ(sum_of({kLargest, 1}), (WideSum{0, 1}));
+  EXPECT_EQ(sum_of({kLargest, kLargest, kLargest}), (WideSum{kLargest - 2, 2}));  // 3 (2^64 - 1) = 2 2^64 + 2^64 - 3
   EXPECT_EQ(static_cast<double>(sum_of(std::vector<std::uint64_t>(8, std::uint64_t{1} << 63U))), 0x1p66);
   EXPECT_EQ(static_cast<double>(sum_of({3, 4})), 7.0);
 }
 
 TEST(WideSum, IsTheSameInAnyOrderAndInParts) {
-  std::vector<std::uint64_t> numbers{kMost, 5, kMost - 7, 1, std::uint64_t{1} << 63U, 0};
+  std::vector<std::uint64_t> numbers{kLargest, 5, kLargest - 7, 1, std::uint64_t{1} << 63U, 0};
   const WideSum whole = sum_of(numbers);
   WideSum parts = sum_of({numbers[5], numbers[1], numbers[0]});
   parts += sum_of({numbers[4], numbers[3], numbers[2]});
