@@ -26,7 +26,7 @@ std::vector<std::uint32_t> folds_of(std::span<const std::size_t> order, std::siz
 /// A score of all sites of a problem. @param how  folds: of the blocks of all sites, one site after the other
 Score joined_score(const FitProblem& problem, const std::vector<std::vector<BlockRuns>>& runs, ScoreOptions how);
 
-/// What a cross-validation is for. Each has trials of its own, so that a choice is confirmed by others than made it.
+/// Purpose of a cross-validation: to choose an effect, or to confirm the choice with other trials.
 enum class Judges : std::uint8_t { Choice, Confirmation };
 
 /// Simulates blocks out of their folds: each by the minimum of the quadratic model of the other folds' rows. The parts

@@ -258,7 +258,7 @@ class TreeReader {
 
   void tell(ForestLayer& out) const {
     out.note = std::to_string(trees_.size()) + " trees, diameter " + diameters_.text() + " m, " +
-               whole_or_short(out.forest.density) + " per ha of the DEM" +
+               readable(out.forest.density) + " per ha of the DEM" +
                (species_ < 0 ? "; no field species: all as silver fir" : "");
     const auto warn = [&](std::uint64_t count, const std::string& what) {
       if (count > 0) out.warnings.push_back(path_ + ": " + std::to_string(count) + " " + what);

@@ -153,51 +153,52 @@ void warn_of_gaps(ScreenLayer& layer, const std::string& path, const Terrain& te
                              ": blocks do not get there, so that the crossings are lower bounds (unsafe)");
 }
 
+constexpr double kApart = 0.01;  // lines lie on each other within this [m]: places are rounded to millimetres
+
 /// The part of a straight piece that lies on another one, as distances from its start [m]; empty if less than 0.1 m
-/// does.
+/// does, as where lines only cross.
 Range overlap(const LinePiece& piece, const LinePiece& other) {
-  constexpr double kApart = 0.01, kLeast = 0.1;  // [m]: places are rounded to millimetres; lines that only cross
-  const Eigen::Vector2d way = piece.to - piece.from;
+  constexpr double kLeast = 0.1;
+  const Eigen::Vector2d way = piece.to - piece.from, line = other.to - other.from;
   const double length = way.norm();
-  const Eigen::Vector2d ahead = way / length;
   const auto along = [&](const Eigen::Vector2d& place) {
-    return std::clamp(ahead.dot(place - piece.from), 0.0, length);
+    return std::clamp(way.dot(place - piece.from) / length, 0.0, length);
   };
-  const double a = along(other.from), b = along(other.to);
-  const Range part{std::min(a, b), std::max(a, b)};
-  const Eigen::Vector2d line = other.to - other.from;
+  const auto [low, high] = std::minmax({along(other.from), along(other.to)});
   const auto beside = [&](double at) {
-    const Eigen::Vector2d place = piece.from + at * ahead - other.from;
+    const Eigen::Vector2d place = piece.from + at / length * way - other.from;
     const double share = std::clamp(line.dot(place) / line.squaredNorm(), 0.0, 1.0);
     return (place - share * line).norm();
   };
-  const bool on_it = part.high - part.low > kLeast && beside(part.low) < kApart && beside(part.high) < kApart;
-  return on_it ? part : Range{0.0, 0.0};
+  return high - low > kLeast && beside(low) < kApart && beside(high) < kApart ? Range{low, high} : Range{0.0, 0.0};
 }
 
-/// Length of a screen that lies on an earlier part of it [m].
+/// Length of the union of some parts of a line [m].
+double length_of_union(std::vector<Range> parts) {
+  std::ranges::sort(parts, {}, &Range::low);
+  double length = 0.0, end = 0.0;
+  for (const Range& part : parts) {
+    length += std::max(0.0, part.high - std::max(part.low, end));
+    end = std::max(end, part.high);
+  }
+  return length;
+}
+
+/// Length of a screen that lies on another part of it [m]. From west to east, so that only neighbours are compared.
 double doubled_length(const Screen& screen) {
   std::vector<LinePiece> pieces;
   append_pieces(0, screen.lines, pieces);
   std::erase_if(pieces, [](const LinePiece& piece) { return piece.from == piece.to; });
-  double length = 0.0;
+  const auto west = [](const LinePiece& piece) { return std::min(piece.from.x(), piece.to.x()); };
+  std::ranges::sort(pieces, {}, west);
+  std::vector<std::vector<Range>> parts(pieces.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const Eigen::Vector2d low = pieces[i].from.cwiseMin(pieces[i].to), high = pieces[i].from.cwiseMax(pieces[i].to);
-    std::vector<std::pair<double, double>> parts;
-    for (std::size_t k = 0; k < i; ++k) {
-      const Eigen::Vector2d &a = pieces[k].from, &b = pieces[k].to;
-      if ((a.cwiseMax(b).array() + 0.01 < low.array()).any() || (a.cwiseMin(b).array() - 0.01 > high.array()).any())
-        continue;
-      const Range part = overlap(pieces[i], pieces[k]);
-      if (part.high > part.low) parts.emplace_back(part.low, part.high);
-    }
-    std::ranges::sort(parts);
-    double end = 0.0;
-    for (const auto& [from, to] : parts) {
-      length += std::max(0.0, to - std::max(from, end));
-      end = std::max(end, to);
-    }
+    const double east = std::max(pieces[i].from.x(), pieces[i].to.x()) + kApart;
+    for (std::size_t k = i + 1; k < pieces.size() && west(pieces[k]) <= east; ++k)
+      if (const Range part = overlap(pieces[k], pieces[i]); part.high > part.low) parts[k].push_back(part);
   }
+  double length = 0.0;
+  for (std::vector<Range>& of_piece : parts) length += length_of_union(std::move(of_piece));
   return length;
 }
 

@@ -9,7 +9,6 @@
 #include "talus/base/version.hpp"
 #include "talus/io/gdal/input_access.hpp"
 #include "talus/io/gdal/lines.hpp"
-#include "talus/simulate/scenario/acting_effects.hpp"
 #include "talus/simulate/tally/histogram.hpp"
 #include "talus/terrain/no_height.hpp"
 
@@ -94,7 +93,7 @@ Json barriers_of(const LoadedScenario& loaded, const Totals& totals) {
 /// The effects that act; one that is given and does nothing is in the settings only.
 Json effects_of(const LoadedScenario& loaded) {
   Json list = Json::array();
-  for (const EffectUse& use : effects_in_use(loaded.scenario))
+  for (const EffectUse& use : loaded.effects)
     if (use.acts()) list.push_back({{"name", use.entry->name}, {"cells", use.cells}});
   return list;
 }

@@ -117,11 +117,9 @@ GivenFrequencies apply_weighting(const std::string& file, Scenario& scenario) {
     throw InputError(file +
                      ": [features] cannot be given with total, per_area or power_law of [frequency]: leave out one");
   if (says_how_often(given) || (of_features && not_by_features)) replace_frequencies(scenario, given);
-  if (spec.origins.contains("frequency.by_true_area")) {
-    read.by_true_area = given.by_true_area;
-    scenario.frequency.by_true_area = given.by_true_area;
-  }
-  if (scenario.frequency.by_true_area) read.by_true_area = true;  // of the run: it stays
+  const bool says_area = spec.origins.contains("frequency.by_true_area");
+  if (says_area) scenario.frequency.by_true_area = given.by_true_area;  // else that of the run stays
+  if (says_area || scenario.frequency.by_true_area) read.by_true_area = scenario.frequency.by_true_area;
   read_features(features, scenario, read);
   top.finish();
   if (!faults.empty()) throw InputError(faults.front());

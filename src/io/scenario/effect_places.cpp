@@ -6,7 +6,6 @@
 #include "io/gdal/layer.hpp"
 #include "talus/io/gdal/forest.hpp"
 #include "talus/io/gdal/rasters.hpp"
-#include "talus/simulate/scenario/acting_effects.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 #include "talus/simulate/scenario/stand_warnings.hpp"
 
@@ -67,7 +66,8 @@ void load_effect_places(const ScenarioSpec& spec, const Terrain& terrain, Scenar
 }
 
 void tell_of_effects(LoadedScenario& out) {
-  for (const EffectUse& use : effects_in_use(out.scenario)) {
+  out.effects = effects_in_use(out.scenario);
+  for (const EffectUse& use : out.effects) {
     if (!use.acts()) {
       out.warnings.push_back(use.idle);
       continue;

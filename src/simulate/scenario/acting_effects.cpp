@@ -69,7 +69,7 @@ std::string place_text(const Scenario& scenario, std::uint64_t cells, std::uint6
            with_decimals(length, 0) + " m";
   }
   return "acts in " + std::to_string(cells) + " of " + std::to_string(all) + " cells (" +
-         whole_or_short(number * grid.cell_x * grid.cell_y * 1e-4) + " ha)";
+         readable(number * grid.cell_x * grid.cell_y * 1e-4) + " ha)";
 }
 
 std::uint64_t cells_with_height(const Raster<float>& heights) {

@@ -7,10 +7,14 @@
 #include "talus/base/text.hpp"
 
 namespace talus {
+namespace {
 
+/// A number beside its key, as a scenario writes it: three digits, large ones whole.
 std::string whole_or_short(double number) {
   return std::abs(number) >= 999.5 ? with_decimals(number, 0) : with_digits(number, 3);
 }
+
+}  // namespace
 
 void Spread::add(double value) {
   low = std::min(low, value), high = std::max(high, value), sum += value;

@@ -35,7 +35,7 @@ std::string thin_text(double density) {
 }
 
 std::string thick_text(double basal_area) {
-  return std::string(kForest) + "the median basal area of the forest is about " + whole_or_short(basal_area) +
+  return std::string(kForest) + "the median basal area of the forest is about " + readable(basal_area) +
          " m2/ha, more wood than any stand has (20 to 80 in the mountains): it holds too many blocks (unsafe); is the "
          "diameter a girth, the density per another area?";
 }
@@ -66,8 +66,7 @@ void warn_of_drag(const Scenario& scenario, std::vector<std::string>& warnings) 
                              : "") +
                      "above c/m = " + text_of(kStuckRate) + " 1/s, here below " + with_digits(stuck, 2) +
                      " m, one is stuck and its fall approximate (unsafe if the stand does not hold it): coefficient "
-                     "does not grow with "
-                     "the block, see docs/effects.md");
+                     "does not grow with the block, see docs/effects.md");
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 namespace talus {
 
 /// The error of a model on measured data. docs/closing-the-loop.md, "The score". A model that gives the measured value
-/// exactly scores 0; one that knows no more than the spread of
-/// the measurements scores about 0.56 (in groups of `crossed`: 1).
+/// exactly scores 0; one that knows no more than the spread of the measurements scores about 0.56 (in groups of
+/// `crossed`: 1).
 
 /// The score of one group: one quantity at one place.
 struct GroupScore {

@@ -31,11 +31,11 @@ std::optional<std::string> barriers_note(const std::filesystem::path& folder);
 /// @param per_year  there are figures per year
 std::optional<std::string> wet_day_note(const std::filesystem::path& folder, bool per_year);
 
-/// What a hit of an object is where blocks break.
+/// Sentence on the hits of objects in a run whose blocks broke.
 inline constexpr const char* kHitsOfPieces =
     "hits of objects are falls: a block with its pieces counts once; maps of --width count every piece";
 
-/// The same, if blocks of the run broke.
+/// That sentence; nothing if no block of the run broke.
 std::optional<std::string> pieces_note(const std::filesystem::path& folder);
 
 /// "forest or other vegetation stood in the run (forest-stems)"; empty if none of these effects is of a stand.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "talus/io/origin/origin.hpp"
+#include "talus/simulate/scenario/acting_effects.hpp"
 #include "talus/simulate/scenario/scenario.hpp"
 
 namespace talus::io {
@@ -19,6 +20,7 @@ struct LoadedScenario {
   std::vector<Setting> settings;
   std::vector<InputFile> inputs;
   std::vector<Reprojection> reprojections;
+  std::vector<EffectUse> effects;            ///< that are on, and where they act
   std::vector<std::string> notes;            ///< what was read, for `run` and `check`; one line each
   std::vector<std::string> warnings;         ///< one line each
   std::shared_ptr<const ScenarioSpec> spec;  ///< content of the file and the flags; null for a profile

@@ -8,9 +8,6 @@
 
 namespace talus {
 
-/// A number for a reader: three digits, large ones whole and without an exponent: "0.045", "386", "4500".
-std::string whole_or_short(double number);
-
 /// Smallest, largest and mean of some numbers.
 struct Spread {
   double low = std::numeric_limits<double>::infinity(), high = 0.0, sum = 0.0;

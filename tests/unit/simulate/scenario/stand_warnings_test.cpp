@@ -22,14 +22,14 @@ std::vector<std::string> of_forest(const Scenario& s) {
   return stand_warnings(*find_effect("forest-stems"), s);
 }
 
-/// What a forest of equal stems is warned of.
+/// Warnings of a forest of equal stems.
 std::vector<std::string> of_stand(double density, double diameter) {
   Scenario s = on_four_hectares();
   s.effects.forest_stems.density = density, s.effects.forest_stems.diameter = diameter;
   return of_forest(s);
 }
 
-/// The same from rasters that have a forest in 60 of the 100 cells.
+/// Warnings of a forest from rasters, in 60 of the 100 cells.
 std::vector<std::string> of_rasters(double density, double diameter) {
   Scenario s = on_four_hectares();
   auto map = std::make_shared<ForestMap>();
@@ -42,7 +42,7 @@ std::vector<std::string> of_rasters(double density, double diameter) {
   return of_forest(s);
 }
 
-/// The same from a list: the square of `per_side` trees on one hectare, none on the others.
+/// Warnings of a forest from a list of trees: `per_side` x `per_side` trees on one hectare, none on the others.
 std::vector<std::string> of_list(int per_side, double diameter) {
   Scenario s = on_four_hectares();
   std::vector<Tree> trees;
