@@ -120,6 +120,12 @@ std::string joined(std::span<const std::string> words) {
   return result;
 }
 
+std::string listed(std::span<const std::string> words) {
+  constexpr std::size_t kShown = 8;
+  const std::string shown = joined(words.first(std::min(kShown, words.size())));
+  return words.size() > kShown ? shown + " and " + std::to_string(words.size() - kShown) + " more" : shown;
+}
+
 std::string list_text(const std::vector<double>& values) {
   std::vector<std::string> words;
   words.reserve(values.size());

@@ -1,5 +1,5 @@
 """`talus diagnose` with several base fits and with every block out of its fold: a small campaign, few trials.
-Folds that do not choose: Nested.AFoldNeverSeesItsOwnRows."""
+Quick folds: Nested.QuickFoldsRefitTheNumbersToTheOtherRows."""
 import unittest
 
 import luck_test
@@ -59,6 +59,8 @@ class Repeated(luck_test.Luck):
     def test_wrong_choices(self):
         campaign, out = self.path("campaign.toml"), self.path("out")
         self.fails(2, "--nested and --no-nested", arguments=("diagnose", campaign, "-o", out, "--nested", "--no-nested"))
+        self.fails(2, "--quick-folds and --no-quick-folds",
+                   arguments=("diagnose", campaign, "-o", out, "--quick-folds", "--no-quick-folds"))
         self.tables(self.path("out-held"), [[*b[:6], "1"] for b in self.blocks], *self.own()[1:])
         held, few = self.path("out-held/campaign.toml"), ("--folds", "13")  # a refusal of all 24 rows comes soon
         self.fails(2, "cross-validation in 13 folds needs at least 26 fitting rows, not 24", "--no-nested", arguments=("diagnose", held, "-o", out, "--all-rows", *few))

@@ -112,7 +112,7 @@ class Calibrate(Sites):
             rows = list(csv.reader(file))
         self.table("b", "blocks", ",".join(rows[0]), [[*r[:-1], "1"] for r in rows[1:]])
         self.fails(2, b, "nothing to fit to", arguments=("diagnose", a, b, *out))
-        for flag in (("--all-rows",), ("--nested",), ("--quick-folds",), ("--base-fits", "5")):
+        for flag in (("--all-rows",), ("--nested",), ("--quick-folds",), ("--no-quick-folds",), ("--base-fits", "5")):
             self.fails(2, "flag " + flag[0], "not with several campaigns", arguments=("diagnose", a, b, *flag, *out))
         self.fails(2, "where no site holds rows out", arguments=("diagnose", a, b, "--nested", *out))
         self.assertFalse(os.path.exists(self.path("out")))

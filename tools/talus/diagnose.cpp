@@ -19,7 +19,7 @@ namespace {
 
 struct Options : CampaignCommand {
   talus::DiagnoseOptions how;
-  bool nested = false, no_nested = false, quick_folds = false;
+  bool nested = false, no_nested = false, quick_folds = false, no_quick_folds = false;
   std::vector<std::string> of_one;  ///< given flags that hold for one campaign alone
 };
 
@@ -96,7 +96,9 @@ void choose_folds(const Options& options, const talus::Campaign& campaign, talus
   const auto fitting = talus::fitting_rows(campaign);
   const bool all = std::count(fitting.begin(), fitting.end(), false) == 0;
   how.nested = options.nested || (all && !options.no_nested);
-  how.naming_in_folds = !options.quick_folds;
+  if (options.quick_folds && options.no_quick_folds)
+    throw talus::InputError("flags --quick-folds and --no-quick-folds exclude each other");
+  if (options.quick_folds || options.no_quick_folds) how.naming_in_folds = options.no_quick_folds;
 }
 
 int diagnose(const Options& options) {
@@ -167,15 +169,16 @@ void add_diagnose(CLI::App& app, Action& action) {
            ->check(CLI::Range(2, 100)),
        default_of(static_cast<double>(how.outer_folds)));
   command->add_flag("--quick-folds", options->quick_folds,
-                    "the folds fit the effects that all rows chose, without choosing anew: half the time, and an error "
-                    "that has seen the choice");
+                    "the folds take the effects that all rows chose, and refit the numbers alone: little time, and an "
+                    "error that has seen the choice; so is done where the diagnosis of all rows is costly");
+  command->add_flag("--no-quick-folds", options->no_quick_folds, "never do so");
   command->footer(
       "Where fewer than 72 blocks are fitted, each gets more trajectories, so that there are as many in all; at most "
       "four times as many, and never fewer than 20.\n\n"
       "Examples:\n  talus diagnose campaign.toml -o diagnosis\n"
       "  talus diagnose a/campaign.toml b/campaign.toml -o diagnosis\n\nThen open diagnosis/report.html.");
   command->callback([&action, options, command] {
-    for (const char* flag : {"--base-fits", "--all-rows", "--nested", "--quick-folds"})
+    for (const char* flag : {"--base-fits", "--all-rows", "--nested", "--quick-folds", "--no-quick-folds"})
       if (command->count(flag) > 0) options->of_one.emplace_back(flag);
     options->how.later_level = std::min(options->how.later_level, options->how.first_level);
     action = [options] { return diagnose(*options); };

@@ -42,6 +42,9 @@ std::string csv_field(double value);
 /// The words in one text: "a, b, c".
 std::string joined(std::span<const std::string> words);
 
+/// The first eight words, and how many more there are: "a, b and 3 more".
+std::string listed(std::span<const std::string> words);
+
 /// Numbers as in a scenario file: "[30, 300]".
 std::string list_text(const std::vector<double>& values);
 

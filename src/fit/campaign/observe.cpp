@@ -209,9 +209,13 @@ class Observation {
     Instrument instrument(campaign_, model_, world_.cover, screens_, options_.effort);
     Tracer tracer(world_, options_.lanes);
     Unit unit{};
-    tracer.run(
-        [&](Release& release, std::uint64_t& tag) { return next(unit, release, tag); },
-        [&](const Release& release, const Path& path, std::uint64_t tag) { done(instrument, release, path, tag); });
+    std::uint64_t vertices = 0;
+    tracer.run([&](Release& release, std::uint64_t& tag) { return next(unit, release, tag); },
+               [&](const Release& release, const Path& path, std::uint64_t tag) {
+                 vertices += path.vertices.size();
+                 done(instrument, release, path, tag);
+               });
+    if (options_.traced != nullptr) *options_.traced += vertices;
   }
 
   /// The next trial of the unit of a thread, or of another that it takes.

@@ -30,13 +30,13 @@ class DiagnosisLoop {
         fits_(campaign, options_, rows_, [this](double share) { return proceeds(share); }) {
     const auto fitting = std::count(rows_.begin(), rows_.end(), true);
     options_.trials = raised_for_few_blocks(options.trials, static_cast<std::size_t>(fitting), rules_);
+    options_.traced = &traced_;
   }
 
   Diagnosis run(const Model& start) {
     Diagnosis d;
     d.with_effects = fits_.fit_ground(start, scope_.brief);
     advance(kGroundShare);
-    if (scope_.given) return with_given_effects(std::move(d));
     std::vector<std::string> found;
     for (int round = 0; round <= options_.most_effects; ++round) {
       const double level = options_.level_of_round(d.rounds.size());
@@ -55,36 +55,11 @@ class DiagnosisLoop {
     if (!found.empty()) d.base = fits_.simulated_anew(std::move(d.base));
     d.trials = options_.trials;
     d.times = fits_.times();
+    d.vertices = traced_;
     return d;
   }
 
  private:
-  /// Adds effects that were chosen elsewhere, each at its best place, without asking whether they are significant.
-  Diagnosis with_given_effects(Diagnosis d) {
-    std::vector<std::string> found;
-    d.with_effects = fits_.begin_round(std::move(d.with_effects));
-    d.base = d.with_effects;
-    for (const std::string& effect : scope_.effects) {
-      const FittedModel& base = d.with_effects;
-      std::vector<Candidate> candidates = candidates_of(campaign_, base.model, base.runs, found, rules_);
-      std::erase_if(candidates, [&](const Candidate& c) { return c.effect != effect; });
-      if (candidates.empty()) continue;  // nothing was measured that it could change
-      const ScoreTest test = tested(base, candidates);
-      const EffectVerdict placed = in_better_zone(base, test.effects.front(), candidates);
-      const Candidate merged =
-          merged_candidate(campaign_, axis_of(campaign_, base.runs), candidates, placed.best.members, rules_);
-      FittedCandidate fitted = fits_.fit_effect(base, placed, merged, family_of(effect));
-      if (fitted.refined) fits_.continue_fit(base, fitted);
-      found.push_back(effect);
-      d.rounds.emplace_back();
-      d.rounds.back().effect = effect;
-      d.rounds.back().where = fitted.where;
-      d.with_effects = fits_.begin_round(std::move(fitted.fitted));
-    }
-    d.trials = options_.trials;
-    return d;
-  }
-
   void advance(double share = 0.02) { progress_ = std::min(0.95, progress_ + share); }
   /// @param share  of a fit; only the fit of the ground, the longest, is shown
   bool proceeds(double share = 1.0) {
@@ -104,6 +79,7 @@ class DiagnosisLoop {
     how.replicates = options_.replicates(kFamilies);
     how.rules = rules_;
     how.proceed = [this] { return proceeds(); };
+    how.traced = &traced_;
     return how;
   }
 
@@ -254,6 +230,7 @@ class DiagnosisLoop {
   std::vector<std::uint32_t> streams_;
   DiagnoseOptions options_;
   const DiagnosisRules& rules_;
+  TracedVertices traced_{0};
   EffectFits fits_;
   double progress_ = 0.0, ground_ = 0.0;
 };

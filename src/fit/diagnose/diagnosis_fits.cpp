@@ -13,6 +13,7 @@ FitOptions search_options(const DiagnoseOptions& options, const std::function<bo
   how.threads = options.threads;
   how.rules = options.rules.search;
   how.proceed = proceed;
+  how.traced = options.traced;
   return how;
 }
 
@@ -82,6 +83,7 @@ std::vector<Score> OutOfFold::objectives(const DiagnoseOptions& options, std::ui
   const std::vector<std::uint32_t> streams = problem_.streams();
   const std::vector<bool> rows = problem_.rows();
   ObserveOptions how{options.trials.compare, options.seed, 0, options.threads, {}, {}, effort_of(rules.search)};
+  how.traced = options.traced;
   std::vector<Score> scores;
   for (std::uint32_t number = 0; number < rules.fold_orders; ++number) {
     how.first_trial = round + (1 + before + number) * how.trials;  // new ones for each

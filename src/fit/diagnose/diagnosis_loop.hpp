@@ -8,9 +8,7 @@ struct LoopScope {
   /// For a repetition: half the trials in the fit of the ground; fits only the effects that may be chosen, goes on with
   /// the best two, and leaves out the last, longest fits.
   bool brief = false;
-  bool first_round = false;          ///< ends with the verdict of the first round
-  bool given = false;                ///< adds `effects` instead of choosing
-  std::vector<std::string> effects;  ///< in their order
+  bool first_round = false;  ///< ends with the verdict of the first round
 };
 
 /// Fit, test and choice on the fitting rows of a campaign. Throws FitInterrupted when `proceed` returns false.

@@ -55,13 +55,15 @@ std::vector<Parameter> joined(std::vector<Parameter> ground, const std::vector<P
 }  // namespace
 
 ObserveOptions EffectFits::observe_options(std::uint32_t trials) const {
-  return {trials,
-          options_.seed,
-          first_trial_of(options_, round_),
-          options_.threads,
-          rows_,
-          {},
-          effort_of(options_.rules.search)};
+  ObserveOptions how{trials,
+                     options_.seed,
+                     first_trial_of(options_, round_),
+                     options_.threads,
+                     rows_,
+                     {},
+                     effort_of(options_.rules.search)};
+  how.traced = options_.traced;
+  return how;
 }
 
 FitOptions EffectFits::fit_options() const {

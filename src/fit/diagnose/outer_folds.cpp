@@ -58,14 +58,6 @@ void forget(MeasuredBlock& block) {
   block.samples.clear();
 }
 
-OuterFold loop_of(const Campaign& campaign, const OuterFolds& folds, std::uint32_t fold, const Diagnosis& found,
-                  bool naming) {
-  OuterFold loop = left_out(campaign, folds, fold);
-  note_found(loop, found.rounds);
-  if (naming) loop.p_value = found.rounds.front().p_value;
-  return loop;
-}
-
 /// Settings with which every left-out block is simulated, whichever model it is.
 ObserveOptions unseen_runs(const Campaign& campaign, const DiagnoseOptions& options, std::uint32_t trials) {
   ObserveOptions how;
@@ -76,19 +68,17 @@ ObserveOptions unseen_runs(const Campaign& campaign, const DiagnoseOptions& opti
   return how;
 }
 
-void simulate_candidates(const Campaign& campaign, const DiagnoseOptions& options, const Diagnosis& whole,
-                         NestedValidation& nested) {
-  if (whole.base.free.empty()) return;
-  const std::vector<bool> rows = fitting_rows(campaign);
-  const EffectFits fits(campaign, options, rows,
-                        [&](double) { return !options.proceed || options.proceed(kCandidates); });
-  const ObserveOptions how = unseen_runs(campaign, options, nested.trials);
-  const auto simulated = [&](const FittedModel& fitted) {
-    return fits.out_of_fold(fitted, nested.folds.fold_of, nested.folds.count, how);
-  };
-  nested.ground = simulated(whole.base);
-  for (const FittedCandidate& candidate : whole.rounds.front().candidates)
-    nested.candidates.push_back(candidate.refined ? simulated(candidate.fitted) : std::vector<BlockRuns>{});
+/// Repeats the loop without each fold and simulates the fold's blocks with what it found.
+void validate_by_choosing(const Campaign& campaign, const Model& start, DiagnosisWork& work, NestedValidation& nested) {
+  LoopScope scope;
+  scope.brief = true;
+  for (std::uint32_t fold = 0; fold < nested.folds.count; ++fold) {
+    const Diagnosis part = run_loop(without_fold(campaign, nested.folds, fold), start, work.next(true), scope);
+    simulate_fold(campaign, work.options(), fold, part.base.model, part.with_effects.model, nested);
+    nested.loops.push_back(left_out(campaign, nested.folds, fold));
+    note_found(nested.loops.back(), part.rounds);
+    nested.loops.back().p_value = part.rounds.front().p_value;
+  }
 }
 
 }  // namespace
@@ -148,7 +138,6 @@ OuterFold left_out(const Campaign& campaign, const OuterFolds& folds, std::uint3
 NestedValidation folds_to_validate(const Campaign& campaign, const DiagnoseOptions& options, std::uint32_t trials) {
   NestedValidation nested;
   nested.folds = outer_folds(campaign, fitting_rows(campaign), options.outer_folds, options.seed);
-  nested.naming = options.naming_in_folds;
   nested.trials = trials;
   nested.base.resize(campaign.blocks.size());
   nested.found.resize(campaign.blocks.size());
@@ -169,19 +158,29 @@ void simulate_fold(const Campaign& campaign, const DiagnoseOptions& options, std
 NestedValidation nested_validation(const Campaign& campaign, const Model& start, DiagnosisWork& work,
                                    const Diagnosis& whole) {
   NestedValidation nested = folds_to_validate(campaign, work.options(), whole.trials.compare);
-  LoopScope scope;
-  scope.brief = true;
-  scope.given = !nested.naming;
-  for (const DiagnosisRound& round : whole.rounds)
-    if (names_effect(round.effect)) scope.effects.push_back(round.effect);
-  for (std::uint32_t fold = 0; fold < nested.folds.count; ++fold) {
-    const Diagnosis part = run_loop(without_fold(campaign, nested.folds, fold), start, work.next(true), scope);
-    simulate_fold(campaign, work.options(), fold, part.base.model, part.with_effects.model, nested);
-    nested.loops.push_back(loop_of(campaign, nested.folds, fold, part, nested.naming));
-  }
+  const bool costly = 1e-9 * static_cast<double>(whole.vertices) > work.options().rules.costly;
+  nested.naming = work.options().naming_in_folds.value_or(!costly);
+  if (nested.naming) validate_by_choosing(campaign, start, work, nested);
   DiagnoseOptions options = work.options();
   options.trials = whole.trials;
-  simulate_candidates(campaign, options, whole, nested);
+  const std::vector<bool> rows = fitting_rows(campaign);
+  const EffectFits fits(campaign, options, rows,
+                        [&](double) { return !options.proceed || options.proceed(kCandidates); });
+  const ObserveOptions how = unseen_runs(campaign, options, nested.trials);
+  const auto refitted = [&](const FittedModel& fitted) {
+    return fits.out_of_fold(fitted, nested.folds.fold_of, nested.folds.count, how);
+  };
+  nested.ground = refitted(whole.base);
+  for (const FittedCandidate& candidate : whole.rounds.front().candidates)
+    nested.candidates.push_back(candidate.refined ? refitted(candidate.fitted) : std::vector<BlockRuns>{});
+  if (!nested.naming) {
+    nested.base = nested.ground;
+    nested.found = refitted(whole.with_effects);
+    for (std::uint32_t fold = 0; fold < nested.folds.count; ++fold) {
+      nested.loops.push_back(left_out(campaign, nested.folds, fold));
+      note_found(nested.loops.back(), whole.rounds);
+    }
+  }
   return nested;
 }
 

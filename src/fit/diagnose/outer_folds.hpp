@@ -30,9 +30,10 @@ void note_found(OuterFold& loop, const std::vector<Round>& rounds) {
   }
 }
 
-/// Repeats the loop without each fold and simulates the fold's blocks with what it found.
+/// Simulates the blocks of each fold with what is found without them: by the whole loop, or, where the folds do not
+/// choose (`DiagnoseOptions::naming_in_folds`), by refitting the numbers of what all rows have found.
 ///
-/// @param whole  the diagnosis of all fitting rows: its candidates, and the effects that folds take which do not choose
+/// @param whole  the diagnosis of all fitting rows
 NestedValidation nested_validation(const Campaign& campaign, const Model& start, DiagnosisWork& work,
                                    const Diagnosis& whole);
 

@@ -229,8 +229,9 @@ ScoreTest score_test(const Campaign& campaign, const TestedModel& base, std::spa
                      const std::vector<bool>& rows, const ScoreTestOptions& options) {
   const auto observed = [&](const Model& model) {
     if (options.proceed && !options.proceed()) throw FitInterrupted{};
-    return observe(campaign, model,
-                   {options.trials, options.seed, 0, options.threads, rows, {}, effort_of(options.rules.search)});
+    ObserveOptions how{options.trials, options.seed, 0, options.threads, rows, {}, effort_of(options.rules.search)};
+    how.traced = options.traced;
+    return observe(campaign, model, how);
   };
   const DiagnosisRules& rules = options.rules;
   const ResidualSpace space(campaign, base.runs, rules);

@@ -35,7 +35,7 @@ void IdleFeatures::mark(const std::string& name, const Parts& feature, const std
 
 void IdleFeatures::warn(std::vector<std::string>& warnings) const {
   const auto add = [&](const std::vector<std::string>& names, const std::string& what, const std::string& way_out) {
-    if (!names.empty()) warnings.push_back(path_ + ": " + kind_ + " " + what + ": FID " + list_of(names) + way_out);
+    if (!names.empty()) warnings.push_back(path_ + ": " + kind_ + " " + what + ": FID " + listed(names) + way_out);
   };
   const Grid& grid = terrain_.heights.grid;
   add(without_geometry_, "without geometry, which have no effect", "");

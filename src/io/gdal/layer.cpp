@@ -368,16 +368,4 @@ std::string fields_note(const std::string& path, const std::vector<FieldUse>& fi
   return path + ": fields read: " + joined(words);
 }
 
-std::string list_of(const std::vector<std::int64_t>& ids) {
-  std::vector<std::string> names;
-  for (const std::int64_t id : ids) names.push_back(std::to_string(id));
-  return list_of(names);
-}
-
-std::string list_of(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size() && i < 8; ++i) text += (i == 0 ? "" : ", ") + names[i];
-  return names.size() > 8 ? text + " and " + std::to_string(names.size() - 8) + " more" : text;
-}
-
 }  // namespace talus::io

@@ -153,8 +153,4 @@ void for_each_cell(const OGRGeometry& geometry, const Grid& grid, bool touched, 
 /// "cliffs.gpkg: fields read: diameter 0.5 to 2 m (2 of 3 features, 1 empty), name (3 of 3 features)".
 std::string fields_note(const std::string& path, const std::vector<FieldUse>& fields, std::size_t features);
 
-/// "3, 7, 12 and 5 more".
-std::string list_of(const std::vector<std::int64_t>& ids);
-std::string list_of(const std::vector<std::string>& names);
-
 }  // namespace talus::io

@@ -34,7 +34,7 @@ class LinesOff {
             std::vector<std::string>& warnings) const {
     if (!names_.empty())
       warnings.push_back(where + ": lines wholly off the DEM, which nothing will cross: " + what + " " +
-                         list_of(names_) + "; they reach over " + extents_text(box_, from, terrain_));
+                         listed(names_) + "; they reach over " + extents_text(box_, from, terrain_));
   }
 
  private:
@@ -149,7 +149,7 @@ void warn_of_gaps(ScreenLayer& layer, const std::string& path, const Terrain& te
   }
   if (!lacks.empty())
     layer.warnings.push_back(path + ": where the DEM has no height (off it, in its outer half cell or in a gap) lie " +
-                             list_of(lacks) +
+                             listed(lacks) +
                              ": blocks do not get there, so that the crossings are lower bounds (unsafe)");
 }
 

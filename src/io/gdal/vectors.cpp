@@ -306,12 +306,12 @@ class Placer {
                        " cells, must have in one at least");
     if (out_.cells.empty()) throw InputError(off_dem_text(path, box_, layer, terrain));
     if (!without_geometry_.empty())
-      out_.warnings.push_back(path + ": features without geometry: FID " + list_of(without_geometry_));
+      out_.warnings.push_back(path + ": features without geometry: FID " + listed(without_geometry_));
     if (!off_map_.empty())
-      out_.warnings.push_back(path + ": features wholly off the DEM, which release nothing: FID " + list_of(off_map_));
+      out_.warnings.push_back(path + ": features wholly off the DEM, which release nothing: FID " + listed(off_map_));
     if (!without_height_.empty())
       out_.warnings.push_back(path + ": features where the DEM has no heights, which release nothing: FID " +
-                              list_of(without_height_));
+                              listed(without_height_));
     if (!lacks_.empty()) out_.warnings.push_back(path + ": " + lacks_text(lacks_));
     if (at_edge_ + without_terrain_ > 0) out_.warnings.push_back(path + ": " + gaps_text());
   }

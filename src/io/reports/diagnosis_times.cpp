@@ -27,7 +27,7 @@ Json times_json(const DiagnosisRecord& record) {
     if (!time.effect.empty()) row["effect"] = time.effect;
     phases.push_back(row);
   }
-  return {{"cpu", json_of(record.cpu_seconds)}, {"phases", phases}};
+  return {{"cpu", json_of(record.cpu_seconds)}, {"vertices", record.diagnosis.vertices}, {"phases", phases}};
 }
 
 std::string time_line(const DiagnosisRecord& record) {

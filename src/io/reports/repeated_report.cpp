@@ -53,6 +53,17 @@ std::string clusters_text(const BeforeAfter& e, const DiagnosisRecord& record) {
               : " (seen in fewer than three of them, by block: " + joined(e.clusters.by_block) + ")");
 }
 
+/// Says that the folds did not choose, and why; empty where they did.
+std::string quick_folds_note(const DiagnosisRecord& record) {
+  const Diagnosis& d = record.diagnosis;
+  if (!d.nested || d.nested->naming) return "";
+  const std::string what = "the folds took the effects that all rows chose: the error has seen the choice";
+  if (record.options.naming_in_folds) return what;
+  return what + "; the diagnosis of all rows traced " + with_decimals(1e-9 * static_cast<double>(d.vertices), 1) +
+         " billion vertices, more than " + with_decimals(record.options.rules.costly, 1) +
+         " (--no-quick-folds chooses anew)";
+}
+
 }  // namespace
 
 std::string folds_text(const NestedValidation& nested) {
@@ -175,6 +186,7 @@ std::string repeated_lines(const DiagnosisRecord& record) {
     text += "out of fold (" + std::to_string(d.nested->folds.count) + " folds by " +
             (d.nested->folds.by_group ? "group" : "block") + (d.nested->naming ? "), found: " : "), given: ") +
             folds_text(*d.nested) + "\n";
+  if (const std::string note = quick_folds_note(record); !note.empty()) text += "  " + note + "\n";
   return text;
 }
 
@@ -200,6 +212,7 @@ Markup repeated_html(const DiagnosisRecord& record) {
               (std::isnan(loop.p_value) ? "" : with_digits(loop.p_value, 2)) + "</td></tr>\n";
     }
     html += "</table>\n";
+    if (const std::string note = quick_folds_note(record); !note.empty()) html += "<p>"_html + note + ".</p>\n";
   }
   html +=
       "<h2>Evidence</h2>\n<p>Each effect at its best place against the ground alone, on rows that its numbers have "

@@ -161,12 +161,11 @@ void ObjectLayer::State::warn_of_places(const std::string& path, const std::vect
     throw InputError(path +
                      ": none of its objects lies where the DEM has a height (it has none in its gaps and in its "
                      "outer half cell), so that no block gets to them: fill the gaps of the DEM, or take a larger one");
-  if (!off.empty())
-    warnings.push_back(path + ": objects wholly off the DEM, of which nothing is told: " + list_of(off));
+  if (!off.empty()) warnings.push_back(path + ": objects wholly off the DEM, of which nothing is told: " + listed(off));
   if (!gaps.empty())
     warnings.push_back(
         path +
-        ": objects wholly in gaps of the DEM or in its outer half cell, of which nothing is told: " + list_of(gaps));
+        ": objects wholly in gaps of the DEM or in its outer half cell, of which nothing is told: " + listed(gaps));
   if (partial.empty()) return;
   std::ranges::stable_sort(partial, std::ranges::greater{}, [this](std::size_t i) { return without_height[i]; });
   std::string text;
@@ -187,7 +186,7 @@ void ObjectLayer::State::warn_of_names(const std::string& path) {
                        ": several objects have the same name (field name, else id, else the number of the "
                        "feature), so that their rows in objects_curves.csv and objects_sources.csv cannot be told "
                        "apart: " +
-                       list_of(std::vector<std::string>(twice.begin(), twice.end())));
+                       listed(std::vector<std::string>(twice.begin(), twice.end())));
 }
 
 ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, double line_width)

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "io/files/checksum.hpp"
-#include "io/gdal/layer.hpp"
 #include "io/scenario/frequency_keys.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
@@ -68,7 +67,7 @@ void require_all_features(const Scenario& scenario, const std::string& file) {
     names.push_back(feature.name.empty() ? std::to_string(feature.id) : feature.name);
   }
   if (!names.empty())
-    throw InputError(file + ": [features] does not list " + list_of(names) +
+    throw InputError(file + ": [features] does not list " + listed(names) +
                      ", must list every feature of the sources: the frequencies of the run are not by feature, so that "
                      "none can stay");
 }

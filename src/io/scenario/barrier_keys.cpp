@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "io/gdal/layer.hpp"
 #include "scenario_text.hpp"
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
@@ -96,7 +95,7 @@ void warn_of_unlikely_barriers(std::span<const Barrier> barriers, std::vector<st
     if (b.height > 0.0 && std::isfinite(b.capacity) && (b.capacity > kMostCapacity || b.height > kMostHeight))
       names.push_back(b.id + " (" + text_of(1e-3 * b.capacity) + " kJ, " + text_of(b.height) + " m)");
   if (!names.empty())
-    warnings.push_back("barriers: " + list_of(names) + ": above " + text_of(1e-3 * kMostCapacity) + " kJ or " +
+    warnings.push_back("barriers: " + listed(names) + ": above " + text_of(1e-3 * kMostCapacity) + " kJ or " +
                        text_of(kMostHeight) +
                        " m, more than any net: is the capacity in J, or is it a dam? Give kJ and m, and a dam the "
                        "capacity inf");

@@ -78,6 +78,14 @@ TEST(Padded, IsNeverCut) {
   EXPECT_EQ(padded("abcde", 4), "abcde");
 }
 
+TEST(Listed, NamesEightAndCountsTheRest) {
+  std::vector<std::string> words(8, "a");
+  EXPECT_EQ(listed(words), "a, a, a, a, a, a, a, a");
+  words.insert(words.end(), 3, "b");
+  EXPECT_EQ(listed(words), "a, a, a, a, a, a, a, a and 3 more");
+  EXPECT_EQ(listed({}), "");
+}
+
 TEST(NearestName, IsTheOneWithFewestChanges) {
   const std::vector<std::string> names{"density", "diameter", "axes"};
   EXPECT_EQ(nearest_name("dmesity", names), "density");  // one letter more, one exchanged

@@ -76,7 +76,7 @@ ALGORITHMS = [
     {"id": "diagnose", "command": "diagnose", "help": "closing-the-loop", "phases": ["diagnose"], "folder": "out",
      "nothing to load": True,
      "advanced": {"fit", "trials", "test-trials", "most-effects", "level", "base-fits", "all-rows", "nested", "no-nested",
-                  "folds", "quick-folds"},
+                  "folds", "quick-folds", "no-quick-folds"},
      "files": {"fitted": "fitted.toml", "report": "report.html", "record": "diagnosis.json"}},
     {"id": "report", "command": "report", "help": "report", "phases": []},
 ]

@@ -78,6 +78,7 @@ LABELS = {
     "no-nested": ("Never repeat it without a fold", "Sie nie ohne einen Teil wiederholen"),
     "folds": ("Number of folds", "Zahl der Teile"),
     "quick-folds": ("Do not choose the effects anew in a fold", "In den Teilen die Effekte nicht neu wählen"),
+    "no-quick-folds": ("Always choose them anew in a fold", "Sie in den Teilen immer neu wählen"),
     "campaign": ("Campaigns (campaign.toml)", "Messkampagnen (campaign.toml)"),
     "title": ("Title", "Titel"),
     "attribution": ("Attribution of terrain and maps", "Quellenangabe zu Gelände und Karten"),

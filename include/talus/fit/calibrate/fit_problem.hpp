@@ -27,6 +27,7 @@ struct FitOptions {
   std::span<const Evaluation> known = {};  ///< evaluations of the same parameters and rows, for the quadratic model
   SearchRules rules;                       ///< numbers that no user sets
   std::function<bool(double)> proceed;     ///< receives the share done, 0..1; false ends the fit. May be empty
+  TracedVertices* traced = nullptr;        ///< as in ObserveOptions
 };
 
 /// The result of a fit.

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <atomic>
 #include <functional>
 #include <span>
 
@@ -63,6 +64,9 @@ inline constexpr std::uint32_t kUnseen = 1'000'000'000;
 /// Thrown when a `proceed` returns false: the user has ended the fit.
 struct FitInterrupted {};
 
+/// Vertices that simulations have traced: what they cost, the same whatever the machine and the threads.
+using TracedVertices = std::atomic<std::uint64_t>;
+
 struct ObserveOptions {
   std::uint32_t trials = 100;  ///< per block
   std::uint64_t seed = 1;
@@ -72,6 +76,7 @@ struct ObserveOptions {
   std::function<bool()> proceed;  ///< called now and then, from any thread; false ends the work. May be empty
   Effort effort = {};             ///< what each trajectory may cost; searches bound it
   int lanes = 0;                  ///< trajectories in one instruction, as for Tracer; 0: as many as the processor has
+  TracedVertices* traced = nullptr;  ///< those of this simulation are added; null: not counted
 };
 
 /// Simulates every block of a campaign and measures the paths as the campaign did.

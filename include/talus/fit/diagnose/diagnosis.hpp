@@ -92,6 +92,7 @@ struct Diagnosis {
   FittedModel with_effects;            ///< the last model; the base if nothing was found
   TrialsPerBlock trials;               ///< numbers that were simulated
   Timesheet times;                     ///< where the processor time went
+  std::uint64_t vertices = 0;          ///< traced by the loop over all fitting rows
   Stability stability;                 ///< the verdicts of independent base fits, this one's among them
   std::optional<NestedValidation> nested;
 };
@@ -112,9 +113,12 @@ struct DiagnoseOptions {
   int base_fits = 5;    ///< whose verdicts are compared; 1: this diagnosis alone
   bool nested = false;  ///< also repeats the loop without each outer fold
   std::size_t outer_folds = 5;
-  bool naming_in_folds = true;          ///< false: the folds take the effects that all rows chose
+  /// Whether the loop is repeated without each fold. False: a fold takes the effects that all rows chose, and its
+  /// numbers are the optimum of the quadratic model of the other rows. Not given: `DiagnosisRules::costly` decides.
+  std::optional<bool> naming_in_folds;
   DiagnosisRules rules;                 ///< numbers that no user sets
   std::function<bool(double)> proceed;  ///< receives the share done, 0..1; false ends the diagnosis. May be empty
+  TracedVertices* traced = nullptr;     ///< as in ObserveOptions
 };
 
 }  // namespace talus

@@ -79,6 +79,11 @@ struct DiagnosisRules {
   /// Share of `worth_naming` from which on the longer fit of an effect may yet get there [-].
   double half_way = 0.5;
 
+  // The folds
+  /// Vertices that a diagnosis of all rows may trace for its folds to choose their effects anew [1e9]: with the folds
+  /// it then takes less than twenty minutes on two processors. docs/diagnosis-time.md.
+  double costly = 2.5;
+
   // The choice
   /// Share of the objective that an effect must take away on the fitting rows [-]: gains differ by 1 to 2 % from seed
   /// to seed.

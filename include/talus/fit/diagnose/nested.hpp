@@ -38,7 +38,7 @@ struct OuterFold {
 /// Every fitting block simulated with models that have not seen it.
 struct NestedValidation {
   OuterFolds folds;
-  bool naming = true;  ///< false: the folds took the effects that all rows chose
+  bool naming = true;  ///< the folds chose their effects; false: they took those that all rows chose
   std::vector<OuterFold> loops;
   std::uint32_t trials = 0;
   std::vector<BlockRuns> base, found;  ///< by block, with the same random numbers: the ground alone, and what was found

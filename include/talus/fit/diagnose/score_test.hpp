@@ -48,9 +48,10 @@ struct ScoreTestOptions {
   std::uint32_t trials = 200;
   std::uint64_t seed = 1;
   int threads = 0;
-  int replicates = 2000;          ///< simulated data sets without an effect
-  DiagnosisRules rules;           ///< its candidates, residual and steps
-  std::function<bool()> proceed;  ///< called now and then, by one thread; false ends the test. May be empty
+  int replicates = 2000;             ///< simulated data sets without an effect
+  DiagnosisRules rules;              ///< its candidates, residual and steps
+  std::function<bool()> proceed;     ///< called now and then, by one thread; false ends the test. May be empty
+  TracedVertices* traced = nullptr;  ///< as in ObserveOptions
 };
 
 /// The model that is tested. The parts must outlive it.

@@ -7,6 +7,7 @@
 
 #include "support/campaigns.hpp"
 #include "talus/base/error.hpp"
+#include "talus/fit/diagnose/diagnose.hpp"
 #include "talus/fit/diagnose/several_sites.hpp"
 
 namespace talus::test {
@@ -69,12 +70,16 @@ TEST(OuterFolds, TooFewMeasurementsAreAnErrorBeforeTheWork) {
   EXPECT_THROW(require_fitting_rows(c, folds), InputError);
 }
 
-/// Options of two folds that take the effects of the whole diagnosis, with few trials.
-DiagnoseOptions two_quick_folds() {
+/// Options of two folds that fit one number of the ground and test what is left, with few trials.
+DiagnoseOptions two_folds() {
   DiagnoseOptions options;
   options.keys = {"theta_scale"};
   options.trials = {20, 20, 20};
-  options.naming_in_folds = false;
+  options.rules.most_of_one = 1.0;  // no more trials because the blocks are few
+  options.rules.arrangements = 100;
+  options.most_effects = 0;
+  options.nested = true;
+  options.base_fits = 1;
   options.threads = 1;
   options.outer_folds = 2;
   return options;
@@ -86,26 +91,30 @@ bool same(const BlockRuns& a, const BlockRuns& b) {
   return a.trials == b.trials && std::ranges::equal(a.x, b.x, equal) && std::ranges::equal(a.y, b.y, equal);
 }
 
+/// Mean speed at the first screen of the simulated fitting blocks of a fold [m/s].
+double speed_of_fold(const std::vector<BlockRuns>& runs, const OuterFolds& folds, std::uint32_t fold) {
+  double sum = 0.0, count = 0.0;
+  for (std::size_t b = 0; b < runs.size(); ++b) {
+    if (folds.fold_of[b] != fold) continue;
+    for (const double speed : runs[b].screens[0].speed)
+      if (!std::isnan(speed)) sum += speed, ++count;
+  }
+  return sum / count;
+}
+
 /// What a fold predicts of its blocks does not hang on what was measured of them, bit by bit.
 TEST(Nested, AFoldNeverSeesItsOwnRows) {
-  Campaign c = campaign_on_slope(45);
+  Campaign c = campaign_on_slope(24);
   measure(c, model_of_slope(), 77);
-  const DiagnoseOptions options = two_quick_folds();
+  const DiagnoseOptions options = two_folds();
   const OuterFolds folds = outer_folds(c, fitting_rows(c), 2, options.seed);
-  Diagnosis whole;
-  whole.rounds.emplace_back();
-  whole.trials = options.trials;
-  const auto nested = [&](const Campaign& campaign) {
-    DiagnosisWork work(options);
-    return nested_validation(campaign, model_of_slope(), work, whole);
-  };
-  const NestedValidation first = nested(c);
+  const NestedValidation first = *diagnose(c, model_of_slope(), options).nested;
   for (std::size_t b = 0; b < c.blocks.size(); ++b) {
     if (folds.fold_of[b] != 0) continue;
     if (c.blocks[b].stop) *c.blocks[b].stop += Eigen::Vector2d(50.0, 20.0);
     if (c.blocks[b].passages[0]) c.blocks[b].passages[0]->speed *= 3.0;
   }
-  const NestedValidation second = nested(c);
+  const NestedValidation second = *diagnose(c, model_of_slope(), options).nested;
   bool others_differ = false;
   for (std::size_t b = 0; b < c.blocks.size(); ++b)
     for (std::uint32_t t = 0; t < first.base[b].trials; ++t) {
@@ -116,28 +125,46 @@ TEST(Nested, AFoldNeverSeesItsOwnRows) {
   EXPECT_TRUE(others_differ) << "the other fold is fitted to what was changed";
 }
 
-/// Folds that are given an effect which does not help there leave it out, and predict as the ground alone.
-TEST(Nested, AnEffectThatHelpsNoFoldIsLeftOut) {
-  Campaign c = campaign_on_slope(45);
+/// Folds that do not choose take the effects of all rows and refit the numbers. One fold was measured on smoother
+/// ground than the other: refitted to the other one, the blocks of the rough fold are faster than on the ground fitted
+/// to both, and those of the smooth fold slower.
+TEST(Nested, QuickFoldsRefitTheNumbersToTheOtherRows) {
+  Campaign c = campaign_on_slope(24);
+  DiagnoseOptions options = two_folds();
+  options.naming_in_folds = false;
+  const OuterFolds folds = outer_folds(c, fitting_rows(c), 2, options.seed);
+  Campaign smooth = c;
+  Model smoother = model_of_slope();
+  smoother.grounds[0].theta_scale *= 0.6;
   measure(c, model_of_slope(), 77);
-  DiagnoseOptions options = two_quick_folds();
-  options.rules.hopeless = -1.0;  // no amount of an effect is good enough
-  Diagnosis whole;
-  whole.rounds.emplace_back();
-  whole.rounds[0].effect = "vegetation-drag";
-  whole.trials = options.trials;
-  DiagnosisWork work(options);
-  const NestedValidation nested = nested_validation(c, model_of_slope(), work, whole);
-  ASSERT_EQ(nested.loops.size(), 2U);
-  EXPECT_EQ(nested.loops[0].effects, std::vector<std::string>{"vegetation-drag"}) << "it was tried";
-  std::size_t stops = 0;
+  measure(smooth, smoother, 77);
   for (std::size_t b = 0; b < c.blocks.size(); ++b)
-    for (std::uint32_t t = 0; t < nested.base[b].trials; ++t) {
-      if (std::isnan(nested.base[b].x[t])) continue;
-      EXPECT_EQ(nested.found[b].x[t], nested.base[b].x[t]);
-      ++stops;
-    }
-  EXPECT_GT(stops, 100U);
+    if (folds.fold_of[b] == 1) c.blocks[b] = smooth.blocks[b];
+  const Diagnosis d = diagnose(c, model_of_slope(), options);
+  ASSERT_TRUE(d.nested);
+  EXPECT_FALSE(d.nested->naming);
+  ASSERT_EQ(d.nested->loops.size(), 2U);
+  for (const OuterFold& loop : d.nested->loops) {
+    EXPECT_EQ(loop.effects.front(), d.rounds.front().effect);
+    EXPECT_TRUE(std::isnan(loop.p_value)) << "nothing was tested without the fold";
+  }
+  EXPECT_GT(speed_of_fold(d.nested->base, folds, 0), speed_of_fold(d.base.runs, folds, 0) + 0.1);
+  EXPECT_LT(speed_of_fold(d.nested->base, folds, 1), speed_of_fold(d.base.runs, folds, 1) - 0.1);
+}
+
+/// A costly diagnosis does not repeat its choice. The cost counts vertices, whatever the threads.
+TEST(Nested, TheFoldsOfACostlyDiagnosisAreQuick) {
+  Campaign c = campaign_on_slope(24);
+  measure(c, model_of_slope(), 77);
+  DiagnoseOptions options = two_folds();
+  const Diagnosis cheap = diagnose(c, model_of_slope(), options);
+  EXPECT_TRUE(cheap.nested->naming);
+  EXPECT_GT(cheap.vertices, 16U * 20U * 20U) << "some vertices for each trajectory";
+  options.rules.costly = 1e-9 * static_cast<double>(cheap.vertices - 1);
+  options.threads = 3;
+  const Diagnosis costly = diagnose(c, model_of_slope(), options);
+  EXPECT_EQ(costly.vertices, cheap.vertices);
+  EXPECT_FALSE(costly.nested->naming);
 }
 
 /// The folds of one number are left out at all sites at once: what one site measured of its fold does not reach the
@@ -147,10 +174,8 @@ TEST(Nested, NoSiteSeesAFoldOfAnother) {
   for (std::size_t i = 0; i < 2; ++i) measure(c[i], model_of_slope(), 77 + i);
   const std::vector<Site> sites{{"one", &c[0]}, {"two", &c[1]}};
   give_own_streams(sites);
-  DiagnoseOptions options = two_quick_folds();
-  options.nested = true;
-  options.base_fits = 1;
-  options.rules.most_of_one = 1.0;  // no more trials because the blocks are few
+  DiagnoseOptions options = two_folds();
+  options.most_effects = 1;
   const std::vector<Model> start(2, model_of_slope());
   const auto nested = [&] { return diagnose_sites(sites, start, options).nested; };
   const std::vector<NestedValidation> first = nested();
