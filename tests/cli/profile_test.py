@@ -194,6 +194,22 @@ class Files(Profile):
         self.assertGreater(ground.GetPointCount(), 50)  # it has a node at each row that it crosses
         self.assertAlmostEqual(ground.GetPoint(ground.GetPointCount() - 1)[0], WEST + 120, 3)
 
+    def test_terrain_that_the_step_leaves_out(self):
+        """A dam of 3 m on the row at y = -57.5. Half-way between two rows, where the line crosses diagonals, it is 1.5 m.
+        With nodes every 10 m, at y = -50 and y = -60, the profile rises by 1.5 m there, and lies 1.875 m below the dam."""
+        heights = np.full((60, 60), 1000.0, np.float32)
+        heights[11] += 3.0
+        write_dem(self.path("dem.tif"), heights)
+        line = f"LINESTRING ({WEST + 50} {NORTH - 20}, {WEST + 50} {NORTH - 150})"
+        write_features(self.path("line.gpkg"), "line", [(line, [])])
+        for step, nodes, missed in (("10", 14, True), ("2.5", 53, False)):  # samples are 2.5 m apart, but for rounding
+            self.scenario("x = 10", "[output]\nbin = 10\n", f'dem = "dem.tif"\nline = "line.gpkg"\nstep = {step}\n')
+            self.profile("--trajectories", "5", out=f"out{nodes}")
+            told = "".join(self.read_json(f"out{nodes}/run.json")["warnings"])
+            self.assertEqual("at x = 37.5 m the profile is 1.9 m above or below the DEM" in told, missed)
+            ground = rows_of(self.path(f"out{nodes}/profile.gpkg"), "profile")[0][1]
+            self.assertEqual(ground.GetPointCount(), nodes)
+
 
 class Products(Profile):
     """`talus barrier` and `talus report` on the folder of a profile say what holds there."""

@@ -16,6 +16,7 @@ namespace talus::io {
 namespace {
 
 constexpr double kLowest = -500.0, kHighest = 9000.0;  // heights on the earth, with room to spare [m]
+constexpr double kFarFromZero = 50.0;                  // cells of height 0 are suspect where all others are farther [m]
 constexpr int kMostReaders = 4;                        // pieces at once, of 18 MB each
 
 /// Pieces of the file: heights in metres with NaN for what is missing.
@@ -75,19 +76,21 @@ class HeightReader {
 /// Counts of heights: the same in any order of the pieces.
 struct Counts {
   std::uint64_t known = 0, zeros = 0;
-  double lowest_other = std::numeric_limits<double>::infinity();  // of those that are not 0 [m]
+  double lowest_other = std::numeric_limits<double>::infinity(),  // of those that are not 0 [m]
+      highest_other = -std::numeric_limits<double>::infinity();
 
   void add(double height) {
     ++known;
     if (height == 0.0)
       ++zeros;
     else
-      lowest_other = std::min(lowest_other, height);
+      lowest_other = std::min(lowest_other, height), highest_other = std::max(highest_other, height);
   }
   void add(const Counts& other) {
     known += other.known;
     zeros += other.zeros;
     lowest_other = std::min(lowest_other, other.lowest_other);
+    highest_other = std::max(highest_other, other.highest_other);
   }
 };
 
@@ -178,11 +181,13 @@ void read_heights(const std::string& path, Terrain& terrain, int threads) {
   if (found.known == 0)
     throw InputError(path + ": all cells are missing values, must hold heights: is its nodata value right? (gdalinfo " +
                      shell_word(path) + ")");
-  if (found.zeros > 0 && found.lowest_other > 50.0 && found.zeros < found.known)
-    terrain.warnings.push_back(
-        path + ": " + std::to_string(found.zeros) + " cells have the height 0 and all others more than " +
-        text_of(std::floor(found.lowest_other)) + " m: if 0 stands for missing values, declare it with " +
-        edit_command(path, "-a_nodata 0"));
+  const bool above = found.lowest_other > kFarFromZero, below = found.highest_other < -kFarFromZero;
+  if (found.zeros > 0 && found.zeros < found.known && (above || below))
+    terrain.warnings.push_back(path + ": " + std::to_string(found.zeros) + " cells have the height 0 and all others " +
+                               (above ? "more than " + text_of(std::floor(found.lowest_other))
+                                      : "less than " + text_of(std::ceil(found.highest_other))) +
+                               " m: if 0 stands for missing values, declare it with " +
+                               edit_command(path, "-a_nodata 0"));
 }
 
 }  // namespace talus::io

@@ -10,6 +10,9 @@
 namespace talus::io {
 namespace {
 
+constexpr double kNoticedOff = 0.1;        // m by which the profile may miss the terrain without a word
+constexpr double kJustAStep = 1.0 - 1e-9;  // of `step`: two nodes that are apart by it but for rounding
+
 /// Shares of the way between two values of one coordinate at which it crosses whole numbers.
 void crossings(double from, double to, std::vector<double>& shares) {
   if (from == to) return;
@@ -23,15 +26,18 @@ ProfileLine profile_along(const std::vector<Eigen::Vector2d>& plan, const Surfac
                           const std::string& name) {
   ProfileLine out{{}, plan};
   std::vector<Eigen::Vector2d>& nodes = out.profile.nodes;
+  std::vector<Eigen::Vector2d> terrain;  // (x, z) of every sample
+  const double apart = kJustAStep * step;
   double before = 0.0;
   const auto add = [&](const Eigen::Vector2d& place, double x, bool last) {
     const auto z = surface.height(place.x(), place.y());
     if (!z)
       throw InputError(name + ": there is no terrain under it " + text_of(std::round(x * 10.0) / 10.0) +
                        " m from its start, must lie on the DEM between the centres of its outermost cells");
+    terrain.emplace_back(x, *z);
     if (last)
-      while (nodes.size() > 1 && x - nodes.back().x() < step) nodes.pop_back();
-    if (nodes.empty() || x - nodes.back().x() >= step) nodes.emplace_back(x, *z);
+      while (nodes.size() > 1 && x - nodes.back().x() < apart) nodes.pop_back();
+    if (nodes.empty() || x - nodes.back().x() >= apart) nodes.emplace_back(x, *z);
   };
   for (std::size_t i = 1; i < plan.size(); ++i) {
     const Eigen::Vector2d &a = plan[i - 1], &b = plan[i];
@@ -51,6 +57,10 @@ ProfileLine profile_along(const std::vector<Eigen::Vector2d>& plan, const Surfac
     before += length;
   }
   if (nodes.size() < 2) throw InputError(name + ": is shorter than step = " + text_of(step) + " m, must be longer");
+  for (const Eigen::Vector2d& sample : terrain) {
+    const double off = std::abs(out.profile.height(sample.x()) - sample.y());
+    if (off > out.most_off) out.most_off = off, out.most_off_at = sample.x();
+  }
   return out;
 }
 
@@ -68,7 +78,13 @@ ProfileLine read_profile_line(const std::string& path, const Terrain& terrain, c
   }
   if (plan.size() < 2) throw InputError(path + ": has no line, must have one");
   layer.tell(out);
-  return profile_along(plan, Surface(terrain.heights, spec.surface), spec.profile->step, path);
+  const double step = spec.profile->step;
+  ProfileLine line = profile_along(plan, Surface(terrain.heights, spec.surface), step, path);
+  if (line.most_off > kNoticedOff)
+    out.warnings.push_back(
+        path + ": step = " + text_of(step) + " m leaves out terrain: at x = " + with_decimals(line.most_off_at, 1) +
+        " m the profile is " + with_digits(line.most_off, 2) + " m above or below the DEM; give a smaller step");
+  return line;
 }
 
 }  // namespace talus::io
