@@ -37,10 +37,10 @@ std::vector<PassageDensity> densities_of(const HazardCell& cell, const WeightSca
 
 Bounded hits_of_object(const PassageDensity& density, const WeightScale& scale, double width, double seen) {
   const double sum = width * density.length + density.by_diameter;
-  const double diameter = density.length > 0.0 ? density.by_diameter / density.length : scale.largest_diameter;
-  const double hits_per_block = kChords * (width + diameter) / seen;
-  const double largest = scale.largest_weight() * hits_per_block;
-  const double squares = std::min(density.squares * (width + diameter) * hits_per_block, sum * largest);
+  const auto hits_of_block = [&](double diameter) { return kChords * (width + diameter) / seen; };
+  const double largest = scale.largest_weight() * hits_of_block(scale.largest_diameter);
+  const double mean = density.length > 0.0 ? density.by_diameter / density.length : 0.0;
+  const double squares = std::min(density.squares * (width + mean) * hits_of_block(mean), sum * largest);
   return table_interval(sum, squares, largest);
 }
 

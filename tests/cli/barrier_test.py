@@ -325,6 +325,11 @@ class Weights(Case):
         alike = self.report("--unweighted")
         self.assertEqual(alike["effective_crossings"], alike["crossings"])
         self.assertIsNone(alike["crossings_per_year"])
+        table = "id,screen,speed_ms,jump_height_m\n" + "".join(f"b{i},road,1.0,{0.01 + 0.001 * i}\n" for i in range(30))
+        observed = self.report("--observed", self.write("low.csv", table))
+        limit = observed["reliability"][0]["exceeded"][0]
+        self.assertEqual((limit["share"], observed["frequency_of"]), (0.0, "the simulated crossings"))
+        self.assertEqual(limit["per_year"], weighted["reliability"][0]["exceeded"][0]["per_year"])
         other = self.write("w.toml", "[features]\nwest = 0.1\neast = 5.0\n")
         swapped = self.report("--frequency", other)
         self.expect(swapped, 0.1, 5.0)

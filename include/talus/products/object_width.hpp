@@ -30,7 +30,9 @@ std::vector<PassageDensity> densities_of(const HazardCell& cell, const WeightSca
 ///
 /// @param seen  width of the place over which the density was averaged [m]: of the disc, or of the cell if it is wider.
 ///              A block that crosses the place stands for (W + D) / seen hits; the factor is E[c^2] / E[c]^2 of the
-///              chords c of a disc. docs/hazard.md, "An object of some width".
+///              chords c of a disc. D is the mean of the blocks that were seen, and of the one more block of the upper
+///              bound the largest: small blocks that hit say nothing of large ones. docs/hazard.md, "An object of some
+///              width".
 Bounded hits_of_object(const PassageDensity& density, const WeightScale& scale, double width, double seen);
 
 /// Cells of a disc around the centre of a cell, each with its share of the area of the disc.

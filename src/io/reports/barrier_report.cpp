@@ -56,9 +56,12 @@ std::string between(const Bounded& b) {
   return between(Interval{b.low, b.high}, 1.0);
 }
 
+/// The crossings whose frequencies are known: the simulated ones, also where the probabilities are of observed ones.
+constexpr const char* kWithFrequency = "the simulated crossings";
+
 std::string frequency_text(const Reliability::Limit& l) {
   if (!l.by_frequency || !l.per_year) return "";
-  std::string text = "          by frequency: " + percent(*l.by_frequency) + " of the crossings, ";
+  std::string text = "          by frequency: " + percent(*l.by_frequency) + " of " + kWithFrequency + ", ";
   if (!(l.per_year->value > 0.0)) return text + "rarer than once in " + readable(1.0 / l.per_year->high) + " years\n";
   const Bounded years = return_period(*l.per_year);
   return text + "once in " + readable(years.value) + " years [" + readable(years.low) + ", " + readable(years.high) +
@@ -219,6 +222,7 @@ std::string barrier_json(const BarrierReport& r) {
     design.push_back({{"name", row.name}, {"value", row.value}, {"unit", row.unit}, {"from", row.from}});
   json["design"] = std::move(design);
   json["reliability_of"] = r.values;
+  if (r.per_year) json["frequency_of"] = kWithFrequency;
   json["reliability"] = Json::array();
   for (const Reliability& quantity : r.reliability) json["reliability"].push_back(reliability_of(quantity));
   json["longest_stretch_m"] = r.longest;
