@@ -126,9 +126,13 @@ std::optional<Outcome> RunSession::outcome_of_done() {
 std::optional<Outcome> RunSession::find_done() const {
   if (!request_.part) {
     const auto status = io::status_of_result(request_.out, io::plan_checksum(plan_.loaded), plan_.rounds);
+    const fs::path out = request_.out;
+    if (!status && fs::exists(out / "run.json") && !fs::exists(out / io::OutputFolder::kWork))
+      throw InputError(request_.out + ": holds a finished run of another plan (the scenario, a flag or a file is not what "
+                       "it was), with which --resume cannot go on; give a new name, or --overwrite to replace it");
     if (!status) return {};
     std::error_code ignored;  // a run killed at its very end may have left its checkpoint
-    fs::remove_all(fs::path(request_.out) / io::OutputFolder::kWork, ignored);
+    fs::remove_all(out / io::OutputFolder::kWork, ignored);
     return *status == io::kComplete ? Outcome::Done : Outcome::TooManyLimits;
   }
   if (!fs::exists(fs::path(request_.out) / kCheckpointManifest)) return {};

@@ -975,6 +975,10 @@ class FromPython(Case):
                 labels = ([label for label, _ in layer.renderer().legendSymbologyItems()] if isinstance(layer, QgsRasterLayer)
                           else [item.label() for item in layer.renderer().legendSymbolItems()])
                 self.assertEqual([label for label in labels if english.search(label)], [], layer.name())
+            model = QgsLayerTreeModel(QgsProject.instance().layerTreeRoot())
+            for node in QgsProject.instance().layerTreeRoot().findLayers():
+                shown = [entry.data(Qt.DisplayRole) for entry in model.layerLegendNodes(node)]
+                self.assertEqual([label for label in shown if label and (english.search(label) or "(Gray)" in label)], [], node.name())
         finally:
             QgsApplication.setLocale(before)
             QgsProject.instance().clear()

@@ -237,8 +237,9 @@ std::optional<Shown> hillshade_of(const fs::path& dem, const fs::path& project) 
   shown.source = way_from(project, dem);
   shown.style = parsed_xml(
       "<qgis><pipe><rasterrenderer type=\"hillshade\" band=\"1\" azimuth=\"315\" angle=\"45\" zfactor=\"1\" "
-      "multidirection=\"1\" opacity=\"1\" alphaBand=\"-1\" nodataColor=\"\"/><rasterresampler maxOversampling=\"2\" "
-      "zoomedInResampler=\"bilinear\"/></pipe><blendMode>0</blendMode></qgis>");
+      "multidirection=\"1\" opacity=\"1\" alphaBand=\"-1\" nodataColor=\"\"/><provider><resampling enabled=\"true\" "
+      "maxOversampling=\"2\" zoomedInResamplingMethod=\"bilinear\"/></provider><resamplingStage>provider"  // by the renderer:
+      "</resamplingStage></pipe><blendMode>0</blendMode></qgis>");  // a bright line where QGIS joins two parts
   return shown;
 }
 

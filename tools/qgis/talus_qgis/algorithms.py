@@ -245,7 +245,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
     def _title(self, p):
         title = self._label(p)
         if p["unit"]:
-            title += f" [{p['unit']}]"
+            title += f" [{tr(p['unit'])}]"
         if self.by_scenario() and any(p["name"] in names for names in self.table.get("needs", ())[1:]):
             title += ", " + tr("needed without a scenario")
         if p["type"] != "flag" and p["default"] is not None:
@@ -415,20 +415,21 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
             names = [*p["flags"], *filter(None, [KEYS_OF_SCENARIO.get(p["name"])])]
             places = {name: re.search(r"(?<![\w-])" + re.escape(name) + r"(?![\w-])", text) for name in names}
             found = [name for name in places if places[name]]
-            if found and self._in_dialog(p, text):
+            field, place = self._in_dialog(p, text)
+            if found and field:
                 hints.append((min(places[name].start() for name in found), tr("{flag} is \"{field}\"").format(
-                    flag=" / ".join(found), field=self._in_dialog(p, text))))
+                    flag=" / ".join(found), field=field) + place))
         return text + ("\n" + tr("In this dialog ") + ", ".join(hint for _, hint in sorted(hints)) if hints else "")
 
     def _in_dialog(self, p, text):
-        """Where in the dialog a parameter is; empty where it is not."""
+        """What the dialog calls a parameter, and where it is; empty where it is not in the dialog."""
         advanced = p["name"] in self.table.get("advanced", ()) or p["name"] in ALWAYS_ADVANCED
         if p["name"] == "field":
             named = re.search(r"--field (\w+)=", text)
-            return label(named[1] + "-field" if named else "field")
+            return label(named[1] + "-field" if named else "field"), ""
         if p["name"] in NOT_IN_DIALOG:
-            return ""
-        return self._label(p) + (tr(", under Advanced Parameters") if advanced else "")
+            return "", ""
+        return self._label(p), tr(" (under Advanced Parameters)") if advanced else ""
 
     def _phases(self, parameters):
         phases = self.table["phases"]

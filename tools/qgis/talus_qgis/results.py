@@ -4,10 +4,11 @@ import os
 import re
 from contextlib import contextmanager
 
-from qgis.core import (Qgis, QgsGraduatedSymbolRenderer, QgsLayerTree, QgsLayerTreeGroup, QgsLineSymbol, QgsProcessingContext,
+from qgis.core import (Qgis, QgsGraduatedSymbolRenderer, QgsLayerTree, QgsLayerTreeGroup, QgsLineSymbol, QgsMapLayerLegendUtils,
+                       QgsProcessingContext,
                        QgsProcessingLayerPostProcessorInterface, QgsProject, QgsProviderRegistry, QgsRasterLayer,
                        QgsRendererRange, QgsSingleBandPseudoColorRenderer, QgsVectorLayer, QgsWkbTypes)
-from qgis.PyQt.QtCore import QCoreApplication, QThread
+from qgis.PyQt.QtCore import QCoreApplication, Qt, QThread
 
 from . import program
 from .texts import tr
@@ -157,6 +158,17 @@ def _translate_legend(layer):
     colours.setColorRampItemList(items)
 
 
+def _leave_out_band(node):
+    """Takes the name of the band, which is English and says what the title says, out of the legend of a raster."""
+    layer = node.layer()
+    if not isinstance(layer, QgsRasterLayer) or layer.legend() is None or not layer.renderer().usesBands():
+        return
+    entries = layer.legend().createLayerTreeModelLegendNodes(node)
+    band = layer.renderer().displayBandName(layer.renderer().usesBands()[0]) if entries else None
+    if band and entries[0].data(Qt.DisplayRole) == band:
+        QgsMapLayerLegendUtils.setLegendNodeOrder(node, list(range(1, len(entries))))
+
+
 def _read_anew(layer):
     """Reads the file, fields and extent of a layer again. GDAL writes statistics beside a raster that it closes, over what
     the program has written there: that is put back."""
@@ -280,6 +292,7 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
         # QGIS may have put the node itself into the group, before the layer that was current
         place = next((i for i, child in enumerate(group.children()) if self._is_below(child, node)), len(group.children()))
         copy = node.clone()
+        _leave_out_band(copy)
         copy.setItemVisibilityChecked(shown)
         copy.setExpanded(shown)
         group.insertChildNode(place, copy)

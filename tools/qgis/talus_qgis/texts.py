@@ -5,7 +5,7 @@ from qgis.core import QgsApplication
 LABELS = {
     "dem": ("Terrain (DEM, metres)", "Gelände (DGM, Meter)"),
     "dem-band": ("Band of the terrain", "Band des Geländes"),
-    "sources": ("Sources (where blocks start)", "Anbruchgebiete (wo Blöcke starten)"),
+    "sources": ("Sources (where blocks start)", "Ausbruchgebiete (wo Blöcke starten)"),
     "diameter-field": ("Field: diameter of the block [m]", "Feld: Durchmesser des Blocks [m]"),
     "release_height-field": ("Field: height of release above the ground [m]", "Feld: Starthöhe über dem Boden [m]"),
     "frequency-field": ("Field: events per year", "Feld: Ereignisse pro Jahr"),
@@ -15,9 +15,9 @@ LABELS = {
     "field": ("Field: ...", "Feld: ..."),
     "diameter": ("Diameter of the blocks", "Durchmesser der Blöcke"),
     "preset": ("Ground", "Boden"),
-    "trajectories": ("Trajectories per source cell", "Sturzbahnen pro Anbruchzelle"),
+    "trajectories": ("Trajectories per source cell", "Sturzbahnen pro Ausbruchzelle"),
     "number-of-blocks": ("Number of blocks", "Zahl der Blöcke"),
-    "frequency": ("Frequency of all sources together", "Häufigkeit aller Anbruchgebiete zusammen"),
+    "frequency": ("Frequency of all sources together", "Häufigkeit aller Ausbruchgebiete zusammen"),
     "screens": ("Screens (lines where crossings are recorded)", "Nachweislinien (Durchgänge werden festgehalten)"),
     "barriers": ("Barriers (lines; fields height [m], capacity [kJ])", "Schutzbauten (Linien; Felder height [m], capacity [kJ])"),
     "zones": ("Zones of ground (polygons)", "Bodenzonen (Flächen)"),
@@ -40,9 +40,9 @@ LABELS = {
     "most-rounds": ("... but never more rounds than", "... aber nie mehr Runden als"),
     "allow-folder": ("Folder that a VRT may read", "Ordner, aus dem ein VRT lesen darf"),
     "pits": ("Map of the pits", "Karte der Mulden"),
-    "slope": ("Steepness of source cells", "Neigung der Anbruchzellen"),
+    "slope": ("Steepness of source cells", "Neigung der Ausbruchzellen"),
     "folder": ("Folder of a run", "Ordner eines Laufs"),
-    "weighting": ("Other frequencies of the sources (TOML)", "Andere Häufigkeiten der Anbruchgebiete (TOML)"),
+    "weighting": ("Other frequencies of the sources (TOML)", "Andere Häufigkeiten der Ausbruchgebiete (TOML)"),
     "matrix": ("Classes (TOML)", "Gefahrenstufen (TOML)"),
     "objects": ("Objects at risk (houses, roads)", "Gefährdete Objekte (Häuser, Strassen)"),
     "width": ("Width of the object", "Breite des Objekts"),
@@ -92,7 +92,7 @@ KEYS = {
     "algorithm hazard": ("Hazard maps", "Gefahrenkarten"),
     "algorithm objects": ("Hazard of objects", "Gefährdung von Objekten"),
     "algorithm barrier": ("Design of a barrier", "Bemessung eines Schutznetzes"),
-    "algorithm sources": ("Find candidate sources", "Mögliche Anbruchgebiete suchen"),
+    "algorithm sources": ("Find candidate sources", "Mögliche Ausbruchgebiete suchen"),
     "algorithm profile": ("2D model on a profile", "2D-Modell auf einem Profil"),
     "algorithm calibrate": ("Calibrate the ground", "Boden kalibrieren"),
     "algorithm diagnose": ("Diagnose what a model lacks", "Diagnose: was dem Modell fehlt"),
@@ -100,17 +100,17 @@ KEYS = {
     "about run": ("Simulates falling blocks from the sources over the terrain and maps how often, how fast and how high they "
                   "pass each cell. Give terrain, sources and a diameter, or a scenario file. Cancel keeps what was traced; "
                   "\"Resume\" goes on with it.",
-                  "Simuliert Blöcke von den Anbruchgebieten über das Gelände und kartiert, wie oft, wie schnell und wie hoch "
-                  "sie jede Zelle durchqueren. Nötig sind Gelände, Anbruchgebiete und ein Durchmesser, oder eine "
+                  "Simuliert Blöcke von den Ausbruchgebieten über das Gelände und kartiert, wie oft, wie schnell und wie hoch "
+                  "sie jede Zelle durchqueren. Nötig sind Gelände, Ausbruchgebiete und ein Durchmesser, oder eine "
                   "Szenario-Datei. Abbrechen behält das Gerechnete; «Fortsetzen» macht damit weiter."),
     "about check": ("Checks layers and settings, lists every fault, every field that is read with its range, and the plan: "
                     "cells, trajectories, memory, time. Writes nothing.",
-                    "Prüft Ebenen und Einstellungen, nennt jeden Fehler, jedes gelesene Feld mit seinem Wertebereich und den "
+                    "Prüft Layer und Einstellungen, nennt jeden Fehler, jedes gelesene Feld mit seinem Wertebereich und den "
                     "Plan: Zellen, Sturzbahnen, Speicher, Zeit. Schreibt nichts."),
     "about hazard": ("Annual frequencies, return periods, intensities and hazard classes from a run whose sources have "
                      "frequencies. Without a width the maps are for the cell.",
                      "Jährliche Häufigkeiten, Wiederkehrperioden, Intensitäten und Gefahrenstufen aus einem Lauf, dessen "
-                     "Anbruchgebiete Häufigkeiten haben. Ohne Breite gelten die Karten für die Zelle."),
+                     "Ausbruchgebiete Häufigkeiten haben. Ohne Breite gelten die Karten für die Zelle."),
     "about objects": ("How often each house or road is hit, with which energy, and from where. Repeats the run, with the same "
                       "bits, and writes the hazard maps anew.",
                       "Wie oft jedes Haus oder jede Strasse getroffen wird, mit welcher Energie und woher. Wiederholt den Lauf "
@@ -120,7 +120,7 @@ KEYS = {
                       "Bemessungswerte eines Schutznetzes an einer Nachweislinie: Energie, Höhe, Breite, je Abschnitt, und wie "
                       "oft sie überschritten werden."),
     "about sources": ("Candidate source cells by the steepness of the terrain: look at them before a run.",
-                      "Mögliche Anbruchzellen nach der Neigung des Geländes: vor einem Lauf ansehen."),
+                      "Mögliche Ausbruchzellen nach der Neigung des Geländes: vor einem Lauf ansehen."),
     "about profile": ("Simulates in two dimensions on a profile.", "Simuliert in zwei Dimensionen auf einem Profil."),
     "about calibrate": ("Fits the parameters of the ground to measured rock falls.",
                         "Passt die Parameter des Bodens an gemessene Stürze an."),
@@ -135,8 +135,8 @@ KEYS = {
     "phase diagnose": ("Diagnosing", "Diagnose"),
     # titles of layers that are not in talus.qgs
     "title vertices": ("Vertices of the paths", "Stützpunkte der Bahnen"),
-    "title source_polygons": ("Candidate sources", "Mögliche Anbruchgebiete"),
-    "title source_points": ("Candidate source cells", "Mögliche Anbruchzellen"),
+    "title source_polygons": ("Candidate sources", "Mögliche Ausbruchgebiete"),
+    "title source_points": ("Candidate source cells", "Mögliche Ausbruchzellen"),
 }
 
 GERMAN = {
@@ -170,7 +170,7 @@ GERMAN = {
         "jedem Lauf ein neuer.",
     "In this dialog ": "In diesem Dialog ist ",
     "{flag} is \"{field}\"": "{flag} «{field}»",
-    ", under Advanced Parameters": ", unter «Fortgeschrittene Parameter»",
+    " (under Advanced Parameters)": " (unter «Fortgeschrittene Parameter»)",
     "Cancelled before the program was started.": "Abgebrochen, bevor das Programm gestartet war.",
     "talus ended with code {code}": "talus endete mit Code {code}",
     "{name} has no coordinate system: set it in QGIS (layer > Set CRS)":
@@ -179,24 +179,24 @@ GERMAN = {
         "{path} hat mehrere Layer ({names}): einen nennen, als {path}|layername={first}",
     "{name} has no feature: is nothing selected, or does a filter hide all?":
         "{name} hat kein Objekt: ist nichts gewählt, oder verbirgt ein Filter alles?",
-    "{name}: {count} features are written to {path}": "{name}: {count} Objekte sind nach {path} geschrieben",
+    "{name}: {count} features are written to {path}": "{name}: nach {path} geschrieben ({count} Objekte)",
     "{name} is no raster in a file: save it as GeoTIFF first": "{name} ist kein Raster in einer Datei: zuerst als GeoTIFF speichern",
     "{name}: band {band} is written to {path}": "{name}: Band {band} ist nach {path} geschrieben",
     "{name}: give the polygons or the raster, not both": "{name}: die Flächen oder das Raster angeben, nicht beides",
-    "Give the terrain and the sources, or a scenario file.": "Gelände und Anbruchgebiete angeben, oder eine Szenario-Datei.",
+    "Give the terrain and the sources, or a scenario file.": "Gelände und Ausbruchgebiete angeben, oder eine Szenario-Datei.",
     "{name}: '{value}' is no number: write {number}": "{name}: «{value}» ist keine Zahl: {number} schreiben",
-    "Loads the results as a group of layers.": "Lädt die Ergebnisse als Gruppe von Ebenen.",
+    "Loads the results as a group of layers.": "Lädt die Ergebnisse als Gruppe von Layern.",
     "Band of the raster that holds the heights.": "Band des Rasters mit den Höhen.",
     "Field of the sources that is read as {field}. Where none is picked, their field named {field} is read, if they have one.":
-        "Feld der Anbruchgebiete, das als {field} gelesen wird. Ist keines gewählt, wird ihr Feld mit dem Namen {field} gelesen, "
+        "Feld der Ausbruchgebiete, das als {field} gelesen wird. Ist keines gewählt, wird ihr Feld mit dem Namen {field} gelesen, "
         "wenn sie eines haben.",
     "A field of the sources that is named diameter, diameter_min, diameter_max, release_height, frequency or name is read where "
     "no field is picked for it.":
-        "Ein Feld der Anbruchgebiete mit dem Namen diameter, diameter_min, diameter_max, release_height, frequency oder name wird "
+        "Ein Feld der Ausbruchgebiete mit dem Namen diameter, diameter_min, diameter_max, release_height, frequency oder name wird "
         "gelesen, wo dafür kein Feld gewählt ist.",
     "needed without a scenario": "nötig ohne Szenario",
     "Several layers, as a road and houses, are joined into one.":
-        "Mehrere Ebenen, wie Strasse und Häuser, werden zu einer zusammengefügt.",
+        "Mehrere Layer, wie Strasse und Häuser, werden zu einem zusammengefügt.",
     "{name}: some features have no number yet, so that all are numbered anew from 1. With saved edits the results keep the "
     "numbers of QGIS.":
         "{name}: einige Objekte haben noch keine Nummer, darum werden alle neu ab 1 nummeriert. Mit gespeicherten Änderungen "
@@ -218,6 +218,7 @@ GERMAN = {
     "above {}{}": "über {}{}",
     "{} to {}{}": "{} bis {}{}",
     " years": " Jahre",
+    "1/year": "1/Jahr",
     " 1/year": " 1/Jahr",
     "0 1/year": "0 1/Jahr",
     "0 years": "0 Jahre",
@@ -261,7 +262,7 @@ GERMAN = {
     "Trapped blocks": "Gefangene Blöcke",
     "Exits": "Austritte",
     "Release cells": "Startzellen",
-    "Source cells that reach the cell": "Anbruchzellen, die die Zelle erreichen",
+    "Source cells that reach the cell": "Ausbruchzellen, die die Zelle erreichen",
     "Barriers of the run: counts by stretch": "Schutzbauten des Laufs: Zahlen je Abschnitt",
     "Objects: sources of the hits": "Objekte: woher die Treffer kommen",
     "Objects: hazard curves": "Objekte: Gefahrenkurven",
@@ -278,18 +279,18 @@ GERMAN = {
     "parameter set of the ground; talus presets lists them": "Parametersatz des Bodens; talus presets listet sie",
     "bilinear or creased (creased): heights between the cells' centres":
         "bilinear oder creased (creased): Höhen zwischen den Zellmitten",
-    "of the blocks [m]": "der Blöcke [m]; ein Feld der Anbruchgebiete geht vor",
+    "of the blocks [m]": "der Blöcke [m]; ein Feld der Ausbruchgebiete geht vor",
     "events per year of all sources together, for talus hazard":
-        "Ereignisse pro Jahr aller Anbruchgebiete zusammen, für die Gefahrenkarten",
+        "Ereignisse pro Jahr aller Ausbruchgebiete zusammen, für die Gefahrenkarten",
     "energies of the maps of exceedance [kJ], with commas and no spaces: 30,300 (default)":
-        "Energien der Überschreitungskarten [kJ], mit Kommas und ohne Leerzeichen: 30,300 (Vorgabe)",
+        "Energien der Überschreitungskarten [kJ], mit Kommas: 30,300 (Vorgabe)",
     "a ground that talus calibrate or diagnose has fitted (fitted.toml), in place of --preset":
         "ein Boden, den Kalibrieren oder Diagnose angepasst hat (fitted.toml), anstelle von «Boden»",
     "c of the impact law (0.25): a lower one gives higher energies and jumps":
         "c des Aufprallgesetzes (0.25): ein kleineres gibt höhere Energien und Sprünge",
     "trajectories in one instruction; as many as the processor has where it is not given; the results are the same":
         "Sturzbahnen in einem Befehl; so viele, wie der Prozessor kann, wenn nicht angegeben; die Ergebnisse sind dieselben",
-    "per source cell": "pro Anbruchzelle",
+    "per source cell": "pro Ausbruchzelle",
     "of the random numbers": "der Zufallszahlen; gleicher Startwert, gleiche Ergebnisse",
     "also energy_total.tif: the energy with rotation": "auch energy_total.tif: die Energie mit Rotation",
     "also 95 % bounds of the percentiles: energy_bounds.tif and others":
@@ -302,7 +303,7 @@ GERMAN = {
     "all processors where it is not given; the results are the same":
         "alle Prozessoren, wenn nicht angegeben; die Ergebnisse sind dieselben",
     "go on with an interrupted run of the same command": "einen abgebrochenen Lauf mit denselben Eingaben fortsetzen",
-    "OUT of a run whose sources have frequencies": "Ordner eines Laufs, dessen Anbruchgebiete Häufigkeiten haben",
+    "OUT of a run whose sources have frequencies": "Ordner eines Laufs, dessen Ausbruchgebiete Häufigkeiten haben",
     "classes by intensity and return period (TOML); else 30, 300 kJ and 30, 100, 300 years":
         "Stufen nach Intensität und Wiederkehrperiode (TOML); sonst 30, 300 kJ und 30, 100, 300 Jahre",
     "polygons or lines (as wide as their field width, else --width, else 0 m): how often each is hit, with which energy, and "
@@ -339,7 +340,7 @@ GERMAN = {
     "longest stretch of the line with a design of its own [m]: 30 (default)":
         "längster Abschnitt der Linie mit eigener Bemessung [m]: 30 (Vorgabe)",
     "count every block alike, also where the sources have frequencies":
-        "jeden Block gleich zählen, auch wo die Anbruchgebiete Häufigkeiten haben",
+        "jeden Block gleich zählen, auch wo die Ausbruchgebiete Häufigkeiten haben",
     "all processors where it is not given, of several processes one each; the results are the same":
         "alle Prozessoren, wenn nicht angegeben; die Ergebnisse sind dieselben",
     "how often the scenario's trajectories are traced": "wie oft die Sturzbahnen des Szenarios gerechnet werden",
