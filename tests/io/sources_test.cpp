@@ -71,6 +71,62 @@ TEST_F(Sources, OverlappingPartsGiveACellOnce) {
             6U);
 }
 
+// A map of 60 x 60 cells of 10 m.
+class NarrowSources : public Files {
+ protected:
+  NarrowSources()
+      : terrain_(read_terrain(
+            RasterFile{.columns = 60, .rows = 60, .place = {600000.0, 10.0, 0.0, 5200600.0, 0.0, -10.0}}.write(
+                path("dem.tif")))) {}
+
+  SourceLayer read(const std::string& wkt, const std::string& frequency = "NULL") {
+    return read_sources(write_vector(path("s.gpkg"), "EPSG:32632", {{"name", OFTString}, {"frequency", OFTReal}},
+                                     {{wkt, {"crest", frequency}}}),
+                        terrain_, Range{1.0, 1.0});
+  }
+
+  Terrain terrain_;
+};
+
+TEST_F(NarrowSources, ARibbonAlongACrestIsToldWhatItLeavesOut) {
+  // 3 m wide, west edge at x = 200.5 + 0.008 (y - 53), from y = 53 to 553: in column 20 it touches the rows 5 to 55. It
+  // covers the centres at x = 205 where its edge is beyond 202, at y > 240.5: rows 24 to 54. Row 23 is beside them.
+  const std::string ribbon = "POLYGON((200.5 53,203.5 53,207.5 553,204.5 553,200.5 53))";
+  const SourceLayer layer = read(ribbon);
+  EXPECT_EQ(layer.cells.size(), 31U);
+  EXPECT_TRUE(said(layer.warnings,
+                   "polygon 1 (crest): of the 51 cells that it touches, 18 release nothing, nor does a neighbour of "
+                   "them: draw a crest as a line"));
+  EXPECT_TRUE(said(read(ribbon, "5").warnings, ", and its 5 events per year all fall on the 31 that release: draw"));
+  const SourceLayer line = read("LINESTRING(202 53,206 553)");
+  EXPECT_EQ(line.cells.size(), 51U);
+  EXPECT_TRUE(line.warnings.empty());
+}
+
+TEST_F(NarrowSources, APolygonAsWideAsTheDiagonalOfACellIsNone) {
+  for (int degree = 0; degree < 180; degree += 10) {
+    const double c = std::cos(degree * M_PI / 180.0), s = std::sin(degree * M_PI / 180.0);
+    const auto at = [&](double along, double across) {
+      return std::to_string(303.0 + c * along - s * across) + " " + std::to_string(307.0 + s * along + c * across);
+    };
+    const double half = 5.0 * std::sqrt(2.0) + 1e-3;
+    EXPECT_TRUE(read("POLYGON((" + at(-200, -half) + "," + at(200, -half) + "," + at(200, half) + "," + at(-200, half) +
+                     "," + at(-200, -half) + "))")
+                    .warnings.empty())
+        << degree;
+    const double rise = 200.0 * std::tan(15.0 * M_PI / 180.0);  // a corner of 30 degrees
+    EXPECT_TRUE(read("POLYGON((" + at(0, 0) + "," + at(200, -rise) + "," + at(200, rise) + "," + at(0, 0) + "))")
+                    .warnings.empty())
+        << degree;
+  }
+}
+
+TEST_F(NarrowSources, WhatThePolygonIsBeyondTheDemIsNotKnown) {  // of column 0 it covers 30 cells only 3 m wide
+  const SourceLayer layer = read("POLYGON((-50 100,3 100,3 400,8 400,8 500,-50 500,-50 100))");
+  EXPECT_EQ(layer.cells.size(), 10U);
+  EXPECT_FALSE(said(layer.warnings, "narrower"));
+}
+
 TEST_F(Sources, ALineGivesTheCellsItCrosses) {
   EXPECT_EQ(cells(read({{"LINESTRING(5 5,35 5)"}})), (Cells{{0, 0}, {1, 0}, {2, 0}, {3, 0}}));
   EXPECT_EQ(cells(read({{"LINESTRING(2 2,28 12)"}})), (Cells{{2, 1}, {0, 0}, {1, 0}, {2, 0}}));  // y = 10 at x = 22.8

@@ -128,26 +128,28 @@ void for_each_feature(Layer& layer, Read read) {
   layer.faults().stop();
 }
 
-/// Calls `visit(column, row)` (row 0 in the south) for the cells of a geometry in local metres, row by row from the
-/// north-west: the cells whose centre it covers or, with `touched`, all that it touches.
-template <class Visit>
-void for_each_cell(const OGRGeometry& geometry, const Grid& grid, bool touched, Visit visit);
-
 /// A window of the grid, with a mark on each cell of a geometry. Rows from the north.
 struct CellMask {
   int column = 0, north_row = 0, columns = 0, rows = 0;  ///< north_row: row 0 in the south
   std::vector<std::uint8_t> marks;
 };
 
+/// Marks the cells of a geometry in local metres: the cells whose centre it covers or, with `touched`, all that it
+/// touches. Both windows of a geometry are the same.
 CellMask mask_of(const OGRGeometry& geometry, const Grid& grid, bool touched);
 
+/// Calls `visit(column, row)` (row 0 in the south) for the marked cells, row by row from the north-west.
 template <class Visit>
-void for_each_cell(const OGRGeometry& geometry, const Grid& grid, bool touched, Visit visit) {
-  const CellMask mask = mask_of(geometry, grid, touched);
+void for_each_cell(const CellMask& mask, Visit visit) {
   const std::uint8_t* mark = mask.marks.data();
   for (int j = 0; j < mask.rows; ++j)
     for (int i = 0; i < mask.columns; ++i)
       if (*mark++ != 0) visit(mask.column + i, mask.north_row - j);
+}
+/// The same for the cells that `mask_of` marks.
+template <class Visit>
+void for_each_cell(const OGRGeometry& geometry, const Grid& grid, bool touched, Visit visit) {
+  for_each_cell(mask_of(geometry, grid, touched), visit);
 }
 
 /// "cliffs.gpkg: fields read: diameter 0.5 to 2 m (2 of 3 features, 1 empty), name (3 of 3 features)".

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "layer.hpp"
+#include "narrow_polygons.hpp"
 #include "off_map.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/shell.hpp"
@@ -220,14 +221,19 @@ void append_cells(const OGRLineString& line, const Grid& grid, std::vector<Cell>
   if (cells.size() == before && grid.contains(start.column, start.row)) cells.push_back(start);  // without length
 }
 
-// The cells of the polygons and lines of a feature, each once, row by row from the north-west.
-std::vector<Cell> cells_of(const Parts& parts, const Grid& grid) {
+// The cells of the polygons and lines of a feature, each once, row by row from the north-west. Counts those of its
+// polygons.
+std::vector<Cell> cells_of(const Parts& parts, const Grid& grid, PolygonCells& of_polygons) {
   std::vector<Cell> cells;
   const auto add = [&](int column, int row) { cells.push_back({column, row}); };
   for (const OGRPolygon& polygon : parts.polygons) {
     const std::size_t before = cells.size();
-    for_each_cell(polygon, grid, false, add);
-    if (cells.size() == before) for_each_cell(polygon, grid, true, add);
+    const CellMask inside = mask_of(polygon, grid, false), at_all = mask_of(polygon, grid, true);
+    for_each_cell(inside, add);
+    if (cells.size() == before)
+      for_each_cell(at_all, add);
+    else
+      of_polygons.add(inside, at_all);
   }
   for (const OGRLineString& line : parts.lines) append_cells(line, grid, cells);
   if (parts.polygons.size() + parts.lines.size() == 1 && parts.lines.empty()) return cells;
@@ -257,14 +263,37 @@ std::string lack_text(const Lack& lack) {
   return with_digits(100.0 * share, share < 0.995 ? 2 : 3) + " % of " + lack.name + " lies " + where + events;
 }
 
+/// A source of which lengths release nothing, as they are narrower than a cell.
+struct NarrowSource {
+  std::string name;  // "polygon 4 (crest)"
+  PolygonCells cells;
+  double frequency;  // as in Lack
+};
+
+/// "polygon 4 (crest): of the 101 cells that it touches, 39 release nothing, nor does a neighbour of them"; with a
+/// frequency "..., and its 5 events per year all fall on the 60 that release".
+std::string narrow_text(const NarrowSource& source) {
+  const std::string events = source.frequency > 0.0 ? ", and its " + with_digits(source.frequency, 3) + kAllOnTheRest +
+                                                          std::to_string(source.cells.covered) + " that release"
+                                                    : "";
+  return source.name + ": " + left_out_text(source.cells) + events;
+}
+
+/// The first five, and how many more there are: "...; ... and parts of 3 more features".
+template <class Source, class Text>
+std::string first_five(const std::vector<Source>& sources, Text text_of_one) {
+  constexpr std::size_t kShown = 5;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(sources.size(), kShown); ++i)
+    text += (i > 0 ? "; " : "") + text_of_one(sources[i]);
+  if (sources.size() > kShown) text += "; and parts of " + std::to_string(sources.size() - kShown) + " more features";
+  return text;
+}
+
 /// The largest shares first: "83 % of polygon 4 (cliff A) lies outside the DEM; ... and 3 more features".
 std::string lacks_text(std::vector<Lack> lacks) {
-  constexpr std::size_t kShown = 5;
   std::ranges::stable_sort(lacks, std::ranges::greater{}, [](const Lack& l) { return l.outside + l.hole; });
-  std::string text;
-  for (std::size_t i = 0; i < std::min(lacks.size(), kShown); ++i) text += (i > 0 ? "; " : "") + lack_text(lacks[i]);
-  if (lacks.size() > kShown) text += "; and parts of " + std::to_string(lacks.size() - kShown) + " more features";
-  return text + ": blocks start from the rest alone";
+  return first_five(lacks, lack_text) + ": blocks start from the rest alone";
 }
 
 // Places features on the terrain and counts those that are not on it.
@@ -283,7 +312,8 @@ class Placer {
     const Grid& grid = heights_.grid;
     std::uint64_t on_map = 0;
     const std::uint64_t missing = without_terrain_;
-    for (const Cell& cell : cells_of(parts, grid)) {
+    PolygonCells of_polygons;
+    for (const Cell& cell : cells_of(parts, grid, of_polygons)) {
       add(cell, {feature(), grid.centre_x(cell.column), grid.centre_y(cell.row), false});
       ++on_map;
     }
@@ -294,6 +324,7 @@ class Placer {
       ++on_map;
     }
     record(parts, name, on_map, without_terrain_ - missing);
+    if (of_polygons.is_narrow()) narrow_.push_back({kind_of(parts) + (" " + name), of_polygons, source().frequency});
   }
 
   void finish(const std::string& path, const Layer& layer, const Terrain& terrain) {
@@ -313,6 +344,10 @@ class Placer {
       out_.warnings.push_back(path + ": features where the DEM has no heights, which release nothing: FID " +
                               listed(without_height_));
     if (!lacks_.empty()) out_.warnings.push_back(path + ": " + lacks_text(lacks_));
+    if (!narrow_.empty())
+      out_.warnings.push_back(
+          path + ": where a polygon is narrower than a cell of the DEM, lengths of it release nothing: " +
+          first_five(narrow_, narrow_text) + ": draw a crest as a line, widen the polygon, or take a finer DEM");
     if (at_edge_ + without_terrain_ > 0) out_.warnings.push_back(path + ": " + gaps_text());
   }
 
@@ -366,6 +401,7 @@ class Placer {
   OGREnvelope box_;
   std::vector<std::string> without_geometry_, off_map_, without_height_;  // "4 (cliff A)"
   std::vector<Lack> lacks_;
+  std::vector<NarrowSource> narrow_;
   std::uint64_t without_terrain_ = 0, at_edge_ = 0;
 };
 

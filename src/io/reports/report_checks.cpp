@@ -229,7 +229,7 @@ void check_hazard(const CheckedRun& checked, Checks& checks) {
   }
   const bool cut = warned_of(checked.run, kAllOnTheRest);
   const std::string cut_text =
-      cut ? "; a part of a source lies off the DEM (see the warnings), and all of its events fall on the rest" : "";
+      cut ? "; a part of a source releases nothing (see the warnings), and all of its events fall on the rest" : "";
   if (!checked.hazard) {
     checks.push_back({cut ? Mark::Act : Mark::Look, "Frequency", "declared, but talus hazard was not run" + cut_text,
                       "Run it for return periods and classes."});

@@ -8,7 +8,8 @@
 
 namespace talus::io {
 
-/// In a warning about a source with a frequency of which a part lies off the DEM, or where it has no heights.
+/// In a warning about a source with a frequency of which a part releases nothing: off the DEM, where it has no heights,
+/// or narrower than a cell.
 inline constexpr const char* kAllOnTheRest = " events per year all fall on the ";
 
 /// Places of release from a vector file.
@@ -26,11 +27,12 @@ struct SourceLayer {
 
 /// Reads sources: polygons, lines, points, mixed or in collections, in any coordinate system.
 ///
-/// A polygon gives the cells whose centres it covers; if it covers none, the cells that it touches. A line gives the
-/// cells that it crosses, a point its place. A feature of several parts gives the cells of each part, but each cell
-/// once. Cells without terrain are left out (with a warning). These fields are read if they are there, in upper or
-/// lower case: frequency, diameter, diameter_min, diameter_max, height, vx, vy, vz, name; NULL counts as not given;
-/// numbers may stand in text fields. A feature without a name has its number (FID) for one.
+/// A polygon gives the cells whose centres it covers; if it covers none, the cells that it touches. If it is narrower
+/// than a cell in places, a warning counts what is left out. A line gives the cells that it crosses, a point its place.
+/// A feature of several parts gives the cells of each part, but each cell once. Cells without terrain are left out (with
+/// a warning). These fields are read if they are there, in upper or lower case: frequency, diameter, diameter_min,
+/// diameter_max, height, vx, vy, vz, name; NULL counts as not given; numbers may stand in text fields. A feature without
+/// a name has its number (FID) for one.
 ///
 /// @param release_height  for features without the field height [m]
 /// Throws InputError that names file, feature, field, value and what is allowed; also if no cell is left.

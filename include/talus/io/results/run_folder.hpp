@@ -60,7 +60,7 @@ struct RunSummary {
 /// Reads OUT/run.json. Throws InputError if it cannot be read or `talus run` has not written it.
 RunSummary read_run(const std::filesystem::path& folder);
 
-/// The warnings of the run about sources of which a part lies off the DEM, with all of their events on the rest; none
+/// The warnings of the run about sources of which a part releases nothing, with all of their events on the rest; none
 /// if there is no run.json that can be read.
 std::vector<std::string> cut_source_warnings_of(const std::filesystem::path& folder);
 
