@@ -210,6 +210,42 @@ class Files(Profile):
             ground = rows_of(self.path(f"out{nodes}/profile.gpkg"), "profile")[0][1]
             self.assertEqual(ground.GetPointCount(), nodes)
 
+    def test_the_heights_are_those_of_the_dem_or_a_warning_says_how_far_off(self):
+        """Benches of 5 m in cells of 0.5 m and a line across them. The surface where the line crosses from one pair of
+        cells to the next is interpolated here between these two."""
+        rows, columns = np.indices((60, 60))
+        down = 0.5 * (rows + 0.5) + 2.0 * np.sin(columns / 9.0)  # m
+        z = np.interp(down, [0, 8, 9.5, 14, 15.5, 20, 21.5, 40], [1000, 1000, 995, 995, 990, 990, 985, 985]).astype(np.float32)
+        write_dem(self.path("dem.tif"), z, cell=0.5)
+        a, b = np.array([4.3, 1.1]), np.array([21.7, 28.6])  # from the upper left corner, right and down
+        line = "LINESTRING (" + ", ".join(f"{WEST + x} {NORTH - y}" for x, y in (a, b)) + ")"
+        write_features(self.path("line.gpkg"), "line", [(line, [])])
+        length, truth = math.hypot(*(b - a)), []
+        for axis in (0, 1):
+            from_, to = a[axis] / 0.5 - 0.5, b[axis] / 0.5 - 0.5  # in cells, 0 at the first centre
+            for whole in range(math.ceil(from_), math.floor(to) + 1):
+                share = (whole - from_) / (to - from_)
+                other = (a + share * (b - a))[1 - axis] / 0.5 - 0.5
+                pair = z[:, whole] if axis == 0 else z[whole]
+                truth.append((share * length, np.interp(other, np.arange(60), pair)))
+        x, height = np.array(truth).T
+        for step, is_off in ((0.05, False), (1, True), (5, True)):
+            with self.subTest(step):
+                self.scenario("x = 1", "[output]\nbin = 5\n",
+                              f'dem = "dem.tif"\nline = "line.gpkg"\nsurface = "bilinear"\nstep = {step}\n')
+                self.profile("--trajectories", "5", "--overwrite")
+                ground = rows_of(self.path("out/profile.gpkg"), "profile")[0][1]
+                nodes = np.array([ground.GetPoint(i) for i in range(ground.GetPointCount())])
+                along = np.hypot(nodes[:, 0] - WEST - a[0], NORTH - nodes[:, 1] - a[1])
+                off = np.abs(np.interp(x, along, nodes[:, 2]) - height)
+                at = off.argmax()
+                self.assertEqual(off[at] > 0.1, is_off)
+                told = [text for text in self.record()["warnings"] if "leaves out terrain" in text]
+                self.assertEqual(len(told), is_off)
+                if is_off:
+                    self.assertIn(f"at x = {x[at]:.1f} m the profile is {off[at]:.2g} m above or below", told[0])
+                    self.assertIn("give a smaller step", told[0])
+
 
 class Products(Profile):
     """`talus barrier` and `talus report` on the folder of a profile say what holds there."""
