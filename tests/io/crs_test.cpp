@@ -2,6 +2,7 @@
 
 #include "files.hpp"
 #include "talus/io/gdal/vectors.hpp"
+#include "talus/io/gdal/zones.hpp"
 
 namespace talus::io::test {
 
@@ -76,6 +77,36 @@ TEST_F(Crs, ALocalSystemHasNoWayToAnotherOne) {
         read_sources(file, terrain, {1, 1});
       },
       {"s.shp", "no transformation", "quarry", "EPSG:31287"});
+}
+
+/// A local grid in metres.
+std::string grid_named(const std::string& name) {
+  return "LOCAL_CS[\"" + name + "\",UNIT[\"metre\",1],AXIS[\"X\",EAST],AXIS[\"Y\",NORTH]]";
+}
+
+TEST_F(Crs, LocalGridsWithOtherNamesAreTakenAsTheSameWithAWarning) {
+  const RasterFile mine{.place = {0, 1, 0, 8, 0, -1}, .system = grid_named("mine grid")};
+  const Terrain terrain = read_terrain(mine.write(path("dem.tif")));
+  int number = 0;
+  const auto warnings = [&](const std::string& name) {
+    const std::string file =
+        write_vector(path("s" + std::to_string(number++) + ".gpkg"), grid_named(name), {}, {{"POINT(3.5 4.5)"}});
+    const SourceLayer layer = read_sources(file, terrain, {1, 1});
+    EXPECT_DOUBLE_EQ(layer.cells.at(0).x, 3.5) << name;
+    return layer.warnings;
+  };
+  EXPECT_TRUE(said(warnings("old pit grid"),
+                   "s0.gpkg: says the local grid 'old pit grid', the DEM 'mine grid': taken as the same grid"));
+  for (const char* same : {"mine grid", "Mine Grid", "unknown", "Unnamed", ""})
+    EXPECT_TRUE(warnings(same).empty()) << same;
+
+  RasterFile old = mine;  // rasters are looked up from the DEM, the other way round
+  old.system = grid_named("old pit grid");
+  old.type = GDT_Byte;
+  old.values.assign(80, 1.0);
+  const ZoneRequest zones{.path = old.write(path("zones.tif")), .field = {}, .names = {"1"}};
+  EXPECT_TRUE(said(read_zones(zones, terrain).warnings,
+                   "zones.tif: says the local grid 'old pit grid', the DEM 'mine grid': taken as the same grid"));
 }
 
 TEST_F(Crs, NamesHaveTheirCode) {

@@ -75,6 +75,19 @@ bool same_system(PJ_CONTEXT* context, const PJ* a, const PJ* b) {
          proj_is_equivalent_to_with_ctx(context, p.get(), q.get(), PJ_COMP_EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS) != 0;
 }
 
+/// Name of a local grid [small letters]; empty for any other system, and for a grid without a name.
+std::string name_of_local_grid(const PJ* system) {
+  const char* const given = proj_get_type(system) == PJ_TYPE_ENGINEERING_CRS ? proj_get_name(system) : nullptr;
+  const std::string name = given == nullptr ? "" : lowercase(given);
+  return name == "unknown" || name == "unnamed" ? "" : name;
+}
+
+/// Whether two systems are local grids with different names. PROJ compares only their axes and units.
+bool are_other_grids(const PJ* a, const PJ* b) {
+  const std::string name = name_of_local_grid(a), other = name_of_local_grid(b);
+  return !name.empty() && !other.empty() && name != other;
+}
+
 // An operation between two systems for longitude/latitude or east/north; null if there is none.
 Object make_operation(PJ_CONTEXT* context, const PJ* from, const PJ* to, PJ_AREA* area) {
   const Object operation(proj_create_crs_to_crs_from_pj(context, from, to, area, nullptr));
@@ -215,6 +228,7 @@ struct Transformer::Projection {
   Object operation;  // null: identity
   LayerName layer;
   std::string from_wkt, to_wkt;
+  std::string other_grid;  // a warning; empty: none
   std::vector<Reprojection> used;
   std::size_t places = 0;
 
@@ -246,7 +260,13 @@ Transformer::Transformer(LayerName layer, const std::string& from_wkt, const std
   if (!from || !to)
     throw InputError(p.layer.path +
                      ": a coordinate system cannot be read by PROJ: say which it is with ogr2ogr -a_srs EPSG:...");
-  if (same_system(p.context.get(), from.get(), to.get())) return;
+  if (same_system(p.context.get(), from.get(), to.get())) {
+    const std::string& own = from_wkt == map.wkt ? to_wkt : from_wkt;  // a raster is looked up from the DEM
+    if (are_other_grids(from.get(), to.get()))
+      p.other_grid = p.layer.path + ": says the local grid '" + crs_name(own) + "', the DEM '" + crs_name(map.wkt) +
+                     "': taken as the same grid";
+    return;
+  }
   const Area box = area_of(p.context.get(), map);
   p.operation = make_operation(p.context.get(), from.get(), to.get(), box.get());
   if (!p.operation)
@@ -276,6 +296,7 @@ const std::vector<Reprojection>& Transformer::used() const {
 
 std::vector<std::string> Transformer::warnings(double cell) const {
   std::vector<std::string> lines;
+  if (!projection_->other_grid.empty()) lines.push_back(projection_->other_grid);
   for (const Reprojection& r : used()) {
     if (r.accuracy_m && *r.accuracy_m <= 0.5 * cell) continue;
     lines.push_back(projection_->layer.path + ": brought from " + crs_name(projection_->from_wkt) + " to " +

@@ -38,7 +38,8 @@ struct LayerName {
 /// 5 %, as Web Mercator does, is refused); nothing otherwise
 std::optional<std::string> check_metric(const std::string& path, const std::string& wkt, const MapExtent& extent);
 
-/// Transforms places from one coordinate system into another by PROJ; does nothing if both are the same.
+/// Transforms places from one coordinate system into another by PROJ; does nothing if both are the same. Local grids
+/// (engineering CRS) with the same axes and units are taken as the same, as nothing ties them to the earth.
 class Transformer {
  public:
   /// @param map  area for which PROJ chooses the best operation
@@ -54,7 +55,8 @@ class Transformer {
   /// Every operation that was used so far, with its accuracy. Empty for the identity.
   const std::vector<Reprojection>& used() const;
 
-  /// One line for every operation whose accuracy is unknown or worse than half a cell.
+  /// One line for every operation whose accuracy is unknown or worse than half a cell, and one if two local grids with
+  /// different names are taken as the same.
   std::vector<std::string> warnings(double cell) const;
 
  private:
