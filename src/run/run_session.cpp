@@ -128,8 +128,9 @@ std::optional<Outcome> RunSession::find_done() const {
     const auto status = io::status_of_result(request_.out, io::plan_checksum(plan_.loaded), plan_.rounds);
     const fs::path out = request_.out;
     if (!status && fs::exists(out / "run.json") && !fs::exists(out / io::OutputFolder::kWork))
-      throw InputError(request_.out + ": holds a finished run of another plan (the scenario, a flag or a file is not what "
-                       "it was), with which --resume cannot go on; give a new name, or --overwrite to replace it");
+      throw InputError(request_.out +
+                       ": holds a finished run that is not this one (the scenario, a flag or a file is not what it "
+                       "was), so that there is nothing to --resume; give a new name, or --overwrite to replace it");
     if (!status) return {};
     std::error_code ignored;  // a run killed at its very end may have left its checkpoint
     fs::remove_all(out / io::OutputFolder::kWork, ignored);

@@ -71,12 +71,13 @@ class Again(RunCase):
         again = self.run_well("run", self.path("s.toml"), "-o", self.path("out"), "--resume")  # a task that was requeued
         self.assertIn("the run is done", again.stderr)
         for more in (["--seed", "2"], ["--rounds", "2"]):
-            self.fails(2, "not empty", arguments=["run", self.path("s.toml"), "-o", self.path("out"), "--resume", *more])
+            self.fails(2, "holds a finished run that is not this one", arguments=["run", self.path("s.toml"), "-o", self.path("out"), "--resume", *more])
+        self.fails(2, "30;300", "30,100,300", arguments=["run", self.path("s.toml"), "-o", self.path("out"), "--thresholds", "30;300"])
         self.run_scenario("rounds", "--rounds", "3")
         os.mkdir(self.path("rounds/unfinished"))  # killed before it could remove that
         self.run_scenario("rounds", "--rounds", "3", "--resume")
         self.assertFalse(os.path.exists(self.path("rounds/unfinished")))
-        self.fails(2, "not empty",
+        self.fails(2, "holds a finished run that is not this one",
                    arguments=["run", self.path("s.toml"), "-o", self.path("rounds"), "--resume", "--rounds", "2"])
 
     def test_the_scenario_is_edited_while_its_rounds_run(self):

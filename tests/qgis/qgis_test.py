@@ -17,14 +17,14 @@ import unittest
 import xml.etree.ElementTree as xml
 
 from osgeo import gdal, ogr, osr
-from qgis.core import (QgsApplication, QgsCoordinateReferenceSystem, QgsFeature, QgsFeatureRequest, QgsField, QgsGeometry,
+from qgis.core import (QgsApplication, QgsCoordinateReferenceSystem, QgsFeature, QgsFeatureRequest, QgsField, QgsGeometry, QgsLayerTreeModel,
                        QgsMapRendererParallelJob, QgsMapSettings, QgsProcessingAlgRunnerTask, QgsProcessingContext,
                        QgsProcessingFeatureSourceDefinition, QgsProcessingFeedback, QgsProcessingModelAlgorithm,
                        QgsProcessingModelChildAlgorithm, QgsProcessingModelChildParameterSource,
                        QgsProcessingOutputLayerDefinition, QgsProcessingParameterBand, QgsProcessingParameterBoolean,
                        QgsProcessingParameterDefinition, QgsProject,
                        QgsRasterLayer, QgsRasterRange, QgsVectorLayer, QgsVectorLayerJoinInfo)
-from qgis.PyQt.QtCore import QEventLoop, QLocale, QSize, QTimer, QVariant
+from qgis.PyQt.QtCore import QEventLoop, QLocale, QSize, Qt, QTimer, QVariant
 from qgis.PyQt.QtGui import QColor
 
 sys.path.append("/usr/share/qgis/python/plugins")  # of Processing

@@ -97,7 +97,8 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   const auto is = [&error](CLI::ExitCodes code) { return error.get_exit_code() == static_cast<int>(code); };
   if (is(CLI::ExitCodes::ConversionError))
     return text.substr(text.find(": ") + 2) + ": is not a number that can stand there" +
-           (text.find(';') != std::string::npos ? " (the numbers of a list stand like this: 30,100,300)" : "") + see_help;
+           (text.find(';') != std::string::npos ? " (the numbers of a list stand like this: 30,100,300)" : "") +
+           see_help;
   if (!is(CLI::ExitCodes::ExtrasError) && !called.empty()) return text + see_help;
   const std::vector<std::string> given(words.begin() + 1, words.end());
   for (const std::string& word : called.empty() ? given : command.remaining(true)) {

@@ -226,7 +226,8 @@ void add_inputs(std::vector<Shown>& shown, const ProjectGround& ground, const fs
         place = shown.insert(place, std::move(*outline)) + 1;
 }
 
-/// A layer that QGIS shades: the DEM itself, with light from the north-west and from the sides.
+/// A layer that QGIS shades: the DEM itself, with light from the north-west and from the sides. The provider resamples:
+/// of what the renderer resamples QGIS draws a bright line where it joins two parts.
 std::optional<Shown> hillshade_of(const fs::path& dem, const fs::path& project) {
   std::error_code none;
   if (!dem.is_absolute() || !fs::is_regular_file(dem, none)) return std::nullopt;
@@ -238,8 +239,8 @@ std::optional<Shown> hillshade_of(const fs::path& dem, const fs::path& project) 
   shown.style = parsed_xml(
       "<qgis><pipe><rasterrenderer type=\"hillshade\" band=\"1\" azimuth=\"315\" angle=\"45\" zfactor=\"1\" "
       "multidirection=\"1\" opacity=\"1\" alphaBand=\"-1\" nodataColor=\"\"/><provider><resampling enabled=\"true\" "
-      "maxOversampling=\"2\" zoomedInResamplingMethod=\"bilinear\"/></provider><resamplingStage>provider"  // by the renderer:
-      "</resamplingStage></pipe><blendMode>0</blendMode></qgis>");  // a bright line where QGIS joins two parts
+      "maxOversampling=\"2\" zoomedInResamplingMethod=\"bilinear\"/></provider><resamplingStage>provider"
+      "</resamplingStage></pipe><blendMode>0</blendMode></qgis>");
   return shown;
 }
 
