@@ -12,7 +12,7 @@ import unittest
 import numpy as np
 from osgeo import gdal, ogr
 
-from support import TALUS, Case, RunCase, box, rows_of, system, write_dem, write_features
+from support import TALUS, Case, RunCase, box, heights, rows_of, system, write_dem, write_features
 
 BARRIER_PICTURE = os.path.join(os.path.dirname(__file__), "../../tools/scripts/figures/barrier_picture.py")
 
@@ -154,6 +154,60 @@ class Elevations(Case):
         done = self.run_well(*arguments)
         self.assertIn("times its scale 0.0625 plus its offset 900", done.stderr)
         self.assertAlmostEqual(self.record("scaled")["trajectory_metres"], self.record("metres")["trajectory_metres"], delta=30)
+
+
+class LocalGrids(Case):
+    """What a message says about a DEM of a mine: the commands work, and the DEM that they make is taken."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("points.csv", "x,y\n0,0\n")  # no place of these DEMs: only the fault of the DEM is asked for
+
+    def shell(self, command):
+        done = subprocess.run(command, shell=True, cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def refused(self, dem, *words):
+        done = self.fails(2, *words, arguments=["check", "--dem", self.path(dem), "--sources", self.path("points.csv"),
+                                                "--diameter", "1"])
+        return " ".join(done.stderr.split())
+
+    def taken(self, dem):
+        self.run_well("sources", "--dem", self.path(dem), "--slope", "30", "-o", self.path(dem + ".gpkg"))
+        return gdal.Open(self.path(dem))
+
+    def test_a_dem_without_a_system(self):
+        write_dem(self.path("a pit.tif"), heights(), code=0)
+        gdal.Translate(self.path("pit.asc"), self.path("a pit.tif"), format="AAIGrid")
+        for dem, made in (("a pit.tif", "a pit.tif"), ("pit.asc", "mended.tif")):
+            with self.subTest(dem):
+                self.shell(self.refused(dem, "no coordinate system", "-a_srs EPSG:...").split("has no code: ")[1])
+                self.assertEqual(self.taken(made).GetSpatialRef().GetName(), "mine grid")
+
+    def test_a_grid_in_feet(self):
+        """Without and with heights in feet: a foot is 0.3048 m. A missing value stays one."""
+        grid = 'LOCAL_CS["old mine",UNIT["foot",0.3048],AXIS["X",EAST],AXIS["Y",NORTH]]'
+        z = heights().astype(np.int16)
+        z[0, 0] = -9999
+        dem = gdal.GetDriverByName("GTiff").Create(self.path("feet.tif"), 60, 60, 1, gdal.GDT_Int16)
+        dem.SetGeoTransform((5000.0, 5.0, 0.0, 8000.0, 0.0, -5.0))
+        dem.SetProjection(grid)
+        dem.GetRasterBand(1).SetNoDataValue(-9999)
+        dem.GetRasterBand(1).WriteArray(z)
+        dem = None
+        text = self.refused("feet.tif", "in 'foot' (old mine), must be metres").split("multiply them with ")[1]
+        self.assertNotIn("gdalwarp", text)
+        command, rest = text.split(", with the options ")
+        options = rest.split(" as well")[0]
+        for factor, line in ((1.0, command), (0.3048, command.replace("gdal_translate", "gdal_translate " + options))):
+            with self.subTest(line):
+                self.shell(line)
+                made = self.taken("metres.tif")
+                np.testing.assert_allclose(made.GetGeoTransform(), (1524.0, 1.524, 0.0, 2438.4, 0.0, -1.524), atol=1e-9)
+                found = made.ReadAsArray().astype(float)
+                self.assertEqual(found[0, 0], made.GetRasterBand(1).GetNoDataValue())
+                np.testing.assert_allclose(found.ravel()[1:], factor * z.ravel()[1:], rtol=1e-6)
+                os.remove(self.path("metres.tif.gpkg"))
 
 
 class Places(Case):

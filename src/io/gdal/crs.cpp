@@ -148,6 +148,27 @@ Axis height_axis(PJ_CONTEXT* context, const std::string& wkt) {
   return heights ? axis_of(context, heights.get(), 0) : Axis{};
 }
 
+/// Option of GDAL's programs that says that a raster is in a local grid in metres, which has no code of EPSG.
+std::string local_grid() {
+  return "-a_srs " + shell_word(R"(LOCAL_CS["mine grid",UNIT["metre",1]])");
+}
+
+/// How to say which system a raster is in.
+std::string naming(const std::string& path) {
+  return "say which it is with " + edit_command(path, "-a_srs EPSG:...") +
+         "; a local grid in metres, as of a mine, has no code: " + edit_command(path, local_grid());
+}
+
+/// How to bring a raster of a local grid into metres: no transformation leads out of such a grid.
+std::string scaling(const std::string& path, const MapExtent& e, double unit_x, double unit_y) {
+  std::string corners;
+  for (const double place : {e.west * unit_x, e.north * unit_y, e.east * unit_x, e.south * unit_y})
+    corners += " " + text_of(place);
+  return "; multiply them with gdal_translate " + local_grid() + " -a_ullr" + corners + " " + shell_word(path) +
+         " metres.tif, with the options -ot Float32 -scale 0 1 0 " + text_of(unit_x) +
+         " as well if the heights are in this unit, too";
+}
+
 void check_heights(PJ_CONTEXT* context, const std::string& path, const std::string& wkt) {
   const Axis up = height_axis(context, wkt);
   if (!up.unit_name.empty() && !is_metre(up))
@@ -176,13 +197,10 @@ std::string crs_name(const std::string& wkt) {
 
 std::optional<std::string> check_metric(const std::string& path, const std::string& wkt, const MapExtent& extent) {
   if (wkt.empty())
-    throw InputError(path + ": has no coordinate system, must be a projected one in metres: say which it is with " +
-                     edit_command(path, "-a_srs EPSG:..."));
+    throw InputError(path + ": has no coordinate system, must be a projected one in metres: " + naming(path));
   const Context context = make_context();
   const Object system = plane_part(context.get(), wkt);
-  if (!system)
-    throw InputError(path + ": its coordinate system cannot be read by PROJ: say which it is with " +
-                     edit_command(path, "-a_srs EPSG:..."));
+  if (!system) throw InputError(path + ": its coordinate system cannot be read by PROJ: " + naming(path));
   const PJ_TYPE type = proj_get_type(system.get());
   const std::string way_out = "; reproject it, for example with gdalwarp -t_srs " +
                               example_system(context.get(), system.get(), extent) + " -r cubicspline " +
@@ -195,7 +213,8 @@ std::optional<std::string> check_metric(const std::string& path, const std::stri
   const Axis east = axis_of(context.get(), system.get(), 0), north = axis_of(context.get(), system.get(), 1);
   if (!is_metre(east) || !is_metre(north))
     throw InputError(path + ": coordinates are in '" + (is_metre(east) ? north : east).unit_name + "' (" +
-                     crs_name(wkt) + "), must be metres" + way_out);
+                     crs_name(wkt) + "), must be metres" +
+                     (type == PJ_TYPE_ENGINEERING_CRS ? scaling(path, extent, east.unit, north.unit) : way_out));
   check_heights(context.get(), path, wkt);
 
   const double ratio = stretch(context.get(), system.get(), extent);
