@@ -384,6 +384,18 @@ class Faults(Files):
         self.scenario("x = 20", head='dem = "dem.tif"\nline = "line.gpkg"\n')
         self.fails_with("line.gpkg", "no terrain")
 
+    def test_a_line_must_lie_strictly_between_the_outermost_centres(self):
+        self.scenario("x = 0", head='dem = "dem.tif"\nline = "line.csv"\n')
+        west, south = WEST + 2.5, NORTH - 297.5  # of the 60 x 60 cells of 5 m
+        for inside, (x, y) in ((False, (295, 100)), (False, (100, 295)), (True, (294.9, 100)), (True, (100, 294.9))):
+            with self.subTest((x, y)):
+                self.write("line.csv", f'id,wkt\n1,"LINESTRING ({west + 100} {south + 100},{west + x} {south + y})"\n')
+                if inside:
+                    self.profile("--trajectories", "5", "--overwrite")
+                else:
+                    self.fails_with("line.csv", "no terrain under it 195 m from its start",
+                                    "must lie on the DEM, strictly between the centres of its outermost cells")
+
     def test_folders(self):
         self.profile("--trajectories", "5")
         self.fails(2, "--overwrite", arguments=["profile", self.path("p.toml"), "-o", self.path("out")])

@@ -33,7 +33,7 @@ ProfileLine profile_along(const std::vector<Eigen::Vector2d>& plan, const Surfac
     const auto z = surface.height(place.x(), place.y());
     if (!z)
       throw InputError(name + ": there is no terrain under it " + text_of(std::round(x * 10.0) / 10.0) +
-                       " m from its start, must lie on the DEM between the centres of its outermost cells");
+                       " m from its start, must lie on the DEM, strictly between the centres of its outermost cells");
     terrain.emplace_back(x, *z);
     if (last)
       while (nodes.size() > 1 && x - nodes.back().x() < apart) nodes.pop_back();
