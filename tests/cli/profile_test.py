@@ -404,6 +404,20 @@ class Faults(Files):
         self.fails(2, "--trajectories", arguments=["profile", self.path("p.toml"), "-o", self.path("new"),
                                                    "--trajectories", "-1"])
 
+    def test_the_value_of_c_is_told(self):
+        """As `talus run` does, with the way of a profile: docs/barrier.md, "The value of c"."""
+        for model, told in (("", "0.25"), ("[model]\ndeformation_coefficient = 0.16\n", "0.16"),
+                            ("[model]\ndeformation_coefficient = 0.15\n", None)):
+            self.scenario("x = 20", model)
+            done = self.run_well("profile", self.path("p.toml"), "-o", self.path("out"), "--trajectories", "5", "--overwrite")
+            notes = [line for line in done.stderr.splitlines() if line.startswith("talus: note: ")]
+            self.assertEqual(len(notes), told is not None)
+            if told:
+                self.assertIn(f"energies and jumps may be too low (unsafe): c = {told} ", notes[0])
+                self.assertIn("run with deformation_coefficient = 0.15 in [model] as well", notes[0])
+        self.scenario("x = 20")
+        self.assertEqual(self.profile("--trajectories", "5", "--overwrite").stderr, "")
+
     def test_a_3d_preset_is_warned_of(self):
         self.scenario("x = 20", "[ground]\ndefault = 'upper-talus-3d'\n")
         done = self.run_well("profile", self.path("p.toml"), "-o", self.path("new"), "--trajectories", "5")

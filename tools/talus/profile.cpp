@@ -9,6 +9,7 @@
 #include "talus/base/text.hpp"
 #include "talus/io/files/output_folder.hpp"
 #include "talus/io/reports/profile_plot.hpp"
+#include "talus/io/results/run_folder.hpp"
 #include "talus/io/results/run_record.hpp"
 #include "talus/io/results/write_crossings.hpp"
 #include "talus/io/results/write_profile.hpp"
@@ -121,6 +122,13 @@ talus::io::ProfileResults simulate_and_write(const Options& options, const Loade
   return results;
 }
 
+/// Says what the figures rest on, before the blocks are traced.
+void say_of_input(const talus::io::LoadedScenario& loaded) {
+  if (const auto low_c = talus::io::coefficient_note(loaded.scenario.impact.deformation_coefficient, true))
+    say("", "note: " + *low_c);
+  for (const std::string& warning : loaded.warnings) say("warning", warning);
+}
+
 int run_profile(const Options& options) {
   Stopwatch watch;
   const LoadedProfile profile = talus::io::load_profile(options.flags);
@@ -129,8 +137,7 @@ int run_profile(const Options& options) {
   talus::io::OutputFolder folder(options.out, options.overwrite);
   for (const talus::io::InputFile& input : profile.loaded.inputs)
     if (std::filesystem::path(input.path) != folder.final_path() / "profile.toml") folder.protect(input.path);
-  if (!options.quiet)
-    for (const std::string& warning : profile.loaded.warnings) say("warning", warning);
+  if (!options.quiet) say_of_input(profile.loaded);
   talus::io::RunRecord record;
   record.command = command_line();
   record.warnings = profile.loaded.warnings;
