@@ -307,6 +307,14 @@ class Tables(InputCase):
         self.table(f"x\ty\n{X}\t{Y}\t3\n", "tabs.tsv")
         self.refused("tabs.tsv:2: has 3 cells, must have 2", sources="tabs.tsv")
 
+    def test_a_column_alone(self):  # GDAL takes no such table
+        hint, one = "must have two columns at least: put another one beside wkt, as id", f'"LINESTRING ({X} {Y}, {X + 9} {Y})"\n'
+        self.refused("t.csv: cannot be opened", hint, sources=self.table("wkt\n" + one))
+        self.run_well("check", *self.flags(self.table("id,wkt\n1," + one)))
+        self.table("wkt\n" + one, "t.gpkg")
+        done = self.fails(2, "t.gpkg: cannot be opened", arguments=["check", *self.flags("t.gpkg")])
+        self.assertNotIn("columns", done.stderr)
+
     def test_every_other_layer_is_checked(self):
         bad = self.table(f'wkt,id,height,capacity,zone\n"LINESTRING ({X} {Y},{X + 9} {Y})",a,1\n')
         for table in ('[screens]\nfile = "t.csv"', '[barriers]\nfile = "t.csv"',

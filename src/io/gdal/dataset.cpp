@@ -101,7 +101,10 @@ Dataset open_dataset(const std::string& path, unsigned kinds) {
     const char* kind = (kinds & GDAL_OF_RASTER) == 0   ? "vector layer"
                        : (kinds & GDAL_OF_VECTOR) == 0 ? "raster"
                                                        : "raster or vector layer";
-    throw InputError(path + ": cannot be opened as a " + kind + ": " + messages.take() +
+    const char* columns = (kinds & GDAL_OF_VECTOR) != 0 && is_text_table(file)
+                              ? " (a CSV must have two columns at least: put another one beside wkt, as id)"
+                              : "";
+    throw InputError(path + ": cannot be opened as a " + kind + ": " + messages.take() + columns +
                      "; docs/security.md has the formats that are read");
   }
   return dataset;
