@@ -171,7 +171,7 @@ void add_diagnose(CLI::App& app, Action& action) {
   command->add_flag("--quick-folds", options->quick_folds,
                     "the folds take the effects that all rows chose, and refit the numbers alone: little time, and an "
                     "error that has seen the choice; so is done where the diagnosis of all rows is costly");
-  command->add_flag("--no-quick-folds", options->no_quick_folds, "never do so");
+  command->add_flag("--no-quick-folds", options->no_quick_folds, "the folds always choose anew");
   command->footer(
       "Where fewer than 72 blocks are fitted, each gets more trajectories, so that there are as many in all; at most "
       "four times as many, and never fewer than 20.\n\n"

@@ -392,10 +392,11 @@ GERMAN = {
     "never do so": "nie wiederholen",
     "parts that are left out in turn: groups, or blocks (5)":
         "Teile, die der Reihe nach weggelassen werden: Gruppen oder Blöcke (5)",
-    "the folds fit the effects that all rows chose, without choosing anew: half the time, and an error that has seen the "
-    "choice":
-        "die Teile passen die Effekte an, die alle Zeilen gewählt haben, ohne neu zu wählen: halbe Zeit, und ein Fehler, der "
-        "die Wahl kennt",
+    "the folds take the effects that all rows chose, and refit the numbers alone: little time, and an error that has seen the "
+    "choice; so is done where the diagnosis of all rows is costly":
+        "die Teile nehmen die Effekte, die alle Zeilen gewählt haben, und passen nur die Zahlen neu an: wenig Zeit, und ein "
+        "Fehler, der die Wahl kennt; so geschieht es auch, wenn die Diagnose aller Zeilen aufwendig ist",
+    "the folds always choose anew": "die Teile wählen immer neu",
     "GeoPackage to write: the cells as polygons and as points":
         "GeoPackage zum Schreiben: die Zellen als Flächen und als Punkte",
     "cells at least so steep [deg]; without it 55 cell^-0.075, which is 48.7 at 5 m":
