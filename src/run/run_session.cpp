@@ -130,7 +130,8 @@ std::optional<Outcome> RunSession::find_done() const {
     if (!status && fs::exists(out / "run.json") && !fs::exists(out / io::OutputFolder::kWork))
       throw InputError(request_.out +
                        ": holds a finished run that is not this one (the scenario, a flag or a file is not what it "
-                       "was), so that there is nothing to --resume; give a new name, or --overwrite to replace it");
+                       "was); give a new name, --overwrite --resume to go on with an interrupted run that was to "
+                       "replace it, or --overwrite to begin anew");
     if (!status) return {};
     std::error_code ignored;  // a run killed at its very end may have left its checkpoint
     fs::remove_all(out / io::OutputFolder::kWork, ignored);

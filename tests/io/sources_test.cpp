@@ -103,6 +103,16 @@ TEST_F(NarrowSources, ARibbonAlongACrestIsToldWhatItLeavesOut) {
   EXPECT_TRUE(line.warnings.empty());
 }
 
+TEST_F(NarrowSources, OtherPartsOfTheFeatureRelease) {  // the ribbon of the test before, with what lies on its gap
+  const std::string ribbon = "((200.5 53,203.5 53,207.5 553,204.5 553,200.5 53))";
+  const SourceLayer wide = read("MULTIPOLYGON(" + ribbon + ",((206 40,250 40,250 260,206 260,206 40)))", "5");
+  EXPECT_EQ(wide.cells.size(), 4U * 22U + 31U) << "columns 21 to 24 of rows 4 to 25, beside the gap of the ribbon";
+  EXPECT_FALSE(said(wide.warnings, "release nothing"));
+  const SourceLayer line = read("GEOMETRYCOLLECTION(POLYGON" + ribbon + ",LINESTRING(202 53,204 303))", "5");
+  EXPECT_EQ(line.cells.size(), 50U);
+  EXPECT_FALSE(said(line.warnings, "release nothing"));
+}
+
 TEST_F(NarrowSources, APolygonAsWideAsTheDiagonalOfACellIsNone) {
   for (int degree = 0; degree < 180; degree += 10) {
     const double c = std::cos(degree * M_PI / 180.0), s = std::sin(degree * M_PI / 180.0);

@@ -184,11 +184,6 @@ class AttributeReader {
   std::size_t features_ = 0;
 };
 
-struct Cell {
-  int column, row;
-  bool operator==(const Cell&) const = default;
-};
-
 /// Whether a straight line has a length in a cell with its edges, not a touch alone.
 bool runs_through(const OGRLineString& segment, const Grid& grid, const Cell& cell) {
   constexpr double kTouch = 1e-9;  // cells
@@ -237,9 +232,9 @@ std::vector<Cell> cells_of(const Parts& parts, const Grid& grid, PolygonCells& o
   }
   for (const OGRLineString& line : parts.lines) append_cells(line, grid, cells);
   if (parts.polygons.size() + parts.lines.size() == 1 && parts.lines.empty()) return cells;
-  std::sort(cells.begin(), cells.end(),
-            [](const Cell& a, const Cell& b) { return a.row != b.row ? a.row > b.row : a.column < b.column; });
+  std::sort(cells.begin(), cells.end(), from_north_west);
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  of_polygons.keep_far_from(cells);
   return cells;
 }
 
@@ -267,14 +262,15 @@ std::string lack_text(const Lack& lack) {
 struct NarrowSource {
   std::string name;  // "polygon 4 (crest)"
   PolygonCells cells;
-  double frequency;  // as in Lack
+  std::uint64_t released;  // cells of the feature that release
+  double frequency;        // as in Lack
 };
 
 /// "polygon 4 (crest): of the 101 cells that it touches, 39 release nothing, nor does a neighbour of them"; with a
 /// frequency "..., and its 5 events per year all fall on the 60 that release".
 std::string narrow_text(const NarrowSource& source) {
   const std::string events = source.frequency > 0.0 ? ", and its " + with_digits(source.frequency, 3) + kAllOnTheRest +
-                                                          std::to_string(source.cells.covered) + " that release"
+                                                          std::to_string(source.released) + " that release"
                                                     : "";
   return source.name + ": " + left_out_text(source.cells) + events;
 }
@@ -324,7 +320,9 @@ class Placer {
       ++on_map;
     }
     record(parts, name, on_map, without_terrain_ - missing);
-    if (of_polygons.is_narrow()) narrow_.push_back({kind_of(parts) + (" " + name), of_polygons, source().frequency});
+    const std::uint64_t released = on_map - (without_terrain_ - missing);
+    if (of_polygons.is_narrow() && released > 0)
+      narrow_.push_back({kind_of(parts) + (" " + name), of_polygons, released, source().frequency});
   }
 
   void finish(const std::string& path, const Layer& layer, const Terrain& terrain) {

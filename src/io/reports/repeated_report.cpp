@@ -57,7 +57,9 @@ std::string clusters_text(const BeforeAfter& e, const DiagnosisRecord& record) {
 std::string quick_folds_note(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
   if (!d.nested || d.nested->naming) return "";
-  const std::string what = "the folds took the effects that all rows chose: the error has seen the choice";
+  const std::string what =
+      "the folds took the effects that all rows chose, and numbers near those of all rows: the error has seen the "
+      "choice";
   if (record.options.naming_in_folds) return what;
   return what + "; the diagnosis of all rows traced " + with_decimals(1e-9 * static_cast<double>(d.vertices), 1) +
          " billion vertices, more than " + with_decimals(record.options.rules.costly, 1) +

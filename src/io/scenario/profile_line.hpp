@@ -12,7 +12,7 @@ namespace talus::io {
 struct ProfileLine {
   Profile profile;                           ///< x is the distance along the line in plan [m]
   std::vector<Eigen::Vector2d> plan;         ///< its vertices in local metres of the DEM
-  double most_off = 0.0, most_off_at = 0.0;  ///< largest vertical distance from the terrain, and its x [m]
+  double most_off = 0.0, most_off_at = 0.0;  ///< largest vertical distance of a sample, and its x [m]
 };
 
 /// Samples the terrain along a line: at its vertices, and where it crosses the lines between the centres of cells, the

@@ -283,7 +283,7 @@ GERMAN = {
     "events per year of all sources together, for talus hazard":
         "Ereignisse pro Jahr aller Ausbruchgebiete zusammen, für die Gefahrenkarten",
     "energies of the maps of exceedance [kJ], with commas and no spaces: 30,300 (default)":
-        "Energien der Überschreitungskarten [kJ], mit Kommas: 30,300 (Vorgabe)",
+        "Energien der Überschreitungskarten [kJ], mit Kommas und ohne Leerzeichen: 30,300 (Vorgabe)",
     "a ground that talus calibrate or diagnose has fitted (fitted.toml), in place of --preset":
         "ein Boden, den Kalibrieren oder Diagnose angepasst hat (fitted.toml), anstelle von «Boden»",
     "c of the impact law (0.25): a lower one gives higher energies and jumps":

@@ -118,7 +118,7 @@ struct DiagnoseOptions {
   std::optional<bool> naming_in_folds;
   DiagnosisRules rules;                 ///< numbers that no user sets
   std::function<bool(double)> proceed;  ///< receives the share done, 0..1; false ends the diagnosis. May be empty
-  TracedVertices* traced = nullptr;     ///< as in ObserveOptions
+  TracedVertices* traced = nullptr;     ///< set by the loop, for its fits
 };
 
 }  // namespace talus

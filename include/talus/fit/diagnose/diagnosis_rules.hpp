@@ -80,8 +80,9 @@ struct DiagnosisRules {
   double half_way = 0.5;
 
   // The folds
-  /// Vertices that a diagnosis of all rows may trace for its folds to choose their effects anew [1e9]: with the folds
-  /// it then takes less than twenty minutes on two processors. docs/diagnosis-time.md.
+  /// Vertices that the loop over all rows may trace for its folds to choose their effects anew [1e9]: alone, without
+  /// further fits of the ground, it then takes less than twenty minutes on two processors with them.
+  /// docs/diagnosis-time.md.
   double costly = 2.5;
 
   // The choice

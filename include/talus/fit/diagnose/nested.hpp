@@ -35,7 +35,8 @@ struct OuterFold {
   double p_value = kNotGiven;  ///< of the first round; NaN where the fold did not choose
 };
 
-/// Every fitting block simulated with models that have not seen it.
+/// Every fitting block simulated with models that have not seen it (folds that do not choose: whose place, design and
+/// neighbourhood are those of all rows).
 struct NestedValidation {
   OuterFolds folds;
   bool naming = true;  ///< the folds chose their effects; false: they took those that all rows chose
