@@ -146,7 +146,7 @@ void for_each_cell(const CellMask& mask, Visit visit) {
     for (int i = 0; i < mask.columns; ++i)
       if (*mark++ != 0) visit(mask.column + i, mask.north_row - j);
 }
-/// The same for the cells that `mask_of` marks.
+/// Visits the cells of a geometry in the same order. @param touched  as of `mask_of`
 template <class Visit>
 void for_each_cell(const OGRGeometry& geometry, const Grid& grid, bool touched, Visit visit) {
   for_each_cell(mask_of(geometry, grid, touched), visit);
