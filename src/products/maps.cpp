@@ -69,7 +69,9 @@ struct TallyValues {
     }
     tally.memory().keep_below_limit();  // reading a record loads its neighbours too
     std::vector<double> cell(untouched.size());
-    for (int column = part.column; column < part.column + part.columns; ++column, ++place) {
+    const int end = part.column + part.columns;
+    for (int column = part.column; column < end; ++column) tally.fetch(column, part.row);
+    for (int column = part.column; column < end; ++column, ++place) {
       of_cell(column, part.row, rule, cell);
       for (std::size_t band = 0; band < cell.size(); ++band) values[band * band_size + place] = cell[band];
     }

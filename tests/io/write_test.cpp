@@ -234,9 +234,9 @@ TEST_F(Write, ALargeFileIsABigTiffOfTheSamePixels) {
   TileStore store(folder_ / "map.tif");
   const std::vector<float> pixels(128 * 128, 5.0F);
   SmallTiff small(1, GDT_Float32);
-  const CogLevel level{128, 128, 1, 1, {store.add(compressed_tile(pixels, 128, 1))}};
+  const CogLevel level{128, 128, 1, 1, {store.add(deflated(std::as_bytes(std::span(pixels))))}};
   const CogLevel overview{64, 64, 1, 1, {TilePlace{}}};
-  CogFormat format{128, kDeflate, kPredictor<float>, small.tags()};
+  CogFormat format{128, kDeflate, small.tags()};
   format.most_small = 0;
   ASSERT_TRUE(write_cog(folder_ / "map.tif", format, std::array{level, overview}, store, {}));
   EXPECT_EQ(text_of_file(folder_ / "map.tif").substr(0, 4), std::string("II+\0", 4));

@@ -24,16 +24,15 @@ enum TagNumber : std::uint16_t {
   kRowsPerStrip = 278,
   kStripByteCounts = 279,
   kSoftware = 305,
-  kPredictorTag = 317,
   kTileWidth = 322,
   kTileLength = 323,
   kTileOffsets = 324,
   kTileByteCounts = 325,
   kGdalMetadata = 42112
 };
-constexpr std::array<std::uint16_t, 11> kOfTheFile{kSubfileType,     kImageWidth,   kImageLength,  kCompressionTag,
-                                                   kStripOffsets,    kRowsPerStrip, kPredictorTag, kTileWidth,
-                                                   kStripByteCounts, kTileLength,   kTileOffsets};
+constexpr std::array<std::uint16_t, 10> kOfTheFile{kSubfileType,  kImageWidth,   kImageLength, kCompressionTag,
+                                                   kStripOffsets, kRowsPerStrip, kTileWidth,   kStripByteCounts,
+                                                   kTileLength,   kTileOffsets};
 
 /// What GDAL calls a COG: it reads this after the header. If it changes the file, it writes YES at the end.
 constexpr std::string_view kClaim =
@@ -140,7 +139,6 @@ std::vector<TiffTag> tags_of(const CogFormat& format, const CogLevel& level, boo
   tags.push_back(long_tag(kImageWidth, level.columns));
   tags.push_back(long_tag(kImageLength, level.rows));
   tags.push_back(short_tag(kCompressionTag, format.compression));
-  tags.push_back(short_tag(kPredictorTag, format.predictor));
   tags.push_back(short_tag(kTileWidth, format.side));
   tags.push_back(short_tag(kTileLength, format.side));
   tags.push_back(layout.places_tag(kTileOffsets, offsets));

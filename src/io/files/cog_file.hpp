@@ -21,7 +21,7 @@ struct CogLevel {
 /// What all tiles of a file have in common.
 struct CogFormat {
   int side;  ///< pixels of a tile
-  std::uint16_t compression, predictor;
+  std::uint16_t compression;
   std::vector<TiffTag> tags;  ///< of GDAL; those of the size, the tiles and the compression are not taken over
   std::uint64_t most_small = (std::uint64_t{1} << 32U) - 1;  ///< bytes; a larger file is a BigTIFF
 };

@@ -6,23 +6,13 @@
 
 namespace talus::io {
 
-/// Compresses a tile for a TIFF: DEFLATE after the predictor for its type. Values are interleaved by pixel.
-///
-/// @param pixels  [row][column][band]
-/// @param width   pixels in a row
-std::vector<std::byte> compressed_tile(std::span<const float> pixels, std::size_t width, std::size_t bands);
-std::vector<std::byte> compressed_tile(std::span<const std::uint32_t> pixels, std::size_t width, std::size_t bands);
+/// Compresses the bytes of a tile for a TIFF (DEFLATE). Without a predictor: values of maps are shares of whole numbers
+/// and bounds that follow from them, and equal ones compress better than differences (docs/performance.md).
+std::vector<std::byte> deflated(std::span<const std::byte> bytes);
 
 /// A complete gzip file of these bytes. Several, one after the other, are a gzip file too.
 std::vector<std::byte> gzipped(std::span<const std::byte> bytes);
 
-/// Numbers of the TIFF specification for what `compressed_tile` does.
-inline constexpr std::uint16_t kDeflate = 8;
-template <class T>
-inline constexpr std::uint16_t kPredictor = 0;
-template <>
-inline constexpr std::uint16_t kPredictor<std::uint32_t> = 2;  ///< differences of whole numbers
-template <>
-inline constexpr std::uint16_t kPredictor<float> = 3;  ///< differences of the bytes of floating-point numbers
+inline constexpr std::uint16_t kDeflate = 8;  ///< number in the TIFF specification of what `deflated` does
 
 }  // namespace talus::io

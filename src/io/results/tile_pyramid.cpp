@@ -147,7 +147,7 @@ template <class T>
 void TilePyramid<T>::finish(const Place& place, const Pixels& pixels, TileStore& store) {
   const auto even = even_values(place, pixels);
   levels_[static_cast<std::size_t>(place.level)].tile(place.x, place.y) =
-      even ? even_tile(*even, store) : store.add(compressed_tile(pixels, static_cast<std::size_t>(side_), bands_));
+      even ? even_tile(*even, store) : store.add(deflated(std::as_bytes(std::span(pixels))));
   raise(place, store, [&](Pixels& to) { halve(place, pixels, to); });
 }
 
@@ -229,7 +229,7 @@ TilePlace TilePyramid<T>::even_tile(const std::vector<T>& values, TileStore& sto
   Pixels pixels(pixel(0, side_));
   for (std::size_t i = 0; i < pixels.size(); i += bands_)
     std::ranges::copy(values, pixels.begin() + static_cast<std::ptrdiff_t>(i));
-  at->second = store.add(compressed_tile(pixels, static_cast<std::size_t>(side_), bands_));
+  at->second = store.add(deflated(std::as_bytes(std::span(pixels))));
   return at->second;
 }
 

@@ -77,7 +77,7 @@ class MapFile::TilesOf : public MapFile::Tiles {
   std::size_t parts() const override { return pyramid_.parts(); }
   void make_part(std::size_t i, TileStore& store) override { pyramid_.make_part(i, store); }
   bool write(const std::filesystem::path& file, const TileStore& store) override {
-    const CogFormat format{side_of(target_), kDeflate, kPredictor<T>, tags_of<T>(map_, target_)};
+    const CogFormat format{side_of(target_), kDeflate, tags_of<T>(map_, target_)};
     return write_cog(file, format, pyramid_.levels(), store, target_.proceed);
   }
 

@@ -24,6 +24,12 @@ unsigned char* zeros(MemoryPolicy memory, std::size_t bytes) {
   return static_cast<unsigned char*>(std::memset(memory.allocate(bytes), 0, bytes));
 }
 
+/// Number of the smallest of `total` values, one or more, below which `share` of them lie.
+double rank_of(double share, std::uint64_t total) {
+  const auto count = static_cast<double>(total);
+  return std::clamp(std::ceil(share * count), 1.0, count);
+}
+
 double edge_of(int key) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(key) << kShift);
 }
@@ -214,15 +220,32 @@ LogHistogram LogHistogram::restored(ByteReader& in) {
 
 std::uint64_t LogHistogram::count() const {
   std::uint64_t sum = few_count_;
-  for (int bin = 0; bin < size_; ++bin) sum += get(bin);
+  in_width([&](auto counts) {
+    for (int bin = 0; bin < size_; ++bin) sum += counts(bin);
+  });
   return sum;
+}
+
+/// Calls action(counts), where counts(bin) is the count of a bin, for the width that the counts have.
+template <class Action>
+void LogHistogram::in_width(const Action& action) const {
+  const auto read = [counts = counts_]<class Count>(Count count, int bin) {
+    std::memcpy(&count, counts + static_cast<std::size_t>(bin) * sizeof count, sizeof count);
+    return std::uint32_t{count};
+  };
+  if (width_ == 1)
+    action([&](int bin) { return read(std::uint8_t{}, bin); });
+  else if (width_ == 2)
+    action([&](int bin) { return read(std::uint16_t{}, bin); });
+  else
+    action([&](int bin) { return read(std::uint32_t{}, bin); });
 }
 
 double LogHistogram::percentile(double share) const {
   TALUS_EXPECT(share >= 0.0 && share <= 1.0, "a share is 0 to 1");
   const std::uint64_t total = count();
   if (total == 0) return 0.0;
-  const double rank = std::clamp(std::ceil(share * static_cast<double>(total)), 1.0, static_cast<double>(total));
+  const double rank = rank_of(share, total);
   const Bin bin = bin_of(rank);
   return bin.low + (bin.high - bin.low) * (rank - bin.below - 0.5) / bin.count;
 }
@@ -231,8 +254,10 @@ double LogHistogram::percentile(double share) const {
 template <class Visit>
 void LogHistogram::each_bin(const Visit& visit) const {
   if (counts_ != nullptr) {
-    for (int bin = 0; bin < size_; ++bin)
-      if (const std::uint32_t here = get(bin); here > 0 && !visit(first_ + bin, here)) return;
+    in_width([&](auto counts) {
+      for (int bin = 0; bin < size_; ++bin)
+        if (const std::uint32_t here = counts(bin); here > 0 && !visit(first_ + bin, here)) return;
+    });
     return;
   }
   auto keys = few_;
@@ -248,17 +273,18 @@ void LogHistogram::each_bin(const Visit& visit) const {
 }
 
 void LogHistogram::percentiles(std::span<const double> shares, std::span<double> values) const {
-  const auto total = static_cast<double>(count());
-  std::size_t next = 0;
-  double below = 0.0;
-  const auto rank = [&] { return std::clamp(std::ceil(shares[next] * total), 1.0, total); };
+  const std::uint64_t total = count();
   std::ranges::fill(values, 0.0);
-  if (total == 0.0) return;
+  if (total == 0 || shares.empty()) return;
+  std::size_t next = 0;
+  double below = 0.0, rank = rank_of(shares[0], total);
   each_bin([&](int key, double here) {
-    for (; next < shares.size() && below + here >= rank(); ++next)
-      values[next] = edge_of(key) + (edge_of(key + 1) - edge_of(key)) * (rank() - below - 0.5) / here;
+    for (; below + here >= rank; rank = rank_of(shares[next], total)) {
+      values[next] = edge_of(key) + (edge_of(key + 1) - edge_of(key)) * (rank - below - 0.5) / here;
+      if (++next == shares.size()) return false;
+    }
     below += here;
-    return next < shares.size();
+    return true;
   });
 }
 

@@ -56,7 +56,7 @@ std::vector<Value> sorted_by_cell(const std::vector<Value>& values, const std::v
 }
 
 /// Prefetches memory that is needed soon: records are scattered, and waiting for them would take most of the time.
-void fetch(const void* memory, std::size_t bytes) {
+void prefetch(const void* memory, std::size_t bytes) {
   if (memory == nullptr) return;  // a histogram that has no counts yet
   for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(static_cast<const char*>(memory) + i, 1);
 }
@@ -279,14 +279,14 @@ std::uint64_t Tally::score(std::size_t index, const RegionVisits& visits, const 
   if (hazard_) region.make_hazards();
   if (keep_total_) region.make_totals();
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    if (i + 16 < groups.size()) fetch(&region.records[groups[i + 16].record], sizeof(CellRecord));
+    if (i + 16 < groups.size()) prefetch(&region.records[groups[i + 16].record], sizeof(CellRecord));
     if (i + 8 < groups.size())
-      for (const LogHistogram& h : region.records[groups[i + 8].record].histogram) fetch(h.counts(), 128);
+      for (const LogHistogram& h : region.records[groups[i + 8].record].histogram) prefetch(h.counts(), 128);
     if (i + 8 < groups.size()) {
       const std::size_t soon = groups[i + 8].record;
-      fetch(region.lengths.data() + soon * energy_thresholds(), sizeof(std::int64_t));
-      if (hazard_) fetch(region.hazards[soon].lengths().data(), 192);
-      if (keep_total_) fetch(region.totals[soon].histogram.counts(), 128);
+      prefetch(region.lengths.data() + soon * energy_thresholds(), sizeof(std::int64_t));
+      if (hazard_) prefetch(region.hazards[soon].lengths().data(), 192);
+      if (keep_total_) prefetch(region.totals[soon].histogram.counts(), 128);
     }
     CellRecord& record = region.records[groups[i].record];
     gather(groups[i].visits, batch, values, record, reach);
@@ -353,6 +353,10 @@ const CellRecord* Tally::find(int column, int row) const {
   if (region.slot.empty()) return nullptr;
   const std::uint16_t slot = region.slot[cell_in_region(column, row)];
   return slot == 0 ? nullptr : &region.records[slot - 1U];
+}
+
+void Tally::fetch(int column, int row) const {
+  prefetch(find(column, row), sizeof(CellRecord));
 }
 
 const HazardCell* Tally::hazard(int column, int row) const {

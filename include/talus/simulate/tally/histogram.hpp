@@ -80,6 +80,8 @@ class LogHistogram {
   void spill(int low_key, int high_key);
   void widen(std::uint8_t width);
   LogHistogram spilled() const;
+  template <class Action>
+  void in_width(const Action& action) const;
   template <class Visit>
   void each_bin(const Visit& visit) const;
 
