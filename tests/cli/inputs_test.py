@@ -103,6 +103,21 @@ class Fields(InputCase):
         self.assertIn("diameter 2 m from Durchmesser", done.stderr)
         self.assertIn("release_height 60 to 62 m from HEIGHT", done.stderr)
 
+    def test_a_fault_of_many_features_is_said_three_times(self):
+        points = [(f"POINT ({WEST + 52.5 + i} {NORTH - 62.5})", [-1.0 - i, 800.0 if i == 70 else 1.0]) for i in range(100)]
+        points[40] = (f"POINT ({WEST + 52.5} {NORTH - 62.5})", [1.0, 1.0])
+        write_features(self.path("bad.gpkg"), "bad", points, [("diameter", ogr.OFTReal), ("release_height", ogr.OFTReal)])
+        done = self.call("check", *self.flags("bad.gpkg"))
+        self.assertEqual(done.returncode, 2)
+        lines = [line.replace(self.path("bad.gpkg"), "bad.gpkg") for line in done.stderr.splitlines()]
+        self.assertEqual(len(lines), 5, done.stderr)
+        for i in range(3):
+            self.assertIn(f"bad.gpkg: feature {i + 1}: field diameter = {-1 - i}: must be 0.01 to 50 m", lines[i])
+        self.assertIn("bad.gpkg: and 96 more like this, in features 4 to 100", lines[3])
+        self.assertIn("bad.gpkg: feature 71: field release_height = 800: must be", lines[4])
+        self.fails(2, "feature 1: field diameter = -1", "(and 99 more faults: talus check lists all)",
+                   arguments=["run", *self.flags("bad.gpkg"), "-o", self.path("none")])
+
     def test_wrong_names(self):
         self.refused("unknown name 'releaseheight'", "did you mean 'release_height'", more=["--field", "releaseheight=HEIGHT"])
         self.refused("flag --field diameter=Durchmeser", "has no field 'Durchmeser'", "did you mean 'Durchmesser'",

@@ -65,6 +65,7 @@ OGREnvelope Parts::envelope() const {
 Layer::Layer(std::string role, const std::string& path, const Terrain& terrain)
     : path_(path), terrain_(terrain), dataset_(open_dataset(path, GDAL_OF_VECTOR)) {
   choose_layer();
+  faults_ = is_csv() ? FaultList(path, "row", " below the header") : FaultList(path, "feature", "");
   if (is_csv()) {
     odd_ = odd_cells(name_for_gdal(file_of_layer(path)));
     for (const char* place : {"x", "y"})
@@ -171,8 +172,7 @@ std::vector<std::string> Layer::field_names() const {
 }
 
 std::string Layer::label(const OGRFeature& feature) const {
-  const std::string number = std::to_string(feature.GetFID());
-  return path_ + (is_csv() ? ": row " + number + " below the header" : ": feature " + number);
+  return faults_.label(feature.GetFID());
 }
 
 std::optional<double> Layer::number(const OGRFeature& feature, int index, const std::string& name,

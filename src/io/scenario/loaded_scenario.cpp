@@ -36,13 +36,16 @@ void check_files(const ScenarioSpec& spec, std::vector<std::string>& faults) {
   check_files(files, faults);
 }
 
+[[noreturn]] void refuse_first(const std::string& first, std::size_t count) {
+  const std::size_t more = count - 1;
+  throw InputError(more == 0 ? first
+                             : first + " (and " + std::to_string(more) + (more == 1 ? " more fault" : " more faults") +
+                                   ": talus check lists all)");
+}
+
 void stop_at_faults(const std::vector<std::string>& faults, std::vector<std::string>* all) {
   if (all != nullptr) *all = faults;
-  if (faults.empty()) return;
-  const std::size_t more = faults.size() - 1;
-  throw InputError(more == 0 ? faults.front()
-                             : faults.front() + " (and " + std::to_string(more) +
-                                   (more == 1 ? " more fault" : " more faults") + ": talus check lists all)");
+  if (!faults.empty()) refuse_first(faults.front(), faults.size());
 }
 
 template <class Part>
@@ -203,7 +206,7 @@ LoadedScenario load_scenario(const RunFlags& flags, std::vector<std::string>* al
     try {
       read();
     } catch (const InputFaults& error) {
-      if (all_faults == nullptr) stop_at_faults(error.faults(), nullptr);
+      if (all_faults == nullptr) refuse_first(error.faults().front(), error.count());
       faults.insert(faults.end(), error.faults().begin(), error.faults().end());
     } catch (const InputError& error) {
       if (all_faults == nullptr) throw;
