@@ -5,7 +5,7 @@ import xml.etree.ElementTree as xml
 
 from osgeo import gdal, ogr
 
-from support import RunCase, box, rows_of, write_features
+from support import NORTH, WEST, RunCase, box, rows_of, write_features
 
 
 class Styles(RunCase):
@@ -88,6 +88,18 @@ class Styles(RunCase):
         os.remove(self.path("out/barrier_road.json"))  # now they are files of the user
         self.run_well("hazard", self.path("out"), "--overwrite", "-q")
         self.assertEqual([title for title in self.titles() if title.startswith("Barrier at")], [])
+
+    def test_a_barrier_is_titled_by_the_id_of_its_line(self):
+        line = f"LINESTRING ({WEST} {NORTH - 220}, {WEST + 300} {NORTH - 220})"
+        ids = ["L123 km 4,2", "a/b", "a_b"]
+        write_features(self.path("screens.gpkg"), "screens", [(line, [name]) for name in ids], [("id", ogr.OFTString)])
+        self.run_scenario("out", "--overwrite")
+        for name in ids:
+            self.run_well("barrier", self.path("out"), "--screen", name, "--percentile", "50", "-q")
+        wanted = [f"Barrier at {name}: {what}" for what in ("MEL by stretch", "design values") for name in ("a/b", "a_b", "L123 km 4,2")]
+        self.assertEqual(self.titles()[:6], wanted)  # not L123_km_4_2, a_b-c14cddc0
+        self.run_well("hazard", self.path("out"), "-q")
+        self.assertEqual(self.titles()[:6], wanted)
 
     def test_classes_have_their_names_for_gdal(self):
         self.run_well("hazard", self.path("out"), "-q")

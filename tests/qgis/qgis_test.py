@@ -1028,6 +1028,11 @@ class FromPython(Case):
         for name, title in (("return_period_300.tif", "Return period of more than 300 kJ"), ("stops.fgb", "Stops: largest energy of the path"),
                             ("barrier_a_b.csv", "Barrier at a_b: design values"), ("exits.tif", "Exits"), ("mine_too.tif", "mine too.tif")):
             self.assertEqual(results.title_of(name), title)
+        with open(self.path("barrier_a_b-0123abcd.json"), "w", encoding="utf-8") as file:
+            json.dump({"screen": "a/b \\1"}, file)
+        for name, title in (("barrier_a_b-0123abcd.gpkg", "Barrier at a/b \\1: MEL by stretch"),
+                            ("barrier_mine.csv", "Barrier at mine: design values")):
+            self.assertEqual(results.title_of(name, self.folder), title)
         self.assertLess(results._place(7, results.title_of("return_period_30.tif")),
                         results._place(7, results.title_of("return_period_100.tif")))
 

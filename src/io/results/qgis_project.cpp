@@ -126,19 +126,43 @@ bool is_of_design(const ProjectLayer& layer) {
   return layer.file.starts_with("barrier_");
 }
 
+/// The title of the files of a design: with the id of its line, which the record has as the user has given it, not with
+/// what stands for it in the name of the files.
+std::string title_of_design(const fs::path& record, const ProjectLayer& layer, std::string by_name) {
+  try {
+    return filled(layer.title, "<id>", read_record(record).at("screen").get<std::string>());
+  } catch (const std::exception&) {  // as in style_in
+    return by_name;
+  }
+}
+
+/// The files of an entry that are there, by their titles, and these.
+std::vector<std::pair<std::string, std::string>> titles_of(const std::vector<std::string>& files,
+                                                           const fs::path& folder, const ProjectLayer& layer) {
+  std::vector<std::pair<std::string, std::string>> found;
+  for (const std::string& name : files) {
+    auto title = title_of(name, layer);
+    if (!title) continue;
+    if (is_of_design(layer)) {
+      const std::string record = fs::path(name).stem().string() + ".json";
+      if (std::ranges::find(files, record) == files.end()) continue;
+      title = title_of_design(folder / record, layer, *title);
+    }
+    found.emplace_back(*title, name);
+  }
+  std::ranges::sort(found, [](const auto& a, const auto& b) {  // more than 30 kJ before more than 300 kJ
+    return a.first.size() != b.first.size() ? a.first.size() < b.first.size() : a < b;
+  });
+  return found;
+}
+
 /// The layers that are there, from the top to the bottom.
 std::vector<Shown> shown_layers(const std::vector<std::string>& files, const fs::path& folder) {
-  std::vector<std::string> names = files;
-  std::ranges::sort(names, [](const std::string& a, const std::string& b) {
-    return a.size() != b.size() ? a.size() < b.size() : a < b;  // return_period_30 before return_period_300
-  });
   std::vector<Shown> shown;
   for (const ProjectLayer& layer : project_layers())
-    for (const std::string& name : names) {
-      const auto title = title_of(name, layer);
+    for (const auto& [title, name] : titles_of(files, folder, layer)) {
       const std::string stem = fs::path(name).stem().string();
-      if (!title || (is_of_design(layer) && std::ranges::find(names, stem + ".json") == names.end())) continue;
-      Shown one{id_of(stem, kind_of(layer.file)), *title, "./" + name, kind_of(layer.file), layer.shown};
+      Shown one{id_of(stem, kind_of(layer.file)), title, "./" + name, kind_of(layer.file), layer.shown};
       if (name.ends_with(".gpkg")) {
         one.source += "|layername=" + stem;
         one.style = parsed_xml(style_in(folder / name, stem));

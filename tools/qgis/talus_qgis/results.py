@@ -46,13 +46,24 @@ def _entry(name):
     return None
 
 
-def title_of(name):
-    """"Return period of more than 300 kJ" of the file `return_period_300.tif`; of another layer by its name."""
+def title_of(name, folder=None):
+    """"Return period of more than 300 kJ" of the file `return_period_300.tif`; of another layer by its name. A design in a
+    folder has the id of its line."""
     found = _entry(name)
     if found is None:
         title = tr("title " + name)
         return name.replace("_", " ") if title.startswith("title ") else title
-    return re.sub("<n>|<id>", lambda _: found[2], tr(found[1]["title"]))
+    word = _id_of_design(folder, name) or found[2] if folder and name.startswith("barrier_") else found[2]
+    return re.sub("<n>|<id>", lambda _: word, tr(found[1]["title"]))
+
+
+def _id_of_design(folder, name):
+    """The id of the line of a design as the user has given it: the record has it; the name of the files is made of it."""
+    try:
+        with open(os.path.join(folder, os.path.splitext(name)[0] + ".json"), encoding="utf-8") as file:
+            return str(json.load(file)["screen"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
 
 
 def files_of(folder, begin):
@@ -66,7 +77,7 @@ def files_of(folder, begin):
             continue
         if name.startswith("barrier_") and not os.path.exists(os.path.join(folder, stem + ".json")):
             continue  # no design, but its stretches, which the layer has, or a file of the user
-        rank, shown, title = entry[0], entry[1]["shown"], title_of(name)
+        rank, shown, title = entry[0], entry[1]["shown"], title_of(name, folder)
         if kind in (".tif", ".csv"):
             found.append((path + (TYPED if kind == ".csv" else ""), title, name, rank, shown))
             continue
