@@ -139,6 +139,21 @@ class Elevations(Case):
         for unit in ("", "m", "metre"):
             self.run_well(*self.dem(band=f"<UnitType>{unit}</UnitType>"))
 
+    def test_the_command_for_heights_in_feet_keeps_decimals(self):
+        """A DEM in whole feet: gdal_calc.py alone keeps its type, and so made whole metres of them."""
+        z = np.round(heights() / 0.3048).astype(np.int16)
+        dem = gdal.GetDriverByName("GTiff").Create(self.path("feet.tif"), 60, 60, 1, gdal.GDT_Int16)
+        dem.SetGeoTransform((2600000.0, 5.0, 0.0, 1200300.0, 0.0, -5.0))
+        dem.SetProjection(system(2056).ExportToWkt())
+        dem.GetRasterBand(1).WriteArray(z)
+        dem.GetRasterBand(1).SetUnitType("ft")
+        dem = None
+        arguments = [self.path("feet.tif") if a == self.path("dem.tif") else a for a in self.arguments("out")]
+        said = " ".join(self.fails(2, "heights are in feet", arguments=arguments).stderr.split())
+        command = said.split("convert them with ")[1].split(", or if")[0]
+        subprocess.run(command, shell=True, cwd=self.folder, capture_output=True, check=True)
+        np.testing.assert_allclose(gdal.Open(self.path("metres.tif")).ReadAsArray(), z * 0.3048, rtol=1e-6)
+
     def test_a_scale_is_said_and_used(self):
         """Heights in decimetres from 900 m: the same run as with heights in metres."""
         self.run_well(*self.arguments("metres"), "-q")

@@ -156,8 +156,8 @@ TEST_F(Terrains, AnAxisOfHeightsIsChecked) {  // GeoPackages cannot hold such a 
   ASSERT_NE(unit, std::string::npos) << wkt;
   wkt.replace(unit, metre.size(), "LENGTHUNIT[\"foot\",0.3048]");
   const std::string file = RasterFile{.system = wkt}.write(path("feet.tif"));
-  expect_input_error([&] { read_terrain(file); },
-                     {"feet.tif", "heights are in 'foot'", "must be metres", "gdal_calc.py", "A*0.3048"});
+  expect_input_error([&] { read_terrain(file); }, {"feet.tif", "heights are in 'foot'", "must be metres",
+                                                   "gdal_calc.py", "A*0.3048' --type=Float32"});
 }
 
 TEST_F(Terrains, LocalSystemsInMetresAreTaken) {

@@ -174,7 +174,7 @@ void check_heights(PJ_CONTEXT* context, const std::string& path, const std::stri
   if (!up.unit_name.empty() && !is_metre(up))
     throw InputError(path + ": heights are in '" + up.unit_name + "' (coordinate system " + crs_name(wkt) +
                      "), must be metres: convert them with gdal_calc.py --calc='A*" + text_of(up.unit) +
-                     "' and give the result a system in metres with gdal_edit.py -a_srs");
+                     "' --type=Float32 and give the result a system in metres with gdal_edit.py -a_srs");
 }
 
 }  // namespace

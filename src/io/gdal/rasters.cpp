@@ -115,11 +115,12 @@ void check_band(GDALRasterBand& band, const std::string& path, std::vector<std::
     return unit == other.symbol || unit.starts_with(other.names.substr(0, 4));
   });
   if (feet || known != std::end(kOtherUnits))
-    throw InputError(path + ": heights are in " + (feet ? "feet" : std::string(known->names)) + " (unit '" +
-                     band.GetUnitType() + "' of band 1), must be metres: convert them with gdal_calc.py -A " +
-                     shell_word(path) + " --calc='A*" + text_of(feet ? 0.3048 : known->metres) +
-                     "' --outfile=metres.tif, or if they are metres, say so with gdal_edit.py -units m " +
-                     shell_word(path));
+    throw InputError(
+        path + ": heights are in " + (feet ? "feet" : std::string(known->names)) + " (unit '" + band.GetUnitType() +
+        "' of band 1), must be metres: convert them with gdal_calc.py -A " + shell_word(path) + " --calc='A*" +
+        text_of(feet ? 0.3048 : known->metres) +
+        "' --type=Float32 --outfile=metres.tif, or if they are metres, say so with gdal_edit.py -units m " +
+        shell_word(path));
   warnings.push_back(path + ": unknown unit '" + band.GetUnitType() + "' of the heights: taken as metres");
 }
 
