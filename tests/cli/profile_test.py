@@ -246,6 +246,27 @@ class Files(Profile):
                     self.assertIn(f"at x = {x[at]:.1f} m the profile is {off[at]:.2g} m above or below", told[0])
                     self.assertIn("give a smaller step", told[0])
 
+    def test_no_smaller_step_than_the_smallest_is_recommended(self):
+        z = 100.0 + np.random.default_rng(1).uniform(0.0, 1.0, (60, 60)) - 0.03 * np.arange(60)[:, None]
+        write_dem(self.path("dem.tif"), z.astype(np.float32), cell=0.05)
+        line = f"LINESTRING ({WEST + 0.5} {NORTH - 0.5}, {WEST + 2.0} {NORTH - 2.5})"
+        write_features(self.path("line.gpkg"), "line", [(line, [])])
+        for step, words in ((0.05, "there is no smaller step: see in profile.svg"), (0.1, "give a smaller step")):
+            self.scenario("x = 1", "[output]\nbin = 5\n", f'dem = "dem.tif"\nline = "line.gpkg"\nstep = {step}\n')
+            self.profile("--trajectories", "5", "--overwrite")
+            told = [text for text in self.record()["warnings"] if "leaves out terrain" in text]
+            self.assertEqual(len(told), 1)
+            self.assertIn(words, told[0])
+            self.assertEqual("give a smaller step" in told[0], step > 0.05)
+
+    def test_nodes_nearer_than_a_step(self):
+        self.nodes((0, 100), (50, 50), (50.02, 40), (200, 0))
+        for step, words in ((0.05, "or lean walls by that much"), (0.1, "lean walls by that much, or give a smaller step")):
+            self.scenario("x = 1", head=f'profile = "p.csv"\nstep = {step}\n')
+            said = self.fails(2, "p.csv:4: x = '50.02'", f"at least step = {step} m beyond 50", words,
+                              arguments=["profile", self.path("p.toml"), "-o", self.path("none")]).stderr
+            self.assertEqual("smaller step" in said, step > 0.05)
+
 
 class Products(Profile):
     """`talus barrier` and `talus report` on the folder of a profile say what holds there."""

@@ -142,7 +142,8 @@ Profile read_profile_csv(const std::string& path, double step) {
     if (!profile.nodes.empty() && !(node.x() - profile.to() >= step * (1.0 - 1e-9)))
       table.refuse(row, "x",
                    "must be at least step = " + text_of(step) + " m beyond " + text_of(profile.to()) +
-                       " of the row before: order the rows by x, lean walls by that much, or give a smaller step");
+                       " of the row before: order the rows by x, or lean walls by that much" +
+                       (step > kProfileStep.min ? ", or give a smaller step" : ""));
     profile.nodes.push_back(node);
   }
   if (profile.nodes.size() < 2)

@@ -19,8 +19,7 @@ namespace talus::io {
 namespace {
 
 constexpr std::string_view kDefaultProfilePreset = "firm-talus-2d";
-constexpr Bounds kStep{"step", "m", "spacing of the columns", 0.05, 10.0},
-    kBin{"bin", "m", "width of the bins of the results", 0.05, 1000.0},
+constexpr Bounds kBin{"bin", "m", "width of the bins of the results", 0.05, 1000.0},
     kPlaceAlong{"x", "m", "place along the profile", -1e7, 1e7};
 
 /// Reads the keys that only a profile has.
@@ -37,7 +36,7 @@ class ProfileReader {
       spec_.surface = *kind;
       given("surface");
     }
-    number(top, "step", kStep, profile_.step);
+    number(top, "step", kProfileStep, profile_.step);
     read_common_keys(spec_, top, faults_);
     read_sources(top.table("sources"));
     TableReader ground = top.table("ground");

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "io/gdal/layer.hpp"
+#include "profile_keys.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/text.hpp"
 
@@ -83,7 +84,9 @@ ProfileLine read_profile_line(const std::string& path, const Terrain& terrain, c
   if (line.most_off > kNoticedOff)
     out.warnings.push_back(
         path + ": step = " + text_of(step) + " m leaves out terrain: at x = " + with_decimals(line.most_off_at, 1) +
-        " m the profile is " + with_digits(line.most_off, 2) + " m above or below the DEM; give a smaller step");
+        " m the profile is " + with_digits(line.most_off, 2) + " m above or below the DEM; " +
+        (step > kProfileStep.min ? "give a smaller step"
+                                 : "there is no smaller step: see in profile.svg whether blocks pass there"));
   return line;
 }
 
