@@ -103,6 +103,36 @@ TEST(DiagnosisPage, AsksForMoreBlocksByWhatTheVerdictRestsOn) {
   EXPECT_TRUE(says(record, "More blocks: the gain rests on 12 of them."));
 }
 
+/// Folds that took the choice of all rows say so: asked for by --quick-folds, or because the diagnosis is costly, with
+/// its vertices, the limit and the way out. The same words in the terminal and on the page.
+TEST(DiagnosisPage, SaysThatQuickFoldsTookTheChoiceOfAllRows) {
+  DiagnosisRecord record = record_of(0.05, 0.01);
+  NestedValidation nested;
+  nested.folds.count = 2;
+  nested.loops = {{8, {}, {"wet-ground"}, {""}}, {8, {}, {"wet-ground"}, {""}}};
+  record.diagnosis.nested = nested;
+  record.diagnosis.vertices = 3'210'000'000;
+  record.options.rules.costly = 2.5;
+  const auto expect = [&](const std::string& words, bool said) {
+    EXPECT_EQ(repeated_lines(record).find(words) != std::string::npos, said) << words;
+    EXPECT_EQ(diagnosis_page(Campaign{}, record).find(words) != std::string::npos, said) << words;
+  };
+  const std::string choice =
+                        "the folds took the effects that all rows chose, and numbers near those of all rows: the "
+                        "error has seen the choice",
+                    cost = choice +
+                           "; the diagnosis of all rows traced 3.2 billion vertices, more than 2.5 "
+                           "(--no-quick-folds chooses anew)";
+  expect(choice, false);
+  EXPECT_NE(repeated_lines(record).find("out of fold (2 folds by block), found: 2 of 2 wet-ground"), std::string::npos);
+  record.diagnosis.nested->naming = false;
+  expect(cost, true);
+  EXPECT_NE(repeated_lines(record).find("out of fold (2 folds by block), given: 2 of 2 wet-ground"), std::string::npos);
+  record.options.naming_in_folds = false;  // --quick-folds
+  expect(choice, true);
+  expect("billion vertices", false);
+}
+
 TEST(DiagnosisPage, NamesFamiliesByTheLevelOfTheRound) {
   const std::string depends = "What is left depends on: <b>place</b>",
                     noise = "Nothing is left that differs from noise.";

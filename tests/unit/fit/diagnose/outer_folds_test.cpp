@@ -152,6 +152,26 @@ TEST(Nested, QuickFoldsRefitTheNumbersToTheOtherRows) {
   EXPECT_LT(speed_of_fold(d.nested->base, folds, 1), speed_of_fold(d.base.runs, folds, 1) - 0.1);
 }
 
+/// On the first of three days the ground was wet, which no ground of all days says. The effect that all rows choose
+/// predicts the blocks of each fold better than the ground alone.
+TEST(Nested, AnEffectThatIsThereLowersTheErrorOutOfQuickFolds) {
+  Campaign c = slope_campaign(30);
+  Model truth = model_of_slope();
+  truth.effects.wet_ground = {.softening = 2.0, .drag = 2.0, .days = {1}, .where = {}};
+  measure(c, truth, 77);
+  DiagnoseOptions options = two_folds();
+  options.naming_in_folds = false;
+  options.most_effects = 1;
+  const Diagnosis d = diagnose(c, model_of_slope(), options);
+  ASSERT_TRUE(d.nested);
+  ASSERT_EQ(d.rounds.front().effect, "wet-ground");
+  for (const OuterFold& loop : d.nested->loops) EXPECT_EQ(loop.effects, std::vector<std::string>{"wet-ground"});
+  const auto error = [&](const std::vector<BlockRuns>& runs) {
+    return score(c, runs, fitting_rows(c), {ScoreRule::Fair, kFewestSimulated, d.nested->folds.fold_of}).total;
+  };
+  EXPECT_LT(error(d.nested->found), 0.9 * error(d.nested->base));
+}
+
 /// A costly diagnosis does not repeat its choice. The cost counts vertices, whatever the threads.
 TEST(Nested, TheFoldsOfACostlyDiagnosisAreQuick) {
   Campaign c = campaign_on_slope(24);
