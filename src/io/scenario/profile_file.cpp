@@ -139,7 +139,7 @@ Profile read_profile_csv(const std::string& path, double step) {
   Profile profile;
   for (const CsvTable::Row& row : table.rows()) {
     const Eigen::Vector2d node(table.required(row, "x", kX), table.required(row, "z", kZ));
-    if (!profile.nodes.empty() && !(node.x() - profile.to() >= step * (1.0 - 1e-9)))
+    if (!profile.nodes.empty() && !is_a_step(node.x() - profile.to(), step))
       table.refuse(row, "x",
                    "must be at least step = " + text_of(step) + " m beyond " + text_of(profile.to()) +
                        " of the row before: order the rows by x, or lean walls by that much" +

@@ -11,8 +11,7 @@
 namespace talus::io {
 namespace {
 
-constexpr double kNoticedOff = 0.1;        // m by which the profile may miss the terrain without a word
-constexpr double kJustAStep = 1.0 - 1e-9;  // of `step`: two nodes that are apart by it but for rounding
+constexpr double kNoticedOff = 0.1;  // m by which the profile may miss the terrain without a word
 
 /// Shares of the way between two values of one coordinate at which it crosses whole numbers.
 void crossings(double from, double to, std::vector<double>& shares) {
@@ -28,7 +27,6 @@ ProfileLine profile_along(const std::vector<Eigen::Vector2d>& plan, const Surfac
   ProfileLine out{{}, plan};
   std::vector<Eigen::Vector2d>& nodes = out.profile.nodes;
   std::vector<Eigen::Vector2d> terrain;  // (x, z) of every sample
-  const double apart = kJustAStep * step;
   double before = 0.0;
   const auto add = [&](const Eigen::Vector2d& place, double x, bool last) {
     const auto z = surface.height(place.x(), place.y());
@@ -37,8 +35,8 @@ ProfileLine profile_along(const std::vector<Eigen::Vector2d>& plan, const Surfac
                        " m from its start, must lie on the DEM, strictly between the centres of its outermost cells");
     terrain.emplace_back(x, *z);
     if (last)
-      while (nodes.size() > 1 && x - nodes.back().x() < apart) nodes.pop_back();
-    if (nodes.empty() || x - nodes.back().x() >= apart) nodes.emplace_back(x, *z);
+      while (nodes.size() > 1 && !is_a_step(x - nodes.back().x(), step)) nodes.pop_back();
+    if (nodes.empty() || is_a_step(x - nodes.back().x(), step)) nodes.emplace_back(x, *z);
   };
   for (std::size_t i = 1; i < plan.size(); ++i) {
     const Eigen::Vector2d &a = plan[i - 1], &b = plan[i];
