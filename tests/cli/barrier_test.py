@@ -316,6 +316,22 @@ class Weights(Case):
         self.assertAlmostEqual(sum(row["crossings_per_year"]["value"] for row in report["stretches"]) / total, 1.0, 9)
         return total
 
+    def without_a_fit(self, table, weighted):
+        """Nine observed jumps are too few for a law. How often the simulated ones exceed the design does not hang on them."""
+        few = self.report("--observed", self.write("few.csv", "\n".join(table.splitlines()[:10]) + "\n"))
+        self.assertEqual(few["reliability"], [])
+        notes = [note for note in few["notes"] if "; by frequency, " in note]
+        self.assertEqual([name for note in notes for name in ("h_i", "v_d", "SEL", "MEL") if f"by frequency, {name} is exceeded by" in note],
+                         ["h_i", "v_d", "SEL", "MEL"])
+        self.assertIn("few.csv hold 9 values of the jump height above 0: too few for a Weibull fit", notes[0])
+        for note, quantity in zip(notes, weighted["reliability"]):
+            for limit in quantity["exceeded"]:
+                years = 1.0 / (limit["per_year"]["value"] or limit["per_year"]["high"])
+                found = re.search(limit["name"] + " is exceeded by .*? of the simulated crossings, (?:rarer than )?once in ([0-9. ]+?) years", note)
+                self.assertAlmostEqual(float(found[1].replace(" ", "")) / years, 1.0, delta=0.006)
+        alike = self.report("--unweighted", "--observed", self.path("few.csv"))
+        self.assertIn("so nothing is told of how often its design value is exceeded", " ".join(alike["notes"]))
+
     def test_a_block_counts_by_its_frequency(self):
         self.run_well("run", self.scenario, "-o", self.path("out"))
         weighted = self.report()
@@ -329,6 +345,7 @@ class Weights(Case):
         observed = self.report("--observed", self.write("low.csv", table))
         limit = observed["reliability"][0]["exceeded"][0]
         self.assertEqual((limit["share"], observed["frequency_of"]), (0.0, "the simulated crossings"))
+        self.without_a_fit(table, weighted)
         self.assertEqual(limit["per_year"], weighted["reliability"][0]["exceeded"][0]["per_year"])
         other = self.write("w.toml", "[features]\nwest = 0.1\neast = 5.0\n")
         swapped = self.report("--frequency", other)

@@ -173,28 +173,22 @@ void add_frequency(talus::io::Reliability::Limit& limit, std::span<const talus::
   limit.per_year = weighting.per_year(counted);
 }
 
-/// Adds to each design value how often a simulated block exceeds it.
-void add_frequencies(BarrierReport& report, std::span<const talus::LineCrossing> crossings,
+/// Adds to each design value of a quantity how often a simulated block exceeds it.
+void add_frequencies(talus::io::Reliability& r, std::span<const talus::LineCrossing> crossings,
                      const Weighting& weighting) {
   using Crossing = talus::LineCrossing;
-  for (talus::io::Reliability& r : report.reliability)
-    for (talus::io::Reliability::Limit& limit : r.limits)
-      if (r.unit == "m")
-        add_frequency(limit, crossings, weighting, [](const Crossing& c, double h) { return c.height > h; });
-      else if (r.unit == "m/s")
-        add_frequency(limit, crossings, weighting, [](const Crossing& c, double v) { return c.speed > v; });
-      else
-        add_frequency(limit, crossings, weighting, [](const Crossing& c, double kj) { return c.energy() > 1e3 * kj; });
+  for (talus::io::Reliability::Limit& limit : r.limits)
+    if (r.unit == "m")
+      add_frequency(limit, crossings, weighting, [](const Crossing& c, double h) { return c.height > h; });
+    else if (r.unit == "m/s")
+      add_frequency(limit, crossings, weighting, [](const Crossing& c, double v) { return c.speed > v; });
+    else
+      add_frequency(limit, crossings, weighting, [](const Crossing& c, double kj) { return c.energy() > 1e3 * kj; });
 }
 
-/// Adds the fit of one quantity, if the table has it.
-void add_reliability(BarrierReport& report, const std::string& quantity, const std::string& unit,
-                     std::vector<double> values, const std::vector<std::pair<std::string, double>>& limits,
-                     std::uint64_t seed) {
-  if (values.empty()) {
-    report.notes.push_back(report.values + " do not say the " + quantity + ": nothing is told of it");
-    return;
-  }
+/// Why a quantity has no fit; empty if it can have one.
+std::string lack_of_fit(const std::string& whose, const std::string& quantity, const std::vector<double>& values) {
+  if (values.empty()) return whose + " do not say the " + quantity;
   std::size_t positive = 0, others = 0;
   double first = 0.0;
   for (const double value : values) {
@@ -202,20 +196,53 @@ void add_reliability(BarrierReport& report, const std::string& quantity, const s
     if (++positive == 1) first = value;
     others += value != first ? 1U : 0U;
   }
-  if (positive < talus::kFewestForWeibull || others == 0) {
-    report.notes.push_back(report.values + " hold " + std::to_string(positive) + " values of the " + quantity +
-                           " above 0" + (others == 0 ? ", all equal" : "") + ": too few for a Weibull fit (" +
-                           std::to_string(talus::kFewestForWeibull) +
-                           ", not all equal), so nothing is told of how often its design value is exceeded");
-    return;
-  }
-  talus::BootstrapOptions how;
-  how.seed = seed;
-  talus::io::Reliability r{quantity, unit, talus::fit_weibull(values, how), {}};
-  for (const auto& [name, limit] : limits)
-    r.limits.push_back({name, limit, talus::exceedance(r.fit, values, limit), {}, {}});
-  report.reliability.push_back(std::move(r));
+  if (positive >= talus::kFewestForWeibull && others > 0) return "";
+  return whose + " hold " + std::to_string(positive) + " values of the " + quantity + " above 0" +
+         (others == 0 ? ", all equal" : "") + ": too few for a Weibull fit (" +
+         std::to_string(talus::kFewestForWeibull) + ", not all equal)";
 }
+
+/// How often the crossings of a run exceed the design values of each quantity.
+class Exceedances {
+ public:
+  Exceedances(BarrierReport& report, std::span<const talus::LineCrossing> crossings, const Weighting& weighting,
+              std::uint64_t seed)
+      : report_(report), crossings_(crossings), weighting_(weighting) {
+    how_.seed = seed;
+  }
+
+  /// Adds one quantity: the fit of its values and, where the sources have frequencies, how often simulated blocks
+  /// exceed its design values. A note if there are too few values for a fit.
+  void add(const std::string& quantity, const std::string& unit, const std::vector<double>& values,
+           const std::vector<std::pair<std::string, double>>& limits) {
+    const std::string lack = lack_of_fit(report_.values, quantity, values);
+    talus::io::Reliability r{quantity, unit, {}, {}};
+    if (lack.empty()) r.fit = talus::fit_weibull(values, how_);
+    for (const auto& [name, limit] : limits)
+      r.limits.push_back(
+          {name, limit, lack.empty() ? talus::exceedance(r.fit, values, limit) : talus::Exceedance{}, {}, {}});
+    if (weighting_.scale) add_frequencies(r, crossings_, weighting_);
+    if (lack.empty())
+      report_.reliability.push_back(std::move(r));
+    else
+      report_.notes.push_back(lack + told_of(r));
+  }
+
+ private:
+  /// What is told of a quantity without a fit.
+  std::string told_of(const talus::io::Reliability& r) const {
+    if (!weighting_.scale) return ", so nothing is told of how often its design value is exceeded";
+    std::string text;
+    for (const talus::io::Reliability::Limit& limit : r.limits)
+      text += "; by frequency, " + limit.name + " is exceeded by " + talus::io::frequency_text(limit);
+    return text;
+  }
+
+  BarrierReport& report_;
+  std::span<const talus::LineCrossing> crossings_;
+  const Weighting& weighting_;
+  talus::BootstrapOptions how_;
+};
 
 void add_stretches(BarrierReport& report, std::span<const talus::LineCrossing> crossings,
                    const talus::DesignBlockRule& rule, const RunSummary& run, const Options& o) {
@@ -293,11 +320,10 @@ int design(Options o) {
   add_crossings_per_year(report, weighting);
   std::vector<double> kilojoules = values.energy;
   for (double& energy : kilojoules) energy *= 1e-3;
-  add_reliability(report, "jump height", "m", values.height, {{"h_i", report.design.height}}, o.seed);
-  add_reliability(report, "speed", "m/s", values.speed, {{"v_d", report.design.speed}}, o.seed);
-  add_reliability(report, "energy", "kJ", kilojoules,
-                  {{"SEL", report.design.sel * 1e-3}, {"MEL", report.design.mel * 1e-3}}, o.seed);
-  if (weighting.scale) add_frequencies(report, blocks, weighting);
+  Exceedances exceedances(report, blocks, weighting, o.seed);
+  exceedances.add("jump height", "m", values.height, {{"h_i", report.design.height}});
+  exceedances.add("speed", "m/s", values.speed, {{"v_d", report.design.speed}});
+  exceedances.add("energy", "kJ", kilojoules, {{"SEL", report.design.sel * 1e-3}, {"MEL", report.design.mel * 1e-3}});
 
   std::vector<std::string> ids;
   for (const talus::Screen& screen : run.screens) ids.push_back(screen.id);

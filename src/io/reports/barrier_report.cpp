@@ -59,15 +59,6 @@ std::string between(const Bounded& b) {
 /// The crossings whose frequencies are known: the simulated ones, also where the probabilities are of observed ones.
 constexpr const char* kWithFrequency = "the simulated crossings";
 
-std::string frequency_text(const Reliability::Limit& l) {
-  if (!l.by_frequency || !l.per_year) return "";
-  std::string text = "          by frequency: " + percent(*l.by_frequency) + " of " + kWithFrequency + ", ";
-  if (!(l.per_year->value > 0.0)) return text + "rarer than once in " + readable(1.0 / l.per_year->high) + " years\n";
-  const Bounded years = return_period(*l.per_year);
-  return text + "once in " + readable(years.value) + " years [" + readable(years.low) + ", " + readable(years.high) +
-         "]\n";
-}
-
 std::string reliability_text(const Reliability& r) {
   std::string text = "  " + cell(r.quantity, 14) + "Weibull shape " + with_digits(r.fit.law.shape, 3) + " " +
                      between(r.fit.shape, 1.0) + ", scale " + with_digits(r.fit.law.scale, 3) + " " + r.unit + " " +
@@ -81,7 +72,7 @@ std::string reliability_text(const Reliability& r) {
     text += "    " + cell(l.name, 6) + cell(with_digits(l.value, 4) + " " + r.unit, 14) + "exceeded by " +
             cell(percent(l.exceeded.fitted) + " " + between(l.exceeded.fitted_bounds, 100.0), 28) + "of the law, " +
             percent(l.exceeded.observed) + " " + between(l.exceeded.observed_bounds, 100.0) + " of the values\n" +
-            frequency_text(l);
+            (l.per_year ? "          by frequency: " + frequency_text(l) + "\n" : "");
   return text;
 }
 
@@ -178,6 +169,15 @@ std::optional<std::string> write_barrier(const std::filesystem::path& folder, co
   replace_text(folder / (name + "_stretches.csv"), stretches_csv(report));
   replace_stretches(folder / (name + ".gpkg"), report, line, crs_wkt);
   return replaced;
+}
+
+std::string frequency_text(const Reliability::Limit& l) {
+  if (!l.by_frequency || !l.per_year) return "";
+  std::string text = percent(*l.by_frequency) + " of " + kWithFrequency + ", ";
+  if (!(l.per_year->value > 0.0)) return text + "rarer than once in " + readable(1.0 / l.per_year->high) + " years";
+  const Bounded years = return_period(*l.per_year);
+  return text + "once in " + readable(years.value) + " years [" + readable(years.low) + ", " + readable(years.high) +
+         "]";
 }
 
 std::string barrier_text(const BarrierReport& r) {

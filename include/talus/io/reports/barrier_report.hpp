@@ -67,6 +67,10 @@ struct BarrierReport {
   bool pieces() const { return crossings > blocks; }  ///< pieces of broken blocks cross, too
 };
 
+/// How often simulated crossings exceed a limit: "0.5 % of the simulated crossings, once in 310 years [250, 410]".
+/// Empty without frequencies.
+std::string frequency_text(const Reliability::Limit& limit);
+
 /// The report as a page for people, as JSON and as a table of one row per value. Energies in kJ.
 std::string barrier_text(const BarrierReport& report);
 std::string barrier_json(const BarrierReport& report);
