@@ -187,6 +187,8 @@ class Provider(Case):
                 if p["name"] not in ("quiet", "progress", "allow-network", "sources-layer", "field", "memory", "part", "checkpoint"):
                     self.assertIn(p["name"], texts.LABELS, algorithm.id())
                     self.assertIn(p["text"], texts.GERMAN, algorithm.id())
+                if p["unit"]:
+                    self.assertIn(p["unit"], [*texts.GERMAN, "s", "m", "m3", "kg/m3", "kJ", "%"], algorithm.id())
 
     def test_a_profile_has_a_number_of_blocks(self):
         """It has one source, and no cells."""

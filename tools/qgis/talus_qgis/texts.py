@@ -213,6 +213,7 @@ GERMAN = {
     "Talus runs the program talus of this computer. Every parameter is explained on the pages of its documentation.":
         "Talus startet das Programm talus dieses Rechners. Seine Dokumentation erklärt jeden Parameter.",
     "round": "Runde",
+    "deg": "Grad",
     # of the legends, whose words the program writes: src/io/results/style.cpp, vector_style.cpp
     "up to {}{}": "bis {}{}",
     "above {}{}": "über {}{}",
