@@ -15,6 +15,7 @@
 #include "talus/io/results/write_lines.hpp"
 #include "talus/io/results/write_screens.hpp"
 #include "talus/io/results/write_vectors.hpp"
+#include "talus/products/gap_exits.hpp"
 #include "talus/products/held_at_release.hpp"
 #include "talus/products/maps.hpp"
 #include "talus/products/screen_summary.hpp"
@@ -32,6 +33,7 @@ struct StopFigures {
   EnergyLines energy_lines;
   std::uint64_t held;  ///< `held_at_release`
   GullyStops gullies;
+  GapExits gap_exits;
 };
 
 /// Writers of stops, exits, paths and crossings.
@@ -45,7 +47,8 @@ class Vectors {
         stops_(file_of("stops"), loaded, io::PointsWriter::Layer::Stops),
         exits_(file_of("exits"), loaded, io::PointsWriter::Layer::Exits),
         summary_(scenario_.screens.size()),
-        gullies_(scenario_) {
+        gullies_(scenario_),
+        gap_exits_(scenario_.surface.heights()) {
     if (loaded.scenario.output.paths > 0)
       paths_.emplace(file_of("trajectories"), loaded.geo, loaded.scenario.surface.grid());
     if (!loaded.scenario.screens.empty()) crossings_.emplace(folder / "screens.csv", loaded.scenario, loaded.geo);
@@ -58,6 +61,7 @@ class Vectors {
       stops_.write(rows);
       energy_lines_.add(rows);
       gullies_.add(rows);
+      gap_exits_.add(rows);
       held_ += static_cast<std::uint64_t>(std::ranges::count_if(rows, held_at_release));
       exits_.write(rows);
     };
@@ -70,7 +74,7 @@ class Vectors {
     return sinks;
   }
 
-  StopFigures figures() const { return {energy_lines_, held_, gullies_}; }
+  StopFigures figures() const { return {energy_lines_, held_, gullies_, gap_exits_}; }
 
   void finish(const Totals& totals) {
     stops_.finish();
@@ -98,6 +102,7 @@ class Vectors {
   std::optional<io::CrossingsWriter> crossings_;
   ScreenSummary summary_;
   GullyStops gullies_;
+  GapExits gap_exits_;
   EnergyLines energy_lines_;
   std::uint64_t held_ = 0;
 };
@@ -154,6 +159,7 @@ void write_results(const ResultSource& source, Observer& observer, Stopwatch& wa
   StopFigures stops = writing.get();
   record.energy_lines = std::move(stops.energy_lines);
   record.gullies = gully_record(stops.gullies, source.tally, loaded);
+  record.left_into_gaps = stops.gap_exits.blocks();
   io::write_styles_beside(folder);
   io::write_text(folder / "scenario.toml", loaded.complete_toml);
   io::write_text(folder / io::kProjectFile,
@@ -162,7 +168,8 @@ void write_results(const ResultSource& source, Observer& observer, Stopwatch& wa
   const Stopwatch::Lap written = watch.lap();
   record.cpu.write = written.cpu + record.totals.sink_cpu_seconds;
   record.wall.write = written.wall;
-  for (const std::string& warning : warnings_of(record.totals)) record.warnings.push_back(warning);
+  for (const std::string& warning : warnings_of(record.totals, *record.left_into_gaps))
+    record.warnings.push_back(warning);
   for (const std::string& warning : gully_warnings(*record.gullies, record.totals.released))
     record.warnings.push_back(warning);
   for (const std::string& warning : held_warnings(stops.held, record.totals.released, loaded.scenario.effects))

@@ -37,7 +37,17 @@ std::string limits_text(const Totals& totals) {
          share_text(limits, totals.released) + ", allowed are 0.1 %) ended at the limit of impacts, time or vertices";
 }
 
-std::vector<std::string> warnings_of(const Totals& totals, const std::string& whole) {
+/// What shows how far the trajectories go that left the terrain, `into_gaps` of them into gaps inside the DEM.
+static std::string advice_on_left(const Totals& totals, std::uint64_t into_gaps) {
+  const std::string fill = "gaps inside it: fill them (gdal_fillnodata.py)";
+  const std::uint64_t left = count_of(totals, End::Left), at_edge = left - into_gaps;
+  if (into_gaps == 0) return "a larger DEM would";
+  if (at_edge == 0) return "all of them left it into " + fill;
+  return share_text(at_edge, totals.released) + " left it at its edge: take a larger DEM; " +
+         share_text(into_gaps, totals.released) + " left it into " + fill;
+}
+
+std::vector<std::string> warnings_of(const Totals& totals, std::uint64_t into_gaps, const std::string& whole) {
   std::vector<std::string> warnings;
   const auto tell = [&](End end, double share, const std::string& text) {
     const std::uint64_t count = count_of(totals, end);
@@ -46,7 +56,7 @@ std::vector<std::string> warnings_of(const Totals& totals, const std::string& wh
                          text);
   };
   tell(End::Left, io::kWarnedLeftShare,
-       "left the DEM or met missing data: the maps do not show how far they go; a larger DEM would");
+       "left the DEM or met missing data: the maps do not show how far they go; " + advice_on_left(totals, into_gaps));
   tell(End::Trapped, io::kWarnedTrappedShare,
        "were trapped in pits or between walls, on ground too steep to rest on: where these are not in the real "
        "terrain, the maps end too early; trapped.tif shows where; a part of them may lie at pits and dammed cells of "

@@ -80,6 +80,44 @@ class Ends(Case):
         self.assertGreater(exits[29].sum(), 100)  # the row above the hole
         self.assertEqual(exits[exits != 4294967295].sum(), self.record()["ends"]["left"])
 
+    def test_a_hole_is_told_from_the_edge(self):
+        """Blocks of one source run into a hole inside the DEM, those of the other leave over its edge: a plane of 45
+        degrees, where none stops. A bay of missing data, open to the edge, is not a hole."""
+        z = 1000.0 + 1.0 * UP + 0.0 * EAST
+        z[30, 8:36] = -9999.0
+        write_dem(self.path("dem.tif"), z.astype(np.float32), nodata=-9999.0)
+        os.remove(self.path("sources.gpkg"))
+        write_features(self.path("sources.gpkg"), "sources", [(box(100, 230, 20, 10), []), (box(245, 230, 10, 10), [])])
+        whole = self.run_well(*self.arguments("whole"), "--threads", "1")
+        record = self.record("whole")
+        exits = bands_of(self.path("whole/exits.tif"))[1:-1, 1:-1]  # without the outer cells
+        into_gaps = int(exits[exits != 4294967295].sum())
+        left = record["ends"]["left"]
+        self.assertEqual((left, record["left_into_gaps"]), (record["released"], into_gaps))
+        self.assertGreater(into_gaps, 0.5 * left)
+        self.assertLess(into_gaps, 0.8 * left)
+        at_edge, into = (f"{100 * n / left:.3g} %" for n in (left - into_gaps, into_gaps))
+        text = (f"100 % of the trajectories ({left}) left the DEM or met missing data: the maps do not show how far they go; "
+                f"{at_edge} left it at its edge: take a larger DEM; {into} left it into gaps inside it: fill them (gdal_fillnodata.py)")
+        self.assertIn(text, whole.stderr)
+        self.assertIn(text, record["warnings"])
+        for part in ("1/2", "2/2"):
+            self.run_well(*self.arguments("part" + part[0]), "--part", part)
+        self.run_well("merge", self.path("merged"), self.path("part1"), self.path("part2"))
+        self.assertEqual(self.record("merged")["left_into_gaps"], into_gaps)
+        self.assertEqual(self.record("merged")["warnings"], record["warnings"])
+        check = self.run_well("check", *self.arguments()[1:-2])
+        self.assertRegex(check.stdout, r"(?m)^warning +100 % of the sample .* left it into gaps inside it: fill them")
+        self.run_well("report", self.path("whole"))
+        with open(self.path("whole/report.html"), encoding="utf-8") as page:
+            self.assertIn(f"{into_gaps} of them into gaps inside the DEM", page.read())
+
+        z[30, :36] = -9999.0
+        write_dem(self.path("dem.tif"), z.astype(np.float32), nodata=-9999.0)
+        bay = self.run_well(*self.arguments("bay"))
+        self.assertEqual(self.record("bay")["left_into_gaps"], 0)
+        self.assertIn("the maps do not show how far they go; a larger DEM would\n", bay.stderr)
+
     def test_counts_of_parts_add_up(self):
         self.dem(1000.0 + np.where(EAST < 150.0, 0.75 * np.abs(UP - 147.5), 0.9 * UP))
         self.sources(140, 230, frequency=0.4)

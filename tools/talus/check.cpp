@@ -18,6 +18,7 @@
 #include "talus/physics/trace.hpp"
 #include "talus/physics/tracer.hpp"
 #include "talus/products/expected_cells.hpp"
+#include "talus/products/gap_exits.hpp"
 #include "talus/products/held_at_release.hpp"
 #include "talus/run/gullies.hpp"
 #include "talus/run/summary.hpp"
@@ -50,6 +51,7 @@ struct Sample {
   double seconds = 0.0, length = 0.0;  // of one processor; in space [m]
   talus::Totals totals;                // only the ends
   std::uint64_t held = 0;              // `held_at_release`
+  std::uint64_t left_into_gaps = 0;
   talus::io::GullyRecord gullies;
 };
 
@@ -66,6 +68,7 @@ Sample trace_sample(const LoadedScenario& loaded) {
   const talus::ScreenFinder screens(scenario);
   std::vector<talus::Crossing> crossings;
   talus::GullyStops gullies(scenario);
+  talus::GapExits gap_exits(scenario.surface.heights());
   Sample sample;
   const Clock::time_point start = Clock::now();
   const std::uint64_t all = scenario.released(), most = std::min<std::uint64_t>(all, 20'000);
@@ -95,11 +98,13 @@ Sample trace_sample(const LoadedScenario& loaded) {
     const talus::StopRow stop = talus::stop_row(release, path);
     sample.held += talus::held_at_release(stop) ? 1U : 0U;
     gullies.add({&stop, 1});
+    gap_exits.add({&stop, 1});
     sample.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   });
   tally.add(batch);
   sample.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   sample.gullies = talus::run::gully_record(gullies, tally, loaded);
+  sample.left_into_gaps = gap_exits.blocks();
   sample.touched_cells = tally.touched_cells();
   sample.cells_by_passages = tally.cells_by_passages(4);
   return sample;
@@ -223,7 +228,8 @@ void print_estimate(const LoadedScenario& loaded, unsigned threads) {
                      " MB; talus run --memory sets a limit");
   line("disk", "about " + rounded_text(1e-6 * bytes_of_results(scenario, size)) + " MB of results, up to " +
                    rounded_text(1e-6 * bytes_at_work(scenario, size)) + " MB more while it goes on");
-  for (const std::string& warning : talus::run::warnings_of(sample.totals, "sample")) line("warning", warning);
+  for (const std::string& warning : talus::run::warnings_of(sample.totals, sample.left_into_gaps, "sample"))
+    line("warning", warning);
   for (const std::string& warning : talus::run::gully_warnings(sample.gullies, sample.traced, "sample"))
     line("warning", warning);
   for (const std::string& warning : talus::run::held_warnings(sample.held, sample.traced, scenario.effects, "sample"))

@@ -32,8 +32,10 @@ std::string barrier_text(const std::string& id, const BarrierCounts& counts, boo
 
 /// Warnings about trajectories that left the DEM or were trapped; empty if they are few.
 ///
-/// @param whole  name of what `totals` sums over
-std::vector<std::string> warnings_of(const Totals& totals, const std::string& whole = "trajectories");
+/// @param into_gaps  how many of them left into gaps inside the DEM
+/// @param whole      name of what `totals` sums over
+std::vector<std::string> warnings_of(const Totals& totals, std::uint64_t into_gaps = 0,
+                                     const std::string& whole = "trajectories");
 
 /// A warning that a plan has very many trajectories, with their time; nothing if it has not.
 ///

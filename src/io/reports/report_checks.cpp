@@ -84,18 +84,29 @@ void check_gullies(const RunFacts& run, Checks& checks) {
                     "maps may end too early. Above 3 %: take a survey with smaller cells."});
 }
 
+/// What to do about blocks that leave the terrain.
+std::string advice_on_left_blocks(const RunFacts& run) {
+  if (run.of_profile) return "The results do not show how far they would go. Above 1 %: take a longer profile.";
+  const std::string text = "The maps do not show how far they would go. Above 1 %: ";
+  const std::string fill = "fill the gaps inside the DEM (gdal_fillnodata.py).";
+  if (!(run.left_into_gaps > 0.0)) return text + "take a larger DEM.";
+  return text + (run.left_into_gaps < run.end("left") ? "take a larger DEM, and " : "") + fill;
+}
+
 void check_ends(const RunFacts& run, Checks& checks) {
   const auto share = [&](const char* end) { return run.released > 0.0 ? run.end(end) / run.released : 0.0; };
   const auto found = [&](const char* end) {
     return grouped(run.end(end)) + " of " + grouped(run.released) + " blocks (" +
            percent_of(run.end(end), run.released) + ")";
   };
-  checks.push_back({share("left") > kWarnedLeftShare ? Mark::Act
-                    : run.end("left") > 0.0          ? Mark::Look
-                                                     : Mark::Fine,
-                    run.of_profile ? "Blocks that leave the profile" : "Blocks that leave the DEM", found("left"),
-                    run.of_profile ? "The results do not show how far they would go. Above 1 %: take a longer profile."
-                                   : "The maps do not show how far they would go. Above 1 %: take a larger DEM."});
+  checks.push_back(
+      {share("left") > kWarnedLeftShare ? Mark::Act
+       : run.end("left") > 0.0          ? Mark::Look
+                                        : Mark::Fine,
+       run.of_profile ? "Blocks that leave the profile" : "Blocks that leave the DEM",
+       found("left") +
+           (run.left_into_gaps > 0.0 ? ", " + grouped(run.left_into_gaps) + " of them into gaps inside the DEM" : ""),
+       advice_on_left_blocks(run)});
   checks.push_back({share("trapped") > kWarnedTrappedShare ? Mark::Act
                     : run.end("trapped") > 0.0             ? Mark::Look
                                                            : Mark::Fine,

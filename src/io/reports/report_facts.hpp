@@ -53,6 +53,7 @@ struct RunFacts {
   std::vector<std::pair<std::string, double>> ends;  ///< in the order of the record
   std::optional<std::array<double, 3>> energy_line;  ///< least, P5, P50 [deg]
   std::optional<GullyFacts> gullies;                 ///< nothing in an earlier record
+  double left_into_gaps = 0.0;                       ///< 0 in an earlier record
   RecordedGrid grid;
   std::vector<Screen> screens;  ///< in map coordinates [m]
   std::vector<StandingBarrier> barriers;

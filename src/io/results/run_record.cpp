@@ -185,6 +185,7 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   json["ends"] = ends_of(totals);
   if (totals.ends[static_cast<std::size_t>(End::Limit)] > 0)
     json["first_limit"] = {{"source", totals.first_limit[0]}, {"block", totals.first_limit[1]}};
+  if (record.left_into_gaps) json["left_into_gaps"] = *record.left_into_gaps;
   if (record.gullies) json["steep_gullies"] = json_of(*record.gullies);
   json["trajectory_metres"] = static_cast<double>(totals.length_mm) * 1e-3;
   json["trajectory_metres_plan"] = static_cast<double>(totals.plan_length_mm) * 1e-3;

@@ -51,7 +51,8 @@ struct RunRecord {
   std::vector<std::string> files;     ///< written beside run.json
   std::uint64_t touched_cells = 0;
   EnergyLines energy_lines;
-  std::optional<GullyRecord> gullies;  ///< nothing for a profile
+  std::optional<GullyRecord> gullies;           ///< nothing for a profile
+  std::optional<std::uint64_t> left_into_gaps;  ///< trajectories, see `GapExits`; nothing for a profile
   StageSeconds cpu, wall;
   int threads = 0;  ///< of all processes
   int ranks = 1;    ///< processes
