@@ -21,7 +21,7 @@ constexpr double kHistogram = 40.0;        // of a quantity of a touched cell [b
 constexpr double kHazardCell = 664.0;      // annual frequencies of a touched cell [byte]: 32 bins, containers
 constexpr double kHazardLevel = 48.0;      // the same: lengths of all passages, and above each energy threshold [byte]
 constexpr double kKeptTotal = 90.0;        // of the energy with rotation of a touched cell in the saved tally [byte]
-constexpr double kRasterCell = 3.4;        // of a touched cell in a band of a compressed raster [byte]
+constexpr double kRasterCell = 2.2;        // of a touched cell in a band of a compressed raster [byte]
 constexpr double kHazardFile = 77.0;       // of a touched cell [byte]
 constexpr double kStop = 172.0;            // a row of stops.gpkg [byte]
 constexpr double kFlatStop = 260.0;        // a row of stops.fgb [byte]
@@ -30,7 +30,7 @@ constexpr double kPathPoint = 36.0;        // of trajectories.gpkg [byte]
 constexpr double kCrossing = 150.0;        // a row of screens.csv [byte]
 constexpr double kKeptCell = 344.0;        // of a touched cell in the saved tally [byte]
 constexpr double kEmptyCell = 4e-10;       // of the grid, per band, to write [s]
-constexpr double kTouchedCell = 1.3e-7;    // of a touched cell, per band, to write [s]
+constexpr double kTouchedCell = 0.9e-7;    // of a touched cell, per band, to write [s]
 constexpr double kWriteTrajectory = 2e-6;  // a row of stops.gpkg [s]
 constexpr double kWriteFiles = 0.6;        // to create all files [s]
 

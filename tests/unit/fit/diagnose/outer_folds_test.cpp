@@ -155,7 +155,7 @@ TEST(Nested, QuickFoldsRefitTheNumbersToTheOtherRows) {
 /// On the first of three days the ground was wet, which no ground of all days says. The effect that all rows choose
 /// predicts the blocks of each fold better than the ground alone.
 TEST(Nested, AnEffectThatIsThereLowersTheErrorOutOfQuickFolds) {
-  Campaign c = slope_campaign(30);
+  Campaign c = slope_campaign(15);
   Model truth = model_of_slope();
   truth.effects.wet_ground = {.softening = 2.0, .drag = 2.0, .days = {1}, .where = {}};
   measure(c, truth, 77);
