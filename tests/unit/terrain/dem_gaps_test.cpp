@@ -12,7 +12,7 @@
 namespace talus {
 namespace {
 
-constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoHeight = std::numeric_limits<float>::quiet_NaN();
 
 /// A level DEM from a drawing, the northern row first: '#' has no height.
 Raster<float> drawn(const std::vector<std::string>& rows) {
@@ -21,7 +21,7 @@ Raster<float> drawn(const std::vector<std::string>& rows) {
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column)
       if (rows[static_cast<std::size_t>(grid.rows - 1 - row)][static_cast<std::size_t>(column)] == '#')
-        heights.at(column, row) = kMissing;
+        heights.at(column, row) = kNoHeight;
   return heights;
 }
 
@@ -93,7 +93,7 @@ TEST(DemGaps, AreThoseOfSpreadingFromTheEdgeInAnyOrderOfTheCells) {
   for (const double share : {0.1, 0.3, 0.4, 0.5}) {
     Raster<float> heights(Grid{41, 37, 1.0, 1.0, 0.0, 0.0}, 100.0F);
     for (float& z : heights.values)
-      if (static_cast<double>(random() % 1000) < 1000 * share) z = kMissing;
+      if (static_cast<double>(random() % 1000) < 1000 * share) z = kNoHeight;
     const std::vector<bool> outside = outside_by_spreading(heights);
     const Grid& grid = heights.grid;
     std::vector<std::size_t> order(grid.cells());
