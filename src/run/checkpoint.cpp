@@ -59,7 +59,7 @@ Rounds rounds_of(const Json& json) {
   return asked;
 }
 
-std::string text_of(const Json& manifest) {
+std::string manifest_text(const Json& manifest) {
   return manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -247,8 +247,8 @@ void Checkpoint::write_manifest() const {
             {"rest_sha256", rest_sha256_},
             {"rows", rows},
             {"settings", settings}};
-  json["sha256"] = io::sha256_of_bytes(text_of(json));  // of the text without this line
-  replace_text(folder_ / kCheckpointManifest, text_of(json));
+  json["sha256"] = io::sha256_of_bytes(manifest_text(json));  // of the text without this line
+  replace_text(folder_ / kCheckpointManifest, manifest_text(json));
 }
 
 void Checkpoint::read_manifest() {
@@ -262,7 +262,7 @@ void Checkpoint::read_manifest() {
     Json json = io::parsed_record(text);
     const std::string sha256 = json.at("sha256");
     json.erase("sha256");
-    if (sha256 != io::sha256_of_bytes(text_of(json))) throw InputError("its checksum is another");
+    if (sha256 != io::sha256_of_bytes(manifest_text(json))) throw InputError("its checksum is another");
     if (const int format = json.at("format"); format != kFormat || json.at("version").get<std::string>() != version())
       throw InputError("was written by Talus " + json.at("version").get<std::string>() + " in format " +
                        std::to_string(format) + ", this one reads format " + std::to_string(kFormat));
