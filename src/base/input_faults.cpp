@@ -40,10 +40,13 @@ std::size_t length_of_number(std::string_view text) {
   return static_cast<std::size_t>(read.ptr - text.data());
 }
 
-/// A fault without its values: without numbers (the digits of a name stay) and without the quoted text after " = ".
-/// Other quoted texts are names ("zone '3' is not described") and stay.
+/// A fault without its values. Before the first " = " stands the name of a field, which stays ("field Ø1"); after it,
+/// or without it, numbers go (but for the digits of a name), and quoted text after " = ". Other quoted texts are names
+/// ("zone '3' is not described") and stay.
 std::string without_values(std::string_view fault) {
-  std::string kept;
+  const std::size_t equals = fault.find(" = ");
+  std::string kept(fault.substr(0, equals == std::string_view::npos ? 0 : equals));
+  fault.remove_prefix(kept.size());
   bool in_name = false;  // the character before is of a word or number
   while (!fault.empty()) {
     std::size_t length = 1;

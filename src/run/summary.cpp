@@ -39,7 +39,9 @@ std::string limits_text(const Totals& totals) {
 
 /// What shows how far the trajectories go that left the terrain, `into_gaps` of them into gaps inside the DEM.
 static std::string advice_on_left(const Totals& totals, std::uint64_t into_gaps) {
-  const std::string fill = "gaps inside it: fill them (gdal_fillnodata.py)";
+  const std::string fill =
+      "gaps inside it: fill holes of the survey (gdal_fillnodata.py -md N, half the width of the widest in cells); a "
+      "lake may stay";
   const std::uint64_t left = count_of(totals, End::Left), at_edge = left - into_gaps;
   if (into_gaps == 0) return "a larger DEM would";
   if (at_edge == 0) return "all of them left it into " + fill;

@@ -98,7 +98,8 @@ class Ends(Case):
         self.assertLess(into_gaps, 0.8 * left)
         at_edge, into = (f"{100 * n / left:.3g} %" for n in (left - into_gaps, into_gaps))
         text = (f"100 % of the trajectories ({left}) left the DEM or met missing data: the maps do not show how far they go; "
-                f"{at_edge} left it at its edge: take a larger DEM; {into} left it into gaps inside it: fill them (gdal_fillnodata.py)")
+                f"{at_edge} left it at its edge: take a larger DEM; {into} left it into gaps inside it: fill holes of the survey "
+                "(gdal_fillnodata.py -md N, half the width of the widest in cells); a lake may stay")
         self.assertIn(text, whole.stderr)
         self.assertIn(text, record["warnings"])
         for part in ("1/2", "2/2"):

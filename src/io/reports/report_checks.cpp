@@ -88,7 +88,9 @@ void check_gullies(const RunFacts& run, Checks& checks) {
 std::string advice_on_left_blocks(const RunFacts& run) {
   if (run.of_profile) return "The results do not show how far they would go. Above 1 %: take a longer profile.";
   const std::string text = "The maps do not show how far they would go. Above 1 %: ";
-  const std::string fill = "fill the gaps inside the DEM (gdal_fillnodata.py).";
+  const std::string fill =
+      "fill holes of the survey inside the DEM (gdal_fillnodata.py -md N, half the width of the widest in cells); a "
+      "lake may stay.";
   if (!(run.left_into_gaps > 0.0)) return text + "take a larger DEM.";
   return text + (run.left_into_gaps < run.end("left") ? "take a larger DEM, and " : "") + fill;
 }

@@ -72,9 +72,10 @@ TEST(FaultList, WhatDiffersInMoreThanNumbersIsAnotherKind) {
   FaultList list = of_cliffs();
   for (const char* fault :
        {": zone '3' is not described", ": zone '4' is not described", ": field f1 = 9: too large",
-        ": field f2 = 9: too large", ": field f1 = -9: too small", ": field f1 = 'one': must be a number"})
+        ": field f2 = 9: too large", ": field f1 = -9: too small", ": field f1 = 'one': must be a number",
+        ": field Ø1 = 9: too large", ": field Ø2 = 9: too large"})
     add(list, 1, 3, fault);
-  EXPECT_EQ(faults_of(list).faults().size(), 18U);
+  EXPECT_EQ(faults_of(list).faults().size(), 24U);
 }
 
 TEST(FaultList, ValuesOfAnyKindAreOneKind) {
