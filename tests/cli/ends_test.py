@@ -108,7 +108,7 @@ class Ends(Case):
         self.assertEqual(self.record("merged")["left_into_gaps"], into_gaps)
         self.assertEqual(self.record("merged")["warnings"], record["warnings"])
         check = self.run_well("check", *self.arguments()[1:-2])
-        self.assertRegex(check.stdout, r"(?m)^warning +100 % of the sample .* left it into gaps inside it: fill them")
+        self.assertRegex(check.stdout, r"(?m)^warning +100 % of the sample .* left it into gaps inside it: fill holes")
         self.run_well("report", self.path("whole"))
         with open(self.path("whole/report.html"), encoding="utf-8") as page:
             self.assertIn(f"{into_gaps} of them into gaps inside the DEM", page.read())
