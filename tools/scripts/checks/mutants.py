@@ -49,7 +49,7 @@ MUTANTS = [
     ("src/simulate/tally/cell_record.cpp", "static_cast<double>(value) * units + 0.5", "static_cast<double>(value) * units", "*Tally*:*Cell*:*Mean*"),
     ("src/simulate/tally/tally.cpp", "values[i] > limit ? 1U : 0U", "values[i] >= limit ? 1U : 0U", "*Tally*:*Exceed*:*Thresh*"),
     ("src/simulate/tally/tally.cpp", "row % kRegionSide * kRegionSide + column % kRegionSide", "column % kRegionSide * kRegionSide + row % kRegionSide", "*Tally*:*Region*"),
-    ("src/simulate/tally/histogram.cpp", "std::ceil(share * static_cast<double>(total))", "std::floor(share * static_cast<double>(total))", "*Histogram*:*Percentile*"),
+    ("src/simulate/tally/histogram.cpp", "std::ceil(share * count)", "std::floor(share * count)", "*Histogram*:*Percentile*"),
     ("src/simulate/tally/histogram.cpp", "if (width_ == 1 && count > 0xFFU) widen(2);", "if (width_ == 1 && count > 0x1FFU) widen(2);", "*Histogram*"),
     ("src/simulate/tally/histogram.cpp", "add_checked(count, more);", "count = more;", "*Histogram*:*Merge*"),
     ("src/simulate/tally/hazard_tally.cpp", "energy > thresholds[level - 1]", "energy >= thresholds[level - 1]", "*Hazard*"),
