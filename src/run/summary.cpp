@@ -37,7 +37,7 @@ std::string limits_text(const Totals& totals) {
          share_text(limits, totals.released) + ", allowed are 0.1 %) ended at the limit of impacts, time or vertices";
 }
 
-/// What shows how far the trajectories go that left the terrain, `into_gaps` of them into gaps inside the DEM.
+/// Advice on trajectories that left the terrain. @param into_gaps  how many of them left into gaps inside the DEM
 static std::string advice_on_left(const Totals& totals, std::uint64_t into_gaps) {
   const std::string fill =
       "gaps inside it: fill holes of the survey (gdal_fillnodata.py -md N, half the width of the widest in cells); a "

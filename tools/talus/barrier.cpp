@@ -229,7 +229,7 @@ class Exceedances {
   }
 
  private:
-  /// What is told of a quantity without a fit.
+  /// Notes on a quantity that has too few values for a fit.
   std::string told_of(const talus::io::Reliability& r) const {
     if (!weighting_.scale) return ", so nothing is told of how often its design value is exceeded";
     std::string text;

@@ -84,7 +84,7 @@ void check_gullies(const RunFacts& run, Checks& checks) {
                     "maps may end too early. Above 3 %: take a survey with smaller cells."});
 }
 
-/// What to do about blocks that leave the terrain.
+/// Advice on blocks that leave the terrain: a larger DEM, gaps to be filled, or both.
 std::string advice_on_left_blocks(const RunFacts& run) {
   if (run.of_profile) return "The results do not show how far they would go. Above 1 %: take a longer profile.";
   const std::string text = "The maps do not show how far they would go. Above 1 %: ";
