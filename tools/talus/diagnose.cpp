@@ -130,6 +130,7 @@ int diagnose(const Options& options) {
     stop_interrupted();
   }
   for (const talus::io::BeforeAfter& e : record.errors) warn_of_scores(options, record, e.after);
+  for (const std::string& warning : talus::io::costly_warnings(record)) warn(options, record, warning);
   record.cpu_seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write_results(opened.folder, opened.loaded, record);
@@ -150,16 +151,19 @@ void add_diagnose(CLI::App& app, Action& action) {
   with(command->add_option("--test-trials", how.trials.test, "trajectories per block in the tests (100)")
            ->check(CLI::Range(10, 10000)),
        default_of(how.trials.test));
-  with(command->add_option("--most-effects", how.most_effects, "that are added, one a round (3)")
+  with(command
+           ->add_option("--most-effects", how.most_effects,
+                        "that are added, one a round (3; fewer where that is costly)")
            ->check(CLI::Range(1, 9)),
-       default_of(static_cast<double>(how.most_effects)));
+       default_of(how.effects_at_most()));
   with(command->add_option("--level", how.first_level, "of significance, over all families of effects (0.05)")
            ->check(between(0.001, 0.5)),
        default_of(how.first_level));
   with(command
-           ->add_option("--base-fits", how.base_fits, "independent fits of the ground whose verdicts are compared (5)")
+           ->add_option("--base-fits", how.base_fits,
+                        "independent fits of the ground whose verdicts are compared (5; fewer where that is costly)")
            ->check(CLI::Range(1, 99)),
-       default_of(static_cast<double>(how.base_fits)));
+       default_of(how.base_fits_at_most()));
   command->add_flag("--all-rows", options->all_rows, "fit the rows that the campaign holds out, too");
   command->add_flag("--nested", options->nested,
                     "repeat the whole diagnosis without each fold of the fitting rows, as is done where no row is held "

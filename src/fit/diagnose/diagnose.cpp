@@ -38,11 +38,13 @@ class DiagnosisLoop {
     d.with_effects = fits_.fit_ground(start, scope_.brief);
     advance(kGroundShare);
     std::vector<std::string> found;
-    for (int round = 0; round <= options_.most_effects; ++round) {
+    for (int round = 0; round <= options_.effects_at_most(); ++round) {
       const double level = options_.level_of_round(d.rounds.size());
       d.with_effects = fits_.begin_round(std::move(d.with_effects));
       if (round == 0) d.base = d.with_effects;
-      d.rounds.push_back(run_round(d.with_effects, found, level, round < options_.most_effects));
+      const bool last_round = round == options_.effects_at_most();
+      d.ended_early = round > 0 && !last_round && spent();
+      d.rounds.push_back(run_round(d.with_effects, found, level, !last_round && !d.ended_early));
       const DiagnosisRound& last = d.rounds.back();
       if (!names_effect(last.effect) || scope_.first_round) break;
       found.push_back(last.effect);
@@ -60,6 +62,9 @@ class DiagnosisLoop {
   }
 
  private:
+  /// Whether the rounds so far were so costly that no further effect is fitted.
+  bool spent() const { return !options_.most_effects && billions(traced_) > rules_.enough; }
+
   void advance(double share = 0.02) { progress_ = std::min(0.95, progress_ + share); }
   /// @param share  of a fit; only the fit of the ground, the longest, is shown
   bool proceeds(double share = 1.0) {

@@ -6,7 +6,7 @@ namespace talus {
 
 DiagnosisWork::DiagnosisWork(const DiagnoseOptions& options) : options_(options) {
   const double brief =
-      std::max(0, options.base_fits - 1) +
+      options.base_fits_at_most() - 1 +
       (options.nested && options.naming_in_folds.value_or(true) ? static_cast<double>(options.outer_folds) : 0.0);
   total_ = 1.0 + kBrief * brief;
 }

@@ -11,6 +11,9 @@ struct LoopScope {
   bool first_round = false;  ///< ends with the verdict of the first round
 };
 
+/// Cost of a brief loop, as a share of that of a whole one.
+constexpr double kBrief = 0.45;
+
 /// Fit, test and choice on the fitting rows of a campaign. Throws FitInterrupted when `proceed` returns false.
 Diagnosis run_loop(const Campaign& campaign, const Model& start, const DiagnoseOptions& options,
                    const LoopScope& scope);
@@ -25,7 +28,6 @@ class DiagnosisWork {
   DiagnoseOptions next(bool brief);
 
  private:
-  static constexpr double kBrief = 0.45;  // cost of a brief loop, of that of a whole one
   DiagnoseOptions options_;
   double total_, begun_ = 0.0;
 };

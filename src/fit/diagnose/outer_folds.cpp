@@ -158,7 +158,7 @@ void simulate_fold(const Campaign& campaign, const DiagnoseOptions& options, std
 NestedValidation nested_validation(const Campaign& campaign, const Model& start, DiagnosisWork& work,
                                    const Diagnosis& whole) {
   NestedValidation nested = folds_to_validate(campaign, work.options(), whole.trials.compare);
-  const bool costly = 1e-9 * static_cast<double>(whole.vertices) > work.options().rules.costly;
+  const bool costly = billions(whole.vertices) > work.options().rules.costly;
   nested.naming = work.options().naming_in_folds.value_or(!costly);
   if (nested.naming) validate_by_choosing(campaign, start, work, nested);
   DiagnoseOptions options = work.options();

@@ -33,11 +33,19 @@ Diagnosis repeated_diagnosis(const Campaign& campaign, const Model& start, Diagn
   LoopScope brief;
   brief.brief = brief.first_round = true;
   Timesheet repetitions;
-  for (int number = 1; number < work.options().base_fits; ++number) {
+  double traced = billions(whole.vertices), next = kBrief * traced;
+  for (int number = 1; number < work.options().base_fits_at_most(); ++number) {
+    if (!work.options().base_fits && traced + next > work.options().rules.enough) {
+      stability.left_out = work.options().base_fits_at_most() - number;
+      break;
+    }
     const Timesheet::Phase phase(repetitions, kRepeatedFits);
     DiagnoseOptions options = work.next(true);
     options.seed = seed_of_fit(seed, static_cast<std::size_t>(number));
-    stability.fits.push_back(verdict_of(run_loop(campaign, start, options, brief), options.seed));
+    const Diagnosis repeated = run_loop(campaign, start, options, brief);
+    stability.fits.push_back(verdict_of(repeated, options.seed));
+    next = billions(repeated.vertices);
+    traced += next;
   }
   stability.reported = fit_to_report(stability);
   if (stability.reported != 0) {

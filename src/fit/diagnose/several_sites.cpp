@@ -165,7 +165,7 @@ class SitesLoop {
         round.family.p_corrected = round.family.p_value;
       }
       const double level = options_.level_of_round(static_cast<std::size_t>(number));
-      if (number < options_.most_effects && round.family.may_name && round.family.p_corrected <= level)
+      if (number < options_.effects_at_most() && round.family.may_name && round.family.p_corrected <= level)
         compete(model, round);
       const double smallest = number == 0 ? d.p_value : round.family.p_corrected;  // of the families of the sites, too
       if (round.effect == "none" && smallest <= options_.later_level) round.effect = "unexplained";

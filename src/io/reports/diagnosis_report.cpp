@@ -173,6 +173,7 @@ std::string diagnosis_json(const DiagnosisRecord& record) {
             {"probability", json_of(probability_of(first))},
             {"indistinguishable_from", first.alike},
             {"rounds", rounds_json(record)},
+            {"ended_early", d.ended_early},
             {"error", error_json(record)},
             {"evidence", evidence_of(record)},
             {"tail", tail_json(record.errors)},

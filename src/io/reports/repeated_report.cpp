@@ -61,7 +61,7 @@ std::string quick_folds_note(const DiagnosisRecord& record) {
       "the folds took the effects that all rows chose, and numbers near those of all rows: the error has seen the "
       "choice";
   if (record.options.naming_in_folds) return what;
-  return what + "; the diagnosis of all rows traced " + with_decimals(1e-9 * static_cast<double>(d.vertices), 1) +
+  return what + "; the diagnosis of all rows traced " + with_decimals(billions(d.vertices), 1) +
          " billion vertices, more than " + with_decimals(record.options.rules.costly, 1) +
          " (--no-quick-folds chooses anew)";
 }
@@ -109,6 +109,23 @@ void judge_nested(const Campaign& campaign, DiagnosisRecord& record) {
                                     judged(nested.candidates[i], ScoreRule::LogDensity), ground, log_ground});
 }
 
+std::vector<std::string> costly_warnings(const DiagnosisRecord& record) {
+  const Diagnosis& d = record.diagnosis;
+  const std::string costly = ": the blocks of this campaign take so long that more than " +
+                             with_decimals(record.options.rules.enough, 0) + " billion vertices would have been traced";
+  std::vector<std::string> warnings;
+  if (d.stability.left_out > 0) {
+    const std::size_t made = d.stability.fits.size();
+    const std::string asked = std::to_string(record.options.base_fits_at_most());
+    warnings.push_back("the verdict is that of " + std::to_string(made) + (made == 1 ? " fit" : " fits") +
+                       " of the ground, not of " + asked + costly + " (--base-fits " + asked + " makes all)");
+  }
+  if (d.ended_early)
+    warnings.push_back("no effect was fitted after " + d.rounds[d.rounds.size() - 2].effect + costly +
+                       " (--most-effects " + std::to_string(record.options.effects_at_most()) + " fits them)");
+  return warnings;
+}
+
 std::string verdict_text(const Diagnosis& diagnosis) {
   const std::string undecided = undecided_text(diagnosis.stability);
   return undecided.empty() ? diagnosis.rounds.front().effect : undecided;
@@ -142,6 +159,7 @@ Json stability_json(const Stability& stability) {
           {"p_values", p_values},
           {"seeds", seeds},
           {"reported", stability.reported},
+          {"left_out", stability.left_out},
           {"undecided_between", names.size() > 1 ? Json(names) : Json::array()},
           {"families", families}};
 }

@@ -381,10 +381,11 @@ GERMAN = {
         "Parameter, die mehrere Messkampagnen gemeinsam haben; alle anderen hat jede für sich",
     "trajectories per block in the searches (24)": "Sturzbahnen pro Block beim Suchen (24)",
     "trajectories per block in the tests (100)": "Sturzbahnen pro Block in den Tests (100)",
-    "that are added, one a round (3)": "die dazukommen, einer pro Runde (3)",
+    "that are added, one a round (3; fewer where that is costly)":
+        "die dazukommen, einer pro Runde (3; weniger, wo das aufwendig ist)",
     "of significance, over all families of effects (0.05)": "der Signifikanz, über alle Familien von Effekten (0.05)",
-    "independent fits of the ground whose verdicts are compared (5)":
-        "unabhängige Anpassungen des Bodens, deren Urteile verglichen werden (5)",
+    "independent fits of the ground whose verdicts are compared (5; fewer where that is costly)":
+        "unabhängige Anpassungen des Bodens, deren Urteile verglichen werden (5; weniger, wo das aufwendig ist)",
     "fit the rows that the campaign holds out, too": "auch die Zeilen anpassen, die die Messkampagne zurückhält",
     "repeat the whole diagnosis without each fold of the fitting rows, as is done where no row is held out: the error is "
     "then one of rows that were neither fitted nor chosen by":

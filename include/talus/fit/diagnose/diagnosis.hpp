@@ -93,6 +93,7 @@ struct Diagnosis {
   TrialsPerBlock trials;               ///< numbers that were simulated
   Timesheet times;                     ///< where the processor time went
   std::uint64_t vertices = 0;          ///< traced by the loop over all fitting rows
+  bool ended_early = false;            ///< the last round fitted no effects, as those before were costly
   Stability stability;                 ///< the verdicts of independent base fits, this one's among them
   std::optional<NestedValidation> nested;
 };
@@ -102,7 +103,9 @@ struct DiagnoseOptions {
   TrialsPerBlock trials;                                                      ///< of 72 blocks; of fewer, more
   std::uint64_t seed = 1;
   int threads = 0;
-  int most_effects = 3;
+  /// Effects added, one a round. Not given: three, but none after the first where `DiagnosisRules::enough` is reached.
+  std::optional<int> most_effects;
+  int effects_at_most() const { return most_effects.value_or(3); }
   double first_level = 0.05;  ///< over all families: the false alarms that are accepted
   double later_level = 0.01;  ///< after the first effect: its form is a guess, which leaves a residual
   /// @param round  from 0
@@ -110,7 +113,10 @@ struct DiagnoseOptions {
   /// Data sets that are drawn from the model to test some families: 2000, and so many that the rarest of all is
   /// significant after the correction for the families, by a fifth of the first level and by the later one.
   int replicates(std::size_t families) const;
-  int base_fits = 5;    ///< whose verdicts are compared; 1: this diagnosis alone
+  /// Fits of the ground whose verdicts are compared; 1: this diagnosis alone. Not given: five, or as many of them as
+  /// `DiagnosisRules::enough` allows.
+  std::optional<int> base_fits;
+  int base_fits_at_most() const { return base_fits.value_or(5); }
   bool nested = false;  ///< also repeats the loop without each outer fold
   std::size_t outer_folds = 5;
   /// Whether the loop is repeated without each fold. False: a fold takes the effects that all rows chose, and its

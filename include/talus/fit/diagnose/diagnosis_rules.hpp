@@ -84,6 +84,9 @@ struct DiagnosisRules {
   /// further fits of the ground, it then takes less than twenty minutes on two processors with them.
   /// docs/diagnosis-time.md.
   double costly = 2.5;
+  /// Vertices, traced or foreseen, beyond which a diagnosis makes no further fit of the ground, and fits no effects
+  /// after its first round [1e9]. They took at most forty minutes of one processor. docs/diagnosis-time.md.
+  double enough = 12.0;
 
   // The choice
   /// Share of the objective that an effect must take away on the fitting rows [-]: gains differ by 1 to 2 % from seed
@@ -110,5 +113,10 @@ struct DiagnosisRules {
   /// climatology.
   std::uint32_t fewest_of_one = 20;
 };
+
+/// A number of vertices [1e9].
+inline double billions(std::uint64_t vertices) {
+  return 1e-9 * static_cast<double>(vertices);
+}
 
 }  // namespace talus

@@ -21,6 +21,7 @@ struct BaseFitVerdict {
 struct Stability {
   std::vector<BaseFitVerdict> fits;
   std::size_t reported = 0;  ///< index of the fit that the diagnosis reports
+  int left_out = 0;          ///< fits that were not made, as the diagnosis was costly (DiagnosisRules::enough)
 };
 
 /// The different verdicts, the most frequent first; of equally frequent ones that of the earlier fit first.

@@ -187,6 +187,46 @@ TEST(Nested, TheFoldsOfACostlyDiagnosisAreQuick) {
   EXPECT_FALSE(costly.nested->naming);
 }
 
+/// A costly diagnosis makes fewer fits of the ground than five, and says how many; a number that is asked for is made.
+TEST(BaseFits, OfACostlyDiagnosisAreFewerUnlessAskedFor) {
+  Campaign c = campaign_on_slope(24);
+  measure(c, model_of_slope(), 77);
+  DiagnoseOptions options = two_folds();
+  options.nested = false;
+  const double one = billions(diagnose(c, model_of_slope(), options).vertices);
+  const auto stability = [&](std::optional<int> asked, double enough) {
+    options.base_fits = asked;
+    options.rules.enough = enough;
+    return diagnose(c, model_of_slope(), options).stability;
+  };
+  const Stability single = stability({}, 1.3 * one), two = stability({}, 1.6 * one), asked = stability(2, 0.0);
+  EXPECT_EQ(single.fits.size(), 1U);
+  EXPECT_EQ(single.left_out, 4);
+  EXPECT_EQ(two.fits.size(), 2U) << "1 + 0.45 are foreseen";
+  EXPECT_EQ(asked.fits.size(), 2U);
+  EXPECT_EQ(asked.left_out, 0);
+}
+
+/// After a costly round that found an effect the rest is tested, and no further effect fitted.
+TEST(Rounds, AfterACostlyOneNoFurtherEffectIsFitted) {
+  Campaign c = slope_campaign(15);
+  Model truth = model_of_slope();
+  truth.effects.wet_ground = {.softening = 2.0, .drag = 2.0, .days = {1}, .where = {}};
+  measure(c, truth, 77);
+  DiagnoseOptions options = two_folds();
+  options.nested = false;
+  options.rules.enough = 0.0;
+  options.most_effects.reset();
+  const Diagnosis costly = diagnose(c, model_of_slope(), options);
+  EXPECT_TRUE(costly.ended_early);
+  ASSERT_EQ(costly.rounds.size(), 2U);
+  EXPECT_EQ(costly.rounds.front().effect, "wet-ground");
+  EXPECT_TRUE(costly.rounds.back().candidates.empty());
+  EXPECT_FALSE(costly.rounds.back().families.empty());
+  options.most_effects = 2;
+  EXPECT_FALSE(diagnose(c, model_of_slope(), options).ended_early) << "asked for";
+}
+
 /// The folds of one number are left out at all sites at once: what one site measured of its fold does not reach the
 /// other site either. Bit by bit.
 TEST(Nested, NoSiteSeesAFoldOfAnother) {
