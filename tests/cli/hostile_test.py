@@ -586,7 +586,7 @@ class Names(Scenario):
 
     def test_the_pages_of_campaigns(self):
         campaign = self.campaign()
-        common = ("--trials", "20", "--test-trials", "20", "--most-effects", "1", "--fit", "En50", "--threads", "2")
+        common = ("--trials", "10", "--test-trials", "10", "--most-effects", "1", "--fit", "En50", "--threads", "2")
         done = self.run_well("diagnose", campaign, "-o", self.path("d"), *common, "--base-fits", "1", "--no-nested",
                              timeout=600)
         self.assert_tame(done.stdout + done.stderr)

@@ -157,11 +157,6 @@ class Diagnose(Sites):
         self.assertEqual(sum(fold["blocks"]["north"] for fold in record["nested"]["folds"]), 12)
         self.assertEqual([len(fold["effects"]) for fold in record["nested"]["folds"]], [1, 1])
         self.assertIn("out-of-fold rows", self.read_text("nested/report.html"))
-        lack = "there is no error of unseen rows: north: cross-validation in 7 folds needs at least 14 fitting rows, not 12"
-        many = self.result("diagnose", paths, "many", *few[:-1], "7")
-        self.assertEqual([w for w in many["warnings"] if lack in w], many["warnings"][-1:])
-        self.assertNotIn("nested", many)
-        self.assertEqual((many["error"]["holdout"]["rows"], many["error"]["holdout"]["before"]), ("holdout", None))
 
     def fields_of_one_campaign(self, record):
         """Beside its own, the record has the fields of one campaign; what is known by site names the site."""

@@ -50,11 +50,16 @@ def patched_copy(patch, copy):
         wrong(f"{patch.name} does not apply; make it anew (git diff) and copy it into its page:\n{result.stderr}")
 
 
+def sources_of(entry):
+    """The sources that a command compiles: several where a folder is compiled at once (TALUS_BY_FOLDER)."""
+    file = Path(entry["file"])
+    return [file] if file.parent.name != "Unity" else [Path(name) for name in re.findall(r'#include "(.+)"', file.read_text())]
+
+
 def command_of(file, commands):
     """The command that compiles a file. A new file is compiled like the one with which it shares the most folders."""
     def shared(entry):
-        parts = Path(entry["file"]).resolve().relative_to(ROOT).parts if Path(entry["file"]).resolve().is_relative_to(ROOT) else ()
-        return sum(1 for _ in zip(os.path.commonprefix([parts, Path(file).parts])))
+        return max(len(os.path.commonprefix([source.resolve().parts, (ROOT / file).parts])) for source in sources_of(entry))
     return max(commands, key=shared)
 
 

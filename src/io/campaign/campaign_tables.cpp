@@ -12,7 +12,6 @@
 namespace talus::io {
 namespace {
 
-constexpr auto kAbove = Bounds::AboveMin;
 constexpr Bounds kHeight{"z", "m", "height above the sea", -500.0, 9000.0};
 constexpr Bounds kReleaseHeight{"release_height_m", "m", "of the centre above the terrain", 0.0, 500.0};
 constexpr Bounds kRadius{"release_radius_m", "m", "of the disc of release", 0.0, 1000.0};

@@ -227,6 +227,19 @@ TEST(Rounds, AfterACostlyOneNoFurtherEffectIsFitted) {
   EXPECT_FALSE(diagnose(c, model_of_slope(), options).ended_early) << "asked for";
 }
 
+/// Folds that are too many for a site are not made, and the diagnosis says so.
+TEST(Nested, ASiteOfTooFewRowsIsNamed) {
+  std::array<Campaign, 2> c{campaign_on_slope(24), campaign_on_slope(12)};
+  for (std::size_t i = 0; i < 2; ++i) measure(c[i], model_of_slope(), 77 + i);
+  const std::vector<Site> sites{{"one", &c[0]}, {"two", &c[1]}};
+  give_own_streams(sites);
+  DiagnoseOptions options = two_folds();
+  options.outer_folds = 5;
+  const SitesDiagnosis d = diagnose_sites(sites, std::vector<Model>(2, model_of_slope()), options);
+  EXPECT_EQ(d.not_nested, "two: cross-validation in 5 folds needs at least 10 fitting rows, not 8");
+  EXPECT_TRUE(d.nested.empty());
+}
+
 /// The folds of one number are left out at all sites at once: what one site measured of its fold does not reach the
 /// other site either. Bit by bit.
 TEST(Nested, NoSiteSeesAFoldOfAnother) {
