@@ -63,8 +63,20 @@ def command_of(file, commands):
     return max(commands, key=shared)
 
 
+def with_its_folder(file, copy, commands):
+    """What is compiled for a file of the copy: a source of the library with those that the build compiles at once with
+    it, as all of them are in one object of the library; else the file alone."""
+    sources = sources_of(command_of(file, commands))
+    if not file.startswith("src/") or len(sources) == 1 or ROOT / file not in sources:
+        return copy / file
+    folder = copy / (str(Path(file).parent).replace("/", "_") + ".cpp")
+    folder.write_text("".join(f'#include "{copy / source.relative_to(ROOT)}"\n' for source in sources))
+    return folder
+
+
 def compile_file(file, copy, commands):
-    entry = command_of(file, commands)
+    """The object of what `with_its_folder` gives, compiled by the command of the file; with the words of that command."""
+    entry, source = command_of(file, commands), with_its_folder(file, copy, commands)
     words, kept = shlex.split(entry["command"]), []
     skip = False
     for word in words:
@@ -74,8 +86,10 @@ def compile_file(file, copy, commands):
             skip = word != "-c"  # clang's comes as `-Xclang -include-pch -Xclang FILE`
         else:
             kept.append(word.replace(f"-I{ROOT}/", f"-I{copy}/").replace(f'"{ROOT}"', f'"{copy}"'))
-    target = copy / (file.replace("/", "_") + ".o")
-    result = subprocess.run([*kept, "-o", str(target), "-c", str(copy / file)], cwd=entry["directory"], capture_output=True, text=True)
+    target = source.with_suffix(".o")
+    if target.exists():
+        return kept, target
+    result = subprocess.run([*kept, "-o", str(target), "-c", str(source)], cwd=entry["directory"], capture_output=True, text=True)
     if result.returncode != 0:
         wrong(f"{file} with the patch does not compile:\n{result.stderr}")
     return kept, target
@@ -98,7 +112,7 @@ def main():
         if not o.link:
             return
         flags = [word for word in compiled[0][0] if not word.startswith(("-I", "-D", "-W"))]
-        objects = [str(target) for _, target in compiled]
+        objects = list(dict.fromkeys(str(target) for _, target in compiled))
         program = copy / "check"
         result = subprocess.run([*flags, *objects, *o.link, "-o", str(program)], capture_output=True, text=True)
         if result.returncode != 0:
