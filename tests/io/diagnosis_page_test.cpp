@@ -146,5 +146,23 @@ TEST(DiagnosisPage, NamesFamiliesByTheLevelOfTheRound) {
   EXPECT_EQ(count_of(page(0.3, 0.01), "What the ground alone leaves depends on: place (p 0.2), corrected"), 1U);
 }
 
+/// What a costly diagnosis left out is warned of, with the flag that asks for it.
+TEST(CostlyWarnings, SayWhatWasLeftOut) {
+  DiagnosisRecord record = record_of(0.05, 0.01);
+  EXPECT_TRUE(costly_warnings(record).empty());
+  Diagnosis& d = record.diagnosis;
+  d.stability.fits.resize(2);
+  d.stability.left_out = 3;
+  d.rounds.front().effect = "wet-ground";
+  d.rounds.emplace_back();
+  d.ended_early = true;
+  const std::string costly =
+      ": the blocks of this campaign take so long that more than 12 billion vertices would have been traced ";
+  EXPECT_EQ(costly_warnings(record),
+            (std::vector<std::string>{
+                "the verdict is that of 2 fits of the ground, not of 5" + costly + "(--base-fits 5 makes all)",
+                "no effect was fitted after wet-ground" + costly + "(--most-effects 3 fits them)"}));
+}
+
 }  // namespace
 }  // namespace talus::io

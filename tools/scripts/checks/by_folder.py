@@ -21,7 +21,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[3]
 DEFINED = re.compile(r'^define .*?@("[^"]+"|[\w.$]+)\(')
 NAMED = re.compile(r'@("[^"]+"|[\w.$]+)')
-LAMBDA = re.compile(r"\$_\d+")  # numbered along a compilation
+LAMBDA = re.compile(r"\d+\$_\d+")  # numbered along a compilation
+GENERATED = re.compile(r"__cxx_global_var_init|\.omp_outlined")  # so are these
 
 
 def compile_commands(folder, by_folder):
@@ -47,7 +48,7 @@ def calls_of(command):
     """The functions of ours that each function names, by the names that the linker sees."""
     calls, function = {}, None
     for line in text_of(command).splitlines():
-        if found := DEFINED.match(line):
+        if (found := DEFINED.match(line)) and not GENERATED.match(found[1]):
             function = LAMBDA.sub("$", found[1])
             calls[function] = set()
         elif line == "}":

@@ -161,10 +161,15 @@ TEST(Nested, AnEffectThatIsThereLowersTheErrorOutOfQuickFolds) {
   measure(c, truth, 77);
   DiagnoseOptions options = two_folds();
   options.naming_in_folds = false;
-  options.most_effects = 1;
+  options.most_effects.reset();
+  options.rules.enough = 0.0;  // after the first effect the rest is tested, and no other is fitted
   const Diagnosis d = diagnose(c, model_of_slope(), options);
   ASSERT_TRUE(d.nested);
   ASSERT_EQ(d.rounds.front().effect, "wet-ground");
+  ASSERT_EQ(d.rounds.size(), 2U);
+  EXPECT_TRUE(d.ended_early);
+  EXPECT_TRUE(d.rounds.back().candidates.empty());
+  EXPECT_FALSE(d.rounds.back().families.empty());
   for (const OuterFold& loop : d.nested->loops) EXPECT_EQ(loop.effects, std::vector<std::string>{"wet-ground"});
   const auto error = [&](const std::vector<BlockRuns>& runs) {
     return score(c, runs, fitting_rows(c), {ScoreRule::Fair, kFewestSimulated, d.nested->folds.fold_of}).total;
@@ -172,59 +177,27 @@ TEST(Nested, AnEffectThatIsThereLowersTheErrorOutOfQuickFolds) {
   EXPECT_LT(error(d.nested->found), 0.9 * error(d.nested->base));
 }
 
-/// A costly diagnosis does not repeat its choice. The cost counts vertices, whatever the threads.
-TEST(Nested, TheFoldsOfACostlyDiagnosisAreQuick) {
+/// A costly diagnosis does not repeat its choice, and makes one fit of the ground, or as many as it is asked for. The
+/// cost counts vertices, whatever the threads.
+TEST(Nested, ACostlyDiagnosisHasQuickFoldsAndFewBaseFits) {
   Campaign c = campaign_on_slope(24);
   measure(c, model_of_slope(), 77);
   DiagnoseOptions options = two_folds();
+  options.base_fits.reset();
+  options.rules.enough = 0.0;
   const Diagnosis cheap = diagnose(c, model_of_slope(), options);
   EXPECT_TRUE(cheap.nested->naming);
+  EXPECT_EQ(cheap.stability.fits.size(), 1U);
+  EXPECT_EQ(cheap.stability.left_out, 4);
   EXPECT_GT(cheap.vertices, 16U * 20U * 20U) << "some vertices for each trajectory";
   options.rules.costly = 1e-9 * static_cast<double>(cheap.vertices - 1);
   options.threads = 3;
+  options.base_fits = 2;
   const Diagnosis costly = diagnose(c, model_of_slope(), options);
+  EXPECT_EQ(costly.stability.fits.size(), 2U);
+  EXPECT_EQ(costly.stability.left_out, 0);
   EXPECT_EQ(costly.vertices, cheap.vertices);
   EXPECT_FALSE(costly.nested->naming);
-}
-
-/// A costly diagnosis makes fewer fits of the ground than five, and says how many; a number that is asked for is made.
-TEST(BaseFits, OfACostlyDiagnosisAreFewerUnlessAskedFor) {
-  Campaign c = campaign_on_slope(24);
-  measure(c, model_of_slope(), 77);
-  DiagnoseOptions options = two_folds();
-  options.nested = false;
-  options.base_fits.reset();
-  options.rules.enough = 0.0;
-  const Diagnosis single = diagnose(c, model_of_slope(), options);
-  EXPECT_EQ(single.stability.fits.size(), 1U);
-  EXPECT_EQ(single.stability.left_out, 4);
-  options.rules.enough = 1.6 * billions(single.vertices);
-  const Stability two = diagnose(c, model_of_slope(), options).stability;
-  EXPECT_EQ(two.fits.size(), 2U) << "1 + 0.45 are foreseen";
-  EXPECT_EQ(two.left_out, 3);
-  options.rules.enough = 0.0;
-  options.base_fits = 2;
-  const Stability asked = diagnose(c, model_of_slope(), options).stability;
-  EXPECT_EQ(asked.fits.size(), 2U);
-  EXPECT_EQ(asked.left_out, 0);
-}
-
-/// After a costly round that found an effect the rest is tested, and no further effect fitted.
-TEST(Rounds, AfterACostlyOneNoFurtherEffectIsFitted) {
-  Campaign c = slope_campaign(15);
-  Model truth = model_of_slope();
-  truth.effects.wet_ground = {.softening = 2.0, .drag = 2.0, .days = {1}, .where = {}};
-  measure(c, truth, 77);
-  DiagnoseOptions options = two_folds();
-  options.nested = false;
-  options.rules.enough = 0.0;
-  options.most_effects.reset();
-  const Diagnosis costly = diagnose(c, model_of_slope(), options);
-  EXPECT_TRUE(costly.ended_early);
-  ASSERT_EQ(costly.rounds.size(), 2U);
-  EXPECT_EQ(costly.rounds.front().effect, "wet-ground");
-  EXPECT_TRUE(costly.rounds.back().candidates.empty());
-  EXPECT_FALSE(costly.rounds.back().families.empty());
 }
 
 /// Folds that are too many for a site are not made, and the diagnosis says so.
