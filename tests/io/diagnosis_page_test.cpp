@@ -153,15 +153,15 @@ TEST(CostlyWarnings, SayWhatWasLeftOut) {
   Diagnosis& d = record.diagnosis;
   d.stability.fits.resize(2);
   d.stability.left_out = 3;
+  d.rounds.resize(2);
   d.rounds.front().effect = "wet-ground";
-  d.rounds.emplace_back();
   d.ended_early = true;
   const std::string costly =
-      ": the blocks of this campaign take so long that more than 12 billion vertices would have been traced ";
+      ": blocks of this campaign take long (more than 12 billion vertices traced or foreseen; --";
   EXPECT_EQ(costly_warnings(record),
             (std::vector<std::string>{
-                "the verdict is that of 2 fits of the ground, not of 5" + costly + "(--base-fits 5 makes all)",
-                "no effect was fitted after wet-ground" + costly + "(--most-effects 3 fits them)"}));
+                "the verdict is that of 2 fits of the ground, not of 5" + costly + "base-fits 5 makes all)",
+                "no effect was fitted after wet-ground" + costly + "most-effects 3 fits more)"}));
 }
 
 }  // namespace

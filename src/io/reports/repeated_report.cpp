@@ -111,18 +111,18 @@ void judge_nested(const Campaign& campaign, DiagnosisRecord& record) {
 
 std::vector<std::string> costly_warnings(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
-  const std::string costly = ": the blocks of this campaign take so long that more than " +
-                             with_decimals(record.options.rules.enough, 0) + " billion vertices would have been traced";
+  const std::string costly = ": blocks of this campaign take long (more than " +
+                             with_decimals(record.options.rules.enough, 0) + " billion vertices traced or foreseen; --";
   std::vector<std::string> warnings;
   if (d.stability.left_out > 0) {
     const std::size_t made = d.stability.fits.size();
     const std::string asked = std::to_string(record.options.base_fits_at_most());
     warnings.push_back("the verdict is that of " + std::to_string(made) + (made == 1 ? " fit" : " fits") +
-                       " of the ground, not of " + asked + costly + " (--base-fits " + asked + " makes all)");
+                       " of the ground, not of " + asked + costly + "base-fits " + asked + " makes all)");
   }
   if (d.ended_early)
-    warnings.push_back("no effect was fitted after " + d.rounds[d.rounds.size() - 2].effect + costly +
-                       " (--most-effects " + std::to_string(record.options.effects_at_most()) + " fits them)");
+    warnings.push_back("no effect was fitted after " + d.rounds[d.rounds.size() - 2].effect + costly + "most-effects " +
+                       std::to_string(record.options.effects_at_most()) + " fits more)");
   return warnings;
 }
 
