@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Shows that a build by folder (TALUS_BY_FOLDER) calls what a build by file calls: by_folder.py [--jobs N].
+"""Shows that a build by folder (TALUS_BY_FOLDER) calls what a build by file calls: by_folder.py [TARGET...] [--jobs N].
 
 Sources of a folder that are compiled at once see each other's unnamed namespaces: a helper in the unnamed namespace of
 `talus::run` would hide a function of `talus` of its name from its neighbours, without a word from the compiler. Every
-source is compiled to the language of LLVM both ways, and each function must call the same functions. About twenty
-minutes of one processor: run it after helpers were named, and before a release.
+source is compiled to the language of LLVM both ways, and each function must call the same functions of unnamed
+namespaces. All targets: about half an hour of one processor. Run it after helpers were named, and before a release.
 """
 
 import argparse
@@ -19,18 +19,18 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
+TARGETS = ("talus_core", "talus_io", "talus_run", "talus", "talus-mpi")
 DEFINED = re.compile(r'^define .*?@("[^"]+"|[\w.$]+)\(')
-NAMED = re.compile(r'@("[^"]+"|[\w.$]+)')
-LAMBDA = re.compile(r"\d+\$_\d+")  # numbered along a compilation
-GENERATED = re.compile(r"__cxx_global_var_init|\.omp_outlined")  # so are these
+NAMED = re.compile(r"@([\w.]*_GLOBAL__N_[\w.]*)")  # in an unnamed namespace; lambdas, which have a $, are numbered anew
+LAMBDA = re.compile(r"\d+\$_\d+")
+GENERATED = re.compile(r"__cxx_global_var_init|\.omp_outlined")  # numbered anew, too
 
 
-def compile_commands(folder, by_folder):
+def compile_commands(folder, by_folder, targets):
     subprocess.run(["cmake", "--preset", "dev", "-B", folder, "-DTALUS_PCH=OFF", f"-DTALUS_BY_FOLDER={by_folder}"],
                    cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     commands = json.loads((folder / "compile_commands.json").read_text())
-    targets = ("talus_core.dir", "talus_io.dir", "talus_run.dir", "talus.dir", "talus-mpi.dir")
-    return [c for c in commands if any(f"/{target}/" in c["command"] for target in targets)]
+    return [c for c in commands if any(f"/{target}.dir/" in c["command"] for target in targets)]
 
 
 def text_of(command):
@@ -45,16 +45,16 @@ def text_of(command):
 
 
 def calls_of(command):
-    """The functions of ours that each function names, by the names that the linker sees."""
+    """The functions of unnamed namespaces that each function names, by the names that the linker sees."""
     calls, function = {}, None
     for line in text_of(command).splitlines():
-        if (found := DEFINED.match(line)) and not GENERATED.match(found[1]):
-            function = LAMBDA.sub("$", found[1])
-            calls[function] = set()
+        if found := DEFINED.match(line):
+            function = None if GENERATED.match(found[1]) else LAMBDA.sub("$", found[1])
+            calls.setdefault(function, set())
         elif line == "}":
             function = None
-        elif function and "talus" in line:
-            calls[function] |= {LAMBDA.sub("$", name) for name in NAMED.findall(line) if "talus" in name}
+        elif function:
+            calls[function].update(NAMED.findall(line))
     return calls
 
 
@@ -70,14 +70,15 @@ def calls_of_all(commands, jobs):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("targets", nargs="*", default=TARGETS, metavar="TARGET", help="of the build; " + ", ".join(TARGETS))
     parser.add_argument("--jobs", type=int, default=2)
-    jobs = parser.parse_args().jobs
+    o = parser.parse_args()
     with tempfile.TemporaryDirectory() as work:
-        by_file, by_folder = (calls_of_all(compile_commands(Path(work) / way, way), jobs) for way in ("OFF", "ON"))
-    both = sorted(by_file.keys() & by_folder.keys())
+        by_file, by_folder = (calls_of_all(compile_commands(Path(work) / way, way, o.targets), o.jobs) for way in ("OFF", "ON"))
+    both = sorted((by_file.keys() & by_folder.keys()) - {None})
     wrong = [(function, by_file[function] ^ by_folder[function]) for function in both if by_file[function] != by_folder[function]]
     for function, differ in wrong:
-        names = subprocess.run(["c++filt", function, *sorted(differ)], capture_output=True, text=True).stdout.splitlines()
+        names = subprocess.run(["c++filt", function.strip('"'), *sorted(differ)], capture_output=True, text=True).stdout.splitlines()
         print(f"{names[0]} calls by file or by folder only:", *(f"\n    {name}" for name in names[1:]))
     print(f"{len(both)} functions, {len(wrong)} of which call others by folder than by file")
     sys.exit(bool(wrong))
