@@ -7,8 +7,8 @@ set(public_headers talus.hpp
   physics/world.hpp)
 list(TRANSFORM public_headers PREPEND ${PROJECT_SOURCE_DIR}/include/talus/)
 
-# Objects that the other libraries hold already: nothing is compiled twice.
-set(engine_objects "$<FILTER:$<TARGET_OBJECTS:talus_core>,INCLUDE,/src/(base|terrain|physics)/>")
+# Objects that the other libraries hold already: nothing is compiled twice. (An object is of a file, or of a folder.)
+set(engine_objects "$<FILTER:$<TARGET_OBJECTS:talus_core>,INCLUDE,[/_]src[/_](base|terrain|physics)[/_]>")
 foreach(lanes 4 8)
   if(TARGET talus_lanes_${lanes})
     list(APPEND engine_objects $<TARGET_OBJECTS:talus_lanes_${lanes}>)
