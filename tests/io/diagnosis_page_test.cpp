@@ -146,7 +146,7 @@ TEST(DiagnosisPage, NamesFamiliesByTheLevelOfTheRound) {
   EXPECT_EQ(count_of(page(0.3, 0.01), "What the ground alone leaves depends on: place (p 0.2), corrected"), 1U);
 }
 
-/// What a costly diagnosis left out is warned of, with the flag that asks for it.
+/// Warnings name what a costly diagnosis left out, and the flag that asks for it.
 TEST(CostlyWarnings, SayWhatWasLeftOut) {
   DiagnosisRecord record = record_of(0.05, 0.01);
   EXPECT_TRUE(costly_warnings(record).empty());

@@ -152,10 +152,6 @@ void add_diagnose(CLI::App& app, Action& action) {
            ->check(CLI::Range(10, 10000)),
        default_of(how.trials.test));
   with(command
-           ->add_option("--compare-trials", how.trials.compare, "trajectories per block where fits are compared (200)")
-           ->check(CLI::Range(20, 10000)),
-       default_of(how.trials.compare));
-  with(command
            ->add_option("--most-effects", how.most_effects,
                         "that are added, one a round (3; fewer where that is costly)")
            ->check(CLI::Range(1, 9)),

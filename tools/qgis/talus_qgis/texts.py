@@ -70,7 +70,6 @@ LABELS = {
     "lanes": ("Trajectories in one instruction (lanes)", "Sturzbahnen in einem Befehl (Lanes)"),
     "parameters": ("Model from which the fit starts (TOML)", "Modell, von dem die Anpassung ausgeht (TOML)"),
     "test-trials": ("Trajectories per block in the tests", "Sturzbahnen pro Block in den Tests"),
-    "compare-trials": ("Trajectories per block in comparisons", "Sturzbahnen pro Block in den Vergleichen"),
     "most-effects": ("Largest number of effects that are added", "Höchste Zahl der Effekte, die dazukommen"),
     "level": ("Level of significance", "Signifikanzniveau"),
     "base-fits": ("Independent fits that are compared", "Unabhängige Anpassungen, die verglichen werden"),
@@ -382,7 +381,6 @@ GERMAN = {
         "Parameter, die mehrere Messkampagnen gemeinsam haben; alle anderen hat jede für sich",
     "trajectories per block in the searches (24)": "Sturzbahnen pro Block beim Suchen (24)",
     "trajectories per block in the tests (100)": "Sturzbahnen pro Block in den Tests (100)",
-    "trajectories per block where fits are compared (200)": "Sturzbahnen pro Block, wo Anpassungen verglichen werden (200)",
     "that are added, one a round (3; fewer where that is costly)":
         "die dazukommen, einer pro Runde (3; weniger, wo das aufwendig ist)",
     "of significance, over all families of effects (0.05)": "der Signifikanz, über alle Familien von Effekten (0.05)",

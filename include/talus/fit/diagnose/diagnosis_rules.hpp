@@ -85,7 +85,7 @@ struct DiagnosisRules {
   /// docs/diagnosis-time.md.
   double costly = 2.5;
   /// Vertices, traced or foreseen, beyond which a diagnosis makes no further fit of the ground, and fits no effects
-  /// after its first round [1e9]. They took at most forty minutes of one processor. docs/diagnosis-time.md.
+  /// after its first round [1e9]. By the time of ginkgo 38 minutes of one core (docs/diagnosis-time.md).
   double enough = 12.0;
 
   // The choice
