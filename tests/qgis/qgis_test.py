@@ -985,6 +985,19 @@ class FromPython(Case):
             QgsApplication.setLocale(before)
             QgsProject.instance().clear()
 
+    def test_two_commands_whose_layers_are_loaded_together(self):
+        """As in a model: the layers of the first have their styles, too, and their group."""
+        context = QgsProcessingContext()
+        self.run_algorithm("run", self.inputs(LOAD=True), context=context)
+        long_ago = time.time() - 3600.0
+        for file in self.written("out/*"):
+            os.utime(file, (long_ago, long_ago))  # so that `hazard` does not name them as its own
+        self.run_algorithm("hazard", {"FOLDER": self.path("out"), "LOAD": True}, context=context)
+        self.load(context)
+        names = {layer.name() for layer in self.assert_as_in_project()}
+        self.assertLessEqual({"Hazard class", "Impact probability"}, names)
+        QgsProject.instance().clear()
+
     def test_names_of_a_matrix_of_the_user_are_not_translated(self):
         """Also where they are words of which the plug-in has German ones."""
         names = ["none", "low", "above 30 kJ", "high to extreme"]

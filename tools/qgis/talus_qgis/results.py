@@ -2,6 +2,7 @@
 import json
 import os
 import re
+from collections import deque
 from contextlib import contextmanager
 
 from qgis.core import (Qgis, QgsGraduatedSymbolRenderer, QgsLayerTree, QgsLayerTreeGroup, QgsLineSymbol, QgsMapLayerLegendUtils,
@@ -23,7 +24,7 @@ ONE_KIND = "|geometrytype="  # in the source of a layer: one kind of geometry of
 
 CLOCKS = 2.0  # s by which the clock of a disk may be behind
 
-_kept_alive = []  # QGIS does not hold the post-processors
+_kept_alive = deque(maxlen=1000)  # QGIS does not hold the post-processors; commands of a model end before any layer is loaded
 
 
 def _entries():
@@ -244,7 +245,6 @@ def latest_folder(project):
 def load(folder, rows, title, context, group_folder=None):
     """Asks QGIS to load the layers when the algorithm is done, as a group."""
     project = context.project() or QgsProject.instance()
-    _kept_alive.clear()
     for uri, name, file, rank, shown in rows:
         details = QgsProcessingContext.LayerDetails(name, project, name)
         processor = IntoGroup(group_folder or folder, title, name, os.path.join(folder, os.path.splitext(file)[0] + ".qml"),
