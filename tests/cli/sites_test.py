@@ -9,6 +9,7 @@ import unittest
 from support import NORTH, WEST, Case
 
 SHORT = ("--surface", "bilinear", "-q")
+TOP = 160  # m from the northern edge of the DEM to the releases, 40 m above the foot: short paths, soon traced
 
 
 class Sites(Case):
@@ -22,7 +23,7 @@ class Sites(Case):
         blocks = []
         for i in range(count):
             long, flat = chance.uniform(1.0, 2.0), chance.uniform(0.7, 1.0)
-            blocks.append([f"b{first + i}", WEST + 60 + 5 * i, NORTH - 40, 1, 400 + 20 * i, long, 1.0, flat, int(holdout and i % 3 == 2)])
+            blocks.append([f"b{first + i}", WEST + 60 + 5 * i, NORTH - TOP, 1, 400 + 20 * i, long, 1.0, flat, int(holdout and i % 3 == 2)])
         self.table(name, "blocks", "id,x,y,release_height_m,mass_kg,L1_m,L2_m,L3_m,holdout", blocks)
         self.table(name, "stops", "id,x,y", [])
         self.write(f"{name}/campaign.toml", f'name = "{called or name}"\ndem = "{self.path("dem.tif")}"\nblocks = "blocks.csv"\n'
