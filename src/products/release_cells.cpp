@@ -15,6 +15,7 @@ ReleaseCells::ReleaseCells(const Scenario& scenario) : scenario_(scenario) {
 }
 
 void ReleaseCells::fill(const CellWindow& window, std::span<double> values) const {
+  scenario_.surface.heights().values.memory().keep_below_limit();
   for (int row = 0; row < window.rows; ++row)
     fill_row(window.column, window.row + row,
              values.subspan(static_cast<std::size_t>(row) * static_cast<std::size_t>(window.columns),

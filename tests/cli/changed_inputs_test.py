@@ -56,6 +56,28 @@ class ChangedInputs(Case):
             for end in ("shp", "shx", "dbf", "prj"):
                 archive.write(self.path("s/sources." + end), "sources." + end)
 
+    def test_a_geopackage_that_was_opened_and_not_changed(self):
+        """QGIS sets the kind of journal, the change counter and the versions in the head of a file that it shows with a
+        filter, and takes some of them back: sqlite.org/fileformat2.html, "The Database Header"."""
+        self.run_on()
+        before, sources = self.trace(), self.path("sources.gpkg")
+        with open(sources, "rb") as file:
+            first = file.read()
+        database = sqlite3.connect(sources)
+        database.execute("PRAGMA journal_mode = wal")
+        database.execute("PRAGMA journal_mode = delete")
+        database.close()
+        with open(sources, "rb") as file:
+            second = file.read()
+        self.assertNotEqual(second, first)
+        self.assertEqual(self.trace(), before)
+        with open(sources, "wb") as file:
+            file.write(first[:18] + b"\x02\x02" + first[20:27] + b"\x77" + first[28:95] + b"\x77" + first[96:])
+        self.assertEqual(self.trace(), before)
+        with open(sources, "wb") as file:
+            file.write(first[:60] + b"\x00\x00\x00\x07" + first[64:])  # the version of its user: content
+        self.refuses()
+
     def test_trace_needs_the_same_inputs(self):
         """A run, one in rounds, and a part are replayed while nothing has changed; a scenario of the user's own always."""
         self.run_on()

@@ -251,6 +251,36 @@ class Content(Report):
             file.write("# another\n")
         self.assertIn("has changed since the run", self.page("--overwrite").text)
 
+    def test_the_fit_of_the_ground_alone_is_not_the_effect_that_was_found(self):
+        """`fitted.toml` of a diagnosis lacks what it found: the error of a run with it is the one before."""
+        os.mkdir(self.path("fit"))
+        self.write("fit/fitted.toml", '[ground.zones.default]\npreset = "upper-talus-3d"\nEn50 = 13\n')
+        self.write("fit/with_effect.toml", '[ground.zones.default]\npreset = "upper-talus-3d"\nEn50 = 11\n')
+        self.write("fit/diagnosis.json", json.dumps({
+            "campaign": "quarry", "effect": "block-shape", "effects": ["block-shape", "block-mass"], "verdict": "block-shape",
+            "where": "everywhere", "error": {"holdout": {"before": 0.811, "after": 0.634}}, "warnings": []}))
+        scenario = self.read_text("s.toml")
+        self.write("s.toml", 'include = "fit/fitted.toml"\n' + scenario)
+        self.results(hazard=False)
+        text = self.page().text
+        self.assertIn("0.811", text)
+        self.assertNotIn("0.634", text)
+        self.assertIn("block-shape, block-mass; this file is the ground alone, without it", text)
+        self.write("s.toml", 'include = "fit/with_effect.toml"\n' + scenario)
+        self.results(hazard=False, out="second")
+        text = self.page(out="second").text
+        self.assertIn("0.634", text)
+        self.assertNotIn("the ground alone", text)
+
+    def test_hazard_of_a_run_of_several_rounds_is_that_of_the_run(self):
+        self.run_scenario("out", "--rounds", "2")
+        self.run_well("hazard", self.path("out"), "-q")
+        self.assertNotIn("Hazard of another run", self.page().text)
+        record = self.read_json("out/hazard.json")
+        record["run"]["plan"] = "0" * 64
+        self.write("out/hazard.json", json.dumps(record))
+        self.assertIn("Hazard of another run", self.page("--overwrite").text)
+
     def test_frequencies_of_another_file(self):
         """The page names those that the maps were made with, and a barrier that was designed by others."""
         self.run_scenario("out")

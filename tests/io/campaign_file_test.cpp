@@ -120,6 +120,7 @@ TEST_F(Campaigns, ZonesOfARaster) {
   refused("zones = \"zones.tif\"\n[zone_names]\n1 = \"talus\"\n",
           {"zones.tif", "zone '7'", "[zone_names]", "7 = \"NAME\""});
   refused("zones = \"zones.tif\"\n", {"c.toml:3", "[zone_names]"});
+  refused("[zone_names]\n1 = \"talus\"\n", {"c.toml", "[zone_names] must come with", "zones = \"zones.tif\""});
   refused("zones = \"zones.tif\"\n[zone_names]\n1 = \"default\"\n7 = \"rock\"\n", {"c.toml:5", "another name"});
 }
 

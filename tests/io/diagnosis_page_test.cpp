@@ -146,6 +146,27 @@ TEST(DiagnosisPage, NamesFamiliesByTheLevelOfTheRound) {
   EXPECT_EQ(count_of(page(0.3, 0.01), "What the ground alone leaves depends on: place (p 0.2), corrected"), 1U);
 }
 
+/// A round in which no effect was allowed does not say that none explains what is left.
+TEST(DiagnosisPage, SaysWhereNoFurtherEffectWasTried) {
+  DiagnosisRecord record = record_of(0.05, 0.01);
+  DiagnosisRound& last = record.diagnosis.rounds.back();
+  last = round_with("unexplained", 0.001);
+  const std::string none = "no effect of the library explains", untried = "no further effect was tried";
+  EXPECT_EQ(count_of(diagnosis_page(Campaign{}, record), none), 1U);
+  last.tried = false;
+  EXPECT_EQ(count_of(diagnosis_page(Campaign{}, record), none), 0U);
+  EXPECT_EQ(count_of(diagnosis_page(Campaign{}, record), untried), 1U);
+  EXPECT_NE(diagnosis_json(record).find("\"effects_tried\": false"), std::string::npos);
+}
+
+/// Where a family is significant and nothing is named, the page does not call it noise.
+TEST(DiagnosisPage, ASignificantFamilyIsNoNoise) {
+  const std::string noise = "Nothing that these data can show", something = "Something may be missing";
+  EXPECT_TRUE(says(record_of(0.05, 0.01), noise));
+  EXPECT_FALSE(says(record_of(0.3, 0.01), noise));
+  EXPECT_TRUE(says(record_of(0.3, 0.01), something));
+}
+
 /// Warnings name what a costly diagnosis left out, and the flag that asks for it.
 TEST(CostlyWarnings, SayWhatWasLeftOut) {
   DiagnosisRecord record = record_of(0.05, 0.01);

@@ -204,6 +204,20 @@ TEST_F(Write, QuietPartsHaveTheBytesOfAnyOther) {
   EXPECT_EQ(text_of_file(folder_ / "energy.tif"), looked_at);
 }
 
+/// A map on which nothing happens takes no room: nine bands of zeros and bounds, as those of heights that no block
+/// exceeds.
+TEST_F(Write, AnEvenMapOfManyBandsTakesLittleRoom) {
+  constexpr int kSide = 1024;
+  Map map{"energy", "A test", Map::Kind::Probability, std::vector<Map::Band>(9, {"p", "1"}), {}};
+  map.fill = [](const CellWindow& window, std::span<double> values) {
+    for (std::size_t band = 0; band < 9; ++band)
+      std::ranges::fill(values.subspan(band * window.cells(), window.cells()),
+                        band >= 4 && band % 2 == 0 ? 3.6888725e-06 : 0.0);
+  };
+  ASSERT_TRUE(write_map(map, target(kSide, kSide)));
+  EXPECT_LT(fs::file_size(folder_ / "energy.tif"), 9U * 4U * kSide * kSide / 200U);
+}
+
 TEST_F(Write, PartsInAnyOrderGiveTheSameBytes) {
   const Map map = quiet_map(true);
   const MapTarget to = target(kMapColumns, kMapRows);

@@ -357,9 +357,14 @@ class Commands(Case):
         said = []
         log.setProgressText = said.append
         progress = process.Progress(log, ["simulate"], clock=lambda: next(times))
-        for share in 0.5, 0.51, 0.6, 0.9, 0.99:
+        for share in 0.0, 0.5, 0.51, 0.6, 0.9, 0.99:  # the program always says 0 first
             progress.show({"phase": "simulate", "share": share})
         self.assertEqual(said, ["Simulating", "Simulating (about 4 min left)", "Simulating (less than a minute left)"])
+        said.clear()
+        progress = process.Progress(log, ["simulate"], None, clock=iter((0.0, 300.0, 600.0)).__next__)
+        for name, share in ("round 1", 0.1), ("round 1", 1.0), ("round 2", 0.1):  # rounds until an error: nobody knows
+            progress.show({"phase": "simulate", "part": name, "share": share})
+        self.assertEqual(said, ["Simulating round 1", "Simulating round 2"])
 
     def test_notes_below_a_table_are_warnings(self):
         from talus_qgis import process
@@ -831,6 +836,17 @@ class FromPython(Case):
         from talus_qgis import layers
         return layers.plain_vector(layer, layer) or layers.write_vector(self.as_source(layer), self.path("in"), "sources.gpkg",
                                                                        QgsProcessingContext(), Log())
+
+    def test_one_of_several_layers_without_features(self):
+        """Is refused as a layer alone is: its objects would be missing without a word."""
+        self.run_algorithm("run", self.inputs(TRAJECTORIES=5))
+        shutil.copy(os.path.join(VALLEY, "houses.gpkg"), self.path("houses.gpkg"))  # QGIS writes into a file that it filters
+        houses = QgsVectorLayer(self.path("houses.gpkg"), "houses", "ogr")
+        self.assertTrue(houses.setSubsetString("fid < 0"))
+        log = Log()
+        _, good = self.run_algorithm("objects", {"FOLDER": self.path("out"), "OBJECTS": [self.road(), houses]}, log)
+        self.assertFalse(good)
+        self.assertIn("houses has no feature", log.textLog())
 
     def test_joined_fields_keep_their_values(self):
         from talus_qgis import layers

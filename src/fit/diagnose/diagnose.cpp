@@ -124,6 +124,7 @@ class DiagnosisLoop {
     round.limits = detection_limits(campaign_, axis, test, candidates, rules_);
     const bool noise = round.p_value > level;
     if (!more || (noise && !found.empty())) {
+      round.tried = noise;
       round.effect = verdict_without_effect(round);
       return round;
     }

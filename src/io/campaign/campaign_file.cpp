@@ -68,6 +68,8 @@ class CampaignReader {
             (file == &spec_.dem ? "dem.tif\"" : "blocks.csv\", or [deposits] where releases are not known"));
     if (!spec_.zones.path.empty() && spec_.zone_codes.empty())
       faults_.push_back(spec_.zones.where + ": must come with [zone_names], such as 1 = \"talus\"");
+    if (root.find("zones") == nullptr && !spec_.zone_codes.empty())
+      faults_.push_back(path_ + ": [zone_names] must come with the raster of the zones: zones = \"zones.tif\"");
     if (!faults_.empty()) throw InputError(faults_.front());
     return std::move(spec_);
   }

@@ -2,8 +2,11 @@
 
 #include <openssl/evp.h>
 
+#include <algorithm>
 #include <array>
+#include <span>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "input_files.hpp"
@@ -19,14 +22,41 @@ void require(bool done) {
   if (!done) throw std::runtime_error("OpenSSL: SHA-256 cannot be computed");
 }
 
-bool add_file(Sha256& sum, const std::string& path) {
+/// Clears what SQLite writes into the head of a file that is opened and not changed: the kind of its journal, the
+/// change counter, and of which change and version the writer was. Source: sqlite.org/fileformat2.html, "The Database
+/// Header".
+void clear_marks_of_sqlite(std::span<char> head) {
+  constexpr std::string_view kMagic("SQLite format 3", 16);
+  if (head.size() < 100 || std::string_view(head.data(), kMagic.size()) != kMagic) return;
+  for (const auto& [at, count] : {std::pair{18, 2}, {24, 4}, {92, 8}}) std::fill_n(head.begin() + at, count, '\0');
+}
+
+struct Sums {
+  Sha256 bytes, content;
+};
+
+bool add_file(Sums& sums, const std::string& path) {
   if (!looked_up(path).fault.empty()) return false;
   VSILFILE* file = VSIFOpenL(name_for_gdal(path).c_str(), "rb");
   if (file == nullptr) return false;
   std::vector<char> bytes(1U << 16);
-  for (std::size_t n = 0; (n = VSIFReadL(bytes.data(), 1, bytes.size(), file)) > 0;) sum.add({bytes.data(), n});
+  bool first = true;
+  for (std::size_t n = 0; (n = VSIFReadL(bytes.data(), 1, bytes.size(), file)) > 0; first = false) {
+    sums.bytes.add({bytes.data(), n});
+    if (first) clear_marks_of_sqlite({bytes.data(), n});
+    sums.content.add({bytes.data(), n});
+  }
   VSIFCloseL(file);
   return true;
+}
+
+/// Both sums of an input; empty if none of its files can be read.
+std::pair<std::string, std::string> sums_of(const std::string& path) {
+  start_gdal();
+  Sums sums;
+  bool any = false;
+  for (const std::string& file : files_of_input(path)) any = add_file(sums, file) || any;
+  return any ? std::pair{sums.bytes.digits(), sums.content.digits()} : std::pair<std::string, std::string>{};
 }
 
 }  // namespace
@@ -55,15 +85,12 @@ std::string Sha256::digits() {
 }
 
 std::string sha256_of_file(const std::string& path) {
-  start_gdal();
-  Sha256 sum;
-  bool any = false;
-  for (const std::string& file : files_of_input(path)) any = add_file(sum, file) || any;
-  return any ? sum.digits() : "";
+  return sums_of(path).first;
 }
 
 InputFile recorded_input(const std::string& role, const std::string& path) {
-  InputFile input{role, path, sha256_of_file(path)};
+  const auto [bytes, content] = sums_of(path);
+  InputFile input{role, path, bytes, content};
   if (input.sha256.empty())
     throw InputError(path + ": was read, but cannot be read again for its checksum; is it still there?");
   return input;

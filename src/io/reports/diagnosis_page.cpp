@@ -242,6 +242,7 @@ Markup residual_sentence(const DiagnosisRound& round, double level) {
 /// @param level  of significance in this round
 Markup sentence(const DiagnosisRound& round, double level) {
   const bool rare = round.p_value <= level || (!round.residual.empty() && round.residual.front().corrected <= level);
+  if (!round.tried) return "What is left would be rare as noise; no further effect was tried (--most-effects)."_html;
   if (round.effect == "none" && !rare) return "Nothing is left that differs from noise."_html;
   if (round.effect == "none")
     return "What is left would be rare as noise, but no effect of the library is named for it."_html;

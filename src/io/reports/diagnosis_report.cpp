@@ -29,7 +29,7 @@ Json candidates_of(const DiagnosisRound& round, const std::vector<HoldoutError>&
   for (std::size_t i = 0; i < round.candidates.size(); ++i) {
     const FittedCandidate& c = round.candidates[i];
     Json item = effect_json(c);
-    item["family"] = family_of(c.effect);
+    item["family"] = c.family.empty() ? family_of(c.effect) : c.family;
     item["may_be_chosen"] = !c.family.empty();
     item["fitted_with_ground"] = c.with_ground;
     item["refined"] = c.refined;
@@ -77,6 +77,7 @@ Json rounds_json(const DiagnosisRecord& record) {
       turn["indistinguishable_from"] = round.alike;
       turn["holdout"] = {{"before", json_of(record.rounds[i].before)}, {"after", json_of(record.rounds[i].after)}};
     }
+    turn["effects_tried"] = round.tried;
     turn["p_value"] = json_of(round.p_value);
     if (i > 0) {
       turn["families"] = families_of(round);

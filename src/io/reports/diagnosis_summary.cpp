@@ -44,13 +44,16 @@ std::string with_values(const DiagnosisRound& round) {
   return values.empty() ? "" : ": " + listed(values);
 }
 
-Markup missing(const Diagnosis& d) {
+Markup missing(const DiagnosisRecord& record) {
+  const Diagnosis& d = record.diagnosis;
   std::vector<Markup> effects;
   for (const DiagnosisRound& round : d.rounds)
     if (found(round)) effects.push_back(bold(round.effect) + " (" + round.where + with_values(round) + ")");
   if (!effects.empty()) return "The model lacks "_html + listed(effects) + ".";
   if (d.rounds.front().effect == "unexplained")
     return "Something is missing that no effect of the library explains better than chance."_html;
+  if (d.rounds.front().p_value <= record.options.level_of_round(0))
+    return "Something may be missing: what is left would be rare as noise, but no effect of the library is named for it."_html;
   return "Nothing that these data can show: what is left looks like noise."_html;
 }
 
@@ -96,6 +99,8 @@ Markup sure(const DiagnosisRecord& record) {
 Markup gained(const DiagnosisRecord& record) {
   const bool all = record.errors.empty() || small_groups(record).empty();
   const HoldoutError& e = all ? record.whole : record.headline;
+  if (!record.errors.empty() && record.errors[record.unseen].after.blocks == 0)
+    return "It cannot be said: no row was held out, and none was judged out of its fold (--nested does so)."_html;
   if (std::isnan(e.before)) return "It cannot be said: no group of held-out rows is large enough."_html;
   ScoredRows rows = record.errors[record.unseen].after;
   if (!all) rows = in_large_groups(std::move(rows), record.clusters);
@@ -177,7 +182,7 @@ std::string next(const DiagnosisRecord& record) {
 
 Markup summary_html(const DiagnosisRecord& record) {
   const Diagnosis& d = record.diagnosis;
-  const std::pair<const char*, Markup> rows[] = {{"What is missing", missing(d)},
+  const std::pair<const char*, Markup> rows[] = {{"What is missing", missing(record)},
                                                  {"How sure that is", sure(record)},
                                                  {"What was gained", gained(record)},
                                                  {"What could not be decided", Markup() + undecided(d)},

@@ -101,12 +101,18 @@ void judge_nested(const Campaign& campaign, DiagnosisRecord& record) {
   const auto judged = [&](const std::vector<BlockRuns>& runs, ScoreRule rule) {
     return score(campaign, runs, rows, {rule, kFewestSimulated, folds});
   };
-  const Score ground = judged(nested.ground, ScoreRule::Fair),
-              log_ground = judged(nested.ground, ScoreRule::LogDensity);
-  for (std::size_t i = 0; i < nested.candidates.size(); ++i)
-    if (!nested.candidates[i].empty())
-      record.evidence[i].push_back({kOutOfFold, judged(nested.candidates[i], ScoreRule::Fair),
-                                    judged(nested.candidates[i], ScoreRule::LogDensity), ground, log_ground});
+  const auto both = [&](const std::vector<BlockRuns>& runs) {
+    return runs.empty() ? std::pair<Score, Score>{}
+                        : std::pair{judged(runs, ScoreRule::Fair), judged(runs, ScoreRule::LogDensity)};
+  };
+  const auto ground = both(nested.ground), held = both(nested.held);
+  const std::vector<FittedCandidate>& candidates = record.diagnosis.rounds.front().candidates;
+  for (std::size_t i = 0; i < nested.candidates.size(); ++i) {
+    if (nested.candidates[i].empty()) continue;
+    const auto [own, log_own] = both(nested.candidates[i]);
+    const auto& [reference, log_reference] = candidates[i].with_ground ? ground : held;
+    record.evidence[i].push_back({kOutOfFold, own, log_own, reference, log_reference});
+  }
 }
 
 std::vector<std::string> costly_warnings(const DiagnosisRecord& record) {
@@ -136,8 +142,11 @@ Json evidence_of(const DiagnosisRecord& record) {
   const std::vector<FittedCandidate>& candidates = record.diagnosis.rounds.front().candidates;
   for (std::size_t i = 0; i < record.evidence.size(); ++i) {
     Json entry{{"model", candidates[i].effect}, {"where", candidates[i].where}, {"candidate", true}};
-    for (const CandidateEvidence& e : record.evidence[i])
+    for (const CandidateEvidence& e : record.evidence[i]) {
       entry[e.rows] = judged_json({e.score, e.log_score}, {e.ground, e.log_ground}, record.clusters);
+      entry[e.rows]["ground_error"] = json_of(e.ground.total);
+      entry[e.rows]["ground_log_score"] = json_of(-e.log_ground.total);
+    }
     list.push_back(entry);
   }
   return list;
@@ -237,7 +246,8 @@ Markup repeated_html(const DiagnosisRecord& record) {
   html +=
       "<h2>Evidence</h2>\n<p>Each effect at its best place against the ground alone, on rows that its numbers have "
       "not "
-      "seen. Positive is better.</p>\n<table><tr><th>effect</th><th>rows</th><th>error lower by, 95 %</th><th>log "
+      "seen; out of fold, the ground that was held with an effect has seen them, in both models. Positive is "
+      "better.</p>\n<table><tr><th>effect</th><th>rows</th><th>error lower by, 95 %</th><th>log "
       "score "
       "better by [nats per block], 95 %</th><th>rows by group</th></tr>\n";
   for (std::size_t i = 0; i < record.evidence.size(); ++i)
@@ -247,10 +257,11 @@ Markup repeated_html(const DiagnosisRecord& record) {
       std::string rows;
       for (const GroupScore& group : e.score.groups)
         rows += (rows.empty() ? "" : ", ") + group.name + " " + rows_text(group);
-      html += "<tr><td>"_html + d.rounds.front().candidates[i].effect + "</td><td>" + rows_in_words(e.rows) +
-              "</td><td>" + with_decimals(100.0 * less.share, 1) + " % (" + interval_text(less.interval, 100.0, 1) +
-              ")</td><td>" + with_decimals(nats.per_block, 2) + " (" + interval_text(nats.interval, 1.0, 2) +
-              ")</td><td>" + rows + "</td></tr>\n";
+      const FittedCandidate& c = d.rounds.front().candidates[i];
+      html += "<tr><td>"_html + c.effect + (c.with_ground ? "" : " (ground held)") + "</td><td>" +
+              rows_in_words(e.rows) + "</td><td>" + with_decimals(100.0 * less.share, 1) + " % (" +
+              interval_text(less.interval, 100.0, 1) + ")</td><td>" + with_decimals(nats.per_block, 2) + " (" +
+              interval_text(nats.interval, 1.0, 2) + ")</td><td>" + rows + "</td></tr>\n";
     }
   return html + "</table>\n";
 }

@@ -99,6 +99,7 @@ RunFacts facts_of(const Json& json) {
   run.command = command_of(json);
   run.status = json.value("status", "");
   run.plan = json.value("plan", "");
+  run.plan_of_hazard = json.contains("rounds") ? json.at("rounds").value("plan", "") : run.plan;
   run.of_profile = is_of_profile(json);
   read_counts(json, run);
   run.left_into_gaps = number_of(json, "left_into_gaps");
@@ -204,7 +205,7 @@ std::optional<HazardFacts> read_hazard_facts(const std::filesystem::path& folder
     hazard.warnings = texts_of(json, "warnings");
     hazard.frequency = frequency_of(json);
     const Json of_run = json.value("run", Json::object());
-    hazard.same_run = of_run.value("plan", "") == run.plan;
+    hazard.same_run = of_run.value("plan", "") == run.plan_of_hazard;
     return hazard;
   });
 }

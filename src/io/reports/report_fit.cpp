@@ -1,9 +1,13 @@
 #include "report_fit.hpp"
 
+#include <cmath>
+#include <utility>
+
 #include "io/files/checksum.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
+#include "talus/fit/diagnose/diagnosis.hpp"
 
 namespace talus::io {
 namespace {
@@ -34,8 +38,19 @@ void read_calibration(const Json& json, FitPart& part) {
 
 void read_diagnosis(const Json& json, FitPart& part) {
   if (part.campaign.empty()) part.campaign = json.value("campaign", "");
-  part.effect = json.value("effect", "") + ", " + json.value("where", "");
-  if (part.errors.empty()) read_errors(json, part);
+  const bool ground_alone = fs::path(part.file).filename() == "fitted.toml";  // beside with_effect.toml
+  const std::string first = json.value("effect", ""), where = json.value("where", "");
+  part.effect = json.value("verdict", first);
+  if (const std::vector<std::string> effects = texts_of(json, "effects"); part.effect == first && effects.size() > 1)
+    part.effect = joined(effects);
+  else if (!where.empty())
+    part.effect += ", " + where;
+  if (ground_alone && names_effect(first)) part.effect += "; this file is the ground alone, without it";
+  if (part.errors.empty()) {
+    read_errors(json, part);
+    if (ground_alone)
+      for (FitPart::Error& error : part.errors) error.after = std::exchange(error.before, kNotGiven);
+  }
   for (std::string& warning : texts_of(json, "warnings")) part.warnings.push_back(std::move(warning));
 }
 
@@ -77,8 +92,8 @@ Markup fit_html(const std::optional<FitPart>& part) {
   if (!part->errors.empty()) {
     html += "<table><tr><th>error (mean normalised score)</th><th>before</th><th>after</th></tr>\n";
     for (const FitPart::Error& error : part->errors)
-      html += "<tr><td>"_html + error.rows + "</td><td class='n'>" + with_decimals(error.before, 3) +
-              "</td><td class='n'>" + with_decimals(error.after, 3) + "</td></tr>\n";
+      html += "<tr><td>"_html + error.rows + "</td><td class='n'>" + score_text(error.before) + "</td><td class='n'>" +
+              score_text(error.after) + "</td></tr>\n";
     html += "</table>\n";
   }
   if (!part->effect.empty()) html += "<p>The diagnosis found: <b>"_html + part->effect + "</b>.</p>\n";

@@ -81,9 +81,10 @@ std::string energy_line_text(const RunFacts& run) {
 Markup run_html(const RunReport& report, const std::string& attribution) {
   const RunFacts& run = report.run;
   const RecordedGrid& grid = run.grid;
-  const std::string blocks = grouped(run.released) + " blocks from " + grouped(run.source_cells) + " source cells, " +
-                             grouped(run.per_source) + " each" +
-                             (run.rounds > 0.0 ? ", in " + grouped(run.rounds) + " rounds" : std::string());
+  const std::string blocks =
+      grouped(run.released) + " blocks from " + grouped(run.source_cells) + " source cells, " +
+      grouped(run.per_source) + " each" +
+      (run.rounds > 0.0 ? ", in " + grouped(run.rounds) + (run.rounds == 1.0 ? " round" : " rounds") : std::string());
   return "<h2>What was run</h2>\n<table>\n"_html + line("program", "talus " + run.version) +
          line("command", run.command) + line("hazard", report.hazard ? report.hazard->command : "") +
          line("run.json written on", run.written) + line("status", run.status) + line("released", blocks) +
@@ -151,7 +152,7 @@ Markup classes_html(const HazardFacts& hazard) {
 Markup maps_html(const RunReport& report, const MapImprint& imprint) {
   const MapSheet& sheet = report.sheet;
   Markup html = "<h2>Maps</h2>\n"_html;
-  if (sheet.window.side > 1)
+  if (sheet.window.side > 1 && !sheet.maps.empty())
     html += "<p>The maps show the part of the terrain that something passes. A pixel is "_html +
             with_digits(sheet.pixel_x, 4) + " m wide and holds " + std::to_string(sheet.window.side) + " x " +
             std::to_string(sheet.window.side) +

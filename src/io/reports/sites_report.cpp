@@ -278,8 +278,12 @@ std::string sites_json(const SitesRecord& record) {
   for (const JointRound& round : d.rounds)
     if (names_effect(round.effect)) effects.push_back(round.effect);
   if (effects.empty()) effects.push_back(first.effect);
+  std::vector<std::string> names;
+  for (const SiteDiagnosis& site : d.sites) names.push_back(site.name);
   Json json{{"effect", first.effect},
             {"effects", effects},
+            {"verdict", first.effect},
+            {"campaign", joined(names)},
             {"where", first.where},
             {"probability", json_of(probability_of(d))},
             {"indistinguishable_from", first.alike},

@@ -9,6 +9,7 @@
 #include "talus/base/version.hpp"
 #include "talus/io/gdal/input_access.hpp"
 #include "talus/io/gdal/lines.hpp"
+#include "talus/io/scenario/plan_checksum.hpp"
 #include "talus/simulate/tally/histogram.hpp"
 #include "talus/terrain/no_height.hpp"
 
@@ -179,7 +180,10 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   json["source_cells"] = scenario.sources.size();
   json["trajectories_per_source"] = scenario.trajectories;
   json["released"] = totals.released;
-  if (record.rounds.done > 0) json["rounds"] = rounds_of(record.rounds);
+  if (record.rounds.done > 0) {
+    json["rounds"] = rounds_of(record.rounds);
+    json["rounds"]["plan"] = plan_checksum(loaded);  // of all rounds together, as hazard_tally.gz has it
+  }
   if (record.parts > 1) json["parts"] = record.parts;
   if (scenario.effects.fragmentation.threshold > 0.0) json["pieces"] = totals.pieces;
   json["ends"] = ends_of(totals);

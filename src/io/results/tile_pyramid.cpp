@@ -229,7 +229,7 @@ TilePlace TilePyramid<T>::even_tile(const std::vector<T>& values, TileStore& sto
   Pixels pixels(pixel(0, side_));
   for (std::size_t i = 0; i < pixels.size(); i += bands_)
     std::ranges::copy(values, pixels.begin() + static_cast<std::ptrdiff_t>(i));
-  at->second = store.add(deflated(std::as_bytes(std::span(pixels))));
+  at->second = store.add(deflated_well(std::as_bytes(std::span(pixels))));
   return at->second;
 }
 

@@ -392,7 +392,7 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         words = self._words(parameters, context, feedback, layers.folder_beside(folder))
         rounds = self.parameterAsInt(parameters, "ROUNDS", context) if parameters.get("ROUNDS") else 1
         begin = time.time()
-        progress = process.Progress(feedback, self._phases(parameters), rounds)
+        progress = process.Progress(feedback, self._phases(parameters), None if parameters.get("UNTIL_ERROR") else rounds)
         try:
             process.run(command + words, feedback, progress, self._explained)
         except process.Cancelled as cancelled:

@@ -137,12 +137,16 @@ def write_vector(source, inputs, file, context, feedback):
         finally:
             gdal.SetThreadLocalConfigOption("OGR_CURRENT_DATE", dated)
         if count == 0:
-            raise QgsProcessingException(tr("{name} has no feature: is nothing selected, or does a filter hide all?").format(
-                name=source.sourceName()))
+            raise _no_feature(source)
     path = os.path.join(place[0], file)
     feedback.pushInfo(tr("{name}: {count} features are written to {path}").format(name=source.sourceName(), count=count,
                                                                                  path=path))
     return path
+
+
+def _no_feature(source):
+    return QgsProcessingException(tr("{name} has no feature: is nothing selected, or does a filter hide all?").format(
+        name=source.sourceName()))
 
 
 class Joined:
@@ -195,7 +199,9 @@ class Joined:
         fields = self.fields()
         for source, transform in zip(self.sources, self.transforms):
             columns = _columns(fields, distinct(source.fields()))
+            any_feature = False
             for feature in source.getFeatures():
+                any_feature = True
                 copy, values, geometry = QgsFeature(fields), feature.attributes(), feature.geometry()
                 try:
                     geometry.transform(transform)
@@ -205,6 +211,8 @@ class Joined:
                 copy.setAttributes([None if column < 0 else _as_type(values[column], field.type())
                                     for field, column in zip(fields, columns)])
                 yield copy
+            if not any_feature:
+                raise _no_feature(source)
 
 
 def _common_type(kind, field):

@@ -32,6 +32,7 @@ class Progress:
     SOON = 10.0  # s until the time that is left is foretold
 
     def __init__(self, feedback, phases, parts=1, clock=time.monotonic):
+        """parts: rounds of the run; None: it makes as many as its error takes, and nobody knows how long that is."""
         self.feedback = feedback
         self.phases = phases
         self.parts = parts
@@ -42,7 +43,7 @@ class Progress:
 
     def show(self, line):
         phase, share = line.get("phase", ""), float(line.get("share", 0.0))
-        if line.get("part") and self.parts > 1:
+        if line.get("part") and (self.parts or 0) > 1:
             done = int("".join(c for c in line["part"] if c.isdigit()) or 1)
             share = min(1.0, (done - 1 + share) / self.parts)
         whole = sum(self.SHARES.get(p, 1.0) for p in self.phases)
@@ -57,6 +58,8 @@ class Progress:
 
     def _left(self):
         """What is left of the time, in words, if all goes on as until now; nothing at the start."""
+        if self.parts is None or self.shown <= 0.0:  # a resumed run says 0 first, then how far it had come
+            return ""
         now = self.clock()
         self.first = self.first or (now, self.shown)
         passed, gained = now - self.first[0], self.shown - self.first[1]

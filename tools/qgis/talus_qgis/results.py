@@ -2,7 +2,6 @@
 import json
 import os
 import re
-from collections import deque
 from contextlib import contextmanager
 
 from qgis.core import (Qgis, QgsGraduatedSymbolRenderer, QgsLayerTree, QgsLayerTreeGroup, QgsLineSymbol, QgsMapLayerLegendUtils,
@@ -24,7 +23,7 @@ ONE_KIND = "|geometrytype="  # in the source of a layer: one kind of geometry of
 
 CLOCKS = 2.0  # s by which the clock of a disk may be behind
 
-_kept_alive = deque(maxlen=1000)  # QGIS does not hold the post-processors; commands of a model end before any layer is loaded
+_kept_alive = set()  # QGIS does not hold the post-processors: each stays until its layer is loaded
 
 
 def _entries():
@@ -249,7 +248,7 @@ def load(folder, rows, title, context, group_folder=None):
         details = QgsProcessingContext.LayerDetails(name, project, name)
         processor = IntoGroup(group_folder or folder, title, name, os.path.join(folder, os.path.splitext(file)[0] + ".qml"),
                               rank, shown)
-        _kept_alive.append(processor)
+        _kept_alive.add(processor)
         details.setPostProcessor(processor)
         context.addLayerToLoadOnCompletion(uri, details)
 
@@ -262,6 +261,7 @@ class IntoGroup(QgsProcessingLayerPostProcessorInterface):
         self.folder, self.title, self.name, self.style, self.rank, self.shown = folder, title, name, style, rank, shown
 
     def postProcessLayer(self, layer, context, feedback):
+        _kept_alive.discard(self)
         layer.setName(self.name)
         _read_anew(layer)  # QGIS takes a layer that is there already where it has the same file
         if isinstance(layer, QgsVectorLayer) and ".gpkg|layername=" in layer.source():

@@ -73,6 +73,7 @@ inline bool names_effect(std::string_view verdict) {
 struct DiagnosisRound {
   std::string effect = "none";  ///< the one that was found, "none" or "unexplained"
   std::string where;
+  bool tried = true;                        ///< false: a family is significant, but no further effect was allowed
   std::vector<FittedCandidate> candidates;  ///< every effect at its best place, best first
   std::vector<std::string> alike;           ///< effects that these data cannot tell apart from it
   std::vector<ResidualRow> residual;        ///< of the fitting rows, before the effect is added

@@ -47,6 +47,9 @@ struct NestedValidation {
   /// The candidates of the first round of all rows. Their places and designs are those of all rows; the numbers of each
   /// fold are the optimum of the quadratic model of the other rows.
   std::vector<BlockRuns> ground;
+  /// The ground of all rows, which has seen the fold: what candidates are compared with that were fitted to it (ground
+  /// held). Empty where there are none.
+  std::vector<BlockRuns> held;
   std::vector<std::vector<BlockRuns>> candidates;  ///< as DiagnosisRound::candidates; empty: not fitted
 };
 

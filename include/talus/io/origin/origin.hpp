@@ -20,6 +20,7 @@ struct InputFile {
   std::string path;  ///< absolute
   std::string
       sha256;  ///< of the bytes of all its files, one after the other (a shapefile: of .shp, .dbf, .shx, .prj, .cpg)
+  std::string content = {};  ///< the same without the bytes by which SQLite notes who has opened a file (GeoPackage)
 };
 
 /// How a layer in another coordinate system was brought to the DEM's.

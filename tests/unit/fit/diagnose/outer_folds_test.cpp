@@ -175,6 +175,14 @@ TEST(Nested, AnEffectThatIsThereLowersTheErrorOutOfQuickFolds) {
     return score(c, runs, fitting_rows(c), {ScoreRule::Fair, kFewestSimulated, d.nested->folds.fold_of}).total;
   };
   EXPECT_LT(error(d.nested->found), 0.9 * error(d.nested->base));
+  // The ground that was held with other effects has seen every fold: they are compared with it, in the same trials.
+  EXPECT_FALSE(std::ranges::all_of(d.rounds.front().candidates, &FittedCandidate::with_ground));
+  ObserveOptions how;
+  how.trials = d.nested->trials;
+  how.seed = options.seed + 1;
+  const std::vector<BlockRuns> of_all_rows = observe(c, d.base.model, how);
+  ASSERT_EQ(d.nested->held.size(), c.blocks.size());
+  for (std::size_t b = 0; b < c.blocks.size(); ++b) EXPECT_TRUE(same(d.nested->held[b], of_all_rows[b]));
 }
 
 /// A costly diagnosis does not repeat its choice, and makes one fit of the ground, or as many as it is asked for. The
