@@ -214,8 +214,8 @@ int hazard(const Options& options) {
   if (const std::string warning = warning_of_objects(options, record.header); !warning.empty())
     record.warnings.push_back(warning);
   for (std::string& warning : talus::io::size_warnings_of(folder)) record.warnings.push_back(std::move(warning));
-  for (std::string& warning : talus::io::cut_source_warnings_of(folder))
-    record.warnings.push_back((options.frequency.empty() ? "" : "by the run's own frequencies: ") + warning);
+  for (std::string& warning : talus::io::cut_source_warnings_of(folder, !options.frequency.empty()))
+    record.warnings.push_back(std::move(warning));
   if (auto note = talus::io::unusable_note(folder)) record.warnings.push_back(std::move(*note));
   if (auto note = talus::io::coefficient_note(folder)) record.warnings.push_back(std::move(*note));
   if (auto note = talus::io::barriers_note(folder)) record.warnings.push_back(std::move(*note));
