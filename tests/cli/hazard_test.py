@@ -470,15 +470,69 @@ class Hazard(Case):
         frequency = bands_of(self.path("out/annual_frequency.tif"))[0]
         self.assertGreaterEqual(rows["A"]["frequency"], frequency[29, 21] - 1e-9)
         self.assertLessEqual(rows["A"]["frequency"], 0.5 + 1e-9)
-        curve = [float(row["frequency"]) for row in self.read_table("out/objects_curves.csv") if row["object"] == "A"]
-        self.assertEqual(curve, sorted(curve, reverse=True))
-        self.assertAlmostEqual(curve[0], rows["A"]["frequency"], 6)
+        self.assertNotIn("are not copied", done.stderr)
+        for values in table[:2]:
+            curve = [row for row in self.read_table("out/objects_curves.csv") if row["object"] == values["object"]]
+            for key, sign in (("energy_kj", 1), ("frequency", -1)):
+                numbers = [sign * float(row[key]) for row in curve]
+                self.assertEqual(numbers, sorted(numbers))
+            by_energy = {float(row["energy_kj"]): row for row in curve}
+            self.assertEqual(len(by_energy), len(curve), "each energy once")  # 30 kJ, the edge of a bin, was there twice
+            for row, column in ((curve[0], "frequency"), (by_energy[30.0], "frequency_30")):
+                self.assertEqual([row[key] for key in ("frequency", "lower", "upper")],
+                                 [values[column + end] for end in ("", "_lower", "_upper")], "as in objects.csv")
         shares = [float(row["share"]) for row in self.read_table("out/objects_sources.csv") if row["object"] == "B"]
         self.assertAlmostEqual(sum(shares), 1.0, 4)
         self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"), "--overwrite", "-q",
                       "--threads", "1")
         again = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
         self.assertEqual(rows, again)
+
+    def test_objects_that_only_blocks_of_frequency_0_hit(self):
+        """They are not safe from the blocks of the run: only nothing falls from there by the field."""
+        self.place_sources([(box(100, 230, 20, 10), ["west", 0.5]), (box(200, 230, 20, 10), ["east", 0.0])])
+        write_features(self.path("houses.gpkg"), "houses", [(box(105, 150, 10, 8), ["A"]), (box(205, 150, 10, 8), ["B"]),
+                                                            (box(5, 5, 8, 8), ["C"])], [("name", ogr.OFTString)])
+        self.simulate()
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"))
+        rows = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
+        said = dict(re.findall(r"talus: ([ABC]): (.*)", done.stderr))
+        self.assertGreater(rows["B"]["trajectories"], 1)
+        self.assertEqual([rows["B"]["frequency"], rows["B"]["return_period"]], [0.0, None])
+        self.assertTrue(said["A"].startswith("hit 0."), said["A"])
+        self.assertTrue(said["B"].startswith(f"hit by {rows['B']['trajectories']:.0f} blocks, all of sources or block classes with a "
+                                             "frequency of 0; at most "), said["B"])
+        self.assertTrue(said["C"].startswith("hit by no block of this run; at most "), said["C"])
+
+    def test_fields_of_objects_that_are_named_as_results_are_said(self):  # they were dropped in silence
+        write_features(self.path("houses.gpkg"), "houses", [(box(105, 150, 10, 8), ["A", 7.5, "mine", 3, "x"])],
+                       [("name", ogr.OFTString), ("Frequency", ogr.OFTReal), ("sources", ogr.OFTString),
+                        ("people", ogr.OFTInteger), ("object", ogr.OFTString)])
+        self.simulate()
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"))
+        words = ("houses.gpkg: fields named as columns of the results are not copied into objects.gpkg and objects.csv: "
+                 "Frequency, sources, object (in objects.csv); rename them to keep them")
+        self.assertIn(words, done.stderr)
+        self.assertEqual(sum(words in warning for warning in self.read_json("out/hazard.json")["warnings"]), 1)
+        ((row, _),) = rows_of(self.path("out/objects.gpkg"), "objects")
+        self.assertEqual([row["people"], row["object"]], [3, "x"])
+        self.assertLessEqual(row["frequency"], 0.5)
+        self.assertIn("west", row["sources"])
+
+    def test_a_diameter_in_place_of_classes_with_frequencies_is_said(self):
+        """0.9 and 0.1 events per year of the classes go with them."""
+        words = "flag --diameter = 1: takes the place of the block classes of the scenario, and their 1 events per year are dropped with them"
+        self.classes_run("out")
+        self.assertFalse(any("flag --diameter" in warning for warning in self.record()["warnings"]))
+        done = self.run_well("run", self.path("s.toml"), "-o", self.path("one"), "--diameter", "1")
+        self.assertIn(words + ": say with --frequency how often blocks fall", done.stderr)
+        self.assertEqual(sum(words in warning for warning in self.record("one")["warnings"]), 1)
+        self.assertFalse(os.path.exists(self.path("one/hazard_tally.gz")))
+        said = self.run_well("check", self.path("s.toml"), "--diameter", "1", "--frequency", "2").stdout
+        self.assertIn(words, said)
+        self.assertNotIn("say with --frequency", said)
+        self.write("s.toml", RUN.replace("0.8", "[{ diameter = 0.6 }, { diameter = 1.4 }]"))
+        self.assertNotIn("flag --diameter = 1: takes", self.run_well("check", self.path("s.toml"), "--diameter", "1").stdout)
 
     def test_objects_where_blocks_do_not_get(self):
         """A gap of the DEM, its outer half cell and what is off it are not safe: blocks end there."""

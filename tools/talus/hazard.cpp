@@ -161,6 +161,8 @@ std::vector<std::string> write_objects(const Options& options, const fs::path& f
   const talus::io::LoadedScenario loaded = recorded_plan(options, record);
   const talus::io::ObjectLayer layer(options.objects, loaded, options.width);
   for (const std::string& warning : layer.warnings()) record.warnings.push_back(warning);
+  if (const std::string text = layer.not_copied_text(record.header.rules, record.matrix.years); !text.empty())
+    record.warnings.push_back(text);
   if (!options.quiet && !layer.lines_text().empty()) say("", options.objects + ": " + layer.lines_text());
   if (!options.quiet)
     say("", "repeats the run for the objects: " + count_text(loaded.scenario.released()) +
