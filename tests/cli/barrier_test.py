@@ -355,7 +355,14 @@ class Weights(Case):
         self.assertEqual(swapped["frequency"]["given"], {"frequency": {}, "features": {"west": 0.1, "east": 5.0}})
         self.assertAlmostEqual(swapped["frequency"]["events_per_year"], 5.1, 9)
         none = self.report("--frequency", self.write("z.toml", "[features]\nwest = 3.0\neast = 0.0\n"))
-        self.assertIn("are of sources with a frequency of 0 and count nothing", " ".join(none["notes"]))
+        zeros = " of the crossings are of sources or block classes with a frequency of 0 and count nothing, but in "
+        (note,) = [note for note in none["notes"] if zeros in note]
+        east = sum(weight == 0.0 for _, weight, _ in self.crossings(3.0, 0.0))
+        self.assertEqual(note, f"{east}{zeros}the laws and shares of the values and in the width by the map")
+        text = self.run_well("barrier", self.path("out"), "--screen", "road", "--frequency", self.path("z.toml")).stdout
+        self.assertRegex(text, r"\n  nothing that falls crosses the other \d+ stretches\n")  # only blocks of the east do
+        observed = self.report("--frequency", self.path("z.toml"), "--observed", self.path("low.csv"))
+        self.assertIn(f"{east}{zeros}the width by the map", observed["notes"])  # the laws and shares are of the observed ones
         self.assertAlmostEqual(none["design"][2]["value"], math.pi / 6 * 0.5**3, 4)  # the largest that ever falls
         self.fails(2, "--unweighted", arguments=["barrier", self.path("out"), "--screen", "road", "--unweighted",
                                                   "--frequency", other])

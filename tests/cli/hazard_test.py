@@ -131,6 +131,56 @@ class Hazard(Case):
             self.assertEqual(point[1].split()[-1], "act" if said else "look")
             self.assertEqual("all of its events fall on the rest" in point[2], said)
 
+    def place_sources(self, features, fields=(("name", ogr.OFTString), ("frequency", ogr.OFTReal))):
+        os.remove(self.path("sources.gpkg"))
+        write_features(self.path("sources.gpkg"), "sources", features, fields)
+
+    def frequency_point(self, out):
+        """Mark and text of the point on frequencies in the report."""
+        self.run_well("report", self.path(out))
+        point = re.search(r"<td class='k'>(.*)</td><td>Frequency</td><td class='b'>(.*?)</td>", self.read_text(out + "/report.html"))
+        return point[1].split()[-1], point[2]
+
+    def test_a_source_off_the_dem_is_lost_with_its_events(self):
+        """One of 0.3 events per year lies wholly off the DEM, one of 0.5 on it: check, run, hazard and report say so."""
+        self.place_sources([(box(-500, 230, 20, 10), ["Off", 0.3]), (box(200, 230, 20, 10), ["on", 0.5])])
+        words = "features wholly off the DEM, which release nothing: FID 1 (Off), and its 0.3 events per year are lost"
+        told = [self.run_well(*self.arguments()).stderr, self.run_well("check", *self.arguments()[1:-2]).stdout,
+                self.run_well("hazard", self.path("out")).stderr]
+        self.assertEqual([words in text for text in told], [True] * 3)
+        record = self.read_json("out/hazard.json")
+        self.assertEqual(sum(words in warning for warning in record["warnings"]), 1)
+        self.assertAlmostEqual(record["events_per_year"], 0.5, 9)
+        mark, text = self.frequency_point("out")
+        self.assertEqual(mark, "act")
+        self.assertIn("a source releases nothing (see the warnings), and its events are lost", text)
+        done = self.run_well("hazard", self.path("out"), "--overwrite", "--frequency", self.write("w.toml", "[features]\non = 2\n"))
+        self.assertIn("by the run's own frequencies: " + self.path("sources.gpkg") + ": " + words, done.stderr)
+        for word in ("Off", '"FID 1"'):
+            self.refused("FID 1 releases nothing in the run", "hazard", self.path("out"), "--overwrite", "--frequency",
+                         self.write("w.toml", f"[features]\non = 2\n{word} = 0.3\n"))
+        self.assertAlmostEqual(self.read_json("out/hazard.json")["events_per_year"], 2.0, 9)
+
+    def test_parts_off_the_dem_are_said_under_any_frequency(self):
+        """8 cells of 25 m2 of one source lie off the DEM, 8 on it, and 8 of another: 400 m2 release blocks."""
+        shapes = [(box(-20, 230, 40, 10), ["cut"]), (box(200, 230, 20, 10), ["whole"]), (box(-500, 230, 20, 10), ["Off"])]
+        self.place_sources(shapes, [("name", ogr.OFTString)])
+        words = ["50 % of polygon 1 (cut) lies outside the DEM: blocks start from the rest alone",
+                 "features wholly off the DEM, which release nothing: FID 3 (Off)"]
+        for out, rule, events in (("area", "per_area = 0.001", 0.4), ("total", "total = 3", 3.0)):
+            self.write("s.toml", RUN + f"[frequency]\n{rule}\n")
+            self.simulate(out)
+            said = self.run_well("hazard", self.path(out)).stderr
+            record = self.read_json(out + "/hazard.json")
+            for text in words:
+                self.assertIn(text, said)
+                self.assertEqual(sum(text in warning for warning in record["warnings"]), 1)
+            self.assertNotIn("events per year are lost", said)  # nothing says how many fell from them
+            self.assertAlmostEqual(record["events_per_year"], events, 6)
+            mark, text = self.frequency_point(out)
+            self.assertEqual(mark, "act")
+            self.assertIn("a source, or a part of one, releases nothing (see the warnings)", text)
+
     def test_another_weighting(self):
         """The maps are those of a run whose sources had these frequencies from the start."""
         self.simulate()
@@ -260,10 +310,20 @@ class Hazard(Case):
                        [(box(100, 230, 20, 10), ["a", 0.5]), (box(200, 230, 20, 10), ["a", 0.2])],
                        [("name", ogr.OFTString), ("frequency", ogr.OFTReal)])
         self.simulate()
-        self.refused("2 features are called a (numbers 1, 2), must be one: name them by number", "hazard",
+        self.refused('2 features are called a, must be one: name them as "FID 1", "FID 2"', "hazard",
                      self.path("out"), "--frequency", self.write("w.toml", "[features]\na = 1\n"))
         self.run_well("hazard", self.path("out"), "-q", "--frequency", self.write("w.toml", "[features]\n1 = 0.5\n2 = 0.3\n"))
         self.assertAlmostEqual(self.read_json("out/hazard.json")["events_per_year"], 0.8, 9)
+
+    def test_a_number_that_is_the_name_of_another_feature(self):  # the name won
+        for name, other in (("2", "x"), ("FID 2", "2")):
+            self.place_sources([(box(100, 230, 20, 10), [name, 0.5]), (box(200, 230, 20, 10), [other, 0.2])])
+            self.simulate(name)
+            if name == "2":
+                self.refused('w.toml:2: features.2 = 1: 2 is the name of a feature and the number of another, must be one: name them as '
+                             '"FID 1", "FID 2"', "hazard", self.path(name), "--frequency", self.write("w.toml", "[features]\n2 = 1\n"))
+            self.run_well("hazard", self.path(name), "-q", "--frequency", self.write("w.toml", '[features]\n"FID 2" = 3\n'))
+            self.assertAlmostEqual(self.read_json(name + "/hazard.json")["events_per_year"], 0.5 + 3.0, 9)
 
     def test_what_is_not_its_own_stays(self):
         self.simulate()
@@ -410,15 +470,69 @@ class Hazard(Case):
         frequency = bands_of(self.path("out/annual_frequency.tif"))[0]
         self.assertGreaterEqual(rows["A"]["frequency"], frequency[29, 21] - 1e-9)
         self.assertLessEqual(rows["A"]["frequency"], 0.5 + 1e-9)
-        curve = [float(row["frequency"]) for row in self.read_table("out/objects_curves.csv") if row["object"] == "A"]
-        self.assertEqual(curve, sorted(curve, reverse=True))
-        self.assertAlmostEqual(curve[0], rows["A"]["frequency"], 6)
+        self.assertNotIn("are not copied", done.stderr)
+        for values in table[:2]:
+            curve = [row for row in self.read_table("out/objects_curves.csv") if row["object"] == values["object"]]
+            for key, sign in (("energy_kj", 1), ("frequency", -1)):
+                numbers = [sign * float(row[key]) for row in curve]
+                self.assertEqual(numbers, sorted(numbers))
+            by_energy = {float(row["energy_kj"]): row for row in curve}
+            self.assertEqual(len(by_energy), len(curve), "each energy once")  # 30 kJ, the edge of a bin, was there twice
+            for row, column in ((curve[0], "frequency"), (by_energy[30.0], "frequency_30")):
+                self.assertEqual([row[key] for key in ("frequency", "lower", "upper")],
+                                 [values[column + end] for end in ("", "_lower", "_upper")], "as in objects.csv")
         shares = [float(row["share"]) for row in self.read_table("out/objects_sources.csv") if row["object"] == "B"]
         self.assertAlmostEqual(sum(shares), 1.0, 4)
         self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"), "--overwrite", "-q",
                       "--threads", "1")
         again = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
         self.assertEqual(rows, again)
+
+    def test_objects_that_only_blocks_of_frequency_0_hit(self):
+        """They are not safe from the blocks of the run: only nothing falls from there by the field."""
+        self.place_sources([(box(100, 230, 20, 10), ["west", 0.5]), (box(200, 230, 20, 10), ["east", 0.0])])
+        write_features(self.path("houses.gpkg"), "houses", [(box(105, 150, 10, 8), ["A"]), (box(205, 150, 10, 8), ["B"]),
+                                                            (box(5, 5, 8, 8), ["C"])], [("name", ogr.OFTString)])
+        self.simulate()
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"))
+        rows = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
+        said = dict(re.findall(r"talus: ([ABC]): (.*)", done.stderr))
+        self.assertGreater(rows["B"]["trajectories"], 1)
+        self.assertEqual([rows["B"]["frequency"], rows["B"]["return_period"]], [0.0, None])
+        self.assertTrue(said["A"].startswith("hit 0."), said["A"])
+        self.assertTrue(said["B"].startswith(f"hit by {rows['B']['trajectories']:.0f} blocks, all of sources or block classes with a "
+                                             "frequency of 0; at most "), said["B"])
+        self.assertTrue(said["C"].startswith("hit by no block of this run; at most "), said["C"])
+
+    def test_fields_of_objects_that_are_named_as_results_are_said(self):  # they were dropped in silence
+        write_features(self.path("houses.gpkg"), "houses", [(box(105, 150, 10, 8), ["A", 7.5, "mine", 3, "x"])],
+                       [("name", ogr.OFTString), ("Frequency", ogr.OFTReal), ("sources", ogr.OFTString),
+                        ("people", ogr.OFTInteger), ("object", ogr.OFTString)])
+        self.simulate()
+        done = self.run_well("hazard", self.path("out"), "--objects", self.path("houses.gpkg"))
+        words = ("houses.gpkg: fields named as columns of the results are not copied into objects.gpkg and objects.csv: "
+                 "Frequency, sources, object (in objects.csv); rename them to keep them")
+        self.assertIn(words, done.stderr)
+        self.assertEqual(sum(words in warning for warning in self.read_json("out/hazard.json")["warnings"]), 1)
+        ((row, _),) = rows_of(self.path("out/objects.gpkg"), "objects")
+        self.assertEqual([row["people"], row["object"]], [3, "x"])
+        self.assertLessEqual(row["frequency"], 0.5)
+        self.assertIn("west", row["sources"])
+
+    def test_a_diameter_in_place_of_classes_with_frequencies_is_said(self):
+        """0.9 and 0.1 events per year of the classes go with them."""
+        words = "flag --diameter = 1: takes the place of the block classes of the scenario, and their 1 events per year are dropped with them"
+        self.classes_run("out")
+        self.assertFalse(any("flag --diameter" in warning for warning in self.record()["warnings"]))
+        done = self.run_well("run", self.path("s.toml"), "-o", self.path("one"), "--diameter", "1")
+        self.assertIn(words + ": say with --frequency how often blocks fall", done.stderr)
+        self.assertEqual(sum(words in warning for warning in self.record("one")["warnings"]), 1)
+        self.assertFalse(os.path.exists(self.path("one/hazard_tally.gz")))
+        said = self.run_well("check", self.path("s.toml"), "--diameter", "1", "--frequency", "2").stdout
+        self.assertIn(words, said)
+        self.assertNotIn("say with --frequency", said)
+        self.write("s.toml", RUN.replace("0.8", "[{ diameter = 0.6 }, { diameter = 1.4 }]"))
+        self.assertNotIn("flag --diameter = 1: takes", self.run_well("check", self.path("s.toml"), "--diameter", "1").stdout)
 
     def test_objects_where_blocks_do_not_get(self):
         """A gap of the DEM, its outer half cell and what is off it are not safe: blocks end there."""

@@ -299,7 +299,7 @@ class Tables(InputCase):
                          sources=self.table(good + f'{X},"{cell}",1\n'))
         for cell in ("", " "):
             said = self.run_well("check", *self.flags(self.table(good + f"{cell},{Y},1\n"))).stdout
-            self.assertIn("features without geometry: FID 2", said)
+            self.assertIn("features without geometry, which release nothing: FID 2", said)
         self.run_well("check", *self.flags(self.table(f'wkt,x,y\n"POINT ({X} {Y})",west,a\n')))  # x and y are fields
         self.write("s.toml", 'dem = "dem.tif"\n[sources]\nfile = "sources.gpkg"\n[blocks]\ndiameter = 1\n[effects.forest-stems]\n'
                    'trees = "t.csv"\n')

@@ -255,6 +255,22 @@ TEST_F(Sources, FeaturesOffTheMapAreNamed) {
   EXPECT_TRUE(said(layer.warnings, "wholly off the DEM, which release nothing: FID 1, 3"));
 }
 
+TEST_F(Sources, FeaturesThatReleaseNothingLoseTheirEvents) {
+  terrain_.heights.at(9, 0) = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<std::pair<std::string, OGRFieldType>> fields{{"frequency", OFTReal}};
+  const std::vector<std::string> all =
+      read({{"POINT(500 5)", {"0.3"}}, {"POINT(5 5)", {"2"}}, {"POINT(-9 -9)", {"0.5"}}, {"POINT(95 5)", {"0.25"}}},
+           fields)
+          .warnings;
+  EXPECT_TRUE(
+      said(all, "off the DEM, which release nothing: FID 1, 3, and their 0.8 events per year are lost"));  // 0.3 + 0.5
+  EXPECT_TRUE(said(all, "no heights, which release nothing: FID 4, and its 0.25 events per year are lost"));
+  EXPECT_EQ(std::ranges::count_if(all, is_of_cut_sources), 3) << "and the count of cells without a height";
+  for (const char* none : {"0", "NULL"})
+    EXPECT_FALSE(said(read({{"POINT(500 5)", {none}}, {"POINT(5 5)", {"2"}}}, fields).warnings, "events per year"));
+  EXPECT_FALSE(std::ranges::any_of(read({{"POINT(5 5)", {"2"}}}, fields).warnings, is_of_cut_sources)) << "at the edge";
+}
+
 TEST_F(Sources, AllOffTheMapGivesBothExtents) {
   expect_input_error(
       [&] {
@@ -267,7 +283,7 @@ TEST_F(Sources, AllOffTheMapGivesBothExtents) {
 TEST_F(Sources, EmptyLayersAreRefused) {
   expect_input_error([&] { read({}); }, {"s.gpkg", "no features"});
   expect_input_error([&] { read({{""}, {"POLYGON EMPTY"}}); }, {"s.gpkg", "none of its features has a geometry"});
-  EXPECT_TRUE(said(read({{""}, {"POINT(5 5)"}}).warnings, "features without geometry: FID 1"));
+  EXPECT_TRUE(said(read({{""}, {"POINT(5 5)"}}).warnings, "features without geometry, which release nothing: FID 1"));
 }
 
 TEST_F(Sources, OtherLayersAreNamed) {

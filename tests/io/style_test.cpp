@@ -232,7 +232,7 @@ TEST(VectorStyle, ClassesOfTheRaster) {
     ASSERT_NE(ranges, nullptr);
     std::vector<LegendClass> classes = classes_of(map_of(raster));
     const bool objects = layer == StyledLayer::AreaObjects || layer == StyledLayer::LineObjects;
-    if (objects) classes.push_back({1e100, "hit by no block", "#bdbdbd"});  // which has no return period
+    if (objects) classes.push_back({1e100, "no hit per year", "#bdbdbd"});  // which has no return period
     if (layer == StyledLayer::Stretches) classes.push_back({1e100, "too few crossings for a design", "#bdbdbd"});
     std::size_t i = 0;
     double upper = 0.0;

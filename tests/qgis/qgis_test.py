@@ -976,7 +976,7 @@ class FromPython(Case):
         QgsApplication.setLocale(QLocale("de_CH"))
         try:
             told = {"up to 30 kJ": "bis 30 kJ", "30 to 100 kJ": "30 bis 100 kJ", "above 3000 kJ": "über 3000 kJ",
-                    "10 to 30 years": "10 bis 30 Jahre", "above 1000 years": "über 1000 Jahre", "hit by no block": "von keinem Block getroffen",
+                    "10 to 30 years": "10 bis 30 Jahre", "above 1000 years": "über 1000 Jahre", "no hit per year": "kein Treffer pro Jahr",
                     "0 %": "0 %", "above 1 1/year": "über 1 1/Jahr", "up to 10": "bis 10", "residual": "Restgefährdung"}
             for english, german in told.items():
                 self.assertEqual(results.legend_text(english), german)

@@ -115,7 +115,7 @@ class Project(unittest.TestCase):
         self.assertEqual(raster("Hazard class"), ["none", "residual", "low", "medium", "high"])
         years = ["up to 10 years", "10 to 30 years", "30 to 100 years", "100 to 300 years", "300 to 1000 years", "above 1000 years"]
         self.assertEqual(raster("Return period of more than 300 kJ"), years)
-        self.assertEqual(vector("Objects: return period of a hit"), years + ["hit by no block"])
+        self.assertEqual(vector("Objects: return period of a hit"), years + ["no hit per year"])
         self.assertEqual(raster("Reach probability"), ["0 %", "up to 2 %", "2 to 5 %", "5 to 10 %", "10 to 20 %", "20 to 50 %", "50 to 100 %"])
         kj = ["up to 30 kJ", "30 to 100 kJ", "100 to 300 kJ", "300 to 1000 kJ", "1000 to 3000 kJ", "above 3000 kJ"]
         self.assertEqual(vector("Barrier at road: MEL by stretch"), kj + ["too few crossings for a design"])

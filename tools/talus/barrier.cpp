@@ -141,14 +141,22 @@ std::vector<talus::LineCrossing> crossings_of(const CrossingTable& table, const 
   return crossings;
 }
 
+/// ", but in the laws and shares of the values": where crossings of sources with a frequency of 0 count all the same.
+std::string where_all_count(const Options& o, const BarrierReport& report) {
+  std::string text;
+  if (o.observed.empty()) text = "in the laws and shares of the values";
+  if (report.width) text += std::string(text.empty() ? "" : " and ") + "in the width by the map";
+  return text.empty() ? text : ", but " + text;
+}
+
 /// Leaves out what never falls. Throws InputError if the others are too few for the percentile.
 void keep_falling(std::vector<talus::LineCrossing>& crossings, const Options& o, BarrierReport& report,
                   Weighting& weighting) {
-  const std::size_t never = std::erase_if(crossings, [](const auto& c) { return !(c.weight > 0.0); });
-  if (never > 0)
-    report.notes.push_back(std::to_string(never) +
-                           " of the crossings are of sources with a frequency of 0 and count "
-                           "nothing");
+  report.never = std::erase_if(crossings, [](const auto& c) { return !(c.weight > 0.0); });
+  if (report.never > 0)
+    report.notes.push_back(std::to_string(report.never) +
+                           " of the crossings are of sources or block classes with a frequency of 0 and count nothing" +
+                           where_all_count(o, report));
   weighting.line = talus::sums_of(crossings);
   report.effective = talus::effective_number(crossings);
   const std::size_t fewest = talus::fewest_for_percentile(0.01 * o.percentile);

@@ -161,6 +161,8 @@ std::vector<std::string> write_objects(const Options& options, const fs::path& f
   const talus::io::LoadedScenario loaded = recorded_plan(options, record);
   const talus::io::ObjectLayer layer(options.objects, loaded, options.width);
   for (const std::string& warning : layer.warnings()) record.warnings.push_back(warning);
+  if (const std::string text = layer.not_copied_text(record.header.rules, record.matrix.years); !text.empty())
+    record.warnings.push_back(text);
   if (!options.quiet && !layer.lines_text().empty()) say("", options.objects + ": " + layer.lines_text());
   if (!options.quiet)
     say("", "repeats the run for the objects: " + count_text(loaded.scenario.released()) +
@@ -214,8 +216,8 @@ int hazard(const Options& options) {
   if (const std::string warning = warning_of_objects(options, record.header); !warning.empty())
     record.warnings.push_back(warning);
   for (std::string& warning : talus::io::size_warnings_of(folder)) record.warnings.push_back(std::move(warning));
-  for (std::string& warning : talus::io::cut_source_warnings_of(folder))
-    record.warnings.push_back((options.frequency.empty() ? "" : "by the run's own frequencies: ") + warning);
+  for (std::string& warning : talus::io::cut_source_warnings_of(folder, !options.frequency.empty()))
+    record.warnings.push_back(std::move(warning));
   if (auto note = talus::io::unusable_note(folder)) record.warnings.push_back(std::move(*note));
   if (auto note = talus::io::coefficient_note(folder)) record.warnings.push_back(std::move(*note));
   if (auto note = talus::io::barriers_note(folder)) record.warnings.push_back(std::move(*note));

@@ -17,6 +17,9 @@ namespace talus::io {
 
 namespace {
 
+// In the warnings about sources of which a part, or all, gives no blocks; the first also in narrow_polygons.cpp.
+constexpr const char *kReleaseNothing = "release nothing", *kFromTheRest = "blocks start from the rest alone";
+
 std::string file_name(const std::string& path) {
   return same_layer_in(std::filesystem::path(file_of_layer(path)).filename().string(), path);
 }
@@ -258,6 +261,24 @@ std::string lack_text(const Lack& lack) {
   return with_digits(100.0 * share, share < 0.995 ? 2 : 3) + " % of " + lack.name + " lies " + where + events;
 }
 
+/// Features that release nothing.
+struct LostSources {
+  std::vector<std::string> names;  // "4 (cliff A)"
+  double frequency = 0.0;          // of all that have one [1/year]
+
+  void add(const std::string& name, const SourceFeature& feature) {
+    names.push_back(name);
+    if (feature.frequency > 0.0) frequency += feature.frequency;
+  }
+};
+
+/// "FID 3, 4 (cliff A)"; with a frequency "..., and their 0.8 events per year are lost".
+std::string lost_text(const LostSources& lost) {
+  const std::string text = "FID " + listed(lost.names);
+  if (!(lost.frequency > 0.0)) return text;
+  return text + ", and " + (lost.names.size() == 1 ? "its " : "their ") + with_digits(lost.frequency, 3) + kEventsLost;
+}
+
 /// A source of which lengths release nothing, as they are narrower than a cell.
 struct NarrowSource {
   std::string name;  // "polygon 4 (crest)"
@@ -289,7 +310,7 @@ std::string first_five(const std::vector<Source>& sources, Text text_of_one) {
 /// The largest shares first: "83 % of polygon 4 (cliff A) lies outside the DEM; ... and 3 more features".
 std::string lacks_text(std::vector<Lack> lacks) {
   std::ranges::stable_sort(lacks, std::ranges::greater{}, [](const Lack& l) { return l.outside + l.hole; });
-  return first_five(lacks, lack_text) + ": blocks start from the rest alone";
+  return first_five(lacks, lack_text) + ": " + kFromTheRest;
 }
 
 // Places features on the terrain and counts those that are not on it.
@@ -301,7 +322,7 @@ class Placer {
     const std::string number = std::to_string(id);
     const std::string name = number + (source().name == number ? "" : " (" + source().name + ")");
     if (parts.empty()) {
-      without_geometry_.push_back(name);
+      without_geometry_.add(name, source());
       return;
     }
     box_.Merge(parts.envelope());
@@ -328,19 +349,17 @@ class Placer {
   void finish(const std::string& path, const Layer& layer, const Terrain& terrain) {
     if (out_.features.empty())
       throw InputError(path + ": has no features, must have polygons, lines or points where blocks are released");
-    if (without_geometry_.size() == out_.features.size())
+    if (without_geometry_.names.size() == out_.features.size())
       throw InputError(path + ": none of its features has a geometry");
     if (out_.cells.empty() && without_terrain_ > 0)
       throw InputError(path + ": the DEM has no heights in any of its " + std::to_string(without_terrain_) +
                        " cells, must have in one at least");
     if (out_.cells.empty()) throw InputError(off_dem_text(path, box_, layer, terrain));
-    if (!without_geometry_.empty())
-      out_.warnings.push_back(path + ": features without geometry: FID " + listed(without_geometry_));
-    if (!off_map_.empty())
-      out_.warnings.push_back(path + ": features wholly off the DEM, which release nothing: FID " + listed(off_map_));
-    if (!without_height_.empty())
-      out_.warnings.push_back(path + ": features where the DEM has no heights, which release nothing: FID " +
-                              listed(without_height_));
+    for (const auto& [lost, what] : {std::pair{&without_geometry_, "without geometry"},
+                                     {&off_map_, "wholly off the DEM"},
+                                     {&without_height_, "where the DEM has no heights"}})
+      if (!lost->names.empty())
+        out_.warnings.push_back(path + ": features " + what + ", which " + kReleaseNothing + ": " + lost_text(*lost));
     if (!lacks_.empty()) out_.warnings.push_back(path + ": " + lacks_text(lacks_));
     if (!narrow_.empty())
       out_.warnings.push_back(
@@ -354,7 +373,8 @@ class Placer {
   std::string gaps_text() const {
     std::string text;
     if (without_terrain_ > 0)
-      text = std::to_string(without_terrain_) + " source cells or points have no height in the DEM and release nothing";
+      text =
+          std::to_string(without_terrain_) + " source cells or points have no height in the DEM and " + kReleaseNothing;
     if (at_edge_ > 0)
       text += (text.empty() ? "" : "; ") + std::to_string(at_edge_) +
               " source cells or points lie at the edge of the DEM or beside missing heights: blocks that start where "
@@ -368,8 +388,8 @@ class Placer {
   /// @param missing  those without a height
   void record(const Parts& parts, const std::string& name, std::uint64_t on_map, std::uint64_t missing) {
     constexpr double kNoticed = 0.01;
-    if (on_map == 0) return off_map_.push_back(name);
-    if (missing == on_map) return without_height_.push_back(name);
+    if (on_map == 0) return off_map_.add(name, source());
+    if (missing == on_map) return without_height_.add(name, source());
     const double outside = share_outside(parts, heights_.grid);
     const double hole = (1.0 - outside) * static_cast<double>(missing) / static_cast<double>(on_map);
     if (outside + hole >= kNoticed)
@@ -397,13 +417,17 @@ class Placer {
   const Raster<float>& heights_;
   SourceLayer& out_;
   OGREnvelope box_;
-  std::vector<std::string> without_geometry_, off_map_, without_height_;  // "4 (cliff A)"
+  LostSources without_geometry_, off_map_, without_height_;
   std::vector<Lack> lacks_;
   std::vector<NarrowSource> narrow_;
   std::uint64_t without_terrain_ = 0, at_edge_ = 0;
 };
 
 }  // namespace
+
+bool is_of_cut_sources(const std::string& warning) {
+  return warning.find(kReleaseNothing) != std::string::npos || warning.find(kFromTheRest) != std::string::npos;
+}
 
 const std::vector<std::string>& source_field_names() {
   static const std::vector<std::string> names{

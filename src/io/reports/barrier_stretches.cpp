@@ -202,7 +202,8 @@ std::string stretches_text(const BarrierReport& r) {
     else
       text += stretch_line(r, row);
   if (empty > 0)
-    text += "  nothing crosses the other " + std::to_string(empty) + " stretches" +
+    text += std::string("  nothing ") + (r.never > 0 ? "that falls " : "") + "crosses the other " +
+            std::to_string(empty) + " stretches" +
             (r.without_height > 0.0 ? ": not all of them are safe, see the note below" : "") + "\n";
   const StretchDesign *energy = highest_of(r, &BarrierDesign::sel), *height = highest_of(r, &BarrierDesign::height);
   if (energy != nullptr)

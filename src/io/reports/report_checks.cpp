@@ -234,24 +234,33 @@ void check_inputs(const CheckedRun& checked, Checks& checks) {
                     "Say of each why it does not matter here, or mend it."});
 }
 
+/// "; a source releases nothing ..." if warnings of the run say so; else empty.
+std::string cut_sources_text(const RunFacts& run) {
+  if (!std::ranges::any_of(run.warnings, is_of_cut_sources)) return "";
+  std::string text;
+  if (warned_of(run, kEventsLost)) text += "; a source releases nothing (see the warnings), and its events are lost";
+  if (warned_of(run, kAllOnTheRest))
+    text += "; a part of a source releases nothing (see the warnings), and all of its events fall on the rest";
+  return text.empty() ? "; a source, or a part of one, releases nothing (see the warnings)" : text;
+}
+
 void check_hazard(const CheckedRun& checked, Checks& checks) {
   if (!checked.has_frequencies) {
     checks.push_back({Mark::Look, "Frequency", "none is declared",
                       "Nothing on this page is per year: probabilities are of one block that falls somewhere."});
     return;
   }
-  const bool cut = warned_of(checked.run, kAllOnTheRest);
-  const std::string cut_text =
-      cut ? "; a part of a source releases nothing (see the warnings), and all of its events fall on the rest" : "";
+  const std::string cut = cut_sources_text(checked.run);
+  const Mark mark = cut.empty() ? Mark::Look : Mark::Act;
   if (!checked.hazard) {
-    checks.push_back({cut ? Mark::Act : Mark::Look, "Frequency", "declared, but talus hazard was not run" + cut_text,
-                      "Run it for return periods and classes."});
+    checks.push_back(
+        {mark, "Frequency", "declared, but talus hazard was not run" + cut, "Run it for return periods and classes."});
     return;
   }
   const HazardFacts& hazard = *checked.hazard;
   checks.push_back(
-      {cut ? Mark::Act : Mark::Look, "Frequency",
-       with_digits(hazard.events_per_year, 4) + " events per year, by " + frequency_text(hazard.frequency) + cut_text,
+      {mark, "Frequency",
+       with_digits(hazard.events_per_year, 4) + " events per year, by " + frequency_text(hazard.frequency) + cut,
        "Every return period and class is as good as they are."});
   const bool left = hazard.left_per_year > 0.01 * hazard.events_per_year;
   checks.push_back(

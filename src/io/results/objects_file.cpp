@@ -120,6 +120,7 @@ std::string object_name(const Layer& layer, const OGRFeature& feature, std::init
 }  // namespace
 
 struct ObjectLayer::State {
+  std::string file;
   std::vector<Feature> features;  // with their attributes
   std::vector<std::string> names;
   std::vector<Parts> parts;
@@ -229,6 +230,7 @@ ObjectLayer::ObjectLayer(const std::string& path, const LoadedScenario& loaded, 
   if (state_->polygons_with_width > 0)
     state_->warnings.push_back(path + ": the field width of " + std::to_string(state_->polygons_with_width) +
                                " polygons is not used: it is for lines; a polygon is what it covers");
+  state_->file = path;
   state_->line_width = line_width;
   for (std::string& line : layer.warnings()) state_->warnings.push_back(std::move(line));
 }
@@ -266,6 +268,13 @@ std::vector<int> copied_attributes(OGRFeature& model, const Figures& figures) {
       copied.push_back(i);
   }
   return copied;
+}
+
+/// How often an object is hit that nothing hits per year.
+std::string never_hit_text(const ObjectHits& hits) {
+  if (hits.trajectories == 0) return "hit by no block of this run";
+  return "hit by " + std::to_string(hits.trajectories) + (hits.trajectories == 1 ? " block" : " blocks, all") +
+         " of sources or block classes with a frequency of 0";
 }
 
 /// The layer `objects`: attributes of the input, figures, sources.
@@ -310,12 +319,17 @@ class ObjectsWriter {
   OGRLayer* layer_ = nullptr;
 };
 
+/// Whether a name is that of the first column of objects.csv.
+bool is_object_column(const std::string& name) {
+  return EQUAL(name.c_str(), "object");
+}
+
 /// The table objects.csv: the layer `objects` without its geometry.
 class ObjectsTable {
  public:
   void add(const std::string& object, OGRFeature& from, const Figures& figures, const std::string& sources) {
     std::vector<int> attributes = copied_attributes(from, figures);
-    std::erase_if(attributes, [&](int i) { return EQUAL(from.GetFieldDefnRef(i)->GetNameRef(), "object"); });
+    std::erase_if(attributes, [&](int i) { return is_object_column(from.GetFieldDefnRef(i)->GetNameRef()); });
     if (text_.empty()) head(from, attributes, figures);
     text_ += object;
     for (const int i : attributes)
@@ -336,11 +350,22 @@ class ObjectsTable {
   std::string text_;
 };
 
+/// Point i of a curve, with the bounds of objects.csv where that has it: at all hits, and at a threshold.
+Bounded curve_point(const HazardCurve& curve, const EnergyBins& bins, std::size_t i) {
+  if (i == 0) return curve.passage();
+  const auto& thresholds = bins.thresholds();
+  const auto threshold = std::ranges::find(thresholds, bins.edge(curve.first() + static_cast<int>(i)));
+  return threshold == thresholds.end() ? curve.at(i)
+                                       : curve.exceedance(static_cast<std::size_t>(threshold - thresholds.begin()));
+}
+
 std::string curve_rows(const std::string& object, const HazardCurve& curve, const EnergyBins& bins) {
   std::string rows;
   for (std::size_t i = 0; i < curve.size(); ++i) {
-    const Bounded f = curve.at(i);
-    rows += object + ',' + csv_field(bins.edge(curve.first() + static_cast<int>(i)));
+    const int bin = curve.first() + static_cast<int>(i);
+    if (i + 1 < curve.size() && bins.edge(bin) == bins.edge(bin + 1)) continue;  // the next row has this energy
+    const Bounded f = curve_point(curve, bins, i);
+    rows += object + ',' + csv_field(bins.edge(bin));
     for (const double value : {f.value, f.low, f.high, 1.0 / f.value}) rows += ',' + csv_field(value);
     rows += '\n';
   }
@@ -348,6 +373,22 @@ std::string curve_rows(const std::string& object, const HazardCurve& curve, cons
 }
 
 }  // namespace
+
+std::string ObjectLayer::not_copied_text(const HazardRules& rules, const std::vector<double>& years) const {
+  OGRFeature& model = *state_->features.front();
+  const std::vector<int> copied = copied_attributes(model, figures_of(rules, {}, false, years));
+  std::vector<std::string> left_out;
+  for (int i = 0; i < model.GetFieldCount(); ++i) {
+    const std::string name = model.GetFieldDefnRef(i)->GetNameRef();
+    if (std::ranges::count(copied, i) == 0)
+      left_out.push_back(name);
+    else if (is_object_column(name))
+      left_out.push_back(name + " (in objects.csv)");
+  }
+  if (left_out.empty()) return {};
+  return state_->file + ": fields named as columns of the results are not copied into objects.gpkg and objects.csv: " +
+         listed(left_out) + "; rename them to keep them";
+}
 
 std::vector<std::string> ObjectLayer::hits_text(const HazardRules& rules, const std::vector<ObjectHits>& hits,
                                                 std::size_t most) const {
@@ -369,7 +410,7 @@ std::vector<std::string> ObjectLayer::hits_text(const HazardRules& rules, const 
       lines.push_back(name + "hit " + with_digits(f.value, 3) + " times per year, once in " + readable(1.0 / f.value) +
                       " years (95 %: " + with_digits(f.low, 3) + " to " + with_digits(f.high, 3) + " per year)" + lack);
     else
-      lines.push_back(name + "hit by no block of this run; at most " + with_digits(f.high, 3) +
+      lines.push_back(name + never_hit_text(hits[i]) + "; at most " + with_digits(f.high, 3) +
                       " times per year (95 %)" + lack);
   }
   return lines;

@@ -160,9 +160,13 @@ std::vector<std::string> size_warnings_of(const std::filesystem::path& folder) {
   return warnings_of(read_record_or_nothing(folder / "run.json"), is_of_sizes);
 }
 
-std::vector<std::string> cut_source_warnings_of(const std::filesystem::path& folder) {
-  return warnings_of(read_record_or_nothing(folder / "run.json"),
-                     [](const std::string& warning) { return warning.find(kAllOnTheRest) != std::string::npos; });
+std::vector<std::string> cut_source_warnings_of(const std::filesystem::path& folder, bool reweighted) {
+  std::vector<std::string> found = warnings_of(read_record_or_nothing(folder / "run.json"), is_of_cut_sources);
+  if (reweighted)
+    for (std::string& warning : found)
+      if (warning.find(kAllOnTheRest) != std::string::npos || warning.find(kEventsLost) != std::string::npos)
+        warning.insert(0, "by the run's own frequencies: ");
+  return found;
 }
 
 }  // namespace talus::io

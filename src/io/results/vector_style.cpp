@@ -35,12 +35,13 @@ Legend legend_of(const std::string& name) {
   throw std::logic_error("no raster " + name);
 }
 
-/// Objects that nothing hits have no return period and a class of their own; those off the map have no class.
+/// Objects with no hit per year have no return period and a class of their own; those off the map have no class.
 constexpr const char* kReturnPeriod =
     R"(CASE WHEN "trajectories" IS NULL THEN NULL ELSE coalesce("return_period", 1e99) END)";
 /// [kJ], of the largest speed of the path
 constexpr const char* kLargestEnergy = R"(0.0005 * "mass_kg" * "max_speed_ms" ^ 2)";
 
+constexpr const char* kNoHit = "no hit per year";  // of no block, or of blocks of sources with a frequency of 0
 constexpr const char* kNoDesign = "too few crossings for a design";
 
 // Lines at one place, as a road that is an object, a screen and the line of a net, are drawn above each other, the
@@ -56,11 +57,11 @@ Look look_of(StyledLayer layer) {
     case StyledLayer::Screens:
       return {Symbol::Line, "\"energy_kj_p95\"", legend_of("energy"), 3.0, 3.0};
     case StyledLayer::AreaObjects:
-      return {Symbol::Area, kReturnPeriod, legend_of("return_period_<kJ>"), 0.4, 0.4, "hit by no block"};
+      return {Symbol::Area, kReturnPeriod, legend_of("return_period_<kJ>"), 0.4, 0.4, kNoHit};
     case StyledLayer::Stretches:
       return {Symbol::Line, "coalesce(\"mel_kj\", 1e99)", legend_of("energy"), 0.8, 0.8, kNoDesign};
     case StyledLayer::LineObjects:
-      return {Symbol::Line, kReturnPeriod, legend_of("return_period_<kJ>"), 1.8, 1.8, "hit by no block"};
+      return {Symbol::Line, kReturnPeriod, legend_of("return_period_<kJ>"), 1.8, 1.8, kNoHit};
   }
   throw std::logic_error("a layer without a style");
 }

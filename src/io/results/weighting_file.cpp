@@ -13,14 +13,41 @@
 namespace talus::io {
 namespace {
 
-/// The features that a word of the file means: those of this name, else the one of this number (FID).
+constexpr std::string_view kNumberForm = "FID ";
+
+/// "FID 3".
+std::string number_form(const SourceFeature& feature) {
+  return std::string(kNumberForm) + std::to_string(feature.id);
+}
+
+/// The features that a word of the file means: "FID 3" the one of this number, any other word those of this name or
+/// number.
 std::vector<std::size_t> meant_by(const std::string& word, const std::vector<SourceFeature>& features) {
+  const bool is_number = word.starts_with(kNumberForm);
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < features.size(); ++i)
-    if (features[i].name == word) found.push_back(i);
-  for (std::size_t i = 0; found.empty() && i < features.size(); ++i)
-    if (std::to_string(features[i].id) == word) found.push_back(i);
+    if (number_form(features[i]) == word ||
+        (!is_number && (features[i].name == word || std::to_string(features[i].id) == word)))
+      found.push_back(i);
   return found;
+}
+
+/// Why a word that means several features is refused.
+std::string ambiguous_text(const std::string& word, const std::vector<std::size_t>& found,
+                           const std::vector<SourceFeature>& features) {
+  std::vector<std::string> forms;
+  for (const std::size_t i : found) forms.push_back('"' + number_form(features[i]) + '"');
+  const bool names = std::ranges::all_of(found, [&](std::size_t i) { return features[i].name == word; });
+  return (names ? std::to_string(found.size()) + " features are called " + word
+                : word + " is the name of a feature and the number of another") +
+         ", must be one: name them as " + listed(forms);
+}
+
+/// Which features have a source cell in the run.
+std::vector<bool> releasing(const Scenario& scenario) {
+  std::vector<bool> releases(scenario.features.size());
+  for (const SourceCell& cell : scenario.sources) releases[cell.feature] = true;
+  return releases;
 }
 
 bool says_how_often(const FrequencyRules& rules) {
@@ -76,18 +103,21 @@ void require_all_features(const Scenario& scenario, const std::string& file) {
 void read_features(TableReader& table, Scenario& scenario, GivenFrequencies& read) {
   if (table.value() == nullptr) return;
   std::vector<SourceFeature>& features = scenario.features;
+  const std::vector<bool> releases = releasing(scenario);
   std::vector<std::string> known, given(features.size());  // given: the word that meant the feature
   for (const SourceFeature& feature : features) known.push_back(feature.name);
   for (const auto& [word, value] : table.value()->members) {
     const std::vector<std::size_t> found = meant_by(word, features);
-    std::vector<std::string> numbers;
-    for (const std::size_t i : found) numbers.push_back(std::to_string(features[i].id));
     if (found.empty())
       table.fault(word, value, "there is no such feature" + known_names(word, known));
     else if (found.size() > 1)
+      table.fault(word, value, ambiguous_text(word, found, features));
+    else if (!releases[found.front()])
       table.fault(word, value,
-                  std::to_string(found.size()) + " features are called " + word + " (numbers " + joined(numbers) +
-                      "), must be one: name them by number");
+                  number_form(features[found.front()]) +
+                      " releases nothing in the run (it lies off the DEM or where that has no heights, or has no "
+                      "geometry), so that its events per year would be lost: leave it out, or mend the DEM or the "
+                      "source and run again");
     else if (const std::string& earlier = given[found.front()]; !earlier.empty())
       table.fault(word, value, "is the feature " + earlier + ", which has a frequency here already");
     if (found.size() != 1) continue;

@@ -187,6 +187,7 @@ SourceLayer load_sources(const ScenarioSpec& spec, const Terrain& terrain, const
   out.notes.push_back(sources.read_note);
   out.notes.insert(out.notes.end(), sources.unread_notes.begin(), sources.unread_notes.end());
   check_diameters(parts, sources, spec.sources.path);
+  out.warnings.insert(out.warnings.end(), spec.warnings.begin(), spec.warnings.end());
   warn_unused_diameter(spec, sources, out.warnings);
   take(out, sources);
   return sources;

@@ -1,6 +1,7 @@
 #include "scenario_flags.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 
@@ -76,6 +77,24 @@ void lay_sources_layer(ScenarioSpec& spec, const std::string& layer, std::vector
                      spec.sources.path.substr(file.size()) + "; give one of the two");
   spec.sources.path += "|layername=" + layer;
   spec.origins["sources.file"] += ", flag --sources-layer";
+}
+
+/// --diameter M, in place of all blocks of the scenario.
+void lay_diameter(ScenarioSpec& spec, double diameter, bool has_frequency, std::vector<std::string>& faults) {
+  if (const auto rule = fault_of(bounds_of("blocks.diameter"), diameter))
+    faults.push_back("flag --diameter = " + text_of(diameter) + ": " + *rule);
+  double frequency = 0.0;
+  for (const BlockClass& block : spec.values.blocks.classes)
+    if (!std::isnan(block.frequency)) frequency += block.frequency;
+  if (frequency > 0.0)
+    spec.warnings.push_back(
+        "flag --diameter = " + text_of(diameter) +
+        ": takes the place of the block classes of the scenario, and their " + with_digits(frequency, 4) +
+        " events per year are dropped with them" +
+        (has_frequency ? "" : ": say with --frequency how often blocks fall, if the run is to have a hazard"));
+  spec.values.blocks.power_law = {};
+  spec.values.blocks.classes = {BlockClass{{diameter, diameter}}};
+  spec.origins["blocks.diameter"] = "flag --diameter";
 }
 
 }  // namespace
@@ -157,13 +176,7 @@ void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::strin
     if (std::ranges::adjacent_find(flags.thresholds, std::greater_equal<>()) != flags.thresholds.end())
       faults.push_back("flag --thresholds = " + list_text(flags.thresholds) + ": must ascend, as 30,300");
   }
-  if (flags.diameter) {
-    if (const auto rule = fault_of(bounds_of("blocks.diameter"), *flags.diameter))
-      faults.push_back("flag --diameter = " + text_of(*flags.diameter) + ": " + *rule);
-    spec.values.blocks.power_law = {};
-    spec.values.blocks.classes = {BlockClass{{*flags.diameter, *flags.diameter}}};
-    spec.origins["blocks.diameter"] = "flag --diameter";
-  }
+  if (flags.diameter) lay_diameter(spec, *flags.diameter, flags.frequency.has_value(), faults);
 }
 
 }  // namespace talus::io

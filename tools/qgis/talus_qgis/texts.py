@@ -223,7 +223,7 @@ GERMAN = {
     " 1/year": " 1/Jahr",
     "0 1/year": "0 1/Jahr",
     "0 years": "0 Jahre",
-    "hit by no block": "von keinem Block getroffen",
+    "no hit per year": "kein Treffer pro Jahr",
     "too few crossings for a design": "zu wenige Durchgänge für eine Bemessung",
     "Line of the barrier, by stretch": "Linie des Schutznetzes, je Abschnitt",
     "none": "keine",

@@ -11,6 +11,11 @@ namespace talus::io {
 /// In a warning about a source with a frequency of which a part releases nothing: off the DEM, where it has no heights,
 /// or narrower than a cell.
 inline constexpr const char* kAllOnTheRest = " events per year all fall on the ";
+/// In a warning about sources with a frequency that release nothing.
+inline constexpr const char* kEventsLost = " events per year are lost";
+
+/// Whether a warning of `read_sources` says that a source, or a part of one, releases nothing.
+bool is_of_cut_sources(const std::string& warning);
 
 /// Places of release from a vector file.
 struct SourceLayer {

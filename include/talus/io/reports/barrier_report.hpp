@@ -47,6 +47,7 @@ struct BarrierReport {
   double released = 0.0;            ///< trajectories of the run
   std::size_t crossings = 0;        ///< of the screen by blocks and pieces
   std::size_t blocks = 0;           ///< blocks of which something crossed
+  std::size_t never = 0;            ///< of the crossings: of sources with a frequency of 0, in no stretch
   std::string weighting;            ///< what each block and piece counts: "alike: ...", "by the annual frequency ..."
   GivenFrequencies frequency;       ///< another weighting than the run's
   double events_per_year = 0.0;     ///< of all blocks of the run; 0 where all count alike

@@ -26,6 +26,10 @@ class ObjectLayer {
   /// How wide the lines are, in words; empty if there are none.
   std::string lines_text() const;
 
+  /// A warning of the fields that `write` does not copy, as the results have columns of these names; empty if there are
+  /// none.
+  std::string not_copied_text(const HazardRules& rules, const std::vector<double>& years) const;
+
   /// How often each object is hit, in words, a line each, the most often hit first; at most `most` of them.
   std::vector<std::string> hits_text(const HazardRules& rules, const std::vector<ObjectHits>& hits,
                                      std::size_t most = 12) const;

@@ -60,9 +60,11 @@ struct RunSummary {
 /// Reads OUT/run.json. Throws InputError if it cannot be read or `talus run` has not written it.
 RunSummary read_run(const std::filesystem::path& folder);
 
-/// The warnings of the run about sources of which a part releases nothing, with all of their events on the rest; none
-/// if there is no run.json that can be read.
-std::vector<std::string> cut_source_warnings_of(const std::filesystem::path& folder);
+/// The warnings of the run about sources that release nothing, as a whole or in part; none if there is no run.json that
+/// can be read.
+///
+/// @param reweighted  by other frequencies than the run's: warnings with events per year say whose they are
+std::vector<std::string> cut_source_warnings_of(const std::filesystem::path& folder, bool reweighted);
 
 /// RunSummary::size_warnings alone; none if there is no run.json that can be read.
 std::vector<std::string> size_warnings_of(const std::filesystem::path& folder);

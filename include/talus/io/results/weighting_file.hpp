@@ -20,7 +20,8 @@ struct GivenFrequencies {
 /// Applies another weighting to a plan: replaces how often blocks fall. The motion of the blocks stays the same.
 ///
 /// The file has [frequency] as a scenario has it (by_true_area, total, per_area, power_law), or [features]: events per
-/// year of a feature of the sources, by its name or number. total, per_area and power_law replace all frequencies.
+/// year of a feature of the sources, by its name or number, or as "FID 3", which is always the number; it must have
+/// released blocks. total, per_area and power_law replace all frequencies.
 /// Features that are not listed keep theirs; all must be listed if the frequencies of the run are not by feature.
 /// Classes of blocks that have frequencies keep their shares of the events, but for power_law. docs/hazard.md, "Another
 /// weighting". Throws InputError with file, line, key, value and what is allowed.
