@@ -299,6 +299,7 @@ class Hazard(Case):
             self.assertEqual(self.record(out).get("pieces", 0) > 0, broken)
             done = self.run_well("hazard", self.path(out), "--objects", self.path("houses.gpkg"), "--width", "60")
             self.assertEqual(said in done.stderr, broken)
+            self.assertEqual("narrow where several of them pass (unsafe)" in done.stderr, broken)
             (house,) = self.read_table(out + "/objects.csv")
             self.assertLessEqual(float(house["frequency"]), 0.52 * (1 + 1e-6))  # the falls per year of both cliffs
             self.assertEqual(bands_of(self.path(out + "/annual_frequency.tif"))[0].max() > 2 * 0.52, broken)
