@@ -25,7 +25,7 @@ namespace {
 using io::plan_checksum;
 using io::replace_text;
 using Json = nlohmann::ordered_json;
-constexpr int kFormat = 7;
+constexpr int kFormat = 8;
 constexpr std::int64_t kMostRounds = 10'000;  // that talus run takes
 constexpr std::int64_t kLargest32 = 0xFFFF'FFFF;
 
@@ -87,6 +87,9 @@ Checkpoint::Checkpoint(const fs::path& folder, const LoadedScenario& loaded, con
   part_ = part;
   asked_ = asked;
   settings_ = loaded.settings;
+  notes_ = loaded.notes;
+  warnings_ = loaded.warnings;
+  inputs_ = loaded.inputs;
   if (processes.leads()) replace_text(folder_ / "scenario.toml", loaded.complete_toml);
 }
 
@@ -113,6 +116,19 @@ std::vector<Setting> Checkpoint::settings(std::uint32_t rounds) const {
       setting.value = std::to_string(std::uint64_t{loaded_->scenario.trajectories} * rounds);
     }
   return settings;
+}
+
+void Checkpoint::recall(LoadedScenario& loaded, std::uint32_t rounds) const {
+  std::vector<io::InputFile> inputs = inputs_;
+  for (io::InputFile& input : inputs) {
+    if (input.role == "scenario" || input.role == "include") continue;  // the complete scenario stands for both
+    const auto here = std::ranges::find(loaded.inputs, input.role, &io::InputFile::role);
+    if (here != loaded.inputs.end()) input = *here;
+  }
+  loaded.inputs = std::move(inputs);
+  loaded.settings = settings(rounds);
+  loaded.notes = notes_;
+  loaded.warnings = warnings_;
 }
 
 Sinks Checkpoint::sinks() {
@@ -246,7 +262,10 @@ void Checkpoint::write_manifest() const {
             {"reaches", json_of(reaches_)},
             {"rest_sha256", rest_sha256_},
             {"rows", rows},
-            {"settings", settings}};
+            {"settings", settings},
+            {"inputs", io::json_of(inputs_)},
+            {"notes", notes_},
+            {"warnings", warnings_}};
   json["sha256"] = io::sha256_of_bytes(manifest_text(json));  // of the text without this line
   replace_text(folder_ / kCheckpointManifest, manifest_text(json));
 }
@@ -275,6 +294,10 @@ void Checkpoint::read_manifest() {
     generation_ = number_of(json, "generation", 0, kLargest32 - 1);
     rest_sha256_ = json.at("rest_sha256");
     for (const Json& s : json.at("settings")) settings_.push_back({s.at(0), s.at(1), s.at(2), s.at(3)});
+    for (const Json& input : json.at("inputs"))
+      inputs_.push_back({input.at("role"), input.at("path"), input.at("sha256")});
+    notes_ = json.at("notes").get<std::vector<std::string>>();
+    warnings_ = json.at("warnings").get<std::vector<std::string>>();
     for (const Json& rows : json.at("rows"))
       rows_files_.push_back({number_of(rows, "round", 0, kMostRounds), number_of(rows, "generation", 0, kLargest32),
                              file_name(rows.at("file"), "rows-"), rows.at("sha256")});

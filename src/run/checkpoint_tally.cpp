@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 void put_totals(const Totals& totals, ByteWriter& out) {
   out.put(totals.ends);
   for (const std::uint64_t n :
-       {totals.released, totals.pieces, totals.impacts, totals.psi_dropped, totals.cells_scored})
+       {totals.released, totals.pieces, totals.impacts, totals.psi_dropped, totals.cells_scored, totals.left_blocks})
     out.put(n);
   out.put(totals.length_mm);
   out.put(totals.plan_length_mm);
@@ -25,8 +25,8 @@ void put_totals(const Totals& totals, ByteWriter& out) {
 Totals get_totals(const Barriers& barriers, ByteReader& in) {
   Totals totals;
   totals.ends = in.get<decltype(totals.ends)>();
-  for (std::uint64_t* n :
-       {&totals.released, &totals.pieces, &totals.impacts, &totals.psi_dropped, &totals.cells_scored})
+  for (std::uint64_t* n : {&totals.released, &totals.pieces, &totals.impacts, &totals.psi_dropped, &totals.cells_scored,
+                           &totals.left_blocks})
     *n = in.get<std::uint64_t>();
   totals.length_mm = in.get<std::int64_t>();
   totals.plan_length_mm = in.get<std::int64_t>();

@@ -74,7 +74,6 @@ io::RunRecord new_record(const MergeRequest& request, const LoadedScenario& load
   io::RunRecord record;
   record.command = request.command;
   record.plan = io::plan_checksum(loaded);
-  record.warnings = loaded.warnings;
   record.threads = threads;
   record.parts = static_cast<std::uint32_t>(request.parts.size());
   record.totals.barriers = BarrierTally(loaded.scenario.barriers);
@@ -112,7 +111,8 @@ Outcome merge(const MergeRequest& request, Observer& observer) {
     record.rounds.reached = accuracy_of(tally, record.totals.released, record.rounds.asked.above);
   }
   tally.set_rounds(rounds);
-  loaded.settings = checkpoints.front().settings(rounds);
+  checkpoints.front().recall(loaded, rounds);
+  record.warnings = loaded.warnings;
   io::set_rounds(loaded, rounds);
   record.wall.read = watch.lap().wall;
   record.cpu.simulate = record.totals.cpu_seconds - record.totals.sink_cpu_seconds;

@@ -247,7 +247,8 @@ Outcome RunSession::deliver_results() {
   io::LoadedScenario& loaded = plan_.loaded;
   const std::uint32_t rounds = tracing_->rounds_done();
   tracing_->tally().set_rounds(rounds);
-  loaded.settings = tracing_->checkpoint().settings(rounds);
+  tracing_->checkpoint().recall(loaded, rounds);
+  record_.warnings = loaded.warnings;
   io::set_rounds(loaded, rounds);
   try {
     write_results({loaded, tracing_->checkpoints(), tracing_->tally(), folder_->temporary(), folder_->final_path()},

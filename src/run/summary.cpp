@@ -37,29 +37,38 @@ std::string limits_text(const Totals& totals) {
          share_text(limits, totals.released) + ", allowed are 0.1 %) ended at the limit of impacts, time or vertices";
 }
 
-/// Advice on trajectories that left the terrain. @param into_gaps  how many of them left into gaps inside the DEM
+/// Advice on trajectories that left the terrain.
+///
+/// @param into_gaps  how many of them left, with their largest piece, into gaps inside the DEM
 static std::string advice_on_left(const Totals& totals, std::uint64_t into_gaps) {
   const std::string fill =
       "gaps inside it: fill holes of the survey (gdal_fillnodata.py -md N, half the width of the widest in cells); a "
       "lake may stay";
   const std::uint64_t left = count_of(totals, End::Left), at_edge = left - into_gaps;
-  if (into_gaps == 0) return "a larger DEM would";
-  if (at_edge == 0) return "all of them left it into " + fill;
-  return share_text(at_edge, totals.released) + " left it at its edge: take a larger DEM; " +
-         share_text(into_gaps, totals.released) + " left it into " + fill;
+  const std::uint64_t by_pieces = totals.left_blocks - left;
+  if (into_gaps == 0 && by_pieces == 0) return "a larger DEM would";
+  if (at_edge == 0 && by_pieces == 0) return "all of them left it into " + fill;
+  std::string text;
+  const auto tell = [&](std::uint64_t blocks, const std::string& how) {
+    if (blocks > 0) text += (text.empty() ? "" : "; ") + share_text(blocks, totals.released) + how;
+  };
+  tell(at_edge, " left it at its edge: take a larger DEM");
+  tell(into_gaps, " left it into " + fill);
+  tell(by_pieces,
+       " left it with smaller pieces only (exits.tif shows where): take a larger DEM, or fill gaps inside it");
+  return text;
 }
 
 std::vector<std::string> warnings_of(const Totals& totals, std::uint64_t into_gaps, const std::string& whole) {
   std::vector<std::string> warnings;
-  const auto tell = [&](End end, double share, const std::string& text) {
-    const std::uint64_t count = count_of(totals, end);
+  const auto tell = [&](std::uint64_t count, double share, const std::string& text) {
     if (static_cast<double>(count) > share * static_cast<double>(totals.released))
       warnings.push_back(share_text(count, totals.released) + " of the " + whole + " (" + count_text(count) + ") " +
                          text);
   };
-  tell(End::Left, io::kWarnedLeftShare,
+  tell(totals.left_blocks, io::kWarnedLeftShare,
        "left the DEM or met missing data: the maps do not show how far they go; " + advice_on_left(totals, into_gaps));
-  tell(End::Trapped, io::kWarnedTrappedShare,
+  tell(count_of(totals, End::Trapped), io::kWarnedTrappedShare,
        "were trapped in pits or between walls, on ground too steep to rest on: where these are not in the real "
        "terrain, the maps end too early; trapped.tif shows where; a part of them may lie at pits and dammed cells of "
        "the DEM, which talus check --pits maps");

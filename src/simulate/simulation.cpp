@@ -218,10 +218,10 @@ class Simulation::Advance::Worker {
   void done(const Release& release, const Path& path) {
     Unit& unit = open_units_.front();
     const std::uint32_t round = run_.position_.round;
+    std::int64_t weight = 0;
     if (const AnnualWeights* weights = run_.tally_.weights()) {
-      const std::int64_t weight = weights->weight(scenario_, unit.source, release.block);
+      weight = weights->weight(scenario_, unit.source, release.block);
       batch_.set_annual_share({weight, round * run_.unit_count_ + unit.rows.unit, unit.count});
-      totals_.left_weight += path.end == End::Left ? weight : 0;
     }
     batch_.add(path, release.body, unit.source, unit.reach);
     add(totals_, release, path);
@@ -230,8 +230,22 @@ class Simulation::Advance::Worker {
     if (run_.sinks_.crossings) run_.screens_.find(release, path, unit.rows.crossings);
     if (run_.sinks_.paths && round == 0 && is_recorded(scenario_, unit.source, release.block))
       unit.rows.paths.push_back({stop_row(release, path), points_of(path, work_.spacing())});
-    if (!path.pieces.empty()) trace_pieces(world_, path, [&](const auto&... piece) { add_piece(unit, piece...); });
+    if (add_pieces(unit, path) || path.end == End::Left) {
+      totals_.left_blocks += 1;
+      totals_.left_weight += weight;
+    }
     if (--unit.left == 0) close(unit);
+  }
+
+  /// Traces and scores the pieces that broke off a block. Returns whether one of them left the terrain.
+  bool add_pieces(Unit& unit, const Path& whole) {
+    bool left = false;
+    if (!whole.pieces.empty())
+      trace_pieces(world_, whole, [&](const Release& piece, const Path& path) {
+        add_piece(unit, piece, path);
+        left = left || path.end == End::Left;
+      });
+    return left;
   }
 
   void add_piece(Unit& unit, const Release& piece, const Path& path) {

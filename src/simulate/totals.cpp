@@ -14,6 +14,7 @@ void add(Totals& totals, const Totals& part) {
   totals.cells_scored += part.cells_scored;
   totals.length_mm += part.length_mm;
   totals.plan_length_mm += part.plan_length_mm;
+  totals.left_blocks += part.left_blocks;
   totals.left_weight += part.left_weight;
   totals.barriers.merge(part.barriers);
   totals.sink_cpu_seconds += part.sink_cpu_seconds;

@@ -71,6 +71,65 @@ class Ends(Case):
         done = self.run_well("hazard", self.path("out"), "--overwrite", "--frequency", again)
         self.assertIn("0.1 of the 0.1 events per year (100 %) leave the DEM", done.stderr)
 
+    def test_a_piece_that_leaves_counts_for_its_block(self):
+        """Near the eastern edge of a slope that faces south, with nothing that turns blocks: the largest piece of each stays
+        on its line and stops on the floor below, and smaller ones leave. A screen 1 cm inside the rim of the terrain sees
+        the pieces that leave."""
+        self.dem(1000.0 + 1.2 * np.maximum(0.0, UP - 120.0))
+        os.remove(self.path("sources.gpkg"))
+        write_features(self.path("sources.gpkg"), "sources", [(box(275, 240, 5, 20), ["cliff", 0.4])],
+                       [("name", ogr.OFTString), ("frequency", ogr.OFTReal)])
+        west, east, south, north = WEST + 2.51, WEST + 297.49, NORTH - 297.49, NORTH - 2.51
+        ring = ",".join(f"{x} {y}" for x, y in ((west, south), (east, south), (east, north), (west, north), (west, south)))
+        write_features(self.path("rim.gpkg"), "rim", [(f"LINESTRING ({ring})", ["rim"])], [("id", ogr.OFTString)])
+        scenario = self.write("s.toml", """dem = "dem.tif"
+trajectories = 100
+[sources]
+file = "sources.gpkg"
+[blocks]
+diameter = 0.8
+[ground.zones.default]
+preset = "upper-talus-3d"
+psi_scale = 0
+[screens]
+file = "rim.gpkg"
+[effects.fragmentation]
+threshold = 20
+""")
+        whole = self.run_well("run", scenario, "-o", self.path("whole"), "--threads", "2")
+        record = self.record("whole")
+        self.assertEqual((record["released"], record["ends"]["left"]), (400, 0))
+        rows = self.read_table("whole/screens.csv")
+        left = len({(row["source"], row["block"]) for row in rows})
+        self.assertGreater(left, 10)
+        self.assertGreater(len(rows), left)  # two pieces of some block: it counts once
+        self.assertEqual(bands_of(self.path("whole/exits.tif")).sum(), len(rows))  # none comes back
+        self.assertEqual(record["left_with_pieces"], left)
+        text = (f"{left / 4:.3g} % of the trajectories ({left}) left the DEM or met missing data: the maps do not show how far "
+                f"they go; {left / 4:.3g} % left it with smaller pieces only (exits.tif shows where): take a larger DEM, or "
+                "fill gaps inside it")
+        self.assertIn(text, record["warnings"])
+        self.assertIn(text, whole.stderr)
+        self.assertRegex(self.run_well("check", scenario).stdout, r"(?m)^warning .* left it with smaller pieces only")
+
+        done = self.run_well("hazard", self.path("whole"))
+        self.assertAlmostEqual(self.read_json("whole/hazard.json")["left_per_year"], 0.4 * left / 400, 9)
+        self.assertIn("of the 0.4 events per year", done.stderr)
+        self.run_well("report", self.path("whole"))
+        self.assertIn(f"{left} of 400 blocks ({left / 4:.3g} %), {left} of them with smaller pieces only",
+                      self.read_text("whole/report.html"))
+        again = self.write("again.toml", "[features]\ncliff = 0.1\n")  # other frequencies: traced again
+        self.run_well("hazard", self.path("whole"), "--overwrite", "--frequency", again)
+        self.assertAlmostEqual(self.read_json("whole/hazard.json")["left_per_year"], 0.1 * left / 400, 9)
+
+        for part in ("1/2", "2/2"):
+            self.run_well("run", scenario, "-o", self.path("part" + part[0]), "--part", part, "--threads", "1")
+        self.run_well("merge", self.path("merged"), self.path("part1"), self.path("part2"))
+        self.assertEqual(self.record("merged")["left_with_pieces"], left)
+        self.assertEqual(self.record("merged")["warnings"], record["warnings"])
+        self.run_well("hazard", self.path("merged"))
+        self.assertAlmostEqual(self.read_json("merged/hazard.json")["left_per_year"], 0.4 * left / 400, 9)
+
     def test_missing_data_is_an_exit(self):
         z = 1000.0 + 1.0 * UP + 0.0 * EAST
         z[30, 28:36] = -9999.0

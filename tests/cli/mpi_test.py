@@ -51,10 +51,12 @@ class Mpi(RunCase):
 
     def test_parts_by_ranks(self):
         self.run_scenario("whole")
-        self.run_scenario("part1", "--part", "1/2")
-        self.ranks(2, "part2", "--part", "2/2")
+        self.ranks(2, "part1", "--part", "1/2")
+        self.run_scenario("part2", "--part", "2/2")
         self.run_well("merge", self.path("merged"), self.path("part1"), self.path("part2"), "-q")
         self.assert_same("whole", "merged")
+        for key in ("warnings", "notes", "inputs"):  # as the first rank of the first part read them
+            self.assertEqual(self.record("merged")[key], self.record("whole")[key], key)
 
     def test_a_rank_that_dies(self):
         """In one round and in several; resumed by more ranks, and by one process."""

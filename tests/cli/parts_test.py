@@ -56,6 +56,51 @@ class Parts(RunCase):
         for out in ("again", "merged"):
             self.assertEqual(self.record(out)["warnings"], self.record("whole")["warnings"], out)
 
+    def test_a_merged_run_says_what_one_run_says(self):
+        """An included fit for other cells and another surface, and a flag that changes nothing: the complete scenario of a
+        part knows of neither. A run that is resumed says it, too."""
+        fitted = 'surface = "bilinear"\nfitted_cell = 0.5\n[ground.zones.default]\nEn50 = 9\n'
+        self.write("fitted.toml", fitted)
+        self.write("s.toml", 'include = "fitted.toml"\nsurface = "creased"\n' + RUN.replace("[0.6, 1.2]", "3") +
+                   "[ground.zones.default]\ntheta_scale = 1\npsi_scale = 0.9\nEn50 = 8\nEt50 = 50\nphi = 35\nshape = [0.9, 1.1]\n")
+        flags = ("--preset", "upper-talus-3d")
+        many = (*flags, "--trajectories", "400")
+        self.run_scenario("whole", *many)
+        for i in (1, 2):
+            self.run_scenario(f"part{i}", "--part", f"{i}/2", *many)
+        merge = self.run_well("merge", self.path("merged"), self.path("part2"), self.path("part1"))
+        process = self.start("resumed", *flags, "--threads", "1", "--progress=machine")
+        self.wait_for_progress(process, 5)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=20)
+        self.assertEqual(process.returncode, 130)
+        self.run_scenario("resumed", *many, "--resume")
+        whole = self.record("whole")
+        for words in ("was fitted on cells of 0.5 m, and this run is on cells of 5 m", "was fitted on a bilinear surface",
+                      "flag --preset = 'upper-talus-3d' changes nothing"):
+            self.assertEqual(sum(words in warning for warning in whole["warnings"]), 1, words)
+            self.assertIn(words, merge.stderr)
+        self.assertIn({"role": "include", "path": self.path("fitted.toml"), "sha256": hashlib.sha256(fitted.encode()).hexdigest()},
+                      whole["inputs"])
+        for out in ("merged", "resumed"):
+            for key in ("warnings", "notes", "inputs", "settings"):
+                self.assertEqual(self.record(out)[key], whole[key], (out, key))
+
+    def test_a_merged_run_names_the_files_that_merge_has_read(self):
+        """The machine of the first part had its input in another folder, which is not there."""
+        self.run_scenario("whole")
+        self.run_scenario("part2", "--part", "2/2")
+        os.mkdir(self.path("far"))
+        for name in ("s.toml", "dem.tif", "sources.gpkg", "screens.gpkg", "nets.gpkg"):
+            shutil.copy(self.path(name), self.path("far"))
+        self.run_well("run", self.path("far/s.toml"), "-o", self.path("part1"), "-q", "--part", "1/2")
+        shutil.rmtree(self.path("far"))
+        self.run_well("merge", self.path("merged"), self.path("part2"), self.path("part1"), "-q")
+        inputs = {one["role"]: one for one in self.record("merged")["inputs"]}
+        self.assertEqual(inputs.pop("scenario")["path"], self.path("far/s.toml"))
+        self.assertEqual(inputs, {one["role"]: one for one in self.record("whole")["inputs"] if one["role"] != "scenario"})
+        self.assert_same("whole", "merged")
+
     @staticmethod
     @contextlib.contextmanager
     def manifest(folder):

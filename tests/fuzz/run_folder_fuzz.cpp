@@ -68,7 +68,8 @@ void read_part() {
   Simulation simulation(plan().scenario, checkpoint.part(), checkpoint.asked().several(), tally, sinks);
   checkpoint.restore(simulation, tally);
   checkpoint.replay(0, sinks);
-  checkpoint.settings(2);
+  io::LoadedScenario record = plan();
+  checkpoint.recall(record, 2);
   simulation.advance(1);
 }
 

@@ -157,6 +157,29 @@ TEST_F(ScenarioFile, AnIncludedModelBringsItsBarriers) {
   refused(std::string(kFiles) + "[[instrument_bias]]\nspeed = 0.2\n", {"unknown key 'instrument_bias'"});
 }
 
+/// In barriers.csv and the summary they would have one name.
+TEST_F(ScenarioFile, BarriersOfOneIdAreSaid) {
+  write_vector(path("nets.gpkg"), "EPSG:32632", {{"id", OFTString}, {"height", OFTReal}, {"capacity", OFTReal}},
+               {{"LINESTRING(10 20,30 40)", {"n", "4", "100"}},
+                {"LINESTRING(10 30,30 50)", {"n", "4", "100"}},
+                {"LINESTRING(10 60,30 60)", {"upper", "4", "100"}}});
+  const auto line = [](const std::string& id) {
+    return "[[barriers.line]]\nid = \"" + id + "\"\nheight = 4\nfrom = [600010, 5200020]\nto = [600020, 5200020]\n";
+  };
+  const auto said = [](const LoadedScenario& l) {
+    std::vector<std::string> lines;
+    for (const std::string& warning : l.warnings)
+      if (warning.find("the same id") != std::string::npos) lines.push_back(warning);
+    return lines;
+  };
+  const std::string layer = "[barriers]\nfile = \"nets.gpkg\"\n";
+  const std::vector<std::string> both = said(with(layer + line("upper") + line("lower")));
+  ASSERT_EQ(both.size(), 1U);
+  EXPECT_NE(both[0].find(": n, upper; give each an id of its own"), std::string::npos) << both[0];
+  EXPECT_EQ(said(with(line("n") + line("n"))).size(), 1U);
+  EXPECT_TRUE(said(with(line("n") + line("m"))).empty());
+}
+
 TEST_F(ScenarioFile, FaultsOfAnInclude) {
   const std::string head = std::string("include = \"fitted.toml\"\n") + kFiles + "[blocks]\ndiameter = 1.2\n";
   refused(head, {"scenario.toml:1", "include = 'fitted.toml'", "no such file"});

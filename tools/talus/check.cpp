@@ -84,9 +84,12 @@ Sample trace_sample(const LoadedScenario& loaded) {
   talus::Tracer(world).run(next, [&](const talus::Release& release, const talus::Path& path, std::uint64_t) {
     if (weights) batch.set_annual_share({weights->weight(scenario, release.source, release.block), sample.traced, 1});
     batch.add(path, release.body, release.source, nullptr);
+    bool left = path.end == talus::End::Left;
     talus::trace_pieces(world, path, [&](const talus::Release& piece, const talus::Path& way) {
       batch.add(way, piece.body, release.source, nullptr, true);
+      left = left || way.end == talus::End::Left;
     });
+    sample.totals.left_blocks += left ? 1U : 0U;
     if (batch.full()) tally.add(batch), batch.clear();
     ++sample.traced;
     crossings.clear();

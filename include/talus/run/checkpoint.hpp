@@ -45,8 +45,9 @@ class Checkpoint {
   const Part& part() const { return part_; }
   const Rounds& asked() const { return asked_; }
   std::uint32_t rounds() const { return rounds_; }  ///< rounds done
-  /// Settings of the program that began the run, with `trajectories` multiplied by `rounds`.
-  std::vector<Setting> settings(std::uint32_t rounds) const;
+  /// Gives a plan, for its record, the settings (with `trajectories` multiplied by `rounds`), the notes and warnings
+  /// and the scenario and included file of the program that began the run. Other inputs stay where they were read now.
+  void recall(LoadedScenario& loaded, std::uint32_t rounds) const;
   bool between_rounds() const { return units_done_ == 0; }
   bool empty() const { return generation_ == 0; }  ///< nothing was saved yet
   const std::filesystem::path& folder() const { return folder_; }
@@ -85,6 +86,7 @@ class Checkpoint {
   };
   Checkpoint(std::filesystem::path folder, const LoadedScenario& loaded, ProcessGroup& processes);
   std::vector<SavedFile> gathered(const SavedFile& mine) const;
+  std::vector<Setting> settings(std::uint32_t rounds) const;
   Totals saved_totals() const;
   void close_rows(std::uint32_t round);
   void write_manifest() const;
@@ -95,7 +97,9 @@ class Checkpoint {
   std::string plan_;  // checksum of the plan
   const LoadedScenario* loaded_;
   ProcessGroup* processes_;
-  std::vector<Setting> settings_;
+  std::vector<Setting> settings_;  // this and the next three members: as the program that began the run read the plan
+  std::vector<std::string> notes_, warnings_;
+  std::vector<io::InputFile> inputs_;
   Part part_;
   Rounds asked_;
   std::uint32_t rounds_ = 0;

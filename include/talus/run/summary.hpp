@@ -30,9 +30,9 @@ std::string limits_text(const Totals& totals);
 /// each piece is caught or goes over alone, so that the sum may exceed the number of blocks that ended as `caught`.
 std::string barrier_text(const std::string& id, const BarrierCounts& counts, bool pieces);
 
-/// Warnings about trajectories that left the DEM or were trapped; empty if they are few.
+/// Warnings about trajectories that left the DEM, also with a piece alone, or were trapped; empty if they are few.
 ///
-/// @param into_gaps  how many of them left into gaps inside the DEM
+/// @param into_gaps  how many of them left, with their largest piece, into gaps inside the DEM
 /// @param whole      name of what `totals` sums over
 std::vector<std::string> warnings_of(const Totals& totals, std::uint64_t into_gaps = 0,
                                      const std::string& whole = "trajectories");

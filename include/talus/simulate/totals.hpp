@@ -12,7 +12,8 @@ struct Totals {
   std::array<std::uint64_t, kEnds> ends{};  ///< by End
   std::uint64_t released = 0, pieces = 0, impacts = 0, psi_dropped = 0, cells_scored = 0;
   std::int64_t length_mm = 0, plan_length_mm = 0;
-  std::int64_t left_weight = 0;                ///< annual frequency of those that left, in units of WeightScale::unit
+  std::uint64_t left_blocks = 0;               ///< that left the terrain, or of which a piece did
+  std::int64_t left_weight = 0;                ///< their annual frequency, in units of WeightScale::unit
   std::array<std::uint32_t, 2> first_limit{};  ///< smallest (source, block) that ended at a limit, if any did
   bool interrupted = false;
   BarrierTally barriers;

@@ -92,30 +92,31 @@ std::string advice_on_left_blocks(const RunFacts& run) {
       "fill holes of the survey inside the DEM (gdal_fillnodata.py -md N, half the width of the widest in cells); a "
       "lake may stay.";
   if (!(run.left_into_gaps > 0.0)) return text + "take a larger DEM.";
-  return text + (run.left_into_gaps < run.end("left") ? "take a larger DEM, and " : "") + fill;
+  return text +
+         (run.left_into_gaps < std::max(run.end("left"), run.left_with_pieces) ? "take a larger DEM, and " : "") + fill;
 }
 
 void check_ends(const RunFacts& run, Checks& checks) {
-  const auto share = [&](const char* end) { return run.released > 0.0 ? run.end(end) / run.released : 0.0; };
-  const auto found = [&](const char* end) {
-    return grouped(run.end(end)) + " of " + grouped(run.released) + " blocks (" +
-           percent_of(run.end(end), run.released) + ")";
+  const auto share = [&](double count) { return run.released > 0.0 ? count / run.released : 0.0; };
+  const auto found = [&](double count) {
+    return grouped(count) + " of " + grouped(run.released) + " blocks (" + percent_of(count, run.released) + ")";
   };
+  const double left = std::max(run.end("left"), run.left_with_pieces), by_pieces = left - run.end("left");
   checks.push_back(
-      {share("left") > kWarnedLeftShare ? Mark::Act
-       : run.end("left") > 0.0          ? Mark::Look
-                                        : Mark::Fine,
+      {share(left) > kWarnedLeftShare ? Mark::Act
+       : left > 0.0                   ? Mark::Look
+                                      : Mark::Fine,
        run.of_profile ? "Blocks that leave the profile" : "Blocks that leave the DEM",
-       found("left") +
+       found(left) + (by_pieces > 0.0 ? ", " + grouped(by_pieces) + " of them with smaller pieces only" : "") +
            (run.left_into_gaps > 0.0 ? ", " + grouped(run.left_into_gaps) + " of them into gaps inside the DEM" : ""),
        advice_on_left_blocks(run)});
-  checks.push_back({share("trapped") > kWarnedTrappedShare ? Mark::Act
-                    : run.end("trapped") > 0.0             ? Mark::Look
-                                                           : Mark::Fine,
-                    "Blocks that are trapped", found("trapped"),
+  checks.push_back({share(run.end("trapped")) > kWarnedTrappedShare ? Mark::Act
+                    : run.end("trapped") > 0.0                      ? Mark::Look
+                                                                    : Mark::Fine,
+                    "Blocks that are trapped", found(run.end("trapped")),
                     "Held in pits or between walls on ground too steep to rest on. Above 3 %: look at the DEM there."});
-  checks.push_back({run.end("limit") > 0.0 ? Mark::Look : Mark::Fine, "Blocks cut short by a limit", found("limit"),
-                    "Their path was not followed to its end."});
+  checks.push_back({run.end("limit") > 0.0 ? Mark::Look : Mark::Fine, "Blocks cut short by a limit",
+                    found(run.end("limit")), "Their path was not followed to its end."});
   if (run.status != "complete")
     checks.push_back({Mark::Act, "The run", run.status, "The run itself says that its result is not to be used."});
 }

@@ -55,6 +55,7 @@ struct RunFacts {
   std::optional<std::array<double, 3>> energy_line;  ///< least, P5, P50 [deg]
   std::optional<GullyFacts> gullies;                 ///< nothing in an earlier record
   double left_into_gaps = 0.0;                       ///< 0 in an earlier record
+  double left_with_pieces = 0.0;                     ///< blocks of which a piece left; 0 where none may break
   RecordedGrid grid;
   std::vector<Screen> screens;  ///< in map coordinates [m]
   std::vector<StandingBarrier> barriers;

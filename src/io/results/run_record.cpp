@@ -185,8 +185,10 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
     json["rounds"]["plan"] = plan_checksum(loaded);  // of all rounds together, as hazard_tally.gz has it
   }
   if (record.parts > 1) json["parts"] = record.parts;
-  if (scenario.effects.fragmentation.threshold > 0.0) json["pieces"] = totals.pieces;
+  const bool may_break = scenario.effects.fragmentation.threshold > 0.0;
+  if (may_break) json["pieces"] = totals.pieces;
   json["ends"] = ends_of(totals);
+  if (may_break) json["left_with_pieces"] = totals.left_blocks;
   if (totals.ends[static_cast<std::size_t>(End::Limit)] > 0)
     json["first_limit"] = {{"source", totals.first_limit[0]}, {"block", totals.first_limit[1]}};
   if (record.left_into_gaps) json["left_into_gaps"] = *record.left_into_gaps;

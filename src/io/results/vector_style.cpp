@@ -38,7 +38,8 @@ Legend legend_of(const std::string& name) {
 /// Objects with no hit per year have no return period and a class of their own; those off the map have no class.
 constexpr const char* kReturnPeriod =
     R"(CASE WHEN "trajectories" IS NULL THEN NULL ELSE coalesce("return_period", 1e99) END)";
-/// [kJ], of the largest speed of the path
+/// [kJ], of the largest speed of the path and the mass at its end: too low for a block that broke after it was fastest.
+/// The layer has no mass of each place.
 constexpr const char* kLargestEnergy = R"(0.0005 * "mass_kg" * "max_speed_ms" ^ 2)";
 
 constexpr const char* kNoHit = "no hit per year";  // of no block, or of blocks of sources with a frequency of 0

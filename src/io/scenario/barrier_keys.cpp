@@ -1,6 +1,7 @@
 #include "barrier_keys.hpp"
 
 #include <cmath>
+#include <set>
 
 #include "scenario_text.hpp"
 #include "talus/base/text.hpp"
@@ -99,6 +100,18 @@ void warn_of_unlikely_barriers(std::span<const Barrier> barriers, std::vector<st
                        text_of(kMostHeight) +
                        " m, more than any net: is the capacity in J, or is it a dam? Give kJ and m, and a dam the "
                        "capacity inf");
+}
+
+void warn_of_equal_ids(std::span<const Barrier> barriers, std::vector<std::string>& warnings) {
+  std::set<std::string> seen, twice;
+  for (const Barrier& barrier : barriers)
+    if (!seen.insert(barrier.id).second) twice.insert(barrier.id);
+  if (!twice.empty())
+    warnings.push_back(
+        "barriers: several have the same id, so that barriers.csv, run.json and the summary do not tell "
+        "them apart: " +
+        listed(std::vector<std::string>(twice.begin(), twice.end())) +
+        "; give each an id of its own, in the layer and in [[barriers.line]]");
 }
 
 std::string barrier_lines_text(const std::vector<BarrierLine>& lines) {

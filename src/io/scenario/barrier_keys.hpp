@@ -16,6 +16,9 @@ void read_instrument_bias(ScenarioSpec& spec, TableReader& top);
 /// Warns of barriers that stop more than any net, or are higher: in J, or a dam. Silent where the capacity is infinite.
 void warn_of_unlikely_barriers(std::span<const Barrier> barriers, std::vector<std::string>& warnings);
 
+/// Warns of barriers that have one id, of the layer and of `line`.
+void warn_of_equal_ids(std::span<const Barrier> barriers, std::vector<std::string>& warnings);
+
 /// The text of `line` that reads back as these lines.
 std::string barrier_lines_text(const std::vector<BarrierLine>& lines);
 

@@ -106,6 +106,26 @@ TEST_F(CheckpointOfARun, EndsAsARunWithoutAPause) {
   EXPECT_EQ(rows, expected_rows);
 }
 
+TEST_F(CheckpointOfARun, KeepsWhatWasSaidOfItsPlan) {
+  LoadedScenario begun = loaded(), now = loaded();
+  begun.warnings = {"fitted on cells of 0.5 m"};
+  begun.notes = {"fields read: name"};
+  begun.inputs = {{"scenario", "/a/s.toml", "1"}, {"include", "/a/f.toml", "2"}, {"dem", "/a/dem.tif", "3"}};
+  session(begun, true, 2);
+  now.warnings = {"another"};
+  now.inputs = {{"scenario", "/b/part/scenario.toml", "4"}, {"dem", "/b/dem.tif", "3"}};
+  begun.inputs.erase(begun.inputs.begin(), begun.inputs.begin() + 2);
+  Checkpoint::opened(folder_, begun, false).recall(now, 2);  // the plan has the content of the DEM
+  EXPECT_EQ(now.warnings, begun.warnings);
+  EXPECT_EQ(now.notes, begun.notes);
+  ASSERT_EQ(now.inputs.size(), 3U);
+  EXPECT_EQ(now.inputs[0].path, "/a/s.toml");
+  EXPECT_EQ(now.inputs[1].sha256, "2");
+  EXPECT_EQ(now.inputs[2].path, "/b/dem.tif");  // where it was read now
+  ASSERT_EQ(now.settings.size(), 1U);
+  EXPECT_EQ(now.settings[0].value, std::to_string(2 * kTrajectories));
+}
+
 TEST_F(CheckpointOfARun, OfADamagedFileIsRefused) {
   const LoadedScenario plan = loaded();
   for (const char* name : {"tally-", "rest-", "reach-", "rows-"}) {

@@ -85,6 +85,36 @@ TEST(Pieces, AreTheSameForAnyNumberOfThreadsAndAllScored) {
   EXPECT_GT(mass, 0.2 * released);
 }
 
+/// Each block is traced alone, with its pieces.
+TEST(Pieces, ABlockOfWhichAPieceLeavesHasLeft) {
+  Scenario s = test::rough_slope(4, 150);
+  s.effects.fragmentation = {.threshold = 60.0, .largest = 0.6, .where = {}};
+  s.features[0].frequency = 0.6;
+  s = make_scenario(std::move(s));
+  std::uint64_t left = 0, with_largest = 0;
+  for (std::uint32_t source = 0; source < 4; ++source)
+    for (std::uint32_t block = 0; block < 150; ++block) {
+      Path whole;
+      trace(s.world(), make_release(s, source, block), whole);
+      bool any = whole.end == End::Left;
+      with_largest += any ? 1U : 0U;
+      trace_pieces(s.world(), whole, [&](const Release&, const Path& piece) { any = any || piece.end == End::Left; });
+      left += any ? 1U : 0U;
+    }
+  ASSERT_GT(left, with_largest);
+  for (const int threads : {1, 3}) {
+    Tally tally(s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds);
+    auto weights = AnnualWeights::of(s);
+    ASSERT_TRUE(weights);
+    const double unit = weights->scale().unit;
+    tally.keep_hazard(std::move(*weights));
+    const Totals totals = simulate(s, tally, {}, threads);
+    EXPECT_EQ(totals.ends[static_cast<std::size_t>(End::Left)], with_largest);
+    EXPECT_EQ(totals.left_blocks, left);
+    EXPECT_NEAR(static_cast<double>(totals.left_weight) * unit, 0.6 * static_cast<double>(left) / 600.0, 1e-9);
+  }
+}
+
 TEST(Pieces, CrossScreensWithTheirOwnMass) {
   Scenario s = breaking();
   s.screens = {{"below", {{{150.0, 1.0}, {150.0, 139.0}}}}};

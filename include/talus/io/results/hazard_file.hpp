@@ -17,11 +17,11 @@ struct HazardHeader {
   Grid grid;
   GeoReference geo;
   HazardRules rules;
-  std::int64_t left_weight = 0;  ///< events per year whose path leaves the terrain, in units of the weights
+  std::int64_t left_weight = 0;  ///< `Totals::left_weight`
   double passages_below = 0.0;   ///< `OutputSettings::passages_below`
 };
 
-/// Events per year whose path leaves the terrain.
+/// Events per year of which the block, or a piece of it, leaves the terrain.
 inline double left_per_year(const HazardHeader& header) {
   return static_cast<double>(header.left_weight) * header.rules.scale.unit;
 }
