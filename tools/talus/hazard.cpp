@@ -223,8 +223,7 @@ int hazard(const Options& options) {
   if (auto note = talus::io::barriers_note(folder)) record.warnings.push_back(std::move(*note));
   if (auto note = talus::io::wet_day_note(folder, true)) record.warnings.push_back(std::move(*note));
   if (auto note = talus::io::forest_note(folder)) record.warnings.push_back(std::move(*note));
-  if (record.width > 0.0 && talus::io::pieces_note(folder))
-    record.warnings.emplace_back(talus::io::kBoundsOfPieces);
+  if (record.width > 0.0 && talus::io::pieces_note(folder)) record.warnings.emplace_back(talus::io::kBoundsOfPieces);
 
   progress.stage("writing the maps");
   const talus::Grid& grid = survey->grid();

@@ -47,8 +47,8 @@ struct StandingBarrier {
 struct RunFacts {
   std::string version, command, status, plan;
   std::string plan_of_hazard;  ///< that its hazard.json names: of several rounds that of all together
-  bool of_profile = false;  ///< of `talus profile`
-  std::string written;      ///< day of the file run.json, "2026-11-23": a copy may have a later one
+  bool of_profile = false;     ///< of `talus profile`
+  std::string written;         ///< day of the file run.json, "2026-11-23": a copy may have a later one
   double released = 0.0, source_cells = 0.0, per_source = 0.0, rounds = 0.0, impacts = 0.0, kilometres = 0.0;
   double touched_cells = 0.0;
   std::vector<std::pair<std::string, double>> ends;  ///< in the order of the record
