@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "evidence.hpp"
 #include "io/files/checksum.hpp"
 #include "talus/base/error.hpp"
 #include "talus/base/printable.hpp"
