@@ -154,6 +154,7 @@ TEST(DiagnosisPage, SaysWhereNoFurtherEffectWasTried) {
   const std::string none = "no effect of the library explains", untried = "no further effect was tried";
   EXPECT_EQ(count_of(diagnosis_page(Campaign{}, record), none), 1U);
   last.tried = false;
+  record.diagnosis.stability.fits.resize(1);
   EXPECT_EQ(count_of(diagnosis_page(Campaign{}, record), none), 0U);
   EXPECT_EQ(count_of(diagnosis_page(Campaign{}, record), untried), 1U);
   EXPECT_NE(diagnosis_json(record).find("\"effects_tried\": false"), std::string::npos);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "support/campaigns.hpp"
+#include "talus/fit/score/intervals.hpp"
 
 namespace talus::io {
 namespace {
@@ -27,6 +28,7 @@ TEST(JudgeNested, AnEffectThatChangesNothingGainsNothing) {
   record.diagnosis.rounds.resize(1);
   record.diagnosis.rounds[0].candidates = {candidate_of("refitted", true), candidate_of("held", false)};
   record.evidence.resize(2);
+  record.clusters = clusters_of(c);
   NestedValidation nested;
   nested.folds.count = 2;
   for (std::size_t b = 0; b < c.blocks.size(); ++b)
