@@ -55,7 +55,7 @@ static std::string advice_on_left(const Totals& totals, std::uint64_t into_gaps)
   tell(at_edge, " left it at its edge: take a larger DEM");
   tell(into_gaps, " left it into " + fill);
   tell(by_pieces,
-       " left it with smaller pieces only (exits.tif shows where): take a larger DEM, or fill gaps inside it");
+       " left it with smaller pieces only (exits.tif of a run shows where): take a larger DEM, or fill gaps inside it");
   return text;
 }
 

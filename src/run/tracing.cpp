@@ -78,9 +78,10 @@ Checkpoint Tracing::resumed(const fs::path& work) const {
 }
 
 void Tracing::trace(int threads, int lanes) {
-  while (!enough()) {
+  for (bool begins = true; !enough(); begins = false) {
     if (simulation_.round_done()) simulation_.next_round();
-    if (plan_.rounds.several() && simulation_.position().unit == 0)
+    if (plan_.rounds.several() &&
+        (begins || simulation_.position().unit == 0))  // a resumed run may begin within a round
       observer_.begin_part("round " + std::to_string(simulation_.position().round + 1));
     all_saved_ = false;
     simulation_.advance(threads, lanes);

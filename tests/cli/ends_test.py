@@ -106,7 +106,7 @@ threshold = 20
         self.assertEqual(bands_of(self.path("whole/exits.tif")).sum(), len(rows))  # none comes back
         self.assertEqual(record["left_with_pieces"], left)
         text = (f"{left / 4:.3g} % of the trajectories ({left}) left the DEM or met missing data: the maps do not show how far "
-                f"they go; {left / 4:.3g} % left it with smaller pieces only (exits.tif shows where): take a larger DEM, or "
+                f"they go; {left / 4:.3g} % left it with smaller pieces only (exits.tif of a run shows where): take a larger DEM, or "
                 "fill gaps inside it")
         self.assertIn(text, record["warnings"])
         self.assertIn(text, whole.stderr)

@@ -270,7 +270,7 @@ class Hazard(Case):
     def test_another_weighting_that_says_too_little_or_too_much(self):
         """In words of its own: there were those of a scenario, with the flag --field that talus hazard does not have."""
         self.classes_run("out")
-        for text, words in (("[features]\nwest = 1\n", "w.toml: [features] does not list east, must list every feature of the sources"),
+        for text, words in (("[features]\nwest = 1\n", "w.toml: [features] does not list east, must list every feature that releases blocks"),
                             ("[frequency]\ntotal = 1\n[features]\nwest = 1\neast = 1\n",
                              "w.toml: [features] cannot be given with total, per_area or power_law of [frequency]: leave out one")):
             self.refused(words, "hazard", self.path("out"), "--overwrite", "--frequency", self.write("w.toml", text))
@@ -321,10 +321,16 @@ class Hazard(Case):
             self.place_sources([(box(100, 230, 20, 10), [name, 0.5]), (box(200, 230, 20, 10), [other, 0.2])])
             self.simulate(name)
             if name == "2":
-                self.refused('w.toml:2: features.2 = 1: 2 is the name of a feature and the number of another, must be one: name them as '
+                self.refused('w.toml:2: features.2 = 1: 2 means 2 features, by name and by number, must be one: name them as '
                              '"FID 1", "FID 2"', "hazard", self.path(name), "--frequency", self.write("w.toml", "[features]\n2 = 1\n"))
             self.run_well("hazard", self.path(name), "-q", "--frequency", self.write("w.toml", '[features]\n"FID 2" = 3\n'))
             self.assertAlmostEqual(self.read_json(name + "/hazard.json")["events_per_year"], 0.5 + 3.0, 9)
+
+    def test_a_name_that_begins_as_a_number_form(self):
+        self.place_sources([(box(100, 230, 20, 10), ["FID north", 0.5]), (box(200, 230, 20, 10), ["x", 0.2])])
+        self.simulate()
+        self.run_well("hazard", self.path("out"), "-q", "--frequency", self.write("w.toml", '[features]\n"FID north" = 3\n'))
+        self.assertAlmostEqual(self.read_json("out/hazard.json")["events_per_year"], 3.2, 9)
 
     def test_what_is_not_its_own_stays(self):
         self.simulate()
@@ -526,7 +532,7 @@ class Hazard(Case):
         self.classes_run("out")
         self.assertFalse(any("flag --diameter" in warning for warning in self.record()["warnings"]))
         done = self.run_well("run", self.path("s.toml"), "-o", self.path("one"), "--diameter", "1")
-        self.assertIn(words + ": say with --frequency how often blocks fall", done.stderr)
+        self.assertIn(words + "; unless the sources or [frequency] say how often blocks fall, give --frequency for a hazard", done.stderr)
         self.assertEqual(sum(words in warning for warning in self.record("one")["warnings"]), 1)
         self.assertFalse(os.path.exists(self.path("one/hazard_tally.gz")))
         said = self.run_well("check", self.path("s.toml"), "--diameter", "1", "--frequency", "2").stdout

@@ -220,6 +220,19 @@ class Parts(RunCase):
         self.assert_same("whole", "out")
         self.assertEqual(self.unfinished("out"), [])
 
+    def test_a_resumed_run_says_in_which_round_it_is(self):
+        """From its first share on: a bar of several rounds is long."""
+        process = self.start("out", "--rounds", "2", "--threads", "1", "--progress=machine")
+        self.wait_for_progress(process, 5)
+        process.send_signal(signal.SIGINT)
+        self.assertIn("interrupted", process.communicate(timeout=20)[1])
+        done = self.run_well("run", self.path("s.toml"), "-o", self.path("out"), "--trajectories", "400", "--rounds", "2", "--resume",
+                             "--progress=json")
+        lines = [json.loads(line) for line in done.stderr.splitlines() if line.startswith("{")]
+        parts = [line.get("part") for line in lines if line.get("phase") == "simulate" and line["share"] > 0]
+        self.assertEqual(parts[0], "round 1")
+        self.assertEqual(set(parts), {"round 1", "round 2"})
+
     def test_the_command_that_goes_on_is_read_by_a_shell(self):
         odd = "a b'c$d"
         os.mkdir(self.path(odd))

@@ -363,9 +363,12 @@ std::string curve_rows(const std::string& object, const HazardCurve& curve, cons
   std::string rows;
   for (std::size_t i = 0; i < curve.size(); ++i) {
     const int bin = curve.first() + static_cast<int>(i);
-    if (i + 1 < curve.size() && bins.edge(bin) == bins.edge(bin + 1)) continue;  // the next row has this energy
+    const double energy =
+        bins.edge(bin);  // a threshold may be the edge of two bins: one row, the first of all if it can
+    if (i > 0 && (energy == bins.edge(curve.first()) || (i + 1 < curve.size() && energy == bins.edge(bin + 1))))
+      continue;
     const Bounded f = curve_point(curve, bins, i);
-    rows += object + ',' + csv_field(bins.edge(bin));
+    rows += object + ',' + csv_field(energy);
     for (const double value : {f.value, f.low, f.high, 1.0 / f.value}) rows += ',' + csv_field(value);
     rows += '\n';
   }

@@ -20,10 +20,16 @@ std::string number_form(const SourceFeature& feature) {
   return std::string(kNumberForm) + std::to_string(feature.id);
 }
 
+/// Whether a word is "FID " and a number; "FID north" is a name.
+bool is_number_form(const std::string& word) {
+  return word.starts_with(kNumberForm) && word.size() > kNumberForm.size() &&
+         word.find_first_not_of("0123456789", kNumberForm.size()) == std::string::npos;
+}
+
 /// The features that a word of the file means: "FID 3" the one of this number, any other word those of this name or
 /// number.
 std::vector<std::size_t> meant_by(const std::string& word, const std::vector<SourceFeature>& features) {
-  const bool is_number = word.starts_with(kNumberForm);
+  const bool is_number = is_number_form(word);
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < features.size(); ++i)
     if (number_form(features[i]) == word ||
@@ -39,7 +45,7 @@ std::string ambiguous_text(const std::string& word, const std::vector<std::size_
   for (const std::size_t i : found) forms.push_back('"' + number_form(features[i]) + '"');
   const bool names = std::ranges::all_of(found, [&](std::size_t i) { return features[i].name == word; });
   return (names ? std::to_string(found.size()) + " features are called " + word
-                : word + " is the name of a feature and the number of another") +
+                : word + " means " + std::to_string(found.size()) + " features, by name and by number") +
          ", must be one: name them as " + listed(forms);
 }
 
@@ -94,9 +100,10 @@ void require_all_features(const Scenario& scenario, const std::string& file) {
     names.push_back(feature.name.empty() ? std::to_string(feature.id) : feature.name);
   }
   if (!names.empty())
-    throw InputError(file + ": [features] does not list " + listed(names) +
-                     ", must list every feature of the sources: the frequencies of the run are not by feature, so that "
-                     "none can stay");
+    throw InputError(
+        file + ": [features] does not list " + listed(names) +
+        ", must list every feature that releases blocks: the frequencies of the run are not by feature, so that "
+        "none can stay");
 }
 
 /// Reads the frequencies of features. Adds what is given to `read`.

@@ -91,7 +91,9 @@ void lay_diameter(ScenarioSpec& spec, double diameter, bool has_frequency, std::
         "flag --diameter = " + text_of(diameter) +
         ": takes the place of the block classes of the scenario, and their " + with_digits(frequency, 4) +
         " events per year are dropped with them" +
-        (has_frequency ? "" : ": say with --frequency how often blocks fall, if the run is to have a hazard"));
+        (has_frequency
+             ? ""
+             : "; unless the sources or [frequency] say how often blocks fall, give --frequency for a hazard"));
   spec.values.blocks.power_law = {};
   spec.values.blocks.classes = {BlockClass{{diameter, diameter}}};
   spec.origins["blocks.diameter"] = "flag --diameter";
