@@ -68,14 +68,6 @@ ObserveOptions unseen_runs(const Campaign& campaign, const DiagnoseOptions& opti
   return how;
 }
 
-/// The blocks of all folds, simulated with one model.
-std::vector<BlockRuns> every_fold(const Campaign& campaign, const Model& model, const OuterFolds& folds,
-                                  ObserveOptions how) {
-  std::transform(folds.fold_of.begin(), folds.fold_of.end(), how.blocks.begin(),
-                 [](std::uint32_t fold) { return fold != kNoFold; });
-  return observe(campaign, model, how);
-}
-
 /// Repeats the loop without each fold and simulates the fold's blocks with what it found.
 void validate_by_choosing(const Campaign& campaign, const Model& start, DiagnosisWork& work, NestedValidation& nested) {
   LoopScope scope;
@@ -180,8 +172,11 @@ NestedValidation nested_validation(const Campaign& campaign, const Model& start,
   };
   nested.ground = refitted(whole.base);
   const std::vector<FittedCandidate>& candidates = whole.rounds.front().candidates;
-  if (!std::ranges::all_of(candidates, &FittedCandidate::with_ground))
-    nested.held = every_fold(campaign, whole.base.model, nested.folds, how);
+  if (!std::ranges::all_of(candidates, &FittedCandidate::with_ground)) {
+    ObserveOptions every_fold = how;
+    every_fold.blocks = rows;
+    nested.held = observe(campaign, whole.base.model, every_fold);
+  }
   for (const FittedCandidate& candidate : candidates)
     nested.candidates.push_back(candidate.refined ? refitted(candidate.fitted) : std::vector<BlockRuns>{});
   if (!nested.naming) {

@@ -10,7 +10,7 @@ namespace talus::io {
 /// and bounds that follow from them, and equal ones compress better than differences (docs/performance.md).
 std::vector<std::byte> deflated(std::span<const std::byte> bytes);
 
-/// The same for bytes that repeat and stand in a file many times: slower, and up to twenty times smaller.
+/// Compresses a tile that stands in a file many times: slower than `deflated`, and smaller.
 std::vector<std::byte> deflated_well(std::span<const std::byte> bytes);
 
 /// A complete gzip file of these bytes. Several, one after the other, are a gzip file too.

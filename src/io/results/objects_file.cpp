@@ -363,8 +363,8 @@ std::string curve_rows(const std::string& object, const HazardCurve& curve, cons
   std::string rows;
   for (std::size_t i = 0; i < curve.size(); ++i) {
     const int bin = curve.first() + static_cast<int>(i);
-    const double energy =
-        bins.edge(bin);  // a threshold may be the edge of two bins: one row, the first of all if it can
+    const double energy = bins.edge(bin);
+    // Each energy has one row: two bins begin with it where a threshold is an edge. The first row is of all hits.
     if (i > 0 && (energy == bins.edge(curve.first()) || (i + 1 < curve.size() && energy == bins.edge(bin + 1))))
       continue;
     const Bounded f = curve_point(curve, bins, i);

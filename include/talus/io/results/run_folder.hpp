@@ -35,13 +35,13 @@ std::optional<std::string> wet_day_note(const std::filesystem::path& folder, boo
 inline constexpr const char* kHitsOfPieces =
     "hits of objects are falls: a block with its pieces counts once; maps of --width count every piece";
 
-/// Warning of the bounds of `--width` in such a run.
+/// That sentence; nothing if no block of the run broke.
+std::optional<std::string> pieces_note(const std::filesystem::path& folder);
+
+/// Warning of the bounds of `--width` in a run whose blocks broke.
 inline constexpr const char* kBoundsOfPieces =
     "blocks broke in this run, and the bounds of --width take the pieces of a block for independent hits: they are too "
     "narrow where several of them pass (unsafe); --objects counts a block with its pieces once";
-
-/// That sentence; nothing if no block of the run broke.
-std::optional<std::string> pieces_note(const std::filesystem::path& folder);
 
 /// "forest or other vegetation stood in the run (forest-stems)"; empty if none of these effects is of a stand.
 /// @param effects  names of those that acted
