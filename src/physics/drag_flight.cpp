@@ -200,7 +200,7 @@ bool DragFlight::in_a_stand(const PatchIndex& patch) const {
   if (patch.column < 0 || patch.row < 0 || patch.column + 1 >= grid.columns || patch.row + 1 >= grid.rows) return true;
   for (const int column : {patch.column, patch.column + 1})
     for (const int row : {patch.row, patch.row + 1}) {
-      const double x = (column + 0.5) * grid.cell_x, y = (row + 0.5) * grid.cell_y;
+      const double x = grid.centre_x(column), y = grid.centre_y(row);
       const std::uint8_t zone = world_.cover.zone_at(x, y);
       if (effects_.vegetation_drag.coefficient > 0.0 && effects_.vegetation_drag.where.covers(zone, x, y)) return true;
       if (stems_ && !stems_->of_list() && has_stand(effects_.forest_stems, zone, x, y)) return true;

@@ -158,7 +158,7 @@ BarrierDesign design_barrier(std::span<const LineCrossing> crossings, const Desi
 }
 
 std::size_t fewest_for_percentile(double percentile) {
-  return static_cast<std::size_t>(std::ceil(1.0 / (1.0 - percentile) - 1e-9));
+  return static_cast<std::size_t>(std::ceil((1.0 - 1e-9) / (1.0 - percentile)));
 }
 
 Stretch shortest_stretch(std::span<const LineCrossing> crossings, double containment) {

@@ -70,7 +70,7 @@ struct TallyValues {
     tally.memory().keep_below_limit();  // reading a record loads its neighbours too
     std::vector<double> cell(untouched.size());
     const int end = part.column + part.columns;
-    for (int column = part.column; column < end; ++column) tally.fetch(column, part.row);
+    for (int column = part.column; column < end; ++column) tally.prefetch_record(column, part.row);
     for (int column = part.column; column < end; ++column, ++place) {
       of_cell(column, part.row, rule, cell);
       for (std::size_t band = 0; band < cell.size(); ++band) values[band * band_size + place] = cell[band];

@@ -8,11 +8,11 @@ namespace talus {
 namespace {
 
 double energy_of(const Crossing& c) {
-  return kinetic_energy(c.mass, c.speed);
+  return kinetic_energy_kj(c.mass, c.speed);
 }
 
 double rotation_of(const Crossing& c) {
-  return Block{c.diameter, c.mass}.rotational_energy(c.spin);
+  return Block{c.diameter, c.mass}.rotational_energy_kj(c.spin);
 }
 
 constexpr std::array<ScreenQuantity, 8> kAll{{

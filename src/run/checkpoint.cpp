@@ -25,7 +25,7 @@ namespace {
 using io::plan_checksum;
 using io::replace_text;
 using Json = nlohmann::ordered_json;
-constexpr int kFormat = 8;
+constexpr int kFormat = 9;
 constexpr std::int64_t kMostRounds = 10'000;  // that talus run takes
 constexpr std::int64_t kLargest32 = 0xFFFF'FFFF;
 

@@ -10,8 +10,8 @@ namespace fs = std::filesystem;
 
 void put_totals(const Totals& totals, ByteWriter& out) {
   out.put(totals.ends);
-  for (const std::uint64_t n :
-       {totals.released, totals.pieces, totals.impacts, totals.psi_dropped, totals.cells_scored, totals.left_blocks})
+  for (const std::uint64_t n : {totals.released, totals.pieces, totals.impacts, totals.psi_dropped, totals.cells_scored,
+                                totals.left_blocks, totals.limited_blocks})
     out.put(n);
   out.put(totals.length_mm);
   out.put(totals.plan_length_mm);
@@ -26,7 +26,7 @@ Totals get_totals(const Barriers& barriers, ByteReader& in) {
   Totals totals;
   totals.ends = in.get<decltype(totals.ends)>();
   for (std::uint64_t* n : {&totals.released, &totals.pieces, &totals.impacts, &totals.psi_dropped, &totals.cells_scored,
-                           &totals.left_blocks})
+                           &totals.left_blocks, &totals.limited_blocks})
     *n = in.get<std::uint64_t>();
   totals.length_mm = in.get<std::int64_t>();
   totals.plan_length_mm = in.get<std::int64_t>();

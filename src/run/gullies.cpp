@@ -9,9 +9,9 @@ io::GullyRecord gully_record(const GullyStops& stops, const Tally& tally, const 
   io::GullyRecord record{stops.blocks(), std::nullopt};
   if (const auto worst = stops.worst()) {
     const Grid& grid = tally.grid();
-    const double south = loaded.geo.north - grid.rows * loaded.geo.cell_y;
+    const io::MapPlace place(loaded.geo, grid);
     const CellRecord* cell = tally.find(worst->column, worst->row);
-    record.worst = {loaded.geo.west + grid.centre_x(worst->column), south + grid.centre_y(worst->row), worst->blocks,
+    record.worst = {place.x(grid.centre_x(worst->column)), place.y(grid.centre_y(worst->row)), worst->blocks,
                     cell != nullptr ? cell->passages : 0U};
   }
   return record;

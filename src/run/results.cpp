@@ -198,9 +198,11 @@ void summarise(const io::RunRecord& record, const LoadedScenario& loaded, std::s
 
 Outcome judge_limits(const Totals& totals, const std::filesystem::path& folder, Observer& observer) {
   if (!io::too_many_limits(totals)) return Outcome::Done;
-  observer.error(limits_text(totals) + "; look at the first: talus trace " +
-                 shell_word((folder / "scenario.toml").string()) + " --source " +
-                 std::to_string(totals.first_limit[0]) + " --block " + std::to_string(totals.first_limit[1]));
+  observer.error(
+      limits_text(totals) + "; look at the first" +
+      (totals.limited_blocks > totals.ended(End::Limit) ? " (talus trace shows the largest piece only)" : "") +
+      ": talus trace " + shell_word((folder / "scenario.toml").string()) + " --source " +
+      std::to_string(totals.first_limit[0]) + " --block " + std::to_string(totals.first_limit[1]));
   return Outcome::TooManyLimits;
 }
 

@@ -162,7 +162,7 @@ void RunSession::warn_of_input() {
   for (const std::string& warning : plan_.loaded.warnings) observer_.warning(warning);
   const Rounds& rounds = plan_.rounds;
   const std::uint64_t all = plan_.loaded.scenario.released() * (rounds.until_error ? 1 : rounds.count);
-  if (const auto warning = size_warning(all, plan_.part.of)) observer_.warning(*warning);
+  if (const auto warning = many_trajectories_warning(all, plan_.part.of)) observer_.warning(*warning);
   const std::size_t sources = plan_.loaded.scenario.sources.size();
   if (request_.part && plan_.part.first(sources) == plan_.part.end(sources))
     observer_.warning("--part " + *request_.part + " is empty: the plan has " + count_text(sources) + " source cells");
@@ -204,7 +204,7 @@ void RunSession::with_hint(const std::function<void()>& work) {
   } catch (const std::runtime_error& error) {
     if (tracing_->checkpoint().empty()) throw;
     throw std::runtime_error(std::string(error.what()) +
-                             "; what was kept last goes on with: " + command_to_resume(request_.command));
+                             "; resume from the last save with: " + command_to_resume(request_.command));
   }
 }
 

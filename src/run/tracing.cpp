@@ -109,13 +109,13 @@ void Tracing::save_rest() {
 void Tracing::interrupt() {
   if (simulation_.position().unit == 0 && simulation_.position().round == 0) stop_interrupted();
   if (!all_saved_) save_checkpoint();
-  throw Interrupted("interrupted; what was traced is kept, go on with: " + command_to_resume(request_.command));
+  throw Interrupted("interrupted; the work so far is saved, resume with: " + command_to_resume(request_.command));
 }
 
 void Tracing::interrupt_writing() {
   if (processes_.size() == 1) interrupt();
   if (checkpoint().empty()) stop_interrupted();
-  throw Interrupted("interrupted; what was kept last goes on with: " + command_to_resume(request_.command));
+  throw Interrupted("interrupted; resume from the last save with: " + command_to_resume(request_.command));
 }
 
 Accuracy Tracing::accuracy() {

@@ -71,11 +71,14 @@ void add_way(Totals& totals, const Path& path) {
   totals.plan_length_mm += std::llround(1e3 * path.plan_length);
 }
 
-void add(Totals& totals, const Release& release, const Path& path) {
-  if (path.end == End::Limit) {
-    const std::array<std::uint32_t, 2> id{release.source, release.block};
-    if (totals.ends[static_cast<std::size_t>(End::Limit)] == 0 || id < totals.first_limit) totals.first_limit = id;
-  }
+/// Counts a block that ended at a limit, or of which a piece did.
+void add_limited(Totals& totals, const Release& release) {
+  const std::array<std::uint32_t, 2> id{release.source, release.block};
+  if (totals.limited_blocks == 0 || id < totals.first_limit) totals.first_limit = id;
+  totals.limited_blocks += 1;
+}
+
+void add(Totals& totals, const Path& path) {
   totals.ends[static_cast<std::size_t>(path.end)] += 1;
   totals.released += 1;
   add_way(totals, path);
@@ -224,28 +227,36 @@ class Simulation::Advance::Worker {
       batch_.set_annual_share({weight, round * run_.unit_count_ + unit.rows.unit, unit.count});
     }
     batch_.add(path, release.body, unit.source, unit.reach);
-    add(totals_, release, path);
+    add(totals_, path);
     if (run_.sinks_.walked) run_.sinks_.walked(release, path);
     if (run_.sinks_.stops) unit.rows.stops.push_back(stop_row(release, path));
     if (run_.sinks_.crossings) run_.screens_.find(release, path, unit.rows.crossings);
     if (run_.sinks_.paths && round == 0 && is_recorded(scenario_, unit.source, release.block))
       unit.rows.paths.push_back({stop_row(release, path), points_of(path, work_.spacing())});
-    if (add_pieces(unit, path) || path.end == End::Left) {
+    const PieceEnds pieces = add_pieces(unit, path);
+    if (pieces.left || path.end == End::Left) {
       totals_.left_blocks += 1;
       totals_.left_weight += weight;
     }
+    if (pieces.limited || path.end == End::Limit) add_limited(totals_, release);
     if (--unit.left == 0) close(unit);
   }
 
-  /// Traces and scores the pieces that broke off a block. Returns whether one of them left the terrain.
-  bool add_pieces(Unit& unit, const Path& whole) {
-    bool left = false;
+  /// Whether one of the pieces of a block left the terrain, and whether one ended at a limit.
+  struct PieceEnds {
+    bool left = false, limited = false;
+  };
+
+  /// Traces and scores the pieces that broke off a block.
+  PieceEnds add_pieces(Unit& unit, const Path& whole) {
+    PieceEnds ends;
     if (!whole.pieces.empty())
       trace_pieces(world_, whole, [&](const Release& piece, const Path& path) {
         add_piece(unit, piece, path);
-        left = left || path.end == End::Left;
+        ends.left = ends.left || path.end == End::Left;
+        ends.limited = ends.limited || path.end == End::Limit;
       });
-    return left;
+    return ends;
   }
 
   void add_piece(Unit& unit, const Release& piece, const Path& path) {

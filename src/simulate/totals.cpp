@@ -3,8 +3,7 @@
 namespace talus {
 
 void add(Totals& totals, const Totals& part) {
-  constexpr auto kLimit = static_cast<std::size_t>(End::Limit);
-  if (part.ends[kLimit] > 0 && (totals.ends[kLimit] == 0 || part.first_limit < totals.first_limit))
+  if (part.limited_blocks > 0 && (totals.limited_blocks == 0 || part.first_limit < totals.first_limit))
     totals.first_limit = part.first_limit;
   for (std::size_t e = 0; e < kEnds; ++e) totals.ends[e] += part.ends[e];
   totals.released += part.released;
@@ -15,6 +14,7 @@ void add(Totals& totals, const Totals& part) {
   totals.length_mm += part.length_mm;
   totals.plan_length_mm += part.plan_length_mm;
   totals.left_blocks += part.left_blocks;
+  totals.limited_blocks += part.limited_blocks;
   totals.left_weight += part.left_weight;
   totals.barriers.merge(part.barriers);
   totals.sink_cpu_seconds += part.sink_cpu_seconds;

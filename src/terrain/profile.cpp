@@ -8,6 +8,14 @@ namespace {
 
 constexpr int kMantissa = 24;  // bits of a float: up to 2^24 multiples of a quantum are exact
 
+/// Adds the columns of a segment that ends at the height `end`: the last ones rise by one quantum more than the first
+/// ones, so that the end is met and the edge between them is concave.
+void append_segment(std::vector<long long>& quanta, long long end, long long columns) {
+  const long long rise = end - quanta.back();
+  const long long steeper = ((rise % columns) + columns) % columns, each = (rise - steeper) / columns;
+  for (long long c = 0; c < columns; ++c) quanta.push_back(quanta.back() + each + (c < columns - steeper ? 0 : 1));
+}
+
 }  // namespace
 
 double Profile::height(double x) const {
@@ -27,14 +35,13 @@ ExtrudedProfile extrude(const Profile& profile, double step) {
   const double quantum =
       std::exp2(std::ceil(std::log2(0.5 * (high->y() - low->y()) + 1.0)) - kMantissa);  // 1 m: margin for rounding
   const auto column_of = [&](double x) { return std::llround((x - profile.from()) / step); };
+  const auto quanta_of = [&](double z) { return std::llround((z - out.datum) / quantum); };
 
-  std::vector<long long> quanta{std::llround((profile.nodes.front().y() - out.datum) / quantum)};
+  std::vector<long long> quanta{quanta_of(profile.nodes.front().y())};
   for (std::size_t i = 1; i < profile.nodes.size(); ++i) {
     const long long first = std::ssize(quanta) - 1;
     const long long columns = std::max(1LL, column_of(profile.nodes[i].x()) - first);  // 1: two nodes in one column
-    const double rise = (profile.nodes[i].y() - out.datum) / quantum - static_cast<double>(quanta.back());
-    const long long each = std::llround(rise / static_cast<double>(columns));
-    for (long long c = 0; c < columns; ++c) quanta.push_back(quanta.back() + each);
+    append_segment(quanta, quanta_of(profile.nodes[i].y()), columns);
   }
 
   const int columns = static_cast<int>(quanta.size());

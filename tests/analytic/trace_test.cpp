@@ -124,6 +124,19 @@ TEST(Trap, ABlockThatCrawlsOnOpenGroundHasStopped) {
   EXPECT_GT(stopped, 0);
 }
 
+/// On a smooth plane steeper than phi v^2 = 2 g (sin b - tan(phi) cos b) s grows with the way s: nothing can hold a
+/// block, however large, that starts from rest and needs long to get one diameter away.
+TEST(Trap, ALargeBlockThatSpeedsUpOnOpenGroundLeaves) {
+  const double slope = std::tan(radians(33.0));
+  const Surface plane(
+      test::terrain(test::grid_of(200, 60, 4.0, 4.0), [&](double x, double) { return 2000.0 - slope * x; }));
+  const Launch scene{plane, {{Ground{.theta_scale = 0.0, .psi_scale = 0.0, .En50 = 15.0}}, {}}};
+  for (const double diameter : {1.0, 4.0, 10.0, 30.0}) {
+    const Path path = scene.run({20.0, 120.0, *plane.height(20.0, 120.0)}, Vec3::Zero(), diameter);
+    EXPECT_EQ(path.end, End::Left) << diameter;
+  }
+}
+
 /// A pit, a V and a hip whose sides all have one slope: the heights |x| and |y| are planes between cell centres. Where
 /// the sides are steeper than phi, the pit and the V trap every block and the hip holds none; else every block that
 /// stays has stopped, pit or not.

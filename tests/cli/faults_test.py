@@ -77,7 +77,7 @@ class Disks(Faults):
                                  text=True, timeout=120)
         self.assertEqual(process.returncode, 1, process.stderr)
         self.assertIn("cannot be written", process.stderr)
-        self.assertIn("what was kept last goes on with", process.stderr)
+        self.assertIn("; resume from the last save with: ", process.stderr)
         self.assertFalse(os.path.exists(self.path("disk/out")))
         self.assertEqual(len(os.listdir(disk)), 1)
         subprocess.run(["mount", "-o", "remount,size=200m", disk], check=True)

@@ -167,6 +167,15 @@ class OwnCampaign(Case):
         none = self.write("none.toml", "# nothing\n")
         self.fails(2, "none.toml: holds no [ground]", arguments=["score", self.campaign, "--parameters", none])
 
+    def test_few_trials_are_said(self):
+        model = ["score", self.campaign, "--parameters", self.path("truth.toml"), "--json"]
+        said = json.loads(self.run_well(*model, "--trials", "20").stdout)["warnings"]
+        self.assertTrue([w for w in said if w.startswith("--trials 20: must be 100 at least")], said)
+        self.assertEqual(json.loads(self.run_well(*model).stdout)["warnings"], [])
+
+    def test_the_list_of_parameters_takes_no_campaign(self):  # --fit took the file that came after it
+        self.fails(2, "nowhere.toml: no such file", arguments=["calibrate", "--fit", "theta_scale", self.path("nowhere.toml"), "-o", self.path("x")])
+
     def test_score_prints_rows_beside_the_score(self):
         done = self.run_well("score", self.campaign, "--parameters", self.path("truth.toml"), "--rows", "fit")
         self.assertRegex(done.stdout, r"stop +\d\.\d{3} +\d\.\d{3} to +\d\.\d{3} +30\n")
@@ -235,7 +244,7 @@ class OwnCampaign(Case):
     def test_faults(self):
         before = os.listdir(self.folder)
         self.fails(2, "--parameters", arguments=["score", self.campaign])
-        self.fails(2, "none.toml", arguments=["score", self.campaign, "--parameters", self.path("none.toml")])
+        self.fails(2, "none.toml: no such file (", "check the path: it must be a TOML file", arguments=["score", self.campaign, "--parameters", self.path("none.toml")])
         self.fails(2, "nowhere.toml", arguments=["calibrate", self.path("nowhere.toml"), "-o", self.path("x")])
         self.fails(2, "'E50'", "En50", arguments=["calibrate", self.campaign, "-o", self.path("x"), "--fit", "E50"])
         self.fails(2, "'En50'", "twice", arguments=["calibrate", self.campaign, "-o", self.path("x"), "--fit", "En50,En50"])

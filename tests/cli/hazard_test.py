@@ -90,7 +90,7 @@ class Hazard(Case):
         file = None
         self.simulate("plain")
         self.assertEqual({k: v for k, v in with_them.items() if k != "hazard_tally.gz"}, self.hashes("plain"))
-        self.refused("knows no annual frequencies; give the sources a field frequency", "hazard", self.path("plain"))
+        self.refused("has no annual frequencies; give the sources a field frequency", "hazard", self.path("plain"))
 
     def test_refusals(self):
         self.simulate()
@@ -341,7 +341,7 @@ class Hazard(Case):
         self.assertIn("is there and none of the files of an earlier hazard.json", done.stderr)
         os.replace(self.path("out/objects.gpkg"), self.path("mine.gpkg"))
         done = self.run_well("hazard", self.path("out"), "--objects", self.path("mine.gpkg"))
-        self.assertIn("objects wholly off the DEM, of which nothing is told: far", done.stderr)
+        self.assertIn("objects wholly off the DEM, which have no results: far", done.stderr)
         rows = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
         self.assertIsNone(rows["far"]["frequency"])
         self.assertIsNone(rows["far"]["trajectories"])
@@ -431,8 +431,8 @@ class Hazard(Case):
         record = self.record()
         self.write("out/run.json", json.dumps({**record, "status": "too many trajectories ended at a limit"}))
         done = self.run_well("hazard", self.path("out"))
-        self.assertIn("too many trajectories ended at a limit; its result is not to be used", done.stderr)
-        self.assertTrue(any("not to be used" in warning for warning in self.read_json("out/hazard.json")["warnings"]))
+        self.assertIn('the run ended with status "too many trajectories ended at a limit": do not use its results', done.stderr)
+        self.assertTrue(any("do not use its results" in warning for warning in self.read_json("out/hazard.json")["warnings"]))
 
     def test_contradicting_frequencies(self):
         self.write("s.toml", RUN + "[frequency]\nper_area = 0.01\n")
@@ -552,13 +552,13 @@ class Hazard(Case):
         write_features(self.path("o.gpkg"), "o", shapes, [("name", ogr.OFTString)])
         self.simulate()
         done = self.run_well("hazard", self.path("out"), "--objects", self.path("o.gpkg"))
-        self.assertIn("objects wholly off the DEM, of which nothing is told: far\n", done.stderr)
-        self.assertIn("objects wholly in gaps of the DEM or in its outer half cell, of which nothing is told: gap, edge\n", done.stderr)
+        self.assertIn("objects wholly off the DEM, which have no results: far\n", done.stderr)
+        self.assertIn("objects wholly in gaps of the DEM or in its outer half cell, which have no results: gap, edge\n", done.stderr)
         self.assertIn("where the DEM has no height (off it, in its outer half cell or in a gap) lie 95 % of object mostly off, "
                       "25 % of object rim: blocks do not get there, so that the frequencies are lower bounds (unsafe)", done.stderr)
-        self.assertRegex(done.stderr, r"talus: mostly off: .*; nothing is told of the 95 % of it where the DEM has no height\n")
+        self.assertRegex(done.stderr, r"talus: mostly off: .*; the 95 % of it where the DEM has no height is not assessed\n")
         self.assertNotRegex(done.stderr, r"talus: (gap|edge|far): ")
-        self.assertNotRegex(done.stderr, r"talus: well: .* nothing is told")
+        self.assertNotRegex(done.stderr, r"talus: well: .* is not assessed")
         rows = {row["name"]: row for row, _ in rows_of(self.path("out/objects.gpkg"), "objects")}
         for name in ("gap", "edge", "far"):
             self.assertEqual([rows[name][key] for key in ("trajectories", "frequency", "frequency_upper")], [None] * 3, name)

@@ -246,7 +246,7 @@ class Places(Case):
         layer.CreateFeature(feature)
         file = layer = None
         done = self.run_well(*self.check("s.gpkg"))
-        self.assertIn("s.gpkg: says no coordinate system: taken as the one of the DEM, EPSG:2056", done.stdout)
+        self.assertIn("s.gpkg: states no coordinate system: taken to be that of the DEM, EPSG:2056", done.stdout)
         self.assertRegex(done.stdout, "sources +1 feature, 8 source cells")
 
 

@@ -242,7 +242,7 @@ class Parts(RunCase):
         process.send_signal(signal.SIGINT)
         error = process.communicate(timeout=20)[1]
         self.assertEqual(process.returncode, 130, error)
-        done = subprocess.run(["sh", "-c", error.split("go on with: ")[1]], capture_output=True, text=True, timeout=60)
+        done = subprocess.run(["sh", "-c", error.split("resume with: ")[1]], capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assert_same("whole", odd + "/out")
 

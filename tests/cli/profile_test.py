@@ -84,6 +84,15 @@ class ByHand(Profile):
         self.assertEqual(runout[0], {"distance_from": 0.0, "distance_to": 5.0, "stopped": 400.0, "share": 1.0,
                                      "share_beyond": 0.0})
 
+    def test_a_flat_road_below_a_long_slope_is_flat(self):
+        """Drawn at 900 m. 600.28 m in 20 000 columns is no whole number of what the heights are rounded to."""
+        self.nodes((0, 1500.28), (1000, 900), (1005, 900), (1500, 600))
+        self.scenario("x = [1000.5, 1004.5]\nrelease_height = 0", "[ground.zones.default]\nphi = 80\n",
+                      'profile = "p.csv"\nstep = 0.05\n')
+        self.profile("--trajectories", "50")
+        for row in self.rows("stops.csv"):  # they stay where they are put
+            self.assertAlmostEqual(row["z"], 900.0, 3)
+
     def test_zones_are_intervals(self):
         # A bog from 60 m to 80 m takes all; without it blocks slide on for long.
         self.nodes((0, 100), (40, 70), (200, 70))
@@ -268,6 +277,88 @@ class Files(Profile):
             self.assertEqual("smaller step" in said, step > 0.05)
 
 
+class Messages(Profile):
+    """What is said of a profile names what a profile has, with a way out."""
+
+    def told(self, *extra):
+        return self.run_well("profile", self.path("p.toml"), "-o", self.path("out"), "--overwrite", *extra).stderr
+
+    def test_zones_without_an_effect(self):
+        self.nodes((0, 200), (150, 87.5), (400, 15))
+        step = 'profile = "p.csv"\nstep = 5\n'
+        road = "[ground.zones.road]\npreset = 'forest-road-2d'\nx = "
+        wood = "[ground.zones.wood]\npreset = 'quarry-floor-2d'\nx = "
+        narrow = "ground.zones.road.x = [211, 214]: covers none of the columns, which are step = 5 m apart"
+        under = "ground.zones.road.x = [150, 160]: lies wholly under later zones"
+        for rest, expected in ((road + "[211, 214]\n", [narrow]),
+                               (road + "[[150, 160], [211, 214]]\n", [narrow]),
+                               (road + "[211, 216]\n", []),  # holds the column at 215 m
+                               (road + "[150, 160]\n" + wood + "[100, 300]\n", [under]),
+                               (road + "[[150, 160], [350, 360]]\n" + wood + "[100, 300]\n", [under]),
+                               (wood + "[100, 300]\n" + road + "[150, 160]\n", []),
+                               (road + "[150, 160]\n" + wood + "[155, 300]\n", [])):
+            with self.subTest(rest):
+                self.scenario("x = 20", rest, step)
+                said = self.told("--trajectories", "5")
+                told = [text for text in self.record()["warnings"] if "has no effect" in text]
+                self.assertEqual(len(told), len(expected), told)
+                for text, words in zip(told, expected):
+                    self.assertIn("p.toml: " + words, text)
+                    self.assertIn("give a smaller step" if words is narrow else "move this one below them", text)
+                    self.assertIn("talus: warning: " + text, said)
+
+    def test_trapped_blocks(self):
+        self.nodes((0, 100), (100, 0), (200, 100))  # 45 degrees on both sides: a block cannot rest on them
+        self.scenario("x = 20")
+        said = self.told("--trajectories", "50")
+        self.assertIn("0 stopped, 50 trapped, 0 left the profile", said)
+        self.assertIn("100 % of the trajectories (50) were trapped", said)
+        self.assertIn("stops.csv shows where (end = trapped)", said)
+        self.assertEqual({row["end"] for row in self.rows("stops.csv")}, {"trapped"})
+        self.assertIn("runout of those that stopped or were trapped: mean 80 m", said)
+        for word in (".tif", "talus check", "DEM", "the maps"):
+            self.assertNotIn(word, said)
+        self.assertEqual(len(self.record()["warnings"]), 1)
+
+    def test_blocks_that_leave(self):
+        self.nodes((0, 100), (100, 0))
+        self.scenario("x = 20")
+        said = self.told("--trajectories", "50")
+        self.assertIn("100 % of the trajectories (50) left the profile at its ends", said)
+        self.assertIn("a longer profile would", said)
+        self.assertIn("0 stopped, 0 trapped, 50 left the profile", said)
+        for word in ("DEM", "the map", "missing data"):
+            self.assertNotIn(word, said)
+
+    def test_too_many_limits(self):
+        self.nodes((0, 200), (150, 87.5), (400, 15))
+        self.scenario("x = 20", "[model]\ntime_limit = 1\n")
+        self.fails(1, "ended at the limit of impacts, time or vertices", "stops.csv shows where (end = limit)",
+                   "raise time_limit or impact_limit in [model]",
+                   arguments=["profile", self.path("p.toml"), "-o", self.path("out"), "--trajectories", "5", "-q"])
+        self.assertEqual({row["end"] for row in self.rows("stops.csv")}, {"limit"})
+
+    def test_the_file_of_a_profile_is_no_scenario(self):
+        self.nodes((0, 200), (150, 87.5), (400, 15))
+        self.scenario("x = 20", "[screens]\nx = [110]\n")
+        self.scenario("x = 20", "", 'dem = "dem.tif"\nline = "line.gpkg"\n', name="cut.toml")
+        for name, words in (("p.toml", ":1: profile = 'p.csv'"), ("cut.toml", ":2: line = 'line.gpkg'")):
+            for command in (["run", self.path(name), "-o", self.path("none")], ["check", self.path(name)],
+                            ["trace", self.path(name), "--source", "0", "--block", "0"]):
+                with self.subTest(command):
+                    self.fails(2, name + words, "this is a file of talus profile", f"talus profile {self.path(name)} -o",
+                               arguments=command)
+
+    def test_the_default_ground_is_that_of_the_list_of_presets(self):
+        self.nodes((0, 200), (150, 87.5), (400, 15))
+        self.scenario("x = 20")
+        self.profile("--trajectories", "5")
+        settings = {s["key"]: (s["value"], s["source"]) for s in self.record()["settings"]}
+        default, source = settings["ground.default"]
+        self.assertEqual(source, "default")
+        self.assertIn(f"upper-talus-3d holds; for talus profile, {default}.\n", self.run_well("presets").stdout)
+
+
 class Products(Profile):
     """`talus barrier` and `talus report` on the folder of a profile say what holds there."""
 
@@ -333,6 +424,7 @@ class Products(Profile):
             self.assertEqual(points["Sources"], ("look", f"x = {x} m"))
             self.assertNotIn("DEM", points)
             self.assertNotIn("No relief", page)
+            self.assertIn("look at the profile there", {point: why for _, point, _, why in rows}["Blocks that are trapped"])
 
 
 class Faults(Files):
@@ -340,6 +432,10 @@ class Faults(Files):
         before = os.listdir(self.folder)
         self.fails(2, *words, arguments=["profile", self.path("p.toml"), "-o", self.path("new")])
         self.assert_nothing_left(before)
+
+    def assert_one_fault(self, *words):
+        done = self.fails(2, *words, arguments=["profile", self.path("p.toml"), "-o", self.path("new")])
+        self.assertNotIn("more)", done.stderr)
 
     def test_keys(self):
         for rest, words in {
@@ -350,6 +446,7 @@ class Faults(Files):
                 "[ground.zones.default]\npsi_scale = 0.5\n": ["psi_scale = 0.5", "no sideways roughness"],
                 "[effects.forest-stems]\ndensity = 300\n": ["forest-stems", "out of the plane"],
                 "[screens]\nx = [401]\n": ["screens.x = 401", "0 to 400 m"],
+                "[screens]\nx = [110, 50, 110.0]\n": ["screens.x = [110, 50, 110]", "has 110 twice, must name each place once"],
                 "[output]\nbin = 0.25\n": ["output.bin = 0.25", "whole multiple of step"],
                 "[output]\nenergy_thresholds = [3]\n": ["unknown key 'energy_thresholds'"],
         }.items():
@@ -365,6 +462,12 @@ class Faults(Files):
         self.fails_with("sources.x = 400", "is the end of the profile", "must be below 400 m")
         self.write("p.toml", 'profile = "p.csv"\n[blocks]\ndiameter = 1\n')
         self.fails_with("no sources")
+        for given, words in (("x = [30, 20]", "sources.x = [30, 20]: must be [smallest, largest]"),
+                             ("x = 'top'", "sources.x = 'top'"), ("x = 2e7", "sources.x = 20000000")):
+            self.scenario(given)
+            self.assert_one_fault(words)
+        self.scenario("x = 20", head="profile = 5\n")
+        self.assert_one_fault("profile = 5: must be text in quotation marks")
         self.write("p.toml", 'profile = "p.csv"\n[sources]\nx = 20\n')
         self.fails_with("no block diameter")
         self.scenario("x = 20", head='profile = "p.csv"\ndem = "dem.tif"\n')
@@ -372,7 +475,7 @@ class Faults(Files):
 
     def test_frequencies(self):
         """A profile has none: results would be as if they were not given (docs/profile.md)."""
-        rule = ["p.toml:5", "blocks.diameter", "a profile knows no annual frequencies: leave frequency out"]
+        rule = ["p.toml:5", "blocks.diameter", "a profile has no annual frequencies: leave frequency out"]
         for diameter, words in {
                 "[{ diameter = 0.5, frequency = 10 }, { diameter = 1.5, weight = 9, frequency = 0.01 }]": rule,
                 "[{ diameter = 0.5 }, { diameter = 1.5, frequency = 0 }]": rule,

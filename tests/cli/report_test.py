@@ -239,13 +239,13 @@ class Content(Report):
         self.write("fit/fitted.toml", '[ground.zones.default]\npreset = "upper-talus-3d"\nEn50 = 13\n')
         self.write("fit/calibration.json", json.dumps({
             "campaign": "quarry" + HOSTILE, "parameters": [{"key": "ground.En50", "unit": "m3/s2", "value": 13.0,
-                                                            "ci95": [9.5, 17.5], "identifiable": False}],
+                                                            "ci95": [9.5, 17.5], "identifiable": False, "at_bound": True}],
             "error": {"holdout": {"before": 0.811, "after": 0.634}}, "warnings": []}))
         self.write("s.toml", 'include = "fit/fitted.toml"\n' + self.read_text("s.toml"))
         self.results(hazard=False)
         page = self.page()
         self.assert_alone(page)
-        for words in ("Fit of the ground", "quarry<script>", "0.811", "9.5 to 17.5", "not determined by the data"):
+        for words in ("Fit of the ground", "quarry<script>", "0.811", "9.5 to 17.5", "not identifiable, ends at the bound of the search"):
             self.assertIn(words, page.text)
         with open(self.path("fit/fitted.toml"), "a", encoding="utf-8") as file:
             file.write("# another\n")

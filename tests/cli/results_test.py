@@ -200,12 +200,11 @@ class Screens(Case):
             file.seek(0)
             rows = list(csv.DictReader(file))
         self.assertEqual(header, "source,block,screen,speed_ms,energy_kj,total_energy_kj,jump_height_m,"
-                                 "angular_velocity_rads,mass_kg,x,y,piece\n")
+                                 "angular_velocity_rads,mass_kg,x,y\n")  # INTERFACE.md; no block breaks: no piece
         self.assertGreaterEqual(len(rows), 100)
         mass = 2700 * np.pi / 6 * 0.8**3
         for row in rows:
             self.assertEqual(row.pop("screen"), 'road "A", km 3')
-            self.assertEqual(row["piece"], "0")  # no block breaks
             v = {key: float(value) for key, value in row.items()}
             self.assertAlmostEqual(v["mass_kg"] / mass, 1.0, delta=1e-5)
             self.assertAlmostEqual(v["y"], y, delta=1e-3)

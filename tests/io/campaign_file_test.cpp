@@ -89,7 +89,7 @@ TEST_F(Campaigns, DoubledPassagesAreSaidOnce) {
 }
 
 TEST_F(Campaigns, MassesInAnotherUnitAreSaid) {
-  const std::string head = "id,x,y,release_height_m,mass_kg,L1_m,L2_m,L3_m\n", sphere = "b,600060,5200040,1,0.5,,,\n";
+  const std::string head = "id,x,y,release_height_m,mass_kg,L1_m,L2_m,L3_m\n", sphere = "b,600060,5200040,1,500,,,\n";
   const auto warnings = [&](const std::string& mass) {
     write_text("blocks.csv", head + "a,600050,5200040,1," + mass + ",1,1,1\n" + sphere);
     return read().warnings;
@@ -103,8 +103,38 @@ TEST_F(Campaigns, MassesInAnotherUnitAreSaid) {
          {"blocks.csv: the mass of 1 of 2 blocks", "block 'a' has ", "its ellipsoid 1414 kg", "in kg"})
       EXPECT_NE(said[0].find(part), std::string::npos) << said[0];
   }
+  write_text("blocks.csv", head + "a,600050,5200040,1,4300,1,1,1\nb,600060,5200040,1,0.5,,,\n");
   write_text("stops.csv", "id,x,y,mass_kg\na,600052,5200010,6400\nb,600052,5200010,0.8\n");
   refused("stops = \"stops.csv\"\n", {"stops.csv:3", "mass_kg = '0.8'", "1.5 times the 0.5 kg", "in kg?"});
+}
+
+TEST_F(Campaigns, SizesInAnotherUnitAreSaid) {
+  const auto warnings = [&](const std::string& mass) {
+    write_text("blocks.csv", "id,x,y,release_height_m,mass_kg\na,600050,5200040,1," + mass + "\n");
+    return read().warnings;
+  };
+  EXPECT_TRUE(warnings("45").empty());  // 0.32 m, the smallest blocks of Chant Sura
+  for (const auto& [mass, part] : {std::pair{"1.35", "smaller than 0.098 m"}, {"135000000", "larger than 46 m"}}) {
+    const std::vector<std::string> said = warnings(mass);
+    ASSERT_EQ(said.size(), 1U);
+    EXPECT_NE(said[0].find(part), std::string::npos) << said[0];
+    EXPECT_TRUE(said[0].ends_with("are masses in kg, lengths in m and densities in kg/m3?")) << said[0];
+  }
+}
+
+TEST_F(Campaigns, TablesOfOtherSeparatorsAreToldSo) {
+  write_text("blocks.csv", "id;x;y;release_height_m;mass_kg\na;600050;5200040;1;500\n");
+  refused("", {"blocks.csv:1: has one column, 'id;x;y;", "separated by commas"});
+  write_text("blocks.csv", "id,x,y,release_height_m,mass_kg\ra,600050,5200040,1,500\r");
+  refused("", {"blocks.csv:1: lines must end with a line feed", "not with CR alone"});
+}
+
+TEST_F(Campaigns, PercentIsNoFraction) {
+  refused("[measurement_error]\nspeed_fraction = 3\n", {"c.toml", "speed_fraction = 3", "0 to 1"});
+}
+
+TEST_F(Campaigns, AHeightSystemMovesNoPlace) {
+  EXPECT_EQ(read("crs = \"EPSG:32632+5773\"\n").campaign.blocks[0].x, 50.0);
 }
 
 TEST_F(Campaigns, ZonesOfARaster) {

@@ -47,6 +47,17 @@ TEST_F(ScenarioFile, APresetThatNoEffectHasIsRefused) {
   refused(start + "[effects.block-mass]\nreference_diameter = 1\n", {"must give roughness or stiffness, or preset"});
 }
 
+TEST_F(ScenarioFile, AShapeThatMultipliesEnergyIsSaid) {
+  const auto said = [&](const std::string& shape) {
+    for (const std::string& text : with("[ground.zones.default]\nshape = " + shape + "\n").warnings)
+      if (text.find("gain energy") != std::string::npos) return text;
+    return std::string();
+  };
+  for (const char* shape : {"[1, 1]", "[1, 1.5]", "[0.7, 1.2]"}) EXPECT_EQ(said(shape), "") << shape;
+  EXPECT_NE(said("[0.5, 1]").find("by up to 45.9 %"), std::string::npos) << said("[0.5, 1]");  // the same at 2
+  EXPECT_NE(said("[1, 2]").find("by up to 45.9 %"), std::string::npos) << said("[1, 2]");
+}
+
 TEST_F(ScenarioFile, SizesOutsideThoseOfThePresetAreSaidOnce) {
   EXPECT_EQ(size_warnings(with("")), 0U);  // 1.2 m
   const std::string small = std::string(kFiles) + "[blocks]\ndiameter = 0.5\n";

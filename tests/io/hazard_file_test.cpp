@@ -3,6 +3,7 @@
 #include <gdal.h>
 
 #include <fstream>
+#include <limits>
 
 #include "io/files/own_files.hpp"
 #include "io/reports/report_facts.hpp"
@@ -87,6 +88,9 @@ TEST_F(HazardFile, ReadsBackWhatWasKept) {
   EXPECT_EQ(header.geo.north, loaded_.geo.north);
   EXPECT_EQ(header.left_weight, totals_.left_weight);
   EXPECT_EQ(exits > 0, totals_.left_weight > 0);
+  HazardHeader heavy = header;  // classes that were drawn more often than expected: no more can leave than fall
+  heavy.left_weight = std::numeric_limits<std::int64_t>::max();
+  EXPECT_EQ(left_per_year(heavy), header.rules.scale.total);
 }
 
 TEST_F(HazardFile, TheSameBytesAgain) {

@@ -299,7 +299,7 @@ TEST_F(Sources, WithoutASystemTheDemsIsTaken) {
       write_vector(path("none.shp"), "", {{"a", OFTInteger}}, {{"POINT(600005 5200005)"}}, wkbPoint);
   const SourceLayer layer = read_sources(file, terrain_, {1, 1});
   EXPECT_EQ(layer.cells.size(), 1U);
-  EXPECT_TRUE(said(layer.warnings, "says no coordinate system"));
+  EXPECT_TRUE(said(layer.warnings, "states no coordinate system"));
 }
 
 }  // namespace talus::io::test

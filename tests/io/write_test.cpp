@@ -353,9 +353,9 @@ TEST_F(Write, TextOnAFullDiskIsAnError) {
 TEST(RunRecord, LimitsAreJudgedByTheirShare) {
   Totals totals;
   totals.released = 10'000;
-  totals.ends[static_cast<std::size_t>(End::Limit)] = 10;  // exactly the allowed 0.1 %
+  totals.limited_blocks = 10;  // exactly the allowed 0.1 %
   EXPECT_FALSE(too_many_limits(totals));
-  totals.ends[static_cast<std::size_t>(End::Limit)] = 11;
+  totals.limited_blocks = 11;
   EXPECT_TRUE(too_many_limits(totals));
 }
 

@@ -65,10 +65,15 @@ void check_numbers(const Options& o) {
         throw talus::InputError(std::string(bounds.key) + " = " + talus::text_of(*value) + ": " + *fault);
 }
 
-/// The id of the only screen of a run; empty if it has none. Throws InputError if it has several.
-std::string only_screen(const RunSummary& run) {
+std::vector<std::string> screen_ids(const RunSummary& run) {
   std::vector<std::string> ids;
   for (const talus::Screen& screen : run.screens) ids.push_back(screen.id);
+  return ids;
+}
+
+/// The id of the only screen of a run; empty if it has none. Throws InputError if it has several.
+std::string only_screen(const RunSummary& run) {
+  const std::vector<std::string> ids = screen_ids(run);
   if (ids.size() > 1)
     throw talus::InputError("--screen: must say at which of the screens of the run the barrier stands: " +
                             talus::joined(ids));
@@ -76,12 +81,10 @@ std::string only_screen(const RunSummary& run) {
 }
 
 const talus::Screen& screen_of(const RunSummary& run, const Options& o) {
-  std::vector<std::string> ids;
-  for (const talus::Screen& screen : run.screens) {
+  for (const talus::Screen& screen : run.screens)
     if (screen.id == o.screen) return screen;
-    ids.push_back(screen.id);
-  }
-  throw talus::InputError("--screen: the run has no screen '" + o.screen + "'" + talus::known_names(o.screen, ids));
+  throw talus::InputError("--screen: the run has no screen '" + o.screen + "'" +
+                          talus::known_names(o.screen, screen_ids(run)));
 }
 
 /// Share of the screen where the DEM has no height.
@@ -115,6 +118,15 @@ CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
                               ": has rows without speed, jump height, mass or place, must be as talus run "
                               "has written it; run the scenario again");
   return crossings;
+}
+
+/// Notes the rows of screens that the run does not have: a misspelt name would lose what was observed.
+void note_other_screens(const CrossingTable& observed, const RunSummary& run, const Options& o, BarrierReport& report) {
+  const std::vector<std::string> ids = screen_ids(run);
+  for (const auto& [id, rows] : observed.others)
+    if (std::ranges::find(ids, id) == ids.end())
+      report.notes.push_back(o.observed + ": " + std::to_string(rows) + " rows are of screen '" + id +
+                             "', which the run does not have: they count nowhere. Is it " + talus::joined(ids) + "?");
 }
 
 CrossingTable observed_crossings(const Options& o) {
@@ -163,8 +175,8 @@ void keep_falling(std::vector<talus::LineCrossing>& crossings, const Options& o,
   if (report.effective < static_cast<double>(fewest) - 1e-9)
     throw talus::InputError((fs::path(o.folder) / "screens.csv").string() + ": only " +
                             std::to_string(crossings.size()) + " blocks cross screen '" + o.screen + "'" +
-                            (weighting.scale ? ", which by their frequencies say as much as " +
-                                                   talus::with_digits(report.effective, 3) + " equal ones"
+                            (weighting.scale ? ", which, weighted by frequency, count as " +
+                                                   talus::with_digits(report.effective, 3) + " of equal weight"
                                              : "") +
                             ", must be " + std::to_string(fewest) + " at least for percentile " +
                             talus::text_of(o.percentile) + ": run more trajectories, or give a lower --percentile");
@@ -196,7 +208,7 @@ void add_frequencies(talus::io::Reliability& r, std::span<const talus::LineCross
 
 /// Why a quantity has no fit; empty if it can have one.
 std::string lack_of_fit(const std::string& whose, const std::string& quantity, const std::vector<double>& values) {
-  if (values.empty()) return whose + " do not say the " + quantity;
+  if (values.empty()) return whose + " have no values of the " + quantity;
   std::size_t positive = 0, others = 0;
   double first = 0.0;
   for (const double value : values) {
@@ -239,7 +251,7 @@ class Exceedances {
  private:
   /// Notes on a quantity that has too few values for a fit.
   std::string told_of(const talus::io::Reliability& r) const {
-    if (!weighting_.scale) return ", so nothing is told of how often its design value is exceeded";
+    if (!weighting_.scale) return ", so it is not known how often its design value is exceeded";
     std::string text;
     for (const talus::io::Reliability::Limit& limit : r.limits)
       text += "; by frequency, " + limit.name + " is exceeded by " + talus::io::frequency_text(limit);
@@ -293,7 +305,6 @@ void add_crossings_per_year(BarrierReport& report, const Weighting& weighting) {
 }
 
 int design(Options o) {
-  require_seed(o.seed);
   check_numbers(o);
   const RunSummary run = talus::io::read_run(o.folder);
   if (o.screen.empty()) o.screen = only_screen(run);
@@ -304,6 +315,7 @@ int design(Options o) {
   const CrossingTable values = o.observed.empty() ? crossings : observed_crossings(o);
   BarrierReport report;
   Weighting weighting;
+  note_other_screens(values, run, o, report);
   if (const auto note = talus::io::unusable_note(o.folder)) report.notes.push_back(*note);
   if (const auto note = talus::io::coefficient_note(o.folder)) report.notes.push_back(*note);
   if (const auto note = talus::io::barriers_note(o.folder))
@@ -333,9 +345,7 @@ int design(Options o) {
   exceedances.add("speed", "m/s", values.speed, {{"v_d", report.design.speed}});
   exceedances.add("energy", "kJ", kilojoules, {{"SEL", report.design.sel * 1e-3}, {"MEL", report.design.mel * 1e-3}});
 
-  std::vector<std::string> ids;
-  for (const talus::Screen& screen : run.screens) ids.push_back(screen.id);
-  const std::string name = "barrier_" + talus::io::file_name_of(o.screen, ids);
+  const std::string name = "barrier_" + talus::io::file_name_of(o.screen, screen_ids(run));
   catch_signals();  // from here on: all files or none
   const auto replaced = talus::io::write_barrier(o.folder, name, report, screen_of(run, o), run.crs_wkt);
   if (!run.of_profile) refresh_project(o.folder);  // a profile has no maps
@@ -384,7 +394,7 @@ void add_barrier(CLI::App& app, Action& action) {
                            "another weighting (TOML: [frequency], [features]), as of talus hazard"),
        file_of({"toml"}));
   command->add_flag("--unweighted", o->unweighted, "count every block alike, also where the sources have frequencies");
-  command->add_flag("-q,--quiet", o->quiet, "say nothing but errors");
+  add_quiet(*command, o->quiet);
   with(command->add_option("--seed", o->seed, "of the bootstrap: 1 (default)")->check(seed_number()),
        scalar_of("seed"));
   command->footer(

@@ -49,8 +49,9 @@ void score_both(const talus::Campaign& campaign, talus::io::Calibration& c) {
 void print_summary(const talus::io::Calibration& c, const std::string& folder) {
   for (std::size_t i = 0; i < c.free.size(); ++i) {
     const talus::Interval& interval = c.uncertainty.intervals[i];
-    print("%-44s %8.3g  95 %%: %.3g to %.3g%s\n", c.free[i].key.c_str(), c.free[i].get(c.fit.model), interval.low,
-          interval.high, c.uncertainty.identifiable[i] ? "" : "  not identifiable");
+    const std::string note = talus::io::interval_note(c.uncertainty.identifiable[i], c.uncertainty.at_bound[i]);
+    print("%-44s %8.3g  95 %%: %.3g to %.3g%s%s\n", c.free[i].key.c_str(), c.free[i].get(c.fit.model), interval.low,
+          interval.high, note.empty() ? "" : "  ", note.c_str());
   }
   for (const std::string& zone : c.untouched)
     print("zone %s: too few simulated paths touch it; not fitted\n", zone.c_str());
@@ -73,7 +74,6 @@ int calibrate(const Options& options) {
     throw talus::InputError(
         "--share " + talus::joined(options.share) +
         ": there is one campaign, must be several: talus calibrate a/campaign.toml b/campaign.toml");
-  require_seed(options.how.seed);
   talus::io::Calibration c;
   OpenedCampaign opened(options, c);
   const talus::Campaign& campaign = opened.loaded.campaign;
@@ -89,6 +89,9 @@ int calibrate(const Options& options) {
   std::tie(c.fit, c.uncertainty) =
       fit_with_uncertainty({campaign, c.start, c.free, rows}, c.options, 1.0,
                            [&](double share) { return progress.update(share) && !interrupted(); });
+  for (std::size_t i = 0; i < c.free.size(); ++i)
+    if (c.uncertainty.at_bound[i])
+      warn(options, c, talus::io::bound_warning(c.free[i].key, c.uncertainty.intervals[i]));
   score_both(campaign, c);
   for (const talus::io::BeforeAfter& e : c.errors) warn_of_scores(options, c, e.after);
 
@@ -136,6 +139,7 @@ void choose_parameters(const talus::Campaign& campaign, const std::vector<std::s
   std::vector<std::string> of_ground, of_effects;
   for (const std::string& key : keys) (key.starts_with("effects.") ? of_effects : of_ground).push_back(key);
   if (!of_ground.empty()) c.free = talus::ground_parameters(campaign, c.start, of_ground, touched);
+  talus::check_start(c.free, c.start);
   for (talus::Parameter& p : talus::effect_parameters(campaign, c.start, of_effects, talus::DiagnosisRules{}.noticed))
     c.free.push_back(std::move(p));
 }
@@ -153,7 +157,8 @@ void add_calibrate(CLI::App& app, Action& action) {
            ->check(CLI::Range(1, 50)),
        default_of(options->how.starts));
   command->add_option("--share", options->share, "parameters that several campaigns share; all others each has its own")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command->footer(
       "Example:\n  talus calibrate campaign.toml -o result\n"
       "  talus calibrate a/campaign.toml b/campaign.toml --fit En50,phi --share phi -o result\n\n"

@@ -2,6 +2,7 @@
 #include "several_campaigns.hpp"
 #include "talus/base/text.hpp"
 #include "talus/fit/calibrate/joint_parameters.hpp"
+#include "talus/io/reports/fit_report.hpp"
 #include "talus/io/reports/sites_calibration.hpp"
 
 namespace {
@@ -11,11 +12,12 @@ constexpr std::uint32_t kScoreTrials = 100;
 /// The work of one calibration of several campaigns.
 class SitesFit {
  public:
-  SitesFit(const OpenedSites& opened, Progress& progress, talus::io::SitesCalibration& c)
-      : opened_(opened), progress_(progress), c_(c) {}
+  SitesFit(const CampaignCommand& command, const OpenedSites& opened, Progress& progress,
+           talus::io::SitesCalibration& c)
+      : command_(command), opened_(opened), progress_(progress), c_(c) {}
 
   /// Reads the model from which each site starts, and chooses what is fitted.
-  void choose(const CampaignCommand& command, const std::string& start, const std::vector<std::string>& keys) {
+  void choose(const std::string& start, const std::vector<std::string>& keys) {
     for (std::size_t i = 0; i < opened_.sites.size(); ++i) {
       const talus::Campaign& campaign = *opened_.sites[i].campaign;
       talus::io::Calibration own;
@@ -24,7 +26,7 @@ class SitesFit {
       choose_parameters(campaign, keys, own);
       for (const std::string& zone : own.untouched)
         own.warnings.push_back("zone " + zone + ": too few simulated paths touch it; not fitted");
-      for (const std::string& warning : own.warnings) warn(command, c_, opened_.sites[i].name + ": " + warning);
+      for (const std::string& warning : own.warnings) warn(command_, c_, opened_.sites[i].name + ": " + warning);
       start_.push_back(std::move(own.start));
       free_.push_back(std::move(own.free));
       rows_.push_back(talus::fitting_rows(campaign));
@@ -55,10 +57,13 @@ class SitesFit {
                                     0.0,
                                     p.value(fitted.z[static_cast<Eigen::Index>(k)]),
                                     uncertainty.intervals[k],
-                                    uncertainty.identifiable[k]};
+                                    uncertainty.identifiable[k],
+                                    uncertainty.at_bound[k]};
       for (std::size_t i = 0; i < count; ++i)
         for (const talus::SiteParameter& own : joint.sites[i])
           if (own.number == k) out.sites.push_back(names_[first + i]), out.start = own.get(start_[first + i]);
+      if (out.at_bound)
+        warn(command_, c_, talus::joined(out.sites) + ": " + talus::io::bound_warning(out.key, out.interval));
       c_.parameters.push_back(std::move(out));
     }
   }
@@ -67,6 +72,7 @@ class SitesFit {
   const std::vector<talus::Model>& models() const { return models_; }
 
  private:
+  const CampaignCommand& command_;
   const OpenedSites& opened_;
   Progress& progress_;
   talus::io::SitesCalibration& c_;
@@ -81,7 +87,6 @@ class SitesFit {
 
 int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how, const std::string& start,
                     const std::vector<std::string>& fit, const std::vector<std::string>& share) {
-  require_seed(how.seed);
   talus::check_shared(share, fit);
   talus::io::SitesCalibration c;
   OpenedSites opened(command, c);
@@ -90,8 +95,8 @@ int calibrate_sites(const CampaignCommand& command, const talus::FitOptions& how
   c.files = opened.paths;
   if (!share.empty()) talus::give_own_streams(opened.sites);
   Progress progress(Progress::mode_of(command.quiet, command.progress), 0, "fit");
-  SitesFit work(opened, progress, c);
-  work.choose(command, start, fit);
+  SitesFit work(command, opened, progress, c);
+  work.choose(start, fit);
   const std::size_t together = share.empty() ? 1 : opened.sites.size();
   for (std::size_t i = 0; i < opened.sites.size(); i += together) work.fit(i, together);
   talus::ObserveOptions unseen{kScoreTrials, how.seed, talus::kUnseen, how.threads, {}, [] { return !interrupted(); }};

@@ -35,20 +35,20 @@ void CampaignCommand::add_to(CLI::App& command, std::uint32_t& trials, int fewes
        file_of({"toml"}));
   with(command.add_option("-o,--out", out, "new folder for the results")->required(), new_folder());
   command.add_flag("--overwrite", overwrite, "replace the folder if it holds an earlier result");
-  with(command.add_option("--surface", surface, "bilinear or creased (creased): heights between the cells' centres"),
-       surface_choice());
-  command
-      .add_option("--fit", keys,
-                  "parameters, in every zone: theta_scale,psi_scale,En50,Et50 (these if it is not given),phi")
-      ->delimiter(',');
+  add_surface(command, surface);
+  with(command
+           .add_option("--fit", keys,
+                       "parameters, in every zone: theta_scale,psi_scale,En50,Et50 (these if it is not given),phi")
+           ->delimiter(',')
+           ->allow_extra_args(false),
+       default_of("theta_scale,psi_scale,En50,Et50"));
   with(
       command.add_option("--trials", trials, "trajectories per block in the searches (" + std::to_string(trials) + ")")
           ->check(CLI::Range(fewest_trials, 10000)),
       default_of(trials));
   with(command.add_option("--seed", seed, "of the random numbers (1)")->check(seed_number()), scalar_of("seed"));
-  command.add_option("--threads", threads, "all processors where it is not given; the results are the same")
-      ->check(startable_threads());
-  command.add_flag("-q,--quiet", quiet, "say nothing but errors");
+  add_threads(command, threads);
+  add_quiet(command, quiet);
   add_progress(command, progress);
 }
 

@@ -84,12 +84,14 @@ Sample trace_sample(const LoadedScenario& loaded) {
   talus::Tracer(world).run(next, [&](const talus::Release& release, const talus::Path& path, std::uint64_t) {
     if (weights) batch.set_annual_share({weights->weight(scenario, release.source, release.block), sample.traced, 1});
     batch.add(path, release.body, release.source, nullptr);
-    bool left = path.end == talus::End::Left;
+    bool left = path.end == talus::End::Left, limited = path.end == talus::End::Limit;
     talus::trace_pieces(world, path, [&](const talus::Release& piece, const talus::Path& way) {
       batch.add(way, piece.body, release.source, nullptr, true);
       left = left || way.end == talus::End::Left;
+      limited = limited || way.end == talus::End::Limit;
     });
     sample.totals.left_blocks += left ? 1U : 0U;
+    sample.totals.limited_blocks += limited ? 1U : 0U;
     if (batch.full()) tally.add(batch), batch.clear();
     ++sample.traced;
     crossings.clear();
@@ -141,7 +143,7 @@ void print_terrain(const LoadedScenario& loaded) {
                       (missing > 0 ? ", " + count_text(missing) + " of them without a height" : ""));
   line("extent", talus::with_decimals(geo.west, 3) + " to " +
                      talus::with_decimals(geo.west + grid.columns * geo.cell_x, 3) + " east, " +
-                     talus::with_decimals(geo.north - grid.rows * geo.cell_y, 3) + " to " +
+                     talus::with_decimals(talus::io::MapPlace(geo, grid).south, 3) + " to " +
                      talus::with_decimals(geo.north, 3) + " north");
   line("system", talus::io::crs_name(geo.crs_wkt));
   const talus::DemFigures figures = talus::dem_figures(heights);
@@ -175,7 +177,7 @@ void print_zones(const Scenario& scenario) {
                                      talus::with_digits(g.theta_scale, 4) + ", psi_scale " +
                                      talus::with_digits(g.psi_scale, 4) + ", En50 " + talus::with_digits(g.En50, 4) +
                                      ", Et50 " + talus::with_digits(g.Et50, 4) + ", phi " +
-                                     talus::with_digits(std::atan(g.tan_phi) * 180.0 / talus::kPi, 4) + " deg, shape " +
+                                     talus::with_digits(talus::degrees(std::atan(g.tan_phi)), 4) + " deg, shape " +
                                      range_text({g.shape_min, g.shape_max}, ""));
   }
 }
@@ -238,9 +240,9 @@ void print_estimate(const LoadedScenario& loaded, unsigned threads) {
   for (const std::string& warning : talus::run::held_warnings(sample.held, sample.traced, scenario.effects, "sample"))
     line("warning", warning);
   if (talus::io::too_many_limits(sample.totals))
-    line("warning", count_text(talus::run::count_of(sample.totals, talus::End::Limit)) +
-                        " of the sample ended at the limit of impacts, time or vertices; where more than 0.1 % do, the "
-                        "run ends with exit code 1");
+    line("warning", count_text(sample.totals.limited_blocks) +
+                        " of the sample ended at the limit of impacts, time or vertices; where more than " +
+                        talus::percent(talus::io::kAllowedLimitShare) + " do, the run ends with exit code 1");
 }
 
 void print_plan(const LoadedScenario& loaded, unsigned threads) {
@@ -252,7 +254,7 @@ void print_plan(const LoadedScenario& loaded, unsigned threads) {
   print_blocks(loaded.scenario);
   print_estimate(loaded, threads);
   for (const std::string& warning : loaded.warnings) line("warning", warning);
-  if (const auto warning = talus::run::size_warning(loaded.scenario.released())) line("warning", *warning);
+  if (const auto warning = talus::run::many_trajectories_warning(loaded.scenario.released())) line("warning", *warning);
 }
 
 /// Writes the map of the pits, if it is asked for.
@@ -299,7 +301,7 @@ void add_check(CLI::App& app, Action& action) {
       ->add_option("--threads", options->threads,
                    "of the run whose time is estimated; all processors where it is not given")
       ->check(CLI::Range(1, 4096));
-  command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
+  add_quiet(*command, options->quiet);
   command->footer(
       "Examples:\n  talus check scenario.toml\n  talus check scenario.toml --pits pits.gpkg\n\nLists every fault of "
       "the settings and of the layers. Traces for at "

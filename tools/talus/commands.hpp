@@ -1,7 +1,7 @@
 #pragma once
 #include <CLI/CLI.hpp>
-#include <cstdint>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -36,6 +36,11 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags);
 /// Adds --progress, `machine` or `json`. With `json` every message of `say` becomes a line {"warning": "..."}.
 void add_progress(CLI::App& command, std::string& progress);
 
+/// Adds --threads, --quiet or --surface with the text that they have in most commands.
+void add_threads(CLI::App& command, int& threads);
+void add_quiet(CLI::App& command, bool& quiet);
+void add_surface(CLI::App& command, std::optional<std::string>& surface);
+
 using talus::run::Interrupted;  // exit code 130
 using talus::run::stop_interrupted;
 
@@ -59,9 +64,6 @@ CLI::Validator startable_threads();
 
 /// Check of an option with a number of lanes: 1, 4 or 8, and no more than the processor has.
 CLI::Validator lanes_of_machine();
-
-/// Throws InputError if the seed is out of bounds. (A negative number arrives as a huge one.)
-void require_seed(std::uint64_t seed);
 
 /// The only ways to write on the terminal: each shows control characters of names instead of sending them
 /// (`printable`). tests/layers.cmake holds the programs to them.

@@ -65,14 +65,13 @@ Weighting weigh_crossings(std::vector<talus::LineCrossing>& crossings, const Cro
   }
   const fs::path file = fs::path(o.folder) / talus::io::kHazardFile;
   if (!fs::exists(file)) {
-    if (o.frequency.empty()) return {"alike: the run knows no annual frequencies", {}};
+    if (o.frequency.empty()) return {"alike: the run has no annual frequencies", {}};
     throw talus::InputError("--frequency: the run in " + o.folder +
-                            " knows no annual frequencies that could be replaced; give the sources a field frequency, "
+                            " has no annual frequencies that could be replaced; give the sources a field frequency, "
                             "or the scenario [frequency], and run again");
   }
   try {
-    const auto header = talus::io::read_hazard(
-        file, [](const talus::io::HazardHeader&) {}, [](const talus::io::HazardRow&) {});
+    const auto header = talus::io::read_hazard_header(file);
     auto loaded = talus::io::recorded_plan(o.folder, header.plan);
     talus::io::GivenFrequencies given;
     if (!o.frequency.empty()) given = talus::io::apply_weighting(o.frequency, loaded.scenario);

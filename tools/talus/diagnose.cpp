@@ -112,7 +112,6 @@ int diagnose(const Options& options) {
     how.nested = !options.no_nested;
     return diagnose_several(options, how);
   }
-  require_seed(options.how.seed);
   const auto start = std::chrono::steady_clock::now();
   talus::io::DiagnosisRecord record;
   OpenedCampaign opened(options, record);
@@ -168,7 +167,7 @@ void add_diagnose(CLI::App& app, Action& action) {
   command->add_flag("--nested", options->nested,
                     "repeat the whole diagnosis without each fold of the fitting rows, as is done where no row is held "
                     "out: the error is then one of rows that were neither fitted nor chosen by");
-  command->add_flag("--no-nested", options->no_nested, "never do so");
+  command->add_flag("--no-nested", options->no_nested, "never repeat the diagnosis without a fold");
   with(command->add_option("--folds", how.outer_folds, "parts that are left out in turn: groups, or blocks (5)")
            ->check(CLI::Range(2, 100)),
        default_of(static_cast<double>(how.outer_folds)));

@@ -31,7 +31,6 @@ bool holds_out(const talus::Site& site) {
 
 /// @param how  `nested`: where no site holds anything out
 int diagnose_several(const CampaignCommand& command, const talus::DiagnoseOptions& how) {
-  require_seed(how.seed);
   const auto start = std::chrono::steady_clock::now();
   talus::io::SitesRecord record;
   OpenedSites opened(command, record);

@@ -43,7 +43,7 @@ fs::path tally_file(const fs::path& folder) {
   talus::io::require_results(folder);
   throw talus::InputError(
       folder.string() +
-      ": this run knows no annual frequencies; give the sources a field frequency (events per year), or the scenario "
+      ": this run has no annual frequencies; give the sources a field frequency (events per year), or the scenario "
       "[frequency] total (--frequency), per_area or power_law, and run again");
 }
 
@@ -115,8 +115,7 @@ talus::io::LoadedScenario recorded_plan(const Options& options, talus::io::Hazar
 /// Traces the recorded plan again with other weights and evaluates every cell.
 std::unique_ptr<talus::HazardSurvey> reweighted_survey(const Options& options, const fs::path& file, Progress& progress,
                                                        talus::io::HazardRecord& record) {
-  record.header = talus::io::read_hazard(
-      file, [](const talus::io::HazardHeader&) {}, [](const talus::io::HazardRow&) {});
+  record.header = talus::io::read_hazard_header(file);
   if (record.width > 0.0) check_width(record.header, record.matrix);
   const talus::io::LoadedScenario loaded = recorded_plan(options, record);
   const talus::Scenario& scenario = loaded.scenario;
@@ -285,10 +284,9 @@ void add_hazard(CLI::App& app, Action& action) {
                     "hazard_curves.tif: how often each energy is exceeded, a band per energy (0, 1, 2, 4, ... kJ and "
                     "the thresholds; with --width the thresholds)");
   command->add_flag("--overwrite", options->overwrite, "replace the hazard maps that are there");
-  command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
-      ->check(startable_threads());
+  add_threads(*command, options->threads);
   add_progress(*command, options->progress);
-  command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
+  add_quiet(*command, options->quiet);
   command->footer(
       "Examples:\n  talus hazard result\n  talus hazard result --width 10 --curves --objects houses.gpkg\n\nA later "
       "hazard "

@@ -27,9 +27,8 @@ void add_merge(CLI::App& app, Action& action) {
        folder_of_results());
   command->add_option("--memory", options->memory, "such as 2G: what does not fit lies in a file beside the results");
   command->add_flag("--overwrite", options->overwrite, "replace the folder if it holds an earlier result");
-  command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
-      ->check(startable_threads());
-  command->add_flag("-q,--quiet", *quiet, "say nothing but errors");
+  add_threads(*command, options->threads);
+  add_quiet(*command, *quiet);
   command->footer(
       "Example:\n"
       "  talus run scenario.toml --part 1/2 -o part1\n"

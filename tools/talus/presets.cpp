@@ -48,8 +48,8 @@ int print_presets() {
       "\nTables of Mitchell and Hungr's paper on PIERRE 2; rockyfor3d-N is a first guess for soil type N of "
       "Rockyfor3D,\nwhich no data support and which damps more than the paper's sets: docs/migration.md.\n"
       "Units: En50, Et50 m3/s2, phi degrees; the others have none.\n"
-      "Where no preset is named, %s holds.\n",
-      std::string(talus::kDefaultPreset).c_str());
+      "Where no preset is named, %s holds; for talus profile, %s.\n",
+      std::string(talus::kDefaultPreset).c_str(), std::string(talus::kDefaultProfilePreset).c_str());
   return 0;
 }
 

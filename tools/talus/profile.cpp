@@ -21,8 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using talus::io::LoadedProfile;
+using talus::run::profile_warnings;
 using talus::run::Stopwatch;
-using talus::run::warnings_of;
 
 constexpr std::uint32_t kDrawn = 60;  // paths in the drawing
 constexpr double kPathSpacing = 1.0;  // largest distance between written points of a flight [m]
@@ -87,10 +87,11 @@ class Readers {
 
 void summarise(const talus::Totals& totals, const talus::BinDistribution& runout, const std::string& folder) {
   const auto metres = [](double value) { return talus::text_of(std::round(value * 10.0) / 10.0); };
-  say("", count_text(totals.released) + " trajectories: " + talus::run::ends_text(totals));
+  say("", count_text(totals.released) + " trajectories: " + talus::run::ends_text(totals, "profile"));
   if (runout.count > 0)
-    say("", "runout of those that stopped: mean " + metres(runout.mean) + " m, P50 " + metres(runout.p50) + ", P95 " +
-                metres(runout.p95) + ", P99 " + metres(runout.p99) + ", farthest " + metres(runout.max));
+    say("", "runout of those that stopped or were trapped: mean " + metres(runout.mean) + " m, P50 " +
+                metres(runout.p50) + ", P95 " + metres(runout.p95) + ", P99 " + metres(runout.p99) + ", farthest " +
+                metres(runout.max));
   say("", "results are in " + folder);
 }
 
@@ -116,7 +117,7 @@ talus::io::ProfileResults simulate_and_write(const Options& options, const Loade
   record.cpu.write = written.cpu + record.totals.sink_cpu_seconds;
   record.wall.simulate = simulated.wall;
   record.wall.write = written.wall;
-  for (const std::string& warning : warnings_of(record.totals)) record.warnings.push_back(warning);
+  for (const std::string& warning : profile_warnings(record.totals)) record.warnings.push_back(warning);
   talus::io::write_text(folder / "run.json", talus::io::run_json(record, profile.loaded));
   progress.finish();
   return results;
@@ -149,10 +150,10 @@ int run_profile(const Options& options) {
   if (interrupted()) stop_interrupted();
   folder.commit();
   if (!options.quiet)
-    for (const std::string& warning : warnings_of(record.totals)) say("warning", warning);
+    for (const std::string& warning : profile_warnings(record.totals)) say("warning", warning);
   if (!options.quiet) summarise(record.totals, results.runout.stopped, folder.final_path().string());
   if (!talus::io::too_many_limits(record.totals)) return 0;
-  say("error", talus::run::limits_text(record.totals));
+  say("error", talus::run::profile_limits_text(record.totals));
   return 1;
 }
 
@@ -170,9 +171,8 @@ void add_profile(CLI::App& app, Action& action) {
        scalar_of("trajectories"));
   with(command->add_option("--seed", options->flags.seed, "of the random numbers")->check(seed_number()),
        scalar_of("seed"));
-  command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
-      ->check(startable_threads());
-  command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
+  add_threads(*command, options->threads);
+  add_quiet(*command, options->quiet);
   add_progress(*command, options->progress);
   command->footer("Example:\n  talus profile profile.toml -o result");
   command->callback([&action, options] { action = [options] { return run_profile(*options); }; });

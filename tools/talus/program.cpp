@@ -96,7 +96,7 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   const std::string text = error.what();
   const auto is = [&error](CLI::ExitCodes code) { return error.get_exit_code() == static_cast<int>(code); };
   if (is(CLI::ExitCodes::ConversionError))
-    return text.substr(text.find(": ") + 2) + ": is not a number that can stand there" +
+    return text.substr(text.find(": ") + 2) + ": is not a valid number" +
            (text.find(';') != std::string::npos ? " (the numbers of a list stand like this: 30,100,300)" : "") +
            see_help;
   if (!is(CLI::ExitCodes::ExtrasError) && !called.empty()) return text + see_help;
@@ -280,13 +280,6 @@ CLI::Validator lanes_of_machine() {
   return {check, "INT: 1, 4 or 8"};
 }
 
-void require_seed(std::uint64_t seed) {
-  const auto fields = talus::scenario_fields();
-  const auto bounds = std::find_if(fields.begin(), fields.end(), [](const auto& field) { return field.key == "seed"; });
-  if (const auto fault = talus::fault_of(*bounds, static_cast<double>(seed)))  // a negative number has become huge
-    throw talus::InputError("flag --seed = " + std::to_string(static_cast<std::int64_t>(seed)) + ": " + *fault);
-}
-
 void catch_signals() {
   ends_at_once = false;
 }
@@ -310,6 +303,20 @@ void add_progress(CLI::App& command, std::string& progress) {
           "machine: lines `progress 42` for other programs; json: lines {\"phase\": \"simulate\", \"share\": 0.42}, "
           "and {\"warning\": ...}, {\"error\": ...} or {\"message\": ...} in the place of each message")
       ->check(CLI::IsMember({"machine", "json"}));
+}
+
+void add_threads(CLI::App& command, int& threads) {
+  command.add_option("--threads", threads, "all processors where it is not given; the results are the same")
+      ->check(startable_threads());
+}
+
+void add_quiet(CLI::App& command, bool& quiet) {
+  command.add_flag("-q,--quiet", quiet, "say nothing but errors");
+}
+
+void add_surface(CLI::App& command, std::optional<std::string>& surface) {
+  with(command.add_option("--surface", surface, "bilinear or creased (creased): heights between the cells' centres"),
+       surface_choice());
 }
 
 void say(const std::string& kind, const std::string& text) {

@@ -49,7 +49,7 @@ void add_report(CLI::App& app, Action& action) {
   command->add_option("--attribution", options->request.attribution,
                       "whose terrain and maps these are, below every map; what the DEM states where it is not given");
   command->add_flag("--overwrite", options->overwrite, "replace an earlier page of talus report");
-  command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
+  add_quiet(*command, options->quiet);
   command->footer(
       "Example:\n  talus report result --title \"Rock fall above the road\" --attribution \"DEM: (c) swisstopo\"\n\n"
       "Run it last, after hazard and barrier: the page shows what is in the folder. docs/report.md says what that is.");

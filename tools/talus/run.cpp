@@ -66,9 +66,7 @@ void add_scenario_options(CLI::App& command, talus::io::RunFlags& flags) {
   with(command.add_option("--parameters", flags.parameters,
                           "a ground that talus calibrate or diagnose has fitted (fitted.toml), in place of --preset"),
        file_of({"toml"}));
-  with(command.add_option("--surface", flags.surface,
-                          "bilinear or creased (creased): heights between the cells' centres"),
-       surface_choice());
+  add_surface(command, flags.surface);
   with(command.add_option("--diameter", flags.diameter, "of the blocks [m]"),
        number_of(talus::bounds_of("blocks.diameter")));
   with(command.add_option("--deformation-coefficient", flags.deformation_coefficient,
@@ -111,12 +109,11 @@ void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes) {
   command->add_option("--part", request.part, "I/N: only part I of N of the source cells, for talus merge");
   command->add_flag("--resume", request.resume, "go on with an interrupted run of the same command");
   command->add_option("--memory", request.memory, "such as 2G: what does not fit lies in a file beside the results");
-  with(command
-           ->add_option("--checkpoint", request.checkpoint,
-                        "seconds between two times that the work is kept on the disk")
+  with(command->add_option("--checkpoint", request.checkpoint, "seconds between two saves of the work to disk")
            ->check(between(0.0, 1e6)),
        with_unit("s", request.checkpoint));
-  with(command->add_option("--rounds", request.rounds.count, "how often the scenario's trajectories are traced")
+  with(command
+           ->add_option("--rounds", request.rounds.count, "number of times that the scenario's trajectories are traced")
            ->check(CLI::Range(1, 10'000)),
        default_of(request.rounds.count));
   CLI::Option* until =
@@ -128,17 +125,17 @@ void add_run(CLI::App& app, Action& action, talus::ProcessGroup& processes) {
           ->add_option("--above", request.rounds.above, "the error counts in all cells with a larger probability; 0.01")
           ->check(between(1e-9, 1.0)),
       default_of(request.rounds.above));
-  with(command->add_option("--most-rounds", request.rounds.most, "--until-error: never more; 100")
+  with(command->add_option("--most-rounds", request.rounds.most, "largest number of rounds with --until-error (100)")
            ->check(CLI::Range(1, 10'000))
            ->needs(until),
        default_of(request.rounds.most));
-  command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
+  add_quiet(*command, options->quiet);
   add_progress(*command, options->progress);
   command->footer(
       "Examples:\n"
       "  talus run scenario.toml -o result\n"
       "  talus run --dem dem.tif --sources cliffs.gpkg --diameter 1.2 --trajectories 100 -o result\n\n"
-      "An option given here counts more than the scenario file. OUT/scenario.toml holds all settings.");
+      "An option given here overrides the scenario file. OUT/scenario.toml holds all settings.");
   command->callback([&action, &processes, options, above] {
     if (above->count() > 0 && !options->request.rounds.several())
       throw talus::InputError("--above: must come with --until-error, or --rounds of 2 or more; see talus run --help");

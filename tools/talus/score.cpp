@@ -12,6 +12,8 @@
 
 namespace {
 
+constexpr std::uint32_t kFewestTrials = 100;  // for each block of a score that is reported
+
 struct Options {
   std::string campaign, parameters, rows = "all", dump;
   std::optional<std::string> surface;
@@ -22,13 +24,13 @@ struct Options {
 };
 
 int score_model(const Options& options) {
-  require_seed(options.seed);
-  if (options.parameters.empty())
-    throw talus::InputError(
-        "score: no model is given: name it by --parameters fitted.toml (talus calibrate writes one)");
   talus::io::LoadedCampaign loaded = talus::io::read_campaign(options.campaign, options.surface);
   const talus::Campaign& campaign = loaded.campaign;
   const talus::Model model = talus::io::read_model(options.parameters, campaign, &loaded.warnings);
+  if (options.trials < kFewestTrials)
+    loaded.warnings.push_back(
+        "--trials " + std::to_string(options.trials) + ": must be " + std::to_string(kFewestTrials) +
+        " at least for a score to rest on: rows with few simulated values score as the climatology");
   catch_signals();
   if (!options.quiet)
     for (const std::string& warning : loaded.warnings) say("warning", warning);
@@ -59,11 +61,14 @@ int score_model(const Options& options) {
                             std::to_string(talus::kFewestRows) +
                             " of the asked blocks that differ: measure more, or see by --dump what the model does" +
                             (options.rows == "all" ? "" : ", or ask for --rows all"));
-  if (!options.quiet)
-    for (const talus::io::ScoredRows& s : scores)
-      for (const std::string& warning : talus::io::score_warnings(s)) say("warning", warning);
+  std::vector<std::string> warnings = loaded.warnings;
+  for (const talus::io::ScoredRows& s : scores)
+    for (const std::string& warning : talus::io::score_warnings(s)) {
+      if (!options.quiet) say("warning", warning);
+      warnings.push_back(warning);
+    }
   const talus::io::ScoreSettings settings{campaign.name, options.trials, options.seed,
-                                          std::string(talus::name_of(campaign.surface.kind()))};
+                                          std::string(talus::name_of(campaign.surface.kind())), warnings};
   const std::string text =
       options.json ? talus::io::score_json(settings, scores) : talus::io::score_table(settings, scores);
   if (dump) {
@@ -81,11 +86,10 @@ void add_score(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("score", "Say how far a model is from measured data, group by group");
   with(command->add_option("campaign", options->campaign, "measured data: campaign.toml")->required(),
        file_of({"toml"}));
-  with(command->add_option("--parameters", options->parameters, "the model: fitted.toml, as talus calibrate writes it"),
+  with(command->add_option("--parameters", options->parameters, "the model: fitted.toml, as talus calibrate writes it")
+           ->required(),
        file_of({"toml"}));
-  with(command->add_option("--surface", options->surface,
-                           "bilinear or creased (creased): heights between the cells' centres"),
-       surface_choice());
+  add_surface(*command, options->surface);
   with(command->add_option("--trials", options->trials, "simulated trajectories per block (100)")
            ->check(CLI::Range(10, 100000)),
        default_of(options->trials));
@@ -97,11 +101,10 @@ void add_score(CLI::App& app, Action& action) {
   command->add_flag("--json", options->json, "print JSON");
   with(command->add_option("--dump", options->dump, "new folder for what was simulated, by block and trial (CSV)"),
        new_folder());
-  command->add_option("--threads", options->threads, "all processors where it is not given; the results are the same")
-      ->check(startable_threads());
+  add_threads(*command, options->threads);
   command->add_flag("-q,--quiet", options->quiet, "say nothing but errors and the result");
   command->footer(
       "Example:\n  talus score campaign.toml --parameters result/fitted.toml\n\n"
-      "0 is a model that says the very value; about 0.56 one that knows no more than the spread of the measurements.");
+      "0: the model gives the measured value exactly; about 0.56: it knows only the spread of the measurements.");
   command->callback([&action, options] { action = [options] { return score_model(*options); }; });
 }

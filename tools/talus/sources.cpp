@@ -13,7 +13,7 @@
 
 namespace {
 
-constexpr talus::Bounds kSlope{"slope", "deg", "cells at least so steep are candidate sources",
+constexpr talus::Bounds kSlope{"slope", "deg", "cells at least this steep are candidate sources",
                                0.0,     90.0,  talus::Bounds::Between};
 
 struct Options {
@@ -70,10 +70,10 @@ void add_sources(CLI::App& app, Action& action) {
            ->required(),
        new_file_of({"vector"}));
   with(command->add_option("--slope", options->slope,
-                           "cells at least so steep [deg]; without it 55 cell^-0.075, which is 48.7 at 5 m"),
+                           "cells at least this steep [deg]; without it 55 cell^-0.075, which is 48.7 at 5 m"),
        number_of(kSlope));
   command->add_flag("--overwrite", options->overwrite, "replace the file if it is there");
-  command->add_flag("-q,--quiet", options->quiet, "say nothing but errors");
+  add_quiet(*command, options->quiet);
   command->footer(
       "Example:\n"
       "  talus sources --dem dem.tif -o cells.gpkg\n"

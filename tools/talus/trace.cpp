@@ -26,13 +26,13 @@ void check_range(const char* option, std::int64_t value, std::uint64_t count, co
 
 /// Every vertex in full precision: the shortest decimals that read back as the same numbers.
 void print_csv(const talus::io::LoadedScenario& loaded, const talus::Path& path) {
-  const double south = loaded.geo.north - loaded.scenario.surface.grid().rows * loaded.geo.cell_y;
+  const talus::io::MapPlace place(loaded.geo, loaded.scenario.surface.grid());
   print_text("time,x,y,z,vx,vy,vz,wx,wy,wz,event\n");
   for (const talus::Vertex& vertex : path.vertices) {
     const talus::Motion& m = vertex.motion;
     const std::array<double, 10> values{m.time,
-                                        loaded.geo.west + m.position.x(),
-                                        south + m.position.y(),
+                                        place.x(m.position.x()),
+                                        place.y(m.position.y()),
                                         m.position.z(),
                                         m.velocity.x(),
                                         m.velocity.y(),

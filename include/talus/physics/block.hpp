@@ -14,11 +14,11 @@ struct Block {
   double radius() const { return 0.5 * diameter; }
   double inertia() const { return 0.4 * mass * radius() * radius(); }  ///< [kg m^2]
   /// Energy of the rotation, 1/2 I w^2 [kJ]. @param spin  w, angular velocity [rad/s]
-  double rotational_energy(double spin) const { return 0.5e-3 * inertia() * spin * spin; }
+  double rotational_energy_kj(double spin) const { return 0.5e-3 * inertia() * spin * spin; }
 };
 
 /// Translational kinetic energy, 1/2 m v^2 [kJ]. @param mass  [kg] @param speed  [m/s]
-inline double kinetic_energy(double mass, double speed) {
+inline double kinetic_energy_kj(double mass, double speed) {
   return 0.5e-3 * mass * speed * speed;
 }
 

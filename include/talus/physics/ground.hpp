@@ -12,8 +12,8 @@ template <class Number>
 struct BasicGround {
   Number theta_scale = 0.0;  ///< longitudinal roughness [-]
   Number psi_scale = 0.0;    ///< transverse roughness [-]
-  Number En50 = 15.0;        ///< D v_n^2 at which half of the normal momentum is kept [m^3/s^2]
-  Number Et50 = 50.0;        ///< D v_n^2 at which half of the tangential momentum is kept [m^3/s^2]
+  Number En50 = 15.0;        ///< c D v_n^2 at which half of the normal momentum is kept [m^3/s^2]
+  Number Et50 = 50.0;        ///< c D v_n^2 at which half of the tangential momentum is kept [m^3/s^2]
   Number tan_phi =
       0.57735026918962562;  ///< tangent of the friction angle phi [-]: 30 degrees, as the program rounds it
   Number shape_min = 1.0, shape_max = 1.0;  ///< range of the factor on the radius at impact [-]

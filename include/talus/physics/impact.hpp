@@ -48,8 +48,8 @@ template <class Word>
   const auto normal = box_muller(uniform(first), uniform(second));
   return AsperityDraw<decltype(uniform(third))>{normal.first, normal.second, uniform(third), uniform(fourth)};
 }
-/// With Roughness::Resample a longitudinal number below this is drawn again, at most so often: P(N1 < -1) = 0.16 each,
-/// 200 in a row happen once in 1e160 impacts.
+/// With Roughness::Resample a longitudinal number below this is drawn again, at most kMaxRedraws times:
+/// P(N1 < -1) = 0.16 each, 200 in a row happen once in 1e160 impacts.
 inline constexpr double kLowestBracket = -1.0;
 inline constexpr std::uint32_t kMaxRedraws = 200;
 

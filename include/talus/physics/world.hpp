@@ -11,8 +11,9 @@ class Barriers;
 
 /// Rules for the end of a trajectory, and its limits. docs/physics.md, "End of a trajectory".
 struct EndRules {
-  double stop_speed = 0.5;    ///< slower than this, a block can stop [m/s]
-  double trap_time = 5.0;     ///< a block that stays within one diameter for longer ends there [s]
+  double stop_speed = 0.5;  ///< slower than this, a block can stop [m/s]
+  double trap_time =
+      5.0;  ///< a block that stays within one diameter for longer ends there [s]; above 2 m times sqrt(D / 2 m)
   double time_limit = 600.0;  ///< [s]
   std::uint32_t impact_limit = 100'000;
 };

@@ -17,13 +17,12 @@ std::string count_text(std::uint64_t count);
 /// "3.14 %".
 std::string share_text(std::uint64_t part, std::uint64_t whole);
 
-/// Number of trajectories that ended in this way.
-std::uint64_t count_of(const Totals& totals, End end);
-
 /// "12 stopped, 1 trapped, 3 left the map, 0 caught, 0 at a limit".
-std::string ends_text(const Totals& totals);
+///
+/// @param terrain  what they left: "map" or "profile"
+std::string ends_text(const Totals& totals, const std::string& terrain = "map");
 
-/// "12 of 3 400 trajectories (0.353 %, allowed are 0.1 %) ended at the limit of impacts or time".
+/// "12 of 3 400 trajectories (0.353 %, allowed are 0.1 %) ended at the limit of impacts, time or vertices".
 std::string limits_text(const Totals& totals);
 
 /// "barrier net: 3 937 caught, 8 over it, 0 through it (it broke)"; "3 937 blocks and pieces caught" if blocks broke:
@@ -37,10 +36,16 @@ std::string barrier_text(const std::string& id, const BarrierCounts& counts, boo
 std::vector<std::string> warnings_of(const Totals& totals, std::uint64_t into_gaps = 0,
                                      const std::string& whole = "trajectories");
 
+/// The same of `talus profile`, which has no maps.
+std::vector<std::string> profile_warnings(const Totals& totals);
+
+/// `limits_text` with the way out of `talus profile`, whose trajectories `talus trace` cannot replay.
+std::string profile_limits_text(const Totals& totals);
+
 /// A warning that a plan has very many trajectories, with their time; nothing if it has not.
 ///
 /// @param parts  equal parts of it, of which one is run
-std::optional<std::string> size_warning(std::uint64_t trajectories, std::uint32_t parts = 1);
+std::optional<std::string> many_trajectories_warning(std::uint64_t trajectories, std::uint32_t parts = 1);
 
 /// A warning that many blocks hardly left their source; empty if they are few.
 ///

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "talus/physics/path.hpp"
@@ -13,12 +14,15 @@ struct Totals {
   std::uint64_t released = 0, pieces = 0, impacts = 0, psi_dropped = 0, cells_scored = 0;
   std::int64_t length_mm = 0, plan_length_mm = 0;
   std::uint64_t left_blocks = 0;               ///< that left the terrain, or of which a piece did
+  std::uint64_t limited_blocks = 0;            ///< that ended at a limit, or of which a piece did
   std::int64_t left_weight = 0;                ///< their annual frequency, in units of WeightScale::unit
-  std::array<std::uint32_t, 2> first_limit{};  ///< smallest (source, block) that ended at a limit, if any did
+  std::array<std::uint32_t, 2> first_limit{};  ///< smallest (source, block) of them
   bool interrupted = false;
   BarrierTally barriers;
   double sink_cpu_seconds = 0.0;  ///< the part of `cpu_seconds` spent in the sinks
   double cpu_seconds = 0.0;       ///< of all threads
+
+  std::uint64_t ended(End end) const { return ends[static_cast<std::size_t>(end)]; }
 };
 
 /// Adds the totals of a part of a run. The barriers must be the same.

@@ -1,6 +1,7 @@
 #include "talus/fit/calibrate/parameters.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "talus/base/elementary.hpp"
@@ -43,7 +44,8 @@ std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& 
       p.scale = key == "phi" ? Parameter::Scale::Linear : Parameter::Scale::Log;
       p.sd = key == "phi" ? 8.0 : 1.0;
       p.centre = field->get(start.grounds[zone]);
-      if (p.scale == Parameter::Scale::Log) p.centre = std::max(p.centre, 0.01);
+      if (p.scale == Parameter::Scale::Log) p.centre = std::max(p.centre, kLeastStart);
+      p.reach = kReach;
       p.lower = field->min;
       p.upper = field->max;
       const double low = p.scale == Parameter::Scale::Log ? p.centre * exponential(-kReach) : p.centre - kReach * p.sd;
@@ -59,6 +61,14 @@ std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& 
         "no zone is touched by enough of the simulated paths, so that nothing can be fitted: are the releases on the "
         "slope?");
   return parameters;
+}
+
+void check_start(std::span<const Parameter> parameters, const Model& start) {
+  for (const Parameter& p : parameters)
+    if (p.scale == Parameter::Scale::Log && std::isfinite(p.reach) && p.get(start) < kLeastStart)
+      throw InputError(p.key + " = " + with_digits(p.get(start), 3) + " at the start, must be " + text_of(kLeastStart) +
+                       " at least to be fitted, as a search by factors does not leave 0: give another start by "
+                       "--parameters, or leave it out of --fit");
 }
 
 std::vector<bool> touched_zones(const Campaign& campaign, std::span<const BlockRuns> runs, double share) {

@@ -18,6 +18,9 @@ void summarise(std::span<const Parameter> free, Uncertainty& out) {
     const double low = quantile(z, kTail), high = quantile(z, 1.0 - kTail);
     const Parameter& p = free[static_cast<std::size_t>(i)];
     out.intervals.push_back({p.value(low), p.value(high)});
+    const double near = 1e-6;  // z of the bounds is rounded
+    out.at_bound.push_back((-low > p.reach - near && low < p.z(p.lower) + near) ||
+                           (high > p.reach - near && high > p.z(p.upper) - near));
     const double possible = std::min(2.0 * kTwoSided, p.z(p.upper) - p.z(p.lower));
     out.identifiable.push_back(high - low <= kMostOfThePrior * possible);
   }

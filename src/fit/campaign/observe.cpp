@@ -36,6 +36,12 @@ class Errors {
   Random random_;
 };
 
+/// A speed or spin as an instrument gives it: never below 0.
+/// @param bias, error  relative to the value
+double measured(double value, double bias, double error) {
+  return std::max(0.0, value * (1.0 + bias) * (1.0 + error));
+}
+
 /// Measures the paths of one block; its buffers are reused.
 class Instrument {
  public:
@@ -89,11 +95,10 @@ class Instrument {
       BlockRuns::AtScreen& screen = runs.screens[crossing.screen];
       if (!std::isnan(screen.speed[trial])) continue;  // only the first crossing counts
       const auto error = errors.of_screen(screen_streams_[crossing.screen]);
-      screen.speed[trial] = crossing.speed * (1.0 + bias.speed) * (1.0 + campaign_.error.speed_fraction * error[0]);
+      screen.speed[trial] = measured(crossing.speed, bias.speed, campaign_.error.speed_fraction * error[0]);
       screen.jump[trial] =
           std::max(0.0, crossing.height * (1.0 + bias.jump) + campaign_.error.jump_height_m * error[1]);
-      screen.spin[trial] =
-          crossing.spin * (1.0 + bias.spin) * (1.0 + campaign_.error.angular_velocity_fraction * error[2]);
+      screen.spin[trial] = measured(crossing.spin, bias.spin, campaign_.error.angular_velocity_fraction * error[2]);
     }
   }
 
@@ -126,9 +131,8 @@ class Instrument {
               std::uint32_t trial) const {
     const auto error = errors.of_sample(sample);
     const Bias bias = bias_of(kSampler);
-    out.speed[trial] = motion.velocity.norm() * (1.0 + bias.speed) * (1.0 + campaign_.error.speed_fraction * error[0]);
-    out.spin[trial] =
-        motion.spin.norm() * (1.0 + bias.spin) * (1.0 + campaign_.error.angular_velocity_fraction * error[1]);
+    out.speed[trial] = measured(motion.velocity.norm(), bias.speed, campaign_.error.speed_fraction * error[0]);
+    out.spin[trial] = measured(motion.spin.norm(), bias.spin, campaign_.error.angular_velocity_fraction * error[1]);
   }
 
   void count_zones(const Path& path, BlockRuns& runs) {
@@ -148,7 +152,7 @@ class Instrument {
   const Model& model_;
   const Cover& cover_;
   const ScreenFinder& screens_;
-  const bool bounded_;  // what comes to no end counts as cut short
+  const bool bounded_;  // what does not end counts as cut short
   std::vector<std::uint32_t> screen_streams_;
   std::vector<Crossing> crossings_;
   std::vector<std::size_t> order_;

@@ -15,7 +15,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Blocks with a number, in the order of their streams, so that sums do not hang on the order of the file.
+/// Blocks with a number, in the order of their streams, so that sums do not depend on the order of the file.
 std::vector<std::size_t> used_blocks(const Campaign& campaign, const std::vector<double>& energy) {
   std::vector<std::size_t> blocks;
   for (std::size_t b = 0; b < energy.size(); ++b)

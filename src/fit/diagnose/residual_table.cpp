@@ -127,7 +127,7 @@ void add_moments(std::vector<ResidualRow>& table, const std::string& name, const
   table.push_back({name, "spread", share, two_sided(tail), 1.0, z.size()});
 }
 
-/// The used blocks in the order of their streams: the permutations must not hang on the order of the file.
+/// The used blocks in the order of their streams: the permutations must not depend on the order of the file.
 std::vector<std::size_t> in_order_of_streams(const Campaign& campaign, const std::vector<bool>& rows) {
   std::vector<std::size_t> order;
   for (std::size_t b = 0; b < campaign.blocks.size(); ++b)

@@ -6,7 +6,7 @@
 namespace talus {
 
 /// The rock of each of some blocks of a campaign, numbered from 0 in the order of these blocks. Which are of one rock
-/// hangs neither on their order nor on their ids.
+/// depends neither on their order nor on their ids.
 ///
 /// Blocks with a name (MeasuredBlock::rock) are of one rock if they share it. The others are linked where mass and axes
 /// are equal to 2 %, as of a rock that was weighed and measured again; blocks that are linked through others are of one

@@ -32,7 +32,7 @@ class ScoreRows {
     rows_.clear();
   }
 
-  /// The mean over the groups, and the share of the trials of the asked blocks that came to no end in a search.
+  /// The mean over the groups, and the share of the trials of the asked blocks that did not end in a search.
   Score result(const std::vector<bool>& ask) {
     double sum = 0.0, cut = 0.0, blocks = 0.0;
     for (const GroupScore& group : score_.groups) sum += group.score;

@@ -114,7 +114,7 @@ class CampaignReader {
 
   void read_error(TableReader table) {
     constexpr Bounds kMetres{"", "m", "standard deviation of the measurement", 0.0, 1000.0};
-    constexpr Bounds kFraction{"", "1", "standard deviation relative to the value", 0.0, 10.0};
+    constexpr Bounds kFraction{"", "1", "standard deviation relative to the value, such as 0.03", 0.0, 1.0};
     MeasurementError& e = spec_.error;
     e.position_m = table.number("position_m", kMetres).value_or(0.0);
     e.speed_fraction = table.number("speed_fraction", kFraction).value_or(0.0);
@@ -133,14 +133,12 @@ class CampaignReader {
 void check_crs(const std::string& path, const std::string& given, const Terrain& terrain) {
   if (given.empty()) return;
   GdalMessages messages;
-  OGRSpatialReference system, of_dem;
+  OGRSpatialReference system;
   if (system.SetFromUserInput(given.c_str()) != OGRERR_NONE)
     throw InputError(path + ": crs = '" + given + "': is no coordinate system, must be one like \"EPSG:2056\"");
-  of_dem.importFromWkt(terrain.geo.crs_wkt.c_str());
-  const char* const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", "CRITERION=EQUIVALENT", nullptr};
-  if (system.IsSame(&of_dem, options) == 0)
+  if (!same_plane_system(wkt_of(&system), terrain.geo.crs_wkt))
     throw InputError(path + ": crs = '" + given + "': must be the system of the DEM, " + crs_name(terrain.geo.crs_wkt) +
-                     ": reproject the DEM with gdalwarp -r cubicspline -t_srs " + given);
+                     ": transform the coordinates of the tables into it");
 }
 
 template <class Part>

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "talus/base/error.hpp"
+#include "talus/base/sample.hpp"
 #include "talus/base/text.hpp"
 
 namespace talus::io {
@@ -71,6 +72,7 @@ class Tables {
     }
     if (campaign_.blocks.empty()) throw InputError(files_.blocks + ": has no blocks, must have one row for each");
     warn_of_masses(files_.blocks, campaign_.blocks, warnings_);
+    warn_of_median(files_.blocks, campaign_.blocks, warnings_);
   }
 
   void check_release(const CsvTable& table, const Row& row, const MeasuredBlock& block) const {
@@ -220,6 +222,18 @@ Vec3 axes_of(const CsvTable& table, const CsvTable::Row& row, double diameter) {
           row, kColumns[i],
           std::string("must not be above ") + kColumns[i - 1] + " = " + text_of(*axes[i - 1]) + " (L1 >= L2 >= L3)");
   return {*axes[0], *axes[1], *axes[2]};
+}
+
+void warn_of_median(const std::string& path, std::span<const MeasuredBlock> blocks,
+                    std::vector<std::string>& warnings) {
+  constexpr double kSmall = 0.15, kLarge = 10.0;  // diameter of a sphere of the same volume [m]
+  std::vector<double> diameters;
+  for (const MeasuredBlock& b : blocks) diameters.push_back(equivalent_diameter(b.mass, b.density));
+  std::ranges::sort(diameters);
+  const double median = quantile(diameters, 0.5);
+  if (median >= kSmall && median <= kLarge) return;
+  warnings.push_back(path + ": half of the blocks are " + (median < kSmall ? "smaller" : "larger") + " than " +
+                     with_digits(median, 2) + " m across: are masses in kg, lengths in m and densities in kg/m3?");
 }
 
 void warn_of_masses(const std::string& path, std::span<const MeasuredBlock> blocks,

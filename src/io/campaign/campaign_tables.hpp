@@ -28,5 +28,7 @@ Vec3 axes_of(const CsvTable& table, const CsvTable::Row& row, double diameter);
 
 /// Warns once if masses contradict axes and density: a mass in tonnes, axes in cm. Spheres of their mass never do.
 void warn_of_masses(const std::string& path, std::span<const MeasuredBlock> blocks, std::vector<std::string>& warnings);
+/// Warns if the median block is larger or smaller than those that are measured in the field.
+void warn_of_median(const std::string& path, std::span<const MeasuredBlock> blocks, std::vector<std::string>& warnings);
 
 }  // namespace talus::io

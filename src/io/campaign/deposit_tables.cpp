@@ -16,7 +16,7 @@
 namespace talus::io {
 namespace {
 
-constexpr Bounds kDiameter{"diameter_m", "m", "of the sphere of the block's volume", 0.0, 100.0, Bounds::AboveMin};
+constexpr Bounds kDiameter{"diameter_m", "m", "of the sphere of the block's volume", 0.0, 50.0, Bounds::AboveMin};
 constexpr Bounds kDropHeight{"release_height", "m", "of the release above the terrain", 0.0, 500.0};
 constexpr Bounds kStrips{"strips", "1", "number of strips across the slope", 2.0, 50.0, Bounds::Closed, true};
 constexpr Bounds kStrip{"holdout", "1", "number of a strip", 1.0, 50.0, Bounds::Closed, true};
@@ -233,6 +233,7 @@ void read_deposits(const DepositSpec& spec, const Terrain& terrain, Campaign& ca
   if (campaign.blocks.empty())
     throw InputError(spec.table.path + ": has no blocks, must have one row for each that was mapped");
   warn_of_masses(spec.table.path, campaign.blocks, warnings);
+  warn_of_median(spec.table.path, campaign.blocks, warnings);
   if (spec.strips > 0 && std::ranges::any_of(campaign.blocks, &MeasuredBlock::holdout))
     throw InputError(spec.table.path + ": has a column holdout beside [deposits] strips, must be one of them");
   if (spec.mapped.path.empty())

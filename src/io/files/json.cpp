@@ -50,8 +50,8 @@ void throw_not_understood(const std::filesystem::path& file, const std::string& 
 std::int64_t whole_number(const Json& number, std::int64_t lowest, std::int64_t highest) {
   const bool whole = number.is_number_integer() && !(number.is_number_unsigned() && number.get<std::uint64_t>() >> 63U);
   if (!whole || number.get<std::int64_t>() < lowest || number.get<std::int64_t>() > highest)
-    throw InputError("it has the number " + number.dump().substr(0, 40) + " where one from " + std::to_string(lowest) +
-                     " to " + std::to_string(highest) + " must be");
+    throw InputError("it has the number " + number.dump().substr(0, 40) + ", must be " + std::to_string(lowest) +
+                     " to " + std::to_string(highest));
   return number.get<std::int64_t>();
 }
 

@@ -217,10 +217,7 @@ void OutputFolder::commit(const fs::path& folder) {
     fs::remove_all(aside, error);  // else a file has come a moment ago: it stays
 }
 
-namespace {
-
-/// @param name  of the file in the message
-void write_text_as(const fs::path& file, std::string_view text, const std::string& name) {
+void write_text(const fs::path& file, std::string_view text, const std::string& name) {
   std::FILE* stream = std::fopen(file.c_str(), "wb");
   bool good = stream != nullptr && std::fwrite(text.data(), 1, text.size(), stream) == text.size();
   int cause = good ? 0 : errno;
@@ -231,19 +228,14 @@ void write_text_as(const fs::path& file, std::string_view text, const std::strin
   if (good) return;
   std::error_code ignored;
   fs::remove(file, ignored);
-  throw std::runtime_error(name + ": cannot be written: " + std::system_category().message(cause));
-}
-
-}  // namespace
-
-void write_text(const fs::path& file, std::string_view text) {
-  write_text_as(file, text, file.filename().string());
+  throw std::runtime_error((name.empty() ? file.filename().string() : name) +
+                           ": cannot be written: " + std::system_category().message(cause));
 }
 
 void replace_text(const fs::path& file, std::string_view text) {
   const std::string name = file.filename().string();  // not the hidden one
   StagedPath staged(StagedPath::Kind::File, file, file.extension().string());
-  write_text_as(staged.hidden(), text, name);
+  write_text(staged.hidden(), text, name);
   if (const std::error_code error = staged.commit())
     throw std::runtime_error(name + ": cannot be written: " + error.message());
 }

@@ -56,7 +56,12 @@ CrossingTable read_crossings(const std::string& path, const std::string& screen)
   BlockNumbers blocks;
   std::unordered_set<std::string> seen;
   for (const CsvTable::Row& row : table.rows()) {
-    if (table.text(row, "screen") != screen) continue;
+    const std::string& of = table.text(row, "screen");
+    if (of.empty()) table.refuse(row, "screen", "must be given: a crossing of no screen would count nowhere");
+    if (of != screen) {
+      ++out.others[of];
+      continue;
+    }
     ++out.rows;
     const std::string block = block_of(table, row);
     if (!block.empty() && !seen.insert(block + ',' + piece_of(table, row)).second) continue;

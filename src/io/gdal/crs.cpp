@@ -195,6 +195,17 @@ std::string crs_name(const std::string& wkt) {
   return authority == nullptr || code == nullptr ? title : std::string(authority) + ":" + code + " (" + title + ")";
 }
 
+std::string dem_system_note(const std::string& path, const std::string& dem_wkt) {
+  return path + ": states no coordinate system: taken to be that of the DEM, " + crs_name(dem_wkt);
+}
+
+bool same_plane_system(const std::string& wkt, const std::string& other_wkt) {
+  const Context context = make_context();
+  const Object system = plane_part(context.get(), wkt), other = plane_part(context.get(), other_wkt);
+  return system && other && same_system(context.get(), system.get(), other.get()) &&
+         !are_other_grids(system.get(), other.get());
+}
+
 std::optional<std::string> check_metric(const std::string& path, const std::string& wkt, const MapExtent& extent) {
   if (wkt.empty())
     throw InputError(path + ": has no coordinate system, must be a projected one in metres: " + naming(path));

@@ -112,6 +112,12 @@ void CsvTable::read(const std::vector<std::string>& known, const std::vector<std
 void CsvTable::read_header(std::vector<std::string> columns, const std::vector<std::string>& known,
                            const std::vector<std::string>& required) {
   columns_ = std::move(columns);
+  if (std::ranges::any_of(columns_, [](const std::string& c) { return c.find('\r') != std::string::npos; }))
+    throw InputError(path_ +
+                     ":1: lines must end with a line feed (LF or CR LF), not with CR alone: save it as CSV again");
+  if (columns_.size() == 1 && columns_[0].find_first_of(";\t") != std::string::npos)
+    throw InputError(path_ + ":1: has one column, '" + columns_[0] +
+                     "': cells must be separated by commas: save it as CSV (comma delimited)");
   for (auto column = columns_.begin(); column != columns_.end(); ++column) {
     if (!known.empty() && std::find(known.begin(), known.end(), *column) == known.end())
       throw InputError(path_ + ":1: unknown column '" + *column + "'" + known_names(*column, known));

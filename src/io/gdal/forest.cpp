@@ -37,7 +37,7 @@ class StandRaster {
     std::string wkt = wkt_of(dataset_->GetSpatialRef());
     if (wkt.empty()) {
       wkt = terrain.geo.crs_wkt;
-      warnings_.push_back(path + ": says no coordinate system: taken as the one of the DEM, " + crs_name(wkt));
+      warnings_.push_back(dem_system_note(path, wkt));
     }
     transformer_.emplace(LayerName{std::string(kRole) + "." + key, path}, terrain.geo.crs_wkt, wkt, terrain.map());
     GDALRasterBand& band = *dataset_->GetRasterBand(1);

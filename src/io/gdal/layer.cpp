@@ -75,8 +75,7 @@ Layer::Layer(std::string role, const std::string& path, const Terrain& terrain)
   crs_wkt_ = wkt_of(system);
   if (crs_wkt_.empty()) {
     crs_wkt_ = terrain.geo.crs_wkt;
-    if (!is_csv())
-      warnings_.push_back(path + ": says no coordinate system: taken as the one of the DEM, " + crs_name(crs_wkt_));
+    if (!is_csv()) warnings_.push_back(dem_system_note(path, crs_wkt_));
   } else {
     const std::vector<int>& order = system->GetDataAxisToSRSAxisMapping();
     north_first_ = !order.empty() && order[0] == 1 &&

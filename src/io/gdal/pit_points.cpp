@@ -8,7 +8,7 @@ namespace talus::io {
 void write_pits(const std::filesystem::path& file, const Raster<float>& heights, const GeoReference& geo) {
   start_gdal();
   const Grid& grid = heights.grid;
-  const double south = geo.north - grid.rows * geo.cell_y;
+  const MapPlace place(geo, grid);
   GeoPackage package(file, geo);
   OGRLayer* layer =
       package.add_bulk_layer("pits", wkbPoint, {{"kind", OFTString}, {"depth_m", OFTReal}, {"z", OFTReal}});
@@ -20,7 +20,7 @@ void write_pits(const std::filesystem::path& file, const Raster<float>& heights,
       feature->SetField(0, pit > 0.0 ? "pit" : "dammed");
       feature->SetField(1, pit > 0.0 ? pit : dam);
       feature->SetField(2, double{heights.at(column, row)});
-      const OGRPoint point(geo.west + grid.centre_x(column), south + grid.centre_y(row));
+      const OGRPoint point(place.x(grid.centre_x(column)), place.y(grid.centre_y(row)));
       feature->SetGeometry(&point);
       package.append(layer, *feature);
     }

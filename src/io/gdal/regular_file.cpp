@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <filesystem>
+#include <system_error>
 
 #include "talus/base/error.hpp"
 
@@ -42,6 +44,12 @@ std::string megabytes(std::size_t bytes) {
   return std::to_string(bytes >> 20U) + " MB";
 }
 
+/// Why the system does not open or read a file, by its error number.
+std::string reason(int error, const std::string& path) {
+  if (error != ENOENT) return "cannot be read (" + std::system_category().message(error) + ")";
+  return "no such file (" + std::filesystem::absolute(path).string() + "), check the path";
+}
+
 }  // namespace
 
 std::optional<std::string> fault_of_file(const std::string& path) {
@@ -59,7 +67,7 @@ std::string read_file(const std::string& path, const std::string& name, const st
   const OpenFile file(path);
   struct stat status {};
   if (file.number() < 0 || fstat(file.number(), &status) != 0)
-    throw InputError(name + ": cannot be read, must be " + what);
+    throw InputError(name + ": " + reason(errno, path) + ": it must be " + what);
   if (!S_ISREG(status.st_mode)) refuse("is no regular file, must be " + what);
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size > most)
@@ -70,7 +78,7 @@ std::string read_file(const std::string& path, const std::string& name, const st
   while (done < size) {
     const ssize_t count = read(file.number(), text.data() + done, size - done);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) throw InputError(name + ": cannot be read, must be " + what);
+    if (count < 0) throw InputError(name + ": " + reason(errno, path) + ": it must be " + what);
     if (count == 0) break;  // has become shorter
     done += static_cast<std::size_t>(count);
   }

@@ -151,7 +151,7 @@ void read_codes(GDALDataset& dataset, const ZoneRequest& request, const Terrain&
   std::string wkt = wkt_of(dataset.GetSpatialRef());
   if (wkt.empty()) {
     wkt = terrain.geo.crs_wkt;
-    out.warnings.push_back(request.path + ": says no coordinate system: taken as the one of the DEM, " + crs_name(wkt));
+    out.warnings.push_back(dem_system_note(request.path, wkt));
   }
   Transformer transformer({"ground", request.path}, terrain.geo.crs_wkt, wkt, terrain.map());
   const PixelFinder pixel(dataset, request.path);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <list>
 
 #include "barrier_stretches.hpp"
 #include "io/files/json.hpp"
@@ -11,6 +12,7 @@
 #include "talus/base/vector.hpp"
 #include "talus/base/version.hpp"
 #include "talus/io/files/output_folder.hpp"
+#include "talus/io/files/staged_path.hpp"
 
 namespace talus::io {
 namespace {
@@ -145,6 +147,33 @@ std::string written_values(const Json& design) {
   return texts.empty() ? "" : " (" + joined(texts) + ")";
 }
 
+/// The files of a design under hidden names, until all are complete: a full disk leaves the earlier design whole.
+class NewDesign {
+ public:
+  NewDesign(std::filesystem::path folder, std::string name) : folder_(std::move(folder)), name_(std::move(name)) {}
+
+  /// @return the hidden name of the new file with this ending
+  const std::filesystem::path& add(const std::string& end) {
+    const std::filesystem::path file = folder_ / (name_ + end);
+    return files_.emplace_back(StagedPath::Kind::File, file, file.extension().string()).hidden();
+  }
+  void add(const std::string& end, const std::string& text) { write_text(add(end), text, name_ + end); }
+  /// Gives the files their names, in the order in which they were added.
+  void commit() {
+    for (const StagedPath& file : files_) synchronise(file.hidden());
+    for (StagedPath& file : files_) {
+      remove_beside(file.path());
+      if (const std::error_code error = file.commit())
+        throw std::runtime_error(file.path().filename().string() + ": cannot be written: " + error.message());
+    }
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::string name_;
+  std::list<StagedPath> files_;
+};
+
 }  // namespace
 
 std::optional<std::string> write_barrier(const std::filesystem::path& folder, const std::string& name,
@@ -163,11 +192,14 @@ std::optional<std::string> write_barrier(const std::filesystem::path& folder, co
   if (earlier)
     if (const Json design = read_record(file); json_text(design) != json)
       replaced = "replaces the earlier design of screen " + report.screen + written_values(design);
-  replace_text(file, json);  // first: it says that the tables are ours
-  replace_text(folder / (name + ".csv"), barrier_csv(report));
-  if (!report.width) return replaced;  // a profile has no line
-  replace_text(folder / (name + "_stretches.csv"), stretches_csv(report));
-  replace_stretches(folder / (name + ".gpkg"), report, line, crs_wkt);
+  NewDesign design(folder, name);
+  design.add(".json", json);  // first: it says that the tables are ours
+  design.add(".csv", barrier_csv(report));
+  if (report.width) {  // a profile has no line
+    design.add("_stretches.csv", stretches_csv(report));
+    write_stretches(design.add(".gpkg"), name, report, line, crs_wkt);
+  }
+  design.commit();
   return replaced;
 }
 

@@ -4,13 +4,10 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 
-#include "io/files/own_files.hpp"
 #include "io/gdal/dataset.hpp"
 #include "io/gdal/layer_file.hpp"
 #include "talus/base/error.hpp"
-#include "talus/io/files/staged_path.hpp"
 #include "talus/io/results/vector_style.hpp"
 #include "talus/simulate/screens/screens.hpp"
 
@@ -159,32 +156,6 @@ const std::vector<Column>& columns() {
   return all;
 }
 
-/// Writes the stretches as lines into a new GeoPackage.
-void write_stretches(const std::filesystem::path& file, const std::string& name, const BarrierReport& report,
-                     const Screen& line, const std::string& crs_wkt) {
-  std::vector<LayerFile::Column> fields{{"screen", OFTString}};
-  for (const Column& column : columns()) fields.push_back({column.name, column.whole ? OFTInteger64 : OFTReal});
-  const std::unique_ptr<LayerFile> layers = new_layer_file(file, {crs_wkt});
-  OGRLayer* layer = layers->add_bulk_layer(name.c_str(), wkbLineString, fields);
-  for (const StretchRow& stretch : report.stretches) {
-    const GdalMessages messages;
-    const Feature row(OGRFeature::CreateFeature(layer->GetLayerDefn()));
-    row->SetField(0, report.screen.c_str());
-    int next = 1;
-    for (const Column& column : columns()) {
-      if (const auto value = column.of(stretch)) row->SetField(next, column.whole ? *value : six_digits(*value));
-      ++next;
-    }
-    auto places = std::make_unique<OGRLineString>();
-    for (const Eigen::Vector2d& place : part_along(line, stretch.values.stretch.from, stretch.values.stretch.to))
-      places->addPoint(place.x(), place.y());
-    row->SetGeometryDirectly(places.release());
-    layers->append(layer, *row);
-  }
-  layers->set_style(name, style_of(StyledLayer::Stretches));
-  layers->finish();
-}
-
 }  // namespace
 
 std::string stretches_text(const BarrierReport& r) {
@@ -244,20 +215,36 @@ bool is_of_design(const std::filesystem::path& file, const std::string& name) {
   }
 }
 
-void replace_stretches(const std::filesystem::path& file, const BarrierReport& report, const Screen& line,
-                       const std::string& crs_wkt) {
-  StagedPath staged(StagedPath::Kind::File, file, file.extension().string());
-  write_stretches(staged.hidden(), file.stem().string(), report, line, crs_wkt);
-  remove_beside(file);
-  if (const std::error_code error = staged.commit())
-    throw std::runtime_error(file.filename().string() + ": cannot be written: " + error.message());
+void write_stretches(const std::filesystem::path& file, const std::string& name, const BarrierReport& report,
+                     const Screen& line, const std::string& crs_wkt) {
+  std::vector<LayerFile::Column> fields{{"screen", OFTString}};
+  for (const Column& column : columns()) fields.push_back({column.name, column.whole ? OFTInteger64 : OFTReal});
+  const std::unique_ptr<LayerFile> layers = new_layer_file(file, {crs_wkt});
+  OGRLayer* layer = layers->add_bulk_layer(name.c_str(), wkbLineString, fields);
+  for (const StretchRow& stretch : report.stretches) {
+    const GdalMessages messages;
+    const Feature row(OGRFeature::CreateFeature(layer->GetLayerDefn()));
+    row->SetField(0, report.screen.c_str());
+    int next = 1;
+    for (const Column& column : columns()) {
+      if (const auto value = column.of(stretch)) row->SetField(next, column.whole ? *value : six_digits(*value));
+      ++next;
+    }
+    auto places = std::make_unique<OGRLineString>();
+    for (const Eigen::Vector2d& place : part_along(line, stretch.values.stretch.from, stretch.values.stretch.to))
+      places->addPoint(place.x(), place.y());
+    row->SetGeometryDirectly(places.release());
+    layers->append(layer, *row);
+  }
+  layers->set_style(name, style_of(StyledLayer::Stretches));
+  layers->finish();
 }
 
 std::optional<std::string> gap_note(double without_height) {
   if (!(without_height > 0.0)) return std::nullopt;
   return percent(without_height) +
          " of the line lie where the DEM has no height (off it, in its outer half cell or in a gap): no block gets "
-         "there, so that nothing is told of this part, and the crossings are a lower bound (unsafe)";
+         "there, so that nothing is known of this part, and the crossings are a lower bound (unsafe)";
 }
 
 std::optional<std::string> stretch_note(const BarrierReport& r) {

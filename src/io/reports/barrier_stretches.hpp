@@ -18,12 +18,11 @@ std::string stretches_text(const BarrierReport& report);
 /// The stretches as a list.
 Json stretches_of(const BarrierReport& report);
 
-/// Writes the stretches as lines with the columns of `stretches_csv` into a GeoPackage, in a layer of the name of the
-/// file, over an earlier one.
-void replace_stretches(const std::filesystem::path& file, const BarrierReport& report, const Screen& line,
-                       const std::string& crs_wkt);
+/// Writes the stretches as lines with the columns of `stretches_csv` into a new GeoPackage, in the layer `name`.
+void write_stretches(const std::filesystem::path& file, const std::string& name, const BarrierReport& report,
+                     const Screen& line, const std::string& crs_wkt);
 
-/// Whether a file is the layer that `replace_stretches` writes, of this name.
+/// Whether a file is the layer that `write_stretches` writes, of this name.
 bool is_of_design(const std::filesystem::path& file, const std::string& name);
 
 }  // namespace talus::io

@@ -128,9 +128,9 @@ Markup errors_html(const DiagnosisRecord& record) {
               record.whole.before, record.whole.after, &record.whole.reduction);
   html += row("fitting rows"_html, d.base.score.total, d.with_effects.score.total, nullptr) + "</table>\n";
   html +=
-      "<p>Mean normalised score: 0 says the very value, about 0.56 knows no more than the spread of the "
-      "measurements. Climatology: the measurements of the fitting blocks (of a fitting block those of the others) in "
-      "the place of a model.</p>\n";
+      "<p>Mean normalised score. 0: the model gives the measured value exactly; about 0.56: it knows only the spread "
+      "of the measurements. Climatology: the measurements of the fitting blocks (of a fitting block those of the "
+      "others) in the place of a model.</p>\n";
   for (const BeforeAfter& e : record.errors)
     for (const std::string& sentence : {skill_sentence(e.after), tail_before_after(e)})
       if (!sentence.empty()) html += "<p>"_html + sentence + "</p>\n";
@@ -242,10 +242,10 @@ Markup residual_sentence(const DiagnosisRound& round, double level) {
 /// @param level  of significance in this round
 Markup sentence(const DiagnosisRound& round, double level) {
   const bool rare = round.p_value <= level || (!round.residual.empty() && round.residual.front().corrected <= level);
-  if (!round.tried) return "What is left would be rare as noise; no further effect was tried (--most-effects)."_html;
+  if (!round.tried) return "What is left is unlikely to be noise; no further effect was tried (--most-effects)."_html;
   if (round.effect == "none" && !rare) return "Nothing is left that differs from noise."_html;
   if (round.effect == "none")
-    return "What is left would be rare as noise, but no effect of the library is named for it."_html;
+    return "What is left is unlikely to be noise, but no effect of the library can be named for it."_html;
   if (round.effect == "unexplained")
     return "A residual is left that no effect of the library explains better than chance."_html;
   Markup text = "The model lacks <b>"_html + round.effect + "</b> (" + round.where + ").";

@@ -53,7 +53,7 @@ Markup missing(const DiagnosisRecord& record) {
   if (d.rounds.front().effect == "unexplained")
     return "Something is missing that no effect of the library explains better than chance."_html;
   if (d.rounds.front().p_value <= record.options.level_of_round(0))
-    return "Something may be missing: what is left would be rare as noise, but no effect of the library is named for it."_html;
+    return "Something may be missing: what is left is unlikely to be noise, but no effect of the library can be named for it."_html;
   return "Nothing that these data can show: what is left looks like noise."_html;
 }
 

@@ -25,6 +25,7 @@ Json parameters_of(const Calibration& c) {
                     {"value", json_of(p.get(c.fit.model))},
                     {"ci95", json_of(c.uncertainty.intervals[i])},
                     {"identifiable", static_cast<bool>(c.uncertainty.identifiable[i])},
+                    {"at_bound", static_cast<bool>(c.uncertainty.at_bound[i])},
                     {"bounds", Json::array({json_of(p.lower), json_of(p.upper)})},
                     {"prior",
                      {{"scale", p.scale == Parameter::Scale::Log ? "log" : "linear"},
@@ -101,7 +102,7 @@ std::string parameter_lines(const Calibration& c) {
     text += "| " + p.key + (p.unit.empty() ? "" : " [" + p.unit + "]") + " | " + with_digits(p.get(c.start), 3) +
             " | " + (known ? with_digits(p.get(c.fit.model), 3) : "(" + with_digits(p.get(c.fit.model), 3) + ")") +
             " | " + with_digits(interval.low, 3) + " to " + with_digits(interval.high, 3) + " | " +
-            (known ? "" : "not identifiable") + " |\n";
+            interval_note(known, c.uncertainty.at_bound[i]) + " |\n";
   }
   return text;
 }
@@ -186,6 +187,17 @@ std::string calibration_json(const Calibration& c) {
   return json_text(json);
 }
 
+std::string interval_note(bool identifiable, bool at_bound) {
+  if (!at_bound) return identifiable ? "" : "not identifiable";
+  return std::string(identifiable ? "" : "not identifiable, ") + "ends at the bound of the search";
+}
+
+std::string bound_warning(const std::string& key, const Interval& interval) {
+  return key + ": its 95 % interval, " + with_digits(interval.low, 3) + " to " + with_digits(interval.high, 3) +
+         ", ends at the bound of the search, which may cut it short: fit again from there (--parameters "
+         "OUT/fitted.toml)";
+}
+
 std::string calibration_report(const Calibration& c) {
   std::string text = "# Calibration on " + c.campaign + "\n\nOn the " + c.surface + " surface (" + c.surface_from +
                      ").\n\n## Parameters\n\n" + parameter_lines(c) + "\n";
@@ -200,8 +212,8 @@ std::string calibration_report(const Calibration& c) {
             c.start_name + ".\n\n";
   text += "## Correlations of " + with_digits(kCorrelated, 3) + " or more\n\n" + correlation_lines(c) + "\n";
   text += "## Error\n\nMean normalised score, " + std::to_string(c.score_trials) +
-          " trials per block that the search has not seen. 0: the model says the very value; about 0.56: it knows the "
-          "spread of the measurements and no more. Before: " +
+          " trials per block that the search has not seen. 0: the model gives the measured value exactly; about 0.56: "
+          "it knows only the spread of the measurements. Before: " +
           c.start_name + (c.start_name == kDefaultPreset ? " everywhere" : "") +
           ". Held-out rows took no part in the fit. What was minimised is the same with groups of n rows "
           "that count n / (n + 10).\n\n" +

@@ -110,15 +110,18 @@ void check_ends(const RunFacts& run, Checks& checks) {
        found(left) + (by_pieces > 0.0 ? ", " + grouped(by_pieces) + " of them with smaller pieces only" : "") +
            (run.left_into_gaps > 0.0 ? ", " + grouped(run.left_into_gaps) + " of them into gaps inside the DEM" : ""),
        advice_on_left_blocks(run)});
-  checks.push_back({share(run.end("trapped")) > kWarnedTrappedShare ? Mark::Act
-                    : run.end("trapped") > 0.0                      ? Mark::Look
-                                                                    : Mark::Fine,
-                    "Blocks that are trapped", found(run.end("trapped")),
-                    "Held in pits or between walls on ground too steep to rest on. Above 3 %: look at the DEM there."});
-  checks.push_back({run.end("limit") > 0.0 ? Mark::Look : Mark::Fine, "Blocks cut short by a limit",
-                    found(run.end("limit")), "Their path was not followed to its end."});
+  checks.push_back(
+      {share(run.end("trapped")) > kWarnedTrappedShare ? Mark::Act
+       : run.end("trapped") > 0.0                      ? Mark::Look
+                                                       : Mark::Fine,
+       "Blocks that are trapped", found(run.end("trapped")),
+       std::string("Held in pits or between walls on ground too steep to rest on. Above 3 %: look at the ") +
+           (run.of_profile ? "profile" : "DEM") + " there."});
+  const double limited = std::max(run.end("limit"), run.limit_with_pieces);
+  checks.push_back({limited > 0.0 ? Mark::Look : Mark::Fine, "Blocks cut short by a limit", found(limited),
+                    "Their path, or that of a piece, was not followed to its end."});
   if (run.status != "complete")
-    checks.push_back({Mark::Act, "The run", run.status, "The run itself says that its result is not to be used."});
+    checks.push_back({Mark::Act, "The run", run.status, "The run did not complete properly: do not use its results."});
 }
 
 void check_sizes(const RunFacts& run, Checks& checks) {
@@ -232,7 +235,7 @@ void check_inputs(const CheckedRun& checked, Checks& checks) {
   const std::size_t warnings = all_warnings(run, checked.hazard).size();
   checks.push_back({warnings == 0 ? Mark::Fine : Mark::Act, "Warnings of the run",
                     warnings == 0 ? "none" : std::to_string(warnings) + ", listed above",
-                    "Say of each why it does not matter here, or mend it."});
+                    "For each, note why it does not matter here, or fix the cause."});
 }
 
 /// "; a source releases nothing ..." if warnings of the run say so; else empty.
@@ -393,8 +396,7 @@ Markup checks_html(const std::vector<Check>& checks) {
     html += start + check.what + "</td><td class='b'>" + check.found + "</td><td>" + check.why + "</td></tr>\n";
   }
   return html +
-         "</table>\n<table class='sign'><tr><td>Looked through "
-         "by</td><td></td><td>Date</td><td></td><td>Signature</td><td>"
+         "</table>\n<table class='sign'><tr><td>Reviewed by</td><td></td><td>Date</td><td></td><td>Signature</td><td>"
          "</td></tr></table>\n";
 }
 

@@ -104,6 +104,7 @@ RunFacts facts_of(const Json& json) {
   read_counts(json, run);
   run.left_into_gaps = number_of(json, "left_into_gaps");
   run.left_with_pieces = number_of(json, "left_with_pieces");
+  run.limit_with_pieces = number_of(json, "limit_with_pieces");
   run.gullies = gullies_of(json);
   run.grid = grid_of(json.at("grid"));
   run.screens = recorded_screens(json);

@@ -56,6 +56,7 @@ struct RunFacts {
   std::optional<GullyFacts> gullies;                 ///< nothing in an earlier record
   double left_into_gaps = 0.0;                       ///< 0 in an earlier record
   double left_with_pieces = 0.0;                     ///< blocks of which a piece left; 0 where none may break
+  double limit_with_pieces = 0.0;                    ///< blocks of which a piece ended at a limit, likewise
   RecordedGrid grid;
   std::vector<Screen> screens;  ///< in map coordinates [m]
   std::vector<StandingBarrier> barriers;

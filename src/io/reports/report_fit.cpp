@@ -9,6 +9,7 @@
 #include "talus/base/printable.hpp"
 #include "talus/base/text.hpp"
 #include "talus/fit/diagnose/diagnosis.hpp"
+#include "talus/io/reports/fit_report.hpp"
 
 namespace talus::io {
 namespace {
@@ -31,6 +32,7 @@ void read_calibration(const Json& json, FitPart& part) {
     if (const Json bounds = one.value("ci95", Json()); bounds.is_array() && bounds.size() == 2 && bounds[0].is_number())
       number.low = bounds[0].get<double>(), number.high = bounds[1].get<double>();
     number.identifiable = one.value("identifiable", true);
+    number.at_bound = one.value("at_bound", false);
     part.parameters.push_back(std::move(number));
   }
   read_errors(json, part);
@@ -64,7 +66,7 @@ std::optional<FitPart> read_fit_part(const RunFacts& run) {
   part.file = model->path;
   try {
     if (sha256_of_file(model->path) != model->sha256) {
-      part.note = "The file has changed since the run, or is no longer there: nothing is told of its fit.";
+      part.note = "The file has changed since the run, or is no longer there: its fit is not shown.";
       return part;
     }
     const fs::path folder = fs::path(model->path).parent_path();
@@ -103,7 +105,7 @@ Markup fit_html(const std::optional<FitPart>& part) {
     for (const FitPart::Number& number : part->parameters)
       html += "<tr><td>"_html + number.key + "</td><td class='n'>" + with_digits(number.value, 3) + " " + number.unit +
               "</td><td class='n'>" + with_digits(number.low, 3) + " to " + with_digits(number.high, 3) + "</td><td>" +
-              (number.identifiable ? "" : "not determined by the data") + "</td></tr>\n";
+              interval_note(number.identifiable, number.at_bound) + "</td></tr>\n";
     html += "</table>\n";
   }
   for (const std::string& warning : part->warnings) html += "<p class='look'>Warning: "_html + warning + "</p>\n";

@@ -13,7 +13,7 @@ struct FitPart {
   struct Number {
     std::string key, unit;
     double value = 0.0, low = 0.0, high = 0.0;
-    bool identifiable = true;
+    bool identifiable = true, at_bound = false;
   };
   struct Error {
     std::string rows;  ///< "fitting rows", "held-out rows"
@@ -21,7 +21,7 @@ struct FitPart {
   };
   std::string file;      ///< fitted.toml
   std::string campaign;  ///< that it was fitted to
-  std::string note;      ///< why nothing is told of it
+  std::string note;      ///< why the fit is not shown
   std::vector<Number> parameters;
   std::vector<Error> errors;
   std::string effect;  ///< verdict of the diagnosis; empty without one

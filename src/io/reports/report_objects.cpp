@@ -115,9 +115,9 @@ Markup curves_drawing(const ObjectsPart& part) {
 Markup object_row(const ObjectsPart::Object& object) {
   Markup row = "<tr><td>"_html + object.name + "</td><td class='n'>" + with_digits(object.frequency, 3) + " [" +
                with_digits(object.low, 3) + ", " + with_digits(object.high, 3) + "]</td><td class='n'>" +
-               (object.frequency > 0.0 ? readable(1.0 / object.frequency) : "never seen") + "</td>";
+               (object.frequency > 0.0 ? readable(1.0 / object.frequency) : "no event") + "</td>";
   for (const std::string& years : object.years)
-    row += "<td class='n'>"_html + (years.empty() ? std::string("never seen") : years) + "</td>";
+    row += "<td class='n'>"_html + (years.empty() ? std::string("no event") : years) + "</td>";
   return row + "<td>" + shortened(object.sources, 300) + "</td></tr>\n";
 }
 

@@ -15,7 +15,7 @@ struct ObjectsPart {
   struct Object {
     std::string name, sources;
     double frequency = 0.0, low = 0.0, high = 0.0;  ///< [1/year]
-    std::vector<std::string> years;                 ///< return period by threshold [years]; empty: never seen
+    std::vector<std::string> years;                 ///< return period by threshold [years]; empty: no event of this run
     std::vector<Point> curve;
   };
   std::vector<std::string> thresholds;  ///< [kJ]

@@ -1,10 +1,10 @@
 #include "report_screens.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "io/gdal/csv_table.hpp"
+#include "io/results/screen_columns.hpp"
 #include "report_facts.hpp"
 #include "svg.hpp"
 #include "talus/base/text.hpp"
@@ -17,13 +17,6 @@ namespace fs = std::filesystem;
 constexpr Bounds kAnyValue{"value", "1", "of a quantity", -1e15, 1e15};
 constexpr std::size_t kBins = 30, kMostScreens = 30;
 
-/// A quantity of the summary, and its column in screens.csv.
-struct Quantity {
-  const char *name, *column;
-};
-constexpr std::array<Quantity, 3> kQuantities{
-    {{"speed", "speed_ms"}, {"energy", "energy_kj"}, {"jump height", "jump_height_m"}}};
-
 void count_crossings(const fs::path& file, ScreensPart& part) {
   std::error_code none;
   if (!fs::exists(file, none)) return;
@@ -34,7 +27,7 @@ void count_crossings(const fs::path& file, ScreensPart& part) {
   const auto count = [&part](const CsvTable& table, const CsvTable::Row& line) {
     for (ScreensPart::Row& row : part.rows) {
       if (table.text(line, "screen") != row.screen || !(row.maximum > 0.0)) continue;
-      const auto quantity = std::ranges::find(kQuantities, row.quantity, &Quantity::name);
+      const auto quantity = std::ranges::find(kScreenColumns, row.quantity, &ScreenColumn::quantity);
       const auto value = table.number(line, quantity->column, kAnyValue);
       if (!value) continue;
       row.counts.resize(kBins);
@@ -93,8 +86,8 @@ ScreensPart read_screens_part(const fs::path& folder) {
   for (const CsvTable::Row& line : table.rows()) {
     const auto number = [&](const char* column) { return table.number(line, column, kAnyValue).value_or(0.0); };
     const std::string& quantity = table.text(line, "quantity");
-    if (std::ranges::find(kQuantities, quantity, &Quantity::name) == kQuantities.end()) continue;
-    if (part.rows.size() == kMostScreens * kQuantities.size()) {
+    if (std::ranges::find(kScreenColumns, quantity, &ScreenColumn::quantity) == kScreenColumns.end()) continue;
+    if (part.rows.size() == kMostScreens * kScreenColumns.size()) {
       part.note = "Only the first " + std::to_string(kMostScreens) + " screens are shown.";
       break;
     }

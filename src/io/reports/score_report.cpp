@@ -148,7 +148,7 @@ std::vector<std::string> score_warnings(const ScoredRows& s) {
 }
 
 std::string cut_short_line(double share, std::uint32_t most_vertices) {
-  return "note: in the fit " + with_decimals(100.0 * share, 2) + " % of the trajectories came to no end within " +
+  return "note: in the fit " + with_decimals(100.0 * share, 2) + " % of the trajectories did not end within " +
          std::to_string(most_vertices) + " vertices; they count against the model (docs/diagnosis-time.md)";
 }
 
@@ -194,11 +194,8 @@ std::string score_table(const ScoreSettings& settings, std::span<const ScoredRow
 }
 
 std::string score_json(const ScoreSettings& settings, std::span<const ScoredRows> scores) {
-  Json json{{"campaign", settings.campaign},
-            {"metric", "mean normalised score"},
-            {"trials", settings.trials},
-            {"seed", settings.seed},
-            {"surface", settings.surface}};
+  Json json{{"campaign", settings.campaign}, {"metric", "mean normalised score"}, {"trials", settings.trials},
+            {"seed", settings.seed},         {"surface", settings.surface},       {"warnings", settings.warnings}};
   for (const ScoredRows& s : scores) {
     Json groups = Json::array();
     for (std::size_t g = 0; g < s.score.groups.size(); ++g)

@@ -6,6 +6,7 @@
 #include "sites_evidence.hpp"
 #include "talus/base/text.hpp"
 #include "talus/base/version.hpp"
+#include "talus/io/reports/fit_report.hpp"
 
 namespace talus::io {
 namespace {
@@ -27,7 +28,8 @@ Json parameters_json(const SitesCalibration& c) {
                     {"start", json_of(p.start)},
                     {"value", json_of(p.value)},
                     {"ci95", json_of(p.interval)},
-                    {"identifiable", p.identifiable}});
+                    {"identifiable", p.identifiable},
+                    {"at_bound", p.at_bound}});
   return list;
 }
 
@@ -73,7 +75,7 @@ std::string sites_calibration_report(const SitesCalibration& c) {
   for (const SitesParameter& p : c.parameters)
     text += "| " + p.key + (p.unit.empty() ? "" : " [" + p.unit + "]") + " | " + joined(p.sites) + " | " +
             with_digits(p.start, 3) + " | " + with_digits(p.value, 3) + " | " + with_digits(p.interval.low, 3) +
-            " to " + with_digits(p.interval.high, 3) + " | " + (p.identifiable ? "" : "not identifiable") + " |\n";
+            " to " + with_digits(p.interval.high, 3) + " | " + interval_note(p.identifiable, p.at_bound) + " |\n";
   text += "\n## Error, by site and pooled\n\n" + evidence_markdown(c.evidence) + "\n";
   for (std::size_t i = 0; i + 1 < c.evidence.size(); ++i)
     text += "## " + c.evidence[i].site + ", fitting rows\n\n" + judgement_markdown(c.evidence[i].errors.front());
@@ -83,10 +85,12 @@ std::string sites_calibration_report(const SitesCalibration& c) {
 
 std::string sites_calibration_summary(const SitesCalibration& c) {
   std::string text = sharing_sentence(c) + "\n";
-  for (const SitesParameter& p : c.parameters)
+  for (const SitesParameter& p : c.parameters) {
+    const std::string note = interval_note(p.identifiable, p.at_bound);
     text += p.key + (p.sites.size() > 1 ? " (shared)" : "") + ": " + with_digits(p.value, 3) +
             ", 95 %: " + with_digits(p.interval.low, 3) + " to " + with_digits(p.interval.high, 3) +
-            (p.identifiable ? "" : ", not identifiable") + "\n";
+            (note.empty() ? "" : ", " + note) + "\n";
+  }
   for (const SiteEvidence& e : c.evidence)
     for (const auto& [name, change] : {std::pair{"fitting", e.fit}, {"held-out", e.unseen}})
       if (change.rows > 0)

@@ -162,11 +162,10 @@ void ObjectLayer::State::warn_of_places(const std::string& path, const std::vect
     throw InputError(path +
                      ": none of its objects lies where the DEM has a height (it has none in its gaps and in its "
                      "outer half cell), so that no block gets to them: fill the gaps of the DEM, or take a larger one");
-  if (!off.empty()) warnings.push_back(path + ": objects wholly off the DEM, of which nothing is told: " + listed(off));
+  if (!off.empty()) warnings.push_back(path + ": objects wholly off the DEM, which have no results: " + listed(off));
   if (!gaps.empty())
     warnings.push_back(
-        path +
-        ": objects wholly in gaps of the DEM or in its outer half cell, of which nothing is told: " + listed(gaps));
+        path + ": objects wholly in gaps of the DEM or in its outer half cell, which have no results: " + listed(gaps));
   if (partial.empty()) return;
   std::ranges::stable_sort(partial, std::ranges::greater{}, [this](std::size_t i) { return without_height[i]; });
   std::string text;
@@ -407,7 +406,7 @@ std::vector<std::string> ObjectLayer::hits_text(const HazardRules& rules, const 
     }
     const std::string name = printable(state_->names[i]) + ": ",
                       lack = state_->is_partial(i)
-                                 ? "; nothing is told of the " + state_->lack(i) + " of it where the DEM has no height"
+                                 ? "; the " + state_->lack(i) + " of it where the DEM has no height is not assessed"
                                  : "";
     if (f.value > 0.0)
       lines.push_back(name + "hit " + with_digits(f.value, 3) + " times per year, once in " + readable(1.0 / f.value) +

@@ -70,7 +70,7 @@ std::optional<std::string> unusable_note(const std::filesystem::path& folder) {
   const Json json = read_record_or_nothing(folder / "run.json");
   const std::string status = json.is_object() ? json.value("status", kComplete) : kComplete;
   if (status == kComplete) return std::nullopt;
-  return "the run says of itself: " + status + "; its result is not to be used";
+  return "the run ended with status \"" + status + "\": do not use its results";
 }
 
 std::string barriers_text(std::size_t barriers, const std::string& caught, bool pieces) {

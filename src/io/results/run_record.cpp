@@ -16,6 +16,11 @@
 namespace talus::io {
 namespace {
 
+/// To three decimals: millimetres, milliseconds.
+double thousandths(double value) {
+  return std::round(value * 1e3) / 1e3;
+}
+
 /// A value of a setting: a number as a number, anything else as text.
 Json value_of(const std::string& text) {
   double number = 0.0;
@@ -48,12 +53,11 @@ Json grid_of(const LoadedScenario& loaded) {
 
 /// Lines in map coordinates, to the millimetre: products of the folder need places along them, pages draw them.
 Json lines_of(const std::vector<std::vector<Eigen::Vector2d>>& lines, const LoadedScenario& loaded) {
-  const double south = loaded.geo.north - loaded.scenario.surface.grid().rows * loaded.geo.cell_y;
-  const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3; };
+  const MapPlace place(loaded.geo, loaded.scenario.surface.grid());
   Json list = Json::array();
   for (const auto& line : lines) {
     Json places = Json::array();
-    for (const Eigen::Vector2d& p : line) places.push_back({rounded(loaded.geo.west + p.x()), rounded(south + p.y())});
+    for (const Eigen::Vector2d& p : line) places.push_back({thousandths(place.x(p.x())), thousandths(place.y(p.y()))});
     list.push_back(std::move(places));
   }
   return list;
@@ -82,7 +86,7 @@ Json barriers_of(const LoadedScenario& loaded, const Totals& totals) {
                     {"lines", lines_of(barrier.lines, loaded)},
                     {"height_m", barrier.height},
                     {"capacity_kj", std::isfinite(capacity) ? Json(capacity) : Json("inf")},
-                    {"length_m", std::round(barriers.length(i) * 1e3) / 1e3},
+                    {"length_m", thousandths(barriers.length(i))},
                     {"hits", sum.hits()},
                     {"caught", sum.caught},
                     {"over", sum.over},
@@ -100,12 +104,11 @@ Json effects_of(const LoadedScenario& loaded) {
 }
 
 Json ends_of(const Totals& totals) {
-  const auto count = [&totals](End end) { return totals.ends[static_cast<std::size_t>(end)]; };
-  return {{"stopped", count(End::Stopped)},
-          {"trapped", count(End::Trapped)},
-          {"left", count(End::Left)},
-          {"caught", count(End::Caught)},
-          {"limit", count(End::Limit)}};
+  return {{"stopped", totals.ended(End::Stopped)},
+          {"trapped", totals.ended(End::Trapped)},
+          {"left", totals.ended(End::Left)},
+          {"caught", totals.ended(End::Caught)},
+          {"limit", totals.ended(End::Limit)}};
 }
 
 Json json_of(const EnergyLines& lines) {
@@ -116,11 +119,12 @@ Json json_of(const EnergyLines& lines) {
 }
 
 Json json_of(const GullyRecord& gullies) {
-  const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3; };
   Json json{{"blocks", gullies.blocks}};
   if (const auto& worst = gullies.worst)
-    json["worst_cell"] = {
-        {"x", rounded(worst->x)}, {"y", rounded(worst->y)}, {"blocks", worst->blocks}, {"passages", worst->passages}};
+    json["worst_cell"] = {{"x", thousandths(worst->x)},
+                          {"y", thousandths(worst->y)},
+                          {"blocks", worst->blocks},
+                          {"passages", worst->passages}};
   return json;
 }
 
@@ -137,14 +141,13 @@ Json rounds_of(const RoundsRecord& rounds) {
 }
 
 Json seconds(const StageSeconds& s) {
-  const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3; };
-  return {{"read", rounded(s.read)}, {"simulate", rounded(s.simulate)}, {"write", rounded(s.write)}};
+  return {{"read", thousandths(s.read)}, {"simulate", thousandths(s.simulate)}, {"write", thousandths(s.write)}};
 }
 
 }  // namespace
 
 bool too_many_limits(const Totals& totals) {
-  const auto limits = static_cast<double>(totals.ends[static_cast<std::size_t>(End::Limit)]);
+  const auto limits = static_cast<double>(totals.limited_blocks);
   return limits > kAllowedLimitShare * static_cast<double>(totals.released);
 }
 
@@ -189,7 +192,8 @@ std::string run_json(const RunRecord& record, const LoadedScenario& loaded) {
   if (may_break) json["pieces"] = totals.pieces;
   json["ends"] = ends_of(totals);
   if (may_break) json["left_with_pieces"] = totals.left_blocks;
-  if (totals.ends[static_cast<std::size_t>(End::Limit)] > 0)
+  if (may_break) json["limit_with_pieces"] = totals.limited_blocks;
+  if (totals.limited_blocks > 0)
     json["first_limit"] = {{"source", totals.first_limit[0]}, {"block", totals.first_limit[1]}};
   if (record.left_into_gaps) json["left_into_gaps"] = *record.left_into_gaps;
   if (record.gullies) json["steep_gullies"] = json_of(*record.gullies);

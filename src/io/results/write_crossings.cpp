@@ -10,26 +10,28 @@
 namespace talus::io {
 CrossingsWriter::CrossingsWriter(const std::filesystem::path& file, const Scenario& scenario, const GeoReference& geo)
     : name_(file.filename().string()),
+      pieces_(scenario.effects.fragmentation.threshold > 0.0),
       file_(std::fopen(file.c_str(), "wb")),
-      west_(geo.west),
-      south_(geo.north - scenario.surface.grid().rows * geo.cell_y) {
+      place_(geo, scenario.surface.grid()) {
   if (!file_) fail();
   for (const Screen& screen : scenario.screens) screens_.push_back(csv_field(screen.id));
-  put("source,block,screen,speed_ms,energy_kj,total_energy_kj,jump_height_m,angular_velocity_rads,mass_kg,x,y,piece\n");
+  put("source,block,screen,speed_ms,energy_kj,total_energy_kj,jump_height_m,angular_velocity_rads,mass_kg,x,y" +
+      std::string(pieces_ ? ",piece\n" : "\n"));
 }
 
 void CrossingsWriter::write(std::span<const Crossing> crossings) {
   std::string text;
   for (const Crossing& c : crossings) {
     TALUS_EXPECT(c.screen < screens_.size(), "a crossing is of a screen of the scenario");
-    const double energy = kinetic_energy(c.mass, c.speed);
-    const double rotation = Block{c.diameter, c.mass}.rotational_energy(c.spin);
+    const double energy = kinetic_energy_kj(c.mass, c.speed);
+    const double rotation = Block{c.diameter, c.mass}.rotational_energy_kj(c.spin);
     text += std::to_string(c.source) + ',' + std::to_string(c.block) + ',' + screens_[c.screen];
     for (const double value : {c.speed, energy, energy + rotation, c.height, c.spin, c.mass})
       (text += ',') += with_digits(value, 6);
-    (text += ',') += with_decimals(west_ + c.x, 3);
-    (text += ',') += with_decimals(south_ + c.y, 3);
-    text += ',' + std::to_string(c.piece) + '\n';
+    (text += ',') += with_decimals(place_.x(c.x), 3);
+    (text += ',') += with_decimals(place_.y(c.y), 3);
+    if (pieces_) text += ',' + std::to_string(c.piece);
+    text += '\n';
   }
   put(text);
 }

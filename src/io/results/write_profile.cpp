@@ -179,7 +179,7 @@ void ProfileWriter::write(std::span<const Crossing> rows) {
     feature->SetField(1, static_cast<GIntBig>(c.block));
     feature->SetField(2, s.profile.loaded.scenario.screens[c.screen].id.c_str());
     feature->SetField(3, rounded(c.speed, 1e3));
-    feature->SetField(4, rounded(kinetic_energy(c.mass, c.speed), 1e3));
+    feature->SetField(4, rounded(kinetic_energy_kj(c.mass, c.speed), 1e3));
     feature->SetField(5, rounded(c.height, 1e3));
     feature->SetField(6, rounded(c.spin, 1e3));
     const double x = s.x_of(c.x);

@@ -30,14 +30,6 @@ class Fields {
   int next_ = 0;
 };
 
-/// From metres in the grid to coordinates of the map.
-struct Place {
-  double west = 0.0, south = 0.0;
-  Place(const GeoReference& geo, const Grid& grid) : west(geo.west), south(geo.north - grid.rows * geo.cell_y) {}
-  double x(double local) const { return west + local; }
-  double y(double local) const { return south + local; }
-};
-
 /// Name of each feature of the sources: its own, or its number (FID); of a scene made by code its index.
 std::vector<std::string> feature_names(const Scenario& scenario) {
   std::vector<std::string> names;
@@ -92,7 +84,7 @@ namespace {
 struct PointRow {
   Fields& fields;
   const StopRow& stop;
-  const Place& place;
+  const MapPlace& place;
   const std::string& feature;  // name of the source's feature
 };
 
@@ -127,7 +119,7 @@ constexpr PointColumn kEnergyLine{"energy_line_deg", OFTReal, [](const PointRow&
 constexpr PointColumn kSpeed{"speed_ms", OFTReal,
                              [](const PointRow& r) { r.fields.add(decimals(r.stop.end_speed, 1e3)); }};
 constexpr PointColumn kEndEnergy{"energy_kj", OFTReal, [](const PointRow& r) {
-                                   r.fields.add(decimals(kinetic_energy(r.stop.mass, r.stop.end_speed), 1e3));
+                                   r.fields.add(decimals(kinetic_energy_kj(r.stop.mass, r.stop.end_speed), 1e3));
                                  }};
 
 constexpr std::array kStopColumns{kSource,   kBlock, kEnd,     kFeature,  kDiameter, kMass,    kXRelease,
@@ -163,7 +155,7 @@ struct PointsWriter::State {
 
   std::unique_ptr<LayerFile> file;
   const Scenario& scenario;
-  Place place;
+  MapPlace place;
   std::vector<std::string> names;  // of the features
   std::span<const PointColumn> columns;
   OGRLayer* layer = nullptr;
@@ -203,7 +195,7 @@ struct TrajectoriesWriter::State {
   }
 
   std::unique_ptr<LayerFile> file;
-  Place place;
+  MapPlace place;
   OGRLayer* layer = nullptr;
   std::vector<double> x, y, z, m;
 };

@@ -59,6 +59,23 @@ void place_screens(const ScenarioSpec& spec, const Profile& profile, double west
   }
 }
 
+/// Visits the columns whose centres are in [from, to), but for rounding. Returns their number.
+template <class Visit>
+int for_each_column(const Range& x, const Grid& grid, const Visit& visit) {
+  int columns = 0;
+  for (int c = 0; c < grid.columns; ++c) {
+    const double centre = grid.west + grid.centre_x(c);
+    if (centre < x.low - 1e-9 || centre >= x.high - 1e-9) continue;
+    visit(c);
+    ++columns;
+  }
+  return columns;
+}
+
+std::string zone_text(const ScenarioSpec& spec, const ZoneSpec& zone, const Range& x) {
+  return spec.scenario.where + ": ground.zones." + zone.name + ".x = [" + text_of(x.low) + ", " + text_of(x.high) + "]";
+}
+
 /// The ground of each column: that of the last zone of the file whose interval [from, to) holds its centre.
 void place_zones(const ScenarioSpec& spec, const Profile& profile, const Grid& grid, Scenario& parts) {
   parts.cover.grounds = {spec.default_ground.ground};
@@ -70,17 +87,33 @@ void place_zones(const ScenarioSpec& spec, const Profile& profile, const Grid& g
     parts.zone_names.push_back(zone.name);
     for (const Range& x : zone.intervals) {
       if (x.high <= profile.from() || x.low >= profile.to())
-        throw InputError(spec.scenario.where + ": ground.zones." + zone.name + ".x = [" + text_of(x.low) + ", " +
-                         text_of(x.high) + "]: lies off the profile, must be on " + text_of(profile.from()) + " to " +
-                         text_of(profile.to()) + " m");
-      for (int c = 0; c < grid.columns; ++c) {
-        const double centre = grid.west + grid.centre_x(c);
-        if (centre < x.low - 1e-9 || centre >= x.high - 1e-9) continue;
+        throw InputError(zone_text(spec, zone, x) + ": lies off the profile, must be on " + text_of(profile.from()) +
+                         " to " + text_of(profile.to()) + " m");
+      for_each_column(x, grid, [&](int c) {
         parts.cover.zones.at(c, 0) = parts.cover.zones.at(c, 1) =
             static_cast<std::uint8_t>(parts.zone_names.size() - 1);
-      }
+      });
     }
   }
+}
+
+/// Warns of intervals of zones that act in no column.
+void warn_of_idle_zones(const ScenarioSpec& spec, const Cover& cover, std::vector<std::string>& warnings) {
+  const double step = spec.profile->step;
+  for (std::size_t i = 0; i < spec.zones.size(); ++i)
+    for (const Range& x : spec.zones[i].intervals) {
+      bool acts = false;
+      const auto look = [&](int c) { acts = acts || cover.zones.at(c, 0) == i + 1; };
+      const int columns = for_each_column(x, cover.zones.grid, look);
+      if (columns == 0)
+        warnings.push_back(zone_text(spec, spec.zones[i], x) + ": covers none of the columns, which are step = " +
+                           text_of(step) + " m apart, and has no effect: make it at least as wide" +
+                           (step > kProfileStep.min ? ", or give a smaller step" : ""));
+      else if (!acts)
+        warnings.push_back(zone_text(spec, spec.zones[i], x) +
+                           ": lies wholly under later zones and has no effect: the last in the file counts; move this "
+                           "one below them");
+    }
 }
 
 void warn_of_presets(const ScenarioSpec& spec, std::vector<std::string>& warnings) {
@@ -181,6 +214,7 @@ LoadedProfile load_profile(const RunFlags& flags) {
     throw InputError(spec.scenario.where + ": no block diameter, must have one: give [blocks] diameter, in m");
   place_screens(spec, out.profile, grid.west, parts);
   place_zones(spec, out.profile, grid, parts);
+  warn_of_idle_zones(spec, parts.cover, loaded.warnings);
   load_effect_places(spec, Terrain{}, parts, loaded);  // zones only: a profile has no files of polygons
   parts.surface = Surface(std::move(extruded.heights), SurfaceKind::Bilinear);
   loaded.scenario = make_scenario(std::move(parts));

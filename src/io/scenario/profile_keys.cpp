@@ -18,7 +18,6 @@
 namespace talus::io {
 namespace {
 
-constexpr std::string_view kDefaultProfilePreset = "firm-talus-2d";
 constexpr Bounds kBin{"bin", "m", "width of the bins of the results", 0.05, 1000.0},
     kPlaceAlong{"x", "m", "place along the profile", -1e7, 1e7};
 
@@ -44,10 +43,7 @@ class ProfileReader {
     ground.finish();
     read_output(top.table("output"));
     TableReader screens = top.table("screens");
-    if (const auto x = screens.numbers("x", kPlaceAlong)) {
-      profile_.screens = *x;
-      given("screens.x");
-    }
+    read_screens(screens);
     screens.finish();
     top.finish();
     check_effects();
@@ -55,25 +51,29 @@ class ProfileReader {
 
   /// Adds a fault for what is not given and must be. These faults have no line and come last.
   void check_given(const std::string& file) {
-    const bool csv = !profile_.csv.path.empty(), dem = !spec_.dem.path.empty(), line = !profile_.line.path.empty();
+    const bool csv = is_given("profile"), dem = is_given("dem"), line = is_given("line");
     if (csv ? dem || line : !dem || !line)
       faults_.push_back(file +
                         ": no terrain, or more than one: give profile = \"FILE.csv\" (columns x, z), or "
                         "dem = \"FILE\" with line = \"FILE\"");
-    if (csv && spec_.origins.contains("surface"))
+    if (csv && is_given("surface"))
       faults_.push_back(file + ": surface: is of a DEM, must be left out for a profile = \"FILE.csv\"");
-    if (!spec_.origins.contains("sources.x"))
+    if (!is_given("sources.x"))
       faults_.push_back(file + ": no sources: give [sources] x = 60, or x = [50, 70], in m along the profile");
   }
 
  private:
   void given(const std::string& key) { spec_.origins[key] = "scenario"; }
+  bool is_given(const std::string& key) const { return spec_.origins.contains(key); }
+
+  /// A key that is there is given, also where its value is a fault: nobody shall then read that it is missing.
+  void given_if_there(TableReader& table, const std::string& key) {
+    if (table.find(key) != nullptr) given(table.full(key));
+  }
 
   void named_file(TableReader& table, const std::string& key, NamedFile& file) {
-    if (auto named = table.named_file(key, base_)) {
-      file = std::move(*named);
-      given(key);
-    }
+    given_if_there(table, key);
+    if (auto named = table.named_file(key, base_)) file = std::move(*named);
   }
 
   void number(TableReader& table, const std::string& key, const Bounds& bounds, double& out) {
@@ -84,10 +84,8 @@ class ProfileReader {
   }
 
   void read_sources(TableReader table) {
-    if (const auto x = table.range("x", kPlaceAlong)) {
-      profile_.source = *x;
-      given("sources.x");
-    }
+    given_if_there(table, "x");
+    if (const auto x = table.range("x", kPlaceAlong)) profile_.source = *x;
     if (const auto range = table.range("release_height", bounds_of("sources.release_height"))) {
       spec_.release_height = *range;
       given("sources.release_height");
@@ -95,6 +93,16 @@ class ProfileReader {
     number(table, "vx", bounds_of("sources.velocity"), profile_.vx);
     number(table, "vz", bounds_of("sources.velocity"), profile_.vz);
     table.finish();
+  }
+
+  void read_screens(TableReader& table) {
+    auto x = table.numbers("x", kPlaceAlong);
+    if (!x) return;
+    profile_.screens = *x;
+    given("screens.x");
+    std::ranges::sort(*x);
+    if (const auto twice = std::ranges::adjacent_find(*x); twice != x->end())
+      table.fault("x", *table.find("x"), "has " + text_of(*twice) + " twice, must name each place once");
   }
 
   void read_output(TableReader table) {

@@ -14,6 +14,7 @@
 #include "scenario_flags.hpp"
 #include "surface_key.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/shell.hpp"
 #include "talus/base/text.hpp"
 #include "talus/io/gdal/input_access.hpp"
 
@@ -194,7 +195,7 @@ class SpecReader {
         std::ranges::count_if(value.items, [](const TomlValue& item) { return item.find("frequency") != nullptr; });
     if (given != 0 && spec_.profile)
       table.fault("diameter", value,
-                  "a profile knows no annual frequencies: leave frequency out, the weights give the shares");
+                  "a profile has no annual frequencies: leave frequency out, the weights give the shares");
     else if (given != 0 && given != std::ssize(value.items))
       table.fault("diameter", value,
                   "has a frequency for " + std::to_string(given) + " of " + std::to_string(value.items.size()) +
@@ -347,6 +348,15 @@ static void keep_vrt_folders(ScenarioSpec& spec, std::vector<std::string>& fault
   }
 }
 
+/// Throws InputError if a file is one of `talus profile`: each of its keys would be a fault otherwise.
+static void refuse_profile(const TomlValue& root, const std::string& file) {
+  for (const char* const key : {"profile", "line"})
+    if (const TomlValue* const value = root.find(key); value != nullptr && value->kind == Kind::Text)
+      throw InputError(file + ":" + std::to_string(value->line) + ": " + key + " = " + value->shown() +
+                       ": this is a file of talus profile, must be a scenario of talus run: talus profile " +
+                       shell_word(file) + " -o FOLDER simulates it");
+}
+
 ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) {
   ScenarioSpec spec;
   start_with_preset(spec, flags, faults);
@@ -354,8 +364,9 @@ ScenarioSpec read_spec(const RunFlags& flags, std::vector<std::string>& faults) 
   if (!flags.scenario.empty()) {
     spec.scenario = {std::filesystem::absolute(flags.scenario).lexically_normal().string(), flags.scenario};
     allow_folder_of(flags.scenario);
-    SpecReader(spec, flags.scenario, flags.scenario, "scenario", faults)
-        .read(read_toml(flags.scenario, flags.scenario));
+    const TomlValue root = read_toml(flags.scenario, flags.scenario);
+    refuse_profile(root, flags.scenario);
+    SpecReader(spec, flags.scenario, flags.scenario, "scenario", faults).read(root);
   }
   lay_flags(spec, flags, faults);
   keep_vrt_folders(spec, faults);

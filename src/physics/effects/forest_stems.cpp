@@ -103,11 +103,11 @@ double Stems::way_left(const PlanWay& ahead, double diameter) {
     return ahead_ ? ahead_->way : kNever;
   }
   double left = std::max(0.0, left_);
-  if (!forest_.by_cell()) return left * mean_way_between_stems({forest_.density, forest_.diameter}, diameter);
+  if (!forest_.by_cell()) return left * mean_free_path({forest_.density, forest_.diameter}, diameter);
   double way = kNever;
   for_each_stand(forest_, ahead, [&](const Stand& stand, double from, double to) {
     if (!(stand.density > 0.0)) return true;
-    const double mean = mean_way_between_stems(stand, diameter);
+    const double mean = mean_free_path(stand, diameter);
     if (to == ahead.length || left * mean <= to - from) {
       way = from + left * mean;
       return false;
@@ -121,10 +121,10 @@ double Stems::way_left(const PlanWay& ahead, double diameter) {
 bool Stems::go(const PlanWay& gone, double diameter) {
   if (of_list()) return ahead_ && gone.length >= ahead_->way - kReached;
   if (!forest_.by_cell()) {
-    left_ -= gone.length / mean_way_between_stems({forest_.density, forest_.diameter}, diameter);
+    left_ -= gone.length / mean_free_path({forest_.density, forest_.diameter}, diameter);
   } else {
     for_each_stand(forest_, gone, [&](const Stand& stand, double from, double to) {
-      if (stand.density > 0.0) left_ -= (to - from) / mean_way_between_stems(stand, diameter);
+      if (stand.density > 0.0) left_ -= (to - from) / mean_free_path(stand, diameter);
       return true;
     });
   }

@@ -8,6 +8,11 @@
 namespace talus {
 namespace {
 
+struct TreeSpecies {
+  std::string_view name;
+  double factor;  ///< energy that its stem takes, relative to silver fir of the same diameter [-]
+};
+
 // Silver fir is the reference of Dorren & Berger (2006). The factors of the two groups are those of Rockyfor3D, from
 // memory: docs/effects.md, "forest-stems".
 constexpr std::array<TreeSpecies, 4> kSpecies{{
@@ -24,10 +29,6 @@ std::string plain(std::string_view name) {
 }
 
 }  // namespace
-
-std::span<const TreeSpecies> tree_species() {
-  return kSpecies;
-}
 
 std::optional<double> factor_of_species(std::string_view name) {
   const std::string wanted = plain(name);

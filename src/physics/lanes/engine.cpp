@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "lanes.hpp"
+#include "physics/anchor.hpp"
 #include "physics/crossing.hpp"
 #include "pool.hpp"
 #include "talus/physics/impact.hpp"
@@ -275,7 +276,8 @@ class Engine {
   void land(int count) {
     Pack pack;
     end_flights(pack, count);
-    const Mask stays = pack.there & (pack.state[field::Time] - pack.state[field::AnchorTime] > world_.trap_time);
+    const Mask stays = pack.there & (pack.state[field::Time] - pack.state[field::AnchorTime] >
+                                     longest_stay(world_.trap_time, pack.state[field::Diameter]));
     const Mask bounded =
         opposite(stays) &
         (pack.there & (Mask::of(at_limits(pack)) | opposite(pack.state[field::Time] < world_.time_limit)));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "talus/base/text.hpp"
+#include "talus/simulate/scenario/frequency.hpp"
 
 namespace talus {
 namespace {
@@ -112,14 +113,31 @@ std::string guess_warning(std::span<const Preset* const> presets) {
          "see docs/migration.md";
 }
 
+std::string rare_class_warning(const Scenario& scenario) {
+  constexpr double kFew = 20.0;  // blocks of a class in one round
+  const std::vector<double> frequencies = class_frequencies(scenario);
+  const auto& classes = scenario.blocks.classes;
+  if (frequencies.size() < 2 || frequencies.size() != classes.size()) return {};
+  double weights = 0.0, events = 0.0;
+  for (const BlockClass& c : classes) weights += c.weight;
+  for (const double f : frequencies) events += f;
+  std::vector<std::string> rare;
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    const double drawn = static_cast<double>(scenario.released()) * classes[i].weight / weights;
+    if (frequencies[i] > 0.0 && drawn < kFew)
+      rare.push_back(metres(classes[i].diameter) + " (" + percent(frequencies[i] / events) + " of the events, about " +
+                     with_digits(drawn, 2) + " of " + std::to_string(scenario.released()) + " blocks in a round)");
+  }
+  if (rare.empty()) return {};
+  return std::string(kSizeWarning) + "few paths stand for all events of a class: " + joined(rare) +
+         ": give it a larger weight, which changes no frequency, or more trajectories";
+}
+
 std::string sorting_warning(const Effects& effects) {
   if (!find_effect("rest-in-roughness")->acts(effects) || find_effect("block-mass")->acts(effects)) return {};
-  constexpr std::string_view kText =
-      "[effects.rest-in-roughness] without [effects.block-mass] sorts them the wrong way, large blocks high and small "
-      "ones far: add [effects.block-mass] preset = \"measured\", see docs/effects.md";
-  std::string text;
-  for (const std::string_view part : {kSizeWarning, kText}) text += part;
-  return text;
+  return std::string(kSizeWarning) +
+         "[effects.rest-in-roughness] without [effects.block-mass] sorts them the wrong way, large blocks high and "
+         "small ones far: add [effects.block-mass] preset = \"measured\", see docs/effects.md";
 }
 
 }  // namespace talus

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 
 #include "talus/base/error.hpp"
 #include "talus/base/expect.hpp"
@@ -177,6 +179,10 @@ std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, std::uint32_t 
   if (found.total) events = s.frequency.total;
   const std::vector<double> cells = cell_frequencies(s, found, events), factors = class_factors(s, by_class);
   const double largest_factor = *std::ranges::max_element(factors);
+  constexpr const char* kTooLight =
+      "a class of blocks has a weight far too small for its frequency: give it a larger one, which changes no "
+      "frequency";
+  if (largest_factor > 1e9) refuse(kTooLight);
 
   AnnualWeights out;
   WeightScale& scale = out.scale_;
@@ -191,7 +197,9 @@ std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, std::uint32_t 
     squares += weight * weight * s.trajectories;
     scale.total += cell;
   }
-  if (!(scale.total > 0.0)) return std::nullopt;  // a field of zeros counts as not given
+  if (!(scale.total > 0.0)) return std::nullopt;                        // a field of zeros counts as not given
+  if (squares < std::ldexp(std::numeric_limits<double>::min(), kBits))  // its unit would be 0
+    refuse("all sources together have " + text_of(scale.total) + " events per year, must be 1e-100 at least");
   scale.unit = std::ldexp(power_of_two_above(most), -bits);
   scale.square_unit = std::ldexp(power_of_two_above(squares), -bits);
   out.weights_.reserve(cells.size() * factors.size());
@@ -199,6 +207,7 @@ std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, std::uint32_t 
     for (const double factor : factors) {
       const double weight = cell * factor / s.trajectories;
       out.weights_.push_back(static_cast<std::int64_t>(weight / scale.unit + 0.5));
+      if (weight > 0.0 && out.weights_.back() < kLeastWeight && largest_factor > 1e6) refuse(kTooLight);
       if (weight > 0.0 && out.weights_.back() < kLeastWeight)
         refuse("a trajectory stands for " + text_of(weight) + " events per year, too few beside all " +
                text_of(scale.total) + "; give 0 instead");

@@ -330,8 +330,8 @@ void Tally::add_lengths(const Group& group, std::span<const float> mixed, const 
     const VisitBatch::Trajectory& of = batch.trajectories()[visit.trajectory];
     hazard->add_lengths(hazard_->rules, lengths, of.annual_share, of.size.diameter);
   }
-  record.length += length;
-  record.length_squares += squares + fixed_point(of_block * of_block);
+  add_checked(record.length, length);
+  add_checked(record.length_squares, squares + fixed_point(of_block * of_block));
 }
 
 void Tally::count_exceedances(std::uint32_t* over, const CellValues& values, const PerQuantity<float>& largest) const {
@@ -355,7 +355,7 @@ const CellRecord* Tally::find(int column, int row) const {
   return slot == 0 ? nullptr : &region.records[slot - 1U];
 }
 
-void Tally::fetch(int column, int row) const {
+void Tally::prefetch_record(int column, int row) const {
   prefetch(find(column, row), sizeof(CellRecord));
 }
 

@@ -92,7 +92,7 @@ void VisitBatch::add(const Path& path, std::size_t from, std::size_t to) {
   while (from < to) {
     rotation_ = spin == path.spins.begin()
                     ? 0.0F
-                    : static_cast<float>(2e3 / body.mass * body.rotational_energy(std::prev(spin)->spin));
+                    : static_cast<float>(2e3 / body.mass * body.rotational_energy_kj(std::prev(spin)->spin));
     const std::size_t until = spin == path.spins.end() ? to : std::min(to, spin->span);
     add(spans.subspan(from, until - from));
     from = until;

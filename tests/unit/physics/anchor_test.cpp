@@ -56,6 +56,16 @@ TEST(Anchor, TheReachIsTheDiameterOfTheBlockNow) {
   EXPECT_FALSE(anchor.holds(at(5.2, 1.1, 1.6), 1.9));  // the block has broken: anew
 }
 
+/// The time to get one diameter away from rest grows as sqrt(D).
+TEST(Anchor, LargeBlocksMayStayLonger) {
+  for (const auto& [diameter, longest] : {std::pair{0.1, 5.0}, {2.0, 5.0}, {8.0, 10.0}, {50.0, 25.0}}) {
+    Anchor anchor(5.0);
+    anchor.set(at(0.0, 0, 0));
+    EXPECT_FALSE(anchor.holds(at(longest - 1e-9, 0, 0), diameter)) << diameter;
+    EXPECT_TRUE(anchor.holds(at(longest + 1e-9, 0, 0), diameter)) << diameter;
+  }
+}
+
 TEST(Anchor, AFarJumpIsNoStay) {  // whatever the time in the air
   Anchor anchor(5.0);
   anchor.set(at(0.0, 0, 0));

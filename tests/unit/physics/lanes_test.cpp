@@ -94,7 +94,7 @@ struct VariedScene {
     made.seed = (std::uint64_t{1} << 40U) + variant;  // both words of the key
     made.source = variant;
     made.block = block;
-    made.body = block_of(numbers.uniform(0.3, 2.0), 2500.0);
+    made.body = block_of(numbers.uniform(0.3, block % 4 == 0 ? 12.0 : 2.0), 2500.0);
     const double x = numbers.uniform(2.0, 118.0), y = numbers.uniform(2.0, 145.0);
     made.motion.position = {x, y, surface.height(x, y).value_or(std::nan("")) + numbers.uniform(0.0, 5.0)};
     if (block % 3 != 0)  // the others fall
@@ -182,7 +182,7 @@ TEST_P(InLanes, ManyBlocksThatSlideTurnAfterTurn) {  // on smooth steep ground n
     for (std::uint32_t block = 0; block < releases.size(); ++block) {
       Release& release = releases[block];
       release.block = block;
-      release.body = block_of(numbers.uniform(0.3, 2.0), 2500.0);
+      release.body = block_of(numbers.uniform(0.3, block % 4 == 0 ? 12.0 : 2.0), 2500.0);
       const double x = numbers.uniform(5.0, 115.0), y = numbers.uniform(600.0, 790.0);
       release.motion.position = {x, y, *surface.height(x, y) + 0.5 * (block % 3)};
     }

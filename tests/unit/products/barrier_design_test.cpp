@@ -76,6 +76,7 @@ TEST(DesignBarrier, AnyPercentile) {
   EXPECT_EQ(fewest_for_percentile(0.95), 20U);
   EXPECT_EQ(fewest_for_percentile(0.5), 2U);
   EXPECT_EQ(fewest_for_percentile(0.99), 100U);
+  EXPECT_EQ(fewest_for_percentile(0.9999), 10000U);  // 1 - 0.9999 is not 1e-4 to the last bit
 }
 
 /// Energies of the paper's Table 4, given to 10 kJ: MEL / SEL is the factor of the program in three rows, within what

@@ -101,6 +101,9 @@ TEST_F(CheckpointOfARun, EndsAsARunWithoutAPause) {
   checkpoint.replay(0, collect(rows));
   test::expect_same_records(tally, whole);
   EXPECT_EQ(totals.ends, simulation.totals().ends);
+  EXPECT_EQ(totals.left_blocks, simulation.totals().left_blocks);
+  EXPECT_EQ(totals.limited_blocks, simulation.totals().limited_blocks);
+  EXPECT_EQ(totals.first_limit, simulation.totals().first_limit);
   EXPECT_EQ(totals.length_mm, simulation.totals().length_mm);
   EXPECT_EQ(rows.size(), plan.scenario.released());
   EXPECT_EQ(rows, expected_rows);

@@ -115,6 +115,34 @@ TEST(Pieces, ABlockOfWhichAPieceLeavesHasLeft) {
   }
 }
 
+/// Each block is traced alone, with its pieces. A limit that only a smaller piece reaches was counted nowhere.
+TEST(Pieces, ABlockOfWhichAPieceReachesALimitIsCounted) {
+  Scenario s = test::rough_slope(4, 150);
+  s.effects.fragmentation = {.threshold = 60.0, .largest = 0.6, .where = {}};
+  s.rules.time_limit = 8.0;
+  s = make_scenario(std::move(s));
+  std::uint64_t limited = 0, with_largest = 0;
+  std::array<std::uint32_t, 2> first{};
+  for (std::uint32_t source = 0; source < 4; ++source)
+    for (std::uint32_t block = 0; block < 150; ++block) {
+      Path whole;
+      trace(s.world(), make_release(s, source, block), whole);
+      bool any = whole.end == End::Limit;
+      with_largest += any ? 1U : 0U;
+      trace_pieces(s.world(), whole, [&](const Release&, const Path& piece) { any = any || piece.end == End::Limit; });
+      if (any && limited == 0) first = {source, block};
+      limited += any ? 1U : 0U;
+    }
+  ASSERT_GT(limited, with_largest);
+  for (const int threads : {1, 3}) {
+    Tally tally(s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds);
+    const Totals totals = simulate(s, tally, {}, threads);
+    EXPECT_EQ(totals.ended(End::Limit), with_largest);
+    EXPECT_EQ(totals.limited_blocks, limited);
+    EXPECT_EQ(totals.first_limit, first);
+  }
+}
+
 TEST(Pieces, CrossScreensWithTheirOwnMass) {
   Scenario s = breaking();
   s.screens = {{"below", {{{150.0, 1.0}, {150.0, 139.0}}}}};

@@ -60,6 +60,8 @@ void expect_same(const Totals& a, const Totals& b) {
   EXPECT_EQ(a.cells_scored, b.cells_scored);
   EXPECT_EQ(a.length_mm, b.length_mm);
   EXPECT_EQ(a.plan_length_mm, b.plan_length_mm);
+  EXPECT_EQ(a.left_blocks, b.left_blocks);
+  EXPECT_EQ(a.limited_blocks, b.limited_blocks);
   EXPECT_EQ(a.first_limit, b.first_limit);
   EXPECT_EQ(a.interrupted, b.interrupted);
 }
@@ -78,6 +80,8 @@ TEST(Simulate, IsTheSumOfItsPaths) {
     expected.cells_scored += alone.add(batch);
     if (path.end == End::Limit && expected.ends[index_of(End::Limit)] == 0)
       expected.first_limit = {release.source, release.block};
+    expected.left_blocks += path.end == End::Left ? 1 : 0;
+    expected.limited_blocks += path.end == End::Limit ? 1 : 0;
     ++expected.ends[index_of(path.end)];
     ++expected.released;
     expected.impacts += path.impacts;

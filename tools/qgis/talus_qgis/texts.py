@@ -344,12 +344,13 @@ GERMAN = {
         "jeden Block gleich zählen, auch wo die Ausbruchgebiete Häufigkeiten haben",
     "all processors where it is not given, of several processes one each; the results are the same":
         "alle Prozessoren, wenn nicht angegeben; die Ergebnisse sind dieselben",
-    "how often the scenario's trajectories are traced": "wie oft die Sturzbahnen des Szenarios gerechnet werden",
+    "number of times that the scenario's trajectories are traced":
+        "wie oft die Sturzbahnen des Szenarios gerechnet werden",
     "rounds until the relative 95 % half-width of the impact probability is below this":
         "Runden, bis die relative halbe Breite des 95-%-Intervalls der Trefferwahrscheinlichkeit kleiner ist",
     "the error counts in all cells with a larger probability; 0.01":
         "der Fehler zählt in allen Zellen mit grösserer Wahrscheinlichkeit; 0.01",
-    "--until-error: never more; 100": "nie mehr Runden als so viele; 100",
+    "largest number of rounds with --until-error (100)": "grösste Zahl der Runden mit --until-error (100)",
     "a VRT may name files below this folder, not only below its own and the scenario's; may be repeated":
         "ein VRT darf Dateien unter diesem Ordner nennen, nicht nur unter seinem eigenen und dem des Szenarios",
     "GeoPackage to write: pits, the cells that are lower than all eight neighbours, and dammed cells, whose way down is only "
@@ -391,7 +392,7 @@ GERMAN = {
     "then one of rows that were neither fitted nor chosen by":
         "die ganze Diagnose ohne jeden Teil der Zeilen wiederholen, wie es ohne zurückgehaltene Zeilen geschieht: der Fehler "
         "gilt dann für Zeilen, die weder angepasst wurden noch mitgewählt haben",
-    "never do so": "nie wiederholen",
+    "never repeat the diagnosis without a fold": "die Diagnose nie ohne einen Teil wiederholen",
     "parts that are left out in turn: groups, or blocks (5)":
         "Teile, die der Reihe nach weggelassen werden: Gruppen oder Blöcke (5)",
     "the folds take the effects that all rows chose, and refit the numbers alone: little time, and an error that has seen the "
@@ -401,7 +402,7 @@ GERMAN = {
     "the folds always choose anew": "die Teile wählen immer neu",
     "GeoPackage to write: the cells as polygons and as points":
         "GeoPackage zum Schreiben: die Zellen als Flächen und als Punkte",
-    "cells at least so steep [deg]; without it 55 cell^-0.075, which is 48.7 at 5 m":
+    "cells at least this steep [deg]; without it 55 cell^-0.075, which is 48.7 at 5 m":
         "Zellen, die mindestens so steil sind [Grad]; sonst 55 Zellweite^-0.075, bei 5 m also 48.7",
     "replace the file if it is there": "die Datei ersetzen, wenn sie da ist",
     "OUT of talus run, with what hazard and barrier have added":

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ struct Parameter {
   double sd = 1.0;      ///< of the prior: of the logarithm, or in the unit of the value
   std::function<double(const Model&)> get;
   std::function<void(Model&, double)> set;
+  double reach =
+      std::numeric_limits<double>::infinity();  ///< a bound at this |z|, or beyond, is the search's, not the model's
 
   double value(double z) const;
   double z(double value) const;
@@ -31,10 +34,17 @@ struct Parameter {
 
 /// The parameters `keys` of ground_fields() in the given zones, with the start as centre of the prior. theta_scale,
 /// psi_scale, En50 and Et50 on the log scale with sd 1 (a factor of e), phi on the linear one with sd 8 degrees; bounds
-/// 2.5 sd from the start, and those of the field. Throws InputError for a key that cannot be fitted, and
-/// where there is no such zone.
+/// 2.5 sd from the start, and those of the field; on the log scale a start below `kLeastStart` counts as that. Throws
+/// InputError for a key that cannot be fitted, and where there is no such zone.
 std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& start,
                                          std::span<const std::string> keys, const std::vector<bool>& zones);
+
+/// Smallest start on the log scale [unit of the value].
+inline constexpr double kLeastStart = 0.01;
+
+/// Throws InputError if a parameter on the log scale starts below `kLeastStart`: a search by factors would not leave 0,
+/// and its interval would be one around another start.
+void check_start(std::span<const Parameter> parameters, const Model& start);
 
 /// The zones that enough simulated paths of the asked blocks touch: at least `share` of them. Size: zones of the
 /// campaign; an impact in a band of other ground counts for the zone under the band.

@@ -8,6 +8,7 @@ struct Uncertainty {
   Eigen::MatrixXd draws;            ///< one z per row; size: draws x free parameters
   std::vector<Interval> intervals;  ///< 95 %, of the values in the units of the files
   std::vector<bool> identifiable;   ///< false: the interval covers most of the prior's
+  std::vector<bool> at_bound;       ///< true: the interval ends where the search does (`Parameter::reach`)
   Eigen::MatrixXd correlation;      ///< of z over the draws; size: parameters x parameters
   double noise = 0.0;               ///< standard deviation of a total with FitOptions::trials, from its random numbers
   bool interrupted = false;

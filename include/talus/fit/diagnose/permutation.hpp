@@ -22,7 +22,7 @@ struct PermutationTest {
 };
 
 /// Ways in which the units of each stratum can hand each other their values: all of them where there are few, else a
-/// random choice. They hang on the streams of the units and not on their order.
+/// random choice. They depend on the streams of the units and not on their order.
 class Arrangements {
  public:
   /// @param at_most  number of arrangements, the measured one included

@@ -6,7 +6,7 @@
 #include "talus/base/sample.hpp"
 #include "talus/fit/diagnose/family_test.hpp"
 
-/// Whether a verdict hangs on the random numbers of the fit. docs/diagnosis-evidence.md, "Stability".
+/// Whether a verdict depends on the random numbers of the fit. docs/diagnosis-evidence.md, "Stability".
 namespace talus {
 
 /// The first round of a diagnosis that rests on a base fit of its own.

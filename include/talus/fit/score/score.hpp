@@ -10,7 +10,7 @@
 namespace talus {
 
 /// The error of a model on measured data. docs/closing-the-loop.md, "The score". A model that gives the measured value
-/// exactly scores 0; one that knows no more than the spread of the measurements scores about 0.56 (in groups of
+/// exactly scores 0; one that knows only the spread of the measurements scores about 0.56 (in groups of
 /// `crossed`: 1).
 
 /// The score of one group: one quantity at one place.
@@ -34,7 +34,7 @@ struct Score {
   double total = kNotGiven;  ///< weighted mean over the groups; NaN where there is none
   std::vector<GroupScore> groups;
   std::vector<RowScore> rows;  ///< ordered by group, then by block
-  double cut_short = 0.0;      ///< share of the trials that came to no end in a search [-]
+  double cut_short = 0.0;      ///< share of the trials that did not end in a search [-]
 };
 
 /// Fewest simulated values with which a row is scored; below, it scores as the climatology of the fitting rows.

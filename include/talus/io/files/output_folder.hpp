@@ -76,7 +76,8 @@ std::filesystem::path full_name(const std::filesystem::path& path);
 void require_results(const std::filesystem::path& folder);
 
 /// Writes a text file. Throws std::runtime_error, one line with the file and the cause; no half file is left.
-void write_text(const std::filesystem::path& file, std::string_view text);
+/// @param name  of the file in the message, where the file has a hidden name; empty: its own
+void write_text(const std::filesystem::path& file, std::string_view text, const std::string& name = {});
 
 /// Writes a text file beside others of a finished folder: under a hidden name first, renamed when it is complete. An
 /// earlier file of this name is replaced. Throws as `write_text`.

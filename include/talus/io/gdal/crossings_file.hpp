@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ struct CrossingTable {
   std::size_t count = 0;            ///< of blocks and pieces
   std::size_t blocks = 0;           ///< blocks of which something crossed
   std::size_t rows = 0;             ///< of the screen: with those of blocks and pieces that cross again
+  std::map<std::string, std::size_t> others;  ///< rows of every other screen
 };
 
 /// Reads crossings: `screens.csv` of a run, `passages.csv` of a campaign, or any table with columns of these.

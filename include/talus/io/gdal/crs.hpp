@@ -11,6 +11,9 @@ namespace talus::io {
 /// "EPSG:31287 (MGI / Austria Lambert)"; the name alone if it has no code.
 std::string crs_name(const std::string& wkt);
 
+/// The warning that the layer or raster `path` states no coordinate system and is read in that of the DEM.
+std::string dem_system_note(const std::string& path, const std::string& dem_wkt);
+
 /// A rectangle in a coordinate system [m].
 struct MapExtent {
   double west, south, east, north;
@@ -24,6 +27,9 @@ struct MapArea {
   MapExtent extent;
   std::string wkt;
 };
+
+/// Whether places have the same coordinates in both systems: height systems and the order of the axes do not count.
+bool same_plane_system(const std::string& wkt, const std::string& other_wkt);
 
 /// Layer that is transformed, for the record and for messages.
 struct LayerName {

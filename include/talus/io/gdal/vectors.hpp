@@ -36,10 +36,10 @@ struct SourceLayer {
 /// than a cell in places, a warning counts what is left out. A line gives the cells that it crosses, a point its place.
 /// A feature of several parts gives the cells of each part, but each cell once. Cells without terrain are left out
 /// (with a warning). These fields are read if they are there, in upper or lower case: frequency, diameter,
-/// diameter_min, diameter_max, height, vx, vy, vz, name; NULL counts as not given; numbers may stand in text fields. A
-/// feature without a name has its number (FID) for one.
+/// diameter_min, diameter_max, release_height, vx, vy, vz, name; NULL counts as not given; numbers may stand in text
+/// fields. A feature without a name has its number (FID) for one.
 ///
-/// @param release_height  for features without the field height [m]
+/// @param release_height  for features without the field release_height [m]
 /// Throws InputError that names file, feature, field, value and what is allowed; also if no cell is left.
 SourceLayer read_sources(const std::string& path, const Terrain& terrain, const Range& release_height,
                          const FieldMap& fields = {});

@@ -2,6 +2,8 @@
 #include <optional>
 #include <string>
 
+#include "talus/terrain/grid.hpp"
+
 /// Records of where a run comes from.
 namespace talus::io {
 
@@ -35,6 +37,14 @@ struct GeoReference {
   std::string crs_wkt;
   double west = 0.0, north = 0.0;     ///< upper-left corner in that system [m]
   double cell_x = 1.0, cell_y = 1.0;  ///< [m], both > 0
+};
+
+/// From metres in the grid to map coordinates [m].
+struct MapPlace {
+  double west, south;  ///< lower-left corner of the grid
+  MapPlace(const GeoReference& geo, const Grid& grid) : west(geo.west), south(geo.north - grid.rows * geo.cell_y) {}
+  double x(double local) const { return west + local; }
+  double y(double local) const { return south + local; }
 };
 
 }  // namespace talus::io

@@ -28,4 +28,9 @@ std::string calibration_json(const Calibration& calibration);
 /// The text of report.md: the same for people.
 std::string calibration_report(const Calibration& calibration);
 
+/// Remark on a 95 % interval: "not identifiable", "ends at the bound of the search", both, or nothing.
+std::string interval_note(bool identifiable, bool at_bound);
+/// Warns of an interval that the bound of the search may cut short.
+std::string bound_warning(const std::string& key, const Interval& interval);
+
 }  // namespace talus::io

@@ -52,7 +52,8 @@ struct ScoreSettings {
   std::string campaign;  ///< its name
   std::uint32_t trials = 100;
   std::uint64_t seed = 1;
-  std::string surface;  ///< of the campaign's terrain
+  std::string surface;                     ///< of the campaign's terrain
+  std::vector<std::string> warnings = {};  ///< of the input and of the scores
 };
 
 /// Compares the scores of two models on the same rows.
@@ -75,7 +76,7 @@ std::string tail_sentence(const ScoredRows& scored);
 /// Both, and the counts of the spread, as lines for the terminal.
 std::string judgement_lines(const ScoredRows& scored);
 
-/// A line for a fit of which a share of the trajectories came to no end within so many vertices.
+/// A line for a fit of which a share of the trajectories did not end within so many vertices.
 std::string cut_short_line(double share, std::uint32_t most_vertices);
 
 /// The scores as a table for people: one line per group, the rows beside the score.

@@ -8,8 +8,8 @@ struct SitesParameter {
   std::string key, unit;
   std::vector<std::string> sites;  ///< more than one: shared
   double start = 0.0, value = 0.0;
-  Interval interval;  ///< 95 %
-  bool identifiable = true;
+  Interval interval;                           ///< 95 %
+  bool identifiable = true, at_bound = false;  ///< as in Uncertainty
 };
 
 /// Results of `talus calibrate` with several campaigns.
@@ -18,7 +18,7 @@ struct SitesCalibration : FitRecord {
   std::vector<std::string> share, files;
   std::vector<SitesParameter> parameters;
   std::vector<SiteEvidence> evidence;
-  double cut_short = 0.0;  ///< share of the trials of the fitted models that came to no end; of the worst site
+  double cut_short = 0.0;  ///< share of the trials of the fitted models that did not end; of the worst site
 };
 
 /// The text of calibration.json, of report.md, and of the summary on the terminal.

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 
@@ -21,9 +22,10 @@ struct HazardHeader {
   double passages_below = 0.0;   ///< `OutputSettings::passages_below`
 };
 
-/// Events per year of which the block, or a piece of it, leaves the terrain.
+/// Events per year of which the block, or a piece of it, leaves the terrain. No more than there are: weights of classes
+/// that were drawn more often than expected may sum to more.
 inline double left_per_year(const HazardHeader& header) {
-  return static_cast<double>(header.left_weight) * header.rules.scale.unit;
+  return std::min(static_cast<double>(header.left_weight) * header.rules.scale.unit, header.rules.scale.total);
 }
 
 /// A row of cells. Row 0 is the southern one.
@@ -47,5 +49,11 @@ void write_hazard(const std::filesystem::path& file, const LoadedScenario& loade
 /// version, or its bytes have changed. The checksum over all bytes is compared after the last row.
 HazardHeader read_hazard(const std::filesystem::path& file, const std::function<void(const HazardHeader&)>& begin,
                          const std::function<void(const HazardRow&)>& visit);
+
+/// The header alone; reads the whole file, to compare its checksum. Throws as `read_hazard`.
+inline HazardHeader read_hazard_header(const std::filesystem::path& file) {
+  return read_hazard(
+      file, [](const HazardHeader&) {}, [](const HazardRow&) {});
+}
 
 }  // namespace talus::io

@@ -8,7 +8,7 @@
 
 namespace talus::io {
 
-/// One line that a run says of itself that its result is not to be used; nothing where it is complete.
+/// One line that the results of a run must not be used, with its status; nothing where it is complete.
 std::optional<std::string> unusable_note(const std::filesystem::path& folder);
 
 /// One line that energies rest on c (model.deformation_coefficient), and which way is safe; nothing if c is low. With a

@@ -54,7 +54,7 @@ class TrajectoriesWriter {
   std::unique_ptr<State> state_;
 };
 
-/// Name of what begins at a vertex: release, impact, slide, takeoff, end.
+/// Name of what begins at a vertex: release, impact, slide, takeoff, air, stem, barrier, end.
 const char* name_of(Event event);
 /// Name of the end of a trajectory: stopped, trapped, left, caught or limit.
 const char* name_of(End end);

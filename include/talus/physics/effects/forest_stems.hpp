@@ -48,8 +48,8 @@ Stand stand_in(const ForestStems& forest, int column, int row);
 /// Whether there is a forest in the cell at a place: in the area of the effect, with a density above 0. Not for lists.
 bool has_stand(const ForestStems& forest, std::uint8_t zone, double x, double y);
 
-/// Mean way in plan between two stems [m]: 10 000 / (N (DBH + D)), N per hectare.
-inline double mean_way_between_stems(const Stand& stand, double diameter) {
+/// Mean free path in plan between two stems [m]: 10 000 / (N (DBH + D)), N per hectare.
+inline double mean_free_path(const Stand& stand, double diameter) {
   return 1e4 / (stand.density * (stand.diameter + diameter));
 }
 

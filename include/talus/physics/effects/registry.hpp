@@ -110,7 +110,7 @@ inline constexpr std::tuple kEntries{
         "fragmentation", Sought::Everywhere, 9,
         strength<&Fragmentation::threshold>(
             {"fragmentation.threshold", "J/kg",
-             "energy lost across the plane of an impact, above which the block breaks", 0.0, 1e6},
+             "normal energy lost at an impact, per mass, above which the block breaks", 0.0, 1e6},
             SearchRange{.lower = 0.0, .upper = 0.5, .noticed = 0.02, .inverse_unit = "kg/J"}),
         Number<&Fragmentation::largest>{
             .bounds = {"fragmentation.largest", "1", "share of the mass that the largest piece keeps", 0.5, 0.99},

@@ -46,7 +46,7 @@ class TouchedTrees {
 ///
 /// @param axis  of the disc, from the beginning of the way [m]
 ///
-/// Closed form. Error: some eps of the distance. A begin within 1e-6 m of the edge counts as on it.
+/// Closed form. Error: a few eps of the distance. A way that begins within 1e-6 m of the edge counts as on it.
 double way_to_disc(const Eigen::Vector2d& axis, const Eigen::Vector2d& heading, double radius);
 
 /// Single trees with an index of their places: square cells, at most about two per tree. Memory: 40 bytes per tree.

@@ -23,20 +23,10 @@ inline bool is_wet(const WetGround& effect, int day) {
   return std::find(effect.days.begin(), effect.days.end(), day) != effect.days.end();
 }
 
-/// wet-ground: factor on En50 on a wet day. docs/effects.md, "wet-ground".
-inline double wet_stiffness(const WetGround& effect) {
-  return exponential(-effect.softening);
-}
-
-/// Factor on Et50 on a wet day.
-inline double wet_hold(const WetGround& effect) {
-  return exponential(-effect.drag);
-}
-
 inline void WetGround::change_ground(Ground& ground, const Block& /*block*/, int day) const {
   if (!is_wet(*this, day)) return;
-  ground.En50 *= wet_stiffness(*this);
-  ground.Et50 *= wet_hold(*this);
+  ground.En50 *= exponential(-softening);  // docs/effects.md, "wet-ground"
+  ground.Et50 *= exponential(-drag);
 }
 
 }  // namespace talus

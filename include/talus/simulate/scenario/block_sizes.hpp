@@ -21,6 +21,10 @@ std::string size_warning(const Scenario& scenario, std::span<const Preset* const
 /// One line if presets of the ground were fitted to no data. Empty if there is none.
 std::string guess_warning(std::span<const Preset* const> presets);
 
+/// One line if classes of blocks with a frequency are drawn so seldom that few paths stand for all their events. Empty
+/// if there is none.
+std::string rare_class_warning(const Scenario& scenario);
+
 /// One line if an effect sorts the sizes the wrong way: rest-in-roughness without block-mass. Empty if none does.
 std::string sorting_warning(const Effects& effects);
 

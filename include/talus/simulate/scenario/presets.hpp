@@ -29,8 +29,8 @@ struct Preset {
   FittedSizes sizes;
 };
 
-/// The ground of a scenario that names no other.
-inline constexpr std::string_view kDefaultPreset = "upper-talus-3d";
+/// The ground of a scenario, or of a profile, that names no other.
+inline constexpr std::string_view kDefaultPreset = "upper-talus-3d", kDefaultProfilePreset = "firm-talus-2d";
 
 /// All sets, in the order of the paper, then those of other programs. The 2D sets have psi_scale = 0: they do not turn
 /// a block out of its plane.
@@ -49,7 +49,7 @@ struct EffectPreset {
   std::string_view effect, name;  ///< "block-mass", "measured"
   std::string_view source;        ///< where its numbers come from
   FittedSizes sizes;
-  Effects numbers;  ///< those of this effect count
+  Effects numbers;  ///< only those of this effect are used
 };
 
 /// All sets of effects.

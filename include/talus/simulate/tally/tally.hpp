@@ -50,7 +50,7 @@ class Tally {
   /// The record of a cell; nullptr if no trajectory touched it.
   const CellRecord* find(int column, int row) const;
   /// Prefetches the record of a cell that is read soon: records are scattered, and reading would wait for each.
-  void fetch(int column, int row) const;
+  void prefetch_record(int column, int row) const;
   /// Number of trajectories whose largest value in the cell exceeds each threshold, quantity by quantity. Only for
   /// cells with a record.
   const std::uint32_t* exceedances(int column, int row) const;

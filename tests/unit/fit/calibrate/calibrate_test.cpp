@@ -30,6 +30,15 @@ TEST(Parameters, ThereAndBack) {
   EXPECT_THROW(ground_parameters(c, start, std::vector<std::string>{"phi"}, {false}), InputError);
 }
 
+/// A search by factors does not leave 0: it would be one around another start.
+TEST(Parameters, AStartOfZeroIsRefused) {
+  const Campaign c = campaign_on_slope(1);
+  Model start = model_of_slope();
+  EXPECT_NO_THROW(check_start(two_parameters(c, start), start));
+  start.grounds[0].theta_scale = 0.0;
+  EXPECT_THROW(check_start(two_parameters(c, start), start), InputError);
+}
+
 /// A quadratic is found exactly from places without noise.
 TEST(QuadraticFit, ExactForAQuadratic) {
   Numbers numbers(2);
@@ -294,6 +303,27 @@ TEST(Calibrate, WhatTheDataDoNotSeeIsNotIdentifiable) {
   const Uncertainty u = uncertainty_of({c, start, free, rows}, options, {1, 300}, fit);
   EXPECT_TRUE(u.identifiable[0]);
   EXPECT_FALSE(u.identifiable[1]);
+}
+
+/// The truth lies beyond the bound of the search: the interval ends there, and does not pass for one of the data.
+TEST(Calibrate, AnIntervalThatEndsAtTheBoundIsSaidTo) {
+  Campaign c = campaign_on_slope(40);
+  Model truth = model_of_slope();
+  truth.grounds[0].En50 = 10.0;
+  measure(c, truth, 79);
+  Model start = truth;
+  start.grounds[0].En50 = 0.2;  // times e^2.5 = 2.4
+  const std::vector<Parameter> free = two_parameters(c, start);
+  FitOptions options;
+  options.trials = 20;
+  options.comparison_trials = 40;
+  options.starts = 1;
+  options.rounds = 1;
+  const std::vector<bool> rows = fitting_rows(c);
+  const Fit fit = fit_parameters(c, start, free, rows, options);
+  const Uncertainty u = uncertainty_of({c, start, free, rows}, options, {1, 300}, fit);
+  EXPECT_TRUE(u.at_bound[1]);
+  EXPECT_NEAR(u.intervals[1].high, 0.2 * std::exp(2.5), 1e-9);
 }
 
 TEST(Calibrate, EndsWhenTold) {

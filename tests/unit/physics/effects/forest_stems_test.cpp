@@ -26,7 +26,7 @@ TEST(ForestStems, CapacityShareAndRateOfTheLiterature) {
     EXPECT_EQ(stem_share(e), stem_share(-e));
     EXPECT_LE(stem_share(e), stem_share(e + 0.01));
   }
-  EXPECT_NEAR(mean_way_between_stems({.density = 400.0, .diameter = 0.35}, 1.0), 18.5, 0.05);
+  EXPECT_NEAR(mean_free_path({.density = 400.0, .diameter = 0.35}, 1.0), 18.5, 0.05);
 }
 
 TEST(ForestStems, TheSpeedLosesTheEnergyAndTheWayTurnsAway) {

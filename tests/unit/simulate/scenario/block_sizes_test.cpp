@@ -31,6 +31,25 @@ TEST(BlockSizes, OfClassesFeaturesAndPowerLaws) {
   EXPECT_NEAR(diameters_of(scenario).high, 2.0, 1e-15);
 }
 
+/// 1200 blocks: a class of the share p is drawn 1200 p times.
+TEST(BlockSizes, AClassThatIsHardlyDrawnIsSaid) {
+  Scenario scenario = of_diameter(1.0, 1.0);
+  scenario.sources.resize(20);
+  scenario.trajectories = 60;
+  scenario.blocks.classes[0].frequency = 0.9;
+  scenario.blocks.classes.push_back({{3.0, 3.0}});
+  scenario.blocks.classes[1].frequency = 0.1;
+  for (const auto& [weight, said] : {std::pair{1.0, false}, {0.02, false}, {0.01, true}, {0.0005, true}}) {
+    scenario.blocks.classes[1].weight = weight;
+    const std::string text = rare_class_warning(scenario);
+    EXPECT_EQ(!text.empty(), said) << weight << text;
+  }
+  const std::string text = rare_class_warning(scenario);
+  EXPECT_NE(text.find("3 m (10 % of the events, about 0.6 of 1200 blocks in a round)"), std::string::npos) << text;
+  scenario.blocks.classes[1].frequency = 0.0;  // it carries no events
+  EXPECT_EQ(rare_class_warning(scenario), "");
+}
+
 TEST(BlockSizes, WarnsOutsideAndNotInside) {
   EXPECT_EQ(warning(of_diameter(1.0, 1.4)), "");
   EXPECT_EQ(warning(of_diameter(1.2, 1.2)), "");

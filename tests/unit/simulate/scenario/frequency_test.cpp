@@ -46,6 +46,18 @@ TEST(AnnualWeights, NoFrequencyNoWeights) {
   EXPECT_FALSE(AnnualWeights::of(zeros).has_value());
 }
 
+TEST(AnnualWeights, NumbersTooSmallToReckonWithAreRefused) {
+  Scenario s = plane(30.0, {0, 0});
+  s.frequency.total = 1e-160;  // its square is 0: the file of the hazard could not be read
+  refused(s, "1e-100 at least");
+  s.frequency.total = 1e-20;
+  EXPECT_NEAR(per_year(s, 0), 0.5e-20, 1e-30);
+  s.frequency.total = 1.0;
+  s.frequency.class_shares = true;
+  s.blocks.classes = {{{1.0, 1.0}, 1.0, 0.1}, {{3.0, 3.0}, 1e-160, 0.9}};
+  refused(s, "a class of blocks has a weight far too small for its frequency: give it a larger one");
+}
+
 TEST(AnnualWeights, AFeaturesFrequencyIsDividedOverItsCells) {
   Scenario s = plane(30.0, {0, 0, 0, 1});
   s.features[0].frequency = 0.3;
