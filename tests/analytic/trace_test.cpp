@@ -186,7 +186,8 @@ TEST(Trap, AFallDownAWallIsNoStay) {
   const double wall = 100.0, diameter = 4.0, speed = std::sqrt(2.0 * kGravity * wall);
   const Surface surface(test::terrain(test::grid_of(200, 60, 1.0, 1.0),
                                       [&](double x, double) { return 1000.0 - 0.65 * x - (x > 60.0 ? wall : 0.0); }));
-  const Launch scene{surface, {{kUpperTalus}, {}}};
+  Launch scene{surface, {{kUpperTalus}, {}}};
+  scene.rules.trap_time = 5.0 / std::sqrt(diameter / 2.0);  // 5 s for this block
   int fell = 0, stays = 0;
   for (std::uint32_t block = 0; block < 2000; ++block) {
     const double x = 59.5 - 0.02 * (block % 100);

@@ -2,6 +2,7 @@
 import json
 import math
 import os
+import pathlib
 import re
 import resource
 import unittest
@@ -221,9 +222,9 @@ class Design(Case):
     def test_observed_rows_of_unknown_screens(self):  # were left out without a word: 40 m/s at a misspelt road
         table = "id,screen,speed_ms,jump_height_m\n" + "".join(f"b{i},road,{4 + 0.2 * i:.2f},{0.1 + 0.05 * i:.2f}\n" for i in range(50))
         _, report, _ = self.design("--observed", self.write("seen.csv", table + "c,low,9,9\n"))
-        self.assertFalse([note for note in report["notes"] if "seen.csv" in note], report["notes"])  # a screen of the run
+        self.assertFalse([note for note in report["notes"] if "rows are of screen" in note], report["notes"])  # a screen of the run
         _, report, _ = self.design("--observed", self.write("seen.csv", table + "c,Road,40,9\nd,Road,40,9\n"))
-        self.assertEqual([note.split("seen.csv")[1] for note in report["notes"] if "seen.csv" in note],
+        self.assertEqual([note.split("seen.csv")[1] for note in report["notes"] if "rows are of screen" in note],
                          [": 2 rows are of screen 'Road', which the run does not have: they count nowhere. Is it "
                           "road, fe/nce, low?"])
         self.refused("seen.csv:52: screen = ''", "must be given", arguments=["--screen", "road", "--observed",
@@ -232,8 +233,8 @@ class Design(Case):
     def test_a_full_disk_leaves_the_earlier_design(self):  # the table was new, the map old
         self.run_well("barrier", self.path("out"), "--screen", "road")
         def written():
-            return {name: open(os.path.join(self.path("out"), name), "rb").read()
-                    for name in sorted(os.listdir(self.path("out"))) if "barrier_" in name}
+            folder = pathlib.Path(self.path("out"))
+            return {file.name: file.read_bytes() for file in folder.iterdir() if "barrier_" in file.name}
         before = written()
         limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (80 * 1024, 80 * 1024))  # the GeoPackage has more
         done = self.call("barrier", self.path("out"), "--screen", "road", "--volume", "10", preexec_fn=limit)
@@ -264,7 +265,7 @@ class Design(Case):
         self.run_well("barrier", self.path("out"), "--screen", "road", "--observed", few)
         self.assertIn("9 values of the jump height above 0: too few for a Weibull fit", " ".join(self.read_json("out/barrier_road.json")["notes"]))
         other = self.write("other.csv", "id,screen,jump_height_m\na,S1,1\n")
-        self.refused("no row of screen 'road'", arguments=["--screen", "road", "--observed", other])
+        self.refused("no row of screen 'road' (there are rows of 'S1'), must have", arguments=["--screen", "road", "--observed", other])
 
     def test_shortened_crossings(self):
         head = "screen,quantity,unit,crossings,blocks,share_of_released,mean,p50,p95,p99,maximum\n"

@@ -132,7 +132,10 @@ void note_other_screens(const CrossingTable& observed, const RunSummary& run, co
 CrossingTable observed_crossings(const Options& o) {
   CrossingTable crossings = talus::io::read_crossings(o.observed, o.screen);
   if (crossings.count == 0)
-    throw talus::InputError(o.observed + ": has no row of screen '" + o.screen + "', must have one per observed block");
+    throw talus::InputError(
+        o.observed + ": has no row of screen '" + o.screen + "'" +
+        (crossings.others.empty() ? "" : " (there are rows of '" + crossings.others.begin()->first + "')") +
+        ", must have one per observed block");
   return crossings;
 }
 

@@ -308,11 +308,10 @@ TEST(Calibrate, WhatTheDataDoNotSeeIsNotIdentifiable) {
 /// The truth lies beyond the bound of the search: the interval ends there, and does not pass for one of the data.
 TEST(Calibrate, AnIntervalThatEndsAtTheBoundIsSaidTo) {
   Campaign c = campaign_on_slope(40);
-  Model truth = model_of_slope();
-  truth.grounds[0].En50 = 10.0;
+  const Model truth = model_of_slope();
   measure(c, truth, 79);
   Model start = truth;
-  start.grounds[0].En50 = 0.2;  // times e^2.5 = 2.4
+  start.grounds[0].theta_scale *= std::exp(-2.7);  // the search goes up by a factor of e^2.5
   const std::vector<Parameter> free = two_parameters(c, start);
   FitOptions options;
   options.trials = 20;
@@ -322,8 +321,9 @@ TEST(Calibrate, AnIntervalThatEndsAtTheBoundIsSaidTo) {
   const std::vector<bool> rows = fitting_rows(c);
   const Fit fit = fit_parameters(c, start, free, rows, options);
   const Uncertainty u = uncertainty_of({c, start, free, rows}, options, {1, 300}, fit);
-  EXPECT_TRUE(u.at_bound[1]);
-  EXPECT_NEAR(u.intervals[1].high, 0.2 * std::exp(2.5), 1e-9);
+  EXPECT_TRUE(u.at_bound[0]);
+  EXPECT_NEAR(u.intervals[0].high, truth.grounds[0].theta_scale * std::exp(-0.2), 1e-9);
+  EXPECT_FALSE(u.at_bound[1]);
 }
 
 TEST(Calibrate, EndsWhenTold) {

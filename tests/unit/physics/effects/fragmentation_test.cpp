@@ -162,6 +162,7 @@ TEST(Fragmentation, WhatIsLeftStaysByItsOwnDiameter) {
   const double hop = 1.2, time = 1.8, kept = std::sqrt(kBreakKeeps), fall = std::sqrt(2.0 * kGravity * 10.0);
   const double k_n = 0.5 * kGravity * time / (kept * fall), energy = 0.25 * 4.0 * fall * fall;
   Hillside hill(0.0, 4.0, 20);
+  hill.rules.trap_time = 5.0 / std::sqrt(4.0 / 2.0);  // 5 s for the whole block
   Ground smooth = test::kPerfect, hard = test::kPerfect;
   smooth.tan_phi = hard.tan_phi = 0.0;
   hard.En50 = energy * k_n / (1.0 - k_n);  // k_n = En50 / (En50 + c D v^2)
