@@ -230,6 +230,14 @@ class Design(Case):
         self.refused("seen.csv:52: screen = ''", "must be given", arguments=["--screen", "road", "--observed",
                                                                          self.write("seen.csv", table + "c,,40,9\n")])
 
+    def test_few_observed_values_are_counted(self):  # all six were far above h_i, and nothing said so
+        table = "id,screen,jump_height_m\n" + "".join(f"b{i},road,{5 + i}\n" for i in range(6)) + "b0,road,7\n"
+        _, report, _ = self.design("--observed", self.write("few.csv", table))
+        notes = " ".join(report["notes"])
+        self.assertIn("hold 6 values of the jump height above 0: too few", notes)
+        self.assertIn("; 6 of 6 exceed h_i", notes)
+        self.assertIn("few.csv: 1 of 7 rows repeat a block", notes)
+
     def test_a_full_disk_leaves_the_earlier_design(self):  # the table was new, the map old
         self.run_well("barrier", self.path("out"), "--screen", "road")
         def written():

@@ -139,6 +139,14 @@ CrossingTable observed_crossings(const Options& o) {
   return crossings;
 }
 
+/// Notes rows that repeat a block: an inspector who gives all one id would lose the others.
+void note_repeated_rows(const CrossingTable& observed, const Options& o, BarrierReport& report) {
+  if (observed.rows > observed.count)
+    report.notes.push_back(o.observed + ": " + std::to_string(observed.rows - observed.count) + " of " +
+                           std::to_string(observed.rows) +
+                           " rows repeat a block (its id, source and block): only its first crossing counts");
+}
+
 /// The blocks and pieces at the line with their weights: 0 for those that never fall.
 std::vector<talus::LineCrossing> crossings_of(const CrossingTable& table, const RunSummary& run, const Options& o,
                                               BarrierReport& report, Weighting& weighting) {
@@ -221,7 +229,7 @@ std::string lack_of_fit(const std::string& whose, const std::string& quantity, c
   }
   if (positive >= talus::kFewestForWeibull && others > 0) return "";
   return whose + " hold " + std::to_string(positive) + " values of the " + quantity + " above 0" +
-         (others == 0 ? ", all equal" : "") + ": too few for a Weibull fit (" +
+         (positive > 0 && others == 0 ? ", all equal" : "") + ": too few for a Weibull fit (" +
          std::to_string(talus::kFewestForWeibull) + ", not all equal)";
 }
 
@@ -248,10 +256,19 @@ class Exceedances {
     if (lack.empty())
       report_.reliability.push_back(std::move(r));
     else
-      report_.notes.push_back(lack + told_of(r));
+      report_.notes.push_back(lack + counted(r, values) + told_of(r));
   }
 
  private:
+  /// "; 6 of 6 exceed h_i": of values too few for a fit.
+  static std::string counted(const talus::io::Reliability& r, const std::vector<double>& values) {
+    std::string text;
+    for (const talus::io::Reliability::Limit& limit : r.limits)
+      if (!values.empty())
+        text += "; " + std::to_string(std::ranges::count_if(values, [&](double v) { return v > limit.value; })) +
+                " of " + std::to_string(values.size()) + " exceed " + limit.name;
+    return text;
+  }
   /// Notes on a quantity that has too few values for a fit.
   std::string told_of(const talus::io::Reliability& r) const {
     if (!weighting_.scale) return ", so it is not known how often its design value is exceeded";
@@ -318,7 +335,10 @@ int design(Options o) {
   const CrossingTable values = o.observed.empty() ? crossings : observed_crossings(o);
   BarrierReport report;
   Weighting weighting;
-  note_other_screens(values, run, o, report);
+  if (!o.observed.empty()) {
+    note_other_screens(values, run, o, report);
+    note_repeated_rows(values, o, report);
+  }
   if (const auto note = talus::io::unusable_note(o.folder)) report.notes.push_back(*note);
   if (const auto note = talus::io::coefficient_note(o.folder)) report.notes.push_back(*note);
   if (const auto note = talus::io::barriers_note(o.folder))
