@@ -441,6 +441,7 @@ class Faults(Files):
         for rest, words in {
                 "[screens]\ny = [5]\n": ["p.toml:", "unknown key 'y' in [screens]"],
                 "[ground.zones.road]\npreset = 'forest-road-2d'\n": ["ground.zones.road.x is missing", "[from, to]"],
+                "[ground.zones]\nx = [9, 5]\n": ["ground.zones.x = [9, 5]: must be a table"],  # ended with a crash
                 "[ground.zones.road]\nx = [9, 5]\n": ["ground.zones.road.x", "[from, to]"],
                 "[ground.zones.road]\nx = [900, 950]\n": ["lies off the profile", "0 to 400 m"],
                 "[ground.zones.default]\npsi_scale = 0.5\n": ["psi_scale = 0.5", "no sideways roughness"],

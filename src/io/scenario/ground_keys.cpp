@@ -17,6 +17,7 @@ constexpr const char* kDefaultZone = "default";  // the ground outside all zones
 
 /// The key x of a zone on a profile: [from, to], or a list of such intervals.
 std::vector<Range> intervals_of(TableReader& table) {
+  if (table.value() == nullptr) return {};  // [ground.zones] x = ... beside no [ground.zones.NAME]: said already
   const TomlValue* value = table.find("x");
   if (value == nullptr) {
     table.faults().push_back(table.file() + ":" + std::to_string(table.value()->line) + ": " + table.full("x") +
