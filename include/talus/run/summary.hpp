@@ -36,7 +36,7 @@ std::string barrier_text(const std::string& id, const BarrierCounts& counts, boo
 std::vector<std::string> warnings_of(const Totals& totals, std::uint64_t into_gaps = 0,
                                      const std::string& whole = "trajectories");
 
-/// The same of `talus profile`, which has no maps.
+/// Warnings of `talus profile` if many trajectories left the profile, or were trapped.
 std::vector<std::string> profile_warnings(const Totals& totals);
 
 /// `limits_text` with the way out of `talus profile`, whose trajectories `talus trace` cannot replay.

@@ -1,7 +1,6 @@
 #include "talus/fit/calibrate/parameters.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "talus/base/elementary.hpp"
@@ -65,7 +64,7 @@ std::vector<Parameter> ground_parameters(const Campaign& campaign, const Model& 
 
 void check_start(std::span<const Parameter> parameters, const Model& start) {
   for (const Parameter& p : parameters)
-    if (p.scale == Parameter::Scale::Log && std::isfinite(p.reach) && p.get(start) < kLeastStart)
+    if (p.scale == Parameter::Scale::Log && p.get(start) < kLeastStart)
       throw InputError(p.key + " = " + with_digits(p.get(start), 3) + " at the start, must be " + text_of(kLeastStart) +
                        " at least to be fitted, as a search by factors does not leave 0: give another start by "
                        "--parameters, or leave it out of --fit");

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "io/scenario/scenario_spec.hpp"
+#include "run/checkpoint_tally.hpp"
 #include "support/scenarios.hpp"
 #include "talus/base/error.hpp"
 
@@ -77,6 +78,21 @@ class CheckpointOfARun : public testing::Test {
 
   fs::path folder_;
 };
+
+/// Counts that a small run leaves at 0.
+TEST(CheckpointTotals, KeepTheirCounts) {
+  Totals totals;
+  totals.left_blocks = 3;
+  totals.limited_blocks = 5;
+  totals.first_limit = {7, 8};
+  ByteWriter out;
+  put_totals(totals, out);
+  ByteReader in(out.bytes());
+  const Totals again = get_totals(Barriers(std::vector<Barrier>{}), in);
+  EXPECT_EQ(again.left_blocks, 3U);
+  EXPECT_EQ(again.limited_blocks, 5U);
+  EXPECT_EQ(again.first_limit, (std::array<std::uint32_t, 2>{7, 8}));
+}
 
 TEST_F(CheckpointOfARun, EndsAsARunWithoutAPause) {
   const LoadedScenario plan = loaded();

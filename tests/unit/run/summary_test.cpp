@@ -5,7 +5,7 @@
 namespace talus::run {
 namespace {
 
-/// Of 100 trajectories so many ended in each way; the others stopped.
+/// Totals of 100 trajectories, with the number that ended in each way; the others stopped.
 Totals of_hundred(std::uint64_t trapped, std::uint64_t left, std::uint64_t limit = 0) {
   Totals totals;
   totals.released = 100;

@@ -85,23 +85,33 @@ TEST(Pieces, AreTheSameForAnyNumberOfThreadsAndAllScored) {
   EXPECT_GT(mass, 0.2 * released);
 }
 
-/// Each block is traced alone, with its pieces.
+/// Blocks that end so, and those of which any piece does: each is traced alone, with its pieces.
+struct Counted {
+  std::uint64_t with_largest = 0, with_any = 0;
+  std::array<std::uint32_t, 2> first{};  ///< (source, block) of the first of `with_any`
+};
+Counted counted(const Scenario& s, End end) {
+  Counted out;
+  for (std::uint32_t source = 0; source < 4; ++source)
+    for (std::uint32_t block = 0; block < 150; ++block) {
+      Path whole;
+      trace(s.world(), make_release(s, source, block), whole);
+      bool any = whole.end == end;
+      out.with_largest += any ? 1U : 0U;
+      trace_pieces(s.world(), whole, [&](const Release&, const Path& piece) { any = any || piece.end == end; });
+      if (any && out.with_any == 0) out.first = {source, block};
+      out.with_any += any ? 1U : 0U;
+    }
+  return out;
+}
+
 TEST(Pieces, ABlockOfWhichAPieceLeavesHasLeft) {
   Scenario s = test::rough_slope(4, 150);
   s.effects.fragmentation = {.threshold = 60.0, .largest = 0.6, .where = {}};
   s.features[0].frequency = 0.6;
   s = make_scenario(std::move(s));
-  std::uint64_t left = 0, with_largest = 0;
-  for (std::uint32_t source = 0; source < 4; ++source)
-    for (std::uint32_t block = 0; block < 150; ++block) {
-      Path whole;
-      trace(s.world(), make_release(s, source, block), whole);
-      bool any = whole.end == End::Left;
-      with_largest += any ? 1U : 0U;
-      trace_pieces(s.world(), whole, [&](const Release&, const Path& piece) { any = any || piece.end == End::Left; });
-      left += any ? 1U : 0U;
-    }
-  ASSERT_GT(left, with_largest);
+  const Counted left = counted(s, End::Left);
+  ASSERT_GT(left.with_any, left.with_largest);
   for (const int threads : {1, 3}) {
     Tally tally(s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds);
     auto weights = AnnualWeights::of(s);
@@ -109,13 +119,13 @@ TEST(Pieces, ABlockOfWhichAPieceLeavesHasLeft) {
     const double unit = weights->scale().unit;
     tally.keep_hazard(std::move(*weights));
     const Totals totals = simulate(s, tally, {}, threads);
-    EXPECT_EQ(totals.ends[static_cast<std::size_t>(End::Left)], with_largest);
-    EXPECT_EQ(totals.left_blocks, left);
-    EXPECT_NEAR(static_cast<double>(totals.left_weight) * unit, 0.6 * static_cast<double>(left) / 600.0, 1e-9);
+    EXPECT_EQ(totals.ends[static_cast<std::size_t>(End::Left)], left.with_largest);
+    EXPECT_EQ(totals.left_blocks, left.with_any);
+    EXPECT_NEAR(static_cast<double>(totals.left_weight) * unit, 0.6 * static_cast<double>(left.with_any) / 600.0, 1e-9);
   }
 }
 
-/// Each block is traced alone, with its pieces. A limit that only a smaller piece reaches was counted nowhere.
+/// A limit that only a smaller piece reaches was counted nowhere.
 TEST(Pieces, ABlockOfWhichAPieceReachesALimitIsCounted) {
   Scenario s = test::rough_slope(4, 150);
   s.effects.fragmentation = {.threshold = 60.0, .largest = 0.6, .where = {}};
@@ -128,18 +138,7 @@ TEST(Pieces, ABlockOfWhichAPieceReachesALimitIsCounted) {
   }
   std::ranges::sort(times);
   s.rules.time_limit = times[120];  // most of the largest pieces end before it
-  std::uint64_t limited = 0, with_largest = 0;
-  std::array<std::uint32_t, 2> first{};
-  for (std::uint32_t source = 0; source < 4; ++source)
-    for (std::uint32_t block = 0; block < 150; ++block) {
-      Path whole;
-      trace(s.world(), make_release(s, source, block), whole);
-      bool any = whole.end == End::Limit;
-      with_largest += any ? 1U : 0U;
-      trace_pieces(s.world(), whole, [&](const Release&, const Path& piece) { any = any || piece.end == End::Limit; });
-      if (any && limited == 0) first = {source, block};
-      limited += any ? 1U : 0U;
-    }
+  const auto [with_largest, limited, first] = counted(s, End::Limit);
   ASSERT_GT(limited, with_largest);
   for (const int threads : {1, 3}) {
     Tally tally(s.surface.grid(), s.output.energy_thresholds, s.output.height_thresholds);

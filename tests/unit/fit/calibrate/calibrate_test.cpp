@@ -285,6 +285,17 @@ TEST(Calibrate, TheIntervalHoldsTheTruth) {
   }
 }
 
+/// Intervals of a short fit from one start.
+Uncertainty of_short_fit(const Campaign& c, const Model& start, const std::vector<Parameter>& free) {
+  FitOptions options;
+  options.trials = 20;
+  options.comparison_trials = 40;
+  options.starts = 1;
+  options.rounds = 1;
+  const std::vector<bool> rows = fitting_rows(c);
+  return uncertainty_of({c, start, free, rows}, options, {1, 300}, fit_parameters(c, start, free, rows, options));
+}
+
 /// A parameter without influence on the data keeps its prior and is called not identifiable.
 TEST(Calibrate, WhatTheDataDoNotSeeIsNotIdentifiable) {
   Campaign c = campaign_on_slope(40);
@@ -293,14 +304,7 @@ TEST(Calibrate, WhatTheDataDoNotSeeIsNotIdentifiable) {
   std::vector<Parameter> free = two_parameters(c, start);
   free[1].get = [](const Model&) { return 3.0; };
   free[1].set = [](Model&, double) {};  // moves nothing
-  FitOptions options;
-  options.trials = 20;
-  options.comparison_trials = 40;
-  options.starts = 1;
-  options.rounds = 1;
-  const std::vector<bool> rows = fitting_rows(c);
-  const Fit fit = fit_parameters(c, start, free, rows, options);
-  const Uncertainty u = uncertainty_of({c, start, free, rows}, options, {1, 300}, fit);
+  const Uncertainty u = of_short_fit(c, start, free);
   EXPECT_TRUE(u.identifiable[0]);
   EXPECT_FALSE(u.identifiable[1]);
 }
@@ -313,14 +317,7 @@ TEST(Calibrate, AnIntervalThatEndsAtTheBoundIsSaidTo) {
   Model start = truth;
   start.grounds[0].theta_scale *= std::exp(-2.7);  // the search goes up by a factor of e^2.5
   const std::vector<Parameter> free = two_parameters(c, start);
-  FitOptions options;
-  options.trials = 20;
-  options.comparison_trials = 40;
-  options.starts = 1;
-  options.rounds = 1;
-  const std::vector<bool> rows = fitting_rows(c);
-  const Fit fit = fit_parameters(c, start, free, rows, options);
-  const Uncertainty u = uncertainty_of({c, start, free, rows}, options, {1, 300}, fit);
+  const Uncertainty u = of_short_fit(c, start, free);
   EXPECT_TRUE(u.at_bound[0]);
   EXPECT_NEAR(u.intervals[0].high, truth.grounds[0].theta_scale * std::exp(-0.2), 1e-9);
   EXPECT_FALSE(u.at_bound[1]);
