@@ -5,9 +5,10 @@ import sqlite3
 import unittest
 import zipfile
 
+import numpy as np
 from osgeo import gdal, ogr
 
-from support import Case, box, heights, write_dem, write_features
+from support import NORTH, WEST, Case, box, heights, system, write_dem, write_features
 
 SCENARIO = """dem = "{dem}"
 trajectories = 4
@@ -16,6 +17,9 @@ file = "sources.gpkg"
 [blocks]
 diameter = 0.8
 """
+
+
+BESIDE = '<PAMDataset>\n  <PAMRasterBand band="1">\n    {}\n  </PAMRasterBand>\n</PAMDataset>\n'  # dem.tif.aux.xml
 
 
 class ChangedInputs(Case):
@@ -162,6 +166,69 @@ class ChangedInputs(Case):
                 file.write(b"\n")
         self.fails(2, "another plan", arguments=["merge", self.path("merged"), self.path("part1"), self.path("part2")])
 
+    def test_what_is_said_beside_a_raster(self):
+        """GDAL keeps in NAME.aux.xml what a raster cannot hold, and statistics: these are no input, a scale is one."""
+        write_features(self.path("houses.gpkg"), "houses", [(box(105, 150, 10, 8), ["A"])], [("name", ogr.OFTString)])
+        hazard = ["hazard", self.path("out"), "--objects", self.path("houses.gpkg"), "--overwrite", "-q"]
+        self.run_on()
+        self.run_well(*hazard)
+        before = self.trace()
+        gdal.Info(self.path("dem.tif"), stats=True, reportHistograms=True)
+        self.assertIn("STATISTICS_MEAN", self.read_text("dem.tif.aux.xml"))
+        self.assertIn("Histograms", self.read_text("dem.tif.aux.xml"))
+        self.run_well(*hazard)
+        self.assertEqual(self.trace(), before)
+        for said in ("<Scale>0.5</Scale>", "<Offset>300</Offset>", "<NoDataValue>1001</NoDataValue>", "<UnitType>metre</UnitType>"):
+            self.write("dem.tif.aux.xml", BESIDE.format(said))
+            self.refuses()
+        self.write("dem.tif.aux.xml", BESIDE.format("<Offset>300</Offset>\n    <Scale>0.5</Scale>"))
+        self.fails(2, "has changed since the run", arguments=hazard)
+        self.run_on(out="scaled")
+        scaled = self.trace("scaled/scenario.toml")
+        self.assertNotEqual(scaled, before)
+        gdal.Info(self.path("dem.tif"), stats=True)  # writes the file anew, with its scale
+        self.assertIn("STATISTICS_MEAN", self.read_text("dem.tif.aux.xml"))
+        self.assertEqual(self.trace("scaled/scenario.toml"), scaled)
+        os.remove(self.path("dem.tif.aux.xml"))
+        self.assertEqual(self.trace(), before)
+
+    def test_parts_on_a_scaled_dem_are_not_merged(self):
+        self.write("s.toml", SCENARIO.format(dem="dem.tif"))
+        for part in "1", "2":
+            self.run_well("run", self.path("s.toml"), "-q", "--part", part + "/2", "-o", self.path("part" + part))
+            self.write("dem.tif.aux.xml", BESIDE.format("<Offset>300</Offset>\n    <Scale>0.5</Scale>"))
+        self.fails(2, "another plan", arguments=["merge", self.path("merged"), self.path("part1"), self.path("part2")])
+
+    def geolocated(self):
+        """A warped VRT of a raster whose cells are placed by two others, x.tif and y.tif."""
+        raw = gdal.GetDriverByName("GTiff").Create(self.path("raw.tif"), 60, 60, 1, gdal.GDT_Float32)
+        raw.GetRasterBand(1).WriteArray(heights())
+        x, y = np.meshgrid(WEST + 2.5 + 5.0 * np.arange(60), NORTH - 2.5 - 5.0 * np.arange(60))
+        for name, values in (("x.tif", x), ("y.tif", y)):
+            array = gdal.GetDriverByName("GTiff").Create(self.path(name), 60, 60, 1, gdal.GDT_Float64)
+            array.GetRasterBand(1).WriteArray(values)
+            array = None
+        raw.SetMetadata({"SRS": system(2056).ExportToWkt(), "X_DATASET": self.path("x.tif"), "X_BAND": "1",
+                         "Y_DATASET": self.path("y.tif"), "Y_BAND": "1", "PIXEL_OFFSET": "0", "LINE_OFFSET": "0",
+                         "PIXEL_STEP": "1", "LINE_STEP": "1"}, "GEOLOCATION")
+        raw = None
+        gdal.Warp(self.path("warped.vrt"), self.path("raw.tif"), format="VRT", geoloc=True, dstSRS="EPSG:2056",
+                  outputBounds=(WEST, NORTH - 300, WEST + 300, NORTH), xRes=5, yRes=5)
+
+    def test_arrays_that_place_a_warped_vrt(self):
+        self.geolocated()
+        self.assertIn('key="X_DATASET"', self.read_text("warped.vrt"))
+        self.run_on("warped.vrt")
+        self.trace()
+        for name in "x.tif", "y.tif":
+            with self.subTest(name=name):
+                with open(self.path(name), "ab") as file:
+                    file.write(b"\n")
+                self.refuses()
+                with open(self.path(name), "rb+") as file:
+                    file.truncate(os.path.getsize(self.path(name)) - 1)
+                self.trace()
+
     def test_a_forest_from_a_vrt_is_read_again(self):
         """Folders that a VRT may name are in OUT/scenario.toml, whichever input the VRT is."""
         os.makedirs(self.path("tiles"))
@@ -190,6 +257,15 @@ class ChangedInputs(Case):
         self.run_on(out="good")
         shutil.copy(self.path("s.toml"), scenario)
         self.fails(2, "dem = 'dem.tif'", "is not UTF-8", "rename", arguments=["run", scenario, "-o", self.path("out")])
+        self.assertFalse(os.path.exists(self.path("out")))
+
+    def test_a_field_whose_name_is_not_utf8(self):
+        """OUT/scenario.toml could not hold it: refused at the start."""
+        run = ["run", "--dem", self.path("dem.tif"), "--sources", self.path("sources.gpkg"), "--diameter", "1", "-o", self.path("out")]
+        self.fails(2, "flag --field diameter=Durchm\\xe4sser", "is not UTF-8", "rename the field",
+                   arguments=[*run, "--field", b"diameter=Durchm\xe4sser"])
+        self.fails(2, "flag --zone-field", "is not UTF-8", "Gel\\xe4nde", "rename the field",
+                   arguments=[*run, "--zones", self.path("sources.gpkg"), "--zone-field", b"Gel\xe4nde"])
         self.assertFalse(os.path.exists(self.path("out")))
 
     def test_a_part_of_a_file_is_looked_up_in_the_folder_of_the_scenario(self):

@@ -19,7 +19,7 @@ import zipfile
 
 from osgeo import gdal, ogr
 
-from support import NORTH, TALUS, WEST, Case, box, write_features
+from support import NORTH, TALUS, WEST, Case, box, system, write_features
 
 SOUTH = NORTH - 300.0
 ELM = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../data/elm")
@@ -93,6 +93,38 @@ class SpecialFiles(Scenario):
             self.scenario()
             self.refused(beside, "is a pipe")
             os.remove(self.path(beside))
+
+    def test_named_beside_a_raster(self):
+        """GDAL opens the overviews and the mask that it finds, whatever they name (gdal.org, GDALDefaultOverviews)."""
+        pipe, name = self.path("pipe"), '<Metadata domain="OVERVIEWS"><MDI key="OVERVIEW_FILE">{}</MDI></Metadata>'
+        beside = self.write("dem.tif.aux.xml", f"<PAMDataset>{name.format(pipe)}</PAMDataset>")
+        self.scenario()
+        self.refused("dem.tif.aux.xml: names '" + pipe, "must name no other file")
+        shutil.copy(self.path("dem.tif"), self.path("tile.tif"))
+        os.rename(beside, self.path("tile.tif.aux.xml"))
+        self.write("dem.vrt", VRT.format(srs="EPSG:2056", band=BAND.format(source="tile.tif", relative=1)))
+        self.scenario(dem="dem.vrt")
+        self.refused("tile.tif.aux.xml: names '" + pipe)
+        self.scenario()
+        for end in (".ovr", ".msk"):
+            for source in (pipe, "/etc/passwd"):
+                self.write("dem.tif" + end, VRT.format(srs="EPSG:2056", band=BAND.format(source=source, relative=0)))
+                self.refused("dem.tif" + end + ": names", source)
+            os.remove(self.path("dem.tif" + end))
+        dem = gdal.Open(self.path("dem.tif"), gdal.GA_Update)
+        dem.SetMetadataItem("OVERVIEW_FILE", pipe, "OVERVIEWS")  # in the file itself
+        dem = None
+        self.assertFalse(os.path.exists(beside))
+        self.refused("dem.tif: names '" + pipe, "gdal_translate")
+
+    def test_as_a_system_of_coordinates(self):
+        shutil.copytree(ELM, self.path("campaign"))
+        self.write("dem.prj", system(2056).ExportToWkt())
+        for name in ("pipe", "dem.prj"):
+            with open(os.path.join(ELM, "campaign.toml"), encoding="utf-8") as file:
+                self.write("campaign/campaign.toml", f'crs = "{self.path(name)}"\n' + re.sub("(?m)^crs = .*$", "", file.read()))
+            self.refused("is no coordinate system", name,
+                         arguments=["diagnose", self.path("campaign/campaign.toml"), "-o", self.path("out")])
 
     def test_as_a_table(self):
         os.mkdir(self.path("campaign"))
@@ -319,7 +351,7 @@ class Network(Scenario):
         dem.SetMetadataItem("OVERVIEW_FILE", f"/vsicurl/{self.web}/dem.ovr", "OVERVIEWS")
         dem = None
         self.scenario()
-        self.silent(code=0)
+        self.silent("OVERVIEW_FILE", "must name no other file")
 
     def test_python_in_a_vrt(self):
         marker = self.path("python_ran")
@@ -497,9 +529,34 @@ class LocalNames(Scenario):
                      "<VRTRasterBand dataType='Float32' band='1' subClass='VRTWarpedRasterBand'/><GDALWarpOptions>"
                      "<SourceDataset relativeToVRT='0'>/etc/passwd</SourceDataset></GDALWarpOptions>",
                      "<VRTRasterBand dataType='Float32' band='1'><SimpleSource SourceFilename='/etc/passwd'/>"
-                     "</VRTRasterBand>"):
+                     "</VRTRasterBand>",
+                     *(f"<Metadata domain='{domain}'><MDI key='{key}'>/etc/passwd</MDI></Metadata><VRTRasterBand "
+                       "dataType='Float32' band='1'/>"
+                       for domain, key in (("GEOLOCATION", "X_DATASET"), ("GEOLOCATION", "Y_DATASET"),
+                                           ("OVERVIEWS", "OVERVIEW_FILE")))):
             self.write("project/dem.vrt", VRT.format(srs="EPSG:2056", band=band))
             self.refused("names /etc/passwd")
+
+    def test_open_options_of_a_vrt(self):
+        """SQL before a GeoPackage is read could write files (VACUUM INTO); another root would move relative names."""
+        gdal.Translate(self.path("project/dem.gpkg"), self.path("elsewhere/dem.tif"), format="GPKG")
+        self.scenario(dem="project/dem.vrt")
+        for option, value in (("PRELUDE_STATEMENTS", f"VACUUM INTO '{self.path('made.db')}'"), ("root_path", "/etc")):
+            band = BAND.replace("</SourceFilename>", f'</SourceFilename><OpenOptions><OOI key="{option}">{value}</OOI></OpenOptions>')
+            self.write("project/dem.vrt", VRT.format(srs="EPSG:2056", band=band.format(source="dem.gpkg", relative=1)))
+            self.refused("dem.vrt: has the open option " + option)
+        self.assertFalse(os.path.exists(self.path("made.db")))
+
+    def test_an_archive_of_several_files(self):
+        """GDAL's own words for it stay off the screen."""
+        gdal.VectorTranslate(self.path("s.shp"), self.path("sources.gpkg"), format="ESRI Shapefile")
+        with zipfile.ZipFile(self.path("s.shp.zip"), "w") as archive:
+            for end in ("shp", "shx", "dbf", "prj"):
+                archive.write(self.path("s." + end), "s." + end)
+        done = self.call("check", "--dem", self.path("elsewhere/dem.tif"), "--sources", "/vsizip/" + self.path("s.shp.zip"),
+                         "--diameter", "1")
+        self.assertNotIn("ERROR", done.stderr)
+        self.assertTrue(all(line.startswith("talus: ") for line in done.stderr.splitlines()), done.stderr)
 
     def test_archives_and_parts(self):
         with zipfile.ZipFile(self.path("a.zip"), "w") as archive:

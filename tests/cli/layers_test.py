@@ -42,6 +42,9 @@ class Layers(Case):
         site, check = self.path("site.gpkg"), ["check", *self.flags, "--sources"]
         for part in ("|geometrytype=Polygon", "|layerid=abc"):
             self.fails(2, f"'{part}' is not read", arguments=[*check, site + "|layername=cliffs" + part])
+        for number in ("-5", "99999999999", "1x", ""):
+            self.fails(2, f"'|layerid={number}' is not read", "must be a whole number from 0", "|layername=houses",
+                       arguments=[*check, site + "|layerid=" + number])
         self.fails(2, "has a layer already", arguments=[*check, site + "|layername=cliffs", "--sources-layer", "houses"])
         self.fails(2, "flag --sources-layer = '': must name a layer", arguments=[*check, site, "--sources-layer", ""])
         self.fails(2, "flag --parameters", "must name a file", arguments=[*check, site + "|layername=cliffs", "--parameters", ""])

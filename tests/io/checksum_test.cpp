@@ -1,5 +1,7 @@
 #include "io/files/checksum.hpp"
 
+#include <set>
+
 #include "files.hpp"
 
 namespace talus::io::test {
@@ -54,6 +56,43 @@ TEST_F(Sha256Files, ARasterIsAllThatIsReadWithItButItsStatistics) {
   write_text("beside.tif.aux.xml", "<PAMDataset><Metadata><MDI key=\"A\">b</MDI></Metadata></PAMDataset>");
   EXPECT_EQ(sha256_of_file(beside), both);
   EXPECT_EQ(sha256_of_file("GTIFF_DIR:1:" + alone), sum(content(alone)));
+}
+
+std::string beside(const std::string& band, const std::string& dataset = "") {
+  return "<PAMDataset>" + dataset + "<PAMRasterBand band=\"1\">" + band + "</PAMRasterBand></PAMDataset>";
+}
+
+// What GDAL 3.6 takes from NAME.aux.xml (gcore/gdalpamdataset.cpp), and what gdalinfo -stats -hist and QGIS write
+// there.
+TEST_F(Sha256Files, ARasterIsAlsoWhatIsSaidBesideIt) {
+  const std::string dem = RasterFile{}.write(path("dem.tif")), alone = sha256_of_file(dem);
+  const std::string statistics =
+      "<Description>b</Description><Histograms><HistItem><HistMin>1</HistMin></HistItem></Histograms><Metadata>"
+      "<MDI key=\"STATISTICS_MEAN\">5</MDI></Metadata><ColorInterp>Gray</ColorInterp>";
+  std::set<std::string> sums{alone};
+  for (const auto& [band, dataset] : std::vector<std::pair<std::string, std::string>>{
+           {"<Scale>0.5</Scale>", ""},
+           {"<Offset>300</Offset>", ""},
+           {"<Offset>301</Offset>", ""},
+           {"<NoDataValue>0</NoDataValue>", ""},
+           {"<UnitType>ft</UnitType>", ""},
+           {"<ColorInterp>Alpha</ColorInterp>", ""},
+           {"", "<SRS>EPSG:2056</SRS>"},
+           {"", "<GeoTransform>0, 5, 0, 0, 0, -5</GeoTransform>"},
+           {"", "<Metadata><MDI key=\"NODATA_VALUES\">0</MDI></Metadata>"},
+           {"", "<Metadata domain=\"xml:ESRI\" format=\"xml\"><GeodataXform/></Metadata>"}}) {
+    write_text("dem.tif.aux.xml", beside(band, dataset));
+    const std::string said = sha256_of_file(dem);
+    EXPECT_TRUE(sums.insert(said).second) << band << dataset;
+    write_text("dem.tif.aux.xml", beside("\n  " + band + statistics, dataset));
+    EXPECT_EQ(sha256_of_file(dem), said) << band << dataset;
+  }
+  for (const std::string& text :
+       {beside(statistics), beside("", "<Metadata domain=\"ENVI\"><MDI key=\"a\">b</MDI></Metadata>"),
+        std::string("<PAMDataset/>"), std::string("<PAMDataset>"), std::string()}) {
+    write_text("dem.tif.aux.xml", text);
+    EXPECT_EQ(sha256_of_file(dem), alone) << text;
+  }
 }
 
 TEST_F(Sha256Files, ALayerIsAllThatIsReadWithIt) {

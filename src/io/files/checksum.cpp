@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "input_files.hpp"
+#include "io/gdal/aux_xml.hpp"
 #include "io/gdal/dataset.hpp"
 #include "io/gdal/input_name.hpp"
+#include "io/gdal/regular_file.hpp"
 #include "talus/base/error.hpp"
 
 namespace talus::io {
@@ -35,8 +37,17 @@ struct Sums {
   Sha256 bytes, content;
 };
 
+/// Adds of NAME.aux.xml what changes the raster. Whether that is anything.
+bool add_auxiliary(Sums& sums, const std::string& path) {
+  const std::string text = aux_that_counts(read_start(name_for_gdal(path), kMostVrt));
+  sums.bytes.add(text);
+  sums.content.add(text);
+  return !text.empty();
+}
+
 bool add_file(Sums& sums, const std::string& path) {
   if (!looked_up(path).fault.empty()) return false;
+  if (path.ends_with(".aux.xml")) return add_auxiliary(sums, path);
   VSILFILE* file = VSIFOpenL(name_for_gdal(path).c_str(), "rb");
   if (file == nullptr) return false;
   std::vector<char> bytes(1U << 16);

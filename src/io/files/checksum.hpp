@@ -27,7 +27,8 @@ class Sha256 {
 /// SHA-256 of bytes.
 std::string sha256_of_bytes(std::string_view bytes);
 
-/// SHA-256 of an input: of the bytes of its files (`files_of_input`), one after the other. Empty if none can be read.
+/// SHA-256 of an input: of the bytes of its files (`files_of_input`), one after the other; of NAME.aux.xml only of what
+/// changes the raster (`aux_that_counts`). Empty if none can be read.
 std::string sha256_of_file(const std::string& path);
 
 /// The record of an input that was read. Throws InputError if it cannot be read again: a run without its checksum could

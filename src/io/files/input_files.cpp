@@ -52,7 +52,7 @@ bool is_there(const std::string& file) {
 
 /// Statistics and overviews, which programs that show a raster write beside it.
 bool is_for_display(std::string_view file) {
-  constexpr std::array<std::string_view, 6> kEnds{".aux.xml", ".aux", ".ovr", ".rrd", ".stx", "/sta.adf"};
+  constexpr std::array<std::string_view, 5> kEnds{".aux", ".ovr", ".rrd", ".stx", "/sta.adf"};
   return std::ranges::any_of(kEnds, [&](std::string_view end) { return file.ends_with(end); });
 }
 
@@ -80,7 +80,7 @@ std::vector<std::string> with_companions(const std::string& file) {
         else if (is_there(stem + large))
           files.push_back(stem + large);
       }
-  for (const char* more : {".msk", "-wal"})  // a mask; what SQLite has not yet brought into the file
+  for (const char* more : {".msk", "-wal", ".aux.xml"})  // a mask; what SQLite keeps beside the file; scale, nodata
     if (is_there(file + more)) files.push_back(file + more);
   std::vector<std::string> listed = files_of_raster(file);
   std::erase_if(listed, is_for_display);

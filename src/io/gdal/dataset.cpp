@@ -1,6 +1,7 @@
 #include "dataset.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 #include <stdexcept>
@@ -30,6 +31,15 @@ void collect_of_threads(CPLErr level, CPLErrorNum, const char* message) {
   if (level < CE_Failure) return;
   const std::scoped_lock lock(thread_mutex);
   if (thread_errors.size() < 20) thread_errors.push_back(one_line(message));
+}
+
+/// Throws InputError if the metadata in a raster name the file of its overviews, which GDAL would open unchecked. Those
+/// of a VRT are checked (`check_vrt`).
+void refuse_named_overviews(GDALDataset& raster, const std::string& path) {
+  const char* const file = raster.GetMetadataItem("OVERVIEW_FILE", "OVERVIEWS");
+  if (file == nullptr || EQUAL(raster.GetDriverName(), "VRT")) return;
+  throw InputError(path + ": names '" + file + "' as OVERVIEW_FILE in its metadata, must name no other file: " +
+                   "gdal_translate " + shell_word(path) + " copy.tif makes a raster without it");
 }
 
 bool ends_with(const std::string& path, const std::string& end) {
@@ -107,6 +117,7 @@ Dataset open_dataset(const std::string& path, unsigned kinds) {
     throw InputError(path + ": cannot be opened as a " + kind + ": " + messages.take() + columns +
                      "; docs/security.md has the formats that are read");
   }
+  if ((kinds & GDAL_OF_RASTER) != 0) refuse_named_overviews(*dataset, path);
   return dataset;
 }
 
@@ -120,6 +131,7 @@ std::vector<std::string> files_of_raster(const std::string& path) {
   if (!looked_up(path).fault.empty()) return files;
   const Dataset raster(
       GDALDataset::Open(name_for_gdal(path).c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers, nullptr, nullptr));
+  if (raster) refuse_named_overviews(*raster, path);
   char** const names = raster ? raster->GetFileList() : nullptr;
   for (char** name = names; name != nullptr && *name != nullptr; ++name) files.emplace_back(*name);
   CSLDestroy(names);
@@ -131,6 +143,19 @@ Dataset memory_dataset(int columns, int rows, GDALDataType type) {
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("MEM");
   Dataset dataset(driver == nullptr ? nullptr : driver->Create("", columns, rows, 1, type, nullptr));
   if (!dataset) throw std::runtime_error("no memory for a raster: " + messages.take());
+  return dataset;
+}
+
+Dataset memory_dataset(int columns, int rows, std::uint8_t* bytes) {
+  GdalMessages messages;
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("MEM");
+  Dataset dataset(driver == nullptr ? nullptr : driver->Create("", columns, rows, 0, GDT_Byte, nullptr));
+  std::array<char, 32> address{};
+  CPLPrintPointer(address.data(), bytes, static_cast<int>(address.size()) - 1);
+  const std::string option = std::string("DATAPOINTER=") + address.data();
+  const char* const options[] = {option.c_str(), nullptr};
+  if (!dataset || dataset->AddBand(GDT_Byte, const_cast<char**>(options)) != CE_None)
+    throw std::runtime_error("no memory for a raster: " + messages.take());
   return dataset;
 }
 

@@ -2,6 +2,7 @@
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -51,6 +52,9 @@ std::vector<std::string> files_of_raster(const std::string& path);
 
 /// A dataset in memory, of zeros. Throws std::runtime_error if there is no memory for it.
 Dataset memory_dataset(int columns, int rows, GDALDataType type);
+
+/// The same over bytes of the caller, which must outlive it: rows x columns.
+Dataset memory_dataset(int columns, int rows, std::uint8_t* bytes);
 
 /// Coordinates on a map of the earth are below this [m]; with the number of a zone before them they have up to 8
 /// digits.

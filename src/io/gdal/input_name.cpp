@@ -183,7 +183,7 @@ std::size_t archive_in(const std::string& name) {
 void check_input(const std::string& name) {
   const InputName found = looked_up(name);
   if (!found.fault.empty()) throw InputError(name + ": " + found.fault);
-  if (!found.file.empty() && !names_part(name)) check_vrt(name, found.file);
+  if (!found.file.empty()) check_vrt(name, found.file);
 }
 
 std::string name_for_gdal(const std::string& name) {

@@ -110,10 +110,13 @@ void Layer::choose_layer() {
   std::vector<std::string> names;
   for (OGRLayer* layer : layers) names.emplace_back(layer->GetName());
   const NamedLayer wanted = named_layer(path_);
+  if (wanted.unread.starts_with("|layerid="))
+    throw InputError(path_ + ": '" + wanted.unread +
+                     "' is not read: must be a whole number from 0, or name the layer: " +
+                     shell_word("|layername=" + names.front()));
   if (!wanted.unread.empty())
     throw InputError(path_ + ": '" + wanted.unread +
-                     "' is not read (a filter, a kind of geometry or a wrong number): export the features to a file of "
-                     "their own");
+                     "' is not read (a filter or a kind of geometry): export the features to a file of their own");
   const std::string given = wanted.number >= 0 && wanted.number < dataset_->GetLayerCount()
                                 ? dataset_->GetLayer(wanted.number)->GetName()
                                 : wanted.layer;
@@ -344,7 +347,8 @@ CellMask mask_of(const OGRGeometry& geometry, const Grid& grid, bool touched) {
             north = clamped(box.MaxY / grid.cell_y + 2.0, 0, grid.rows);
   CellMask mask{west, north - 1, east - west, north - south, {}};
   if (mask.columns <= 0 || mask.rows <= 0) return {};
-  const Dataset window = memory_dataset(mask.columns, mask.rows, GDT_Byte);
+  mask.marks.resize(static_cast<std::size_t>(mask.columns) * static_cast<std::size_t>(mask.rows));
+  const Dataset window = memory_dataset(mask.columns, mask.rows, mask.marks.data());
   std::array<double, 6> place{west * grid.cell_x, grid.cell_x, 0.0, north * grid.cell_y, 0.0, -grid.cell_y};
   window->SetGeoTransform(place.data());
   GdalMessages messages;
@@ -352,12 +356,10 @@ CellMask mask_of(const OGRGeometry& geometry, const Grid& grid, bool touched) {
   double burn = 1.0;
   auto handle = OGRGeometry::ToHandle(const_cast<OGRGeometry*>(&geometry));
   const char* const options[] = {"ALL_TOUCHED=TRUE", nullptr};
-  mask.marks.resize(static_cast<std::size_t>(mask.columns) * static_cast<std::size_t>(mask.rows));
   if (GDALRasterizeGeometries(window.get(), 1, &band, 1, &handle, nullptr, nullptr, &burn,
-                              touched ? const_cast<char**>(options) : nullptr, nullptr, nullptr) != CE_None ||
-      window->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, mask.columns, mask.rows, mask.marks.data(), mask.columns,
-                                         mask.rows, GDT_Byte, 0, 0, nullptr) != CE_None)
+                              touched ? const_cast<char**>(options) : nullptr, nullptr, nullptr) != CE_None)
     throw std::runtime_error("rasterizing failed: " + messages.take());
+  window->FlushCache(false);
   return mask;
 }
 

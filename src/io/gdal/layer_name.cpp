@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <string_view>
+#include <system_error>
 
 namespace talus::io {
 namespace {
@@ -21,6 +22,14 @@ std::size_t next_part(std::string_view name, std::size_t from) {
   return std::string_view::npos;
 }
 
+/// A whole number from 0; -1: the text is none.
+int number_of_layer(std::string_view text) {
+  int number = -1;
+  const char* const last = text.data() + text.size();
+  const auto [end, fault] = std::from_chars(text.data(), last, number);
+  return fault == std::errc() && end == last ? std::max(number, -1) : -1;
+}
+
 }  // namespace
 
 NamedLayer named_layer(const std::string& name) {
@@ -32,10 +41,8 @@ NamedLayer named_layer(const std::string& name) {
     const std::size_t equals = part.find('=');
     const std::string key = part.substr(0, equals), value = part.substr(equals + 1);
     if (key == "layername") found.layer = value;
-    const char* const last = value.data() + value.size();
-    const bool number =
-        key == "layerid" && std::from_chars(value.data(), last, found.number).ptr == last && !value.empty();
-    if (key != "layername" && !number) found.unread = "|" + part;
+    if (key == "layerid") found.number = number_of_layer(value);
+    if (key != "layername" && (key != "layerid" || found.number < 0)) found.unread = "|" + part;
     at = end;
   }
   return found;

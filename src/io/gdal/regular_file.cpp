@@ -1,13 +1,17 @@
 #include "regular_file.hpp"
 
+#include <cpl_vsi.h>
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
+#include <memory>
 #include <system_error>
 
+#include "dataset.hpp"
 #include "talus/base/error.hpp"
 
 namespace talus::io {
@@ -83,6 +87,21 @@ std::string read_file(const std::string& path, const std::string& name, const st
     done += static_cast<std::size_t>(count);
   }
   text.resize(done);
+  return text;
+}
+
+std::string read_start(const std::string& name, std::size_t most) {
+  const GdalMessages quiet;
+  const std::unique_ptr<VSILFILE, decltype(&VSIFCloseL)> file(VSIFOpenL(name.c_str(), "rb"), VSIFCloseL);
+  std::string text;
+  constexpr std::size_t kStep = 1U << 16U;
+  while (file && text.size() <= most) {
+    const std::size_t before = text.size(), wanted = std::min(kStep, most + 1 - before);
+    text.resize(before + wanted);
+    const std::size_t count = VSIFReadL(text.data() + before, 1, wanted, file.get());
+    text.resize(before + count);
+    if (count == 0) break;
+  }
   return text;
 }
 

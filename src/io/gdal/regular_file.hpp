@@ -17,4 +17,8 @@ std::optional<std::string> fault_of_file(const std::string& path);
 /// Throws InputError if it cannot be read, is no regular file or has more than `most` bytes.
 std::string read_file(const std::string& path, const std::string& name, const std::string& what, std::size_t most);
 
+/// The bytes of one of GDAL's files (/vsizip/a.zip/dem.vrt); at most `most`, and one more if there are more. Empty if
+/// there is none.
+std::string read_start(const std::string& name, std::size_t most);
+
 }  // namespace talus::io

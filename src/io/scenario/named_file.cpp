@@ -32,9 +32,9 @@ std::string absolute_path(const std::string& given, const std::filesystem::path&
   return same_layer_in(std::filesystem::absolute(path).lexically_normal().string(), given);
 }
 
-std::string fault_of_encoding(const std::string& name) {
+std::string fault_of_encoding(const std::string& name, const std::string& what, const std::string& way_out) {
   if (CPLIsUTF8(name.c_str(), static_cast<int>(name.size())) != 0) return {};
-  return "its path is not UTF-8, which the scenario of a run cannot hold (" + name + "): rename the file or the folder";
+  return what + " is not UTF-8, which the scenario of a run cannot hold (" + name + "): " + way_out;
 }
 
 void check_encoding(const std::vector<const NamedFile*>& files, std::vector<std::string>& faults) {

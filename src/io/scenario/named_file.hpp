@@ -16,8 +16,9 @@ struct NamedFile {
 /// stay as they are, for GDAL.
 std::string absolute_path(const std::string& given, const std::filesystem::path& base);
 
-/// Why a scenario cannot hold a name, which is text in UTF-8; empty: it can.
-std::string fault_of_encoding(const std::string& name);
+/// Why a scenario, which is text in UTF-8, cannot hold a name; empty: it can.
+std::string fault_of_encoding(const std::string& name, const std::string& what = "its path",
+                              const std::string& way_out = "rename the file or the folder");
 
 /// Adds a fault for each file whose path the complete scenario of a run could not hold (`fault_of_encoding`).
 void check_encoding(const std::vector<const NamedFile*>& files, std::vector<std::string>& faults);

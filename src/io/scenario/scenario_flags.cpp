@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "named_file.hpp"
 #include "scenario_keys.hpp"
 #include "surface_key.hpp"
 #include "talus/base/error.hpp"
@@ -39,6 +40,12 @@ void lay_file(ScenarioSpec& spec, const std::string& flag, const std::optional<s
   spec.origins[key] = "flag " + flag;
 }
 
+/// Why the scenario of a run cannot hold the name of a field; empty: it can.
+std::string fault_of_field_name(const std::string& field) {
+  return fault_of_encoding(field, "the name of the field",
+                           "save the file in UTF-8 (or rename the field), and give the name in UTF-8");
+}
+
 /// --field NAME=COLUMN, which overrides the same name of [sources.fields].
 void lay_fields(ScenarioSpec& spec, const std::vector<std::string>& flags, std::vector<std::string>& faults) {
   FieldMap given;
@@ -52,6 +59,8 @@ void lay_fields(ScenarioSpec& spec, const std::vector<std::string>& flags, std::
                        joined(names) + ")");
     else if (std::ranges::find(names, name) == names.end())
       faults.push_back(where + ": unknown name '" + name + "'" + known_names(name, names));
+    else if (const std::string fault = fault_of_field_name(flag.substr(equals + 1)); !fault.empty())
+      faults.push_back(where + ": " + fault);
     else if (!given.insert({name, {flag.substr(equals + 1), where}}).second)
       faults.push_back(where + ": " + name + " is given twice, must be once");
   }
@@ -138,6 +147,8 @@ void lay_flags(ScenarioSpec& spec, const RunFlags& flags, std::vector<std::strin
     if (spec.ground.path.empty())
       faults.push_back("flag --zone-field = '" + *flags.zone_field +
                        "': must come with --zones, or a scenario that has zones");
+    if (const std::string fault = fault_of_field_name(*flags.zone_field); !fault.empty())
+      faults.push_back("flag --zone-field = '" + *flags.zone_field + "': " + fault);
     spec.ground_field = *flags.zone_field;
     spec.origins["ground.field"] = "flag --zone-field";
   }
