@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "raster_parts.hpp"
@@ -14,8 +15,9 @@ using Kind = Map::Kind;
 using Figures = std::vector<float>;
 
 void push(Figures& figures, const Bounded& bounded) {
+  constexpr double kMost = std::numeric_limits<float>::max();  // more years than that are as good as never
   for (const double value : {bounded.value, bounded.low, bounded.high})
-    figures.push_back(static_cast<float>(std::isfinite(value) ? value : kNotGiven));
+    figures.push_back(static_cast<float>(std::abs(value) <= kMost ? value : kNotGiven));
 }
 
 /// The class; the class at the lower and at the upper bounds; 1 if these two differ: this many trajectories do not

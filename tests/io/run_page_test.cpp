@@ -105,6 +105,29 @@ TEST_F(Tables, TheObjectsHitMostOftenOfMany) {  // object i of 12345 is hit (791
     EXPECT_DOUBLE_EQ(part.objects[static_cast<std::size_t>(i)].frequency, 0.12344 - 1e-5 * i);
 }
 
+TEST_F(Tables, ObjectsThatWereNotAssessedAreNotCalledSafe) {  // they were hit 0 times a year
+  std::string table = "object,frequency,frequency_lower,frequency_upper,return_period_30,sources\n";
+  for (int i = 0; i < 102; ++i) table += "gap " + std::to_string(i) + ",,,,,\n";
+  write_text("objects.csv", table + "mill,0.5,0.4,0.6,4,cliff\nbarn,0,0,0.1,,\n");
+  const ObjectsPart part = read_objects_part(path(""));
+  EXPECT_EQ(part.not_assessed.size(), 100U);
+  EXPECT_EQ(part.thresholds, std::vector<std::string>{"30"});
+  ASSERT_EQ(part.objects.size(), 2U);
+  const std::string html = objects_html(part, false).text(),
+                    why = "</td><td colspan='4'>not assessed: the DEM has no height there</td></tr>\n";
+  EXPECT_THAT(html, HasSubstr("<tr><td>gap 99" + why + "<tr><td>2 more objects" + why + "<tr><td>mill</td>"));
+  EXPECT_THAT(html, HasSubstr("<tr><td>barn</td><td class='n'>0 [0, 0.1]</td><td class='n'>no event</td>"));
+  EXPECT_THAT(html, Not(HasSubstr("Never seen")));
+}
+
+TEST_F(Tables, ObjectsThatAreHitOnceInManyYears) {  // refused above 1e15 years
+  write_text(
+      "objects.csv",
+      "object,frequency,frequency_lower,frequency_upper,return_period_30,sources\nmill,1e-100,0,1e-99,1e200,x\n");
+  EXPECT_THAT(objects_html(read_objects_part(path("")), false).text(),
+              HasSubstr("<td class='n'>1e+100</td><td class='n'>1e+200</td>"));
+}
+
 TEST_F(Tables, LargerThanAPageReadsAreLeftOutAndSaid) {
   write_text("objects.csv", "object,frequency,frequency_lower,frequency_upper,sources\nmill,1,0,2,cliff\n");
   write_text("objects_curves.csv", "object,energy_kj,frequency\nmill,10,1\n");
@@ -192,7 +215,7 @@ TEST(Escaping, EveryFieldOfEverySection) {
   ScreensPart screens{{{h, h, h, 1, 1, 1, 1, 1, 1, 2.0, std::vector<double>(30, 1.0)}}, h};
   BarrierPart barrier{h,           h,           5.0, 3.0, {{h, h, h, 1.0}, {"h_i", "m", h, 2.0}, {"V", "m3", h, 1.0}},
                       {{h, h, h}}, {{0, 9, 1}}, {h}};
-  ObjectsPart objects{{h}, {{h, h, 0.1, 0.1, 0.2, {h}, {{1.0, 0.1}, {2.0, 0.05}}}}, 0, h};
+  ObjectsPart objects{{h}, {{h, h, 0.1, 0.1, 0.2, {h}, {{1.0, 0.1}, {2.0, 0.05}}}}, 0, h, {h}};
   const std::optional<FitPart> fit = FitPart{h, h, "", {{h, h, 1.0, 0.5, 2.0, false}}, {{h, 1.0, 0.5}}, h, {h}};
   for (const Markup& html : {screens_html(screens), barriers_html({barrier}), objects_html(objects, false),
                              fit_html(fit), checks_html({{Check::Mark::Act, h, h, h}})})

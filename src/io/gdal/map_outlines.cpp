@@ -40,12 +40,15 @@ void add(const OGRGeometry& geometry, const std::string& name, int depth, Outlin
 
 }  // namespace
 
-Outlines read_outlines(const std::string& path, const char* layer_name, const char* field, std::size_t most) {
+Outlines read_outlines(const std::string& path, const char* layer_name, std::initializer_list<const char*> fields,
+                       std::size_t most) {
   const Dataset dataset = open_dataset(path, GDAL_OF_VECTOR);
   const GdalMessages messages;
   OGRLayer* const layer = dataset->GetLayerByName(layer_name);
   if (layer == nullptr) throw InputError(path + ": has no layer " + layer_name + ", must be as talus has written it");
-  const int index = layer->GetLayerDefn()->GetFieldIndex(field);
+  int index = -1;
+  for (const char* const field : fields)
+    if (index < 0) index = layer->GetLayerDefn()->GetFieldIndex(field);
   Outlines out;
   std::size_t places = 0;
   for (;;) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -13,12 +14,13 @@ struct Outline {
   bool closed = false;
 };
 
-/// The geometries of a layer that Talus has written, by the field `field`. At most `most` places in all: `cut` says
-/// whether there are more. Throws InputError if the file cannot be read.
+/// The geometries of a layer that Talus has written, named by the first of `fields` that is there, else by number. At
+/// most `most` places in all: `cut` says whether there are more. Throws InputError if the file cannot be read.
 struct Outlines {
   std::vector<Outline> list;
   bool cut = false;
 };
-Outlines read_outlines(const std::string& path, const char* layer, const char* field, std::size_t most);
+Outlines read_outlines(const std::string& path, const char* layer, std::initializer_list<const char*> fields,
+                       std::size_t most);
 
 }  // namespace talus::io

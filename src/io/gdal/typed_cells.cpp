@@ -5,12 +5,22 @@
 #include <string>
 
 #include "csv_table.hpp"
+#include "talus/base/text.hpp"
 
 namespace talus::io {
 namespace {
 
-/// What the cells of a column hold: numbers, if each reads back as it stands ("0123" is a name).
+/// Whether a text is its number as people write it ("-12.50"), or as `text_of` does ("1e-05").
+bool is_spelt_as_number(const std::string& text, double number) {
+  const std::size_t first = text[0] == '-' ? 1 : 0;
+  if (text.find_first_not_of("0123456789.", first) != std::string::npos) return text == text_of(number);
+  return text[first] != '0' || text.size() == first + 1 || text[first + 1] == '.';
+}
+
+/// What the cells of a column hold, as `with_numbers` says.
 OGRFieldType type_of_cells(const std::vector<Feature>& features, int field) {
+  const char* const column = features.front()->GetFieldDefnRef(field)->GetNameRef();
+  const bool is_name = EQUAL(column, "name") || EQUAL(column, "id");
   OGRFieldType type = OFTString;
   for (const Feature& feature : features) {
     const std::string text = trimmed(feature->GetFieldAsString(field));
@@ -19,6 +29,7 @@ OGRFieldType type_of_cells(const std::vector<Feature>& features, int field) {
     if (!number || !std::isfinite(*number)) return OFTString;
     const bool digits = text.find_first_not_of("0123456789", text[0] == '-' ? 1 : 0) == std::string::npos;
     if (digits && std::to_string(std::strtoll(text.c_str(), nullptr, 10)) != text) return OFTString;
+    if (!digits && (is_name || !is_spelt_as_number(text, *number))) return OFTString;
     if (!digits)
       type = OFTReal;
     else if (type == OFTString)

@@ -186,7 +186,7 @@ MapSheet read_sheet(const fs::path& folder, const RunFacts& run) {
   constexpr std::size_t kMostPlaces = 50'000;
   MapSheet sheet;
   if (const fs::path objects = folder / "objects.gpkg"; fs::exists(objects))
-    sheet.objects = read_outlines(objects.string(), "objects", "name", kMostPlaces);
+    sheet.objects = read_outlines(objects.string(), "objects", {"object", "name"}, kMostPlaces);  // earlier runs: name
   if (sheet.objects.cut) sheet.notes.push_back("objects.gpkg: has more objects than are drawn");
   sheet.window = window_of(folder, run.grid, sheet.objects);
   const MapWindow& window = sheet.window;

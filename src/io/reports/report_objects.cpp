@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "io/gdal/csv_table.hpp"
 #include "report_facts.hpp"
@@ -16,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Bounds kAny{"value", "1", "of an object", -1e15, 1e15};
+constexpr Bounds kAny{"value", "1", "of an object", -1e300, 1e300};
 constexpr std::size_t kMostObjects = 100, kMostCurves = 8, kMostThresholds = 6;
 constexpr const char* kYears = "return_period_";
 // Of ColorBrewer's Dark2, safe for the colour-blind beside the dashes.
@@ -112,6 +113,11 @@ Markup curves_drawing(const ObjectsPart& part) {
   return svg.drawing({{"width", 720}, {"height", 298}, {"viewBox", "0 0 720 298"}});
 }
 
+Markup not_assessed_row(const std::string& name, const ObjectsPart& part) {
+  return "<tr><td>"_html + name + "</td><td colspan='" + std::to_string(part.thresholds.size() + 3) +
+         "'>not assessed: the DEM has no height there</td></tr>\n";
+}
+
 Markup object_row(const ObjectsPart::Object& object) {
   Markup row = "<tr><td>"_html + object.name + "</td><td class='n'>" + with_digits(object.frequency, 3) + " [" +
                with_digits(object.low, 3) + ", " + with_digits(object.high, 3) + "]</td><td class='n'>" +
@@ -121,20 +127,23 @@ Markup object_row(const ObjectsPart::Object& object) {
   return row + "<td>" + shortened(object.sources, 300) + "</td></tr>\n";
 }
 
-ObjectsPart::Object object_of(const CsvTable& table, const CsvTable::Row& row, const ObjectsPart& part) {
-  const auto number = [&](const char* column) { return table.number(row, column, kAny).value_or(0.0); };
-  ObjectsPart::Object object{table.text(row, "object"),
-                             table.text(row, "sources"),
-                             number("frequency"),
-                             number("frequency_lower"),
-                             number("frequency_upper"),
-                             {},
-                             {}};
+void add_object(const CsvTable& table, const CsvTable::Row& row, ObjectsPart& part) {
+  const std::string& name = table.text(row, "object");
+  const auto number = [&](const std::string& column) { return table.number(row, column, kAny); };
+  const auto frequency = number("frequency"), low = number("frequency_lower"), high = number("frequency_upper");
+  if (!frequency || !low || !high) {
+    if (part.not_assessed.size() < kMostObjects)
+      part.not_assessed.push_back(name);
+    else
+      ++part.not_assessed_left_out;
+    return;
+  }
+  ObjectsPart::Object object{name, table.text(row, "sources"), *frequency, *low, *high, {}, {}};
   for (const std::string& energy : part.thresholds) {
-    const auto years = table.number(row, kYears + energy, kAny);
+    const auto years = number(kYears + energy);
     object.years.push_back(years ? readable(*years) : "");
   }
-  return object;
+  part.objects.push_back(std::move(object));
 }
 
 /// Leaves the objects that are hit most often, those first; of equal ones the first of the table.
@@ -156,12 +165,13 @@ ObjectsPart read_objects_part(const fs::path& folder) {
     part.note = fault + ": its objects are not shown.";
     return part;
   }
-  const auto add_object = [&part](const CsvTable& table, const CsvTable::Row& row) {
-    if (part.objects.empty()) read_thresholds(table, part);  // at the first row
-    part.objects.push_back(object_of(table, row, part));
+  bool first = true;
+  const auto add = [&part, &first](const CsvTable& table, const CsvTable::Row& row) {
+    if (std::exchange(first, false)) read_thresholds(table, part);
+    add_object(table, row, part);
     if (part.objects.size() == 10 * kMostObjects) keep_most_hit(part);  // a table of any length needs little memory
   };
-  CsvTable(file.string(), {}, {"object", "frequency", "frequency_lower", "frequency_upper", "sources"}, add_object);
+  CsvTable(file.string(), {}, {"object", "frequency", "frequency_lower", "frequency_upper", "sources"}, add);
   keep_most_hit(part);
   read_curves(folder / "objects_curves.csv", part);
   return part;
@@ -169,15 +179,18 @@ ObjectsPart read_objects_part(const fs::path& folder) {
 
 Markup objects_html(const ObjectsPart& part, bool pieces) {
   const Markup note = part.note.empty() ? Markup() : "<p class='note'>"_html + part.note + "</p>\n";
-  if (part.objects.empty()) return part.note.empty() ? Markup() : "<h2>Objects</h2>\n"_html + note;
+  if (part.objects.empty() && part.not_assessed.empty())
+    return part.note.empty() ? Markup() : "<h2>Objects</h2>\n"_html + note;
   Markup html =
-      "<h2>Objects</h2>\n<p>How often each object is hit, with 95 % bounds of the number of blocks. \"Never seen\": no "
-      "block of "
-      "this run did it; the upper bound says how often it may happen all the same.</p>\n"_html;
+      "<h2>Objects</h2>\n<p>How often each object is hit, with 95 % bounds of the number of blocks. \"No event\": no "
+      "block of this run did it; the upper bound says how often it may happen all the same.</p>\n"_html;
   if (pieces) html += "<p>Blocks broke, and "_html + kHitsOfPieces + ".</p>\n";
   html += "<div class='wide'><table><tr><th>object</th><th>hits per year [95 %]</th><th>once in [years]</th>"_html;
   for (const std::string& energy : part.thresholds) html += "<th>above "_html + energy + " kJ once in [years]</th>";
   html += "<th>from</th></tr>\n";
+  for (const std::string& name : part.not_assessed) html += not_assessed_row(name, part);
+  if (part.not_assessed_left_out > 0)
+    html += not_assessed_row(std::to_string(part.not_assessed_left_out) + " more objects", part);
   for (const ObjectsPart::Object& object : part.objects) html += object_row(object);
   html += "</table></div>\n";
   if (part.left_out > 0)

@@ -12,16 +12,19 @@ struct ObjectsPart {
   struct Point {
     double energy = 0.0, frequency = 0.0;  ///< [kJ], [1/year]
   };
+  /// An object that was assessed.
   struct Object {
     std::string name, sources;
     double frequency = 0.0, low = 0.0, high = 0.0;  ///< [1/year]
-    std::vector<std::string> years;                 ///< return period by threshold [years]; empty: no event of this run
+    std::vector<std::string> years;  ///< return period by threshold [years]; an empty one: no event of this run
     std::vector<Point> curve;
   };
   std::vector<std::string> thresholds;  ///< [kJ]
   std::vector<Object> objects;          ///< the most often hit first
   std::size_t left_out = 0;
   std::string note;
+  std::vector<std::string> not_assessed;  ///< names of objects without figures: the DEM has no height where they lie
+  std::size_t not_assessed_left_out = 0;
 };
 
 /// Throws InputError if a table is there and cannot be understood. No objects without tables.

@@ -76,15 +76,15 @@ std::unique_ptr<OGRGeometry> geometry_of(const Parts& parts, double west, double
 /// Figures of an object, with the names of their columns. NaN and infinity are written as NULL or an empty field.
 using Figures = std::vector<std::pair<std::string, double>>;
 
-/// @param known  false: the figures of the object are not known
+/// @param known  false: the figures of the object are not known, although blocks may touch its rim
 Figures figures_of(const HazardRules& rules, const ObjectHits& hits, bool known, const std::vector<double>& years) {
   const HazardCurve curve(rules, hits.largest), entry(rules, hits.entry);
   const std::vector<double>& thresholds = rules.bins.thresholds();
-  Figures figures{{"trajectories", known ? static_cast<double>(hits.trajectories) : kNotGiven}};
-  const auto add = [&figures, known](const std::string& name, const Bounded& b) {
-    figures.emplace_back(name, known ? b.value : kNotGiven);
-    figures.emplace_back(name + "_lower", known ? b.low : kNotGiven);
-    figures.emplace_back(name + "_upper", known ? b.high : kNotGiven);
+  Figures figures{{"trajectories", static_cast<double>(hits.trajectories)}};
+  const auto add = [&figures](const std::string& name, const Bounded& b) {
+    figures.emplace_back(name, b.value);
+    figures.emplace_back(name + "_lower", b.low);
+    figures.emplace_back(name + "_upper", b.high);
   };
   add("frequency", curve.passage());
   figures.emplace_back("return_period", return_period(curve.passage()).value);
@@ -94,6 +94,8 @@ Figures figures_of(const HazardRules& rules, const ObjectHits& hits, bool known,
     add("entry_" + text_of(thresholds[i]), entry.exceedance(i));
   }
   for (const double t : years) add("energy_T" + text_of(t), curve.energy_once_in(t));
+  if (!known)
+    for (auto& [name, value] : figures) value = kNotGiven;
   return figures;
 }
 
@@ -258,7 +260,7 @@ namespace {
 
 /// Attributes of the input that are copied: those that are not named as a column of the results.
 std::vector<int> copied_attributes(OGRFeature& model, const Figures& figures) {
-  std::vector<std::string> own{"sources", "fid", "geom"};
+  std::vector<std::string> own{"object", "sources", "fid", "geom"};
   for (const auto& [name, value] : figures) own.push_back(name);
   std::vector<int> copied;
   for (int i = 0; i < model.GetFieldCount(); ++i) {
@@ -276,33 +278,56 @@ std::string never_hit_text(const ObjectHits& hits) {
          " of sources or block classes with a frequency of 0";
 }
 
-/// The layer `objects`: attributes of the input, figures, sources.
+/// The value of an attribute as text; that of a list in JSON; empty if there is none.
+std::string attribute_text(const OGRFeature& feature, int field) {
+  if (feature.IsFieldSetAndNotNull(field) == 0) return "";
+  const std::unique_ptr<char, void (*)(void*)> list(feature.GetFieldAsSerializedJSon(field), VSIFree);
+  return list ? list.get() : feature.GetFieldAsString(field);
+}
+
+/// The type of the column of an attribute. GeoPackages have no lists: these become text.
+OGRFieldType column_type(OGRFieldType type) {
+  const bool is_list =
+      type == OFTStringList || type == OFTRealList || type == OFTIntegerList || type == OFTInteger64List;
+  return is_list ? OFTString : type;
+}
+
+/// What the layer and the table hold of an object.
+struct ObjectRow {
+  const std::string& name;
+  OGRFeature& from;  // of the input
+  const Figures& figures;
+  const std::string& sources;
+};
+
+/// The layer `objects`: name of the object, attributes of the input, figures, sources.
 class ObjectsWriter {
  public:
   ObjectsWriter(const std::filesystem::path& file, const LoadedScenario& loaded, OGRFeature& model,
                 const Figures& figures)
       : file_(file, loaded.geo), attributes_(copied_attributes(model, figures)) {
-    std::vector<GeoPackage::Column> columns;
+    std::vector<GeoPackage::Column> columns{{"object", OFTString}};
     for (const int i : attributes_)
-      columns.push_back({model.GetFieldDefnRef(i)->GetNameRef(), model.GetFieldDefnRef(i)->GetType()});
+      columns.push_back({model.GetFieldDefnRef(i)->GetNameRef(), column_type(model.GetFieldDefnRef(i)->GetType())});
     for (const auto& [name, value] : figures) columns.push_back({name.c_str(), OFTReal});
     columns.push_back({"sources", OFTString});
     layer_ = file_.add_layer("objects", wkbUnknown, columns);
   }
 
-  void write(OGRFeature& from, const OGRGeometry& geometry, const Figures& figures, const std::string& sources) {
+  void write(const ObjectRow& object, const OGRGeometry& geometry) {
     const GdalMessages messages;
     const Feature row(OGRFeature::CreateFeature(layer_->GetLayerDefn()));
-    int next = 0;
+    row->SetField(0, object.name.c_str());
+    int next = 1;
     for (const int i : attributes_) {
-      if (from.IsFieldSetAndNotNull(i) != 0) row->SetField(next, from.GetRawFieldRef(i));
+      if (object.from.IsFieldSetAndNotNull(i) != 0) copy(object.from, i, *row, next);
       ++next;
     }
-    for (const auto& [name, value] : figures) {
+    for (const auto& [name, value] : object.figures) {
       if (std::isfinite(value)) row->SetField(next, value);
       ++next;
     }
-    row->SetField(next, sources.c_str());
+    row->SetField(next, object.sources.c_str());
     row->SetGeometry(&geometry);
     file_.append(layer_, *row);
   }
@@ -313,28 +338,28 @@ class ObjectsWriter {
   }
 
  private:
+  static void copy(const OGRFeature& from, int field, OGRFeature& to, int column) {
+    if (to.GetFieldDefnRef(column)->GetType() == OFTString)
+      to.SetField(column, attribute_text(from, field).c_str());
+    else
+      to.SetField(column, from.GetRawFieldRef(field));
+  }
+
   GeoPackage file_;
   std::vector<int> attributes_;
   OGRLayer* layer_ = nullptr;
 };
 
-/// Whether a name is that of the first column of objects.csv.
-bool is_object_column(const std::string& name) {
-  return EQUAL(name.c_str(), "object");
-}
-
 /// The table objects.csv: the layer `objects` without its geometry.
 class ObjectsTable {
  public:
-  void add(const std::string& object, OGRFeature& from, const Figures& figures, const std::string& sources) {
-    std::vector<int> attributes = copied_attributes(from, figures);
-    std::erase_if(attributes, [&](int i) { return is_object_column(from.GetFieldDefnRef(i)->GetNameRef()); });
-    if (text_.empty()) head(from, attributes, figures);
-    text_ += object;
-    for (const int i : attributes)
-      text_ += ',' + csv_field(from.IsFieldSetAndNotNull(i) != 0 ? std::string(from.GetFieldAsString(i)) : "");
-    for (const auto& [name, value] : figures) text_ += ',' + csv_field(value);
-    text_ += ',' + csv_field(sources) + '\n';
+  void add(const ObjectRow& object) {
+    const std::vector<int> attributes = copied_attributes(object.from, object.figures);
+    if (text_.empty()) head(object.from, attributes, object.figures);
+    text_ += csv_field(object.name);
+    for (const int i : attributes) text_ += ',' + csv_field(attribute_text(object.from, i));
+    for (const auto& [name, value] : object.figures) text_ += ',' + csv_field(value);
+    text_ += ',' + csv_field(object.sources) + '\n';
   }
   const std::string& text() const { return text_; }
 
@@ -382,10 +407,7 @@ std::string ObjectLayer::not_copied_text(const HazardRules& rules, const std::ve
   std::vector<std::string> left_out;
   for (int i = 0; i < model.GetFieldCount(); ++i) {
     const std::string name = model.GetFieldDefnRef(i)->GetNameRef();
-    if (std::ranges::count(copied, i) == 0)
-      left_out.push_back(name);
-    else if (is_object_column(name))
-      left_out.push_back(name + " (in objects.csv)");
+    if (std::ranges::count(copied, i) == 0) left_out.push_back(name);
   }
   if (left_out.empty()) return {};
   return state_->file + ": fields named as columns of the results are not copied into objects.gpkg and objects.csv: " +
@@ -441,8 +463,9 @@ void ObjectLayer::write(const std::filesystem::path& folder, const LoadedScenari
     }
     if (!writer)
       writer = std::make_unique<ObjectsWriter>(folder / "objects.gpkg", loaded, *state_->features[i], figures);
-    writer->write(*state_->features[i], *geometry_of(state_->parts[i], grid.west, grid.south), figures, sources);
-    table.add(object, *state_->features[i], figures, sources);
+    const ObjectRow row{state_->names[i], *state_->features[i], figures, sources};
+    writer->write(row, *geometry_of(state_->parts[i], grid.west, grid.south));
+    table.add(row);
     if (state_->known(i)) curves += curve_rows(object, curve, rules.bins);
   }
   const bool lines = std::ranges::all_of(state_->parts, [](const Parts& parts) { return parts.polygons.empty(); });
