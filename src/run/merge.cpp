@@ -6,6 +6,7 @@
 
 #include "results.hpp"
 #include "talus/base/error.hpp"
+#include "talus/base/text.hpp"
 #include "talus/io/scenario/plan_checksum.hpp"
 #include "talus/run/memory_limit.hpp"
 #include "talus/run/write_maps.hpp"
@@ -33,6 +34,12 @@ std::string name_of(const Part& part) {
   return std::to_string(part.number) + "/" + std::to_string(part.of);
 }
 
+/// "3 rounds (--above 0.01)".
+std::string asked_text(const Rounds& asked) {
+  return std::to_string(asked.at_most()) + (asked.at_most() == 1 ? " round" : " rounds") + " (--above " +
+         text_of(asked.above) + ")";
+}
+
 /// The parts in their order. Throws InputError unless every part of one division is there once, with equal rounds.
 std::vector<Checkpoint> opened(const std::vector<std::string>& folders, const LoadedScenario& loaded) {
   std::vector<Checkpoint> checkpoints;
@@ -51,10 +58,9 @@ std::vector<Checkpoint> opened(const std::vector<std::string>& folders, const Lo
     if (!checkpoints[i].between_rounds() || checkpoints[i].rounds() != first.rounds())
       throw InputError(name + "has " + std::to_string(checkpoints[i].rounds()) + " rounds, another part " +
                        std::to_string(first.rounds()) + "; run all parts with the same --rounds");
-    if (checkpoints[i].asked().at_most() != first.asked().at_most())  // their weights have other units
-      throw InputError(name + "was to have " + std::to_string(checkpoints[i].asked().at_most()) +
-                       " rounds, another part " + std::to_string(first.asked().at_most()) +
-                       "; run all parts with the same --rounds, to their end");
+    if (checkpoints[i].asked() != first.asked())  // with other rounds their weights have other units
+      throw InputError(name + "was to have " + asked_text(checkpoints[i].asked()) + ", another part " +
+                       asked_text(first.asked()) + "; run all parts with the same --rounds and --above, to their end");
   }
   if (checkpoints.size() != first.part().of) {
     std::uint32_t missing = 1;
@@ -108,6 +114,7 @@ Outcome merge(const MergeRequest& request, Observer& observer) {
   if (rounds > 1) {
     record.rounds = {rounds, {}, {}};
     record.rounds.asked.count = rounds;
+    record.rounds.asked.above = checkpoints.front().asked().above;
     record.rounds.reached = accuracy_of(tally, record.totals.released, record.rounds.asked.above);
   }
   tally.set_rounds(rounds);

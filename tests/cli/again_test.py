@@ -77,8 +77,14 @@ class Again(RunCase):
         os.mkdir(self.path("rounds/unfinished"))  # killed before it could remove that
         self.run_scenario("rounds", "--rounds", "3", "--resume")
         self.assertFalse(os.path.exists(self.path("rounds/unfinished")))
-        self.fails(2, "holds a finished run that is not this one",
-                   arguments=["run", self.path("s.toml"), "-o", self.path("rounds"), "--resume", "--rounds", "2"])
+        until = ["--until-error", "9", "--most-rounds", "2"]
+        self.run_scenario("until", *until)
+        self.run_scenario("until", *until, "--resume")
+        for out, *more in (["rounds", "--rounds", "2"], ["rounds", "--rounds", "3", "--above", "0.2"],
+                           ["until", "--until-error", "8", "--most-rounds", "2"], ["until", "--until-error", "9"],
+                           ["until", *until, "--above", "0.2"], ["until"]):
+            self.fails(2, "holds a finished run that is not this one",
+                       arguments=["run", self.path("s.toml"), "-o", self.path(out), "--resume", *more])
 
     def test_the_scenario_is_edited_while_its_rounds_run(self):
         self.run_scenario("whole", "--rounds", "40")

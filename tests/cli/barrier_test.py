@@ -136,11 +136,27 @@ class Design(Case):
 
     def test_sizes_of_the_run_are_said_again(self):
         run = self.record()
-        self.assertNotIn("block sizes", self.run_well("barrier", self.path("out"), "--screen", "road").stderr)
+        before = self.design()[1]["notes"]
         self.write("out/run.json", json.dumps(run | {"warnings": ["another", "block sizes: diameters are 0.3 m"]}))
-        done = self.run_well("barrier", self.path("out"), "--screen", "road")
-        self.assertEqual(done.stderr, "talus: warning: block sizes: diameters are 0.3 m\n")
+        _, report, text = self.design()
+        self.assertEqual(report["notes"], ["block sizes: diameters are 0.3 m", *before])
+        self.assertIn("\nnote: block sizes: diameters are 0.3 m\n", text)
         self.assertEqual(self.run_well("barrier", self.path("out"), "--screen", "road", "-q").stderr, "")
+
+    def test_blocks_that_left_before_the_line_are_said(self):
+        """They were missing without a word. Of 1000 blocks 101 cross the road: at most 899 can have left before it."""
+        run = self.record()
+        for left, gaps, more, said in ((540, 530, {}, "54 % of the blocks (540 of 1000) left the DEM or entered a gap in it and"),
+                                       (1000, 0, {}, "89.9 % of the blocks (899 of 1000) left the DEM and"),
+                                       (11, 0, {}, "1.1 % of the blocks (11 of 1000) left the DEM and"), (10, 0, {}, None),
+                                       (4, 0, {"left_with_pieces": 30, "pieces": 5}, "3 % of the blocks (30 of 1000) left the DEM and")):
+            with self.subTest(left=left):
+                self.write("out/run.json", json.dumps(run | {"ends": {"left": left}, "left_into_gaps": gaps} | more))
+                notes = [note for note in self.design()[1]["notes"] if "% of the blocks (" in note]
+                self.assertEqual([note.split(" may not have crossed this line before")[0] for note in notes], [said] if said else [])
+        self.write("out/run.json", json.dumps(run | {"ends": {"left": 540}}))
+        self.refused("no block crosses screen 'fe/nce': this does not say that a barrier is not needed there: 54 % of the blocks",
+                     "(unsafe)", arguments=["--screen", "fe/nce"])
 
     def test_a_line_where_blocks_do_not_get(self):
         """A part where the DEM has no height is not known to be safe."""
@@ -404,6 +420,17 @@ class Weights(Case):
                    arguments=["barrier", self.path("out"), "--screen", "road"])
         self.report("--unweighted")
 
+    def test_events_that_are_lost_are_said(self):
+        """0.9 of 1 event per year are of a cliff off the DEM."""
+        write_features(self.path("sources.gpkg"), "sources", [(box(60, 230, 20, 10), ["on", 0.1]), (box(-500, 230, 20, 10), ["off", 0.9])],
+                       [("name", ogr.OFTString), ("frequency", ogr.OFTReal)])
+        self.run_well("run", self.scenario, "-o", self.path("out"))
+        words = "features wholly off the DEM, which release nothing: FID 2 (off), and its 0.9 events per year are lost"
+        own = "by the run's own frequencies: "
+        for more, other in (((), False), (("--frequency", self.write("w.toml", "[features]\non = 2\n")), True)):
+            (note,) = [note for note in self.report(*more)["notes"] if words in note]
+            self.assertEqual(note.startswith(own), other)
+
     def test_classes_keep_their_shares_of_the_events_under_another_weighting(self):
         write_features(self.path("sources.gpkg"), "sources", [(box(60, 230, 20, 10), [])])
         self.write("s.toml", self.read_text("s.toml").replace(
@@ -487,6 +514,18 @@ class AllReleased(Plane):
         self.assertEqual(self.design("--unweighted")[0]["containment"]["by_impact_probability"]["width_m"], by_map["width_m"])
 
 
+    def test_blocks_lost_in_a_gap_above_the_line_are_counted(self):
+        """On this plane every block crosses, or falls into the gap below B."""
+        z = 500.0 + math.tan(math.radians(40)) * 2.0 * np.arange(150)[::-1, None] * np.ones((1, 100))
+        z[30:40, 20:40] = -9999.0
+        write_dem(self.path("dem.tif"), z.astype(np.float32), cell=2.0, nodata=-9999.0)
+        rows = self.run_plane({"A": 1.0, "B": 1.0}, 150, "[blocks]\ndiameter = 1.0\n")
+        lost = 300 - len({(row["source"], row["block"]) for row in rows})
+        self.assertGreater(lost, 100)
+        (note,) = [note for note in self.design()[0]["notes"] if "% of the blocks (" in note]
+        self.assertIn(f"({lost} of 300) left the DEM or entered a gap in it and may not have crossed this line before", note)
+
+
 class Pieces(Plane):
     """Blocks that break above the line; every piece that crosses is a crossing."""
 
@@ -540,6 +579,13 @@ class Pieces(Plane):
         above = sum(float(row["speed_ms"]) > speed for row in rows)
         self.assertAlmostEqual(limit["per_year"]["value"], above / 200, 9)
         self.assertAlmostEqual(limit["share_by_frequency"], above / len(rows), 9)
+
+    def test_check_foretells_the_rows_of_the_pieces(self):
+        """Of 100 times as many blocks: those of the whole blocks alone were less than half of the file."""
+        self.run_broken(1.0, 5)
+        size = os.path.getsize(self.path("out/screens.csv"))
+        text = self.run_well("check", self.path("s.toml"), "--trajectories", "20000").stdout
+        self.assertGreater(float(re.search(r"disk +about ([0-9 ]+) MB", text)[1].replace(" ", "")), 100e-6 * size)
 
     def test_a_block_counts_once_in_a_bin_of_the_map(self):
         rows = self.run_broken(1.0, 5)

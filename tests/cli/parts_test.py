@@ -133,7 +133,7 @@ class Parts(RunCase):
         self.fails(2, "the same --rounds", arguments=["merge", self.path("m"), one, self.path("rounds")])
         with self.manifest(two) as manifest:  # as if it had been interrupted after the first of two
             manifest["rounds"]["count"] = 2
-        self.fails(2, "was to have 2 rounds, another part 1", "the same --rounds",
+        self.fails(2, "was to have 2 rounds (--above 0.01), another part 1 round (--above 0.01)", "the same --rounds",
                    arguments=["merge", self.path("m"), one, two])
         with self.manifest(two) as manifest:
             manifest["rounds"]["count"] = 1
@@ -155,6 +155,22 @@ class Parts(RunCase):
         os.remove(f"{one}/scenario.toml")
         self.fails(2, "it has no scenario.toml", arguments=["merge", self.path("m"), one, two])
         self.assertFalse(os.path.exists(self.path("m")))
+
+    def test_the_error_is_that_of_the_cells_that_were_asked_for(self):  # merge took those above 0.01
+        rounds = ("--rounds", "2", "--above", "0.05")
+        self.run_scenario("whole", *rounds)
+        for i in (1, 2):
+            self.run_scenario(f"part{i}", *rounds, "--part", f"{i}/2")
+        self.run_well("merge", self.path("merged"), self.path("part1"), self.path("part2"), "-q")
+        self.assertEqual(self.record("merged")["rounds"], self.record("whole")["rounds"])
+        self.assertEqual(self.record("merged")["rounds"]["above_probability"], 0.05)
+        self.assertGreater(self.record("merged")["rounds"]["cells"], 0)
+        self.run_scenario("other", "--rounds", "2", "--part", "2/2")
+        self.fails(2, "was to have 2 rounds (--above 0.01), another part 2 rounds (--above 0.05)", "the same --rounds and --above",
+                   arguments=["merge", self.path("m"), self.path("part1"), self.path("other")])
+        again = ["run", self.path("s.toml"), "-o", self.path("part1"), "--part", "1/2", "--resume", "--rounds", "2"]
+        self.assertIn("part 1/2 is done", self.run_well(*again, "--above", "0.05").stderr)
+        self.fails(2, "the folder is there and not empty", arguments=again)
 
     def test_pieces_keep_their_numbers(self):
         self.write("s.toml", RUN + "[effects.fragmentation]\nthreshold = 20\n")

@@ -4,6 +4,7 @@
 #include <bit>
 #include <initializer_list>
 
+#include "percentile.hpp"
 #include "scenes.hpp"
 #include "talus/simulate/scenario/scenario.hpp"
 #include "talus/simulate/tally/tally.hpp"
@@ -97,7 +98,7 @@ inline void expect_same_records(const Tally& a, const Tally& b) {
       ASSERT_EQ(left->maximum, right->maximum) << column << ' ' << row;
       for (std::size_t q = 0; q < kQuantities; ++q)
         for (const double share : {0.0, 0.1, 0.5, 0.9, 0.95, 0.99, 1.0})
-          ASSERT_EQ(left->histogram[q].percentile(share), right->histogram[q].percentile(share));
+          ASSERT_EQ(percentile(left->histogram[q], share), percentile(right->histogram[q], share));
       for (std::size_t i = 0; i < thresholds; ++i)
         ASSERT_EQ(a.exceedances(column, row)[i], b.exceedances(column, row)[i]) << column << ' ' << row;
     }

@@ -100,6 +100,7 @@ CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
                             ": the run kept no crossings (no screens.csv), must have had [screens] file in its "
                             "scenario: add lines that blocks cross and run it again");
   const auto gap = talus::io::gap_note(without_height(run, o));  // also says if there is no such screen
+  const auto left = talus::io::left_note(run, 0);
   CrossingTable crossings = talus::io::read_crossings(file.string(), o.screen);
   const auto in_summary =
       talus::io::crossings_in_summary((fs::path(o.folder) / "screens_summary.csv").string(), o.screen);
@@ -109,7 +110,8 @@ CrossingTable simulated_crossings(const RunSummary& run, const Options& o) {
                             ": must be as talus run has written it; copy it again, or run the scenario again");
   if (crossings.count == 0)
     throw talus::InputError(file.string() + ": no block crosses screen '" + o.screen + "': " +
-                            (gap ? "this does not say that a barrier is not needed there: " + *gap
+                            (gap || left
+                                 ? "this does not say that a barrier is not needed there: " + (gap ? *gap : *left)
                                  : "a barrier is not needed there, or the run has too few trajectories to say"));
   for (const std::size_t told : {crossings.speed.size(), crossings.energy.size(), crossings.height.size(),
                                  crossings.mass.size(), crossings.places.size()})
@@ -330,8 +332,6 @@ int design(Options o) {
   if (o.screen.empty()) o.screen = only_screen(run);
   talus::io::refuse_unwritable(o.folder);
   const CrossingTable crossings = simulated_crossings(run, o);
-  if (!o.quiet)
-    for (const std::string& warning : run.size_warnings) say("warning", warning);
   const CrossingTable values = o.observed.empty() ? crossings : observed_crossings(o);
   BarrierReport report;
   Weighting weighting;
@@ -339,17 +339,12 @@ int design(Options o) {
     note_other_screens(values, run, o, report);
     note_repeated_rows(values, o, report);
   }
-  if (const auto note = talus::io::unusable_note(o.folder)) report.notes.push_back(*note);
-  if (const auto note = talus::io::coefficient_note(o.folder)) report.notes.push_back(*note);
-  if (const auto note = talus::io::barriers_note(o.folder))
-    report.notes.push_back(*note +
-                           "; a block that one caught uphill of this screen, or on its line, does not cross it");
-  if (const auto note = talus::io::forest_note(o.folder)) report.notes.push_back(*note);
-  report.without_height = without_height(run, o);
-  if (const auto note = talus::io::gap_note(report.without_height)) report.notes.push_back(*note);
   std::vector<talus::LineCrossing> blocks = crossings_of(crossings, run, o, report, weighting);
-  if (const auto note = talus::io::wet_day_note(o.folder, static_cast<bool>(weighting.scale)))
-    report.notes.push_back(*note);
+  for (std::string& note : talus::io::notes_of_run(o.folder, {weighting.given, weighting.scale.has_value(), true}))
+    report.notes.push_back(std::move(note));
+  report.without_height = without_height(run, o);
+  for (const auto& note : {talus::io::gap_note(report.without_height), talus::io::left_note(run, crossings.blocks)})
+    if (note) report.notes.push_back(*note);
   report.screen = o.screen;
   report.released = run.released;
   report.crossings = crossings.count;

@@ -84,9 +84,12 @@ Sample trace_sample(const LoadedScenario& loaded) {
   talus::Tracer(world).run(next, [&](const talus::Release& release, const talus::Path& path, std::uint64_t) {
     if (weights) batch.set_annual_share({weights->weight(scenario, release.source, release.block), sample.traced, 1});
     batch.add(path, release.body, release.source, nullptr);
+    crossings.clear();
+    screens.find(release, path, crossings);
     bool left = path.end == talus::End::Left, limited = path.end == talus::End::Limit;
     talus::trace_pieces(world, path, [&](const talus::Release& piece, const talus::Path& way) {
       batch.add(way, piece.body, release.source, nullptr, true);
+      screens.find(piece, way, crossings);
       left = left || way.end == talus::End::Left;
       limited = limited || way.end == talus::End::Limit;
     });
@@ -94,8 +97,6 @@ Sample trace_sample(const LoadedScenario& loaded) {
     sample.totals.limited_blocks += limited ? 1U : 0U;
     if (batch.full()) tally.add(batch), batch.clear();
     ++sample.traced;
-    crossings.clear();
-    screens.find(release, path, crossings);
     sample.crossings += crossings.size();
     sample.length += path.length;
     ++sample.totals.ends[static_cast<std::size_t>(path.end)];

@@ -14,7 +14,11 @@ struct Rounds {
   std::uint32_t most = 100;           ///< largest number of rounds, even if the error is not reached
   bool several() const { return count > 1 || until_error.has_value(); }
   std::uint32_t at_most() const { return until_error ? most : count; }  ///< largest number of rounds there can be
-  bool operator==(const Rounds&) const = default;
+  /// Whether both ask for the same: `above` counts where there are several, `most` with `until_error`, else `count`.
+  bool operator==(const Rounds& other) const {
+    if (until_error != other.until_error || at_most() != other.at_most()) return false;
+    return !several() || above == other.above;
+  }
 };
 
 /// Statistical error of the impact probability.

@@ -12,6 +12,7 @@
 #include "talus/io/gdal/vectors.hpp"
 #include "talus/io/results/run_record.hpp"
 #include "talus/simulate/scenario/block_sizes.hpp"
+#include "talus/simulate/scenario/frequency.hpp"
 
 namespace talus::io {
 namespace {
@@ -24,18 +25,70 @@ double setting_of(const Json& json, const std::string& key) {
   throw InputError("no setting '" + key + "'");
 }
 
-/// The warnings of a run.json that `wanted` accepts.
-template <class Wanted>
-std::vector<std::string> warnings_of(const Json& run, Wanted wanted) {
+/// Whether a warning of a run holds for all who use its results.
+bool holds_for_all(const std::string& warning) {
+  return warning.starts_with(kSizeWarning) || warning.starts_with(kGuessWarning) || is_of_frequencies(warning) ||
+         is_of_cut_sources(warning);
+}
+
+/// Those warnings of the run. With another weighting those about frequencies are the ones of that, and those with
+/// events per year say whose they are.
+std::vector<std::string> warnings_for(const Json& run, const GivenFrequencies& frequency) {
+  const bool reweighted = !frequency.file.empty();
   std::vector<std::string> found;
-  if (!run.is_object()) return found;
-  for (const Json& warning : run.value("warnings", Json::array()))
-    if (warning.is_string() && wanted(warning.get<std::string>())) found.push_back(warning.get<std::string>());
+  for (const Json& warning : run.value("warnings", Json::array())) {
+    const std::string text = warning.is_string() ? warning.get<std::string>() : "";
+    if (!holds_for_all(text) || (reweighted && is_of_frequencies(text))) continue;
+    const bool per_year = text.find(kAllOnTheRest) != std::string::npos || text.find(kEventsLost) != std::string::npos;
+    found.push_back((reweighted && per_year ? "by the run's own frequencies: " : "") + text);
+  }
+  found.insert(found.end(), frequency.warnings.begin(), frequency.warnings.end());
   return found;
 }
 
-bool is_of_sizes(const std::string& warning) {
-  return warning.starts_with(kSizeWarning) || warning.starts_with(kGuessWarning);
+/// That the results must not be used; nothing if the run is complete.
+std::optional<std::string> status_note(const Json& run) {
+  const std::string status = run.value("status", kComplete);
+  if (status == kComplete) return std::nullopt;
+  return "the run ended with status \"" + status + "\": do not use its results";
+}
+
+std::optional<std::string> recorded_coefficient_note(const Json& run) {
+  if (!run.contains("deformation_coefficient") || !run["deformation_coefficient"].is_number()) return std::nullopt;
+  return coefficient_note(run["deformation_coefficient"].get<double>(), is_of_profile(run));
+}
+
+/// That the figures hold only while the barriers of the run stand; nothing if none stood there.
+std::optional<std::string> standing_note(const Json& run, bool of_line) {
+  std::size_t barriers = 0;
+  double caught = 0.0;
+  for (const Json& barrier : run.value("barriers", Json::array())) {
+    if (!(barrier.at("height_m").get<double>() > 0.0)) continue;  // it is off
+    ++barriers;
+    caught += barrier.at("caught").get<double>();
+  }
+  if (barriers == 0) return std::nullopt;
+  return barriers_text(barriers, with_decimals(caught, 0), run.value("pieces", 0.0) > 0.0) +
+         ": the figures here hold only while " + (barriers == 1 ? "it stands" : "they stand") +
+         (of_line ? "; a block that one caught uphill of this screen, or on its line, does not cross it" : "");
+}
+
+/// That the figures are those of a wet day; nothing if wet-ground does not act on the day of the run. docs/effects.md,
+/// "wet-ground".
+std::optional<std::string> wet_note(const Json& run, bool per_year) {
+  if (std::ranges::count(acting_in(run), "wet-ground") == 0) return std::nullopt;
+  return "wet-ground acts on the day of this run, " + text_of(setting_of(run, "day")) +
+         ": the figures here are those of a wet day" +
+         (per_year ? ", and every event per year counts as on such a day; give the frequency of wet days only, and add "
+                     "the hazard of the dry ones"
+                   : "");
+}
+
+/// That the figures hold only while the forest of the run stands; nothing if none acted there.
+std::optional<std::string> stand_note(const Json& run) {
+  const std::string text = forest_text(acting_in(run));
+  if (text.empty()) return std::nullopt;
+  return text + ": the figures here hold only while it stands";
 }
 
 /// The record; nothing if there is none that can be read.
@@ -49,11 +102,22 @@ Json read_record_or_nothing(const std::filesystem::path& file) {
 
 }  // namespace
 
+std::vector<std::string> notes_of_run(const std::filesystem::path& folder, const ResultsUse& use) {
+  const Json run = read_record_or_nothing(folder / "run.json");
+  if (!run.is_object()) return {};
+  return understood(folder / "run.json", kRunAgain, [&] {
+    std::vector<std::string> notes = warnings_for(run, use.frequency);
+    for (const std::optional<std::string>& note :
+         {status_note(run), recorded_coefficient_note(run), standing_note(run, use.of_line),
+          wet_note(run, use.per_year), stand_note(run)})
+      if (note) notes.push_back(*note);
+    return notes;
+  });
+}
+
 std::optional<std::string> coefficient_note(const std::filesystem::path& folder) {
-  const Json json = read_record_or_nothing(folder / "run.json");
-  if (!json.is_object() || !json.contains("deformation_coefficient") || !json["deformation_coefficient"].is_number())
-    return std::nullopt;
-  return coefficient_note(json["deformation_coefficient"].get<double>(), is_of_profile(json));
+  const Json run = read_record_or_nothing(folder / "run.json");
+  return run.is_object() ? recorded_coefficient_note(run) : std::nullopt;
 }
 
 std::optional<std::string> coefficient_note(double c, bool of_profile) {
@@ -66,47 +130,9 @@ std::optional<std::string> coefficient_note(double c, bool of_profile) {
          " as well and take the higher values: docs/barrier.md, \"The value of c\"";
 }
 
-std::optional<std::string> unusable_note(const std::filesystem::path& folder) {
-  const Json json = read_record_or_nothing(folder / "run.json");
-  const std::string status = json.is_object() ? json.value("status", kComplete) : kComplete;
-  if (status == kComplete) return std::nullopt;
-  return "the run ended with status \"" + status + "\": do not use its results";
-}
-
 std::string barriers_text(std::size_t barriers, const std::string& caught, bool pieces) {
   return std::to_string(barriers) + (barriers == 1 ? " barrier" : " barriers") + " stood in the run and caught " +
          caught + (pieces ? " blocks and pieces" : " blocks");
-}
-
-std::optional<std::string> barriers_note(const std::filesystem::path& folder) {
-  const Json json = read_record_or_nothing(folder / "run.json");
-  if (!json.is_object()) return std::nullopt;
-  return understood(folder / "run.json", kRunAgain, [&]() -> std::optional<std::string> {
-    std::size_t barriers = 0;
-    double caught = 0.0;
-    for (const Json& barrier : json.value("barriers", Json::array())) {
-      if (!(barrier.at("height_m").get<double>() > 0.0)) continue;  // it is off
-      ++barriers;
-      caught += barrier.at("caught").get<double>();
-    }
-    if (barriers == 0) return std::nullopt;
-    return barriers_text(barriers, with_decimals(caught, 0), json.value("pieces", 0.0) > 0.0) +
-           ": the figures here hold only while " + (barriers == 1 ? "it stands" : "they stand");
-  });
-}
-
-std::optional<std::string> wet_day_note(const std::filesystem::path& folder, bool per_year) {
-  const Json json = read_record_or_nothing(folder / "run.json");
-  if (!json.is_object()) return std::nullopt;
-  return understood(folder / "run.json", kRunAgain, [&]() -> std::optional<std::string> {
-    if (std::ranges::count(acting_in(json), "wet-ground") == 0) return std::nullopt;
-    return "wet-ground acts on the day of this run, " + text_of(setting_of(json, "day")) +
-           ": the figures here are those of a wet day" +
-           (per_year
-                ? ", and every event per year counts as on such a day; give the frequency of wet days only, and add "
-                  "the hazard of the dry ones"
-                : "");
-  });
 }
 
 std::optional<std::string> pieces_note(const std::filesystem::path& folder) {
@@ -124,15 +150,6 @@ std::string forest_text(const std::vector<std::string>& effects) {
   return stands.empty() ? "" : "forest or other vegetation stood in the run (" + joined(stands) + ")";
 }
 
-std::optional<std::string> forest_note(const std::filesystem::path& folder) {
-  const Json json = read_record_or_nothing(folder / "run.json");
-  if (!json.is_object()) return std::nullopt;
-  return understood(folder / "run.json", kRunAgain, [&]() -> std::optional<std::string> {
-    const std::string text = forest_text(acting_in(json));
-    return text.empty() ? std::optional<std::string>() : text + ": the figures here hold only while it stands";
-  });
-}
-
 RunSummary read_run(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "run.json";
   std::error_code none;
@@ -145,28 +162,34 @@ RunSummary read_run(const std::filesystem::path& folder) {
     RunSummary run;
     run.of_profile = is_of_profile(json);
     run.released = json.at("released").get<double>();
+    run.left = std::max(json.value("ends", Json::object()).value("left", 0.0), json.value("left_with_pieces", 0.0));
+    run.left_into_gaps = json.value("left_into_gaps", 0.0);
+    run.pieces = json.value("pieces", 0.0) > 0.0;
     run.density = setting_of(json, "blocks.density");
     run.cell = json.at("grid").at("cell_x_m").get<double>();
     run.crs_wkt = json.at("grid").value("crs_wkt", "");
     run.screens = recorded_screens(json);
     for (const Json& screen : json.value("screens", Json::array()))
       run.without_height.push_back(screen.value("share_without_height", 0.0));
-    run.size_warnings = warnings_of(json, is_of_sizes);
     return run;
   });
 }
 
-std::vector<std::string> size_warnings_of(const std::filesystem::path& folder) {
-  return warnings_of(read_record_or_nothing(folder / "run.json"), is_of_sizes);
-}
-
-std::vector<std::string> cut_source_warnings_of(const std::filesystem::path& folder, bool reweighted) {
-  std::vector<std::string> found = warnings_of(read_record_or_nothing(folder / "run.json"), is_of_cut_sources);
-  if (reweighted)
-    for (std::string& warning : found)
-      if (warning.find(kAllOnTheRest) != std::string::npos || warning.find(kEventsLost) != std::string::npos)
-        warning.insert(0, "by the run's own frequencies: ");
-  return found;
+std::optional<std::string> left_note(const RunSummary& run, std::size_t crossed) {
+  double lost = run.left;  // a block that crosses may have left before with a piece
+  if (!run.pieces) lost = std::min(lost, run.released - static_cast<double>(crossed));
+  if (!(lost > kWarnedLeftShare * run.released)) return std::nullopt;
+  const bool gaps = run.left_into_gaps > 0.0;
+  return percent(lost / run.released) + " of the blocks (" + with_decimals(lost, 0) + " of " +
+         with_decimals(run.released, 0) + ") left the " +
+         (run.of_profile ? "profile"
+          : gaps         ? "DEM or entered a gap in it"
+                         : "DEM") +
+         " and may not have crossed this line before: those that would have crossed it later are missing here "
+         "(unsafe); take a " +
+         (run.of_profile ? "longer profile"
+          : gaps         ? "larger DEM, or fill the gaps"
+                         : "larger DEM");
 }
 
 }  // namespace talus::io

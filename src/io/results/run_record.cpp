@@ -140,6 +140,19 @@ Json rounds_of(const RoundsRecord& rounds) {
   return json;
 }
 
+/// The rounds that a finished run was asked for.
+Rounds asked_in(const Json& run) {
+  Rounds asked;
+  if (!run.contains("rounds")) return asked;
+  const Json& rounds = run.at("rounds");
+  asked.count = rounds.at("done");
+  asked.above = rounds.at("above_probability");
+  if (!rounds.contains("asked")) return asked;
+  asked.until_error = rounds.at("asked").get<double>();
+  asked.most = rounds.at("most_rounds");
+  return asked;
+}
+
 Json seconds(const StageSeconds& s) {
   return {{"read", thousandths(s.read)}, {"simulate", thousandths(s.simulate)}, {"write", thousandths(s.write)}};
 }
@@ -155,15 +168,8 @@ std::optional<std::string> status_of_result(const std::filesystem::path& folder,
                                             const Rounds& asked) {
   try {
     const Json json = read_record(folder / "run.json");
-    if (json.at("plan") != plan || json.contains("rounds") != asked.several()) return std::nullopt;
-    std::string status = json.at("status");
-    if (!asked.several()) return status;
-    const Json& rounds = json.at("rounds");
-    const bool as_asked = asked.until_error ? rounds.at("asked") == *asked.until_error &&
-                                                  rounds.at("above_probability") == asked.above &&
-                                                  rounds.at("most_rounds") == asked.most
-                                            : !rounds.contains("asked") && rounds.at("done") == asked.count;
-    return as_asked ? std::optional(std::move(status)) : std::nullopt;
+    if (json.at("plan") != plan || asked_in(json) != asked) return std::nullopt;
+    return json.at("status").get<std::string>();
   } catch (const std::exception&) {
     return std::nullopt;  // no such file, or not one of a run
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <unordered_map>
 
 #include "io/files/checksum.hpp"
 #include "io/scenario/frequency_keys.hpp"
@@ -28,15 +29,25 @@ bool is_number_form(const std::string& word) {
 
 /// The features that a word of the file means: "FID 3" the one of this number, any other word those of this name or
 /// number.
-std::vector<std::size_t> meant_by(const std::string& word, const std::vector<SourceFeature>& features) {
-  const bool is_number = is_number_form(word);
-  std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < features.size(); ++i)
-    if (number_form(features[i]) == word ||
-        (!is_number && (features[i].name == word || std::to_string(features[i].id) == word)))
-      found.push_back(i);
-  return found;
-}
+class FeaturesByWord {
+ public:
+  explicit FeaturesByWord(const std::vector<SourceFeature>& features) {
+    for (std::size_t i = 0; i < features.size(); ++i) {
+      const std::string number = std::to_string(features[i].id);
+      by_word_[number_form(features[i])].push_back(i);
+      by_word_[number].push_back(i);
+      if (features[i].name != number && !is_number_form(features[i].name)) by_word_[features[i].name].push_back(i);
+    }
+  }
+
+  std::vector<std::size_t> meant_by(const std::string& word) const {
+    const auto found = by_word_.find(word);
+    return found == by_word_.end() ? std::vector<std::size_t>{} : found->second;
+  }
+
+ private:
+  std::unordered_map<std::string, std::vector<std::size_t>> by_word_;
+};
 
 /// Why a word that means several features is refused.
 std::string ambiguous_text(const std::string& word, const std::vector<std::size_t>& found,
@@ -110,11 +121,12 @@ void require_all_features(const Scenario& scenario, const std::string& file) {
 void read_features(TableReader& table, Scenario& scenario, GivenFrequencies& read) {
   if (table.value() == nullptr) return;
   std::vector<SourceFeature>& features = scenario.features;
+  const FeaturesByWord by_word(features);
   const std::vector<bool> releases = releasing(scenario);
   std::vector<std::string> known, given(features.size());  // given: the word that meant the feature
   for (const SourceFeature& feature : features) known.push_back(feature.name);
   for (const auto& [word, value] : table.value()->members) {
-    const std::vector<std::size_t> found = meant_by(word, features);
+    const std::vector<std::size_t> found = by_word.meant_by(word);
     if (found.empty())
       table.fault(word, value, "there is no such feature" + known_names(word, known));
     else if (found.size() > 1)
@@ -160,7 +172,10 @@ GivenFrequencies apply_weighting(const std::string& file, Scenario& scenario) {
   top.finish();
   if (!faults.empty()) throw InputError(faults.front());
   if (of_features && not_by_features) require_all_features(scenario, file);
+  if (!AnnualWeights::of(scenario))
+    throw InputError(file + ": no blocks fall with these frequencies; give one above 0");
   read.class_shares = kept_shares(scenario);
+  read.warnings = frequency_warnings(scenario);
   return read;
 }
 

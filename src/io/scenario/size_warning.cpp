@@ -1,10 +1,12 @@
 #include "size_warning.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <string_view>
 
 #include "talus/base/text.hpp"
 #include "talus/simulate/scenario/block_sizes.hpp"
+#include "talus/simulate/scenario/frequency.hpp"
 #include "talus/simulate/scenario/parameter_table.hpp"
 
 namespace talus::io {
@@ -66,10 +68,11 @@ void warn_of_sizes(const ScenarioSpec& spec, const Scenario& scenario, std::vect
   std::vector<const Preset*> presets;
   for (const ZoneSpec* zone : grounds)
     if (from_preset(*zone, "theta_scale") || from_preset(*zone, "En50")) presets.push_back(&find_preset(zone->preset));
-  for (std::string& warning : std::vector<std::string>{
-           size_warning(scenario, presets), guess_warning(presets), sorting_warning(scenario.effects),
-           rare_class_warning(scenario), gain_warning(grounds), spec.profile ? std::string() : plane_warning(grounds)})
+  for (std::string& warning : std::vector<std::string>{size_warning(scenario, presets), guess_warning(presets),
+                                                       sorting_warning(scenario.effects), gain_warning(grounds),
+                                                       spec.profile ? std::string() : plane_warning(grounds)})
     if (!warning.empty()) warnings.push_back(std::move(warning));
+  std::ranges::move(frequency_warnings(scenario), std::back_inserter(warnings));
 }
 
 }  // namespace talus::io

@@ -129,7 +129,7 @@ std::string rare_class_warning(const Scenario& scenario) {
                      with_digits(drawn, 2) + " of " + std::to_string(scenario.released()) + " blocks in a round)");
   }
   if (rare.empty()) return {};
-  return std::string(kSizeWarning) + "few paths stand for all events of a class: " + joined(rare) +
+  return std::string(kSizeWarning) + std::string(kRareClasses) + joined(rare) +
          ": give it a larger weight, which changes no frequency, or more trajectories";
 }
 

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <string_view>
+#include <utility>
 
 #include "talus/base/error.hpp"
 #include "talus/base/expect.hpp"
@@ -17,6 +19,7 @@ namespace {
 
 constexpr int kBits = 62;                    // of the sum over all trajectories of all rounds
 constexpr std::int64_t kLeastWeight = 1024;  // below it the unit would change a weight by more than 0.05 %
+constexpr std::string_view kOverlapWarning = "sources overlap: ";
 
 /// The inputs that give frequencies.
 struct Sources {
@@ -111,19 +114,18 @@ std::vector<double> law_frequencies(const Scenario& s) {
   return frequencies;
 }
 
-/// Area of each source cell, in plan or of its surface [m^2]. Frequencies are divided in proportion to it.
-std::vector<double> areas_of(const Scenario& s) {
+/// Area of a source cell, in plan or of its surface [m^2]. Frequencies are divided in proportion to it.
+double area_of(const Scenario& s, const SourceCell& cell) {
   const Grid& grid = s.surface.grid();
-  std::vector<double> areas(s.sources.size(), grid.cell_x * grid.cell_y);
-  if (s.frequency.by_true_area)
-    for (std::size_t i = 0; i < areas.size(); ++i)
-      areas[i] = true_area(s.surface.heights(), grid.column_of(s.sources[i].x), grid.row_of(s.sources[i].y));
-  return areas;
+  if (!s.frequency.by_true_area) return grid.cell_x * grid.cell_y;
+  return true_area(s.surface.heights(), grid.column_of(cell.x), grid.row_of(cell.y));
 }
 
 /// Events per year of each source cell, all classes together.
 std::vector<double> cell_frequencies(const Scenario& s, const Sources& found, double all_classes) {
-  std::vector<double> cells = areas_of(s);
+  std::vector<double> cells;
+  cells.reserve(s.sources.size());
+  for (const SourceCell& cell : s.sources) cells.push_back(area_of(s, cell));
   if (found.area) {
     for (double& cell : cells) cell *= s.frequency.per_area;
   } else if (found.features) {
@@ -156,6 +158,42 @@ double power_of_two_above(double value) {
   return std::ldexp(1.0, std::ilogb(value) + 1);
 }
 
+/// The source cells in the order of their places; without points, of which a cell may have several.
+std::vector<const SourceCell*> cells_by_place(const Scenario& s) {
+  std::vector<const SourceCell*> cells;
+  for (const SourceCell& cell : s.sources)
+    if (!cell.point) cells.push_back(&cell);
+  std::ranges::sort(cells, {}, [](const SourceCell* cell) { return std::pair(cell->y, cell->x); });
+  return cells;
+}
+
+/// One line if several features release the same cells; empty if not, or if each feature has its own events.
+std::string overlap_warning(const Scenario& s) {
+  constexpr double kNoticed = 0.01;  // of the cells: two lines that meet share one
+  const Sources found = sources_of(s);
+  if (found.features || s.features.size() < 2) return {};
+  const std::vector<const SourceCell*> cells = cells_by_place(s);
+  const auto same = [&](std::size_t i) { return cells[i]->x == cells[i - 1]->x && cells[i]->y == cells[i - 1]->y; };
+  std::uint64_t places = cells.empty() ? 0 : 1, shared = 0;
+  double again = 0.0;  // area that counts once more [m^2]
+  for (std::size_t i = 1; i < cells.size(); ++i) {
+    if (!same(i)) {
+      ++places;
+      continue;
+    }
+    shared += i > 1 && same(i - 1) ? 0U : 1U;
+    again += area_of(s, *cells[i]);
+  }
+  if (shared == 0 || static_cast<double>(shared) < kNoticed * static_cast<double>(places)) return {};
+  return std::string(kOverlapWarning) + std::to_string(shared) + " of " + std::to_string(places) +
+         " cells lie in more than one feature and release the blocks of each" +
+         (found.area ? ", so that frequency.per_area counts " + with_digits(s.frequency.per_area * again, 3) +
+                           " events per year more than once"
+          : found.count() > 0 ? ", so that they get a larger share of the events"
+                              : "") +
+         ": join the features or cut one out of the other, unless each is meant to release its own blocks there";
+}
+
 }  // namespace
 
 std::vector<double> class_frequencies(const Scenario& s) {
@@ -165,6 +203,16 @@ std::vector<double> class_frequencies(const Scenario& s) {
   if (found.classes || s.frequency.class_shares)
     for (const BlockClass& c : s.blocks.classes) frequencies.push_back(c.frequency);
   return frequencies;
+}
+
+std::vector<std::string> frequency_warnings(const Scenario& s) {
+  std::vector<std::string> warnings{rare_class_warning(s), overlap_warning(s)};
+  std::erase(warnings, "");
+  return warnings;
+}
+
+bool is_of_frequencies(const std::string& warning) {
+  return warning.starts_with(kOverlapWarning) || warning.find(kRareClasses) != std::string::npos;
 }
 
 std::optional<AnnualWeights> AnnualWeights::of(const Scenario& s, std::uint32_t rounds) {

@@ -8,10 +8,6 @@
 namespace talus {
 namespace {
 
-std::int64_t fixed_point(float value, double units) {
-  return static_cast<std::int64_t>(static_cast<double>(value) * units + 0.5);
-}
-
 /// Sum, in fixed point, and largest of some values.
 struct Sums {
   std::int64_t sum = 0;

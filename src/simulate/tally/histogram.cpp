@@ -241,15 +241,6 @@ void LogHistogram::in_width(const Action& action) const {
     action([&](int bin) { return read(std::uint32_t{}, bin); });
 }
 
-double LogHistogram::percentile(double share) const {
-  TALUS_EXPECT(share >= 0.0 && share <= 1.0, "a share is 0 to 1");
-  const std::uint64_t total = count();
-  if (total == 0) return 0.0;
-  const double rank = rank_of(share, total);
-  const Bin bin = bin_of(rank);
-  return bin.low + (bin.high - bin.low) * (rank - bin.below - 0.5) / bin.count;
-}
-
 /// Calls visit(key, count) for the bins that hold something, in ascending order; until it returns false.
 template <class Visit>
 void LogHistogram::each_bin(const Visit& visit) const {
@@ -305,7 +296,7 @@ LogHistogram::Bin LogHistogram::bin_of(double k) const {
     if (here > 0.0 && below + here >= k) {
       const int key = first_ + bin;
       const bool collected = (bin == 0 && size_ == kSpan) || key == key_of(kFloor);
-      return {edge_of(key), edge_of(key + 1), below, here, collected};
+      return {edge_of(key), edge_of(key + 1), collected};
     }
     below += here;
   }

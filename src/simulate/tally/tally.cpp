@@ -36,8 +36,8 @@ std::uint32_t exceeding(std::span<const float> values, float limit) {
   return count;
 }
 
-std::int64_t fixed_point(double length) {
-  return static_cast<std::int64_t>(length / CellRecord::kLengthUnit + 0.5);
+std::int64_t fixed_length(double length) {
+  return fixed_point(length, 1.0 / CellRecord::kLengthUnit);
 }
 
 std::size_t cell_in_region(int column, int row) {
@@ -318,20 +318,20 @@ void Tally::add_lengths(const Group& group, std::span<const float> mixed, const 
   std::int64_t length = 0, squares = 0;
   for (const Visit& visit : group.visits) {
     if (visit.trajectory != previous && !(batch.has_pieces() && of_one_block(batch, previous, visit.trajectory))) {
-      squares += fixed_point(of_block * of_block);
+      squares += fixed_length(of_block * of_block);
       of_block = 0.0;
     }
     previous = visit.trajectory;
     const std::span<const float> lengths = lengths_of(visit, mixed, batch.levels(), buffer);
     of_block += lengths[0];
-    length += fixed_point(lengths[0]);
-    for (std::size_t i = 0; i + 1 < lengths.size(); ++i) above[i] += fixed_point(lengths[1 + i]);
+    length += fixed_length(lengths[0]);
+    for (std::size_t i = 0; i + 1 < lengths.size(); ++i) above[i] += fixed_length(lengths[1 + i]);
     if (hazard == nullptr) continue;
     const VisitBatch::Trajectory& of = batch.trajectories()[visit.trajectory];
     hazard->add_lengths(hazard_->rules, lengths, of.annual_share, of.size.diameter);
   }
   add_checked(record.length, length);
-  add_checked(record.length_squares, squares + fixed_point(of_block * of_block));
+  add_checked(record.length_squares, squares + fixed_length(of_block * of_block));
 }
 
 void Tally::count_exceedances(std::uint32_t* over, const CellValues& values, const PerQuantity<float>& largest) const {

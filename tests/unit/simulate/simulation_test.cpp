@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "support/percentile.hpp"
 #include "support/scenarios.hpp"
 #include "talus/simulate/simulate.hpp"
 
@@ -40,7 +41,7 @@ std::vector<double> cells_of(const Tally& tally) {
       for (std::size_t q = 0; q < kQuantities; ++q) {
         values.push_back(cell->maximum[q]);
         values.push_back(static_cast<double>(cell->sum[q]));
-        values.push_back(cell->histogram[q].percentile(0.95));
+        values.push_back(test::percentile(cell->histogram[q], 0.95));
       }
       for (std::size_t i = 0; i < 5; ++i) values.push_back(tally.exceedances(column, row)[i]);
     }

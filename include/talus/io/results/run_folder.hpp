@@ -4,12 +4,24 @@
 #include <string>
 #include <vector>
 
+#include "talus/io/results/weighting_file.hpp"
 #include "talus/simulate/scenario/scenario.hpp"
 
 namespace talus::io {
 
-/// One line that the results of a run must not be used, with its status; nothing where it is complete.
-std::optional<std::string> unusable_note(const std::filesystem::path& folder);
+/// What is made of the results of a run.
+struct ResultsUse {
+  const GivenFrequencies& frequency;  ///< another weighting than the run's; without a file: the run's own
+  bool per_year;                      ///< there are figures per year
+  bool of_line;                       ///< of the crossings of one screen; else maps
+};
+
+/// What a run says to everyone who uses its results, from its run.json:
+///   that the sizes of blocks or the ground are no fitted ones, that sources release nothing or overlap;
+///   that its status is not complete; `coefficient_note`;
+///   that the figures hold only with the barriers and the forest of the run, and on a wet day.
+/// None if there is no run.json that can be read. Throws InputError if it is none of a run.
+std::vector<std::string> notes_of_run(const std::filesystem::path& folder, const ResultsUse& use);
 
 /// One line that energies rest on c (model.deformation_coefficient), and which way is safe; nothing if c is low. With a
 /// folder: of its run.json, nothing if it has none. docs/barrier.md, "The value of c".
@@ -21,15 +33,6 @@ std::optional<std::string> coefficient_note(const std::filesystem::path& folder)
 /// "2 barriers stood in the run and caught 3335 blocks"; "blocks and pieces" if blocks broke.
 /// @param caught  their number as text
 std::string barriers_text(std::size_t barriers, const std::string& caught, bool pieces);
-
-/// One line that the figures hold only while the barriers of the run stand; nothing if none stood there.
-std::optional<std::string> barriers_note(const std::filesystem::path& folder);
-
-/// One line that the figures are those of a wet day; nothing if wet-ground does not act on the day of the run.
-/// docs/effects.md, "wet-ground".
-///
-/// @param per_year  there are figures per year
-std::optional<std::string> wet_day_note(const std::filesystem::path& folder, bool per_year);
 
 /// Sentence on the hits of objects in a run whose blocks broke.
 inline constexpr const char* kHitsOfPieces =
@@ -47,31 +50,27 @@ inline constexpr const char* kBoundsOfPieces =
 /// @param effects  names of those that acted
 std::string forest_text(const std::vector<std::string>& effects);
 
-/// One line that the figures hold only while the forest of the run stands; nothing if none acted there.
-std::optional<std::string> forest_note(const std::filesystem::path& folder);
-
 /// The part of OUT/run.json that products of a finished run need.
 struct RunSummary {
-  bool of_profile = false;                 ///< of `talus profile`
-  double released = 0.0;                   ///< trajectories
-  double density = 0.0;                    ///< of the rock [kg/m^3]
-  double cell = 0.0;                       ///< side of a cell, from west to east [m]
-  std::string crs_wkt;                     ///< of the map; empty if it has none
-  std::vector<Screen> screens;             ///< in map coordinates [m]
-  std::vector<double> without_height;      ///< of each screen: share of its length that blocks cannot cross, from 1 %
-  std::vector<std::string> size_warnings;  ///< about block sizes, and ground that was fitted to no data
+  bool of_profile = false;             ///< of `talus profile`
+  double released = 0.0;               ///< trajectories
+  double left = 0.0;                   ///< of them left the terrain, also with a piece alone
+  double left_into_gaps = 0.0;         ///< of them into gaps inside the DEM
+  bool pieces = false;                 ///< blocks broke
+  double density = 0.0;                ///< of the rock [kg/m^3]
+  double cell = 0.0;                   ///< side of a cell, from west to east [m]
+  std::string crs_wkt;                 ///< of the map; empty if it has none
+  std::vector<Screen> screens;         ///< in map coordinates [m]
+  std::vector<double> without_height;  ///< of each screen: share of its length that blocks cannot cross, from 1 %
 };
 
 /// Reads OUT/run.json. Throws InputError if it cannot be read or `talus run` has not written it.
 RunSummary read_run(const std::filesystem::path& folder);
 
-/// The warnings of the run about sources that release nothing, as a whole or in part; none if there is no run.json that
-/// can be read.
+/// One line that many blocks may have left the terrain above a screen, so that its crossings are too few; nothing if
+/// they are few (`kWarnedLeftShare`).
 ///
-/// @param reweighted  by other frequencies than the run's: warnings with events per year say whose they are
-std::vector<std::string> cut_source_warnings_of(const std::filesystem::path& folder, bool reweighted);
-
-/// RunSummary::size_warnings alone; none if there is no run.json that can be read.
-std::vector<std::string> size_warnings_of(const std::filesystem::path& folder);
+/// @param crossed  number of blocks that cross the screen
+std::optional<std::string> left_note(const RunSummary& run, std::size_t crossed);
 
 }  // namespace talus::io

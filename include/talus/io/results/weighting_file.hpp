@@ -15,6 +15,7 @@ struct GivenFrequencies {
   std::optional<bool> by_true_area;
   std::vector<std::pair<std::string, double>> features;  ///< as the file calls them [1/year]
   std::vector<double> class_shares;  ///< of the events, kept by the classes of blocks; empty if none have frequencies
+  std::vector<std::string> warnings{};  ///< `frequency_warnings` of the plan that has these frequencies
 };
 
 /// Applies another weighting to a plan: replaces how often blocks fall. The motion of the blocks stays the same.
@@ -24,8 +25,8 @@ struct GivenFrequencies {
 /// released blocks. total, per_area and power_law replace all frequencies.
 /// Features that are not listed keep theirs; all must be listed if the frequencies of the run are not by feature.
 /// Classes of blocks that have frequencies keep their shares of the events, but for power_law. docs/hazard.md, "Another
-/// weighting". Throws InputError with file, line, key, value and what is allowed.
-/// @return what the file says, and the shares
+/// weighting". Throws InputError with file, line, key, value and what is allowed, and if no blocks fall with them.
+/// @return what the file says, the shares and the warnings
 GivenFrequencies apply_weighting(const std::string& file, Scenario& scenario);
 
 /// "the classes of blocks keep their shares of the events: 77, 19, 3.8 %"; empty if they keep none.

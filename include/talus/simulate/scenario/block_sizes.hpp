@@ -21,6 +21,9 @@ std::string size_warning(const Scenario& scenario, std::span<const Preset* const
 /// One line if presets of the ground were fitted to no data. Empty if there is none.
 std::string guess_warning(std::span<const Preset* const> presets);
 
+/// What `rare_class_warning` says.
+inline constexpr std::string_view kRareClasses = "few paths stand for all events of a class: ";
+
 /// One line if classes of blocks with a frequency are drawn so seldom that few paths stand for all their events. Empty
 /// if there is none.
 std::string rare_class_warning(const Scenario& scenario);

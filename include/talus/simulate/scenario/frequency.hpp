@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "talus/simulate/scenario/scenario.hpp"
@@ -31,6 +32,13 @@ struct WeightScale {
 /// Frequencies of the classes of blocks [1/year], or their shares where the scenario says so; empty if they have none.
 /// Blocks drawn by a power law of volume are one class. Throws InputError if a power law does not hold for the blocks.
 std::vector<double> class_frequencies(const Scenario& scenario);
+
+/// The warnings that rest on the frequencies of a valid scenario: `rare_class_warning`, and how many cells several
+/// features release, unless each feature says how often its blocks fall. docs/hazard.md, "How often".
+std::vector<std::string> frequency_warnings(const Scenario& scenario);
+
+/// Whether a warning of a run is one of these: with another weighting they are others.
+bool is_of_frequencies(const std::string& warning);
 
 /// Events per year of every source cell and class of blocks, as whole multiples of a unit: sums over trajectories are
 /// equal in any order. The unit is a power of two, chosen so that the sum over all trajectories of all rounds stays

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <limits>
 #include <string>
 
@@ -14,6 +15,11 @@ void add_checked(Whole& sum, Whole more) {
     throw InputError("a count or sum of one cell becomes larger than " +
                      std::to_string(std::numeric_limits<Whole>::max()) +
                      ", the most that it can hold: give fewer trajectories or rounds, or merge fewer of them");
+}
+
+/// A value >= 0 for a sum in fixed point. @param units  of the sum in 1
+inline std::int64_t fixed_point(double value, double units) {
+  return static_cast<std::int64_t>(value * units + 0.5);
 }
 
 }  // namespace talus

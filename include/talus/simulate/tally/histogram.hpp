@@ -40,21 +40,18 @@ class LogHistogram {
   std::uint64_t count() const;
   const void* counts() const { return counts_; }  ///< their address, for the tally to prefetch
 
-  /// The value below which `share` of the counted values lie, interpolated within its bin.
+  /// The values below which these shares of the counted values lie, interpolated within their bins.
   ///
+  /// @param shares  0 to 1, ascending
   /// The exact answer is the k-th smallest value, k = ceil(share n). The returned value is in the same bin: the error
   /// is less than 6.25 %. If the exact answer is below m = max(kFloor, largest / 128), only this is known, and the
   /// returned value is below 1.0625 * m. 0 if nothing was counted.
-  double percentile(double share) const;
-  /// Several of them in one look at the bins: the same numbers. @param shares  ascending
   void percentiles(std::span<const double> shares, std::span<double> values) const;
 
-  /// A bin with what it holds.
+  /// A bin.
   struct Bin {
     double low = 0.0, high = 0.0;  ///< edges: low <= value < high
-    double below = 0.0;            ///< number of values in lower bins
-    double count = 0.0;
-    bool lowest = false;  ///< the values in it may also be smaller than `low`
+    bool lowest = false;           ///< the values in it may also be smaller than `low`
   };
   /// The bin of the k-th smallest value. @param k  1 to count()
   Bin bin_of(double k) const;

@@ -219,6 +219,34 @@ TEST(AnnualWeights, SharesOfClasses) {
   expect(by_area, 2.0, 2.0);
 }
 
+/// Cells of 4 m2, one of which three features release: two times too often.
+TEST(FrequencyWarnings, CellsOfSeveralFeatures) {
+  Scenario s = plane(60.0, {0, 0, 1, 1, 2});
+  s.frequency.per_area = 0.5;
+  EXPECT_TRUE(frequency_warnings(s).empty());
+  for (const std::size_t cell : {2U, 4U}) s.sources[cell].x = s.sources[0].x;
+  const auto expect = [&](const std::string& words) {
+    const std::vector<std::string> warnings = frequency_warnings(s);
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_THAT(warnings.front(), testing::StartsWith("sources overlap: 1 of 3 cells lie in more than one feature"));
+    EXPECT_THAT(warnings.front(), testing::HasSubstr(words));
+    EXPECT_TRUE(is_of_frequencies(warnings.front()));
+  };
+  expect("frequency.per_area counts 4 events per year more than once");  // 0.5 x 2 x 4
+  s.frequency.by_true_area = true;
+  expect("frequency.per_area counts 8 events per year more than once");  // an area of 4 / cos 60
+  s.frequency = {};
+  s.frequency.total = 1.0;
+  expect("a larger share of the events");
+  s.frequency = {};
+  expect("release the blocks of each: join the features");
+  for (SourceFeature& feature : s.features) feature.frequency = 0.1;  // each has its own events
+  EXPECT_TRUE(frequency_warnings(s).empty());
+  for (SourceFeature& feature : s.features) feature.frequency = kNotGiven;
+  for (SourceCell& cell : s.sources) cell.point = true;
+  EXPECT_TRUE(frequency_warnings(s).empty());
+}
+
 TEST(AnnualWeights, Contradictions) {
   Scenario s = plane(30.0, {0, 1});
   s.features[0].frequency = 0.3;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "support/paths.hpp"
+#include "support/percentile.hpp"
 #include "support/scenarios.hpp"
 #include "talus/physics/flight.hpp"
 #include "talus/simulate/simulate.hpp"
@@ -160,8 +161,9 @@ TEST(EnergyTotal, NeverBelowTheTranslationalOneAndTheSameForAnyThreads) {
       ASSERT_GE(total.maximum, record->maximum[Quantity::Energy]);
       ASSERT_GE(total.sum, record->sum[Quantity::Energy]);
       for (const double share : {0.0, 0.5, 0.95, 0.99}) {
-        ASSERT_EQ(total.histogram.percentile(share), other.histogram.percentile(share));
-        ASSERT_GE(total.histogram.percentile(share), record->histogram[Quantity::Energy].percentile(share));
+        ASSERT_EQ(test::percentile(total.histogram, share), test::percentile(other.histogram, share));
+        ASSERT_GE(test::percentile(total.histogram, share),
+                  test::percentile(record->histogram[Quantity::Energy], share));
       }
     }
 }

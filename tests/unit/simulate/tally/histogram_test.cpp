@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "support/percentile.hpp"
 #include "support/scenes.hpp"
 
 namespace talus {
@@ -41,10 +42,11 @@ void expect_within_bound(Values values, const LogHistogram& histogram, const cha
   const auto n = static_cast<double>(values.size());
   std::array<double, std::size(kShares)> together{};
   histogram.percentiles(kShares, together);
-  for (std::size_t i = 0; i < together.size(); ++i) ASSERT_EQ(together[i], histogram.percentile(kShares[i])) << what;
+  for (std::size_t i = 0; i < together.size(); ++i)
+    ASSERT_EQ(together[i], test::percentile(histogram, kShares[i])) << what;
   for (const double share : kShares) {
     const auto k = static_cast<std::size_t>(std::clamp(std::ceil(share * n), 1.0, n));
-    const double exact = values[k - 1], found = histogram.percentile(share);
+    const double exact = values[k - 1], found = test::percentile(histogram, share);
     if (exact >= apart)
       ASSERT_NEAR(found, exact, LogHistogram::kBinWidth * exact) << what << " n=" << n << " share=" << share;
     else
@@ -114,9 +116,9 @@ TEST(LogHistogram, NoCountIsLostWhenABinIsFull) {
     histogram.add(other);
     ASSERT_EQ(histogram.count(), n + 6);
     const auto all = static_cast<double>(n + 6), count = static_cast<double>(n);
-    EXPECT_NEAR(histogram.percentile((count - 0.5) / all), 3.0, 3.0 * 0.0625) << n;  // the last 3
-    EXPECT_NEAR(histogram.percentile((count + 0.5) / all), 10.0, 10.0 * 0.0625) << n;
-    EXPECT_NEAR(histogram.percentile((count + 2.5) / all), 20.0, 20.0 * 0.0625) << n;
+    EXPECT_NEAR(test::percentile(histogram, (count - 0.5) / all), 3.0, 3.0 * 0.0625) << n;  // the last 3
+    EXPECT_NEAR(test::percentile(histogram, (count + 0.5) / all), 10.0, 10.0 * 0.0625) << n;
+    EXPECT_NEAR(test::percentile(histogram, (count + 2.5) / all), 20.0, 20.0 * 0.0625) << n;
   }
 }
 
@@ -127,7 +129,7 @@ TEST(LogHistogram, InterpolatesWithinABin) {  // 1000 values evenly in the bin [
   LogHistogram histogram;
   histogram.add(values);
   for (int k = 1; k <= 1000; ++k)
-    ASSERT_NEAR(histogram.percentile((k - 0.5) / 1000.0), values[static_cast<std::size_t>(k - 1)], 1e-7) << k;
+    ASSERT_NEAR(test::percentile(histogram, (k - 0.5) / 1000.0), values[static_cast<std::size_t>(k - 1)], 1e-7) << k;
 }
 
 TEST(LogHistogram, PercentileIsMonotoneInTheShare) {
@@ -137,7 +139,7 @@ TEST(LogHistogram, PercentileIsMonotoneInTheShare) {
     histogram.add(draw(distribution, 500, numbers));
     double last = 0.0;
     for (int i = 0; i <= 1000; ++i) {
-      const double now = histogram.percentile(i / 1000.0);
+      const double now = test::percentile(histogram, i / 1000.0);
       ASSERT_GE(now, last) << distribution.name << ' ' << i;
       last = now;
     }
@@ -148,7 +150,7 @@ TEST(LogHistogram, PercentileIsMonotoneInTheShare) {
 void expect_same(const LogHistogram& a, const LogHistogram& b, const char* what) {
   ASSERT_EQ(a.count(), b.count()) << what;
   for (int i = 0; i <= 200; ++i) {
-    const double left = a.percentile(i / 200.0), right = b.percentile(i / 200.0);
+    const double left = test::percentile(a, i / 200.0), right = test::percentile(b, i / 200.0);
     ASSERT_TRUE(left == right || (std::isnan(left) && std::isnan(right)))
         << what << ' ' << i << ' ' << left << ' ' << right;
   }
@@ -217,8 +219,8 @@ TEST(LogHistogram, CollapsedBinsOverflowIntoWiderCounts) {  // 40 bins of 200: t
   histogram.add(values);
   histogram.add(std::array{1e5F});
   EXPECT_EQ(histogram.count(), 8001U);
-  EXPECT_LE(histogram.percentile(8000.0 / 8001.0), 1e5 / 128.0 * 1.0625);
-  EXPECT_NEAR(histogram.percentile(1.0), 1e5, 6250.0);
+  EXPECT_LE(test::percentile(histogram, 8000.0 / 8001.0), 1e5 / 128.0 * 1.0625);
+  EXPECT_NEAR(test::percentile(histogram, 1.0), 1e5, 6250.0);
 }
 
 TEST(LogHistogram, ZeroAndTinyValuesCountAsTheFloor) {
@@ -226,7 +228,7 @@ TEST(LogHistogram, ZeroAndTinyValuesCountAsTheFloor) {
     LogHistogram histogram;
     histogram.add(std::vector<float>(10, value));
     EXPECT_EQ(histogram.count(), 10U);
-    EXPECT_NEAR(histogram.percentile(0.5), LogHistogram::kFloor, LogHistogram::kFloor * LogHistogram::kBinWidth);
+    EXPECT_NEAR(test::percentile(histogram, 0.5), LogHistogram::kFloor, LogHistogram::kFloor * LogHistogram::kBinWidth);
   }
 }
 
@@ -239,7 +241,7 @@ TEST(LogHistogram, NaNCountsAsTheFloorAndHidesNoOtherValue) {
     LogHistogram histogram;
     histogram.add(with);
     EXPECT_EQ(histogram.count(), values.size());
-    EXPECT_NEAR(histogram.percentile(1.0), i == 4 ? 100.0 : 1e3, i == 4 ? 6.25 : 62.5) << i;
+    EXPECT_NEAR(test::percentile(histogram, 1.0), i == 4 ? 100.0 : 1e3, i == 4 ? 6.25 : 62.5) << i;
   }
 }
 
@@ -258,13 +260,13 @@ TEST(LogHistogram, InfinityIsCountedAndBreaksNothing) {
 TEST(LogHistogram, EmptyIsZeroAndNeutral) {
   LogHistogram empty, histogram;
   EXPECT_EQ(empty.count(), 0U);
-  EXPECT_EQ(empty.percentile(0.5), 0.0);
+  EXPECT_EQ(test::percentile(empty, 0.5), 0.0);
   histogram.add(std::array{3.0F, 4.0F, 5.0F});
-  const double before = histogram.percentile(0.5);
+  const double before = test::percentile(histogram, 0.5);
   histogram.merge(empty);
   histogram.add({});
   EXPECT_EQ(histogram.count(), 3U);
-  EXPECT_EQ(histogram.percentile(0.5), before);
+  EXPECT_EQ(test::percentile(histogram, 0.5), before);
   empty.merge(histogram);
   expect_same(empty, histogram, "merged into nothing");
 }

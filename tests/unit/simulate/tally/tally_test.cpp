@@ -11,6 +11,7 @@
 #include <set>
 #include <thread>
 
+#include "support/percentile.hpp"
 #include "support/scenarios.hpp"
 
 namespace talus {
@@ -98,7 +99,7 @@ void expect_values(const CellRecord& record, Quantity quantity, const std::vecto
   EXPECT_NEAR(record.mean(quantity), sum / n, unit * 0.5001);
   EXPECT_EQ(record.histogram[q].count(), values.size());
   for (const double share : {0.0, 0.5, 0.95, 1.0})
-    EXPECT_EQ(record.histogram[q].percentile(share), histogram.percentile(share));
+    EXPECT_EQ(test::percentile(record.histogram[q], share), test::percentile(histogram, share));
 }
 
 std::uint32_t above(const std::vector<float>& values, double threshold) {
